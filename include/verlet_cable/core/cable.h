@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "verlet_cable/core/scene_desc.h"
+#include "verlet_cable/core/types.h"
+
+namespace verlet_cable {
+
+/// What does not change while a cable is stepped. A cable of n segments has n + 1 nodes; segment i joins nodes i and i + 1.
+struct CableModel {
+  std::string name;
+  MaterialDesc material;
+  std::array<double, 4> color{0.1, 0.1, 0.1, 1.0};
+  std::vector<double> rest_lengths;  ///< [m] a segment, n; written by World's edits only
+  std::vector<double> masses;        ///< [kg] a node, n + 1: half of each neighbouring segment, and payloads
+
+  int segments() const { return static_cast<int>(rest_lengths.size()); }
+  int nodes() const { return static_cast<int>(masses.size()); }
+  double length() const;                  ///< [m] at rest
+  std::vector<double> arc_length() const; ///< [m] a node, n + 1, from the start, at rest
+};
+
+/// What a step changes. Written by World only.
+struct CableState {
+  std::vector<Vector3> positions;   ///< [m] a node, n + 1
+  std::vector<Vector3> velocities;  ///< [m/s] a node, n + 1, at the time of the positions
+  std::vector<double> tension;      ///< [N] a segment, n, > 0 is tension; mean over the last substep
+};
+
+struct Cable {
+  CableModel model;
+  CableState state;
+};
+
+/// Shapes derived from positions, for display and messages. n segments.
+std::vector<Quaternion> segment_orientations(const Cable& cable);  ///< n: x along the segment, roll of the material
+std::vector<double> node_curvature(const Cable& cable);            ///< [1/m] n - 1, inner nodes
+std::vector<double> node_twist(const Cable& cable);                ///< [rad/m] n - 1, inner nodes
+double strain(const Cable& cable, int segment);                    ///< l / l0 - 1
+
+/// The point of a cable nearest to `point`.
+struct NearestPoint {
+  int segment = 0;
+  double fraction = 0;  ///< along the segment, 0 to 1
+  double distance = 0;  ///< [m]
+};
+NearestPoint nearest_point(const Cable& cable, const Vector3& point);
+
+}  // namespace verlet_cable

@@ -1,0 +1,147 @@
+#pragma once
+
+#include <array>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "verlet_cable/core/types.h"
+
+namespace verlet_cable {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// What a cable is made of. Ranges: see `validate`.
+struct MaterialDesc {
+  double linear_density = 0;           ///< [kg/m] of rest length, > 0
+  double radius = 0;                   ///< [m], > 0
+  double axial_stiffness = infinity;   ///< EA [N], > 0; infinite: inextensible
+  double bending_stiffness = 0;        ///< EI [N m^2], >= 0
+  double torsional_stiffness = 0;      ///< GJ [N m^2], >= 0
+  double axial_damping = 0;            ///< [N s] force per strain rate, >= 0
+  double bending_damping = 0;          ///< [N m^2 s] moment per curvature rate, >= 0
+  double torsional_damping = 0;        ///< [N m^2 s] moment per twist rate, >= 0
+  double drag = 0;                     ///< [kg/(m s)] linear drag per unit length, >= 0
+  double friction = 0.5;               ///< Coulomb coefficient against obstacles, >= 0
+  double breaking_tension = infinity;  ///< [N], > 0
+};
+
+/// A place on a cable: its start, its end, or the node nearest to an arc length.
+struct PlaceDesc {
+  enum class At { start, end, arc_length };
+  At at = At::start;
+  double arc_length = 0;  ///< [m] from the start, at rest; 0 to the cable's length
+};
+
+enum class AttachmentType { hinge, clamp };
+
+/// Roll, pitch, yaw and position of a frame, as written in a scene.
+using InitialPose = std::array<double, 6>;  // x, y, z [m], roll, pitch, yaw [rad]
+
+struct AttachmentDesc {
+  std::string name;
+  PlaceDesc place;
+  std::string frame;  ///< empty: the fixed frame
+  Vector3 offset = Vector3::Zero();    ///< [m] in the frame
+  Vector3 rotation = Vector3::Zero();  ///< roll, pitch, yaw [rad] in the frame
+  AttachmentType type = AttachmentType::hinge;
+  std::optional<InitialPose> initial_pose;  ///< where the frame is until anything says otherwise
+};
+
+struct PointMassDesc {
+  PlaceDesc place;
+  double mass = 0;  ///< [kg], > 0; added to the node's mass
+};
+
+struct InitialShapeDesc {
+  enum class Type { automatic, straight, catenary, points, settled };
+  Type type = Type::automatic;
+  Vector3 from = Vector3::Zero();   ///< straight: the first node [m]
+  Vector3 to = Vector3::UnitX();    ///< straight: gives the direction
+  std::vector<Vector3> points;      ///< points: polyline [m]
+  std::vector<Vector3> velocities;  ///< points: [m/s], none or one a point
+};
+
+/// The shape that carries no bending moment.
+struct RestCurvatureDesc {
+  enum class Type { straight, initial, constant };
+  Type type = Type::straight;
+  std::array<double, 2> curvature{0, 0};  ///< constant: about the material's y and z axes [1/m]
+};
+
+struct CableDesc {
+  std::string name;
+  double length = 0;  ///< [m] rest length, > 0
+  int segments = 0;   ///< >= 1; all equally long
+  std::string material;  ///< a key of SceneDesc::materials
+  std::array<double, 4> color{0.1, 0.1, 0.1, 1.0};  ///< red, green, blue, alpha; 0 to 1
+  InitialShapeDesc initial;
+  RestCurvatureDesc rest_curvature;
+  std::vector<AttachmentDesc> attachments;
+  std::vector<PointMassDesc> point_masses;
+};
+
+/// Uniform or central gravity.
+struct GravityDesc {
+  Vector3 acceleration{0, 0, -9.81};  ///< [m/s^2]
+};
+
+enum class LostFramePolicy { hold, release, pause };
+enum class TimeJumpPolicy { reset, keep };
+enum class MarkerStyle { tube, line };
+enum class ColorBy { cable, tension, strain, contact };
+
+struct LimitsDesc {
+  int segments = 100000;
+  int snapshots = 32;
+  int rollouts = 16;
+};
+
+struct NamedMaterial {
+  std::string name;
+  MaterialDesc material;
+};
+
+/// A whole scene: plain values with defaults. Names, units and ranges are those of the scene's keys.
+struct SceneDesc {
+  std::string frame_id = "world";
+  double time_step = 0.001;  ///< [s], > 0
+  GravityDesc gravity;
+  double publish_rate = 50;         ///< [Hz], > 0
+  double tf_latency = 0.05;         ///< [s], >= 0
+  double tf_timeout = 0.5;          ///< [s], > 0
+  LostFramePolicy on_lost_frame = LostFramePolicy::hold;
+  double max_frame_speed = infinity;  ///< [m/s], > 0
+  TimeJumpPolicy on_time_jump = TimeJumpPolicy::reset;
+  MarkerStyle marker_style = MarkerStyle::tube;
+  ColorBy color_by = ColorBy::tension;
+  std::string scene_directory;
+  LimitsDesc limits;
+  int seed = 0;
+  std::vector<NamedMaterial> materials;  ///< those that the cables name
+  std::vector<CableDesc> cables;
+
+  const MaterialDesc* find_material(const std::string& name) const;
+};
+
+/// Everything that is wrong with a scene: one line an error, each with the full key, the value and what is allowed.
+class SceneError : public std::runtime_error {
+ public:
+  explicit SceneError(std::vector<std::string> errors);
+  const std::vector<std::string>& errors() const { return errors_; }
+
+ private:
+  std::vector<std::string> errors_;
+};
+
+/// Every value out of range, name used twice, unknown material, attachments at one node, conflicting `initial_pose`
+/// of a frame, cable shorter than the distance of its attachments at their initial poses; empty if the scene is sound.
+/// Keys are written as in YAML: `cables[0].attachments[1].frame`.
+std::vector<std::string> validate(const SceneDesc& scene);
+
+/// The node that a place on a cable means: arc lengths go to the nearest node.
+int node_at(const CableDesc& cable, const PlaceDesc& place);
+
+}  // namespace verlet_cable

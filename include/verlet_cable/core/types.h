@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace verlet_cable {
+
+using Vector3 = Eigen::Vector3d;
+using Quaternion = Eigen::Quaterniond;
+
+/// A rigid pose: position [m] and orientation of a frame, seen from its parent.
+struct Pose {
+  Vector3 position = Vector3::Zero();
+  Quaternion orientation = Quaternion::Identity();
+
+  /// The pose `child`, given in this pose's frame, seen from this pose's parent.
+  Pose operator*(const Pose& child) const {
+    return {position + orientation * child.position, (orientation * child.orientation).normalized()};
+  }
+  Pose inverse() const {
+    const Quaternion back = orientation.conjugate();
+    return {-(back * position), back};
+  }
+};
+
+/// Rotation of fixed-axis roll, pitch and yaw [rad], as in URDF: Rz(yaw) Ry(pitch) Rx(roll).
+inline Quaternion quaternion_from_rpy(const Vector3& rpy) {
+  return Eigen::AngleAxisd(rpy.z(), Vector3::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Vector3::UnitY()) *
+         Eigen::AngleAxisd(rpy.x(), Vector3::UnitX());
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "verlet_cable/core/cable.h"
+#include "verlet_cable/core/scene_desc.h"
+#include "verlet_cable/core/types.h"
+
+namespace verlet_cable {
+
+/// Where the frames are at the end of a step, seen from the fixed frame; one entry a frame, by frame id.
+struct FrameInput {
+  Pose pose;
+  bool known = true;  ///< false: never seen; cables that need it wait
+};
+using BoundaryInputs = std::vector<FrameInput>;
+
+/// What holds a node of a cable to a frame.
+struct Attachment {
+  std::string name;
+  int cable = 0;  ///< index into World::cables()
+  int node = 0;
+  int frame = 0;  ///< index into World::frames()
+  AttachmentType type = AttachmentType::hinge;
+  Pose pose;                        ///< of the attachment, in the frame
+  Vector3 force = Vector3::Zero();  ///< [N] what the cable exerts on its holder, fixed frame's axes, mean over the last step
+  Vector3 torque = Vector3::Zero();  ///< [N m] likewise, about the attachment's point
+};
+
+struct StepResult {
+  enum class Status {
+    ok,
+    overstretched,  ///< held points are further apart than an inextensible cable between them is long: it was lengthened
+    degraded,       ///< a substep did not converge at the smallest size and was finished with damping: finite, less exact
+    fault           ///< nothing finite could be found: the state is that of before the step
+  };
+  Status status = Status::ok;
+  int cable = -1;        ///< the first cable that is not ok
+  int node = -1;         ///< its first node that is not ok
+  int substeps = 0;      ///< the most that any cable took
+  int iterations = 0;    ///< of the solver, all cables and substeps
+  double max_strain = 0; ///< largest |l / l0 - 1| at the end of the step
+};
+
+/// [J]; gravity is zero at the fixed frame's origin.
+struct Energy {
+  double kinetic = 0, gravity = 0, stretch = 0, bend = 0, twist = 0;
+  double total() const { return kinetic + gravity + stretch + bend + twist; }
+};
+
+/// Outcome of an edit: nothing has changed where `ok` is false, and `message` says why, with names and values.
+struct EditResult {
+  bool ok = false;
+  std::string message;
+  std::string name;  ///< pin: of the pin; cut: of the new cable
+};
+
+/// The simulation: cables whose attachments follow frames, in the fixed frame. A value: a copy is a snapshot, and continuing a copy
+/// gives the same bytes. Reads no clock, logs nothing, throws nothing in `step`.
+class World {
+ public:
+  /// Cables whose frames are all known start at once, the others wait for `start_waiting`. `inputs` is indexed like
+  /// `frame_names(scene)`. Throws SceneError with everything that `validate` finds.
+  World(const SceneDesc& scene, const BoundaryInputs& inputs);
+  ~World();
+  World(const World&);
+  World& operator=(const World&);
+  World(World&&) noexcept;
+  World& operator=(World&&) noexcept;
+
+  /// Advances by the scene's time step. `inputs`: one entry a frame, see frames().
+  StepResult step(const BoundaryInputs& inputs);
+
+  double time() const;          ///< [s] steps done times the time step
+  std::int64_t steps() const;
+  double time_step() const;     ///< [s]
+
+  /// Frames by id: 0 is the fixed frame, then those of the scene in order of appearance, then those that pins added.
+  const std::vector<std::string>& frames() const;
+  const Pose& frame_pose(int frame) const;  ///< at the world's time
+  int add_frame(const std::string& name, const Pose& pose);  ///< id of the new or the existing frame
+
+  const std::vector<Cable>& cables() const;      ///< those that have started, pieces of cuts included
+  const std::vector<std::string>& waiting() const;  ///< names of cables that wait for a frame
+  const std::vector<Attachment>& attachments() const;  ///< of the started cables
+  int find_cable(const std::string& name) const;       ///< index, -1 if there is none
+  int find_attachment(const std::string& name) const;  ///< index, -1 if there is none
+
+  /// Starts the waiting cables whose frames are known now, at their default or given shapes. How many.
+  int start_waiting(const BoundaryInputs& inputs);
+
+  /// Holds a node at a pose in a frame. The node goes there smoothly. `name` empty: one is made.
+  EditResult pin(const std::string& name, int cable, int node, int frame, const Pose& pose, AttachmentType type);
+  EditResult unpin(const std::string& name);
+  /// Removes a segment; its mass stays on its nodes. The first piece keeps the name.
+  EditResult cut(int cable, int segment);
+
+  Energy energy() const;
+  std::uint64_t hash() const;  ///< of all that the future depends on
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// Frames that a scene names, by id: the fixed frame first, then in order of appearance, each once.
+std::vector<std::string> frame_names(const SceneDesc& scene);
+/// Their initial poses, by id; `known` is false where the scene gives none.
+BoundaryInputs initial_frames(const SceneDesc& scene);
+
+}  // namespace verlet_cable
