@@ -110,5 +110,8 @@ class World {
 std::vector<std::string> frame_names(const SceneDesc& scene);
 /// Their initial poses, by id; `known` is false where the scene gives none.
 BoundaryInputs initial_frames(const SceneDesc& scene);
+/// Inextensible cables that are shorter than the distance of two neighbouring attachments with the frames at `frames` (by id; unknown
+/// ones are left out): one line each, like `validate`, which does this at the initial poses.
+std::vector<std::string> validate_distances(const SceneDesc& scene, const BoundaryInputs& frames);
 
 }  // namespace verlet_cable

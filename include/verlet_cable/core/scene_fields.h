@@ -1,0 +1,96 @@
+#pragma once
+
+#include <array>
+#include <limits>
+#include <string>
+
+#include "verlet_cable/core/scene_desc.h"
+
+namespace verlet_cable {
+
+/// What a number of a scene may be: lowest <= number <= highest, or infinite where that means something. Never NaN.
+/// The bounds are far from anything physical where the words name none; they keep sums and products finite.
+struct Range {
+  double lowest = 0;
+  double highest = 0;
+  const char* words = "";  ///< what is allowed, for messages
+  bool infinite = false;   ///< +infinity is allowed too
+
+  bool contains(double value) const { return (value >= lowest && value <= highest) || (infinite && value == infinity); }
+  /// `any number above 0 [m] (from 1e-12 to 1e+12)`
+  std::string text(const char* unit = "") const;
+};
+
+constexpr Range positive{1e-12, 1e12, "any number above 0"};
+constexpr Range positive_or_infinite{1e-12, 1e12, "any number above 0, or .inf", true};
+constexpr Range not_negative{0, 1e12, "0 or any number above"};
+constexpr Range coordinate{-1e9, 1e9, "finite numbers"};
+constexpr Range unit_interval{0, 1, "numbers"};
+constexpr double largest_integer = std::numeric_limits<int>::max();
+
+/// A number of a scene: its key, where it is kept, its unit and range. One table for the reader, `validate` and the
+/// documentation.
+template <class Owner, class Number = double>
+struct Field {
+  const char* key;
+  Number Owner::*member;
+  const char* unit;
+  Range range;
+  bool required = false;
+};
+
+constexpr std::array<Field<SceneDesc>, 5> scene_fields{{
+    {"time_step", &SceneDesc::time_step, "s", {1e-9, 0.1, "any number above 0, at most 0.1"}},
+    {"publish_rate", &SceneDesc::publish_rate, "Hz", {1e-3, 1e4, "any number above 0"}},
+    // tf is buffered for 60 s: latency and timeout together must stay inside.
+    {"tf_latency", &SceneDesc::tf_latency, "s", {0, 30, "0 or any number above, at most 30"}},
+    {"tf_timeout", &SceneDesc::tf_timeout, "s", {1e-3, 30, "any number above 0, at most 30"}},
+    {"max_frame_speed", &SceneDesc::max_frame_speed, "m/s", positive_or_infinite},
+}};
+
+constexpr std::array<Field<SceneDesc, int>, 1> scene_integer_fields{{
+    {"seed", &SceneDesc::seed, "", {0, largest_integer, "an integer"}},
+}};
+
+constexpr std::array<Field<LimitsDesc, int>, 3> limits_fields{{
+    {"segments", &LimitsDesc::segments, "", {1, 1e7, "an integer"}},
+    {"snapshots", &LimitsDesc::snapshots, "", {0, 1e4, "an integer"}},
+    {"rollouts", &LimitsDesc::rollouts, "", {0, 1e3, "an integer"}},
+}};
+
+constexpr std::array<Field<MaterialDesc>, 11> material_fields{{
+    {"linear_density", &MaterialDesc::linear_density, "kg/m", positive, true},
+    {"radius", &MaterialDesc::radius, "m", positive, true},
+    {"axial_stiffness", &MaterialDesc::axial_stiffness, "N", positive_or_infinite},
+    {"bending_stiffness", &MaterialDesc::bending_stiffness, "N m^2", not_negative},
+    {"torsional_stiffness", &MaterialDesc::torsional_stiffness, "N m^2", not_negative},
+    {"axial_damping", &MaterialDesc::axial_damping, "N s", not_negative},
+    {"bending_damping", &MaterialDesc::bending_damping, "N m^2 s", not_negative},
+    {"torsional_damping", &MaterialDesc::torsional_damping, "N m^2 s", not_negative},
+    {"drag", &MaterialDesc::drag, "kg/(m s)", not_negative},
+    {"friction", &MaterialDesc::friction, "", not_negative},
+    {"breaking_tension", &MaterialDesc::breaking_tension, "N", positive_or_infinite},
+}};
+
+constexpr std::array<Field<CableDesc>, 1> cable_fields{{
+    {"length", &CableDesc::length, "m", {1e-9, 1e9, "any number above 0"}, true},
+}};
+
+constexpr std::array<Field<CableDesc, int>, 1> cable_integer_fields{{
+    {"segments", &CableDesc::segments, "", {1, 1e7, "an integer"}, true},
+}};
+
+constexpr std::array<Field<PointMassDesc>, 1> point_mass_fields{{
+    {"mass", &PointMassDesc::mass, "kg", positive, true},
+}};
+
+/// Whether a scene may use `name` for a material, cable or attachment: letters, digits and _, a letter first.
+bool is_name(const std::string& name);
+/// Whether `name` can be a tf frame: not empty, no leading /, no blanks or control characters.
+bool is_frame_name(const std::string& name);
+
+/// What is allowed, for messages.
+constexpr const char* name_words = "letters, digits and _, a letter first";
+constexpr const char* frame_words = "a frame name without leading / and without blanks";
+
+}  // namespace verlet_cable

@@ -1,0 +1,275 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "verlet_cable/core/number_text.h"
+#include "verlet_cable/core/scene_fields.h"
+#include "verlet_cable/core/world.h"
+
+namespace verlet_cable {
+namespace {
+
+/// Rounding in offsets, rotations and lengths that were written with a few digits.
+constexpr double distance_tolerance = 1e-9;
+constexpr double largest_length_error = 0.05;
+
+/// Lines of the form `key: value; allowed: what`.
+class Errors {
+ public:
+  void add(const std::string& key, const std::string& value, const std::string& allowed) {
+    lines_.push_back(key + ": " + value + "; allowed: " + allowed);
+  }
+  std::vector<std::string> take() { return std::move(lines_); }
+
+ private:
+  std::vector<std::string> lines_;
+};
+
+std::string indexed(const std::string& key, std::size_t index) {
+  return key + "[" + std::to_string(index) + "]";
+}
+
+std::string quoted(const std::string& text) {
+  return '"' + text + '"';
+}
+
+template <class Numbers>
+std::string list_text(const Numbers& numbers) {
+  std::string text;
+  for (const double number : numbers) text += (text.empty() ? "" : ", ") + number_text(number);
+  return "[" + text + "]";
+}
+
+std::string list_text(const Vector3& v) {
+  return list_text(std::array<double, 3>{v.x(), v.y(), v.z()});
+}
+
+template <class Fields, class Owner>
+void check_fields(const std::string& prefix, const Fields& fields, const Owner& owner, Errors& errors) {
+  for (const auto& field : fields) {
+    const double value = static_cast<double>(owner.*field.member);
+    if (!field.range.contains(value)) errors.add(prefix + field.key, number_text(value), field.range.text(field.unit));
+  }
+}
+
+template <class Numbers>
+void check_numbers(const std::string& key, const Numbers& numbers, const Range& range, const char* unit, Errors& errors) {
+  const bool good = std::all_of(numbers.begin(), numbers.end(), [&](double number) { return range.contains(number); });
+  if (!good) errors.add(key, list_text(numbers), range.text(unit));
+}
+
+void check_vector(const std::string& key, const Vector3& v, const char* unit, Errors& errors) {
+  check_numbers(key, std::array<double, 3>{v.x(), v.y(), v.z()}, coordinate, unit, errors);
+}
+
+/// Names of one kind, each once in the scene.
+class UniqueNames {
+ public:
+  void check(const std::string& key, const std::string& name, Errors& errors) {
+    if (!is_name(name)) return errors.add(key, quoted(name), name_words);
+    const auto [first, is_new] = first_use_.emplace(name, key);
+    if (!is_new) errors.add(key, quoted(name), "a name that is used once; it is " + first->second + " already");
+  }
+
+ private:
+  std::map<std::string, std::string> first_use_;
+};
+
+bool is_sound(const CableDesc& cable) {
+  return cable_fields[0].range.contains(cable.length) && cable_integer_fields[0].range.contains(cable.segments);
+}
+
+bool is_sound(const CableDesc& cable, const PlaceDesc& place) {
+  return place.at != PlaceDesc::At::arc_length || (place.arc_length >= 0 && place.arc_length <= cable.length);
+}
+
+bool check_place(const std::string& key, const CableDesc& cable, const PlaceDesc& place, Errors& errors) {
+  if (is_sound(cable, place) || !cable_fields[0].range.contains(cable.length)) return true;
+  errors.add(key, number_text(place.arc_length),
+             "start, end, or an arc length [m] from 0 to the cable's length " + number_text(cable.length));
+  return false;
+}
+
+void check_initial(const std::string& key, const CableDesc& cable, Errors& errors) {
+  const InitialShapeDesc& initial = cable.initial;
+  check_vector(key + ".from", initial.from, "m", errors);
+  check_vector(key + ".to", initial.to, "m", errors);
+  if (initial.type == InitialShapeDesc::Type::straight && initial.from == initial.to)
+    errors.add(key + ".to", list_text(initial.to), "a point other than `from`, it gives the direction");
+  if (initial.type == InitialShapeDesc::Type::catenary && cable.attachments.size() < 2)
+    errors.add(key + ".type", "catenary with " + std::to_string(cable.attachments.size()) + " attachments",
+               "catenary for a cable with at least two attachments");
+  if (initial.type != InitialShapeDesc::Type::points) return;
+
+  for (std::size_t i = 0; i < initial.points.size(); ++i)
+    check_vector(indexed(key + ".points", i), initial.points[i], "m", errors);
+  for (std::size_t i = 0; i < initial.velocities.size(); ++i)
+    check_vector(indexed(key + ".velocities", i), initial.velocities[i], "m/s", errors);
+  if (!initial.velocities.empty() && initial.velocities.size() != initial.points.size())
+    errors.add(key + ".velocities", std::to_string(initial.velocities.size()) + " entries",
+               "none, or one a point: " + std::to_string(initial.points.size()));
+  if (initial.points.size() < 2)
+    return errors.add(key + ".points", std::to_string(initial.points.size()) + " points", "at least two points");
+  double length = 0;
+  for (std::size_t i = 1; i < initial.points.size(); ++i) length += (initial.points[i] - initial.points[i - 1]).norm();
+  if (std::isfinite(length) && is_sound(cable) && std::abs(length - cable.length) > largest_length_error * cable.length)
+    errors.add(key + ".points", "a polyline of " + number_text(length) + " m",
+               "at most 5 % more or less than the cable's length " + number_text(cable.length) + " m");
+}
+
+void check_attachments(const std::string& prefix, const CableDesc& cable, UniqueNames& names, Errors& errors) {
+  std::map<int, std::string> holders;
+  for (std::size_t i = 0; i < cable.attachments.size(); ++i) {
+    const AttachmentDesc& attachment = cable.attachments[i];
+    const std::string key = indexed(prefix + "attachments", i);
+    names.check(key + ".name", attachment.name, errors);
+    if (!attachment.frame.empty() && !is_frame_name(attachment.frame))
+      errors.add(key + ".frame", quoted(attachment.frame), frame_words);
+    check_vector(key + ".offset", attachment.offset, "m", errors);
+    check_vector(key + ".rotation", attachment.rotation, "rad", errors);
+    if (attachment.initial_pose) check_numbers(key + ".initial_pose", *attachment.initial_pose, coordinate, "m, rad", errors);
+    if (!check_place(key + ".at", cable, attachment.place, errors) || !is_sound(cable)) continue;
+    const int node = node_at(cable, attachment.place);
+    const auto [holder, is_new] = holders.emplace(node, key);
+    if (!is_new)
+      errors.add(key + ".at", "node " + std::to_string(node),
+                 "a node that no other attachment holds; " + holder->second + " does");
+  }
+}
+
+void check_cable(const std::string& key, const SceneDesc& scene, const CableDesc& cable, UniqueNames& attachments,
+                 Errors& errors) {
+  const std::string prefix = key + ".";
+  check_fields(prefix, cable_fields, cable, errors);
+  check_fields(prefix, cable_integer_fields, cable, errors);
+  if (!scene.find_material(cable.material)) {
+    std::string known;
+    for (const NamedMaterial& material : scene.materials) known += (known.empty() ? "" : ", ") + material.name;
+    errors.add(prefix + "material", quoted(cable.material),
+               "a material of the scene (" + (known.empty() ? "it has none" : known) + ")");
+  }
+  check_numbers(prefix + "color", cable.color, unit_interval, "", errors);
+  check_initial(prefix + "initial", cable, errors);
+  check_numbers(prefix + "rest_curvature", cable.rest_curvature.curvature, coordinate, "1/m", errors);
+  check_attachments(prefix, cable, attachments, errors);
+  for (std::size_t i = 0; i < cable.point_masses.size(); ++i) {
+    const std::string point_mass = indexed(prefix + "point_masses", i) + ".";
+    check_place(point_mass + "at", cable, cable.point_masses[i].place, errors);
+    check_fields(point_mass, point_mass_fields, cable.point_masses[i], errors);
+  }
+}
+
+void check_initial_poses(const SceneDesc& scene, Errors& errors) {
+  struct FirstUse {
+    InitialPose pose;
+    std::string key;
+  };
+  std::map<std::string, FirstUse> first_use{{scene.frame_id, {InitialPose{}, "the fixed frame"}}};
+  for (std::size_t c = 0; c < scene.cables.size(); ++c) {
+    for (std::size_t a = 0; a < scene.cables[c].attachments.size(); ++a) {
+      const AttachmentDesc& attachment = scene.cables[c].attachments[a];
+      if (!attachment.initial_pose) continue;
+      const std::string key = indexed(indexed("cables", c) + ".attachments", a) + ".initial_pose";
+      const std::string& frame = attachment.frame.empty() ? scene.frame_id : attachment.frame;
+      const auto [first, is_new] = first_use.emplace(frame, FirstUse{*attachment.initial_pose, key});
+      if (!is_new && first->second.pose != *attachment.initial_pose)
+        errors.add(
+            key, list_text(*attachment.initial_pose),
+            "one initial_pose a frame; " + quoted(frame) + " has " + list_text(first->second.pose) + " by " + first->second.key);
+    }
+  }
+}
+
+/// Where an attachment's point is held with its frame at `frame`.
+Vector3 held_point(const AttachmentDesc& attachment, const Pose& frame) {
+  return frame.position + frame.orientation * attachment.offset;
+}
+
+void check_distances(const std::string& key, const CableDesc& cable, const std::map<std::string, Pose>& frames, Errors& errors) {
+  std::vector<std::size_t> order(cable.attachments.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto node = [&](std::size_t i) { return node_at(cable, cable.attachments[i].place); };
+  order.erase(
+      std::remove_if(order.begin(), order.end(), [&](std::size_t i) { return !frames.count(cable.attachments[i].frame); }),
+      order.end());
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return node(a) < node(b); });
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    const AttachmentDesc& first = cable.attachments[order[i - 1]];
+    const AttachmentDesc& second = cable.attachments[order[i]];
+    const double length = cable.length * (node(order[i]) - node(order[i - 1])) / cable.segments;
+    const double distance = (held_point(second, frames.at(second.frame)) - held_point(first, frames.at(first.frame))).norm();
+    if (length > 0 && distance > length * (1 + distance_tolerance))
+      errors.add(key + ".length",
+                 number_text(length) + " m of cable between " + quoted(first.name) + " and " + quoted(second.name),
+                 "at least the distance of these attachments, " + number_text(distance) +
+                     " m, as the cable is inextensible (axial_stiffness .inf)");
+  }
+}
+
+}  // namespace
+
+bool is_name(const std::string& name) {
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  const auto is_other = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; };
+  return !name.empty() && is_letter(name[0]) && std::all_of(name.begin(), name.end(), is_other);
+}
+
+bool is_frame_name(const std::string& name) {
+  const auto is_printable = [](char c) { return static_cast<unsigned char>(c) > ' ' && c != '\x7f'; };
+  return !name.empty() && name[0] != '/' && std::all_of(name.begin(), name.end(), is_printable);
+}
+
+std::string Range::text(const char* unit) const {
+  const std::string unit_text = *unit ? " [" + std::string(unit) + "]" : "";
+  return words + unit_text + " (from " + number_text(lowest) + " to " + number_text(highest) + ")";
+}
+
+std::vector<std::string> validate_distances(const SceneDesc& scene, const BoundaryInputs& frames) {
+  Errors errors;
+  const std::vector<std::string> names = frame_names(scene);
+  std::map<std::string, Pose> poses{{"", Pose{}}};
+  for (std::size_t i = 0; i < names.size() && i < frames.size(); ++i) {
+    if (frames[i].known) poses.emplace(names[i], frames[i].pose);
+  }
+  for (std::size_t i = 0; i < scene.cables.size(); ++i) {
+    const CableDesc& cable = scene.cables[i];
+    const MaterialDesc* material = scene.find_material(cable.material);
+    if (material && material->axial_stiffness == infinity && is_sound(cable))
+      check_distances(indexed("cables", i), cable, poses, errors);
+  }
+  return errors.take();
+}
+
+std::vector<std::string> validate(const SceneDesc& scene) {
+  Errors errors;
+  if (!is_frame_name(scene.frame_id)) errors.add("frame_id", quoted(scene.frame_id), frame_words);
+  check_fields("", scene_fields, scene, errors);
+  check_fields("", scene_integer_fields, scene, errors);
+  check_fields("limits.", limits_fields, scene.limits, errors);
+  check_vector("gravity", scene.gravity.acceleration, "m/s^2", errors);
+
+  UniqueNames materials;
+  for (const NamedMaterial& named : scene.materials) {
+    materials.check("materials." + named.name, named.name, errors);
+    check_fields("materials." + named.name + ".", material_fields, named.material, errors);
+  }
+
+  UniqueNames cables, attachments;
+  std::int64_t segments = 0;
+  for (std::size_t i = 0; i < scene.cables.size(); ++i) {
+    cables.check(indexed("cables", i) + ".name", scene.cables[i].name, errors);
+    check_cable(indexed("cables", i), scene, scene.cables[i], attachments, errors);
+    segments += std::max(0, scene.cables[i].segments);
+  }
+  if (segments > scene.limits.segments)
+    errors.add("cables", std::to_string(segments) + " segments in all",
+               "at most limits.segments = " + std::to_string(scene.limits.segments));
+
+  check_initial_poses(scene, errors);
+  std::vector<std::string> lines = errors.take();
+  for (std::string& line : validate_distances(scene, initial_frames(scene))) lines.push_back(std::move(line));
+  return lines;
+}
+
+}  // namespace verlet_cable
