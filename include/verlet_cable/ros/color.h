@@ -1,0 +1,40 @@
+#pragma once
+
+#include <std_msgs/ColorRGBA.h>
+
+#include <vector>
+
+#include "verlet_cable/core/cable.h"
+#include "verlet_cable/core/scene_desc.h"
+
+namespace verlet_cable {
+
+/// From blue (0) over pale yellow to red (1), told apart by color-blind eyes, too; values outside are clamped. Opaque.
+std_msgs::ColorRGBA color_of_load(double load);
+
+/// Red, green and blue in the bytes of one float, as PointCloud2 consumers expect in a field `rgb`.
+float packed_rgb(const std_msgs::ColorRGBA& color);
+
+/// Gives every node of a cable its color. The scale is fixed by the scene, one for all its cables, so that a color means the same
+/// load everywhere and at any time: blue is slack, red is the tension under which the scene's heaviest cable would hang from one
+/// end with all its payloads, or more; by strain, the largest strain that this weight would give one of the cables (without an
+/// elastic cable: 0.1 %).
+class ColorScale {
+ public:
+  explicit ColorScale(const SceneDesc& scene);
+
+  /// One color a node: the mean over the segments that meet there.
+  std::vector<std_msgs::ColorRGBA> node_colors(const Cable& cable) const;
+
+  double full_tension() const { return full_tension_; }  ///< [N] what is red
+  double full_strain() const { return full_strain_; }    ///< what is red
+
+ private:
+  double load(const Cable& cable, int segment) const;
+
+  ColorBy color_by_;
+  double full_tension_;
+  double full_strain_;
+};
+
+}  // namespace verlet_cable

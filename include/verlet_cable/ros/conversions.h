@@ -1,0 +1,32 @@
+#pragma once
+
+#include <geometry_msgs/Point.h>
+#include <geometry_msgs/Pose.h>
+#include <geometry_msgs/Quaternion.h>
+#include <geometry_msgs/Vector3.h>
+#include <geometry_msgs/Wrench.h>
+
+#include "verlet_cable/core/world.h"
+#include "verlet_cable/ros/messages.h"
+
+namespace verlet_cable {
+
+geometry_msgs::Point to_point(const Vector3& vector);
+geometry_msgs::Vector3 to_vector(const Vector3& vector);
+geometry_msgs::Quaternion to_quaternion(const Quaternion& quaternion);
+geometry_msgs::Pose to_pose(const Pose& pose);
+
+/// Whether every position, velocity and tension of a cable is a finite number: what is not must not leave the node.
+bool is_finite(const Cable& cable);
+
+/// Everything the message knows about cable `index` of `world.cables()`.
+CableMessage to_message(const World& world, int index);
+
+/// All cables of a world that are finite. The header is left to the caller.
+CableArray to_message(const World& world);
+
+/// What a cable exerts on the frame that holds it: axes of the frame, torque [N m] about the frame's origin.
+/// `frame` is the frame's pose in the fixed frame, in whose axes the attachment's own force and torque are.
+geometry_msgs::Wrench wrench_on_frame(const Attachment& attachment, const Pose& frame);
+
+}  // namespace verlet_cable

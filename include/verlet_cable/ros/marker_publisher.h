@@ -1,0 +1,44 @@
+#pragma once
+
+#include <ros/ros.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "verlet_cable/core/world.h"
+#include "verlet_cable/ros/color.h"
+
+namespace verlet_cable {
+
+/// Topic `markers`. Complete at every tick, so that a viewer that starts late lacks nothing; what is gone is deleted once.
+///  * namespace = name of a cable, id 0: the cable, a tube or a line;
+///  * namespace "pins", ids from 1: what holds the cables: hinges are spheres, clamps are boxes, long along the cable;
+///  cable's +x;
+///  * namespace "payloads", ids from 1: point masses, as balls of that mass in steel.
+class MarkerPublisher {
+ public:
+  MarkerPublisher(ros::NodeHandle& private_node, const SceneDesc& scene);
+  void publish(const World& world, const ros::Time& stamp);
+
+ private:
+  using Key = std::pair<std::string, int>;  // namespace and id
+
+  visualization_msgs::Marker make_marker(const std::string& ns, int id, int type) const;
+  void add_cable(const Cable& cable, visualization_msgs::MarkerArray& markers) const;
+  void add_payloads(const Cable& cable, visualization_msgs::MarkerArray& markers);
+  void add_pin(const World& world, const Attachment& attachment, visualization_msgs::MarkerArray& markers);
+  void delete_what_is_gone(visualization_msgs::MarkerArray& markers);
+  int id_of(const std::string& name);
+
+  ros::Publisher publisher_;
+  std::string frame_id_;
+  MarkerStyle style_;
+  ColorScale colors_;
+  std::map<std::string, int> ids_;  // of pins and payloads, by name; never given twice
+  std::set<Key> shown_;             // at the last tick with subscribers
+};
+
+}  // namespace verlet_cable

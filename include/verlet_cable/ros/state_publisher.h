@@ -1,0 +1,22 @@
+#pragma once
+
+#include <ros/ros.h>
+
+#include <string>
+
+#include "verlet_cable/core/world.h"
+
+namespace verlet_cable {
+
+/// Topic `state`: everything that is simulated, in double precision, as a CableArray.
+class StatePublisher {
+ public:
+  StatePublisher(ros::NodeHandle& private_node, const SceneDesc& scene);
+  void publish(const World& world, const ros::Time& stamp);
+
+ private:
+  ros::Publisher publisher_;
+  std::string frame_id_;
+};
+
+}  // namespace verlet_cable

@@ -1,0 +1,101 @@
+#include "verlet_cable/ros/color.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+namespace verlet_cable {
+namespace {
+
+constexpr double standard_gravity = 9.81;             // [m/s^2] where the scene has none to weigh its cables with
+constexpr double full_strain_if_inextensible = 1e-3;  // nothing to see as long as the solver keeps its lengths
+
+double mass(const SceneDesc& scene, const CableDesc& cable) {
+  const MaterialDesc* material = scene.find_material(cable.material);
+  double mass = material ? material->linear_density * cable.length : 0;
+  for (const PointMassDesc& payload : cable.point_masses) mass += payload.mass;
+  return mass;
+}
+
+double largest_weight(const SceneDesc& scene) {
+  double largest = 0;
+  for (const CableDesc& cable : scene.cables) largest = std::max(largest, mass(scene, cable));
+  const double gravity = scene.gravity.acceleration.norm();
+  return largest * (gravity > 0 ? gravity : standard_gravity);
+}
+
+double largest_strain(const SceneDesc& scene, double tension) {
+  double largest = 0;
+  for (const CableDesc& cable : scene.cables) {
+    if (const MaterialDesc* material = scene.find_material(cable.material)) {
+      largest = std::max(largest, tension / material->axial_stiffness);
+    }
+  }
+  return largest > 0 ? largest : full_strain_if_inextensible;
+}
+
+}  // namespace
+
+std_msgs::ColorRGBA color_of_load(double load) {
+  // ColorBrewer's RdYlBu (Harrower and Brewer 2003), nine classes, without its two darkest ends
+  static constexpr std::array<std::array<float, 3>, 9> stops{{{0.27f, 0.46f, 0.71f},
+                                                              {0.45f, 0.68f, 0.82f},
+                                                              {0.67f, 0.85f, 0.91f},
+                                                              {0.88f, 0.95f, 0.97f},
+                                                              {1.00f, 1.00f, 0.75f},
+                                                              {1.00f, 0.88f, 0.56f},
+                                                              {0.99f, 0.68f, 0.38f},
+                                                              {0.96f, 0.43f, 0.26f},
+                                                              {0.84f, 0.19f, 0.15f}}};
+  const double place = std::clamp(load, 0.0, 1.0) * (stops.size() - 1);
+  const std::size_t below = std::min(static_cast<std::size_t>(place), stops.size() - 2);
+  const float fraction = static_cast<float>(place - static_cast<double>(below));
+  const auto channel = [&](int i) { return stops[below][i] + fraction * (stops[below + 1][i] - stops[below][i]); };
+  std_msgs::ColorRGBA color;
+  color.r = channel(0);
+  color.g = channel(1);
+  color.b = channel(2);
+  color.a = 1;
+  return color;
+}
+
+float packed_rgb(const std_msgs::ColorRGBA& color) {
+  const auto byte = [](float channel) { return static_cast<std::uint32_t>(std::lround(255 * std::clamp(channel, 0.0f, 1.0f))); };
+  const std::uint32_t bits = byte(color.r) << 16 | byte(color.g) << 8 | byte(color.b);
+  float packed;
+  std::memcpy(&packed, &bits, sizeof(packed));
+  return packed;
+}
+
+ColorScale::ColorScale(const SceneDesc& scene)
+    : color_by_(scene.color_by),
+      full_tension_(scene.cables.empty() ? 1 : largest_weight(scene)),
+      full_strain_(largest_strain(scene, full_tension_)) {}
+
+double ColorScale::load(const Cable& cable, int segment) const {
+  return color_by_ == ColorBy::strain ? strain(cable, segment) / full_strain_ : cable.state.tension[segment] / full_tension_;
+}
+
+std::vector<std_msgs::ColorRGBA> ColorScale::node_colors(const Cable& cable) const {
+  const int segments = cable.model.segments();
+  std::vector<std_msgs::ColorRGBA> colors(cable.model.nodes());
+  if (color_by_ == ColorBy::tension || color_by_ == ColorBy::strain) {
+    for (int node = 0; node <= segments; ++node) {
+      const double before = load(cable, std::max(node - 1, 0));
+      const double after = load(cable, std::min(node, segments - 1));
+      colors[node] = color_of_load((before + after) / 2);
+    }
+  } else {
+    std_msgs::ColorRGBA color;
+    color.r = static_cast<float>(cable.model.color[0]);
+    color.g = static_cast<float>(cable.model.color[1]);
+    color.b = static_cast<float>(cable.model.color[2]);
+    color.a = static_cast<float>(cable.model.color[3]);
+    std::fill(colors.begin(), colors.end(), color);
+  }
+  return colors;
+}
+
+}  // namespace verlet_cable

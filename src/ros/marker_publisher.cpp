@@ -1,0 +1,139 @@
+#include "verlet_cable/ros/marker_publisher.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "verlet_cable/ros/conversions.h"
+#include "verlet_cable/ros/tube.h"
+
+namespace verlet_cable {
+namespace {
+
+using visualization_msgs::Marker;
+using visualization_msgs::MarkerArray;
+
+constexpr double steel_density = 7850;  // [kg/m^3]
+constexpr double pin_size = 2.2;        // of a pin to the cable it holds, radius to radius
+constexpr int cable_id = 0;
+
+std_msgs::ColorRGBA grey(float level) {
+  std_msgs::ColorRGBA color;
+  color.r = color.g = color.b = level;
+  color.a = 1;
+  return color;
+}
+
+void set_scale(Marker& marker, double x, double y, double z) {
+  marker.scale.x = x;
+  marker.scale.y = y;
+  marker.scale.z = z;
+}
+
+/// [kg] What a node weighs beyond the segments that meet there. The half segments that cuts leave on the ends do not count.
+double payload(const CableModel& model, int node) {
+  double share = 0, largest_half = 0;
+  for (int segment = std::max(node - 1, 0); segment <= std::min(node, model.segments() - 1); ++segment) {
+    const double half = model.material.linear_density * model.rest_lengths[segment] / 2;
+    share += half;
+    largest_half = std::max(largest_half, half);
+  }
+  const double excess = model.masses[node] - share;
+  return excess > 1.5 * largest_half ? excess : 0;
+}
+
+}  // namespace
+
+MarkerPublisher::MarkerPublisher(ros::NodeHandle& private_node, const SceneDesc& scene)
+    : publisher_(private_node.advertise<MarkerArray>("markers", 10)),
+      frame_id_(scene.frame_id),
+      style_(scene.marker_style),
+      colors_(scene) {}
+
+void MarkerPublisher::publish(const World& world, const ros::Time& stamp) {
+  if (publisher_.getNumSubscribers() == 0) return;
+  const auto markers = boost::make_shared<MarkerArray>();
+  for (const Cable& cable : world.cables()) {
+    if (!is_finite(cable)) continue;
+    add_cable(cable, *markers);
+    add_payloads(cable, *markers);
+  }
+  for (const Attachment& attachment : world.attachments()) add_pin(world, attachment, *markers);
+  delete_what_is_gone(*markers);
+  for (Marker& marker : markers->markers) marker.header.stamp = stamp;
+  publisher_.publish(markers);
+}
+
+Marker MarkerPublisher::make_marker(const std::string& ns, int id, int type) const {
+  Marker marker;
+  marker.header.frame_id = frame_id_;
+  marker.ns = ns;
+  marker.id = id;
+  marker.type = type;
+  marker.pose.orientation.w = 1;
+  return marker;
+}
+
+void MarkerPublisher::add_cable(const Cable& cable, MarkerArray& markers) const {
+  const double radius = cable.model.material.radius;
+  std::vector<std_msgs::ColorRGBA> colors = colors_.node_colors(cable);
+  const bool tube = style_ == MarkerStyle::tube;
+  Marker marker = make_marker(cable.model.name, cable_id, tube ? Marker::TRIANGLE_LIST : Marker::LINE_STRIP);
+  marker.color = colors.front();
+  if (tube) {
+    set_scale(marker, 1, 1, 1);
+    fill_tube(cable.state.positions, colors, radius, marker);
+  } else {
+    marker.scale.x = 2 * radius;
+    for (const Vector3& position : cable.state.positions) marker.points.push_back(to_point(position));
+    marker.colors = std::move(colors);
+  }
+  markers.markers.push_back(std::move(marker));
+}
+
+void MarkerPublisher::add_payloads(const Cable& cable, MarkerArray& markers) {
+  for (int node = 0; node < cable.model.nodes(); ++node) {
+    const double mass = payload(cable.model, node);
+    if (mass <= 0) continue;
+    Marker marker = make_marker("payloads", id_of(cable.model.name + "/" + std::to_string(node)), Marker::SPHERE);
+    marker.pose.position = to_point(cable.state.positions[node]);
+    const double ball = 2 * std::cbrt(3 * mass / (4 * M_PI * steel_density));
+    const double diameter = std::max(ball, 2 * pin_size * cable.model.material.radius);
+    set_scale(marker, diameter, diameter, diameter);
+    marker.color = grey(0.45f);
+    markers.markers.push_back(std::move(marker));
+  }
+}
+
+void MarkerPublisher::add_pin(const World& world, const Attachment& attachment, MarkerArray& markers) {
+  const Pose pose = world.frame_pose(attachment.frame) * attachment.pose;
+  if (!pose.position.allFinite() || !pose.orientation.coeffs().allFinite()) return;
+  const double size = 2 * pin_size * world.cables()[attachment.cable].model.material.radius;
+  const bool clamp = attachment.type == AttachmentType::clamp;
+  Marker marker = make_marker("pins", id_of(attachment.name), clamp ? Marker::CUBE : Marker::SPHERE);
+  marker.pose = to_pose(pose);
+  marker.color = grey(0.8f);
+  if (clamp) {
+    set_scale(marker, 2 * size, size, 0.7 * size);  // three unequal edges show direction and roll
+  } else {
+    set_scale(marker, size, size, size);
+  }
+  markers.markers.push_back(std::move(marker));
+}
+
+void MarkerPublisher::delete_what_is_gone(MarkerArray& markers) {
+  std::set<Key> showing;
+  for (const Marker& marker : markers.markers) showing.emplace(marker.ns, marker.id);
+  for (const auto& [ns, id] : shown_) {
+    if (showing.count({ns, id}) > 0) continue;
+    Marker gone = make_marker(ns, id, Marker::SPHERE);
+    gone.action = Marker::DELETE;
+    markers.markers.push_back(std::move(gone));
+  }
+  shown_ = std::move(showing);
+}
+
+int MarkerPublisher::id_of(const std::string& name) {
+  return ids_.emplace(name, static_cast<int>(ids_.size()) + 1).first->second;
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,32 @@
+#include "verlet_cable/ros/publishers.h"
+
+#include "verlet_cable/ros/marker_publisher.h"
+#include "verlet_cable/ros/point_publisher.h"
+#include "verlet_cable/ros/state_publisher.h"
+#include "verlet_cable/ros/wrench_publisher.h"
+
+namespace verlet_cable {
+
+struct Publishers::Implementation {
+  Implementation(ros::NodeHandle& private_node, const SceneDesc& scene)
+      : markers(private_node, scene), points(private_node, scene), state(private_node, scene), wrenches(private_node) {}
+
+  MarkerPublisher markers;
+  PointPublisher points;
+  StatePublisher state;
+  WrenchPublisher wrenches;
+};
+
+Publishers::Publishers(ros::NodeHandle& private_node, const SceneDesc& scene)
+    : implementation_(std::make_unique<Implementation>(private_node, scene)) {}
+
+Publishers::~Publishers() = default;
+
+void Publishers::publish(const World& world, const ros::Time& stamp) {
+  implementation_->markers.publish(world, stamp);
+  implementation_->points.publish(world, stamp);
+  implementation_->state.publish(world, stamp);
+  implementation_->wrenches.publish(world, stamp);
+}
+
+}  // namespace verlet_cable
