@@ -1,0 +1,208 @@
+#!/usr/bin/env python3
+"""Runs every test program that CMake registered, and counts their test cases.
+
+Usage: run_tests.py WORKSPACE PACKAGE_DIRECTORY yes|no    (whether everything was built)
+
+A program that could not be built, crashed, timed out, ended with an error or left no result counts as one failure more.
+The last line is "N passed, M failed"; the exit status is 0 only if something passed and nothing failed.
+"""
+import ctypes
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from xml.etree import ElementTree
+
+TIME_LIMIT = 300.0  # [s] for a program that registers none; rostest has its own, 60 s for each of its tests
+GRACE = 20.0  # [s] for a program that was interrupted to end its own children
+PR_SET_CHILD_SUBREAPER = 36
+
+
+class Program:
+    """A test program, as registered with add_test, and what came of it."""
+
+    def __init__(self, name, command, time_limit=TIME_LIMIT):
+        self.name = name
+        self.command = command
+        self.time_limit = time_limit
+        self.passed = 0
+        self.failures = []
+
+
+def registered_programs(build):
+    """What CMake registered, whether it was built or not."""
+    listing = subprocess.run(['ctest', '--show-only=json-v1'], cwd=build, stdout=subprocess.PIPE)
+    tests = json.loads(listing.stdout)['tests'] if listing.returncode == 0 else []
+    programs = []
+    for test in tests:
+        properties = {p['name']: p['value'] for p in test.get('properties', [])}
+        name = test['name'].replace('_ctest_verlet_cable_', '')
+        programs.append(Program(name, test.get('command'), float(properties.get('TIMEOUT', TIME_LIMIT))))
+    return programs
+
+
+def remove_outdated_executables(workspace):
+    """After a failed build: a program that no longer builds must not pass in the last version that did."""
+    build = workspace / 'build'
+    listing = subprocess.run(['make', 'help'], cwd=build, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    targets = {line[4:] for line in listing.stdout.splitlines() if line.startswith('... ')}
+    for executable in (workspace / 'devel/lib/verlet_cable').glob('*'):
+        if executable.name in targets:
+            made = subprocess.run(['make', executable.name], cwd=build, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            if made.returncode != 0:
+                executable.unlink()
+
+
+def children():
+    """The process ids of this process's children."""
+    found = []
+    for stat in Path('/proc').glob('[0-9]*/stat'):
+        try:
+            parent = stat.read_text().rpartition(')')[2].split()[1]
+        except OSError:
+            continue  # it ended meanwhile
+        if int(parent) == os.getpid():
+            found.append(int(stat.parent.name))
+    return found
+
+
+def end_orphans():
+    """Ends what a program that is gone left running: its orphans become children of this process."""
+    while children():
+        for child in children():
+            os.kill(child, signal.SIGKILL)
+            os.waitpid(child, 0)
+
+
+def execute(program, log):
+    """Runs a program to its end or its time limit; returns what was wrong with that, or None."""
+    process = subprocess.Popen(program.command, stdout=log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
+                               start_new_session=True)
+    try:
+        status = process.wait(program.time_limit)
+        return None if status == 0 else f'ended with exit status {status}'
+    except subprocess.TimeoutExpired:
+        return f'did not end within {program.time_limit:g} s'
+    finally:
+        if process.poll() is None:
+            os.killpg(process.pid, signal.SIGINT)
+            deadline = time.monotonic() + GRACE
+            while time.monotonic() < deadline and group_runs(process):
+                time.sleep(0.1)
+            if process.poll() is None:
+                process.kill()
+                process.wait()
+        end_orphans()
+
+
+def group_runs(process):
+    process.poll()
+    try:
+        os.killpg(process.pid, 0)
+        return True
+    except ProcessLookupError:
+        return False
+
+
+def read_results(program, results):
+    """Counts the cases in the result files. rostest's own file repeats, once a test node, only that the node ran."""
+    for path in sorted(results.rglob('*.xml')):
+        try:
+            cases = list(ElementTree.parse(path).iter('testcase'))
+        except ElementTree.ParseError as error:
+            program.failures.append(f'{path.name} is no result file: {error}')
+            continue
+        for case in cases:
+            problem = next((case.find(tag) for tag in ('failure', 'error') if case.find(tag) is not None), None)
+            if problem is not None:
+                program.failures.append(f'{case.get("classname")}.{case.get("name")}')
+            elif not (path.name.startswith('rostest-') or case.get('status') == 'notrun' or case.find('skipped') is not None):
+                program.passed += 1
+
+
+def run(program, results, log_directory):
+    shutil.rmtree(results, ignore_errors=True)
+    results.mkdir(parents=True)
+    log_path = log_directory / f'{program.name}.log'
+    start = time.monotonic()
+    print(f'      {program.name} ...', end='\r' if sys.stdout.isatty() else '\n', flush=True)
+    if program.command is None:
+        problem = 'was not built'
+    else:
+        with open(log_path, 'wb') as log:
+            problem = execute(program, log)
+        read_results(program, results)
+    if not program.failures:
+        if problem:
+            program.failures.append(problem)
+        elif program.passed == 0:
+            program.failures.append('ran no test case')
+    verdict = 'FAIL' if program.failures else 'ok  '
+    print(f'{verdict}  {program.name}: {program.passed} passed, {len(program.failures)} failed '
+          f'({time.monotonic() - start:.1f} s)')
+    if program.failures:
+        for line in log_path.read_text(errors='replace').splitlines()[-80:] if log_path.exists() else []:
+            print('    | ' + line)
+        for failure in program.failures:
+            print(f'FAIL  {program.name}: {failure}')
+    sys.stdout.flush()
+
+
+def check_package(package):
+    """catkin_lint as a test case of its own, where it is installed."""
+    lint = Program('catkin_lint', [])
+    checked = subprocess.run(['catkin_lint', '--offline', '-q', str(package)], stdout=subprocess.PIPE,
+                             stderr=subprocess.STDOUT, text=True)
+    print(checked.stdout, end='')
+    if checked.returncode == 0:
+        lint.passed = 1
+    else:
+        lint.failures.append('found errors')
+    print(f'{"ok  " if lint.passed else "FAIL"}  catkin_lint')
+    return lint
+
+
+def main():
+    workspace, package, built = Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[3] == 'yes'
+    ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1)
+    for ending in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(ending, signal.default_int_handler)
+    log_directory = workspace / 'test_logs'
+    shutil.rmtree(log_directory, ignore_errors=True)
+    log_directory.mkdir(parents=True)
+    os.environ['ROS_HOME'] = str(log_directory / 'ros')
+    os.environ.pop('ROS_LOG_DIR', None)
+
+    build = Program('build', [])
+    if not built:
+        build.failures.append('see the errors above')
+        remove_outdated_executables(workspace)
+    programs = registered_programs(workspace / 'build')
+    if not programs:
+        build.failures.append('no test is registered')
+    print(f'\nRunning {len(programs)} test programs; their output is in {log_directory}')
+    finished = [build]
+    try:
+        if shutil.which('catkin_lint'):
+            finished.append(check_package(package))
+        for program in programs:
+            finished.append(program)
+            run(program, workspace / 'build/test_results', log_directory)
+    except KeyboardInterrupt:
+        finished[-1].failures.append('interrupted')
+    print()
+    for program in finished:
+        for failure in program.failures:
+            print(f'FAIL  {program.name}: {failure}')
+    passed = sum(program.passed for program in finished)
+    failed = sum(len(program.failures) for program in finished)
+    print(f'{passed} passed, {failed} failed')
+    return 0 if passed and not failed else 1
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,109 @@
+# Sourced by scripts/demo and scripts/test: installs what is missing, and builds the package in a workspace of its own.
+
+set -euo pipefail
+
+checkout=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd -P)
+# Hidden in build/ because rosrun searches a whole package for executables, but not its build/, and roslaunch no hidden
+# directories: where the checkout lies in a user's own workspace, neither must find every program twice.
+workspace=$checkout/build/.ws
+
+fail() {
+  echo "$(basename "$0"): $*" >&2
+  exit 1
+}
+
+# A python3, cmake or ROS workspace of the user's, in front of the distribution's, would break the build.
+export PATH=/usr/sbin:/usr/bin:/sbin:/bin
+unset PYTHONPATH PYTHONHOME VIRTUAL_ENV CMAKE_PREFIX_PATH PKG_CONFIG_PATH
+unset ROS_PACKAGE_PATH ROS_ROOT ROS_DISTRO ROS_ETC_DIR ROSLISP_PACKAGE_DIRECTORIES ROS_NAMESPACE
+export LC_ALL=C.UTF-8 ROSCONSOLE_STDOUT_LINE_BUFFERED=1 PYTHONUNBUFFERED=1
+
+# Everything runs on this machine, also where its name does not resolve.
+unset ROS_IP
+export ROS_HOSTNAME=localhost
+
+# The only list of system packages: to build, to run and to test; and, with a display only, to look at it.
+packages=(build-essential cmake libeigen3-dev libgtest-dev libyaml-cpp-dev python3-yaml)
+if [[ -f /opt/ros/noetic/setup.bash ]]; then
+  ros_setup=/opt/ros/noetic/setup.bash
+  packages+=(
+    ros-noetic-{catkin,message-generation,message-runtime,roscpp,rospy,rosbash,roslaunch,rostest,rosbag,rosservice,rostopic}
+    ros-noetic-{actionlib,diagnostic,geometry,sensor,std,visualization}-msgs ros-noetic-std-srvs
+    ros-noetic-tf2-ros
+  )
+  rviz_packages=(ros-noetic-rviz)
+else
+  ros_setup=
+  packages+=(
+    catkin catkin-lint ros-message-generation ros-message-runtime ros-environment rosbash roslang rospack-tools rosout
+    libroscpp-dev libtf2-ros-dev librostest-dev librosbag-dev
+    lib{std,geometry,sensor,visualization,diagnostic,actionlib}-msgs-dev libstd-srvs-dev
+    ros-{std,geometry,sensor,visualization,diagnostic,actionlib}-msgs ros-std-srvs
+    python3-{std,geometry,sensor,visualization,diagnostic,actionlib}-msgs python3-std-srvs
+    python3-{rospy,tf2-ros,roslaunch,rostest,rosbag,rosservice,rostopic}
+  )
+  rviz_packages=(rviz libgl1-mesa-dri)
+fi
+
+# install_packages PACKAGE...: asks dpkg first, and does nothing where all are installed.
+install_packages() {
+  local installed missing as_root=()
+  installed=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "$@" 2>/dev/null | sed -n 's/^installed //p' || true)
+  missing=$(printf '%s\n' "$@" | grep -vxF -e "$installed" || true)
+  [[ -n $missing ]] || return 0
+  echo "Installing:" $missing
+  if [[ $(id -u) != 0 ]]; then
+    command -v sudo >/dev/null || fail "not root, and no sudo; as root, run: apt-get install --no-install-recommends" $missing
+    as_root=(sudo)
+  fi
+  as_root+=(env DEBIAN_FRONTEND=noninteractive apt-get -o Dpkg::Use-Pty=0)
+  "${as_root[@]}" update -q || fail "apt-get update failed"
+  "${as_root[@]}" install -q -y --no-install-recommends $missing || fail "apt-get could not install:" $missing
+}
+
+# Two builds, or a build and a test run, of one checkout wait for each other. Held until unlock_workspace or the end.
+lock_workspace() {
+  mkdir -p "$workspace"
+  exec 9>"$workspace/lock"
+  flock -n 9 || { echo "Waiting for another build or test run in $workspace"; flock 9; }
+}
+
+unlock_workspace() {
+  exec 9>&-
+}
+
+source_setup() {
+  set +u
+  # shellcheck disable=SC1090
+  source "$1"
+  set -u
+}
+
+# The package in the workspace is a directory of links to what is in the checkout: a single link to the checkout, which
+# contains the workspace, would be a loop for everything that searches a package.
+link_package() {
+  local package=$workspace/src/verlet_cable entry
+  mkdir -p "$package"
+  find "$package" -xtype l -delete
+  for entry in "$checkout"/*; do
+    entry=${entry##*/}
+    [[ $entry == build || -e $package/$entry ]] || ln -s "../../../../$entry" "$package/"
+  done
+}
+
+# build_workspace TARGET...: make's targets. Goes on after an error, so that one broken file hides no other error.
+build_workspace() {
+  local cache=$workspace/build/CMakeCache.txt
+  [[ $checkout != *[[:space:]]* ]] || fail "ROS cannot build in a path with spaces: $checkout"
+  # What was configured in another place (the checkout was moved or copied) cannot be built here.
+  if [[ -f $cache ]] && ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$workspace/src" "$cache"; then
+    rm -rf "$workspace/build" "$workspace/devel"
+  fi
+  link_package
+  # catkin leaves this directory out of PYTHONPATH for good if it does not exist when it first configures.
+  mkdir -p "$workspace/devel/lib/python3/dist-packages"
+  [[ -z $ros_setup ]] || source_setup "$ros_setup"
+  catkin_make -C "$workspace" -j"$(nproc)" \
+    --cmake-args -DPYTHON_EXECUTABLE=/usr/bin/python3 -DPython3_EXECUTABLE=/usr/bin/python3 \
+    --make-args -k "$@"
+}
