@@ -23,7 +23,7 @@ unset ROS_IP
 export ROS_HOSTNAME=localhost
 
 # The only list of system packages: to build, to run and to test; and, with a display only, to look at it.
-packages=(build-essential cmake libeigen3-dev libgtest-dev libyaml-cpp-dev python3-yaml)
+packages=(build-essential cmake libeigen3-dev libgtest-dev libyaml-cpp-dev python3-numpy python3-yaml)
 if [[ -f /opt/ros/noetic/setup.bash ]]; then
   ros_setup=/opt/ros/noetic/setup.bash
   packages+=(
