@@ -138,16 +138,22 @@ void check_attachments(const std::string& prefix, const CableDesc& cable, Unique
   }
 }
 
+/// The first of them, for messages.
+std::string material_names(const SceneDesc& scene) {
+  constexpr std::size_t most = 20;
+  if (scene.materials.empty()) return "it has none";
+  std::string names = scene.materials[0].name;
+  for (std::size_t i = 1; i < std::min(most, scene.materials.size()); ++i) names += ", " + scene.materials[i].name;
+  return scene.materials.size() > most ? names + ", ..." : names;
+}
+
 void check_cable(const std::string& key, const SceneDesc& scene, const CableDesc& cable, UniqueNames& attachments,
                  Errors& errors) {
   const std::string prefix = key + ".";
   check_fields(prefix, cable_fields, cable, errors);
   check_fields(prefix, cable_integer_fields, cable, errors);
   if (!scene.find_material(cable.material)) {
-    std::string known;
-    for (const NamedMaterial& material : scene.materials) known += (known.empty() ? "" : ", ") + material.name;
-    errors.add(prefix + "material", quoted(cable.material),
-               "a material of the scene (" + (known.empty() ? "it has none" : known) + ")");
+    errors.add(prefix + "material", quoted(cable.material), "a material of the scene (" + material_names(scene) + ")");
   }
   check_numbers(prefix + "color", cable.color, unit_interval, "", errors);
   check_initial(prefix + "initial", cable, errors);
@@ -262,7 +268,7 @@ std::vector<std::string> validate(const SceneDesc& scene) {
     check_cable(indexed("cables", i), scene, scene.cables[i], attachments, errors);
     segments += std::max(0, scene.cables[i].segments);
   }
-  if (segments > scene.limits.segments)
+  if (limits_fields[0].range.contains(scene.limits.segments) && segments > scene.limits.segments)
     errors.add("cables", std::to_string(segments) + " segments in all",
                "at most limits.segments = " + std::to_string(scene.limits.segments));
 

@@ -1,0 +1,125 @@
+#include "cable_keys.h"
+
+#include "keys.h"
+
+namespace verlet_cable {
+namespace {
+
+constexpr const char* place_words = "start, end, or an arc length [m] from 0 to the cable's length";
+
+template <class Owner>
+Key<Owner> place_key(PlaceDesc Owner::*member) {
+  return {"at", place_words, true, [member](const Value& value, Owner& owner) {
+            PlaceDesc& place = owner.*member;
+            if (value.node.IsScalar() && value.node.Scalar() == "start") {
+              place.at = PlaceDesc::At::start;
+            } else if (value.node.IsScalar() && value.node.Scalar() == "end") {
+              place.at = PlaceDesc::At::end;
+            } else {
+              place = {PlaceDesc::At::arc_length, read_number(value, place_words)};
+            }
+          }};
+}
+
+const Keys<AttachmentDesc>& attachment_keys() {
+  static const Keys<AttachmentDesc> keys{
+      text_key("name", &AttachmentDesc::name, name_words, true),
+      place_key(&AttachmentDesc::place),
+      text_key("frame", &AttachmentDesc::frame, frame_words),
+      vector_key("offset", &AttachmentDesc::offset, "m"),
+      vector_key("rotation", &AttachmentDesc::rotation, "rad"),
+      choice_key("type", &AttachmentDesc::type,
+                 Choices<AttachmentType>{{"hinge", AttachmentType::hinge}, {"clamp", AttachmentType::clamp}}),
+      {"initial_pose", "six numbers", false,
+       [](const Value& value, AttachmentDesc& attachment) {
+         attachment.initial_pose = read_numbers<6>(value, "six numbers: x, y, z [m], roll, pitch, yaw [rad]");
+       }},
+  };
+  return keys;
+}
+
+const Keys<PointMassDesc>& point_mass_keys() {
+  static const Keys<PointMassDesc> keys{place_key(&PointMassDesc::place), field_key(point_mass_fields[0])};
+  return keys;
+}
+
+Key<InitialShapeDesc> vectors_key(const std::string& name, std::vector<Vector3> InitialShapeDesc::*member, const char* unit) {
+  return {name, "a list of points", false, [=](const Value& value, InitialShapeDesc& initial) {
+            initial.*member =
+                read_list<Vector3>(value, [=](const Value& element, Vector3& vector) { vector = read_vector(element, unit); });
+          }};
+}
+
+const Keys<InitialShapeDesc>& initial_keys() {
+  using Type = InitialShapeDesc::Type;
+  static const Keys<InitialShapeDesc> keys{
+      choice_key(
+          "type", &InitialShapeDesc::type,
+          Choices<Type>{
+              {"straight", Type::straight}, {"catenary", Type::catenary}, {"points", Type::points}, {"settled", Type::settled}},
+          true),
+      vector_key("from", &InitialShapeDesc::from, "m"),
+      vector_key("to", &InitialShapeDesc::to, "m"),
+      vectors_key("points", &InitialShapeDesc::points, "m"),
+      vectors_key("velocities", &InitialShapeDesc::velocities, "m/s"),
+  };
+  return keys;
+}
+
+void read_initial(const Value& value, InitialShapeDesc& initial) {
+  const std::set<std::string> given = read_map(value, initial_keys(), initial);
+  if (initial.type == InitialShapeDesc::Type::automatic) return;
+  const auto only_with = [&](const char* name, InitialShapeDesc::Type type, const char* type_name) {
+    if (given.count(name) && initial.type != type)
+      value.errors->add(value.child(name, {}).key, "given beside another type", std::string("only with type: ") + type_name);
+  };
+  only_with("from", InitialShapeDesc::Type::straight, "straight");
+  only_with("to", InitialShapeDesc::Type::straight, "straight");
+  only_with("points", InitialShapeDesc::Type::points, "points");
+  only_with("velocities", InitialShapeDesc::Type::points, "points");
+}
+
+void read_rest_curvature(const Value& value, RestCurvatureDesc& rest_curvature) {
+  using Type = RestCurvatureDesc::Type;
+  const std::string text = value.node.IsScalar() ? value.node.Scalar() : "";
+  if (text == "straight" || text == "initial") {
+    rest_curvature.type = text == "straight" ? Type::straight : Type::initial;
+  } else {
+    rest_curvature = {Type::constant, read_numbers<2>(value, "straight | initial | [ky, kz], two numbers [1/m]")};
+  }
+}
+
+const Keys<CableDesc>& cable_keys() {
+  static const Keys<CableDesc> keys{
+      text_key("name", &CableDesc::name, name_words, true),
+      field_key(cable_fields[0]),
+      field_key(cable_integer_fields[0]),
+      text_key("material", &CableDesc::material, "the name of a material", true),
+      {"color", "four numbers", false,
+       [](const Value& value, CableDesc& cable) {
+         cable.color = read_numbers<4>(value, "red, green, blue, alpha: four numbers from 0 to 1");
+       }},
+      {"initial", "a map", false, [](const Value& value, CableDesc& cable) { read_initial(value, cable.initial); }},
+      {"rest_curvature", "straight | initial | [ky, kz]", false,
+       [](const Value& value, CableDesc& cable) { read_rest_curvature(value, cable.rest_curvature); }},
+      {"attachments", "a list", false,
+       [](const Value& value, CableDesc& cable) {
+         cable.attachments = read_list<AttachmentDesc>(
+             value, [](const Value& element, AttachmentDesc& attachment) { read_map(element, attachment_keys(), attachment); });
+       }},
+      {"point_masses", "a list", false,
+       [](const Value& value, CableDesc& cable) {
+         cable.point_masses = read_list<PointMassDesc>(
+             value, [](const Value& element, PointMassDesc& point_mass) { read_map(element, point_mass_keys(), point_mass); });
+       }},
+  };
+  return keys;
+}
+
+}  // namespace
+
+void read_cable(const Value& value, CableDesc& cable) {
+  read_map(value, cable_keys(), cable);
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,88 @@
+#include "verlet_cable/scene/scene_reader.h"
+
+#include <algorithm>
+
+#include "cable_keys.h"
+#include "keys.h"
+#include "material_keys.h"
+
+namespace verlet_cable {
+namespace {
+
+struct NoTarget {};
+
+void ignore(const Value&, NoTarget&) {}
+
+void read_gravity(const Value& value, SceneDesc& scene) {
+  if (!value.node.IsMap()) {
+    scene.gravity.acceleration = read_vector(value, "m/s^2");
+    return;
+  }
+  static const Keys<NoTarget> central{{"type", "central", true, ignore},
+                                      {"mu", "a number [m^3/s^2]", false, ignore},
+                                      {"center", "three numbers [m]", false, ignore}};
+  NoTarget nothing;
+  read_map(value, central, nothing);
+}
+
+void read_limits(const Value& value, SceneDesc& scene) {
+  static const Keys<LimitsDesc> keys = [] {
+    Keys<LimitsDesc> limits;
+    append_fields(limits, limits_fields);
+    return limits;
+  }();
+  read_map(value, keys, scene.limits);
+}
+
+Keys<SceneDesc> scene_keys(const std::vector<std::string>& ignored) {
+  Keys<SceneDesc> keys{text_key("frame_id", &SceneDesc::frame_id, frame_words)};
+  append_fields(keys, scene_fields);
+  append_fields(keys, scene_integer_fields);
+  keys.insert(keys.end(),
+              {
+                  {"gravity", "three numbers [m/s^2]", false, read_gravity},
+                  choice_key("on_lost_frame", &SceneDesc::on_lost_frame,
+                             Choices<LostFramePolicy>{{"hold", LostFramePolicy::hold},
+                                                      {"release", LostFramePolicy::release},
+                                                      {"pause", LostFramePolicy::pause}}),
+                  choice_key("on_time_jump", &SceneDesc::on_time_jump,
+                             Choices<TimeJumpPolicy>{{"reset", TimeJumpPolicy::reset}, {"keep", TimeJumpPolicy::keep}}),
+                  choice_key("marker_style", &SceneDesc::marker_style,
+                             Choices<MarkerStyle>{{"tube", MarkerStyle::tube}, {"line", MarkerStyle::line}}),
+                  choice_key("color_by", &SceneDesc::color_by,
+                             Choices<ColorBy>{{"cable", ColorBy::cable},
+                                              {"tension", ColorBy::tension},
+                                              {"strain", ColorBy::strain},
+                                              {"contact", ColorBy::contact}}),
+                  text_key("scene_directory", &SceneDesc::scene_directory, "a directory, or \"\""),
+                  {"limits", "a map", false, read_limits},
+                  {"materials", "a map of names to materials", false,
+                   [](const Value& value, SceneDesc& scene) { scene.materials = read_materials(value); }},
+                  {"cables", "a list of at least one cable", true,
+                   [](const Value& value, SceneDesc& scene) {
+                     scene.cables = read_list<CableDesc>(value, read_cable);
+                     if (value.node.IsSequence() && scene.cables.empty()) value.reject("a list of at least one cable");
+                   }},
+              });
+  for (const std::string& name : ignored) keys.push_back({name, "anything", false, [](const Value&, SceneDesc&) {}});
+  return keys;
+}
+
+}  // namespace
+
+SceneDesc read_scene(const YAML::Node& root, const std::vector<std::string>& ignored) {
+  SceneDesc scene;
+  ErrorList errors;
+  const Value value{root, "", &errors};
+  if (root.IsMap()) {
+    read_map(value, scene_keys(ignored), scene);
+    errors.add_validation(validate(scene));
+    reject_unsupported(value);
+  } else {
+    errors.add("scene", value_text(root), "a map of keys: materials, cables, ...");
+  }
+  if (!errors.empty()) throw SceneError(errors.take());
+  return scene;
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,134 @@
+#include <yaml-cpp/eventhandler.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <system_error>
+
+#include "value.h"
+#include "verlet_cable/scene/scene_reader.h"
+
+namespace verlet_cable {
+namespace {
+
+constexpr std::size_t largest_text = std::size_t{64} << 20;
+constexpr std::size_t most_values = 2'000'000;
+constexpr std::size_t deepest_level = 32;
+
+std::string place_text(const YAML::Mark& mark) {
+  return "line " + std::to_string(mark.line + 1) + ", column " + std::to_string(mark.column + 1) + ": ";
+}
+
+/// Counts values and levels while YAML is parsed, before anything is built of it: a short text can stand for a tree without end.
+class SizeCheck : public YAML::EventHandler {
+ public:
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    if (++documents_ > 1) fail(mark, "a second document (---); allowed: one");
+  }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { add_value(mark, anchor); }
+  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor, const std::string&) override {
+    add_value(mark, anchor);
+  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    const auto subtree = subtrees_.find(anchor);
+    if (subtree == subtrees_.end()) fail(mark, "an alias inside of what it stands for");
+    count(mark, subtree->second.values);
+    check_depth(mark, subtree->second.levels);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor, YAML::EmitterStyle::value) override {
+    open(mark, anchor);
+  }
+  void OnSequenceEnd() override { close(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor, YAML::EmitterStyle::value) override {
+    open(mark, anchor);
+  }
+  void OnMapEnd() override { close(); }
+
+ private:
+  struct Subtree {
+    std::size_t values;
+    std::size_t levels;
+  };
+  struct Open {
+    YAML::anchor_t anchor;
+    std::size_t values_before;
+    std::size_t levels;
+  };
+
+  [[noreturn]] static void fail(const YAML::Mark& mark, const std::string& message) {
+    throw SceneError({place_text(mark) + message});
+  }
+
+  void count(const YAML::Mark& mark, std::size_t values) {
+    values_ += values;
+    if (values_ > most_values) fail(mark, "more than " + std::to_string(most_values) + " values");
+  }
+  void check_depth(const YAML::Mark& mark, std::size_t levels) {
+    for (std::size_t i = open_.size(); i-- > 0;) {
+      ++levels;
+      open_[i].levels = std::max(open_[i].levels, levels);
+    }
+    if (levels > deepest_level) fail(mark, "nested deeper than " + std::to_string(deepest_level) + " levels");
+  }
+  void add_value(const YAML::Mark& mark, YAML::anchor_t anchor) {
+    count(mark, 1);
+    if (anchor != 0) subtrees_[anchor] = {1, 0};
+  }
+  void open(const YAML::Mark& mark, YAML::anchor_t anchor) {
+    open_.push_back({anchor, values_, 0});
+    check_depth(mark, 0);
+    count(mark, 1);
+  }
+  void close() {
+    const Open closed = open_.back();
+    open_.pop_back();
+    if (closed.anchor != 0) subtrees_[closed.anchor] = {values_ - closed.values_before, closed.levels};
+  }
+
+  std::size_t documents_ = 0;
+  std::size_t values_ = 0;
+  std::vector<Open> open_;
+  std::map<YAML::anchor_t, Subtree> subtrees_;
+};
+
+void check_size(const std::string& text) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  SizeCheck check;
+  while (parser.HandleNextDocument(check)) {
+  }
+}
+
+}  // namespace
+
+SceneDesc read_scene_text(const std::string& text) {
+  if (text.size() > largest_text)
+    throw SceneError(
+        {"scene: " + std::to_string(text.size()) + " bytes or more; allowed: at most " + std::to_string(largest_text)});
+  try {
+    check_size(text);
+    return read_scene(YAML::Load(text));
+  } catch (const YAML::Exception& error) {
+    throw SceneError({place_text(error.mark) + error.msg});
+  }
+}
+
+SceneDesc read_scene_file(const std::string& path) {
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  std::string text;
+  std::vector<char> block(std::size_t{1} << 16);
+  // What is too large is not read to its end: it may have none.
+  while (file && text.size() <= largest_text) {
+    file.read(block.data(), static_cast<std::streamsize>(block.size()));
+    text.append(block.data(), static_cast<std::size_t>(file.gcount()));
+  }
+  if (!file.is_open() || file.bad())
+    throw SceneError({"scene: cannot read " + quoted(path) + ": " + std::generic_category().message(errno ? errno : EIO)});
+  return read_scene_text(text);
+}
+
+}  // namespace verlet_cable
