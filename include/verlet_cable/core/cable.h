@@ -19,15 +19,17 @@ struct CableModel {
 
   int segments() const { return static_cast<int>(rest_lengths.size()); }
   int nodes() const { return static_cast<int>(masses.size()); }
-  double length() const;                  ///< [m] at rest
-  std::vector<double> arc_length() const; ///< [m] a node, n + 1, from the start, at rest
+  double length() const;                   ///< [m] at rest
+  std::vector<double> arc_length() const;  ///< [m] a node, n + 1, from the start, at rest
 };
 
 /// What a step changes. Written by World only.
 struct CableState {
   std::vector<Vector3> positions;   ///< [m] a node, n + 1
   std::vector<Vector3> velocities;  ///< [m/s] a node, n + 1, at the time of the positions
-  std::vector<double> tension;      ///< [N] a segment, n, > 0 is tension; mean over the last substep
+  std::vector<Vector3>
+      accelerations;            ///< [m/s^2] a node, n + 1, mean over the last substep: where the next one's solution starts
+  std::vector<double> tension;  ///< [N] a segment, n, > 0 is tension; mean over the last substep
 };
 
 struct Cable {

@@ -43,7 +43,7 @@ using InitialPose = std::array<double, 6>;  // x, y, z [m], roll, pitch, yaw [ra
 struct AttachmentDesc {
   std::string name;
   PlaceDesc place;
-  std::string frame;  ///< empty: the fixed frame
+  std::string frame;                   ///< empty: the fixed frame
   Vector3 offset = Vector3::Zero();    ///< [m] in the frame
   Vector3 rotation = Vector3::Zero();  ///< roll, pitch, yaw [rad] in the frame
   AttachmentType type = AttachmentType::hinge;
@@ -73,9 +73,9 @@ struct RestCurvatureDesc {
 
 struct CableDesc {
   std::string name;
-  double length = 0;  ///< [m] rest length, > 0
-  int segments = 0;   ///< >= 1; all equally long
-  std::string material;  ///< a key of SceneDesc::materials
+  double length = 0;                                ///< [m] rest length, > 0
+  int segments = 0;                                 ///< >= 1; all equally long
+  std::string material;                             ///< a key of SceneDesc::materials
   std::array<double, 4> color{0.1, 0.1, 0.1, 1.0};  ///< red, green, blue, alpha; 0 to 1
   InitialShapeDesc initial;
   RestCurvatureDesc rest_curvature;
@@ -109,9 +109,9 @@ struct SceneDesc {
   std::string frame_id = "world";
   double time_step = 0.001;  ///< [s], > 0
   GravityDesc gravity;
-  double publish_rate = 50;         ///< [Hz], > 0
-  double tf_latency = 0.05;         ///< [s], >= 0
-  double tf_timeout = 0.5;          ///< [s], > 0
+  double publish_rate = 50;  ///< [Hz], > 0
+  double tf_latency = 0.05;  ///< [s], >= 0
+  double tf_timeout = 0.5;   ///< [s], > 0
   LostFramePolicy on_lost_frame = LostFramePolicy::hold;
   double max_frame_speed = infinity;  ///< [m/s], > 0
   TimeJumpPolicy on_time_jump = TimeJumpPolicy::reset;

@@ -25,8 +25,8 @@ struct Attachment {
   int node = 0;
   int frame = 0;  ///< index into World::frames()
   AttachmentType type = AttachmentType::hinge;
-  Pose pose;                        ///< of the attachment, in the frame
-  Vector3 force = Vector3::Zero();  ///< [N] what the cable exerts on its holder, fixed frame's axes, mean over the last step
+  Pose pose;                         ///< of the attachment, in the frame
+  Vector3 force = Vector3::Zero();   ///< [N] what the cable exerts on its holder, fixed frame's axes, mean over the last step
   Vector3 torque = Vector3::Zero();  ///< [N m] likewise, about the attachment's point
 };
 
@@ -34,15 +34,16 @@ struct StepResult {
   enum class Status {
     ok,
     overstretched,  ///< held points are further apart than an inextensible cable between them is long: it was lengthened
-    degraded,       ///< a substep did not converge at the smallest size and was finished with damping: finite, less exact
-    fault           ///< nothing finite could be found: the state is that of before the step
+    jumped,         ///< a holder was suddenly elsewhere: the cable was carried along with it
+    degraded,  ///< a substep did not converge at the smallest size: the cable's motion was taken away, and it goes on from rest
+    fault      ///< not even that: the cable stays as it was last, finite
   };
   Status status = Status::ok;
-  int cable = -1;        ///< the first cable that is not ok
-  int node = -1;         ///< its first node that is not ok
-  int substeps = 0;      ///< the most that any cable took
-  int iterations = 0;    ///< of the solver, all cables and substeps
-  double max_strain = 0; ///< largest |l / l0 - 1| at the end of the step
+  int cable = -1;         ///< the first cable that is not ok
+  int node = -1;          ///< its first node that is not ok
+  int substeps = 0;       ///< the most that any cable took
+  int iterations = 0;     ///< of the solver, all cables and substeps
+  double max_strain = 0;  ///< largest |l / l0 - 1| at the end of the step
 };
 
 /// [J]; gravity is zero at the fixed frame's origin.
@@ -58,8 +59,8 @@ struct EditResult {
   std::string name;  ///< pin: of the pin; cut: of the new cable
 };
 
-/// The simulation: cables whose attachments follow frames, in the fixed frame. A value: a copy is a snapshot, and continuing a copy
-/// gives the same bytes. Reads no clock, logs nothing, throws nothing in `step`.
+/// The simulation: cables whose attachments follow frames, in the fixed frame. A value: a copy is a snapshot, and continuing a
+/// copy gives the same bytes. Reads no clock, logs nothing, throws nothing in `step`.
 class World {
  public:
   /// Cables whose frames are all known start at once, the others wait for `start_waiting`. `inputs` is indexed like
@@ -74,17 +75,17 @@ class World {
   /// Advances by the scene's time step. `inputs`: one entry a frame, see frames().
   StepResult step(const BoundaryInputs& inputs);
 
-  double time() const;          ///< [s] steps done times the time step
+  double time() const;  ///< [s] steps done times the time step
   std::int64_t steps() const;
-  double time_step() const;     ///< [s]
+  double time_step() const;  ///< [s]
 
   /// Frames by id: 0 is the fixed frame, then those of the scene in order of appearance, then those that pins added.
   const std::vector<std::string>& frames() const;
-  const Pose& frame_pose(int frame) const;  ///< at the world's time
+  const Pose& frame_pose(int frame) const;                   ///< at the world's time
   int add_frame(const std::string& name, const Pose& pose);  ///< id of the new or the existing frame
 
-  const std::vector<Cable>& cables() const;      ///< those that have started, pieces of cuts included
-  const std::vector<std::string>& waiting() const;  ///< names of cables that wait for a frame
+  const std::vector<Cable>& cables() const;            ///< those that have started, pieces of cuts included
+  const std::vector<std::string>& waiting() const;     ///< names of cables that wait for a frame
   const std::vector<Attachment>& attachments() const;  ///< of the started cables
   int find_cable(const std::string& name) const;       ///< index, -1 if there is none
   int find_attachment(const std::string& name) const;  ///< index, -1 if there is none
@@ -110,8 +111,8 @@ class World {
 std::vector<std::string> frame_names(const SceneDesc& scene);
 /// Their initial poses, by id; `known` is false where the scene gives none.
 BoundaryInputs initial_frames(const SceneDesc& scene);
-/// Inextensible cables that are shorter than the distance of two neighbouring attachments with the frames at `frames` (by id; unknown
-/// ones are left out): one line each, like `validate`, which does this at the initial poses.
+/// Inextensible cables that are shorter than the distance of two neighbouring attachments with the frames at `frames` (by id;
+/// unknown ones are left out): one line each, like `validate`, which does this at the initial poses.
 std::vector<std::string> validate_distances(const SceneDesc& scene, const BoundaryInputs& frames);
 
 }  // namespace verlet_cable

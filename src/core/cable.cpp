@@ -1,0 +1,62 @@
+#include "verlet_cable/core/cable.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace verlet_cable {
+
+double CableModel::length() const {
+  return std::accumulate(rest_lengths.begin(), rest_lengths.end(), 0.0);
+}
+
+std::vector<double> CableModel::arc_length() const {
+  std::vector<double> arc{0};
+  for (const double l : rest_lengths) arc.push_back(arc.back() + l);
+  return arc;
+}
+
+std::vector<Quaternion> segment_orientations(const Cable& cable) {
+  std::vector<Quaternion> orientations;
+  Quaternion orientation = Quaternion::Identity();
+  for (int i = 0; i < cable.model.segments(); ++i) {
+    const Vector3 along = cable.state.positions[i + 1] - cable.state.positions[i];
+    orientation = (Quaternion::FromTwoVectors(orientation * Vector3::UnitX(), along) * orientation).normalized();
+    orientations.push_back(orientation);
+  }
+  return orientations;
+}
+
+std::vector<double> node_curvature(const Cable& cable) {
+  std::vector<double> curvature;
+  for (int i = 1; i < cable.model.segments(); ++i) {
+    const Vector3 before = cable.state.positions[i] - cable.state.positions[i - 1];
+    const Vector3 after = cable.state.positions[i + 1] - cable.state.positions[i];
+    const double angle = std::atan2(before.cross(after).norm(), before.dot(after));
+    curvature.push_back(angle / (0.5 * (cable.model.rest_lengths[i - 1] + cable.model.rest_lengths[i])));
+  }
+  return curvature;
+}
+
+std::vector<double> node_twist(const Cable& cable) {
+  return std::vector<double>(std::max(cable.model.segments() - 1, 0), 0.0);
+}
+
+double strain(const Cable& cable, int segment) {
+  return (cable.state.positions[segment + 1] - cable.state.positions[segment]).norm() / cable.model.rest_lengths[segment] - 1;
+}
+
+NearestPoint nearest_point(const Cable& cable, const Vector3& point) {
+  NearestPoint nearest;
+  nearest.distance = infinity;
+  for (int i = 0; i < cable.model.segments(); ++i) {
+    const Vector3 start = cable.state.positions[i], along = cable.state.positions[i + 1] - start;
+    const double square = along.squaredNorm();
+    const double fraction = square > 0 ? std::clamp((point - start).dot(along) / square, 0.0, 1.0) : 0;
+    const double distance = (start + fraction * along - point).norm();
+    if (distance < nearest.distance) nearest = {i, fraction, distance};
+  }
+  return nearest;
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,303 @@
+#include "cable_stepper.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tridiagonal.h"
+
+namespace verlet_cable {
+
+namespace {
+
+constexpr int maximum_iterations = 20;
+/// Error of a node's place at which an iteration ends, in segment lengths: far below what strain and energy are asked for.
+constexpr double position_tolerance = 1e-9;
+/// A correction that shrinks less than this from one iteration to the next calls for a new factorisation.
+constexpr double slow_convergence = 0.1;
+/// Relative, for spans that are pulled straight.
+constexpr double pivot_regularisation = 1e-9;
+/// A holder's change of velocity that moves a node by less in a substep, in segment lengths, goes unnoticed.
+constexpr double noticed_jerk = 1e-9;
+
+void set(VectorArray& array, int i, const Vector3& v) {
+  array.x[i] = v.x();
+  array.y[i] = v.y();
+  array.z[i] = v.z();
+}
+
+Vector3 get(const VectorArray& array, int i) {
+  return {array.x[i], array.y[i], array.z[i]};
+}
+
+}  // namespace
+
+void CableStepper::resize(const CableModel& model) {
+  segments_ = model.segments();
+  const std::size_t nodes = model.nodes();
+  for (VectorArray* a :
+       {&position_, &velocity_, &acceleration_, &segment_, &displacement_, &middle_, &pull_, &end_velocity_, &base_load_})
+    a->assign(nodes, 0.0);
+  for (std::vector<double>* a :
+       {&length_, &target_length_, &inverse_mass_, &tension_density_, &inertia_, &end_square_, &pivot_, &off_, &impulse_})
+    a->assign(nodes, 0.0);
+  both_held_.reserve(nodes);
+  system_.resize(segments_);
+  solver_.resize(segments_);
+}
+
+SubstepResult CableStepper::advance(const CableModel& model, const Environment& environment, double h,
+                                    std::vector<HeldNode>& held, CableState& state) {
+  SubstepResult result;
+  load(model, state);
+  hold(held);
+  result.overstretched_node = reachable_lengths(model, held, target_length_);
+  set_loads(model, environment, h);
+  predict(h);
+  result.converged = solve(model, h, result);
+  if (!result.converged) return result;
+  finish(h, held);
+  if (holders_accelerate(h, held)) project(model);
+  react(model, environment, h, held);
+  result.max_strain = store(model, h, state);
+  return result;
+}
+
+void CableStepper::load(const CableModel& model, const CableState& state) {
+  for (int i = 0; i <= segments_; ++i) {
+    set(position_, i, state.positions[i]);
+    set(velocity_, i, state.velocities[i]);
+    set(acceleration_, i, state.accelerations[i]);
+    inverse_mass_[i] = 1 / model.masses[i];
+    system_.movable[i] = 1;
+  }
+  for (int i = 0; i < segments_; ++i) {
+    const Vector3 d = state.positions[i + 1] - state.positions[i];
+    set(segment_, i, d);
+    length_[i] = d.norm();
+    target_length_[i] = model.rest_lengths[i];
+    tension_density_[i] = state.tension[i] / length_[i];
+  }
+}
+
+/// Sets what is known of the held nodes.
+void CableStepper::hold(const std::vector<HeldNode>& held) {
+  for (const HeldNode& holder : held) {
+    inverse_mass_[holder.node] = 0;
+    system_.movable[holder.node] = 0;
+    set(displacement_, holder.node, holder.position - get(position_, holder.node));
+  }
+}
+
+/// The parts of the equations of motion that no iteration changes.
+void CableStepper::set_loads(const CableModel& model, const Environment& environment, double h) {
+  for (int i = 0; i <= segments_; ++i) {
+    const double mass = model.masses[i], inertia = 2 * mass / h;
+    inertia_[i] = inertia / h + model.material.drag / h * 0.5 * (i > 0 ? model.rest_lengths[i - 1] : 0) +
+                  model.material.drag / h * 0.5 * (i < segments_ ? model.rest_lengths[i] : 0);
+    base_load_.x[i] = mass * environment.gravity.x() + inertia * velocity_.x[i];
+    base_load_.y[i] = mass * environment.gravity.y() + inertia * velocity_.y[i];
+    base_load_.z[i] = mass * environment.gravity.z() + inertia * velocity_.z[i];
+  }
+  std::fill_n(system_.compliance.begin(), segments_, 0.0);
+  both_held_.clear();
+  for (int i = 0; i < segments_; ++i)
+    if (system_.movable[i] == 0 && system_.movable[i + 1] == 0) both_held_.push_back(i);
+}
+
+/// First guess: the motion goes on as in the last substep.
+void CableStepper::predict(double h) {
+  for (int i = 0; i <= segments_; ++i) {
+    if (system_.movable[i] == 0) continue;
+    displacement_.x[i] = h * (velocity_.x[i] + 0.5 * h * acceleration_.x[i]);
+    displacement_.y[i] = h * (velocity_.y[i] + 0.5 * h * acceleration_.y[i]);
+    displacement_.z[i] = h * (velocity_.z[i] + 0.5 * h * acceleration_.z[i]);
+  }
+}
+
+/// Newton's method on places and tensions together, its matrix kept as long as it converges fast.
+bool CableStepper::solve(const CableModel& model, double h, SubstepResult& result) {
+  double last = 0;
+  bool factor = true;
+  for (int i = 0; i < maximum_iterations; ++i) {
+    evaluate(model, h);
+    if (factor) {
+      assemble();
+      solver_.factor(system_, false);
+    }
+    solver_.solve(system_);
+    ++result.iterations;
+    const double size = correct();
+    if (!std::isfinite(size)) return false;
+    // The next correction would be about the last one times the ratio of the last two.
+    const double ratio = i == 0 ? 1 : size / last;
+    if (size * std::min(ratio, 1.0) < position_tolerance) return true;
+    factor = i > 0 && ratio > slow_convergence;
+    last = size;
+  }
+  return false;
+}
+
+/// Residuals of the equations of motion and of the tension laws at the present iterate.
+void CableStepper::evaluate(const CableModel& model, double h) {
+  std::fill(end_square_.begin(), end_square_.end(), 0.0);
+  evaluate_segments(displacement_.x, segment_.x, middle_.x, pull_.x);
+  evaluate_segments(displacement_.y, segment_.y, middle_.y, pull_.y);
+  evaluate_segments(displacement_.z, segment_.z, middle_.z, pull_.z);
+  if (model.material.axial_stiffness < infinity)
+    evaluate_elastic_lengths(model, h);
+  else
+    evaluate_rigid_lengths();
+  for (const int i : both_held_) {
+    system_.gap[i] = 0;
+    system_.compliance[i] = 1;
+  }
+  evaluate_nodes(displacement_.x, base_load_.x, pull_.x, system_.load.x);
+  evaluate_nodes(displacement_.y, base_load_.y, pull_.y, system_.load.y);
+  evaluate_nodes(displacement_.z, base_load_.z, pull_.z, system_.load.z);
+}
+
+void CableStepper::evaluate_segments(const std::vector<double>& displacement, const std::vector<double>& segment,
+                                     std::vector<double>& middle, std::vector<double>& pull) {
+  const double *u = displacement.data(), *d = segment.data(), *density = tension_density_.data();
+  double *mid = middle.data(), *f = pull.data(), *square = end_square_.data();
+#pragma GCC ivdep
+  for (int i = 0; i < segments_; ++i) {
+    const double change = u[i + 1] - u[i];
+    const double end = d[i] + change;
+    mid[i] = d[i] + 0.5 * change;
+    f[i] = density[i] * mid[i];
+    square[i] += end * end;
+  }
+}
+
+void CableStepper::evaluate_nodes(const std::vector<double>& displacement, const std::vector<double>& base,
+                                  const std::vector<double>& pull, std::vector<double>& load) {
+  const double *u = displacement.data(), *b = base.data(), *f = pull.data(), *inertia = inertia_.data();
+  double* r = load.data();
+  r[0] = b[0] - inertia[0] * u[0] + f[0];
+#pragma GCC ivdep
+  for (int i = 1; i < segments_; ++i) r[i] = b[i] - inertia[i] * u[i] + (f[i] - f[i - 1]);
+  r[segments_] = b[segments_] - inertia[segments_] * u[segments_] - f[segments_ - 1];
+}
+
+void CableStepper::evaluate_rigid_lengths() {
+#pragma GCC ivdep
+  for (int i = 0; i < segments_; ++i) system_.gap[i] = 0.5 * (target_length_[i] * target_length_[i] - end_square_[i]);
+}
+
+void CableStepper::evaluate_elastic_lengths(const CableModel& model, double h) {
+  const double stiffness = model.material.axial_stiffness;
+  for (int i = 0; i < segments_; ++i) {
+    const double rest = model.rest_lengths[i], s = std::sqrt(end_square_[i]), mean = 0.5 * (s + length_[i]);
+    const double damping = model.material.axial_damping / (h * rest);
+    const double excess = stiffness / rest * (mean - rest) + damping * (s - length_[i]) - tension_density_[i] * mean;
+    const double slope = 0.5 * stiffness / rest + damping - 0.5 * tension_density_[i];
+    system_.gap[i] = -excess * s / slope;
+    system_.compliance[i] = s * mean / slope;
+  }
+}
+
+void CableStepper::assemble() {
+  std::copy(inertia_.begin(), inertia_.end(), system_.diagonal.begin());
+  for (int i = 0; i < segments_; ++i) {
+    const double half = 0.5 * tension_density_[i];
+    system_.diagonal[i] += half;
+    system_.diagonal[i + 1] += half;
+    system_.first[i] = -half;
+    system_.direction.x[i] = middle_.x[i];
+    system_.direction.y[i] = middle_.y[i];
+    system_.direction.z[i] = middle_.z[i];
+  }
+}
+
+/// Applies the solution; the largest correction, in segment lengths.
+double CableStepper::correct() {
+  double largest = 0;
+  const VectorArray& delta = solver_.displacement();
+  for (int i = 0; i <= segments_; ++i) {
+    displacement_.x[i] += delta.x[i];
+    displacement_.y[i] += delta.y[i];
+    displacement_.z[i] += delta.z[i];
+    const double square = delta.x[i] * delta.x[i] + delta.y[i] * delta.y[i] + delta.z[i] * delta.z[i];
+    largest = square <= largest ? largest : square;  // keeps a NaN
+  }
+  for (int i = 0; i < segments_; ++i) tension_density_[i] += solver_.multiplier()[i];
+  return std::sqrt(largest) / target_length_[0];
+}
+
+void CableStepper::finish(double h, const std::vector<HeldNode>& held) {
+  for (int i = 0; i <= segments_; ++i) {
+    end_velocity_.x[i] = 2 / h * displacement_.x[i] - velocity_.x[i];
+    end_velocity_.y[i] = 2 / h * displacement_.y[i] - velocity_.y[i];
+    end_velocity_.z[i] = 2 / h * displacement_.z[i] - velocity_.z[i];
+    position_.x[i] += displacement_.x[i];
+    position_.y[i] += displacement_.y[i];
+    position_.z[i] += displacement_.z[i];
+  }
+  for (const HeldNode& h : held) set(end_velocity_, h.node, h.velocity);
+  for (int i = 0; i < segments_; ++i) {
+    segment_.x[i] = position_.x[i + 1] - position_.x[i];
+    segment_.y[i] = position_.y[i + 1] - position_.y[i];
+    segment_.z[i] = position_.z[i + 1] - position_.z[i];
+  }
+}
+
+/// Whether a holder's velocity has changed: only then do velocities along the segments appear that the equations do not damp.
+bool CableStepper::holders_accelerate(double h, const std::vector<HeldNode>& held) const {
+  const double noticed = noticed_jerk * target_length_[0] / h;
+  return std::any_of(held.begin(), held.end(), [&](const HeldNode& holder) {
+    return (holder.velocity - get(velocity_, holder.node)).squaredNorm() > noticed * noticed;
+  });
+}
+
+/// Impulses along inextensible segments that end all change of length; without them such velocities would alternate from step to
+/// step.
+void CableStepper::project(const CableModel& model) {
+  if (model.material.axial_stiffness < infinity) return;
+  const std::size_t n = segments_;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double mobility = inverse_mass_[i] + inverse_mass_[i + 1];
+    const Vector3 d = get(segment_, i);
+    pivot_[i] = mobility > 0 ? d.squaredNorm() * mobility * (1 + pivot_regularisation) : 1;
+    impulse_[i] = mobility > 0 ? d.dot(get(end_velocity_, i) - get(end_velocity_, i + 1)) : 0;
+    if (i + 1 < n) off_[i] = -inverse_mass_[i + 1] * d.dot(get(segment_, i + 1));
+  }
+  solve_tridiagonal(pivot_, off_, impulse_, n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vector3 impulse = impulse_[i] * get(segment_, i);
+    set(end_velocity_, i, get(end_velocity_, i) - inverse_mass_[i] * impulse);
+    set(end_velocity_, i + 1, get(end_velocity_, i + 1) + inverse_mass_[i + 1] * impulse);
+  }
+}
+
+/// What the held nodes' equations of motion lack is what their holders supply.
+void CableStepper::react(const CableModel& model, const Environment& environment, double h, std::vector<HeldNode>& held) const {
+  for (HeldNode& holder : held) {
+    const int i = holder.node;
+    const Vector3 start_velocity = get(velocity_, i);
+    const double length = 0.5 * ((i > 0 ? model.rest_lengths[i - 1] : 0) + (i < segments_ ? model.rest_lengths[i] : 0));
+    Vector3 force = model.masses[i] * (environment.gravity - (holder.velocity - start_velocity) / h) -
+                    model.material.drag * length * get(displacement_, i) / h;
+    if (i < segments_) force += tension_density_[i] * get(middle_, i);
+    if (i > 0) force -= tension_density_[i - 1] * get(middle_, i - 1);
+    holder.force = force;
+  }
+}
+
+/// The largest strain.
+double CableStepper::store(const CableModel& model, double h, CableState& state) const {
+  double strain = 0;
+  for (int i = 0; i <= segments_; ++i) {
+    state.positions[i] = get(position_, i);
+    state.velocities[i] = get(end_velocity_, i);
+    state.accelerations[i] = (state.velocities[i] - get(velocity_, i)) / h;
+  }
+  for (int i = 0; i < segments_; ++i) {
+    const double length = get(segment_, i).norm();
+    state.tension[i] = tension_density_[i] * 0.5 * (length_[i] + length);
+    strain = std::max(strain, std::abs(length / model.rest_lengths[i] - 1));
+  }
+  return strain;
+}
+
+}  // namespace verlet_cable

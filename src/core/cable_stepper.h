@@ -1,0 +1,82 @@
+#pragma once
+
+#include <vector>
+
+#include "held_node.h"
+#include "saddle_solver.h"
+#include "verlet_cable/core/cable.h"
+
+namespace verlet_cable {
+
+/// What acts on a cable from outside, the same in all substeps of a step.
+struct Environment {
+  Vector3 gravity{0, 0, -9.81};  ///< [m/s^2]
+};
+
+struct SubstepResult {
+  bool converged = false;
+  int overstretched_node = -1;  ///< first node of a span that was lengthened; -1: none
+  int iterations = 0;
+  double max_strain = 0;  ///< largest |l / l0 - 1| at the end
+};
+
+/// Advances one cable by one substep. Holds the buffers, all sized by `resize`; keeps nothing from one call to the next.
+///
+/// The scheme is Verlet's with the stiff forces averaged over the step (Simo and Tarnow 1992; Gonzalez 1996):
+///   x' = x + h (v + v') / 2,   m (v' - v) / h = gravity - drag (x' - x) / h + sum of T (d + d') / (s + s')
+/// with d a segment's vector and s its length, at the start and (') the end. For an inextensible segment T is the multiplier of
+/// s' = l; for an elastic one it is EA ((s + s') / (2 l) - 1) + axial damping. Both conserve momentum and energy exactly.
+class CableStepper {
+ public:
+  void resize(const CableModel& model);
+
+  /// `held`: ascending by node. If it has not converged, `state` is untouched.
+  SubstepResult advance(const CableModel& model, const Environment& environment, double h, std::vector<HeldNode>& held,
+                        CableState& state);
+
+ private:
+  void load(const CableModel& model, const CableState& state);
+  void hold(const std::vector<HeldNode>& held);
+  void predict(double h);
+  void set_loads(const CableModel& model, const Environment& environment, double h);
+  bool solve(const CableModel& model, double h, SubstepResult& result);
+  void evaluate(const CableModel& model, double h);
+  void evaluate_segments(const std::vector<double>& displacement, const std::vector<double>& segment, std::vector<double>& middle,
+                         std::vector<double>& pull);
+  void evaluate_nodes(const std::vector<double>& displacement, const std::vector<double>& base, const std::vector<double>& pull,
+                      std::vector<double>& load);
+  void evaluate_rigid_lengths();
+  void evaluate_elastic_lengths(const CableModel& model, double h);
+  void assemble();
+  double correct();
+  void finish(double h, const std::vector<HeldNode>& held);
+  bool holders_accelerate(double h, const std::vector<HeldNode>& held) const;
+  void project(const CableModel& model);
+  void react(const CableModel& model, const Environment& environment, double h, std::vector<HeldNode>& held) const;
+  double store(const CableModel& model, double h, CableState& state) const;
+
+  int segments_ = 0;
+  // At the start of the substep
+  VectorArray position_, velocity_, acceleration_;  // nodes: [m], [m/s], [m/s^2]
+  VectorArray segment_;                             // segments: d [m]
+  std::vector<double> length_;                      // segments: s [m]
+  std::vector<double> target_length_;               // segments: l [m]; longer where held points are too far apart
+  std::vector<double> inverse_mass_;                // nodes: [1/kg], 0 where held
+  std::vector<double> inertia_;                     // nodes: 2 m / h^2 and drag / h [kg/s^2]
+  VectorArray base_load_;                           // nodes: gravity and inertia of the velocity [N]
+  std::vector<int> both_held_;                      // segments between two held nodes
+  // The unknowns
+  VectorArray displacement_;             // nodes: x' - x [m]
+  std::vector<double> tension_density_;  // segments: 2 T / (s + s') [N/m]
+  // Of the present iterate
+  VectorArray middle_;              // segments: (d + d') / 2 [m]
+  VectorArray pull_;                // segments: force on the first node [N]
+  std::vector<double> end_square_;  // segments: square of s' [m^2]
+  VectorArray end_velocity_;        // nodes: v' [m/s]
+  SaddleSystem system_;
+  SaddleSolver solver_;
+  // Velocity projection: a tridiagonal system
+  std::vector<double> pivot_, off_, impulse_;  // segments
+};
+
+}  // namespace verlet_cable

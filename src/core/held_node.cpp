@@ -1,0 +1,31 @@
+#include "held_node.h"
+
+namespace verlet_cable {
+
+namespace {
+
+/// A perfectly straight chain between two holders has no unique tension; this sag has.
+constexpr double taut_slack = 1e-6;
+/// Further apart than this is worth a report [relative].
+constexpr double reported_stretch = 1e-9;
+
+}  // namespace
+
+int reachable_lengths(const CableModel& model, const std::vector<HeldNode>& held, std::vector<double>& lengths) {
+  for (int i = 0; i < model.segments(); ++i) lengths[i] = model.rest_lengths[i];
+  if (model.material.axial_stiffness < infinity) return -1;
+  int overstretched = -1;
+  for (std::size_t k = 0; k + 1 < held.size(); ++k) {
+    const int first = held[k].node, last = held[k + 1].node;
+    double rest_length = 0;
+    for (int i = first; i < last; ++i) rest_length += model.rest_lengths[i];
+    const double distance = (held[k + 1].position - held[k].position).norm();
+    if (distance > rest_length * (1 + reported_stretch) && overstretched < 0) overstretched = first;
+    const double stretch = distance / (rest_length * (1 - taut_slack));
+    if (stretch <= 1) continue;
+    for (int i = first; i < last; ++i) lengths[i] *= stretch;
+  }
+  return overstretched;
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "verlet_cable/core/cable.h"
+
+namespace verlet_cable {
+
+/// A node whose place and velocity are given at the end of a substep.
+struct HeldNode {
+  int node = 0;
+  Vector3 position = Vector3::Zero();  ///< [m]
+  Vector3 velocity = Vector3::Zero();  ///< [m/s]
+  Vector3 force = Vector3::Zero();     ///< [N] out: what the cable exerts on the holder, mean over the substep
+};
+
+/// The lengths [m] that the segments can keep: their rest lengths, but longer between held points of an inextensible cable that
+/// are as far apart as the cable between them is long, or further. There so much slack is left that the tension has a unique
+/// value. Returns the first node of a span that is too short for its holders, -1 if there is none. `held` ascends by node;
+/// `lengths`: one a segment.
+int reachable_lengths(const CableModel& model, const std::vector<HeldNode>& held, std::vector<double>& lengths);
+
+}  // namespace verlet_cable

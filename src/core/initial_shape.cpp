@@ -1,0 +1,106 @@
+#include "initial_shape.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "catenary.h"
+#include "length_projection.h"
+
+namespace verlet_cable {
+
+namespace {
+
+std::vector<Vector3> straight_line(const Vector3& from, const Vector3& direction, const CableModel& model) {
+  std::vector<Vector3> nodes;
+  for (const double s : model.arc_length()) nodes.push_back(from + s * direction);
+  return nodes;
+}
+
+/// Hangs between each two neighbouring holders, straight down from the outer ones.
+std::vector<Vector3> hanging(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity) {
+  if (held.empty()) return straight_line(Vector3::Zero(), Vector3::UnitX(), model);
+  const bool weightless = gravity.norm() == 0;
+  const Vector3 down = weightless ? Vector3(-Vector3::UnitZ()) : Vector3(gravity.normalized());
+  const double weight = weightless ? 1 : gravity.norm();
+  std::vector<Vector3> nodes(model.nodes());
+  nodes[held.front().node] = held.front().position;
+  for (int i = held.front().node; i-- > 0;) nodes[i] = nodes[i + 1] + model.rest_lengths[i] * down;
+  for (std::size_t k = 0; k + 1 < held.size(); ++k) {
+    const int first = held[k].node, last = held[k + 1].node;
+    const std::vector<double> lengths(model.rest_lengths.begin() + first, model.rest_lengths.begin() + last);
+    std::vector<double> weights;
+    for (int i = first + 1; i < last; ++i) weights.push_back(weight * model.masses[i]);
+    const std::vector<Vector3> span =
+        hanging_chain(held[k].position, held[k + 1].position, lengths, weights, down, model.material.axial_stiffness);
+    std::copy(span.begin(), span.end(), nodes.begin() + first);
+  }
+  for (int i = held.back().node; i < model.segments(); ++i) nodes[i + 1] = nodes[i] + model.rest_lengths[i] * down;
+  return nodes;
+}
+
+/// Value of a polyline's per-point quantity at each node, the nodes spread along its arc length as they are along the cable's.
+std::vector<Vector3> spread(const std::vector<Vector3>& points, const std::vector<Vector3>& values, const CableModel& model) {
+  std::vector<double> along{0};
+  for (std::size_t i = 1; i < points.size(); ++i) along.push_back(along.back() + (points[i] - points[i - 1]).norm());
+  std::vector<Vector3> nodes;
+  std::size_t k = 0;
+  for (const double s : model.arc_length()) {
+    const double target = std::min(s / model.length(), 1.0) * along.back();
+    while (k + 2 < along.size() && along[k + 1] < target) ++k;
+    const double gap = along[k + 1] - along[k];
+    const double fraction = gap > 0 ? std::min((target - along[k]) / gap, 1.0) : 0;
+    nodes.push_back(values[k] + fraction * (values[k + 1] - values[k]));
+  }
+  return nodes;
+}
+
+}  // namespace
+
+void set_initial_state(const InitialShapeDesc& initial, const CableModel& model, const std::vector<HeldNode>& held,
+                       const Vector3& gravity, CableState& state) {
+  using Type = InitialShapeDesc::Type;
+  state.velocities.assign(model.nodes(), Vector3::Zero());
+  state.accelerations.assign(model.nodes(), Vector3::Zero());
+  state.tension.assign(model.segments(), 0.0);
+  switch (initial.type) {
+    case Type::straight:
+      state.positions = straight_line(initial.from, (initial.to - initial.from).normalized(), model);
+      carry_along(model, held, state);
+      break;
+    case Type::points:
+      state.positions = spread(initial.points, initial.points, model);
+      if (!initial.velocities.empty()) state.velocities = spread(initial.points, initial.velocities, model);
+      carry_along(model, held, state);
+      break;
+    case Type::automatic:
+    case Type::catenary:
+    case Type::settled:
+      state.positions = hanging(model, held, gravity);
+      project_positions(model, held, state.positions);
+      break;
+  }
+  project_velocities(model, held, state.positions, state.velocities);
+}
+
+void carry_along(const CableModel& model, const std::vector<HeldNode>& held, CableState& state) {
+  if (!held.empty()) {
+    const std::vector<double> arc_length = model.arc_length();
+    std::vector<Vector3> jumps;
+    for (const HeldNode& h : held) jumps.push_back(h.position - state.positions[h.node]);
+    std::size_t k = 0;
+    for (int i = 0; i < model.nodes(); ++i) {
+      while (k + 2 < held.size() && held[k + 1].node <= i) ++k;
+      const HeldNode& before = held[k];
+      if (k + 1 == held.size()) {
+        state.positions[i] += jumps[k];
+        continue;
+      }
+      const double gap = arc_length[held[k + 1].node] - arc_length[before.node];
+      const double fraction = std::clamp((arc_length[i] - arc_length[before.node]) / gap, 0.0, 1.0);
+      state.positions[i] += jumps[k] + fraction * (jumps[k + 1] - jumps[k]);
+    }
+  }
+  project_positions(model, held, state.positions);
+}
+
+}  // namespace verlet_cable

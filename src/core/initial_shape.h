@@ -1,0 +1,19 @@
+#pragma once
+
+#include <vector>
+
+#include "held_node.h"
+#include "verlet_cable/core/cable.h"
+
+namespace verlet_cable {
+
+/// Puts a cable into its initial shape and motion (`desc.initial`), its held nodes where their holders are (`held`, ascending),
+/// its lengths kept if it is inextensible. `gravity` [m/s^2] says where cables hang.
+void set_initial_state(const InitialShapeDesc& initial, const CableModel& model, const std::vector<HeldNode>& held,
+                       const Vector3& gravity, CableState& state);
+
+/// Carries a cable along with holders that have jumped: each node by the jump of its neighbouring holders, in proportion to the
+/// arc length between them.
+void carry_along(const CableModel& model, const std::vector<HeldNode>& held, CableState& state);
+
+}  // namespace verlet_cable

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <Eigen/LU>
+#include <vector>
+
+#include "pair.h"
+
+namespace verlet_cable {
+
+/// Three component arrays of one vector quantity.
+struct VectorArray {
+  std::vector<double> x, y, z;
+
+  void assign(std::size_t count, double value) {
+    x.assign(count, value);
+    y.assign(count, value);
+    z.assign(count, value);
+  }
+};
+
+/// The linear system of one Newton iteration of a cable: displacements of its N nodes together with the multipliers of its n = N
+/// - 1 segments. For node i and segment i (`p` is `direction`):
+///
+///   diagonal_i x_i + first_i x_(i+1) + first_(i-1) x_(i-1) + second_i x_(i+2) + second_(i-2) x_(i-2)
+///       - p_i m_i + p_(i-1) m_(i-1) = load_i,     or x_i = 0 where movable_i is 0
+///   p_i . (x_(i+1) - x_i) - compliance_i m_i = gap_i
+struct SaddleSystem {
+  std::vector<double> diagonal;    ///< N
+  std::vector<double> movable;     ///< N, 1 or 0
+  std::vector<double> first;       ///< n
+  std::vector<double> second;      ///< N, the last two unused; all zero where nothing bends
+  VectorArray direction;           ///< n
+  std::vector<double> compliance;  ///< n, >= 0
+  VectorArray load;                ///< N
+  std::vector<double> gap;         ///< n
+
+  void resize(int segments);
+};
+
+/// Solves a SaddleSystem directly, in O(n): elimination of blocks of one node and the multiplier before it, from both ends at
+/// once (a twisted factorisation). Each multiplier comes after both its nodes or with the second, so that no pivot vanishes at a
+/// held end.
+class SaddleSolver {
+ public:
+  void resize(int segments);
+  /// Factorises the matrix; `bending`: whether `second` is used.
+  void factor(const SaddleSystem& system, bool bending);
+  /// Solves for the right-hand sides `load` and `gap` with the last factorisation.
+  void solve(const SaddleSystem& system);
+
+  const VectorArray& displacement() const { return displacement_; }      ///< N
+  const std::vector<double>& multiplier() const { return multiplier_; }  ///< n
+
+ private:
+  /// The block of node k and of the multiplier between nodes k - 1 and k, [[K, q], [q^T, -c]], eliminated. Its inverse is
+  /// [[node, cross], [cross^T, -multiplier]].
+  struct Elimination {
+    PairSymmetric node;
+    PairVector cross;
+    Pair multiplier;
+    PairMatrix node_next;        ///< the inverse times the couplings to node k + 1: rows of the node,
+    PairVector multiplier_next;  ///< row of the multiplier
+    PairVector node_along;       ///< the inverse times the coupling to the next multiplier: rows of the node,
+    Pair multiplier_along;       ///< row of the multiplier
+    PairVector direction;
+    Pair first, second;
+    PairVector beyond;  ///< coupling of the block's multiplier to node k + 1
+  };
+  struct Forward {
+    PairVector node;
+    Pair multiplier;
+  };
+  /// What is left in the middle: nodes m, m + 1, multipliers m - 1, m + 1 and m.
+  using Middle = Eigen::Matrix<double, 9, 9>;
+  using MiddleVector = Eigen::Matrix<double, 9, 1>;
+
+  template <bool bending>
+  void factor_lanes(const SaddleSystem& system);
+  template <bool bending>
+  void solve_lanes(const SaddleSystem& system);
+
+  int nodes_ = 0;  ///< even: padded by a held one where necessary
+  int lane_ = 0;   ///< eliminations from either end; two nodes are left in the middle
+  bool bending_ = false;
+  std::vector<Elimination> eliminations_;  ///< lane_
+  std::vector<Forward> forward_;           ///< lane_
+  Eigen::PartialPivLU<Middle> middle_;
+  VectorArray displacement_;
+  std::vector<double> multiplier_;
+};
+
+}  // namespace verlet_cable

@@ -1,0 +1,219 @@
+#include "verlet_cable/core/world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "initial_shape.h"
+#include "world_implementation.h"
+
+namespace verlet_cable {
+
+namespace {
+
+/// No substep is shorter [s]; a cable that needs one has lost its way.
+constexpr double shortest_substep = 1e-6;
+/// A substep that took no more iterations than this may be doubled.
+constexpr int easy_iterations = 6;
+
+bool finite(const Pose& pose) {
+  return pose.position.allFinite() && pose.orientation.coeffs().allFinite() && pose.orientation.norm() > 0.5;
+}
+
+CableModel make_model(const SceneDesc& scene, const CableDesc& desc) {
+  CableModel model;
+  model.name = desc.name;
+  model.material = *scene.find_material(desc.material);
+  model.color = desc.color;
+  const double length = desc.length / desc.segments;
+  model.rest_lengths.assign(desc.segments, length);
+  model.masses.assign(desc.segments + 1, 0.0);
+  for (int i = 0; i < desc.segments; ++i) {
+    model.masses[i] += 0.5 * length * model.material.linear_density;
+    model.masses[i + 1] += 0.5 * length * model.material.linear_density;
+  }
+  for (const PointMassDesc& point : desc.point_masses) model.masses[node_at(desc, point.place)] += point.mass;
+  return model;
+}
+
+int find_frame(const std::vector<std::string>& frames, const std::string& name) {
+  return static_cast<int>(std::find(frames.begin(), frames.end(), name) - frames.begin());
+}
+
+}  // namespace
+
+void note_status(StepResult::Status status, int cable, int node, StepResult& result) {
+  if (status <= result.status) return;
+  result.status = status;
+  result.cable = cable;
+  result.node = node;
+}
+
+World::World(const SceneDesc& scene, const BoundaryInputs& inputs) : implementation_(std::make_unique<Implementation>()) {
+  std::vector<std::string> errors = validate(scene);
+  if (!errors.empty()) throw SceneError(std::move(errors));
+  Implementation& w = *implementation_;
+  w.scene = scene;
+  w.frames = frame_names(scene);
+  w.poses.resize(w.frames.size());
+  for (int i = 0; i < static_cast<int>(scene.cables.size()); ++i) {
+    w.waiting_descs.push_back(i);
+    w.waiting.push_back(scene.cables[i].name);
+  }
+  w.follow_frames(inputs);
+  start_waiting(inputs);
+}
+
+World::~World() = default;
+World::World(const World& other) : implementation_(std::make_unique<Implementation>(*other.implementation_)) {}
+World& World::operator=(const World& other) {
+  *implementation_ = *other.implementation_;
+  return *this;
+}
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+
+int World::start_waiting(const BoundaryInputs& inputs) {
+  Implementation& w = *implementation_;
+  int started = 0;
+  for (std::size_t k = 0; k < w.waiting_descs.size();) {
+    const CableDesc& desc = w.scene.cables[w.waiting_descs[k]];
+    if (!w.frames_known(desc, inputs)) {
+      ++k;
+      continue;
+    }
+    w.follow_frames(inputs);
+    w.start_cable(desc);
+    w.waiting_descs.erase(w.waiting_descs.begin() + k);
+    w.waiting.erase(w.waiting.begin() + k);
+    ++started;
+  }
+  return started;
+}
+
+bool World::Implementation::frames_known(const CableDesc& desc, const BoundaryInputs& inputs) const {
+  return std::all_of(desc.attachments.begin(), desc.attachments.end(), [&](const AttachmentDesc& attachment) {
+    const int frame = attachment.frame.empty() ? 0 : find_frame(frames, attachment.frame);
+    return frame == 0 || (frame < static_cast<int>(inputs.size()) && inputs[frame].known && finite(inputs[frame].pose));
+  });
+}
+
+void World::Implementation::follow_frames(const BoundaryInputs& inputs) {
+  // A frame that is unknown or not finite stays where it was. The fixed frame does not move.
+  for (std::size_t i = 1; i < std::min(poses.size(), inputs.size()); ++i)
+    if (inputs[i].known && finite(inputs[i].pose)) poses[i] = {inputs[i].pose.position, inputs[i].pose.orientation.normalized()};
+}
+
+void World::Implementation::start_cable(const CableDesc& desc) {
+  const int index = static_cast<int>(cables.size());
+  Cable cable;
+  cable.model = make_model(scene, desc);
+  for (const AttachmentDesc& a : desc.attachments) {
+    Attachment attachment;
+    attachment.name = a.name;
+    attachment.cable = index;
+    attachment.node = node_at(desc, a.place);
+    attachment.frame = a.frame.empty() ? 0 : find_frame(frames, a.frame);
+    attachment.type = a.type;
+    attachment.pose = {a.offset, quaternion_from_rpy(a.rotation)};
+    attachments.push_back(attachment);
+  }
+  // The holders catch the nodes where they want them: there is no gap to close.
+  cable.state.positions.assign(cable.model.nodes(), Vector3::Zero());
+  cable.state.velocities.assign(cable.model.nodes(), Vector3::Zero());
+  CableScratch s;
+  s.holders = find_holders(index, cable.model, cable.state, attachments, poses, {}, time());
+  for (Holder& holder : s.holders) holder.gap.setZero();
+  aim_holders(cable.model, attachments, poses, time(), scene.time_step, s.holders);
+  for (Holder& holder : s.holders) {
+    holder.position = holder.next_position;
+    holder.velocity = holder.next_velocity = holder.mean_velocity = Vector3::Zero();
+  }
+  hold_at(1, s.holders, s.held);
+  set_initial_state(desc.initial, cable.model, s.held, scene.gravity.acceleration, cable.state);
+  s.stepper.resize(cable.model);
+  cables.push_back(std::move(cable));
+  scratch.push_back(std::move(s));
+}
+
+StepResult World::step(const BoundaryInputs& inputs) {
+  Implementation& w = *implementation_;
+  StepResult result;
+  w.follow_frames(inputs);
+  ++w.steps;
+  for (Attachment& attachment : w.attachments) attachment.force = attachment.torque = Vector3::Zero();
+  for (int cable = 0; cable < static_cast<int>(w.cables.size()); ++cable) w.step_cable(cable, result);
+  return result;
+}
+
+/// Steps a cable in as many substeps as it needs: halved where the solver does not converge, doubled where it does easily.
+void World::Implementation::step_cable(int index, StepResult& result) {
+  using Status = StepResult::Status;
+  Cable& cable = cables[index];
+  CableScratch& s = scratch[index];
+  const double dt = scene.time_step;
+  if (!aim_holders(cable.model, attachments, poses, time(), dt, s.holders)) {
+    for (Holder& holder : s.holders) {
+      holder.position = holder.next_position;
+      holder.velocity = holder.next_velocity = holder.mean_velocity = Vector3::Zero();
+    }
+    hold_at(1, s.holders, s.held);
+    carry_along(cable.model, s.held, cable.state);
+    note_status(Status::jumped, index, s.held.front().node, result);
+  }
+
+  const Environment environment{scene.gravity.acceleration};
+  const int finest = std::max(0, static_cast<int>(std::ceil(std::log2(dt / shortest_substep))));
+  const std::int64_t whole = std::int64_t{1} << finest;
+  std::int64_t done = 0;
+  int substeps = 0;
+  bool stopped = false;
+  while (done < whole) {
+    const std::int64_t ticks = whole >> s.level;
+    const double h = dt / static_cast<double>(std::int64_t{1} << s.level);
+    hold_at(static_cast<double>(done + ticks) / static_cast<double>(whole), s.holders, s.held);
+    const SubstepResult substep = s.stepper.advance(cable.model, environment, h, s.held, cable.state);
+    result.iterations += substep.iterations;
+    if (!substep.converged) {
+      if (s.level < finest) {
+        ++s.level;
+      } else if (!stopped) {
+        for (std::vector<Vector3>* v : {&cable.state.velocities, &cable.state.accelerations})
+          std::fill(v->begin(), v->end(), Vector3::Zero());
+        std::fill(cable.state.tension.begin(), cable.state.tension.end(), 0.0);
+        stopped = true;
+        note_status(Status::degraded, index, 0, result);
+      } else {
+        note_status(Status::fault, index, 0, result);
+        break;
+      }
+      continue;
+    }
+    done += ticks;
+    ++substeps;
+    add_forces(index, h / dt);
+    result.max_strain = std::max(result.max_strain, substep.max_strain);
+    if (substep.overstretched_node >= 0) note_status(Status::overstretched, index, substep.overstretched_node, result);
+    if (s.level > 0 && substep.iterations <= easy_iterations && done % (2 * ticks) == 0) --s.level;
+  }
+  result.substeps = std::max(result.substeps, substeps);
+  complete_step(dt, s.holders);
+}
+
+void World::Implementation::add_forces(int cable, double weight) {
+  const CableScratch& s = scratch[cable];
+  for (std::size_t k = 0; k < s.held.size(); ++k) {
+    Attachment& attachment = attachments[s.holders[k].attachment];
+    const Vector3 force = weight * s.held[k].force;
+    const Vector3 arm = s.held[k].position - (poses[attachment.frame] * attachment.pose).position;
+    attachment.force += force;
+    if (s.holders[k].node != attachment.node) attachment.torque += arm.cross(force);
+  }
+}
+
+void World::Implementation::update_holders(int cable) {
+  scratch[cable].holders =
+      find_holders(cable, cables[cable].model, cables[cable].state, attachments, poses, scratch[cable].holders, time());
+}
+
+}  // namespace verlet_cable

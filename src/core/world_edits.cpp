@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "verlet_cable/core/world.h"
+#include "world_implementation.h"
+
+namespace verlet_cable {
+
+namespace {
+
+EditResult refused(const std::string& message) {
+  return {false, message, {}};
+}
+
+bool holds_something(const std::vector<Attachment>& attachments, int cable, int node) {
+  return std::any_of(attachments.begin(), attachments.end(),
+                     [&](const Attachment& a) { return a.cable == cable && a.node == node; });
+}
+
+/// `base` followed by the lowest number for which `taken` is false.
+template <typename Taken>
+std::string numbered(const std::string& base, int first, const Taken& taken) {
+  for (int i = first;; ++i) {
+    const std::string name = base + std::to_string(i);
+    if (!taken(name)) return name;
+  }
+}
+
+template <typename T>
+std::vector<T> tail(const std::vector<T>& v, int from) {
+  return std::vector<T>(v.begin() + from, v.end());
+}
+
+}  // namespace
+
+EditResult World::pin(const std::string& name, int cable, int node, int frame, const Pose& pose, AttachmentType type) {
+  Implementation& w = *implementation_;
+  const auto taken = [&](const std::string& n) {
+    if (find_attachment(n) >= 0) return true;
+    for (const int i : w.waiting_descs)
+      for (const AttachmentDesc& a : w.scene.cables[i].attachments)
+        if (a.name == n) return true;
+    return false;
+  };
+  if (cable < 0 || cable >= static_cast<int>(w.cables.size()))
+    return refused("cable: " + std::to_string(cable) + "; must be the index of a cable");
+  Cable& held = w.cables[cable];
+  if (node < 0 || node > held.model.segments())
+    return refused("node: " + std::to_string(node) + "; must be from 0 to " + std::to_string(held.model.segments()));
+  if (frame < 0 || frame >= static_cast<int>(w.frames.size()))
+    return refused("frame: " + std::to_string(frame) + "; must be the id of a frame");
+  if (!pose.position.allFinite() || !pose.orientation.coeffs().allFinite() || pose.orientation.norm() < 1e-6)
+    return refused("offset: must be finite, with an orientation of length 1");
+  if (!name.empty() && taken(name)) return refused("name: " + name + "; is taken by another attachment");
+  if (holds_something(w.attachments, cable, node))
+    return refused("node: " + std::to_string(node) + " of cable " + held.model.name + "; is already held by an attachment");
+
+  Attachment attachment;
+  attachment.name = name.empty() ? numbered("pin", 1, taken) : name;
+  attachment.cable = cable;
+  attachment.node = node;
+  attachment.frame = frame;
+  attachment.type = type;
+  attachment.pose = {pose.position, pose.orientation.normalized()};
+  w.attachments.push_back(attachment);
+  w.update_holders(cable);
+  return {true, "", attachment.name};
+}
+
+EditResult World::unpin(const std::string& name) {
+  Implementation& w = *implementation_;
+  const int index = find_attachment(name);
+  if (index < 0) return refused("name: " + name + "; there is no such attachment");
+  const int cable = w.attachments[index].cable;
+  w.attachments.erase(w.attachments.begin() + index);
+  for (CableScratch& s : w.scratch) {
+    auto& holders = s.holders;
+    holders.erase(std::remove_if(holders.begin(), holders.end(), [&](const Holder& h) { return h.attachment == index; }),
+                  holders.end());
+    for (Holder& h : holders)
+      if (h.attachment > index) --h.attachment;
+  }
+  w.update_holders(cable);
+  return {true, "", name};
+}
+
+EditResult World::cut(int cable, int segment) {
+  Implementation& w = *implementation_;
+  if (cable < 0 || cable >= static_cast<int>(w.cables.size()))
+    return refused("cable: " + std::to_string(cable) + "; must be the index of a cable");
+  const int segments = w.cables[cable].model.segments();
+  const std::string& name = w.cables[cable].model.name;
+  if (segments < 3) return refused("cable: " + name + "; has " + std::to_string(segments) + " segments, a cut needs 3");
+  if (segment < 1 || segment > segments - 2)
+    return refused("segment: " + std::to_string(segment) + " of cable " + name + "; must be from 1 to " +
+                   std::to_string(segments - 2) + ", so that each piece keeps one");
+
+  const auto taken = [&](const std::string& n) {
+    return find_cable(n) >= 0 ||
+           std::any_of(w.scene.cables.begin(), w.scene.cables.end(), [&](const CableDesc& c) { return c.name == n; });
+  };
+  Cable first = w.cables[cable], second = w.cables[cable];
+  second.model.name = numbered(name + "_", 2, taken);
+  second.model.rest_lengths = tail(second.model.rest_lengths, segment + 1);
+  second.model.masses = tail(second.model.masses, segment + 1);
+  second.state.positions = tail(second.state.positions, segment + 1);
+  second.state.velocities = tail(second.state.velocities, segment + 1);
+  second.state.accelerations = tail(second.state.accelerations, segment + 1);
+  second.state.tension = tail(second.state.tension, segment + 1);
+  first.model.rest_lengths.resize(segment);
+  first.model.masses.resize(segment + 1);
+  first.state.positions.resize(segment + 1);
+  first.state.velocities.resize(segment + 1);
+  first.state.accelerations.resize(segment + 1);
+  first.state.tension.resize(segment);
+
+  const int new_cable = static_cast<int>(w.cables.size());
+  const std::string new_name = second.model.name;
+  w.cables[cable] = std::move(first);
+  w.cables.push_back(std::move(second));
+  for (Attachment& a : w.attachments) {
+    if (a.cable != cable || a.node <= segment) continue;
+    a.cable = new_cable;
+    a.node -= segment + 1;
+  }
+  w.scratch.emplace_back();
+  std::vector<Holder>& holders = w.scratch[cable].holders;
+  for (Holder h : holders) {
+    if (h.node <= segment) continue;
+    h.node -= segment + 1;
+    w.scratch[new_cable].holders.push_back(h);
+  }
+  holders.erase(std::remove_if(holders.begin(), holders.end(), [&](const Holder& h) { return h.node > segment; }), holders.end());
+  for (const int piece : {cable, new_cable}) {
+    w.update_holders(piece);
+    w.scratch[piece].stepper.resize(w.cables[piece].model);
+  }
+  return {true, "", new_name};
+}
+
+int World::add_frame(const std::string& name, const Pose& pose) {
+  Implementation& w = *implementation_;
+  const auto known = std::find(w.frames.begin(), w.frames.end(), name);
+  if (known != w.frames.end()) return static_cast<int>(known - w.frames.begin());
+  w.frames.push_back(name);
+  w.poses.push_back(pose);
+  return static_cast<int>(w.frames.size()) - 1;
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cable_stepper.h"
+#include "holders.h"
+#include "verlet_cable/core/world.h"
+
+namespace verlet_cable {
+
+/// What a cable needs besides its model and state.
+struct CableScratch {
+  std::vector<Holder> holders;  ///< ascending by node
+  int level = 0;                ///< a step is tried in 2^level substeps
+  CableStepper stepper;
+  std::vector<HeldNode> held;
+};
+
+struct World::Implementation {
+  SceneDesc scene;
+  std::vector<int> waiting_descs;  ///< indices into scene.cables
+  std::vector<std::string> waiting;
+  std::vector<std::string> frames;
+  std::vector<Pose> poses;  ///< of the frames, at the world's time
+  std::int64_t steps = 0;
+  std::vector<Cable> cables;
+  std::vector<CableScratch> scratch;  ///< one a cable
+  std::vector<Attachment> attachments;
+
+  bool frames_known(const CableDesc& desc, const BoundaryInputs& inputs) const;
+  void start_cable(const CableDesc& desc);
+  void follow_frames(const BoundaryInputs& inputs);
+  void step_cable(int cable, StepResult& result);
+  void add_forces(int cable, double weight);
+  void update_holders(int cable);
+  double time() const { return static_cast<double>(steps) * scene.time_step; }
+};
+
+/// Keeps the worst status, and of equals the first cable's.
+void note_status(StepResult::Status status, int cable, int node, StepResult& result);
+
+}  // namespace verlet_cable

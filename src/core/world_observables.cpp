@@ -1,0 +1,129 @@
+#include <cstring>
+
+#include "verlet_cable/core/world.h"
+#include "world_implementation.h"
+
+namespace verlet_cable {
+
+namespace {
+
+/// FNV-1a over the bytes of numbers: the same state, the same hash, whatever the padding.
+class Hash {
+ public:
+  void add(double value) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &value, sizeof bits);
+    add_bits(bits);
+  }
+  void add_bits(std::uint64_t bits) {
+    for (int i = 0; i < 8; ++i) {
+      value_ ^= (bits >> (8 * i)) & 0xff;
+      value_ *= 1099511628211ull;
+    }
+  }
+  void add(const Vector3& v) {
+    for (int i = 0; i < 3; ++i) add(v[i]);
+  }
+  void add(const Pose& pose) {
+    add(pose.position);
+    for (int i = 0; i < 4; ++i) add(pose.orientation.coeffs()[i]);
+  }
+  void add(const std::string& text) {
+    add_bits(text.size());
+    for (const char c : text) add_bits(static_cast<unsigned char>(c));
+  }
+  std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 14695981039346656037ull;
+};
+
+}  // namespace
+
+double World::time() const {
+  return implementation_->time();
+}
+std::int64_t World::steps() const {
+  return implementation_->steps;
+}
+double World::time_step() const {
+  return implementation_->scene.time_step;
+}
+const std::vector<std::string>& World::frames() const {
+  return implementation_->frames;
+}
+const Pose& World::frame_pose(int frame) const {
+  return implementation_->poses[frame];
+}
+const std::vector<Cable>& World::cables() const {
+  return implementation_->cables;
+}
+const std::vector<std::string>& World::waiting() const {
+  return implementation_->waiting;
+}
+const std::vector<Attachment>& World::attachments() const {
+  return implementation_->attachments;
+}
+
+int World::find_cable(const std::string& name) const {
+  for (std::size_t i = 0; i < cables().size(); ++i)
+    if (cables()[i].model.name == name) return static_cast<int>(i);
+  return -1;
+}
+
+int World::find_attachment(const std::string& name) const {
+  for (std::size_t i = 0; i < attachments().size(); ++i)
+    if (attachments()[i].name == name) return static_cast<int>(i);
+  return -1;
+}
+
+Energy World::energy() const {
+  Energy energy;
+  const Vector3& gravity = implementation_->scene.gravity.acceleration;
+  for (const Cable& cable : cables()) {
+    for (int i = 0; i < cable.model.nodes(); ++i) {
+      energy.kinetic += 0.5 * cable.model.masses[i] * cable.state.velocities[i].squaredNorm();
+      energy.gravity -= cable.model.masses[i] * gravity.dot(cable.state.positions[i]);
+    }
+    if (cable.model.material.axial_stiffness == infinity) continue;
+    for (int i = 0; i < cable.model.segments(); ++i) {
+      const double e = strain(cable, i);
+      energy.stretch += 0.5 * cable.model.material.axial_stiffness * cable.model.rest_lengths[i] * e * e;
+    }
+  }
+  return energy;
+}
+
+std::uint64_t World::hash() const {
+  const Implementation& w = *implementation_;
+  Hash hash;
+  hash.add_bits(static_cast<std::uint64_t>(w.steps));
+  for (std::size_t i = 0; i < w.frames.size(); ++i) {
+    hash.add(w.frames[i]);
+    hash.add(w.poses[i]);
+  }
+  for (std::size_t i = 0; i < w.cables.size(); ++i) {
+    const Cable& cable = w.cables[i];
+    hash.add(cable.model.name);
+    for (const double l : cable.model.rest_lengths) hash.add(l);
+    for (const double m : cable.model.masses) hash.add(m);
+    for (const auto* vectors : {&cable.state.positions, &cable.state.velocities, &cable.state.accelerations})
+      for (const Vector3& v : *vectors) hash.add(v);
+    for (const double t : cable.state.tension) hash.add(t);
+    hash.add_bits(static_cast<std::uint64_t>(w.scratch[i].level));
+    for (const Holder& h : w.scratch[i].holders) {
+      hash.add_bits(static_cast<std::uint64_t>(h.node));
+      for (const Vector3* v : {&h.position, &h.velocity, &h.mean_velocity, &h.gap}) hash.add(*v);
+      hash.add(h.caught);
+    }
+  }
+  for (const Attachment& a : w.attachments) {
+    hash.add(a.name);
+    hash.add_bits(static_cast<std::uint64_t>(a.cable) << 32 | static_cast<std::uint64_t>(a.node));
+    hash.add_bits(static_cast<std::uint64_t>(a.frame));
+    hash.add(a.pose);
+  }
+  return hash.value();
+}
+
+}  // namespace verlet_cable
