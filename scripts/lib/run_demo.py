@@ -36,9 +36,6 @@ class Stream:
         else:
             self.empty += 1
 
-    def moved_on(self):
-        return len(self.stamps) > 1
-
 
 def port_is_used(port):
     try:
@@ -111,8 +108,10 @@ def watch(launch, port, seconds):
     for stream, first in zip(streams, before):
         count = stream.messages - first
         print(f'{stream.topic:<16} {count:8d} {count / duration if duration > 0 else 0:10.1f}')
-        if not stream.moved_on() or count == 0:
+        if count == 0:
             wrong.append(f'{stream.topic}: {stream.messages} messages with a cable, {stream.empty} without')
+        elif len(stream.stamps) < 2:
+            wrong.append(f'{stream.topic}: the time in its header stands still')
     if launch.poll() is not None:
         wrong.append(f'roslaunch ended by itself, with exit status {launch.returncode}')
     return wrong

@@ -9,6 +9,7 @@ The last line is "N passed, M failed"; the exit status is 0 only if something pa
 import ctypes
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -20,6 +21,7 @@ from xml.etree import ElementTree
 TIME_LIMIT = 300.0  # [s] for a program that registers none; rostest has its own, 60 s for each of its tests
 GRACE = 20.0  # [s] for a program that was interrupted to end its own children
 PR_SET_CHILD_SUBREAPER = 36
+BUILD_ERROR = re.compile(r'\berror:|CMake Error|No rule to make|undefined reference')
 
 
 class Program:
@@ -111,6 +113,9 @@ def group_runs(process):
 def read_results(program, results):
     """Counts the cases in the result files. rostest's own file repeats, once a test node, only that the node ran."""
     for path in sorted(results.rglob('*.xml')):
+        if path.name.startswith('MISSING-'):
+            program.failures.append('left no result: it was not built, did not start or crashed')
+            continue
         try:
             cases = list(ElementTree.parse(path).iter('testcase'))
         except ElementTree.ParseError as error:
@@ -119,7 +124,8 @@ def read_results(program, results):
         for case in cases:
             problem = next((case.find(tag) for tag in ('failure', 'error') if case.find(tag) is not None), None)
             if problem is not None:
-                program.failures.append(f'{case.get("classname")}.{case.get("name")}')
+                message = ' '.join((problem.get('message') or problem.text or '').split())
+                program.failures.append(f'{case.get("classname")}.{case.get("name")}: {message[:200]}')
             elif not (path.name.startswith('rostest-') or case.get('status') == 'notrun' or case.find('skipped') is not None):
                 program.passed += 1
 
@@ -179,7 +185,8 @@ def main():
 
     build = Program('build', [])
     if not built:
-        build.failures.append('see the errors above')
+        log = (workspace / 'build.log').read_text(errors='replace').splitlines()
+        build.failures += [line for line in log if BUILD_ERROR.search(line)][:20] or ['see above']
         remove_outdated_executables(workspace)
     programs = registered_programs(workspace / 'build')
     if not programs:

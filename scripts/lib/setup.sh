@@ -45,20 +45,33 @@ else
   rviz_packages=(rviz libgl1-mesa-dri)
 fi
 
+# as_root COMMAND...: needs sudo where the user is not root.
+as_root() {
+  if [[ $(id -u) == 0 ]]; then
+    "$@"
+  elif command -v sudo >/dev/null; then
+    sudo "$@"
+  else
+    fail "neither root nor sudo; as root, run: $*"
+  fi
+}
+
 # install_packages PACKAGE...: asks dpkg first, and does nothing where all are installed.
 install_packages() {
-  local installed missing as_root=()
+  local installed missing apt=(env DEBIAN_FRONTEND=noninteractive apt-get -q -o Dpkg::Use-Pty=0)
   installed=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "$@" 2>/dev/null | sed -n 's/^installed //p' || true)
-  missing=$(printf '%s\n' "$@" | grep -vxF -e "$installed" || true)
-  [[ -n $missing ]] || return 0
-  echo "Installing:" $missing
-  if [[ $(id -u) != 0 ]]; then
-    command -v sudo >/dev/null || fail "not root, and no sudo; as root, run: apt-get install --no-install-recommends" $missing
-    as_root=(sudo)
-  fi
-  as_root+=(env DEBIAN_FRONTEND=noninteractive apt-get -o Dpkg::Use-Pty=0)
-  "${as_root[@]}" update -q || fail "apt-get update failed"
-  "${as_root[@]}" install -q -y --no-install-recommends $missing || fail "apt-get could not install:" $missing
+  mapfile -t missing < <(printf '%s\n' "$@" | grep -vxF -e "$installed")
+  [[ ${#missing[@]} -gt 0 ]] || return 0
+  echo "Installing: ${missing[*]}"
+  as_root "${apt[@]}" update || fail "apt-get update failed"
+  as_root "${apt[@]}" install -y --no-install-recommends "${missing[@]}" || fail "apt-get could not install ${missing[*]}"
+}
+
+# A root file system without /etc/hosts (a container, a chroot) does not know the name that roslaunch gives this machine.
+name_localhost() {
+  getent hosts localhost >/dev/null && return
+  echo "Adding localhost to /etc/hosts"
+  echo '127.0.0.1 localhost' | as_root tee -a /etc/hosts >/dev/null
 }
 
 # Two builds, or a build and a test run, of one checkout wait for each other. Held until unlock_workspace or the end.
@@ -74,7 +87,6 @@ unlock_workspace() {
 
 source_setup() {
   set +u
-  # shellcheck disable=SC1090
   source "$1"
   set -u
 }
