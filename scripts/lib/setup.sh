@@ -22,10 +22,17 @@ export LC_ALL=C.UTF-8 ROSCONSOLE_STDOUT_LINE_BUFFERED=1 PYTHONUNBUFFERED=1
 unset ROS_IP
 export ROS_HOSTNAME=localhost
 
+# ROS's setup files use variables that may be unset.
+source_setup() {
+  set +u
+  source "$1"
+  set -u
+}
+
 # The only list of system packages: to build, to run and to test; and, with a display only, to look at it.
 packages=(build-essential cmake libeigen3-dev libgtest-dev libyaml-cpp-dev python3-numpy python3-yaml)
 if [[ -f /opt/ros/noetic/setup.bash ]]; then
-  ros_setup=/opt/ros/noetic/setup.bash
+  source_setup /opt/ros/noetic/setup.bash
   packages+=(
     ros-noetic-{catkin,message-generation,message-runtime,roscpp,rospy,rosbash,roslaunch,rostest,rosbag,rosservice,rostopic}
     ros-noetic-{actionlib,diagnostic,geometry,sensor,std,visualization}-msgs ros-noetic-std-srvs
@@ -33,7 +40,6 @@ if [[ -f /opt/ros/noetic/setup.bash ]]; then
   )
   rviz_packages=(ros-noetic-rviz)
 else
-  ros_setup=
   packages+=(
     catkin catkin-lint ros-message-generation ros-message-runtime ros-environment rosbash roslang rospack-tools rosout
     libroscpp-dev libtf2-ros-dev librostest-dev librosbag-dev
@@ -52,18 +58,18 @@ as_root() {
   elif command -v sudo >/dev/null; then
     sudo "$@"
   else
-    fail "neither root nor sudo; as root, run: $*"
+    fail "not root, and no sudo, for: $*"
   fi
 }
 
 # install_packages PACKAGE...: asks dpkg first, and does nothing where all are installed.
 install_packages() {
-  local installed missing apt=(env DEBIAN_FRONTEND=noninteractive apt-get -q -o Dpkg::Use-Pty=0)
+  local installed missing apt=(env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300 -o Dpkg::Use-Pty=0)
   installed=$(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "$@" 2>/dev/null | sed -n 's/^installed //p' || true)
   mapfile -t missing < <(printf '%s\n' "$@" | grep -vxF -e "$installed")
   [[ ${#missing[@]} -gt 0 ]] || return 0
   echo "Installing: ${missing[*]}"
-  as_root "${apt[@]}" update || fail "apt-get update failed"
+  as_root "${apt[@]}" update || echo "apt-get update failed, going on with the package lists there are" >&2
   as_root "${apt[@]}" install -y --no-install-recommends "${missing[@]}" || fail "apt-get could not install ${missing[*]}"
 }
 
@@ -83,12 +89,6 @@ lock_workspace() {
 
 unlock_workspace() {
   exec 9>&-
-}
-
-source_setup() {
-  set +u
-  source "$1"
-  set -u
 }
 
 # The package in the workspace is a directory of links to what is in the checkout: a single link to the checkout, which
@@ -114,7 +114,6 @@ build_workspace() {
   link_package
   # catkin leaves this directory out of PYTHONPATH for good if it does not exist when it first configures.
   mkdir -p "$workspace/devel/lib/python3/dist-packages"
-  [[ -z $ros_setup ]] || source_setup "$ros_setup"
   catkin_make -C "$workspace" -j"$(nproc)" \
     --cmake-args -DPYTHON_EXECUTABLE=/usr/bin/python3 -DPython3_EXECUTABLE=/usr/bin/python3 \
     --make-args -k "$@"
