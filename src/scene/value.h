@@ -10,6 +10,7 @@
 
 #include "error_list.h"
 #include "verlet_cable/core/scene_fields.h"
+#include "verlet_cable/scene/text.h"
 
 namespace verlet_cable {
 
@@ -31,58 +32,37 @@ struct Value {
 /// What stands for a number that could not be read: nothing is derived from it.
 constexpr double unread = std::numeric_limits<double>::quiet_NaN();
 
-/// The number that a text is: decimal, with or without exponent, or [+-][.]inf[inity] in any case. None for NaN, hexadecimal and
-/// numbers that a double cannot hold.
-std::optional<double> parse_number(const std::string& text);
-
 /// A value for messages: one line, at most about 60 characters, control characters escaped.
 std::string value_text(const YAML::Node& node);
-/// A text for messages, likewise; `quoted` with quotes.
-std::string escaped(const std::string& text);
-std::string quoted(const std::string& text);
-
-/// The one of `known` that is spelled most alike, empty if none is near.
-template <class Names>
-std::string nearest_name(const std::string& name, const Names& known);
-std::size_t spelling_distance(const std::string& a, const std::string& b);
-
 /// Readers of single values. What does not have the type is rejected with `allowed` and gives `unread`, 0 or an empty text.
 double read_number(const Value& value, const std::string& allowed);
 int read_integer(const Value& value, const std::string& allowed);
 std::string read_text(const Value& value, const std::string& allowed);
 
+/// The N numbers of a list of N numbers.
+template <std::size_t N>
+std::optional<std::array<double, N>> numbers_of(const YAML::Node& node) {
+  if (!node.IsSequence() || node.size() != N) return std::nullopt;
+  std::array<double, N> numbers;
+  std::size_t i = 0;
+  for (const auto& element : node) {
+    const std::optional<double> number = element.IsScalar() ? parse_number(element.Scalar()) : std::nullopt;
+    if (!number) return std::nullopt;
+    numbers[i++] = *number;
+  }
+  return numbers;
+}
+
 /// N numbers; all of them `unread` where one could not be read.
 template <std::size_t N>
 std::array<double, N> read_numbers(const Value& value, const std::string& allowed) {
-  std::array<double, N> numbers;
-  bool good = value.node.IsSequence() && value.node.size() == N;
-  if (good) {
-    std::size_t i = 0;
-    for (const auto& element : value.node) {
-      const std::optional<double> number = element.IsScalar() ? parse_number(element.Scalar()) : std::nullopt;
-      good = good && number;
-      numbers[i++] = number.value_or(unread);
-    }
-  }
-  if (good) return numbers;
+  if (const auto numbers = numbers_of<N>(value.node)) return *numbers;
   value.reject(allowed);
+  std::array<double, N> numbers;
   numbers.fill(unread);
   return numbers;
 }
 
 Vector3 read_vector(const Value& value, const char* unit);
-
-template <class Names>
-std::string nearest_name(const std::string& name, const Names& known) {
-  std::string nearest;
-  std::size_t least = 1 + name.size() / 3;
-  for (const std::string& candidate : known) {
-    const std::size_t distance = spelling_distance(name, candidate);
-    if (distance > least || (distance == least && !nearest.empty())) continue;
-    nearest = candidate;
-    least = distance;
-  }
-  return nearest;
-}
 
 }  // namespace verlet_cable

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+namespace verlet_cable {
+
+/// The number that a text is: decimal, with or without exponent, or [+-][.]inf[inity] in any case. None for NaN, hexadecimal and
+/// numbers that a double cannot hold. Does not depend on the locale.
+std::optional<double> parse_number(const std::string& text);
+
+/// A text for messages: one line, at most about 60 characters, control characters escaped.
+std::string escaped(const std::string& text);
+/// The same in quotes.
+std::string quoted(const std::string& text);
+
+/// How many characters have to be put in, left out or replaced to get from one text to the other (Levenshtein); 64 for long
+/// texts.
+std::size_t spelling_distance(const std::string& a, const std::string& b);
+
+/// The one of `known` that is spelled most alike, empty if none is near.
+template <class Names>
+std::string nearest_name(const std::string& name, const Names& known) {
+  std::string nearest;
+  std::size_t least = 2 + name.size() / 3;
+  for (const std::string& candidate : known) {
+    const std::size_t distance = spelling_distance(name, candidate);
+    if (distance >= least) continue;
+    nearest = candidate;
+    least = distance;
+  }
+  return nearest;
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,27 @@
+#include "verlet_cable/scene/frame_speed.h"
+
+#include <algorithm>
+
+namespace verlet_cable {
+namespace {
+
+/// A frame that moves at just the allowed speed is not held back because of rounding.
+constexpr double rounding = 1e-9;
+
+}  // namespace
+
+std::vector<int> limit_frame_motion(const BoundaryInputs& before, double distance, BoundaryInputs& frames) {
+  std::vector<int> held_back;
+  for (std::size_t i = 0; i < std::min(before.size(), frames.size()); ++i) {
+    const Pose& from = before[i].pose;
+    Pose& to = frames[i].pose;
+    const Vector3 way = to.position - from.position;
+    if (!before[i].known || !frames[i].known || way.norm() <= distance * (1 + rounding)) continue;
+    const double fraction = distance / way.norm();
+    to = {from.position + fraction * way, from.orientation.slerp(fraction, to.orientation).normalized()};
+    held_back.push_back(static_cast<int>(i));
+  }
+  return held_back;
+}
+
+}  // namespace verlet_cable
