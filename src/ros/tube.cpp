@@ -108,8 +108,8 @@ void fill_tube(const std::vector<Vector3>& centers, const std::vector<std_msgs::
   };
   for (int ring = 0; ring + 1 < ring_count; ++ring) {
     for (int side = 0; side < sides; ++side) {
-      for (const auto& [r, s] : {std::pair(ring, side), std::pair(ring + 1, side), std::pair(ring + 1, side + 1),  //
-                                 std::pair(ring, side), std::pair(ring + 1, side + 1), std::pair(ring, side + 1)}) {
+      for (const auto& [r, s] : {std::pair(ring, side), std::pair(ring + 1, side + 1), std::pair(ring + 1, side),  //
+                                 std::pair(ring, side), std::pair(ring, side + 1), std::pair(ring + 1, side + 1)}) {
         add_corner(r, s);
       }
     }

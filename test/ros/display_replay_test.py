@@ -1,0 +1,76 @@
+#!/usr/bin/python3
+"""replay.launch as a user starts it: a recording whose simulation is known, and bad recordings."""
+import os
+import subprocess
+import tempfile
+import unittest
+
+import numpy as np
+import rospy
+import rostest
+from std_msgs.msg import Float64
+
+SPEED = 0.3      # [m/s] downwards
+DURATION = 1.5   # [s]
+LAUNCH_LIMIT = 60.0  # [s]
+
+
+def catenary(places, span, a):
+    """Points of the curve a cosh(x / a), level ends, at fractions of its length."""
+    length = 2 * a * np.sinh(span / 2 / a)
+    x = a * np.arcsinh((places - 0.5) * length / a)
+    return np.column_stack([x, np.zeros_like(x), a * np.cosh(x / a)])
+
+
+def write_recording(path):
+    """A cable that sinks evenly. Linear drag then only changes what it weighs, and a catenary is the same for any weight."""
+    shape = catenary(np.concatenate([[0, 0.02], np.linspace(0.1, 0.9, 9), [0.98, 1]]), span=0.6, a=0.25)
+    with open(path, 'w', encoding='utf-8') as file:
+        file.write(','.join(['t'] + [f'{axis}{i}' for i in range(len(shape)) for axis in 'xyz']) + '\n')
+        for moment in np.arange(0, DURATION + 0.005, 0.01):
+            row = shape + [0, 0, 1 - SPEED * moment]
+            file.write(','.join(f'{value:.5f}' for value in [moment, *row.ravel()]) + '\n')
+
+
+class ReplayTest(unittest.TestCase):
+
+    def setUp(self):
+        self._directory = tempfile.TemporaryDirectory(prefix='a b')  # paths with spaces are paths
+        self.path = os.path.join(self._directory.name, 'recording.csv')
+
+    def tearDown(self):
+        self._directory.cleanup()
+
+    def replay(self):
+        """Runs one replay to its end; its output."""
+        command = ['roslaunch', 'verlet_cable', 'replay.launch', f'data:={self.path}', 'loop:=false', 'rviz:=false']
+        return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=LAUNCH_LIMIT).stdout
+
+    def test_known_motion(self):
+        write_recording(self.path)
+        errors = []
+        subscriber = rospy.Subscriber('/replay/error', Float64, lambda message: errors.append(message.data))
+        output = self.replay()
+        subscriber.unregister()
+        self.assertIn('mean error', output)
+        # published at 50 Hz for the length of the recording; the first may come before the subscription stands
+        self.assertGreater(len(errors), 0.9 * 50 * DURATION)
+        # Segments of 2 cm lie up to l^2 / (8 a) = 0.2 mm inside the curve; at 0.3 m/s, 10 ms out of step would be 1 mm in one of the
+        # three coordinates.
+        self.assertLess(max(errors), 0.0005)
+        self.assertGreater(max(errors), 0)
+
+    def test_no_such_file(self):
+        self.assertIn(f'{self.path}: cannot be read', self.replay())
+
+    def test_other_file(self):
+        with open(self.path, 'w', encoding='utf-8') as file:
+            file.write('time,x,y\n1,2,3\n')
+        output = self.replay()
+        self.assertIn('time,x,y', output)
+        self.assertIn('t,x0,y0,z0', output)
+
+
+if __name__ == '__main__':
+    rospy.init_node('display_replay_test')
+    rostest.rosrun('verlet_cable', 'display_replay', ReplayTest)

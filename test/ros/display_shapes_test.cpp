@@ -1,0 +1,259 @@
+// Tubes, colors and wrenches of the display, without a ROS master.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include "verlet_cable/ros/color.h"
+#include "verlet_cable/ros/conversions.h"
+#include "verlet_cable/ros/tube.h"
+
+namespace verlet_cable {
+namespace {
+
+using visualization_msgs::Marker;
+
+// Coordinates are of order 1 and computed with some ten roundings.
+constexpr double rounding = 1e-13;
+
+Vector3 from_point(const geometry_msgs::Point& point) {
+  return {point.x, point.y, point.z};
+}
+
+Marker tube_along(const std::vector<Vector3>& centers, double radius) {
+  Marker marker;
+  fill_tube(centers, std::vector<std_msgs::ColorRGBA>(centers.size()), radius, marker);
+  return marker;
+}
+
+std::vector<Vector3> straight_line(int segments, double length) {
+  std::vector<Vector3> centers;
+  for (int node = 0; node <= segments; ++node) centers.emplace_back(length * node / segments, 0, 0);
+  return centers;
+}
+
+/// Six times the volume that the triangles enclose, counted positive where they face outwards.
+double enclosed_volume(const Marker& tube) {
+  double six_volumes = 0;
+  for (std::size_t i = 0; i + 2 < tube.points.size(); i += 3) {
+    six_volumes += from_point(tube.points[i]).dot(from_point(tube.points[i + 1]).cross(from_point(tube.points[i + 2])));
+  }
+  return six_volumes / 6;
+}
+
+/// How often the directed edges between distinct corners occur, opposite directions cancelling: 0 everywhere on a closed surface.
+int unmatched_edges(const Marker& tube) {
+  using Corner = std::array<std::int64_t, 3>;
+  const auto corner = [](const geometry_msgs::Point& p) {
+    return Corner{std::llround(p.x * 1e9), std::llround(p.y * 1e9), std::llround(p.z * 1e9)};
+  };
+  std::map<std::pair<Corner, Corner>, int> edges;
+  for (std::size_t i = 0; i + 2 < tube.points.size(); i += 3) {
+    for (int k = 0; k < 3; ++k) {
+      const Corner from = corner(tube.points[i + k]), to = corner(tube.points[i + (k + 1) % 3]);
+      if (from < to) ++edges[{from, to}];
+      if (to < from) --edges[{to, from}];
+    }
+  }
+  int unmatched = 0;
+  for (const auto& [edge, count] : edges) unmatched += std::abs(count);
+  return unmatched;
+}
+
+TEST(Tube, IsClosedAndAsThickAsTheCable) {
+  const double radius = 0.01, length = 1.0;
+  const Marker tube = tube_along(straight_line(100, length), radius);
+  EXPECT_EQ(unmatched_edges(tube), 0);
+  // A prism of k corners has k sin(2 pi / k) / (2 pi) of the round cylinder's volume, 0.83 at six corners, the fewest there are;
+  // the half spheres add 1.3 % here.
+  const double cylinder = M_PI * radius * radius * length;
+  EXPECT_GT(enclosed_volume(tube), 0.83 * cylinder);
+  EXPECT_LT(enclosed_volume(tube), 1.014 * cylinder);
+}
+
+TEST(Tube, EndsInHalfSpheres) {
+  const double radius = 0.05;
+  const Marker tube = tube_along(straight_line(10, 1.0), radius);
+  double first = 0, last = 0;
+  for (const geometry_msgs::Point& point : tube.points) {
+    first = std::min(first, point.x);
+    last = std::max(last, point.x);
+    const double off_the_ends = std::max({-point.x, point.x - 1, 0.0});
+    const double off_the_axis = std::hypot(point.y, point.z);
+    EXPECT_NEAR(std::hypot(off_the_ends, off_the_axis), radius, rounding);
+  }
+  EXPECT_NEAR(first, -radius, rounding);
+  EXPECT_NEAR(last, 1 + radius, rounding);
+}
+
+TEST(Tube, IsNotWrungByBending) {
+  // In a plane, carrying a ring along leaves its spoke across the plane where it is, whatever the bends.
+  std::vector<Vector3> centers{Vector3::Zero()};
+  for (int node = 1; node <= 60; ++node) {
+    const double heading = 1.5 * std::sin(0.2 * node);
+    centers.push_back(centers.back() + 0.01 * Vector3(std::cos(heading), 0, std::sin(heading)));
+  }
+  const double radius = 0.002;
+  const Marker tube = tube_along(centers, radius);
+  for (const Vector3& center : centers) {
+    const Vector3 expected = center + radius * Vector3::UnitY();
+    double nearest = 1;
+    for (const geometry_msgs::Point& point : tube.points) nearest = std::min(nearest, (from_point(point) - expected).norm());
+    EXPECT_LT(nearest, rounding);
+  }
+}
+
+TEST(Tube, OfAVeryLongCableStaysLight) {
+  const Marker tube = tube_along(straight_line(100000, 1000.0), 0.01);
+  const std::size_t bytes = tube.points.size() * 3 * sizeof(double) + tube.colors.size() * 4 * sizeof(float);
+  EXPECT_LT(bytes, 400000u);
+  EXPECT_EQ(tube.points.size(), tube.colors.size());
+  EXPECT_NEAR(from_point(tube.points.back()).x(), 1000.0, 0.011);
+}
+
+TEST(Tube, SurvivesFoldsAndCoincidingNodes) {
+  const std::vector<Vector3> centers{{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {0, 0, 0}, {-1, 0, 0}, {-1, 0, 0}};
+  for (const geometry_msgs::Point& point : tube_along(centers, 0.1).points) ASSERT_TRUE(from_point(point).allFinite());
+  for (const geometry_msgs::Point& point : tube_along({Vector3::Zero(), Vector3::Zero()}, 0.1).points) {
+    ASSERT_TRUE(from_point(point).allFinite());
+  }
+}
+
+SceneDesc scene_with(double linear_density, double length, double payload, double axial_stiffness) {
+  SceneDesc scene;
+  NamedMaterial material;
+  material.name = "rope";
+  material.material.linear_density = linear_density;
+  material.material.radius = 0.01;
+  material.material.axial_stiffness = axial_stiffness;
+  scene.materials.push_back(material);
+  CableDesc cable;
+  cable.name = "rope";
+  cable.length = length;
+  cable.segments = 2;
+  cable.material = "rope";
+  cable.point_masses.push_back({{PlaceDesc::At::end, 0}, payload});
+  scene.cables.push_back(cable);
+  return scene;
+}
+
+Cable two_segments(double first_tension, double second_tension) {
+  Cable cable;
+  cable.model.name = "rope";
+  cable.model.material.linear_density = 0.1;
+  cable.model.color = {0.1, 0.2, 0.3, 0.4};
+  cable.model.rest_lengths = {1, 1};
+  cable.model.masses = {0.05, 0.1, 0.05};
+  cable.state.positions = {{0, 0, 0}, {1, 0, 0}, {2.1, 0, 0}};
+  cable.state.velocities.assign(3, Vector3::Zero());
+  cable.state.tension = {first_tension, second_tension};
+  return cable;
+}
+
+bool same(const std_msgs::ColorRGBA& a, const std_msgs::ColorRGBA& b) {
+  return std::tie(a.r, a.g, a.b, a.a) == std::tie(b.r, b.g, b.b, b.a);
+}
+
+TEST(Color, GoesFromBlueToRedAndStopsThere) {
+  const std_msgs::ColorRGBA slack = color_of_load(0), taut = color_of_load(1);
+  EXPECT_GT(slack.b, slack.r + 0.3f);
+  EXPECT_GT(taut.r, taut.b + 0.5f);
+  EXPECT_TRUE(same(color_of_load(-3), slack));
+  EXPECT_TRUE(same(color_of_load(17), taut));
+}
+
+TEST(Color, HasNoJumps) {
+  // The widest step between two of the nine stops is 0.31 of a channel, so a thousandth of the map changes at most 0.0025.
+  for (int i = 0; i < 1000; ++i) {
+    const std_msgs::ColorRGBA a = color_of_load(i / 1000.0), b = color_of_load((i + 1) / 1000.0);
+    EXPECT_LT(std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)}), 0.0026f);
+  }
+}
+
+TEST(Color, IsPackedAsPointCloudsHaveIt) {
+  std_msgs::ColorRGBA color;
+  color.r = 1.0f;
+  color.g = 0.5f;
+  color.b = 0.2f;
+  const float packed = packed_rgb(color);
+  std::uint32_t bits;
+  std::memcpy(&bits, &packed, sizeof(bits));
+  EXPECT_EQ(bits, 0x00ff8033u);
+}
+
+TEST(Color, ScaleIsTheWeightOfTheHeaviestCable) {
+  const ColorScale scale(scene_with(0.1, 2.0, 0.3, 1000.0));
+  EXPECT_DOUBLE_EQ(scale.full_tension(), (0.1 * 2.0 + 0.3) * 9.81);
+  EXPECT_DOUBLE_EQ(scale.full_strain(), scale.full_tension() / 1000.0);
+  EXPECT_GT(ColorScale(scene_with(0.1, 2.0, 0.3, infinity)).full_strain(), 0);
+}
+
+TEST(Color, OfANodeIsTheMeanOfItsSegments) {
+  SceneDesc scene = scene_with(0.1, 2.0, 0.3, infinity);
+  const double full = ColorScale(scene).full_tension();
+  const Cable cable = two_segments(0.2 * full, 0.6 * full);
+  const auto by_tension = ColorScale(scene).node_colors(cable);
+  ASSERT_EQ(by_tension.size(), 3u);
+  EXPECT_TRUE(same(by_tension[0], color_of_load(0.2)));
+  EXPECT_TRUE(same(by_tension[1], color_of_load(0.4)));
+  EXPECT_TRUE(same(by_tension[2], color_of_load(0.6)));
+}
+
+TEST(Color, ByStrainAndByCable) {
+  SceneDesc scene = scene_with(0.1, 2.0, 0.3, 1000.0);
+  const Cable cable = two_segments(0, 0);  // strained by 0 and 10 %
+  scene.color_by = ColorBy::strain;
+  const ColorScale by_strain(scene);
+  EXPECT_TRUE(same(by_strain.node_colors(cable)[0], color_of_load(0)));
+  EXPECT_TRUE(same(by_strain.node_colors(cable)[2], color_of_load(1)));
+  scene.color_by = ColorBy::cable;
+  for (const std_msgs::ColorRGBA& color : ColorScale(scene).node_colors(cable)) {
+    EXPECT_FLOAT_EQ(color.r, 0.1f);
+    EXPECT_FLOAT_EQ(color.g, 0.2f);
+    EXPECT_FLOAT_EQ(color.b, 0.3f);
+    EXPECT_FLOAT_EQ(color.a, 0.4f);
+  }
+}
+
+TEST(Finite, EveryArrayCounts) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(is_finite(two_segments(1, 2)));
+  Cable cable = two_segments(1, 2);
+  cable.state.positions[1].y() = nan;
+  EXPECT_FALSE(is_finite(cable));
+  cable = two_segments(1, 2);
+  cable.state.velocities[2].z() = infinity;
+  EXPECT_FALSE(is_finite(cable));
+  EXPECT_FALSE(is_finite(two_segments(1, nan)));
+}
+
+TEST(Wrench, IsInTheAxesOfTheFrameAndAboutItsOrigin) {
+  // The frame stands turned by 90 degrees about z, so that its x is the fixed y; the cable pulls with 3 N downwards, 0.2 m along
+  // the frame's x, and twists the holder about the fixed x, which is the frame's -y, with 0.5 N m.
+  Attachment attachment;
+  attachment.pose.position = Vector3(0.2, 0, 0);
+  attachment.force = Vector3(0, 0, -3);
+  attachment.torque = Vector3(0.5, 0, 0);
+  const Pose frame{Vector3(5, 6, 7), Quaternion(Eigen::AngleAxisd(M_PI_2, Vector3::UnitZ()))};
+  const geometry_msgs::Wrench wrench = wrench_on_frame(attachment, frame);
+  EXPECT_NEAR(wrench.force.x, 0, rounding);
+  EXPECT_NEAR(wrench.force.y, 0, rounding);
+  EXPECT_NEAR(wrench.force.z, -3, rounding);
+  EXPECT_NEAR(wrench.torque.x, 0, rounding);
+  EXPECT_NEAR(wrench.torque.y, 0.2 * 3 - 0.5, rounding);
+  EXPECT_NEAR(wrench.torque.z, 0, rounding);
+}
+
+}  // namespace
+}  // namespace verlet_cable
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}
