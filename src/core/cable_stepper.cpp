@@ -16,6 +16,9 @@ constexpr double position_tolerance = 1e-9;
 constexpr double slow_convergence = 0.1;
 /// Relative, for spans that are pulled straight.
 constexpr double pivot_regularisation = 1e-9;
+/// Between two holders a rigid chain that is pulled straight has no unique tension. So much compliance, relative to that of the
+/// nodes' inertia over a substep, gives it one; it strains the cable by less than 1e-6 under a thousand times its weight.
+constexpr double taut_compliance = 1e-6;
 /// A holder's change of velocity that moves a node by less in a substep, in segment lengths, goes unnoticed.
 constexpr double noticed_jerk = 1e-9;
 
@@ -51,7 +54,7 @@ SubstepResult CableStepper::advance(const CableModel& model, const Environment& 
   load(model, state);
   hold(held);
   result.overstretched_node = reachable_lengths(model, held, target_length_);
-  set_loads(model, environment, h);
+  set_loads(model, environment, h, held);
   predict(h);
   result.converged = solve(model, h, result);
   if (!result.converged) return result;
@@ -63,17 +66,17 @@ SubstepResult CableStepper::advance(const CableModel& model, const Environment& 
 }
 
 void CableStepper::load(const CableModel& model, const CableState& state) {
+  const bool elastic = model.material.axial_stiffness < infinity;
   for (int i = 0; i <= segments_; ++i) {
     set(position_, i, state.positions[i]);
     set(velocity_, i, state.velocities[i]);
     set(acceleration_, i, state.accelerations[i]);
-    inverse_mass_[i] = 1 / model.masses[i];
     system_.movable[i] = 1;
   }
   for (int i = 0; i < segments_; ++i) {
     const Vector3 d = state.positions[i + 1] - state.positions[i];
     set(segment_, i, d);
-    length_[i] = d.norm();
+    length_[i] = elastic ? d.norm() : model.rest_lengths[i];
     target_length_[i] = model.rest_lengths[i];
     tension_density_[i] = state.tension[i] / length_[i];
   }
@@ -82,14 +85,14 @@ void CableStepper::load(const CableModel& model, const CableState& state) {
 /// Sets what is known of the held nodes.
 void CableStepper::hold(const std::vector<HeldNode>& held) {
   for (const HeldNode& holder : held) {
-    inverse_mass_[holder.node] = 0;
     system_.movable[holder.node] = 0;
     set(displacement_, holder.node, holder.position - get(position_, holder.node));
   }
 }
 
 /// The parts of the equations of motion that no iteration changes.
-void CableStepper::set_loads(const CableModel& model, const Environment& environment, double h) {
+void CableStepper::set_loads(const CableModel& model, const Environment& environment, double h,
+                             const std::vector<HeldNode>& held) {
   for (int i = 0; i <= segments_; ++i) {
     const double mass = model.masses[i], inertia = 2 * mass / h;
     inertia_[i] = inertia / h + model.material.drag / h * 0.5 * (i > 0 ? model.rest_lengths[i - 1] : 0) +
@@ -99,6 +102,9 @@ void CableStepper::set_loads(const CableModel& model, const Environment& environ
     base_load_.z[i] = mass * environment.gravity.z() + inertia * velocity_.z[i];
   }
   std::fill_n(system_.compliance.begin(), segments_, 0.0);
+  if (held.size() > 1)
+    for (int i = held.front().node; i < held.back().node; ++i)
+      system_.compliance[i] = taut_compliance * target_length_[i] * target_length_[i] / inertia_[i];
   both_held_.clear();
   for (int i = 0; i < segments_; ++i)
     if (system_.movable[i] == 0 && system_.movable[i + 1] == 0) both_held_.push_back(i);
@@ -182,7 +188,8 @@ void CableStepper::evaluate_nodes(const std::vector<double>& displacement, const
 
 void CableStepper::evaluate_rigid_lengths() {
 #pragma GCC ivdep
-  for (int i = 0; i < segments_; ++i) system_.gap[i] = 0.5 * (target_length_[i] * target_length_[i] - end_square_[i]);
+  for (int i = 0; i < segments_; ++i)
+    system_.gap[i] = 0.5 * (target_length_[i] * target_length_[i] - end_square_[i]) + system_.compliance[i] * tension_density_[i];
 }
 
 void CableStepper::evaluate_elastic_lengths(const CableModel& model, double h) {
@@ -255,6 +262,7 @@ bool CableStepper::holders_accelerate(double h, const std::vector<HeldNode>& hel
 void CableStepper::project(const CableModel& model) {
   if (model.material.axial_stiffness < infinity) return;
   const std::size_t n = segments_;
+  for (std::size_t i = 0; i <= n; ++i) inverse_mass_[i] = system_.movable[i] / model.masses[i];
   for (std::size_t i = 0; i < n; ++i) {
     const double mobility = inverse_mass_[i] + inverse_mass_[i + 1];
     const Vector3 d = get(segment_, i);
@@ -286,18 +294,22 @@ void CableStepper::react(const CableModel& model, const Environment& environment
 
 /// The largest strain.
 double CableStepper::store(const CableModel& model, double h, CableState& state) const {
-  double strain = 0;
+  const double inverse_h = 1 / h;
   for (int i = 0; i <= segments_; ++i) {
     state.positions[i] = get(position_, i);
     state.velocities[i] = get(end_velocity_, i);
-    state.accelerations[i] = (state.velocities[i] - get(velocity_, i)) / h;
+    state.accelerations[i] = (state.velocities[i] - get(velocity_, i)) * inverse_h;
   }
+  const bool elastic = model.material.axial_stiffness < infinity;
+  double longest = 1, shortest = 1;  // squares, relative
   for (int i = 0; i < segments_; ++i) {
-    const double length = get(segment_, i).norm();
-    state.tension[i] = tension_density_[i] * 0.5 * (length_[i] + length);
-    strain = std::max(strain, std::abs(length / model.rest_lengths[i] - 1));
+    const double square = get(segment_, i).squaredNorm();
+    const double relative = square / (model.rest_lengths[i] * model.rest_lengths[i]);
+    longest = std::max(longest, relative);
+    shortest = std::min(shortest, relative);
+    state.tension[i] = tension_density_[i] * (elastic ? 0.5 * (length_[i] + std::sqrt(square)) : target_length_[i]);
   }
-  return strain;
+  return std::max(std::sqrt(longest) - 1, 1 - std::sqrt(shortest));
 }
 
 }  // namespace verlet_cable

@@ -38,7 +38,7 @@ class CableStepper {
   void load(const CableModel& model, const CableState& state);
   void hold(const std::vector<HeldNode>& held);
   void predict(double h);
-  void set_loads(const CableModel& model, const Environment& environment, double h);
+  void set_loads(const CableModel& model, const Environment& environment, double h, const std::vector<HeldNode>& held);
   bool solve(const CableModel& model, double h, SubstepResult& result);
   void evaluate(const CableModel& model, double h);
   void evaluate_segments(const std::vector<double>& displacement, const std::vector<double>& segment, std::vector<double>& middle,

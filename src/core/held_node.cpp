@@ -4,8 +4,6 @@ namespace verlet_cable {
 
 namespace {
 
-/// A perfectly straight chain between two holders has no unique tension; this sag has.
-constexpr double taut_slack = 1e-6;
 /// Further apart than this is worth a report [relative].
 constexpr double reported_stretch = 1e-9;
 
@@ -21,7 +19,7 @@ int reachable_lengths(const CableModel& model, const std::vector<HeldNode>& held
     for (int i = first; i < last; ++i) rest_length += model.rest_lengths[i];
     const double distance = (held[k + 1].position - held[k].position).norm();
     if (distance > rest_length * (1 + reported_stretch) && overstretched < 0) overstretched = first;
-    const double stretch = distance / (rest_length * (1 - taut_slack));
+    const double stretch = distance / rest_length;
     if (stretch <= 1) continue;
     for (int i = first; i < last; ++i) lengths[i] *= stretch;
   }

@@ -14,10 +14,9 @@ struct HeldNode {
   Vector3 force = Vector3::Zero();     ///< [N] out: what the cable exerts on the holder, mean over the substep
 };
 
-/// The lengths [m] that the segments can keep: their rest lengths, but longer between held points of an inextensible cable that
-/// are as far apart as the cable between them is long, or further. There so much slack is left that the tension has a unique
-/// value. Returns the first node of a span that is too short for its holders, -1 if there is none. `held` ascends by node;
-/// `lengths`: one a segment.
+/// The lengths [m] that the segments can keep: their rest lengths, but longer between holders of an inextensible cable that are
+/// further apart than the cable between them is long. Returns the first node of such a span, -1 if there is none. `held` ascends
+/// by node; `lengths`: one a segment.
 int reachable_lengths(const CableModel& model, const std::vector<HeldNode>& held, std::vector<double>& lengths);
 
 }  // namespace verlet_cable

@@ -65,12 +65,12 @@ void set_initial_state(const InitialShapeDesc& initial, const CableModel& model,
   switch (initial.type) {
     case Type::straight:
       state.positions = straight_line(initial.from, (initial.to - initial.from).normalized(), model);
-      carry_along(model, held, state);
+      carry_along(model, held, gravity, state);
       break;
     case Type::points:
       state.positions = spread(initial.points, initial.points, model);
       if (!initial.velocities.empty()) state.velocities = spread(initial.points, initial.velocities, model);
-      carry_along(model, held, state);
+      carry_along(model, held, gravity, state);
       break;
     case Type::automatic:
     case Type::catenary:
@@ -82,7 +82,7 @@ void set_initial_state(const InitialShapeDesc& initial, const CableModel& model,
   project_velocities(model, held, state.positions, state.velocities);
 }
 
-void carry_along(const CableModel& model, const std::vector<HeldNode>& held, CableState& state) {
+void carry_along(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {
   if (!held.empty()) {
     const std::vector<double> arc_length = model.arc_length();
     std::vector<Vector3> jumps;
@@ -100,6 +100,9 @@ void carry_along(const CableModel& model, const std::vector<HeldNode>& held, Cab
       state.positions[i] += jumps[k] + fraction * (jumps[k + 1] - jumps[k]);
     }
   }
+  if (project_positions(model, held, state.positions)) return;
+  // Holders that come close along a straight cable do not tell where its slack goes.
+  state.positions = hanging(model, held, gravity);
   project_positions(model, held, state.positions);
 }
 

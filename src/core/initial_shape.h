@@ -13,7 +13,7 @@ void set_initial_state(const InitialShapeDesc& initial, const CableModel& model,
                        const Vector3& gravity, CableState& state);
 
 /// Carries a cable along with holders that have jumped: each node by the jump of its neighbouring holders, in proportion to the
-/// arc length between them.
-void carry_along(const CableModel& model, const std::vector<HeldNode>& held, CableState& state);
+/// arc length between them. Where that leaves no shape of the right lengths nearby, the cable hangs from them anew.
+void carry_along(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state);
 
 }  // namespace verlet_cable

@@ -11,6 +11,7 @@ namespace {
 
 constexpr int maximum_iterations = 100;
 constexpr double length_tolerance = 1e-12;  // relative
+constexpr double straight = 1 - 1e-7;       // of a span's length
 constexpr double regularisation = 1e-12;    // relative, for spans pulled straight
 
 /// J M^-1 J^T for the segments' lengths, and its solution for given changes of ½ s².
@@ -50,11 +51,28 @@ class LengthSystem {
   std::vector<double> mobility_, diagonal_, off_, impulse_;
 };
 
+/// Spans that their holders pull straight have only one shape.
+void straighten_taut_spans(const CableModel& model, const std::vector<HeldNode>& held, std::vector<Vector3>& positions) {
+  for (std::size_t k = 0; k + 1 < held.size(); ++k) {
+    const int first = held[k].node, last = held[k + 1].node;
+    const Vector3 span = held[k + 1].position - held[k].position;
+    double rest_length = 0;
+    for (int i = first; i < last; ++i) rest_length += model.rest_lengths[i];
+    if (span.norm() < straight * rest_length) continue;
+    double along = 0;
+    for (int i = first; i + 1 < last; ++i) {
+      along += model.rest_lengths[i];
+      positions[i + 1] = held[k].position + along / rest_length * span;
+    }
+  }
+}
+
 }  // namespace
 
 bool project_positions(const CableModel& model, const std::vector<HeldNode>& held, std::vector<Vector3>& positions) {
   for (const HeldNode& h : held) positions[h.node] = h.position;
   if (model.material.axial_stiffness < infinity) return true;
+  straighten_taut_spans(model, held, positions);
   const int n = model.segments();
   std::vector<double> lengths(n), changes(n);
   reachable_lengths(model, held, lengths);

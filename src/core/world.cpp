@@ -158,7 +158,7 @@ void World::Implementation::step_cable(int index, StepResult& result) {
       holder.velocity = holder.next_velocity = holder.mean_velocity = Vector3::Zero();
     }
     hold_at(1, s.holders, s.held);
-    carry_along(cable.model, s.held, cable.state);
+    carry_along(cable.model, s.held, scene.gravity.acceleration, cable.state);
     note_status(Status::jumped, index, s.held.front().node, result);
   }
 
