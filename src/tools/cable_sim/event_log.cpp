@@ -1,0 +1,102 @@
+#include "event_log.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "verlet_cable/core/number_text.h"
+
+namespace verlet_cable::cable_sim {
+namespace {
+
+/// [s] what does not come back for so long has ended; what comes and goes faster is one event.
+constexpr double quiet_time = 0.1;
+constexpr std::size_t most_events = 1000;
+constexpr std::size_t most_printed = 20;
+
+struct StatusText {
+  const char* type;
+  const char* message;
+};
+
+StatusText text_of(StepResult::Status status) {
+  switch (status) {
+    case StepResult::Status::overstretched:
+      return {"overstretched", "held points are further apart than the cable between them is long; it is lengthened"};
+    case StepResult::Status::jumped:
+      return {"jumped", "a holder was suddenly elsewhere; the cable was carried along with it"};
+    case StepResult::Status::degraded:
+      return {"degraded", "the solver did not converge; the cable's motion was taken away"};
+    case StepResult::Status::fault:
+      return {"fault", "no finite state was found"};
+    case StepResult::Status::ok:
+      break;
+  }
+  return {"ok", ""};
+}
+
+}  // namespace
+
+void EventLog::observe(const World& world, const StepResult& result, const std::vector<int>& held_back) {
+  if (result.status != StepResult::Status::ok) {
+    const StatusText text = text_of(result.status);
+    const std::string cable = result.cable >= 0 ? world.cables()[static_cast<std::size_t>(result.cable)].model.name : "";
+    report({world.time(), text.type, cable, result.node, "", text.message}, result.max_strain);
+  }
+  for (const int frame : held_back) {
+    const std::string& name = world.frames()[static_cast<std::size_t>(frame)];
+    report({world.time(), "frame_too_fast", "", -1, name,
+            "the frame moves faster than max_frame_speed and is followed at that speed"},
+           0);
+  }
+  end_episodes(world.time());
+}
+
+std::vector<Event> EventLog::events() const {
+  std::vector<Event> sorted = events_;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Event& a, const Event& b) { return a.time < b.time; });
+  if (dropped_ > 0) sorted.push_back({last_dropped_time_, "more", "", -1, "", std::to_string(dropped_) + " more events"});
+  return sorted;
+}
+
+void EventLog::report(const Event& event, double strain) {
+  const auto [found, is_new] = episodes_.emplace(event.type + " " + event.cable + " " + event.frame, Episode{event});
+  found->second.last_time = event.time;
+  found->second.largest_strain = std::max(found->second.largest_strain, strain);
+  if (is_new) add(event);
+}
+
+void EventLog::end_episodes(double time) {
+  for (auto it = episodes_.begin(); it != episodes_.end();) {
+    const Episode& episode = it->second;
+    if (time - episode.last_time < quiet_time) {
+      ++it;
+      continue;
+    }
+    Event end = episode.first;
+    end.time = episode.last_time;
+    end.type += "_end";
+    end.message = "ended, after " + number_text(episode.last_time - episode.first.time) + " s";
+    if (episode.first.frame.empty()) end.message += "; largest strain " + number_text(episode.largest_strain);
+    add(end);
+    it = episodes_.erase(it);
+  }
+}
+
+void EventLog::add(const Event& event) {
+  if (events_.size() >= most_events) {
+    ++dropped_;
+    last_dropped_time_ = event.time;
+    return;
+  }
+  events_.push_back(event);
+  if (events_.size() > most_printed) return;
+  progress_.clear();
+  const std::string where = event.cable.empty() ? event.frame
+                            : event.node < 0    ? event.cable
+                                                : event.cable + " node " + std::to_string(event.node);
+  std::fprintf(stderr, "cable_sim: at %s s: %s: %s: %s\n", number_text(event.time).c_str(), event.type.c_str(), where.c_str(),
+               event.message.c_str());
+  if (events_.size() == most_printed) std::fputs("cable_sim: further events are in the summary only\n", stderr);
+}
+
+}  // namespace verlet_cable::cable_sim

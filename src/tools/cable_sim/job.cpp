@@ -1,0 +1,112 @@
+#include "job.h"
+
+#include <cmath>
+#include <filesystem>
+
+#include "frame_source.h"
+#include "output_file.h"
+#include "verlet_cable/core/number_text.h"
+#include "verlet_cable/scene/scene_reader.h"
+#include "verlet_cable/scene/text.h"
+
+namespace verlet_cable::cable_sim {
+namespace {
+
+/// [steps] what rounding may do to the quotient of two times.
+constexpr double step_tolerance = 1e-6;
+/// As small as it is because two rows must not meet at one step, however long the run is.
+constexpr double rate_tolerance = 1e-12;
+constexpr double most_steps = 1e12;
+
+void append(const std::string& prefix, const std::vector<std::string>& lines, std::vector<std::string>& errors) {
+  for (const std::string& line : lines) errors.push_back(prefix + ": " + line);
+}
+
+bool is_same_file(const std::string& a, const std::string& b) {
+  std::error_code error;
+  if (std::filesystem::exists(a, error) && !std::filesystem::is_regular_file(a, error)) return false;
+  if (std::filesystem::equivalent(a, b, error)) return true;
+  const auto path_a = std::filesystem::weakly_canonical(a, error);
+  return !error && path_a == std::filesystem::weakly_canonical(b, error) && !error;
+}
+
+void check_outputs(const Options& options, std::vector<std::string>& errors) {
+  struct Output {
+    const char* option;
+    const std::string& path;
+  };
+  struct Other {
+    const char* what;
+    const std::string& path;
+  };
+  const Other others[] = {{"the scene", options.scene}, {"the motion", options.motion}, {"the output", options.output}};
+  for (const Output& output : {Output{"--output", options.output}, Output{"--summary", options.summary}}) {
+    if (output.path.empty()) continue;
+    const std::string problem = why_not_writable(output.path);
+    if (!problem.empty())
+      errors.push_back(std::string(output.option) + ": cannot write " + quoted(output.path) + ": " + problem +
+                       "; allowed: a file in a directory that can be written");
+    for (const Other& other : others) {
+      if (&other.path == &output.path || other.path.empty() || !is_same_file(output.path, other.path)) continue;
+      errors.push_back(std::string(output.option) + ": " + quoted(output.path) + " is " + other.what + "; allowed: another file");
+    }
+  }
+}
+
+void check_times(const Options& options, double time_step, std::vector<std::string>& errors) {
+  if (options.duration / time_step > most_steps)
+    errors.push_back("--duration: " + number_text(options.duration) + "; allowed: at most " +
+                     number_text(most_steps * time_step) + ", which is " + number_text(most_steps) + " steps");
+  if (options.rate * time_step > 1 + rate_tolerance)
+    errors.push_back("--rate: " + number_text(options.rate) + "; allowed: at most 1 / time_step = " + number_text(1 / time_step));
+}
+
+void check_motion(const Options& options, const SceneDesc& scene, const Motion& motion, std::vector<std::string>& errors) {
+  if (motion.count(scene.frame_id))
+    errors.push_back(options.motion + ": frame " + quoted(scene.frame_id) + " moves; allowed: any but the fixed frame");
+  append(options.motion + " at t = 0", validate_distances(scene, FrameSource(scene, motion).at(0)), errors);
+}
+
+}  // namespace
+
+std::int64_t RowSchedule::step_of(std::int64_t row) const {
+  return static_cast<std::int64_t>(std::ceil(static_cast<double>(row) * steps_a_row_ - step_tolerance));
+}
+
+std::int64_t steps_for(double duration, double time_step) {
+  return static_cast<std::int64_t>(std::ceil(duration / time_step - step_tolerance));
+}
+
+Job prepare(const Options& options, std::vector<std::string>& errors) {
+  Job job;
+  const std::size_t errors_before = errors.size();
+  bool scene_is_sound = false;
+  bool motion_is_sound = true;
+  if (!options.scene.empty()) {
+    try {
+      job.scene = read_scene_file(options.scene);
+      scene_is_sound = true;
+    } catch (const SceneError& error) {
+      append(options.scene, error.errors(), errors);
+    }
+  }
+  if (!options.motion.empty()) {
+    try {
+      job.motion = read_motion_file(options.motion);
+    } catch (const SceneError& error) {
+      append(options.motion, error.errors(), errors);
+      motion_is_sound = false;
+    }
+  }
+  check_outputs(options, errors);
+  if (scene_is_sound) {
+    check_times(options, job.scene.time_step, errors);
+    if (motion_is_sound) check_motion(options, job.scene, job.motion, errors);
+  }
+  if (errors.size() > errors_before) return job;
+  job.steps = steps_for(options.duration, job.scene.time_step);
+  job.rows = 1 + static_cast<std::int64_t>(std::floor(options.duration * options.rate + step_tolerance));
+  return job;
+}
+
+}  // namespace verlet_cable::cable_sim

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace verlet_cable::cable_sim {
+
+/// The command line.
+struct Options {
+  std::string scene;     ///< path
+  double duration = 10;  ///< [s]
+  double rate = 100;     ///< [Hz] of rows
+  std::string motion;    ///< path, empty: none
+  std::string output;    ///< path, empty: none
+  std::string summary;   ///< path, empty: none
+  bool help = false;
+};
+
+/// What --help prints.
+extern const char* const usage;
+
+/// Reads the arguments after the program's name; `--option value` and `--option=value`. Adds a line to `errors` for each that is
+/// wrong. Arguments that roslaunch appends (`__name:=...`) are skipped.
+Options parse_options(const std::vector<std::string>& arguments, std::vector<std::string>& errors);
+
+}  // namespace verlet_cable::cable_sim

@@ -1,0 +1,55 @@
+#include "simulation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "verlet_cable/scene/frame_speed.h"
+
+namespace verlet_cable::cable_sim {
+namespace {
+
+constexpr double averaged_time = 0.1;  // [s]
+
+}  // namespace
+
+World initial_world(const Job& job, const FrameSource& frames) {
+  return World(job.scene, frames.at(0));
+}
+
+std::int64_t first_averaged_step(const Job& job) {
+  const auto averaged = std::max<std::int64_t>(1, std::llround(averaged_time / job.scene.time_step));
+  return job.steps - averaged + 1;
+}
+
+bool simulate(const Job& job, double rate, const FrameSource& frames, World& world, const Recorders& recorders) {
+  using Clock = std::chrono::steady_clock;
+  const double time_step = job.scene.time_step;
+  const RowSchedule schedule(rate, time_step);
+  std::int64_t row = 0;
+  const auto write_due_rows = [&] {
+    if (row == job.rows || world.steps() < schedule.step_of(row)) return;
+    ++row;
+    if (recorders.csv) recorders.csv->write_nodes(world);
+  };
+
+  BoundaryInputs inputs = frames.at(0);
+  write_due_rows();
+  while (world.steps() < job.steps) {
+    BoundaryInputs targets = frames.at(static_cast<double>(world.steps() + 1) * time_step);
+    const std::vector<int> held_back = limit_frame_motion(inputs, job.scene.max_frame_speed * time_step, targets);
+    inputs = std::move(targets);
+
+    const Clock::time_point start = Clock::now();
+    const StepResult result = world.step(inputs);
+    const Clock::time_point end = Clock::now();
+
+    recorders.summary.add_step(world, result, end - start);
+    recorders.events.observe(world, result, held_back);
+    if (result.status == StepResult::Status::fault) return false;
+    write_due_rows();
+    recorders.progress.show(world.time(), end);
+  }
+  return true;
+}
+
+}  // namespace verlet_cable::cable_sim

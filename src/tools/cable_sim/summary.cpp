@@ -1,0 +1,108 @@
+#include "summary.h"
+
+#include <algorithm>
+#include <cinttypes>
+#include <cstdio>
+
+#include "json_writer.h"
+
+namespace verlet_cable::cable_sim {
+namespace {
+
+constexpr double nanoseconds = 1e9;
+
+std::string hash_text(std::uint64_t hash) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016" PRIx64, hash);
+  return text;
+}
+
+void write_event(JsonWriter& json, const Event& event) {
+  json.begin_object();
+  json.entry("time", event.time);
+  json.entry("type", event.type);
+  if (!event.cable.empty()) json.entry("cable", event.cable);
+  if (event.node >= 0) json.entry("node", std::int64_t{event.node});
+  if (!event.frame.empty()) json.entry("frame", event.frame);
+  json.entry("message", event.message);
+  json.end_object();
+}
+
+void write_energy(JsonWriter& json, const Energy& energy, double initial_total) {
+  json.begin_object();
+  json.entry("kinetic", energy.kinetic);
+  json.entry("gravity", energy.gravity);
+  json.entry("stretch", energy.stretch);
+  json.entry("bend", energy.bend);
+  json.entry("twist", energy.twist);
+  json.entry("total", energy.total());
+  json.entry("initial_total", initial_total);
+  json.end_object();
+}
+
+}  // namespace
+
+Summary::Summary(const World& world, std::int64_t first_averaged_step)
+    : first_averaged_step_(first_averaged_step), initial_energy_(world.energy().total()) {
+  for (const Cable& cable : world.cables()) segments_ += cable.model.segments();
+}
+
+void Summary::add_step(const World& world, const StepResult& result, std::chrono::steady_clock::duration wall_time) {
+  wall_time_ += wall_time;
+  substeps_ += result.substeps;
+  max_strain_ = std::max(max_strain_, result.max_strain);
+  if (world.steps() < first_averaged_step_) return;
+  for (const Attachment& attachment : world.attachments()) {
+    Wrench& sum = sums_[attachment.name];
+    sum.force += attachment.force;
+    sum.torque += attachment.torque;
+    ++sum.steps;
+  }
+}
+
+std::string Summary::json(const World& world, const std::vector<Event>& events) const {
+  JsonWriter json;
+  json.begin_object();
+  json.entry("sim_time", world.time());
+  json.entry("wall_time", wall_seconds());
+  json.entry("real_time_factor", world.time() / wall_seconds());
+  json.entry("steps", world.steps());
+  json.entry("substeps", substeps_);
+  json.entry("segments", segments_);
+  json.entry("ns_per_segment_substep", nanoseconds * wall_seconds() / static_cast<double>(segments_ * substeps_));
+  json.entry("max_strain", max_strain_);
+  json.key("energy");
+  write_energy(json, world.energy(), initial_energy_);
+  json.key("attachments");
+  json.begin_object();
+  for (const Attachment& attachment : world.attachments()) {
+    const auto found = sums_.find(attachment.name);
+    // A run that stopped before the time of averages has only the last step.
+    const Wrench sum = found != sums_.end() ? found->second : Wrench{attachment.force, attachment.torque, 1};
+    json.key(attachment.name);
+    json.begin_object();
+    json.entry("force", Vector3(sum.force / static_cast<double>(sum.steps)));
+    json.entry("torque", Vector3(sum.torque / static_cast<double>(sum.steps)));
+    json.entry("force_now", attachment.force);
+    json.entry("torque_now", attachment.torque);
+    json.end_object();
+  }
+  json.end_object();
+  json.entry("state_hash", hash_text(world.hash()));
+  json.key("events");
+  json.begin_array();
+  for (const Event& event : events) write_event(json, event);
+  json.end_array();
+  json.end_object();
+  return json.text() + "\n";
+}
+
+std::string Summary::line(const World& world) const {
+  char text[200];
+  std::snprintf(text, sizeof text, "%g s of %" PRId64 " segments in %.3g s (%.3g times real time), largest strain %.2g, state %s",
+                world.time(), segments_, wall_seconds(), wall_seconds() > 0 ? world.time() / wall_seconds() : 0.0, max_strain_,
+                hash_text(world.hash()).c_str());
+  return text;
+}
+
+}  // namespace verlet_cable::cable_sim

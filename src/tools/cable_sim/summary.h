@@ -1,0 +1,45 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "event_log.h"
+#include "verlet_cable/core/world.h"
+
+namespace verlet_cable::cable_sim {
+
+/// What is gathered over a run.
+class Summary {
+ public:
+  /// The forces of attachments are averaged from `first_averaged_step` on.
+  Summary(const World& world, std::int64_t first_averaged_step);
+
+  void add_step(const World& world, const StepResult& result, std::chrono::steady_clock::duration wall_time);
+
+  /// The contract's summary as JSON.
+  std::string json(const World& world, const std::vector<Event>& events) const;
+  /// One line for people.
+  std::string line(const World& world) const;
+
+ private:
+  struct Wrench {
+    Vector3 force = Vector3::Zero();   ///< [N]
+    Vector3 torque = Vector3::Zero();  ///< [N m]
+    std::int64_t steps = 0;
+  };
+
+  double wall_seconds() const { return std::chrono::duration<double>(wall_time_).count(); }
+
+  std::int64_t first_averaged_step_;
+  std::int64_t segments_ = 0;
+  double initial_energy_;  ///< [J]
+  std::chrono::steady_clock::duration wall_time_{0};
+  std::int64_t substeps_ = 0;
+  double max_strain_ = 0;
+  std::map<std::string, Wrench> sums_;  ///< by attachment
+};
+
+}  // namespace verlet_cable::cable_sim
