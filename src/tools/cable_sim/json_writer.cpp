@@ -5,6 +5,13 @@
 #include "verlet_cable/core/number_text.h"
 
 namespace verlet_cable::cable_sim {
+namespace {
+
+std::string number_or_null(double number) {
+  return std::isfinite(number) ? number_text(number) : "null";
+}
+
+}  // namespace
 
 void JsonWriter::key(const std::string& name) {
   separate();
@@ -15,7 +22,7 @@ void JsonWriter::key(const std::string& name) {
 
 void JsonWriter::value(double number) {
   separate();
-  text_ += std::isfinite(number) ? number_text(number) : "null";
+  text_ += number_or_null(number);
 }
 
 void JsonWriter::value(std::int64_t number) {
@@ -29,9 +36,8 @@ void JsonWriter::value(const std::string& text) {
 }
 
 void JsonWriter::value(const Vector3& vector) {
-  begin_array();
-  for (const double number : vector) value(number);
-  end_array();
+  separate();
+  text_ += '[' + number_or_null(vector.x()) + ", " + number_or_null(vector.y()) + ", " + number_or_null(vector.z()) + ']';
 }
 
 void JsonWriter::begin(char bracket) {
