@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "tridiagonal.h"
 
@@ -16,9 +17,11 @@ constexpr double position_tolerance = 1e-9;
 constexpr double slow_convergence = 0.1;
 /// Relative, for spans that are pulled straight.
 constexpr double pivot_regularisation = 1e-9;
-/// Between two holders a rigid chain that is pulled straight has no unique tension. So much compliance, relative to that of the
-/// nodes' inertia over a substep, gives it one; it strains the cable by less than 1e-6 under a thousand times its weight.
-constexpr double taut_compliance = 1e-6;
+/// Between two holders a rigid chain that is pulled straight has no unique tension, and one that is pushed together has no
+/// motion. So much axial stiffness, relative to the cable's weight, gives it both: its own weight strains it by a part in ten
+/// million.
+constexpr double taut_stiffness = 1e7;
+constexpr double standard_gravity = 9.81;
 /// A holder's change of velocity that moves a node by less in a substep, in segment lengths, goes unnoticed.
 constexpr double noticed_jerk = 1e-9;
 
@@ -102,9 +105,12 @@ void CableStepper::set_loads(const CableModel& model, const Environment& environ
     base_load_.z[i] = mass * environment.gravity.z() + inertia * velocity_.z[i];
   }
   std::fill_n(system_.compliance.begin(), segments_, 0.0);
-  if (held.size() > 1)
+  if (held.size() > 1) {
+    const double acceleration = std::max(environment.gravity.norm(), standard_gravity);
+    const double stiffness = taut_stiffness * acceleration * std::accumulate(model.masses.begin(), model.masses.end(), 0.0);
     for (int i = held.front().node; i < held.back().node; ++i)
-      system_.compliance[i] = taut_compliance * target_length_[i] * target_length_[i] / inertia_[i];
+      system_.compliance[i] = target_length_[i] * target_length_[i] * target_length_[i] / stiffness;
+  }
   both_held_.clear();
   for (int i = 0; i < segments_; ++i)
     if (system_.movable[i] == 0 && system_.movable[i + 1] == 0) both_held_.push_back(i);
@@ -241,7 +247,10 @@ void CableStepper::finish(double h, const std::vector<HeldNode>& held) {
     position_.y[i] += displacement_.y[i];
     position_.z[i] += displacement_.z[i];
   }
-  for (const HeldNode& h : held) set(end_velocity_, h.node, h.velocity);
+  for (const HeldNode& holder : held) {
+    set(position_, holder.node, holder.position);
+    set(end_velocity_, holder.node, holder.velocity);
+  }
   for (int i = 0; i < segments_; ++i) {
     segment_.x[i] = position_.x[i + 1] - position_.x[i];
     segment_.y[i] = position_.y[i + 1] - position_.y[i];
