@@ -12,8 +12,8 @@ namespace {
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-constexpr double steel_density = 7850;  // [kg/m^3]
-constexpr double pin_size = 2.2;        // of a pin to the cable it holds, radius to radius
+constexpr double aluminium_density = 2700;  // [kg/m^3]
+constexpr double pin_size = 2.2;            // of a pin to the cable it holds, radius to radius
 constexpr int cable_id = 0;
 
 std_msgs::ColorRGBA grey(float level) {
@@ -96,10 +96,10 @@ void MarkerPublisher::add_payloads(const Cable& cable, MarkerArray& markers) {
     if (mass <= 0) continue;
     Marker marker = make_marker("payloads", id_of(cable.model.name + "/" + std::to_string(node)), Marker::SPHERE);
     marker.pose.position = to_point(cable.state.positions[node]);
-    const double ball = 2 * std::cbrt(3 * mass / (4 * M_PI * steel_density));
+    const double ball = 2 * std::cbrt(3 * mass / (4 * M_PI * aluminium_density));
     const double diameter = std::max(ball, 2 * pin_size * cable.model.material.radius);
     set_scale(marker, diameter, diameter, diameter);
-    marker.color = grey(0.45f);
+    marker.color = grey(0.55f);
     markers.markers.push_back(std::move(marker));
   }
 }

@@ -17,7 +17,7 @@ namespace verlet_cable {
 ///  * namespace = name of a cable, id 0: the cable, a tube or a line;
 ///  * namespace "pins", ids from 1: what holds the cables: hinges are spheres, clamps are boxes, long along the cable;
 ///  cable's +x;
-///  * namespace "payloads", ids from 1: point masses, as balls of that mass in steel.
+///  * namespace "payloads", ids from 1: point masses, as balls of aluminium would be.
 class MarkerPublisher {
  public:
   MarkerPublisher(ros::NodeHandle& private_node, const SceneDesc& scene);

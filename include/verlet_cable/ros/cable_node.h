@@ -1,0 +1,30 @@
+#pragma once
+
+#include <ros/ros.h>
+
+#include "verlet_cable/core/scene_desc.h"
+#include "verlet_cable/ros/cable_services.h"
+#include "verlet_cable/ros/diagnostics.h"
+#include "verlet_cable/ros/simulation.h"
+
+namespace verlet_cable {
+
+/// Everything the node is: the scene of its private parameters, simulated, published and served. All callbacks come from the
+/// queue of the node handle, which must be served by one thread.
+class CableNode {
+ public:
+  /// Throws SceneError.
+  explicit CableNode(ros::NodeHandle private_node);
+
+ private:
+  ros::NodeHandle node_;
+  Simulation simulation_;
+  CableServices services_;
+  Diagnostics diagnostics_;
+  ros::WallTimer timer_;
+};
+
+/// Logs every error of a scene as fatal.
+void log_errors(const SceneError& error);
+
+}  // namespace verlet_cable

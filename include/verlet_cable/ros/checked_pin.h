@@ -1,0 +1,25 @@
+#pragma once
+
+#include <verlet_cable/Pin.h>
+
+#include <string>
+#include <vector>
+
+#include "verlet_cable/core/world.h"
+#include "verlet_cable/ros/location.h"
+
+namespace verlet_cable {
+
+/// A request to pin in terms of the world, or everything that is wrong with it.
+struct CheckedPin {
+  int cable = 0;
+  int node = 0;
+  std::string frame;
+  Pose frame_pose;  ///< in the fixed frame
+  Pose offset;      ///< of the attachment, in the frame
+  std::vector<std::string> errors;
+};
+
+CheckedPin check_pin(const Pin::Request& request, const World& world, const FindFrame& find_frame);
+
+}  // namespace verlet_cable

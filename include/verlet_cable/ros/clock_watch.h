@@ -1,0 +1,26 @@
+#pragma once
+
+#include <ros/time.h>
+
+#include "verlet_cable/ros/time_grid.h"
+
+namespace verlet_cable {
+
+/// ROS time as seen at each update: whether it runs, stands or went back.
+class ClockWatch {
+ public:
+  enum class Motion { none, forward, back };  ///< none: no time yet, too
+  /// Reads the clock.
+  Motion update();
+
+  Nanoseconds now() const {
+    return static_cast<Nanoseconds>(now_.toNSec());
+  }                     ///< at the last update; 0 before there was any time
+  bool stands() const;  ///< has not moved for a second of wall time
+
+ private:
+  ros::Time now_;
+  ros::WallTime last_motion_;
+};
+
+}  // namespace verlet_cable

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <ros/ros.h>
+#include <verlet_cable/CableEvent.h>
+
+#include <string>
+
+#include "verlet_cable/core/world.h"
+#include "verlet_cable/ros/time_grid.h"
+
+namespace verlet_cable {
+
+/// What an event is about; what does not apply stays empty.
+struct EventSubject {
+  std::string cable;
+  std::string attachment;
+  int node = 0;
+  std::string other;  ///< the new cable; the frame of FRAME_LOST and FRAME_BACK
+};
+
+EventSubject subject_of(const World& world, const Attachment& attachment);
+
+/// The topic `events`. Each event is logged, too.
+class EventPublisher {
+ public:
+  EventPublisher(ros::NodeHandle& private_node, std::string frame_id);
+
+  /// `type`: a constant of CableEvent; `stamp`: the simulated time.
+  void publish(std::uint8_t type, Nanoseconds stamp, const EventSubject& subject, const std::string& message) const;
+
+ private:
+  ros::Publisher publisher_;
+  std::string frame_id_;
+};
+
+}  // namespace verlet_cable

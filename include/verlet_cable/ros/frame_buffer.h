@@ -1,0 +1,48 @@
+#pragma once
+
+#include <tf2/buffer_core.h>
+
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "verlet_cable/core/types.h"
+#include "verlet_cable/ros/tf_listener.h"
+#include "verlet_cable/ros/time_grid.h"
+
+namespace verlet_cable {
+
+/// Why a transform cannot be used; empty if it can. Refused are values that are not finite, quaternions that are not of length
+/// one, missing or equal frame names, and a transform over time without a stamp.
+std::string transform_problem(const ReceivedTransform& received);
+
+/// The tree of frames over the last 60 s, seen from the fixed frame. The one place that talks to tf2 and catches what it throws.
+class FrameBuffer {
+ public:
+  explicit FrameBuffer(std::string fixed_frame);
+
+  /// Whether the transform is in the tree now. What is wrong with it is logged at the first of a series and counted.
+  bool insert(const ReceivedTransform& received);
+  /// Forgets everything but static transforms.
+  void clear();
+
+  /// Of a frame in the fixed frame at a time; none where the tree does not know it.
+  std::optional<Pose> pose(const std::string& frame, Nanoseconds time) const;
+  /// The newest time at which the frame is known; 0 for one that does not depend on time; none where it is not connected.
+  std::optional<Nanoseconds> newest(const std::string& frame) const;
+
+  const std::map<std::string, std::string>& refused() const {
+    return refused_;
+  }                                                     ///< by child frame, whose last transform was bad
+  int refused_count() const { return refused_count_; }  ///< since the start
+
+ private:
+  std::string fixed_frame_;
+  tf2::BufferCore buffer_;
+  std::map<std::string, ros::Time> newest_;  ///< by child frame, dynamic transforms
+  std::map<std::string, std::string> refused_;
+  int refused_count_ = 0;
+};
+
+}  // namespace verlet_cable

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <set>
+#include <vector>
+
+#include "verlet_cable/core/world.h"
+#include "verlet_cable/ros/event_publisher.h"
+#include "verlet_cable/ros/tf_inputs.h"
+
+namespace verlet_cable {
+
+/// What happens when frames are lost and come back: events, log, and the scene's `on_lost_frame`.
+class FrameWatch {
+ public:
+  FrameWatch(const SceneDesc& scene, const EventPublisher& events);
+
+  /// Acts on what a sample of the frames found; `stamp` is the simulated time. Releases attachments if the scene wants that. True
+  /// if the simulation has to wait for a frame.
+  bool react(const std::vector<FrameChange>& changes, Nanoseconds stamp, World& world);
+  /// Logs which attachments wait at their initial poses, and which cables for what.
+  void report_unseen(const BoundaryInputs& inputs, const std::vector<FrameReport>& frames, const World& world) const;
+  /// Forgets which frames were lost, from an id on.
+  void forget_from(int frame) { lost_.erase(lost_.lower_bound(frame), lost_.end()); }
+
+ private:
+  void report_lost(int frame, Nanoseconds stamp, const World& world);
+  void report_back(int frame, Nanoseconds stamp, const World& world);
+  void release(int frame, Nanoseconds stamp, World& world) const;
+
+  LostFramePolicy policy_;
+  double max_frame_speed_;  ///< [m/s]
+  double timeout_;          ///< [s]
+  const EventPublisher& events_;
+  std::set<int> lost_;  ///< ids of the frames whose loss was reported
+};
+
+/// By frame id: whether the frame holds a cable.
+std::vector<bool> needed_frames(const World& world);
+
+}  // namespace verlet_cable

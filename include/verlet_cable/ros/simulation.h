@@ -1,0 +1,98 @@
+#pragma once
+
+#include <ros/ros.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "verlet_cable/core/world.h"
+#include "verlet_cable/ros/clock_watch.h"
+#include "verlet_cable/ros/event_publisher.h"
+#include "verlet_cable/ros/frame_watch.h"
+#include "verlet_cable/ros/pacer.h"
+#include "verlet_cable/ros/publishers.h"
+#include "verlet_cable/ros/statistics.h"
+#include "verlet_cable/ros/tf_inputs.h"
+#include "verlet_cable/ros/time_grid.h"
+
+namespace verlet_cable {
+
+/// A world that runs `tf_latency` behind ROS time, follows tf, and is published. For one thread: requests are called between
+/// updates.
+class Simulation {
+ public:
+  /// Throws SceneError.
+  Simulation(ros::NodeHandle& private_node, const SceneDesc& scene);
+
+  /// Does the steps that are due now, for no longer than about `longest` of wall time; to be called more often than ticks are
+  /// published.
+  void update(ros::WallDuration longest);
+
+  // Requests. One that is refused changes nothing.
+  /// Back to the scene's initial state, with the frames where they are now.
+  EditResult reset();
+  EditResult set_paused(bool paused);
+  /// Does steps while paused, and publishes the last.
+  EditResult step(std::int64_t steps);
+  /// Holds a node of a cable at `offset` in a frame, which is at `frame_pose` if the world does not know it yet.
+  EditResult pin(const std::string& name, int cable, int node, const std::string& frame, const Pose& frame_pose,
+                 const Pose& offset, AttachmentType type);
+  EditResult unpin(const std::string& name);
+  EditResult cut(int cable, int segment);
+
+  const SceneDesc& scene() const { return scene_; }
+  const World& world() const { return world_; }
+  const TfInputs& frames() const { return frames_; }
+  /// Where a frame is at the simulated time; none if neither the world nor tf knows it.
+  std::optional<Pose> find_frame(const std::string& frame) const;
+  Nanoseconds now() const { return clock_.now(); }  ///< ROS time at the last update
+  Nanoseconds stamp() const { return stamp_; }      ///< the simulated time, as ROS time
+  Nanoseconds dropped() const { return pacer_.dropped(); }
+  int faults() const { return faults_; }
+  bool started() const { return started_; }
+  bool paused() const { return paused_; }
+  bool faulted() const { return faulted_; }
+  bool waits_for_frames() const { return waits_for_frames_; }
+  /// Since the last call.
+  Statistics take_statistics();
+
+ private:
+  Nanoseconds target() const;  ///< the time at which the simulation should be
+  void jump_back();
+  void start_if_possible();
+  void start(Nanoseconds time);
+  void catch_up(ros::WallDuration longest);
+  void continue_if_frames_are_back();
+  void stand();
+  bool step_world(Nanoseconds time);
+  void report_status(const StepResult& result);
+  void skip_to(Nanoseconds time);
+  void publish();
+  void announce(std::uint8_t type, const EventSubject& subject, const std::string& message) const;
+  EditResult refused_before_start() const;
+
+  SceneDesc scene_;
+  TimeGrid grid_;
+  Pacer pacer_;
+  ClockWatch clock_;
+  World world_;
+  TfInputs frames_;
+  Publishers publishers_;
+  EventPublisher events_;
+  FrameWatch frame_watch_;
+
+  Nanoseconds stamp_ = 0;
+  Nanoseconds waits_since_ = 0;  ///< ROS time since which the start waits for frames; 0 before there was any
+  bool started_ = false;
+  bool keeps_world_ = false;  ///< the next start goes on with the world as it is
+  bool paused_ = false;
+  bool faulted_ = false;
+  bool waits_for_frames_ = false;
+  bool overstretched_ = false;
+  int faults_ = 0;
+  ros::WallTime last_published_;
+  Statistics statistics_;
+};
+
+}  // namespace verlet_cable

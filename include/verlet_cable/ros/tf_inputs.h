@@ -1,0 +1,105 @@
+#pragma once
+
+#include <ros/ros.h>
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "verlet_cable/core/world.h"
+#include "verlet_cable/ros/frame_buffer.h"
+#include "verlet_cable/ros/frame_history.h"
+#include "verlet_cable/ros/tf_listener.h"
+
+namespace verlet_cable {
+
+enum class FrameStatus {
+  never_seen,
+  ok,
+  late,  ///< tf has nothing for the simulated time yet
+  lost   ///< tf has had nothing for longer than `tf_timeout`
+};
+
+struct FrameChange {
+  enum class Kind { seen, lost, back, too_fast };
+  Kind kind;
+  int frame;  ///< id
+};
+
+struct FrameReport {
+  std::string name;
+  FrameStatus status = FrameStatus::never_seen;
+  bool is_static = false;
+  Nanoseconds newest = 0;  ///< stamp of the newest pose, 0 if static or never seen
+  bool too_fast = false;   ///< is being followed at `max_frame_speed`
+};
+
+/// The poses of frames at the times of steps, from tf. A frame's id is its index in World::frames().
+class TfInputs {
+ public:
+  TfInputs(const ros::NodeHandle& node, const SceneDesc& scene);
+
+  /// Takes in what has come on tf.
+  void receive();
+  /// After ROS time went back to `now`: what tf said before is void. With `forget`, frames count as never seen, too.
+  void restart(const ros::Time& now, bool forget);
+  /// Drops the frames that pins added, and puts the others where they are at `time`.
+  void reset(Nanoseconds time);
+  /// Follows another frame from now on; its id. The frame is known: see `find`.
+  int add(const std::string& frame, Nanoseconds time);
+
+  bool all_seen() const;
+  Nanoseconds first_common_time() const;  ///< from which on all frames that were seen are known; 0 if they are static
+
+  /// The frames at `time`, for `inputs` and `changes`. False, and nothing changed, if a needed frame (by id) is late and has to
+  /// be waited for: it is lost when its newest pose is more than `tf_timeout` older than `target`, the time at which the
+  /// simulation should be.
+  bool sample(Nanoseconds time, Nanoseconds target, const std::vector<bool>& needed);
+  /// The same, with the newest pose of a frame that is late; without a limit of speed if `at_once`.
+  void sample_without_waiting(Nanoseconds time, bool at_once = false);
+
+  const BoundaryInputs& inputs() const { return inputs_; }
+  const std::vector<FrameChange>& changes() const { return changes_; }  ///< that the last sample found
+
+  /// From when on the needed frames that were lost at `time` are known again: none while one is still lost, 0 if nothing is lost.
+  std::optional<Nanoseconds> back_after(Nanoseconds time, const std::vector<bool>& needed) const;
+
+  /// Any frame of tf: at `time`, or where it is latest if tf does not know that.
+  std::optional<Pose> find(const std::string& frame, Nanoseconds time) const;
+
+  std::vector<FrameReport> report() const;
+  const FrameBuffer& buffer() const { return buffer_; }
+
+ private:
+  struct Track {
+    Track(std::string frame, const FrameInput& at, Nanoseconds longest_gap)
+        : name(std::move(frame)), initial(at), history(longest_gap) {}
+    std::string name;
+    FrameInput initial;  ///< what the scene says
+    FrameHistory history;
+    FrameStatus status = FrameStatus::never_seen;
+    bool too_fast = false;
+  };
+
+  void insert(const ReceivedTransform& received);
+  void update_history(Track& track) const;
+  void drop_pinned_frames();
+  bool must_wait(Track& track, Nanoseconds time, Nanoseconds target) const;
+  void sample_frame(int frame, Nanoseconds time, Nanoseconds target, bool at_once);
+  void follow(int frame, const Pose& pose, bool at_once);
+  void change(FrameChange::Kind kind, int frame) { changes_.push_back({kind, frame}); }
+
+  TfListener listener_;
+  FrameBuffer buffer_;
+  std::deque<std::pair<ros::WallTime, ReceivedTransform>> recent_;  ///< with the time of arrival
+  Nanoseconds timeout_;
+  double longest_way_;  ///< [m] that a frame is followed in a step
+  int scene_frames_;
+  std::vector<Track> tracks_;  ///< by frame id; the first is the fixed frame
+  BoundaryInputs inputs_;      ///< by frame id
+  std::vector<FrameChange> changes_;
+};
+
+}  // namespace verlet_cable

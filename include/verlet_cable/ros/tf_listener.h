@@ -1,0 +1,39 @@
+#pragma once
+
+#include <geometry_msgs/TransformStamped.h>
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+#include <tf2_msgs/TFMessage.h>
+
+#include <mutex>
+#include <vector>
+
+namespace verlet_cable {
+
+struct ReceivedTransform {
+  geometry_msgs::TransformStamped transform;
+  bool is_static = false;
+};
+
+/// Collects what is sent on `/tf` and `/tf_static` in a thread of its own, so that nothing is missed while the node computes.
+/// Nothing is judged here.
+class TfListener {
+ public:
+  explicit TfListener(const ros::NodeHandle& node);
+
+  /// What has come since the last call, in the order of its arrival.
+  std::vector<ReceivedTransform> take();
+
+ private:
+  void receive(const tf2_msgs::TFMessage& message, bool is_static);
+
+  ros::CallbackQueue queue_;
+  ros::NodeHandle node_;
+  std::mutex mutex_;
+  std::vector<ReceivedTransform> received_;  ///< guarded by mutex_
+  ros::Subscriber dynamic_;
+  ros::Subscriber static_;
+  ros::AsyncSpinner spinner_;
+};
+
+}  // namespace verlet_cable

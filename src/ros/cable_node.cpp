@@ -1,0 +1,32 @@
+#include "verlet_cable/ros/cable_node.h"
+
+#include <algorithm>
+
+#include "verlet_cable/ros/scene_parameters.h"
+
+namespace verlet_cable {
+namespace {
+
+/// An update is cut off after this, so that requests do not wait when the simulation cannot keep up.
+const ros::WallDuration longest_update(0.02);
+
+/// Ticks come as evenly as this fraction of their period, but no finer than a millisecond.
+ros::WallDuration update_period(const SceneDesc& scene) {
+  return ros::WallDuration(std::clamp(0.25 / scene.publish_rate, 1e-3, 5e-3));
+}
+
+}  // namespace
+
+CableNode::CableNode(ros::NodeHandle private_node)
+    : node_(private_node),
+      simulation_(node_, read_scene_parameters(node_)),
+      services_(node_, simulation_),
+      diagnostics_(node_, simulation_),
+      timer_(node_.createWallTimer(update_period(simulation_.scene()),
+                                   [this](const ros::WallTimerEvent&) { simulation_.update(longest_update); })) {}
+
+void log_errors(const SceneError& error) {
+  for (const std::string& line : error.errors()) ROS_FATAL("%s", line.c_str());
+}
+
+}  // namespace verlet_cable

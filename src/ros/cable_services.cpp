@@ -1,0 +1,86 @@
+#include "verlet_cable/ros/cable_services.h"
+
+#include <std_srvs/SetBool.h>
+#include <std_srvs/Trigger.h>
+#include <verlet_cable/Cut.h>
+#include <verlet_cable/Pin.h>
+#include <verlet_cable/Step.h>
+#include <verlet_cable/Unpin.h>
+
+#include <functional>
+#include <string>
+
+#include "verlet_cable/ros/checked_pin.h"
+#include "verlet_cable/ros/location.h"
+
+namespace verlet_cable {
+namespace {
+
+template <typename Response>
+bool answer(const EditResult& result, Response& response) {
+  response.success = result.ok;
+  response.message = result.message;
+  // Not a failure of the call: the caller gets the message.
+  return true;
+}
+
+EditResult refused(const std::vector<std::string>& errors) {
+  return {false, join(errors), {}};
+}
+
+FindFrame find_frame_in(const Simulation& simulation) {
+  return [&simulation](const std::string& frame) { return simulation.find_frame(frame); };
+}
+
+bool pin(Simulation& simulation, const Pin::Request& request, Pin::Response& response) {
+  const CheckedPin pin = check_pin(request, simulation.world(), find_frame_in(simulation));
+  if (!pin.errors.empty()) return answer(refused(pin.errors), response);
+  const AttachmentType type = request.clamp ? AttachmentType::clamp : AttachmentType::hinge;
+  const EditResult result = simulation.pin(request.name, pin.cable, pin.node, pin.frame, pin.frame_pose, pin.offset, type);
+  response.name = result.name;
+  response.node = static_cast<std::uint32_t>(pin.node);
+  return answer(result, response);
+}
+
+bool cut(Simulation& simulation, const Cut::Request& request, Cut::Response& response) {
+  const Location location = locate_cut(request.location, simulation.world(), find_frame_in(simulation));
+  if (!location.errors.empty()) return answer(refused(location.errors), response);
+  const EditResult result = simulation.cut(location.cable, location.index);
+  if (result.ok) response.first = simulation.world().cables()[location.cable].model.name;
+  response.second = result.name;
+  return answer(result, response);
+}
+
+bool step(Simulation& simulation, const Step::Request& request, Step::Response& response) {
+  const EditResult result = simulation.step(request.steps);
+  response.time = seconds(simulation.stamp());
+  return answer(result, response);
+}
+
+/// A service whose handler is a function of the simulation and the message types of `Service`.
+template <typename Service>
+ros::ServiceServer serve(ros::NodeHandle& node, const std::string& name,
+                         std::function<bool(const typename Service::Request&, typename Service::Response&)> handler) {
+  return node.advertiseService<typename Service::Request, typename Service::Response>(
+      name,
+      [handler](typename Service::Request& request, typename Service::Response& response) { return handler(request, response); });
+}
+
+}  // namespace
+
+CableServices::CableServices(ros::NodeHandle& node, Simulation& simulation) {
+  using std_srvs::SetBool;
+  using std_srvs::Trigger;
+  Simulation* const s = &simulation;
+  servers_ = {
+      serve<Trigger>(node, "reset", [s](const auto&, auto& response) { return answer(s->reset(), response); }),
+      serve<SetBool>(node, "pause",
+                     [s](const auto& request, auto& response) { return answer(s->set_paused(request.data), response); }),
+      serve<Unpin>(node, "unpin", [s](const auto& request, auto& response) { return answer(s->unpin(request.name), response); }),
+      serve<Pin>(node, "pin", [s](const auto& request, auto& response) { return pin(*s, request, response); }),
+      serve<Cut>(node, "cut", [s](const auto& request, auto& response) { return cut(*s, request, response); }),
+      serve<Step>(node, "step", [s](const auto& request, auto& response) { return step(*s, request, response); }),
+  };
+}
+
+}  // namespace verlet_cable

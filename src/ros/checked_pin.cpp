@@ -1,0 +1,100 @@
+#include "verlet_cable/ros/checked_pin.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "verlet_cable/core/number_text.h"
+
+namespace verlet_cable {
+namespace {
+
+bool is_name(const std::string& name) {
+  return std::isalpha(static_cast<unsigned char>(name[0])) &&
+         std::all_of(name.begin(), name.end(), [](unsigned char c) { return c < 128 && (std::isalnum(c) || c == '_'); });
+}
+
+std::string text(const Vector3& v) {
+  return "(" + number_text(v.x()) + ", " + number_text(v.y()) + ", " + number_text(v.z()) + ")";
+}
+
+/// Identity for all zeros; otherwise nearly of length one.
+Pose read_offset(const geometry_msgs::Pose& pose, std::vector<std::string>& errors) {
+  constexpr double tolerance = 0.01;
+  const Vector3 position(pose.position.x, pose.position.y, pose.position.z);
+  if (!position.allFinite()) errors.push_back("offset.position: " + text(position) + "; must be finite [m]");
+  const Quaternion q(pose.orientation.w, pose.orientation.x, pose.orientation.y, pose.orientation.z);
+  if ((q.coeffs().array() == 0).all()) return {position, Quaternion::Identity()};
+  if (!(std::abs(q.norm() - 1) <= tolerance)) {
+    errors.push_back("offset.orientation: (" + number_text(q.x()) + ", " + number_text(q.y()) + ", " + number_text(q.z()) + ", " +
+                     number_text(q.w()) + "); must be a quaternion of length 1, or all zero for no rotation");
+    return {position, Quaternion::Identity()};
+  }
+  return {position, q.normalized()};
+}
+
+/// The node's place and the cable's direction there, between the directions of its segments.
+Pose node_pose(const Cable& cable, int node) {
+  const std::vector<Quaternion> orientations = segment_orientations(cable);
+  const int last = cable.model.segments() - 1;
+  const Quaternion& before = orientations[std::max(node - 1, 0)];
+  const Quaternion& after = orientations[std::min(node, last)];
+  return {cable.state.positions[node], before.slerp(0.5, after).normalized()};
+}
+
+/// What an inextensible cable between the pin and its neighbours cannot do.
+void check_reach(const CheckedPin& pin, const World& world, std::vector<std::string>& errors) {
+  const CableModel& model = world.cables()[pin.cable].model;
+  if (std::isfinite(model.material.axial_stiffness)) return;
+  constexpr double rounding = 1e-6;
+  const std::vector<double> arc_length = model.arc_length();
+  const Vector3 place = (pin.frame_pose * pin.offset).position;
+  for (const Attachment& other : world.attachments()) {
+    if (other.cable != pin.cable) continue;
+    const double distance = (place - (world.frame_pose(other.frame) * other.pose).position).norm();
+    const double length = std::abs(arc_length[pin.node] - arc_length[other.node]);
+    if (distance <= length * (1 + rounding)) continue;
+    errors.push_back("offset.position: " + text(pin.offset.position) + " in frame '" + pin.frame + "' is " +
+                     number_text(distance) + " m from attachment '" + other.name + "'; must be within the " +
+                     number_text(length) + " m of cable between them");
+  }
+}
+
+}  // namespace
+
+CheckedPin check_pin(const Pin::Request& request, const World& world, const FindFrame& find_frame) {
+  CheckedPin pin;
+  const Location location = locate_node(request.location, world, find_frame);
+  pin.errors = location.errors;
+  pin.cable = location.cable;
+  pin.node = location.index;
+  pin.frame = request.frame_id.empty() ? world.frames().front() : request.frame_id;
+  pin.offset = read_offset(request.offset, pin.errors);
+  if (!request.name.empty() && !is_name(request.name)) {
+    pin.errors.push_back("name: '" + request.name + "'; must be a letter, then letters, digits and _, or empty");
+  }
+  if (world.find_attachment(request.name) >= 0) {
+    pin.errors.push_back("name: '" + request.name + "'; must not be the name of another attachment");
+  }
+  if (const std::optional<Pose> pose = pin.frame[0] == '/' ? std::nullopt : find_frame(pin.frame)) {
+    pin.frame_pose = *pose;
+  } else {
+    pin.errors.push_back("frame_id: '" + pin.frame + "'; must be a frame that tf knows, without a leading /, or empty");
+  }
+  if (!location.errors.empty()) return pin;
+
+  for (const Attachment& other : world.attachments()) {
+    if (other.cable != pin.cable || other.node != pin.node) continue;
+    pin.errors.push_back("location: node " + std::to_string(pin.node) + " of cable '" + world.cables()[pin.cable].model.name +
+                         "' is held by attachment '" + other.name + "'; must be a node that nothing holds");
+  }
+  if (!pin.errors.empty()) return pin;
+  if (request.keep_offset) {
+    pin.offset = pin.frame_pose.inverse() * node_pose(world.cables()[pin.cable], pin.node);
+  } else {
+    check_reach(pin, world, pin.errors);
+  }
+  return pin;
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,97 @@
+#include "verlet_cable/ros/diagnostics.h"
+
+#include <string>
+
+namespace verlet_cable {
+namespace {
+
+using diagnostic_msgs::DiagnosticStatus;
+
+std::string text(FrameStatus status) {
+  switch (status) {
+    case FrameStatus::never_seen:
+      return "never seen";
+    case FrameStatus::late:
+      return "late";
+    case FrameStatus::lost:
+      return "lost";
+    default:
+      return "ok";
+  }
+}
+
+std::string join(const std::vector<std::string>& names) {
+  std::string joined;
+  for (const std::string& name : names) joined += (joined.empty() ? "" : ", ") + name;
+  return joined;
+}
+
+}  // namespace
+
+Diagnostics::Diagnostics(ros::NodeHandle& private_node, Simulation& simulation)
+    : simulation_(simulation), updater_(private_node, private_node, private_node.getNamespace()) {
+  updater_.setHardwareID("none");
+  updater_.add("simulation", [this](Status& status) { report_simulation(status); });
+  updater_.add("frames", [this](Status& status) { report_frames(status); });
+  // Not the updater's own pace, which is in ROS time and stands with it.
+  timer_ = private_node.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { updater_.force_update(); });
+}
+
+void Diagnostics::report_simulation(Status& status) {
+  const Statistics s = simulation_.take_statistics();
+  const double time_step = simulation_.world().time_step();
+  const double step_time = s.steps > 0 ? s.wall_time / static_cast<double>(s.steps) : 0;
+  status.add("real_time_factor", step_time > 0 ? time_step / step_time : 0);
+  status.add("step_time_mean_s", step_time);
+  status.add("step_time_max_s", s.longest_step);
+  status.add("steps", s.steps);
+  status.add("dropped_time_s", seconds(simulation_.dropped()));
+  status.add("max_strain", s.max_strain);
+  status.add("overstretched_steps", s.overstretched);
+  status.add("degraded_steps", s.degraded);
+  status.add("faults", simulation_.faults());
+  status.add("waiting_cables", join(simulation_.world().waiting()));
+
+  if (simulation_.faulted()) {
+    status.summary(DiagnosticStatus::ERROR, "fault: the simulation stands until reset");
+  } else if (!simulation_.started()) {
+    status.summary(DiagnosticStatus::WARN, simulation_.now() == 0 ? "no ROS time yet" : "waits for frames to start");
+  } else if (simulation_.paused()) {
+    status.summary(DiagnosticStatus::OK, "paused");
+  } else if (simulation_.waits_for_frames()) {
+    status.summary(DiagnosticStatus::WARN, "waits for a lost frame");
+  } else {
+    status.summary(DiagnosticStatus::OK, "runs");
+  }
+  if (step_time > time_step) status.mergeSummary(DiagnosticStatus::WARN, "slower than real time");
+  if (s.overstretched > 0) status.mergeSummary(DiagnosticStatus::WARN, "overstretched");
+  if (s.degraded > 0) status.mergeSummary(DiagnosticStatus::WARN, "steps were degraded");
+  if (!simulation_.world().waiting().empty()) status.mergeSummary(DiagnosticStatus::WARN, "cables wait for their frames");
+}
+
+void Diagnostics::report_frames(Status& status) const {
+  status.summary(DiagnosticStatus::OK, "all frames are there");
+  std::vector<FrameReport> frames = simulation_.frames().report();
+  frames.erase(frames.begin());  // the fixed frame
+  for (const FrameReport& frame : frames) {
+    std::string value = text(frame.status);
+    if (frame.is_static) {
+      value += ", static";
+    } else if (frame.newest > 0) {
+      value += ", age " + std::to_string(seconds(simulation_.now() - frame.newest)) + " s";
+    }
+    if (frame.too_fast) value += ", faster than max_frame_speed";
+    status.add("frame " + frame.name, value);
+    if (frame.status == FrameStatus::never_seen)
+      status.mergeSummary(DiagnosticStatus::WARN, "frame '" + frame.name + "' never seen");
+    if (frame.status == FrameStatus::lost) status.mergeSummary(DiagnosticStatus::WARN, "frame '" + frame.name + "' lost");
+    if (frame.too_fast) status.mergeSummary(DiagnosticStatus::WARN, "frame '" + frame.name + "' too fast");
+  }
+  status.add("refused_transforms", simulation_.frames().buffer().refused_count());
+  for (const auto& [frame, problem] : simulation_.frames().buffer().refused()) {
+    status.add("refused " + frame, problem);
+    status.mergeSummary(DiagnosticStatus::WARN, "tf of frame '" + frame + "' refused");
+  }
+}
+
+}  // namespace verlet_cable

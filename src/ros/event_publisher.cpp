@@ -1,0 +1,35 @@
+#include "verlet_cable/ros/event_publisher.h"
+
+#include <utility>
+
+namespace verlet_cable {
+
+EventSubject subject_of(const World& world, const Attachment& attachment) {
+  return {world.cables()[attachment.cable].model.name, attachment.name, attachment.node, world.frames()[attachment.frame]};
+}
+
+EventPublisher::EventPublisher(ros::NodeHandle& private_node, std::string frame_id)
+    : publisher_(private_node.advertise<CableEvent>("events", 100)), frame_id_(std::move(frame_id)) {}
+
+void EventPublisher::publish(std::uint8_t type, Nanoseconds stamp, const EventSubject& subject,
+                             const std::string& message) const {
+  CableEvent event;
+  event.header.frame_id = frame_id_;
+  event.header.stamp.fromNSec(static_cast<std::uint64_t>(stamp));
+  event.type = type;
+  event.cable = subject.cable;
+  event.attachment = subject.attachment;
+  event.node = static_cast<std::uint32_t>(subject.node);
+  event.other = subject.other;
+  event.message = message;
+  publisher_.publish(event);
+  if (type == CableEvent::FAULT) {
+    ROS_ERROR("%s", message.c_str());
+  } else if (type == CableEvent::FRAME_LOST || type == CableEvent::TIME_JUMP || type == CableEvent::BROKE) {
+    ROS_WARN("%s", message.c_str());
+  } else {
+    ROS_INFO("%s", message.c_str());
+  }
+}
+
+}  // namespace verlet_cable

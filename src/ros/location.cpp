@@ -1,0 +1,146 @@
+#include "verlet_cable/ros/location.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "verlet_cable/core/number_text.h"
+
+namespace verlet_cable {
+namespace {
+
+/// What the three ways to give a place have in common: the point on the cable.
+struct PointOnCable {
+  int cable = -1;
+  int segment = 0;
+  double fraction = 0;  ///< along the segment
+  std::string field;    ///< that gave it, and its value
+  std::vector<std::string> errors;
+};
+
+std::string point_text(const geometry_msgs::Point& point) {
+  return "(" + number_text(point.x) + ", " + number_text(point.y) + ", " + number_text(point.z) + ")";
+}
+
+void find_cable(const CableLocation& location, const World& world, PointOnCable& found) {
+  if (location.cable.empty() && location.mode == CableLocation::NEAREST) return;
+  found.cable = world.find_cable(location.cable);
+  if (found.cable >= 0) return;
+  const std::vector<std::string>& waiting = world.waiting();
+  if (std::find(waiting.begin(), waiting.end(), location.cable) != waiting.end()) {
+    found.errors.push_back("location.cable: '" + location.cable + "' waits for its frames and is not there yet");
+    return;
+  }
+  std::string names;
+  for (const Cable& cable : world.cables()) names += (names.empty() ? "" : ", ") + cable.model.name;
+  found.errors.push_back("location.cable: '" + location.cable +
+                         "'; must be one of: " + (names.empty() ? "(there are none)" : names));
+}
+
+void find_node(const CableLocation& location, const World& world, PointOnCable& found) {
+  found.field = "location.node: " + std::to_string(location.node);
+  if (found.cable < 0) return;
+  const auto segments = static_cast<std::uint32_t>(world.cables()[found.cable].model.segments());
+  if (location.node > segments) {
+    found.errors.push_back(found.field + "; must be from 0 to " + std::to_string(segments));
+    return;
+  }
+  found.segment = static_cast<int>(std::min(location.node, segments - 1));
+  found.fraction = location.node == segments ? 1 : 0;
+}
+
+void find_arc_length(const CableLocation& location, const World& world, PointOnCable& found) {
+  found.field = "location.arc_length: " + number_text(location.arc_length);
+  if (found.cable < 0) {
+    if (!std::isfinite(location.arc_length)) found.errors.push_back(found.field + "; must be a finite number [m]");
+    return;
+  }
+  const CableModel& model = world.cables()[found.cable].model;
+  const std::vector<double> arc_length = model.arc_length();
+  if (!(location.arc_length >= 0 && location.arc_length <= arc_length.back())) {
+    found.errors.push_back(found.field + "; must be from 0 to " + number_text(arc_length.back()) + " m");
+    return;
+  }
+  const auto after = std::upper_bound(arc_length.begin(), arc_length.end(), location.arc_length);
+  found.segment = std::min(static_cast<int>(std::distance(arc_length.begin(), after)), model.segments()) - 1;
+  found.fraction = (location.arc_length - arc_length[found.segment]) / model.rest_lengths[found.segment];
+}
+
+void find_nearest(const CableLocation& location, const World& world, const FindFrame& find_frame, PointOnCable& found) {
+  const geometry_msgs::Point& point = location.point.point;
+  found.field = "location.point: " + point_text(point);
+  if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z)) {
+    found.errors.push_back("location.point.point: " + point_text(point) + "; must be finite");
+  }
+  const std::string& frame = location.point.header.frame_id;
+  const std::optional<Pose> pose = frame.empty() ? Pose{} : find_frame(frame);
+  if (!pose) found.errors.push_back("location.point.header.frame_id: '" + frame + "'; must be a frame that tf knows");
+  if (!found.errors.empty()) return;
+  if (world.cables().empty()) found.errors.push_back("location.cable: there are no cables");
+
+  const Vector3 position = (*pose * Pose{Vector3(point.x, point.y, point.z), Quaternion::Identity()}).position;
+  double least = infinity;
+  const bool any = found.cable < 0;
+  const int first = any ? 0 : found.cable, last = any ? static_cast<int>(world.cables().size()) - 1 : found.cable;
+  for (int cable = first; cable <= last; ++cable) {
+    const NearestPoint nearest = nearest_point(world.cables()[cable], position);
+    if (nearest.distance >= least) continue;
+    least = nearest.distance;
+    found.cable = cable;
+    found.segment = nearest.segment;
+    found.fraction = nearest.fraction;
+  }
+}
+
+PointOnCable find_point(const CableLocation& location, const World& world, const FindFrame& find_frame) {
+  PointOnCable found;
+  find_cable(location, world, found);
+  switch (location.mode) {
+    case CableLocation::NODE:
+      find_node(location, world, found);
+      break;
+    case CableLocation::ARC_LENGTH:
+      find_arc_length(location, world, found);
+      break;
+    case CableLocation::NEAREST:
+      find_nearest(location, world, find_frame, found);
+      break;
+    default:
+      found.errors.push_back("location.mode: " + std::to_string(location.mode) +
+                             "; must be 0 (NODE), 1 (ARC_LENGTH) or 2 (NEAREST)");
+  }
+  return found;
+}
+
+}  // namespace
+
+Location locate_node(const CableLocation& location, const World& world, const FindFrame& find_frame) {
+  const PointOnCable found = find_point(location, world, find_frame);
+  return {found.cable, found.segment + (found.fraction > 0.5 ? 1 : 0), found.errors};
+}
+
+Location locate_cut(const CableLocation& location, const World& world, const FindFrame& find_frame) {
+  PointOnCable found = find_point(location, world, find_frame);
+  if (found.errors.empty()) {
+    const Cable& cable = world.cables()[found.cable];
+    const int last = cable.model.segments() - 2;
+    const bool behind_the_end = location.mode == CableLocation::NODE && found.fraction > 0;
+    if (last < 1) {
+      found.errors.push_back("location.cable: '" + cable.model.name + "' has " + std::to_string(cable.model.segments()) +
+                             " segments; a cut needs at least 3, so that each piece keeps one");
+    } else if (found.segment < 1 || found.segment > last || behind_the_end) {
+      found.errors.push_back(
+          found.field + " means " + (behind_the_end ? "no segment" : "segment " + std::to_string(found.segment)) + " of cable '" +
+          cable.model.name + "'; must be one from 1 to " + std::to_string(last) + ", so that each piece keeps one");
+    }
+  }
+  return {found.cable, found.segment, found.errors};
+}
+
+std::string join(const std::vector<std::string>& errors) {
+  std::string text;
+  for (const std::string& error : errors) text += (text.empty() ? "" : "; ") + error;
+  return text;
+}
+
+}  // namespace verlet_cable

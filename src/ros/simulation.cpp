@@ -1,0 +1,170 @@
+#include "verlet_cable/ros/simulation.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace verlet_cable {
+namespace {
+
+/// What can be caught up beyond the longest wait for a late frame [s]: a busy machine's hiccups.
+constexpr double hiccup = 0.5;
+/// Longer waits than this [s] cannot be caught up: tf would have forgotten the frames.
+constexpr double longest_wait = 50;
+
+}  // namespace
+
+Simulation::Simulation(ros::NodeHandle& private_node, const SceneDesc& scene)
+    : scene_(scene),
+      grid_(scene.time_step, scene.publish_rate),
+      pacer_(grid_.step(), nanoseconds(std::min(scene.tf_timeout, longest_wait) + hiccup)),
+      world_(scene, initial_frames(scene)),
+      frames_(private_node, scene),
+      publishers_(private_node, scene),
+      events_(private_node, scene.frame_id),
+      frame_watch_(scene_, events_) {}
+
+void Simulation::update(ros::WallDuration longest) {
+  if (clock_.update() == ClockWatch::Motion::back) jump_back();
+  frames_.receive();
+  if (!started_) {
+    start_if_possible();
+    return;
+  }
+  if (waits_for_frames_ && !paused_) continue_if_frames_are_back();
+  if (paused_ || faulted_ || waits_for_frames_) {
+    stand();
+  } else {
+    catch_up(longest);
+  }
+}
+
+Nanoseconds Simulation::target() const {
+  return clock_.now() - nanoseconds(scene_.tf_latency);
+}
+
+void Simulation::jump_back() {
+  // What was collected before the jump belongs to the time before it.
+  const bool forget = scene_.on_time_jump == TimeJumpPolicy::reset;
+  frames_.restart(ros::Time().fromNSec(static_cast<std::uint64_t>(clock_.now())), forget);
+  if (started_) {
+    stamp_ = std::max<Nanoseconds>(target(), 0);
+    announce(CableEvent::TIME_JUMP, {}, std::string("ROS time went back: ") + (forget ? "reset" : "the cables keep their state"));
+  }
+  keeps_world_ = started_ && !forget;
+  started_ = false;
+  waits_since_ = 0;
+}
+
+/// The first time at which all frames are known is a property of the frames alone, and so is a run that starts then. Frames that
+/// do not show up within `tf_timeout` are not waited for.
+void Simulation::start_if_possible() {
+  if (clock_.now() == 0) return;
+  if (waits_since_ == 0) waits_since_ = clock_.now();
+  const bool late = clock_.now() - waits_since_ > nanoseconds(scene_.tf_timeout) || clock_.stands();
+  const Nanoseconds common = frames_.first_common_time();
+  if (!late && !frames_.all_seen()) return;
+  const bool anchored = frames_.all_seen() && common > 0;
+  const Nanoseconds time = grid_.tick_at_or_after(std::max<Nanoseconds>(anchored ? common : target() - grid_.period(), 1));
+  if (late || time <= target()) start(time);
+}
+
+void Simulation::start(Nanoseconds time) {
+  frames_.sample_without_waiting(time, true);
+  if (!keeps_world_) {
+    world_ = World(scene_, frames_.inputs());
+    frame_watch_.forget_from(0);
+    faulted_ = false;
+  }
+  stamp_ = time;
+  started_ = true;
+  waits_for_frames_ = frame_watch_.react(frames_.changes(), stamp_, world_);
+  frame_watch_.report_unseen(frames_.inputs(), frames_.report(), world_);
+  publish();
+}
+
+void Simulation::catch_up(ros::WallDuration longest) {
+  const ros::WallTime deadline = ros::WallTime::now() + longest;
+  const Pacer::Due due = pacer_.due(stamp_, target());
+  stamp_ += due.dropped;
+  std::vector<bool> needed = needed_frames(world_);
+  for (Nanoseconds i = 0; i < due.steps && ros::WallTime::now() < deadline; ++i) {
+    const Nanoseconds next = stamp_ + grid_.step();
+    if (!frames_.sample(next, target(), needed)) return;
+    if (!frames_.changes().empty()) {
+      waits_for_frames_ = frame_watch_.react(frames_.changes(), stamp_, world_);
+      if (waits_for_frames_) return;
+    }
+    if (!step_world(next)) return;
+    if (!frames_.changes().empty()) needed = needed_frames(world_);
+  }
+}
+
+void Simulation::continue_if_frames_are_back() {
+  const auto back = frames_.back_after(stamp_ + grid_.step(), needed_frames(world_));
+  if (!back) return;
+  waits_for_frames_ = false;
+  // From the first step on that knows them all; where nothing holds the simulation any more, from where it should be.
+  skip_to(*back > 0 ? grid_.step_at_or_after(*back) - grid_.step() : grid_.step_at_or_before(target()));
+}
+
+void Simulation::stand() {
+  if (ros::WallTime::now() - last_published_ >= ros::WallDuration(seconds(grid_.period()))) publish();
+}
+
+/// False, and the world stands, after a fault.
+bool Simulation::step_world(Nanoseconds time) {
+  const auto begin = std::chrono::steady_clock::now();
+  const StepResult result = world_.step(frames_.inputs());
+  statistics_.add(result, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  report_status(result);
+  if (faulted_) return false;
+  stamp_ = time;
+  if (!world_.waiting().empty() && !frames_.changes().empty()) world_.start_waiting(frames_.inputs());
+  if (grid_.is_tick(stamp_)) publish();
+  return true;
+}
+
+void Simulation::report_status(const StepResult& result) {
+  const auto cable = [&] { return world_.cables()[result.cable].model.name; };
+  if (result.status == StepResult::Status::fault) {
+    faulted_ = true;
+    ++faults_;
+    announce(CableEvent::FAULT, {cable(), {}, result.node, {}},
+             "the simulation of cable '" + cable() + "' failed at node " + std::to_string(result.node) + ": reset goes on");
+  }
+  const bool overstretched = result.status == StepResult::Status::overstretched;
+  if (overstretched && !overstretched_) {
+    ROS_WARN("cable '%s' is overstretched at node %d: what holds it is further apart than it is long", cable().c_str(),
+             result.node);
+  }
+  overstretched_ = overstretched;
+}
+
+void Simulation::skip_to(Nanoseconds time) {
+  if (time <= stamp_) return;
+  pacer_.drop(time - stamp_);
+  stamp_ = time;
+}
+
+void Simulation::publish() {
+  last_published_ = ros::WallTime::now();
+  publishers_.publish(world_, ros::Time().fromNSec(static_cast<std::uint64_t>(stamp_)));
+}
+
+void Simulation::announce(std::uint8_t type, const EventSubject& subject, const std::string& message) const {
+  events_.publish(type, stamp_, subject, message);
+}
+
+std::optional<Pose> Simulation::find_frame(const std::string& frame) const {
+  const std::vector<std::string>& names = world_.frames();
+  const auto found = std::find(names.begin(), names.end(), frame);
+  const auto id = static_cast<std::size_t>(found - names.begin());
+  if (id == 0 || (id < names.size() && frames_.inputs()[id].known)) return world_.frame_pose(static_cast<int>(id));
+  return frames_.find(frame, stamp_);
+}
+
+Statistics Simulation::take_statistics() {
+  return std::exchange(statistics_, {});
+}
+
+}  // namespace verlet_cable

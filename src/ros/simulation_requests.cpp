@@ -1,0 +1,93 @@
+#include "verlet_cable/ros/simulation.h"
+
+namespace verlet_cable {
+namespace {
+
+EditResult done(const std::string& message) {
+  return {true, message, {}};
+}
+EditResult refused(const std::string& message) {
+  return {false, message, {}};
+}
+
+/// A longer run would keep every other request waiting.
+constexpr std::int64_t most_steps = 1000000;
+
+}  // namespace
+
+EditResult Simulation::refused_before_start() const {
+  return refused(now() == 0 ? "the simulation has not started: there is no ROS time yet (use_sim_time without /clock?)"
+                            : "the simulation has not started: it waits for its frames, for tf_timeout at most");
+}
+
+EditResult Simulation::reset() {
+  if (!started_) return refused_before_start();
+  frames_.reset(stamp_);
+  world_ = World(scene_, frames_.inputs());
+  faulted_ = false;
+  overstretched_ = false;
+  frame_watch_.forget_from(static_cast<int>(world_.frames().size()));
+  announce(CableEvent::RESET, {}, "reset to the initial state of the scene");
+  if (paused_) publish();
+  return done("reset to the initial state of the scene");
+}
+
+EditResult Simulation::set_paused(bool paused) {
+  if (paused == paused_) return done(paused ? "paused already" : "runs already");
+  paused_ = paused;
+  if (started_ && !paused) skip_to(grid_.step_at_or_before(target()));
+  return done(paused ? "paused" : "runs");
+}
+
+EditResult Simulation::step(std::int64_t steps) {
+  if (!started_) return refused_before_start();
+  if (!paused_) return refused("the simulation is not paused; step is for a paused one: call pause first");
+  if (faulted_) return refused("the simulation has failed: call reset first");
+  if (steps < 1 || steps > most_steps) {
+    return refused("steps: " + std::to_string(steps) + "; must be from 1 to " + std::to_string(most_steps));
+  }
+  for (std::int64_t i = 0; i < steps && ros::ok(); ++i) {
+    frames_.sample_without_waiting(stamp_ + grid_.step());
+    frame_watch_.react(frames_.changes(), stamp_, world_);
+    if (!step_world(stamp_ + grid_.step())) {
+      return refused("the simulation failed after " + std::to_string(i) + " steps: call reset");
+    }
+  }
+  if (!grid_.is_tick(stamp_)) publish();
+  return done(std::to_string(steps) + " steps done");
+}
+
+EditResult Simulation::pin(const std::string& name, int cable, int node, const std::string& frame, const Pose& frame_pose,
+                           const Pose& offset, AttachmentType type) {
+  if (!started_) return refused_before_start();
+  World trial = world_;  // a frame cannot be taken back
+  const EditResult result = trial.pin(name, cable, node, trial.add_frame(frame, frame_pose), offset, type);
+  if (!result.ok) return result;
+  world_ = std::move(trial);
+  frames_.add(frame, stamp_);
+  announce(CableEvent::PINNED, subject_of(world_, world_.attachments()[world_.find_attachment(result.name)]),
+           "node " + std::to_string(node) + " of cable '" + world_.cables()[cable].model.name + "' is pinned to frame '" + frame +
+               "' as '" + result.name + "'");
+  return result;
+}
+
+EditResult Simulation::unpin(const std::string& name) {
+  if (!started_) return refused_before_start();
+  const int index = world_.find_attachment(name);
+  const EventSubject subject = index < 0 ? EventSubject{} : subject_of(world_, world_.attachments()[index]);
+  const EditResult result = world_.unpin(name);
+  if (result.ok) announce(CableEvent::UNPINNED, subject, "attachment '" + name + "' is undone");
+  return result;
+}
+
+EditResult Simulation::cut(int cable, int segment) {
+  if (!started_) return refused_before_start();
+  const EditResult result = world_.cut(cable, segment);
+  if (!result.ok) return result;
+  const std::string& name = world_.cables()[cable].model.name;
+  announce(CableEvent::CUT, {name, {}, segment, result.name},
+           "segment " + std::to_string(segment) + " of cable '" + name + "' is cut out: the rest is cable '" + result.name + "'");
+  return result;
+}
+
+}  // namespace verlet_cable

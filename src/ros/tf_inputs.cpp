@@ -1,0 +1,198 @@
+#include "verlet_cable/ros/tf_inputs.h"
+
+#include <algorithm>
+
+namespace verlet_cable {
+namespace {
+
+using Coverage = FrameHistory::Coverage;
+
+// tf and the clock are two connections: how much earlier than the clock's jump back the first transforms after it may arrive, and
+// how much later than the clock their stamps may be.
+const ros::WallDuration longest_overtaking(1.0);
+const ros::Duration longest_ahead(0.5);
+
+}  // namespace
+
+TfInputs::TfInputs(const ros::NodeHandle& node, const SceneDesc& scene)
+    : listener_(node),
+      buffer_(scene.frame_id),
+      timeout_(nanoseconds(scene.tf_timeout)),
+      longest_way_(scene.max_frame_speed * scene.time_step),
+      inputs_(initial_frames(scene)) {
+  const std::vector<std::string> names = frame_names(scene);
+  scene_frames_ = static_cast<int>(names.size());
+  for (int i = 0; i < scene_frames_; ++i) tracks_.emplace_back(names[i], inputs_[i], timeout_);
+  for (Track& track : tracks_) update_history(track);
+}
+
+void TfInputs::receive() {
+  const ros::WallTime now = ros::WallTime::now();
+  while (!recent_.empty() && recent_.front().first + longest_overtaking < now) recent_.pop_front();
+  for (const ReceivedTransform& received : listener_.take()) {
+    recent_.emplace_back(now, received);
+    insert(received);
+  }
+}
+
+void TfInputs::insert(const ReceivedTransform& received) {
+  if (!buffer_.insert(received)) return;
+  for (Track& track : tracks_) update_history(track);
+}
+
+void TfInputs::update_history(Track& track) const {
+  const std::optional<Nanoseconds> newest = buffer_.newest(track.name);
+  if (!newest) return;
+  if (*newest == 0) {
+    track.history.set_static();
+  } else {
+    track.history.extend(*newest);
+  }
+}
+
+void TfInputs::restart(const ros::Time& now, bool forget) {
+  buffer_.clear();
+  if (forget) drop_pinned_frames();
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    Track& track = tracks_[i];
+    track.history.clear();
+    if (forget) {
+      track.status = FrameStatus::never_seen;
+      track.too_fast = false;
+      inputs_[i] = track.initial;
+    }
+    update_history(track);
+  }
+  for (const auto& [arrival, received] : recent_) {
+    if (received.transform.header.stamp <= now + longest_ahead) insert(received);
+  }
+}
+
+void TfInputs::reset(Nanoseconds time) {
+  drop_pinned_frames();
+  for (int i = 0; i < scene_frames_; ++i) {
+    if (const auto pose = buffer_.pose(tracks_[i].name, time)) {
+      if (tracks_[i].history.at(time) == Coverage::covered) follow(i, *pose, true);
+    }
+  }
+}
+
+void TfInputs::drop_pinned_frames() {
+  tracks_.erase(tracks_.begin() + scene_frames_, tracks_.end());
+  inputs_.resize(scene_frames_);
+}
+
+int TfInputs::add(const std::string& frame, Nanoseconds time) {
+  const auto found = std::find_if(tracks_.begin(), tracks_.end(), [&](const Track& track) { return track.name == frame; });
+  if (found != tracks_.end()) return static_cast<int>(found - tracks_.begin());
+  const FrameInput at{find(frame, time).value_or(Pose{}), true};
+  Track& track = tracks_.emplace_back(frame, at, timeout_);
+  track.status = FrameStatus::ok;
+  inputs_.push_back(at);
+  if (buffer_.pose(frame, time)) track.history.extend(time);
+  update_history(track);
+  return static_cast<int>(tracks_.size()) - 1;
+}
+
+bool TfInputs::all_seen() const {
+  return std::all_of(tracks_.begin(), tracks_.end(), [](const Track& track) { return track.history.seen(); });
+}
+
+Nanoseconds TfInputs::first_common_time() const {
+  Nanoseconds first = 0;
+  for (const Track& track : tracks_) first = std::max(first, track.history.first());
+  return first;
+}
+
+bool TfInputs::sample(Nanoseconds time, Nanoseconds target, const std::vector<bool>& needed) {
+  changes_.clear();
+  bool wait = false;
+  for (std::size_t i = 0; i < tracks_.size(); ++i) wait |= needed[i] && must_wait(tracks_[i], time, target);
+  if (wait) return false;
+  for (std::size_t i = 0; i < tracks_.size(); ++i) sample_frame(static_cast<int>(i), time, target, false);
+  return true;
+}
+
+void TfInputs::sample_without_waiting(Nanoseconds time, bool at_once) {
+  changes_.clear();
+  for (std::size_t i = 0; i < tracks_.size(); ++i) sample_frame(static_cast<int>(i), time, 0, at_once);
+}
+
+bool TfInputs::must_wait(Track& track, Nanoseconds time, Nanoseconds target) const {
+  const bool late = track.status != FrameStatus::lost && track.history.at(time) == Coverage::ahead &&
+                    target - track.history.newest() <= timeout_;
+  if (late && track.status == FrameStatus::ok) track.status = FrameStatus::late;
+  return late;
+}
+
+void TfInputs::sample_frame(int frame, Nanoseconds time, Nanoseconds target, bool at_once) {
+  Track& track = tracks_[frame];
+  track.history.forget_before(time);
+  const Coverage coverage = track.history.at(time);
+  if (coverage == Coverage::covered) {
+    if (const auto pose = buffer_.pose(track.name, time)) {
+      if (track.status == FrameStatus::never_seen) change(FrameChange::Kind::seen, frame);
+      if (track.status == FrameStatus::lost) change(FrameChange::Kind::back, frame);
+      track.status = FrameStatus::ok;
+      follow(frame, *pose, at_once);
+      return;
+    }
+  }
+  if (track.status == FrameStatus::never_seen) {
+    if (coverage == Coverage::unseen) return;
+    change(FrameChange::Kind::seen, frame);
+    track.status = FrameStatus::ok;
+  }
+  if (track.status == FrameStatus::lost) return;
+  if (const Nanoseconds last = track.history.last_before(time); last > 0) {
+    if (const auto pose = buffer_.pose(track.name, last)) follow(frame, *pose, at_once);
+  }
+  const bool late = coverage == Coverage::ahead && target - track.history.newest() <= timeout_;
+  track.status = late ? FrameStatus::late : FrameStatus::lost;
+  if (!late) change(FrameChange::Kind::lost, frame);
+}
+
+void TfInputs::follow(int frame, const Pose& pose, bool at_once) {
+  FrameInput& input = inputs_[frame];
+  Track& track = tracks_[frame];
+  const double way = (pose.position - input.pose.position).norm();
+  if (!input.known || at_once || way <= longest_way_) {
+    input = {pose, true};
+    track.too_fast = false;
+    return;
+  }
+  const double part = longest_way_ / way;
+  input.pose.position += part * (pose.position - input.pose.position);
+  input.pose.orientation = input.pose.orientation.slerp(part, pose.orientation).normalized();
+  if (!track.too_fast) change(FrameChange::Kind::too_fast, frame);
+  track.too_fast = true;
+}
+
+std::optional<Nanoseconds> TfInputs::back_after(Nanoseconds time, const std::vector<bool>& needed) const {
+  Nanoseconds back = 0;
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    const FrameHistory& history = tracks_[i].history;
+    if (!needed[i] || tracks_[i].status != FrameStatus::lost) continue;
+    if (history.is_static()) continue;
+    const Nanoseconds known = history.at(time) == Coverage::covered ? time : history.first_after(time);
+    if (known == 0) return std::nullopt;
+    back = std::max(back, known);
+  }
+  return back;
+}
+
+std::optional<Pose> TfInputs::find(const std::string& frame, Nanoseconds time) const {
+  if (const auto pose = buffer_.pose(frame, time)) return pose;
+  const auto newest = buffer_.newest(frame);
+  return newest ? buffer_.pose(frame, *newest) : std::nullopt;
+}
+
+std::vector<FrameReport> TfInputs::report() const {
+  std::vector<FrameReport> reports;
+  for (const Track& track : tracks_) {
+    reports.push_back({track.name, track.status, track.history.is_static(), track.history.newest(), track.too_fast});
+  }
+  return reports;
+}
+
+}  // namespace verlet_cable

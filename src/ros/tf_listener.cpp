@@ -1,0 +1,34 @@
+#include "verlet_cable/ros/tf_listener.h"
+
+#include <utility>
+
+namespace verlet_cable {
+namespace {
+
+// As in tf2_ros: a static transform may be sent by each of many nodes at once.
+constexpr int queue_size = 1000;
+
+}  // namespace
+
+TfListener::TfListener(const ros::NodeHandle& node) : node_(node), spinner_(1, &queue_) {
+  node_.setCallbackQueue(&queue_);
+  const auto subscribe = [this](const std::string& topic, bool is_static) {
+    return node_.subscribe<tf2_msgs::TFMessage>(
+        topic, queue_size, [this, is_static](const tf2_msgs::TFMessageConstPtr& message) { receive(*message, is_static); });
+  };
+  dynamic_ = subscribe("/tf", false);
+  static_ = subscribe("/tf_static", true);
+  spinner_.start();
+}
+
+std::vector<ReceivedTransform> TfListener::take() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return std::exchange(received_, {});
+}
+
+void TfListener::receive(const tf2_msgs::TFMessage& message, bool is_static) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (const auto& transform : message.transforms) received_.push_back({transform, is_static});
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,195 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "verlet_cable/ros/checked_pin.h"
+#include "verlet_cable/ros/location.h"
+
+namespace verlet_cable {
+namespace {
+
+/// A straight cable of ten segments of 0.1 m along +x from the origin, held at its start, and another one 1 m above.
+World two_cables() {
+  SceneDesc scene;
+  scene.materials.resize(1);
+  scene.materials[0].name = "rope";
+  scene.materials[0].material.linear_density = 0.1;
+  scene.materials[0].material.radius = 0.01;
+  for (const double height : {0.0, 1.0}) {
+    CableDesc cable;
+    cable.name = height > 0 ? "upper" : "lower";
+    cable.length = 1;
+    cable.segments = 10;
+    cable.material = "rope";
+    cable.initial.type = InitialShapeDesc::Type::straight;
+    cable.initial.from = Vector3(0, 0, height);
+    cable.initial.to = Vector3(1, 0, height);
+    AttachmentDesc attachment;
+    attachment.name = cable.name + "_start";
+    attachment.offset = cable.initial.from;
+    cable.attachments = {attachment};
+    scene.cables.push_back(cable);
+  }
+  return World(scene, initial_frames(scene));
+}
+
+/// tf knows the fixed frame and a `hand` 2 m along +x from it.
+std::optional<Pose> find_frame(const std::string& frame) {
+  if (frame == "world") return Pose{};
+  if (frame == "hand") return Pose{Vector3(2, 0, 0), Quaternion::Identity()};
+  return std::nullopt;
+}
+
+CableLocation at_node(const std::string& cable, std::uint32_t node) {
+  CableLocation location;
+  location.cable = cable;
+  location.mode = CableLocation::NODE;
+  location.node = node;
+  return location;
+}
+
+CableLocation at_arc_length(const std::string& cable, double arc_length) {
+  CableLocation location;
+  location.cable = cable;
+  location.mode = CableLocation::ARC_LENGTH;
+  location.arc_length = arc_length;
+  return location;
+}
+
+CableLocation nearest(const std::string& cable, const std::string& frame, double x, double y, double z) {
+  CableLocation location;
+  location.cable = cable;
+  location.mode = CableLocation::NEAREST;
+  location.point.header.frame_id = frame;
+  location.point.point.x = x;
+  location.point.point.y = y;
+  location.point.point.z = z;
+  return location;
+}
+
+int node(const CableLocation& location) {
+  const Location found = locate_node(location, two_cables(), find_frame);
+  return found.errors.empty() ? found.index : -1;
+}
+
+int segment(const CableLocation& location) {
+  const Location found = locate_cut(location, two_cables(), find_frame);
+  return found.errors.empty() ? found.index : -1;
+}
+
+std::string node_errors(const CableLocation& location) {
+  return join(locate_node(location, two_cables(), find_frame).errors);
+}
+
+TEST(Location, NodesByNumber) {
+  EXPECT_EQ(node(at_node("lower", 0)), 0);
+  EXPECT_EQ(node(at_node("lower", 10)), 10);
+  EXPECT_EQ(segment(at_node("lower", 1)), 1);
+  EXPECT_EQ(segment(at_node("lower", 8)), 8);
+}
+
+TEST(Location, ArcLengthMeansTheNearestNodeOrTheSegmentThatContainsIt) {
+  EXPECT_EQ(node(at_arc_length("lower", 0)), 0);
+  EXPECT_EQ(node(at_arc_length("lower", 0.34)), 3);
+  EXPECT_EQ(node(at_arc_length("lower", 0.36)), 4);
+  EXPECT_EQ(node(at_arc_length("lower", 1)), 10);
+  EXPECT_EQ(segment(at_arc_length("lower", 0.36)), 3);
+}
+
+TEST(Location, NearestPointInAnyFrameOnAnyCable) {
+  EXPECT_EQ(node(nearest("lower", "", 0.52, 0.3, 0.2)), 5);
+  EXPECT_EQ(node(nearest("lower", "hand", -1.24, 0.3, 0.2)), 8);
+  EXPECT_EQ(segment(nearest("lower", "hand", -1.24, 0.3, 0.2)), 7);
+  const World world = two_cables();
+  EXPECT_EQ(world.cables()[locate_node(nearest("", "world", 0.5, 0, 0.4), world, find_frame).cable].model.name, "lower");
+  EXPECT_EQ(world.cables()[locate_node(nearest("", "world", 0.5, 0, 0.6), world, find_frame).cable].model.name, "upper");
+}
+
+TEST(Location, ErrorsNameFieldValueAndWhatIsAllowed) {
+  EXPECT_EQ(node_errors(at_node("hose", 3)), "location.cable: 'hose'; must be one of: lower, upper");
+  EXPECT_EQ(node_errors(at_node("lower", 11)), "location.node: 11; must be from 0 to 10");
+  EXPECT_NE(node_errors(at_node("lower", std::numeric_limits<std::uint32_t>::max())), "");
+  for (const double bad : {-0.1, 1.1, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    EXPECT_NE(node_errors(at_arc_length("lower", bad)).find("location.arc_length: "), std::string::npos) << bad;
+  }
+  CableLocation location = at_node("lower", 3);
+  location.mode = 9;
+  EXPECT_EQ(node_errors(location), "location.mode: 9; must be 0 (NODE), 1 (ARC_LENGTH) or 2 (NEAREST)");
+}
+
+TEST(Location, AllErrorsAtOnce) {
+  const std::string errors = node_errors(nearest("hose", "nowhere", std::numeric_limits<double>::quiet_NaN(), 0, 0));
+  for (const char* part : {"location.cable: 'hose'", "location.point.point: (nan", "location.point.header.frame_id: 'nowhere'"}) {
+    EXPECT_NE(errors.find(part), std::string::npos) << part << " in " << errors;
+  }
+}
+
+TEST(Location, ACutLeavesEachPieceASegment) {
+  for (const std::uint32_t bad : {0U, 9U, 10U}) EXPECT_EQ(segment(at_node("lower", bad)), -1) << bad;
+  EXPECT_EQ(segment(at_arc_length("lower", 0.05)), -1);
+  EXPECT_EQ(segment(nearest("lower", "", 2, 0, 0)), -1);
+  EXPECT_EQ(join(locate_cut(at_node("lower", 0), two_cables(), find_frame).errors),
+            "location.node: 0 means segment 0 of cable 'lower'; must be one from 1 to 8, so that each piece keeps one");
+}
+
+Pin::Request pin_request() {
+  Pin::Request request;
+  request.location = at_node("lower", 10);
+  request.offset.position.x = 0.9;
+  return request;
+}
+
+std::string pin_errors(const Pin::Request& request) {
+  return join(check_pin(request, two_cables(), find_frame).errors);
+}
+
+TEST(CheckedPin, AGoodRequest) {
+  const CheckedPin pin = check_pin(pin_request(), two_cables(), find_frame);
+  EXPECT_EQ(join(pin.errors), "");
+  EXPECT_EQ(pin.node, 10);
+  EXPECT_EQ(pin.frame, "world");
+  EXPECT_EQ(pin.offset.position, Vector3(0.9, 0, 0));
+  EXPECT_EQ(pin.offset.orientation.coeffs(), Quaternion::Identity().coeffs()) << "all zero is the identity";
+}
+
+TEST(CheckedPin, KeepsTheNodeWhereItIsRelativeToTheFrame) {
+  Pin::Request request = pin_request();
+  request.keep_offset = true;
+  request.frame_id = "hand";
+  const CheckedPin pin = check_pin(request, two_cables(), find_frame);
+  EXPECT_EQ(join(pin.errors), "");
+  // Rounding of positions around 2 m.
+  EXPECT_LT((pin.offset.position - Vector3(-1, 0, 0)).norm(), 1e-12);
+  EXPECT_LT((pin.offset.orientation * Vector3::UnitX() - Vector3::UnitX()).norm(), 1e-12);
+}
+
+TEST(CheckedPin, RefusesWithFieldAndValue) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Pin::Request request = pin_request();
+  request.offset.position.z = nan;
+  EXPECT_NE(pin_errors(request).find("offset.position: (0.9, 0, nan)"), std::string::npos) << pin_errors(request);
+  request = pin_request();
+  request.offset.orientation.w = 1e-9;
+  EXPECT_NE(pin_errors(request).find("offset.orientation"), std::string::npos);
+  request.offset.orientation.w = nan;
+  EXPECT_NE(pin_errors(request).find("offset.orientation"), std::string::npos);
+  request = pin_request();
+  request.name = "lower_start";
+  EXPECT_NE(pin_errors(request).find("name: 'lower_start'"), std::string::npos);
+  request.name = "no spaces";
+  EXPECT_NE(pin_errors(request).find("name: 'no spaces'"), std::string::npos);
+  request = pin_request();
+  request.frame_id = "nowhere";
+  EXPECT_NE(pin_errors(request).find("frame_id: 'nowhere'"), std::string::npos);
+  request.frame_id = "/world";
+  EXPECT_NE(pin_errors(request).find("frame_id: '/world'"), std::string::npos);
+  request = pin_request();
+  request.location.node = 0;
+  EXPECT_NE(pin_errors(request).find("held by attachment 'lower_start'"), std::string::npos);
+  request = pin_request();
+  request.offset.position.x = 1.01;
+  EXPECT_NE(pin_errors(request).find("is 1.01 m from attachment 'lower_start'"), std::string::npos) << pin_errors(request);
+}
+
+}  // namespace
+}  // namespace verlet_cable

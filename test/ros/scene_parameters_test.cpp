@@ -1,0 +1,57 @@
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <cmath>
+#include <limits>
+
+#include "verlet_cable/ros/scene_parameters.h"
+
+namespace verlet_cable {
+namespace {
+
+using XmlRpc::XmlRpcValue;
+
+TEST(SceneParameters, NumbersKeepEveryBit) {
+  EXPECT_EQ(to_yaml(XmlRpcValue(3)).as<int>(), 3);
+  EXPECT_EQ(to_yaml(XmlRpcValue(0.1)).as<double>(), 0.1);
+  EXPECT_EQ(to_yaml(XmlRpcValue(1.0 / 3)).as<double>(), 1.0 / 3);
+  EXPECT_EQ(to_yaml(XmlRpcValue(-1e-300)).as<double>(), -1e-300);
+  EXPECT_EQ(to_yaml(XmlRpcValue(std::numeric_limits<double>::infinity())).as<double>(), std::numeric_limits<double>::infinity());
+  EXPECT_TRUE(std::isnan(to_yaml(XmlRpcValue(std::numeric_limits<double>::quiet_NaN())).as<double>()));
+}
+
+TEST(SceneParameters, TextIsPassedThrough) {
+  EXPECT_EQ(to_yaml(XmlRpcValue("1e-5")).as<std::string>(), "1e-5");
+  EXPECT_EQ(to_yaml(XmlRpcValue("1e-5")).as<double>(), 1e-5);
+  EXPECT_EQ(to_yaml(XmlRpcValue("")).as<std::string>(), "");
+  EXPECT_EQ(to_yaml(XmlRpcValue(true)).as<bool>(), true);
+}
+
+TEST(SceneParameters, TreesKeepTheirShape) {
+  XmlRpcValue value;
+  value["frame_id"] = "base";
+  value["gravity"][0] = 0;
+  value["gravity"][1] = 0.5;
+  value["gravity"][2] = "-9.81";
+  value["cables"][0]["name"] = "hose";
+  const YAML::Node node = to_yaml(value);
+  EXPECT_EQ(node.size(), 3U);
+  EXPECT_EQ(node["frame_id"].as<std::string>(), "base");
+  EXPECT_EQ(node["gravity"].as<std::vector<double>>(), (std::vector<double>{0, 0.5, -9.81}));
+  EXPECT_EQ(node["cables"][0]["name"].as<std::string>(), "hose");
+}
+
+TEST(SceneParameters, OtherTypesAreNamedWithTheirKey) {
+  XmlRpcValue value;
+  char bytes[] = "bytes";
+  value["cables"][0]["name"] = XmlRpcValue(bytes, sizeof(bytes));
+  try {
+    to_yaml(value);
+    FAIL() << "binary data was accepted";
+  } catch (const SceneError& error) {
+    EXPECT_NE(error.errors().at(0).find("cables[0].name"), std::string::npos) << error.errors().at(0);
+  }
+}
+
+}  // namespace
+}  // namespace verlet_cable
