@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "verlet_cable/core/number_text.h"
+#include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/core/scene_fields.h"
 #include "verlet_cable/core/world.h"
 
@@ -28,10 +29,6 @@ class Errors {
 
 std::string indexed(const std::string& key, std::size_t index) {
   return key + "[" + std::to_string(index) + "]";
-}
-
-std::string quoted(const std::string& text) {
-  return '"' + text + '"';
 }
 
 template <class Numbers>
@@ -142,8 +139,8 @@ void check_attachments(const std::string& prefix, const CableDesc& cable, Unique
 std::string material_names(const SceneDesc& scene) {
   constexpr std::size_t most = 20;
   if (scene.materials.empty()) return "it has none";
-  std::string names = scene.materials[0].name;
-  for (std::size_t i = 1; i < std::min(most, scene.materials.size()); ++i) names += ", " + scene.materials[i].name;
+  std::string names = escaped(scene.materials[0].name);
+  for (std::size_t i = 1; i < std::min(most, scene.materials.size()); ++i) names += ", " + escaped(scene.materials[i].name);
   return scene.materials.size() > most ? names + ", ..." : names;
 }
 
@@ -257,8 +254,8 @@ std::vector<std::string> validate(const SceneDesc& scene) {
 
   UniqueNames materials;
   for (const NamedMaterial& named : scene.materials) {
-    materials.check("materials." + named.name, named.name, errors);
-    check_fields("materials." + named.name + ".", material_fields, named.material, errors);
+    materials.check("materials." + escaped(named.name), named.name, errors);
+    check_fields("materials." + escaped(named.name) + ".", material_fields, named.material, errors);
   }
 
   UniqueNames cables, attachments;

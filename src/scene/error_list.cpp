@@ -29,14 +29,6 @@ std::vector<std::string> ErrorList::take() {
   return std::move(lines_);
 }
 
-void ErrorList::add_line(const std::string& line) {
-  if (lines_.size() < most_lines) {
-    lines_.push_back(line);
-  } else {
-    ++dropped_;
-  }
-}
-
 bool ErrorList::is_unread(std::string key) const {
   while (!unread_keys_.count(key)) {
     const std::size_t end = key.find_last_of(".[");
@@ -44,6 +36,14 @@ bool ErrorList::is_unread(std::string key) const {
     key.erase(end);
   }
   return true;
+}
+
+void ErrorList::add_line(const std::string& line) {
+  if (lines_.size() < most_lines) {
+    lines_.push_back(line);
+  } else {
+    ++dropped_;
+  }
 }
 
 }  // namespace verlet_cable

@@ -22,9 +22,11 @@ class ErrorList {
   bool empty() const { return lines_.empty(); }
   std::vector<std::string> take();
 
+  /// Whether nothing could be read for `key`, or for something that it is inside of.
+  bool is_unread(std::string key) const;
+
  private:
   void add_line(const std::string& line);
-  bool is_unread(std::string key) const;
 
   std::vector<std::string> lines_;
   std::size_t dropped_ = 0;

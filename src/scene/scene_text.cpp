@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t largest_text = std::size_t{64} << 20;
 constexpr std::size_t most_values = 2'000'000;
 constexpr std::size_t deepest_level = 32;
+constexpr std::size_t longest_message = 300;
 
 std::string place_text(const YAML::Mark& mark) {
   return "line " + std::to_string(mark.line + 1) + ", column " + std::to_string(mark.column + 1) + ": ";
@@ -112,7 +113,7 @@ SceneDesc read_scene_text(const std::string& text) {
     check_size(text);
     return read_scene(YAML::Load(text));
   } catch (const YAML::Exception& error) {
-    throw SceneError({place_text(error.mark) + error.msg});
+    throw SceneError({place_text(error.mark) + escaped(error.msg, longest_message)});
   }
 }
 

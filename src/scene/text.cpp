@@ -13,7 +13,6 @@
 namespace verlet_cable {
 namespace {
 
-constexpr std::size_t longest_text = 60;
 constexpr std::size_t longest_name_compared = 64;
 
 std::string lower_case(std::string text) {
@@ -60,27 +59,6 @@ std::optional<double> parse_number(const std::string& text) {
   // Overflow is an error of the stream that leaves the largest number; underflow leaves something near zero, which is meant.
   if (stream.fail() && std::abs(number) > 1) return std::nullopt;
   return number;
-}
-
-std::string escaped(const std::string& text) {
-  constexpr char hexadecimal[] = "0123456789abcdef";
-  std::string result;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    // Characters of UTF-8 stay whole.
-    const bool continues = (byte & 0xc0) == 0x80;
-    if (result.size() >= longest_text && (!continues || result.size() >= longest_text + 3)) return result + "...";
-    if (byte < 0x20 || byte == 0x7f) {
-      result += {'\\', 'x', hexadecimal[byte / 16], hexadecimal[byte % 16]};
-    } else {
-      result += c;
-    }
-  }
-  return result;
-}
-
-std::string quoted(const std::string& text) {
-  return '"' + escaped(text) + '"';
 }
 
 std::size_t spelling_distance(const std::string& a, const std::string& b) {

@@ -71,6 +71,7 @@ bool has_value(const YAML::Node& node, const std::string& value) {
 }
 
 void reject(const UnsupportedKey& unsupported, const Value& value) {
+  if (value.errors->is_unread(value.key)) return;
   const bool is_value = has_value(value.node, unsupported.value);
   if (unsupported.passes == Passes::only ? is_value : unsupported.passes == Passes::all_but && !is_value) return;
   const std::string named = std::string("only ") + (*unsupported.value ? unsupported.value : "\"\"");

@@ -4,16 +4,13 @@
 #include <optional>
 #include <string>
 
+#include "verlet_cable/core/quoted_text.h"
+
 namespace verlet_cable {
 
 /// The number that a text is: decimal, with or without exponent, or [+-][.]inf[inity] in any case. None for NaN, hexadecimal and
 /// numbers that a double cannot hold. Does not depend on the locale.
 std::optional<double> parse_number(const std::string& text);
-
-/// A text for messages: one line, at most about 60 characters, control characters escaped.
-std::string escaped(const std::string& text);
-/// The same in quotes.
-std::string quoted(const std::string& text);
 
 /// How many characters have to be put in, left out or replaced to get from one text to the other (Levenshtein); 64 for long
 /// texts.

@@ -1,0 +1,125 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "scene_text.h"
+
+namespace verlet_cable {
+namespace {
+
+using test::errors_of;
+using test::has_line;
+using test::joined;
+using test::sound_scene;
+
+TEST(SceneLimits, aliasesThatMultiplyAreRefused) {
+  std::string text = "a: &a0 [x, x, x, x, x, x, x, x, x, x]\n";
+  for (int i = 1; i <= 12; ++i) {
+    const std::string alias = "*a" + std::to_string(i - 1);
+    text += "b" + std::to_string(i) + ": &a" + std::to_string(i) + " [" + alias;
+    for (int k = 1; k < 10; ++k) text += ", " + alias;
+    text += "]\n";
+  }
+  const auto errors = errors_of(text);
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_NE(errors[0].find("more than 2000000 values"), std::string::npos) << errors[0];
+}
+
+TEST(SceneLimits, aliasesThatNestAreRefused) {
+  std::string text = "a0: &a0 [x]\n";
+  for (int i = 1; i <= 40; ++i)
+    text += "a" + std::to_string(i) + ": &a" + std::to_string(i) + " [*a" + std::to_string(i - 1) + "]\n";
+  const auto errors = errors_of(text);
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_NE(errors[0].find("nested deeper than 32 levels"), std::string::npos) << errors[0];
+}
+
+TEST(SceneLimits, anAliasInsideOfWhatItNamesIsRefused) {
+  EXPECT_TRUE(has_line(errors_of("a: &a [*a]\n"), "line 1, column 8: an alias inside"));
+}
+
+TEST(SceneLimits, deepTextIsRefused) {
+  for (const char* open : {"[", "{a: ", "- ", "? "}) {
+    std::string text;
+    for (int i = 0; i < 100000; ++i) text += open;
+    const auto errors = errors_of(text);
+    ASSERT_EQ(errors.size(), 1u) << open;
+    EXPECT_LT(errors[0].size(), 200u);
+  }
+}
+
+TEST(SceneLimits, errorsAreCountedNotPiledUp) {
+  std::string text = sound_scene;
+  for (int i = 0; i < 5000; ++i) text += "key" + std::to_string(i) + ": 1\n";
+  const auto errors = errors_of(text);
+  EXPECT_EQ(errors.size(), 501u);
+  EXPECT_EQ(errors.back(), "and 4500 more errors");
+}
+
+TEST(SceneLimits, longValuesAreShortInMessages) {
+  const auto errors =
+      errors_of("frame_id: world\ncables: " + std::string(1000000, 'x') + "\n" + std::string(1000, 'k') + ": 3\n");
+  EXPECT_EQ(errors.size(), 2u) << joined(errors);
+  for (const std::string& error : errors) EXPECT_LT(error.size(), 400u);
+}
+
+TEST(SceneLimits, aLargeSceneIsRead) {
+  constexpr int nodes = 50001;
+  std::string text =
+      "materials: {m: {linear_density: 1, radius: 1}}\ncables:\n  - name: c\n    length: 50\n    segments: 50000\n    material: "
+      "m\n";
+  text += "    initial:\n      type: points\n      points:\n";
+  for (int i = 0; i < nodes; ++i) text += "        - [" + std::to_string(i) + "e-3, 0, 1]\n";
+  const SceneDesc scene = read_scene_text(text);
+  ASSERT_EQ(scene.cables[0].initial.points.size(), static_cast<std::size_t>(nodes));
+  EXPECT_EQ(scene.cables[0].initial.points.back(), Vector3(50, 0, 1));
+}
+
+/// A scene that is read, or refused with reasons: never anything else.
+void expect_an_answer(const std::string& text) {
+  try {
+    const SceneDesc scene = read_scene_text(text);
+    EXPECT_EQ(joined(validate(scene)), "") << text;
+  } catch (const SceneError& error) {
+    ASSERT_FALSE(error.errors().empty()) << text;
+    for (const std::string& line : error.errors()) EXPECT_EQ(line.find_first_of("\n\r\x1b"), std::string::npos) << text;
+  }
+}
+
+TEST(SceneLimits, randomBytesGetAnAnswer) {
+  std::mt19937 random(1);
+  for (int i = 0; i < 3000; ++i) {
+    std::string text(random() % 200, ' ');
+    for (char& c : text) c = static_cast<char>(random());
+    expect_an_answer(text);
+  }
+}
+
+TEST(SceneLimits, mutatedScenesGetAnAnswer) {
+  const std::string pieces[] = {"[",     "]",      "{",       "}",         ":",
+                                ",",     "-",      "\n",      " ",         "&a ",
+                                "*a",    "!",      "|",       ">",         "\"",
+                                "'",     "#",      "?",       "nan",       "-1",
+                                "1e999", ".inf",   "~",       "[0, 0, 0]", "\t",
+                                "%",     "@",      "settled", "points",    "points: [[0, 0, 0], [1, 0, 0]]",
+                                "0",     "1e-300", "end",     "\xff",      std::string(1, '\0')};
+  std::mt19937 random(2);
+  for (int i = 0; i < 5000; ++i) {
+    std::string text = sound_scene;
+    for (std::size_t changes = 1 + random() % 4; changes > 0; --changes) {
+      const std::size_t at = random() % text.size();
+      const std::size_t removed = random() % 3 == 0 ? random() % 20 : random() % 2;
+      text.replace(at, removed, random() % 4 == 0 ? std::string() : pieces[random() % std::size(pieces)]);
+      if (text.empty()) text = " ";
+    }
+    expect_an_answer(text);
+  }
+}
+
+}  // namespace
+}  // namespace verlet_cable
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}

@@ -1,0 +1,156 @@
+#include <gtest/gtest.h>
+
+#include "scene_text.h"
+#include "verlet_cable/scene/text.h"
+
+namespace verlet_cable {
+namespace {
+
+using test::replaced;
+using test::sound_scene;
+
+TEST(SceneReader, readsEveryKey) {
+  const SceneDesc scene = read_scene_text(R"(
+frame_id: map
+time_step: 0.005
+gravity: [1, 2, 3]
+publish_rate: 25
+tf_latency: 0.1
+tf_timeout: 1.5
+on_lost_frame: pause
+max_frame_speed: 3
+on_time_jump: keep
+marker_style: line
+color_by: strain
+scene_directory: ""
+limits: {segments: 50, snapshots: 3, rollouts: 0}
+seed: 7
+integrator: verlet
+nets: []
+materials:
+  rope: {linear_density: 0.2, radius: 0.01, drag: 0.3, axial_stiffness: .inf, bending_stiffness: 0, friction: 0.5}
+cables:
+  - name: a
+    length: 2
+    segments: 4
+    material: rope
+    color: [0, 0.25, 0.5, 1]
+    rest_curvature: straight
+    initial: {type: points, points: [[0, 0, 0], [1, 0, 0], [1, 1, 0]], velocities: [[0, 0, 1], [0, 0, 2], [0, 0, 3]]}
+    attachments:
+      - {name: a1, at: 0.5, frame: hand, offset: [1, 2, 3], rotation: [0.1, 0.2, 0.3], type: clamp, initial_pose: [1, 2, 3, 4, 5, 6]}
+    point_masses: [{at: end, mass: 0.5}, {at: start, mass: 0.25}]
+  - name: b
+    length: 1
+    segments: 2
+    material: rope
+    initial: {type: straight, from: [1, 1, 1], to: [1, 1, 2]}
+)");
+  EXPECT_EQ(scene.frame_id, "map");
+  EXPECT_EQ(scene.time_step, 0.005);
+  EXPECT_EQ(scene.gravity.acceleration, Vector3(1, 2, 3));
+  EXPECT_EQ(scene.publish_rate, 25);
+  EXPECT_EQ(scene.tf_latency, 0.1);
+  EXPECT_EQ(scene.tf_timeout, 1.5);
+  EXPECT_EQ(scene.on_lost_frame, LostFramePolicy::pause);
+  EXPECT_EQ(scene.max_frame_speed, 3);
+  EXPECT_EQ(scene.on_time_jump, TimeJumpPolicy::keep);
+  EXPECT_EQ(scene.marker_style, MarkerStyle::line);
+  EXPECT_EQ(scene.color_by, ColorBy::strain);
+  EXPECT_EQ(scene.limits.segments, 50);
+  EXPECT_EQ(scene.limits.snapshots, 3);
+  EXPECT_EQ(scene.limits.rollouts, 0);
+  EXPECT_EQ(scene.seed, 7);
+
+  ASSERT_NE(scene.find_material("rope"), nullptr);
+  EXPECT_EQ(scene.find_material("rope")->linear_density, 0.2);
+  EXPECT_EQ(scene.find_material("rope")->radius, 0.01);
+  EXPECT_EQ(scene.find_material("rope")->drag, 0.3);
+  EXPECT_EQ(scene.find_material("rope")->axial_stiffness, infinity);
+  EXPECT_EQ(scene.find_material("string"), nullptr);
+
+  ASSERT_EQ(scene.cables.size(), 2u);
+  const CableDesc& a = scene.cables[0];
+  EXPECT_EQ(a.name, "a");
+  EXPECT_EQ(a.length, 2);
+  EXPECT_EQ(a.segments, 4);
+  EXPECT_EQ(a.material, "rope");
+  EXPECT_EQ(a.color, (std::array<double, 4>{0, 0.25, 0.5, 1}));
+  EXPECT_EQ(a.initial.type, InitialShapeDesc::Type::points);
+  ASSERT_EQ(a.initial.points.size(), 3u);
+  EXPECT_EQ(a.initial.points[2], Vector3(1, 1, 0));
+  ASSERT_EQ(a.initial.velocities.size(), 3u);
+  EXPECT_EQ(a.initial.velocities[1], Vector3(0, 0, 2));
+  ASSERT_EQ(a.attachments.size(), 1u);
+  EXPECT_EQ(a.attachments[0].name, "a1");
+  EXPECT_EQ(a.attachments[0].place.at, PlaceDesc::At::arc_length);
+  EXPECT_EQ(a.attachments[0].place.arc_length, 0.5);
+  EXPECT_EQ(a.attachments[0].frame, "hand");
+  EXPECT_EQ(a.attachments[0].offset, Vector3(1, 2, 3));
+  EXPECT_EQ(a.attachments[0].rotation, Vector3(0.1, 0.2, 0.3));
+  EXPECT_EQ(a.attachments[0].type, AttachmentType::clamp);
+  EXPECT_EQ(a.attachments[0].initial_pose, (InitialPose{1, 2, 3, 4, 5, 6}));
+  ASSERT_EQ(a.point_masses.size(), 2u);
+  EXPECT_EQ(a.point_masses[0].place.at, PlaceDesc::At::end);
+  EXPECT_EQ(a.point_masses[0].mass, 0.5);
+  EXPECT_EQ(scene.cables[1].initial.from, Vector3(1, 1, 1));
+  EXPECT_EQ(scene.cables[1].initial.to, Vector3(1, 1, 2));
+}
+
+TEST(SceneReader, keepsDefaultsOfWhatIsNotGiven) {
+  const SceneDesc defaults;
+  const SceneDesc scene = read_scene_text(
+      "{materials: {m: {linear_density: 1, radius: 1}}, cables: [{name: c, length: 1, segments: 1, material: m}]}");
+  EXPECT_EQ(scene.frame_id, defaults.frame_id);
+  EXPECT_EQ(scene.time_step, defaults.time_step);
+  EXPECT_EQ(scene.gravity.acceleration, defaults.gravity.acceleration);
+  EXPECT_EQ(scene.limits.segments, defaults.limits.segments);
+  EXPECT_EQ(scene.find_material("m")->friction, MaterialDesc{}.friction);
+  EXPECT_EQ(scene.cables[0].initial.type, InitialShapeDesc::Type::automatic);
+  EXPECT_TRUE(scene.cables[0].attachments.empty());
+}
+
+TEST(SceneReader, numbersMayBeText) {
+  const SceneDesc scene =
+      read_scene_text(replaced(sound_scene, "time_step: 0.002", "time_step: \"1e-5\"\nmax_frame_speed: \"inf\"\nseed: 2.0"));
+  EXPECT_EQ(scene.time_step, 1e-5);
+  EXPECT_EQ(scene.max_frame_speed, infinity);
+  EXPECT_EQ(scene.seed, 2);
+}
+
+TEST(SceneReader, parsesNumbers) {
+  EXPECT_EQ(parse_number("1e-5"), 1e-5);
+  EXPECT_EQ(parse_number("-.5E+2"), -50.0);
+  EXPECT_EQ(parse_number("+3."), 3.0);
+  EXPECT_EQ(parse_number("0.1"), 0.1);
+  EXPECT_EQ(parse_number("1e-400"), 0.0);
+  EXPECT_EQ(parse_number(".inf"), infinity);
+  EXPECT_EQ(parse_number("-.Inf"), -infinity);
+  EXPECT_EQ(parse_number("Infinity"), infinity);
+  for (const char* text :
+       {"", ".", "-", "nan", ".nan", "NaN", "1e400", "0x10", "1e", "e5", "1 2", "1.2.3", "1,5", "1_000", "inf2", "--1", " 1"})
+    EXPECT_FALSE(parse_number(text)) << text;
+}
+
+TEST(SceneReader, aliasesStandForWhatTheyName) {
+  const SceneDesc scene = read_scene_text(R"(
+materials: {m: &m {linear_density: 0.1, radius: 0.1}, n: *m}
+cables: [{name: c, length: 1, segments: 2, material: n, attachments: [{name: a, at: start, offset: &o [1, 2, 3]}, {name: b, at: end, offset: *o}]}]
+)");
+  EXPECT_EQ(scene.find_material("n")->radius, 0.1);
+  EXPECT_EQ(scene.cables[0].attachments[1].offset, Vector3(1, 2, 3));
+}
+
+TEST(SceneReader, ignoresOnlyTheTopLevelKeysItIsToldTo) {
+  const YAML::Node root = YAML::Load(sound_scene + "tuning: {gravity: 3}\n");
+  EXPECT_NO_THROW(read_scene(root, {"tuning"}));
+  EXPECT_THROW(read_scene(root), SceneError);
+}
+
+}  // namespace
+}  // namespace verlet_cable
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  return RUN_ALL_TESTS();
+}
