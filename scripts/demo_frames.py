@@ -23,7 +23,7 @@ CYCLE = 24.0          # [s] three pulls
 CUT_AT = 20.0         # [s] of the cycle, at a pull
 RESET_AT = 23.9       # [s] of the cycle, when the hands are close again
 CUT_PLACE = 0.6       # [m] from the start of the rope
-LEGEND = 'tension: blue = slack, red = taut'
+LEGEND = 'color: tension, from blue (slack) to red (taut)'
 
 
 def turn(t, period):
@@ -37,15 +37,15 @@ def pose(x, y, z, pitch=0.0):
 
 def frame_poses(t):
     """Where each frame is at a time [s]."""
-    apart = 0.56 - 0.22 * math.cos(turn(t, PULL_PERIOD))         # half the distance of the hands, 0.34 to 0.78 m
+    apart = 0.71 - 0.22 * math.cos(turn(t, PULL_PERIOD))  # [m] half the distance of the hands
     sway = 0.12 * math.sin(turn(t, PULL_PERIOD / 2))
     tilt = math.radians(60) * (1 + math.cos(turn(t, PULL_PERIOD))) / 2  # the hands point along the rope
-    whirl = turn(t, 0.9)
+    whirl = turn(t, 0.8)
     return {
-        'left_hand': pose(-apart, sway, 1.2, pitch=tilt),
-        'right_hand': pose(apart, -sway, 1.2, pitch=-tilt),
-        'hook': pose(-1.25 + 0.15 * math.sin(turn(t, 3.0)), 0, 1.45),
-        'swivel': pose(1.3 + 0.07 * math.cos(whirl), 0.07 * math.sin(whirl), 1.45),
+        'left_hand': pose(-apart, sway, 0.95, pitch=tilt),
+        'right_hand': pose(apart, -sway, 0.95, pitch=-tilt),
+        'hook': pose(-1.5 + 0.15 * math.sin(turn(t, 3.0)), 0, 1.1),
+        'swivel': pose(1.5 + 0.1 * math.cos(whirl), 0.1 * math.sin(whirl), 1.1),
     }
 
 
@@ -99,8 +99,8 @@ class Director:
             rospy.logwarn('%s', answer.message)
 
     def _show(self, rope):
-        self._labels.publish([label(0, rope, 0, 1.42), label(1, 'a payload', -1.25, 1.58), label(2, 'a free end', 1.3, 1.58),
-                              label(3, LEGEND, 0, 0.1)])
+        self._labels.publish([label(0, rope, 0, 1.12), label(1, 'a payload', -1.5, 1.2), label(2, 'a free end', 1.5, 1.2),
+                              label(3, LEGEND, 0, 1.4)])
 
 
 def main():

@@ -64,8 +64,10 @@ def _read(path):
         with open(path, encoding='utf-8') as file:
             header = file.readline().strip().split(',')
             lines = [line.strip() for line in file]
-    except (OSError, UnicodeDecodeError) as error:
-        raise RecordingError(f'{path}: cannot be read: {error}') from error
+    except OSError as error:
+        raise RecordingError(f'{path}: cannot be read: {error.strerror}') from error
+    except UnicodeDecodeError as error:
+        raise RecordingError(f'{path}: is not a text file: {error}') from error
     rows = []
     for number, line in enumerate(lines, start=2):
         if not line:

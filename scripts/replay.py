@@ -132,7 +132,8 @@ class Replay:
         self._compared = 0.0     # [s] of the recording, up to here
         self._error = MeanError()
         self._cable_seen = threading.Event()
-        self._reset_seen = threading.Event()
+        self._reset_seen = threading.Event()  # cleared while that of this node is waited for; others change nothing
+        self._reset_seen.set()
         rospy.Subscriber('cable/events', CableEvent, self._on_event, queue_size=10)
         rospy.Subscriber('cable/state', CableArray, self._on_state, queue_size=5)
 
@@ -194,7 +195,7 @@ class Replay:
             rospy.sleep(remaining)
 
     def _on_event(self, event):
-        if event.type == CableEvent.RESET:
+        if event.type == CableEvent.RESET and not self._reset_seen.is_set():
             with self._lock:
                 self._start = event.header.stamp
             self._reset_seen.set()
@@ -205,7 +206,7 @@ class Replay:
         self._cable_seen.set()
         stamp = state.header.stamp
         with self._lock:
-            time = (stamp - self._start).to_sec() if self._start else 0.0
+            time = (stamp - self._start).to_sec() if self._start is not None else 0.0
             measured = self._recording.at(time)
             if self._compared < time <= self._recording.duration:
                 self._compared = time
@@ -216,13 +217,8 @@ class Replay:
 
 def main():
     rospy.init_node('replay')
-    path = rospy.get_param('~data')
-    try:
-        replay = Replay(Recording(path))
-    except RecordingError as error:
-        rospy.logfatal('%s', error)
-        sys.exit(1)
     loop = rospy.get_param('~loop', True)
+    replay = Replay(Recording(rospy.get_param('~data')))
     rospy.wait_for_service('cable/reset')
     while not rospy.is_shutdown():
         error = replay.play()
@@ -235,5 +231,8 @@ def main():
 if __name__ == '__main__':
     try:
         main()
-    except rospy.ROSInterruptException:
-        pass
+    except (rospy.ROSInterruptException, rospy.exceptions.ROSInitException):
+        pass  # ended from outside
+    except (RecordingError, rospy.ServiceException) as problem:
+        rospy.logfatal('%s', problem)
+        sys.exit(1)

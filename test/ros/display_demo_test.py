@@ -27,12 +27,18 @@ class DemoTest(unittest.TestCase):
 
     def test_hands_never_ask_for_more_rope_than_there_is(self):
         with open(os.path.join(PACKAGE, 'config', 'demo.yaml'), encoding='utf-8') as file:
-            cables = {cable['name']: cable for cable in yaml.safe_load(file)['cables']}
+            rope = next(cable for cable in yaml.safe_load(file)['cables'] if cable['name'] == 'rope')
         for moment in np.arange(0, demo_frames.CYCLE, 0.01):
             poses = demo_frames.frame_poses(moment)
-            left, right = (poses[hand][0] for hand in ('left_hand', 'right_hand'))
-            distance = np.linalg.norm([left.x - right.x, left.y - right.y, left.z - right.z])
-            self.assertLess(distance, cables['rope']['length'])
+            left, right = (self.held_point(poses[attachment['frame']], attachment['offset']) for attachment in rope['attachments'])
+            self.assertLess(np.linalg.norm(left - right), rope['length'])
+
+    @staticmethod
+    def held_point(pose, offset):
+        """An offset along x, in a frame that is turned about y."""
+        position, quaternion = pose
+        pitch = 2 * np.arctan2(quaternion.y, quaternion.w)
+        return np.array([position.x, position.y, position.z]) + offset[0] * np.array([np.cos(pitch), 0, -np.sin(pitch)])
 
     def test_rates_and_stamps(self):
         command = ['roslaunch', 'verlet_cable', 'demo.launch', 'rviz:=false']
@@ -49,15 +55,18 @@ class DemoTest(unittest.TestCase):
         stamps = {'markers': [], 'points': [], 'state': []}
         came = threading.Event()
 
-        def receive(topic, stamp):
-            stamps[topic].append(stamp)
+        def receive(topic, message, cables):
+            if not cables:  # they wait for their frames
+                return
+            header = message.markers[0].header if topic == 'markers' else message.header
+            stamps[topic].append(header.stamp)
             if all(stamps.values()):
                 came.set()
 
         subscribers = [
-            rospy.Subscriber('/cable/markers', MarkerArray, lambda m: receive('markers', m.markers[0].header.stamp)),
-            rospy.Subscriber('/cable/points', PointCloud2, lambda m: receive('points', m.header.stamp)),
-            rospy.Subscriber('/cable/state', CableArray, lambda m: receive('state', m.header.stamp)),
+            rospy.Subscriber('/cable/markers', MarkerArray, lambda m: receive('markers', m, m.markers)),
+            rospy.Subscriber('/cable/points', PointCloud2, lambda m: receive('points', m, m.width)),
+            rospy.Subscriber('/cable/state', CableArray, lambda m: receive('state', m, m.cables)),
         ]
         self.assertTrue(came.wait(20.0), f'within 20 s came {({topic: len(seen) for topic, seen in stamps.items()})}')
         time.sleep(seconds)

@@ -151,8 +151,8 @@ TEST_F(Topics, MarkersShowCablesPinsAndPayloads) {
   const Marker* payload = find(markers, "payloads", Marker::SPHERE);
   ASSERT_TRUE(payload);
   EXPECT_NEAR(payload->pose.position.z, world_.cables()[0].state.positions.back().z(), 1e-12);
-  // the ball of 0.5 kg of steel: (6 m / (pi 7850))^(1/3)
-  EXPECT_NEAR(payload->scale.x, 0.04955, 1e-5);
+  // the ball of 0.5 kg of aluminium: (6 m / (pi 2700))^(1/3)
+  EXPECT_NEAR(payload->scale.x, 0.07072, 1e-5);
 }
 
 TEST_F(Topics, MarkersAsLines) {
