@@ -161,8 +161,8 @@ def run(program, results, log_directory):
 def check_package(package):
     """catkin_lint as a test case of its own, where it is installed."""
     lint = Program('catkin_lint', [])
-    checked = subprocess.run(['catkin_lint', '--offline', '-q', '--ignore', 'uninstalled_script', str(package)], stdout=subprocess.PIPE,
-                             stderr=subprocess.STDOUT, text=True)
+    checked = subprocess.run(['catkin_lint', '--offline', '-q', '--ignore', 'uninstalled_script', str(package)],
+                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     print(checked.stdout, end='')
     if checked.returncode == 0:
         lint.passed = 1
@@ -186,7 +186,7 @@ def main():
     build = Program('build', [])
     if not built:
         log = (workspace / 'build.log').read_text(errors='replace').splitlines()
-        build.failures += [line for line in log if BUILD_ERROR.search(line)][:20] or ['see above']
+        build.failures += [line for line in dict.fromkeys(log) if BUILD_ERROR.search(line)][:20] or ['see above']
         remove_outdated_executables(workspace)
     programs = registered_programs(workspace / 'build')
     if not programs:
