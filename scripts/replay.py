@@ -32,7 +32,8 @@ HOLD_AFTER = 1.0          # [s] at the last pose
 RETURN = 2.0              # [s] from the last pose to the first
 STANDSTILL = 0.15         # [s] without tf after which the simulation has used up what it had: a multiple of tf_latency
 ANSWER_TIMEOUT = 10.0     # [s] for the node
-MEASURED_COLOR = ColorRGBA(1.0, 1.0, 1.0, 0.55)
+MEASURED_COLOR = ColorRGBA(0.25, 0.9, 0.35, 0.8)
+TEXT_COLOR = ColorRGBA(1.0, 1.0, 1.0, 1.0)
 
 
 class MeanError:
@@ -104,6 +105,7 @@ class MeasuredCable:
         balls.scale = Vector3(0.022, 0.022, 0.022)
         balls.points = points
         label = self._marker('error', Marker.TEXT_VIEW_FACING, stamp)
+        label.color = TEXT_COLOR
         label.scale.z = 0.045
         label.text = text
         label.pose.position = Point(*(positions[[0, -1]].mean(axis=0) + [0, 0, 0.22]))
@@ -135,7 +137,7 @@ class Replay:
         self._reset_seen = threading.Event()  # cleared while that of this node is waited for; others change nothing
         self._reset_seen.set()
         rospy.Subscriber('cable/events', CableEvent, self._on_event, queue_size=10)
-        rospy.Subscriber('cable/state', CableArray, self._on_state, queue_size=5)
+        rospy.Subscriber('cable/state', CableArray, self._on_state, queue_size=100)
 
     def play(self):
         """One run; returns its mean error."""
@@ -212,7 +214,7 @@ class Replay:
                 self._compared = time
                 self._error.add(points_at(state.cables[0], self._places), measured)
                 self._error_publisher.publish(self._error.mean)
-            self._measured.publish(measured, stamp, f'white: measured\nmean error {100 * self._error.mean:.1f} cm')
+            self._measured.publish(measured, stamp, f'orange: simulated, green: measured\nmean error {100 * self._error.mean:.1f} cm')
 
 
 def main():
@@ -222,6 +224,8 @@ def main():
     rospy.wait_for_service('cable/reset')
     while not rospy.is_shutdown():
         error = replay.play()
+        if rospy.is_shutdown():
+            return
         rospy.loginfo('mean error %.2f cm over %d frames', 100 * error.mean, error.frames)
         if not loop:
             return

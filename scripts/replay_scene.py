@@ -14,6 +14,7 @@ from recording import Recording, RecordingError  # noqa: E402
 
 SEGMENT_LENGTH = 0.02  # [m], about
 PARAMETER = '/cable/cables'
+ORANGE = [1.0, 0.55, 0.1, 1.0]
 
 
 def cables_of(recording):
@@ -24,6 +25,7 @@ def cables_of(recording):
         'length': length,
         'segments': max(1, round(length / SEGMENT_LENGTH)),
         'material': 'generic',
+        'color': ORANGE,
         'initial': {
             'type': 'points',
             'points': recording.markers[0].tolist(),
