@@ -224,8 +224,3 @@ TEST(SceneErrors, syntaxErrorsHaveLineAndColumn) {
 
 }  // namespace
 }  // namespace verlet_cable
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

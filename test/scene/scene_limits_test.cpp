@@ -118,8 +118,3 @@ TEST(SceneLimits, mutatedScenesGetAnAnswer) {
 
 }  // namespace
 }  // namespace verlet_cable
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

@@ -149,8 +149,3 @@ TEST(SceneReader, ignoresOnlyTheTopLevelKeysItIsToldTo) {
 
 }  // namespace
 }  // namespace verlet_cable
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

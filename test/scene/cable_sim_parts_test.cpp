@@ -1,0 +1,190 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <limits>
+
+#include "cable_sim/event_log.h"
+#include "cable_sim/frame_source.h"
+#include "cable_sim/job.h"
+#include "cable_sim/json_writer.h"
+#include "cable_sim/options.h"
+#include "cable_sim/output_file.h"
+#include "scene_text.h"
+
+namespace verlet_cable::cable_sim {
+namespace {
+
+using test::has_line;
+using test::joined;
+
+Options parse(const std::vector<std::string>& arguments, std::vector<std::string>* errors) {
+  errors->clear();
+  return parse_options(arguments, *errors);
+}
+
+TEST(Options, areRead) {
+  std::vector<std::string> errors;
+  const Options options = parse(
+      {"--duration", "2.5", "a.yaml", "--rate=5e1", "--motion", "m.csv", "--output=o.csv", "--summary", "s.json", "__name:=x"},
+      &errors);
+  EXPECT_EQ(joined(errors), "");
+  EXPECT_EQ(options.scene, "a.yaml");
+  EXPECT_EQ(options.duration, 2.5);
+  EXPECT_EQ(options.rate, 50);
+  EXPECT_EQ(options.motion, "m.csv");
+  EXPECT_EQ(options.output, "o.csv");
+  EXPECT_EQ(options.summary, "s.json");
+}
+
+TEST(Options, haveDefaults) {
+  std::vector<std::string> errors;
+  const Options options = parse({"a.yaml"}, &errors);
+  EXPECT_EQ(joined(errors), "");
+  EXPECT_EQ(options.duration, 10);
+  EXPECT_EQ(options.rate, 100);
+  EXPECT_TRUE(options.motion.empty() && options.output.empty() && options.summary.empty());
+}
+
+TEST(Options, everyMistakeIsNamedAtOnce) {
+  std::vector<std::string> errors;
+  parse({"--duration", "-1", "--rate=nan", "--durashun", "3", "--settle", "b.yaml", "--motion", "--output=", "--rate", "5"},
+        &errors);
+  for (const char* start :
+       {"--duration: \"-1\"; allowed: 0 or any number above [s]", "--rate: \"nan\"; allowed: any number above 0",
+        "--durashun: no such option (did you mean --duration?)", "--settle: not supported yet", "\"b.yaml\": a second scene",
+        "--motion: no value", "--output: \"\"; allowed: the name of a file", "--rate: given twice"})
+    EXPECT_TRUE(has_line(errors, start)) << start << "\n" << joined(errors);
+  parse({}, &errors);
+  EXPECT_TRUE(has_line(errors, "no scene"));
+}
+
+TEST(RowSchedule, rowsAreTheFirstStepsAtOrAfterTheirTimes) {
+  const RowSchedule even(100, 0.001);
+  EXPECT_EQ(even.step_of(0), 0);
+  EXPECT_EQ(even.step_of(1), 10);
+  EXPECT_EQ(even.step_of(123456789), 1234567890);
+  const RowSchedule uneven(100, 0.003);  // 0.01 s is 3.33 steps
+  EXPECT_EQ(uneven.step_of(1), 4);
+  EXPECT_EQ(uneven.step_of(2), 7);
+  EXPECT_EQ(uneven.step_of(3), 10);
+  const RowSchedule every(1000, 0.001);
+  for (const std::int64_t row : {1, 3, 7, 1000003}) EXPECT_EQ(every.step_of(row), row);
+}
+
+TEST(Steps, reachTheDurationAndNoFurther) {
+  EXPECT_EQ(steps_for(1, 0.001), 1000);
+  EXPECT_EQ(steps_for(0.3, 0.1), 3);
+  EXPECT_EQ(steps_for(1, 0.003), 334);
+  EXPECT_EQ(steps_for(0, 0.001), 0);
+}
+
+TEST(JsonWriter, writesJson) {
+  JsonWriter json;
+  json.begin_object();
+  json.entry("number", 0.1);
+  json.entry("none", std::numeric_limits<double>::infinity());
+  json.entry("count", std::int64_t{3});
+  json.entry("text", std::string("a\"b\\c\n"));
+  json.entry("vector", Vector3(1, 2.5, -3));
+  json.key("empty");
+  json.begin_array();
+  json.end_array();
+  json.key("list");
+  json.begin_array();
+  json.value(1.0);
+  json.begin_object();
+  json.end_object();
+  json.end_array();
+  json.end_object();
+  EXPECT_EQ(json.text(),
+            "{\n  \"number\": 0.1,\n  \"none\": null,\n  \"count\": 3,\n  \"text\": \"a\\\"b\\\\c\\u000a\",\n  \"vector\": [1, "
+            "2.5, -3],\n"
+            "  \"empty\": [],\n  \"list\": [\n    1,\n    {}\n  ]\n}");
+}
+
+TEST(OutputFile, leavesFilesAsTheyWereUntilItStarts) {
+  const std::string old_path = testing::TempDir() + "output_file_test_old";
+  const std::string new_path = testing::TempDir() + "output_file_test_new";
+  std::ofstream(old_path) << "old";
+  unlink(new_path.c_str());
+  {
+    OutputFile old_file, new_file;
+    EXPECT_EQ(old_file.open(old_path), "");
+    EXPECT_EQ(new_file.open(new_path), "");
+  }
+  std::string text;
+  std::ifstream(old_path) >> text;
+  EXPECT_EQ(text, "old");
+  EXPECT_NE(access(new_path.c_str(), F_OK), 0);
+
+  OutputFile file;
+  EXPECT_EQ(file.open(old_path), "");
+  file.start();
+  file.write("ab", 2);
+  EXPECT_EQ(file.close(), "");
+  std::ifstream(old_path) >> text;
+  EXPECT_EQ(text, "ab");
+  EXPECT_EQ(file.open("/dev/full"), "");
+  file.start();
+  file.write("ab", 2);
+  EXPECT_EQ(file.close(), "No space left on device");
+}
+
+TEST(OutputFile, saysWhyItCannotBeWritten) {
+  EXPECT_EQ(why_not_writable(testing::TempDir() + "cable_sim_new_file"), "");
+  EXPECT_EQ(why_not_writable("/nonexistent/file"), "No such file or directory");
+  EXPECT_EQ(why_not_writable("/"), "Is a directory");
+  EXPECT_EQ(why_not_writable("/dev/null/file"), "Not a directory");
+}
+
+TEST(FrameSource, framesMoveRestAtTheirPoseOrTheOrigin) {
+  SceneDesc scene = read_scene_text(test::sound_scene);
+  scene.cables[0].attachments[0].frame = "other";
+  scene.cables[0].attachments.push_back(scene.cables[0].attachments[0]);
+  scene.cables[0].attachments[2].frame = "moved";
+  Motion motion;
+  motion["moved"].add(0, {{0, 0, 0}, Quaternion::Identity()});
+  motion["moved"].add(1, {{2, 0, 0}, Quaternion::Identity()});
+  motion["unused"].add(0, {});
+  const BoundaryInputs frames = FrameSource(scene, motion).at(0.5);
+  ASSERT_EQ(frames.size(), 4u);
+  for (const FrameInput& frame : frames) EXPECT_TRUE(frame.known);
+  EXPECT_EQ(frames[1].pose.position, Vector3(0, 0, 0));
+  EXPECT_EQ(frames[2].pose.position, Vector3(0.7, 0, 0));
+  EXPECT_EQ(frames[3].pose.position, Vector3(1, 0, 0));
+  EXPECT_EQ(unused_frames(scene, motion), std::vector<std::string>{"unused"});
+}
+
+TEST(EventLog, anEpisodeIsTwoEventsHoweverManySteps) {
+  const SceneDesc scene = read_scene_text(test::sound_scene);
+  const BoundaryInputs frames = FrameSource(scene, {}).at(0);
+  World world(scene, frames);
+  ProgressBar progress(1);
+  EventLog log(progress);
+  StepResult bad;
+  bad.status = StepResult::Status::degraded;
+  bad.cable = 0;
+  bad.node = 3;
+  bad.max_strain = 0.25;
+  testing::internal::CaptureStderr();
+  for (int i = 0; i < 400; ++i) {
+    world.step(frames);
+    // Comes and goes from 0.1 s to 0.3 s.
+    log.observe(world, i >= 49 && i < 150 && i % 2 == 1 ? bad : StepResult{}, {});
+  }
+  const std::string printed = testing::internal::GetCapturedStderr();
+  const std::vector<Event> events = log.events();
+  ASSERT_EQ(events.size(), 2u);
+  EXPECT_EQ(events[0].type, "degraded");
+  EXPECT_EQ(events[0].cable, "hose");
+  EXPECT_EQ(events[0].node, 3);
+  EXPECT_DOUBLE_EQ(events[0].time, 0.1);
+  EXPECT_EQ(events[1].type, "degraded_end");
+  EXPECT_DOUBLE_EQ(events[1].time, 0.3);
+  EXPECT_NE(events[1].message.find("largest strain 0.25"), std::string::npos) << events[1].message;
+  EXPECT_NE(printed.find("degraded: hose node 3"), std::string::npos) << printed;
+}
+
+}  // namespace
+}  // namespace verlet_cable::cable_sim

@@ -1,0 +1,101 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "scene_text.h"
+#include "verlet_cable/core/scene_fields.h"
+#include "verlet_cable/core/world.h"
+#include "verlet_cable/scene/motion.h"
+
+namespace verlet_cable {
+namespace {
+
+std::string config(const std::string& file) {
+  return std::string(CONFIG_DIRECTORY) + "/" + file;
+}
+
+TEST(SceneFiles, templateHoldsTheDefaults) {
+  const SceneDesc scene = read_scene_file(config("scene_template.yaml"));
+  const SceneDesc defaults;
+  EXPECT_EQ(scene.frame_id, defaults.frame_id);
+  for (const auto& field : scene_fields) EXPECT_EQ(scene.*field.member, defaults.*field.member) << field.key;
+  for (const auto& field : scene_integer_fields) EXPECT_EQ(scene.*field.member, defaults.*field.member) << field.key;
+  for (const auto& field : limits_fields) EXPECT_EQ(scene.limits.*field.member, defaults.limits.*field.member) << field.key;
+  EXPECT_EQ(scene.gravity.acceleration, defaults.gravity.acceleration);
+  EXPECT_EQ(scene.on_lost_frame, defaults.on_lost_frame);
+  EXPECT_EQ(scene.on_time_jump, defaults.on_time_jump);
+  EXPECT_EQ(scene.marker_style, defaults.marker_style);
+  EXPECT_EQ(scene.color_by, defaults.color_by);
+  EXPECT_EQ(scene.scene_directory, defaults.scene_directory);
+  ASSERT_EQ(scene.materials.size(), 1u);
+  for (const auto& field : material_fields) {
+    if (field.required) continue;
+    EXPECT_EQ(scene.materials[0].material.*field.member, MaterialDesc{}.*field.member) << field.key;
+  }
+  ASSERT_EQ(scene.cables.size(), 1u);
+  EXPECT_EQ(scene.cables[0].color, CableDesc{}.color);
+  EXPECT_EQ(scene.cables[0].rest_curvature.type, CableDesc{}.rest_curvature.type);
+  ASSERT_FALSE(scene.cables[0].attachments.empty());
+  EXPECT_EQ(scene.cables[0].attachments[0].type, AttachmentDesc{}.type);
+  EXPECT_EQ(scene.cables[0].attachments[0].offset, AttachmentDesc{}.offset);
+  EXPECT_EQ(scene.cables[0].attachments[0].rotation, AttachmentDesc{}.rotation);
+}
+
+/// Whether the template has the key somewhere with a comment above it that has the unit.
+bool is_documented(const std::vector<std::string>& lines, const std::string& key, const std::string& unit) {
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const std::size_t at = lines[i].find_first_not_of(" -{");
+    if (at == std::string::npos || lines[i].compare(at, key.size() + 1, key + ":") != 0) continue;
+    const std::string& comment = lines[i - 1];
+    if (comment.find('#') != std::string::npos && (unit.empty() || comment.find("[" + unit + "]") != std::string::npos))
+      return true;
+  }
+  return false;
+}
+
+template <class Fields>
+void expect_documented(const std::vector<std::string>& lines, const Fields& fields) {
+  for (const auto& field : fields)
+    EXPECT_TRUE(is_documented(lines, field.key, field.unit)) << field.key << " [" << field.unit << "]";
+}
+
+TEST(SceneFiles, templateDocumentsEveryKey) {
+  std::ifstream file(config("scene_template.yaml"));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(file, line);) lines.push_back(line);
+  expect_documented(lines, scene_fields);
+  expect_documented(lines, scene_integer_fields);
+  expect_documented(lines, material_fields);
+  expect_documented(lines, cable_fields);
+  expect_documented(lines, cable_integer_fields);
+  for (const char* key :
+       {"frame_id",  "gravity", "on_lost_frame", "on_time_jump", "marker_style", "color_by",       "scene_directory", "limits",
+        "materials", "cables",  "name",          "material",     "color",        "rest_curvature", "attachments",     "at",
+        "frame",     "offset",  "rotation",      "type",         "initial_pose", "point_masses",   "initial"})
+    EXPECT_TRUE(is_documented(lines, key, "")) << key;
+}
+
+TEST(SceneFiles, examplesRun) {
+  for (const char* file : {"scene_template.yaml", "hanging_cable.yaml", "swinging_payload.yaml"}) {
+    const SceneDesc scene = read_scene_file(config(file));
+    BoundaryInputs frames = initial_frames(scene);
+    for (FrameInput& frame : frames) frame.known = true;
+    World world(scene, frames);
+    for (int i = 0; i < 10; ++i) EXPECT_EQ(world.step(frames).status, StepResult::Status::ok) << file;
+  }
+  EXPECT_NO_THROW(read_scene_file(config("demo.yaml")));
+  EXPECT_EQ(read_motion_file(config("swinging_payload.csv")).count("trolley"), 1u);
+}
+
+TEST(SceneFiles, thatCannotBeReadAreNamed) {
+  for (const char* path : {"/nonexistent/scene.yaml", "/", "/dev/zero"}) EXPECT_THROW(read_scene_file(path), SceneError) << path;
+  try {
+    read_scene_file("/nonexistent/scene.yaml");
+  } catch (const SceneError& error) {
+    EXPECT_STREQ(error.what(), "scene: cannot read \"/nonexistent/scene.yaml\": No such file or directory");
+  }
+}
+
+}  // namespace
+}  // namespace verlet_cable

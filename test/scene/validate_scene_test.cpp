@@ -1,0 +1,178 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "scene_text.h"
+#include "verlet_cable/core/scene_fields.h"
+#include "verlet_cable/core/world.h"
+
+namespace verlet_cable {
+namespace {
+
+using test::has_line;
+using test::joined;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+AttachmentDesc attachment(const std::string& name, const PlaceDesc& place, const std::string& frame, const Vector3& offset) {
+  AttachmentDesc result;
+  result.name = name;
+  result.place = place;
+  result.frame = frame;
+  result.offset = offset;
+  return result;
+}
+
+constexpr PlaceDesc at_start{PlaceDesc::At::start, 0};
+constexpr PlaceDesc at_end{PlaceDesc::At::end, 0};
+PlaceDesc at_arc_length(double arc_length) {
+  return {PlaceDesc::At::arc_length, arc_length};
+}
+
+/// A cable of 1 m in 10 segments, held by two points of the fixed frame.
+SceneDesc held_scene(double distance) {
+  SceneDesc scene;
+  scene.materials.push_back({"m", {}});
+  scene.materials[0].material.linear_density = 0.1;
+  scene.materials[0].material.radius = 0.01;
+  CableDesc cable;
+  cable.name = "c";
+  cable.material = "m";
+  cable.length = 1;
+  cable.segments = 10;
+  cable.attachments = {attachment("a", at_start, "", Vector3::Zero()), attachment("b", at_end, "", {distance, 0, 0})};
+  scene.cables.push_back(cable);
+  return scene;
+}
+
+template <class Fields, class Owner>
+void expect_ranges_checked(const SceneDesc& scene, Owner& owner, const Fields& fields, const std::string& prefix) {
+  for (const auto& field : fields) {
+    const auto value = owner.*field.member;
+    using Number = std::remove_const_t<decltype(value)>;
+    for (const double good : {field.range.lowest, field.range.highest}) {
+      owner.*field.member = static_cast<Number>(good);
+      EXPECT_FALSE(has_line(validate(scene), prefix + field.key + ": " + "")) << field.key << " " << good;
+    }
+    owner.*field.member = static_cast<Number>(field.range.lowest - std::max(1.0, std::abs(field.range.lowest)));
+    EXPECT_TRUE(has_line(validate(scene), prefix + field.key + ": ")) << field.key;
+    if (std::is_same_v<Number, double>) {
+      for (const double bad : {nan, -infinity, 2 * field.range.highest + 1}) {
+        owner.*field.member = static_cast<Number>(bad);
+        EXPECT_TRUE(has_line(validate(scene), prefix + field.key + ": ")) << field.key << " " << bad;
+      }
+      owner.*field.member = static_cast<Number>(infinity);
+      EXPECT_NE(has_line(validate(scene), prefix + field.key + ": "), field.range.infinite) << field.key;
+    }
+    owner.*field.member = value;
+  }
+}
+
+TEST(ValidateScene, everyRangeIsChecked) {
+  SceneDesc scene = held_scene(0.5);
+  ASSERT_EQ(joined(validate(scene)), "");
+  // Free: at other lengths its attachments would be too far apart, which is another error of the same key.
+  scene.cables[0].attachments.clear();
+  scene.cables[0].point_masses = {{at_end, 1.0}};
+  expect_ranges_checked(scene, scene, scene_fields, "");
+  expect_ranges_checked(scene, scene, scene_integer_fields, "");
+  expect_ranges_checked(scene, scene.limits, limits_fields, "limits.");
+  expect_ranges_checked(scene, scene.materials[0].material, material_fields, "materials.m.");
+  expect_ranges_checked(scene, scene.cables[0], cable_fields, "cables[0].");
+  expect_ranges_checked(scene, scene.cables[0], cable_integer_fields, "cables[0].");
+  expect_ranges_checked(scene, scene.cables[0].point_masses[0], point_mass_fields, "cables[0].point_masses[0].");
+}
+
+TEST(ValidateScene, defaultsAreInTheirRanges) {
+  const SceneDesc scene;
+  for (const auto& field : scene_fields) EXPECT_TRUE(field.range.contains(scene.*field.member)) << field.key;
+  for (const auto& field : limits_fields) EXPECT_TRUE(field.range.contains(scene.limits.*field.member)) << field.key;
+  const MaterialDesc material;
+  for (const auto& field : material_fields) EXPECT_NE(field.range.contains(material.*field.member), field.required) << field.key;
+}
+
+TEST(ValidateScene, cableIsAtLeastAsLongAsItsAttachmentsAreApart) {
+  EXPECT_EQ(joined(validate(held_scene(1))), "");
+  EXPECT_EQ(joined(validate(held_scene(1 + 1e-12))), "");
+  EXPECT_TRUE(has_line(validate(held_scene(1.001)), "cables[0].length: 1 m of cable between \"a\" and \"b\"; allowed: at least"));
+  SceneDesc elastic = held_scene(1.001);
+  elastic.materials[0].material.axial_stiffness = 1e4;
+  EXPECT_EQ(joined(validate(elastic)), "");
+}
+
+TEST(ValidateScene, distancesAreThoseOfNeighboursAlongTheCable) {
+  SceneDesc scene = held_scene(0.5);
+  // 0.3 m of cable from the start to the middle one, 0.7 m from there to the end; listed last.
+  scene.cables[0].attachments.push_back(attachment("middle", at_arc_length(0.31), "", {0.2, 0.2, 0}));
+  EXPECT_EQ(joined(validate(scene)), "");
+  scene.cables[0].attachments.back().offset = {0.2, 0.3, 0};
+  const auto errors = validate(scene);
+  ASSERT_EQ(errors.size(), 1u) << joined(errors);
+  EXPECT_TRUE(has_line(errors, "cables[0].length: 0.3 m of cable between \"a\" and \"middle\"")) << joined(errors);
+}
+
+TEST(ValidateScene, distancesUseInitialPosesAndLeaveUnknownFramesOut) {
+  SceneDesc scene = held_scene(0);
+  AttachmentDesc& end = scene.cables[0].attachments[1];
+  end.frame = "hand";
+  end.offset = {1, 0, 0};
+  EXPECT_EQ(joined(validate(scene)), "");
+  // Turned by 90 degrees about z and moved by 0.5 m along y: the offset of 1 m points along y, too.
+  end.initial_pose = InitialPose{0, 0.5, 0, 0, 0, M_PI / 2};
+  EXPECT_TRUE(has_line(validate(scene), "cables[0].length: "));
+  end.initial_pose = InitialPose{0, -0.5, 0, 0, 0, M_PI / 2};
+  EXPECT_EQ(joined(validate(scene)), "");
+
+  BoundaryInputs frames(2);
+  frames[1].pose.position = {0.5, 0, 0};
+  EXPECT_EQ(validate_distances(scene, frames).size(), 1u);
+  frames[1].known = false;
+  EXPECT_TRUE(validate_distances(scene, frames).empty());
+}
+
+TEST(ValidateScene, badNumbersDoNotHideOtherErrors) {
+  SceneDesc scene = held_scene(0.5);
+  scene.cables[0].length = nan;
+  scene.cables[0].segments = -3;
+  scene.cables[0].attachments[0].place = at_arc_length(nan);
+  scene.cables[0].attachments[1].offset = {nan, 0, 0};
+  scene.cables[0].color[2] = infinity;
+  scene.materials[0].material.radius = -1;
+  scene.gravity.acceleration.x() = nan;
+  const auto errors = validate(scene);
+  for (const char* key : {"gravity: [nan, 0, -9.81]", "materials.m.radius: -1", "cables[0].length: nan", "cables[0].segments: -3",
+                          "cables[0].color: [0.1, 0.1, inf, 1]", "cables[0].attachments[1].offset: [nan, 0, 0]"})
+    EXPECT_TRUE(has_line(errors, key)) << key;
+}
+
+TEST(ValidateScene, placesMeanTheNearestNode) {
+  const CableDesc cable = held_scene(0).cables[0];
+  EXPECT_EQ(node_at(cable, at_start), 0);
+  EXPECT_EQ(node_at(cable, at_end), 10);
+  EXPECT_EQ(node_at(cable, at_arc_length(0.24)), 2);
+  EXPECT_EQ(node_at(cable, at_arc_length(0.26)), 3);
+  EXPECT_EQ(node_at(cable, at_arc_length(1)), 10);
+}
+
+TEST(ValidateScene, framesComeInOrderOfAppearanceEachOnce) {
+  SceneDesc scene = held_scene(0.5);
+  scene.cables[0].attachments[0].frame = "hand";
+  scene.cables[0].attachments[1].frame = scene.frame_id;
+  scene.cables.push_back(scene.cables[0]);
+  scene.cables[1].attachments[0].frame = "arm";
+  scene.cables[1].attachments[1].frame = "hand";
+  scene.cables[1].attachments[1].initial_pose = InitialPose{1, 2, 3, 0, 0, M_PI};
+  EXPECT_EQ(frame_names(scene), (std::vector<std::string>{"world", "hand", "arm"}));
+  const BoundaryInputs frames = initial_frames(scene);
+  ASSERT_EQ(frames.size(), 3u);
+  EXPECT_TRUE(frames[0].known);
+  EXPECT_TRUE(frames[1].known);
+  EXPECT_FALSE(frames[2].known);
+  EXPECT_EQ(frames[1].pose.position, Vector3(1, 2, 3));
+  // Half a turn: 1e-15 is the rounding of pi.
+  EXPECT_NEAR((frames[1].pose.orientation * Vector3::UnitX() + Vector3::UnitX()).norm(), 0, 1e-15);
+}
+
+}  // namespace
+}  // namespace verlet_cable
