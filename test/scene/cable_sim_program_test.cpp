@@ -1,14 +1,9 @@
 #include <fcntl.h>
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <cmath>
-#include <cstdlib>
-#include <fstream>
+#include <algorithm>
 #include <map>
-#include <sstream>
 
+#include "cable_sim_fixture.h"
 #include "scene_text.h"
 #include "verlet_cable/core/world.h"
 
