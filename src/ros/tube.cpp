@@ -8,10 +8,10 @@
 namespace verlet_cable {
 namespace {
 
-constexpr int most_rings = 250;
-constexpr int sides_times_rings = 1000;
+constexpr int most_rings = 200;
+constexpr int sides_times_rings = 700;
 constexpr int fewest_sides = 6;
-constexpr int most_sides = 12;
+constexpr int most_sides = 8;
 constexpr int cap_rings = 2;  // of a half sphere, between its tip and its rim
 
 /// A circle of the tube's surface.

@@ -112,7 +112,7 @@ TEST(Tube, IsNotWrungByBending) {
 TEST(Tube, OfAVeryLongCableStaysLight) {
   const Marker tube = tube_along(straight_line(100000, 1000.0), 0.01);
   const std::size_t bytes = tube.points.size() * 3 * sizeof(double) + tube.colors.size() * 4 * sizeof(float);
-  EXPECT_LT(bytes, 400000u);
+  EXPECT_LT(bytes, 300000u);
   EXPECT_EQ(tube.points.size(), tube.colors.size());
   EXPECT_NEAR(from_point(tube.points.back()).x(), 1000.0, 0.011);
 }

@@ -10,7 +10,7 @@ namespace verlet_cable {
 
 /// Fills the marker's points and colors with the triangles of a round tube of `radius` [m] along `centers`, closed by half
 /// spheres; for type TRIANGLE_LIST. Rings are carried from node to node without turning about the tube, so that it never looks
-/// wrung. Long cables get fewer sides and, from 250 segments on, fewer rings than nodes: a message stays below 400 kB. `centers`:
+/// wrung. Long cables get fewer sides and, from 200 segments on, fewer rings than nodes: a message stays below 300 kB. `centers`:
 /// two points or more; `colors`: one a center.
 void fill_tube(const std::vector<Vector3>& centers, const std::vector<std_msgs::ColorRGBA>& colors, double radius,
                visualization_msgs::Marker& marker);
