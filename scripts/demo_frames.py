@@ -37,7 +37,7 @@ def pose(x, y, z, pitch=0.0):
 
 def frame_poses(t):
     """Where each frame is at a time [s]."""
-    apart = 0.71 - 0.22 * math.cos(turn(t, PULL_PERIOD))  # [m] half the distance of the hands
+    apart = 0.7225 - 0.22 * math.cos(turn(t, PULL_PERIOD))  # [m] half the distance of the hands
     sway = 0.12 * math.sin(turn(t, PULL_PERIOD / 2))
     tilt = math.radians(60) * (1 + math.cos(turn(t, PULL_PERIOD))) / 2  # the hands point along the rope
     whirl = turn(t, 0.8)
