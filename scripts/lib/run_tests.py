@@ -151,7 +151,7 @@ def run(program, results, log_directory):
     print(f'{verdict}  {program.name}: {program.passed} passed, {len(program.failures)} failed '
           f'({time.monotonic() - start:.1f} s)')
     if program.failures:
-        for line in log_path.read_text(errors='replace').splitlines()[-80:] if log_path.exists() else []:
+        for line in log_path.read_text(errors='replace').splitlines()[-60:] if log_path.exists() else []:
             print('    | ' + line)
         for failure in program.failures:
             print(f'FAIL  {program.name}: {failure}')
@@ -186,7 +186,8 @@ def main():
     build = Program('build', [])
     if not built:
         log = (workspace / 'build.log').read_text(errors='replace').splitlines()
-        build.failures += [line for line in dict.fromkeys(log) if BUILD_ERROR.search(line)][:20] or ['see above']
+        errors = [line for line in dict.fromkeys(log) if BUILD_ERROR.search(line)]
+        build.failures.append('\n    | '.join(['see ' + str(workspace / 'build.log')] + errors[:20]))
         remove_outdated_executables(workspace)
     programs = registered_programs(workspace / 'build')
     if not programs:
