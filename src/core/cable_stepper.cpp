@@ -11,8 +11,11 @@ namespace verlet_cable {
 namespace {
 
 constexpr int maximum_iterations = 20;
-/// Error of a node's place at which an iteration ends, in segment lengths: far below what strain and energy are asked for.
-constexpr double position_tolerance = 1e-9;
+/// Error of a node's velocity at which an iteration ends, in segment lengths per second: far below what energy is asked for.
+constexpr double velocity_tolerance = 1e-6;
+constexpr double longest_tolerated = 1e-3;  // [s]; beyond, the error of the place counts
+/// A larger correction, in segment lengths, leads to solutions that have nothing to do with the motion: halve the step.
+constexpr double largest_correction = 2;
 /// A correction that shrinks less than this from one iteration to the next calls for a new factorisation.
 constexpr double slow_convergence = 0.1;
 /// Relative, for spans that are pulled straight.
@@ -128,6 +131,7 @@ void CableStepper::predict(double h) {
 
 /// Newton's method on places and tensions together, its matrix kept as long as it converges fast.
 bool CableStepper::solve(const CableModel& model, double h, SubstepResult& result) {
+  const double tolerance = velocity_tolerance * std::min(h, longest_tolerated);
   double last = 0;
   bool factor = true;
   for (int i = 0; i < maximum_iterations; ++i) {
@@ -139,10 +143,10 @@ bool CableStepper::solve(const CableModel& model, double h, SubstepResult& resul
     solver_.solve(system_);
     ++result.iterations;
     const double size = correct();
-    if (!std::isfinite(size)) return false;
+    if (!(size < largest_correction)) return false;
     // The next correction would be about the last one times the ratio of the last two.
     const double ratio = i == 0 ? 1 : size / last;
-    if (size * std::min(ratio, 1.0) < position_tolerance) return true;
+    if (size * std::min(ratio, 1.0) < tolerance) return true;
     factor = i > 0 && ratio > slow_convergence;
     last = size;
   }
