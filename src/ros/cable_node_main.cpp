@@ -4,8 +4,9 @@
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "cable");
+  // Outlives what is thrown: logging ends with the last node handle.
+  const ros::NodeHandle node("~");
   try {
-    const ros::NodeHandle node("~");
     const verlet_cable::CableNode cable_node(node);
     ros::spin();
   } catch (const verlet_cable::SceneError& error) {

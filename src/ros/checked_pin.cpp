@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "verlet_cable/core/number_text.h"
+#include "verlet_cable/core/quoted_text.h"
 
 namespace verlet_cable {
 namespace {
@@ -22,12 +23,12 @@ std::string text(const Vector3& v) {
 Pose read_offset(const geometry_msgs::Pose& pose, std::vector<std::string>& errors) {
   constexpr double tolerance = 0.01;
   const Vector3 position(pose.position.x, pose.position.y, pose.position.z);
-  if (!position.allFinite()) errors.push_back("offset.position: " + text(position) + "; must be finite [m]");
+  if (!position.allFinite()) errors.push_back("offset.position: " + text(position) + "; allowed: finite numbers [m]");
   const Quaternion q(pose.orientation.w, pose.orientation.x, pose.orientation.y, pose.orientation.z);
   if ((q.coeffs().array() == 0).all()) return {position, Quaternion::Identity()};
   if (!(std::abs(q.norm() - 1) <= tolerance)) {
     errors.push_back("offset.orientation: (" + number_text(q.x()) + ", " + number_text(q.y()) + ", " + number_text(q.z()) + ", " +
-                     number_text(q.w()) + "); must be a quaternion of length 1, or all zero for no rotation");
+                     number_text(q.w()) + "); allowed: quaternions of length 1, or all zero for no rotation");
     return {position, Quaternion::Identity()};
   }
   return {position, q.normalized()};
@@ -54,9 +55,9 @@ void check_reach(const CheckedPin& pin, const World& world, std::vector<std::str
     const double distance = (place - (world.frame_pose(other.frame) * other.pose).position).norm();
     const double length = std::abs(arc_length[pin.node] - arc_length[other.node]);
     if (distance <= length * (1 + rounding)) continue;
-    errors.push_back("offset.position: " + text(pin.offset.position) + " in frame '" + pin.frame + "' is " +
-                     number_text(distance) + " m from attachment '" + other.name + "'; must be within the " +
-                     number_text(length) + " m of cable between them");
+    errors.push_back("offset.position: " + text(pin.offset.position) + " in frame " + verlet_cable::quoted(pin.frame) + " is " +
+                     number_text(distance) + " m from " + quoted(other.name) + "; allowed: the " + number_text(length) +
+                     " m of cable between them");
   }
 }
 
@@ -71,22 +72,24 @@ CheckedPin check_pin(const Pin::Request& request, const World& world, const Find
   pin.frame = request.frame_id.empty() ? world.frames().front() : request.frame_id;
   pin.offset = read_offset(request.offset, pin.errors);
   if (!request.name.empty() && !is_name(request.name)) {
-    pin.errors.push_back("name: '" + request.name + "'; must be a letter, then letters, digits and _, or empty");
+    pin.errors.push_back("name: " + quoted(request.name) + "; allowed: a letter, then letters, digits and _; or empty");
   }
   if (world.find_attachment(request.name) >= 0) {
-    pin.errors.push_back("name: '" + request.name + "'; must not be the name of another attachment");
+    pin.errors.push_back("name: " + quoted(request.name) + "; allowed: names that no attachment has");
   }
   if (const std::optional<Pose> pose = pin.frame[0] == '/' ? std::nullopt : find_frame(pin.frame)) {
     pin.frame_pose = *pose;
   } else {
-    pin.errors.push_back("frame_id: '" + pin.frame + "'; must be a frame that tf knows, without a leading /, or empty");
+    pin.errors.push_back("frame_id: " + verlet_cable::quoted(pin.frame) +
+                         "; allowed: frames that tf knows, without a leading /; or empty");
   }
   if (!location.errors.empty()) return pin;
 
   for (const Attachment& other : world.attachments()) {
     if (other.cable != pin.cable || other.node != pin.node) continue;
-    pin.errors.push_back("location: node " + std::to_string(pin.node) + " of cable '" + world.cables()[pin.cable].model.name +
-                         "' is held by attachment '" + other.name + "'; must be a node that nothing holds");
+    pin.errors.push_back("location: node " + std::to_string(pin.node) + " of cable " +
+                         quoted(world.cables()[pin.cable].model.name) + " is held by " + quoted(other.name) +
+                         "; allowed: nodes that nothing holds");
   }
   if (!pin.errors.empty()) return pin;
   if (request.keep_offset) {

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "verlet_cable/core/quoted_text.h"
+
 namespace verlet_cable {
 namespace {
 
@@ -48,6 +50,7 @@ void Diagnostics::report_simulation(Status& status) {
   status.add("dropped_time_s", seconds(simulation_.dropped()));
   status.add("max_strain", s.max_strain);
   status.add("overstretched_steps", s.overstretched);
+  status.add("jumped_steps", s.jumped);
   status.add("degraded_steps", s.degraded);
   status.add("faults", simulation_.faults());
   status.add("waiting_cables", join(simulation_.world().waiting()));
@@ -83,14 +86,14 @@ void Diagnostics::report_frames(Status& status) const {
     if (frame.too_fast) value += ", faster than max_frame_speed";
     status.add("frame " + frame.name, value);
     if (frame.status == FrameStatus::never_seen)
-      status.mergeSummary(DiagnosticStatus::WARN, "frame '" + frame.name + "' never seen");
-    if (frame.status == FrameStatus::lost) status.mergeSummary(DiagnosticStatus::WARN, "frame '" + frame.name + "' lost");
-    if (frame.too_fast) status.mergeSummary(DiagnosticStatus::WARN, "frame '" + frame.name + "' too fast");
+      status.mergeSummary(DiagnosticStatus::WARN, "frame " + quoted(frame.name) + " never seen");
+    if (frame.status == FrameStatus::lost) status.mergeSummary(DiagnosticStatus::WARN, "frame " + quoted(frame.name) + " lost");
+    if (frame.too_fast) status.mergeSummary(DiagnosticStatus::WARN, "frame " + quoted(frame.name) + " too fast");
   }
   status.add("refused_transforms", simulation_.frames().buffer().refused_count());
   for (const auto& [frame, problem] : simulation_.frames().buffer().refused()) {
     status.add("refused " + frame, problem);
-    status.mergeSummary(DiagnosticStatus::WARN, "tf of frame '" + frame + "' refused");
+    status.mergeSummary(DiagnosticStatus::WARN, "tf of frame " + quoted(frame) + " refused");
   }
 }
 

@@ -7,10 +7,13 @@
 #include <sstream>
 #include <utility>
 
+#include "verlet_cable/core/quoted_text.h"
+
 namespace verlet_cable {
 namespace {
 
 const ros::Duration cache_time(60.0);
+const ros::WallDuration log_period(5.0);  // of each frame
 
 std::string without_slash(const std::string& frame) {
   return frame.substr(frame.find('/') == 0 ? 1 : 0);
@@ -57,8 +60,12 @@ bool FrameBuffer::insert(const ReceivedTransform& received) {
   const std::string problem = transform_problem(received);
   if (!problem.empty()) {
     ++refused_count_;
-    const bool first = refused_.insert_or_assign(child, problem).second;
-    if (first) ROS_WARN("tf of frame '%s' refused: %s", child.c_str(), problem.c_str());
+    refused_[child] = problem;
+    ros::WallTime& logged = logged_[child];
+    if (ros::WallTime::now() - logged > log_period) {
+      logged = ros::WallTime::now();
+      ROS_WARN("tf of frame %s refused: %s", quoted(child).c_str(), problem.c_str());
+    }
     return false;
   }
   refused_.erase(child);

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "verlet_cable/core/number_text.h"
+#include "verlet_cable/core/quoted_text.h"
 
 namespace verlet_cable {
 namespace {
@@ -42,15 +43,16 @@ FrameWatch::FrameWatch(const SceneDesc& scene, const EventPublisher& events)
 bool FrameWatch::react(const std::vector<FrameChange>& changes, Nanoseconds stamp, World& world) {
   bool wait = false;
   for (const FrameChange& change : changes) {
-    const std::string& name = world.frames()[change.frame];
+    const std::string name = quoted(world.frames()[change.frame]);
     const bool needed = !attachments_of(change.frame, world).empty();
     switch (change.kind) {
       case FrameChange::Kind::seen:
-        ROS_INFO("frame '%s' is there: it is followed", name.c_str());
+        ROS_INFO("frame %s is there: it is followed", name.c_str());
         break;
       case FrameChange::Kind::too_fast:
         if (needed)
-          ROS_WARN("frame '%s' is faster than max_frame_speed, %g m/s: followed at that", name.c_str(), max_frame_speed_);
+          ROS_WARN_THROTTLE(5, "frame %s is faster than max_frame_speed, %g m/s: followed at that", name.c_str(),
+                            max_frame_speed_);
         break;
       case FrameChange::Kind::lost:
         if (!needed) break;
@@ -66,32 +68,32 @@ bool FrameWatch::react(const std::vector<FrameChange>& changes, Nanoseconds stam
   return wait;
 }
 
-void FrameWatch::report_unseen(const BoundaryInputs& inputs, const std::vector<FrameReport>& frames, const World& world) const {
+void FrameWatch::report_unseen(const BoundaryInputs& inputs, const std::vector<FrameReport>& frames) const {
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (frames[i].status != FrameStatus::never_seen || i == 0) continue;
-    ROS_INFO("frame '%s' was never seen: %s", frames[i].name.c_str(),
+    if (frames[i].status != FrameStatus::never_seen) continue;
+    ROS_INFO("frame %s was never seen: %s", quoted(frames[i].name).c_str(),
              inputs[i].known ? "its attachments wait at its initial_pose" : "its cables wait for it");
   }
-  for (const std::string& cable : world.waiting()) ROS_INFO("cable '%s' waits for its frames", cable.c_str());
 }
 
 void FrameWatch::report_lost(int frame, Nanoseconds stamp, const World& world) {
   lost_.insert(frame);
   publish_for_frame(events_, CableEvent::FRAME_LOST, frame, stamp, world,
-                    "frame '" + world.frames()[frame] + "' is lost, tf has had nothing for more than tf_timeout, " +
+                    "frame " + quoted(world.frames()[frame]) + " is lost, tf has had nothing for more than tf_timeout, " +
                         number_text(timeout_) + " s: " + consequence(policy_));
 }
 
 void FrameWatch::report_back(int frame, Nanoseconds stamp, const World& world) {
   if (lost_.erase(frame) == 0) return;
-  publish_for_frame(events_, CableEvent::FRAME_BACK, frame, stamp, world, "frame '" + world.frames()[frame] + "' is back");
+  publish_for_frame(events_, CableEvent::FRAME_BACK, frame, stamp, world, "frame " + quoted(world.frames()[frame]) + " is back");
 }
 
 void FrameWatch::release(int frame, Nanoseconds stamp, World& world) const {
   for (const Attachment& attachment : attachments_of(frame, world)) {
     const EventSubject subject = subject_of(world, attachment);
     world.unpin(attachment.name);
-    events_.publish(CableEvent::UNPINNED, stamp, subject, "attachment '" + attachment.name + "' is undone: its frame is lost");
+    events_.publish(CableEvent::UNPINNED, stamp, subject,
+                    "attachment " + quoted(attachment.name) + " is undone: its frame is lost");
   }
 }
 

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "verlet_cable/core/number_text.h"
+#include "verlet_cable/core/quoted_text.h"
 
 namespace verlet_cable {
 namespace {
@@ -28,13 +29,12 @@ void find_cable(const CableLocation& location, const World& world, PointOnCable&
   if (found.cable >= 0) return;
   const std::vector<std::string>& waiting = world.waiting();
   if (std::find(waiting.begin(), waiting.end(), location.cable) != waiting.end()) {
-    found.errors.push_back("location.cable: '" + location.cable + "' waits for its frames and is not there yet");
+    found.errors.push_back("location.cable: " + quoted(location.cable) + " waits for its frames; allowed: cables that are there");
     return;
   }
   std::string names;
   for (const Cable& cable : world.cables()) names += (names.empty() ? "" : ", ") + cable.model.name;
-  found.errors.push_back("location.cable: '" + location.cable +
-                         "'; must be one of: " + (names.empty() ? "(there are none)" : names));
+  found.errors.push_back("location.cable: " + quoted(location.cable) + "; allowed: " + (names.empty() ? "none is there" : names));
 }
 
 void find_node(const CableLocation& location, const World& world, PointOnCable& found) {
@@ -42,7 +42,7 @@ void find_node(const CableLocation& location, const World& world, PointOnCable& 
   if (found.cable < 0) return;
   const auto segments = static_cast<std::uint32_t>(world.cables()[found.cable].model.segments());
   if (location.node > segments) {
-    found.errors.push_back(found.field + "; must be from 0 to " + std::to_string(segments));
+    found.errors.push_back(found.field + "; allowed: 0 to " + std::to_string(segments));
     return;
   }
   found.segment = static_cast<int>(std::min(location.node, segments - 1));
@@ -52,13 +52,15 @@ void find_node(const CableLocation& location, const World& world, PointOnCable& 
 void find_arc_length(const CableLocation& location, const World& world, PointOnCable& found) {
   found.field = "location.arc_length: " + number_text(location.arc_length);
   if (found.cable < 0) {
-    if (!std::isfinite(location.arc_length)) found.errors.push_back(found.field + "; must be a finite number [m]");
+    if (!std::isfinite(location.arc_length)) found.errors.push_back(found.field + "; allowed: finite numbers [m]");
     return;
   }
   const CableModel& model = world.cables()[found.cable].model;
   const std::vector<double> arc_length = model.arc_length();
-  if (!(location.arc_length >= 0 && location.arc_length <= arc_length.back())) {
-    found.errors.push_back(found.field + "; must be from 0 to " + number_text(arc_length.back()) + " m");
+  // The end is a sum, rounded.
+  constexpr double rounding = 1e-9;
+  if (!(location.arc_length >= 0 && location.arc_length <= arc_length.back() * (1 + rounding))) {
+    found.errors.push_back(found.field + "; allowed: 0 to " + number_text(arc_length.back()) + " m");
     return;
   }
   const auto after = std::upper_bound(arc_length.begin(), arc_length.end(), location.arc_length);
@@ -70,13 +72,13 @@ void find_nearest(const CableLocation& location, const World& world, const FindF
   const geometry_msgs::Point& point = location.point.point;
   found.field = "location.point: " + point_text(point);
   if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z)) {
-    found.errors.push_back("location.point.point: " + point_text(point) + "; must be finite");
+    found.errors.push_back("location.point.point: " + point_text(point) + "; allowed: finite numbers [m]");
   }
   const std::string& frame = location.point.header.frame_id;
   const std::optional<Pose> pose = frame.empty() ? Pose{} : find_frame(frame);
-  if (!pose) found.errors.push_back("location.point.header.frame_id: '" + frame + "'; must be a frame that tf knows");
+  if (!pose) found.errors.push_back("location.point.header.frame_id: " + quoted(frame) + "; allowed: frames that tf knows");
   if (!found.errors.empty()) return;
-  if (world.cables().empty()) found.errors.push_back("location.cable: there are no cables");
+  if (world.cables().empty()) found.errors.push_back("location.cable: \"\"; allowed: none is there");
 
   const Vector3 position = (*pose * Pose{Vector3(point.x, point.y, point.z), Quaternion::Identity()}).position;
   double least = infinity;
@@ -107,7 +109,7 @@ PointOnCable find_point(const CableLocation& location, const World& world, const
       break;
     default:
       found.errors.push_back("location.mode: " + std::to_string(location.mode) +
-                             "; must be 0 (NODE), 1 (ARC_LENGTH) or 2 (NEAREST)");
+                             "; allowed: 0 (NODE), 1 (ARC_LENGTH), 2 (NEAREST)");
   }
   return found;
 }
@@ -126,12 +128,12 @@ Location locate_cut(const CableLocation& location, const World& world, const Fin
     const int last = cable.model.segments() - 2;
     const bool behind_the_end = location.mode == CableLocation::NODE && found.fraction > 0;
     if (last < 1) {
-      found.errors.push_back("location.cable: '" + cable.model.name + "' has " + std::to_string(cable.model.segments()) +
-                             " segments; a cut needs at least 3, so that each piece keeps one");
+      found.errors.push_back("location.cable: " + quoted(cable.model.name) + " of " + std::to_string(cable.model.segments()) +
+                             " segments; allowed: cables of at least 3, so that each piece keeps one");
     } else if (found.segment < 1 || found.segment > last || behind_the_end) {
       found.errors.push_back(
-          found.field + " means " + (behind_the_end ? "no segment" : "segment " + std::to_string(found.segment)) + " of cable '" +
-          cable.model.name + "'; must be one from 1 to " + std::to_string(last) + ", so that each piece keeps one");
+          found.field + " means " + (behind_the_end ? "no segment" : "segment " + std::to_string(found.segment)) + " of cable " +
+          quoted(cable.model.name) + "; allowed: segments 1 to " + std::to_string(last) + ", so that each piece keeps one");
     }
   }
   return {found.cable, found.segment, found.errors};

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "verlet_cable/core/quoted_text.h"
+
 namespace verlet_cable {
 namespace {
 
@@ -10,6 +12,8 @@ namespace {
 constexpr double hiccup = 0.5;
 /// Longer waits than this [s] cannot be caught up: tf would have forgotten the frames.
 constexpr double longest_wait = 50;
+/// Between warnings about what may last [s].
+constexpr double log_period = 5;
 
 }  // namespace
 
@@ -78,7 +82,7 @@ void Simulation::start(Nanoseconds time) {
   stamp_ = time;
   started_ = true;
   waits_for_frames_ = frame_watch_.react(frames_.changes(), stamp_, world_);
-  frame_watch_.report_unseen(frames_.inputs(), frames_.report(), world_);
+  frame_watch_.report_unseen(frames_.inputs(), frames_.report());
   publish();
 }
 
@@ -130,14 +134,12 @@ void Simulation::report_status(const StepResult& result) {
     faulted_ = true;
     ++faults_;
     announce(CableEvent::FAULT, {cable(), {}, result.node, {}},
-             "the simulation of cable '" + cable() + "' failed at node " + std::to_string(result.node) + ": reset goes on");
+             "the simulation of cable " + quoted(cable()) + " failed at node " + std::to_string(result.node) + ": reset goes on");
   }
-  const bool overstretched = result.status == StepResult::Status::overstretched;
-  if (overstretched && !overstretched_) {
-    ROS_WARN("cable '%s' is overstretched at node %d: what holds it is further apart than it is long", cable().c_str(),
-             result.node);
+  if (result.status == StepResult::Status::overstretched) {
+    ROS_WARN_THROTTLE(log_period, "cable %s is overstretched at node %d: what holds it is further apart than it is long",
+                      quoted(cable()).c_str(), result.node);
   }
-  overstretched_ = overstretched;
 }
 
 void Simulation::skip_to(Nanoseconds time) {

@@ -1,3 +1,6 @@
+#include <utility>
+
+#include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/ros/simulation.h"
 
 namespace verlet_cable {
@@ -25,7 +28,6 @@ EditResult Simulation::reset() {
   frames_.reset(stamp_);
   world_ = World(scene_, frames_.inputs());
   faulted_ = false;
-  overstretched_ = false;
   frame_watch_.forget_from(static_cast<int>(world_.frames().size()));
   announce(CableEvent::RESET, {}, "reset to the initial state of the scene");
   if (paused_) publish();
@@ -44,7 +46,7 @@ EditResult Simulation::step(std::int64_t steps) {
   if (!paused_) return refused("the simulation is not paused; step is for a paused one: call pause first");
   if (faulted_) return refused("the simulation has failed: call reset first");
   if (steps < 1 || steps > most_steps) {
-    return refused("steps: " + std::to_string(steps) + "; must be from 1 to " + std::to_string(most_steps));
+    return refused("steps: " + std::to_string(steps) + "; allowed: 1 to " + std::to_string(most_steps));
   }
   for (std::int64_t i = 0; i < steps && ros::ok(); ++i) {
     frames_.sample_without_waiting(stamp_ + grid_.step());
@@ -66,17 +68,22 @@ EditResult Simulation::pin(const std::string& name, int cable, int node, const s
   world_ = std::move(trial);
   frames_.add(frame, stamp_);
   announce(CableEvent::PINNED, subject_of(world_, world_.attachments()[world_.find_attachment(result.name)]),
-           "node " + std::to_string(node) + " of cable '" + world_.cables()[cable].model.name + "' is pinned to frame '" + frame +
-               "' as '" + result.name + "'");
+           "node " + std::to_string(node) + " of cable " + quoted(world_.cables()[cable].model.name) + " is pinned to frame " +
+               quoted(frame) + " as " + quoted(result.name));
   return result;
 }
 
 EditResult Simulation::unpin(const std::string& name) {
   if (!started_) return refused_before_start();
   const int index = world_.find_attachment(name);
-  const EventSubject subject = index < 0 ? EventSubject{} : subject_of(world_, world_.attachments()[index]);
+  if (index < 0) {
+    std::string names;
+    for (const Attachment& attachment : world_.attachments()) names += (names.empty() ? "" : ", ") + attachment.name;
+    return refused("name: " + quoted(name) + "; allowed: " + (names.empty() ? "nothing is attached" : names));
+  }
+  const EventSubject subject = subject_of(world_, world_.attachments()[index]);
   const EditResult result = world_.unpin(name);
-  if (result.ok) announce(CableEvent::UNPINNED, subject, "attachment '" + name + "' is undone");
+  if (result.ok) announce(CableEvent::UNPINNED, subject, "attachment " + quoted(name) + " is undone");
   return result;
 }
 
@@ -86,7 +93,8 @@ EditResult Simulation::cut(int cable, int segment) {
   if (!result.ok) return result;
   const std::string& name = world_.cables()[cable].model.name;
   announce(CableEvent::CUT, {name, {}, segment, result.name},
-           "segment " + std::to_string(segment) + " of cable '" + name + "' is cut out: the rest is cable '" + result.name + "'");
+           "segment " + std::to_string(segment) + " of cable " + quoted(name) + " is cut out: the rest is cable " +
+               quoted(result.name));
   return result;
 }
 

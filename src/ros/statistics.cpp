@@ -11,6 +11,7 @@ void Statistics::add(const StepResult& result, double step_wall_time) {
   max_strain = std::max(max_strain, result.max_strain);
   degraded += result.status == StepResult::Status::degraded;
   overstretched += result.status == StepResult::Status::overstretched;
+  jumped += result.status == StepResult::Status::jumped;
 }
 
 }  // namespace verlet_cable

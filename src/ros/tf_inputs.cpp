@@ -23,6 +23,7 @@ TfInputs::TfInputs(const ros::NodeHandle& node, const SceneDesc& scene)
   const std::vector<std::string> names = frame_names(scene);
   scene_frames_ = static_cast<int>(names.size());
   for (int i = 0; i < scene_frames_; ++i) tracks_.emplace_back(names[i], inputs_[i], timeout_);
+  tracks_.front().status = FrameStatus::ok;
   for (Track& track : tracks_) update_history(track);
 }
 
@@ -57,7 +58,7 @@ void TfInputs::restart(const ros::Time& now, bool forget) {
     Track& track = tracks_[i];
     track.history.clear();
     if (forget) {
-      track.status = FrameStatus::never_seen;
+      track.status = i == 0 ? FrameStatus::ok : FrameStatus::never_seen;
       track.too_fast = false;
       inputs_[i] = track.initial;
     }

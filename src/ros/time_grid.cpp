@@ -18,8 +18,8 @@ Nanoseconds ceil_multiple(Nanoseconds time, Nanoseconds unit) {
 }  // namespace
 
 Nanoseconds nanoseconds(double seconds) {
-  // Far beyond any ROS time, and small enough that sums of a few of them do not overflow.
-  constexpr double limit = 1e18;
+  // Beyond any ROS time, and small enough that the sum of two does not overflow.
+  constexpr double limit = 4e18;
   return std::llround(std::clamp(seconds * 1e9, -limit, limit));
 }
 

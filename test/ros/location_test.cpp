@@ -1,9 +1,10 @@
+#include "verlet_cable/ros/location.h"
+
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "verlet_cable/ros/checked_pin.h"
-#include "verlet_cable/ros/location.h"
 
 namespace verlet_cable {
 namespace {
@@ -106,20 +107,21 @@ TEST(Location, NearestPointInAnyFrameOnAnyCable) {
 }
 
 TEST(Location, ErrorsNameFieldValueAndWhatIsAllowed) {
-  EXPECT_EQ(node_errors(at_node("hose", 3)), "location.cable: 'hose'; must be one of: lower, upper");
-  EXPECT_EQ(node_errors(at_node("lower", 11)), "location.node: 11; must be from 0 to 10");
+  EXPECT_EQ(node_errors(at_node("hose", 3)), "location.cable: \"hose\"; allowed: lower, upper");
+  EXPECT_EQ(node_errors(at_node("lower", 11)), "location.node: 11; allowed: 0 to 10");
   EXPECT_NE(node_errors(at_node("lower", std::numeric_limits<std::uint32_t>::max())), "");
   for (const double bad : {-0.1, 1.1, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     EXPECT_NE(node_errors(at_arc_length("lower", bad)).find("location.arc_length: "), std::string::npos) << bad;
   }
   CableLocation location = at_node("lower", 3);
   location.mode = 9;
-  EXPECT_EQ(node_errors(location), "location.mode: 9; must be 0 (NODE), 1 (ARC_LENGTH) or 2 (NEAREST)");
+  EXPECT_EQ(node_errors(location), "location.mode: 9; allowed: 0 (NODE), 1 (ARC_LENGTH), 2 (NEAREST)");
 }
 
 TEST(Location, AllErrorsAtOnce) {
   const std::string errors = node_errors(nearest("hose", "nowhere", std::numeric_limits<double>::quiet_NaN(), 0, 0));
-  for (const char* part : {"location.cable: 'hose'", "location.point.point: (nan", "location.point.header.frame_id: 'nowhere'"}) {
+  for (const char* part :
+       {"location.cable: \"hose\"", "location.point.point: (nan", "location.point.header.frame_id: \"nowhere\""}) {
     EXPECT_NE(errors.find(part), std::string::npos) << part << " in " << errors;
   }
 }
@@ -129,7 +131,7 @@ TEST(Location, ACutLeavesEachPieceASegment) {
   EXPECT_EQ(segment(at_arc_length("lower", 0.05)), -1);
   EXPECT_EQ(segment(nearest("lower", "", 2, 0, 0)), -1);
   EXPECT_EQ(join(locate_cut(at_node("lower", 0), two_cables(), find_frame).errors),
-            "location.node: 0 means segment 0 of cable 'lower'; must be one from 1 to 8, so that each piece keeps one");
+            "location.node: 0 means segment 0 of cable \"lower\"; allowed: segments 1 to 8, so that each piece keeps one");
 }
 
 Pin::Request pin_request() {
@@ -175,20 +177,20 @@ TEST(CheckedPin, RefusesWithFieldAndValue) {
   EXPECT_NE(pin_errors(request).find("offset.orientation"), std::string::npos);
   request = pin_request();
   request.name = "lower_start";
-  EXPECT_NE(pin_errors(request).find("name: 'lower_start'"), std::string::npos);
+  EXPECT_NE(pin_errors(request).find("name: \"lower_start\""), std::string::npos);
   request.name = "no spaces";
-  EXPECT_NE(pin_errors(request).find("name: 'no spaces'"), std::string::npos);
+  EXPECT_NE(pin_errors(request).find("name: \"no spaces\""), std::string::npos);
   request = pin_request();
   request.frame_id = "nowhere";
-  EXPECT_NE(pin_errors(request).find("frame_id: 'nowhere'"), std::string::npos);
+  EXPECT_NE(pin_errors(request).find("frame_id: \"nowhere\""), std::string::npos);
   request.frame_id = "/world";
-  EXPECT_NE(pin_errors(request).find("frame_id: '/world'"), std::string::npos);
+  EXPECT_NE(pin_errors(request).find("frame_id: \"/world\""), std::string::npos);
   request = pin_request();
   request.location.node = 0;
-  EXPECT_NE(pin_errors(request).find("held by attachment 'lower_start'"), std::string::npos);
+  EXPECT_NE(pin_errors(request).find("held by \"lower_start\""), std::string::npos);
   request = pin_request();
   request.offset.position.x = 1.01;
-  EXPECT_NE(pin_errors(request).find("is 1.01 m from attachment 'lower_start'"), std::string::npos) << pin_errors(request);
+  EXPECT_NE(pin_errors(request).find("is 1.01 m from \"lower_start\""), std::string::npos) << pin_errors(request);
 }
 
 }  // namespace

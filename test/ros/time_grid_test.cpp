@@ -1,8 +1,8 @@
+#include "verlet_cable/ros/time_grid.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
-
-#include "verlet_cable/ros/time_grid.h"
 
 namespace verlet_cable {
 namespace {
@@ -48,8 +48,8 @@ TEST(TimeGrid, SecondsBecomeWholeNanoseconds) {
   EXPECT_EQ(nanoseconds(0.3), 300000000);
   EXPECT_EQ(nanoseconds(-0.001), -1000000);
   EXPECT_DOUBLE_EQ(seconds(1500 * millisecond), 1.5);
-  EXPECT_GT(nanoseconds(INFINITY), today);  // and sums of a few of them do not overflow
-  EXPECT_GT(nanoseconds(INFINITY) + today, nanoseconds(INFINITY));
+  EXPECT_GT(nanoseconds(INFINITY), today);
+  EXPECT_GT(nanoseconds(INFINITY) + nanoseconds(INFINITY), nanoseconds(INFINITY)) << "sums do not overflow";
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ class FrameBuffer {
  public:
   explicit FrameBuffer(std::string fixed_frame);
 
-  /// Whether the transform is in the tree now. What is wrong with it is logged at the first of a series and counted.
+  /// Whether the transform is in the tree now. What is wrong with it is logged now and then, and counted.
   bool insert(const ReceivedTransform& received);
   /// Forgets everything but static transforms.
   void clear();
@@ -42,6 +42,7 @@ class FrameBuffer {
   tf2::BufferCore buffer_;
   std::map<std::string, ros::Time> newest_;  ///< by child frame, dynamic transforms
   std::map<std::string, std::string> refused_;
+  std::map<std::string, ros::WallTime> logged_;  ///< by child frame, when a refusal was last logged
   int refused_count_ = 0;
 };
 

@@ -17,8 +17,8 @@ class FrameWatch {
   /// Acts on what a sample of the frames found; `stamp` is the simulated time. Releases attachments if the scene wants that. True
   /// if the simulation has to wait for a frame.
   bool react(const std::vector<FrameChange>& changes, Nanoseconds stamp, World& world);
-  /// Logs which attachments wait at their initial poses, and which cables for what.
-  void report_unseen(const BoundaryInputs& inputs, const std::vector<FrameReport>& frames, const World& world) const;
+  /// Logs which frames are missing still, and what waits for them.
+  void report_unseen(const BoundaryInputs& inputs, const std::vector<FrameReport>& frames) const;
   /// Forgets which frames were lost, from an id on.
   void forget_from(int frame) { lost_.erase(lost_.lower_bound(frame), lost_.end()); }
 

@@ -89,7 +89,6 @@ class Simulation {
   bool paused_ = false;
   bool faulted_ = false;
   bool waits_for_frames_ = false;
-  bool overstretched_ = false;
   int faults_ = 0;
   ros::WallTime last_published_;
   Statistics statistics_;

@@ -14,6 +14,7 @@ struct Statistics {
   double max_strain = 0;
   std::int64_t degraded = 0;       ///< steps that were finished less exactly
   std::int64_t overstretched = 0;  ///< steps in which held points were too far apart
+  std::int64_t jumped = 0;         ///< steps in which a frame was suddenly elsewhere
 
   void add(const StepResult& result, double step_wall_time);
 };

@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+"""Nodes in simulated time: a clock that was never there, runs, stands and goes back."""
+import math
+import sys
+import time
+import unittest
+
+import rospy
+import rostest
+from rosgraph_msgs.msg import Clock
+from tf2_msgs.msg import TFMessage
+
+from cable_client import CableClient, all_finite, cable, distance, transform
+from verlet_cable.msg import CableEvent
+
+SPEED = 4  # of the clock, times real time
+
+
+def positions(state):
+    return [(p.x, p.y, p.z) for p in cable(state, 'rope').positions]
+
+
+class SimTimeTest(unittest.TestCase):
+    def setUp(self):
+        self.clock = rospy.Publisher('/clock', Clock, queue_size=100)
+        self.tf = rospy.Publisher('/tf', TFMessage, queue_size=100)
+        self.resetting, self.keeping = CableClient('/resetting'), CableClient('/keeping')
+
+    def play(self, start, seconds):
+        """The clock and a frame that moves with the time since `start`, every 10 ms of simulated time."""
+        for i in range(int(round(seconds * 100)) + 1):
+            t = i / 100
+            self.clock.publish(rospy.Time.from_sec(start + t))
+            self.tf.publish([transform('hand', start + t, (0.1 * math.sin(5 * t), 0, 1))])
+            time.sleep(0.01 / SPEED)
+
+    def test_the_life_of_a_clock(self):
+        with self.resetting.states() as resetting, self.keeping.states() as keeping, \
+                self.resetting.events() as resets, self.keeping.events() as keeps:
+            time.sleep(0.3)
+            self.assertEqual(resetting.all(), [], 'no time, no messages')
+            answer = self.resetting.reset()
+            self.assertFalse(answer.success)
+            self.assertIn('no ROS time', answer.message)
+
+            self.play(100, 1)
+            last = resetting.wait_for(lambda s: s.header.stamp.to_sec() >= 100.94, 'state of the last tick')
+            # the last tick before the end of the clock less tf_latency, 100.95
+            self.assertAlmostEqual(last.header.stamp.to_sec(), 100.94, delta=1e-6)
+            first_run = resetting.all()
+            self.assertLessEqual(first_run[0].header.stamp.to_sec(), 100.1)
+
+            # the clock stands: so does everything, but a paused simulation can be stepped, and its messages go on
+            resetting.clear()
+            time.sleep(0.2)
+            self.assertEqual(resetting.all(), [], 'no tick while the clock stands')
+            self.assertFalse(self.resetting.step(1).success)
+            self.assertTrue(self.resetting.pause(True).success)
+            resetting.next(3)
+            standing = {s.header.stamp.to_nsec() for s in resetting.all()}
+            # it stands at the last step, between two ticks
+            self.assertEqual(standing, {int(100.95e9)})
+            answer = self.resetting.step(200)  # beyond what tf knows, too
+            self.assertTrue(answer.success, answer.message)
+            self.assertAlmostEqual(answer.time, 101.15, delta=1e-9)
+            stepped = resetting.wait_for(lambda s: s.header.stamp.to_nsec() == int(101.15e9), 'stepped state')
+            self.assertTrue(all_finite(stepped))
+            self.assertLess(distance(cable(stepped, 'rope').positions[0], (0.1 * math.sin(5), 0, 1)), 1e-9)
+            self.assertTrue(self.resetting.pause(False).success)
+
+            # it goes back
+            before = keeping.all()[-1]
+            resetting.clear(), keeping.clear()
+            self.play(50, 1)
+            for log in (resets, keeps):
+                log.wait_for(lambda e: e.type == CableEvent.TIME_JUMP, 'TIME_JUMP')
+            resetting.wait_for(lambda s: s.header.stamp.to_sec() >= 50.94, 'last tick after the jump')
+            second_run = resetting.all()
+            self.assertTrue(all(49.9 < s.header.stamp.to_sec() < 51 for s in second_run))
+            # the same motion of the frame gives the same motion of the rope, to the rounding of times and interpolation
+            times = {round(s.header.stamp.to_sec() - 100, 3): s for s in first_run}
+            both = [(times[t], s) for s in second_run for t in [round(s.header.stamp.to_sec() - 50, 3)] if t in times]
+            self.assertGreater(len(both), 40)
+            for one, other in both:
+                for p, q in zip(positions(one), positions(other)):
+                    self.assertLess(math.dist(p, q), 1e-6)
+            # kept: the free end has not left the swing it was in for the horizontal start
+            kept = keeping.all()[0]
+            self.assertLess(kept.header.stamp.to_sec(), 51)
+            self.assertLess(math.dist(positions(before)[-1], positions(kept)[-1]), 0.2)
+            self.assertGreater(math.dist(positions(second_run[0])[-1], positions(kept)[-1]), 0.2)
+
+
+if __name__ == '__main__':
+    rospy.init_node('sim_time_test', disable_rostime=True)
+    rostest.rosrun('verlet_cable', 'sim_time', SimTimeTest, sys.argv)
