@@ -193,9 +193,10 @@ void check_distances(const std::string& key, const CableDesc& cable, const std::
   std::vector<std::size_t> order(cable.attachments.size());
   std::iota(order.begin(), order.end(), 0);
   const auto node = [&](std::size_t i) { return node_at(cable, cable.attachments[i].place); };
-  order.erase(
-      std::remove_if(order.begin(), order.end(), [&](std::size_t i) { return !frames.count(cable.attachments[i].frame); }),
-      order.end());
+  const auto is_unknown = [&](std::size_t i) {
+    return !frames.count(cable.attachments[i].frame) || !is_sound(cable, cable.attachments[i].place);
+  };
+  order.erase(std::remove_if(order.begin(), order.end(), is_unknown), order.end());
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return node(a) < node(b); });
   for (std::size_t i = 1; i < order.size(); ++i) {
     const AttachmentDesc& first = cable.attachments[order[i - 1]];

@@ -14,7 +14,7 @@ namespace verlet_cable {
 namespace {
 
 constexpr std::size_t largest_text = std::size_t{64} << 20;
-constexpr std::size_t most_values = 2'000'000;
+constexpr std::size_t most_values = 1'000'000;
 constexpr std::size_t deepest_level = 32;
 constexpr std::size_t longest_message = 300;
 

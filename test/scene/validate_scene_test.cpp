@@ -137,12 +137,15 @@ TEST(ValidateScene, badNumbersDoNotHideOtherErrors) {
   scene.cables[0].segments = -3;
   scene.cables[0].attachments[0].place = at_arc_length(nan);
   scene.cables[0].attachments[1].offset = {nan, 0, 0};
+  scene.cables.push_back(held_scene(0.5).cables[0]);
+  scene.cables[1].attachments[1].place = at_arc_length(nan);
   scene.cables[0].color[2] = infinity;
   scene.materials[0].material.radius = -1;
   scene.gravity.acceleration.x() = nan;
   const auto errors = validate(scene);
   for (const char* key : {"gravity: [nan, 0, -9.81]", "materials.m.radius: -1", "cables[0].length: nan", "cables[0].segments: -3",
-                          "cables[0].color: [0.1, 0.1, inf, 1]", "cables[0].attachments[1].offset: [nan, 0, 0]"})
+                          "cables[0].color: [0.1, 0.1, inf, 1]", "cables[0].attachments[1].offset: [nan, 0, 0]",
+                          "cables[1].attachments[1].at: nan"})
     EXPECT_TRUE(has_line(errors, key)) << key;
 }
 

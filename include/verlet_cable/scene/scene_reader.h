@@ -15,7 +15,7 @@ namespace verlet_cable {
 /// finite: aliases are bounded for text by `read_scene_text`, and nowhere else.
 SceneDesc read_scene(const YAML::Node& root, const std::vector<std::string>& ignored = {});
 
-/// Reads a scene from YAML text: one document, at most 64 MB, two million values and 32 levels deep, aliases counted as often as
+/// Reads a scene from YAML text: one document, at most 64 MB, a million values and 32 levels deep, aliases counted as often as
 /// they are used. Throws SceneError; syntax errors with line and column.
 SceneDesc read_scene_text(const std::string& text);
 
