@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "material_frames.h"
+
 namespace verlet_cable {
 
 double CableModel::length() const {
@@ -17,12 +19,19 @@ std::vector<double> CableModel::arc_length() const {
 }
 
 std::vector<Quaternion> segment_orientations(const Cable& cable) {
+  const int n = cable.model.segments();
+  VectorArray segment, director;
+  segment.assign(n, 0.0);
+  director.assign(n, 0.0);
+  for (int i = 0; i < n; ++i) set(segment, i, cable.state.positions[i + 1] - cable.state.positions[i]);
+  carry_directors(cable.model, cable.state, segment, director);
   std::vector<Quaternion> orientations;
-  Quaternion orientation = Quaternion::Identity();
-  for (int i = 0; i < cable.model.segments(); ++i) {
-    const Vector3 along = cable.state.positions[i + 1] - cable.state.positions[i];
-    orientation = (Quaternion::FromTwoVectors(orientation * Vector3::UnitX(), along) * orientation).normalized();
-    orientations.push_back(orientation);
+  for (int i = 0; i < n; ++i) {
+    Eigen::Matrix3d axes;
+    axes.col(0) = get(segment, i).normalized();
+    axes.col(2) = axes.col(0).cross(get(director, i)).normalized();
+    axes.col(1) = axes.col(2).cross(axes.col(0));
+    orientations.emplace_back(axes);
   }
   return orientations;
 }
@@ -39,7 +48,9 @@ std::vector<double> node_curvature(const Cable& cable) {
 }
 
 std::vector<double> node_twist(const Cable& cable) {
-  return std::vector<double>(std::max(cable.model.segments() - 1, 0), 0.0);
+  std::vector<double> twist;
+  for (int i = 1; i < cable.model.segments(); ++i) twist.push_back(0.5 * (cable.state.twist[i - 1] + cable.state.twist[i]));
+  return twist;
 }
 
 double strain(const Cable& cable, int segment) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "material_frames.h"
 #include "tridiagonal.h"
 
 namespace verlet_cable {
@@ -24,19 +25,11 @@ constexpr double pivot_regularisation = 1e-9;
 /// motion. So much axial stiffness, relative to the cable's weight, gives it both: its own weight strains it by a part in ten
 /// million.
 constexpr double taut_stiffness = 1e7;
+/// Where in a substep forces are taken: in its middle.
+constexpr double part = 0.5;
 constexpr double standard_gravity = 9.81;
 /// A holder's change of velocity that moves a node by less in a substep, in segment lengths, goes unnoticed.
 constexpr double noticed_jerk = 1e-9;
-
-void set(VectorArray& array, int i, const Vector3& v) {
-  array.x[i] = v.x();
-  array.y[i] = v.y();
-  array.z[i] = v.z();
-}
-
-Vector3 get(const VectorArray& array, int i) {
-  return {array.x[i], array.y[i], array.z[i]};
-}
 
 }  // namespace
 
@@ -50,24 +43,31 @@ void CableStepper::resize(const CableModel& model) {
        {&length_, &target_length_, &inverse_mass_, &tension_density_, &inertia_, &end_square_, &pivot_, &off_, &impulse_})
     a->assign(nodes, 0.0);
   both_held_.reserve(nodes);
+  bending_.resize(model);
+  twist_.resize(model);
+  director_.assign(nodes, 0.0);
   system_.resize(segments_);
   solver_.resize(segments_);
 }
 
-SubstepResult CableStepper::advance(const CableModel& model, const Environment& environment, double h,
-                                    std::vector<HeldNode>& held, CableState& state) {
+SubstepResult CableStepper::advance(const CableModel& model, const Environment& environment, double h, Boundary& boundary,
+                                    std::vector<TwistSpan>& spans, CableState& state) {
   SubstepResult result;
   load(model, state);
-  hold(held);
-  result.overstretched_node = reachable_lengths(model, held, target_length_);
-  set_loads(model, environment, h, held);
+  hold(boundary.nodes);
+  result.overstretched_node = reachable_lengths(model, boundary.nodes, target_length_);
+  set_loads(model, environment, h, boundary.nodes);
+  bending_.start(model, segment_, boundary.directions, h, part);
+  twist_.start(model, spans, h, part);
   predict(h);
-  result.converged = solve(model, h, result);
+  set_natural_shape(model, state);
+  result.converged = solve(model, h, boundary, result);
   if (!result.converged) return result;
-  finish(h, held);
-  if (holders_accelerate(h, held)) project(model);
-  react(model, environment, h, held);
+  react(model, environment, h, boundary);
+  finish(h, boundary.nodes);
+  if (holders_accelerate(h, boundary.nodes)) project(model);
   result.max_strain = store(model, h, state);
+  follow_roll(boundary.directions, state.positions, spans);
   return result;
 }
 
@@ -129,16 +129,25 @@ void CableStepper::predict(double h) {
   }
 }
 
+/// The unloaded shape, turned as the material is expected in the middle of the substep.
+void CableStepper::set_natural_shape(const CableModel& model, const CableState& state) {
+  if (model.rest_curvature.empty() || !bending_.active()) return;
+  for (int i = 0; i < segments_; ++i)
+    set(middle_, i, get(segment_, i) + part * (get(displacement_, i + 1) - get(displacement_, i)));
+  carry_directors(model, state, middle_, director_);
+  bending_.set_natural_shape(model, middle_, director_);
+}
+
 /// Newton's method on places and tensions together, its matrix kept as long as it converges fast.
-bool CableStepper::solve(const CableModel& model, double h, SubstepResult& result) {
+bool CableStepper::solve(const CableModel& model, double h, const Boundary& boundary, SubstepResult& result) {
   const double tolerance = velocity_tolerance * std::min(h, longest_tolerated);
   double last = 0;
   bool factor = true;
   for (int i = 0; i < maximum_iterations; ++i) {
-    evaluate(model, h);
+    evaluate(model, h, boundary);
     if (factor) {
       assemble();
-      solver_.factor(system_, false);
+      solver_.factor(system_, bending_.active());
     }
     solver_.solve(system_);
     ++result.iterations;
@@ -154,11 +163,13 @@ bool CableStepper::solve(const CableModel& model, double h, SubstepResult& resul
 }
 
 /// Residuals of the equations of motion and of the tension laws at the present iterate.
-void CableStepper::evaluate(const CableModel& model, double h) {
+void CableStepper::evaluate(const CableModel& model, double h, const Boundary& boundary) {
   std::fill(end_square_.begin(), end_square_.end(), 0.0);
   evaluate_segments(displacement_.x, segment_.x, middle_.x, pull_.x);
   evaluate_segments(displacement_.y, segment_.y, middle_.y, pull_.y);
   evaluate_segments(displacement_.z, segment_.z, middle_.z, pull_.z);
+  if (bending_.active()) bending_.add_pulls(displacement_, pull_);
+  if (twist_.active()) twist_.add_pulls(middle_, displacement_, boundary, pull_);
   if (model.material.axial_stiffness < infinity)
     evaluate_elastic_lengths(model, h);
   else
@@ -217,7 +228,7 @@ void CableStepper::evaluate_elastic_lengths(const CableModel& model, double h) {
 void CableStepper::assemble() {
   std::copy(inertia_.begin(), inertia_.end(), system_.diagonal.begin());
   for (int i = 0; i < segments_; ++i) {
-    const double half = 0.5 * tension_density_[i];
+    const double half = part * tension_density_[i];
     system_.diagonal[i] += half;
     system_.diagonal[i + 1] += half;
     system_.first[i] = -half;
@@ -225,6 +236,7 @@ void CableStepper::assemble() {
     system_.direction.y[i] = middle_.y[i];
     system_.direction.z[i] = middle_.z[i];
   }
+  if (bending_.active()) bending_.add_stiffness(system_);
 }
 
 /// Applies the solution; the largest correction, in segment lengths.
@@ -292,17 +304,21 @@ void CableStepper::project(const CableModel& model) {
 }
 
 /// What the held nodes' equations of motion lack is what their holders supply.
-void CableStepper::react(const CableModel& model, const Environment& environment, double h, std::vector<HeldNode>& held) const {
-  for (HeldNode& holder : held) {
+void CableStepper::react(const CableModel& model, const Environment& environment, double h, Boundary& boundary) {
+  if (boundary.nodes.empty()) return;
+  evaluate(model, h, boundary);
+  for (HeldNode& holder : boundary.nodes) {
     const int i = holder.node;
-    const Vector3 start_velocity = get(velocity_, i);
     const double length = 0.5 * ((i > 0 ? model.rest_lengths[i - 1] : 0) + (i < segments_ ? model.rest_lengths[i] : 0));
-    Vector3 force = model.masses[i] * (environment.gravity - (holder.velocity - start_velocity) / h) -
+    Vector3 force = model.masses[i] * (environment.gravity - (holder.velocity - get(velocity_, i)) / h) -
                     model.material.drag * length * get(displacement_, i) / h;
-    if (i < segments_) force += tension_density_[i] * get(middle_, i);
-    if (i > 0) force -= tension_density_[i - 1] * get(middle_, i - 1);
+    if (i < segments_) force += get(pull_, i);
+    if (i > 0) force -= get(pull_, i - 1);
     holder.force = force;
   }
+  for (HeldDirection& holder : boundary.directions) holder.torque.setZero();
+  if (bending_.active()) bending_.react(boundary.directions);
+  if (twist_.active()) twist_.react(boundary);
 }
 
 /// The largest strain.

@@ -2,8 +2,10 @@
 
 #include <vector>
 
+#include "bending.h"
 #include "held_node.h"
 #include "saddle_solver.h"
+#include "twist.h"
 #include "verlet_cable/core/cable.h"
 
 namespace verlet_cable {
@@ -30,17 +32,18 @@ class CableStepper {
  public:
   void resize(const CableModel& model);
 
-  /// `held`: ascending by node. If it has not converged, `state` is untouched.
-  SubstepResult advance(const CableModel& model, const Environment& environment, double h, std::vector<HeldNode>& held,
-                        CableState& state);
+  /// If it has not converged, `state` is untouched.
+  SubstepResult advance(const CableModel& model, const Environment& environment, double h, Boundary& boundary,
+                        std::vector<TwistSpan>& spans, CableState& state);
 
  private:
   void load(const CableModel& model, const CableState& state);
   void hold(const std::vector<HeldNode>& held);
   void predict(double h);
   void set_loads(const CableModel& model, const Environment& environment, double h, const std::vector<HeldNode>& held);
-  bool solve(const CableModel& model, double h, SubstepResult& result);
-  void evaluate(const CableModel& model, double h);
+  bool solve(const CableModel& model, double h, const Boundary& boundary, SubstepResult& result);
+  void evaluate(const CableModel& model, double h, const Boundary& boundary);
+  void set_natural_shape(const CableModel& model, const CableState& state);
   void evaluate_segments(const std::vector<double>& displacement, const std::vector<double>& segment, std::vector<double>& middle,
                          std::vector<double>& pull);
   void evaluate_nodes(const std::vector<double>& displacement, const std::vector<double>& base, const std::vector<double>& pull,
@@ -52,7 +55,7 @@ class CableStepper {
   void finish(double h, const std::vector<HeldNode>& held);
   bool holders_accelerate(double h, const std::vector<HeldNode>& held) const;
   void project(const CableModel& model);
-  void react(const CableModel& model, const Environment& environment, double h, std::vector<HeldNode>& held) const;
+  void react(const CableModel& model, const Environment& environment, double h, Boundary& boundary);
   double store(const CableModel& model, double h, CableState& state) const;
 
   int segments_ = 0;
@@ -73,6 +76,9 @@ class CableStepper {
   VectorArray pull_;                // segments: force on the first node [N]
   std::vector<double> end_square_;  // segments: square of s' [m^2]
   VectorArray end_velocity_;        // nodes: v' [m/s]
+  Bending bending_;
+  Twist twist_;
+  VectorArray director_;  // segments: the material's y axis; only where the unloaded shape is curved
   SaddleSystem system_;
   SaddleSolver solver_;
   // Velocity projection: a tridiagonal system

@@ -14,6 +14,20 @@ struct HeldNode {
   Vector3 force = Vector3::Zero();     ///< [N] out: what the cable exerts on the holder, mean over the substep
 };
 
+/// A clamp's direction and roll at the start and the end of a substep.
+struct HeldDirection {
+  int node = 0;
+  Quaternion start = Quaternion::Identity();  ///< x along the cable
+  Quaternion end = Quaternion::Identity();
+  Vector3 torque = Vector3::Zero();  ///< [N m] out: what the cable exerts on the holder, mean over the substep
+};
+
+/// All that is given of a cable at a substep; both ascending by node.
+struct Boundary {
+  std::vector<HeldNode> nodes;
+  std::vector<HeldDirection> directions;
+};
+
 /// The lengths [m] that the segments can keep: their rest lengths, but longer between holders of an inextensible cable that are
 /// further apart than the cable between them is long. Returns the first node of such a span, -1 if there is none. `held` ascends
 /// by node; `lengths`: one a segment.

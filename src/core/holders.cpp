@@ -12,11 +12,23 @@ constexpr double fastest_holder = 50;
 /// A node that is pinned elsewhere than it is goes there at about this speed [m/s], in no less than this time [s].
 constexpr double approach_speed = 2;
 constexpr double shortest_approach = 0.1;
+constexpr double approach_radius = 0.5;  // [m]; directions turn as long as a node takes for this
 
-Vector3 remaining_gap(const Holder& holder, double time) {
-  const double duration = shortest_approach + holder.gap.norm() / approach_speed;
-  const double part = std::clamp((time - holder.caught) / duration, 0.0, 1.0);
-  return (1 - part * part * (3 - 2 * part)) * holder.gap;
+/// How much of a gap is left: from 1 to 0, smoothly, in a time that grows with the distance [m] to go.
+double remaining(double caught, double distance, double time) {
+  const double duration = shortest_approach + distance / approach_speed;
+  const double part = std::clamp((time - caught) / duration, 0.0, 1.0);
+  return 1 - part * part * (3 - 2 * part);
+}
+
+bool holds_direction(const CableModel& model, const Attachment& attachment) {
+  return attachment.type == AttachmentType::clamp && model.material.bending_stiffness > 0;
+}
+
+/// The cable's direction at a node.
+Vector3 tangent(const CableState& state, int node) {
+  const int last = static_cast<int>(state.positions.size()) - 1;
+  return state.positions[std::min(node + 1, last)] - state.positions[std::max(node - 1, 0)];
 }
 
 }  // namespace
@@ -32,17 +44,16 @@ std::vector<Target> attachment_targets(const CableModel& model, const Attachment
   return targets;
 }
 
-std::vector<Holder> find_holders(int cable, const CableModel& model, const CableState& state,
-                                 const std::vector<Attachment>& attachments, const std::vector<Pose>& frames,
-                                 const std::vector<Holder>& before, double time) {
-  std::vector<Holder> holders;
-  const auto add = [&](int attachment, const Target& target) {
+Holders find_holders(int cable, const CableModel& model, const CableState& state, const std::vector<Attachment>& attachments,
+                     const std::vector<Pose>& frames, const Holders& before, double time) {
+  Holders holders;
+  const auto add_node = [&](int attachment, const Target& target) {
     const auto same_node = [&](const Holder& h) { return h.node == target.node; };
-    if (std::any_of(holders.begin(), holders.end(), same_node)) return;
-    const auto known =
-        std::find_if(before.begin(), before.end(), [&](const Holder& h) { return same_node(h) && h.attachment == attachment; });
-    if (known != before.end()) {
-      holders.push_back(*known);
+    if (std::any_of(holders.nodes.begin(), holders.nodes.end(), same_node)) return;
+    const auto known = std::find_if(before.nodes.begin(), before.nodes.end(),
+                                    [&](const Holder& h) { return same_node(h) && h.attachment == attachment; });
+    if (known != before.nodes.end()) {
+      holders.nodes.push_back(*known);
       return;
     }
     Holder holder;
@@ -53,7 +64,24 @@ std::vector<Holder> find_holders(int cable, const CableModel& model, const Cable
     holder.mean_velocity = holder.velocity;
     holder.gap = holder.position - target.position;
     holder.caught = time;
-    holders.push_back(holder);
+    holders.nodes.push_back(holder);
+  };
+  const auto add_direction = [&](int attachment) {
+    const auto known = std::find_if(before.directions.begin(), before.directions.end(),
+                                    [&](const DirectionHolder& h) { return h.attachment == attachment; });
+    if (known != before.directions.end()) {
+      holders.directions.push_back(*known);
+      return;
+    }
+    DirectionHolder holder;
+    holder.attachment = attachment;
+    holder.node = attachments[attachment].node;
+    const Quaternion target = (frames[attachments[attachment].frame] * attachments[attachment].pose).orientation;
+    // Its roll is followed from the start; a pinned node is not twisted by being pinned.
+    holder.gap = Quaternion::FromTwoVectors(target * Vector3::UnitX(), tangent(state, holder.node));
+    holder.orientation = holder.gap * target;
+    holder.caught = time;
+    holders.directions.push_back(holder);
   };
   // The attachments' own nodes first, then the neighbours that clamps want.
   for (const bool own : {true, false}) {
@@ -61,20 +89,23 @@ std::vector<Holder> find_holders(int cable, const CableModel& model, const Cable
       if (attachments[a].cable != cable) continue;
       const std::vector<Target> targets = attachment_targets(model, attachments[a], frames[attachments[a].frame]);
       for (const Target& target : targets)
-        if ((target.node == attachments[a].node) == own) add(a, target);
+        if ((target.node == attachments[a].node) == own) add_node(a, target);
+      if (own && holds_direction(model, attachments[a])) add_direction(a);
     }
   }
-  std::sort(holders.begin(), holders.end(), [](const Holder& a, const Holder& b) { return a.node < b.node; });
+  const auto by_node = [](const auto& a, const auto& b) { return a.node < b.node; };
+  std::sort(holders.nodes.begin(), holders.nodes.end(), by_node);
+  std::sort(holders.directions.begin(), holders.directions.end(), by_node);
   return holders;
 }
 
 bool aim_holders(const CableModel& model, const std::vector<Attachment>& attachments, const std::vector<Pose>& frames,
-                 double time, double time_step, std::vector<Holder>& holders) {
+                 double time, double time_step, Holders& holders) {
   bool followed = true;
-  for (Holder& holder : holders) {
+  for (Holder& holder : holders.nodes) {
     const Attachment& attachment = attachments[holder.attachment];
     const Pose pose = frames[attachment.frame] * attachment.pose;
-    holder.next_position = pose.position + remaining_gap(holder, time);
+    holder.next_position = pose.position + remaining(holder.caught, holder.gap.norm(), time) * holder.gap;
     if (holder.node != attachment.node) {
       const int between = std::min(holder.node, attachment.node);
       const double side = holder.node < attachment.node ? -1 : 1;
@@ -84,26 +115,48 @@ bool aim_holders(const CableModel& model, const std::vector<Attachment>& attachm
     holder.next_velocity = mean + 0.5 * (mean - holder.mean_velocity);
     if (!(mean.norm() <= fastest_holder)) followed = false;
   }
+  for (DirectionHolder& holder : holders.directions) {
+    const Attachment& attachment = attachments[holder.attachment];
+    const double left = remaining(holder.caught, approach_radius, time);
+    holder.next_orientation =
+        Quaternion::Identity().slerp(left, holder.gap) * (frames[attachment.frame] * attachment.pose).orientation;
+  }
   return followed;
 }
 
-void hold_at(double part, const std::vector<Holder>& holders, std::vector<HeldNode>& held) {
-  held.resize(holders.size());
-  for (std::size_t k = 0; k < holders.size(); ++k) {
-    const Holder& holder = holders[k];
-    held[k].node = holder.node;
-    held[k].position = holder.position + part * (holder.next_position - holder.position);
-    held[k].velocity = holder.velocity + part * (holder.next_velocity - holder.velocity);
-    if (part == 1) held[k].position = holder.next_position;
+void jump_to_aim(Holders& holders) {
+  for (Holder& holder : holders.nodes) {
+    holder.position = holder.next_position;
+    holder.velocity = holder.next_velocity = holder.mean_velocity = Vector3::Zero();
+  }
+  for (DirectionHolder& holder : holders.directions) holder.orientation = holder.next_orientation;
+}
+
+void hold_at(double from, double to, const Holders& holders, Boundary& boundary) {
+  boundary.nodes.resize(holders.nodes.size());
+  for (std::size_t k = 0; k < holders.nodes.size(); ++k) {
+    const Holder& holder = holders.nodes[k];
+    HeldNode& held = boundary.nodes[k];
+    held.node = holder.node;
+    held.position = to == 1 ? holder.next_position : holder.position + to * (holder.next_position - holder.position);
+    held.velocity = holder.velocity + to * (holder.next_velocity - holder.velocity);
+  }
+  boundary.directions.resize(holders.directions.size());
+  for (std::size_t k = 0; k < holders.directions.size(); ++k) {
+    const DirectionHolder& holder = holders.directions[k];
+    boundary.directions[k].node = holder.node;
+    boundary.directions[k].start = holder.orientation.slerp(from, holder.next_orientation);
+    boundary.directions[k].end = holder.orientation.slerp(to, holder.next_orientation);
   }
 }
 
-void complete_step(double time_step, std::vector<Holder>& holders) {
-  for (Holder& holder : holders) {
+void complete_step(double time_step, Holders& holders) {
+  for (Holder& holder : holders.nodes) {
     holder.mean_velocity = (holder.next_position - holder.position) / time_step;
     holder.position = holder.next_position;
     holder.velocity = holder.next_velocity;
   }
+  for (DirectionHolder& holder : holders.directions) holder.orientation = holder.next_orientation;
 }
 
 }  // namespace verlet_cable

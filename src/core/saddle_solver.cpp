@@ -56,10 +56,6 @@ Eigen::Matrix3d lane(const PairMatrix& m, int i) {
   return out;
 }
 
-Eigen::Vector3d element(const VectorArray& a, int i) {
-  return {a.x[i], a.y[i], a.z[i]};
-}
-
 /// What the eliminated blocks left to the next node, to the one after, and to the multiplier before the next node.
 struct Front {
   PairSymmetric next{};       ///< block of the next node
@@ -154,7 +150,7 @@ void SaddleSolver::factor_lanes(const SaddleSystem& s) {
 
   const int m = lane_;
   const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
-  const Eigen::Vector3d direction = element(s.direction, m);
+  const Eigen::Vector3d direction = get(s.direction, m);
   Middle a = Middle::Zero();
   a.block<3, 3>(0, 0) = lane(front.next, 0) + lane(front.after, 1) + s.diagonal[m] * identity;
   a.block<3, 3>(3, 3) = lane(front.next, 1) + lane(front.after, 0) + s.diagonal[m + 1] * identity;
@@ -201,8 +197,8 @@ void SaddleSolver::solve_lanes(const SaddleSystem& s) {
 
   const int m = lane_;
   MiddleVector load;
-  load << element(s.load, m) + lane(front.next, 0) + lane(front.after, 1),
-      element(s.load, m + 1) + lane(front.next, 1) + lane(front.after, 0), front.gap[0], front.gap[1], s.gap[m];
+  load << get(s.load, m) + lane(front.next, 0) + lane(front.after, 1),
+      get(s.load, m + 1) + lane(front.next, 1) + lane(front.after, 0), front.gap[0], front.gap[1], s.gap[m];
   for (int node = 0; node < 2; ++node) load.segment<3>(3 * node) *= s.movable[m + node];
   const MiddleVector middle = middle_.solve(load);
 

@@ -4,19 +4,9 @@
 #include <vector>
 
 #include "pair.h"
+#include "vector_array.h"
 
 namespace verlet_cable {
-
-/// Three component arrays of one vector quantity.
-struct VectorArray {
-  std::vector<double> x, y, z;
-
-  void assign(std::size_t count, double value) {
-    x.assign(count, value);
-    y.assign(count, value);
-    z.assign(count, value);
-  }
-};
 
 /// The linear system of one Newton iteration of a cable: displacements of its N nodes together with the multipliers of its n = N
 /// - 1 segments. For node i and segment i (`p` is `direction`):

@@ -123,17 +123,21 @@ void World::Implementation::start_cable(const CableDesc& desc) {
   cable.state.velocities.assign(cable.model.nodes(), Vector3::Zero());
   CableScratch s;
   s.holders = find_holders(index, cable.model, cable.state, attachments, poses, {}, time());
-  for (Holder& holder : s.holders) holder.gap.setZero();
+  for (Holder& holder : s.holders.nodes) holder.gap.setZero();
+  for (DirectionHolder& holder : s.holders.directions) holder.gap.setIdentity();
   aim_holders(cable.model, attachments, poses, time(), scene.time_step, s.holders);
-  for (Holder& holder : s.holders) {
-    holder.position = holder.next_position;
-    holder.velocity = holder.next_velocity = holder.mean_velocity = Vector3::Zero();
-  }
-  hold_at(1, s.holders, s.held);
-  set_initial_state(desc.initial, cable.model, s.held, scene.gravity.acceleration, cable.state);
-  s.stepper.resize(cable.model);
+  jump_to_aim(s.holders);
+  hold_at(1, 1, s.holders, s.boundary);
+  set_initial_state(desc.initial, cable.model, s.boundary.nodes, scene.gravity.acceleration, cable.state);
+  cable.state.twist.assign(cable.model.segments(), 0.0);
+  cable.state.reference_orientation =
+      Quaternion::FromTwoVectors(Vector3::UnitX(), cable.state.positions[1] - cable.state.positions[0]);
+  s.spans = find_spans(cable.model, cable.state, s.boundary.directions);
   cables.push_back(std::move(cable));
   scratch.push_back(std::move(s));
+  follow_material(index);
+  set_rest_curvature(desc.rest_curvature, cables.back());
+  scratch.back().stepper.resize(cables.back().model);
 }
 
 StepResult World::step(const BoundaryInputs& inputs) {
@@ -153,13 +157,10 @@ void World::Implementation::step_cable(int index, StepResult& result) {
   CableScratch& s = scratch[index];
   const double dt = scene.time_step;
   if (!aim_holders(cable.model, attachments, poses, time(), dt, s.holders)) {
-    for (Holder& holder : s.holders) {
-      holder.position = holder.next_position;
-      holder.velocity = holder.next_velocity = holder.mean_velocity = Vector3::Zero();
-    }
-    hold_at(1, s.holders, s.held);
-    carry_along(cable.model, s.held, scene.gravity.acceleration, cable.state);
-    note_status(Status::jumped, index, s.held.front().node, result);
+    jump_to_aim(s.holders);
+    hold_at(1, 1, s.holders, s.boundary);
+    carry_along(cable.model, s.boundary.nodes, scene.gravity.acceleration, cable.state);
+    note_status(Status::jumped, index, s.boundary.nodes.front().node, result);
   }
 
   const Environment environment{scene.gravity.acceleration};
@@ -171,8 +172,9 @@ void World::Implementation::step_cable(int index, StepResult& result) {
   while (done < whole) {
     const std::int64_t ticks = whole >> s.level;
     const double h = dt / static_cast<double>(std::int64_t{1} << s.level);
-    hold_at(static_cast<double>(done + ticks) / static_cast<double>(whole), s.holders, s.held);
-    const SubstepResult substep = s.stepper.advance(cable.model, environment, h, s.held, cable.state);
+    const double part = 1 / static_cast<double>(whole);
+    hold_at(part * static_cast<double>(done), part * static_cast<double>(done + ticks), s.holders, s.boundary);
+    const SubstepResult substep = s.stepper.advance(cable.model, environment, h, s.boundary, s.spans, cable.state);
     result.iterations += substep.iterations;
     if (!substep.converged) {
       if (s.level < finest) {
@@ -196,24 +198,74 @@ void World::Implementation::step_cable(int index, StepResult& result) {
     if (substep.overstretched_node >= 0) note_status(Status::overstretched, index, substep.overstretched_node, result);
     if (s.level > 0 && substep.iterations <= easy_iterations && done % (2 * ticks) == 0) --s.level;
   }
+  follow_material(index);
   result.substeps = std::max(result.substeps, substeps);
   complete_step(dt, s.holders);
 }
 
 void World::Implementation::add_forces(int cable, double weight) {
   const CableScratch& s = scratch[cable];
-  for (std::size_t k = 0; k < s.held.size(); ++k) {
-    Attachment& attachment = attachments[s.holders[k].attachment];
-    const Vector3 force = weight * s.held[k].force;
-    const Vector3 arm = s.held[k].position - (poses[attachment.frame] * attachment.pose).position;
+  for (std::size_t k = 0; k < s.boundary.nodes.size(); ++k) {
+    Attachment& attachment = attachments[s.holders.nodes[k].attachment];
+    const Vector3 force = weight * s.boundary.nodes[k].force;
+    const Vector3 arm = s.boundary.nodes[k].position - (poses[attachment.frame] * attachment.pose).position;
     attachment.force += force;
-    if (s.holders[k].node != attachment.node) attachment.torque += arm.cross(force);
+    if (s.holders.nodes[k].node != attachment.node) attachment.torque += arm.cross(force);
+  }
+  for (std::size_t k = 0; k < s.boundary.directions.size(); ++k)
+    attachments[s.holders.directions[k].attachment].torque += weight * s.boundary.directions[k].torque;
+}
+
+void World::Implementation::update_holders(int index) {
+  const Cable& cable = cables[index];
+  CableScratch& s = scratch[index];
+  s.holders = find_holders(index, cable.model, cable.state, attachments, poses, s.holders, time());
+  aim_holders(cable.model, attachments, poses, time(), scene.time_step, s.holders);
+  hold_at(0, 0, s.holders, s.boundary);
+  s.spans = find_spans(cable.model, cable.state, s.boundary.directions);
+}
+
+/// Twist and roll of the material after a step: from the clamps where there are any, else the first segment's is carried along in
+/// time.
+void World::Implementation::follow_material(int index) {
+  CableState& state = cables[index].state;
+  const CableScratch& s = scratch[index];
+  if (s.boundary.directions.empty()) {
+    const Vector3 before = state.reference_orientation * Vector3::UnitX(), now = state.positions[1] - state.positions[0];
+    state.reference_node = 0;
+    state.reference_orientation = (Quaternion::FromTwoVectors(before, now) * state.reference_orientation).normalized();
+  } else {
+    state.reference_node = s.boundary.directions.front().node;
+    state.reference_orientation = s.boundary.directions.front().end;
+  }
+  std::fill(state.twist.begin(), state.twist.end(), 0.0);
+  for (const TwistSpan& span : s.spans) {
+    double length = 0;
+    for (int i = span.first_node; i < span.last_node; ++i) length += cables[index].model.rest_lengths[i];
+    std::fill(state.twist.begin() + span.first_node, state.twist.begin() + span.last_node, span.angle / length);
   }
 }
 
-void World::Implementation::update_holders(int cable) {
-  scratch[cable].holders =
-      find_holders(cable, cables[cable].model, cables[cable].state, attachments, poses, scratch[cable].holders, time());
+void World::Implementation::set_rest_curvature(const RestCurvatureDesc& desc, Cable& cable) {
+  const int n = cable.model.segments();
+  if (desc.type == RestCurvatureDesc::Type::straight) return;
+  cable.model.rest_curvature.assign(n + 1, desc.curvature);
+  if (desc.type == RestCurvatureDesc::Type::constant) return;
+  const std::vector<Quaternion> orientations = segment_orientations(cable);
+  for (int i = 1; i < n; ++i) {
+    const Vector3 before = orientations[i - 1] * Vector3::UnitX(), after = orientations[i] * Vector3::UnitX();
+    const Quaternion middle = orientations[i - 1].slerp(0.5, orientations[i]);
+    const Vector3 curvature = (after - before) / (0.5 * (cable.model.rest_lengths[i - 1] + cable.model.rest_lengths[i]));
+    cable.model.rest_curvature[i] = {-curvature.dot(middle * Vector3::UnitZ()), curvature.dot(middle * Vector3::UnitY())};
+  }
+  for (const DirectionHolder& clamp : scratch.back().holders.directions) {
+    if (clamp.node != 0 && clamp.node != n) continue;
+    const int i = clamp.node == 0 ? 0 : n - 1;
+    const Vector3 along = orientations[i] * Vector3::UnitX(), axis = clamp.orientation * Vector3::UnitX();
+    const Vector3 curvature = (clamp.node == 0 ? along - axis : axis - along) / (0.5 * cable.model.rest_lengths[i]);
+    cable.model.rest_curvature[clamp.node] = {-curvature.dot(orientations[i] * Vector3::UnitZ()),
+                                              curvature.dot(orientations[i] * Vector3::UnitY())};
+  }
 }
 
 }  // namespace verlet_cable

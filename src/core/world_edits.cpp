@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "verlet_cable/core/world.h"
@@ -27,9 +28,36 @@ std::string numbered(const std::string& base, int first, const Taken& taken) {
   }
 }
 
-template <typename T>
-std::vector<T> tail(const std::vector<T>& v, int from) {
-  return std::vector<T>(v.begin() + from, v.end());
+/// The nodes `first` to `last` of a cable as a cable of their own.
+Cable piece(const Cable& whole, int first, int last) {
+  const auto part = [&](auto& v, int end) { v = std::decay_t<decltype(v)>(v.begin() + first, v.begin() + end); };
+  Cable cable = whole;
+  cable.state.reference_node = 0;
+  cable.state.reference_orientation = segment_orientations(whole)[first];
+  for (auto* of_segments : {&cable.model.rest_lengths, &cable.state.tension, &cable.state.twist}) part(*of_segments, last);
+  part(cable.model.masses, last + 1);
+  if (!cable.model.rest_curvature.empty()) part(cable.model.rest_curvature, last + 1);
+  for (auto* of_nodes : {&cable.state.positions, &cable.state.velocities, &cable.state.accelerations}) part(*of_nodes, last + 1);
+  return cable;
+}
+
+template <typename HolderType>
+void forget_attachment(int attachment, std::vector<HolderType>& holders) {
+  holders.erase(std::remove_if(holders.begin(), holders.end(), [&](const HolderType& h) { return h.attachment == attachment; }),
+                holders.end());
+  for (HolderType& h : holders)
+    if (h.attachment > attachment) --h.attachment;
+}
+
+/// Moves the holders from node `first_node` on to the second piece, whose nodes count from there.
+template <typename HolderType>
+void split_holders(int first_node, std::vector<HolderType>& first, std::vector<HolderType>& second) {
+  for (HolderType h : first) {
+    if (h.node < first_node) continue;
+    h.node -= first_node;
+    second.push_back(h);
+  }
+  first.erase(std::remove_if(first.begin(), first.end(), [&](const HolderType& h) { return h.node >= first_node; }), first.end());
 }
 
 }  // namespace
@@ -75,11 +103,8 @@ EditResult World::unpin(const std::string& name) {
   const int cable = w.attachments[index].cable;
   w.attachments.erase(w.attachments.begin() + index);
   for (CableScratch& s : w.scratch) {
-    auto& holders = s.holders;
-    holders.erase(std::remove_if(holders.begin(), holders.end(), [&](const Holder& h) { return h.attachment == index; }),
-                  holders.end());
-    for (Holder& h : holders)
-      if (h.attachment > index) --h.attachment;
+    forget_attachment(index, s.holders.nodes);
+    forget_attachment(index, s.holders.directions);
   }
   w.update_holders(cable);
   return {true, "", name};
@@ -100,20 +125,9 @@ EditResult World::cut(int cable, int segment) {
     return find_cable(n) >= 0 ||
            std::any_of(w.scene.cables.begin(), w.scene.cables.end(), [&](const CableDesc& c) { return c.name == n; });
   };
-  Cable first = w.cables[cable], second = w.cables[cable];
+  const Cable& whole = w.cables[cable];
+  Cable first = piece(whole, 0, segment), second = piece(whole, segment + 1, segments);
   second.model.name = numbered(name + "_", 2, taken);
-  second.model.rest_lengths = tail(second.model.rest_lengths, segment + 1);
-  second.model.masses = tail(second.model.masses, segment + 1);
-  second.state.positions = tail(second.state.positions, segment + 1);
-  second.state.velocities = tail(second.state.velocities, segment + 1);
-  second.state.accelerations = tail(second.state.accelerations, segment + 1);
-  second.state.tension = tail(second.state.tension, segment + 1);
-  first.model.rest_lengths.resize(segment);
-  first.model.masses.resize(segment + 1);
-  first.state.positions.resize(segment + 1);
-  first.state.velocities.resize(segment + 1);
-  first.state.accelerations.resize(segment + 1);
-  first.state.tension.resize(segment);
 
   const int new_cable = static_cast<int>(w.cables.size());
   const std::string new_name = second.model.name;
@@ -125,13 +139,9 @@ EditResult World::cut(int cable, int segment) {
     a.node -= segment + 1;
   }
   w.scratch.emplace_back();
-  std::vector<Holder>& holders = w.scratch[cable].holders;
-  for (Holder h : holders) {
-    if (h.node <= segment) continue;
-    h.node -= segment + 1;
-    w.scratch[new_cable].holders.push_back(h);
-  }
-  holders.erase(std::remove_if(holders.begin(), holders.end(), [&](const Holder& h) { return h.node > segment; }), holders.end());
+  Holders &of_first = w.scratch[cable].holders, &of_second = w.scratch[new_cable].holders;
+  split_holders(segment + 1, of_first.nodes, of_second.nodes);
+  split_holders(segment + 1, of_first.directions, of_second.directions);
   for (const int piece : {cable, new_cable}) {
     w.update_holders(piece);
     w.scratch[piece].stepper.resize(w.cables[piece].model);

@@ -11,10 +11,11 @@ namespace verlet_cable {
 
 /// What a cable needs besides its model and state.
 struct CableScratch {
-  std::vector<Holder> holders;  ///< ascending by node
-  int level = 0;                ///< a step is tried in 2^level substeps
+  Holders holders;
+  int level = 0;  ///< a step is tried in 2^level substeps
   CableStepper stepper;
-  std::vector<HeldNode> held;
+  Boundary boundary;
+  std::vector<TwistSpan> spans;
 };
 
 struct World::Implementation {
@@ -32,8 +33,10 @@ struct World::Implementation {
   void start_cable(const CableDesc& desc);
   void follow_frames(const BoundaryInputs& inputs);
   void step_cable(int cable, StepResult& result);
+  void set_rest_curvature(const RestCurvatureDesc& desc, Cable& cable);
   void add_forces(int cable, double weight);
   void update_holders(int cable);
+  void follow_material(int cable);
   double time() const { return static_cast<double>(steps) * scene.time_step; }
 };
 

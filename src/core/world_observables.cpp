@@ -24,9 +24,12 @@ class Hash {
   void add(const Vector3& v) {
     for (int i = 0; i < 3; ++i) add(v[i]);
   }
+  void add(const Quaternion& q) {
+    for (int i = 0; i < 4; ++i) add(q.coeffs()[i]);
+  }
   void add(const Pose& pose) {
     add(pose.position);
-    for (int i = 0; i < 4; ++i) add(pose.orientation.coeffs()[i]);
+    add(pose.orientation);
   }
   void add(const std::string& text) {
     add_bits(text.size());
@@ -80,11 +83,16 @@ int World::find_attachment(const std::string& name) const {
 Energy World::energy() const {
   Energy energy;
   const Vector3& gravity = implementation_->scene.gravity.acceleration;
-  for (const Cable& cable : cables()) {
+  for (std::size_t k = 0; k < cables().size(); ++k) {
+    const Cable& cable = cables()[k];
+    energy.bend += bending_energy(cable.model, cable.state, implementation_->scratch[k].boundary.directions);
     for (int i = 0; i < cable.model.nodes(); ++i) {
       energy.kinetic += 0.5 * cable.model.masses[i] * cable.state.velocities[i].squaredNorm();
       energy.gravity -= cable.model.masses[i] * gravity.dot(cable.state.positions[i]);
     }
+    for (int i = 0; i < cable.model.segments(); ++i)
+      energy.twist += 0.5 * cable.model.material.torsional_stiffness * cable.model.rest_lengths[i] * cable.state.twist[i] *
+                      cable.state.twist[i];
     if (cable.model.material.axial_stiffness == infinity) continue;
     for (int i = 0; i < cable.model.segments(); ++i) {
       const double e = strain(cable, i);
@@ -110,8 +118,19 @@ std::uint64_t World::hash() const {
     for (const auto* vectors : {&cable.state.positions, &cable.state.velocities, &cable.state.accelerations})
       for (const Vector3& v : *vectors) hash.add(v);
     for (const double t : cable.state.tension) hash.add(t);
+    for (const double t : cable.state.twist) hash.add(t);
+    hash.add(cable.state.reference_orientation);
+    for (const TwistSpan& span : w.scratch[i].spans) {
+      hash.add(span.angle);
+      hash.add(span.roll);
+    }
     hash.add_bits(static_cast<std::uint64_t>(w.scratch[i].level));
-    for (const Holder& h : w.scratch[i].holders) {
+    for (const DirectionHolder& h : w.scratch[i].holders.directions) {
+      hash.add(h.orientation);
+      hash.add(h.gap);
+      hash.add(h.caught);
+    }
+    for (const Holder& h : w.scratch[i].holders.nodes) {
       hash.add_bits(static_cast<std::uint64_t>(h.node));
       for (const Vector3* v : {&h.position, &h.velocity, &h.mean_velocity, &h.gap}) hash.add(*v);
       hash.add(h.caught);

@@ -16,6 +16,9 @@ struct CableModel {
   std::array<double, 4> color{0.1, 0.1, 0.1, 1.0};
   std::vector<double> rest_lengths;  ///< [m] a segment, n; written by World's edits only
   std::vector<double> masses;        ///< [kg] a node, n + 1: half of each neighbouring segment, and payloads
+  /// [1/m] a node, n + 1: curvature about the material's y and z axes that carries no moment; empty where the cable is straight
+  /// unloaded
+  std::vector<std::array<double, 2>> rest_curvature;
 
   int segments() const { return static_cast<int>(rest_lengths.size()); }
   int nodes() const { return static_cast<int>(masses.size()); }
@@ -27,9 +30,12 @@ struct CableModel {
 struct CableState {
   std::vector<Vector3> positions;   ///< [m] a node, n + 1
   std::vector<Vector3> velocities;  ///< [m/s] a node, n + 1, at the time of the positions
-  std::vector<Vector3>
-      accelerations;            ///< [m/s^2] a node, n + 1, mean over the last substep: where the next one's solution starts
+  /// [m/s^2] a node, n + 1, mean over the last substep: where the next one's solution starts
+  std::vector<Vector3> accelerations;
   std::vector<double> tension;  ///< [N] a segment, n, > 0 is tension; mean over the last substep
+  std::vector<double> twist;    ///< [rad/m] a segment, n
+  int reference_node = 0;       ///< where the material's orientation is known: the first clamp's node
+  Quaternion reference_orientation = Quaternion::Identity();  ///< there: x along the cable, roll of the material
 };
 
 struct Cable {
