@@ -28,8 +28,7 @@ const Keys<AttachmentDesc>& attachment_keys() {
       text_key("frame", &AttachmentDesc::frame, frame_words),
       vector_key("offset", &AttachmentDesc::offset, "m"),
       vector_key("rotation", &AttachmentDesc::rotation, "rad"),
-      choice_key("type", &AttachmentDesc::type,
-                 Choices<AttachmentType>{{"hinge", AttachmentType::hinge}, {"clamp", AttachmentType::clamp}}),
+      choice_key("type", &AttachmentDesc::type, {{"hinge", AttachmentType::hinge}, {"clamp", AttachmentType::clamp}}),
       {"initial_pose", "six numbers", false,
        [](const Value& value, AttachmentDesc& attachment) {
          attachment.initial_pose = read_numbers<6>(value, "six numbers: x, y, z [m], roll, pitch, yaw [rad]");

@@ -4,6 +4,7 @@
 #include <functional>
 #include <set>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -23,7 +24,7 @@ struct Key {
 template <class Target>
 using Keys = std::vector<Key<Target>>;
 
-/// An enumerator and its text.
+/// Enumerators and their texts.
 template <class Enumeration>
 using Choices = std::vector<std::pair<std::string, Enumeration>>;
 
@@ -48,8 +49,8 @@ void append_fields(Keys<Owner>& keys, const Table& table) {
 }
 
 template <class Owner, class Enumeration>
-Key<Owner> choice_key(const std::string& name, Enumeration Owner::*member, const Choices<Enumeration>& choices,
-                      bool required = false) {
+Key<Owner> choice_key(const std::string& name, Enumeration Owner::*member,
+                      const Choices<std::common_type_t<Enumeration>>& choices, bool required = false) {
   std::string allowed;
   for (const auto& choice : choices) allowed += (allowed.empty() ? "" : " | ") + choice.first;
   return {name, allowed, required, [=](const Value& value, Owner& owner) {

@@ -35,35 +35,28 @@ void read_limits(const Value& value, SceneDesc& scene) {
 }
 
 Keys<SceneDesc> scene_keys(const std::vector<std::string>& ignored) {
-  Keys<SceneDesc> keys{text_key("frame_id", &SceneDesc::frame_id, frame_words)};
+  Keys<SceneDesc> keys{
+      text_key("frame_id", &SceneDesc::frame_id, frame_words),
+      {"gravity", "three numbers [m/s^2]", false, read_gravity},
+      choice_key("on_lost_frame", &SceneDesc::on_lost_frame,
+                 {{"hold", LostFramePolicy::hold}, {"release", LostFramePolicy::release}, {"pause", LostFramePolicy::pause}}),
+      choice_key("on_time_jump", &SceneDesc::on_time_jump, {{"reset", TimeJumpPolicy::reset}, {"keep", TimeJumpPolicy::keep}}),
+      choice_key("marker_style", &SceneDesc::marker_style, {{"tube", MarkerStyle::tube}, {"line", MarkerStyle::line}}),
+      choice_key(
+          "color_by", &SceneDesc::color_by,
+          {{"cable", ColorBy::cable}, {"tension", ColorBy::tension}, {"strain", ColorBy::strain}, {"contact", ColorBy::contact}}),
+      text_key("scene_directory", &SceneDesc::scene_directory, "a directory, or \"\""),
+      {"limits", "a map", false, read_limits},
+      {"materials", "a map of names to materials", false,
+       [](const Value& value, SceneDesc& scene) { scene.materials = read_materials(value); }},
+      {"cables", "a list of at least one cable", true,
+       [](const Value& value, SceneDesc& scene) {
+         scene.cables = read_list<CableDesc>(value, read_cable);
+         if (value.node.IsSequence() && scene.cables.empty()) value.reject("a list of at least one cable");
+       }},
+  };
   append_fields(keys, scene_fields);
   append_fields(keys, scene_integer_fields);
-  keys.insert(keys.end(),
-              {
-                  {"gravity", "three numbers [m/s^2]", false, read_gravity},
-                  choice_key("on_lost_frame", &SceneDesc::on_lost_frame,
-                             Choices<LostFramePolicy>{{"hold", LostFramePolicy::hold},
-                                                      {"release", LostFramePolicy::release},
-                                                      {"pause", LostFramePolicy::pause}}),
-                  choice_key("on_time_jump", &SceneDesc::on_time_jump,
-                             Choices<TimeJumpPolicy>{{"reset", TimeJumpPolicy::reset}, {"keep", TimeJumpPolicy::keep}}),
-                  choice_key("marker_style", &SceneDesc::marker_style,
-                             Choices<MarkerStyle>{{"tube", MarkerStyle::tube}, {"line", MarkerStyle::line}}),
-                  choice_key("color_by", &SceneDesc::color_by,
-                             Choices<ColorBy>{{"cable", ColorBy::cable},
-                                              {"tension", ColorBy::tension},
-                                              {"strain", ColorBy::strain},
-                                              {"contact", ColorBy::contact}}),
-                  text_key("scene_directory", &SceneDesc::scene_directory, "a directory, or \"\""),
-                  {"limits", "a map", false, read_limits},
-                  {"materials", "a map of names to materials", false,
-                   [](const Value& value, SceneDesc& scene) { scene.materials = read_materials(value); }},
-                  {"cables", "a list of at least one cable", true,
-                   [](const Value& value, SceneDesc& scene) {
-                     scene.cables = read_list<CableDesc>(value, read_cable);
-                     if (value.node.IsSequence() && scene.cables.empty()) value.reject("a list of at least one cable");
-                   }},
-              });
   for (const std::string& name : ignored) keys.push_back({name, "anything", false, [](const Value&, SceneDesc&) {}});
   return keys;
 }
