@@ -114,7 +114,5 @@ build_workspace() {
   link_package
   # catkin leaves this directory out of PYTHONPATH for good if it does not exist when it first configures.
   mkdir -p "$workspace/devel/lib/python3/dist-packages"
-  catkin_make -C "$workspace" -j"$(nproc)" \
-    --cmake-args -DPYTHON_EXECUTABLE=/usr/bin/python3 -DPython3_EXECUTABLE=/usr/bin/python3 \
-    --make-args -k "$@"
+  catkin_make -C "$workspace" -j"$(nproc)" --cmake-args -DPYTHON_EXECUTABLE=/usr/bin/python3 --make-args -k "$@"
 }
