@@ -25,8 +25,6 @@ constexpr double pivot_regularisation = 1e-9;
 /// motion. So much axial stiffness, relative to the cable's weight, gives it both: its own weight strains it by a part in ten
 /// million.
 constexpr double taut_stiffness = 1e7;
-/// Where in a substep forces are taken: in its middle.
-constexpr double part = 0.5;
 constexpr double standard_gravity = 9.81;
 /// A holder's change of velocity that moves a node by less in a substep, in segment lengths, goes unnoticed.
 constexpr double noticed_jerk = 1e-9;
@@ -36,8 +34,8 @@ constexpr double noticed_jerk = 1e-9;
 void CableStepper::resize(const CableModel& model) {
   segments_ = model.segments();
   const std::size_t nodes = model.nodes();
-  for (VectorArray* a :
-       {&position_, &velocity_, &acceleration_, &segment_, &displacement_, &middle_, &pull_, &end_velocity_, &base_load_})
+  for (VectorArray* a : {&position_, &velocity_, &acceleration_, &segment_, &displacement_, &middle_, &pull_, &end_velocity_,
+                         &base_load_, &director_})
     a->assign(nodes, 0.0);
   for (std::vector<double>* a :
        {&length_, &target_length_, &inverse_mass_, &tension_density_, &inertia_, &end_square_, &pivot_, &off_, &impulse_})
@@ -45,45 +43,44 @@ void CableStepper::resize(const CableModel& model) {
   both_held_.reserve(nodes);
   bending_.resize(model);
   twist_.resize(model);
-  director_.assign(nodes, 0.0);
+  fluid_.resize(model);
   system_.resize(segments_);
   solver_.resize(segments_);
 }
 
-SubstepResult CableStepper::advance(const CableModel& model, const Environment& environment, double h, Boundary& boundary,
-                                    std::vector<TwistSpan>& spans, CableState& state) {
+SubstepResult CableStepper::advance(const Substep& s, CableState& state) {
   SubstepResult result;
-  load(model, state);
-  hold(boundary.nodes);
-  result.overstretched_node = reachable_lengths(model, boundary.nodes, target_length_);
-  set_loads(model, environment, h, boundary.nodes);
-  bending_.start(model, segment_, boundary.directions, h, part);
-  twist_.start(model, spans, h, part);
-  predict(h);
-  set_natural_shape(model, state);
-  result.converged = solve(model, h, boundary, result);
+  load(s, state);
+  hold(s.boundary.nodes);
+  result.overstretched_node = reachable_lengths(s.model, s.boundary.nodes, target_length_);
+  set_loads(s);
+  bending_.start(s.model, segment_, s.boundary.directions, s.damping_time(), s.part());
+  twist_.start(s.model, s.spans, s.damping_time(), s.part());
+  fluid_.start(s.environment.fluid, s.environment.gravity, s.damping_time());
+  predict(s.h);
+  set_natural_shape(s, state);
+  result.converged = solve(s, result);
   if (!result.converged) return result;
-  react(model, environment, h, boundary);
-  finish(h, boundary.nodes);
-  if (holders_accelerate(h, boundary.nodes)) project(model);
-  result.max_strain = store(model, h, state);
-  follow_roll(boundary.directions, state.positions, spans);
+  react(s);
+  finish(s);
+  if (!s.statics && holders_accelerate(s.h, s.boundary.nodes)) project(s.model);
+  result.max_strain = store(s, state);
+  follow_roll(s.boundary.directions, state.positions, s.spans);
   return result;
 }
 
-void CableStepper::load(const CableModel& model, const CableState& state) {
-  const bool elastic = model.material.axial_stiffness < infinity;
+void CableStepper::load(const Substep& s, const CableState& state) {
+  const bool elastic = s.model.material.axial_stiffness < infinity;
   for (int i = 0; i <= segments_; ++i) {
     set(position_, i, state.positions[i]);
-    set(velocity_, i, state.velocities[i]);
-    set(acceleration_, i, state.accelerations[i]);
+    set(velocity_, i, s.statics ? Vector3::Zero() : state.velocities[i]);
+    set(acceleration_, i, s.statics ? Vector3::Zero() : state.accelerations[i]);
     system_.movable[i] = 1;
   }
   for (int i = 0; i < segments_; ++i) {
     const Vector3 d = state.positions[i + 1] - state.positions[i];
     set(segment_, i, d);
-    length_[i] = elastic ? d.norm() : model.rest_lengths[i];
-    target_length_[i] = model.rest_lengths[i];
+    length_[i] = elastic ? d.norm() : s.model.rest_lengths[i];
     tension_density_[i] = state.tension[i] / length_[i];
   }
 }
@@ -97,20 +94,23 @@ void CableStepper::hold(const std::vector<HeldNode>& held) {
 }
 
 /// The parts of the equations of motion that no iteration changes.
-void CableStepper::set_loads(const CableModel& model, const Environment& environment, double h,
-                             const std::vector<HeldNode>& held) {
+void CableStepper::set_loads(const Substep& s) {
+  const Vector3& gravity = s.environment.gravity;
+  const Vector3 wind = s.model.material.drag * s.environment.fluid.velocity;
+  const double drag = s.model.material.drag / s.damping_time();
   for (int i = 0; i <= segments_; ++i) {
-    const double mass = model.masses[i], inertia = 2 * mass / h;
-    inertia_[i] = inertia / h + model.material.drag / h * 0.5 * (i > 0 ? model.rest_lengths[i - 1] : 0) +
-                  model.material.drag / h * 0.5 * (i < segments_ ? model.rest_lengths[i] : 0);
-    base_load_.x[i] = mass * environment.gravity.x() + inertia * velocity_.x[i];
-    base_load_.y[i] = mass * environment.gravity.y() + inertia * velocity_.y[i];
-    base_load_.z[i] = mass * environment.gravity.z() + inertia * velocity_.z[i];
+    const double mass = s.model.masses[i], inertia = 2 * mass / s.h;
+    const double length = 0.5 * ((i > 0 ? s.model.rest_lengths[i - 1] : 0) + (i < segments_ ? s.model.rest_lengths[i] : 0));
+    inertia_[i] = inertia / s.h + drag * length;
+    base_load_.x[i] = mass * gravity.x() + inertia * velocity_.x[i] + length * wind.x();
+    base_load_.y[i] = mass * gravity.y() + inertia * velocity_.y[i] + length * wind.y();
+    base_load_.z[i] = mass * gravity.z() + inertia * velocity_.z[i] + length * wind.z();
   }
+  const std::vector<HeldNode>& held = s.boundary.nodes;
   std::fill_n(system_.compliance.begin(), segments_, 0.0);
   if (held.size() > 1) {
-    const double acceleration = std::max(environment.gravity.norm(), standard_gravity);
-    const double stiffness = taut_stiffness * acceleration * std::accumulate(model.masses.begin(), model.masses.end(), 0.0);
+    const double mass = std::accumulate(s.model.masses.begin(), s.model.masses.end(), 0.0);
+    const double stiffness = taut_stiffness * std::max(gravity.norm(), standard_gravity) * mass;
     for (int i = held.front().node; i < held.back().node; ++i)
       system_.compliance[i] = target_length_[i] * target_length_[i] * target_length_[i] / stiffness;
   }
@@ -129,24 +129,24 @@ void CableStepper::predict(double h) {
   }
 }
 
-/// The unloaded shape, turned as the material is expected in the middle of the substep.
-void CableStepper::set_natural_shape(const CableModel& model, const CableState& state) {
-  if (model.rest_curvature.empty() || !bending_.active()) return;
+/// The unloaded shape, turned as the material is expected to be where forces are taken.
+void CableStepper::set_natural_shape(const Substep& s, const CableState& state) {
+  if (s.model.rest_curvature.empty() || !bending_.active()) return;
   for (int i = 0; i < segments_; ++i)
-    set(middle_, i, get(segment_, i) + part * (get(displacement_, i + 1) - get(displacement_, i)));
-  carry_directors(model, state, middle_, director_);
-  bending_.set_natural_shape(model, middle_, director_);
+    set(middle_, i, get(segment_, i) + s.part() * (get(displacement_, i + 1) - get(displacement_, i)));
+  carry_directors(s.model, state, middle_, director_);
+  bending_.set_natural_shape(s.model, middle_, director_);
 }
 
 /// Newton's method on places and tensions together, its matrix kept as long as it converges fast.
-bool CableStepper::solve(const CableModel& model, double h, const Boundary& boundary, SubstepResult& result) {
-  const double tolerance = velocity_tolerance * std::min(h, longest_tolerated);
+bool CableStepper::solve(const Substep& s, SubstepResult& result) {
+  const double tolerance = velocity_tolerance * std::min(s.h, longest_tolerated);
   double last = 0;
   bool factor = true;
   for (int i = 0; i < maximum_iterations; ++i) {
-    evaluate(model, h, boundary);
+    evaluate(s);
     if (factor) {
-      assemble();
+      assemble(s.part());
       solver_.factor(system_, bending_.active());
     }
     solver_.solve(system_);
@@ -163,44 +163,40 @@ bool CableStepper::solve(const CableModel& model, double h, const Boundary& boun
 }
 
 /// Residuals of the equations of motion and of the tension laws at the present iterate.
-void CableStepper::evaluate(const CableModel& model, double h, const Boundary& boundary) {
+void CableStepper::evaluate(const Substep& s) {
   std::fill(end_square_.begin(), end_square_.end(), 0.0);
-  evaluate_segments(displacement_.x, segment_.x, middle_.x, pull_.x);
-  evaluate_segments(displacement_.y, segment_.y, middle_.y, pull_.y);
-  evaluate_segments(displacement_.z, segment_.z, middle_.z, pull_.z);
+  for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) evaluate_segments(s.part(), component);
   if (bending_.active()) bending_.add_pulls(displacement_, pull_);
-  if (twist_.active()) twist_.add_pulls(middle_, displacement_, boundary, pull_);
-  if (model.material.axial_stiffness < infinity)
-    evaluate_elastic_lengths(model, h);
+  if (twist_.active()) twist_.add_pulls(middle_, displacement_, s.boundary, pull_);
+  if (s.model.material.axial_stiffness < infinity)
+    evaluate_elastic_lengths(s);
   else
     evaluate_rigid_lengths();
   for (const int i : both_held_) {
     system_.gap[i] = 0;
     system_.compliance[i] = 1;
   }
-  evaluate_nodes(displacement_.x, base_load_.x, pull_.x, system_.load.x);
-  evaluate_nodes(displacement_.y, base_load_.y, pull_.y, system_.load.y);
-  evaluate_nodes(displacement_.z, base_load_.z, pull_.z, system_.load.z);
+  for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) evaluate_nodes(component);
+  if (fluid_.active()) fluid_.add_loads(s.model, middle_, position_, displacement_, system_.load);
 }
 
-void CableStepper::evaluate_segments(const std::vector<double>& displacement, const std::vector<double>& segment,
-                                     std::vector<double>& middle, std::vector<double>& pull) {
-  const double *u = displacement.data(), *d = segment.data(), *density = tension_density_.data();
-  double *mid = middle.data(), *f = pull.data(), *square = end_square_.data();
+void CableStepper::evaluate_segments(double part, Component component) {
+  const double *u = (displacement_.*component).data(), *d = (segment_.*component).data(), *density = tension_density_.data();
+  double *mid = (middle_.*component).data(), *f = (pull_.*component).data(), *square = end_square_.data();
 #pragma GCC ivdep
   for (int i = 0; i < segments_; ++i) {
     const double change = u[i + 1] - u[i];
     const double end = d[i] + change;
-    mid[i] = d[i] + 0.5 * change;
+    mid[i] = d[i] + part * change;
     f[i] = density[i] * mid[i];
     square[i] += end * end;
   }
 }
 
-void CableStepper::evaluate_nodes(const std::vector<double>& displacement, const std::vector<double>& base,
-                                  const std::vector<double>& pull, std::vector<double>& load) {
-  const double *u = displacement.data(), *b = base.data(), *f = pull.data(), *inertia = inertia_.data();
-  double* r = load.data();
+void CableStepper::evaluate_nodes(Component component) {
+  const double *u = (displacement_.*component).data(), *b = (base_load_.*component).data(), *f = (pull_.*component).data();
+  const double* inertia = inertia_.data();
+  double* r = (system_.load.*component).data();
   r[0] = b[0] - inertia[0] * u[0] + f[0];
 #pragma GCC ivdep
   for (int i = 1; i < segments_; ++i) r[i] = b[i] - inertia[i] * u[i] + (f[i] - f[i - 1]);
@@ -213,30 +209,31 @@ void CableStepper::evaluate_rigid_lengths() {
     system_.gap[i] = 0.5 * (target_length_[i] * target_length_[i] - end_square_[i]) + system_.compliance[i] * tension_density_[i];
 }
 
-void CableStepper::evaluate_elastic_lengths(const CableModel& model, double h) {
-  const double stiffness = model.material.axial_stiffness;
+void CableStepper::evaluate_elastic_lengths(const Substep& sub) {
+  const double stiffness = sub.model.material.axial_stiffness, part = sub.part();
   for (int i = 0; i < segments_; ++i) {
-    const double rest = model.rest_lengths[i], s = std::sqrt(end_square_[i]), mean = 0.5 * (s + length_[i]);
-    const double damping = model.material.axial_damping / (h * rest);
+    const double rest = sub.model.rest_lengths[i], s = std::sqrt(end_square_[i]), mean = length_[i] + part * (s - length_[i]);
+    const double damping = sub.model.material.axial_damping / (sub.damping_time() * rest);
     const double excess = stiffness / rest * (mean - rest) + damping * (s - length_[i]) - tension_density_[i] * mean;
-    const double slope = 0.5 * stiffness / rest + damping - 0.5 * tension_density_[i];
+    const double slope = part * (stiffness / rest - tension_density_[i]) + damping;
     system_.gap[i] = -excess * s / slope;
     system_.compliance[i] = s * mean / slope;
   }
 }
 
-void CableStepper::assemble() {
+void CableStepper::assemble(double part) {
   std::copy(inertia_.begin(), inertia_.end(), system_.diagonal.begin());
   for (int i = 0; i < segments_; ++i) {
-    const double half = part * tension_density_[i];
-    system_.diagonal[i] += half;
-    system_.diagonal[i + 1] += half;
-    system_.first[i] = -half;
+    const double stiffness = part * tension_density_[i];
+    system_.diagonal[i] += stiffness;
+    system_.diagonal[i + 1] += stiffness;
+    system_.first[i] = -stiffness;
     system_.direction.x[i] = middle_.x[i];
     system_.direction.y[i] = middle_.y[i];
     system_.direction.z[i] = middle_.z[i];
   }
   if (bending_.active()) bending_.add_stiffness(system_);
+  if (fluid_.active()) fluid_.add_stiffness(system_.diagonal);
 }
 
 /// Applies the solution; the largest correction, in segment lengths.
@@ -254,18 +251,19 @@ double CableStepper::correct() {
   return std::sqrt(largest) / target_length_[0];
 }
 
-void CableStepper::finish(double h, const std::vector<HeldNode>& held) {
+void CableStepper::finish(const Substep& s) {
+  const double rate = s.statics ? 0 : 2 / s.h;
   for (int i = 0; i <= segments_; ++i) {
-    end_velocity_.x[i] = 2 / h * displacement_.x[i] - velocity_.x[i];
-    end_velocity_.y[i] = 2 / h * displacement_.y[i] - velocity_.y[i];
-    end_velocity_.z[i] = 2 / h * displacement_.z[i] - velocity_.z[i];
+    end_velocity_.x[i] = rate * displacement_.x[i] - velocity_.x[i];
+    end_velocity_.y[i] = rate * displacement_.y[i] - velocity_.y[i];
+    end_velocity_.z[i] = rate * displacement_.z[i] - velocity_.z[i];
     position_.x[i] += displacement_.x[i];
     position_.y[i] += displacement_.y[i];
     position_.z[i] += displacement_.z[i];
   }
-  for (const HeldNode& holder : held) {
+  for (const HeldNode& holder : s.boundary.nodes) {
     set(position_, holder.node, holder.position);
-    set(end_velocity_, holder.node, holder.velocity);
+    set(end_velocity_, holder.node, s.statics ? Vector3::Zero() : holder.velocity);
   }
   for (int i = 0; i < segments_; ++i) {
     segment_.x[i] = position_.x[i + 1] - position_.x[i];
@@ -304,36 +302,38 @@ void CableStepper::project(const CableModel& model) {
 }
 
 /// What the held nodes' equations of motion lack is what their holders supply.
-void CableStepper::react(const CableModel& model, const Environment& environment, double h, Boundary& boundary) {
-  if (boundary.nodes.empty()) return;
-  evaluate(model, h, boundary);
-  for (HeldNode& holder : boundary.nodes) {
+void CableStepper::react(const Substep& s) {
+  if (s.boundary.nodes.empty()) return;
+  evaluate(s);
+  for (HeldNode& holder : s.boundary.nodes) {
     const int i = holder.node;
-    const double length = 0.5 * ((i > 0 ? model.rest_lengths[i - 1] : 0) + (i < segments_ ? model.rest_lengths[i] : 0));
-    Vector3 force = model.masses[i] * (environment.gravity - (holder.velocity - get(velocity_, i)) / h) -
-                    model.material.drag * length * get(displacement_, i) / h;
+    const double length = 0.5 * ((i > 0 ? s.model.rest_lengths[i - 1] : 0) + (i < segments_ ? s.model.rest_lengths[i] : 0));
+    const Vector3 flow = s.environment.fluid.velocity - get(displacement_, i) / s.damping_time();
+    Vector3 force = s.model.masses[i] * s.environment.gravity + s.model.material.drag * length * flow;
+    if (!s.statics) force -= s.model.masses[i] * (holder.velocity - get(velocity_, i)) / s.h;
+    if (fluid_.active()) force += fluid_.force(i);
     if (i < segments_) force += get(pull_, i);
     if (i > 0) force -= get(pull_, i - 1);
     holder.force = force;
   }
-  for (HeldDirection& holder : boundary.directions) holder.torque.setZero();
-  if (bending_.active()) bending_.react(boundary.directions);
-  if (twist_.active()) twist_.react(boundary);
+  for (HeldDirection& holder : s.boundary.directions) holder.torque.setZero();
+  if (bending_.active()) bending_.react(s.boundary.directions);
+  if (twist_.active()) twist_.react(s.boundary);
 }
 
 /// The largest strain.
-double CableStepper::store(const CableModel& model, double h, CableState& state) const {
-  const double inverse_h = 1 / h;
+double CableStepper::store(const Substep& s, CableState& state) const {
+  const double inverse_h = s.statics ? 0 : 1 / s.h;
   for (int i = 0; i <= segments_; ++i) {
     state.positions[i] = get(position_, i);
     state.velocities[i] = get(end_velocity_, i);
     state.accelerations[i] = (state.velocities[i] - get(velocity_, i)) * inverse_h;
   }
-  const bool elastic = model.material.axial_stiffness < infinity;
+  const bool elastic = s.model.material.axial_stiffness < infinity;
   double longest = 1, shortest = 1;  // squares, relative
   for (int i = 0; i < segments_; ++i) {
     const double square = get(segment_, i).squaredNorm();
-    const double relative = square / (model.rest_lengths[i] * model.rest_lengths[i]);
+    const double relative = square / (s.model.rest_lengths[i] * s.model.rest_lengths[i]);
     longest = std::max(longest, relative);
     shortest = std::min(shortest, relative);
     state.tension[i] = tension_density_[i] * (elastic ? 0.5 * (length_[i] + std::sqrt(square)) : target_length_[i]);

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "bending.h"
+#include "fluid_forces.h"
 #include "held_node.h"
 #include "saddle_solver.h"
 #include "twist.h"
@@ -13,6 +14,20 @@ namespace verlet_cable {
 /// What acts on a cable from outside, the same in all substeps of a step.
 struct Environment {
   Vector3 gravity{0, 0, -9.81};  ///< [m/s^2]
+  FluidDesc fluid;
+};
+
+/// What a substep is done with.
+struct Substep {
+  const CableModel& model;
+  const Environment& environment;
+  Boundary& boundary;             ///< forces and torques on the holders are written to it
+  std::vector<TwistSpan>& spans;  ///< their twist is kept up
+  double h;                       ///< [s]
+  bool statics = false;           ///< a step towards equilibrium: inertia only slows it, nothing moves or is damped
+
+  double part() const { return statics ? 1 : 0.5; }  ///< where in the substep forces are taken
+  double damping_time() const { return statics ? infinity : h; }
 };
 
 struct SubstepResult {
@@ -33,30 +48,29 @@ class CableStepper {
   void resize(const CableModel& model);
 
   /// If it has not converged, `state` is untouched.
-  SubstepResult advance(const CableModel& model, const Environment& environment, double h, Boundary& boundary,
-                        std::vector<TwistSpan>& spans, CableState& state);
+  SubstepResult advance(const Substep& substep, CableState& state);
 
  private:
-  void load(const CableModel& model, const CableState& state);
+  using Component = std::vector<double> VectorArray::*;
+
+  void load(const Substep& substep, const CableState& state);
   void hold(const std::vector<HeldNode>& held);
+  void set_loads(const Substep& substep);
   void predict(double h);
-  void set_loads(const CableModel& model, const Environment& environment, double h, const std::vector<HeldNode>& held);
-  bool solve(const CableModel& model, double h, const Boundary& boundary, SubstepResult& result);
-  void evaluate(const CableModel& model, double h, const Boundary& boundary);
-  void set_natural_shape(const CableModel& model, const CableState& state);
-  void evaluate_segments(const std::vector<double>& displacement, const std::vector<double>& segment, std::vector<double>& middle,
-                         std::vector<double>& pull);
-  void evaluate_nodes(const std::vector<double>& displacement, const std::vector<double>& base, const std::vector<double>& pull,
-                      std::vector<double>& load);
+  void set_natural_shape(const Substep& substep, const CableState& state);
+  bool solve(const Substep& substep, SubstepResult& result);
+  void evaluate(const Substep& substep);
+  void evaluate_segments(double part, Component component);
+  void evaluate_nodes(Component component);
   void evaluate_rigid_lengths();
-  void evaluate_elastic_lengths(const CableModel& model, double h);
-  void assemble();
+  void evaluate_elastic_lengths(const Substep& substep);
+  void assemble(double part);
   double correct();
-  void finish(double h, const std::vector<HeldNode>& held);
+  void react(const Substep& substep);
+  void finish(const Substep& substep);
   bool holders_accelerate(double h, const std::vector<HeldNode>& held) const;
   void project(const CableModel& model);
-  void react(const CableModel& model, const Environment& environment, double h, Boundary& boundary);
-  double store(const CableModel& model, double h, CableState& state) const;
+  double store(const Substep& substep, CableState& state) const;
 
   int segments_ = 0;
   // At the start of the substep
@@ -78,6 +92,7 @@ class CableStepper {
   VectorArray end_velocity_;        // nodes: v' [m/s]
   Bending bending_;
   Twist twist_;
+  FluidForces fluid_;
   VectorArray director_;  // segments: the material's y axis; only where the unloaded shape is curved
   SaddleSystem system_;
   SaddleSolver solver_;

@@ -15,6 +15,10 @@ namespace {
 constexpr double shortest_substep = 1e-6;
 /// A substep that took no more iterations than this may be doubled.
 constexpr int easy_iterations = 6;
+/// Settling begins with steps of this length [s] and ends with one in which inertia is nothing.
+constexpr double first_settling_step = 0.01;
+constexpr double last_settling_step = 1e6;
+constexpr int maximum_settling_steps = 2000;
 
 bool finite(const Pose& pose) {
   return pose.position.allFinite() && pose.orientation.coeffs().allFinite() && pose.orientation.norm() > 0.5;
@@ -138,6 +142,7 @@ void World::Implementation::start_cable(const CableDesc& desc) {
   follow_material(index);
   set_rest_curvature(desc.rest_curvature, cables.back());
   scratch.back().stepper.resize(cables.back().model);
+  if (desc.initial.type == InitialShapeDesc::Type::settled) settle_cable(index);
 }
 
 StepResult World::step(const BoundaryInputs& inputs) {
@@ -146,8 +151,34 @@ StepResult World::step(const BoundaryInputs& inputs) {
   w.follow_frames(inputs);
   ++w.steps;
   for (Attachment& attachment : w.attachments) attachment.force = attachment.torque = Vector3::Zero();
-  for (int cable = 0; cable < static_cast<int>(w.cables.size()); ++cable) w.step_cable(cable, result);
+  w.breaks.clear();
+  const int cables = static_cast<int>(w.cables.size());
+  for (int cable = 0; cable < cables; ++cable) {
+    StepResult of_cable;
+    w.step_cable(cable, of_cable);
+    note_status(of_cable.status, of_cable.cable, of_cable.node, result);
+    result.substeps = std::max(result.substeps, of_cable.substeps);
+    result.iterations += of_cable.iterations;
+    result.max_strain = std::max(result.max_strain, of_cable.max_strain);
+    const int segment = w.breaking_segment(cable, of_cable);
+    if (segment < 0) continue;
+    if (cut(cable, segment).ok) w.breaks.push_back({cable, segment, static_cast<int>(w.cables.size()) - 1});
+  }
   return result;
+}
+
+/// The segment of a cable that breaks now, -1 if it holds. A piece keeps at least one segment, so that the outermost ones do not
+/// break.
+int World::Implementation::breaking_segment(int index, const StepResult& result) const {
+  const Cable& cable = cables[index];
+  const double limit = cable.model.material.breaking_tension;
+  const std::vector<double>& tension = cable.state.tension;
+  if (!(limit < infinity) || tension.size() < 3) return -1;
+  const auto tightest = std::max_element(tension.begin() + 1, tension.end() - 1);
+  // What cannot stretch and is pulled beyond its length breaks at any strength.
+  const bool torn = result.status == StepResult::Status::overstretched && cable.model.material.axial_stiffness == infinity;
+  const bool exceeded = *std::max_element(tension.begin(), tension.end()) > limit;
+  return torn || exceeded ? static_cast<int>(tightest - tension.begin()) : -1;
 }
 
 /// Steps a cable in as many substeps as it needs: halved where the solver does not converge, doubled where it does easily.
@@ -163,7 +194,7 @@ void World::Implementation::step_cable(int index, StepResult& result) {
     note_status(Status::jumped, index, s.boundary.nodes.front().node, result);
   }
 
-  const Environment environment{scene.gravity.acceleration};
+  const Environment environment{scene.gravity.acceleration, scene.fluid};
   const int finest = std::max(0, static_cast<int>(std::ceil(std::log2(dt / shortest_substep))));
   const std::int64_t whole = std::int64_t{1} << finest;
   std::int64_t done = 0;
@@ -174,7 +205,7 @@ void World::Implementation::step_cable(int index, StepResult& result) {
     const double h = dt / static_cast<double>(std::int64_t{1} << s.level);
     const double part = 1 / static_cast<double>(whole);
     hold_at(part * static_cast<double>(done), part * static_cast<double>(done + ticks), s.holders, s.boundary);
-    const SubstepResult substep = s.stepper.advance(cable.model, environment, h, s.boundary, s.spans, cable.state);
+    const SubstepResult substep = s.stepper.advance({cable.model, environment, s.boundary, s.spans, h}, cable.state);
     result.iterations += substep.iterations;
     if (!substep.converged) {
       if (s.level < finest) {
@@ -199,8 +230,41 @@ void World::Implementation::step_cable(int index, StepResult& result) {
     if (s.level > 0 && substep.iterations <= easy_iterations && done % (2 * ticks) == 0) --s.level;
   }
   follow_material(index);
-  result.substeps = std::max(result.substeps, substeps);
+  result.substeps = substeps;
   complete_step(dt, s.holders);
+}
+
+bool World::settle() {
+  bool settled = true;
+  for (Attachment& attachment : implementation_->attachments) attachment.force = attachment.torque = Vector3::Zero();
+  for (int cable = 0; cable < static_cast<int>(implementation_->cables.size()); ++cable)
+    settled = implementation_->settle_cable(cable) && settled;
+  return settled;
+}
+
+/// Substeps without motion, ever longer as long as they converge: in the end inertia does not count, and what is left is Newton's
+/// method for the equilibrium.
+bool World::Implementation::settle_cable(int index) {
+  Cable& cable = cables[index];
+  CableScratch& s = scratch[index];
+  if (s.holders.nodes.empty()) return true;
+  aim_holders(cable.model, attachments, poses, time(), scene.time_step, s.holders);
+  jump_to_aim(s.holders);
+  hold_at(1, 1, s.holders, s.boundary);
+  for (std::vector<Vector3>* v : {&cable.state.velocities, &cable.state.accelerations})
+    std::fill(v->begin(), v->end(), Vector3::Zero());
+  const Environment environment{scene.gravity.acceleration, scene.fluid};
+  double h = first_settling_step;
+  bool settled = false;
+  for (int i = 0; i < maximum_settling_steps && !settled; ++i) {
+    const SubstepResult substep = s.stepper.advance({cable.model, environment, s.boundary, s.spans, h, true}, cable.state);
+    settled = substep.converged && h >= last_settling_step;
+    h = substep.converged ? std::min(4 * h, last_settling_step) : std::max(h / 8, shortest_substep);
+  }
+  add_forces(index, 1);
+  follow_material(index);
+  s.level = 0;
+  return settled;
 }
 
 void World::Implementation::add_forces(int cable, double weight) {

@@ -28,11 +28,14 @@ struct World::Implementation {
   std::vector<Cable> cables;
   std::vector<CableScratch> scratch;  ///< one a cable
   std::vector<Attachment> attachments;
+  std::vector<Break> breaks;  ///< in the last step
 
   bool frames_known(const CableDesc& desc, const BoundaryInputs& inputs) const;
   void start_cable(const CableDesc& desc);
   void follow_frames(const BoundaryInputs& inputs);
   void step_cable(int cable, StepResult& result);
+  bool settle_cable(int cable);
+  int breaking_segment(int cable, const StepResult& result) const;
   void set_rest_curvature(const RestCurvatureDesc& desc, Cable& cable);
   void add_forces(int cable, double weight);
   void update_holders(int cable);

@@ -68,6 +68,10 @@ const std::vector<Attachment>& World::attachments() const {
   return implementation_->attachments;
 }
 
+const std::vector<Break>& World::breaks() const {
+  return implementation_->breaks;
+}
+
 int World::find_cable(const std::string& name) const {
   for (std::size_t i = 0; i < cables().size(); ++i)
     if (cables()[i].model.name == name) return static_cast<int>(i);

@@ -88,6 +88,15 @@ struct GravityDesc {
   Vector3 acceleration{0, 0, -9.81};  ///< [m/s^2]
 };
 
+/// The fluid around the cables. Drag is quadratic, with the diameter as width, besides the linear drag of the materials.
+struct FluidDesc {
+  double density = 0;                  ///< [kg/m^3], >= 0
+  Vector3 velocity = Vector3::Zero();  ///< [m/s]; counts for linear drag, too, whatever the density
+  double surface = infinity;           ///< [m] z below which there is fluid
+  double normal_drag = 1.2;            ///< coefficient across the cable, >= 0
+  double tangential_drag = 0.01;       ///< coefficient along the cable, >= 0
+};
+
 enum class LostFramePolicy { hold, release, pause };
 enum class TimeJumpPolicy { reset, keep };
 enum class MarkerStyle { tube, line };
@@ -109,6 +118,7 @@ struct SceneDesc {
   std::string frame_id = "world";
   double time_step = 0.001;  ///< [s], > 0
   GravityDesc gravity;
+  FluidDesc fluid;
   double publish_rate = 50;  ///< [Hz], > 0
   double tf_latency = 0.05;  ///< [s], >= 0
   double tf_timeout = 0.5;   ///< [s], > 0

@@ -52,6 +52,13 @@ struct Energy {
   double total() const { return kinetic + gravity + stretch + bend + twist; }
 };
 
+/// A segment that went in a step because its tension exceeded the material's breaking tension.
+struct Break {
+  int cable = 0;      ///< index of the cable, now the first piece
+  int segment = 0;    ///< that is gone
+  int new_cable = 0;  ///< index of the second piece
+};
+
 /// Outcome of an edit: nothing has changed where `ok` is false, and `message` says why, with names and values.
 struct EditResult {
   bool ok = false;
@@ -75,6 +82,10 @@ class World {
   /// Advances by the scene's time step. `inputs`: one entry a frame, see frames().
   StepResult step(const BoundaryInputs& inputs);
 
+  /// Puts every cable that is held into static equilibrium, its holders where they are (Newton's method, no waiting); free cables
+  /// stay as they are. False if one of them found none; it is then at rest near it.
+  bool settle();
+
   double time() const;  ///< [s] steps done times the time step
   std::int64_t steps() const;
   double time_step() const;  ///< [s]
@@ -87,6 +98,7 @@ class World {
   const std::vector<Cable>& cables() const;            ///< those that have started, pieces of cuts included
   const std::vector<std::string>& waiting() const;     ///< names of cables that wait for a frame
   const std::vector<Attachment>& attachments() const;  ///< of the started cables
+  const std::vector<Break>& breaks() const;            ///< in the last step
   int find_cable(const std::string& name) const;       ///< index, -1 if there is none
   int find_attachment(const std::string& name) const;  ///< index, -1 if there is none
 
