@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "verlet_cable/ros/queue_size.h"
+
 namespace verlet_cable {
 
 EventSubject subject_of(const World& world, const Attachment& attachment) {
@@ -9,7 +11,7 @@ EventSubject subject_of(const World& world, const Attachment& attachment) {
 }
 
 EventPublisher::EventPublisher(ros::NodeHandle& private_node, std::string frame_id)
-    : publisher_(private_node.advertise<CableEvent>("events", 100)), frame_id_(std::move(frame_id)) {}
+    : publisher_(private_node.advertise<CableEvent>("events", publisher_queue_size)), frame_id_(std::move(frame_id)) {}
 
 void EventPublisher::publish(std::uint8_t type, Nanoseconds stamp, const EventSubject& subject,
                              const std::string& message) const {

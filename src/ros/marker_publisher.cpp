@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "verlet_cable/ros/conversions.h"
+#include "verlet_cable/ros/queue_size.h"
 #include "verlet_cable/ros/tube.h"
 
 namespace verlet_cable {
@@ -44,7 +45,7 @@ double payload(const CableModel& model, int node) {
 }  // namespace
 
 MarkerPublisher::MarkerPublisher(ros::NodeHandle& private_node, const SceneDesc& scene)
-    : publisher_(private_node.advertise<MarkerArray>("markers", 10)),
+    : publisher_(private_node.advertise<MarkerArray>("markers", publisher_queue_size)),
       frame_id_(scene.frame_id),
       style_(scene.marker_style),
       colors_(scene) {}

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "verlet_cable/ros/conversions.h"
+#include "verlet_cable/ros/queue_size.h"
 
 namespace verlet_cable {
 namespace {
@@ -42,7 +43,9 @@ void append_points(const Cable& cable, std::uint32_t cable_id, const ColorScale&
 }  // namespace
 
 PointPublisher::PointPublisher(ros::NodeHandle& private_node, const SceneDesc& scene)
-    : publisher_(private_node.advertise<sensor_msgs::PointCloud2>("points", 10)), frame_id_(scene.frame_id), colors_(scene) {}
+    : publisher_(private_node.advertise<sensor_msgs::PointCloud2>("points", publisher_queue_size)),
+      frame_id_(scene.frame_id),
+      colors_(scene) {}
 
 void PointPublisher::publish(const World& world, const ros::Time& stamp) {
   if (publisher_.getNumSubscribers() == 0) return;

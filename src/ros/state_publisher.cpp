@@ -1,11 +1,12 @@
 #include "verlet_cable/ros/state_publisher.h"
 
 #include "verlet_cable/ros/conversions.h"
+#include "verlet_cable/ros/queue_size.h"
 
 namespace verlet_cable {
 
 StatePublisher::StatePublisher(ros::NodeHandle& private_node, const SceneDesc& scene)
-    : publisher_(private_node.advertise<CableArray>("state", 10)), frame_id_(scene.frame_id) {}
+    : publisher_(private_node.advertise<CableArray>("state", publisher_queue_size)), frame_id_(scene.frame_id) {}
 
 void StatePublisher::publish(const World& world, const ros::Time& stamp) {
   if (publisher_.getNumSubscribers() == 0) return;

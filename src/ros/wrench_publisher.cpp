@@ -3,6 +3,7 @@
 #include <geometry_msgs/WrenchStamped.h>
 
 #include "verlet_cable/ros/conversions.h"
+#include "verlet_cable/ros/queue_size.h"
 
 namespace verlet_cable {
 
@@ -14,7 +15,7 @@ void WrenchPublisher::follow_attachments(const World& world) {
   }
   for (const Attachment& attachment : world.attachments()) {
     ros::Publisher& publisher = publishers_[attachment.name];
-    if (!publisher) publisher = node_.advertise<geometry_msgs::WrenchStamped>(attachment.name, 10);
+    if (!publisher) publisher = node_.advertise<geometry_msgs::WrenchStamped>(attachment.name, publisher_queue_size);
   }
 }
 
