@@ -1,4 +1,5 @@
-# Sourced by scripts/demo and scripts/test: installs what is missing, and builds the package in a workspace of its own.
+# Sourced by scripts/demo, scripts/test and scripts/bench: installs what is missing, and builds the package in a workspace of
+# its own.
 
 set -euo pipefail
 
@@ -103,6 +104,9 @@ link_package() {
   done
 }
 
+# What a script's build needs besides CMake's defaults.
+cmake_arguments=()
+
 # build_workspace TARGET...: make's targets. Goes on after an error, so that one broken file hides no other error.
 build_workspace() {
   local cache=$workspace/build/CMakeCache.txt
@@ -114,5 +118,6 @@ build_workspace() {
   link_package
   # catkin leaves this directory out of PYTHONPATH for good if it does not exist when it first configures.
   mkdir -p "$workspace/devel/lib/python3/dist-packages"
-  catkin_make -C "$workspace" -j"$(nproc)" --cmake-args -DPYTHON_EXECUTABLE=/usr/bin/python3 --make-args -k "$@"
+  catkin_make -C "$workspace" -j"$(nproc)" --cmake-args -DPYTHON_EXECUTABLE=/usr/bin/python3 "${cmake_arguments[@]}" \
+    --make-args -k "$@"
 }

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <ctime>
+
+namespace verlet_cable::bench {
+
+/// Processor time of this process, all its threads [s]: other load on the machine counts less than in wall time.
+inline double processor_seconds() {
+  timespec now;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+}  // namespace verlet_cable::bench
