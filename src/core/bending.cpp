@@ -106,17 +106,20 @@ void Bending::add_pulls(const VectorArray& displacement, VectorArray& pull) {
 #pragma GCC ivdep
     for (int i = 0; i < segments_; ++i) f[i] += w[i] * (moment[i] - moment[i + 1]);
   }
-  add_clamp_pulls(displacement, pull);
+  bend_clamps(displacement);
+  for (const ClampJoint& clamp : clamps_) {
+    const int i = clamp.segment;
+    set(pull, i, get(pull, i) + inverse_length_[i] * clamp.moment);
+  }
 }
 
-void Bending::add_clamp_pulls(const VectorArray& displacement, VectorArray& pull) {
+void Bending::bend_clamps(const VectorArray& displacement) {
   for (ClampJoint& clamp : clamps_) {
     const int i = clamp.segment;
     const Vector3 change = inverse_length_[i] * (get(displacement, i + 1) - get(displacement, i)) - clamp.axis_change;
     const Vector3 middle = clamp.start + part_ * change;
     clamp.slope = clamp.stiffness * mean_slope(0.5 * clamp.start_square, 0.5 * (clamp.start + change).squaredNorm());
     clamp.moment = clamp.slope * middle + clamp.damping * change - clamp.stiffness * clamp.natural;
-    set(pull, i, get(pull, i) + inverse_length_[i] * clamp.moment);
   }
 }
 
@@ -140,7 +143,8 @@ void Bending::add_stiffness(SaddleSystem& system) const {
   }
 }
 
-void Bending::react(std::vector<HeldDirection>& directions) const {
+void Bending::react(const VectorArray& displacement, std::vector<HeldDirection>& directions) {
+  bend_clamps(displacement);
   // The energy depends on the axis a through d / l - a: the torque on the axis is a x moment.
   for (const ClampJoint& clamp : clamps_) directions[clamp.holder].torque += clamp.middle_axis.cross(clamp.moment);
 }

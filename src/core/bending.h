@@ -33,7 +33,7 @@ class Bending {
   /// Adds what `add_pulls` found last to the matrix.
   void add_stiffness(SaddleSystem& system) const;
   /// Adds the moments on the holders of directions [N m] to their `torque`.
-  void react(std::vector<HeldDirection>& directions) const;
+  void react(const VectorArray& displacement, std::vector<HeldDirection>& directions);
 
  private:
   struct ClampJoint {
@@ -48,7 +48,7 @@ class Bending {
     double slope = 0;
   };
 
-  void add_clamp_pulls(const VectorArray& displacement, VectorArray& pull);
+  void bend_clamps(const VectorArray& displacement);
 
   bool active_ = false;
   int segments_ = 0;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int maximum_iterations = 20;
 /// Error of a node's velocity at which an iteration ends, in segment lengths per second: far below what energy is asked for.
-constexpr double velocity_tolerance = 1e-6;
+constexpr double velocity_tolerance = 1e-5;
 constexpr double longest_tolerated = 1e-3;  // [s]; beyond, the error of the place counts
 /// A larger correction, in segment lengths, leads to solutions that have nothing to do with the motion: halve the step.
 constexpr double largest_correction = 2;
@@ -61,11 +61,13 @@ SubstepResult CableStepper::advance(const Substep& s, CableState& state) {
   set_natural_shape(s, state);
   result.converged = solve(s, result);
   if (!result.converged) return result;
+  if (s.statics)
+    for (int i = 0; i <= segments_; ++i) result.displacement = std::max(result.displacement, get(displacement_, i).norm());
   react(s);
   finish(s);
   if (!s.statics && holders_accelerate(s.h, s.boundary.nodes)) project(s.model);
   result.max_strain = store(s, state);
-  follow_roll(s.boundary.directions, state.positions, s.spans);
+  if (twist_.active()) twist_.follow(s.boundary.directions, state.positions, s.spans);
   return result;
 }
 
@@ -284,41 +286,66 @@ bool CableStepper::holders_accelerate(double h, const std::vector<HeldNode>& hel
 /// step.
 void CableStepper::project(const CableModel& model) {
   if (model.material.axial_stiffness < infinity) return;
-  const std::size_t n = segments_;
-  for (std::size_t i = 0; i <= n; ++i) inverse_mass_[i] = system_.movable[i] / model.masses[i];
-  for (std::size_t i = 0; i < n; ++i) {
+  const int n = segments_;
+  for (int i = 0; i <= n; ++i) inverse_mass_[i] = system_.movable[i] / model.masses[i];
+  std::fill(pivot_.begin(), pivot_.end(), 0.0);
+  std::fill(off_.begin(), off_.end(), 0.0);
+  std::fill(impulse_.begin(), impulse_.end(), 0.0);
+  for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) {
+    const double *d = (segment_.*component).data(), *v = (end_velocity_.*component).data();
+    double *square = pivot_.data(), *product = off_.data(), *rate = impulse_.data();
+#pragma GCC ivdep
+    for (int i = 0; i < n; ++i) {
+      square[i] += d[i] * d[i];
+      product[i] += d[i] * d[i + 1];  // the last one is not used
+      rate[i] += d[i] * (v[i] - v[i + 1]);
+    }
+  }
+  for (int i = 0; i < n; ++i) {
     const double mobility = inverse_mass_[i] + inverse_mass_[i + 1];
-    const Vector3 d = get(segment_, i);
-    pivot_[i] = mobility > 0 ? d.squaredNorm() * mobility * (1 + pivot_regularisation) : 1;
-    impulse_[i] = mobility > 0 ? d.dot(get(end_velocity_, i) - get(end_velocity_, i + 1)) : 0;
-    if (i + 1 < n) off_[i] = -inverse_mass_[i + 1] * d.dot(get(segment_, i + 1));
+    pivot_[i] *= mobility * (1 + pivot_regularisation);
+    off_[i] *= -inverse_mass_[i + 1];
+  }
+  for (const int i : both_held_) {
+    pivot_[i] = 1;
+    impulse_[i] = 0;
   }
   solve_tridiagonal(pivot_, off_, impulse_, n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vector3 impulse = impulse_[i] * get(segment_, i);
-    set(end_velocity_, i, get(end_velocity_, i) - inverse_mass_[i] * impulse);
-    set(end_velocity_, i + 1, get(end_velocity_, i + 1) + inverse_mass_[i + 1] * impulse);
+  for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) {
+    const double *d = (segment_.*component).data(), *w = inverse_mass_.data(), *impulse = impulse_.data();
+    double* v = (end_velocity_.*component).data();
+    v[0] -= w[0] * impulse[0] * d[0];
+#pragma GCC ivdep
+    for (int i = 1; i < n; ++i) v[i] += w[i] * (impulse[i - 1] * d[i - 1] - impulse[i] * d[i]);
+    v[n] += w[n] * impulse[n - 1] * d[n - 1];
   }
 }
 
 /// What the held nodes' equations of motion lack is what their holders supply.
 void CableStepper::react(const Substep& s) {
   if (s.boundary.nodes.empty()) return;
-  evaluate(s);
   for (HeldNode& holder : s.boundary.nodes) {
     const int i = holder.node;
-    const double length = 0.5 * ((i > 0 ? s.model.rest_lengths[i - 1] : 0) + (i < segments_ ? s.model.rest_lengths[i] : 0));
-    const Vector3 flow = s.environment.fluid.velocity - get(displacement_, i) / s.damping_time();
-    Vector3 force = s.model.masses[i] * s.environment.gravity + s.model.material.drag * length * flow;
-    if (!s.statics) force -= s.model.masses[i] * (holder.velocity - get(velocity_, i)) / s.h;
-    if (fluid_.active()) force += fluid_.force(i);
-    if (i < segments_) force += get(pull_, i);
-    if (i > 0) force -= get(pull_, i - 1);
-    holder.force = force;
+    const double mass = s.model.masses[i];
+    holder.force = corrected_load(i) + 2 * mass / s.h * (get(displacement_, i) / s.h - get(velocity_, i));
+    if (!s.statics) holder.force -= mass * (holder.velocity - get(velocity_, i)) / s.h;
   }
   for (HeldDirection& holder : s.boundary.directions) holder.torque.setZero();
-  if (bending_.active()) bending_.react(s.boundary.directions);
+  if (bending_.active()) bending_.react(displacement_, s.boundary.directions);
   if (twist_.active()) twist_.react(s.boundary);
+}
+
+/// The load on a node after the last correction, to first order: its row of the matrix times the solution is gone.
+Vector3 CableStepper::corrected_load(int i) const {
+  const VectorArray& delta = solver_.displacement();
+  const std::vector<double>& multiplier = solver_.multiplier();
+  Vector3 load = get(system_.load, i);
+  if (i > 0) load -= system_.first[i - 1] * get(delta, i - 1) + multiplier[i - 1] * get(system_.direction, i - 1);
+  if (i < segments_) load -= system_.first[i] * get(delta, i + 1) - multiplier[i] * get(system_.direction, i);
+  if (!bending_.active()) return load;
+  if (i > 1) load -= system_.second[i - 2] * get(delta, i - 2);
+  if (i + 1 < segments_) load -= system_.second[i] * get(delta, i + 2);
+  return load;
 }
 
 /// The largest strain.

@@ -34,7 +34,8 @@ struct SubstepResult {
   bool converged = false;
   int overstretched_node = -1;  ///< first node of a span that was lengthened; -1: none
   int iterations = 0;
-  double max_strain = 0;  ///< largest |l / l0 - 1| at the end
+  double max_strain = 0;    ///< largest |l / l0 - 1| at the end
+  double displacement = 0;  ///< largest of a node [m]; in statics only
 };
 
 /// Advances one cable by one substep. Holds the buffers, all sized by `resize`; keeps nothing from one call to the next.
@@ -67,6 +68,7 @@ class CableStepper {
   void assemble(double part);
   double correct();
   void react(const Substep& substep);
+  Vector3 corrected_load(int node) const;
   void finish(const Substep& substep);
   bool holders_accelerate(double h, const std::vector<HeldNode>& held) const;
   void project(const CableModel& model);

@@ -35,7 +35,7 @@ class LengthSystem {
       impulse_[i] = mobility > 0 ? changes[i] : 0;
       if (i + 1 < n) off_[i] = -mobility_[i + 1] * d.dot(positions[i + 2] - positions[i + 1]);
     }
-    solve_tridiagonal(diagonal_, off_, impulse_, n);
+    solve_tridiagonal(diagonal_, off_, impulse_, static_cast<int>(n));
     Vector3 direction = positions[1] - positions[0];
     for (std::size_t i = 0; i < n; ++i) {
       const Vector3 impulse = impulse_[i] * direction;

@@ -9,9 +9,15 @@ namespace verlet_cable {
 
 namespace {
 
+/// Of 1 + cos(angle): a cable that is folded back on itself has no binormal.
+constexpr double smallest_turn = 1e-6;
+
+/// Substeps between two measurements of the angles, which cost as much as an iteration.
+constexpr int measuring_interval = 16;
+
 /// Curvature binormal of two directions: 2 tan(angle / 2), about the axis of the turn.
 Vector3 curvature_binormal(const Vector3& before, const Vector3& after) {
-  return 2 / std::max(1 + before.dot(after), 1e-6) * before.cross(after);
+  return 2 / std::max(1 + before.dot(after), smallest_turn) * before.cross(after);
 }
 
 /// Rotation vector of the small rotation from one orientation to another.
@@ -40,6 +46,7 @@ void Twist::resize(const CableModel& model) {
   const std::size_t nodes = model.nodes();
   tangent_.assign(nodes, 0.0);
   binormal_.assign(nodes, 0.0);
+  slope_.assign(nodes, 0.0);
   inverse_length_.assign(nodes, 0.0);
   states_.reserve(nodes);
   stiffness_.reserve(nodes);
@@ -72,40 +79,88 @@ void Twist::add_pulls(const VectorArray& middle, const VectorArray& displacement
     state.first_axis = first.start.slerp(part_, first.end) * Vector3::UnitX();
     state.last_axis = last.start.slerp(part_, last.end) * Vector3::UnitX();
 
-    for (int i = span.first_node; i < span.last_node; ++i) {
-      const Vector3 d = get(middle, i);
-      inverse_length_[i] = 1 / d.norm();
-      set(tangent_, i, inverse_length_[i] * d);
-    }
+    set_tangents(middle, span);
     state.first_binormal = curvature_binormal(state.first_axis, get(tangent_, span.first_node));
     state.last_binormal = curvature_binormal(get(tangent_, span.last_node - 1), state.last_axis);
-    set(binormal_, span.first_node, state.first_binormal);
-    for (int i = span.first_node + 1; i < span.last_node; ++i)
-      set(binormal_, i, curvature_binormal(get(tangent_, i - 1), get(tangent_, i)));
+    set_binormals(span, state);
 
     // Change of the angle over the substep: the clamps' own turns and the change of the directions between them.
-    double change = last_turn.dot(state.last_axis) - first_turn.dot(state.first_axis);
+    double& change = state.change;
+    change = last_turn.dot(state.last_axis) - first_turn.dot(state.first_axis);
     change += 0.5 * state.first_binormal.dot(first_turn.cross(state.first_axis));
     change += 0.5 * state.last_binormal.dot(last_turn.cross(state.last_axis));
-    for (int i = span.first_node; i < span.last_node; ++i) {
-      const Vector3 after = i + 1 < span.last_node ? get(binormal_, i + 1) : state.last_binormal;
-      const Vector3 slope = 0.5 * inverse_length_[i] * (get(binormal_, i) + after);
-      set(tangent_, i, slope);  // from here on the derivative of the angle by the segment
-      change += slope.dot(get(displacement, i + 1) - get(displacement, i));
-    }
+    for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z})
+      change += add_slopes(displacement, span, component);
     state.torque = stiffness_[k] * (span.angle + part_ * change) + damping_[k] * change;
-    for (int i = span.first_node; i < span.last_node; ++i) set(pull, i, get(pull, i) + state.torque * get(tangent_, i));
+    for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) {
+      const double *slope = (slope_.*component).data(), torque = state.torque;
+      double* f = (pull.*component).data();
+#pragma GCC ivdep
+      for (int i = span.first_node; i < span.last_node; ++i) f[i] += torque * slope[i];
+    }
   }
 }
 
-void follow_roll(const std::vector<HeldDirection>& directions, const std::vector<Vector3>& positions,
-                 std::vector<TwistSpan>& spans) {
-  for (TwistSpan& span : spans) {
-    const double roll = relative_roll(directions[span.first_holder].end, directions[span.last_holder].end,
-                                      positions.data() + span.first_node, span.last_node - span.first_node + 1);
-    span.angle += std::remainder(roll - span.roll, 2 * M_PI);
-    span.roll = roll;
+void Twist::set_tangents(const VectorArray& middle, const TwistSpan& span) {
+  const double *x = middle.x.data(), *y = middle.y.data(), *z = middle.z.data();
+  double *tx = tangent_.x.data(), *ty = tangent_.y.data(), *tz = tangent_.z.data(), *inverse = inverse_length_.data();
+#pragma GCC ivdep
+  for (int i = span.first_node; i < span.last_node; ++i) {
+    inverse[i] = 1 / std::sqrt(x[i] * x[i] + y[i] * y[i] + z[i] * z[i]);
+    tx[i] = inverse[i] * x[i];
+    ty[i] = inverse[i] * y[i];
+    tz[i] = inverse[i] * z[i];
   }
+}
+
+void Twist::set_binormals(const TwistSpan& span, const SpanState& state) {
+  const double *x = tangent_.x.data(), *y = tangent_.y.data(), *z = tangent_.z.data();
+  double *bx = binormal_.x.data(), *by = binormal_.y.data(), *bz = binormal_.z.data();
+#pragma GCC ivdep
+  for (int i = span.first_node + 1; i < span.last_node; ++i) {
+    const double cosine = x[i - 1] * x[i] + y[i - 1] * y[i] + z[i - 1] * z[i];
+    const double scale = 2 / std::max(1 + cosine, smallest_turn);
+    bx[i] = scale * (y[i - 1] * z[i] - z[i - 1] * y[i]);
+    by[i] = scale * (z[i - 1] * x[i] - x[i - 1] * z[i]);
+    bz[i] = scale * (x[i - 1] * y[i] - y[i - 1] * x[i]);
+  }
+  set(binormal_, span.first_node, state.first_binormal);
+  set(binormal_, span.last_node, state.last_binormal);
+}
+
+/// The derivative of the angle by each segment; its part of the change of the angle.
+double Twist::add_slopes(const VectorArray& displacement, const TwistSpan& span, std::vector<double> VectorArray::*component) {
+  const double *b = (binormal_.*component).data(), *u = (displacement.*component).data(), *inverse = inverse_length_.data();
+  double* slope = (slope_.*component).data();
+#pragma GCC ivdep
+  for (int i = span.first_node; i < span.last_node; ++i) slope[i] = 0.5 * inverse[i] * (b[i] + b[i + 1]);
+  double change = 0;
+  for (int i = span.first_node; i < span.last_node; ++i) change += slope[i] * (u[i + 1] - u[i]);
+  return change;
+}
+
+namespace {
+
+double measured_roll(const TwistSpan& span, const std::vector<HeldDirection>& directions, const std::vector<Vector3>& positions) {
+  return relative_roll(directions[span.first_holder].end, directions[span.last_holder].end, positions.data() + span.first_node,
+                       span.last_node - span.first_node + 1);
+}
+
+}  // namespace
+
+void measure_twist(const std::vector<HeldDirection>& directions, const std::vector<Vector3>& positions,
+                   std::vector<TwistSpan>& spans) {
+  for (TwistSpan& span : spans) {
+    span.angle += std::remainder(measured_roll(span, directions, positions) - span.origin - span.angle, 2 * M_PI);
+    span.age = 0;
+  }
+}
+
+void Twist::follow(const std::vector<HeldDirection>& directions, const std::vector<Vector3>& positions,
+                   std::vector<TwistSpan>& spans) const {
+  for (std::size_t k = 0; k < spans.size(); ++k) spans[k].angle += states_[k].change;
+  // All spans of a cable are of the same age.
+  if (++spans.front().age >= measuring_interval) measure_twist(directions, positions, spans);
 }
 
 std::vector<TwistSpan> find_spans(const CableModel& model, const CableState& state,
@@ -120,10 +175,7 @@ std::vector<TwistSpan> find_spans(const CableModel& model, const CableState& sta
     for (int i = span.first_node; i < span.last_node; ++i) span.angle += state.twist[i] * model.rest_lengths[i];
     spans.push_back(span);
   }
-  // Their rolls are measured from here on.
-  std::vector<TwistSpan> measured = spans;
-  follow_roll(directions, state.positions, measured);
-  for (std::size_t k = 0; k < spans.size(); ++k) spans[k].roll = measured[k].roll;
+  for (TwistSpan& span : spans) span.origin = measured_roll(span, directions, state.positions) - span.angle;
   return spans;
 }
 

@@ -94,6 +94,8 @@ void check_initial(const std::string& key, const CableDesc& cable, Errors& error
   check_vector(key + ".to", initial.to, "m", errors);
   if (initial.type == InitialShapeDesc::Type::straight && initial.from == initial.to)
     errors.add(key + ".to", list_text(initial.to), "a point other than `from`, it gives the direction");
+  if (initial.type == InitialShapeDesc::Type::settled && cable.attachments.empty())
+    errors.add(key + ".type", "settled without attachments", "settled for a cable with at least one attachment");
   if (initial.type == InitialShapeDesc::Type::catenary && cable.attachments.size() < 2)
     errors.add(key + ".type", "catenary with " + std::to_string(cable.attachments.size()) + " attachments",
                "catenary for a cable with at least two attachments");
@@ -252,6 +254,8 @@ std::vector<std::string> validate(const SceneDesc& scene) {
   check_fields("", scene_integer_fields, scene, errors);
   check_fields("limits.", limits_fields, scene.limits, errors);
   check_vector("gravity", scene.gravity.acceleration, "m/s^2", errors);
+  check_vector("fluid.velocity", scene.fluid.velocity, "m/s", errors);
+  check_fields("fluid.", fluid_fields, scene.fluid, errors);
 
   UniqueNames materials;
   for (const NamedMaterial& named : scene.materials) {

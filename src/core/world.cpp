@@ -19,6 +19,7 @@ constexpr int easy_iterations = 6;
 constexpr double first_settling_step = 0.01;
 constexpr double last_settling_step = 1e6;
 constexpr int maximum_settling_steps = 2000;
+constexpr double settled_acceleration = 1e-7;  // [m/s^2]
 
 bool finite(const Pose& pose) {
   return pose.position.allFinite() && pose.orientation.coeffs().allFinite() && pose.orientation.norm() > 0.5;
@@ -242,8 +243,8 @@ bool World::settle() {
   return settled;
 }
 
-/// Substeps without motion, ever longer as long as they converge: in the end inertia does not count, and what is left is Newton's
-/// method for the equilibrium.
+/// Substeps without motion, ever longer as long as they converge, until inertia carries nothing: what is left is Newton's method
+/// for the equilibrium.
 bool World::Implementation::settle_cable(int index) {
   Cable& cable = cables[index];
   CableScratch& s = scratch[index];
@@ -258,7 +259,8 @@ bool World::Implementation::settle_cable(int index) {
   bool settled = false;
   for (int i = 0; i < maximum_settling_steps && !settled; ++i) {
     const SubstepResult substep = s.stepper.advance({cable.model, environment, s.boundary, s.spans, h, true}, cable.state);
-    settled = substep.converged && h >= last_settling_step;
+    // What inertia still carries of the loads.
+    settled = substep.converged && 2 * substep.displacement / (h * h) < settled_acceleration;
     h = substep.converged ? std::min(4 * h, last_settling_step) : std::max(h / 8, shortest_substep);
   }
   add_forces(index, 1);

@@ -126,7 +126,8 @@ std::uint64_t World::hash() const {
     hash.add(cable.state.reference_orientation);
     for (const TwistSpan& span : w.scratch[i].spans) {
       hash.add(span.angle);
-      hash.add(span.roll);
+      hash.add(span.origin);
+      hash.add_bits(static_cast<std::uint64_t>(span.age));
     }
     hash.add_bits(static_cast<std::uint64_t>(w.scratch[i].level));
     for (const DirectionHolder& h : w.scratch[i].holders.directions) {
