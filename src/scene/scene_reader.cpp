@@ -34,10 +34,20 @@ void read_limits(const Value& value, SceneDesc& scene) {
   read_map(value, keys, scene.limits);
 }
 
+void read_fluid(const Value& value, SceneDesc& scene) {
+  static const Keys<FluidDesc> keys = [] {
+    Keys<FluidDesc> fluid{vector_key("velocity", &FluidDesc::velocity, "m/s")};
+    append_fields(fluid, fluid_fields);
+    return fluid;
+  }();
+  read_map(value, keys, scene.fluid);
+}
+
 Keys<SceneDesc> scene_keys(const std::vector<std::string>& ignored) {
   Keys<SceneDesc> keys{
       text_key("frame_id", &SceneDesc::frame_id, frame_words),
       {"gravity", "three numbers [m/s^2]", false, read_gravity},
+      {"fluid", "a map", false, read_fluid},
       choice_key("on_lost_frame", &SceneDesc::on_lost_frame,
                  {{"hold", LostFramePolicy::hold}, {"release", LostFramePolicy::release}, {"pause", LostFramePolicy::pause}}),
       choice_key("on_time_jump", &SceneDesc::on_time_jump, {{"reset", TimeJumpPolicy::reset}, {"keep", TimeJumpPolicy::keep}}),

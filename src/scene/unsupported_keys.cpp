@@ -18,19 +18,6 @@ struct UnsupportedKey {
 
 /// Keys of the schema whose values ask for something that is not simulated yet. A value that changes nothing passes.
 constexpr UnsupportedKey unsupported_keys[] = {
-    {"materials.*.axial_stiffness", Passes::only, ".inf"},
-    {"materials.*.bending_stiffness", Passes::only, "0"},
-    {"materials.*.torsional_stiffness", Passes::only, "0"},
-    {"materials.*.axial_damping", Passes::only, "0"},
-    {"materials.*.bending_damping", Passes::only, "0"},
-    {"materials.*.torsional_damping", Passes::only, "0"},
-    {"materials.*.breaking_tension", Passes::only, ".inf"},
-    {"materials.*.density", Passes::none, ""},
-    {"materials.*.youngs_modulus", Passes::none, ""},
-    {"materials.*.poisson_ratio", Passes::none, ""},
-    {"cables[].initial.type", Passes::all_but, "settled"},
-    {"cables[].rest_curvature", Passes::only, "straight"},
-    {"fluid", Passes::none, ""},
     {"materials.*.friction", Passes::only, "0.5"},
     {"color_by", Passes::all_but, "contact"},
     {"obstacles", Passes::only, "[]"},

@@ -23,6 +23,8 @@ TEST(SceneFiles, templateHoldsTheDefaults) {
   for (const auto& field : scene_integer_fields) EXPECT_EQ(scene.*field.member, defaults.*field.member) << field.key;
   for (const auto& field : limits_fields) EXPECT_EQ(scene.limits.*field.member, defaults.limits.*field.member) << field.key;
   EXPECT_EQ(scene.gravity.acceleration, defaults.gravity.acceleration);
+  for (const auto& field : fluid_fields) EXPECT_EQ(scene.fluid.*field.member, defaults.fluid.*field.member) << field.key;
+  EXPECT_EQ(scene.fluid.velocity, defaults.fluid.velocity);
   EXPECT_EQ(scene.on_lost_frame, defaults.on_lost_frame);
   EXPECT_EQ(scene.on_time_jump, defaults.on_time_jump);
   EXPECT_EQ(scene.marker_style, defaults.marker_style);
@@ -67,12 +69,14 @@ TEST(SceneFiles, templateDocumentsEveryKey) {
   expect_documented(lines, scene_fields);
   expect_documented(lines, scene_integer_fields);
   expect_documented(lines, material_fields);
+  expect_documented(lines, fluid_fields);
   expect_documented(lines, cable_fields);
   expect_documented(lines, cable_integer_fields);
   for (const char* key :
-       {"frame_id",  "gravity", "on_lost_frame", "on_time_jump", "marker_style", "color_by",       "scene_directory", "limits",
-        "materials", "cables",  "name",          "material",     "color",        "rest_curvature", "attachments",     "at",
-        "frame",     "offset",  "rotation",      "type",         "initial_pose", "point_masses",   "initial"})
+       {"frame_id",     "gravity",   "on_lost_frame", "on_time_jump", "marker_style", "color_by", "scene_directory",
+        "limits",       "materials", "cables",        "name",         "material",     "color",    "rest_curvature",
+        "attachments",  "at",        "frame",         "offset",       "rotation",     "type",     "initial_pose",
+        "point_masses", "initial",   "fluid",         "velocity"})
     EXPECT_TRUE(is_documented(lines, key, "")) << key;
 }
 

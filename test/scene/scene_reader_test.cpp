@@ -27,15 +27,17 @@ limits: {segments: 50, snapshots: 3, rollouts: 0}
 seed: 7
 integrator: verlet
 nets: []
+fluid: {density: 1000, velocity: [1, 2, 3], surface: 0.5, normal_drag: 1.1, tangential_drag: 0.02}
 materials:
-  rope: {linear_density: 0.2, radius: 0.01, drag: 0.3, axial_stiffness: .inf, bending_stiffness: 0, friction: 0.5}
+  rope: {linear_density: 0.2, radius: 0.01, drag: 0.3, friction: 0.5, axial_stiffness: 1e4, bending_stiffness: 0.02,
+         torsional_stiffness: 0.015, axial_damping: 3, bending_damping: 0.001, torsional_damping: 0.002, breaking_tension: 900}
 cables:
   - name: a
     length: 2
     segments: 4
     material: rope
     color: [0, 0.25, 0.5, 1]
-    rest_curvature: straight
+    rest_curvature: [0.5, -0.25]
     initial: {type: points, points: [[0, 0, 0], [1, 0, 0], [1, 1, 0]], velocities: [[0, 0, 1], [0, 0, 2], [0, 0, 3]]}
     attachments:
       - {name: a1, at: 0.5, frame: hand, offset: [1, 2, 3], rotation: [0.1, 0.2, 0.3], type: clamp, initial_pose: [1, 2, 3, 4, 5, 6]}
@@ -44,7 +46,9 @@ cables:
     length: 1
     segments: 2
     material: rope
+    rest_curvature: initial
     initial: {type: straight, from: [1, 1, 1], to: [1, 1, 2]}
+  - {name: d, length: 1, segments: 2, material: rope, initial: {type: settled}, attachments: [{name: d1, at: start}]}
 )");
   EXPECT_EQ(scene.frame_id, "map");
   EXPECT_EQ(scene.time_step, 0.005);
@@ -61,15 +65,26 @@ cables:
   EXPECT_EQ(scene.limits.snapshots, 3);
   EXPECT_EQ(scene.limits.rollouts, 0);
   EXPECT_EQ(scene.seed, 7);
+  EXPECT_EQ(scene.fluid.density, 1000);
+  EXPECT_EQ(scene.fluid.velocity, Vector3(1, 2, 3));
+  EXPECT_EQ(scene.fluid.surface, 0.5);
+  EXPECT_EQ(scene.fluid.normal_drag, 1.1);
+  EXPECT_EQ(scene.fluid.tangential_drag, 0.02);
 
   ASSERT_NE(scene.find_material("rope"), nullptr);
   EXPECT_EQ(scene.find_material("rope")->linear_density, 0.2);
   EXPECT_EQ(scene.find_material("rope")->radius, 0.01);
   EXPECT_EQ(scene.find_material("rope")->drag, 0.3);
-  EXPECT_EQ(scene.find_material("rope")->axial_stiffness, infinity);
+  EXPECT_EQ(scene.find_material("rope")->axial_stiffness, 1e4);
+  EXPECT_EQ(scene.find_material("rope")->bending_stiffness, 0.02);
+  EXPECT_EQ(scene.find_material("rope")->torsional_stiffness, 0.015);
+  EXPECT_EQ(scene.find_material("rope")->axial_damping, 3);
+  EXPECT_EQ(scene.find_material("rope")->bending_damping, 0.001);
+  EXPECT_EQ(scene.find_material("rope")->torsional_damping, 0.002);
+  EXPECT_EQ(scene.find_material("rope")->breaking_tension, 900);
   EXPECT_EQ(scene.find_material("string"), nullptr);
 
-  ASSERT_EQ(scene.cables.size(), 2u);
+  ASSERT_EQ(scene.cables.size(), 3u);
   const CableDesc& a = scene.cables[0];
   EXPECT_EQ(a.name, "a");
   EXPECT_EQ(a.length, 2);
@@ -93,8 +108,26 @@ cables:
   ASSERT_EQ(a.point_masses.size(), 2u);
   EXPECT_EQ(a.point_masses[0].place.at, PlaceDesc::At::end);
   EXPECT_EQ(a.point_masses[0].mass, 0.5);
+  EXPECT_EQ(a.rest_curvature.type, RestCurvatureDesc::Type::constant);
+  EXPECT_EQ(a.rest_curvature.curvature, (std::array<double, 2>{0.5, -0.25}));
+  EXPECT_EQ(scene.cables[1].rest_curvature.type, RestCurvatureDesc::Type::initial);
+  EXPECT_EQ(scene.cables[2].rest_curvature.type, RestCurvatureDesc::Type::straight);
+  EXPECT_EQ(scene.cables[2].initial.type, InitialShapeDesc::Type::settled);
   EXPECT_EQ(scene.cables[1].initial.from, Vector3(1, 1, 1));
   EXPECT_EQ(scene.cables[1].initial.to, Vector3(1, 1, 2));
+}
+
+TEST(SceneReader, elasticModuliMeanASolidRoundSection) {
+  const SceneDesc scene =
+      read_scene_text(replaced(sound_scene, "{linear_density: 0.1, radius: 0.005}",
+                               "{density: 1200, youngs_modulus: 1e7, poisson_ratio: 0.25, radius: 0.01, drag: 0.3}"));
+  const MaterialDesc& material = *scene.find_material("m");
+  // A = pi r^2, I = pi r^4 / 4, J = pi r^4 / 2, G = E / (2 (1 + nu)) = 0.4 E; 1e-12 is rounding.
+  EXPECT_NEAR(material.linear_density / (1200 * M_PI * 1e-4), 1, 1e-12);
+  EXPECT_NEAR(material.axial_stiffness / (1e7 * M_PI * 1e-4), 1, 1e-12);
+  EXPECT_NEAR(material.bending_stiffness / (1e7 * M_PI * 1e-8 / 4), 1, 1e-12);
+  EXPECT_NEAR(material.torsional_stiffness / (0.4e7 * M_PI * 1e-8 / 2), 1, 1e-12);
+  EXPECT_EQ(material.drag, 0.3);
 }
 
 TEST(SceneReader, keepsDefaultsOfWhatIsNotGiven) {

@@ -78,6 +78,7 @@ TEST(ValidateScene, everyRangeIsChecked) {
   expect_ranges_checked(scene, scene, scene_fields, "");
   expect_ranges_checked(scene, scene, scene_integer_fields, "");
   expect_ranges_checked(scene, scene.limits, limits_fields, "limits.");
+  expect_ranges_checked(scene, scene.fluid, fluid_fields, "fluid.");
   expect_ranges_checked(scene, scene.materials[0].material, material_fields, "materials.m.");
   expect_ranges_checked(scene, scene.cables[0], cable_fields, "cables[0].");
   expect_ranges_checked(scene, scene.cables[0], cable_integer_fields, "cables[0].");
@@ -88,6 +89,7 @@ TEST(ValidateScene, defaultsAreInTheirRanges) {
   const SceneDesc scene;
   for (const auto& field : scene_fields) EXPECT_TRUE(field.range.contains(scene.*field.member)) << field.key;
   for (const auto& field : limits_fields) EXPECT_TRUE(field.range.contains(scene.limits.*field.member)) << field.key;
+  for (const auto& field : fluid_fields) EXPECT_TRUE(field.range.contains(scene.fluid.*field.member)) << field.key;
   const MaterialDesc material;
   for (const auto& field : material_fields) EXPECT_NE(field.range.contains(material.*field.member), field.required) << field.key;
 }
@@ -99,6 +101,15 @@ TEST(ValidateScene, cableIsAtLeastAsLongAsItsAttachmentsAreApart) {
   SceneDesc elastic = held_scene(1.001);
   elastic.materials[0].material.axial_stiffness = 1e4;
   EXPECT_EQ(joined(validate(elastic)), "");
+}
+
+TEST(ValidateScene, onlyWhatIsHeldSettles) {
+  SceneDesc scene = held_scene(0.5);
+  scene.cables[0].initial.type = InitialShapeDesc::Type::settled;
+  EXPECT_EQ(joined(validate(scene)), "");
+  scene.cables[0].attachments.clear();
+  EXPECT_TRUE(
+      has_line(validate(scene), "cables[0].initial.type: settled without attachments; allowed: settled for a cable with"));
 }
 
 TEST(ValidateScene, distancesAreThoseOfNeighboursAlongTheCable) {

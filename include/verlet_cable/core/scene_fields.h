@@ -58,6 +58,13 @@ constexpr std::array<Field<LimitsDesc, int>, 3> limits_fields{{
     {"rollouts", &LimitsDesc::rollouts, "", {0, 1e3, "an integer"}},
 }};
 
+constexpr std::array<Field<FluidDesc>, 4> fluid_fields{{
+    {"density", &FluidDesc::density, "kg/m^3", not_negative},
+    {"surface", &FluidDesc::surface, "m", {-1e9, 1e9, "any number, or .inf", true}},
+    {"normal_drag", &FluidDesc::normal_drag, "", not_negative},
+    {"tangential_drag", &FluidDesc::tangential_drag, "", not_negative},
+}};
+
 constexpr std::array<Field<MaterialDesc>, 11> material_fields{{
     {"linear_density", &MaterialDesc::linear_density, "kg/m", positive, true},
     {"radius", &MaterialDesc::radius, "m", positive, true},
