@@ -76,9 +76,21 @@ inline double stiffness_from_growth(Simulation& run, const std::function<double(
   return -sigma * (sigma + run.cable().model.material.drag / time_unit);
 }
 
-/// Where a straight line through two points vanishes.
-inline double zero_between(double x0, double y0, double x1, double y1) {
-  return x0 - y0 * (x1 - x0) / (y1 - y0);
+/// Where `stiffness(load)` vanishes: the secant method, from 2 % on both sides of `expected`.
+inline double critical_load(const std::function<double(double)>& stiffness, double expected) {
+  constexpr int secants = 2;
+  double x0 = 0.98 * expected, x1 = 1.02 * expected, y0 = stiffness(x0), y1 = stiffness(x1);
+  const auto zero = [&] { return x1 - y1 * (x1 - x0) / (y1 - y0); };
+  for (int i = 0; i < secants; ++i) {
+    const double x = zero(), y = stiffness(x);
+    if (std::abs(y0) < std::abs(y1)) {
+      x1 = x0;
+      y1 = y0;
+    }
+    x0 = x;
+    y0 = y;
+  }
+  return zero();
 }
 
 }  // namespace verlet_cable::validation

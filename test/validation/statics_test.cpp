@@ -127,6 +127,8 @@ TEST(EndMoment, RollsARodUpToACircle) {
       if (i > turning_steps) end += 0.01 * run.force("end");
     }
     EXPECT_LT(run.force("end").norm(), 1e-6);
+    // A moment alone pulls at nothing.
+    EXPECT_NEAR(run.cable().state.tension[n / 2], 0, 1e-2 * 4 * M_PI * M_PI);
     moments.push_back({static_cast<double>(n), std::abs(run.torque("end").norm() / (2 * M_PI) - 1)});
     record_curve("end moment", "n = " + std::to_string(n), coordinates(run, 0), coordinates(run, 2));
     return end.norm();
@@ -148,6 +150,21 @@ TEST(EndMoment, NaturalCurvatureClosesToACircle) {
     return run.positions().back().norm();
   });
   report("natural circle: gap", samples, 1e-3, Order::second);
+}
+
+/// Hooke's law does not know of bending: clamps that hold a straight rod feel EA times its strain.
+TEST(Stretch, ClampsHoldAStraightRodWithHookesForce) {
+  constexpr double strain = 0.01, stiffness = 1000;
+  const auto samples = sample({20, 40, 80}, [](int n) {
+    SceneDesc scene = rod(n, 0.1);
+    material(scene).axial_stiffness = stiffness;
+    hold_ends(scene, AttachmentType::clamp, 1 + strain);
+    start_at(scene, [](double s) { return Vector3((1 + strain) * s, 0, 0); });
+    Simulation run(scene);
+    EXPECT_TRUE(run.world.settle());
+    return run.force("start").x() / (stiffness * strain) - 1;
+  });
+  report("stretch between clamps", samples, 1e-6, Order::none);
 }
 
 }  // namespace
