@@ -11,7 +11,7 @@ namespace verlet_cable {
 
 namespace {
 
-constexpr int maximum_iterations = 20;
+constexpr int maximum_iterations = 40;
 /// Error of a node's velocity at which an iteration ends, in segment lengths per second: far below what energy is asked for.
 constexpr double velocity_tolerance = 1e-5;
 constexpr double longest_tolerated = 1e-3;  // [s]; beyond, the error of the place counts

@@ -10,6 +10,9 @@ namespace verlet_cable {
 
 namespace {
 
+/// Relative; more is not left by steps, but by holders that have gone.
+constexpr double tolerated_length_error = 1e-3;
+
 std::vector<Vector3> straight_line(const Vector3& from, const Vector3& direction, const CableModel& model) {
   std::vector<Vector3> nodes;
   for (const double s : model.arc_length()) nodes.push_back(from + s * direction);
@@ -104,6 +107,30 @@ void carry_along(const CableModel& model, const std::vector<HeldNode>& held, con
   // Holders that come close along a straight cable do not tell where its slack goes.
   state.positions = hanging(model, held, gravity);
   project_positions(model, held, state.positions);
+}
+
+void restore_lengths(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {
+  if (model.material.axial_stiffness < infinity) return;
+  const int n = model.segments();
+  std::vector<double> lengths(n);
+  reachable_lengths(model, held, lengths);
+  bool wrong = false;
+  for (int i = 0; i < n; ++i) {
+    const double length = (state.positions[i + 1] - state.positions[i]).norm();
+    wrong = wrong || std::abs(length - lengths[i]) > tolerated_length_error * lengths[i];
+  }
+  if (!wrong) return;
+  const std::vector<Vector3> before = state.positions;
+  const auto direction = [&](int i) -> Vector3 {
+    const Vector3 d = before[i + 1] - before[i];
+    return d.norm() > 0 ? Vector3(d.normalized()) : Vector3(Vector3::UnitX());
+  };
+  const int anchor = held.empty() ? n / 2 : held.front().node;
+  for (int i = anchor; i < n; ++i) state.positions[i + 1] = state.positions[i] + lengths[i] * direction(i);
+  for (int i = anchor; i-- > 0;) state.positions[i] = state.positions[i + 1] - lengths[i] * direction(i);
+  carry_along(model, held, gravity, state);
+  project_velocities(model, held, state.positions, state.velocities);
+  std::fill(state.accelerations.begin(), state.accelerations.end(), Vector3::Zero());
 }
 
 }  // namespace verlet_cable

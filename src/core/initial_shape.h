@@ -16,4 +16,8 @@ void set_initial_state(const InitialShapeDesc& initial, const CableModel& model,
 /// arc length between them. Where that leaves no shape of the right lengths nearby, the cable hangs from them anew.
 void carry_along(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state);
 
+/// Gives the segments of an inextensible cable the lengths that its holders allow, after a holder that had lengthened it let go:
+/// from the first holder on, or the middle of a free cable, along the directions that they have.
+void restore_lengths(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state);
+
 }  // namespace verlet_cable

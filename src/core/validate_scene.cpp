@@ -146,12 +146,43 @@ std::string material_names(const SceneDesc& scene) {
   return scene.materials.size() > most ? names + ", ..." : names;
 }
 
+/// Lines for dampings that leave nothing of a cable's motion. Steps are implicit and carry any damping; but where it outweighs
+/// the inertia of a segment so much, rounding does, too.
+void check_damping(const std::string& key, const SceneDesc& scene, const CableDesc& cable, const MaterialDesc& material,
+                   Errors& errors) {
+  if (!is_sound(cable) || !material_fields[0].range.contains(material.linear_density) ||
+      !scene_fields[0].range.contains(scene.time_step))
+    return;
+  constexpr double largest_ratio = 1e12;
+  const double length = cable.length / cable.segments;
+  const double axial = largest_ratio * material.linear_density * length * length / scene.time_step;
+  const double bending = axial * length * length;
+  struct Limit {
+    const char* key;
+    double value;
+    double most;
+    const char* unit;
+    const char* words;
+  };
+  for (const Limit& limit : {Limit{"axial_damping", material.axial_damping, axial, "N s", "segment length^2"},
+                             Limit{"bending_damping", material.bending_damping, bending, "N m^2 s", "segment length^4"},
+                             Limit{"torsional_damping", material.torsional_damping, bending, "N m^2 s", "segment length^4"}}) {
+    // What is out of its range is an error of the material already.
+    if (limit.value <= limit.most || !not_negative.contains(limit.value)) continue;
+    errors.add("materials." + escaped(cable.material) + "." + limit.key, number_text(limit.value),
+               "at most " + number_text(limit.most) + " [" + limit.unit + "] for " + key + ", " + number_text(largest_ratio) +
+                   " linear_density " + limit.words + " / time_step; no step can carry more");
+  }
+}
+
 void check_cable(const std::string& key, const SceneDesc& scene, const CableDesc& cable, UniqueNames& attachments,
                  Errors& errors) {
   const std::string prefix = key + ".";
   check_fields(prefix, cable_fields, cable, errors);
   check_fields(prefix, cable_integer_fields, cable, errors);
-  if (!scene.find_material(cable.material)) {
+  if (const MaterialDesc* material = scene.find_material(cable.material)) {
+    check_damping(key, scene, cable, *material, errors);
+  } else {
     errors.add(prefix + "material", quoted(cable.material), "a material of the scene (" + material_names(scene) + ")");
   }
   check_numbers(prefix + "color", cable.color, unit_interval, "", errors);

@@ -13,6 +13,8 @@ namespace {
 
 /// No substep is shorter [s]; a cable that needs one has lost its way.
 constexpr double shortest_substep = 1e-6;
+/// After so many substeps in one step a cable is not split further: whoever waits for it has waited long enough.
+constexpr int maximum_substeps = 4096;
 /// A substep that took no more iterations than this may be doubled.
 constexpr int easy_iterations = 6;
 /// Settling begins with steps of this length [s] and ends with one in which inertia is nothing.
@@ -23,6 +25,10 @@ constexpr double settled_acceleration = 1e-7;  // [m/s^2]
 
 bool finite(const Pose& pose) {
   return pose.position.allFinite() && pose.orientation.coeffs().allFinite() && pose.orientation.norm() > 0.5;
+}
+
+bool finite(const std::vector<Vector3>& vectors) {
+  return std::all_of(vectors.begin(), vectors.end(), [](const Vector3& v) { return v.allFinite(); });
 }
 
 CableModel make_model(const SceneDesc& scene, const CableDesc& desc) {
@@ -209,7 +215,7 @@ void World::Implementation::step_cable(int index, StepResult& result) {
     const SubstepResult substep = s.stepper.advance({cable.model, environment, s.boundary, s.spans, h}, cable.state);
     result.iterations += substep.iterations;
     if (!substep.converged) {
-      if (s.level < finest) {
+      if (s.level < finest && substeps < maximum_substeps) {
         ++s.level;
       } else if (!stopped) {
         for (std::vector<Vector3>* v : {&cable.state.velocities, &cable.state.accelerations})
@@ -218,7 +224,10 @@ void World::Implementation::step_cable(int index, StepResult& result) {
         stopped = true;
         note_status(Status::degraded, index, 0, result);
       } else {
-        note_status(Status::fault, index, 0, result);
+        // Not even from rest: it is put where its holders will be, and goes on from there.
+        hold_at(1, 1, s.holders, s.boundary);
+        carry_along(cable.model, s.boundary.nodes, scene.gravity.acceleration, cable.state);
+        if (!finite(cable.state.positions)) note_status(Status::fault, index, 0, result);
         break;
       }
       continue;
@@ -283,11 +292,12 @@ void World::Implementation::add_forces(int cable, double weight) {
 }
 
 void World::Implementation::update_holders(int index) {
-  const Cable& cable = cables[index];
+  Cable& cable = cables[index];
   CableScratch& s = scratch[index];
   s.holders = find_holders(index, cable.model, cable.state, attachments, poses, s.holders, time());
   aim_holders(cable.model, attachments, poses, time(), scene.time_step, s.holders);
   hold_at(0, 0, s.holders, s.boundary);
+  restore_lengths(cable.model, s.boundary.nodes, scene.gravity.acceleration, cable.state);
   s.spans = find_spans(cable.model, cable.state, s.boundary.directions);
 }
 
