@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -27,6 +28,11 @@ std::string text(double value) {
   return buffer;
 }
 
+/// For CSV: names have commas.
+std::string quoted(const std::string& name) {
+  return '"' + name + '"';
+}
+
 }  // namespace
 
 void Simulation::step() {
@@ -50,7 +56,7 @@ void report(const std::string& name, const std::vector<Sample>& samples, double 
   std::string rows;
   for (const Sample& s : samples) {
     line += " " + text(s.error) + " (n = " + text(s.n) + ")";
-    rows += name + "," + text(s.n) + "," + text(s.error) + "," + text(tolerance) + "\n";
+    rows += quoted(name) + "," + text(s.n) + "," + text(s.error) + "," + text(tolerance) + "\n";
   }
   const Sample& last = samples.back();
   if (samples.size() > 1) {
@@ -62,6 +68,10 @@ void report(const std::string& name, const std::vector<Sample>& samples, double 
     }
   }
   std::printf("%s, to reach %s\n", line.c_str(), text(tolerance).c_str());
+  std::string key = name;
+  std::replace_if(
+      key.begin(), key.end(), [](char c) { return c == ' ' || c == ',' || c == ':'; }, '_');
+  testing::Test::RecordProperty(key, text(last.error));
   append("errors.csv", rows);
   EXPECT_LT(last.error, tolerance) << name;
 }
@@ -69,7 +79,7 @@ void report(const std::string& name, const std::vector<Sample>& samples, double 
 void record_curve(const std::string& name, const std::string& label, const std::vector<double>& x, const std::vector<double>& y) {
   std::string rows;
   for (std::size_t i = 0; i < x.size(); ++i)
-    rows += name + "," + label + "," + std::to_string(x[i]) + "," + std::to_string(y[i]) + "\n";
+    rows += quoted(name) + "," + label + "," + std::to_string(x[i]) + "," + std::to_string(y[i]) + "\n";
   append("curves.csv", rows);
 }
 
