@@ -246,22 +246,6 @@ void check_distances(const std::string& key, const CableDesc& cable, const std::
 
 }  // namespace
 
-bool is_name(const std::string& name) {
-  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-  const auto is_other = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; };
-  return !name.empty() && is_letter(name[0]) && std::all_of(name.begin(), name.end(), is_other);
-}
-
-bool is_frame_name(const std::string& name) {
-  const auto is_printable = [](char c) { return static_cast<unsigned char>(c) > ' ' && c != '\x7f'; };
-  return !name.empty() && name[0] != '/' && std::all_of(name.begin(), name.end(), is_printable);
-}
-
-std::string Range::text(const char* unit) const {
-  const std::string unit_text = *unit ? " [" + std::string(unit) + "]" : "";
-  return words + unit_text + " (from " + number_text(lowest) + " to " + number_text(highest) + ")";
-}
-
 std::vector<std::string> validate_distances(const SceneDesc& scene, const BoundaryInputs& frames) {
   Errors errors;
   const std::vector<std::string> names = frame_names(scene);

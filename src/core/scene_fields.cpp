@@ -1,0 +1,25 @@
+#include "verlet_cable/core/scene_fields.h"
+
+#include <algorithm>
+
+#include "verlet_cable/core/number_text.h"
+
+namespace verlet_cable {
+
+bool is_name(const std::string& name) {
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  const auto is_other = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; };
+  return !name.empty() && is_letter(name[0]) && std::all_of(name.begin(), name.end(), is_other);
+}
+
+bool is_frame_name(const std::string& name) {
+  const auto is_printable = [](char c) { return static_cast<unsigned char>(c) > ' ' && c != '\x7f'; };
+  return !name.empty() && name[0] != '/' && std::all_of(name.begin(), name.end(), is_printable);
+}
+
+std::string Range::text(const char* unit) const {
+  const std::string unit_text = *unit ? " [" + std::string(unit) + "]" : "";
+  return words + unit_text + " (from " + number_text(lowest) + " to " + number_text(highest) + ")";
+}
+
+}  // namespace verlet_cable
