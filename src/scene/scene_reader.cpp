@@ -5,6 +5,7 @@
 #include "cable_keys.h"
 #include "keys.h"
 #include "material_keys.h"
+#include "verlet_cable/scene/material_presets.h"
 
 namespace verlet_cable {
 namespace {
@@ -71,6 +72,32 @@ Keys<SceneDesc> scene_keys(const std::vector<std::string>& ignored) {
   return keys;
 }
 
+std::string names_of(const std::vector<NamedMaterial>& materials) {
+  constexpr std::size_t most = 20;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(most, materials.size()); ++i)
+    names += (names.empty() ? "" : ", ") + escaped(materials[i].name);
+  return materials.size() > most ? names + ", ..." : names;
+}
+
+/// Adds the presets that cables name to the scene's own materials. A name that is neither is an error.
+void add_presets(const Value& root, SceneDesc& scene) {
+  const std::vector<NamedMaterial>& presets = material_presets();
+  const std::string own = scene.materials.empty() ? "it has none" : names_of(scene.materials);
+  for (std::size_t i = 0; i < scene.cables.size(); ++i) {
+    const std::string& name = scene.cables[i].material;
+    const std::string key = root.child("cables", {}).element(i, {}).key + ".material";
+    if (scene.find_material(name) || root.errors->is_unread(key)) continue;
+    const auto preset = std::find_if(presets.begin(), presets.end(), [&](const auto& material) { return material.name == name; });
+    if (preset != presets.end()) {
+      scene.materials.push_back(*preset);
+    } else {
+      root.errors->add_unread(key, quoted(name),
+                              "a material of the scene (" + own + "), or one that is shipped (" + names_of(presets) + ")");
+    }
+  }
+}
+
 }  // namespace
 
 SceneDesc read_scene(const YAML::Node& root, const std::vector<std::string>& ignored) {
@@ -79,6 +106,7 @@ SceneDesc read_scene(const YAML::Node& root, const std::vector<std::string>& ign
   const Value value{root, "", &errors};
   if (root.IsMap()) {
     read_map(value, scene_keys(ignored), scene);
+    add_presets(value, scene);
     errors.add_validation(validate(scene));
     reject_unsupported(value);
   } else {

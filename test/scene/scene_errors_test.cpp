@@ -82,7 +82,7 @@ const Mistake mistakes[] = {
     {"materialIsNoMap", material, "rubber", "materials.m: \"rubber\";"},
     {"badMaterialName", "m: {linear", "\"m\": {linear_density: 1, radius: 1}\n  2m: {linear", "materials.2m: \"2m\";"},
     {"unknownMaterial", "material: m", "material: none_such",
-     "cables[0].material: \"none_such\"; allowed: a material of the scene (m)"},
+     "cables[0].material: \"none_such\"; allowed: a material of the scene (m), or one that is shipped (usb_cable, "},
     {"missingMaterial", "    material: m\n", "", "cables[0].material: missing;"},
     {"missingName", "  - name: hose\n    length", "  - length", "cables[0].name: missing;"},
     {"badName", "name: hose", "name: my hose", "cables[0].name: \"my hose\";"},
