@@ -74,6 +74,8 @@ TEST(ValidateScene, everyRangeIsChecked) {
   ASSERT_EQ(joined(validate(scene)), "");
   // Free: at other lengths its attachments would be too far apart, which is another error of the same key.
   scene.cables[0].attachments.clear();
+  // Long segments: what their inertia allows of damping is above the ranges.
+  scene.cables[0].length = 1000;
   scene.cables[0].point_masses = {{at_end, 1.0}};
   expect_ranges_checked(scene, scene, scene_fields, "");
   expect_ranges_checked(scene, scene, scene_integer_fields, "");
@@ -110,6 +112,34 @@ TEST(ValidateScene, onlyWhatIsHeldSettles) {
   scene.cables[0].attachments.clear();
   EXPECT_TRUE(
       has_line(validate(scene), "cables[0].initial.type: settled without attachments; allowed: settled for a cable with"));
+}
+
+TEST(ValidateScene, dampingThatNoStepCanCarryIsRefused) {
+  SceneDesc scene = held_scene(0.5);
+  // 1e12 linear_density l^2 / time_step and 1e12 linear_density l^4 / time_step, with 0.1 kg/m, 0.1 m and 1 ms.
+  const struct {
+    double MaterialDesc::*member;
+    double most;
+    const char* line;
+  } limits[] = {
+      {&MaterialDesc::axial_damping, 1e12, ""},
+      {&MaterialDesc::bending_damping, 1e10,
+       "materials.m.bending_damping: 1.01e+10; allowed: at most 1e+10 [N m^2 s] for cables[0]"},
+      {&MaterialDesc::torsional_damping, 1e10, "materials.m.torsional_damping: 1.01e+10; allowed: at most 1e+10 [N m^2 s] for"},
+  };
+  for (const auto& limit : limits) {
+    double& damping = scene.materials[0].material.*limit.member;
+    damping = 0.99 * limit.most;
+    EXPECT_EQ(joined(validate(scene)), "");
+    damping = 1.01 * limit.most;
+    const std::vector<std::string> errors = validate(scene);
+    ASSERT_EQ(errors.size(), 1u) << joined(errors);
+    EXPECT_TRUE(has_line(errors, limit.line)) << joined(errors);
+    damping = 0;
+  }
+  scene.cables[0].segments = 1000;
+  scene.materials[0].material.axial_damping = 2e8;
+  EXPECT_TRUE(has_line(validate(scene), "materials.m.axial_damping: 2e+08; allowed: at most ")) << joined(validate(scene));
 }
 
 TEST(ValidateScene, distancesAreThoseOfNeighboursAlongTheCable) {
