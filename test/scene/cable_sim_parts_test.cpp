@@ -25,9 +25,9 @@ Options parse(const std::vector<std::string>& arguments, std::vector<std::string
 
 TEST(Options, areRead) {
   std::vector<std::string> errors;
-  const Options options = parse(
-      {"--duration", "2.5", "a.yaml", "--rate=5e1", "--motion", "m.csv", "--output=o.csv", "--summary", "s.json", "__name:=x"},
-      &errors);
+  const Options options = parse({"--duration", "2.5", "a.yaml", "--rate=5e1", "--motion", "m.csv", "--output=o.csv", "--summary",
+                                 "s.json", "--settle", "__name:=x"},
+                                &errors);
   EXPECT_EQ(joined(errors), "");
   EXPECT_EQ(options.scene, "a.yaml");
   EXPECT_EQ(options.duration, 2.5);
@@ -35,6 +35,7 @@ TEST(Options, areRead) {
   EXPECT_EQ(options.motion, "m.csv");
   EXPECT_EQ(options.output, "o.csv");
   EXPECT_EQ(options.summary, "s.json");
+  EXPECT_TRUE(options.settle);
 }
 
 TEST(Options, haveDefaults) {
@@ -43,17 +44,17 @@ TEST(Options, haveDefaults) {
   EXPECT_EQ(joined(errors), "");
   EXPECT_EQ(options.duration, 10);
   EXPECT_EQ(options.rate, 100);
+  EXPECT_FALSE(options.settle);
   EXPECT_TRUE(options.motion.empty() && options.output.empty() && options.summary.empty());
 }
 
 TEST(Options, everyMistakeIsNamedAtOnce) {
   std::vector<std::string> errors;
-  parse({"--duration", "-1", "--rate=nan", "--durashun", "3", "--settle", "b.yaml", "--motion", "--output=", "--rate", "5"},
-        &errors);
+  parse({"--duration", "-1", "--rate=nan", "--durashun", "3", "b.yaml", "--motion", "--output=", "--rate", "5"}, &errors);
   for (const char* start :
        {"--duration: \"-1\"; allowed: 0 or any number above [s]", "--rate: \"nan\"; allowed: any number above 0",
-        "--durashun: no such option (did you mean --duration?)", "--settle: not supported yet", "\"b.yaml\": a second scene",
-        "--motion: no value", "--output: \"\"; allowed: the name of a file", "--rate: given twice"})
+        "--durashun: no such option (did you mean --duration?)", "\"b.yaml\": a second scene", "--motion: no value",
+        "--output: \"\"; allowed: the name of a file", "--rate: given twice"})
     EXPECT_TRUE(has_line(errors, start)) << start << "\n" << joined(errors);
   parse({}, &errors);
   EXPECT_TRUE(has_line(errors, "no scene"));

@@ -47,7 +47,7 @@ bool finish(OutputFile& file, const std::string& path) {
 
 int simulate_job(const Options& options, const Job& job) {
   const FrameSource frames(job.scene, job.motion);
-  World world = initial_world(job, frames);
+  World world(job.scene, frames.at(0));
   Outputs outputs;
   std::vector<std::string> errors;
   outputs.open(options, errors);
@@ -55,10 +55,11 @@ int simulate_job(const Options& options, const Job& job) {
   for (const std::string& frame : unused_frames(job.scene, job.motion))
     std::cerr << "cable_sim: note: " << options.motion << ": nothing in the scene is held by frame " << quoted(frame) << "\n";
 
-  CsvWriter csv(outputs.csv);
-  Summary summary(world, first_averaged_step(job));
   ProgressBar progress(options.duration);
   EventLog events(progress);
+  if (job.settle && !world.settle()) events.add_unsettled(world);
+  CsvWriter csv(outputs.csv);
+  Summary summary(world, first_averaged_step(job));
   bool good = simulate(job, options.rate, frames, world, {options.output.empty() ? nullptr : &csv, summary, events, progress});
   progress.clear();
   if (!good) std::cerr << "cable_sim: stopped: a fault at " << world.time() << " s\n";

@@ -27,7 +27,7 @@ StatusText text_of(StepResult::Status status) {
     case StepResult::Status::degraded:
       return {"degraded", "the solver did not converge; the cable's motion was taken away"};
     case StepResult::Status::fault:
-      return {"fault", "no finite state was found"};
+      return {"FAULT", "no finite state was found"};
     case StepResult::Status::ok:
       break;
   }
@@ -40,22 +40,38 @@ void EventLog::observe(const World& world, const StepResult& result, const std::
   if (result.status != StepResult::Status::ok) {
     const StatusText text = text_of(result.status);
     const std::string cable = result.cable >= 0 ? world.cables()[static_cast<std::size_t>(result.cable)].model.name : "";
-    report({world.time(), text.type, cable, result.node, "", text.message}, result.max_strain);
+    report({world.time(), text.type, cable, result.node, "", text.message, ""}, result.max_strain);
   }
+  add_breaks(world);
   for (const int frame : held_back) {
     const std::string& name = world.frames()[static_cast<std::size_t>(frame)];
     report({world.time(), "frame_too_fast", "", -1, name,
-            "the frame moves faster than max_frame_speed and is followed at that speed"},
+            "the frame moves faster than max_frame_speed and is followed at that speed", ""},
            0);
   }
   end_episodes(world.time());
 }
 
+void EventLog::add_unsettled(const World& world) {
+  add({world.time(), "not_settled", "", -1, "", "no static equilibrium was found; the cables start at rest near it", ""});
+}
+
 std::vector<Event> EventLog::events() const {
   std::vector<Event> sorted = events_;
   std::stable_sort(sorted.begin(), sorted.end(), [](const Event& a, const Event& b) { return a.time < b.time; });
-  if (dropped_ > 0) sorted.push_back({last_dropped_time_, "more", "", -1, "", std::to_string(dropped_) + " more events"});
+  if (dropped_ > 0) sorted.push_back({last_dropped_time_, "more", "", -1, "", std::to_string(dropped_) + " more events", ""});
   return sorted;
+}
+
+void EventLog::add_breaks(const World& world) {
+  for (const Break& broken : world.breaks()) {
+    const CableModel& first = world.cables()[static_cast<std::size_t>(broken.cable)].model;
+    const std::string& second = world.cables()[static_cast<std::size_t>(broken.new_cable)].model.name;
+    add({world.time(), "BROKE", first.name, broken.segment, "",
+         "the segment that starts here was pulled harder than " + number_text(first.material.breaking_tension) +
+             " N and is gone; the rest of the cable is " + second,
+         second});
+  }
 }
 
 void EventLog::report(const Event& event, double strain) {

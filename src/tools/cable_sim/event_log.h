@@ -9,7 +9,7 @@
 
 namespace verlet_cable::cable_sim {
 
-/// Something that a user should know of a run.
+/// Something that a user should know of a run. What the node publishes, too, has the name that it has in CableEvent.msg.
 struct Event {
   double time = 0;  ///< [s]
   std::string type;
@@ -17,6 +17,7 @@ struct Event {
   int node = -1;      ///< -1: none in particular
   std::string frame;  ///< empty: none in particular
   std::string message;
+  std::string other;  ///< BROKE: the new cable
 };
 
 /// Turns what each step reports into events: one when something begins, one when it has ended, not one a step. Keeps the first
@@ -28,6 +29,9 @@ class EventLog {
   /// After each step. `held_back`: ids of the frames that moved faster than `max_frame_speed`.
   void observe(const World& world, const StepResult& result, const std::vector<int>& held_back);
 
+  /// Where settling found no equilibrium.
+  void add_unsettled(const World& world);
+
   /// In the order of their times.
   std::vector<Event> events() const;
 
@@ -38,6 +42,7 @@ class EventLog {
     double largest_strain = 0;
   };
 
+  void add_breaks(const World& world);
   void report(const Event& event, double strain);
   void end_episodes(double time);
   void add(const Event& event);

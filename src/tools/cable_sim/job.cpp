@@ -105,6 +105,7 @@ Job prepare(const Options& options, std::vector<std::string>& errors) {
   }
   if (errors.size() > errors_before) return job;
   job.steps = steps_for(options.duration, job.scene.time_step);
+  job.settle = options.settle;
   job.rows = 1 + static_cast<std::int64_t>(std::floor(options.duration * options.rate + step_tolerance));
   return job;
 }

@@ -28,6 +28,7 @@ std::int64_t steps_for(double duration, double time_step);
 struct Job {
   SceneDesc scene;
   Motion motion;
+  bool settle = false;  ///< into equilibrium before t = 0
   std::int64_t steps = 0;
   std::int64_t rows = 0;  ///< of the output a node
 };

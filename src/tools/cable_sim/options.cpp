@@ -60,7 +60,7 @@ const char* const usage =
     "  --output CSV        the nodes over time: t,cable,node,x,y,z,vx,vy,vz,tension\n"
     "  --rate HZ           rows of the output a second, default 100, at most 1 / time_step\n"
     "  --summary JSON      times, energies, forces and events\n"
-    "  --settle            not supported yet\n"
+    "  --settle            put the cables into static equilibrium before t = 0\n"
     "  --help              this text\n"
     "exit status: 0 done, 2 a bad scene, motion or option, 3 the simulation had to stop\n";
 
@@ -94,7 +94,7 @@ Options parse_options(const std::vector<std::string>& arguments, std::vector<std
     } else if (argument == "--help" || argument == "-h") {
       options.help = true;
     } else if (argument == "--settle") {
-      errors.push_back("--settle: not supported yet; allowed: not to give it");
+      options.settle = true;
     } else {
       const std::string nearest = nearest_name(name, all_names);
       std::string allowed;

@@ -13,6 +13,7 @@ struct Options {
   std::string motion;    ///< path, empty: none
   std::string output;    ///< path, empty: none
   std::string summary;   ///< path, empty: none
+  bool settle = false;   ///< into equilibrium before t = 0
   bool help = false;
 };
 

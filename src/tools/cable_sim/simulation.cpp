@@ -12,10 +12,6 @@ constexpr double averaged_time = 0.1;  // [s]
 
 }  // namespace
 
-World initial_world(const Job& job, const FrameSource& frames) {
-  return World(job.scene, frames.at(0));
-}
-
 std::int64_t first_averaged_step(const Job& job) {
   const auto averaged = std::max<std::int64_t>(1, std::llround(averaged_time / job.scene.time_step));
   return job.steps - averaged + 1;

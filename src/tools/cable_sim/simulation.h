@@ -9,9 +9,6 @@
 
 namespace verlet_cable::cable_sim {
 
-/// The world at t = 0. Throws SceneError.
-World initial_world(const Job& job, const FrameSource& frames);
-
 /// What a run fills.
 struct Recorders {
   CsvWriter* csv;  ///< may be null

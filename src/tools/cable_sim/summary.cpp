@@ -24,6 +24,7 @@ void write_event(JsonWriter& json, const Event& event) {
   if (!event.cable.empty()) json.entry("cable", event.cable);
   if (event.node >= 0) json.entry("node", std::int64_t{event.node});
   if (!event.frame.empty()) json.entry("frame", event.frame);
+  if (!event.other.empty()) json.entry("other", event.other);
   json.entry("message", event.message);
   json.end_object();
 }
