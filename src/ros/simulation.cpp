@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 
 namespace verlet_cable {
@@ -123,6 +124,7 @@ bool Simulation::step_world(Nanoseconds time) {
   report_status(result);
   if (faulted_) return false;
   stamp_ = time;
+  report_breaks();
   if (!world_.waiting().empty() && !frames_.changes().empty()) world_.start_waiting(frames_.inputs());
   if (grid_.is_tick(stamp_)) publish();
   return true;
@@ -139,6 +141,16 @@ void Simulation::report_status(const StepResult& result) {
   if (result.status == StepResult::Status::overstretched) {
     ROS_WARN_THROTTLE(log_period, "cable %s is overstretched at node %d: what holds it is further apart than it is long",
                       quoted(cable()).c_str(), result.node);
+  }
+}
+
+void Simulation::report_breaks() const {
+  for (const Break& broken : world_.breaks()) {
+    const CableModel& first = world_.cables()[broken.cable].model;
+    const std::string& second = world_.cables()[broken.new_cable].model.name;
+    announce(CableEvent::BROKE, {first.name, {}, broken.segment, second},
+             "cable " + quoted(first.name) + " broke at segment " + std::to_string(broken.segment) + ", above " +
+                 number_text(first.material.breaking_tension) + " N: the rest of it is " + quoted(second));
   }
 }
 

@@ -67,6 +67,7 @@ class Simulation {
   void stand();
   bool step_world(Nanoseconds time);
   void report_status(const StepResult& result);
+  void report_breaks() const;
   void skip_to(Nanoseconds time);
   void publish();
   void announce(std::uint8_t type, const EventSubject& subject, const std::string& message) const;
