@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "verlet_cable/core/number_text.h"
+#include "verlet_cable/core/quoted_text.h"
 
 namespace verlet_cable {
 
@@ -20,6 +21,14 @@ bool is_frame_name(const std::string& name) {
 std::string Range::text(const char* unit) const {
   const std::string unit_text = *unit ? " [" + std::string(unit) + "]" : "";
   return words + unit_text + " (from " + number_text(lowest) + " to " + number_text(highest) + ")";
+}
+
+std::string material_names(const std::vector<NamedMaterial>& materials) {
+  constexpr std::size_t most = 20;
+  if (materials.empty()) return "there are none";
+  std::string names = escaped(materials[0].name);
+  for (std::size_t i = 1; i < std::min(most, materials.size()); ++i) names += ", " + escaped(materials[i].name);
+  return materials.size() > most ? names + ", ..." : names;
 }
 
 }  // namespace verlet_cable

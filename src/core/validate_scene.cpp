@@ -137,15 +137,6 @@ void check_attachments(const std::string& prefix, const CableDesc& cable, Unique
   }
 }
 
-/// The first of them, for messages.
-std::string material_names(const SceneDesc& scene) {
-  constexpr std::size_t most = 20;
-  if (scene.materials.empty()) return "it has none";
-  std::string names = escaped(scene.materials[0].name);
-  for (std::size_t i = 1; i < std::min(most, scene.materials.size()); ++i) names += ", " + escaped(scene.materials[i].name);
-  return scene.materials.size() > most ? names + ", ..." : names;
-}
-
 /// Lines for dampings that leave nothing of a cable's motion. Steps are implicit and carry any damping; but where it outweighs
 /// the inertia of a segment so much, rounding does, too.
 void check_damping(const std::string& key, const SceneDesc& scene, const CableDesc& cable, const MaterialDesc& material,
@@ -183,7 +174,7 @@ void check_cable(const std::string& key, const SceneDesc& scene, const CableDesc
   if (const MaterialDesc* material = scene.find_material(cable.material)) {
     check_damping(key, scene, cable, *material, errors);
   } else {
-    errors.add(prefix + "material", quoted(cable.material), "a material of the scene (" + material_names(scene) + ")");
+    errors.add(prefix + "material", quoted(cable.material), "a material of the scene (" + material_names(scene.materials) + ")");
   }
   check_numbers(prefix + "color", cable.color, unit_interval, "", errors);
   check_initial(prefix + "initial", cable, errors);

@@ -72,18 +72,10 @@ Keys<SceneDesc> scene_keys(const std::vector<std::string>& ignored) {
   return keys;
 }
 
-std::string names_of(const std::vector<NamedMaterial>& materials) {
-  constexpr std::size_t most = 20;
-  std::string names;
-  for (std::size_t i = 0; i < std::min(most, materials.size()); ++i)
-    names += (names.empty() ? "" : ", ") + escaped(materials[i].name);
-  return materials.size() > most ? names + ", ..." : names;
-}
-
 /// Adds the presets that cables name to the scene's own materials. A name that is neither is an error.
 void add_presets(const Value& root, SceneDesc& scene) {
   const std::vector<NamedMaterial>& presets = material_presets();
-  const std::string own = scene.materials.empty() ? "it has none" : names_of(scene.materials);
+  const std::string own = material_names(scene.materials);
   for (std::size_t i = 0; i < scene.cables.size(); ++i) {
     const std::string& name = scene.cables[i].material;
     const std::string key = root.child("cables", {}).element(i, {}).key + ".material";
@@ -93,7 +85,7 @@ void add_presets(const Value& root, SceneDesc& scene) {
       scene.materials.push_back(*preset);
     } else {
       root.errors->add_unread(key, quoted(name),
-                              "a material of the scene (" + own + "), or one that is shipped (" + names_of(presets) + ")");
+                              "a material of the scene (" + own + "), or one that is shipped (" + material_names(presets) + ")");
     }
   }
 }

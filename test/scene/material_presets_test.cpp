@@ -64,7 +64,7 @@ TEST_P(MaterialPreset, standsOutOfAClampAndIsReleased) {
   World world(settled, frames);
   EXPECT_TRUE(world.settle());
   EXPECT_LT(largest_speed(world, frames), 1e-3);
-  // The weightless rod of small deflection, q L^4 / (8 EI), is stiffer than no cable; none hangs longer than it is.
+  // Large deflections are smaller than what is linear in the load, q L^4 / (8 EI), and a cable hangs no lower than it is long.
   const MaterialDesc& material = world.cables()[0].model.material;
   const double small = 9.81 * material.linear_density / (8 * material.bending_stiffness);
   const double tip = -world.cables()[0].state.positions.back().z();
@@ -111,7 +111,7 @@ TEST(MaterialPresets, anUnknownMaterialListsWhatThereIs) {
       "cables[0].material: \"rov_tehter\"; allowed: a material of the scene (m), or one that is shipped (usb_cable, "
       "ethernet_cat6, nylon_rope_6mm, dyneema_rope_4mm, steel_wire_rope_4mm, rubber_hose_16mm, rov_tether, surgical_thread)");
   EXPECT_TRUE(has_line(errors_of("cables: [{name: c, length: 1, segments: 4, material: x}]"),
-                       "cables[0].material: \"x\"; allowed: a material of the scene (it has none), or one that is shipped ("));
+                       "cables[0].material: \"x\"; allowed: a material of the scene (there are none), or one that is shipped ("));
 }
 
 }  // namespace

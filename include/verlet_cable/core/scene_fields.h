@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "verlet_cable/core/scene_desc.h"
 
@@ -95,6 +96,9 @@ constexpr std::array<Field<PointMassDesc>, 1> point_mass_fields{{
 bool is_name(const std::string& name);
 /// Whether `name` can be a tf frame: not empty, no leading /, no blanks or control characters.
 bool is_frame_name(const std::string& name);
+
+/// The names of materials, for messages: the first 20 of them.
+std::string material_names(const std::vector<NamedMaterial>& materials);
 
 /// What is allowed, for messages.
 constexpr const char* name_words = "letters, digits and _, a letter first";

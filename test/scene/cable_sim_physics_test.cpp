@@ -1,0 +1,83 @@
+#include <cmath>
+#include <map>
+
+#include "cable_sim_fixture.h"
+#include "scene_text.h"
+
+namespace verlet_cable {
+namespace {
+
+using test::replaced;
+
+constexpr double gravity = 9.81;
+
+/// A clamped cable of 0.1 kg/m and 0.01 N m^2 that starts straight out.
+constexpr const char* cantilever = R"(
+materials: {m: {linear_density: 0.1, radius: 0.005, bending_stiffness: 0.01}}
+cables:
+  - {name: c, length: 1, segments: 50, material: m, initial: {type: straight, to: [1, 0, 0]}, attachments: [{name: wall, at: start, type: clamp}]}
+)";
+
+TEST_F(CableSim, settledCablesStandStillFromTheStart) {
+  const std::string scene = write("scene.yaml", cantilever);
+  ASSERT_EQ(run(scene + " --settle --duration 1 --output " + path("o.csv") + " --summary " + path("s.json")), 0) << err;
+  const std::vector<Row> read = rows("o.csv");
+  ASSERT_EQ(read.size(), 101u * 51u);
+  EXPECT_LT(read[50].position.z(), -0.5);
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    // Newton ends within 1e-5 of a segment's length; what is left swings.
+    EXPECT_NEAR((read[i].position - read[i % 51].position).norm(), 0, 1e-6) << read[i].time << " " << read[i].node;
+  }
+  const YAML::Node json = summary("s.json");
+  EXPECT_NEAR(json["attachments"]["wall"]["force"].as<std::vector<double>>()[2], -0.1 * gravity, 1e-5);
+  EXPECT_LT(json["energy"]["kinetic"].as<double>(), 1e-10);
+  // Taken after settling: nothing has been lost since.
+  EXPECT_NEAR(json["energy"]["initial_total"].as<double>(), json["energy"]["total"].as<double>(), 1e-8);
+  EXPECT_GT(json["energy"]["bend"].as<double>(), 0.01);
+  EXPECT_EQ(json["events"].size(), 0u);
+}
+
+TEST_F(CableSim, aSceneMaySettleByItself) {
+  const std::string text = replaced(cantilever, "{type: straight, to: [1, 0, 0]}", "{type: settled}");
+  ASSERT_EQ(run(write("settled.yaml", text) + " --duration 0 --output " + path("a.csv")), 0) << err;
+  ASSERT_EQ(run(write("straight.yaml", cantilever) + " --settle --duration 0 --output " + path("b.csv")), 0) << err;
+  const std::vector<Row> a = rows("a.csv"), b = rows("b.csv");
+  ASSERT_EQ(a.size(), b.size());
+  // They come from different sides to the same equilibrium.
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR((a[i].position - b[i].position).norm(), 0, 1e-6);
+}
+
+TEST_F(CableSim, aBrokenCableIsTwoCables) {
+  // Pulled at 0.05 m/s: it is strained by 15 N / 1 kN when the hand has moved by 15 mm.
+  const std::string scene = write("scene.yaml", R"(
+materials: {m: {linear_density: 0.1, radius: 0.005, axial_stiffness: 1e3, axial_damping: 10, breaking_tension: 15}}
+cables:
+  - {name: c, length: 1, segments: 20, material: m, attachments: [{name: a, at: start}, {name: b, at: end, frame: hand}]}
+)");
+  const std::string motion = write("m.csv", "t,frame,x,y,z,qx,qy,qz,qw\n0,hand,1,0,0,0,0,0,1\n1,hand,1.05,0,0,0,0,0,1\n");
+  ASSERT_EQ(
+      run(scene + " --settle --duration 1 --motion " + motion + " --output " + path("o.csv") + " --summary " + path("s.json")), 0)
+      << err;
+  const YAML::Node events = summary("s.json")["events"];
+  ASSERT_EQ(events.size(), 1u) << err;
+  EXPECT_EQ(events[0]["type"].Scalar(), "BROKE");
+  EXPECT_EQ(events[0]["cable"].Scalar(), "c");
+  EXPECT_EQ(events[0]["other"].Scalar(), "c_2");
+  const double time = events[0]["time"].as<double>();
+  const int segment = events[0]["node"].as<int>();
+  // Sag and damping take a part of the strain and of the tension.
+  EXPECT_NEAR(time, 0.3, 0.03);
+  std::map<std::string, int> rows_of;
+  for (const Row& row : rows("o.csv")) {
+    ++rows_of[(row.time < time ? "whole " : "broken ") + row.cable];
+  }
+  const int before = static_cast<int>(std::ceil(time * 100 - 1e-6)), after = 101 - before;
+  EXPECT_EQ(rows_of["whole c"], before * 21);
+  EXPECT_EQ(rows_of["whole c_2"], 0);
+  EXPECT_EQ(rows_of["broken c"], after * (segment + 1));
+  EXPECT_EQ(rows_of["broken c_2"], after * (20 - segment));
+  EXPECT_NE(err.find("BROKE: c node " + std::to_string(segment)), std::string::npos) << err;
+}
+
+}  // namespace
+}  // namespace verlet_cable
