@@ -59,10 +59,12 @@ void Bending::start(const CableModel& model, const VectorArray& segment, const s
       clamp.side = i < holder.node ? -1 : 1;
       clamp.stiffness = 2 * stiffness * inverse_length_[i];
       clamp.damping = 2 * damping * inverse_length_[i];
-      clamp.start = inverse_length_[i] * get(segment, i) - start_axis;
+      // The axis is as long as the segment is stretched: a clamp does not resist stretch.
+      const double stretch = inverse_length_[i] * get(segment, i).norm();
+      clamp.start = inverse_length_[i] * get(segment, i) - stretch * start_axis;
       clamp.start_square = clamp.start.squaredNorm();
-      clamp.axis_change = end_axis - start_axis;
-      clamp.middle_axis = start_axis + part * clamp.axis_change;
+      clamp.axis_change = stretch * (end_axis - start_axis);
+      clamp.middle_axis = stretch * start_axis + part * clamp.axis_change;
       clamps_.push_back(clamp);
     }
   }
@@ -175,7 +177,8 @@ double bending_energy(const CableModel& model, const CableState& state, const st
     for (const int i : {clamp.node - 1, clamp.node}) {
       if (i < 0 || i >= n) continue;
       const double length = 0.5 * model.rest_lengths[i], side = i < clamp.node ? -1 : 1;
-      energy += joint(length, direction(i) - clamp.end * Vector3::UnitX(), side * natural(clamp.node, length, i, i));
+      energy += joint(length, direction(i) - direction(i).norm() * (clamp.end * Vector3::UnitX()),
+                      side * natural(clamp.node, length, i, i));
     }
   }
   return model.material.bending_stiffness * energy;

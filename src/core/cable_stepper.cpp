@@ -14,9 +14,13 @@ namespace {
 constexpr int maximum_iterations = 40;
 /// Error of a node's velocity at which an iteration ends, in segment lengths per second: far below what energy is asked for.
 constexpr double velocity_tolerance = 1e-5;
+/// Of a free cable: nothing but the solution keeps its angular momentum.
+constexpr double free_velocity_tolerance = 1e-6;
 constexpr double longest_tolerated = 1e-3;  // [s]; beyond, the error of the place counts
 /// A larger correction, in segment lengths, leads to solutions that have nothing to do with the motion: halve the step.
 constexpr double largest_correction = 2;
+/// A matrix that is kept does not make corrections shrink faster than this for long, however fast the first one shrank.
+constexpr double fastest_convergence = 0.03;
 /// A correction that shrinks less than this from one iteration to the next calls for a new factorisation.
 constexpr double slow_convergence = 0.1;
 /// Relative, for spans that are pulled straight.
@@ -59,7 +63,7 @@ SubstepResult CableStepper::advance(const Substep& s, CableState& state) {
   fluid_.start(s.environment.fluid, s.environment.gravity, s.damping_time());
   predict(s.h);
   set_natural_shape(s, state);
-  result.converged = solve(s, result);
+  result.converged = solve(s, state, result);
   if (!result.converged) return result;
   if (s.statics)
     for (int i = 0; i <= segments_; ++i) result.displacement = std::max(result.displacement, get(displacement_, i).norm());
@@ -83,7 +87,7 @@ void CableStepper::load(const Substep& s, const CableState& state) {
     const Vector3 d = state.positions[i + 1] - state.positions[i];
     set(segment_, i, d);
     length_[i] = elastic ? d.norm() : s.model.rest_lengths[i];
-    tension_density_[i] = state.tension[i] / length_[i];
+    tension_density_[i] = state.axial_multiplier[i] / length_[i];
   }
 }
 
@@ -112,7 +116,9 @@ void CableStepper::set_loads(const Substep& s) {
   std::fill_n(system_.compliance.begin(), segments_, 0.0);
   if (held.size() > 1) {
     const double mass = std::accumulate(s.model.masses.begin(), s.model.masses.end(), 0.0);
-    const double stiffness = taut_stiffness * std::max(gravity.norm(), standard_gravity) * mass;
+    const double length = std::accumulate(s.model.rest_lengths.begin(), s.model.rest_lengths.end(), 0.0);
+    const double weight = std::max(gravity.norm(), standard_gravity) * mass;
+    const double stiffness = taut_stiffness * (weight + s.model.material.bending_stiffness / (length * length));
     for (int i = held.front().node; i < held.back().node; ++i)
       system_.compliance[i] = target_length_[i] * target_length_[i] * target_length_[i] / stiffness;
   }
@@ -141,11 +147,13 @@ void CableStepper::set_natural_shape(const Substep& s, const CableState& state) 
 }
 
 /// Newton's method on places and tensions together, its matrix kept as long as it converges fast.
-bool CableStepper::solve(const Substep& s, SubstepResult& result) {
-  const double tolerance = velocity_tolerance * std::min(s.h, longest_tolerated);
+bool CableStepper::solve(const Substep& s, const CableState& state, SubstepResult& result) {
+  const bool free = s.boundary.nodes.empty();
+  const double tolerance = (free ? free_velocity_tolerance : velocity_tolerance) * std::min(s.h, longest_tolerated);
   double last = 0;
   bool factor = true;
   for (int i = 0; i < maximum_iterations; ++i) {
+    if (s.statics && i > 0) set_natural_shape(s, state);
     evaluate(s);
     if (factor) {
       assemble(s.part());
@@ -157,7 +165,7 @@ bool CableStepper::solve(const Substep& s, SubstepResult& result) {
     if (!(size < largest_correction)) return false;
     // The next correction would be about the last one times the ratio of the last two.
     const double ratio = i == 0 ? 1 : size / last;
-    if (size * std::min(ratio, 1.0) < tolerance) return true;
+    if (size * std::clamp(ratio, fastest_convergence, 1.0) < tolerance) return true;
     factor = i > 0 && ratio > slow_convergence;
     last = size;
   }
@@ -335,6 +343,13 @@ void CableStepper::react(const Substep& s) {
   if (twist_.active()) twist_.react(s.boundary);
 }
 
+/// The force of bending and twist along a segment [N].
+double CableStepper::force_along(int i) const {
+  const double density = tension_density_[i] - solver_.multiplier()[i];  // that of the pull, before the last correction
+  const Vector3 middle = get(middle_, i);
+  return (get(pull_, i) - density * middle).dot(middle) / target_length_[i];
+}
+
 /// The load on a node after the last correction, to first order: its row of the matrix times the solution is gone.
 Vector3 CableStepper::corrected_load(int i) const {
   const VectorArray& delta = solver_.displacement();
@@ -363,7 +378,9 @@ double CableStepper::store(const Substep& s, CableState& state) const {
     const double relative = square / (s.model.rest_lengths[i] * s.model.rest_lengths[i]);
     longest = std::max(longest, relative);
     shortest = std::min(shortest, relative);
-    state.tension[i] = tension_density_[i] * (elastic ? 0.5 * (length_[i] + std::sqrt(square)) : target_length_[i]);
+    const double length = elastic ? 0.5 * (length_[i] + std::sqrt(square)) : target_length_[i];
+    state.axial_multiplier[i] = state.tension[i] = tension_density_[i] * length;
+    if (bending_.active()) state.tension[i] += force_along(i);
   }
   return std::max(std::sqrt(longest) - 1, 1 - std::sqrt(shortest));
 }

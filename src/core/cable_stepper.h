@@ -59,7 +59,7 @@ class CableStepper {
   void set_loads(const Substep& substep);
   void predict(double h);
   void set_natural_shape(const Substep& substep, const CableState& state);
-  bool solve(const Substep& substep, SubstepResult& result);
+  bool solve(const Substep& substep, const CableState& state, SubstepResult& result);
   void evaluate(const Substep& substep);
   void evaluate_segments(double part, Component component);
   void evaluate_nodes(Component component);
@@ -69,6 +69,7 @@ class CableStepper {
   double correct();
   void react(const Substep& substep);
   Vector3 corrected_load(int node) const;
+  double force_along(int segment) const;
   void finish(const Substep& substep);
   bool holders_accelerate(double h, const std::vector<HeldNode>& held) const;
   void project(const CableModel& model);

@@ -65,6 +65,7 @@ void set_initial_state(const InitialShapeDesc& initial, const CableModel& model,
   state.velocities.assign(model.nodes(), Vector3::Zero());
   state.accelerations.assign(model.nodes(), Vector3::Zero());
   state.tension.assign(model.segments(), 0.0);
+  state.axial_multiplier.assign(model.segments(), 0.0);
   switch (initial.type) {
     case Type::straight:
       state.positions = straight_line(initial.from, (initial.to - initial.from).normalized(), model);

@@ -220,7 +220,7 @@ void World::Implementation::step_cable(int index, StepResult& result) {
       } else if (!stopped) {
         for (std::vector<Vector3>* v : {&cable.state.velocities, &cable.state.accelerations})
           std::fill(v->begin(), v->end(), Vector3::Zero());
-        std::fill(cable.state.tension.begin(), cable.state.tension.end(), 0.0);
+        std::fill(cable.state.axial_multiplier.begin(), cable.state.axial_multiplier.end(), 0.0);
         stopped = true;
         note_status(Status::degraded, index, 0, result);
       } else {

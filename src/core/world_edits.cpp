@@ -34,7 +34,8 @@ Cable piece(const Cable& whole, int first, int last) {
   Cable cable = whole;
   cable.state.reference_node = 0;
   cable.state.reference_orientation = segment_orientations(whole)[first];
-  for (auto* of_segments : {&cable.model.rest_lengths, &cable.state.tension, &cable.state.twist}) part(*of_segments, last);
+  for (auto* of_segments : {&cable.model.rest_lengths, &cable.state.tension, &cable.state.axial_multiplier, &cable.state.twist})
+    part(*of_segments, last);
   part(cable.model.masses, last + 1);
   if (!cable.model.rest_curvature.empty()) part(cable.model.rest_curvature, last + 1);
   for (auto* of_nodes : {&cable.state.positions, &cable.state.velocities, &cable.state.accelerations}) part(*of_nodes, last + 1);

@@ -122,6 +122,7 @@ std::uint64_t World::hash() const {
     for (const auto* vectors : {&cable.state.positions, &cable.state.velocities, &cable.state.accelerations})
       for (const Vector3& v : *vectors) hash.add(v);
     for (const double t : cable.state.tension) hash.add(t);
+    for (const double t : cable.state.axial_multiplier) hash.add(t);
     for (const double t : cable.state.twist) hash.add(t);
     hash.add(cable.state.reference_orientation);
     for (const TwistSpan& span : w.scratch[i].spans) {

@@ -33,8 +33,10 @@ struct CableState {
   /// [m/s^2] a node, n + 1, mean over the last substep: where the next one's solution starts
   std::vector<Vector3> accelerations;
   std::vector<double> tension;  ///< [N] a segment, n, > 0 is tension; mean over the last substep
-  std::vector<double> twist;    ///< [rad/m] a segment, n
-  int reference_node = 0;       ///< where the material's orientation is known: the first clamp's node
+  /// [N] a segment, n: the tension without the part that bending and twist have in it; where the next substep's solution starts
+  std::vector<double> axial_multiplier;
+  std::vector<double> twist;  ///< [rad/m] a segment, n
+  int reference_node = 0;     ///< where the material's orientation is known: the first clamp's node
   Quaternion reference_orientation = Quaternion::Identity();  ///< there: x along the cable, roll of the material
 };
 
