@@ -67,10 +67,10 @@ EditResult Simulation::pin(const std::string& name, int cable, int node, const s
   if (!result.ok) return result;
   world_ = std::move(trial);
   frames_.add(frame, stamp_);
-  announce(CableEvent::PINNED, subject_of(world_, world_.attachments()[world_.find_attachment(result.name)]),
-           "node " + std::to_string(node) + " of cable " + quoted(world_.cables()[cable].model.name) + " is pinned to frame " +
-               quoted(frame) + " as " + quoted(result.name));
-  return result;
+  const std::string message = "node " + std::to_string(node) + " of cable " + quoted(world_.cables()[cable].model.name) +
+                              " is pinned to frame " + quoted(frame) + " as " + quoted(result.name);
+  announce(CableEvent::PINNED, subject_of(world_, world_.attachments()[world_.find_attachment(result.name)]), message);
+  return {true, message, result.name};
 }
 
 EditResult Simulation::unpin(const std::string& name) {
@@ -83,8 +83,10 @@ EditResult Simulation::unpin(const std::string& name) {
   }
   const EventSubject subject = subject_of(world_, world_.attachments()[index]);
   const EditResult result = world_.unpin(name);
-  if (result.ok) announce(CableEvent::UNPINNED, subject, "attachment " + quoted(name) + " is undone");
-  return result;
+  if (!result.ok) return result;
+  const std::string message = "attachment " + quoted(name) + " is undone";
+  announce(CableEvent::UNPINNED, subject, message);
+  return done(message);
 }
 
 EditResult Simulation::cut(int cable, int segment) {
@@ -92,10 +94,10 @@ EditResult Simulation::cut(int cable, int segment) {
   const EditResult result = world_.cut(cable, segment);
   if (!result.ok) return result;
   const std::string& name = world_.cables()[cable].model.name;
-  announce(CableEvent::CUT, {name, {}, segment, result.name},
-           "segment " + std::to_string(segment) + " of cable " + quoted(name) + " is cut out: the rest is cable " +
-               quoted(result.name));
-  return result;
+  const std::string message = "segment " + std::to_string(segment) + " of cable " + quoted(name) +
+                              " is cut out: the rest is cable " + quoted(result.name);
+  announce(CableEvent::CUT, {name, {}, segment, result.name}, message);
+  return {true, message, result.name};
 }
 
 }  // namespace verlet_cable
