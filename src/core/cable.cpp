@@ -18,7 +18,7 @@ std::vector<double> CableModel::arc_length() const {
   return arc;
 }
 
-std::vector<Quaternion> segment_orientations(const Cable& cable) {
+std::vector<Quaternion> segment_orientations(const SimulatedCable& cable) {
   const int n = cable.model.segments();
   VectorArray segment, director;
   segment.assign(n, 0.0);
@@ -36,7 +36,7 @@ std::vector<Quaternion> segment_orientations(const Cable& cable) {
   return orientations;
 }
 
-std::vector<double> node_curvature(const Cable& cable) {
+std::vector<double> node_curvature(const SimulatedCable& cable) {
   std::vector<double> curvature;
   for (int i = 1; i < cable.model.segments(); ++i) {
     const Vector3 before = cable.state.positions[i] - cable.state.positions[i - 1];
@@ -47,17 +47,17 @@ std::vector<double> node_curvature(const Cable& cable) {
   return curvature;
 }
 
-std::vector<double> node_twist(const Cable& cable) {
+std::vector<double> node_twist(const SimulatedCable& cable) {
   std::vector<double> twist;
   for (int i = 1; i < cable.model.segments(); ++i) twist.push_back(0.5 * (cable.state.twist[i - 1] + cable.state.twist[i]));
   return twist;
 }
 
-double strain(const Cable& cable, int segment) {
+double strain(const SimulatedCable& cable, int segment) {
   return (cable.state.positions[segment + 1] - cable.state.positions[segment]).norm() / cable.model.rest_lengths[segment] - 1;
 }
 
-NearestPoint nearest_point(const Cable& cable, const Vector3& point) {
+NearestPoint nearest_point(const SimulatedCable& cable, const Vector3& point) {
   NearestPoint nearest;
   nearest.distance = infinity;
   for (int i = 0; i < cable.model.segments(); ++i) {

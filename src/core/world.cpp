@@ -117,7 +117,7 @@ void World::Implementation::follow_frames(const BoundaryInputs& inputs) {
 
 void World::Implementation::start_cable(const CableDesc& desc) {
   const int index = static_cast<int>(cables.size());
-  Cable cable;
+  SimulatedCable cable;
   cable.model = make_model(scene, desc);
   for (const AttachmentDesc& a : desc.attachments) {
     Attachment attachment;
@@ -177,7 +177,7 @@ StepResult World::step(const BoundaryInputs& inputs) {
 /// The segment of a cable that breaks now, -1 if it holds. A piece keeps at least one segment, so that the outermost ones do not
 /// break.
 int World::Implementation::breaking_segment(int index, const StepResult& result) const {
-  const Cable& cable = cables[index];
+  const SimulatedCable& cable = cables[index];
   const double limit = cable.model.material.breaking_tension;
   const std::vector<double>& tension = cable.state.tension;
   if (!(limit < infinity) || tension.size() < 3) return -1;
@@ -191,7 +191,7 @@ int World::Implementation::breaking_segment(int index, const StepResult& result)
 /// Steps a cable in as many substeps as it needs: halved where the solver does not converge, doubled where it does easily.
 void World::Implementation::step_cable(int index, StepResult& result) {
   using Status = StepResult::Status;
-  Cable& cable = cables[index];
+  SimulatedCable& cable = cables[index];
   CableScratch& s = scratch[index];
   const double dt = scene.time_step;
   if (!aim_holders(cable.model, attachments, poses, time(), dt, s.holders)) {
@@ -255,7 +255,7 @@ bool World::settle() {
 /// Substeps without motion, ever longer as long as they converge, until inertia carries nothing: what is left is Newton's method
 /// for the equilibrium.
 bool World::Implementation::settle_cable(int index) {
-  Cable& cable = cables[index];
+  SimulatedCable& cable = cables[index];
   CableScratch& s = scratch[index];
   if (s.holders.nodes.empty()) return true;
   aim_holders(cable.model, attachments, poses, time(), scene.time_step, s.holders);
@@ -292,7 +292,7 @@ void World::Implementation::add_forces(int cable, double weight) {
 }
 
 void World::Implementation::update_holders(int index) {
-  Cable& cable = cables[index];
+  SimulatedCable& cable = cables[index];
   CableScratch& s = scratch[index];
   s.holders = find_holders(index, cable.model, cable.state, attachments, poses, s.holders, time());
   aim_holders(cable.model, attachments, poses, time(), scene.time_step, s.holders);
@@ -322,7 +322,7 @@ void World::Implementation::follow_material(int index) {
   }
 }
 
-void World::Implementation::set_rest_curvature(const RestCurvatureDesc& desc, Cable& cable) {
+void World::Implementation::set_rest_curvature(const RestCurvatureDesc& desc, SimulatedCable& cable) {
   const int n = cable.model.segments();
   if (desc.type == RestCurvatureDesc::Type::straight) return;
   cable.model.rest_curvature.assign(n + 1, desc.curvature);

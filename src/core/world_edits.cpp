@@ -29,9 +29,9 @@ std::string numbered(const std::string& base, int first, const Taken& taken) {
 }
 
 /// The nodes `first` to `last` of a cable as a cable of their own.
-Cable piece(const Cable& whole, int first, int last) {
+SimulatedCable piece(const SimulatedCable& whole, int first, int last) {
   const auto part = [&](auto& v, int end) { v = std::decay_t<decltype(v)>(v.begin() + first, v.begin() + end); };
-  Cable cable = whole;
+  SimulatedCable cable = whole;
   cable.state.reference_node = 0;
   cable.state.reference_orientation = segment_orientations(whole)[first];
   for (auto* of_segments : {&cable.model.rest_lengths, &cable.state.tension, &cable.state.axial_multiplier, &cable.state.twist})
@@ -74,7 +74,7 @@ EditResult World::pin(const std::string& name, int cable, int node, int frame, c
   };
   if (cable < 0 || cable >= static_cast<int>(w.cables.size()))
     return refused("cable: " + std::to_string(cable) + "; must be the index of a cable");
-  Cable& held = w.cables[cable];
+  SimulatedCable& held = w.cables[cable];
   if (node < 0 || node > held.model.segments())
     return refused("node: " + std::to_string(node) + "; must be from 0 to " + std::to_string(held.model.segments()));
   if (frame < 0 || frame >= static_cast<int>(w.frames.size()))
@@ -126,8 +126,8 @@ EditResult World::cut(int cable, int segment) {
     return find_cable(n) >= 0 ||
            std::any_of(w.scene.cables.begin(), w.scene.cables.end(), [&](const CableDesc& c) { return c.name == n; });
   };
-  const Cable& whole = w.cables[cable];
-  Cable first = piece(whole, 0, segment), second = piece(whole, segment + 1, segments);
+  const SimulatedCable& whole = w.cables[cable];
+  SimulatedCable first = piece(whole, 0, segment), second = piece(whole, segment + 1, segments);
   second.model.name = numbered(name + "_", 2, taken);
 
   const int new_cable = static_cast<int>(w.cables.size());

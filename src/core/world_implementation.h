@@ -25,7 +25,7 @@ struct World::Implementation {
   std::vector<std::string> frames;
   std::vector<Pose> poses;  ///< of the frames, at the world's time
   std::int64_t steps = 0;
-  std::vector<Cable> cables;
+  std::vector<SimulatedCable> cables;
   std::vector<CableScratch> scratch;  ///< one a cable
   std::vector<Attachment> attachments;
   std::vector<Break> breaks;  ///< in the last step
@@ -36,7 +36,7 @@ struct World::Implementation {
   void step_cable(int cable, StepResult& result);
   bool settle_cable(int cable);
   int breaking_segment(int cable, const StepResult& result) const;
-  void set_rest_curvature(const RestCurvatureDesc& desc, Cable& cable);
+  void set_rest_curvature(const RestCurvatureDesc& desc, SimulatedCable& cable);
   void add_forces(int cable, double weight);
   void update_holders(int cable);
   void follow_material(int cable);

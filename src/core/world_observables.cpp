@@ -58,7 +58,7 @@ const std::vector<std::string>& World::frames() const {
 const Pose& World::frame_pose(int frame) const {
   return implementation_->poses[frame];
 }
-const std::vector<Cable>& World::cables() const {
+const std::vector<SimulatedCable>& World::cables() const {
   return implementation_->cables;
 }
 const std::vector<std::string>& World::waiting() const {
@@ -88,7 +88,7 @@ Energy World::energy() const {
   Energy energy;
   const Vector3& gravity = implementation_->scene.gravity.acceleration;
   for (std::size_t k = 0; k < cables().size(); ++k) {
-    const Cable& cable = cables()[k];
+    const SimulatedCable& cable = cables()[k];
     energy.bend += bending_energy(cable.model, cable.state, implementation_->scratch[k].boundary.directions);
     for (int i = 0; i < cable.model.nodes(); ++i) {
       energy.kinetic += 0.5 * cable.model.masses[i] * cable.state.velocities[i].squaredNorm();
@@ -115,7 +115,7 @@ std::uint64_t World::hash() const {
     hash.add(w.poses[i]);
   }
   for (std::size_t i = 0; i < w.cables.size(); ++i) {
-    const Cable& cable = w.cables[i];
+    const SimulatedCable& cable = w.cables[i];
     hash.add(cable.model.name);
     for (const double l : cable.model.rest_lengths) hash.add(l);
     for (const double m : cable.model.masses) hash.add(m);

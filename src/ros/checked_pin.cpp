@@ -35,7 +35,7 @@ Pose read_offset(const geometry_msgs::Pose& pose, std::vector<std::string>& erro
 }
 
 /// The node's place and the cable's direction there, between the directions of its segments.
-Pose node_pose(const Cable& cable, int node) {
+Pose node_pose(const SimulatedCable& cable, int node) {
   const std::vector<Quaternion> orientations = segment_orientations(cable);
   const int last = cable.model.segments() - 1;
   const Quaternion& before = orientations[std::max(node - 1, 0)];

@@ -74,11 +74,11 @@ ColorScale::ColorScale(const SceneDesc& scene)
       full_tension_(scene.cables.empty() ? 1 : largest_weight(scene)),
       full_strain_(largest_strain(scene, full_tension_)) {}
 
-double ColorScale::load(const Cable& cable, int segment) const {
+double ColorScale::load(const SimulatedCable& cable, int segment) const {
   return color_by_ == ColorBy::strain ? strain(cable, segment) / full_strain_ : cable.state.tension[segment] / full_tension_;
 }
 
-std::vector<std_msgs::ColorRGBA> ColorScale::node_colors(const Cable& cable) const {
+std::vector<std_msgs::ColorRGBA> ColorScale::node_colors(const SimulatedCable& cable) const {
   const int segments = cable.model.segments();
   std::vector<std_msgs::ColorRGBA> colors(cable.model.nodes());
   if (color_by_ == ColorBy::tension || color_by_ == ColorBy::strain) {

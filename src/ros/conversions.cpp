@@ -37,7 +37,7 @@ geometry_msgs::Pose to_pose(const Pose& pose) {
   return message;
 }
 
-bool is_finite(const Cable& cable) {
+bool is_finite(const SimulatedCable& cable) {
   const auto finite_vector = [](const Vector3& vector) { return vector.allFinite(); };
   const auto finite_number = [](double number) { return std::isfinite(number); };
   const CableState& state = cable.state;
@@ -46,9 +46,9 @@ bool is_finite(const Cable& cable) {
          std::all_of(state.tension.begin(), state.tension.end(), finite_number);
 }
 
-CableMessage to_message(const World& world, int index) {
-  const Cable& cable = world.cables()[index];
-  CableMessage message;
+Cable to_message(const World& world, int index) {
+  const SimulatedCable& cable = world.cables()[index];
+  Cable message;
   message.name = cable.model.name;
   for (const Attachment& attachment : world.attachments()) {
     if (attachment.cable != index) continue;

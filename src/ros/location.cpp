@@ -33,7 +33,7 @@ void find_cable(const CableLocation& location, const World& world, PointOnCable&
     return;
   }
   std::string names;
-  for (const Cable& cable : world.cables()) names += (names.empty() ? "" : ", ") + cable.model.name;
+  for (const SimulatedCable& cable : world.cables()) names += (names.empty() ? "" : ", ") + cable.model.name;
   found.errors.push_back("location.cable: " + quoted(location.cable) + "; allowed: " + (names.empty() ? "none is there" : names));
 }
 
@@ -124,7 +124,7 @@ Location locate_node(const CableLocation& location, const World& world, const Fi
 Location locate_cut(const CableLocation& location, const World& world, const FindFrame& find_frame) {
   PointOnCable found = find_point(location, world, find_frame);
   if (found.errors.empty()) {
-    const Cable& cable = world.cables()[found.cable];
+    const SimulatedCable& cable = world.cables()[found.cable];
     const int last = cable.model.segments() - 2;
     const bool behind_the_end = location.mode == CableLocation::NODE && found.fraction > 0;
     if (last < 1) {

@@ -53,7 +53,7 @@ MarkerPublisher::MarkerPublisher(ros::NodeHandle& private_node, const SceneDesc&
 void MarkerPublisher::publish(const World& world, const ros::Time& stamp) {
   if (publisher_.getNumSubscribers() == 0) return;
   const auto markers = boost::make_shared<MarkerArray>();
-  for (const Cable& cable : world.cables()) {
+  for (const SimulatedCable& cable : world.cables()) {
     if (!is_finite(cable)) continue;
     add_cable(cable, *markers);
     add_payloads(cable, *markers);
@@ -74,7 +74,7 @@ Marker MarkerPublisher::make_marker(const std::string& ns, int id, int type) con
   return marker;
 }
 
-void MarkerPublisher::add_cable(const Cable& cable, MarkerArray& markers) const {
+void MarkerPublisher::add_cable(const SimulatedCable& cable, MarkerArray& markers) const {
   const double radius = cable.model.material.radius;
   std::vector<std_msgs::ColorRGBA> colors = colors_.node_colors(cable);
   const bool tube = style_ == MarkerStyle::tube;
@@ -91,7 +91,7 @@ void MarkerPublisher::add_cable(const Cable& cable, MarkerArray& markers) const 
   markers.markers.push_back(std::move(marker));
 }
 
-void MarkerPublisher::add_payloads(const Cable& cable, MarkerArray& markers) {
+void MarkerPublisher::add_payloads(const SimulatedCable& cable, MarkerArray& markers) {
   for (int node = 0; node < cable.model.nodes(); ++node) {
     const double mass = payload(cable.model, node);
     if (mass <= 0) continue;

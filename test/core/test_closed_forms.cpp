@@ -15,7 +15,7 @@ struct Simulation {
 
   explicit Simulation(const SceneDesc& scene) : world(scene, initial_frames(scene)), inputs(initial_frames(scene)) {}
   StepResult step() { return world.step(inputs); }
-  const Cable& cable() const { return world.cables()[0]; }
+  const SimulatedCable& cable() const { return world.cables()[0]; }
 };
 
 /// Time between the first and the `count`th upward crossing of x = 0 by the last node, over the number of periods.

@@ -10,7 +10,7 @@ namespace {
 using Status = StepResult::Status;
 
 bool finite(const World& world) {
-  for (const Cable& cable : world.cables())
+  for (const SimulatedCable& cable : world.cables())
     for (int i = 0; i < cable.model.nodes(); ++i)
       if (!cable.state.positions[i].allFinite() || !cable.state.velocities[i].allFinite()) return false;
   return true;
@@ -115,11 +115,11 @@ TEST(World, CutKeepsMassMomentumAndHolders) {
   const SceneDesc scene = scenes::held_by_a_hand(20);
   World world(scene, scenes::hand_at({0.6, 0, 0}));
   for (int i = 0; i < 100; ++i) world.step(scenes::hand_at({0.6, 0.001 * i, 0}));
-  const Cable before = world.cables()[0];
+  const SimulatedCable before = world.cables()[0];
   const EditResult cut = world.cut(0, 7);
   ASSERT_TRUE(cut.ok) << cut.message;
   ASSERT_EQ(world.cables().size(), 2u);
-  const Cable &first = world.cables()[0], &second = world.cables()[1];
+  const SimulatedCable &first = world.cables()[0], &second = world.cables()[1];
   EXPECT_EQ(first.model.name, "cable");
   EXPECT_EQ(second.model.name, cut.name);
   EXPECT_EQ(first.model.nodes(), 8);

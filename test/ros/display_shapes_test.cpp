@@ -143,8 +143,8 @@ SceneDesc scene_with(double linear_density, double length, double payload, doubl
   return scene;
 }
 
-Cable two_segments(double first_tension, double second_tension) {
-  Cable cable;
+SimulatedCable two_segments(double first_tension, double second_tension) {
+  SimulatedCable cable;
   cable.model.name = "rope";
   cable.model.material.linear_density = 0.1;
   cable.model.color = {0.1, 0.2, 0.3, 0.4};
@@ -197,7 +197,7 @@ TEST(Color, ScaleIsTheWeightOfTheHeaviestCable) {
 TEST(Color, OfANodeIsTheMeanOfItsSegments) {
   SceneDesc scene = scene_with(0.1, 2.0, 0.3, infinity);
   const double full = ColorScale(scene).full_tension();
-  const Cable cable = two_segments(0.2 * full, 0.6 * full);
+  const SimulatedCable cable = two_segments(0.2 * full, 0.6 * full);
   const auto by_tension = ColorScale(scene).node_colors(cable);
   ASSERT_EQ(by_tension.size(), 3u);
   EXPECT_TRUE(same(by_tension[0], color_of_load(0.2)));
@@ -207,7 +207,7 @@ TEST(Color, OfANodeIsTheMeanOfItsSegments) {
 
 TEST(Color, ByStrainAndByCable) {
   SceneDesc scene = scene_with(0.1, 2.0, 0.3, 1000.0);
-  const Cable cable = two_segments(0, 0);  // strained by 0 and 10 %
+  const SimulatedCable cable = two_segments(0, 0);  // strained by 0 and 10 %
   scene.color_by = ColorBy::strain;
   const ColorScale by_strain(scene);
   EXPECT_TRUE(same(by_strain.node_colors(cable)[0], color_of_load(0)));
@@ -224,7 +224,7 @@ TEST(Color, ByStrainAndByCable) {
 TEST(Finite, EveryArrayCounts) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(is_finite(two_segments(1, 2)));
-  Cable cable = two_segments(1, 2);
+  SimulatedCable cable = two_segments(1, 2);
   cable.state.positions[1].y() = nan;
   EXPECT_FALSE(is_finite(cable));
   cable = two_segments(1, 2);

@@ -4,6 +4,7 @@
 #include <ros/ros.h>
 #include <sensor_msgs/PointCloud2.h>
 #include <sensor_msgs/point_cloud2_iterator.h>
+#include <verlet_cable/CableArray.h>
 #include <visualization_msgs/MarkerArray.h>
 
 #include <algorithm>
@@ -13,7 +14,6 @@
 
 #include "verlet_cable/core/world.h"
 #include "verlet_cable/ros/color.h"
-#include "verlet_cable/ros/messages.h"
 #include "verlet_cable/ros/publishers.h"
 
 namespace verlet_cable {
@@ -228,8 +228,8 @@ TEST_F(Topics, StateIsEverythingInDoublePrecision) {
   EXPECT_EQ(state.header.frame_id, "base");
   ASSERT_EQ(state.cables.size(), 2u);
   for (int id = 0; id < 2; ++id) {
-    const CableMessage& message = state.cables[id];
-    const Cable& cable = world_.cables()[id];
+    const Cable& message = state.cables[id];
+    const SimulatedCable& cable = world_.cables()[id];
     EXPECT_EQ(message.name, cable.model.name);
     ASSERT_EQ(message.positions.size(), 11u);
     ASSERT_EQ(message.velocities.size(), 11u);

@@ -28,7 +28,7 @@ TEST_F(CableSim, rowsAreTheWorldsOwnNumbers) {
   for (int step = 0; step <= 250; ++step) {
     if (step > 0) world.step(frames);
     if (step % 10 != 0) continue;
-    const Cable& cable = world.cables()[0];
+    const SimulatedCable& cable = world.cables()[0];
     for (int node = 0; node < cable.model.nodes(); ++node, ++at) {
       const auto i = static_cast<std::size_t>(node);
       ASSERT_EQ(read[at].time, world.time());

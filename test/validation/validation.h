@@ -15,7 +15,7 @@ struct Simulation {
   BoundaryInputs inputs;
 
   explicit Simulation(const SceneDesc& scene) : world(scene, initial_frames(scene)), inputs(initial_frames(scene)) {}
-  const Cable& cable() const { return world.cables()[0]; }
+  const SimulatedCable& cable() const { return world.cables()[0]; }
   const std::vector<Vector3>& positions() const { return cable().state.positions; }
   /// Steps; a status other than ok is a failure of the test.
   void step();

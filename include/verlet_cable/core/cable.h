@@ -40,16 +40,16 @@ struct CableState {
   Quaternion reference_orientation = Quaternion::Identity();  ///< there: x along the cable, roll of the material
 };
 
-struct Cable {
+struct SimulatedCable {
   CableModel model;
   CableState state;
 };
 
 /// Shapes derived from positions, for display and messages. n segments.
-std::vector<Quaternion> segment_orientations(const Cable& cable);  ///< n: x along the segment, roll of the material
-std::vector<double> node_curvature(const Cable& cable);            ///< [1/m] n - 1, inner nodes
-std::vector<double> node_twist(const Cable& cable);                ///< [rad/m] n - 1, inner nodes
-double strain(const Cable& cable, int segment);                    ///< l / l0 - 1
+std::vector<Quaternion> segment_orientations(const SimulatedCable& cable);  ///< n: x along the segment, roll of the material
+std::vector<double> node_curvature(const SimulatedCable& cable);            ///< [1/m] n - 1, inner nodes
+std::vector<double> node_twist(const SimulatedCable& cable);                ///< [rad/m] n - 1, inner nodes
+double strain(const SimulatedCable& cable, int segment);                    ///< l / l0 - 1
 
 /// The point of a cable nearest to `point`.
 struct NearestPoint {
@@ -57,6 +57,6 @@ struct NearestPoint {
   double fraction = 0;  ///< along the segment, 0 to 1
   double distance = 0;  ///< [m]
 };
-NearestPoint nearest_point(const Cable& cable, const Vector3& point);
+NearestPoint nearest_point(const SimulatedCable& cable, const Vector3& point);
 
 }  // namespace verlet_cable

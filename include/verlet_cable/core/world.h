@@ -95,7 +95,7 @@ class World {
   const Pose& frame_pose(int frame) const;                   ///< at the world's time
   int add_frame(const std::string& name, const Pose& pose);  ///< id of the new or the existing frame
 
-  const std::vector<Cable>& cables() const;            ///< those that have started, pieces of cuts included
+  const std::vector<SimulatedCable>& cables() const;   ///< those that have started, pieces of cuts included
   const std::vector<std::string>& waiting() const;     ///< names of cables that wait for a frame
   const std::vector<Attachment>& attachments() const;  ///< of the started cables
   const std::vector<Break>& breaks() const;            ///< in the last step

@@ -24,13 +24,13 @@ class ColorScale {
   explicit ColorScale(const SceneDesc& scene);
 
   /// One color a node: the mean over the segments that meet there.
-  std::vector<std_msgs::ColorRGBA> node_colors(const Cable& cable) const;
+  std::vector<std_msgs::ColorRGBA> node_colors(const SimulatedCable& cable) const;
 
   double full_tension() const { return full_tension_; }  ///< [N] what is red
   double full_strain() const { return full_strain_; }    ///< what is red
 
  private:
-  double load(const Cable& cable, int segment) const;
+  double load(const SimulatedCable& cable, int segment) const;
 
   ColorBy color_by_;
   double full_tension_;

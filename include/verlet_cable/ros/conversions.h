@@ -5,9 +5,9 @@
 #include <geometry_msgs/Quaternion.h>
 #include <geometry_msgs/Vector3.h>
 #include <geometry_msgs/Wrench.h>
+#include <verlet_cable/CableArray.h>
 
 #include "verlet_cable/core/world.h"
-#include "verlet_cable/ros/messages.h"
 
 namespace verlet_cable {
 
@@ -17,10 +17,10 @@ geometry_msgs::Quaternion to_quaternion(const Quaternion& quaternion);
 geometry_msgs::Pose to_pose(const Pose& pose);
 
 /// Whether every position, velocity and tension of a cable is a finite number: what is not must not leave the node.
-bool is_finite(const Cable& cable);
+bool is_finite(const SimulatedCable& cable);
 
 /// Everything the message knows about cable `index` of `world.cables()`.
-CableMessage to_message(const World& world, int index);
+Cable to_message(const World& world, int index);
 
 /// All cables of a world that are finite. The header is left to the caller.
 CableArray to_message(const World& world);

@@ -27,8 +27,8 @@ class MarkerPublisher {
   using Key = std::pair<std::string, int>;  // namespace and id
 
   visualization_msgs::Marker make_marker(const std::string& ns, int id, int type) const;
-  void add_cable(const Cable& cable, visualization_msgs::MarkerArray& markers) const;
-  void add_payloads(const Cable& cable, visualization_msgs::MarkerArray& markers);
+  void add_cable(const SimulatedCable& cable, visualization_msgs::MarkerArray& markers) const;
+  void add_payloads(const SimulatedCable& cable, visualization_msgs::MarkerArray& markers);
   void add_pin(const World& world, const Attachment& attachment, visualization_msgs::MarkerArray& markers);
   void delete_what_is_gone(visualization_msgs::MarkerArray& markers);
   int id_of(const std::string& name);

@@ -15,7 +15,7 @@ CsvWriter::CsvWriter(OutputFile& file) : file_(file), buffer_("t,cable,node,x,y,
 
 void CsvWriter::write_nodes(const World& world) {
   const std::string time = number_text(world.time());
-  for (const Cable& cable : world.cables()) {
+  for (const SimulatedCable& cable : world.cables()) {
     const std::string start = time + ',' + cable.model.name + ',';
     const auto nodes = static_cast<std::size_t>(cable.model.nodes());
     for (std::size_t node = 0; node < nodes; ++node) {

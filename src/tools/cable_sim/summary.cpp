@@ -45,7 +45,7 @@ void write_energy(JsonWriter& json, const Energy& energy, double initial_total) 
 
 Summary::Summary(const World& world, std::int64_t first_averaged_step)
     : first_averaged_step_(first_averaged_step), initial_energy_(world.energy().total()) {
-  for (const Cable& cable : world.cables()) segments_ += cable.model.segments();
+  for (const SimulatedCable& cable : world.cables()) segments_ += cable.model.segments();
 }
 
 void Summary::add_step(const World& world, const StepResult& result, std::chrono::steady_clock::duration wall_time) {
