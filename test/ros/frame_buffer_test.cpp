@@ -1,8 +1,8 @@
+#include "verlet_cable/ros/frame_buffer.h"
+
 #include <gtest/gtest.h>
 
 #include <limits>
-
-#include "verlet_cable/ros/frame_buffer.h"
 
 namespace verlet_cable {
 namespace {

@@ -1,6 +1,6 @@
-#include <gtest/gtest.h>
-
 #include "verlet_cable/ros/frame_history.h"
+
+#include <gtest/gtest.h>
 
 namespace verlet_cable {
 namespace {

@@ -1,6 +1,6 @@
-#include <gtest/gtest.h>
-
 #include "verlet_cable/ros/pacer.h"
+
+#include <gtest/gtest.h>
 
 namespace verlet_cable {
 namespace {

@@ -1,10 +1,10 @@
+#include "verlet_cable/ros/scene_parameters.h"
+
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
 #include <cmath>
 #include <limits>
-
-#include "verlet_cable/ros/scene_parameters.h"
 
 namespace verlet_cable {
 namespace {
