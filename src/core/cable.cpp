@@ -9,7 +9,11 @@
 namespace verlet_cable {
 
 double CableModel::length() const {
-  return std::accumulate(rest_lengths.begin(), rest_lengths.end(), 0.0);
+  return length(0, segments());
+}
+
+double CableModel::length(int first, int last) const {
+  return std::accumulate(rest_lengths.begin() + first, rest_lengths.begin() + last, 0.0);
 }
 
 std::vector<double> CableModel::arc_length() const {

@@ -116,7 +116,7 @@ void CableStepper::set_loads(const Substep& s) {
   std::fill_n(system_.compliance.begin(), segments_, 0.0);
   if (held.size() > 1) {
     const double mass = std::accumulate(s.model.masses.begin(), s.model.masses.end(), 0.0);
-    const double length = std::accumulate(s.model.rest_lengths.begin(), s.model.rest_lengths.end(), 0.0);
+    const double length = s.model.length();
     const double weight = std::max(gravity.norm(), standard_gravity) * mass;
     const double stiffness = taut_stiffness * (weight + s.model.material.bending_stiffness / (length * length));
     for (int i = held.front().node; i < held.back().node; ++i)

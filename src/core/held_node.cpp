@@ -15,8 +15,7 @@ int reachable_lengths(const CableModel& model, const std::vector<HeldNode>& held
   int overstretched = -1;
   for (std::size_t k = 0; k + 1 < held.size(); ++k) {
     const int first = held[k].node, last = held[k + 1].node;
-    double rest_length = 0;
-    for (int i = first; i < last; ++i) rest_length += model.rest_lengths[i];
+    const double rest_length = model.length(first, last);
     const double distance = (held[k + 1].position - held[k].position).norm();
     if (distance > rest_length * (1 + reported_stretch) && overstretched < 0) overstretched = first;
     const double stretch = distance / rest_length;

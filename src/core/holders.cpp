@@ -25,6 +25,13 @@ bool holds_direction(const CableModel& model, const Attachment& attachment) {
   return attachment.type == AttachmentType::clamp && model.material.bending_stiffness > 0;
 }
 
+/// Where an attachment at `pose` wants its own node or one next to it.
+Vector3 target_position(const CableModel& model, const Attachment& attachment, const Pose& pose, int node) {
+  if (node == attachment.node) return pose.position;
+  const double side = node < attachment.node ? -1 : 1;
+  return pose.position + side * model.rest_lengths[std::min(node, attachment.node)] * (pose.orientation * Vector3::UnitX());
+}
+
 /// The cable's direction at a node.
 Vector3 tangent(const CableState& state, int node) {
   const int last = static_cast<int>(state.positions.size()) - 1;
@@ -38,9 +45,8 @@ std::vector<Target> attachment_targets(const CableModel& model, const Attachment
   const int node = attachment.node;
   std::vector<Target> targets{{node, pose.position}};
   if (attachment.type == AttachmentType::hinge || model.material.bending_stiffness > 0) return targets;
-  const Vector3 axis = pose.orientation * Vector3::UnitX();
-  if (node > 0) targets.push_back({node - 1, pose.position - model.rest_lengths[node - 1] * axis});
-  if (node < model.segments()) targets.push_back({node + 1, pose.position + model.rest_lengths[node] * axis});
+  if (node > 0) targets.push_back({node - 1, target_position(model, attachment, pose, node - 1)});
+  if (node < model.segments()) targets.push_back({node + 1, target_position(model, attachment, pose, node + 1)});
   return targets;
 }
 
@@ -105,12 +111,8 @@ bool aim_holders(const CableModel& model, const std::vector<Attachment>& attachm
   for (Holder& holder : holders.nodes) {
     const Attachment& attachment = attachments[holder.attachment];
     const Pose pose = frames[attachment.frame] * attachment.pose;
-    holder.next_position = pose.position + remaining(holder.caught, holder.gap.norm(), time) * holder.gap;
-    if (holder.node != attachment.node) {
-      const int between = std::min(holder.node, attachment.node);
-      const double side = holder.node < attachment.node ? -1 : 1;
-      holder.next_position += side * model.rest_lengths[between] * (pose.orientation * Vector3::UnitX());
-    }
+    const double left = remaining(holder.caught, holder.gap.norm(), time);
+    holder.next_position = target_position(model, attachment, pose, holder.node) + left * holder.gap;
     const Vector3 mean = (holder.next_position - holder.position) / time_step;
     holder.next_velocity = mean + 0.5 * (mean - holder.mean_velocity);
     if (!(mean.norm() <= fastest_holder)) followed = false;

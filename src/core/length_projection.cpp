@@ -56,8 +56,7 @@ void straighten_taut_spans(const CableModel& model, const std::vector<HeldNode>&
   for (std::size_t k = 0; k + 1 < held.size(); ++k) {
     const int first = held[k].node, last = held[k + 1].node;
     const Vector3 span = held[k + 1].position - held[k].position;
-    double rest_length = 0;
-    for (int i = first; i < last; ++i) rest_length += model.rest_lengths[i];
+    const double rest_length = model.length(first, last);
     if (span.norm() < straight * rest_length) continue;
     double along = 0;
     for (int i = first; i + 1 < last; ++i) {

@@ -62,8 +62,7 @@ void Twist::start(const CableModel& model, const std::vector<TwistSpan>& spans, 
   stiffness_.resize(spans.size());
   damping_.resize(spans.size());
   for (std::size_t k = 0; k < spans.size(); ++k) {
-    double length = 0;
-    for (int i = spans[k].first_node; i < spans[k].last_node; ++i) length += model.rest_lengths[i];
+    const double length = model.length(spans[k].first_node, spans[k].last_node);
     stiffness_[k] = model.material.torsional_stiffness / length;
     damping_[k] = model.material.torsional_damping / (length * h);
   }

@@ -31,6 +31,11 @@ bool finite(const std::vector<Vector3>& vectors) {
   return std::all_of(vectors.begin(), vectors.end(), [](const Vector3& v) { return v.allFinite(); });
 }
 
+void bring_to_rest(CableState& state) {
+  std::fill(state.velocities.begin(), state.velocities.end(), Vector3::Zero());
+  std::fill(state.accelerations.begin(), state.accelerations.end(), Vector3::Zero());
+}
+
 CableModel make_model(const SceneDesc& scene, const CableDesc& desc) {
   CableModel model;
   model.name = desc.name;
@@ -218,8 +223,7 @@ void World::Implementation::step_cable(int index, StepResult& result) {
       if (s.level < finest && substeps < maximum_substeps) {
         ++s.level;
       } else if (!stopped) {
-        for (std::vector<Vector3>* v : {&cable.state.velocities, &cable.state.accelerations})
-          std::fill(v->begin(), v->end(), Vector3::Zero());
+        bring_to_rest(cable.state);
         std::fill(cable.state.axial_multiplier.begin(), cable.state.axial_multiplier.end(), 0.0);
         stopped = true;
         note_status(Status::degraded, index, 0, result);
@@ -261,8 +265,7 @@ bool World::Implementation::settle_cable(int index) {
   aim_holders(cable.model, attachments, poses, time(), scene.time_step, s.holders);
   jump_to_aim(s.holders);
   hold_at(1, 1, s.holders, s.boundary);
-  for (std::vector<Vector3>* v : {&cable.state.velocities, &cable.state.accelerations})
-    std::fill(v->begin(), v->end(), Vector3::Zero());
+  bring_to_rest(cable.state);
   const Environment environment{scene.gravity.acceleration, scene.fluid};
   double h = first_settling_step;
   bool settled = false;
@@ -316,8 +319,7 @@ void World::Implementation::follow_material(int index) {
   }
   std::fill(state.twist.begin(), state.twist.end(), 0.0);
   for (const TwistSpan& span : s.spans) {
-    double length = 0;
-    for (int i = span.first_node; i < span.last_node; ++i) length += cables[index].model.rest_lengths[i];
+    const double length = cables[index].model.length(span.first_node, span.last_node);
     std::fill(state.twist.begin() + span.first_node, state.twist.begin() + span.last_node, span.angle / length);
   }
 }

@@ -70,10 +70,7 @@ TEST(ClosedForms, PendulumFromTheHorizontal) {
 
 TEST(ClosedForms, PayloadIsPartOfThePendulum) {
   SceneDesc scene = scenes::released(2, 0.01);
-  PointMassDesc payload;
-  payload.place.at = PlaceDesc::At::end;
-  payload.mass = 1000;
-  scene.cables[0].point_masses = {payload};
+  scene.cables[0].point_masses = {scenes::payload(1000)};
   Simulation run(scene);
   // The cable's own 0.1 kg shorten the period by less than 1e-4 of it.
   EXPECT_NEAR(period(run, 3) / (2 * M_PI * std::sqrt(1 / g)), 1, 1e-4);
@@ -109,10 +106,7 @@ TEST(ClosedForms, DefaultShapeHangsAtRest) {
 
 TEST(ClosedForms, HangingCableCarriesItsWeight) {
   SceneDesc scene = scenes::released(100, 0);
-  PointMassDesc payload;
-  payload.place.at = PlaceDesc::At::end;
-  payload.mass = 0.5;
-  scene.cables[0].point_masses = {payload};
+  scene.cables[0].point_masses = {scenes::payload(0.5)};
   Simulation run(scene);
   for (int i = 0; i < 10; ++i) run.step();
   EXPECT_NEAR(run.world.attachments()[0].force.z(), -0.6 * g, 1e-7);

@@ -36,6 +36,14 @@ inline AttachmentDesc attachment(const std::string& name, PlaceDesc::At at, cons
   return desc;
 }
 
+/// A payload [kg] at the end of a cable.
+inline PointMassDesc payload(double mass) {
+  PointMassDesc desc;
+  desc.place.at = PlaceDesc::At::end;
+  desc.mass = mass;
+  return desc;
+}
+
 /// Hangs between two points on a level, `span` apart.
 inline SceneDesc between_two_points(int segments, double span, double length = 1) {
   SceneDesc scene = one_cable(segments, length);

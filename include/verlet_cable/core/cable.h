@@ -22,8 +22,9 @@ struct CableModel {
 
   int segments() const { return static_cast<int>(rest_lengths.size()); }
   int nodes() const { return static_cast<int>(masses.size()); }
-  double length() const;                   ///< [m] at rest
-  std::vector<double> arc_length() const;  ///< [m] a node, n + 1, from the start, at rest
+  double length() const;                     ///< [m] at rest
+  double length(int first, int last) const;  ///< [m] at rest, between two nodes
+  std::vector<double> arc_length() const;    ///< [m] a node, n + 1, from the start, at rest
 };
 
 /// What a step changes. Written by World only.
