@@ -24,10 +24,7 @@ SceneDesc loaded_cantilever(double load) {
   CableDesc& cable = scene.cables[0];
   cable.attachments = {scenes::attachment("root", PlaceDesc::At::start, {0, 0, 0}, "", AttachmentType::clamp)};
   cable.initial.type = InitialShapeDesc::Type::straight;
-  PointMassDesc weight;
-  weight.place.at = PlaceDesc::At::end;
-  weight.mass = load * bending_stiffness / gravity;
-  cable.point_masses = {weight};
+  cable.point_masses = {scenes::payload(load * bending_stiffness / gravity)};
   return scene;
 }
 
