@@ -5,23 +5,17 @@
 #include <utility>
 
 #include "initial_shape.h"
+#include "rest_curvature.h"
 #include "world_implementation.h"
 
 namespace verlet_cable {
 
 namespace {
 
-/// No substep is shorter [s]; a cable that needs one has lost its way.
-constexpr double shortest_substep = 1e-6;
 /// After so many substeps in one step a cable is not split further: whoever waits for it has waited long enough.
 constexpr int maximum_substeps = 4096;
 /// A substep that took no more iterations than this may be doubled.
 constexpr int easy_iterations = 6;
-/// Settling begins with steps of this length [s] and ends with one in which inertia is nothing.
-constexpr double first_settling_step = 0.01;
-constexpr double last_settling_step = 1e6;
-constexpr int maximum_settling_steps = 2000;
-constexpr double settled_acceleration = 1e-7;  // [m/s^2]
 
 bool finite(const Pose& pose) {
   return pose.position.allFinite() && pose.orientation.coeffs().allFinite() && pose.orientation.norm() > 0.5;
@@ -29,11 +23,6 @@ bool finite(const Pose& pose) {
 
 bool finite(const std::vector<Vector3>& vectors) {
   return std::all_of(vectors.begin(), vectors.end(), [](const Vector3& v) { return v.allFinite(); });
-}
-
-void bring_to_rest(CableState& state) {
-  std::fill(state.velocities.begin(), state.velocities.end(), Vector3::Zero());
-  std::fill(state.accelerations.begin(), state.accelerations.end(), Vector3::Zero());
 }
 
 CableModel make_model(const SceneDesc& scene, const CableDesc& desc) {
@@ -63,6 +52,11 @@ void note_status(StepResult::Status status, int cable, int node, StepResult& res
   result.status = status;
   result.cable = cable;
   result.node = node;
+}
+
+void bring_to_rest(CableState& state) {
+  std::fill(state.velocities.begin(), state.velocities.end(), Vector3::Zero());
+  std::fill(state.accelerations.begin(), state.accelerations.end(), Vector3::Zero());
 }
 
 World::World(const SceneDesc& scene, const BoundaryInputs& inputs) : implementation_(std::make_unique<Implementation>()) {
@@ -152,7 +146,7 @@ void World::Implementation::start_cable(const CableDesc& desc) {
   cables.push_back(std::move(cable));
   scratch.push_back(std::move(s));
   follow_material(index);
-  set_rest_curvature(desc.rest_curvature, cables.back());
+  set_rest_curvature(desc.rest_curvature, scratch.back().holders.directions, cables.back());
   scratch.back().stepper.resize(cables.back().model);
   if (desc.initial.type == InitialShapeDesc::Type::settled) settle_cable(index);
 }
@@ -248,39 +242,6 @@ void World::Implementation::step_cable(int index, StepResult& result) {
   complete_step(dt, s.holders);
 }
 
-bool World::settle() {
-  bool settled = true;
-  for (Attachment& attachment : implementation_->attachments) attachment.force = attachment.torque = Vector3::Zero();
-  for (int cable = 0; cable < static_cast<int>(implementation_->cables.size()); ++cable)
-    settled = implementation_->settle_cable(cable) && settled;
-  return settled;
-}
-
-/// Substeps without motion, ever longer as long as they converge, until inertia carries nothing: what is left is Newton's method
-/// for the equilibrium.
-bool World::Implementation::settle_cable(int index) {
-  SimulatedCable& cable = cables[index];
-  CableScratch& s = scratch[index];
-  if (s.holders.nodes.empty()) return true;
-  aim_holders(cable.model, attachments, poses, time(), scene.time_step, s.holders);
-  jump_to_aim(s.holders);
-  hold_at(1, 1, s.holders, s.boundary);
-  bring_to_rest(cable.state);
-  const Environment environment{scene.gravity.acceleration, scene.fluid};
-  double h = first_settling_step;
-  bool settled = false;
-  for (int i = 0; i < maximum_settling_steps && !settled; ++i) {
-    const SubstepResult substep = s.stepper.advance({cable.model, environment, s.boundary, s.spans, h, true}, cable.state);
-    // What inertia still carries of the loads.
-    settled = substep.converged && 2 * substep.displacement / (h * h) < settled_acceleration;
-    h = substep.converged ? std::min(4 * h, last_settling_step) : std::max(h / 8, shortest_substep);
-  }
-  add_forces(index, 1);
-  follow_material(index);
-  s.level = 0;
-  return settled;
-}
-
 void World::Implementation::add_forces(int cable, double weight) {
   const CableScratch& s = scratch[cable];
   for (std::size_t k = 0; k < s.boundary.nodes.size(); ++k) {
@@ -321,28 +282,6 @@ void World::Implementation::follow_material(int index) {
   for (const TwistSpan& span : s.spans) {
     const double length = cables[index].model.length(span.first_node, span.last_node);
     std::fill(state.twist.begin() + span.first_node, state.twist.begin() + span.last_node, span.angle / length);
-  }
-}
-
-void World::Implementation::set_rest_curvature(const RestCurvatureDesc& desc, SimulatedCable& cable) {
-  const int n = cable.model.segments();
-  if (desc.type == RestCurvatureDesc::Type::straight) return;
-  cable.model.rest_curvature.assign(n + 1, desc.curvature);
-  if (desc.type == RestCurvatureDesc::Type::constant) return;
-  const std::vector<Quaternion> orientations = segment_orientations(cable);
-  for (int i = 1; i < n; ++i) {
-    const Vector3 before = orientations[i - 1] * Vector3::UnitX(), after = orientations[i] * Vector3::UnitX();
-    const Quaternion middle = orientations[i - 1].slerp(0.5, orientations[i]);
-    const Vector3 curvature = (after - before) / (0.5 * (cable.model.rest_lengths[i - 1] + cable.model.rest_lengths[i]));
-    cable.model.rest_curvature[i] = {-curvature.dot(middle * Vector3::UnitZ()), curvature.dot(middle * Vector3::UnitY())};
-  }
-  for (const DirectionHolder& clamp : scratch.back().holders.directions) {
-    if (clamp.node != 0 && clamp.node != n) continue;
-    const int i = clamp.node == 0 ? 0 : n - 1;
-    const Vector3 along = orientations[i] * Vector3::UnitX(), axis = clamp.orientation * Vector3::UnitX();
-    const Vector3 curvature = (clamp.node == 0 ? along - axis : axis - along) / (0.5 * cable.model.rest_lengths[i]);
-    cable.model.rest_curvature[clamp.node] = {-curvature.dot(orientations[i] * Vector3::UnitZ()),
-                                              curvature.dot(orientations[i] * Vector3::UnitY())};
   }
 }
 

@@ -9,6 +9,9 @@
 
 namespace verlet_cable {
 
+/// No substep is shorter [s]; a cable that needs one has lost its way.
+constexpr double shortest_substep = 1e-6;
+
 /// What a cable needs besides its model and state.
 struct CableScratch {
   Holders holders;
@@ -36,7 +39,6 @@ struct World::Implementation {
   void step_cable(int cable, StepResult& result);
   bool settle_cable(int cable);
   int breaking_segment(int cable, const StepResult& result) const;
-  void set_rest_curvature(const RestCurvatureDesc& desc, SimulatedCable& cable);
   void add_forces(int cable, double weight);
   void update_holders(int cable);
   void follow_material(int cable);
@@ -45,5 +47,8 @@ struct World::Implementation {
 
 /// Keeps the worst status, and of equals the first cable's.
 void note_status(StepResult::Status status, int cable, int node, StepResult& result);
+
+/// Takes a cable's motion away.
+void bring_to_rest(CableState& state);
 
 }  // namespace verlet_cable

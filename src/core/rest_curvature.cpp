@@ -1,0 +1,27 @@
+#include "rest_curvature.h"
+
+namespace verlet_cable {
+
+void set_rest_curvature(const RestCurvatureDesc& desc, const std::vector<DirectionHolder>& clamps, SimulatedCable& cable) {
+  const int n = cable.model.segments();
+  if (desc.type == RestCurvatureDesc::Type::straight) return;
+  cable.model.rest_curvature.assign(n + 1, desc.curvature);
+  if (desc.type == RestCurvatureDesc::Type::constant) return;
+  const std::vector<Quaternion> orientations = segment_orientations(cable);
+  for (int i = 1; i < n; ++i) {
+    const Vector3 before = orientations[i - 1] * Vector3::UnitX(), after = orientations[i] * Vector3::UnitX();
+    const Quaternion middle = orientations[i - 1].slerp(0.5, orientations[i]);
+    const Vector3 curvature = (after - before) / (0.5 * (cable.model.rest_lengths[i - 1] + cable.model.rest_lengths[i]));
+    cable.model.rest_curvature[i] = {-curvature.dot(middle * Vector3::UnitZ()), curvature.dot(middle * Vector3::UnitY())};
+  }
+  for (const DirectionHolder& clamp : clamps) {
+    if (clamp.node != 0 && clamp.node != n) continue;
+    const int i = clamp.node == 0 ? 0 : n - 1;
+    const Vector3 along = orientations[i] * Vector3::UnitX(), axis = clamp.orientation * Vector3::UnitX();
+    const Vector3 curvature = (clamp.node == 0 ? along - axis : axis - along) / (0.5 * cable.model.rest_lengths[i]);
+    cable.model.rest_curvature[clamp.node] = {-curvature.dot(orientations[i] * Vector3::UnitZ()),
+                                              curvature.dot(orientations[i] * Vector3::UnitY())};
+  }
+}
+
+}  // namespace verlet_cable
