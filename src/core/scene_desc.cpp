@@ -21,11 +21,20 @@ bool is_fixed_frame(const SceneDesc& scene, const std::string& frame) {
   return frame.empty() || frame == scene.frame_id;
 }
 
+}  // namespace
+
 Pose pose_of(const InitialPose& pose) {
   return {{pose[0], pose[1], pose[2]}, quaternion_from_rpy({pose[3], pose[4], pose[5]})};
 }
 
-}  // namespace
+std::vector<ObstacleDesc> all_obstacles(const SceneDesc& scene) {
+  std::vector<ObstacleDesc> obstacles = scene.obstacles;
+  if (scene.robot) {
+    for (const LinkDesc& link : scene.robot->tree)
+      obstacles.insert(obstacles.end(), link.obstacles.begin(), link.obstacles.end());
+  }
+  return obstacles;
+}
 
 SceneError::SceneError(std::vector<std::string> errors) : std::runtime_error(lines(errors)), errors_(std::move(errors)) {}
 
@@ -56,6 +65,10 @@ std::vector<std::string> frame_names(const SceneDesc& scene) {
       if (seen.insert(attachment.frame).second) names.push_back(attachment.frame);
     }
   }
+  for (const ObstacleDesc& obstacle : all_obstacles(scene)) {
+    if (is_fixed_frame(scene, obstacle.frame)) continue;
+    if (seen.insert(obstacle.frame).second) names.push_back(obstacle.frame);
+  }
   return names;
 }
 
@@ -65,6 +78,9 @@ BoundaryInputs initial_frames(const SceneDesc& scene) {
     for (const AttachmentDesc& attachment : cable.attachments) {
       if (attachment.initial_pose) poses.emplace(attachment.frame, *attachment.initial_pose);
     }
+  }
+  for (const ObstacleDesc& obstacle : scene.obstacles) {
+    if (obstacle.initial_pose) poses.emplace(obstacle.frame, *obstacle.initial_pose);
   }
   const std::vector<std::string> names = frame_names(scene);
   BoundaryInputs frames(names.size(), FrameInput{Pose{}, false});

@@ -41,11 +41,11 @@ CableModel make_model(const SceneDesc& scene, const CableDesc& desc) {
   return model;
 }
 
+}  // namespace
+
 int find_frame(const std::vector<std::string>& frames, const std::string& name) {
   return static_cast<int>(std::find(frames.begin(), frames.end(), name) - frames.begin());
 }
-
-}  // namespace
 
 void note_status(StepResult::Status status, int cable, int node, StepResult& result) {
   if (status <= result.status) return;
@@ -66,6 +66,10 @@ World::World(const SceneDesc& scene, const BoundaryInputs& inputs) : implementat
   w.scene = scene;
   w.frames = frame_names(scene);
   w.poses.resize(w.frames.size());
+  w.previous_poses.resize(w.frames.size());
+  w.known.assign(w.frames.size(), false);
+  w.known.front() = true;
+  w.add_scene_obstacles();
   for (int i = 0; i < static_cast<int>(scene.cables.size()); ++i) {
     w.waiting_descs.push_back(i);
     w.waiting.push_back(scene.cables[i].name);
@@ -110,8 +114,14 @@ bool World::Implementation::frames_known(const CableDesc& desc, const BoundaryIn
 
 void World::Implementation::follow_frames(const BoundaryInputs& inputs) {
   // A frame that is unknown or not finite stays where it was. The fixed frame does not move.
-  for (std::size_t i = 1; i < std::min(poses.size(), inputs.size()); ++i)
-    if (inputs[i].known && finite(inputs[i].pose)) poses[i] = {inputs[i].pose.position, inputs[i].pose.orientation.normalized()};
+  previous_poses = poses;
+  for (std::size_t i = 1; i < std::min(poses.size(), inputs.size()); ++i) {
+    if (!inputs[i].known || !finite(inputs[i].pose)) continue;
+    poses[i] = {inputs[i].pose.position, inputs[i].pose.orientation.normalized()};
+    if (!known[i]) previous_poses[i] = poses[i];
+    known[i] = true;
+  }
+  for (Obstacle& obstacle : obstacles) obstacle.present = known[obstacle.frame];
 }
 
 void World::Implementation::start_cable(const CableDesc& desc) {

@@ -150,13 +150,21 @@ EditResult World::cut(int cable, int segment) {
   return {true, "", new_name};
 }
 
-int World::add_frame(const std::string& name, const Pose& pose) {
+int World::add_frame(const std::string& name, const std::optional<Pose>& pose) {
   Implementation& w = *implementation_;
-  const auto known = std::find(w.frames.begin(), w.frames.end(), name);
-  if (known != w.frames.end()) return static_cast<int>(known - w.frames.begin());
-  w.frames.push_back(name);
-  w.poses.push_back(pose);
-  return static_cast<int>(w.frames.size()) - 1;
+  const int frame = static_cast<int>(std::find(w.frames.begin(), w.frames.end(), name) - w.frames.begin());
+  if (frame == static_cast<int>(w.frames.size())) {
+    w.frames.push_back(name);
+    w.poses.emplace_back();
+    w.previous_poses.emplace_back();
+    w.known.push_back(false);
+    w.find_obstacle_holders();
+  }
+  if (pose && !w.known[frame]) {
+    w.poses[frame] = w.previous_poses[frame] = *pose;
+    w.known[frame] = true;
+  }
+  return frame;
 }
 
 }  // namespace verlet_cable

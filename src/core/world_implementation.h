@@ -26,16 +26,21 @@ struct World::Implementation {
   std::vector<int> waiting_descs;  ///< indices into scene.cables
   std::vector<std::string> waiting;
   std::vector<std::string> frames;
-  std::vector<Pose> poses;  ///< of the frames, at the world's time
+  std::vector<Pose> poses;           ///< of the frames, at the world's time
+  std::vector<Pose> previous_poses;  ///< a step before; of a frame that is new to a step, its first
+  std::vector<char> known;           ///< by frame id: whether it has been seen, or given a pose
   std::int64_t steps = 0;
   std::vector<SimulatedCable> cables;
   std::vector<CableScratch> scratch;  ///< one a cable
   std::vector<Attachment> attachments;
+  std::vector<Obstacle> obstacles;
   std::vector<Break> breaks;  ///< in the last step
 
   bool frames_known(const CableDesc& desc, const BoundaryInputs& inputs) const;
   void start_cable(const CableDesc& desc);
   void follow_frames(const BoundaryInputs& inputs);
+  void add_scene_obstacles();
+  void find_obstacle_holders();
   void step_cable(int cable, StepResult& result);
   bool settle_cable(int cable);
   int breaking_segment(int cable, const StepResult& result) const;
@@ -44,6 +49,9 @@ struct World::Implementation {
   void follow_material(int cable);
   double time() const { return static_cast<double>(steps) * scene.time_step; }
 };
+
+/// The index of a name, their number if it is not there.
+int find_frame(const std::vector<std::string>& frames, const std::string& name);
 
 /// Keeps the worst status, and of equals the first cable's.
 void note_status(StepResult::Status status, int cable, int node, StepResult& result);

@@ -35,6 +35,18 @@ class Hash {
     add_bits(text.size());
     for (const char c : text) add_bits(static_cast<unsigned char>(c));
   }
+  void add(const Obstacle& obstacle) {
+    add(obstacle.name);
+    add_bits(static_cast<std::uint64_t>(obstacle.frame) << 1 | static_cast<std::uint64_t>(obstacle.present));
+    add(obstacle.pose);
+    add_bits(obstacle.shape.index());
+    const Aabb box = bounds(obstacle.shape, Pose{});
+    add(Vector3(box.min()));
+    add(Vector3(box.max()));
+    if (const CapsuleShape* capsule = std::get_if<CapsuleShape>(&obstacle.shape)) add(capsule->radius);
+    add(obstacle.friction.value_or(-1));
+    add(obstacle.padding);
+  }
   std::uint64_t value() const { return value_; }
 
  private:
@@ -57,6 +69,9 @@ const std::vector<std::string>& World::frames() const {
 }
 const Pose& World::frame_pose(int frame) const {
   return implementation_->poses[frame];
+}
+bool World::frame_known(int frame) const {
+  return implementation_->known[frame];
 }
 const std::vector<SimulatedCable>& World::cables() const {
   return implementation_->cables;
@@ -142,6 +157,7 @@ std::uint64_t World::hash() const {
       hash.add(h.caught);
     }
   }
+  for (const Obstacle& obstacle : w.obstacles) hash.add(obstacle);
   for (const Attachment& a : w.attachments) {
     hash.add(a.name);
     hash.add_bits(static_cast<std::uint64_t>(a.cable) << 32 | static_cast<std::uint64_t>(a.node));

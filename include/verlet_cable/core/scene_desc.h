@@ -1,7 +1,7 @@
 #pragma once
 
 #include <array>
-#include <limits>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace verlet_cable {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+class TriangleMesh;
 
 /// What a cable is made of. Ranges: see `validate`.
 struct MaterialDesc {
@@ -83,6 +83,51 @@ struct CableDesc {
   std::vector<PointMassDesc> point_masses;
 };
 
+enum class ShapeType { plane, sphere, capsule, cylinder, box, mesh };
+
+/// What cables bump into. Its dimensions are those that the type has; the others are not looked at.
+struct ObstacleDesc {
+  std::string name;
+  ShapeType type = ShapeType::plane;
+  std::string frame;                        ///< empty: the fixed frame
+  InitialPose pose{};                       ///< in the frame
+  double radius = 0;                        ///< [m] sphere, capsule, cylinder: > 0
+  double length = 0;                        ///< [m] capsule: of the cylindrical part, cylinder: > 0
+  Vector3 size = Vector3::Zero();           ///< [m] box: > 0
+  std::string uri;                          ///< mesh: package:// or file://
+  Vector3 scale = Vector3::Ones();          ///< mesh: > 0
+  std::optional<double> friction;           ///< Coulomb coefficient, >= 0; none: that of the cable's material
+  std::optional<InitialPose> initial_pose;  ///< where the frame is until anything says otherwise
+  double padding = 0;                       ///< [m] added all around, >= 0
+  /// mesh: what `uri` names, scaled; filled in by whoever reads the file
+  std::shared_ptr<const TriangleMesh> mesh;
+};
+
+/// A link of a robot, as its URDF has it.
+struct LinkDesc {
+  std::string name;                     ///< and of its frame
+  int parent = -1;                      ///< index of a link before this one; -1: the root
+  bool fixed = false;                   ///< to its parent
+  InitialPose origin{};                 ///< in its parent, with the joint at zero
+  std::vector<ObstacleDesc> obstacles;  ///< its collision geometry, in its own frame; none if it is not to be an obstacle
+};
+
+/// A robot whose links are obstacles.
+struct RobotDesc {
+  std::string description = "robot_description";  ///< the parameter that holds the URDF
+  std::string file;                               ///< instead of the parameter
+  std::vector<std::string> links;                 ///< those that are obstacles; empty: all
+  double padding = 0;                             ///< [m] added all around, >= 0
+  std::vector<LinkDesc> tree;                     ///< all links, parents first; filled in by whoever reads the URDF
+};
+
+/// Contact of cables with themselves and each other.
+struct ContactDesc {
+  bool self = true;
+  bool between_cables = true;
+  double friction = 0.3;  ///< Coulomb coefficient of cable against cable, >= 0
+};
+
 /// Uniform or central gravity.
 struct GravityDesc {
   Vector3 acceleration{0, 0, -9.81};  ///< [m/s^2]
@@ -132,6 +177,9 @@ struct SceneDesc {
   int seed = 0;
   std::vector<NamedMaterial> materials;  ///< those that the cables name
   std::vector<CableDesc> cables;
+  std::vector<ObstacleDesc> obstacles;
+  std::optional<RobotDesc> robot;
+  std::optional<ContactDesc> contact;  ///< none: cables do not touch cables
 
   const MaterialDesc* find_material(const std::string& name) const;
 };
@@ -150,6 +198,12 @@ class SceneError : public std::runtime_error {
 /// of a frame, cable shorter than the distance of its attachments at their initial poses; empty if the scene is sound.
 /// Keys are written as in YAML: `cables[0].attachments[1].frame`.
 std::vector<std::string> validate(const SceneDesc& scene);
+
+/// The scene's own obstacles, then those of its robot's links.
+std::vector<ObstacleDesc> all_obstacles(const SceneDesc& scene);
+
+/// The pose that six numbers of a scene mean.
+Pose pose_of(const InitialPose& pose);
 
 /// The node that a place on a cable means: arc lengths go to the nearest node.
 int node_at(const CableDesc& cable, const PlaceDesc& place);

@@ -2,8 +2,11 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <limits>
 
 namespace verlet_cable {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 using Vector3 = Eigen::Vector3d;
 using Quaternion = Eigen::Quaterniond;

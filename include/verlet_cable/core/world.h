@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "verlet_cable/core/cable.h"
+#include "verlet_cable/core/obstacle.h"
 #include "verlet_cable/core/scene_desc.h"
 #include "verlet_cable/core/types.h"
 
@@ -14,7 +16,7 @@ namespace verlet_cable {
 /// Where the frames are at the end of a step, seen from the fixed frame; one entry a frame, by frame id.
 struct FrameInput {
   Pose pose;
-  bool known = true;  ///< false: never seen; cables that need it wait
+  bool known = true;  ///< false: never seen; cables that need it wait, obstacles in it are not there
 };
 using BoundaryInputs = std::vector<FrameInput>;
 
@@ -90,10 +92,13 @@ class World {
   std::int64_t steps() const;
   double time_step() const;  ///< [s]
 
-  /// Frames by id: 0 is the fixed frame, then those of the scene in order of appearance, then those that pins added.
+  /// Frames by id: 0 is the fixed frame, then those of the scene in order of appearance, then those that pins and obstacles
+  /// added.
   const std::vector<std::string>& frames() const;
-  const Pose& frame_pose(int frame) const;                   ///< at the world's time
-  int add_frame(const std::string& name, const Pose& pose);  ///< id of the new or the existing frame
+  const Pose& frame_pose(int frame) const;  ///< at the world's time
+  bool frame_known(int frame) const;        ///< whether it has been seen, or given a pose
+  /// Id of the new or the existing frame. Without a pose, a new one is unknown until a step knows it.
+  int add_frame(const std::string& name, const std::optional<Pose>& pose);
 
   const std::vector<SimulatedCable>& cables() const;   ///< those that have started, pieces of cuts included
   const std::vector<std::string>& waiting() const;     ///< names of cables that wait for a frame
@@ -110,6 +115,12 @@ class World {
   EditResult unpin(const std::string& name);
   /// Removes a segment; its mass stays on its nodes. The first piece keeps the name.
   EditResult cut(int cable, int segment);
+
+  /// What cables bump into: those of the scene, of its robot's links, then those that were set.
+  const std::vector<Obstacle>& obstacles() const;
+  /// Adds an obstacle, or replaces the one of that name. `holders` and `present` are the world's to fill in.
+  EditResult set_obstacle(Obstacle obstacle);
+  EditResult remove_obstacle(const std::string& name);
 
   Energy energy() const;
   std::uint64_t hash() const;  ///< of all that the future depends on

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <memory>
+#include <variant>
+
+#include "verlet_cable/core/surface_point.h"
+#include "verlet_cable/core/triangle_mesh.h"
+#include "verlet_cable/core/types.h"
+
+namespace verlet_cable {
+
+/// The half space z < 0; its normal is +z.
+struct PlaneShape {};
+
+/// Around the origin.
+struct SphereShape {
+  double radius;  ///< [m]
+};
+
+/// Along z, around the origin.
+struct CapsuleShape {
+  double radius;  ///< [m]
+  double length;  ///< [m] of the cylindrical part
+};
+
+/// Along z, around the origin.
+struct CylinderShape {
+  double radius;  ///< [m]
+  double length;  ///< [m]
+};
+
+/// Around the origin.
+struct BoxShape {
+  Vector3 size;  ///< [m] along x, y and z
+};
+
+/// Never null.
+struct MeshShape {
+  std::shared_ptr<const TriangleMesh> mesh;
+};
+
+using Shape = std::variant<PlaneShape, SphereShape, CapsuleShape, CylinderShape, BoxShape, MeshShape>;
+
+/// The point of the surface that is nearest to `point` [m], both in the shape's frame. Where several are equally near (on an
+/// axis, in the middle), one of them; the normal has unit length everywhere. Points that are `reach` or further outside are told
+/// so early: of these only `distance >= reach` holds.
+SurfacePoint closest_point(const Shape& shape, const Vector3& point, double reach = infinity);
+
+/// Where the segment from `start` to `end` [m], in the shape's frame, is deepest in the shape or nearest to it. Where that is
+/// a whole stretch, some point of it. Segments that are `reach` or further outside are told so early: of these only
+/// `surface.distance >= reach` holds.
+SegmentSurfacePoint deepest_point(const Shape& shape, const Vector3& start, const Vector3& end, double reach = infinity);
+
+/// A box around the shape at `pose`; a plane's is infinite in all directions.
+Aabb bounds(const Shape& shape, const Pose& pose);
+
+}  // namespace verlet_cable

@@ -1,0 +1,150 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "verlet_cable/core/number_text.h"
+#include "verlet_cable/core/quoted_text.h"
+#include "verlet_cable/core/scene_fields.h"
+#include "verlet_cable/core/world.h"
+#include "world_implementation.h"
+
+namespace verlet_cable {
+
+namespace {
+
+Shape make_shape(const ObstacleDesc& desc) {
+  switch (desc.type) {
+    case ShapeType::plane:
+      return PlaneShape{};
+    case ShapeType::sphere:
+      return SphereShape{desc.radius};
+    case ShapeType::capsule:
+      return CapsuleShape{desc.radius, desc.length};
+    case ShapeType::cylinder:
+      return CylinderShape{desc.radius, desc.length};
+    case ShapeType::box:
+      return BoxShape{desc.size};
+    case ShapeType::mesh:
+      break;
+  }
+  return MeshShape{desc.mesh};
+}
+
+/// Indices of the links that are rigidly joined to one, itself included, ascending.
+std::vector<int> rigid_links(const std::vector<LinkDesc>& tree, int link) {
+  std::vector<int> roots(tree.size());
+  for (std::size_t i = 0; i < tree.size(); ++i) roots[i] = tree[i].fixed ? roots[tree[i].parent] : static_cast<int>(i);
+  std::vector<int> links;
+  for (std::size_t i = 0; i < tree.size(); ++i)
+    if (roots[i] == roots[link]) links.push_back(static_cast<int>(i));
+  return links;
+}
+
+std::string number_problem(const char* key, double value, const Range& range) {
+  return range.contains(value) ? "" : std::string(key) + ": " + number_text(value) + "; allowed: " + range.text("m");
+}
+
+std::string problem_of(const PlaneShape&) {
+  return "";
+}
+std::string problem_of(const SphereShape& sphere) {
+  return number_problem("radius", sphere.radius, positive);
+}
+template <typename RoundShape>
+std::string problem_of(const RoundShape& shape) {
+  const std::string radius = number_problem("radius", shape.radius, positive);
+  return radius.empty() ? number_problem("length", shape.length, positive) : radius;
+}
+std::string problem_of(const BoxShape& box) {
+  for (const double edge : box.size)
+    if (!positive.contains(edge)) return number_problem("size", edge, positive);
+  return "";
+}
+std::string problem_of(const MeshShape& shape) {
+  return shape.mesh ? "" : "mesh: missing";
+}
+
+std::string problem_of(const Obstacle& obstacle, std::size_t frames) {
+  if (obstacle.name.empty()) return "name: empty; allowed: any other";
+  if (obstacle.frame < 0 || obstacle.frame >= static_cast<int>(frames))
+    return "frame: " + std::to_string(obstacle.frame) + "; allowed: the id of a frame";
+  const bool placed =
+      obstacle.pose.position.cwiseAbs().maxCoeff() <= coordinate.highest && std::abs(obstacle.pose.orientation.norm() - 1) < 1e-6;
+  if (!placed) return "pose: allowed: finite numbers [m], with an orientation of length 1";
+  if (obstacle.friction && !not_negative.contains(*obstacle.friction))
+    return "friction: " + number_text(*obstacle.friction) + "; allowed: " + not_negative.text();
+  if (!not_negative.contains(obstacle.padding)) return number_problem("padding", obstacle.padding, not_negative);
+  return std::visit([](const auto& shape) { return problem_of(shape); }, obstacle.shape);
+}
+
+auto find_obstacle(std::vector<Obstacle>& obstacles, const std::string& name) {
+  return std::find_if(obstacles.begin(), obstacles.end(), [&](const Obstacle& obstacle) { return obstacle.name == name; });
+}
+
+}  // namespace
+
+const std::vector<Obstacle>& World::obstacles() const {
+  return implementation_->obstacles;
+}
+
+EditResult World::set_obstacle(Obstacle obstacle) {
+  Implementation& w = *implementation_;
+  if (const std::string problem = problem_of(obstacle, w.frames.size()); !problem.empty())
+    return {false, "obstacle " + quoted(obstacle.name) + ": " + problem, {}};
+  obstacle.pose.orientation.normalize();
+  obstacle.present = w.known[obstacle.frame];
+  const std::string name = obstacle.name;
+  const auto same = find_obstacle(w.obstacles, name);
+  if (same == w.obstacles.end()) {
+    w.obstacles.push_back(std::move(obstacle));
+  } else {
+    *same = std::move(obstacle);
+  }
+  w.find_obstacle_holders();
+  return {true, "", name};
+}
+
+EditResult World::remove_obstacle(const std::string& name) {
+  Implementation& w = *implementation_;
+  const auto found = find_obstacle(w.obstacles, name);
+  if (found == w.obstacles.end()) return {false, "obstacle: " + quoted(name) + "; there is no such obstacle", {}};
+  w.obstacles.erase(found);
+  return {true, "", name};
+}
+
+void World::Implementation::add_scene_obstacles() {
+  for (const ObstacleDesc& desc : all_obstacles(scene)) {
+    Obstacle obstacle;
+    obstacle.name = desc.name;
+    obstacle.frame = desc.frame.empty() ? 0 : find_frame(frames, desc.frame);
+    obstacle.pose = pose_of(desc.pose);
+    obstacle.shape = make_shape(desc);
+    obstacle.friction = desc.friction;
+    obstacle.padding = desc.padding;
+    obstacle.present = known[obstacle.frame];
+    obstacles.push_back(std::move(obstacle));
+  }
+  find_obstacle_holders();
+}
+
+/// Which frames belong to an obstacle: its own, and those of links that no joint can move against it. The fixed frame holds too
+/// much to belong to anything.
+void World::Implementation::find_obstacle_holders() {
+  static const std::vector<LinkDesc> no_links;
+  const std::vector<LinkDesc>& tree = scene.robot ? scene.robot->tree : no_links;
+  for (Obstacle& obstacle : obstacles) {
+    obstacle.holders.clear();
+    if (obstacle.frame == 0) continue;
+    obstacle.holders.push_back(obstacle.frame);
+    const auto link = std::find_if(tree.begin(), tree.end(), [&](const LinkDesc& l) { return l.name == frames[obstacle.frame]; });
+    if (link == tree.end()) continue;
+    for (const int i : rigid_links(tree, static_cast<int>(link - tree.begin()))) {
+      const int frame = find_frame(frames, tree[i].name);
+      if (frame > 0 && frame < static_cast<int>(frames.size()) && frame != obstacle.frame) obstacle.holders.push_back(frame);
+    }
+    std::sort(obstacle.holders.begin(), obstacle.holders.end());
+  }
+}
+
+}  // namespace verlet_cable
