@@ -22,8 +22,15 @@ CableNode::CableNode(ros::NodeHandle private_node)
       simulation_(node_, read_scene_parameters(node_)),
       services_(node_, simulation_),
       diagnostics_(node_, simulation_),
-      timer_(node_.createWallTimer(update_period(simulation_.scene()),
-                                   [this](const ros::WallTimerEvent&) { simulation_.update(longest_update); })) {}
+      timer_(node_.createWallTimer(update_period(simulation_.scene()), [this](const ros::WallTimerEvent&) { update(); })),
+      publish_rate_(simulation_.scene().publish_rate) {}
+
+void CableNode::update() {
+  simulation_.update(longest_update);
+  if (simulation_.scene().publish_rate == publish_rate_) return;
+  publish_rate_ = simulation_.scene().publish_rate;
+  timer_.setPeriod(update_period(simulation_.scene()));
+}
 
 void log_errors(const SceneError& error) {
   for (const std::string& line : error.errors()) ROS_FATAL("%s", line.c_str());

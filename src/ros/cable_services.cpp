@@ -3,7 +3,10 @@
 #include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>
 #include <verlet_cable/Cut.h>
+#include <verlet_cable/LoadScene.h>
 #include <verlet_cable/Pin.h>
+#include <verlet_cable/RestoreState.h>
+#include <verlet_cable/SaveState.h>
 #include <verlet_cable/Step.h>
 #include <verlet_cable/Unpin.h>
 
@@ -12,6 +15,7 @@
 
 #include "verlet_cable/ros/checked_pin.h"
 #include "verlet_cable/ros/location.h"
+#include "verlet_cable/ros/scene_files.h"
 
 namespace verlet_cable {
 namespace {
@@ -24,7 +28,13 @@ bool answer(const EditResult& result, Response& response) {
   return true;
 }
 
-EditResult refused(const std::vector<std::string>& errors) {
+EditResult refused(std::vector<std::string> errors) {
+  constexpr std::size_t most = 20;
+  if (errors.size() > most) {
+    const std::string more = "and " + std::to_string(errors.size() - most) + " more";
+    errors.resize(most);
+    errors.push_back(more);
+  }
   return {false, join(errors), {}};
 }
 
@@ -49,6 +59,14 @@ bool cut(Simulation& simulation, const Cut::Request& request, Cut::Response& res
   if (result.ok) response.first = simulation.world().cables()[location.cable].model.name;
   response.second = result.name;
   return answer(result, response);
+}
+
+bool load_scene(Simulation& simulation, const LoadScene::Request& request, LoadScene::Response& response) {
+  try {
+    return answer(simulation.load_scene(read_requested_scene(request, simulation.scene())), response);
+  } catch (const SceneError& error) {
+    return answer(refused(error.errors()), response);
+  }
 }
 
 bool step(Simulation& simulation, const Step::Request& request, Step::Response& response) {
@@ -79,6 +97,12 @@ CableServices::CableServices(ros::NodeHandle& node, Simulation& simulation) {
       serve<Unpin>(node, "unpin", [s](const auto& request, auto& response) { return answer(s->unpin(request.name), response); }),
       serve<Pin>(node, "pin", [s](const auto& request, auto& response) { return pin(*s, request, response); }),
       serve<Cut>(node, "cut", [s](const auto& request, auto& response) { return cut(*s, request, response); }),
+      serve<SaveState>(node, "save_state",
+                       [s](const auto& request, auto& response) { return answer(s->save_state(request.name), response); }),
+      serve<RestoreState>(node, "restore_state",
+                          [s](const auto& request, auto& response) { return answer(s->restore_state(request.name), response); }),
+      serve<LoadScene>(node, "load_scene",
+                       [s](const auto& request, auto& response) { return load_scene(*s, request, response); }),
       serve<Step>(node, "step", [s](const auto& request, auto& response) { return step(*s, request, response); }),
   };
 }

@@ -12,7 +12,7 @@
 namespace verlet_cable {
 namespace {
 
-const ros::Duration cache_time(60.0);
+const ros::Duration cache_time = ros::Duration().fromNSec(FrameBuffer::memory);
 const ros::WallDuration log_period(5.0);  // of each frame
 
 std::string without_slash(const std::string& frame) {

@@ -1,5 +1,8 @@
 #include "verlet_cable/ros/frame_history.h"
 
+#include <algorithm>
+#include <iterator>
+
 namespace verlet_cable {
 
 void FrameHistory::extend(Nanoseconds stamp) {
@@ -26,14 +29,17 @@ void FrameHistory::clear() {
   static_ = false;
 }
 
+std::deque<FrameHistory::Interval>::const_iterator FrameHistory::first_ending_from(Nanoseconds time) const {
+  return std::lower_bound(intervals_.begin(), intervals_.end(), time,
+                          [](const Interval& interval, Nanoseconds t) { return interval.last < t; });
+}
+
 FrameHistory::Coverage FrameHistory::at(Nanoseconds time) const {
   if (static_) return Coverage::covered;
   if (intervals_.empty() || time < intervals_.front().first) return Coverage::unseen;
-  for (const Interval& interval : intervals_) {
-    if (time < interval.first) return Coverage::gap;
-    if (time <= interval.last) return Coverage::covered;
-  }
-  return Coverage::ahead;
+  const auto next = first_ending_from(time);
+  if (next == intervals_.end()) return Coverage::ahead;
+  return time < next->first ? Coverage::gap : Coverage::covered;
 }
 
 Nanoseconds FrameHistory::first() const {
@@ -45,18 +51,14 @@ Nanoseconds FrameHistory::newest() const {
 }
 
 Nanoseconds FrameHistory::last_before(Nanoseconds time) const {
-  Nanoseconds last = 0;
-  for (const Interval& interval : intervals_) {
-    if (interval.last < time) last = interval.last;
-  }
-  return last;
+  const auto next = first_ending_from(time);
+  return next == intervals_.begin() ? 0 : std::prev(next)->last;
 }
 
 Nanoseconds FrameHistory::first_after(Nanoseconds time) const {
-  for (const Interval& interval : intervals_) {
-    if (interval.first > time) return interval.first;
-  }
-  return 0;
+  const auto next = std::upper_bound(intervals_.begin(), intervals_.end(), time,
+                                     [](Nanoseconds t, const Interval& interval) { return t < interval.first; });
+  return next == intervals_.end() ? 0 : next->first;
 }
 
 }  // namespace verlet_cable

@@ -40,6 +40,13 @@ const char* consequence(LostFramePolicy policy) {
 FrameWatch::FrameWatch(const SceneDesc& scene, const EventPublisher& events)
     : policy_(scene.on_lost_frame), max_frame_speed_(scene.max_frame_speed), timeout_(scene.tf_timeout), events_(events) {}
 
+void FrameWatch::watch(const SceneDesc& scene) {
+  policy_ = scene.on_lost_frame;
+  max_frame_speed_ = scene.max_frame_speed;
+  timeout_ = scene.tf_timeout;
+  lost_.clear();
+}
+
 bool FrameWatch::react(const std::vector<FrameChange>& changes, Nanoseconds stamp, World& world) {
   bool wait = false;
   for (const FrameChange& change : changes) {

@@ -50,6 +50,12 @@ MarkerPublisher::MarkerPublisher(ros::NodeHandle& private_node, const SceneDesc&
       style_(scene.marker_style),
       colors_(scene) {}
 
+void MarkerPublisher::show(const SceneDesc& scene) {
+  frame_id_ = scene.frame_id;
+  style_ = scene.marker_style;
+  colors_ = ColorScale(scene);
+}
+
 void MarkerPublisher::publish(const World& world, const ros::Time& stamp) {
   if (publisher_.getNumSubscribers() == 0) return;
   const auto markers = boost::make_shared<MarkerArray>();

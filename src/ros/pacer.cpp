@@ -6,6 +6,11 @@ namespace verlet_cable {
 
 Pacer::Pacer(Nanoseconds step, Nanoseconds longest_backlog) : step_(step), longest_backlog_(std::max(longest_backlog, step)) {}
 
+void Pacer::use(Nanoseconds step, Nanoseconds longest_backlog) {
+  step_ = step;
+  longest_backlog_ = std::max(longest_backlog, step);
+}
+
 Pacer::Due Pacer::due(Nanoseconds simulated, Nanoseconds target) {
   const Nanoseconds behind = std::max<Nanoseconds>(target - simulated, 0);
   const Nanoseconds steps_behind = behind / step_;

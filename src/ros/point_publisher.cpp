@@ -48,6 +48,11 @@ PointPublisher::PointPublisher(ros::NodeHandle& private_node, const SceneDesc& s
       frame_id_(scene.frame_id),
       colors_(scene) {}
 
+void PointPublisher::show(const SceneDesc& scene) {
+  frame_id_ = scene.frame_id;
+  colors_ = ColorScale(scene);
+}
+
 void PointPublisher::publish(const World& world, const ros::Time& stamp) {
   if (publisher_.getNumSubscribers() == 0) return;
   std::vector<PointRecord> points;

@@ -22,6 +22,12 @@ Publishers::Publishers(ros::NodeHandle& private_node, const SceneDesc& scene)
 
 Publishers::~Publishers() = default;
 
+void Publishers::show(const SceneDesc& scene) {
+  implementation_->markers.show(scene);
+  implementation_->points.show(scene);
+  implementation_->state.show(scene);
+}
+
 void Publishers::publish(const World& world, const ros::Time& stamp) {
   implementation_->markers.publish(world, stamp);
   implementation_->points.publish(world, stamp);

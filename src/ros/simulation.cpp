@@ -18,10 +18,14 @@ constexpr double log_period = 5;
 
 }  // namespace
 
+Nanoseconds Simulation::longest_backlog(const SceneDesc& scene) {
+  return nanoseconds(std::min(scene.tf_timeout, longest_wait) + hiccup);
+}
+
 Simulation::Simulation(ros::NodeHandle& private_node, const SceneDesc& scene)
     : scene_(scene),
       grid_(scene.time_step, scene.publish_rate),
-      pacer_(grid_.step(), nanoseconds(std::min(scene.tf_timeout, longest_wait) + hiccup)),
+      pacer_(grid_.step(), longest_backlog(scene)),
       world_(scene, initial_frames(scene)),
       frames_(private_node, scene),
       publishers_(private_node, scene),

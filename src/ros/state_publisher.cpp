@@ -8,6 +8,10 @@ namespace verlet_cable {
 StatePublisher::StatePublisher(ros::NodeHandle& private_node, const SceneDesc& scene)
     : publisher_(private_node.advertise<CableArray>("state", publisher_queue_size)), frame_id_(scene.frame_id) {}
 
+void StatePublisher::show(const SceneDesc& scene) {
+  frame_id_ = scene.frame_id;
+}
+
 void StatePublisher::publish(const World& world, const ros::Time& stamp) {
   if (publisher_.getNumSubscribers() == 0) return;
   const auto message = boost::make_shared<CableArray>(to_message(world));

@@ -1,6 +1,7 @@
 #include "verlet_cable/ros/tf_inputs.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace verlet_cable {
 namespace {
@@ -14,17 +15,29 @@ const ros::Duration longest_ahead(0.5);
 
 }  // namespace
 
-TfInputs::TfInputs(const ros::NodeHandle& node, const SceneDesc& scene)
-    : listener_(node),
-      buffer_(scene.frame_id),
-      timeout_(nanoseconds(scene.tf_timeout)),
-      longest_way_(scene.max_frame_speed * scene.time_step),
-      inputs_(initial_frames(scene)) {
+TfInputs::TfInputs(const ros::NodeHandle& node, const SceneDesc& scene) : listener_(node), buffer_(scene.frame_id) {
+  follow_scene(scene, 0);
+}
+
+void TfInputs::follow_scene(const SceneDesc& scene, Nanoseconds time) {
+  buffer_.see_from(scene.frame_id);
+  timeout_ = nanoseconds(scene.tf_timeout);
+  longest_way_ = scene.max_frame_speed * scene.time_step;
+  inputs_ = initial_frames(scene);
   const std::vector<std::string> names = frame_names(scene);
   scene_frames_ = static_cast<int>(names.size());
-  for (int i = 0; i < scene_frames_; ++i) tracks_.emplace_back(names[i], inputs_[i], timeout_);
+  tracks_.clear();
+  for (int i = 0; i < scene_frames_; ++i) tracks_.push_back(track_from(names[i], inputs_[i], time));
   tracks_.front().status = FrameStatus::ok;
-  for (Track& track : tracks_) update_history(track);
+  changes_.clear();
+}
+
+/// As far back as `time`, if tf knows the frame then.
+TfInputs::Track TfInputs::track_from(const std::string& frame, const FrameInput& at, Nanoseconds time) const {
+  Track track(frame, at, timeout_);
+  if (time > 0 && buffer_.pose(frame, time)) track.history.extend(time);
+  update_history(track);
+  return track;
 }
 
 void TfInputs::receive() {
@@ -48,6 +61,7 @@ void TfInputs::update_history(Track& track) const {
     track.history.set_static();
   } else {
     track.history.extend(*newest);
+    track.history.forget_before(*newest - FrameBuffer::memory);
   }
 }
 
@@ -84,15 +98,53 @@ void TfInputs::drop_pinned_frames() {
 }
 
 int TfInputs::add(const std::string& frame, Nanoseconds time) {
-  const auto found = std::find_if(tracks_.begin(), tracks_.end(), [&](const Track& track) { return track.name == frame; });
-  if (found != tracks_.end()) return static_cast<int>(found - tracks_.begin());
+  if (const Track* track = find_track(frame)) return static_cast<int>(track - tracks_.data());
   const FrameInput at{find(frame, time).value_or(Pose{}), true};
-  Track& track = tracks_.emplace_back(frame, at, timeout_);
-  track.status = FrameStatus::ok;
+  tracks_.push_back(track_from(frame, at, time));
+  tracks_.back().status = FrameStatus::ok;
   inputs_.push_back(at);
-  if (buffer_.pose(frame, time)) track.history.extend(time);
-  update_history(track);
   return static_cast<int>(tracks_.size()) - 1;
+}
+
+const TfInputs::Track* TfInputs::find_track(const std::string& frame) const {
+  const auto found = std::find_if(tracks_.begin(), tracks_.end(), [&](const Track& track) { return track.name == frame; });
+  return found == tracks_.end() ? nullptr : &*found;
+}
+
+std::vector<SavedFrame> TfInputs::save() const {
+  std::vector<SavedFrame> frames;
+  for (std::size_t i = 0; i < tracks_.size(); ++i) frames.push_back({tracks_[i].name, inputs_[i], tracks_[i].status});
+  return frames;
+}
+
+void TfInputs::restore(const std::vector<SavedFrame>& saved, Nanoseconds time) {
+  std::vector<Track> tracks;
+  BoundaryInputs inputs;
+  for (const SavedFrame& frame : saved) {
+    const Track* followed = find_track(frame.name);
+    Track& track = tracks.emplace_back(followed ? *followed : track_from(frame.name, frame.input, time));
+    FrameInput input = followed ? inputs_[followed - tracks_.data()] : frame.input;
+    if (!input.known) {
+      input = frame.input;
+      track.status = frame.status;
+    }
+    if (!followed) track.status = track.history.at(time) == Coverage::covered ? FrameStatus::ok : FrameStatus::lost;
+    inputs.push_back(input);
+  }
+  tracks_ = std::move(tracks);
+  inputs_ = std::move(inputs);
+}
+
+void TfInputs::rewind(const std::vector<SavedFrame>& saved, Nanoseconds time) {
+  restore(saved, time);
+  for (std::size_t i = 0; i < saved.size(); ++i) {
+    inputs_[i] = saved[i].input;
+    tracks_[i].too_fast = false;
+    const bool covered = tracks_[i].history.at(time) == Coverage::covered;
+    const bool unseen = saved[i].status == FrameStatus::never_seen;
+    // A frame that is not known then is not lost anew: it stays where it was saved until tf knows it.
+    tracks_[i].status = unseen ? FrameStatus::never_seen : covered ? FrameStatus::ok : FrameStatus::lost;
+  }
 }
 
 bool TfInputs::all_seen() const {
@@ -128,7 +180,6 @@ bool TfInputs::must_wait(Track& track, Nanoseconds time, Nanoseconds target) con
 
 void TfInputs::sample_frame(int frame, Nanoseconds time, Nanoseconds target, bool at_once) {
   Track& track = tracks_[frame];
-  track.history.forget_before(time);
   const Coverage coverage = track.history.at(time);
   if (coverage == Coverage::covered) {
     if (const auto pose = buffer_.pose(track.name, time)) {

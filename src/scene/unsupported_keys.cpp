@@ -23,7 +23,6 @@ constexpr UnsupportedKey unsupported_keys[] = {
     {"obstacles", Passes::only, "[]"},
     {"robot", Passes::none, ""},
     {"contact", Passes::none, ""},
-    {"scene_directory", Passes::only, ""},
     {"gravity.type", Passes::none, ""},
     {"particles", Passes::only, "[]"},
     {"nets", Passes::only, "[]"},

@@ -9,7 +9,7 @@ from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 
 from verlet_cable.msg import CableArray, CableEvent, CableLocation
-from verlet_cable.srv import Cut, Pin, PinRequest, Step, Unpin
+from verlet_cable.srv import Cut, LoadScene, Pin, PinRequest, RestoreState, SaveState, Step, Unpin
 
 PATIENCE = 5.0  # [s] of wall time, far more than anything here takes on a busy machine
 
@@ -122,6 +122,9 @@ class CableClient:
         self.pause = service('pause', SetBool)
         self.step = service('step', Step)
         self.unpin = service('unpin', Unpin)
+        self.save_state = service('save_state', SaveState)
+        self.restore_state = service('restore_state', RestoreState)
+        self._load_scene = service('load_scene', LoadScene)
         self._cut = service('cut', Cut)
         self._pin = service('pin', Pin)
 
@@ -133,6 +136,9 @@ class CableClient:
 
     def cut(self, location):
         return self._cut(location)
+
+    def load_scene(self, file='', yaml=''):
+        return self._load_scene(file, yaml)
 
     def states(self):
         return Messages(f'{self.name}/state', CableArray)
@@ -163,6 +169,11 @@ def nearest_to(cable, position, frame=''):
 def cable(state, name):
     """The cable of that name of a state, or None."""
     return next((c for c in state.cables if c.name == name), None)
+
+
+def contents(state):
+    """What a state says, without the number that the connection gave it."""
+    return state.header.stamp, state.header.frame_id, state.cables, state.nets, state.particles
 
 
 def distance(point, position):

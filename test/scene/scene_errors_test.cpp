@@ -160,7 +160,6 @@ const Mistake mistakes[] = {
     {"particles", time_step, "particles: [{name: planet}]", "particles: [{name: planet}] is not supported yet;"},
     {"nets", time_step, "nets: [{name: flag}]", "nets: [{name: flag}] is not supported yet;"},
     {"integrator", time_step, "integrator: rk4", "integrator: \"rk4\" is not supported yet; allowed: only verlet"},
-    {"sceneDirectory", time_step, "scene_directory: /tmp", "scene_directory: \"/tmp\" is not supported yet;"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Each, SceneMistake, testing::ValuesIn(mistakes),

@@ -17,11 +17,14 @@ class CableNode {
   explicit CableNode(ros::NodeHandle private_node);
 
  private:
+  void update();
+
   ros::NodeHandle node_;
   Simulation simulation_;
   CableServices services_;
   Diagnostics diagnostics_;
   ros::WallTimer timer_;
+  double publish_rate_;  ///< [Hz] for which the timer runs
 };
 
 /// Logs every error of a scene as fatal.

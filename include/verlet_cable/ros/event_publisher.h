@@ -25,6 +25,8 @@ class EventPublisher {
  public:
   EventPublisher(ros::NodeHandle& private_node, std::string frame_id);
 
+  void set_frame_id(const std::string& frame_id) { frame_id_ = frame_id; }
+
   /// `type`: a constant of CableEvent; `stamp`: the simulated time.
   void publish(std::uint8_t type, Nanoseconds stamp, const EventSubject& subject, const std::string& message) const;
 

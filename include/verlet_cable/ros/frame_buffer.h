@@ -20,10 +20,13 @@ std::string transform_problem(const ReceivedTransform& received);
 /// The tree of frames over the last 60 s, seen from the fixed frame. The one place that talks to tf2 and catches what it throws.
 class FrameBuffer {
  public:
+  static constexpr Nanoseconds memory = 60'000'000'000;  ///< how long transforms are kept
+
   explicit FrameBuffer(std::string fixed_frame);
 
   /// Whether the transform is in the tree now. What is wrong with it is logged now and then, and counted.
   bool insert(const ReceivedTransform& received);
+  void see_from(const std::string& fixed_frame) { fixed_frame_ = fixed_frame; }
   /// Forgets everything but static transforms.
   void clear();
 

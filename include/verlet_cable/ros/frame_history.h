@@ -36,6 +36,8 @@ class FrameHistory {
   struct Interval {
     Nanoseconds first, last;
   };
+  std::deque<Interval>::const_iterator first_ending_from(Nanoseconds time) const;  ///< the interval, at or after `time`
+
   Nanoseconds longest_gap_;
   bool static_ = false;
   std::deque<Interval> intervals_;  ///< ascending

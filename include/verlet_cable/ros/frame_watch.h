@@ -13,6 +13,8 @@ namespace verlet_cable {
 class FrameWatch {
  public:
   FrameWatch(const SceneDesc& scene, const EventPublisher& events);
+  /// Watches the frames of another scene from now on.
+  void watch(const SceneDesc& scene);
 
   /// Acts on what a sample of the frames found; `stamp` is the simulated time. Releases attachments if the scene wants that. True
   /// if the simulation has to wait for a frame.

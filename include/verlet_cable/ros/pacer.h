@@ -10,6 +10,8 @@ class Pacer {
   /// `step`: of the simulation; `longest_backlog`: what is further behind than this is dropped, not caught up.
   Pacer(Nanoseconds step, Nanoseconds longest_backlog);
 
+  void use(Nanoseconds step, Nanoseconds longest_backlog);  ///< from now on
+
   struct Due {
     Nanoseconds dropped = 0;  ///< to be skipped before stepping, a multiple of the step
     Nanoseconds steps = 0;    ///< to be done then, to come as close to the target as whole steps do without passing it

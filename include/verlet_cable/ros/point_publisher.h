@@ -14,6 +14,7 @@ namespace verlet_cable {
 class PointPublisher {
  public:
   PointPublisher(ros::NodeHandle& private_node, const SceneDesc& scene);
+  void show(const SceneDesc& scene);  ///< from now on
   void publish(const World& world, const ros::Time& stamp);
 
  private:

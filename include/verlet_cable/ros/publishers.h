@@ -19,6 +19,9 @@ class Publishers {
   Publishers(ros::NodeHandle& private_node, const SceneDesc& scene);
   ~Publishers();
 
+  /// Shows another scene from now on; what is gone is deleted at the next tick.
+  void show(const SceneDesc& scene);
+
   /// Publishes one tick: every message carries `stamp`, the simulated time. Wrench topics come and go with the attachments.
   void publish(const World& world, const ros::Time& stamp);
 

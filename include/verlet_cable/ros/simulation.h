@@ -2,6 +2,7 @@
 
 #include <ros/ros.h>
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,13 @@
 #include "verlet_cable/ros/time_grid.h"
 
 namespace verlet_cable {
+
+/// What `save_state` keeps: with it a run goes on as it would have.
+struct Snapshot {
+  World world;
+  Nanoseconds stamp = 0;  ///< the simulated time
+  std::vector<SavedFrame> frames;
+};
 
 /// A world that runs `tf_latency` behind ROS time, follows tf, and is published. For one thread: requests are called between
 /// updates.
@@ -40,12 +48,19 @@ class Simulation {
                  const Pose& offset, AttachmentType type);
   EditResult unpin(const std::string& name);
   EditResult cut(int cable, int segment);
+  EditResult save_state(const std::string& name);
+  /// Continues a snapshot: while paused at its time and with its frames, while running at the present ones.
+  EditResult restore_state(const std::string& name);
+  /// Goes on with another scene. Throws SceneError, and nothing has changed, if it is not sound.
+  EditResult load_scene(const SceneDesc& scene);
 
   const SceneDesc& scene() const { return scene_; }
   const World& world() const { return world_; }
   const TfInputs& frames() const { return frames_; }
   /// Where a frame is at the simulated time; none if neither the world nor tf knows it.
   std::optional<Pose> find_frame(const std::string& frame) const;
+  /// The snapshot of that name, the present state for an empty one; none if there is no such.
+  std::optional<Snapshot> snapshot(const std::string& name) const;
   Nanoseconds now() const { return clock_.now(); }  ///< ROS time at the last update
   Nanoseconds stamp() const { return stamp_; }      ///< the simulated time, as ROS time
   Nanoseconds dropped() const { return pacer_.dropped(); }
@@ -58,6 +73,8 @@ class Simulation {
   Statistics take_statistics();
 
  private:
+  /// What is further behind than this is not caught up.
+  static Nanoseconds longest_backlog(const SceneDesc& scene);
   Nanoseconds target() const;  ///< the time at which the simulation should be
   void jump_back();
   void start_if_possible();
@@ -83,6 +100,7 @@ class Simulation {
   EventPublisher events_;
   FrameWatch frame_watch_;
 
+  std::map<std::string, Snapshot> snapshots_;
   Nanoseconds stamp_ = 0;
   Nanoseconds waits_since_ = 0;  ///< ROS time since which the start waits for frames; 0 before there was any
   bool started_ = false;

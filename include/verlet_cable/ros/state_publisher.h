@@ -12,6 +12,7 @@ namespace verlet_cable {
 class StatePublisher {
  public:
   StatePublisher(ros::NodeHandle& private_node, const SceneDesc& scene);
+  void show(const SceneDesc& scene);  ///< from now on
   void publish(const World& world, const ros::Time& stamp);
 
  private:

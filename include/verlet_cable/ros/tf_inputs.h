@@ -36,10 +36,20 @@ struct FrameReport {
   bool too_fast = false;   ///< is being followed at `max_frame_speed`
 };
 
+/// A frame as a snapshot keeps it.
+struct SavedFrame {
+  std::string name;
+  FrameInput input;
+  FrameStatus status = FrameStatus::never_seen;
+};
+
 /// The poses of frames at the times of steps, from tf. A frame's id is its index in World::frames().
 class TfInputs {
  public:
   TfInputs(const ros::NodeHandle& node, const SceneDesc& scene);
+
+  /// Follows the frames of another scene from `time` on.
+  void follow_scene(const SceneDesc& scene, Nanoseconds time);
 
   /// Takes in what has come on tf.
   void receive();
@@ -49,6 +59,12 @@ class TfInputs {
   void reset(Nanoseconds time);
   /// Follows another frame from now on; its id. The frame is known: see `find`.
   int add(const std::string& frame, Nanoseconds time);
+
+  std::vector<SavedFrame> save() const;  ///< by frame id
+  /// Follows the frames that were saved, from where they are now on; frames that tf does not know are where they were saved.
+  void restore(const std::vector<SavedFrame>& saved, Nanoseconds time);
+  /// The same from where they were saved, `time` being the time of that.
+  void rewind(const std::vector<SavedFrame>& saved, Nanoseconds time);
 
   bool all_seen() const;
   Nanoseconds first_common_time() const;  ///< from which on all frames that were seen are known; 0 if they are static
@@ -86,6 +102,8 @@ class TfInputs {
   void insert(const ReceivedTransform& received);
   void update_history(Track& track) const;
   void drop_pinned_frames();
+  const Track* find_track(const std::string& frame) const;
+  Track track_from(const std::string& frame, const FrameInput& at, Nanoseconds time) const;
   bool must_wait(Track& track, Nanoseconds time, Nanoseconds target) const;
   void sample_frame(int frame, Nanoseconds time, Nanoseconds target, bool at_once);
   void follow(int frame, const Pose& pose, bool at_once);
@@ -94,9 +112,9 @@ class TfInputs {
   TfListener listener_;
   FrameBuffer buffer_;
   std::deque<std::pair<ros::WallTime, ReceivedTransform>> recent_;  ///< with the time of arrival
-  Nanoseconds timeout_;
-  double longest_way_;  ///< [m] that a frame is followed in a step
-  int scene_frames_;
+  Nanoseconds timeout_ = 0;
+  double longest_way_ = infinity;  ///< [m] that a frame is followed in a step
+  int scene_frames_ = 0;
   std::vector<Track> tracks_;  ///< by frame id; the first is the fixed frame
   BoundaryInputs inputs_;      ///< by frame id
   std::vector<FrameChange> changes_;

@@ -1,0 +1,28 @@
+#include <algorithm>
+#include <utility>
+
+#include "verlet_cable/ros/simulation.h"
+
+namespace verlet_cable {
+
+EditResult Simulation::load_scene(const SceneDesc& scene) {
+  World world(scene, initial_frames(scene));
+  scene_ = scene;
+  grid_ = TimeGrid(scene.time_step, scene.publish_rate);
+  pacer_.use(grid_.step(), longest_backlog(scene));
+  world_ = std::move(world);
+  frames_.follow_scene(scene, stamp_);
+  publishers_.show(scene);
+  events_.set_frame_id(scene.frame_id);
+  frame_watch_.watch(scene);
+  snapshots_.clear();
+  faulted_ = waits_for_frames_ = keeps_world_ = false;
+  const std::string message = "the scene is replaced by one of " + std::to_string(scene.cables.size()) + " cables";
+  if (started_) {
+    start(grid_.step_at_or_after(stamp_));
+    announce(CableEvent::RESET, {}, message);
+  }
+  return {true, message, {}};
+}
+
+}  // namespace verlet_cable

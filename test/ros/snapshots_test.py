@@ -1,0 +1,87 @@
+#!/usr/bin/env python3
+"""Snapshots: what follows them is the same every time, bit for bit; bad requests are refused and change nothing."""
+import sys
+import unittest
+
+import rospy
+import rostest
+
+from cable_client import CableClient, Frames, cable, contents, distance, node_at
+
+
+class SnapshotsTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        rospy.init_node('snapshots_test')
+        cls.node = CableClient('/cable')
+        with cls.node.states() as states:
+            states.next()
+
+    def setUp(self):
+        self.assertTrue(self.node.pause(False).success)
+        self.assertTrue(self.node.reset().success)
+
+    def assertRefused(self, answer, *parts):
+        self.assertFalse(answer.success, answer)
+        for part in parts:
+            self.assertIn(part, answer.message)
+
+    def run_on(self, steps):
+        self.assertTrue(self.node.step(steps).success)
+        return self.node.state()
+
+    def test_what_follows_a_snapshot_is_the_same_bit_for_bit(self):
+        self.assertTrue(self.node.pause(True).success)
+        self.run_on(200)
+        self.assertTrue(self.node.pin(node_at('rope', 10), (0.3, 0, -0.2)).success)
+        saved = self.run_on(50)  # the pinned node is on its way
+        self.assertTrue(self.node.save_state('way').success)
+        first = self.run_on(1000)
+        self.assertTrue(self.node.cut(node_at('rope', 5)).success)
+        self.run_on(100)
+        self.assertTrue(self.node.restore_state('way').success)
+        restored = self.node.state()
+        self.assertEqual(contents(restored), contents(saved), 'back at the time of the snapshot, too')
+        self.assertEqual(contents(self.run_on(1000)), contents(first))
+
+    def test_moving_frames_are_where_they_were(self):
+        with Frames(hand=lambda t: (0.6 + 0.1 * (t % 1), 0, 0)):
+            with self.node.states() as states:
+                states.wait_for(lambda s: cable(s, 'rope').positions[20].x > 0.65, 'hand that moves')
+            self.assertTrue(self.node.pause(True).success)
+            rospy.sleep(0.5)  # tf has come for what follows
+            self.assertTrue(self.node.save_state('moving').success)
+            first = self.run_on(200)
+            self.run_on(50)
+            self.assertTrue(self.node.restore_state('moving').success)
+            self.assertEqual(contents(self.run_on(200)), contents(first))
+
+    def test_restored_while_running_the_stamp_goes_on(self):
+        with self.node.states() as states:
+            self.assertTrue(self.node.save_state('running').success)
+            self.assertTrue(self.node.cut(node_at('rope', 10)).success)
+            cut = states.wait_for(lambda s: len(s.cables) == 2, 'cut cable')
+            self.assertTrue(self.node.restore_state('running').success)
+            states.clear()
+            whole = states.wait_for(lambda s: len(s.cables) == 1, 'whole cable')
+            self.assertGreater(whole.header.stamp, cut.header.stamp)
+            self.assertLess(distance(cable(whole, 'rope').positions[20], (0.6, 0, 0)), 0.2)
+
+    def test_bad_requests_are_refused(self):
+        self.assertTrue(self.node.pause(True).success)
+        before = self.node.state()
+        self.assertRefused(self.node.restore_state('never'), 'name: "never"')
+        self.assertRefused(self.node.restore_state(''), 'name: ""')
+        self.assertRefused(self.node.save_state(''), 'name: ""')
+        self.assertRefused(self.node.save_state('a b'), 'name: "a b"', 'letters')
+        answer = self.node.save_state('x' * 10_000_000)
+        self.assertRefused(answer, 'at most 100')
+        self.assertLess(len(answer.message), 1000)
+        for name in ('moving', 'running', 'way', 'other'):
+            self.node.save_state(name)
+        self.assertRefused(self.node.save_state('one_too_many'), 'limits.snapshots allows 3')
+        self.assertEqual(contents(self.node.state()), contents(before))
+
+
+if __name__ == '__main__':
+    rostest.rosrun('verlet_cable', 'snapshots', SnapshotsTest, sys.argv)
