@@ -54,6 +54,13 @@ void CableStepper::resize(const CableModel& model) {
 
 SubstepResult CableStepper::advance(const Substep& s, CableState& state) {
   SubstepResult result;
+  begin(s, state, result);
+  result.converged = solve(s, state, result);
+  if (result.converged) finish(s, state, result);
+  return result;
+}
+
+void CableStepper::begin(const Substep& s, const CableState& state, SubstepResult& result) {
   load(s, state);
   hold(s.boundary.nodes);
   result.overstretched_node = reachable_lengths(s.model, s.boundary.nodes, target_length_);
@@ -63,16 +70,16 @@ SubstepResult CableStepper::advance(const Substep& s, CableState& state) {
   fluid_.start(s.environment.fluid, s.environment.gravity, s.damping_time());
   predict(s.h);
   set_natural_shape(s, state);
-  result.converged = solve(s, state, result);
-  if (!result.converged) return result;
+}
+
+void CableStepper::finish(const Substep& s, CableState& state, SubstepResult& result) {
   if (s.statics)
     for (int i = 0; i <= segments_; ++i) result.displacement = std::max(result.displacement, get(displacement_, i).norm());
   react(s);
-  finish(s);
+  move(s);
   if (!s.statics && holders_accelerate(s.h, s.boundary.nodes)) project(s.model);
   result.max_strain = store(s, state);
   if (twist_.active()) twist_.follow(s.boundary.directions, state.positions, s.spans);
-  return result;
 }
 
 void CableStepper::load(const Substep& s, const CableState& state) {
@@ -151,13 +158,13 @@ bool CableStepper::solve(const Substep& s, const CableState& state, SubstepResul
   const bool free = s.boundary.nodes.empty();
   const double tolerance = (free ? free_velocity_tolerance : velocity_tolerance) * std::min(s.h, longest_tolerated);
   double last = 0;
-  bool factor = true;
+  bool stale = true;
   for (int i = 0; i < maximum_iterations; ++i) {
     if (s.statics && i > 0) set_natural_shape(s, state);
     evaluate(s);
-    if (factor) {
+    if (stale) {
       assemble(s.part());
-      solver_.factor(system_, bending_.active());
+      factor();
     }
     solver_.solve(system_);
     ++result.iterations;
@@ -166,7 +173,7 @@ bool CableStepper::solve(const Substep& s, const CableState& state, SubstepResul
     // The next correction would be about the last one times the ratio of the last two.
     const double ratio = i == 0 ? 1 : size / last;
     if (size * std::clamp(ratio, fastest_convergence, 1.0) < tolerance) return true;
-    factor = i > 0 && ratio > slow_convergence;
+    stale = i > 0 && ratio > slow_convergence;
     last = size;
   }
   return false;
@@ -232,6 +239,7 @@ void CableStepper::evaluate_elastic_lengths(const Substep& sub) {
 }
 
 void CableStepper::assemble(double part) {
+  system_.clear_stiffness();
   std::copy(inertia_.begin(), inertia_.end(), system_.diagonal.begin());
   for (int i = 0; i < segments_; ++i) {
     const double stiffness = part * tension_density_[i];
@@ -261,7 +269,7 @@ double CableStepper::correct() {
   return std::sqrt(largest) / target_length_[0];
 }
 
-void CableStepper::finish(const Substep& s) {
+void CableStepper::move(const Substep& s) {
   const double rate = s.statics ? 0 : 2 / s.h;
   for (int i = 0; i <= segments_; ++i) {
     end_velocity_.x[i] = rate * displacement_.x[i] - velocity_.x[i];
@@ -357,6 +365,7 @@ Vector3 CableStepper::corrected_load(int i) const {
   Vector3 load = get(system_.load, i);
   if (i > 0) load -= system_.first[i - 1] * get(delta, i - 1) + multiplier[i - 1] * get(system_.direction, i - 1);
   if (i < segments_) load -= system_.first[i] * get(delta, i + 1) - multiplier[i] * get(system_.direction, i);
+  if (system_.stiffened) load -= system_.added_load(i, delta);
   if (!bending_.active()) return load;
   if (i > 1) load -= system_.second[i - 2] * get(delta, i - 2);
   if (i + 1 < segments_) load -= system_.second[i] * get(delta, i + 2);

@@ -51,6 +51,18 @@ class CableStepper {
   /// If it has not converged, `state` is untouched.
   SubstepResult advance(const Substep& substep, CableState& state);
 
+  // The stages of `advance`, for a solver of several cables at once: begin; evaluate, assemble, factor, solve and correct until
+  // that has converged; finish.
+  void begin(const Substep& substep, const CableState& state, SubstepResult& result);
+  void evaluate(const Substep& substep);
+  void assemble(double part);
+  void factor() { solver_.factor(system_, bending_.active()); }
+  double correct();
+  void finish(const Substep& substep, CableState& state, SubstepResult& result);
+  const VectorArray& displacement() const { return displacement_; }  ///< nodes: x' - x of the present iterate [m]
+  SaddleSystem& system() { return system_; }
+  SaddleSolver& solver() { return solver_; }
+
  private:
   using Component = std::vector<double> VectorArray::*;
 
@@ -60,17 +72,14 @@ class CableStepper {
   void predict(double h);
   void set_natural_shape(const Substep& substep, const CableState& state);
   bool solve(const Substep& substep, const CableState& state, SubstepResult& result);
-  void evaluate(const Substep& substep);
   void evaluate_segments(double part, Component component);
   void evaluate_nodes(Component component);
   void evaluate_rigid_lengths();
   void evaluate_elastic_lengths(const Substep& substep);
-  void assemble(double part);
-  double correct();
   void react(const Substep& substep);
   Vector3 corrected_load(int node) const;
   double force_along(int segment) const;
-  void finish(const Substep& substep);
+  void move(const Substep& substep);
   bool holders_accelerate(double h, const std::vector<HeldNode>& held) const;
   void project(const CableModel& model);
   double store(const Substep& substep, CableState& state) const;

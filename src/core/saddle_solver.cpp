@@ -40,6 +40,22 @@ PairSymmetric times(Pair s, const PairSymmetric& m) {
   return {s * m.xx, s * m.xy, s * m.xz, s * m.yy, s * m.yz, s * m.zz};
 }
 
+PairSymmetric operator+(const PairSymmetric& a, const PairSymmetric& b) {
+  return {a.xx + b.xx, a.xy + b.xy, a.xz + b.xz, a.yy + b.yy, a.yz + b.yz, a.zz + b.zz};
+}
+
+PairMatrix operator+(const PairMatrix& a, const PairSymmetric& b) {
+  return {{a.row_x.x + b.xx, a.row_x.y + b.xy, a.row_x.z + b.xz},
+          {a.row_y.x + b.xy, a.row_y.y + b.yy, a.row_y.z + b.yz},
+          {a.row_z.x + b.xz, a.row_z.y + b.yz, a.row_z.z + b.zz}};
+}
+
+/// The elements of one index for the first lane, of another for the second.
+PairSymmetric pair(const SymmetricArray& m, int i, int j) {
+  return {Pair{m.xx[i], m.xx[j]}, Pair{m.xy[i], m.xy[j]}, Pair{m.xz[i], m.xz[j]},
+          Pair{m.yy[i], m.yy[j]}, Pair{m.yz[i], m.yz[j]}, Pair{m.zz[i], m.zz[j]}};
+}
+
 Eigen::Vector3d lane(const PairVector& v, int i) {
   return {v.x[i], v.y[i], v.z[i]};
 }
@@ -84,6 +100,30 @@ void SaddleSystem::resize(int segments) {
   compliance.assign(nodes, 1.0);
   load.assign(nodes, 0.0);
   gap.assign(nodes, 0.0);
+  stiffened = false;
+  added.assign(nodes, 0.0);
+  added_next.assign(nodes, 0.0);
+}
+
+void SaddleSystem::clear_stiffness() {
+  if (!stiffened) return;
+  stiffened = false;
+  added.assign(diagonal.size(), 0.0);
+  added_next.assign(diagonal.size(), 0.0);
+}
+
+void SaddleSystem::add_stiffness(int segment, double fraction, const Eigen::Matrix3d& stiffness) {
+  stiffened = true;
+  const double here = 1 - fraction;
+  add(added, segment, here * here, stiffness);
+  add(added, segment + 1, fraction * fraction, stiffness);
+  add(added_next, segment, here * fraction, stiffness);
+}
+
+Vector3 SaddleSystem::added_load(int node, const VectorArray& displacement) const {
+  Vector3 load = get(added_next, node) * get(displacement, node + 1);
+  if (node > 0) load += get(added_next, node - 1) * get(displacement, node - 1);
+  return load;
 }
 
 void SaddleSolver::resize(int segments) {
@@ -96,21 +136,28 @@ void SaddleSolver::resize(int segments) {
 }
 
 void SaddleSolver::factor(const SaddleSystem& system, bool bending) {
-  bending_ = bending;
-  if (bending)
-    factor_lanes<true>(system);
+  wide_ = bending || system.stiffened;
+  if (system.stiffened)
+    factor_lanes<true, true>(system);
+  else if (bending)
+    factor_lanes<true, false>(system);
   else
-    factor_lanes<false>(system);
+    factor_lanes<false, false>(system);
 }
 
 void SaddleSolver::solve(const SaddleSystem& system) {
-  if (bending_)
+  if (wide_)
     solve_lanes<true>(system);
   else
     solve_lanes<false>(system);
 }
 
-template <bool bending>
+void SaddleSolver::set_solution(const VectorArray& displacement, const std::vector<double>& multiplier) {
+  displacement_ = displacement;
+  multiplier_ = multiplier;
+}
+
+template <bool bending, bool stiffened>
 void SaddleSolver::factor_lanes(const SaddleSystem& s) {
   Front front;
   for (int k = 0; k < lane_; ++k) {
@@ -122,6 +169,7 @@ void SaddleSolver::factor_lanes(const SaddleSystem& s) {
     const Pair diagonal{s.diagonal[left], s.diagonal[right]};
     const Pair movable{s.movable[left], s.movable[right]};
 
+    if constexpr (stiffened) front.next = front.next + pair(s.added, left, right);
     const PairSymmetric node = scaled_inverse(plus_diagonal(front.next, diagonal), movable);
     const PairVector held = node * front.reach;
     e.multiplier = 1.0 / (front.compliance + dot(front.reach, held));
@@ -134,7 +182,8 @@ void SaddleSolver::factor_lanes(const SaddleSystem& s) {
     if constexpr (bending) {
       e.second = Pair{s.second[left], s.second[right - 2]};
       e.beyond = front.beyond;
-      const PairMatrix coupling = plus_scalar(front.between, e.first);
+      PairMatrix coupling = plus_scalar(front.between, e.first);
+      if constexpr (stiffened) coupling = coupling + pair(s.added_next, left, right - 1);
       e.node_next = plus_outer(e.node * coupling, e.cross, e.beyond);
       e.multiplier_next = transposed_times(coupling, e.cross) - e.multiplier * e.beyond;
       front.next = minus_outer(minus_product(front.after, coupling, e.node_next), e.beyond, e.multiplier_next);
@@ -155,6 +204,11 @@ void SaddleSolver::factor_lanes(const SaddleSystem& s) {
   a.block<3, 3>(0, 0) = lane(front.next, 0) + lane(front.after, 1) + s.diagonal[m] * identity;
   a.block<3, 3>(3, 3) = lane(front.next, 1) + lane(front.after, 0) + s.diagonal[m + 1] * identity;
   a.block<3, 3>(0, 3) = lane(front.between, 0) + lane(front.between, 1).transpose() + s.first[m] * identity;
+  if constexpr (stiffened) {
+    a.block<3, 3>(0, 0) += get(s.added, m);
+    a.block<3, 3>(3, 3) += get(s.added, m + 1);
+    a.block<3, 3>(0, 3) += get(s.added_next, m);
+  }
   a.block<3, 1>(0, 6) = lane(front.reach, 0);
   a.block<3, 1>(3, 6) = lane(front.beyond, 0);
   a.block<3, 1>(0, 7) = lane(front.beyond, 1);

@@ -14,6 +14,9 @@ namespace verlet_cable {
 ///   diagonal_i x_i + first_i x_(i+1) + first_(i-1) x_(i-1) + second_i x_(i+2) + second_(i-2) x_(i-2)
 ///       - p_i m_i + p_(i-1) m_(i-1) = load_i,     or x_i = 0 where movable_i is 0
 ///   p_i . (x_(i+1) - x_i) - compliance_i m_i = gap_i
+///
+/// and where something else resists the motion, symmetric blocks `added` to the diagonal and `added_next` to the coupling of node
+/// i and i + 1.
 struct SaddleSystem {
   std::vector<double> diagonal;    ///< N
   std::vector<double> movable;     ///< N, 1 or 0
@@ -23,8 +26,16 @@ struct SaddleSystem {
   std::vector<double> compliance;  ///< n, >= 0
   VectorArray load;                ///< N
   std::vector<double> gap;         ///< n
+  bool stiffened = false;          ///< whether there are added blocks
+  SymmetricArray added;            ///< N
+  SymmetricArray added_next;       ///< n
 
   void resize(int segments);
+  void clear_stiffness();
+  /// Adds a symmetric stiffness that resists the motion of a point of a segment, `fraction` (0 to 1) along it.
+  void add_stiffness(int segment, double fraction, const Eigen::Matrix3d& stiffness);
+  /// What the added couplings to its neighbours make of a displacement, at a node.
+  Vector3 added_load(int node, const VectorArray& displacement) const;
 };
 
 /// Solves a SaddleSystem directly, in O(n): elimination of blocks of one node and the multiplier before it, from both ends at
@@ -37,6 +48,9 @@ class SaddleSolver {
   void factor(const SaddleSystem& system, bool bending);
   /// Solves for the right-hand sides `load` and `gap` with the last factorisation.
   void solve(const SaddleSystem& system);
+
+  /// Replaces the solution by one of a larger system that this one is part of.
+  void set_solution(const VectorArray& displacement, const std::vector<double>& multiplier);
 
   const VectorArray& displacement() const { return displacement_; }      ///< N
   const std::vector<double>& multiplier() const { return multiplier_; }  ///< n
@@ -64,14 +78,14 @@ class SaddleSolver {
   using Middle = Eigen::Matrix<double, 9, 9>;
   using MiddleVector = Eigen::Matrix<double, 9, 1>;
 
-  template <bool bending>
+  template <bool bending, bool stiffened>
   void factor_lanes(const SaddleSystem& system);
   template <bool bending>
   void solve_lanes(const SaddleSystem& system);
 
   int nodes_ = 0;  ///< even: padded by a held one where necessary
   int lane_ = 0;   ///< eliminations from either end; two nodes are left in the middle
-  bool bending_ = false;
+  bool wide_ = false;  ///< whether a node is coupled to more than a multiple of its neighbour
   std::vector<Elimination> eliminations_;  ///< lane_
   std::vector<Forward> forward_;           ///< lane_
   Eigen::PartialPivLU<Middle> middle_;

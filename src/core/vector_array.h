@@ -18,6 +18,30 @@ struct VectorArray {
   }
 };
 
+/// Six component arrays of one symmetric matrix quantity.
+struct SymmetricArray {
+  std::vector<double> xx, xy, xz, yy, yz, zz;
+
+  void assign(std::size_t count, double value) {
+    for (std::vector<double>* component : {&xx, &xy, &xz, &yy, &yz, &zz}) component->assign(count, value);
+  }
+};
+
+inline void add(SymmetricArray& array, int i, double scale, const Eigen::Matrix3d& m) {
+  array.xx[i] += scale * m(0, 0);
+  array.xy[i] += scale * m(0, 1);
+  array.xz[i] += scale * m(0, 2);
+  array.yy[i] += scale * m(1, 1);
+  array.yz[i] += scale * m(1, 2);
+  array.zz[i] += scale * m(2, 2);
+}
+
+inline Eigen::Matrix3d get(const SymmetricArray& array, int i) {
+  Eigen::Matrix3d m;
+  m << array.xx[i], array.xy[i], array.xz[i], array.xy[i], array.yy[i], array.yz[i], array.xz[i], array.yz[i], array.zz[i];
+  return m;
+}
+
 inline void set(VectorArray& array, int i, const Vector3& v) {
   array.x[i] = v.x();
   array.y[i] = v.y();

@@ -161,28 +161,6 @@ void World::Implementation::start_cable(const CableDesc& desc) {
   if (desc.initial.type == InitialShapeDesc::Type::settled) settle_cable(index);
 }
 
-StepResult World::step(const BoundaryInputs& inputs) {
-  Implementation& w = *implementation_;
-  StepResult result;
-  w.follow_frames(inputs);
-  ++w.steps;
-  for (Attachment& attachment : w.attachments) attachment.force = attachment.torque = Vector3::Zero();
-  w.breaks.clear();
-  const int cables = static_cast<int>(w.cables.size());
-  for (int cable = 0; cable < cables; ++cable) {
-    StepResult of_cable;
-    w.step_cable(cable, of_cable);
-    note_status(of_cable.status, of_cable.cable, of_cable.node, result);
-    result.substeps = std::max(result.substeps, of_cable.substeps);
-    result.iterations += of_cable.iterations;
-    result.max_strain = std::max(result.max_strain, of_cable.max_strain);
-    const int segment = w.breaking_segment(cable, of_cable);
-    if (segment < 0) continue;
-    if (cut(cable, segment).ok) w.breaks.push_back({cable, segment, static_cast<int>(w.cables.size()) - 1});
-  }
-  return result;
-}
-
 /// The segment of a cable that breaks now, -1 if it holds. A piece keeps at least one segment, so that the outermost ones do not
 /// break.
 int World::Implementation::breaking_segment(int index, const StepResult& result) const {
@@ -195,61 +173,6 @@ int World::Implementation::breaking_segment(int index, const StepResult& result)
   const bool torn = result.status == StepResult::Status::overstretched && cable.model.material.axial_stiffness == infinity;
   const bool exceeded = *std::max_element(tension.begin(), tension.end()) > limit;
   return torn || exceeded ? static_cast<int>(tightest - tension.begin()) : -1;
-}
-
-/// Steps a cable in as many substeps as it needs: halved where the solver does not converge, doubled where it does easily.
-void World::Implementation::step_cable(int index, StepResult& result) {
-  using Status = StepResult::Status;
-  SimulatedCable& cable = cables[index];
-  CableScratch& s = scratch[index];
-  const double dt = scene.time_step;
-  if (!aim_holders(cable.model, attachments, poses, time(), dt, s.holders)) {
-    jump_to_aim(s.holders);
-    hold_at(1, 1, s.holders, s.boundary);
-    carry_along(cable.model, s.boundary.nodes, scene.gravity.acceleration, cable.state);
-    note_status(Status::jumped, index, s.boundary.nodes.front().node, result);
-  }
-
-  const Environment environment{scene.gravity.acceleration, scene.fluid};
-  const int finest = std::max(0, static_cast<int>(std::ceil(std::log2(dt / shortest_substep))));
-  const std::int64_t whole = std::int64_t{1} << finest;
-  std::int64_t done = 0;
-  int substeps = 0;
-  bool stopped = false;
-  while (done < whole) {
-    const std::int64_t ticks = whole >> s.level;
-    const double h = dt / static_cast<double>(std::int64_t{1} << s.level);
-    const double part = 1 / static_cast<double>(whole);
-    hold_at(part * static_cast<double>(done), part * static_cast<double>(done + ticks), s.holders, s.boundary);
-    const SubstepResult substep = s.stepper.advance({cable.model, environment, s.boundary, s.spans, h}, cable.state);
-    result.iterations += substep.iterations;
-    if (!substep.converged) {
-      if (s.level < finest && substeps < maximum_substeps) {
-        ++s.level;
-      } else if (!stopped) {
-        bring_to_rest(cable.state);
-        std::fill(cable.state.axial_multiplier.begin(), cable.state.axial_multiplier.end(), 0.0);
-        stopped = true;
-        note_status(Status::degraded, index, 0, result);
-      } else {
-        // Not even from rest: it is put where its holders will be, and goes on from there.
-        hold_at(1, 1, s.holders, s.boundary);
-        carry_along(cable.model, s.boundary.nodes, scene.gravity.acceleration, cable.state);
-        if (!finite(cable.state.positions)) note_status(Status::fault, index, 0, result);
-        break;
-      }
-      continue;
-    }
-    done += ticks;
-    ++substeps;
-    add_forces(index, h / dt);
-    result.max_strain = std::max(result.max_strain, substep.max_strain);
-    if (substep.overstretched_node >= 0) note_status(Status::overstretched, index, substep.overstretched_node, result);
-    if (s.level > 0 && substep.iterations <= easy_iterations && done % (2 * ticks) == 0) --s.level;
-  }
-  follow_material(index);
-  result.substeps = substeps;
-  complete_step(dt, s.holders);
 }
 
 void World::Implementation::add_forces(int cable, double weight) {

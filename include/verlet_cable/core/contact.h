@@ -1,0 +1,19 @@
+#pragma once
+
+#include "verlet_cable/core/types.h"
+
+namespace verlet_cable {
+
+/// A place where a cable touches something, and what it feels there; mean over the last substep.
+struct Contact {
+  int cable = 0;  ///< index into World::cables()
+  int segment = 0;
+  Vector3 position = Vector3::Zero();  ///< [m] on the cable's centre line
+  Vector3 normal = Vector3::UnitZ();   ///< out of what is touched
+  Vector3 force = Vector3::Zero();     ///< [N] on the cable
+  int obstacle = -1;                   ///< index into World::obstacles(), -1: a cable is touched
+  int other_cable = -1;                ///< index into World::cables(), -1: an obstacle is touched
+  int other_segment = -1;
+};
+
+}  // namespace verlet_cable

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "contact_set.h"
+#include "coupled_stepper.h"
+
+namespace verlet_cable {
+
+/// Cables that may touch each other: they are advanced in the same substeps.
+struct ContactGroup {
+  std::vector<int> cables;  ///< ascending
+  int level = 0;            ///< a step is tried in 2^level substeps
+  ContactSet contacts;
+  // Scratch
+  CoupledStepper stepper;
+  std::vector<Participant> participants;       ///< the cables that touch something
+  std::vector<CableState> before;              ///< one a cable, at the start of the substep
+  std::vector<std::vector<TwistSpan>> spans_before;  ///< likewise
+  std::vector<SubstepResult> results;          ///< one a cable
+};
+
+}  // namespace verlet_cable

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+
+#include "verlet_cable/core/types.h"
+
+namespace verlet_cable {
+
+/// A point on a cable's centre line.
+struct CablePoint {
+  int cable = -1;  ///< -1: none
+  int segment = 0;
+  double fraction = 0;  ///< along the segment, 0 to 1
+};
+
+/// How a contact resists: with w the displacement over the substep of what touches relative to what is touched, e = rate * w -
+/// offset is the displacement that is expected at the end of the substep and a little later (see `anticipate`), and
+///   normal force     f = max(0, force of the depth -gap - n . e)
+///   friction        -k (bristle + tangential part of e), at most friction * f
+/// The bristle is the tangential displacement since the contact began to stick (Cundall and Strack, A discrete numerical model
+/// for granular assemblies, 1979): a contact that sticks does not creep.
+struct Touch {
+  std::uint64_t key = 0, other_key = 0;  ///< what touches what; ascending in a list of touches
+  CablePoint point, other;
+  int obstacle = -1;
+  Vector3 position = Vector3::Zero();  ///< [m] of the point
+  Vector3 normal = Vector3::UnitZ();   ///< out of what is touched
+  double gap = 0;                      ///< [m] between the surfaces at the start of the substep
+  double friction = 0;                 ///< Coulomb coefficient
+  double radius = 0;                   ///< [m] of the thinner cable
+  double base_stiffness = 0;           ///< [N/m] at no depth
+  double rate = 1;
+  Vector3 offset = Vector3::Zero();      ///< [m]
+  Vector3 stuck_force = Vector3::Zero();         ///< [N] friction at the start of the substep
+  Vector3 other_displacement = Vector3::Zero();  ///< [m] of what is touched, over the substep
+  // Of the present iterate
+  Vector3 displacement = Vector3::Zero();   ///< [m] w
+  double depth = 0;                         ///< [m] where the force's law is linearised
+  double stiffness = 0;                     ///< [N/m] there
+  double normal_force = 0;                  ///< [N]
+  Vector3 force = Vector3::Zero();          ///< [N] on the point
+  Eigen::Matrix3d slope = Eigen::Matrix3d::Zero();  ///< [N/m] - d force / d w, without the part of friction that follows f
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();  ///< [N/m] the slope that is in the matrix
+  enum class Mode { open, sticks, slides } mode = Mode::open;
+};
+
+/// How long contacts take to come to rest [s], for a world's time step [s].
+double contact_time(double time_step);
+
+/// Sets `rate` and `offset` for a substep of length h [s]: a contact acts on where it will be a contact time after the end of
+/// the substep if it moves on with the velocity that it then has. `velocity` [m/s]: of the point at the start of the substep,
+/// relative to another cable's where that is touched.
+void anticipate(double h, double contact_time, const Vector3& velocity, Touch& touch);
+
+/// Limits the gap to what is pushed out at a gentle velocity.
+double gentle_gap(double gap, double radius, double contact_time);
+
+/// Linearises the law at the start of the substep.
+void start_touch(Touch& touch);
+
+/// Sets force and slope for a displacement w [m]. True if the contact has changed its mode or its linearisation.
+bool evaluate_touch(const Vector3& w, Touch& touch);
+
+/// Friction [N] that stays when the substep is done: the bristle's without what velocity adds.
+Vector3 remaining_friction(const Touch& touch);
+
+}  // namespace verlet_cable

@@ -1,0 +1,231 @@
+#include "contact_set.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "segment_distance.h"
+
+namespace verlet_cable {
+
+namespace {
+
+/// Contacts are looked for this far beyond where they are expected, in radii: velocities change during a substep.
+constexpr double spare_reach = 0.1;
+/// A contact between two nodes counts if it is deeper than both by this, in radii; else those carry it.
+constexpr double deeper = 1e-3;
+/// So far from an attachment to what holds the cable it is not pushed by it [m]: the first few centimetres.
+constexpr double anchored_length = 0.05;
+/// Stiffness of a contact without load, relative to what stops a segment within a step.
+constexpr double stopping_stiffness = 2;
+
+std::uint64_t key_of(int high, int low) {
+  return static_cast<std::uint64_t>(high) << 32 | static_cast<std::uint32_t>(low);
+}
+
+constexpr std::uint64_t pair_key = std::uint64_t{1} << 63;  // pairs come after obstacles
+
+double stopping(const SimulatedCable& cable, int segment, double time_step) {
+  const double mass = cable.model.rest_lengths[segment] * cable.model.material.linear_density;
+  return stopping_stiffness * mass / (time_step * time_step);
+}
+
+Vector3 interpolate(const std::vector<Vector3>& nodes, int segment, double fraction) {
+  return (1 - fraction) * nodes[segment] + fraction * nodes[segment + 1];
+}
+
+/// A node as a point of a segment.
+CablePoint node_point(int cable, int node, int segments) {
+  return node < segments ? CablePoint{cable, node, 0.0} : CablePoint{cable, node - 1, 1.0};
+}
+
+bool apart(const Vector3& a, const Vector3& b, const Aabb& box, double reach) {
+  return (a.cwiseMax(b).array() + reach < box.min().array()).any() || (a.cwiseMin(b).array() - reach > box.max().array()).any();
+}
+
+/// Whether a point is close to where an attachment joins the cable to the obstacle's own frame.
+bool anchored(const SimulatedCable& cable, int index, const CablePoint& point, const Obstacle& obstacle,
+                          const std::vector<Attachment>& attachments) const {
+  if (obstacle.holders.empty()) return false;
+  const double length = cable.model.rest_lengths[point.segment];
+  for (const Attachment& attachment : attachments) {
+    if (attachment.cable != index ||
+        !std::binary_search(obstacle.holders.begin(), obstacle.holders.end(), attachment.frame))
+      continue;
+    const double distance = attachment.node <= point.segment
+                                ? cable.model.length(attachment.node, point.segment) + point.fraction * length
+                                : cable.model.length(point.segment, attachment.node) - point.fraction * length;
+    if (distance <= anchored_length) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void ContactSet::find(const std::vector<SimulatedCable>& cables, const std::vector<int>& group,
+                      const std::vector<MovingObstacle>& obstacles, const std::vector<Attachment>& attachments,
+                      const ContactRules& rules, double h) {
+  rules_ = rules;
+  time_ = contact_time(rules.time_step);
+  touches_.clear();
+  recalled_ = 0;
+  for (const int cable : group) {
+    set_held(cables[cable], cable, attachments);
+    for (const MovingObstacle& obstacle : obstacles) find_obstacle(cables[cable], cable, obstacle, attachments, h);
+  }
+  if (!rules.pairs.self && !rules.pairs.between_cables) return;
+  double radius = 0;
+  for (const int cable : group) radius = std::max(radius, cables[cable].model.material.radius);
+  grid_.update(cables, group, rules.pairs, reach(0, radius, h) + radius, h);
+  find_pairs(cables, h);
+}
+
+/// Which nodes are attached: nothing but their holders moves them.
+void ContactSet::set_held(const SimulatedCable& cable, int index, const std::vector<Attachment>& attachments) {
+  held_.assign(cable.model.nodes(), 0);
+  for (const Attachment& attachment : attachments)
+    if (attachment.cable == index) held_[attachment.node] = 1;
+}
+
+void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const MovingObstacle& moving,
+                               const std::vector<Attachment>& attachments, double h) {
+  const CableModel& model = cable.model;
+  const CableState& state = cable.state;
+  const int n = model.segments();
+  const double radius = model.material.radius, surface = radius + moving.obstacle->padding;
+  const Pose to_shape = moving.start.inverse();
+  const Shape& shape = moving.obstacle->shape;
+  const bool flat = std::holds_alternative<PlaneShape>(shape);
+
+  const auto node_reach = [&](int i) { return surface + reach(state.velocities[i].norm() + moving.speed, radius, h); };
+  const auto visit = [&](int i, double far) {
+    if (visited_[i] != 0) return;
+    visited_[i] = 1;
+    local_[i] = to_shape.position + to_shape.orientation * state.positions[i];
+    nearest_[i] = closest_point(shape, local_[i], far);
+  };
+  const auto touch_at = [&](const CablePoint& point, std::uint64_t element, const SurfacePoint& nearest) {
+    if (anchored(cable, index, point, *moving.obstacle, attachments)) return;
+    Touch touch;
+    touch.key = key_of(index, moving.index);
+    touch.other_key = element;
+    touch.point = point;
+    touch.obstacle = moving.index;
+    touch.normal = moving.start.orientation * nearest.normal;
+    touch.gap = nearest.distance - surface;
+    touch.friction = moving.obstacle->friction.value_or(model.material.friction);
+    touch.radius = radius;
+    touch.base_stiffness = stopping(cable, point.segment, rules_.time_step);
+    touch.other_displacement = moving.end.position + moving.end.orientation * nearest.point -
+                               (moving.start.position + moving.start.orientation * nearest.point);
+    touch.position = interpolate(state.positions, point.segment, point.fraction);
+    add(touch, interpolate(state.velocities, point.segment, point.fraction), touch.other_displacement / h, h);
+  };
+
+  visited_.assign(n + 1, 0);
+  local_.resize(n + 1);
+  nearest_.resize(n + 1);
+  bool last = false;
+  for (int i = 0; i <= n; ++i) {
+    const double far = std::max(node_reach(i), i < n ? node_reach(i + 1) : 0.0);
+    const bool close = i < n && !apart(state.positions[i], state.positions[i + 1], moving.box, far);
+    const double length = i < n ? (state.positions[i + 1] - state.positions[i]).norm() : 0;
+    if (close) {
+      visit(i, far + length);
+      visit(i + 1, far + length);
+    }
+    if ((close || last) && held_[i] == 0) touch_at(node_point(index, i, n), 2 * i, nearest_[i]);
+    last = close;
+    if (!close || flat || held_[i] != 0 || held_[i + 1] != 0) continue;
+    const double first = nearest_[i].distance, second = nearest_[i + 1].distance;
+    if (0.5 * (first + second - length) > far) continue;
+    const SegmentSurfacePoint deepest = deepest_point(shape, local_[i], local_[i + 1], far);
+    if (deepest.surface.distance >= std::min({first, second, far}) - deeper * radius) continue;
+    touch_at({index, i, deepest.fraction}, 2 * i + 1, deepest.surface);
+  }
+}
+
+void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, double h) {
+  for (const SegmentGrid::Pair& pair : grid_.pairs()) {
+    const SimulatedCable &a = cables[pair.first.cable], &b = cables[pair.second.cable];
+    const int i = pair.first.segment, j = pair.second.segment;
+    const Vector3 &a0 = a.state.positions[i], &a1 = a.state.positions[i + 1];
+    const Vector3 &b0 = b.state.positions[j], &b1 = b.state.positions[j + 1];
+    const double radius = std::min(a.model.material.radius, b.model.material.radius);
+    const double surface = a.model.material.radius + b.model.material.radius;
+    const Vector3 along_a = a1 - a0, along_b = b1 - b0;
+    const double speed = std::sqrt(std::max((a.state.velocities[i] - b.state.velocities[j]).squaredNorm(),
+                                            (a.state.velocities[i + 1] - b.state.velocities[j + 1]).squaredNorm()));
+    const double far = surface + reach(speed, radius, h);
+    const Vector3 middles = 0.5 * (a0 + a1 - b0 - b1);
+    const double sum = far + 0.5 * (along_a.norm() + along_b.norm());
+    if (middles.squaredNorm() > sum * sum) continue;
+    const ClosestPoints closest = closest_points(a0, along_a, b0, along_b);
+    const double distance = closest.between.norm();
+    if (distance > far) continue;
+
+    Touch touch;
+    touch.key = pair_key | key_of(pair.first.cable, i);
+    touch.other_key = key_of(pair.second.cable, j);
+    touch.point = {pair.first.cable, i, closest.first};
+    touch.other = {pair.second.cable, j, closest.second};
+    touch.normal = distance > 0 ? Vector3(closest.between / distance) : along_a.unitOrthogonal();
+    touch.gap = distance - surface;
+    touch.friction = rules_.cable_friction;
+    touch.radius = radius;
+    touch.base_stiffness = std::min(stopping(a, i, rules_.time_step), stopping(b, j, rules_.time_step));
+    touch.position = a0 + closest.first * along_a;
+    const Vector3 velocity = interpolate(a.state.velocities, i, closest.first) - interpolate(b.state.velocities, j, closest.second);
+    add(touch, velocity, Vector3::Zero(), h);
+  }
+}
+
+/// Adds a touch if its gap may close; `velocity` [m/s] is that of the point, relative to another cable's, `other` that of an
+/// obstacle.
+void ContactSet::add(Touch& touch, const Vector3& velocity, const Vector3& other, double h) {
+  const double approach = -touch.normal.dot(velocity - other);
+  if (!(touch.gap < reach(std::max(0.0, approach), touch.radius, h))) return;
+  touch.gap = gentle_gap(touch.gap, touch.radius, time_);
+  touch.stuck_force = recall(touch);
+  anticipate(h, time_, velocity, touch);
+  start_touch(touch);
+  touches_.push_back(touch);
+}
+
+/// How far [m] from a surface contact may matter in a substep, at a velocity of approach [m/s].
+double ContactSet::reach(double speed, double radius, double h) const {
+  return std::min((h + time_) * speed, radius + h * speed) + spare_reach * radius;
+}
+
+/// The friction that stuck here in the last substep. Touches are asked for in ascending order.
+Vector3 ContactSet::recall(const Touch& touch) {
+  const auto before = [&](const Sticking& s) {
+    return std::tie(s.key, s.other_key) < std::tie(touch.key, touch.other_key);
+  };
+  while (recalled_ < sticking_.size() && before(sticking_[recalled_])) ++recalled_;
+  const bool known = recalled_ < sticking_.size() && sticking_[recalled_].key == touch.key &&
+                     sticking_[recalled_].other_key == touch.other_key;
+  return known ? sticking_[recalled_].force : Vector3::Zero();
+}
+
+bool ContactSet::crossed(const std::vector<SimulatedCable>& cables) const {
+  return std::any_of(touches_.begin(), touches_.end(), [&](const Touch& touch) {
+    if (touch.other.cable < 0) return false;
+    const std::vector<Vector3>&a = cables[touch.point.cable].state.positions, &b = cables[touch.other.cable].state.positions;
+    const int i = touch.point.segment, j = touch.other.segment;
+    return closest_points(a[i], a[i + 1] - a[i], b[j], b[j + 1] - b[j]).between.dot(touch.normal) < 0;
+  });
+}
+
+void ContactSet::keep() {
+  sticking_.clear();
+  for (const Touch& touch : touches_)
+    if (touch.mode != Touch::Mode::open) sticking_.push_back({touch.key, touch.other_key, remaining_friction(touch)});
+}
+
+void ContactSet::forget() {
+  sticking_.clear();
+  grid_.invalidate();
+}
+
+}  // namespace verlet_cable

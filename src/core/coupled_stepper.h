@@ -1,0 +1,49 @@
+#pragma once
+
+#include <vector>
+
+#include "cable_stepper.h"
+#include "contact_law.h"
+
+namespace verlet_cable {
+
+/// A cable that takes part in a substep.
+struct Participant {
+  int cable = 0;  ///< as in CablePoint
+  CableStepper* stepper = nullptr;
+  Substep substep;
+  CableState* state = nullptr;
+  SubstepResult result;
+};
+
+/// Advances cables that touch something by one substep, together. Newton's method on all of them at once: each cable's own
+/// matrix, with what contacts add to it, is solved directly; what contacts couple beyond that (segments far from each other,
+/// other cables) by conjugate gradients with those direct solutions as preconditioner, so that every iterate keeps the lengths
+/// (Gould, Hribar and Nocedal, On the Solution of Equality Constrained Quadratic Programming Problems Arising in Optimization,
+/// 2001).
+class CoupledStepper {
+ public:
+  /// If it has not converged, the states are untouched, and `converged` is false in the result of the participant that failed.
+  bool advance(std::vector<Participant>& participants, std::vector<Touch>& touches);
+
+ private:
+  /// Of one participant.
+  struct Work {
+    VectorArray load, residual, correction;   // nodes
+    VectorArray direction, own_image, image;  // nodes: the image is the matrix times the direction, `own` without what is coupled
+    std::vector<double> gap, direction_multiplier, correction_multiplier;  // segments
+    void resize(std::size_t nodes);
+  };
+
+  bool solve(std::vector<Participant>& participants, std::vector<Touch>& touches);
+  bool press(std::vector<Participant>& participants, std::vector<Touch>& touches);
+  void factor(std::vector<Participant>& participants, std::vector<Touch>& touches);
+  void couple(std::vector<Participant>& participants, const std::vector<Touch>& touches);
+  void add_coupling(const std::vector<Touch>& touches, double sign, VectorArray Work::*of, VectorArray Work::*to);
+  Participant& at(std::vector<Participant>& participants, const CablePoint& point) const;
+
+  std::vector<int> index_;  ///< of the participant, by cable
+  std::vector<Work> work_;  ///< one a participant
+};
+
+}  // namespace verlet_cable
