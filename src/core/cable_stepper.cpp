@@ -56,7 +56,7 @@ SubstepResult CableStepper::advance(const Substep& s, CableState& state) {
   SubstepResult result;
   begin(s, state, result);
   result.converged = solve(s, state, result);
-  if (result.converged) finish(s, state, result);
+  if (result.converged) finish(s, false, state, result);
   return result;
 }
 
@@ -72,12 +72,12 @@ void CableStepper::begin(const Substep& s, const CableState& state, SubstepResul
   set_natural_shape(s, state);
 }
 
-void CableStepper::finish(const Substep& s, CableState& state, SubstepResult& result) {
+void CableStepper::finish(const Substep& s, bool struck, CableState& state, SubstepResult& result) {
   if (s.statics)
     for (int i = 0; i <= segments_; ++i) result.displacement = std::max(result.displacement, get(displacement_, i).norm());
   react(s);
   move(s);
-  if (!s.statics && holders_accelerate(s.h, s.boundary.nodes)) project(s.model);
+  if (!s.statics && (struck || holders_accelerate(s.h, s.boundary.nodes))) project(s.model);
   result.max_strain = store(s, state);
   if (twist_.active()) twist_.follow(s.boundary.directions, state.positions, s.spans);
 }

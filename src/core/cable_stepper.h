@@ -58,7 +58,8 @@ class CableStepper {
   void assemble(double part);
   void factor() { solver_.factor(system_, bending_.active()); }
   double correct();
-  void finish(const Substep& substep, CableState& state, SubstepResult& result);
+  /// `struck`: forces from outside have changed velocities abruptly.
+  void finish(const Substep& substep, bool struck, CableState& state, SubstepResult& result);
   const VectorArray& displacement() const { return displacement_; }  ///< nodes: x' - x of the present iterate [m]
   SaddleSystem& system() { return system_; }
   SaddleSolver& solver() { return solver_; }

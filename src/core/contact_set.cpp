@@ -45,12 +45,11 @@ bool apart(const Vector3& a, const Vector3& b, const Aabb& box, double reach) {
 
 /// Whether a point is close to where an attachment joins the cable to the obstacle's own frame.
 bool anchored(const SimulatedCable& cable, int index, const CablePoint& point, const Obstacle& obstacle,
-                          const std::vector<Attachment>& attachments) const {
+              const std::vector<Attachment>& attachments) {
   if (obstacle.holders.empty()) return false;
   const double length = cable.model.rest_lengths[point.segment];
   for (const Attachment& attachment : attachments) {
-    if (attachment.cable != index ||
-        !std::binary_search(obstacle.holders.begin(), obstacle.holders.end(), attachment.frame))
+    if (attachment.cable != index || !std::binary_search(obstacle.holders.begin(), obstacle.holders.end(), attachment.frame))
       continue;
     const double distance = attachment.node <= point.segment
                                 ? cable.model.length(attachment.node, point.segment) + point.fraction * length
@@ -68,6 +67,7 @@ void ContactSet::find(const std::vector<SimulatedCable>& cables, const std::vect
   rules_ = rules;
   time_ = contact_time(rules.time_step);
   touches_.clear();
+  touched_.assign(cables.size(), 0);
   recalled_ = 0;
   for (const int cable : group) {
     set_held(cables[cable], cable, attachments);
@@ -175,7 +175,8 @@ void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, double h)
     touch.radius = radius;
     touch.base_stiffness = std::min(stopping(a, i, rules_.time_step), stopping(b, j, rules_.time_step));
     touch.position = a0 + closest.first * along_a;
-    const Vector3 velocity = interpolate(a.state.velocities, i, closest.first) - interpolate(b.state.velocities, j, closest.second);
+    const Vector3 velocity =
+        interpolate(a.state.velocities, i, closest.first) - interpolate(b.state.velocities, j, closest.second);
     add(touch, velocity, Vector3::Zero(), h);
   }
 }
@@ -189,6 +190,8 @@ void ContactSet::add(Touch& touch, const Vector3& velocity, const Vector3& other
   touch.stuck_force = recall(touch);
   anticipate(h, time_, velocity, touch);
   start_touch(touch);
+  touched_[touch.point.cable] = 1;
+  if (touch.other.cable >= 0) touched_[touch.other.cable] = 1;
   touches_.push_back(touch);
 }
 
@@ -199,12 +202,10 @@ double ContactSet::reach(double speed, double radius, double h) const {
 
 /// The friction that stuck here in the last substep. Touches are asked for in ascending order.
 Vector3 ContactSet::recall(const Touch& touch) {
-  const auto before = [&](const Sticking& s) {
-    return std::tie(s.key, s.other_key) < std::tie(touch.key, touch.other_key);
-  };
+  const auto before = [&](const Sticking& s) { return std::tie(s.key, s.other_key) < std::tie(touch.key, touch.other_key); };
   while (recalled_ < sticking_.size() && before(sticking_[recalled_])) ++recalled_;
-  const bool known = recalled_ < sticking_.size() && sticking_[recalled_].key == touch.key &&
-                     sticking_[recalled_].other_key == touch.other_key;
+  const bool known =
+      recalled_ < sticking_.size() && sticking_[recalled_].key == touch.key && sticking_[recalled_].other_key == touch.other_key;
   return known ? sticking_[recalled_].force : Vector3::Zero();
 }
 

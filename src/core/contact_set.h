@@ -12,17 +12,17 @@ namespace verlet_cable {
 /// An obstacle during a substep.
 struct MovingObstacle {
   const Obstacle* obstacle = nullptr;
-  int index = 0;   ///< into World::obstacles()
-  Pose start, end; ///< of its shape
-  Aabb box;        ///< around it at the start, in the fixed frame [m]
+  int index = 0;     ///< into World::obstacles()
+  Pose start, end;   ///< of its shape
+  Aabb box;          ///< around it at the start, in the fixed frame [m]
   double speed = 0;  ///< [m/s] no point of it is faster
 };
 
 /// What contacts are found with.
 struct ContactRules {
-  double time_step = 0;        ///< [s] the world's
-  SegmentGrid::Rules pairs;    ///< which cables touch which
-  double cable_friction = 0;   ///< Coulomb coefficient of cable against cable
+  double time_step = 0;       ///< [s] the world's
+  SegmentGrid::Rules pairs;   ///< which cables touch which
+  double cable_friction = 0;  ///< Coulomb coefficient of cable against cable
 };
 
 /// Friction that holds a contact at rest from one substep to the next.
@@ -35,8 +35,9 @@ struct Sticking {
 class ContactSet {
  public:
   /// Finds what may touch in the next h [s]. `group`: ascending indices into `cables`.
-  void find(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, const std::vector<MovingObstacle>& obstacles,
-            const std::vector<Attachment>& attachments, const ContactRules& rules, double h);
+  void find(const std::vector<SimulatedCable>& cables, const std::vector<int>& group,
+            const std::vector<MovingObstacle>& obstacles, const std::vector<Attachment>& attachments, const ContactRules& rules,
+            double h);
   /// Whether segments that touch have passed through each other since `find`.
   bool crossed(const std::vector<SimulatedCable>& cables) const;
   /// The substep is done: keeps what sticks.
@@ -46,6 +47,7 @@ class ContactSet {
 
   std::vector<Touch>& touches() { return touches_; }
   const std::vector<Touch>& touches() const { return touches_; }
+  bool touched(int cable) const { return touched_[cable] != 0; }  ///< whether a cable is part of a touch
   const std::vector<Sticking>& sticking() const { return sticking_; }
 
  private:
@@ -63,7 +65,8 @@ class ContactSet {
   ContactRules rules_;
   double time_ = 0;  ///< [s] in which contacts come to rest
   std::vector<Touch> touches_;
-  std::size_t recalled_ = 0;  ///< the first of `sticking_` that may still be asked for
+  std::vector<char> touched_;  ///< by cable
+  std::size_t recalled_ = 0;   ///< the first of `sticking_` that may still be asked for
   // Nodes of one cable
   std::vector<char> held_, visited_;
   std::vector<Vector3> local_;         ///< [m] in an obstacle's frame; where visited

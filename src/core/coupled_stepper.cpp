@@ -95,7 +95,7 @@ bool CoupledStepper::advance(std::vector<Participant>& participants, std::vector
     p.stepper->begin(p.substep, *p.state, p.result);
   }
   if (!solve(participants, touches)) return false;
-  for (Participant& p : participants) p.stepper->finish(p.substep, *p.state, p.result);
+  for (Participant& p : participants) p.stepper->finish(p.substep, true, *p.state, p.result);
   return true;
 }
 

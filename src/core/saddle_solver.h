@@ -83,9 +83,9 @@ class SaddleSolver {
   template <bool bending>
   void solve_lanes(const SaddleSystem& system);
 
-  int nodes_ = 0;  ///< even: padded by a held one where necessary
-  int lane_ = 0;   ///< eliminations from either end; two nodes are left in the middle
-  bool wide_ = false;  ///< whether a node is coupled to more than a multiple of its neighbour
+  int nodes_ = 0;                          ///< even: padded by a held one where necessary
+  int lane_ = 0;                           ///< eliminations from either end; two nodes are left in the middle
+  bool wide_ = false;                      ///< whether a node is coupled to more than a multiple of its neighbour
   std::vector<Elimination> eliminations_;  ///< lane_
   std::vector<Forward> forward_;           ///< lane_
   Eigen::PartialPivLU<Middle> middle_;

@@ -55,7 +55,8 @@ bool SegmentGrid::still_valid(const std::vector<SimulatedCable>& cables, const s
 void SegmentGrid::fill(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, double reach, double h) {
   double longest = 0, thickest = 0;
   for (const int cable : group) {
-    longest = std::max(longest, *std::max_element(cables[cable].model.rest_lengths.begin(), cables[cable].model.rest_lengths.end()));
+    longest =
+        std::max(longest, *std::max_element(cables[cable].model.rest_lengths.begin(), cables[cable].model.rest_lengths.end()));
     thickest = std::max(thickest, cables[cable].model.material.radius);
   }
   margin_ = std::max(thickest, margin_segments * longest) + 2 * h * largest_speed(cables, group);

@@ -29,7 +29,8 @@ class SegmentGrid {
 
   /// Brings `pairs` up to date: those of `group`, ascending indices into `cables`, whose centre lines may come closer in the
   /// next h [s] than the sum of the radii and `reach` [m].
-  void update(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, const Rules& rules, double reach, double h);
+  void update(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, const Rules& rules, double reach,
+              double h);
   /// The pairs have to be found anew.
   void invalidate() { valid_ = false; }
   /// Ascending.
@@ -40,7 +41,7 @@ class SegmentGrid {
     SegmentId id;
     Vector3 middle;
     double radius;  ///< of a ball around the capsule, with margin
-    std::array<std::int32_t, 3> cell;
+    std::array<std::int32_t, 3> cell{};
     int next;  ///< in the same bucket, -1: none
   };
 

@@ -12,17 +12,8 @@ namespace verlet_cable {
 
 namespace {
 
-/// After so many substeps in one step a cable is not split further: whoever waits for it has waited long enough.
-constexpr int maximum_substeps = 4096;
-/// A substep that took no more iterations than this may be doubled.
-constexpr int easy_iterations = 6;
-
 bool finite(const Pose& pose) {
   return pose.position.allFinite() && pose.orientation.coeffs().allFinite() && pose.orientation.norm() > 0.5;
-}
-
-bool finite(const std::vector<Vector3>& vectors) {
-  return std::all_of(vectors.begin(), vectors.end(), [](const Vector3& v) { return v.allFinite(); });
 }
 
 CableModel make_model(const SceneDesc& scene, const CableDesc& desc) {
@@ -158,6 +149,7 @@ void World::Implementation::start_cable(const CableDesc& desc) {
   follow_material(index);
   set_rest_curvature(desc.rest_curvature, scratch.back().holders.directions, cables.back());
   scratch.back().stepper.resize(cables.back().model);
+  form_groups();
   if (desc.initial.type == InitialShapeDesc::Type::settled) settle_cable(index);
 }
 

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <numeric>
 
 #include "verlet_cable/core/world.h"
 #include "world_implementation.h"
@@ -7,9 +6,6 @@
 namespace verlet_cable {
 
 namespace {
-
-/// No contact this far inside a cable counts as found there at the start: it came from stepping.
-constexpr double tolerated_depth = 0.2;  // radii
 
 Pose between(const Pose& a, const Pose& b, double part) {
   return {a.position + part * (b.position - a.position), a.orientation.slerp(part, b.orientation)};

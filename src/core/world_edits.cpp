@@ -147,6 +147,7 @@ EditResult World::cut(int cable, int segment) {
     w.update_holders(piece);
     w.scratch[piece].stepper.resize(w.cables[piece].model);
   }
+  w.form_groups();
   return {true, "", new_name};
 }
 

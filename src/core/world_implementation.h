@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "cable_stepper.h"
+#include "contact_group.h"
 #include "holders.h"
 #include "verlet_cable/core/world.h"
 
@@ -15,7 +16,6 @@ constexpr double shortest_substep = 1e-6;
 /// What a cable needs besides its model and state.
 struct CableScratch {
   Holders holders;
-  int level = 0;  ///< a step is tried in 2^level substeps
   CableStepper stepper;
   Boundary boundary;
   std::vector<TwistSpan> spans;
@@ -34,14 +34,25 @@ struct World::Implementation {
   std::vector<CableScratch> scratch;  ///< one a cable
   std::vector<Attachment> attachments;
   std::vector<Obstacle> obstacles;
-  std::vector<Break> breaks;  ///< in the last step
+  std::vector<ContactGroup> groups;  ///< every cable is in one
+  std::vector<Break> breaks;         ///< in the last step
+  // Scratch
+  std::vector<StepResult> results;  ///< one a cable
+  std::vector<MovingObstacle> moving_obstacles;
 
   bool frames_known(const CableDesc& desc, const BoundaryInputs& inputs) const;
   void start_cable(const CableDesc& desc);
   void follow_frames(const BoundaryInputs& inputs);
   void add_scene_obstacles();
   void find_obstacle_holders();
-  void step_cable(int cable, StepResult& result);
+  void form_groups();
+  void step_group(ContactGroup& group);
+  void aim(int cable);
+  bool advance(ContactGroup& group, double from, double to, bool tolerated);
+  void move_obstacles(double from, double to);
+  void find_contacts(ContactGroup& group, double from, double to);
+  void note_substep(int cable, const SubstepResult& substep, double part);
+  void give_up(int cable);
   bool settle_cable(int cable);
   int breaking_segment(int cable, const StepResult& result) const;
   void add_forces(int cable, double weight);

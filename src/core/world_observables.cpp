@@ -145,7 +145,6 @@ std::uint64_t World::hash() const {
       hash.add(span.origin);
       hash.add_bits(static_cast<std::uint64_t>(span.age));
     }
-    hash.add_bits(static_cast<std::uint64_t>(w.scratch[i].level));
     for (const DirectionHolder& h : w.scratch[i].holders.directions) {
       hash.add(h.orientation);
       hash.add(h.gap);
@@ -158,6 +157,14 @@ std::uint64_t World::hash() const {
     }
   }
   for (const Obstacle& obstacle : w.obstacles) hash.add(obstacle);
+  for (const ContactGroup& group : w.groups) {
+    hash.add_bits(static_cast<std::uint64_t>(group.level));
+    for (const Sticking& sticking : group.contacts.sticking()) {
+      hash.add_bits(sticking.key);
+      hash.add_bits(sticking.other_key);
+      hash.add(sticking.force);
+    }
+  }
   for (const Attachment& a : w.attachments) {
     hash.add(a.name);
     hash.add_bits(static_cast<std::uint64_t>(a.cable) << 32 | static_cast<std::uint64_t>(a.node));

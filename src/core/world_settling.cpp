@@ -44,7 +44,6 @@ bool World::Implementation::settle_cable(int index) {
   }
   add_forces(index, 1);
   follow_material(index);
-  s.level = 0;
   return settled;
 }
 

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "initial_shape.h"
 #include "verlet_cable/core/world.h"
@@ -18,10 +17,6 @@ constexpr int easy_contact_iterations = 12;
 
 bool finite(const std::vector<Vector3>& vectors) {
   return std::all_of(vectors.begin(), vectors.end(), [](const Vector3& v) { return v.allFinite(); });
-}
-
-Pose between(const Pose& a, const Pose& b, double part) {
-  return {a.position + part * (b.position - a.position), a.orientation.slerp(part, b.orientation)};
 }
 
 }  // namespace
@@ -65,14 +60,13 @@ void World::Implementation::step_group(ContactGroup& group) {
   while (done < whole) {
     const std::int64_t ticks = whole >> group.level;
     const bool splits = group.level < finest && substeps < maximum_substeps;
-    const bool converged =
-        advance(group, part * static_cast<double>(done), part * static_cast<double>(done + ticks), !splits);
+    const bool converged = advance(group, part * static_cast<double>(done), part * static_cast<double>(done + ticks), !splits);
     if (!converged) {
       if (splits) {
         ++group.level;
       } else if (!stopped) {
         for (std::size_t k = 0; k < group.cables.size(); ++k) {
-          if (group.results[k].converged) continue;
+          if (group.scratch.results[k].converged) continue;
           CableState& state = cables[group.cables[k]].state;
           bring_to_rest(state);
           std::fill(state.axial_multiplier.begin(), state.axial_multiplier.end(), 0.0);
@@ -81,18 +75,19 @@ void World::Implementation::step_group(ContactGroup& group) {
         stopped = true;
       } else {
         for (std::size_t k = 0; k < group.cables.size(); ++k)
-          if (!group.results[k].converged) give_up(group.cables[k]);
+          if (!group.scratch.results[k].converged) give_up(group.cables[k]);
         break;
       }
       continue;
     }
     done += ticks;
     ++substeps;
-    const bool touches = !group.participants.empty();
-    const bool easy = std::all_of(group.results.begin(), group.results.end(), [&](const SubstepResult& substep) {
+    const bool touches = !group.scratch.participants.empty();
+    const bool easy = std::all_of(group.scratch.results.begin(), group.scratch.results.end(), [&](const SubstepResult& substep) {
       return substep.iterations <= (touches ? easy_contact_iterations : easy_iterations);
     });
-    for (std::size_t k = 0; k < group.cables.size(); ++k) note_substep(group.cables[k], group.results[k], static_cast<double>(ticks) * part);
+    for (std::size_t k = 0; k < group.cables.size(); ++k)
+      note_substep(group.cables[k], group.scratch.results[k], static_cast<double>(ticks) * part);
     if (group.level > 0 && easy && done % (2 * ticks) == 0) --group.level;
   }
   for (const int cable : group.cables) {
@@ -127,8 +122,7 @@ void World::Implementation::note_substep(int index, const SubstepResult& substep
   add_forces(index, part);
   result.max_strain = std::max(result.max_strain, substep.max_strain);
   result.iterations += substep.iterations;
-  if (substep.overstretched_node >= 0)
-    note_status(StepResult::Status::overstretched, index, substep.overstretched_node, result);
+  if (substep.overstretched_node >= 0) note_status(StepResult::Status::overstretched, index, substep.overstretched_node, result);
 }
 
 /// One substep of a group, from one part of the step to another. False if it has not converged or cables have passed through
@@ -138,10 +132,10 @@ bool World::Implementation::advance(ContactGroup& group, double from, double to,
   const double h = (to - from) * scene.time_step;
   find_contacts(group, from, to);
   const bool touching = !group.contacts.touches().empty();
-  group.results.assign(group.cables.size(), SubstepResult{});
-  group.before.resize(group.cables.size());
-  group.spans_before.resize(group.cables.size());
-  group.participants.clear();
+  group.scratch.results.assign(group.cables.size(), SubstepResult{});
+  group.scratch.before.resize(group.cables.size());
+  group.scratch.spans_before.resize(group.cables.size());
+  group.scratch.participants.clear();
   bool converged = true;
   for (std::size_t k = 0; k < group.cables.size(); ++k) {
     const int cable = group.cables[k];
@@ -149,28 +143,28 @@ bool World::Implementation::advance(ContactGroup& group, double from, double to,
     CableScratch& s = scratch[cable];
     hold_at(from, to, s.holders, s.boundary);
     if (touching || group.cables.size() > 1) {
-      group.before[k] = c.state;
-      group.spans_before[k] = s.spans;
+      group.scratch.before[k] = c.state;
+      group.scratch.spans_before[k] = s.spans;
     }
     const Substep substep{c.model, environment, s.boundary, s.spans, h};
     if (group.contacts.touched(cable)) {
-      group.participants.push_back({static_cast<int>(k), cable, &s.stepper, substep, &c.state, {}});
+      group.scratch.participants.push_back({static_cast<int>(k), cable, &s.stepper, substep, &c.state, {}});
     } else {
-      group.results[k] = s.stepper.advance(substep, c.state);
-      converged = converged && group.results[k].converged;
+      group.scratch.results[k] = s.stepper.advance(substep, c.state);
+      converged = converged && group.scratch.results[k].converged;
     }
   }
   if (converged && touching) {
-    converged = group.stepper.advance(group.participants, group.contacts.touches());
-    for (const Participant& p : group.participants) group.results[p.place] = p.result;
+    converged = group.scratch.stepper.advance(group.scratch.participants, group.contacts.touches());
+    for (const Participant& p : group.scratch.participants) group.scratch.results[p.place] = p.result;
     if (converged && !tolerated) converged = !group.contacts.crossed(cables);
   }
   if (converged) {
     group.contacts.keep();
   } else if (touching || group.cables.size() > 1) {
     for (std::size_t k = 0; k < group.cables.size(); ++k) {
-      cables[group.cables[k]].state = group.before[k];
-      scratch[group.cables[k]].spans = group.spans_before[k];
+      cables[group.cables[k]].state = group.scratch.before[k];
+      scratch[group.cables[k]].spans = group.scratch.spans_before[k];
     }
   }
   return converged;
