@@ -12,8 +12,9 @@ namespace {
 
 /// Contacts are looked for this far beyond where they are expected, in radii: velocities change during a substep.
 constexpr double spare_reach = 0.1;
-/// A contact between two nodes counts if it is deeper than both by this, in radii; else those carry it.
-constexpr double deeper = 1e-3;
+/// A smooth cable through the nodes bulges out over round obstacles, where straight segments cut in: so much, in radii, is
+/// not counted as contact between nodes.
+constexpr double bulge = 0.08;
 /// So far from an attachment to what holds the cable it is not pushed by it [m]: the first few centimetres.
 constexpr double anchored_length = 0.05;
 /// Stiffness of a contact without load, relative to what stops a segment within a step.
@@ -37,6 +38,17 @@ Vector3 interpolate(const std::vector<Vector3>& nodes, int segment, double fract
 /// A node as a point of a segment.
 CablePoint node_point(int cable, int node, int segments) {
   return node < segments ? CablePoint{cable, node, 0.0} : CablePoint{cable, node - 1, 1.0};
+}
+
+/// What Coulomb's friction on the arc of a smooth cable comes to at the node that stands for it: turned around an obstacle by an
+/// angle, tension grows by exp(friction * angle) along the arc (Euler), where the node's forces alone would make it
+/// (1 + f tan(angle / 2)) / (1 - f tan(angle / 2)).
+double friction_of_arc(double friction, const CableState& state, int node, const Vector3& normal) {
+  if (node == 0 || node + 1 == static_cast<int>(state.positions.size())) return friction;
+  const Vector3 before = (state.positions[node] - state.positions[node - 1]).normalized();
+  const Vector3 after = (state.positions[node + 1] - state.positions[node]).normalized();
+  const double half_angle = std::asin(std::clamp(0.5 * normal.dot(before - after), 0.0, 1.0));
+  return half_angle > 0 ? std::tanh(friction * half_angle) / std::tan(half_angle) : friction;
 }
 
 bool apart(const Vector3& a, const Vector3& b, const Aabb& box, double reach) {
@@ -104,7 +116,7 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Mov
     local_[i] = to_shape.position + to_shape.orientation * state.positions[i];
     nearest_[i] = closest_point(shape, local_[i], far);
   };
-  const auto touch_at = [&](const CablePoint& point, std::uint64_t element, const SurfacePoint& nearest) {
+  const auto touch_at = [&](const CablePoint& point, std::uint64_t element, const SurfacePoint& nearest, int node) {
     if (anchored(cable, index, point, *moving.obstacle, attachments)) return;
     Touch touch;
     touch.key = key_of(index, moving.index);
@@ -113,7 +125,7 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Mov
     touch.obstacle = moving.index;
     touch.normal = moving.start.orientation * nearest.normal;
     touch.gap = nearest.distance - surface;
-    touch.friction = moving.obstacle->friction.value_or(model.material.friction);
+    touch.friction = friction_of_arc(moving.obstacle->friction.value_or(model.material.friction), state, node, touch.normal);
     touch.radius = radius;
     touch.base_stiffness = stopping(cable, point.segment, rules_.time_step);
     touch.other_displacement = moving.end.position + moving.end.orientation * nearest.point -
@@ -134,14 +146,16 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Mov
       visit(i, far + length);
       visit(i + 1, far + length);
     }
-    if ((close || last) && held_[i] == 0) touch_at(node_point(index, i, n), 2 * i, nearest_[i]);
+    if ((close || last) && held_[i] == 0) touch_at(node_point(index, i, n), 2 * i, nearest_[i], i);
     last = close;
     if (!close || flat || held_[i] != 0 || held_[i + 1] != 0) continue;
     const double first = nearest_[i].distance, second = nearest_[i + 1].distance;
     if (0.5 * (first + second - length) > far) continue;
-    const SegmentSurfacePoint deepest = deepest_point(shape, local_[i], local_[i + 1], far);
-    if (deepest.surface.distance >= std::min({first, second, far}) - deeper * radius) continue;
-    touch_at({index, i, deepest.fraction}, 2 * i + 1, deepest.surface);
+    SegmentSurfacePoint deepest = deepest_point(shape, local_[i], local_[i + 1], far);
+    const double cut = first + deepest.fraction * (second - first) - deepest.surface.distance;
+    if (deepest.surface.distance >= far || cut <= bulge * radius) continue;
+    deepest.surface.distance += bulge * radius;
+    touch_at({index, i, deepest.fraction}, 2 * i + 1, deepest.surface, 0);
   }
 }
 
