@@ -53,7 +53,6 @@ double gentle_gap(double gap, double radius, double contact_time) {
 void start_touch(Touch& touch) {
   touch.depth = std::max(0.0, -touch.gap);
   touch.stiffness = depth_law(touch.depth, touch).slope;
-  touch.mode = Touch::Mode::open;
 }
 
 bool evaluate_touch(const Vector3& w, Touch& touch) {
@@ -87,9 +86,9 @@ bool evaluate_touch(const Vector3& w, Touch& touch) {
     touch.slope = stiffness * Eigen::Matrix3d::Identity();
   } else {
     touch.mode = Touch::Mode::slides;
-    const Vector3 direction = trial / size;
-    touch.force = touch.normal_force * touch.normal + limit * direction;
-    touch.slope = stiffness * (across + limit / size * (tangential - direction * direction.transpose()));
+    touch.force = touch.normal_force * touch.normal + limit / size * trial;
+    // The secant, not the tangent, which is nothing along the slip: iterations would turn it to and fro.
+    touch.slope = stiffness * (across + limit / size * tangential);
   }
   return changed || before != touch.mode;
 }

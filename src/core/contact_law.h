@@ -41,7 +41,7 @@ struct Touch {
   Vector3 force = Vector3::Zero();                   ///< [N] on the point
   Eigen::Matrix3d slope = Eigen::Matrix3d::Zero();   ///< [N/m] - d force / d w, without the part of friction that follows f
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();  ///< [N/m] the slope that is in the matrix
-  enum class Mode { open, sticks, slides } mode = Mode::open;
+  enum class Mode { open, sticks, slides } mode = Mode::open;  ///< at first that of the substep before
 };
 
 /// How long contacts take to come to rest [s], for a world's time step [s].

@@ -201,7 +201,7 @@ void ContactSet::add(Touch& touch, const Vector3& velocity, const Vector3& other
   const double approach = -touch.normal.dot(velocity - other);
   if (!(touch.gap < reach(std::max(0.0, approach), touch.radius, h))) return;
   touch.gap = gentle_gap(touch.gap, touch.radius, time_);
-  touch.stuck_force = recall(touch);
+  recall(touch);
   anticipate(h, time_, velocity, touch);
   start_touch(touch);
   touched_[touch.point.cable] = 1;
@@ -214,13 +214,13 @@ double ContactSet::reach(double speed, double radius, double h) const {
   return std::min((h + time_) * speed, radius + h * speed) + spare_reach * radius;
 }
 
-/// The friction that stuck here in the last substep. Touches are asked for in ascending order.
-Vector3 ContactSet::recall(const Touch& touch) {
-  const auto before = [&](const Sticking& s) { return std::tie(s.key, s.other_key) < std::tie(touch.key, touch.other_key); };
-  while (recalled_ < sticking_.size() && before(sticking_[recalled_])) ++recalled_;
-  const bool known =
-      recalled_ < sticking_.size() && sticking_[recalled_].key == touch.key && sticking_[recalled_].other_key == touch.other_key;
-  return known ? sticking_[recalled_].force : Vector3::Zero();
+/// What stuck here in the last substep. Touches are asked for in ascending order.
+void ContactSet::recall(Touch& touch) {
+  const auto keys = [](const auto& of) { return std::tie(of.key, of.other_key); };
+  while (recalled_ < sticking_.size() && keys(sticking_[recalled_]) < keys(touch)) ++recalled_;
+  if (recalled_ == sticking_.size() || keys(sticking_[recalled_]) != keys(touch)) return;
+  touch.stuck_force = sticking_[recalled_].force;
+  touch.mode = sticking_[recalled_].mode;
 }
 
 bool ContactSet::crossed(const std::vector<SimulatedCable>& cables) const {
@@ -235,7 +235,7 @@ bool ContactSet::crossed(const std::vector<SimulatedCable>& cables) const {
 void ContactSet::keep() {
   sticking_.clear();
   for (const Touch& touch : touches_)
-    if (touch.mode != Touch::Mode::open) sticking_.push_back({touch.key, touch.other_key, remaining_friction(touch)});
+    if (touch.mode != Touch::Mode::open) sticking_.push_back({touch.key, touch.other_key, remaining_friction(touch), touch.mode});
 }
 
 void ContactSet::forget() {

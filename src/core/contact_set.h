@@ -25,10 +25,11 @@ struct ContactRules {
   double cable_friction = 0;  ///< Coulomb coefficient of cable against cable
 };
 
-/// Friction that holds a contact at rest from one substep to the next.
+/// What a contact takes from one substep to the next.
 struct Sticking {
   std::uint64_t key = 0, other_key = 0;  ///< of the touch
-  Vector3 force = Vector3::Zero();       ///< [N]
+  Vector3 force = Vector3::Zero();       ///< [N] friction of what sticks
+  Touch::Mode mode = Touch::Mode::open;
 };
 
 /// The contacts of a group of cables: found anew for every substep, but for what sticks.
@@ -57,7 +58,7 @@ class ContactSet {
   void find_pairs(const std::vector<SimulatedCable>& cables, double h);
   void add(Touch& touch, const Vector3& velocity, const Vector3& other, double h);
   double reach(double speed, double radius, double h) const;
-  Vector3 recall(const Touch& touch);
+  void recall(Touch& touch);
 
   std::vector<Sticking> sticking_;  ///< ascending by keys
   // Scratch

@@ -14,8 +14,10 @@ constexpr double longest_tolerated = 1e-3;  // [s]; beyond, the error of the pla
 constexpr double largest_correction = 2;    // segment lengths
 constexpr double fastest_convergence = 0.1;
 constexpr double slow_convergence = 0.2;
-/// Conjugate gradients end when the energy of what is missing, relative to that of the whole correction, is less than this.
+/// Conjugate gradients end when the energy of what is missing is less than this, relative to that of the whole correction and
+/// of the substep's largest.
 constexpr double coupling_tolerance = 1e-4;
+constexpr double coupling_precision = 1e-10;
 constexpr int maximum_coupling_iterations = 60;
 
 Vector3 at_point(const VectorArray& nodes, const CablePoint& point) {
@@ -94,6 +96,7 @@ bool CoupledStepper::advance(std::vector<Participant>& participants, std::vector
     p.result = {};
     p.stepper->begin(p.substep, *p.state, p.result);
   }
+  largest_energy_ = 0;
   if (!solve(participants, touches)) return false;
   for (Participant& p : participants) p.stepper->finish(p.substep, true, *p.state, p.result);
   return true;
@@ -173,6 +176,8 @@ void CoupledStepper::couple(std::vector<Participant>& participants, const std::v
   }
   add_coupling(touches, -1, &Work::correction, &Work::residual);
 
+  largest_energy_ = std::max(largest_energy_, whole);
+  const double enough = std::max(coupling_tolerance * whole, coupling_precision * largest_energy_);
   double energy = 0;
   for (int i = 0; i < maximum_coupling_iterations; ++i) {
     double next_energy = 0;
@@ -182,7 +187,7 @@ void CoupledStepper::couple(std::vector<Participant>& participants, const std::v
       stepper.solver().solve(stepper.system());
       next_energy += dot(work_[k].residual, stepper.solver().displacement(), nodes(participants[k]));
     }
-    if (!(next_energy > coupling_tolerance * coupling_tolerance * whole)) break;
+    if (!(next_energy > enough)) break;
     const double ratio = i == 0 ? 0 : next_energy / energy;
     energy = next_energy;
     for (std::size_t k = 0; k < count; ++k) {

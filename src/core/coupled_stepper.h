@@ -43,8 +43,9 @@ class CoupledStepper {
   void add_coupling(const std::vector<Touch>& touches, double sign, VectorArray Work::*of, VectorArray Work::*to);
   Participant& at(std::vector<Participant>& participants, const CablePoint& point) const;
 
-  std::vector<int> index_;  ///< of the participant, by cable
-  std::vector<Work> work_;  ///< one a participant
+  std::vector<int> index_;     ///< of the participant, by cable
+  std::vector<Work> work_;     ///< one a participant
+  double largest_energy_ = 0;  ///< of a correction in this substep
 };
 
 }  // namespace verlet_cable

@@ -1,0 +1,213 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "../support/scenes.h"
+#include "contact_law.h"
+#include "segment_distance.h"
+#include "verlet_cable/core/world.h"
+
+namespace verlet_cable {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double radius = 0.005;
+
+/// A straight rope of 5 mm.
+SceneDesc straight_rope(double length, int segments, double linear_density = 0.1) {
+  SceneDesc scene = scenes::one_cable(segments, length);
+  scene.materials[0].material.linear_density = linear_density;
+  scene.cables[0].initial.type = InitialShapeDesc::Type::straight;
+  return scene;
+}
+
+void add_obstacle(const std::string& name, ShapeType type, const InitialPose& pose, SceneDesc& scene) {
+  ObstacleDesc obstacle;
+  obstacle.name = name;
+  obstacle.type = type;
+  obstacle.pose = pose;
+  obstacle.radius = 0.05;
+  obstacle.length = 1.0;
+  obstacle.size = {0.4, 0.4, 0.1};
+  scene.obstacles.push_back(obstacle);
+}
+
+/// Steps for a duration [s] and returns the largest total energy on the way [J].
+double run(World& world, double duration) {
+  const BoundaryInputs inputs(world.frames().size());
+  double most = world.energy().total();
+  for (const double end = world.time() + duration - 0.5 * world.time_step(); world.time() < end;) {
+    const StepResult result = world.step(inputs);
+    EXPECT_EQ(result.status, StepResult::Status::ok);
+    most = std::max(most, world.energy().total());
+  }
+  return most;
+}
+
+double lowest(const World& world) {
+  double z = infinity;
+  for (const SimulatedCable& cable : world.cables())
+    for (const Vector3& x : cable.state.positions) z = std::min(z, x.z());
+  return z;
+}
+
+double fastest(const World& world) {
+  double v = 0;
+  for (const SimulatedCable& cable : world.cables())
+    for (const Vector3& velocity : cable.state.velocities) v = std::max(v, velocity.norm());
+  return v;
+}
+
+/// A rope along the fall line of a plane inclined by `slope` [rad].
+SceneDesc incline(double slope, double friction) {
+  SceneDesc scene = straight_rope(1.0, 50);
+  add_obstacle("ramp", ShapeType::plane, {0, 0, 0, 0, slope, 0}, scene);
+  scene.obstacles.back().friction = friction;
+  const Vector3 normal{std::sin(slope), 0, std::cos(slope)}, down{std::cos(slope), 0, -std::sin(slope)};
+  scene.cables[0].initial.from = radius * normal;
+  scene.cables[0].initial.to = radius * normal + down;
+  return scene;
+}
+
+TEST(Contact, RopeSlidesDownAnInclineAsCoulombSays) {
+  const double slope = 0.5, friction = 0.3, duration = 1.0;
+  World world(incline(slope, friction), BoundaryInputs(1));
+  run(world, duration);
+  const double expected = 9.81 * (std::sin(slope) - friction * std::cos(slope)) * duration;
+  // At first it sinks in by a thousandth of its radius, which takes some steps.
+  EXPECT_NEAR(world.cables()[0].state.velocities[25].norm(), expected, 0.01 * expected);
+}
+
+TEST(Contact, RopeSticksToAnInclineBelowTheAngleOfFriction) {
+  const double slope = std::atan(0.97 * 0.3);
+  World world(incline(slope, 0.3), BoundaryInputs(1));
+  run(world, 0.5);
+  const Vector3 before = world.cables()[0].state.positions[0];
+  run(world, 1.0);
+  // What sticks does not creep: the limit is far below what viscous friction would let pass, g h per step.
+  EXPECT_LT((world.cables()[0].state.positions[0] - before).norm(), 1e-6);
+}
+
+TEST(Contact, RopeDroppedOnAFloorComesToRestAtItsRadius) {
+  SceneDesc scene = straight_rope(1.0, 100);
+  add_obstacle("floor", ShapeType::plane, {0, 0, 0, 0, 0, 0}, scene);
+  scene.cables[0].initial.from = {0, 0, 0.3};
+  scene.cables[0].initial.to = {1, 0, 0.5};
+  World world(scene, BoundaryInputs(1));
+  const double before = world.energy().total();
+  EXPECT_LE(run(world, 2.0), before * (1 + 1e-9));
+  EXPECT_NEAR(lowest(world), radius, 0.01 * radius);
+  EXPECT_LT(fastest(world), 1e-3);
+}
+
+TEST(Contact, PileTouchesItselfAndComesToRest) {
+  SceneDesc scene = straight_rope(0.5, 50);
+  scene.contact = ContactDesc{};
+  add_obstacle("floor", ShapeType::plane, {0, 0, 0, 0, 0, 0}, scene);
+  scene.cables[0].initial.from = {0, 0, 0.02};
+  scene.cables[0].initial.to = {0.01, 0.005, 1};
+  World world(scene, BoundaryInputs(1));
+  const double before = world.energy().total();
+  EXPECT_LE(run(world, 3.0), before * (1 + 1e-3));
+  EXPECT_GT(lowest(world), 0.8 * radius);
+  EXPECT_LT(fastest(world), 0.01);
+  const std::vector<Contact> contacts = world.contacts();
+  EXPECT_TRUE(std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.other_cable == 0; }));
+  const std::vector<Vector3>& x = world.cables()[0].state.positions;
+  double closest = infinity;
+  for (int i = 0; i < 50; ++i)
+    for (int j = i + 3; j < 50; ++j)
+      closest = std::min(closest, closest_points(x[i], x[i + 1] - x[i], x[j], x[j + 1] - x[j]).between.norm());
+  EXPECT_GT(closest, 1.8 * radius);
+}
+
+/// A light cable over a cylinder, wrapped by half a turn and any number of whole ones, with payloads at both ends whose weights
+/// are in the ratio exp(friction * angle) * factor. How far the heavy one has sunk after half a second, after a time for it to
+/// settle [m].
+double capstan_slip(double friction, double angle, double factor) {
+  const double cylinder = 0.05, arm = 0.2, light = 1.0;
+  const double wrap = cylinder + radius;
+  SceneDesc scene = straight_rope(angle * wrap + 2 * arm, 100, 0.002);
+  CableDesc& cable = scene.cables[0];
+  cable.initial.type = InitialShapeDesc::Type::points;
+  cable.initial.points.push_back({-wrap, 0, -arm});
+  for (int i = 0; i <= 200; ++i) {
+    const double turned = angle * i / 200;
+    cable.initial.points.push_back({-wrap * std::cos(turned), 0, wrap * std::sin(turned)});
+  }
+  cable.initial.points.push_back(cable.initial.points.back() + Vector3(0, 0, -arm));
+  cable.point_masses.push_back({{PlaceDesc::At::start, 0}, light / 9.81});
+  cable.point_masses.push_back({{PlaceDesc::At::end, 0}, light * factor * std::exp(friction * angle) / 9.81});
+  add_obstacle("capstan", ShapeType::cylinder, {0, 0, 0, pi / 2, 0, 0}, scene);
+  scene.obstacles.back().friction = friction;
+  World world(scene, BoundaryInputs(1));
+  run(world, 0.5);
+  const double before = world.cables()[0].state.positions.back().z();
+  run(world, 0.5);
+  return before - world.cables()[0].state.positions.back().z();
+}
+
+TEST(Contact, CapstanHoldsAndSlipsAsEulerSays) {
+  for (const double angle : {pi, 3 * pi})
+    for (const double friction : {0.1, 0.3, 0.5}) {
+      EXPECT_LT(capstan_slip(friction, angle, 0.97), 2e-4) << "friction " << friction << ", angle " << angle;
+      EXPECT_GT(capstan_slip(friction, angle, 1.03), 2e-3) << "friction " << friction << ", angle " << angle;
+    }
+}
+
+TEST(Contact, CopiesOfAWorldWithContactsGoOnWithTheSameBytes) {
+  SceneDesc scene = straight_rope(0.5, 50);
+  scene.contact = ContactDesc{};
+  add_obstacle("floor", ShapeType::plane, {0, 0, 0, 0, 0, 0}, scene);
+  scene.cables[0].initial.from = {0, 0, 0.02};
+  scene.cables[0].initial.to = {0.01, 0.005, 1};
+  World world(scene, BoundaryInputs(1));
+  run(world, 0.3);
+  World copy = world;
+  run(world, 0.2);
+  run(copy, 0.2);
+  EXPECT_EQ(world.hash(), copy.hash());
+}
+
+TEST(ContactLaw, StiffensWithDepthAndKeepsFrictionInItsCone) {
+  Touch touch;
+  touch.radius = radius;
+  touch.friction = 0.4;
+  touch.base_stiffness = 100;
+  touch.gap = 0;
+  anticipate(1e-3, contact_time(1e-3), Vector3::Zero(), touch);
+  start_touch(touch);
+  double last = 0, last_slope = 0;
+  for (double depth = 1e-5; depth < 1e-3; depth += 1e-5) {
+    evaluate_touch(Vector3(depth / touch.rate, 0, -depth / touch.rate), touch);
+    EXPECT_GT(touch.normal_force, last);
+    EXPECT_GE(touch.normal_force - last, last_slope * (1 - 1e-9));
+    EXPECT_LE(std::hypot(touch.force.x(), touch.force.y()), touch.friction * touch.normal_force * (1 + 1e-12));
+    last_slope = touch.normal_force - last;
+    last = touch.normal_force;
+  }
+  evaluate_touch(Vector3(0, 0, 1e-6), touch);
+  EXPECT_EQ(touch.mode, Touch::Mode::open);
+  EXPECT_EQ(touch.force, Vector3::Zero());
+}
+
+TEST(SegmentDistance, AgreesWithASearch) {
+  unsigned seed = 1;
+  const auto random = [&] { return (seed = seed * 1664525u + 1013904223u) / 4294967296.0 - 0.5; };
+  const auto vector = [&] { return Vector3(random(), random(), random()); };
+  for (int k = 0; k < 200; ++k) {
+    const Vector3 a = vector(), b = vector(), along_a = vector(), along_b = vector();
+    double least = infinity;
+    for (int i = 0; i <= 100; ++i)
+      for (int j = 0; j <= 100; ++j) least = std::min(least, (a + 0.01 * i * along_a - b - 0.01 * j * along_b).norm());
+    const ClosestPoints points = closest_points(a, along_a, b, along_b);
+    EXPECT_LT((a + points.first * along_a - b - points.second * along_b - points.between).norm(), 1e-12);
+    // Drawing the points to the middles may cost a tenth of a segment where segments are nearly parallel.
+    EXPECT_LT(points.between.norm(), least + 0.1 * std::max(along_a.norm(), along_b.norm()));
+    EXPECT_GT(points.between.norm(), least - 0.02);
+  }
+}
+
+}  // namespace
+}  // namespace verlet_cable
