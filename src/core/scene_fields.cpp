@@ -18,6 +18,23 @@ bool is_frame_name(const std::string& name) {
   return !name.empty() && name[0] != '/' && std::all_of(name.begin(), name.end(), is_printable);
 }
 
+bool has_dimension(ShapeType type, const std::string& key) {
+  switch (type) {
+    case ShapeType::plane:
+      return false;
+    case ShapeType::sphere:
+      return key == "radius";
+    case ShapeType::capsule:
+    case ShapeType::cylinder:
+      return key == "radius" || key == "length";
+    case ShapeType::box:
+      return key == "size";
+    case ShapeType::mesh:
+      break;
+  }
+  return key == "uri" || key == "scale";
+}
+
 std::string Range::text(const char* unit) const {
   const std::string unit_text = *unit ? " [" + std::string(unit) + "]" : "";
   return words + unit_text + " (from " + number_text(lowest) + " to " + number_text(highest) + ")";

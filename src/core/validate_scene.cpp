@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "scene_errors.h"
+#include "validate_obstacles.h"
 #include "verlet_cable/core/world.h"
 
 namespace verlet_cable {
@@ -133,19 +134,21 @@ void check_initial_poses(const SceneDesc& scene, Errors& errors) {
     std::string key;
   };
   std::map<std::string, FirstUse> first_use{{scene.frame_id, {InitialPose{}, "the fixed frame"}}};
+  const auto check = [&](const std::string& user, const auto& desc) {
+    if (!desc.initial_pose) return;
+    const std::string key = user + ".initial_pose";
+    const std::string& frame = desc.frame.empty() ? scene.frame_id : desc.frame;
+    const auto [first, is_new] = first_use.emplace(frame, FirstUse{*desc.initial_pose, key});
+    if (!is_new && first->second.pose != *desc.initial_pose)
+      errors.add(
+          key, list_text(*desc.initial_pose),
+          "one initial_pose a frame; " + quoted(frame) + " has " + list_text(first->second.pose) + " by " + first->second.key);
+  };
   for (std::size_t c = 0; c < scene.cables.size(); ++c) {
-    for (std::size_t a = 0; a < scene.cables[c].attachments.size(); ++a) {
-      const AttachmentDesc& attachment = scene.cables[c].attachments[a];
-      if (!attachment.initial_pose) continue;
-      const std::string key = indexed(indexed("cables", c) + ".attachments", a) + ".initial_pose";
-      const std::string& frame = attachment.frame.empty() ? scene.frame_id : attachment.frame;
-      const auto [first, is_new] = first_use.emplace(frame, FirstUse{*attachment.initial_pose, key});
-      if (!is_new && first->second.pose != *attachment.initial_pose)
-        errors.add(
-            key, list_text(*attachment.initial_pose),
-            "one initial_pose a frame; " + quoted(frame) + " has " + list_text(first->second.pose) + " by " + first->second.key);
-    }
+    const std::vector<AttachmentDesc>& attachments = scene.cables[c].attachments;
+    for (std::size_t a = 0; a < attachments.size(); ++a) check(indexed(indexed("cables", c) + ".attachments", a), attachments[a]);
   }
+  for (std::size_t i = 0; i < scene.obstacles.size(); ++i) check(indexed("obstacles", i), scene.obstacles[i]);
 }
 
 /// Where an attachment's point is held with its frame at `frame`.
@@ -220,6 +223,7 @@ std::vector<std::string> validate(const SceneDesc& scene) {
     errors.add("cables", std::to_string(segments) + " segments in all",
                "at most limits.segments = " + std::to_string(scene.limits.segments));
 
+  check_obstacles(scene, errors);
   check_initial_poses(scene, errors);
   std::vector<std::string> lines = errors.take();
   for (std::string& line : validate_distances(scene, initial_frames(scene))) lines.push_back(std::move(line));

@@ -1,6 +1,7 @@
 #include "verlet_cable/ros/scene_files.h"
 
 #include <ros/package.h>
+#include <ros/this_node.h>
 
 #include <algorithm>
 #include <cctype>
@@ -8,6 +9,7 @@
 #include <system_error>
 
 #include "verlet_cable/core/quoted_text.h"
+#include "verlet_cable/ros/scene_parameters.h"
 #include "verlet_cable/scene/scene_reader.h"
 
 namespace verlet_cable {
@@ -79,8 +81,10 @@ SceneDesc read_requested_scene(const LoadScene::Request& request, const SceneDes
     throw SceneError({"yaml: " + std::to_string(request.yaml.size()) + " bytes; allowed: at most " +
                       std::to_string(longest_text) + ", longer scenes as a file"});
   }
-  SceneDesc scene = request.file.empty() ? read_scene_text(request.yaml)
-                                         : read_scene_file(find_scene_file("file", request.file, current.scene_directory));
+  const SceneSources sources = node_sources(current.scene_directory, ros::this_node::getName());
+  SceneDesc scene = request.file.empty()
+                        ? read_scene_text(request.yaml, sources)
+                        : read_scene_file(find_scene_file("file", request.file, current.scene_directory), sources);
   // A scene must not widen what it may do itself.
   scene.scene_directory = current.scene_directory;
   scene.limits = current.limits;

@@ -1,11 +1,14 @@
 #include "verlet_cable/ros/scene_parameters.h"
 
+#include <ros/names.h>
+#include <ros/param.h>
 #include <yaml-cpp/yaml.h>
 
 #include <cmath>
+#include <optional>
+#include <string>
 
 #include "verlet_cable/core/number_text.h"
-#include "verlet_cable/scene/scene_reader.h"
 
 namespace verlet_cable {
 namespace {
@@ -55,6 +58,17 @@ YAML::Node to_yaml(const XmlRpcValue& value, const std::string& key) {
   }
 }
 
+SceneSources node_sources(const std::string& scene_directory, const std::string& where) {
+  SceneSources sources;
+  sources.files = {false, scene_directory};
+  sources.parameter = [where](const std::string& name) -> std::optional<std::string> {
+    std::string full_name, text;
+    const bool found = ros::names::validate(name, full_name) && ros::param::search(where, name, full_name);
+    return found && ros::param::get(full_name, text) ? std::optional(text) : std::nullopt;
+  };
+  return sources;
+}
+
 SceneDesc read_scene_parameters(const ros::NodeHandle& private_node) {
   XmlRpcValue parameters;
   private_node.getParam(private_node.getNamespace(), parameters);
@@ -62,7 +76,9 @@ SceneDesc read_scene_parameters(const ros::NodeHandle& private_node) {
     throw SceneError({"no scene: the parameters under " + private_node.getNamespace() +
                       " are empty; load a scene file into them, inside <node>: <rosparam command=\"load\" file=\"...\"/>"});
   }
-  return read_scene(to_yaml(parameters), {"tuning"});
+  std::string scene_directory;
+  private_node.getParam("scene_directory", scene_directory);
+  return read_scene(to_yaml(parameters), {"tuning"}, node_sources(scene_directory, private_node.getNamespace()));
 }
 
 }  // namespace verlet_cable

@@ -5,6 +5,8 @@
 #include "cable_keys.h"
 #include "keys.h"
 #include "material_keys.h"
+#include "obstacle_keys.h"
+#include "scene_files.h"
 #include "verlet_cable/scene/material_presets.h"
 
 namespace verlet_cable {
@@ -66,6 +68,7 @@ Keys<SceneDesc> scene_keys(const std::vector<std::string>& ignored) {
          if (value.node.IsSequence() && scene.cables.empty()) value.reject("a list of at least one cable");
        }},
   };
+  append_obstacle_keys(keys);
   append_fields(keys, scene_fields);
   append_fields(keys, scene_integer_fields);
   for (const std::string& name : ignored) keys.push_back({name, "anything", false, [](const Value&, SceneDesc&) {}});
@@ -92,13 +95,14 @@ void add_presets(const Value& root, SceneDesc& scene) {
 
 }  // namespace
 
-SceneDesc read_scene(const YAML::Node& root, const std::vector<std::string>& ignored) {
+SceneDesc read_scene(const YAML::Node& root, const std::vector<std::string>& ignored, const SceneSources& sources) {
   SceneDesc scene;
   ErrorList errors;
   const Value value{root, "", &errors};
   if (root.IsMap()) {
     read_map(value, scene_keys(ignored), scene);
     add_presets(value, scene);
+    read_scene_files(value, sources, scene);
     errors.add_validation(validate(scene));
     reject_unsupported(value);
   } else {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -105,19 +106,23 @@ void check_size(const std::string& text) {
 
 }  // namespace
 
-SceneDesc read_scene_text(const std::string& text) {
+SceneDesc read_scene_text(const std::string& text, const SceneSources& sources) {
   if (text.size() > largest_text)
     throw SceneError(
         {"scene: " + std::to_string(text.size()) + " bytes or more; allowed: at most " + std::to_string(largest_text)});
   try {
     check_size(text);
-    return read_scene(YAML::Load(text));
+    return read_scene(YAML::Load(text), {}, sources);
   } catch (const YAML::Exception& error) {
     throw SceneError({place_text(error.mark) + escaped(error.msg, longest_message)});
   }
 }
 
 SceneDesc read_scene_file(const std::string& path) {
+  return read_scene_file(path, {{true, std::filesystem::path(path).parent_path().string()}, {}});
+}
+
+SceneDesc read_scene_file(const std::string& path, const SceneSources& sources) {
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   std::string text;
@@ -129,7 +134,7 @@ SceneDesc read_scene_file(const std::string& path) {
   }
   if (!file.is_open() || file.bad())
     throw SceneError({"scene: cannot read " + quoted(path) + ": " + std::generic_category().message(errno ? errno : EIO)});
-  return read_scene_text(text);
+  return read_scene_text(text, sources);
 }
 
 }  // namespace verlet_cable

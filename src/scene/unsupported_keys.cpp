@@ -18,11 +18,6 @@ struct UnsupportedKey {
 
 /// Keys of the schema whose values ask for something that is not simulated yet. A value that changes nothing passes.
 constexpr UnsupportedKey unsupported_keys[] = {
-    {"materials.*.friction", Passes::only, "0.5"},
-    {"color_by", Passes::all_but, "contact"},
-    {"obstacles", Passes::only, "[]"},
-    {"robot", Passes::none, ""},
-    {"contact", Passes::none, ""},
     {"gravity.type", Passes::none, ""},
     {"particles", Passes::only, "[]"},
     {"nets", Passes::only, "[]"},

@@ -30,6 +30,10 @@ TEST(SceneFiles, templateHoldsTheDefaults) {
   EXPECT_EQ(scene.marker_style, defaults.marker_style);
   EXPECT_EQ(scene.color_by, defaults.color_by);
   EXPECT_EQ(scene.scene_directory, defaults.scene_directory);
+  ASSERT_TRUE(scene.contact);
+  EXPECT_EQ(scene.contact->self, ContactDesc{}.self);
+  EXPECT_EQ(scene.contact->between_cables, ContactDesc{}.between_cables);
+  for (const auto& field : contact_fields) EXPECT_EQ((*scene.contact).*field.member, ContactDesc{}.*field.member) << field.key;
   ASSERT_EQ(scene.materials.size(), 1u);
   for (const auto& field : material_fields) {
     if (field.required) continue;
@@ -72,11 +76,14 @@ TEST(SceneFiles, templateDocumentsEveryKey) {
   expect_documented(lines, fluid_fields);
   expect_documented(lines, cable_fields);
   expect_documented(lines, cable_integer_fields);
+  expect_documented(lines, obstacle_fields);
+  expect_documented(lines, contact_fields);
   for (const char* key :
-       {"frame_id",     "gravity",   "on_lost_frame", "on_time_jump", "marker_style", "color_by", "scene_directory",
-        "limits",       "materials", "cables",        "name",         "material",     "color",    "rest_curvature",
-        "attachments",  "at",        "frame",         "offset",       "rotation",     "type",     "initial_pose",
-        "point_masses", "initial",   "fluid",         "velocity"})
+       {"frame_id",     "gravity",   "on_lost_frame", "on_time_jump",  "marker_style", "color_by", "scene_directory",
+        "limits",       "materials", "cables",        "name",          "material",     "color",    "rest_curvature",
+        "attachments",  "at",        "frame",         "offset",        "rotation",     "type",     "initial_pose",
+        "point_masses", "initial",   "fluid",         "velocity",      "obstacles",    "pose",     "friction",
+        "size",         "contact",   "self",          "between_cables"})
     EXPECT_TRUE(is_documented(lines, key, "")) << key;
 }
 

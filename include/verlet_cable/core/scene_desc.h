@@ -194,9 +194,9 @@ class SceneError : public std::runtime_error {
   std::vector<std::string> errors_;
 };
 
-/// Every value out of range, name used twice, unknown material, attachments at one node, conflicting `initial_pose`
-/// of a frame, cable shorter than the distance of its attachments at their initial poses; empty if the scene is sound.
-/// Keys are written as in YAML: `cables[0].attachments[1].frame`.
+/// Every value out of range, name used twice, unknown material, attachments at one node, an obstacle's
+/// mesh that is not there, conflicting `initial_pose` of a frame, cable shorter than the distance of its attachments at their
+/// initial poses; empty if the scene is sound. Keys are written as in YAML: `cables[0].attachments[1].frame`.
 std::vector<std::string> validate(const SceneDesc& scene);
 
 /// The scene's own obstacles, then those of its robot's links.

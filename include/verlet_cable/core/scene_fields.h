@@ -92,10 +92,26 @@ constexpr std::array<Field<PointMassDesc>, 1> point_mass_fields{{
     {"mass", &PointMassDesc::mass, "kg", positive, true},
 }};
 
-/// Whether a scene may use `name` for a material, cable or attachment: letters, digits and _, a letter first.
+constexpr std::array<Field<ObstacleDesc>, 2> obstacle_fields{{
+    {"radius", &ObstacleDesc::radius, "m", positive},
+    {"length", &ObstacleDesc::length, "m", positive},
+}};
+
+constexpr std::array<Field<RobotDesc>, 1> robot_fields{{
+    {"padding", &RobotDesc::padding, "m", not_negative},
+}};
+
+constexpr std::array<Field<ContactDesc>, 1> contact_fields{{
+    {"friction", &ContactDesc::friction, "", not_negative},
+}};
+
+/// Whether a scene may use `name` for a material, cable, attachment or obstacle: letters, digits and _, a letter first.
 bool is_name(const std::string& name);
 /// Whether `name` can be a tf frame: not empty, no leading /, no blanks or control characters.
 bool is_frame_name(const std::string& name);
+
+/// Which keys an obstacle's type has; all of them are required but `scale`.
+bool has_dimension(ShapeType type, const std::string& key);
 
 /// The names of materials, for messages: the first 20 of them.
 std::string material_names(const std::vector<NamedMaterial>& materials);

@@ -7,12 +7,17 @@
 #include <string>
 
 #include "verlet_cable/core/scene_desc.h"
+#include "verlet_cable/scene/scene_reader.h"
 
 namespace verlet_cable {
 
 /// A parameter as the tree of keys that the scene reader knows. `key` is its full name, for errors: throws SceneError where the
 /// tree holds binary data or dates.
 YAML::Node to_yaml(const XmlRpc::XmlRpcValue& value, const std::string& key = {});
+
+/// What scenes of a node may read: files of packages and in `scene_directory`, and parameters in the namespace `where` and those
+/// around it.
+SceneSources node_sources(const std::string& scene_directory, const std::string& where);
 
 /// Reads the scene from a node's private parameters; `tuning` is left out. Throws SceneError with every error at once.
 SceneDesc read_scene_parameters(const ros::NodeHandle& private_node);

@@ -53,7 +53,7 @@ int simulate_job(const Options& options, const Job& job) {
   outputs.open(options, errors);
   if (!errors.empty()) return refuse(errors);
   for (const std::string& frame : unused_frames(job.scene, job.motion))
-    std::cerr << "cable_sim: note: " << options.motion << ": nothing in the scene is held by frame " << quoted(frame) << "\n";
+    std::cerr << "cable_sim: note: " << options.motion << ": nothing in the scene follows frame " << quoted(frame) << "\n";
 
   ProgressBar progress(options.duration);
   EventLog events(progress);

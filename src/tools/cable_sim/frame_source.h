@@ -8,7 +8,8 @@
 
 namespace verlet_cable::cable_sim {
 
-/// Where a scene's frames are over time: by the motion, else at their `initial_pose`, else at the origin.
+/// Where a scene's frames are over time: by the motion, else at their `initial_pose`; else a robot's link is where its parent has it
+/// with the joint at zero; else at the origin.
 class FrameSource {
  public:
   FrameSource(const SceneDesc& scene, const Motion& motion);
@@ -17,8 +18,22 @@ class FrameSource {
   BoundaryInputs at(double time) const;
 
  private:
-  BoundaryInputs resting_;
-  std::vector<FrameTrack> tracks_;  ///< one a frame id, empty where it rests
+  struct Frame {
+    FrameTrack track;  ///< empty where it rests
+    Pose resting;
+  };
+  struct Link {
+    int frame = -1;   ///< what places it, index into frames_; -1: its parent does
+    int parent = -1;  ///< index into links_
+    Pose origin;      ///< in the parent
+    int id = -1;      ///< of the frame that it places, -1 if it places none
+  };
+
+  int add_frame(const std::string& name, const FrameInput& resting, const Motion& motion);
+
+  std::vector<Frame> frames_;  ///< by id, then those of links that nothing else uses
+  int ids_ = 0;                ///< how many of them have ids
+  std::vector<Link> links_;    ///< parents first
 };
 
 /// Names of the motion's frames that nothing in the scene uses.

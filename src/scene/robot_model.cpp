@@ -1,0 +1,126 @@
+#include "robot_model.h"
+
+#include <console_bridge/console.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <algorithm>
+#include <set>
+
+#include "verlet_cable/core/quoted_text.h"
+#include "verlet_cable/scene/resource.h"
+
+namespace verlet_cable {
+namespace {
+
+constexpr std::size_t longest_message = 300;
+
+/// What urdfdom would print, as long as this is there.
+class CapturedErrors : public console_bridge::OutputHandler {
+ public:
+  CapturedErrors() { console_bridge::useOutputHandler(this); }
+  ~CapturedErrors() override { console_bridge::restorePreviousOutputHandler(); }
+  CapturedErrors(const CapturedErrors&) = delete;
+  CapturedErrors& operator=(const CapturedErrors&) = delete;
+
+  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
+    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR) text_ += (text_.empty() ? "" : "; ") + text;
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+InitialPose to_pose(const urdf::Pose& pose) {
+  InitialPose numbers{pose.position.x, pose.position.y, pose.position.z};
+  pose.rotation.getRPY(numbers[3], numbers[4], numbers[5]);
+  return numbers;
+}
+
+void set_shape(const urdf::Geometry& geometry, ObstacleDesc& obstacle) {
+  switch (geometry.type) {
+    case urdf::Geometry::SPHERE:
+      obstacle.type = ShapeType::sphere;
+      obstacle.radius = static_cast<const urdf::Sphere&>(geometry).radius;
+      break;
+    case urdf::Geometry::CYLINDER:
+      obstacle.type = ShapeType::cylinder;
+      obstacle.radius = static_cast<const urdf::Cylinder&>(geometry).radius;
+      obstacle.length = static_cast<const urdf::Cylinder&>(geometry).length;
+      break;
+    case urdf::Geometry::BOX: {
+      const urdf::Vector3& size = static_cast<const urdf::Box&>(geometry).dim;
+      obstacle.type = ShapeType::box;
+      obstacle.size = {size.x, size.y, size.z};
+      break;
+    }
+    case urdf::Geometry::MESH: {
+      const urdf::Mesh& mesh = static_cast<const urdf::Mesh&>(geometry);
+      obstacle.type = ShapeType::mesh;
+      obstacle.uri = mesh.filename;
+      obstacle.scale = {mesh.scale.x, mesh.scale.y, mesh.scale.z};
+      break;
+    }
+  }
+}
+
+class TreeBuilder {
+ public:
+  TreeBuilder(const urdf::ModelInterface& model, const RobotDesc& robot) : robot_(robot) {
+    for (const auto& link : model.links_) taken_.insert(link.first);
+    add(*model.getRoot(), -1);
+  }
+
+  std::vector<LinkDesc> take() && { return std::move(tree_); }
+
+ private:
+  void add(const urdf::Link& link, int parent) {
+    const int index = static_cast<int>(tree_.size());
+    LinkDesc desc;
+    desc.name = link.name;
+    desc.parent = parent;
+    if (link.parent_joint) {
+      desc.fixed = link.parent_joint->type == urdf::Joint::FIXED;
+      desc.origin = to_pose(link.parent_joint->parent_to_joint_origin_transform);
+    }
+    const std::vector<std::string>& selected = robot_.links;
+    if (selected.empty() || std::find(selected.begin(), selected.end(), link.name) != selected.end()) add_obstacles(link, desc);
+    tree_.push_back(std::move(desc));
+    for (const urdf::LinkSharedPtr& child : link.child_links) add(*child, index);
+  }
+
+  void add_obstacles(const urdf::Link& link, LinkDesc& desc) {
+    int number = 0;
+    for (const urdf::CollisionSharedPtr& collision : link.collision_array) {
+      if (!collision || !collision->geometry) continue;
+      ObstacleDesc obstacle;
+      obstacle.name = link.name;
+      while (!desc.obstacles.empty() && !taken_.insert(obstacle.name).second)
+        obstacle.name = link.name + "_" + std::to_string(++number);
+      obstacle.frame = link.name;
+      obstacle.pose = to_pose(collision->origin);
+      obstacle.padding = robot_.padding;
+      set_shape(*collision->geometry, obstacle);
+      desc.obstacles.push_back(std::move(obstacle));
+    }
+  }
+
+  const RobotDesc& robot_;
+  std::set<std::string> taken_;  ///< names
+  std::vector<LinkDesc> tree_;
+};
+
+}  // namespace
+
+std::vector<LinkDesc> read_urdf(const std::string& text, const RobotDesc& robot) {
+  const CapturedErrors errors;
+  const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
+  // urdfdom goes on without a collision that it cannot read.
+  if (!model || !model->getRoot() || !errors.text().empty()) {
+    const std::string reason = errors.text().empty() ? "it does not parse" : errors.text();
+    throw ResourceError("no URDF: " + escaped(reason, longest_message));
+  }
+  return TreeBuilder(*model, robot).take();
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,103 @@
+#include "scene_files.h"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include "robot_model.h"
+#include "verlet_cable/scene/mesh_file.h"
+
+namespace verlet_cable {
+namespace {
+
+constexpr const char* urdf_words = "a URDF";
+
+/// Meshes by file and scale, each read once.
+class MeshReader {
+ public:
+  explicit MeshReader(const FileAccess& files) : files_(files) {}
+
+  std::shared_ptr<const TriangleMesh> read(const ObstacleDesc& obstacle) {
+    const std::string file = file_of(obstacle.uri, files_);
+    const Vector3& scale = obstacle.scale;
+    std::shared_ptr<const TriangleMesh>& mesh = meshes_[{file, scale.x(), scale.y(), scale.z()}];
+    if (!mesh) mesh = read_mesh_file(file, scale);
+    return mesh;
+  }
+
+ private:
+  const FileAccess& files_;
+  std::map<std::tuple<std::string, double, double, double>, std::shared_ptr<const TriangleMesh>> meshes_;
+};
+
+void read_mesh(const std::string& key, MeshReader& reader, ErrorList& errors, ObstacleDesc& obstacle) {
+  const bool unread = errors.is_unread(key + ".uri") || errors.is_unread(key + ".scale");
+  const Vector3& scale = obstacle.scale;
+  const bool scaled = positive.contains(scale.minCoeff()) && positive.contains(scale.maxCoeff());
+  if (obstacle.type != ShapeType::mesh || unread || !scaled) return errors.mark(key + ".uri");
+  try {
+    obstacle.mesh = reader.read(obstacle);
+  } catch (const ResourceError& error) {
+    errors.add_unread(key + ".uri", quoted(obstacle.uri) + ": " + error.what(), mesh_words);
+  }
+}
+
+/// The URDF's text and the key that it comes from. The parameter comes before the file: a scene with both is for the node and for
+/// cable_sim.
+struct Description {
+  std::string key;
+  std::string text;
+};
+Description read_description(const RobotDesc& robot, const SceneSources& sources, ErrorList& errors) {
+  if (sources.parameter) {
+    if (const auto text = sources.parameter(robot.description)) return {"robot.description", *text};
+  }
+  if (!robot.file.empty()) {
+    try {
+      return {"robot.file", read_file(file_of(robot.file, sources.files))};
+    } catch (const ResourceError& error) {
+      errors.add_unread("robot.file", quoted(robot.file) + ": " + error.what(), urdf_words);
+    }
+  } else if (sources.parameter) {
+    errors.add_unread("robot.description", quoted(robot.description) + " is not set", "a parameter with a URDF");
+  } else {
+    errors.add_unread("robot.file", "missing", "a file with a URDF: there are no parameters here");
+  }
+  return {};
+}
+
+void check_links(const Value& root, const RobotDesc& robot) {
+  std::string names;
+  for (const LinkDesc& link : robot.tree) names += (names.empty() ? "" : ", ") + link.name;
+  for (std::size_t i = 0; i < robot.links.size(); ++i) {
+    const auto is_it = [&](const LinkDesc& link) { return link.name == robot.links[i]; };
+    const Value key = root.child("robot", {}).child("links", {}).element(i, {});
+    if (std::none_of(robot.tree.begin(), robot.tree.end(), is_it) && !root.errors->is_unread(key.key))
+      root.errors->add(key.key, quoted(robot.links[i]), "a link of the robot: " + escaped(names, 500));
+  }
+}
+
+void read_robot(const Value& root, const SceneSources& sources, MeshReader& meshes, RobotDesc& robot) {
+  const Description description = read_description(robot, sources, *root.errors);
+  if (description.key.empty()) return;
+  try {
+    robot.tree = read_urdf(description.text, robot);
+  } catch (const ResourceError& error) {
+    const std::string& name = description.key == "robot.file" ? robot.file : robot.description;
+    return root.errors->add_unread(description.key, quoted(name) + ": " + error.what(), urdf_words);
+  }
+  check_links(root, robot);
+  for (LinkDesc& link : robot.tree)
+    for (ObstacleDesc& obstacle : link.obstacles) read_mesh("robot." + escaped(obstacle.name), meshes, *root.errors, obstacle);
+}
+
+}  // namespace
+
+void read_scene_files(const Value& root, const SceneSources& sources, SceneDesc& scene) {
+  MeshReader meshes(sources.files);
+  for (std::size_t i = 0; i < scene.obstacles.size(); ++i)
+    read_mesh(root.child("obstacles", {}).element(i, {}).key, meshes, *root.errors, scene.obstacles[i]);
+  if (scene.robot && !root.errors->is_unread("robot")) read_robot(root, sources, meshes, *scene.robot);
+}
+
+}  // namespace verlet_cable

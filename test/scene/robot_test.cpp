@@ -1,0 +1,224 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "../support/meshes.h"
+#include "cable_sim/frame_source.h"
+#include "scene_text.h"
+#include "verlet_cable/core/world.h"
+
+namespace verlet_cable {
+namespace {
+
+using test::errors_of;
+using test::has_line;
+using test::joined;
+using test::replaced;
+using test::sound_scene;
+
+// base -(revolute, up 0.5)- arm -(fixed, out 0.4)- tool, and a wheel beside the base.
+const std::string urdf = R"(<robot name="r">
+  <link name="base">
+    <collision><origin xyz="0 0 0.1"/><geometry><box size="0.2 0.4 0.6"/></geometry></collision>
+    <collision><geometry><cylinder radius="0.3" length="0.7"/></geometry></collision>
+    <collision><geometry><sphere radius="0.05"/></geometry></collision>
+  </link>
+  <link name="arm"><collision><origin rpy="0 1.5 0"/><geometry><mesh filename="MESH" scale="2 3 4"/></geometry></collision></link>
+  <link name="tool"/>
+  <link name="base_1"><collision><geometry><sphere radius="0.06"/></geometry></collision></link>
+  <joint name="j1" type="revolute"><parent link="base"/><child link="arm"/><origin xyz="0 0 0.5" rpy="0 0 1.5707963267948966"/>
+    <axis xyz="0 0 1"/><limit effort="1" velocity="1" lower="-1" upper="1"/></joint>
+  <joint name="j2" type="fixed"><parent link="arm"/><child link="tool"/><origin xyz="0.4 0 0"/></joint>
+  <joint name="j3" type="fixed"><parent link="base"/><child link="base_1"/></joint>
+</robot>)";
+
+std::string stl_of(const Triangles& mesh) {
+  std::ostringstream text;
+  text << "solid m\n";
+  for (const auto& triangle : mesh.triangles) {
+    text << "facet normal 0 0 0\nouter loop\n";
+    for (const int i : triangle) text << "vertex " << mesh.vertices[i].transpose() << "\n";
+    text << "endloop\nendfacet\n";
+  }
+  text << "endsolid m\n";
+  return text.str();
+}
+
+class Robot : public testing::Test {
+ protected:
+  Robot() {
+    std::string pattern = testing::TempDir() + "robot_XXXXXX";
+    directory_ = mkdtemp(pattern.data());
+    write("box.stl", stl_of(box_triangles({1, 1, 1})));
+    write("robot.urdf", replaced(urdf, "MESH", "file://" + path("box.stl")));
+  }
+  ~Robot() override { std::filesystem::remove_all(directory_); }
+
+  std::string path(const std::string& name) const { return directory_ + "/" + name; }
+  void write(const std::string& name, const std::string& text) const {
+    std::filesystem::create_directories(std::filesystem::path(path(name)).parent_path());
+    std::ofstream(path(name)) << text;
+  }
+  SceneDesc read(const std::string& robot, const std::string& attachment_frame = "hand") const {
+    return read_scene_text(replaced(sound_scene, "frame: hand", "frame: " + attachment_frame) + "robot: " + robot + "\n");
+  }
+  std::string file() const { return "file: " + path("robot.urdf"); }
+
+  std::string directory_;
+};
+
+TEST_F(Robot, collisionGeometryOfAllLinksBecomesObstacles) {
+  const SceneDesc scene = read("{" + file() + ", padding: 0.01}");
+  const std::vector<ObstacleDesc> obstacles = all_obstacles(scene);
+  std::vector<std::string> names;
+  for (const ObstacleDesc& obstacle : obstacles) {
+    names.push_back(obstacle.name);
+    EXPECT_EQ(obstacle.padding, 0.01);
+  }
+  // base_1 is a link: the second obstacle of base cannot have its name.
+  EXPECT_EQ(names, (std::vector<std::string>{"base", "base_2", "base_3", "arm", "base_1"}));
+  EXPECT_EQ(obstacles[0].type, ShapeType::box);
+  EXPECT_EQ(obstacles[0].size, Vector3(0.2, 0.4, 0.6));
+  EXPECT_EQ(obstacles[0].pose[2], 0.1);
+  EXPECT_EQ(obstacles[1].type, ShapeType::cylinder);
+  EXPECT_EQ(obstacles[1].radius, 0.3);
+  EXPECT_EQ(obstacles[1].length, 0.7);
+  EXPECT_EQ(obstacles[2].radius, 0.05);
+  EXPECT_EQ(obstacles[3].frame, "arm");
+  EXPECT_NEAR(obstacles[3].pose[4], 1.5, 1e-12);
+  EXPECT_EQ(obstacles[3].mesh->bounds().sizes(), Vector3(2, 3, 4));
+}
+
+TEST_F(Robot, linksAreSelected) {
+  const SceneDesc scene = read("{" + file() + ", links: [tool, base_1]}");
+  ASSERT_EQ(all_obstacles(scene).size(), 1u);
+  EXPECT_EQ(all_obstacles(scene)[0].name, "base_1");
+  EXPECT_EQ(scene.robot->tree.size(), 4u);
+}
+
+TEST_F(Robot, obstaclesBelongToTheFramesThatAreRigidlyJoined) {
+  const SceneDesc scene = read("{" + file() + "}", "tool");
+  const World world(scene, initial_frames(scene));
+  const auto id = [&](const std::string& name) {
+    return static_cast<int>(std::find(world.frames().begin(), world.frames().end(), name) - world.frames().begin());
+  };
+  EXPECT_EQ(world.frames(), (std::vector<std::string>{"world", "tool", "base", "arm", "base_1"}));
+  EXPECT_EQ(world.obstacles()[3].name, "arm");
+  EXPECT_EQ(world.obstacles()[3].holders, (std::vector<int>{id("tool"), id("arm")}));
+  EXPECT_EQ(world.obstacles()[0].holders, (std::vector<int>{id("base"), id("base_1")}));
+}
+
+TEST_F(Robot, linksOfCableSimAreAtZeroOrWhereTheMotionHasTheirParents) {
+  SceneDesc scene = read("{" + file() + "}", "hand");
+  scene.cables[0].attachments[1].frame = "tool";
+  scene.cables[0].attachments[1].initial_pose.reset();
+  const auto at = [&](const Motion& motion, const std::string& name) {
+    const std::vector<std::string> names = frame_names(scene);
+    return cable_sim::FrameSource(scene, motion).at(0)[std::find(names.begin(), names.end(), name) - names.begin()].pose;
+  };
+  // The joint turns the arm's x into the base's y.
+  EXPECT_LT((at({}, "tool").position - Vector3(0, 0.4, 0.5)).norm(), 1e-12);
+  EXPECT_EQ(at({}, "arm").position, Vector3(0, 0, 0.5));
+  FrameTrack moved;
+  moved.add(0, {{1, 0, 0}, Quaternion::Identity()});
+  EXPECT_LT((at({{"base", moved}}, "tool").position - Vector3(1, 0.4, 0.5)).norm(), 1e-12);
+  EXPECT_LT((at({{"arm", moved}}, "tool").position - Vector3(1.4, 0, 0)).norm(), 1e-12);
+  EXPECT_EQ(at({{"tool", moved}}, "tool").position, Vector3(1, 0, 0));
+  EXPECT_TRUE(cable_sim::unused_frames(scene, {{"base", moved}}).empty());
+}
+
+TEST_F(Robot, aParameterComesBeforeTheFile) {
+  SceneSources sources;
+  std::string asked;
+  sources.parameter = [&](const std::string& name) -> std::optional<std::string> {
+    asked = name;
+    return "<robot name='p'><link name='only'/></robot>";
+  };
+  const SceneDesc scene = read_scene_text(sound_scene + "robot: {description: arm_description, " + file() + "}\n", sources);
+  EXPECT_EQ(asked, "arm_description");
+  EXPECT_EQ(scene.robot->tree.size(), 1u);
+  sources.parameter = [](const std::string&) { return std::nullopt; };
+  EXPECT_EQ(read_scene_text(sound_scene + "robot: {" + file() + "}\n", sources).robot->tree.size(), 4u);
+}
+
+TEST_F(Robot, mistakesAreNamed) {
+  const auto errors = [&](const std::string& robot) { return errors_of(sound_scene + "robot: " + robot + "\n"); };
+  const auto expect = [&](const std::string& robot, const std::string& error) {
+    const std::vector<std::string> lines = errors(robot);
+    EXPECT_TRUE(has_line(lines, error)) << joined(lines);
+    EXPECT_EQ(lines.size(), 1u) << joined(lines);
+  };
+  expect("{}", "robot.file: missing; allowed: a file with a URDF");
+  expect("{file: /nonexistent.urdf}", "robot.file: \"/nonexistent.urdf\": No such file or directory; allowed: a URDF");
+  expect("{" + file() + ", links: []}", "robot.links: []; allowed: all, or a list of at least one link");
+  expect("{" + file() + ", links: [base, elbow]}",
+         "robot.links[1]: \"elbow\"; allowed: a link of the robot: base, arm, tool, base_1");
+  expect("{" + file() + ", padding: -0.1}", "robot.padding: -0.1;");
+  expect("{" + file() + "}\nobstacles: [{name: arm, type: plane}]", "robot.arm: used twice;");
+  write("text.urdf", "no robot at all");
+  expect("{file: " + path("text.urdf") + "}", "robot.file: \"" + path("text.urdf") + "\": no URDF: ");
+  write("loop.urdf",
+        "<robot name='r'><link name='a'/><joint name='j' type='fixed'><parent link='a'/><child link='b'/></joint></robot>");
+  expect("{file: " + path("loop.urdf") + "}", "robot.file: \"" + path("loop.urdf") + "\": no URDF: ");
+  write("nan.urdf", replaced(urdf, "0.2 0.4 0.6", "0.2 nan 0.6"));
+  expect("{file: " + path("nan.urdf") + "}", "robot.file: \"" + path("nan.urdf") + "\": no URDF: ");
+  write("robot.urdf", replaced(urdf, "MESH", "package://none/a.stl"));
+  expect("{" + file() + "}", "robot.arm.uri: \"package://none/a.stl\": package \"none\" is not found");
+  expect("{" + file() + ", links: [base]}\nseed: -1", "seed: -1");  // what is not selected is not read
+}
+
+TEST_F(Robot, meshesThatAreNoSolidAreNamed) {
+  const auto expect = [&](const std::string& name, const std::string& error) {
+    const auto lines = errors_of(sound_scene + "obstacles: [{name: a, type: mesh, uri: \"file://" + path(name) + "\"}]\n");
+    EXPECT_EQ(lines.size(), 1u) << joined(lines);
+    EXPECT_TRUE(has_line(lines, "obstacles[0].uri: \"file://" + path(name) + "\": " + error)) << joined(lines);
+  };
+  Triangles open = box_triangles({1, 1, 1});
+  open.triangles.pop_back();
+  write("open.stl", stl_of(open));
+  expect("open.stl", "it is not closed: 3 edges");
+  write("empty.stl", "solid m\nendsolid m\n");
+  expect("empty.stl", "no mesh: ");
+  write("text.stl", "no mesh at all");
+  expect("text.stl", "no mesh: ");
+  write("zero.obj", "");
+  expect("zero.obj", "no mesh: ");
+}
+
+TEST_F(Robot, scaledMeshesAreThoseOfTheFile) {
+  const std::string obstacle = "obstacles: [{name: a, type: mesh, uri: \"file://" + path("box.stl") + "\", scale: 0.5}]\n";
+  const SceneDesc scene = read_scene_text(sound_scene + obstacle);
+  EXPECT_EQ(scene.obstacles[0].mesh->vertices().size(), 8u);
+  EXPECT_EQ(scene.obstacles[0].mesh->bounds().sizes(), Vector3(0.5, 0.5, 0.5));
+}
+
+TEST_F(Robot, theNodeReadsMeshesOfPackagesAndOfItsSceneDirectoryOnly) {
+  write("ws/group/linked/package.xml", "<package><name> my_robot </name></package>");
+  write("ws/group/linked/meshes/box.stl", stl_of(box_triangles({1, 1, 1})));
+  ASSERT_EQ(setenv("ROS_PACKAGE_PATH", path("ws").c_str(), 1), 0);
+  const auto errors = [&](const std::string& uri, const std::string& scene_directory) {
+    const std::string text = sound_scene + "obstacles: [{name: a, type: mesh, uri: \"" + uri + "\"}]\n";
+    try {
+      read_scene_text(text, {{false, scene_directory}, {}});
+    } catch (const SceneError& error) {
+      return joined(error.errors());
+    }
+    return std::string();
+  };
+  const std::string box = "file://" + path("box.stl");
+  EXPECT_EQ(errors("package://my_robot/meshes/box.stl", ""), "");
+  EXPECT_NE(errors("package://my_robot/meshes/../../../../box.stl", "").find("it is outside of the package"), std::string::npos);
+  EXPECT_NE(errors("package://my_robot", "").find("it is not a file"), std::string::npos);
+  EXPECT_NE(errors(box, "").find("it is outside of scene_directory \"\""), std::string::npos);
+  EXPECT_EQ(errors(box, directory_), "");
+  EXPECT_NE(errors(box, path("ws")).find("it is outside of scene_directory"), std::string::npos);
+  EXPECT_NE(errors("file://" + path("ws/../box.stl"), path("ws")).find("it is outside of scene_directory"), std::string::npos);
+  std::filesystem::create_symlink(path("box.stl"), path("ws/link.stl"));
+  EXPECT_NE(errors("file://" + path("ws/link.stl"), path("ws")).find("it is outside of scene_directory"), std::string::npos);
+  unsetenv("ROS_PACKAGE_PATH");
+}
+
+}  // namespace
+}  // namespace verlet_cable
