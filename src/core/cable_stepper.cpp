@@ -269,6 +269,12 @@ double CableStepper::correct() {
   return std::sqrt(largest) / target_length_[0];
 }
 
+void CableStepper::take_back(double part) {
+  const VectorArray& delta = solver_.displacement();
+  for (int i = 0; i <= segments_; ++i) set(displacement_, i, get(displacement_, i) - part * get(delta, i));
+  for (int i = 0; i < segments_; ++i) tension_density_[i] -= part * solver_.multiplier()[i];
+}
+
 void CableStepper::move(const Substep& s) {
   const double rate = s.statics ? 0 : 2 / s.h;
   for (int i = 0; i <= segments_; ++i) {

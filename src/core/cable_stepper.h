@@ -58,6 +58,7 @@ class CableStepper {
   void assemble(double part);
   void factor() { solver_.factor(system_, bending_.active()); }
   double correct();
+  void take_back(double part);  ///< of the last correction
   /// `struck`: forces from outside have changed velocities abruptly.
   void finish(const Substep& substep, bool struck, CableState& state, SubstepResult& result);
   const VectorArray& displacement() const { return displacement_; }  ///< nodes: x' - x of the present iterate [m]

@@ -10,9 +10,9 @@ namespace {
 /// Pressed by a force F, a cable of radius r is dented by about r sqrt(F / (contact_modulus r²)): like rubber.
 constexpr double contact_modulus = 1e8;  // [Pa]
 /// Beyond this depth, relative to the radius, it gets much stiffer, so that no load presses it flat.
-constexpr double soft_depth = 0.08;
+constexpr double soft_depth = 0.06;
 /// The law goes on linearly from here, relative to the radius.
-constexpr double deepest = 0.15;
+constexpr double deepest = 0.18;
 /// What is inside an obstacle is pushed out at no more than about this.
 constexpr double gentle_velocity = 0.5;  // [m/s]
 /// Steps within which a contact comes to rest.
@@ -46,8 +46,8 @@ void anticipate(double h, double contact_time, const Vector3& velocity, Touch& t
   touch.offset = (1 + contact_time / h) * touch.other_displacement + contact_time * velocity;
 }
 
-double gentle_gap(double gap, double radius, double contact_time) {
-  return std::max(gap, -std::clamp(gentle_velocity * contact_time, 0.05 * radius, deepest * radius));
+double gentle_gap(double radius, double contact_time) {
+  return -std::clamp(gentle_velocity * contact_time, 0.05 * radius, 0.15 * radius);
 }
 
 void start_touch(Touch& touch) {

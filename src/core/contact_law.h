@@ -25,6 +25,7 @@ struct Touch {
   int obstacle = -1;
   Vector3 position = Vector3::Zero();  ///< [m] of the point
   Vector3 normal = Vector3::UnitZ();   ///< out of what is touched
+  bool inside = false;                 ///< it was deep inside from the start: it is pushed out gently
   double gap = 0;                      ///< [m] between the surfaces at the start of the substep
   double friction = 0;                 ///< Coulomb coefficient
   double radius = 0;                   ///< [m] of the thinner cable
@@ -52,8 +53,8 @@ double contact_time(double time_step);
 /// relative to another cable's where that is touched.
 void anticipate(double h, double contact_time, const Vector3& velocity, Touch& touch);
 
-/// Limits the gap to what is pushed out at a gentle velocity.
-double gentle_gap(double gap, double radius, double contact_time);
+/// The gap [m] of what is pushed out at a gentle velocity: nothing deeper is taken for deeper where a cable starts inside.
+double gentle_gap(double radius, double contact_time);
 
 /// Linearises the law at the start of the substep.
 void start_touch(Touch& touch);

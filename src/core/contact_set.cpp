@@ -200,8 +200,10 @@ void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, double h)
 void ContactSet::add(Touch& touch, const Vector3& velocity, const Vector3& other, double h) {
   const double approach = -touch.normal.dot(velocity - other);
   if (!(touch.gap < reach(std::max(0.0, approach), touch.radius, h))) return;
-  touch.gap = gentle_gap(touch.gap, touch.radius, time_);
-  recall(touch);
+  const double gentle = gentle_gap(touch.radius, time_);
+  touch.inside = !recall(touch) || touch.inside;
+  if (touch.gap >= gentle) touch.inside = false;
+  if (touch.inside) touch.gap = gentle;
   anticipate(h, time_, velocity, touch);
   start_touch(touch);
   touched_[touch.point.cable] = 1;
@@ -214,13 +216,15 @@ double ContactSet::reach(double speed, double radius, double h) const {
   return std::min((h + time_) * speed, radius + h * speed) + spare_reach * radius;
 }
 
-/// What stuck here in the last substep. Touches are asked for in ascending order.
-void ContactSet::recall(Touch& touch) {
+/// What a touch was in the last substep; false if it was none. Touches are asked for in ascending order.
+bool ContactSet::recall(Touch& touch) {
   const auto keys = [](const auto& of) { return std::tie(of.key, of.other_key); };
   while (recalled_ < sticking_.size() && keys(sticking_[recalled_]) < keys(touch)) ++recalled_;
-  if (recalled_ == sticking_.size() || keys(sticking_[recalled_]) != keys(touch)) return;
+  if (recalled_ == sticking_.size() || keys(sticking_[recalled_]) != keys(touch)) return false;
   touch.stuck_force = sticking_[recalled_].force;
   touch.mode = sticking_[recalled_].mode;
+  touch.inside = sticking_[recalled_].inside;
+  return true;
 }
 
 bool ContactSet::crossed(const std::vector<SimulatedCable>& cables) const {
@@ -235,7 +239,7 @@ bool ContactSet::crossed(const std::vector<SimulatedCable>& cables) const {
 void ContactSet::keep() {
   sticking_.clear();
   for (const Touch& touch : touches_)
-    if (touch.mode != Touch::Mode::open) sticking_.push_back({touch.key, touch.other_key, remaining_friction(touch), touch.mode});
+    sticking_.push_back({touch.key, touch.other_key, remaining_friction(touch), touch.mode, touch.inside});
 }
 
 void ContactSet::forget() {

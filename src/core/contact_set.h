@@ -30,6 +30,7 @@ struct Sticking {
   std::uint64_t key = 0, other_key = 0;  ///< of the touch
   Vector3 force = Vector3::Zero();       ///< [N] friction of what sticks
   Touch::Mode mode = Touch::Mode::open;
+  bool inside = false;
 };
 
 /// The contacts of a group of cables: found anew for every substep, but for what sticks.
@@ -58,7 +59,7 @@ class ContactSet {
   void find_pairs(const std::vector<SimulatedCable>& cables, double h);
   void add(Touch& touch, const Vector3& velocity, const Vector3& other, double h);
   double reach(double speed, double radius, double h) const;
-  void recall(Touch& touch);
+  bool recall(Touch& touch);
 
   std::vector<Sticking> sticking_;  ///< ascending by keys
   // Scratch

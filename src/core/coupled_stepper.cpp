@@ -14,6 +14,12 @@ constexpr double longest_tolerated = 1e-3;  // [s]; beyond, the error of the pla
 constexpr double largest_correction = 2;    // segment lengths
 constexpr double fastest_convergence = 0.1;
 constexpr double slow_convergence = 0.2;
+/// Where friction turns round slowly, a larger error is as good after so many iterations.
+constexpr int patient_iterations = 10;
+constexpr double impatience = 30;
+/// A correction may turn the forces along it round to this part of what they were.
+constexpr double turned_round = 0.5;
+constexpr int maximum_shortenings = 8;
 /// Conjugate gradients end when the energy of what is missing is less than this, relative to that of the whole correction and
 /// of the substep's largest.
 constexpr double coupling_tolerance = 1e-4;
@@ -102,18 +108,20 @@ bool CoupledStepper::advance(std::vector<Participant>& participants, std::vector
   return true;
 }
 
-/// Newton's method on the places, tensions and contacts of all.
+/// Newton's method on the places, tensions and contacts of all. Contacts are stiff on one side and nothing on the other, so that
+/// whole corrections may jump to and fro between them: each is shortened until the forces along it have no more than half turned
+/// round.
 bool CoupledStepper::solve(std::vector<Participant>& participants, std::vector<Touch>& touches) {
   const Substep& first = participants.front().substep;
   const double tolerance = velocity_tolerance * std::min(first.h, longest_tolerated);
   double last = 0;
   bool stale = true;
   for (int i = 0; i < maximum_iterations; ++i) {
-    for (Participant& p : participants) p.stepper->evaluate(p.substep);
-    const bool changed = press(participants, touches);
+    const bool changed = i == 0 ? press(participants, touches) : shorten(participants, touches);
     if (stale || changed) factor(participants, touches);
     for (Participant& p : participants) p.stepper->solver().solve(p.stepper->system());
     couple(participants, touches);
+    work_along_ = work_along(participants);
     double largest = 0;
     for (Participant& p : participants) {
       ++p.result.iterations;
@@ -122,7 +130,8 @@ bool CoupledStepper::solve(std::vector<Participant>& participants, std::vector<T
       largest = std::max(largest, size);
     }
     const double ratio = i == 0 ? 1 : largest / last;
-    if (!changed && largest * std::clamp(ratio, fastest_convergence, 1.0) < tolerance) {
+    const double enough = i < patient_iterations ? tolerance : impatience * tolerance;
+    if (!changed && largest * std::clamp(ratio, fastest_convergence, 1.0) < enough) {
       for (Participant& p : participants) p.result.converged = true;
       return true;
     }
@@ -132,8 +141,41 @@ bool CoupledStepper::solve(std::vector<Participant>& participants, std::vector<T
   return false;
 }
 
-/// Adds the contacts' forces to the loads. True if one has changed its way to touch.
+/// Takes back as much of the last correction as went too far. True if a contact has changed its way to touch.
+bool CoupledStepper::shorten(std::vector<Participant>& participants, std::vector<Touch>& touches) {
+  double taken = 1, low = 0, high = 1, low_work = work_along_, high_work = 0;
+
+  bool changed = press(participants, touches);
+  if (!(low_work > 0)) return changed;
+  for (int i = 0; i < maximum_shortenings; ++i) {
+    const double work = work_along(participants);
+    if (work < 0) {
+      high = taken;
+      high_work = work;
+    } else {
+      low = taken;
+      low_work = work;
+    }
+    if (std::abs(work) <= turned_round * work_along_ || high_work == 0) break;
+    const double share = std::clamp(low_work / (low_work - high_work), 0.1, 0.9);
+    const double next = low + share * (high - low);
+    for (Participant& p : participants) p.stepper->take_back(taken - next);
+    taken = next;
+    changed = press(participants, touches) || changed;
+  }
+  return changed;
+}
+
+/// Of the forces along the last correction [J].
+double CoupledStepper::work_along(std::vector<Participant>& participants) const {
+  double work = 0;
+  for (Participant& p : participants) work += dot(p.stepper->system().load, p.stepper->solver().displacement(), nodes(p));
+  return work;
+}
+
+/// Evaluates the loads, with the contacts' forces. True if one has changed its way to touch.
 bool CoupledStepper::press(std::vector<Participant>& participants, std::vector<Touch>& touches) {
+  for (Participant& p : participants) p.stepper->evaluate(p.substep);
   bool changed = false;
   for (Touch& touch : touches) {
     CableStepper& stepper = *at(participants, touch.point).stepper;

@@ -38,6 +38,8 @@ class CoupledStepper {
 
   bool solve(std::vector<Participant>& participants, std::vector<Touch>& touches);
   bool press(std::vector<Participant>& participants, std::vector<Touch>& touches);
+  bool shorten(std::vector<Participant>& participants, std::vector<Touch>& touches);
+  double work_along(std::vector<Participant>& participants) const;
   void factor(std::vector<Participant>& participants, std::vector<Touch>& touches);
   void couple(std::vector<Participant>& participants, const std::vector<Touch>& touches);
   void add_coupling(const std::vector<Touch>& touches, double sign, VectorArray Work::*of, VectorArray Work::*to);
@@ -45,6 +47,7 @@ class CoupledStepper {
 
   std::vector<int> index_;     ///< of the participant, by cable
   std::vector<Work> work_;     ///< one a participant
+  double work_along_ = 0;      ///< [J] of the forces along the last correction, where it begins
   double largest_energy_ = 0;  ///< of a correction in this substep
 };
 
