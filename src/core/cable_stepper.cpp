@@ -41,8 +41,8 @@ void CableStepper::resize(const CableModel& model) {
   for (VectorArray* a : {&position_, &velocity_, &acceleration_, &segment_, &displacement_, &middle_, &pull_, &end_velocity_,
                          &base_load_, &director_})
     a->assign(nodes, 0.0);
-  for (std::vector<double>* a :
-       {&length_, &target_length_, &inverse_mass_, &tension_density_, &inertia_, &end_square_, &pivot_, &off_, &impulse_})
+  for (std::vector<double>* a : {&length_, &rest_growth_, &target_length_, &inverse_mass_, &tension_density_, &inertia_,
+                                 &end_square_, &pivot_, &off_, &impulse_})
     a->assign(nodes, 0.0);
   both_held_.reserve(nodes);
   bending_.resize(model);
@@ -65,7 +65,8 @@ void CableStepper::begin(const Substep& s, const CableState& state, SubstepResul
   hold(s.boundary.nodes);
   result.overstretched_node = reachable_lengths(s.model, s.boundary.nodes, target_length_);
   set_loads(s);
-  bending_.start(s.model, segment_, s.boundary.directions, s.damping_time(), s.part());
+  set_growth(s);
+  start_bending(s);
   twist_.start(s.model, s.spans, s.damping_time(), s.part());
   fluid_.start(s.environment.fluid, s.environment.gravity, s.damping_time());
   predict(s.h);
@@ -77,7 +78,8 @@ void CableStepper::finish(const Substep& s, bool struck, CableState& state, Subs
     for (int i = 0; i <= segments_; ++i) result.displacement = std::max(result.displacement, get(displacement_, i).norm());
   react(s);
   move(s);
-  if (!s.statics && (struck || holders_accelerate(s.h, s.boundary.nodes))) project(s.model);
+  if (!s.statics && (struck || !s.boundary.growing.empty() || holders_accelerate(s.h, s.boundary.nodes)))
+    project(s.model, s.boundary.growing);
   result.max_strain = store(s, state);
   if (twist_.active()) twist_.follow(s.boundary.directions, state.positions, s.spans);
 }
@@ -134,6 +136,37 @@ void CableStepper::set_loads(const Substep& s) {
     if (system_.movable[i] == 0 && system_.movable[i + 1] == 0) both_held_.push_back(i);
 }
 
+/// At a winch the material moves through the end node.
+void CableStepper::set_growth(const Substep& s) {
+  std::fill_n(rest_growth_.begin(), segments_, 0.0);
+  winch_node_ = -1;
+  for (const GrowingSegment& growing : s.boundary.growing) {
+    const int i = growing.segment;
+    rest_growth_[i] = s.h * growing.growth;
+    if (i != 0 && i + 1 != segments_) continue;
+    winch_node_ = i == 0 ? 0 : segments_;
+    material_way_ = (i == 0 ? rest_growth_[i] : -rest_growth_[i]) * get(segment_, i).normalized();
+  }
+}
+
+/// The material's segment at a winch is as long at the start as it is unstrained in the substep: growth is no bending.
+void CableStepper::start_bending(const Substep& s) {
+  const int i = std::clamp(winch_node_ - 1, 0, segments_ - 1);
+  const Vector3 segment = get(segment_, i);
+  const double part = s.model.material.axial_stiffness < infinity ? 0.5 : 1;
+  if (winch_node_ >= 0) set(segment_, i, segment + part * rest_growth_[i] * segment.normalized());
+  bending_.start(s.model, segment_, s.boundary.directions, s.damping_time(), s.part());
+  set(segment_, i, segment);
+}
+
+void CableStepper::add_bending_pulls() {
+  const int node = std::max(winch_node_, 0);
+  const Vector3 displacement = get(displacement_, node);
+  if (winch_node_ >= 0) set(displacement_, node, displacement + material_way_);
+  bending_.add_pulls(displacement_, pull_);
+  set(displacement_, node, displacement);
+}
+
 /// First guess: the motion goes on as in the last substep.
 void CableStepper::predict(double h) {
   for (int i = 0; i <= segments_; ++i) {
@@ -183,7 +216,7 @@ bool CableStepper::solve(const Substep& s, const CableState& state, SubstepResul
 void CableStepper::evaluate(const Substep& s) {
   std::fill(end_square_.begin(), end_square_.end(), 0.0);
   for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) evaluate_segments(s.part(), component);
-  if (bending_.active()) bending_.add_pulls(displacement_, pull_);
+  if (bending_.active()) add_bending_pulls();
   if (twist_.active()) twist_.add_pulls(middle_, displacement_, s.boundary, pull_);
   if (s.model.material.axial_stiffness < infinity)
     evaluate_elastic_lengths(s);
@@ -231,7 +264,8 @@ void CableStepper::evaluate_elastic_lengths(const Substep& sub) {
   for (int i = 0; i < segments_; ++i) {
     const double rest = sub.model.rest_lengths[i], s = std::sqrt(end_square_[i]), mean = length_[i] + part * (s - length_[i]);
     const double damping = sub.model.material.axial_damping / (sub.damping_time() * rest);
-    const double excess = stiffness / rest * (mean - rest) + damping * (s - length_[i]) - tension_density_[i] * mean;
+    const double excess =
+        stiffness / rest * (mean - rest) + damping * (s - length_[i] - rest_growth_[i]) - tension_density_[i] * mean;
     const double slope = part * (stiffness / rest - tension_density_[i]) + damping;
     system_.gap[i] = -excess * s / slope;
     system_.compliance[i] = s * mean / slope;
@@ -304,9 +338,9 @@ bool CableStepper::holders_accelerate(double h, const std::vector<HeldNode>& hel
   });
 }
 
-/// Impulses along inextensible segments that end all change of length; without them such velocities would alternate from step to
-/// step.
-void CableStepper::project(const CableModel& model) {
+/// Impulses along inextensible segments that end all change of length but that of rest lengths; without them such velocities
+/// would alternate from step to step.
+void CableStepper::project(const CableModel& model, const std::vector<GrowingSegment>& growing) {
   if (model.material.axial_stiffness < infinity) return;
   const int n = segments_;
   for (int i = 0; i <= n; ++i) inverse_mass_[i] = system_.movable[i] / model.masses[i];
@@ -328,6 +362,7 @@ void CableStepper::project(const CableModel& model) {
     pivot_[i] *= mobility * (1 + pivot_regularisation);
     off_[i] *= -inverse_mass_[i + 1];
   }
+  for (const GrowingSegment& s : growing) impulse_[s.segment] += target_length_[s.segment] * s.growth;
   for (const int i : both_held_) {
     pivot_[i] = 1;
     impulse_[i] = 0;

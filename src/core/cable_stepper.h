@@ -71,6 +71,9 @@ class CableStepper {
   void load(const Substep& substep, const CableState& state);
   void hold(const std::vector<HeldNode>& held);
   void set_loads(const Substep& substep);
+  void set_growth(const Substep& substep);
+  void start_bending(const Substep& substep);
+  void add_bending_pulls();
   void predict(double h);
   void set_natural_shape(const Substep& substep, const CableState& state);
   bool solve(const Substep& substep, const CableState& state, SubstepResult& result);
@@ -83,7 +86,7 @@ class CableStepper {
   double force_along(int segment) const;
   void move(const Substep& substep);
   bool holders_accelerate(double h, const std::vector<HeldNode>& held) const;
-  void project(const CableModel& model);
+  void project(const CableModel& model, const std::vector<GrowingSegment>& growing);
   double store(const Substep& substep, CableState& state) const;
 
   int segments_ = 0;
@@ -91,6 +94,9 @@ class CableStepper {
   VectorArray position_, velocity_, acceleration_;  // nodes: [m], [m/s], [m/s^2]
   VectorArray segment_;                             // segments: d [m]
   std::vector<double> length_;                      // segments: s [m]
+  std::vector<double> rest_growth_;                 // segments: of the rest length, in the substep [m]
+  int winch_node_ = -1;                             // the end node at a winch that runs
+  Vector3 material_way_ = Vector3::Zero();          // of the material there, in the substep [m]
   std::vector<double> target_length_;               // segments: l [m]; longer where held points are too far apart
   std::vector<double> inverse_mass_;                // nodes: [1/kg], 0 where held
   std::vector<double> inertia_;                     // nodes: 2 m / h^2 and drag / h [kg/s^2]

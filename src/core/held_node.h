@@ -22,10 +22,17 @@ struct HeldDirection {
   Vector3 torque = Vector3::Zero();  ///< [N m] out: what the cable exerts on the holder, mean over the substep
 };
 
-/// All that is given of a cable at a substep; both ascending by node.
+/// A segment whose rest length changes.
+struct GrowingSegment {
+  int segment = 0;
+  double growth = 0;  ///< [m/s] of its rest length, at the end of the substep
+};
+
+/// All that is given of a cable at a substep; held nodes and directions ascend by node.
 struct Boundary {
   std::vector<HeldNode> nodes;
   std::vector<HeldDirection> directions;
+  std::vector<GrowingSegment> growing;
 };
 
 /// The lengths [m] that the segments can keep: their rest lengths, but longer between holders of an inextensible cable that are

@@ -72,9 +72,15 @@ bool project_positions(const CableModel& model, const std::vector<HeldNode>& hel
   for (const HeldNode& h : held) positions[h.node] = h.position;
   if (model.material.axial_stiffness < infinity) return true;
   straighten_taut_spans(model, held, positions);
-  const int n = model.segments();
-  std::vector<double> lengths(n), changes(n);
+  std::vector<double> lengths(model.segments());
   reachable_lengths(model, held, lengths);
+  return project_lengths(model, held, lengths, positions);
+}
+
+bool project_lengths(const CableModel& model, const std::vector<HeldNode>& held, const std::vector<double>& lengths,
+                     std::vector<Vector3>& positions) {
+  const int n = model.segments();
+  std::vector<double> changes(n);
   LengthSystem system(model, held);
   for (int iteration = 0; iteration < maximum_iterations; ++iteration) {
     double error = 0;

@@ -17,4 +17,9 @@ bool project_positions(const CableModel& model, const std::vector<HeldNode>& hel
 void project_velocities(const CableModel& model, const std::vector<HeldNode>& held, const std::vector<Vector3>& positions,
                         std::vector<Vector3>& velocities);
 
+/// Moves the nodes that are not held, each the less the heavier it is, until the segments have the lengths [m], one a segment.
+/// False if that was not reached.
+bool project_lengths(const CableModel& model, const std::vector<HeldNode>& held, const std::vector<double>& lengths,
+                     std::vector<Vector3>& positions);
+
 }  // namespace verlet_cable

@@ -22,6 +22,7 @@ CableModel make_model(const SceneDesc& scene, const CableDesc& desc) {
   model.material = *scene.find_material(desc.material);
   model.color = desc.color;
   const double length = desc.length / desc.segments;
+  model.segment_length = length;
   model.rest_lengths.assign(desc.segments, length);
   model.masses.assign(desc.segments + 1, 0.0);
   for (int i = 0; i < desc.segments; ++i) {

@@ -143,6 +143,13 @@ EditResult World::cut(int cable, int segment) {
   Holders &of_first = w.scratch[cable].holders, &of_second = w.scratch[new_cable].holders;
   split_holders(segment + 1, of_first.nodes, of_second.nodes);
   split_holders(segment + 1, of_first.directions, of_second.directions);
+  std::optional<Reel>&reel = w.scratch[cable].reel, &reel_of_second = w.scratch[new_cable].reel;
+  if (reel && reel->segment > segment) {
+    reel_of_second = reel;
+    reel_of_second->segment -= segment + 1;
+  }
+  if (reel && reel->segment >= segment) reel.reset();
+  w.scratch[cable].boundary.growing.clear();
   for (const int piece : {cable, new_cable}) {
     w.update_holders(piece);
     w.scratch[piece].stepper.resize(w.cables[piece].model);

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cable_stepper.h"
 #include "contact_group.h"
 #include "holders.h"
+#include "reel.h"
 #include "verlet_cable/core/world.h"
 
 namespace verlet_cable {
@@ -19,6 +21,7 @@ struct CableScratch {
   CableStepper stepper;
   Boundary boundary;
   std::vector<TwistSpan> spans;
+  std::optional<Reel> reel;  ///< of a winch that runs, or of a joint that closes
 };
 
 struct World::Implementation {
@@ -58,6 +61,18 @@ struct World::Implementation {
   void add_forces(int cable, double weight);
   void update_holders(int cable);
   void follow_material(int cable);
+  void plan_reel_step(int cable);
+  void wind_reel(int cable, double from, double to);
+  void complete_reel_step(int cable);
+  double available_length(int cable) const;
+  double slack_at_winch(int cable) const;
+  void remesh_winch(int cable);
+  void add_winch_node(int cable);
+  void take_in_winch_node(int cable);
+  void close_joint(int cable);
+  void reverse_cable(int cable);
+  void renumber(int cable, int first_node, int shift);
+  void after_remeshing(int cable);
   double time() const { return static_cast<double>(steps) * scene.time_step; }
 };
 

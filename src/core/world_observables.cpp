@@ -145,6 +145,8 @@ std::uint64_t World::hash() const {
       hash.add(span.origin);
       hash.add_bits(static_cast<std::uint64_t>(span.age));
     }
+    if (const std::optional<Reel>& reel = w.scratch[i].reel)
+      for (const double value : {reel->left, reel->speed, reel->rate, reel->debt, reel->debt_rate}) hash.add(value);
     for (const DirectionHolder& h : w.scratch[i].holders.directions) {
       hash.add(h.orientation);
       hash.add(h.gap);

@@ -91,6 +91,7 @@ void World::Implementation::step_group(ContactGroup& group) {
     if (group.level > 0 && easy && done % (2 * ticks) == 0) --group.level;
   }
   for (const int cable : group.cables) {
+    if (scratch[cable].reel) complete_reel_step(cable);
     follow_material(cable);
     results[cable].substeps = substeps;
     complete_step(dt, scratch[cable].holders);
@@ -101,6 +102,7 @@ void World::Implementation::step_group(ContactGroup& group) {
 void World::Implementation::aim(int index) {
   SimulatedCable& cable = cables[index];
   CableScratch& s = scratch[index];
+  if (s.reel) plan_reel_step(index);
   if (aim_holders(cable.model, attachments, poses, time(), scene.time_step, s.holders)) return;
   jump_to_aim(s.holders);
   hold_at(1, 1, s.holders, s.boundary);
@@ -142,6 +144,7 @@ bool World::Implementation::advance(ContactGroup& group, double from, double to,
     SimulatedCable& c = cables[cable];
     CableScratch& s = scratch[cable];
     hold_at(from, to, s.holders, s.boundary);
+    if (s.reel) wind_reel(cable, from, to);
     if (touching || group.cables.size() > 1) {
       group.scratch.before[k] = c.state;
       group.scratch.spans_before[k] = s.spans;

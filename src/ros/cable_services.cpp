@@ -3,10 +3,12 @@
 #include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>
 #include <verlet_cable/Cut.h>
+#include <verlet_cable/Join.h>
 #include <verlet_cable/LoadScene.h>
 #include <verlet_cable/Pin.h>
 #include <verlet_cable/RestoreState.h>
 #include <verlet_cable/SaveState.h>
+#include <verlet_cable/SetLength.h>
 #include <verlet_cable/Step.h>
 #include <verlet_cable/Unpin.h>
 
@@ -97,6 +99,15 @@ CableServices::CableServices(ros::NodeHandle& node, Simulation& simulation) {
       serve<Unpin>(node, "unpin", [s](const auto& request, auto& response) { return answer(s->unpin(request.name), response); }),
       serve<Pin>(node, "pin", [s](const auto& request, auto& response) { return pin(*s, request, response); }),
       serve<Cut>(node, "cut", [s](const auto& request, auto& response) { return cut(*s, request, response); }),
+      serve<SetLength>(
+          node, "set_length",
+          [s](const auto& r, auto& response) { return answer(s->set_length(r.cable, r.at_end, r.length, r.speed), response); }),
+      serve<Join>(node, "join",
+                  [s](const auto& r, auto& response) {
+                    const EditResult result = s->join(r.first, r.first_at_end, r.second, r.second_at_end);
+                    response.cable = result.name;
+                    return answer(result, response);
+                  }),
       serve<SaveState>(node, "save_state",
                        [s](const auto& request, auto& response) { return answer(s->save_state(request.name), response); }),
       serve<RestoreState>(node, "restore_state",

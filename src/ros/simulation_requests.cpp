@@ -1,5 +1,6 @@
 #include <utility>
 
+#include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/ros/simulation.h"
 
@@ -97,6 +98,33 @@ EditResult Simulation::cut(int cable, int segment) {
   const std::string message = "segment " + std::to_string(segment) + " of cable " + quoted(name) +
                               " is cut out: the rest is cable " + quoted(result.name);
   announce(CableEvent::CUT, {name, {}, segment, result.name}, message);
+  return {true, message, result.name};
+}
+
+/// Why there is no such cable; nothing if there is.
+std::optional<EditResult> Simulation::refused_cable(const std::string& field, const std::string& cable) const {
+  if (world_.find_cable(cable) >= 0) return std::nullopt;
+  std::string names;
+  for (const SimulatedCable& other : world_.cables()) names += (names.empty() ? "" : ", ") + other.model.name;
+  return refused(field + ": " + quoted(cable) + "; allowed: " + (names.empty() ? "none is there" : names));
+}
+
+EditResult Simulation::set_length(const std::string& cable, bool at_end, double length, double speed) {
+  if (!started_) return refused_before_start();
+  if (const auto reason = refused_cable("cable", cable)) return *reason;
+  const EditResult result = world_.set_length(world_.find_cable(cable), at_end, length, speed);
+  return result.ok ? done("cable " + quoted(cable) + " is wound to " + number_text(length) + " m") : result;
+}
+
+EditResult Simulation::join(const std::string& first, bool first_at_end, const std::string& second, bool second_at_end) {
+  if (!started_) return refused_before_start();
+  if (const auto reason = refused_cable("first", first)) return *reason;
+  if (const auto reason = refused_cable("second", second)) return *reason;
+  const int nodes = world_.cables()[world_.find_cable(first_at_end ? first : second)].model.nodes();
+  const EditResult result = world_.join(world_.find_cable(first), first_at_end, world_.find_cable(second), second_at_end);
+  if (!result.ok) return result;
+  const std::string message = "cable " + quoted(second) + " is joined to " + quoted(first);
+  announce(CableEvent::JOINED, {result.name, {}, nodes - 1, second}, message);
   return {true, message, result.name};
 }
 

@@ -9,7 +9,7 @@ from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 
 from verlet_cable.msg import CableArray, CableEvent, CableLocation
-from verlet_cable.srv import Cut, LoadScene, Pin, PinRequest, RestoreState, SaveState, Step, Unpin
+from verlet_cable.srv import Cut, Join, LoadScene, Pin, PinRequest, RestoreState, SaveState, SetLength, Step, Unpin
 
 PATIENCE = 5.0  # [s] of wall time, far more than anything here takes on a busy machine
 
@@ -122,6 +122,8 @@ class CableClient:
         self.pause = service('pause', SetBool)
         self.step = service('step', Step)
         self.unpin = service('unpin', Unpin)
+        self.set_length = service('set_length', SetLength)
+        self.join = service('join', Join)
         self.save_state = service('save_state', SaveState)
         self.restore_state = service('restore_state', RestoreState)
         self._load_scene = service('load_scene', LoadScene)

@@ -14,6 +14,7 @@ struct CableModel {
   std::string name;
   MaterialDesc material;
   std::array<double, 4> color{0.1, 0.1, 0.1, 1.0};
+  double segment_length = 0;         ///< [m] of the scene's segments: winches pay out and take in such
   std::vector<double> rest_lengths;  ///< [m] a segment, n; written by World's edits only
   std::vector<double> masses;        ///< [kg] a node, n + 1: half of each neighbouring segment, and payloads
   /// [1/m] a node, n + 1: curvature about the material's y and z axes that carries no moment; empty where the cable is straight

@@ -117,6 +117,12 @@ class World {
   EditResult unpin(const std::string& name);
   /// Removes a segment; its mass stays on its nodes. The first piece keeps the name.
   EditResult cut(int cable, int segment);
+  /// Pays out or takes in cable at one end, at up to `speed` [m/s] and smoothly, until the cable is `length` [m] long; its nodes
+  /// count anew as segments appear and vanish there. Other attachments and payloads keep their material point.
+  EditResult set_length(int cable, bool at_end, double length, double speed);
+  /// Welds two ends of cables of one material. Ends that are apart are drawn together first. The first cable keeps its name and
+  /// direction.
+  EditResult join(int first, bool first_at_end, int second, bool second_at_end);
 
   /// What cables bump into: those of the scene, of its robot's links, then those that were set.
   const std::vector<Obstacle>& obstacles() const;

@@ -48,6 +48,8 @@ class Simulation {
                  const Pose& offset, AttachmentType type);
   EditResult unpin(const std::string& name);
   EditResult cut(int cable, int segment);
+  EditResult set_length(const std::string& cable, bool at_end, double length, double speed);
+  EditResult join(const std::string& first, bool first_at_end, const std::string& second, bool second_at_end);
   EditResult save_state(const std::string& name);
   /// Continues a snapshot: while paused at its time and with its frames, while running at the present ones.
   EditResult restore_state(const std::string& name);
@@ -89,6 +91,7 @@ class Simulation {
   void publish();
   void announce(std::uint8_t type, const EventSubject& subject, const std::string& message) const;
   EditResult refused_before_start() const;
+  std::optional<EditResult> refused_cable(const std::string& field, const std::string& cable) const;
 
   SceneDesc scene_;
   TimeGrid grid_;

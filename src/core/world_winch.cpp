@@ -1,0 +1,236 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "length_projection.h"
+#include "verlet_cable/core/number_text.h"
+#include "world_implementation.h"
+
+namespace verlet_cable {
+
+namespace {
+
+/// [m/s^2] With which a winch speeds up and brakes: a tenth of gravity, so that a load feels little of it.
+constexpr double winch_acceleration = 1;
+/// Of a segment's length: the segment at a winch is split when longer, takes in its neighbour when shorter, and no segment gets
+/// shorter than the last.
+constexpr double longest_segment = 1.5, shortest_segment = 0.5, least_segment = 0.1;
+/// A joint closes when its ends are this close, of a segment's length.
+constexpr double closing_distance = 0.25;
+
+EditResult refused(const std::string& message) {
+  return {false, message, {}};
+}
+
+/// Whether a node carries more than its segments and what a cut left on an end weigh.
+bool carries_payload(const CableModel& model, int node) {
+  double share = 0;
+  if (node > 0) share += 0.5 * model.rest_lengths[node - 1];
+  if (node < model.segments()) share += 0.5 * model.rest_lengths[node];
+  const double residue = 0.5 * model.segment_length;
+  return model.masses[node] > model.material.linear_density * (share + 1.5 * residue);
+}
+
+/// At a winch the material moves through the end node. Adds (`side` 1) this motion to the node's velocity, or takes it away (-1).
+void add_material_motion(const Reel& reel, double side, SimulatedCable& cable) {
+  if (!reel.is_winch()) return;
+  const int n = cable.model.segments(), node = reel.end_node(n), i = reel.segment;
+  const Vector3 along = (cable.state.positions[i + 1] - cable.state.positions[i]).normalized();
+  cable.state.velocities[node] += (node == 0 ? side : -side) * reel.growth() * along;
+}
+
+}  // namespace
+
+EditResult World::set_length(int index, bool at_end, double length, double speed) {
+  Implementation& w = *implementation_;
+  if (index < 0 || index >= static_cast<int>(w.cables.size()))
+    return refused("cable: " + std::to_string(index) + "; must be the index of a cable");
+  const CableModel& model = w.cables[index].model;
+  CableScratch& s = w.scratch[index];
+  const Reel::Place place = at_end ? Reel::Place::end : Reel::Place::start;
+  if (s.reel && !s.reel->is_winch()) return refused("cable: " + model.name + " is still being joined");
+  if (s.reel && s.reel->place != place)
+    return refused("at_end: the winch at the other end of cable " + model.name + " still runs");
+
+  // One segment a step can be taken in, and is to be left over.
+  const double fastest = shortest_segment * model.segment_length / w.scene.time_step;
+  if (!(speed > 0 && speed <= fastest))
+    return refused("speed: " + number_text(speed) + "; must be above 0, and at most " + number_text(fastest) + " m/s");
+  int others = 0;
+  for (int i = 0; i < static_cast<int>(w.cables.size()); ++i) others += i == index ? 0 : w.cables[i].model.segments();
+  const double longest = (w.scene.limits.segments - others) * model.segment_length;
+  if (!(length > 0 && length <= longest))
+    return refused("length: " + number_text(length) + "; must be above 0, and at most " + number_text(longest) +
+                   " m, as limits.segments allows");
+
+  Reel reel = s.reel.value_or(Reel{});
+  reel.place = place;
+  reel.segment = at_end ? model.segments() - 1 : 0;
+  reel.speed = speed;
+  reel.acceleration = winch_acceleration;
+  reel.left = length - (model.length() + reel.debt);
+  const std::optional<Reel> before = std::exchange(s.reel, reel);
+  const double shortest = model.length() - w.available_length(index);
+  const double needed = model.length() - w.slack_at_winch(index);
+  if (length >= shortest && length >= needed) return {true, "", model.name};
+  s.reel = before;
+  return refused("length: " + number_text(length) + "; must be at least " + number_text(std::max(shortest, needed)) + " m, " +
+                 (needed > shortest ? "the distance of its attachments"
+                                    : "which leaves a piece of a segment between the winch and what the cable carries"));
+}
+
+/// [m] That can be taken in: up to the next node that is attached or carries a payload, or to the other end.
+double World::Implementation::available_length(int index) const {
+  const CableModel& model = cables[index].model;
+  const bool from_start = scratch[index].reel->place == Reel::Place::start;
+  const int n = model.segments();
+  int stop = from_start ? n : 0;
+  for (const Attachment& a : attachments) {
+    if (a.cable != index || a.node == (from_start ? 0 : n)) continue;
+    stop = from_start ? std::min(stop, a.node) : std::max(stop, a.node);
+  }
+  const int step = from_start ? 1 : -1;
+  double length = 0;
+  for (int node = from_start ? 0 : n; node != stop; node += step) {
+    length += model.rest_lengths[from_start ? node : node - 1];
+    if (node + step != stop && carries_payload(model, node + step)) break;
+  }
+  return length - least_segment * model.segment_length;
+}
+
+/// [m] That the cable between the winch and the next attachment is longer than they are apart; infinite where there are no two.
+double World::Implementation::slack_at_winch(int index) const {
+  const CableModel& model = cables[index].model;
+  const bool from_start = scratch[index].reel->place == Reel::Place::start;
+  const int end = from_start ? 0 : model.segments();
+  const Attachment *winch = nullptr, *next = nullptr;
+  for (const Attachment& a : attachments) {
+    if (a.cable != index) continue;
+    if (a.node == end) {
+      winch = &a;
+    } else if (!next || std::abs(a.node - end) < std::abs(next->node - end)) {
+      next = &a;
+    }
+  }
+  if (!winch || !next) return infinity;
+  const auto place = [&](const Attachment& a) { return (poses[a.frame] * a.pose).position; };
+  return model.length(std::min(end, next->node), std::max(end, next->node)) - (place(*winch) - place(*next)).norm();
+}
+
+void World::Implementation::plan_reel_step(int index) {
+  CableScratch& s = scratch[index];
+  const CableModel& model = cables[index].model;
+  if (!s.reel->is_winch() && model.rest_lengths[s.reel->segment] <= closing_distance * model.segment_length) {
+    close_joint(index);
+    return;
+  }
+  plan_reel(s.reel->is_winch() ? available_length(index) : infinity, scene.time_step, *s.reel);
+  if (s.reel->is_winch()) remesh_winch(index);
+  Reel& reel = *s.reel;
+  reel.start_length = model.rest_lengths[reel.segment];
+  for (const int side : {0, 1}) reel.start_masses[side] = model.masses[reel.segment + side];
+  wind_reel(index, 1, 1);
+}
+
+/// For a substep that goes from one part of the step to another, 0 to 1.
+void World::Implementation::wind_reel(int index, double from, double to) {
+  CableScratch& s = scratch[index];
+  // An inextensible segment has its length at the end of the substep, an elastic one strains about that in the middle.
+  const bool elastic = cables[index].model.material.axial_stiffness < infinity;
+  wind(*s.reel, elastic ? 0.5 * (from + to) : to, scene.time_step, cables[index].model);
+  s.boundary.growing.assign(1, {s.reel->segment, growth_at(*s.reel, to)});
+}
+
+void World::Implementation::complete_reel_step(int index) {
+  CableScratch& s = scratch[index];
+  const CableModel& model = cables[index].model;
+  wind(*s.reel, 1, scene.time_step, cables[index].model);
+  if (s.reel->is_winch()) {
+    // What goes through the winch is as twisted as the cable is.
+    const int end = s.reel->end_node(model.segments());
+    for (TwistSpan& span : s.spans) {
+      if (span.first_node != end && span.last_node != end) continue;
+      const double length = model.length(span.first_node, span.last_node);
+      const double change = span.angle * s.reel->wound / (length - s.reel->wound);
+      span.angle += change;
+      span.origin -= change;
+    }
+  }
+  if (!complete_reel(*s.reel)) {
+    s.reel.reset();
+    s.boundary.growing.clear();
+  }
+}
+
+/// Segments appear and vanish at the winch, so that the one there stays about as long as the others.
+void World::Implementation::remesh_winch(int index) {
+  const CableModel& model = cables[index].model;
+  const Reel& reel = *scratch[index].reel;
+  while (model.rest_lengths[reel.segment] > longest_segment * model.segment_length) add_winch_node(index);
+  const auto too_short = [&] {
+    return model.rest_lengths[reel.segment] + std::min(reel.change, 0.0) < shortest_segment * model.segment_length;
+  };
+  const auto is_free = [&](int node) {
+    return node > 0 && node < model.segments() && !carries_payload(model, node) &&
+           std::none_of(attachments.begin(), attachments.end(),
+                        [&](const Attachment& a) { return a.cable == index && a.node == node; });
+  };
+  while (too_short() && is_free(reel.place == Reel::Place::start ? 1 : model.segments() - 1)) take_in_winch_node(index);
+}
+
+void World::Implementation::add_winch_node(int index) {
+  SimulatedCable& cable = cables[index];
+  Reel& reel = *scratch[index].reel;
+  const double whole = cable.model.rest_lengths[reel.segment], regular = cable.model.segment_length;
+  const int node = reel.segment + 1;
+  add_material_motion(reel, 1, cable);
+  insert_node(reel.segment, reel.place == Reel::Place::start ? whole - regular : regular, cable);
+  if (reel.place == Reel::Place::end) ++reel.segment;
+  add_material_motion(reel, -1, cable);
+  renumber(index, node, 1);
+  after_remeshing(index);
+}
+
+void World::Implementation::take_in_winch_node(int index) {
+  SimulatedCable& cable = cables[index];
+  CableScratch& s = scratch[index];
+  Reel& reel = *s.reel;
+  const int node = reel.place == Reel::Place::start ? 1 : cable.model.segments() - 1;
+  add_material_motion(reel, 1, cable);
+  reel.debt += remove_node(node, cable);
+  if (reel.place == Reel::Place::end) --reel.segment;
+  auto& held = s.holders.nodes;
+  held.erase(std::remove_if(held.begin(), held.end(), [&](const Holder& h) { return h.node == node; }), held.end());
+  renumber(index, node, -1);
+  after_remeshing(index);
+  // Nothing but the rest length at the winch changes lengths now, either.
+  std::vector<HeldNode> nodes = s.boundary.nodes;
+  for (HeldNode& h : nodes) {
+    if (h.node != reel.end_node(cable.model.segments())) continue;
+    cable.state.velocities[h.node] = h.velocity;
+    add_material_motion(reel, 1, cable);
+    h.velocity = cable.state.velocities[h.node];
+  }
+  project_velocities(cable.model, nodes, cable.state.positions, cable.state.velocities);
+  add_material_motion(reel, -1, cable);
+}
+
+/// The nodes of a cable from `first` on have moved by `shift`.
+void World::Implementation::renumber(int index, int first, int shift) {
+  const auto follow = [&](int& node) {
+    if (node >= first) node += shift;
+  };
+  for (Attachment& a : attachments)
+    if (a.cable == index) follow(a.node);
+  for (Holder& h : scratch[index].holders.nodes) follow(h.node);
+  for (DirectionHolder& h : scratch[index].holders.directions) follow(h.node);
+}
+
+void World::Implementation::after_remeshing(int index) {
+  update_holders(index);
+  scratch[index].stepper.resize(cables[index].model);
+  for (ContactGroup& group : groups)
+    if (std::binary_search(group.cables.begin(), group.cables.end(), index)) group.contacts.forget();
+}
+
+}  // namespace verlet_cable

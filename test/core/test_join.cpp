@@ -1,0 +1,140 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "../support/scenes.h"
+
+namespace verlet_cable {
+namespace {
+
+using Status = StepResult::Status;
+
+/// Two ropes of half a metre that hang beside each other, `apart` [m].
+SceneDesc two_ropes(double apart, double bending_stiffness = 0) {
+  SceneDesc scene = scenes::one_cable(25, 0.5);
+  scene.materials[0].material.bending_stiffness = bending_stiffness;
+  scene.materials[0].material.drag = 0.05;
+  scene.cables.push_back(scene.cables[0]);
+  scene.cables[0].name = "left";
+  scene.cables[0].attachments = {scenes::attachment("a", PlaceDesc::At::start, {0, 0, 0})};
+  scene.cables[1].name = "right";
+  scene.cables[1].attachments = {scenes::attachment("b", PlaceDesc::At::start, {apart, 0, 0})};
+  return scene;
+}
+
+double total_mass(const World& world) {
+  double mass = 0;
+  for (const SimulatedCable& cable : world.cables())
+    mass += std::accumulate(cable.model.masses.begin(), cable.model.masses.end(), 0.0);
+  return mass;
+}
+
+TEST(Join, EndsThatAreApartAreDrawnTogetherAndWelded) {
+  for (const double bending : {0.0, 0.005}) {
+    const SceneDesc scene = two_ropes(0.3, bending);
+    World world(scene, initial_frames(scene));
+    const double mass = total_mass(world);
+    const EditResult joined = world.join(0, true, 1, true);
+    ASSERT_TRUE(joined.ok) << joined.message;
+    EXPECT_EQ(joined.name, "left");
+    ASSERT_EQ(world.cables().size(), 1u);
+    for (int i = 0; i < 2000; ++i) ASSERT_EQ(world.step({FrameInput{}}).status, Status::ok) << i;
+    const SimulatedCable& cable = world.cables()[0];
+    EXPECT_EQ(cable.model.segments(), 50);
+    EXPECT_NEAR(cable.model.length(), 1, 1e-12);
+    EXPECT_NEAR(total_mass(world), mass, 1e-12);
+    EXPECT_EQ(cable.state.positions.front(), Vector3(0, 0, 0));
+    EXPECT_EQ(cable.state.positions.back(), Vector3(0.3, 0, 0));
+    EXPECT_EQ(world.attachments()[1].node, 50);
+    for (const double l : cable.model.rest_lengths) EXPECT_NEAR(l, 0.02, 1e-12);
+  }
+}
+
+TEST(Join, UndoesACut) {
+  const SceneDesc scene = scenes::between_two_points(50, 0.6);
+  World world(scene, initial_frames(scene));
+  ASSERT_TRUE(world.cut(0, 20).ok);
+  for (int i = 0; i < 200; ++i) world.step({FrameInput{}});
+  const EditResult joined = world.join(1, false, 0, true);
+  ASSERT_TRUE(joined.ok) << joined.message;
+  EXPECT_EQ(joined.name, "cable_2");
+  for (int i = 0; i < 3000; ++i) ASSERT_EQ(world.step({FrameInput{}}).status, Status::ok) << i;
+  const SimulatedCable& cable = world.cables()[0];
+  EXPECT_EQ(cable.model.segments(), 49);
+  EXPECT_EQ(cable.state.positions.front(), Vector3(0, 0, 0)) << "the start is where the joined cable's start was";
+  EXPECT_EQ(cable.state.positions.back(), Vector3(0.6, 0, 0));
+}
+
+TEST(Join, KeepsMomentumOfFreeCables) {
+  SceneDesc scene = two_ropes(0.05, 0.005);
+  scene.gravity.acceleration.setZero();
+  scene.materials[0].material.drag = 0;
+  for (CableDesc& cable : scene.cables) {
+    cable.attachments.clear();
+    cable.initial.type = InitialShapeDesc::Type::points;
+  }
+  scene.cables[0].initial.points = {{0, 0, 0}, {0.5, 0, 0}};
+  scene.cables[0].initial.velocities = {{0, 0, 0.1}, {0.2, 0, 0}};
+  scene.cables[1].initial.points = {{0.55, 0, 0.02}, {0.55, 0.5, 0.02}};
+  scene.cables[1].initial.velocities = {{0, 0.1, 0}, {0, 0, 0}};
+  World world(scene, initial_frames(scene));
+  const auto momentum = [&world] {
+    Vector3 sum = Vector3::Zero();
+    for (const SimulatedCable& cable : world.cables())
+      for (int i = 0; i < cable.model.nodes(); ++i) sum += cable.model.masses[i] * cable.state.velocities[i];
+    return sum;
+  };
+  const Vector3 before = momentum();
+  ASSERT_TRUE(world.join(0, true, 1, false).ok);
+  EXPECT_LT((momentum() - before).norm(), 1e-12);
+  for (int i = 0; i < 1000; ++i) ASSERT_EQ(world.step({}).status, Status::ok) << i;
+  EXPECT_EQ(world.cables()[0].model.segments(), 50);
+  EXPECT_LT((momentum() - before).norm(), 1e-8);
+}
+
+TEST(Join, KeepsStretchedCablesAtTheirTension) {
+  SceneDesc scene = two_ropes(0.99);
+  scene.materials[0].material.axial_stiffness = 100;
+  scene.gravity.acceleration.setZero();
+  for (CableDesc& cable : scene.cables) cable.initial.type = InitialShapeDesc::Type::straight;
+  scene.cables[0].initial.to = {1, 0, 0};
+  scene.cables[1].initial.from = {0.99, 0, 0};
+  scene.cables[1].initial.to = {0, 0, 0};
+  World world(scene, {FrameInput{}});
+  ASSERT_TRUE(world.join(0, true, 1, true).ok);
+  double highest = 0;
+  for (int i = 0; i < 1000; ++i) {
+    ASSERT_EQ(world.step({FrameInput{}}).status, Status::ok) << i;
+    for (const double t : world.cables()[0].state.tension) highest = std::max(highest, t);
+  }
+  EXPECT_LT(highest, 5);  // 1 % of slack is all there is to pull on
+}
+
+TEST(Join, BadRequestsChangeNothing) {
+  SceneDesc scene = two_ropes(1.2);
+  scene.materials.push_back(scene.materials[0]);
+  scene.materials[1].name = "other";
+  scene.materials[1].material.bending_stiffness = 0.1;
+  scene.cables.push_back(scene.cables[0]);
+  scene.cables[2].name = "third";
+  scene.cables[2].attachments[0].name = "c";
+  scene.cables[2].material = "other";
+  World world(scene, initial_frames(scene));
+  const std::uint64_t before = world.hash();
+  const auto refused = [&](int first, bool first_at_end, int second, bool second_at_end, const char* part) {
+    const EditResult result = world.join(first, first_at_end, second, second_at_end);
+    EXPECT_FALSE(result.ok);
+    EXPECT_NE(result.message.find(part), std::string::npos) << result.message;
+  };
+  refused(-1, true, 1, true, "cable: -1");
+  refused(0, true, 3, true, "cable: 3");
+  refused(0, true, 0, false, "another cable");
+  refused(0, true, 2, true, "bending_stiffness 0 and 0.1");
+  refused(0, false, 1, false, "a and b");
+  refused(0, true, 1, true, "cannot meet");
+  EXPECT_EQ(world.hash(), before);
+}
+
+}  // namespace
+}  // namespace verlet_cable

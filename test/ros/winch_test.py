@@ -1,0 +1,59 @@
+#!/usr/bin/env python3
+"""A winch lifts a load and lowers it: length, tension and what cannot be done."""
+import math
+import sys
+import unittest
+
+import rospy
+import rostest
+from geometry_msgs.msg import WrenchStamped
+
+from cable_client import CableClient, Messages, cable, contents
+
+GRAVITY, DENSITY, PAYLOAD = 9.81, 0.1, 0.2
+NAN = float('nan')
+
+
+class WinchTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        rospy.init_node('winch_test')
+        cls.node = CableClient('/cable')
+        with cls.node.states() as states:
+            states.next()
+
+    def test_a_load_goes_up_and_down_smoothly(self):
+        with self.node.states() as states, Messages('/cable/wrench/winch', WrenchStamped) as wrenches:
+            for goal in (0.5, 2.0):
+                wrenches.clear()
+                answer = self.node.set_length('crane', False, goal, 0.5)
+                self.assertTrue(answer.success, answer.message)
+                states.wait_for(lambda s: abs(cable(s, 'crane').rest_length - goal) < 1e-3, f'cable of {goal} m')
+                rospy.sleep(1.0)
+                statics = GRAVITY * (PAYLOAD + DENSITY * goal)
+                heaviest = GRAVITY * (PAYLOAD + DENSITY * 2)
+                forces = [-w.wrench.force.z for w in wrenches.all()]
+                self.assertLess(max(forces), 1.5 * heaviest)
+                self.assertAlmostEqual(forces[-1], statics, delta=0.05 * statics)
+                self.assertAlmostEqual(cable(states.next(), 'crane').rest_length, goal, delta=1e-3)
+                states.clear()
+
+    def test_bad_requests_are_refused(self):
+        self.assertTrue(self.node.pause(True).success)
+        before = self.node.state()
+        for request, part in ((('nothing', False, 1, 1), 'cable: "nothing"'), (('', False, 1, 1), 'cable: ""'),
+                              (('x' * 10_000_000, False, 1, 1), 'allowed: crane, line'),
+                              (('crane', False, NAN, 1), 'length: nan'), (('crane', False, math.inf, 1), 'length: inf'),
+                              (('crane', False, 0, 1), 'length: 0'), (('crane', False, 50, 1), 'limits.segments'),
+                              (('crane', True, 1, NAN), 'speed: nan'), (('crane', True, 1, -1), 'speed: -1'),
+                              (('crane', True, 1, math.inf), 'speed: inf'), (('line', True, 0.39, 1), 'distance')):
+            answer = self.node.set_length(*request)
+            self.assertFalse(answer.success, request[0][:20])
+            self.assertIn(part, answer.message)
+            self.assertLess(len(answer.message), 1000)
+        self.assertEqual(contents(self.node.state()), contents(before))
+        self.assertTrue(self.node.pause(False).success)
+
+
+if __name__ == '__main__':
+    rostest.rosrun('verlet_cable', 'winch', WinchTest, sys.argv)
