@@ -61,8 +61,8 @@ void World::Implementation::find_contacts(ContactGroup& group, double from, doub
   group.contacts.find(cables, group.cables, moving_obstacles, attachments, rules, (to - from) * scene.time_step);
 }
 
-std::vector<Contact> World::contacts() const {
-  std::vector<Contact> contacts;
+std::vector<SimulatedContact> World::contacts() const {
+  std::vector<SimulatedContact> contacts;
   for (const ContactGroup& group : implementation_->groups)
     for (const Touch& touch : group.contacts.touches()) {
       if (touch.mode == Touch::Mode::open) continue;

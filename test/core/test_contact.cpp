@@ -112,8 +112,8 @@ TEST(Contact, PileTouchesItselfAndComesToRest) {
   EXPECT_LE(run(world, 3.0), before * (1 + 1e-3));
   EXPECT_GT(lowest(world), 0.8 * radius);
   EXPECT_LT(fastest(world), 0.01);
-  const std::vector<Contact> contacts = world.contacts();
-  EXPECT_TRUE(std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.other_cable == 0; }));
+  const std::vector<SimulatedContact> contacts = world.contacts();
+  EXPECT_TRUE(std::any_of(contacts.begin(), contacts.end(), [](const SimulatedContact& c) { return c.other_cable == 0; }));
   const std::vector<Vector3>& x = world.cables()[0].state.positions;
   double closest = infinity;
   for (int i = 0; i < 50; ++i)

@@ -5,7 +5,7 @@
 namespace verlet_cable {
 
 /// A place where a cable touches something, and what it feels there; mean over the last substep.
-struct Contact {
+struct SimulatedContact {
   int cable = 0;  ///< index into World::cables()
   int segment = 0;
   Vector3 position = Vector3::Zero();  ///< [m] on the cable's centre line
