@@ -19,15 +19,13 @@ constexpr double gentle_velocity = 0.5;  // [m/s]
 constexpr double contact_steps = 2;
 /// A linearisation is as good as the law if the forces differ by no more than this, relatively.
 constexpr double linear_enough = 0.05;
-constexpr double negligible_force = 1e-12;  // [N]
 
 struct ForceAndSlope {
   double force = 0, slope = 0;
 };
 
-/// Of a depth [m].
+/// Of a depth [m], >= 0.
 ForceAndSlope depth_law(double depth, const Touch& touch) {
-  if (depth <= 0) return {touch.base_stiffness * depth, touch.base_stiffness};
   const double x = std::min(depth / touch.radius, deepest), y = x / soft_depth, y4 = y * y * y * y;
   const double scale = contact_modulus * touch.radius;
   const double slope = touch.base_stiffness + scale * x * (2 + 6 * y4);
@@ -59,23 +57,20 @@ bool evaluate_touch(const Vector3& w, Touch& touch) {
   touch.displacement = w;
   const Vector3 e = touch.rate * w - touch.offset;
   const double along = touch.normal.dot(e), depth = -touch.gap - along;
-  const ForceAndSlope law = depth_law(depth, touch);
-  const ForceAndSlope here = depth_law(touch.depth, touch);
-  bool changed = false;
-  if (depth > 0 && std::abs(here.force + here.slope * (depth - touch.depth) - law.force) > linear_enough * law.force) {
-    touch.depth = depth;
-    touch.stiffness = law.slope;
-    changed = true;
-  }
   const Touch::Mode before = touch.mode;
-  touch.normal_force = std::max(0.0, law.force);
-  if (touch.normal_force <= negligible_force) {
+  if (depth <= 0) {
     touch.mode = Touch::Mode::open;
     touch.normal_force = 0;
     touch.force.setZero();
-    touch.slope.setZero();
-    return changed || before != touch.mode;
+    return before != touch.mode;
   }
+  const ForceAndSlope law = depth_law(depth, touch), here = depth_law(touch.depth, touch);
+  const bool bent = std::abs(here.force + here.slope * (depth - touch.depth) - law.force) > linear_enough * law.force;
+  if (bent) {
+    touch.depth = depth;
+    touch.stiffness = law.slope;
+  }
+  touch.normal_force = law.force;
   const Eigen::Matrix3d across = touch.normal * touch.normal.transpose(), tangential = Eigen::Matrix3d::Identity() - across;
   const double stiffness = touch.rate * touch.stiffness;
   const Vector3 trial = tangential * (touch.stuck_force - touch.stiffness * e);
@@ -90,7 +85,7 @@ bool evaluate_touch(const Vector3& w, Touch& touch) {
     // The secant, not the tangent, which is nothing along the slip: iterations would turn it to and fro.
     touch.slope = stiffness * (across + limit / size * tangential);
   }
-  return changed || before != touch.mode;
+  return bent || before != touch.mode;
 }
 
 Vector3 remaining_friction(const Touch& touch) {

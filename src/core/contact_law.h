@@ -35,13 +35,13 @@ struct Touch {
   Vector3 stuck_force = Vector3::Zero();         ///< [N] friction at the start of the substep
   Vector3 other_displacement = Vector3::Zero();  ///< [m] of what is touched, over the substep
   // Of the present iterate
-  Vector3 displacement = Vector3::Zero();            ///< [m] w
-  double depth = 0;                                  ///< [m] where the force's law is linearised
-  double stiffness = 0;                              ///< [N/m] there
-  double normal_force = 0;                           ///< [N]
-  Vector3 force = Vector3::Zero();                   ///< [N] on the point
-  Eigen::Matrix3d slope = Eigen::Matrix3d::Zero();   ///< [N/m] - d force / d w, without the part of friction that follows f
-  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();  ///< [N/m] the slope that is in the matrix
+  Vector3 displacement = Vector3::Zero();           ///< [m] w
+  double depth = 0;                                 ///< [m] where the force's law is linearised
+  double stiffness = 0;                             ///< [N/m] there
+  double normal_force = 0;                          ///< [N]
+  Vector3 force = Vector3::Zero();                  ///< [N] on the point
+  Eigen::Matrix3d slope = Eigen::Matrix3d::Zero();  ///< [N/m] - d force / d w, without the part of friction that follows f;
+                                                    ///< not set where open
   enum class Mode { open, sticks, slides } mode = Mode::open;  ///< at first that of the substep before
 };
 

@@ -86,10 +86,13 @@ void ContactSet::find(const std::vector<SimulatedCable>& cables, const std::vect
     for (const MovingObstacle& obstacle : obstacles) find_obstacle(cables[cable], cable, obstacle, attachments, h);
   }
   if (!rules.pairs.self && !rules.pairs.between_cables) return;
-  double radius = 0;
-  for (const int cable : group) radius = std::max(radius, cables[cable].model.material.radius);
+  double radius = 0, square = 0;
+  for (const int cable : group) {
+    radius = std::max(radius, cables[cable].model.material.radius);
+    for (const Vector3& v : cables[cable].state.velocities) square = std::max(square, v.squaredNorm());
+  }
   grid_.update(cables, group, rules.pairs, reach(0, radius, h) + radius, h);
-  find_pairs(cables, h);
+  find_pairs(cables, std::sqrt(square), h);
 }
 
 /// Which nodes are attached: nothing but their holders moves them.
@@ -159,7 +162,7 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Mov
   }
 }
 
-void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, double h) {
+void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, double speed, double h) {
   for (const SegmentGrid::Pair& pair : grid_.pairs()) {
     const SimulatedCable &a = cables[pair.first.cable], &b = cables[pair.second.cable];
     const int i = pair.first.segment, j = pair.second.segment;
@@ -167,13 +170,13 @@ void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, double h)
     const Vector3 &b0 = b.state.positions[j], &b1 = b.state.positions[j + 1];
     const double radius = std::min(a.model.material.radius, b.model.material.radius);
     const double surface = a.model.material.radius + b.model.material.radius;
+    const double far = surface + reach(2 * speed, radius, h);
     const Vector3 along_a = a1 - a0, along_b = b1 - b0;
-    const double speed = std::sqrt(std::max((a.state.velocities[i] - b.state.velocities[j]).squaredNorm(),
-                                            (a.state.velocities[i + 1] - b.state.velocities[j + 1]).squaredNorm()));
-    const double far = surface + reach(speed, radius, h);
-    const Vector3 middles = 0.5 * (a0 + a1 - b0 - b1);
-    const double sum = far + 0.5 * (along_a.norm() + along_b.norm());
-    if (middles.squaredNorm() > sum * sum) continue;
+    // Twice the distance of the middles, squared, against a bound of the square of the sum by twice the sum of the squares
+    const Vector3 middles = a0 + a1 - b0 - b1;
+    if (middles.squaredNorm() > 4 * far * (far + 2 * std::max(a.model.rest_lengths[i], b.model.rest_lengths[j])) +
+                                    2 * (along_a.squaredNorm() + along_b.squaredNorm()))
+      continue;
     const ClosestPoints closest = closest_points(a0, along_a, b0, along_b);
     const double distance = closest.between.norm();
     if (distance > far) continue;

@@ -56,7 +56,7 @@ class ContactSet {
   void set_held(const SimulatedCable& cable, int index, const std::vector<Attachment>& attachments);
   void find_obstacle(const SimulatedCable& cable, int index, const MovingObstacle& moving,
                      const std::vector<Attachment>& attachments, double h);
-  void find_pairs(const std::vector<SimulatedCable>& cables, double h);
+  void find_pairs(const std::vector<SimulatedCable>& cables, double speed, double h);
   void add(Touch& touch, const Vector3& velocity, const Vector3& other, double h);
   double reach(double speed, double radius, double h) const;
   bool recall(Touch& touch);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int maximum_iterations = 60;
 /// Error of a node's velocity at which an iteration ends, in segment lengths per second.
-constexpr double velocity_tolerance = 1e-3;
+constexpr double velocity_tolerance = 4e-3;
 constexpr double longest_tolerated = 1e-3;  // [s]; beyond, the error of the place counts
 constexpr double largest_correction = 2;    // segment lengths
 constexpr double fastest_convergence = 0.1;
@@ -22,24 +22,25 @@ constexpr double turned_round = 0.5;
 constexpr int maximum_shortenings = 8;
 /// Conjugate gradients end when the energy of what is missing is less than this, relative to that of the whole correction and
 /// of the substep's largest.
-constexpr double coupling_tolerance = 1e-4;
+constexpr double coupling_tolerance = 1e-3;
 constexpr double coupling_precision = 1e-10;
+/// Or when it is this part of what moves a segment by no more than is tolerated.
+constexpr double negligible_part = 0.1;
 constexpr int maximum_coupling_iterations = 60;
 
-Vector3 at_point(const VectorArray& nodes, const CablePoint& point) {
-  return (1 - point.fraction) * get(nodes, point.segment) + point.fraction * get(nodes, point.segment + 1);
+inline Vector3 between(const VectorArray& nodes, int i, double fraction) {
+  return (1 - fraction) * get(nodes, i) + fraction * get(nodes, i + 1);
 }
 
-void add_to(VectorArray& nodes, int i, const Vector3& v) {
-  nodes.x[i] += v.x();
-  nodes.y[i] += v.y();
-  nodes.z[i] += v.z();
-}
-
-/// A force at a point is shared by the nodes next to it like its place.
-void add_at_point(VectorArray& nodes, const CablePoint& point, const Vector3& v) {
-  add_to(nodes, point.segment, (1 - point.fraction) * v);
-  add_to(nodes, point.segment + 1, point.fraction * v);
+/// Adds a force at a point of a segment to the nodes next to it, in the shares of its place.
+inline void share(const Vector3& v, int i, double fraction, VectorArray& nodes) {
+  const Vector3 next = fraction * v, here = v - next;
+  nodes.x[i] += here.x();
+  nodes.y[i] += here.y();
+  nodes.z[i] += here.z();
+  nodes.x[i + 1] += next.x();
+  nodes.y[i + 1] += next.y();
+  nodes.z[i + 1] += next.z();
 }
 
 template <typename Operation>
@@ -88,8 +89,8 @@ bool joins_cables(const Touch& touch) {
 }  // namespace
 
 void CoupledStepper::Work::resize(std::size_t nodes) {
-  for (VectorArray* a : {&load, &residual, &direction, &own_image, &image, &correction}) a->assign(nodes, 0.0);
-  for (std::vector<double>* a : {&gap, &direction_multiplier, &correction_multiplier}) a->assign(nodes, 0.0);
+  for (VectorArray* a : {&load, &correction, &direction, &own_image, &image}) a->assign(nodes, 0.0);
+  for (std::vector<double>* a : {&gap, &correction_multiplier, &direction_multiplier}) a->assign(nodes, 0.0);
 }
 
 bool CoupledStepper::advance(std::vector<Participant>& participants, std::vector<Touch>& touches) {
@@ -114,13 +115,19 @@ bool CoupledStepper::advance(std::vector<Participant>& participants, std::vector
 bool CoupledStepper::solve(std::vector<Participant>& participants, std::vector<Touch>& touches) {
   const Substep& first = participants.front().substep;
   const double tolerance = velocity_tolerance * std::min(first.h, longest_tolerated);
+  negligible_energy_ = infinity;
+  for (const Participant& p : participants) {
+    const double moved = tolerance * p.substep.model.rest_lengths.front();
+    const double mass = p.substep.model.rest_lengths.front() * p.substep.model.material.linear_density;
+    negligible_energy_ = std::min(negligible_energy_, negligible_part * mass * moved * moved / (first.h * first.h));
+  }
   double last = 0;
   bool stale = true;
   for (int i = 0; i < maximum_iterations; ++i) {
     const bool changed = i == 0 ? press(participants, touches) : shorten(participants, touches);
     if (stale || changed) factor(participants, touches);
     for (Participant& p : participants) p.stepper->solver().solve(p.stepper->system());
-    couple(participants, touches);
+    couple(participants);
     work_along_ = work_along(participants);
     double largest = 0;
     for (Participant& p : participants) {
@@ -129,9 +136,10 @@ bool CoupledStepper::solve(std::vector<Participant>& participants, std::vector<T
       if (!(size < largest_correction)) return false;
       largest = std::max(largest, size);
     }
-    const double ratio = i == 0 ? 1 : largest / last;
+    // After a change the next correction may be as large as this one; else it is about that much smaller.
+    const double ratio = i == 0 || changed ? 1 : largest / last;
     const double enough = i < patient_iterations ? tolerance : impatience * tolerance;
-    if (!changed && largest * std::clamp(ratio, fastest_convergence, 1.0) < enough) {
+    if (largest * std::clamp(ratio, fastest_convergence, 1.0) < enough) {
       for (Participant& p : participants) p.result.converged = true;
       return true;
     }
@@ -178,56 +186,62 @@ bool CoupledStepper::press(std::vector<Participant>& participants, std::vector<T
   for (Participant& p : participants) p.stepper->evaluate(p.substep);
   bool changed = false;
   for (Touch& touch : touches) {
-    CableStepper& stepper = *at(participants, touch.point).stepper;
-    Vector3 displacement = at_point(stepper.displacement(), touch.point);
-    if (joins_cables(touch)) displacement -= at_point(at(participants, touch.other).stepper->displacement(), touch.other);
+    const CablePoint &point = touch.point, &other = touch.other;
+    CableStepper& stepper = *at(participants, point).stepper;
+    CableStepper* other_stepper = joins_cables(touch) ? at(participants, other).stepper : nullptr;
+    Vector3 displacement = between(stepper.displacement(), point.segment, point.fraction);
+    if (other_stepper != nullptr) displacement -= between(other_stepper->displacement(), other.segment, other.fraction);
     changed = evaluate_touch(displacement, touch) || changed;
-    add_at_point(stepper.system().load, touch.point, touch.force);
-    if (joins_cables(touch)) add_at_point(at(participants, touch.other).stepper->system().load, touch.other, -touch.force);
+    if (touch.mode == Touch::Mode::open) continue;
+    share(touch.force, point.segment, point.fraction, stepper.system().load);
+    if (other_stepper != nullptr) share(-touch.force, other.segment, other.fraction, other_stepper->system().load);
   }
   return changed;
 }
 
 void CoupledStepper::factor(std::vector<Participant>& participants, std::vector<Touch>& touches) {
   for (Participant& p : participants) p.stepper->assemble(p.substep.part());
-  for (Touch& touch : touches) {
-    touch.matrix = touch.slope;
-    at(participants, touch.point).stepper->system().add_stiffness(touch.point.segment, touch.point.fraction, touch.matrix);
-    if (joins_cables(touch))
-      at(participants, touch.other).stepper->system().add_stiffness(touch.other.segment, touch.other.fraction, touch.matrix);
+  couplings_.clear();
+  for (const Touch& touch : touches) {
+    if (touch.mode == Touch::Mode::open) continue;
+    at(participants, touch.point).stepper->system().add_stiffness(touch.point.segment, touch.point.fraction, touch.slope);
+    if (!joins_cables(touch)) continue;
+    at(participants, touch.other).stepper->system().add_stiffness(touch.other.segment, touch.other.fraction, touch.slope);
+    couplings_.push_back({index_[touch.point.cable], index_[touch.other.cable], touch.point.segment, touch.other.segment,
+                          touch.point.fraction, touch.other.fraction, touch.slope});
   }
   for (Participant& p : participants) p.stepper->factor();
 }
 
 /// Improves the solutions that the cables have found alone until they heed each other.
-void CoupledStepper::couple(std::vector<Participant>& participants, const std::vector<Touch>& touches) {
-  if (std::none_of(touches.begin(), touches.end(), joins_cables)) return;
+void CoupledStepper::couple(std::vector<Participant>& participants) {
+  if (couplings_.empty()) return;
   const std::size_t count = participants.size();
+  const auto residual = [&](int k) -> VectorArray& { return participants[k].stepper->system().load; };
   double whole = 0;
   for (std::size_t k = 0; k < count; ++k) {
     Participant& p = participants[k];
     Work& w = work_[k];
-    SaddleSystem& system = p.stepper->system();
-    w.load = system.load;
-    w.gap = system.gap;
     w.correction = p.stepper->solver().displacement();
     w.correction_multiplier = p.stepper->solver().multiplier();
-    w.residual.assign(w.load.x.size(), 0.0);
-    whole += std::abs(dot(w.load, w.correction, nodes(p)));
-    std::fill(system.gap.begin(), system.gap.end(), 0.0);
+    whole += std::abs(dot(residual(k), w.correction, nodes(p)));
+    std::swap(w.load, residual(k));
+    std::swap(w.gap, p.stepper->system().gap);
+    residual(k).assign(w.load.x.size(), 0.0);
+    p.stepper->system().gap.assign(w.gap.size(), 0.0);
   }
-  add_coupling(touches, -1, &Work::correction, &Work::residual);
-
+  add_coupling(
+      -1, [&](int k) -> const VectorArray& { return work_[k].correction; }, residual);
   largest_energy_ = std::max(largest_energy_, whole);
-  const double enough = std::max(coupling_tolerance * whole, coupling_precision * largest_energy_);
+  const double enough = std::max({coupling_tolerance * whole, coupling_precision * largest_energy_, negligible_energy_});
+
   double energy = 0;
   for (int i = 0; i < maximum_coupling_iterations; ++i) {
     double next_energy = 0;
     for (std::size_t k = 0; k < count; ++k) {
       CableStepper& stepper = *participants[k].stepper;
-      stepper.system().load = work_[k].residual;
       stepper.solver().solve(stepper.system());
-      next_energy += dot(work_[k].residual, stepper.solver().displacement(), nodes(participants[k]));
+      next_energy += dot(residual(k), stepper.solver().displacement(), nodes(participants[k]));
     }
     if (!(next_energy > enough)) break;
     const double ratio = i == 0 ? 0 : next_energy / energy;
@@ -237,10 +251,12 @@ void CoupledStepper::couple(std::vector<Participant>& participants, const std::v
       Work& w = work_[k];
       scale_and_add(ratio, p.stepper->solver().displacement(), w.direction, nodes(p));
       scale_and_add(ratio, p.stepper->solver().multiplier(), w.direction_multiplier, segments(p));
-      scale_and_add(ratio, w.residual, w.own_image, nodes(p));
+      scale_and_add(ratio, residual(k), w.own_image, nodes(p));
       w.image = w.own_image;
     }
-    add_coupling(touches, 1, &Work::direction, &Work::image);
+    add_coupling(
+        1, [&](int k) -> const VectorArray& { return work_[k].direction; },
+        [&](int k) -> VectorArray& { return work_[k].image; });
     double curvature = 0;
     for (std::size_t k = 0; k < count; ++k) curvature += dot(work_[k].direction, work_[k].image, nodes(participants[k]));
     if (!(curvature > 0)) break;
@@ -250,25 +266,25 @@ void CoupledStepper::couple(std::vector<Participant>& participants, const std::v
       Work& w = work_[k];
       add_scaled(step, w.direction, w.correction, nodes(p));
       add_scaled(step, w.direction_multiplier, w.correction_multiplier, segments(p));
-      add_scaled(-step, w.image, w.residual, nodes(p));
+      add_scaled(-step, w.image, residual(k), nodes(p));
     }
   }
   for (std::size_t k = 0; k < count; ++k) {
     CableStepper& stepper = *participants[k].stepper;
-    stepper.system().load = work_[k].load;
-    stepper.system().gap = work_[k].gap;
+    std::swap(work_[k].load, stepper.system().load);
+    std::swap(work_[k].gap, stepper.system().gap);
     stepper.solver().set_solution(work_[k].correction, work_[k].correction_multiplier);
   }
 }
 
 /// to += sign * (the part of the matrix that joins the two sides of contacts) of
-void CoupledStepper::add_coupling(const std::vector<Touch>& touches, double sign, VectorArray Work::*of, VectorArray Work::*to) {
-  for (const Touch& touch : touches) {
-    if (!joins_cables(touch)) continue;
-    Work &a = work_[index_[touch.point.cable]], &b = work_[index_[touch.other.cable]];
-    const Vector3 of_a = touch.matrix * at_point(a.*of, touch.point), of_b = touch.matrix * at_point(b.*of, touch.other);
-    add_at_point(a.*to, touch.point, -sign * of_b);
-    add_at_point(b.*to, touch.other, -sign * of_a);
+template <typename Of, typename To>
+void CoupledStepper::add_coupling(double sign, const Of& of, const To& to) const {
+  for (const Coupling& c : couplings_) {
+    const Vector3 first = c.matrix * between(of(c.first), c.first_segment, c.first_fraction);
+    const Vector3 second = c.matrix * between(of(c.second), c.second_segment, c.second_fraction);
+    share(-sign * second, c.first_segment, c.first_fraction, to(c.first));
+    share(-sign * first, c.second_segment, c.second_fraction, to(c.second));
   }
 }
 

@@ -28,12 +28,23 @@ class CoupledStepper {
   bool advance(std::vector<Participant>& participants, std::vector<Touch>& touches);
 
  private:
-  /// Of one participant.
+  /// Of one participant, for the conjugate gradients; their residual is in the load of its system.
   struct Work {
-    VectorArray load, residual, correction;   // nodes
-    VectorArray direction, own_image, image;  // nodes: the image is the matrix times the direction, `own` without what is coupled
-    std::vector<double> gap, direction_multiplier, correction_multiplier;  // segments
+    VectorArray load;                   // nodes: the system's own
+    std::vector<double> gap;            // segments: likewise
+    VectorArray correction, direction;  // nodes
+    VectorArray own_image, image;       // nodes: the matrix times the direction, `own` without couplings
+    std::vector<double> correction_multiplier, direction_multiplier;  // segments
+
     void resize(std::size_t nodes);
+  };
+
+  /// What the matrix has of a contact beyond the cables' own blocks.
+  struct Coupling {
+    int first = 0, second = 0;  ///< participants
+    int first_segment = 0, second_segment = 0;
+    double first_fraction = 0, second_fraction = 0;
+    Eigen::Matrix3d matrix;
   };
 
   bool solve(std::vector<Participant>& participants, std::vector<Touch>& touches);
@@ -41,14 +52,17 @@ class CoupledStepper {
   bool shorten(std::vector<Participant>& participants, std::vector<Touch>& touches);
   double work_along(std::vector<Participant>& participants) const;
   void factor(std::vector<Participant>& participants, std::vector<Touch>& touches);
-  void couple(std::vector<Participant>& participants, const std::vector<Touch>& touches);
-  void add_coupling(const std::vector<Touch>& touches, double sign, VectorArray Work::*of, VectorArray Work::*to);
+  void couple(std::vector<Participant>& participants);
+  template <typename Of, typename To>
+  void add_coupling(double sign, const Of& of, const To& to) const;
   Participant& at(std::vector<Participant>& participants, const CablePoint& point) const;
 
-  std::vector<int> index_;     ///< of the participant, by cable
-  std::vector<Work> work_;     ///< one a participant
-  double work_along_ = 0;      ///< [J] of the forces along the last correction, where it begins
-  double largest_energy_ = 0;  ///< of a correction in this substep
+  std::vector<int> index_;  ///< of the participant, by cable
+  std::vector<Work> work_;  ///< one a participant
+  std::vector<Coupling> couplings_;
+  double work_along_ = 0;         ///< [J] of the forces along the last correction, where it begins
+  double negligible_energy_ = 0;  ///< [J] moves no node by more than what is tolerated
+  double largest_energy_ = 0;     ///< of a correction in this substep
 };
 
 }  // namespace verlet_cable
