@@ -77,7 +77,7 @@ void ContactSet::find(const std::vector<SimulatedCable>& cables, const std::vect
                       const std::vector<MovingObstacle>& obstacles, const std::vector<Attachment>& attachments,
                       const ContactRules& rules, double h) {
   rules_ = rules;
-  time_ = contact_time(rules.time_step);
+  time_ = rules.still ? 0 : contact_time(rules.time_step);
   touches_.clear();
   touched_.assign(cables.size(), 0);
   recalled_ = 0;
@@ -203,7 +203,7 @@ void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, double sp
 void ContactSet::add(Touch& touch, const Vector3& velocity, const Vector3& other, double h) {
   const double approach = -touch.normal.dot(velocity - other);
   if (!(touch.gap < reach(std::max(0.0, approach), touch.radius, h))) return;
-  const double gentle = gentle_gap(touch.radius, time_);
+  const double gentle = gentle_gap(touch.radius, contact_time(rules_.time_step));
   touch.inside = !recall(touch) || touch.inside;
   if (touch.gap >= gentle) touch.inside = false;
   if (touch.inside) touch.gap = gentle;
@@ -216,6 +216,7 @@ void ContactSet::add(Touch& touch, const Vector3& velocity, const Vector3& other
 
 /// How far [m] from a surface contact may matter in a substep, at a velocity of approach [m/s].
 double ContactSet::reach(double speed, double radius, double h) const {
+  if (rules_.still) return (1 + spare_reach) * radius;
   return std::min((h + time_) * speed, radius + h * speed) + spare_reach * radius;
 }
 

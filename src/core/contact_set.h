@@ -20,6 +20,7 @@ struct MovingObstacle {
 
 /// What contacts are found with.
 struct ContactRules {
+  bool still = false;         ///< nothing moves but towards equilibrium, by less than a radius at a time
   double time_step = 0;       ///< [s] the world's
   SegmentGrid::Rules pairs;   ///< which cables touch which
   double cable_friction = 0;  ///< Coulomb coefficient of cable against cable

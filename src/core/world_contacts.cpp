@@ -50,15 +50,20 @@ void World::Implementation::move_obstacles(double from, double to) {
   }
 }
 
-void World::Implementation::find_contacts(ContactGroup& group, double from, double to) {
+ContactRules World::Implementation::contact_rules(bool still) const {
   ContactRules rules;
+  rules.still = still;
   rules.time_step = scene.time_step;
   if (scene.contact) {
     rules.pairs = {scene.contact->self, scene.contact->between_cables};
     rules.cable_friction = scene.contact->friction;
   }
+  return rules;
+}
+
+void World::Implementation::find_contacts(ContactGroup& group, double from, double to) {
   move_obstacles(from, to);
-  group.contacts.find(cables, group.cables, moving_obstacles, attachments, rules, (to - from) * scene.time_step);
+  group.contacts.find(cables, group.cables, moving_obstacles, attachments, contact_rules(false), (to - from) * scene.time_step);
 }
 
 std::vector<SimulatedContact> World::contacts() const {

@@ -53,10 +53,12 @@ struct World::Implementation {
   void aim(int cable);
   bool advance(ContactGroup& group, double from, double to, bool tolerated);
   void move_obstacles(double from, double to);
+  ContactRules contact_rules(bool still) const;
   void find_contacts(ContactGroup& group, double from, double to);
   void note_substep(int cable, const SubstepResult& substep, double part);
   void give_up(int cable);
   bool settle_cable(int cable);
+  SubstepResult settle_substep(ContactGroup& alone, double h);
   int breaking_segment(int cable, const StepResult& result) const;
   void add_forces(int cable, double weight);
   void update_holders(int cable);

@@ -156,6 +156,22 @@ TEST(Contact, CapstanHoldsAndSlipsAsEulerSays) {
     }
 }
 
+TEST(Contact, CableSettlesOnAFloor) {
+  SceneDesc scene = scenes::between_two_points(100, 0.6);
+  scene.materials[0].material.bending_stiffness = 1e-3;
+  add_obstacle("floor", ShapeType::plane, {0, 0, -0.2, 0, 0, 0}, scene);
+  World world(scene, BoundaryInputs(1));
+  EXPECT_TRUE(world.settle());
+  EXPECT_NEAR(lowest(world), -0.2 + radius, 0.02 * radius);
+  // It is an equilibrium: nothing moves when time goes on.
+  const std::vector<Vector3> before = world.cables()[0].state.positions;
+  run(world, 0.2);
+  double moved = 0;
+  for (std::size_t i = 0; i < before.size(); ++i)
+    moved = std::max(moved, (world.cables()[0].state.positions[i] - before[i]).norm());
+  EXPECT_LT(moved, 0.01 * radius);
+}
+
 TEST(Contact, CopiesOfAWorldWithContactsGoOnWithTheSameBytes) {
   SceneDesc scene = straight_rope(0.5, 50);
   scene.contact = ContactDesc{};
