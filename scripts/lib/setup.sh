@@ -39,12 +39,12 @@ if [[ -f /opt/ros/noetic/setup.bash ]]; then
   packages+=(
     ros-noetic-{catkin,message-generation,message-runtime,roscpp,rospy,rosbash,roslaunch,rostest,rosbag,rosservice,rostopic}
     ros-noetic-{actionlib,diagnostic,geometry,sensor,std,visualization}-msgs ros-noetic-std-srvs
-    ros-noetic-{diagnostic-updater,roslib,tf2,tf2-msgs,tf2-ros}
+    ros-noetic-{diagnostic-updater,robot-state-publisher,roslib,tf2,tf2-msgs,tf2-ros}
   )
   rviz_packages=(ros-noetic-rviz)
 else
   packages+=(
-    catkin catkin-lint ros-message-generation ros-message-runtime ros-environment rosbash roslang rospack-tools rosout
+    catkin catkin-lint ros-message-generation ros-message-runtime ros-environment ros-robot-state-publisher rosbash roslang rospack-tools rosout
     libroscpp-dev libroslib-dev libdiagnostic-updater-dev libtf2-dev libtf2-msgs-dev libtf2-ros-dev librostest-dev librosbag-dev
     lib{std,geometry,sensor,visualization,diagnostic,actionlib}-msgs-dev libstd-srvs-dev
     ros-{std,geometry,sensor,visualization,diagnostic,actionlib}-msgs ros-std-srvs

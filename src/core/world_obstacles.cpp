@@ -28,7 +28,7 @@ Shape make_shape(const ObstacleDesc& desc) {
     case ShapeType::mesh:
       break;
   }
-  return MeshShape{desc.mesh};
+  return MeshShape{desc.mesh, desc.uri, desc.scale};
 }
 
 /// Indices of the links that are rigidly joined to one, itself included, ascending.
@@ -110,6 +110,7 @@ EditResult World::remove_obstacle(const std::string& name) {
   const auto found = find_obstacle(w.obstacles, name);
   if (found == w.obstacles.end()) return {false, "obstacle: " + quoted(name) + "; there is no such obstacle", {}};
   w.obstacles.erase(found);
+  w.form_groups();  // contacts name obstacles by their indices
   return {true, "", name};
 }
 

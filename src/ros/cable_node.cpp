@@ -21,7 +21,8 @@ CableNode::CableNode(ros::NodeHandle private_node)
     : node_(private_node),
       simulation_(node_, read_scene_parameters(node_)),
       services_(node_, simulation_),
-      diagnostics_(node_, simulation_),
+      obstacles_(node_, simulation_),
+      diagnostics_(node_, simulation_, obstacles_),
       timer_(node_.createWallTimer(update_period(simulation_.scene()), [this](const ros::WallTimerEvent&) { update(); })),
       publish_rate_(simulation_.scene().publish_rate) {}
 

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "verlet_cable/ros/conversions.h"
+
 namespace verlet_cable {
 namespace {
 
@@ -74,17 +76,30 @@ ColorScale::ColorScale(const SceneDesc& scene)
       full_tension_(scene.cables.empty() ? 1 : largest_weight(scene)),
       full_strain_(largest_strain(scene, full_tension_)) {}
 
-double ColorScale::load(const SimulatedCable& cable, int segment) const {
+double ColorScale::load(const SimulatedCable& cable, int segment, const std::vector<double>& contact_forces) const {
+  if (color_by_ == ColorBy::contact) return contact_forces.empty() ? 0 : std::cbrt(contact_forces[segment] / full_tension_);
   return color_by_ == ColorBy::strain ? strain(cable, segment) / full_strain_ : cable.state.tension[segment] / full_tension_;
 }
 
-std::vector<std_msgs::ColorRGBA> ColorScale::node_colors(const SimulatedCable& cable) const {
+std::vector<std::vector<double>> ColorScale::contact_forces(const World& world) const {
+  std::vector<std::vector<double>> forces(world.cables().size());
+  if (color_by_ != ColorBy::contact) return forces;
+  for (const SimulatedContact& contact : contacts_of_both(world)) {
+    std::vector<double>& of_cable = forces[contact.cable];
+    of_cable.resize(world.cables()[contact.cable].model.segments());
+    of_cable[contact.segment] += contact.force.norm();
+  }
+  return forces;
+}
+
+std::vector<std_msgs::ColorRGBA> ColorScale::node_colors(const SimulatedCable& cable,
+                                                         const std::vector<double>& contact_forces) const {
   const int segments = cable.model.segments();
   std::vector<std_msgs::ColorRGBA> colors(cable.model.nodes());
-  if (color_by_ == ColorBy::tension || color_by_ == ColorBy::strain) {
+  if (color_by_ != ColorBy::cable) {
     for (int node = 0; node <= segments; ++node) {
-      const double before = load(cable, std::max(node - 1, 0));
-      const double after = load(cable, std::min(node, segments - 1));
+      const double before = load(cable, std::max(node - 1, 0), contact_forces);
+      const double after = load(cable, std::min(node, segments - 1), contact_forces);
       colors[node] = color_of_load((before + after) / 2);
     }
   } else {

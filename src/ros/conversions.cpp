@@ -46,7 +46,34 @@ bool is_finite(const SimulatedCable& cable) {
          std::all_of(state.tension.begin(), state.tension.end(), finite_number);
 }
 
-Cable to_message(const World& world, int index) {
+std::vector<SimulatedContact> contacts_of_both(const World& world) {
+  std::vector<SimulatedContact> contacts = world.contacts();
+  const auto radius = [&](int cable) { return world.cables()[cable].model.material.radius; };
+  for (std::size_t i = 0, once = contacts.size(); i < once; ++i) {
+    const SimulatedContact c = contacts[i];
+    if (c.other_cable < 0) continue;
+    const Vector3 across = (radius(c.cable) + radius(c.other_cable)) * c.normal;
+    contacts.push_back({c.other_cable, c.other_segment, c.position - across, -c.normal, -c.force, -1, c.cable, c.segment});
+  }
+  return contacts;
+}
+
+namespace {
+
+Contact to_message(const World& world, const SimulatedContact& contact) {
+  Contact message;
+  message.segment = contact.segment;
+  message.position = to_point(contact.position);
+  message.normal = to_vector(contact.normal);
+  message.force = to_vector(contact.force);
+  message.other =
+      contact.obstacle >= 0 ? world.obstacles()[contact.obstacle].name : world.cables()[contact.other_cable].model.name;
+  return message;
+}
+
+}  // namespace
+
+Cable to_message(const World& world, int index, const std::vector<SimulatedContact>& contacts) {
   const SimulatedCable& cable = world.cables()[index];
   Cable message;
   message.name = cable.model.name;
@@ -67,13 +94,16 @@ Cable to_message(const World& world, int index) {
   message.twist = node_twist(cable);
   message.rest_length = cable.model.length();
   message.radius = cable.model.material.radius;
+  for (const SimulatedContact& contact : contacts)
+    if (contact.cable == index) message.contacts.push_back(to_message(world, contact));
   return message;
 }
 
 CableArray to_message(const World& world) {
   CableArray message;
+  const std::vector<SimulatedContact> contacts = contacts_of_both(world);
   for (int index = 0; index < static_cast<int>(world.cables().size()); ++index) {
-    if (is_finite(world.cables()[index])) message.cables.push_back(to_message(world, index));
+    if (is_finite(world.cables()[index])) message.cables.push_back(to_message(world, index, contacts));
   }
   return message;
 }

@@ -30,11 +30,12 @@ std::string join(const std::vector<std::string>& names) {
 
 }  // namespace
 
-Diagnostics::Diagnostics(ros::NodeHandle& private_node, Simulation& simulation)
-    : simulation_(simulation), updater_(private_node, private_node, private_node.getNamespace()) {
+Diagnostics::Diagnostics(ros::NodeHandle& private_node, Simulation& simulation, const ObstacleListener& obstacles)
+    : simulation_(simulation), obstacles_(obstacles), updater_(private_node, private_node, private_node.getNamespace()) {
   updater_.setHardwareID("none");
   updater_.add("simulation", [this](Status& status) { report_simulation(status); });
   updater_.add("frames", [this](Status& status) { report_frames(status); });
+  updater_.add("obstacles", [this](Status& status) { report_obstacles(status); });
   // Not the updater's own pace, which is in ROS time and stands with it.
   timer_ = private_node.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { updater_.force_update(); });
 }
@@ -95,6 +96,24 @@ void Diagnostics::report_frames(Status& status) const {
     status.add("refused " + frame, problem);
     status.mergeSummary(DiagnosticStatus::WARN, "tf of frame " + quoted(frame) + " refused");
   }
+}
+
+void Diagnostics::report_obstacles(Status& status) const {
+  status.summary(DiagnosticStatus::OK, "all obstacles are there");
+  const World& world = simulation_.world();
+  const std::vector<FrameReport> frames = simulation_.frames().report();
+  for (const Obstacle& obstacle : world.obstacles()) {
+    const bool lost = frames[obstacle.frame].status == FrameStatus::lost;
+    if (obstacle.present && !lost) continue;
+    const std::string& frame = world.frames()[obstacle.frame];
+    status.add("obstacle " + obstacle.name, (lost ? "stands, as its frame is lost: " : "waits for its frame: ") + frame);
+    status.mergeSummary(DiagnosticStatus::WARN, "obstacle " + quoted(obstacle.name) + (lost ? " stands" : " waits"));
+  }
+  status.add("added", simulation_.added_obstacles().size());
+  status.add("refused_markers", obstacles_.refused_count());
+  if (obstacles_.refused_count() == 0) return;
+  status.add("last_refused", obstacles_.last_problem());
+  status.mergeSummary(DiagnosticStatus::WARN, "markers were refused");
 }
 
 }  // namespace verlet_cable

@@ -1,5 +1,6 @@
 #include "verlet_cable/ros/frame_watch.h"
 
+#include <algorithm>
 #include <string>
 
 #include "verlet_cable/core/number_text.h"
@@ -14,6 +15,11 @@ std::vector<Attachment> attachments_of(int frame, const World& world) {
     if (attachment.frame == frame) attachments.push_back(attachment);
   }
   return attachments;
+}
+
+bool has_obstacles(int frame, const World& world) {
+  const auto follows = [&](const Obstacle& obstacle) { return obstacle.frame == frame; };
+  return std::any_of(world.obstacles().begin(), world.obstacles().end(), follows);
 }
 
 /// One event for each attachment of the frame, or one without if there is none.
@@ -62,10 +68,10 @@ bool FrameWatch::react(const std::vector<FrameChange>& changes, Nanoseconds stam
                             max_frame_speed_);
         break;
       case FrameChange::Kind::lost:
-        if (!needed) break;
+        if (!needed && !has_obstacles(change.frame, world)) break;
         report_lost(change.frame, stamp, world);
         if (policy_ == LostFramePolicy::release) release(change.frame, stamp, world);
-        wait |= policy_ == LostFramePolicy::pause;
+        wait |= needed && policy_ == LostFramePolicy::pause;
         break;
       case FrameChange::Kind::back:
         report_back(change.frame, stamp, world);
@@ -78,8 +84,9 @@ bool FrameWatch::react(const std::vector<FrameChange>& changes, Nanoseconds stam
 void FrameWatch::report_unseen(const BoundaryInputs& inputs, const std::vector<FrameReport>& frames) const {
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (frames[i].status != FrameStatus::never_seen) continue;
-    ROS_INFO("frame %s was never seen: %s", quoted(frames[i].name).c_str(),
-             inputs[i].known ? "its attachments wait at its initial_pose" : "its cables wait for it");
+    ROS_INFO(
+        "frame %s was never seen: %s", quoted(frames[i].name).c_str(),
+        inputs[i].known ? "its attachments wait at its initial_pose" : "its cables wait for it, its obstacles are not there");
   }
 }
 
@@ -87,7 +94,8 @@ void FrameWatch::report_lost(int frame, Nanoseconds stamp, const World& world) {
   lost_.insert(frame);
   publish_for_frame(events_, CableEvent::FRAME_LOST, frame, stamp, world,
                     "frame " + quoted(world.frames()[frame]) + " is lost, tf has had nothing for more than tf_timeout, " +
-                        number_text(timeout_) + " s: " + consequence(policy_));
+                        number_text(timeout_) + " s: " +
+                        (attachments_of(frame, world).empty() ? "its obstacles stay where they are" : consequence(policy_)));
 }
 
 void FrameWatch::report_back(int frame, Nanoseconds stamp, const World& world) {
@@ -102,6 +110,12 @@ void FrameWatch::release(int frame, Nanoseconds stamp, World& world) const {
     events_.publish(CableEvent::UNPINNED, stamp, subject,
                     "attachment " + quoted(attachment.name) + " is undone: its frame is lost");
   }
+}
+
+std::vector<bool> awaited_frames(const World& world) {
+  std::vector<bool> awaited = needed_frames(world);
+  for (const Obstacle& obstacle : world.obstacles()) awaited[obstacle.frame] = true;
+  return awaited;
 }
 
 std::vector<bool> needed_frames(const World& world) {

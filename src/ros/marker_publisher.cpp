@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "verlet_cable/ros/conversions.h"
+#include "verlet_cable/ros/obstacle_markers.h"
 #include "verlet_cable/ros/queue_size.h"
 #include "verlet_cable/ros/tube.h"
 
@@ -59,12 +60,15 @@ void MarkerPublisher::show(const SceneDesc& scene) {
 void MarkerPublisher::publish(const World& world, const ros::Time& stamp) {
   if (publisher_.getNumSubscribers() == 0) return;
   const auto markers = boost::make_shared<MarkerArray>();
-  for (const SimulatedCable& cable : world.cables()) {
+  const std::vector<std::vector<double>> contact_forces = colors_.contact_forces(world);
+  for (std::size_t i = 0; i < world.cables().size(); ++i) {
+    const SimulatedCable& cable = world.cables()[i];
     if (!is_finite(cable)) continue;
-    add_cable(cable, *markers);
+    add_cable(cable, contact_forces[i], *markers);
     add_payloads(cable, *markers);
   }
   for (const Attachment& attachment : world.attachments()) add_pin(world, attachment, *markers);
+  for (const Obstacle& obstacle : world.obstacles()) add_obstacle(world, obstacle, *markers);
   delete_what_is_gone(*markers);
   for (Marker& marker : markers->markers) marker.header.stamp = stamp;
   publisher_.publish(markers);
@@ -80,9 +84,10 @@ Marker MarkerPublisher::make_marker(const std::string& ns, int id, int type) con
   return marker;
 }
 
-void MarkerPublisher::add_cable(const SimulatedCable& cable, MarkerArray& markers) const {
+void MarkerPublisher::add_cable(const SimulatedCable& cable, const std::vector<double>& contact_forces,
+                                MarkerArray& markers) const {
   const double radius = cable.model.material.radius;
-  std::vector<std_msgs::ColorRGBA> colors = colors_.node_colors(cable);
+  std::vector<std_msgs::ColorRGBA> colors = colors_.node_colors(cable, contact_forces);
   const bool tube = style_ == MarkerStyle::tube;
   Marker marker = make_marker(cable.model.name, cable_id, tube ? Marker::TRIANGLE_LIST : Marker::LINE_STRIP);
   marker.color = colors.front();
@@ -125,6 +130,20 @@ void MarkerPublisher::add_pin(const World& world, const Attachment& attachment, 
     set_scale(marker, size, size, size);
   }
   markers.markers.push_back(std::move(marker));
+}
+
+void MarkerPublisher::add_obstacle(const World& world, const Obstacle& obstacle, MarkerArray& markers) {
+  if (!obstacle.present) return;
+  int part = 0;
+  for (const Marker& look : obstacle_markers(obstacle, world.frame_pose(obstacle.frame))) {
+    // No other name has a colon and a number behind it.
+    Marker marker = make_marker("obstacles", id_of(obstacle.name + ":" + std::to_string(part++)), look.type);
+    marker.pose = look.pose;
+    marker.scale = look.scale;
+    marker.color = look.color;
+    marker.mesh_resource = look.mesh_resource;
+    markers.markers.push_back(std::move(marker));
+  }
 }
 
 void MarkerPublisher::delete_what_is_gone(MarkerArray& markers) {

@@ -29,9 +29,8 @@ void set_fields(sensor_msgs::PointCloud2& cloud) {
                                                                "node_id", 1, PointField::UINT32, "s", 1, PointField::FLOAT32);
 }
 
-void append_points(const SimulatedCable& cable, std::uint32_t cable_id, const ColorScale& scale,
+void append_points(const SimulatedCable& cable, std::uint32_t cable_id, const std::vector<std_msgs::ColorRGBA>& colors,
                    std::vector<PointRecord>& points) {
-  const std::vector<std_msgs::ColorRGBA> colors = scale.node_colors(cable);
   const std::vector<double> arc_length = cable.model.arc_length();
   for (int node = 0; node < cable.model.nodes(); ++node) {
     const Eigen::Vector3f position = cable.state.positions[node].cast<float>();
@@ -56,9 +55,11 @@ void PointPublisher::show(const SceneDesc& scene) {
 void PointPublisher::publish(const World& world, const ros::Time& stamp) {
   if (publisher_.getNumSubscribers() == 0) return;
   std::vector<PointRecord> points;
+  const std::vector<std::vector<double>> contact_forces = colors_.contact_forces(world);
   for (std::size_t id = 0; id < world.cables().size(); ++id) {
     const SimulatedCable& cable = world.cables()[id];
-    if (is_finite(cable)) append_points(cable, static_cast<std::uint32_t>(id), colors_, points);
+    if (is_finite(cable))
+      append_points(cable, static_cast<std::uint32_t>(id), colors_.node_colors(cable, contact_forces[id]), points);
   }
   const auto cloud = boost::make_shared<sensor_msgs::PointCloud2>();
   cloud->header.stamp = stamp;

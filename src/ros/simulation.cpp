@@ -81,6 +81,7 @@ void Simulation::start(Nanoseconds time) {
   frames_.sample_without_waiting(time, true);
   if (!keeps_world_) {
     world_ = World(scene_, frames_.inputs());
+    place_added_obstacles();
     frame_watch_.forget_from(0);
     faulted_ = false;
   }
@@ -95,16 +96,16 @@ void Simulation::catch_up(ros::WallDuration longest) {
   const ros::WallTime deadline = ros::WallTime::now() + longest;
   const Pacer::Due due = pacer_.due(stamp_, target());
   stamp_ += due.dropped;
-  std::vector<bool> needed = needed_frames(world_);
+  std::vector<bool> awaited = awaited_frames(world_);
   for (Nanoseconds i = 0; i < due.steps && ros::WallTime::now() < deadline; ++i) {
     const Nanoseconds next = stamp_ + grid_.step();
-    if (!frames_.sample(next, target(), needed)) return;
+    if (!frames_.sample(next, target(), awaited)) return;
     if (!frames_.changes().empty()) {
       waits_for_frames_ = frame_watch_.react(frames_.changes(), stamp_, world_);
       if (waits_for_frames_) return;
     }
     if (!step_world(next)) return;
-    if (!frames_.changes().empty()) needed = needed_frames(world_);
+    if (!frames_.changes().empty()) awaited = awaited_frames(world_);
   }
 }
 

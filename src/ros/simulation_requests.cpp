@@ -28,6 +28,7 @@ EditResult Simulation::reset() {
   if (!started_) return refused_before_start();
   frames_.reset(stamp_);
   world_ = World(scene_, frames_.inputs());
+  place_added_obstacles();
   faulted_ = false;
   frame_watch_.forget_from(static_cast<int>(world_.frames().size()));
   announce(CableEvent::RESET, {}, "reset to the initial state of the scene");

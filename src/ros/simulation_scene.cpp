@@ -12,6 +12,7 @@ EditResult Simulation::load_scene(const SceneDesc& scene) {
   pacer_.use(grid_.step(), longest_backlog(scene));
   world_ = std::move(world);
   frames_.follow_scene(scene, stamp_);
+  place_added_obstacles();
   publishers_.show(scene);
   events_.set_frame_id(scene.frame_id);
   frame_watch_.watch(scene);

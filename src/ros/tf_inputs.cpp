@@ -99,9 +99,10 @@ void TfInputs::drop_pinned_frames() {
 
 int TfInputs::add(const std::string& frame, Nanoseconds time) {
   if (const Track* track = find_track(frame)) return static_cast<int>(track - tracks_.data());
-  const FrameInput at{find(frame, time).value_or(Pose{}), true};
+  const std::optional<Pose> pose = find(frame, time);
+  const FrameInput at{pose.value_or(Pose{}), pose.has_value()};
   tracks_.push_back(track_from(frame, at, time));
-  tracks_.back().status = FrameStatus::ok;
+  if (pose) tracks_.back().status = FrameStatus::ok;
   inputs_.push_back(at);
   return static_cast<int>(tracks_.size()) - 1;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <variant>
 
 #include "verlet_cable/core/surface_point.h"
@@ -34,9 +35,11 @@ struct BoxShape {
   Vector3 size;  ///< [m] along x, y and z
 };
 
-/// Never null.
+/// What is read from a file, and where that is, for displays that read it themselves.
 struct MeshShape {
-  std::shared_ptr<const TriangleMesh> mesh;
+  std::shared_ptr<const TriangleMesh> mesh;  ///< never null; scaled
+  std::string uri{};
+  Vector3 scale = Vector3::Ones();
 };
 
 using Shape = std::variant<PlaneShape, SphereShape, CapsuleShape, CylinderShape, BoxShape, MeshShape>;

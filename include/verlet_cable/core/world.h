@@ -105,7 +105,7 @@ class World {
   const std::vector<std::string>& waiting() const;     ///< names of cables that wait for a frame
   const std::vector<Attachment>& attachments() const;  ///< of the started cables
   const std::vector<Break>& breaks() const;            ///< in the last step
-  std::vector<SimulatedContact> contacts() const;               ///< where cables touched something in the last substep
+  std::vector<SimulatedContact> contacts() const;      ///< where cables touched something in the last substep
   int find_cable(const std::string& name) const;       ///< index, -1 if there is none
   int find_attachment(const std::string& name) const;  ///< index, -1 if there is none
 

@@ -5,6 +5,7 @@
 #include "verlet_cable/core/scene_desc.h"
 #include "verlet_cable/ros/cable_services.h"
 #include "verlet_cable/ros/diagnostics.h"
+#include "verlet_cable/ros/obstacle_listener.h"
 #include "verlet_cable/ros/simulation.h"
 
 namespace verlet_cable {
@@ -22,6 +23,7 @@ class CableNode {
   ros::NodeHandle node_;
   Simulation simulation_;
   CableServices services_;
+  ObstacleListener obstacles_;
   Diagnostics diagnostics_;
   ros::WallTimer timer_;
   double publish_rate_;  ///< [Hz] for which the timer runs

@@ -6,6 +6,7 @@
 
 #include "verlet_cable/core/cable.h"
 #include "verlet_cable/core/scene_desc.h"
+#include "verlet_cable/core/world.h"
 
 namespace verlet_cable {
 
@@ -18,19 +19,23 @@ float packed_rgb(const std_msgs::ColorRGBA& color);
 /// Gives every node of a cable its color. The scale is fixed by the scene, one for all its cables, so that a color means the same
 /// load everywhere and at any time: blue is slack, red is the tension under which the scene's heaviest cable would hang from one
 /// end with all its payloads, or more; by strain, the largest strain that this weight would give one of the cables (without an
-/// elastic cable: 0.1 %).
+/// elastic cable: 0.1 %). By contact, the cube root of a segment's contact force over that tension: what lies on a floor shows
+/// beside what is pulled around a pole.
 class ColorScale {
  public:
   explicit ColorScale(const SceneDesc& scene);
 
-  /// One color a node: the mean over the segments that meet there.
-  std::vector<std_msgs::ColorRGBA> node_colors(const SimulatedCable& cable) const;
+  /// One color a node: the mean over the segments that meet there. `contact_forces` [N]: one a segment, or none where nothing
+  /// touches.
+  std::vector<std_msgs::ColorRGBA> node_colors(const SimulatedCable& cable, const std::vector<double>& contact_forces = {}) const;
+  /// The contact forces on the segments of each cable [N], for `node_colors`; none where they are not shown.
+  std::vector<std::vector<double>> contact_forces(const World& world) const;
 
   double full_tension() const { return full_tension_; }  ///< [N] what is red
   double full_strain() const { return full_strain_; }    ///< what is red
 
  private:
-  double load(const SimulatedCable& cable, int segment) const;
+  double load(const SimulatedCable& cable, int segment, const std::vector<double>& contact_forces) const;
 
   ColorBy color_by_;
   double full_tension_;

@@ -19,8 +19,11 @@ geometry_msgs::Pose to_pose(const Pose& pose);
 /// Whether every position, velocity and tension of a cable is a finite number: what is not must not leave the node.
 bool is_finite(const SimulatedCable& cable);
 
-/// Everything the message knows about cable `index` of `world.cables()`.
-Cable to_message(const World& world, int index);
+/// Everything the message knows about cable `index` of `world.cables()`, whose contacts are among `contacts`.
+Cable to_message(const World& world, int index, const std::vector<SimulatedContact>& contacts);
+
+/// Contacts of cables with cables as both of them feel it: each appears twice.
+std::vector<SimulatedContact> contacts_of_both(const World& world);
 
 /// All cables of a world that are finite. The header is left to the caller.
 CableArray to_message(const World& world);

@@ -3,21 +3,24 @@
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/ros.h>
 
+#include "verlet_cable/ros/obstacle_listener.h"
 #include "verlet_cable/ros/simulation.h"
 
 namespace verlet_cable {
 
-/// Reports on `/diagnostics`, each second of wall time: how the simulation goes, and how its frames are.
+/// Reports on `/diagnostics`, each second of wall time: how the simulation goes, how its frames and its obstacles are.
 class Diagnostics {
  public:
-  Diagnostics(ros::NodeHandle& private_node, Simulation& simulation);
+  Diagnostics(ros::NodeHandle& private_node, Simulation& simulation, const ObstacleListener& obstacles);
 
  private:
   using Status = diagnostic_updater::DiagnosticStatusWrapper;
   void report_simulation(Status& status);
   void report_frames(Status& status) const;
+  void report_obstacles(Status& status) const;
 
   Simulation& simulation_;
+  const ObstacleListener& obstacles_;
   diagnostic_updater::Updater updater_;
   ros::WallTimer timer_;
 };

@@ -38,5 +38,7 @@ class FrameWatch {
 
 /// By frame id: whether the frame holds a cable.
 std::vector<bool> needed_frames(const World& world);
+/// By frame id: whether a step waits for the frame while it is late, as it holds a cable or moves an obstacle.
+std::vector<bool> awaited_frames(const World& world);
 
 }  // namespace verlet_cable

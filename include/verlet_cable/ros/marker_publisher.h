@@ -17,6 +17,7 @@ namespace verlet_cable {
 ///  * namespace = name of a cable, id 0: the cable, a tube or a line;
 ///  * namespace "pins", ids from 1: what holds the cables: hinges are spheres, clamps are boxes, long along the cable;
 ///  cable's +x;
+///  * namespace "obstacles", ids from 1: those that are there; a capsule is three markers;
 ///  * namespace "payloads", ids from 1: point masses, as balls of aluminium would be.
 class MarkerPublisher {
  public:
@@ -28,9 +29,11 @@ class MarkerPublisher {
   using Key = std::pair<std::string, int>;  // namespace and id
 
   visualization_msgs::Marker make_marker(const std::string& ns, int id, int type) const;
-  void add_cable(const SimulatedCable& cable, visualization_msgs::MarkerArray& markers) const;
+  void add_cable(const SimulatedCable& cable, const std::vector<double>& contact_forces,
+                 visualization_msgs::MarkerArray& markers) const;
   void add_payloads(const SimulatedCable& cable, visualization_msgs::MarkerArray& markers);
   void add_pin(const World& world, const Attachment& attachment, visualization_msgs::MarkerArray& markers);
+  void add_obstacle(const World& world, const Obstacle& obstacle, visualization_msgs::MarkerArray& markers);
   void delete_what_is_gone(visualization_msgs::MarkerArray& markers);
   int id_of(const std::string& name);
 
@@ -38,7 +41,7 @@ class MarkerPublisher {
   std::string frame_id_;
   MarkerStyle style_;
   ColorScale colors_;
-  std::map<std::string, int> ids_;  // of pins and payloads, by name; never given twice
+  std::map<std::string, int> ids_;  // of pins, payloads and obstacles, by name; never given twice
   std::set<Key> shown_;             // at the last tick with subscribers
 };
 

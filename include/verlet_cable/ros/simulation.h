@@ -26,6 +26,12 @@ struct Snapshot {
   std::vector<SavedFrame> frames;
 };
 
+/// An obstacle that was added while running.
+struct AddedObstacle {
+  Obstacle obstacle;
+  std::string frame;
+};
+
 /// A world that runs `tf_latency` behind ROS time, follows tf, and is published. For one thread: requests are called between
 /// updates.
 class Simulation {
@@ -50,6 +56,10 @@ class Simulation {
   EditResult cut(int cable, int segment);
   EditResult set_length(const std::string& cable, bool at_end, double length, double speed);
   EditResult join(const std::string& first, bool first_at_end, const std::string& second, bool second_at_end);
+  /// Adds an obstacle to those of the scene, or replaces one that was added; it follows `frame` from when that is known on. It
+  /// stays until it is removed, whatever happens to the scene.
+  EditResult set_obstacle(Obstacle obstacle, const std::string& frame);
+  void remove_obstacle(const std::string& name);  ///< of those that were added
   EditResult save_state(const std::string& name);
   /// Continues a snapshot: while paused at its time and with its frames, while running at the present ones.
   EditResult restore_state(const std::string& name);
@@ -63,6 +73,7 @@ class Simulation {
   std::optional<Pose> find_frame(const std::string& frame) const;
   /// The snapshot of that name, the present state for an empty one; none if there is no such.
   std::optional<Snapshot> snapshot(const std::string& name) const;
+  const std::map<std::string, AddedObstacle>& added_obstacles() const { return added_obstacles_; }  ///< by name
   Nanoseconds now() const { return clock_.now(); }  ///< ROS time at the last update
   Nanoseconds stamp() const { return stamp_; }      ///< the simulated time, as ROS time
   Nanoseconds dropped() const { return pacer_.dropped(); }
@@ -92,6 +103,9 @@ class Simulation {
   void announce(std::uint8_t type, const EventSubject& subject, const std::string& message) const;
   EditResult refused_before_start() const;
   std::optional<EditResult> refused_cable(const std::string& field, const std::string& cable) const;
+  EditResult place(const AddedObstacle& added);
+  void place_added_obstacles();
+  std::size_t find_frame_id(const std::string& frame) const;
 
   SceneDesc scene_;
   TimeGrid grid_;
@@ -104,6 +118,7 @@ class Simulation {
   FrameWatch frame_watch_;
 
   std::map<std::string, Snapshot> snapshots_;
+  std::map<std::string, AddedObstacle> added_obstacles_;
   Nanoseconds stamp_ = 0;
   Nanoseconds waits_since_ = 0;  ///< ROS time since which the start waits for frames; 0 before there was any
   bool started_ = false;

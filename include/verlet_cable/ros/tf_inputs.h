@@ -55,9 +55,9 @@ class TfInputs {
   void receive();
   /// After ROS time went back to `now`: what tf said before is void. With `forget`, frames count as never seen, too.
   void restart(const ros::Time& now, bool forget);
-  /// Drops the frames that pins added, and puts the others where they are at `time`.
+  /// Drops the frames that pins and obstacles added, and puts the others where they are at `time`.
   void reset(Nanoseconds time);
-  /// Follows another frame from now on; its id. The frame is known: see `find`.
+  /// Follows another frame from now on, or from when tf shows it; its id.
   int add(const std::string& frame, Nanoseconds time);
 
   std::vector<SavedFrame> save() const;  ///< by frame id
