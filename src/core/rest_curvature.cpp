@@ -1,12 +1,32 @@
 #include "rest_curvature.h"
 
+#include <algorithm>
+
 namespace verlet_cable {
+
+namespace {
+
+/// The profile's places are spread evenly over the cable's rest length.
+void spread(const std::vector<std::array<double, 2>>& profile, CableModel& model) {
+  const std::vector<double> arc_length = model.arc_length();
+  const int last = static_cast<int>(profile.size()) - 1;
+  for (int i = 0; i < model.nodes(); ++i) {
+    const double place = arc_length[i] / arc_length.back() * last;
+    const int before = std::min(static_cast<int>(place), last - 1);
+    for (int axis = 0; axis < 2; ++axis)
+      model.rest_curvature[i][axis] =
+          profile[before][axis] + (place - before) * (profile[before + 1][axis] - profile[before][axis]);
+  }
+}
+
+}  // namespace
 
 void set_rest_curvature(const RestCurvatureDesc& desc, const std::vector<DirectionHolder>& clamps, SimulatedCable& cable) {
   const int n = cable.model.segments();
   if (desc.type == RestCurvatureDesc::Type::straight) return;
   cable.model.rest_curvature.assign(n + 1, desc.curvature);
   if (desc.type == RestCurvatureDesc::Type::constant) return;
+  if (desc.type == RestCurvatureDesc::Type::profile) return spread(desc.profile, cable.model);
   const std::vector<Quaternion> orientations = segment_orientations(cable);
   for (int i = 1; i < n; ++i) {
     const Vector3 before = orientations[i - 1] * Vector3::UnitX(), after = orientations[i] * Vector3::UnitX();

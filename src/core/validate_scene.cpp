@@ -107,6 +107,14 @@ void check_damping(const std::string& key, const SceneDesc& scene, const CableDe
   }
 }
 
+void check_rest_curvature(const std::string& key, const RestCurvatureDesc& desc, Errors& errors) {
+  check_numbers(key, desc.curvature, coordinate, "1/m", errors);
+  if (desc.type != RestCurvatureDesc::Type::profile) return;
+  if (desc.profile.size() < 2) errors.add(key, std::to_string(desc.profile.size()) + " places", "2 or more, from start to end");
+  for (std::size_t i = 0; i < desc.profile.size(); ++i)
+    check_numbers(indexed(key, i), desc.profile[i], coordinate, "1/m", errors);
+}
+
 void check_cable(const std::string& key, const SceneDesc& scene, const CableDesc& cable, UniqueNames& attachments,
                  Errors& errors) {
   const std::string prefix = key + ".";
@@ -119,7 +127,7 @@ void check_cable(const std::string& key, const SceneDesc& scene, const CableDesc
   }
   check_numbers(prefix + "color", cable.color, unit_interval, "", errors);
   check_initial(prefix + "initial", cable, errors);
-  check_numbers(prefix + "rest_curvature", cable.rest_curvature.curvature, coordinate, "1/m", errors);
+  check_rest_curvature(prefix + "rest_curvature", cable.rest_curvature, errors);
   check_attachments(prefix, cable, attachments, errors);
   for (std::size_t i = 0; i < cable.point_masses.size(); ++i) {
     const std::string point_mass = indexed(prefix + "point_masses", i) + ".";

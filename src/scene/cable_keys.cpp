@@ -5,6 +5,7 @@
 namespace verlet_cable {
 namespace {
 
+constexpr const char* rest_curvature_words = "straight | initial | [ky, kz], two numbers [1/m] | a list of at least two [ky, kz]";
 constexpr const char* place_words = "start, end, or an arc length [m] from 0 to the cable's length";
 
 template <class Owner>
@@ -83,8 +84,14 @@ void read_rest_curvature(const Value& value, RestCurvatureDesc& rest_curvature) 
   const std::string text = value.node.IsScalar() ? value.node.Scalar() : "";
   if (text == "straight" || text == "initial") {
     rest_curvature.type = text == "straight" ? Type::straight : Type::initial;
+  } else if (value.node.IsSequence() && value.node.size() > 0 && value.node[0].IsSequence()) {
+    rest_curvature.type = Type::profile;
+    rest_curvature.profile = read_list<std::array<double, 2>>(value, [](const Value& element, std::array<double, 2>& curvature) {
+      curvature = read_numbers<2>(element, "[ky, kz], two numbers [1/m]");
+    });
   } else {
-    rest_curvature = {Type::constant, read_numbers<2>(value, "straight | initial | [ky, kz], two numbers [1/m]")};
+    rest_curvature.type = Type::constant;
+    rest_curvature.curvature = read_numbers<2>(value, rest_curvature_words);
   }
 }
 
@@ -99,7 +106,7 @@ const Keys<CableDesc>& cable_keys() {
          cable.color = read_numbers<4>(value, "red, green, blue, alpha: four numbers from 0 to 1");
        }},
       {"initial", "a map", false, [](const Value& value, CableDesc& cable) { read_initial(value, cable.initial); }},
-      {"rest_curvature", "straight | initial | [ky, kz]", false,
+      {"rest_curvature", rest_curvature_words, false,
        [](const Value& value, CableDesc& cable) { read_rest_curvature(value, cable.rest_curvature); }},
       {"attachments", "a list", false,
        [](const Value& value, CableDesc& cable) {

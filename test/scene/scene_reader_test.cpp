@@ -117,6 +117,13 @@ cables:
   EXPECT_EQ(scene.cables[1].initial.to, Vector3(1, 1, 2));
 }
 
+TEST(SceneReader, restCurvatureMayChangeAlongTheCable) {
+  const SceneDesc scene =
+      read_scene_text(replaced(sound_scene, "segments: 20", "segments: 20\n    rest_curvature: [[0.5, -0.25], [1, 2], [0, 3]]"));
+  EXPECT_EQ(scene.cables[0].rest_curvature.type, RestCurvatureDesc::Type::profile);
+  EXPECT_EQ(scene.cables[0].rest_curvature.profile, (std::vector<std::array<double, 2>>{{0.5, -0.25}, {1, 2}, {0, 3}}));
+}
+
 TEST(SceneReader, elasticModuliMeanASolidRoundSection) {
   const SceneDesc scene =
       read_scene_text(replaced(sound_scene, "{linear_density: 0.1, radius: 0.005}",

@@ -152,6 +152,28 @@ TEST(EndMoment, NaturalCurvatureClosesToACircle) {
   report("natural circle: gap", samples, 1e-3, Order::second);
 }
 
+/// Curvature that grows along the rod rolls it up into a clothoid: angle c s^2 / 2.
+TEST(EndMoment, NaturalCurvatureThatGrowsMakesAClothoid) {
+  constexpr double growth = 2 * M_PI;  // [1/m^2] on a rod of 1 m
+  Vector3 tip = Vector3::Zero();
+  constexpr int parts = 100000;  // of the midpoint rule, which is then exact to 1e-9
+  for (int i = 0; i < parts; ++i) {
+    const double s = (i + 0.5) / parts;
+    tip += Vector3(std::cos(0.5 * growth * s * s), std::sin(0.5 * growth * s * s), 0) / parts;
+  }
+  const auto samples = sample({25, 50, 100}, [&](int n) {
+    SceneDesc scene = rod(n, 0.1);
+    clamp_start(scene);
+    scene.cables[0].rest_curvature.type = RestCurvatureDesc::Type::profile;
+    scene.cables[0].rest_curvature.profile = {{0, 0}, {0, 0.5 * growth}, {0, growth}};
+    start_at(scene, [](double s) { return Vector3(s, 0, 0); });
+    Simulation run(scene);
+    EXPECT_TRUE(run.world.settle());
+    return (run.positions().back() - tip).norm();
+  });
+  report("natural clothoid: gap", samples, 1e-3, Order::second);
+}
+
 /// Hooke's law does not know of bending: clamps that hold a straight rod feel EA times its strain.
 TEST(Stretch, ClampsHoldAStraightRodWithHookesForce) {
   constexpr double strain = 0.01, stiffness = 1000;

@@ -66,9 +66,11 @@ struct InitialShapeDesc {
 
 /// The shape that carries no bending moment.
 struct RestCurvatureDesc {
-  enum class Type { straight, initial, constant };
+  enum class Type { straight, initial, constant, profile };
   Type type = Type::straight;
   std::array<double, 2> curvature{0, 0};  ///< constant: about the material's y and z axes [1/m]
+  /// profile: the same at places spread evenly from start to end, at least two, straight lines in between [1/m]
+  std::vector<std::array<double, 2>> profile;
 };
 
 struct CableDesc {

@@ -13,18 +13,18 @@ constexpr int width = 40;
 
 }  // namespace
 
-ProgressBar::ProgressBar(double duration)
-    : is_on_(isatty(STDERR_FILENO) == 1), duration_(duration), start_(std::chrono::steady_clock::now()), last_(start_) {}
+ProgressBar::ProgressBar(double amount, const char* unit)
+    : is_on_(isatty(STDERR_FILENO) == 1), amount_(amount), unit_(unit), start_(std::chrono::steady_clock::now()), last_(start_) {}
 
-void ProgressBar::show(double time, std::chrono::steady_clock::time_point now) {
+void ProgressBar::show(double done, std::chrono::steady_clock::time_point now) {
   if (!is_on_ || now - last_ < interval) return;
   last_ = now;
   is_visible_ = true;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
-  const double fraction = time / duration_;
+  const double fraction = done / amount_;
   const auto filled = static_cast<std::size_t>(fraction * width);
-  std::fprintf(stderr, "\r[%s%s] %3.0f %%  %.4g of %.4g s, %.3g s left \x1b[K", std::string(filled, '#').c_str(),
-               std::string(width - filled, '.').c_str(), 100 * fraction, time, duration_, elapsed * (1 / fraction - 1));
+  std::fprintf(stderr, "\r[%s%s] %3.0f %%  %.4g of %.4g %s, %.3g s left \x1b[K", std::string(filled, '#').c_str(),
+               std::string(width - filled, '.').c_str(), 100 * fraction, done, amount_, unit_, elapsed * (1 / fraction - 1));
 }
 
 void ProgressBar::clear() {

@@ -7,20 +7,22 @@ namespace verlet_cable::cable_sim {
 /// A bar on standard error, if that is a terminal; otherwise nothing.
 class ProgressBar {
  public:
-  explicit ProgressBar(double duration);  ///< [s] to be simulated
+  /// `amount` of what is to be done, counted in `unit`.
+  explicit ProgressBar(double amount, const char* unit = "s");
   ~ProgressBar() { clear(); }
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// `time`: [s] simulated so far.
-  void show(double time, std::chrono::steady_clock::time_point now);
+  /// `done`: of the amount, so far.
+  void show(double done, std::chrono::steady_clock::time_point now);
   /// Makes room for a line of text.
   void clear();
 
  private:
   bool is_on_;
   bool is_visible_ = false;
-  double duration_;
+  double amount_;
+  const char* unit_;
   std::chrono::steady_clock::time_point start_;
   std::chrono::steady_clock::time_point last_;
 };

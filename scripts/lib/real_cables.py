@@ -1,0 +1,129 @@
+#!/usr/bin/python3
+"""real_cables.py PROGRAMS DATA PICTURES: fits the cables of DATA (dloK_R.csv) with the programs in PROGRAMS, prints the table of
+doc/real_cables.md, and draws its pictures."""
+import glob
+import json
+import os
+import subprocess
+import sys
+import time
+
+import matplotlib
+matplotlib.use('Agg')
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+import yaml  # noqa: E402
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+from recording import Recording  # noqa: E402
+
+# Mean absolute errors [cm] over 5 s of the learned model that was published with the recordings (arXiv 2406.05931).
+PUBLISHED = {1: 1.03, 2: 1.02, 3: 0.99, 4: 1.15}
+SHOWN_TIMES = (0.0, 1.0, 2.5, 4.9)  # [s]
+
+
+def fit(programs, cable, recordings, work):
+    """Runs cable_fit; the report, and how long it took [s]."""
+    report = os.path.join(work, f'dlo{cable}.json')
+    began = time.monotonic()
+    subprocess.run([os.path.join(programs, 'cable_fit'), *recordings, '--name', f'dlo{cable}', '--output',
+                    os.path.join(work, f'dlo{cable}.yaml'), '--report', report], check=True, stdout=subprocess.DEVNULL)
+    with open(report, encoding='utf-8') as file:
+        return json.load(file), time.monotonic() - began
+
+
+def simulate(programs, cable, recording, segments, work):
+    """Predicts a recording with cable_sim, as the contract says a fitted cable is used: positions of the markers [m] (rows,
+    markers, 3), and how many times faster than real time."""
+    with open(os.path.join(work, f'dlo{cable}.yaml'), encoding='utf-8') as file:
+        scene = yaml.safe_load(file)
+    desc = scene['cables'][0]
+    desc['segments'] = segments
+    desc['initial'] = {'type': 'points', 'points': recording.markers[0].tolist(),
+                       'velocities': recording.initial_velocities().tolist()}
+    desc['attachments'] = [{'name': at, 'at': at, 'frame': at, 'type': 'clamp'} for at in ('start', 'end')]
+    names = {kind: os.path.join(work, kind) for kind in ('scene.yaml', 'motion.csv', 'nodes.csv', 'summary.json')}
+    with open(names['scene.yaml'], 'w', encoding='utf-8') as file:
+        yaml.safe_dump(scene, file)
+    with open(names['motion.csv'], 'w', encoding='utf-8') as file:
+        file.write('t,frame,x,y,z,qx,qy,qz,qw\n')
+        for name, (positions, quaternions) in zip(('start', 'end'), recording.held_poses()):
+            for row, seconds in enumerate(recording.times):
+                numbers = ','.join(repr(float(value)) for value in (*positions[row], *quaternions[row]))
+                file.write(f'{float(seconds)!r},{name},{numbers}\n')
+    subprocess.run([os.path.join(programs, 'cable_sim'), names['scene.yaml'], '--duration', repr(float(recording.duration)),
+                    '--motion', names['motion.csv'], '--output', names['nodes.csv'], '--summary', names['summary.json']],
+                   check=True, stdout=subprocess.DEVNULL)
+    nodes = np.genfromtxt(names['nodes.csv'], delimiter=',', skip_header=1, usecols=(0, 3, 4, 5))
+    times = nodes[::segments + 1, 0]
+    positions = nodes[:, 1:].reshape(-1, segments + 1, 3)
+    places = recording.marker_places() * segments
+    before = np.minimum(places.astype(int), segments - 1)
+    fraction = (places - before)[None, :, None]
+    markers = (1 - fraction) * positions[:, before] + fraction * positions[:, before + 1]
+    rows = np.searchsorted(times, recording.times - 1e-9)
+    with open(names['summary.json'], encoding='utf-8') as file:
+        return markers[np.minimum(rows, len(markers) - 1)], json.load(file)['real_time_factor']
+
+
+def errors_over_time(predicted, recording):
+    """Mean |predicted - measured| over markers and coordinates [m], a row."""
+    return np.abs(predicted - recording.markers).mean(axis=(1, 2))
+
+
+def draw_shapes(cable, recording, predicted, pictures):
+    figure, axes = plt.subplots(1, len(SHOWN_TIMES), figsize=(13, 3.6), sharey=True, constrained_layout=True)
+    across = recording.markers[0, -1] - recording.markers[0, 0]
+    across = np.array([across[0], across[1], 0]) / np.hypot(across[0], across[1])
+    for axis, seconds in zip(axes, SHOWN_TIMES):
+        row = int(np.searchsorted(recording.times, seconds - 1e-9))
+        for positions, style in ((recording.markers[row], 'o'), (predicted[row], '-')):
+            axis.plot(positions @ across, positions[:, 2], style, label='measured' if style == 'o' else 'predicted')
+        axis.set(title=f'{seconds} s', xlabel='along the hands [m]', aspect='equal')
+    axes[0].set_ylabel('z [m]')
+    axes[0].legend()
+    figure.suptitle(f'Cable {cable}, {os.path.basename(recording.path)}')
+    figure.savefig(os.path.join(pictures, f'dlo{cable}.png'), dpi=90)
+    plt.close(figure)
+
+
+def main():
+    if len(sys.argv) != 4:
+        sys.exit('usage: real_cables.py PROGRAMS DATA PICTURES')
+    programs, data, pictures = sys.argv[1:]
+    work = os.path.join(programs, 'real_cables')
+    os.makedirs(work, exist_ok=True)
+    os.makedirs(pictures, exist_ok=True)
+    figure, axis = plt.subplots(figsize=(8, 4.5), constrained_layout=True)
+    print('mean absolute errors [cm]')
+    print('cable  left out  in order  published  largest  at 5 s  fitted  half segments  twice  fit [s]  real-time factor')
+    for cable in range(1, 6):
+        paths = sorted(glob.glob(os.path.join(data, f'dlo{cable}_*.csv')))
+        report, seconds = fit(programs, cable, paths, work)
+        recordings = [Recording(path) for path in paths]
+        segments = report['segments']
+        means, factors, runs = {}, [], []
+        for count in (segments // 2, segments, 2 * segments):
+            results = [simulate(programs, cable, recording, count, work) for recording in recordings]
+            over_time = np.array([errors_over_time(predicted, recording)
+                                  for (predicted, _), recording in zip(results, recordings)])
+            means[count] = over_time.mean()
+            if count == segments:
+                runs = results
+                factors = [factor for _, factor in results]
+                axis.plot(recordings[0].times, 100 * over_time.mean(axis=0), label=f'cable {cable}')
+        left_out = [recording['left_out'] for recording in report['recordings']]
+        in_order = report.get('cross_validated_error_in_order', report['cross_validated_error'])
+        print(f"{cable:5d} {100 * report['cross_validated_error']:9.3f} {100 * in_order:9.3f} "
+              f"{PUBLISHED.get(cable, float('nan')):10.2f} {100 * max(e['largest'] for e in left_out):8.1f} "
+              f"{100 * np.mean([e['last'] for e in left_out]):7.2f} {100 * means[segments]:7.3f} "
+              f'{100 * means[segments // 2]:14.3f} {100 * means[2 * segments]:6.3f} {seconds:8.0f} {min(factors):17.0f}',
+              flush=True)
+        draw_shapes(cable, recordings[0], runs[0][0], pictures)
+    axis.set(xlabel='t [s]', ylabel='mean absolute error [cm]', ylim=(0, None), title='Fitted cables, mean over 8 recordings')
+    axis.legend()
+    figure.savefig(os.path.join(pictures, 'errors.png'), dpi=90)
+
+
+if __name__ == '__main__':
+    main()

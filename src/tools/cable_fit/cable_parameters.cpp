@@ -1,0 +1,125 @@
+#include "cable_parameters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "verlet_cable/core/number_text.h"
+
+namespace verlet_cable::cable_fit {
+namespace {
+
+/// Errors are the same at 1 ms within a percent, see doc/real_cables.md.
+constexpr double time_step = 0.01;  // [s]
+
+/// A property of the material, in proportion to the cable's weight.
+struct MaterialParameter {
+  const char* key;
+  const char* unit;
+  double MaterialDesc::*member;
+  double lowest, highest;  ///< decimal logarithms of the value over the linear density
+};
+constexpr MaterialParameter material_parameters[] = {
+    {"bending_stiffness", "N m^2", &MaterialDesc::bending_stiffness, -5, 2},
+    {"bending_damping", "N m^2 s", &MaterialDesc::bending_damping, -7, 0},
+    {"drag", "kg/(m s)", &MaterialDesc::drag, -4, 2},
+    {"torsional_stiffness", "N m^2", &MaterialDesc::torsional_stiffness, -5, 2},
+};
+constexpr std::size_t bending_index = 0, torsion_index = 3;
+constexpr std::size_t length_index = std::size(material_parameters);
+constexpr std::size_t curvature_index = length_index + 1;
+
+/// Torsional over bending stiffness is between 2/3 and 1 of round solid sections, and not far from it of others.
+constexpr double likely_torsion = 0.5;  // decades
+/// Curvature is looked for at so many places: a little further apart than markers are.
+constexpr int curvature_places = 8;
+constexpr double highest_curvature = 100;  // [1/m]
+constexpr double likely_curvature = 2.5;   // [1/m]
+/// The part of the measured length by which the effective one may differ.
+constexpr double length_tolerance = 0.015;
+/// A scene is an error where the markers at its start are 5 % longer or shorter than the cable; rounding stays inside.
+constexpr double start_tolerance = 0.0499;
+
+/// What the simulation leaves unsolved in a step is far below what these change.
+constexpr double logarithmic_step = 0.02;  // decades
+constexpr double relative_length_step = 5e-4;
+constexpr double curvature_step = 0.05;  // [1/m]
+constexpr double guessed_drag = 0.1;     // [1/s] over the linear density
+
+double first_length(const Recording& recording) {
+  double length = 0;
+  const std::vector<Vector3>& markers = recording.markers.front();
+  for (std::size_t i = 1; i < markers.size(); ++i) length += (markers[i] - markers[i - 1]).norm();
+  return length;
+}
+
+}  // namespace
+
+void measure_length(const std::vector<Recording>& recordings, CableSettings& settings, std::vector<std::string>& errors) {
+  std::vector<double> lengths;
+  for (const Recording& recording : recordings) lengths.push_back(measured_length(recording));
+  std::sort(lengths.begin(), lengths.end());
+  settings.length = lengths[lengths.size() / 2];
+  settings.shortest = (1 - length_tolerance) * settings.length;
+  settings.longest = (1 + length_tolerance) * settings.length;
+  for (const Recording& recording : recordings) {
+    const double first = first_length(recording);
+    if (first > (1 + start_tolerance) * settings.length || first < (1 - start_tolerance) * settings.length)
+      errors.push_back(recording.path + ": the markers' distances in the first row are " + number_text(first) +
+                       " m in all; allowed: at most 5 % more or less than the cable's length, measured as " +
+                       number_text(settings.length) + " m");
+    settings.shortest = std::max(settings.shortest, first / (1 + start_tolerance));
+    settings.longest = std::min(settings.longest, first / (1 - start_tolerance));
+  }
+}
+
+std::vector<Parameter> cable_parameters(const CableSettings& settings) {
+  std::vector<Parameter> parameters;
+  const double density = std::log10(settings.linear_density);
+  for (const MaterialParameter& p : material_parameters)
+    parameters.push_back({"materials." + settings.name + "." + p.key, p.unit, true, density + p.lowest, density + p.highest,
+                          logarithmic_step, 0, -1});
+  parameters[torsion_index].likely = likely_torsion;
+  parameters[torsion_index].relative_to = bending_index;
+  parameters.push_back(
+      {"cables[0].length", "m", false, settings.shortest, settings.longest, relative_length_step * settings.length, 0, -1});
+  for (int i = 0; i < curvature_places; ++i) {
+    for (int axis = 0; axis < 2; ++axis)
+      parameters.push_back({"cables[0].rest_curvature[" + std::to_string(i) + "][" + std::to_string(axis) + "]", "1/m", false,
+                            -highest_curvature, highest_curvature, curvature_step, likely_curvature, -1});
+  }
+  return parameters;
+}
+
+std::vector<double> first_guess(const CableSettings& settings, double bending, double damping) {
+  const double density = settings.linear_density;
+  std::vector<double> values{std::log10(bending * density), std::log10(damping * density), std::log10(guessed_drag * density),
+                             std::log10(bending * density), std::clamp(settings.length, settings.shortest, settings.longest)};
+  values.resize(curvature_index + 2 * curvature_places, 0.0);
+  return values;
+}
+
+double scene_value(const Parameter& parameter, double value) {
+  return parameter.logarithmic ? std::pow(10, value) : value;
+}
+
+SceneDesc cable_scene(const CableSettings& settings, const std::vector<double>& values) {
+  SceneDesc scene;
+  scene.time_step = time_step;
+  NamedMaterial& material = scene.materials.emplace_back();
+  material.name = settings.name;
+  material.material.linear_density = settings.linear_density;
+  material.material.radius = settings.radius;
+  for (std::size_t i = 0; i < length_index; ++i) material.material.*material_parameters[i].member = std::pow(10, values[i]);
+  CableDesc& cable = scene.cables.emplace_back();
+  cable.name = settings.name;
+  cable.material = settings.name;
+  cable.segments = settings.segments;
+  cable.length = values[length_index];
+  cable.rest_curvature.type = RestCurvatureDesc::Type::profile;
+  for (std::size_t i = curvature_index; i < values.size(); i += 2)
+    cable.rest_curvature.profile.push_back({values[i], values[i + 1]});
+  return scene;
+}
+
+}  // namespace verlet_cable::cable_fit

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace verlet_cable::cable_fit {
+
+constexpr int exit_done = 0;
+constexpr int exit_bad_input = 2;
+constexpr int exit_stopped = 3;
+
+/// The whole program: arguments after its name, exit status back. Reports to standard output and standard error.
+int run(const std::vector<std::string>& arguments);
+
+}  // namespace verlet_cable::cable_fit

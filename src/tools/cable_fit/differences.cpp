@@ -1,0 +1,86 @@
+#include "differences.h"
+
+#include <cmath>
+#include <mutex>
+
+#include "parallel.h"
+#include "prediction_error.h"
+
+namespace verlet_cable::cable_fit {
+namespace {
+
+/// [m] differences above this count linearly.
+constexpr double outlying = 0.01;
+/// [m] the scatter of predictions, and how many neighbouring coordinates err alike: rows within some tenths of a second,
+/// neighbouring markers.
+constexpr double scatter = 0.005;
+constexpr double alike = 100;
+
+/// Half its square is the pseudo-Huber loss.
+double robust(double difference) {
+  const double ratio = difference / outlying;
+  return difference * std::sqrt(2 / (1 + std::sqrt(1 + ratio * ratio)));
+}
+
+Eigen::VectorXd scaled_differences(const SceneDesc& cable, const Recording& recording) {
+  const std::vector<double> errors = coordinate_errors(predict(cable, recording), recording);
+  Eigen::VectorXd values(static_cast<Eigen::Index>(errors.size()));
+  const double unit = scatter * std::sqrt(alike);
+  for (std::size_t i = 0; i < errors.size(); ++i) values[static_cast<Eigen::Index>(i)] = robust(errors[i]) / unit;
+  return values;
+}
+
+}  // namespace
+
+std::size_t difference_count(const Recording& recording) {
+  return static_cast<std::size_t>(recording.rows() - given_rows) * recording.marker_count() * 3;
+}
+
+Linearization linearize(const Problem& problem, const std::vector<int>& recordings, const std::vector<double>& values,
+                        bool with_slopes) {
+  const int count = static_cast<int>(recordings.size());
+  const int changes = with_slopes ? static_cast<int>(problem.parameters.size()) : 0;
+  // One column for the values as they are and one for each that is changed.
+  std::vector<std::vector<Eigen::VectorXd>> columns(count, std::vector<Eigen::VectorXd>(changes + 1));
+  std::vector<double> steps(changes);
+  for (int k = 0; k < changes; ++k) {
+    const Parameter& parameter = problem.parameters[k];
+    steps[k] = values[k] + parameter.step <= parameter.highest ? parameter.step : -parameter.step;
+  }
+  std::mutex mutex;
+  for_each_index(count * (changes + 1), [&](int i) {
+    const int change = i / count, recording = i % count;
+    std::vector<double> changed = values;
+    if (change > 0) changed[change - 1] += steps[change - 1];
+    columns[recording][change] =
+        scaled_differences(cable_scene(problem.settings, changed), problem.recordings[recordings[recording]]);
+    const std::lock_guard<std::mutex> lock(mutex);
+    problem.simulated();
+  });
+  Linearization linearization(count);
+  for (int recording = 0; recording < count; ++recording) {
+    RecordingDifferences& of_recording = linearization[recording];
+    of_recording.values = columns[recording][0];
+    if (!with_slopes) continue;
+    of_recording.slopes.resize(of_recording.values.size(), changes);
+    for (int k = 0; k < changes; ++k) of_recording.slopes.col(k) = (columns[recording][k + 1] - of_recording.values) / steps[k];
+  }
+  return linearization;
+}
+
+Prior::Prior(const std::vector<Parameter>& parameters, const std::vector<double>& at) {
+  const auto count = static_cast<Eigen::Index>(parameters.size());
+  values = Eigen::VectorXd::Zero(count);
+  slopes = Eigen::MatrixXd::Zero(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Parameter& parameter = parameters[i];
+    if (parameter.likely == 0) continue;
+    values[i] = at[i] / parameter.likely;
+    slopes(i, i) = 1 / parameter.likely;
+    if (parameter.relative_to < 0) continue;
+    values[i] -= at[parameter.relative_to] / parameter.likely;
+    slopes(i, parameter.relative_to) = -1 / parameter.likely;
+  }
+}
+
+}  // namespace verlet_cable::cable_fit

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <vector>
+
+#include "cable_parameters.h"
+
+namespace verlet_cable::cable_fit {
+
+/// The cable that is looked for, and where.
+struct Problem {
+  const std::vector<Recording>& recordings;
+  CableSettings settings;
+  std::vector<Parameter> parameters;
+  std::function<void()> simulated;  ///< called whenever a recording was simulated, from one thread at a time
+};
+
+/// Predicted minus measured coordinates of a recording in units of the scatter that is expected of them, so that their squares
+/// add up with those of a prior; large ones count linearly (pseudo-Huber), so that a few bad markers do not decide.
+struct RecordingDifferences {
+  Eigen::VectorXd values;  ///< a coordinate
+  Eigen::MatrixXd slopes;  ///< a coordinate, a parameter; empty if they were not asked for
+};
+using Linearization = std::vector<RecordingDifferences>;
+
+std::size_t difference_count(const Recording& recording);
+
+/// Those of some recordings, in their order; slopes by differences, the simulations on all cores.
+Linearization linearize(const Problem& problem, const std::vector<int>& recordings, const std::vector<double>& values,
+                        bool with_slopes);
+
+/// What the parameters' priors add: a value a parameter, 0 where there is none.
+struct Prior {
+  Prior(const std::vector<Parameter>& parameters, const std::vector<double>& at);
+  Eigen::VectorXd values;
+  Eigen::MatrixXd slopes;  ///< a parameter, a parameter
+};
+
+}  // namespace verlet_cable::cable_fit

@@ -1,0 +1,85 @@
+#include "recording.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace verlet_cable::cable_fit {
+namespace {
+
+constexpr double doubled_back = -0.5;  ///< cosine of the turn behind a held end: 120 degrees
+
+/// Orientations whose x axes are the directions, each turned as little as possible from the one before.
+void carry_along(const Recording& recording, int from, int to, int origin, FrameTrack& track) {
+  Vector3 last = Vector3::UnitX();
+  Quaternion orientation = Quaternion::Identity();
+  for (int row = 0; row < recording.rows(); ++row) {
+    const std::vector<Vector3>& markers = recording.markers[row];
+    const Vector3 direction = (markers[to] - markers[from]).normalized();
+    orientation = (Quaternion::FromTwoVectors(last, direction) * orientation).normalized();
+    last = direction;
+    track.add(recording.times[row], {markers[origin], orientation});
+  }
+}
+
+/// [m] from the first marker along the others, one a marker.
+std::vector<double> along(const std::vector<Vector3>& markers) {
+  std::vector<double> lengths{0};
+  for (std::size_t i = 1; i < markers.size(); ++i) lengths.push_back(lengths.back() + (markers[i] - markers[i - 1]).norm());
+  return lengths;
+}
+
+}  // namespace
+
+SwappedEnds swapped_ends(const Recording& recording) {
+  const int last = recording.marker_count() - 1;
+  const auto doubles_back = [&](int outer, int inner, int next) {
+    int rows = 0;
+    for (const std::vector<Vector3>& markers : recording.markers) {
+      const Vector3 held = (markers[inner] - markers[outer]).normalized();
+      if (held.dot((markers[next] - markers[inner]).normalized()) < doubled_back) ++rows;
+    }
+    return 2 * rows > recording.rows();
+  };
+  return {doubles_back(0, 1, 2), doubles_back(last, last - 1, last - 2)};
+}
+
+Recording in_order(Recording recording, const SwappedEnds& swapped) {
+  for (std::vector<Vector3>& markers : recording.markers) {
+    if (swapped.start) std::swap(markers[0], markers[1]);
+    if (swapped.end) std::swap(markers[markers.size() - 1], markers[markers.size() - 2]);
+  }
+  return recording;
+}
+
+double measured_length(const Recording& recording) {
+  std::vector<double> lengths;
+  for (const std::vector<Vector3>& markers : recording.markers) lengths.push_back(along(markers).back());
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  return *middle;
+}
+
+std::vector<double> marker_places(const Recording& recording) {
+  std::vector<double> places = along(recording.markers.front());
+  const double length = places.back();
+  for (double& place : places) place /= length;
+  return places;
+}
+
+std::vector<Vector3> initial_velocities(const Recording& recording) {
+  std::vector<Vector3> velocities;
+  const double interval = recording.times[1] - recording.times[0];
+  for (int i = 0; i < recording.marker_count(); ++i)
+    velocities.emplace_back((recording.markers[1][i] - recording.markers[0][i]) / interval);
+  return velocities;
+}
+
+HeldEnds held_ends(const Recording& recording) {
+  const int last = recording.marker_count() - 1;
+  HeldEnds ends;
+  carry_along(recording, 0, 1, 0, ends.start);
+  carry_along(recording, last - 1, last, last, ends.end);
+  return ends;
+}
+
+}  // namespace verlet_cable::cable_fit

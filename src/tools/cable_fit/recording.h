@@ -1,0 +1,57 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "verlet_cable/core/types.h"
+#include "verlet_cable/scene/motion.h"
+
+namespace verlet_cable::cable_fit {
+
+/// A cable as it was filmed: markers along it over time, gravity along -z. The first two and the last two markers sit on what
+/// holds the cable.
+struct Recording {
+  std::string path;
+  std::vector<double> times;                  ///< [s] a row, ascending from 0
+  std::vector<std::vector<Vector3>> markers;  ///< [m] a row, a marker
+
+  int rows() const { return static_cast<int>(times.size()); }
+  int marker_count() const { return static_cast<int>(markers.front().size()); }
+};
+
+/// Reads CSV files with the header `t,x0,y0,z0,x1,...` [s, m]. Adds a line to `errors` for each that is wrong, with the file and
+/// the line (at most 100 a file): numbers that are none, times that do not ascend, too few rows or markers, held markers at one
+/// place, different numbers of markers.
+std::vector<Recording> read_recordings(const std::vector<std::string>& paths, std::vector<std::string>& errors);
+
+/// The first or the last two markers were numbered the wrong way round: in most rows the cable doubles back behind them, as no
+/// cable does that is held straight.
+struct SwappedEnds {
+  bool start = false, end = false;
+  bool any() const { return start || end; }
+};
+SwappedEnds swapped_ends(const Recording& recording);
+
+/// The recording with the markers of such ends in their order along the cable.
+Recording in_order(Recording recording, const SwappedEnds& swapped);
+
+/// [m] along the cable between the outer markers: the median over the rows, as measured distances vary by some percent.
+double measured_length(const Recording& recording);
+
+/// Where the markers sit, as fractions of the cable's length from its start: by their distances in the first row, as a scene's
+/// `initial.points` are spread.
+std::vector<double> marker_places(const Recording& recording);
+
+/// [m/s] a marker, from the first two rows.
+std::vector<Vector3> initial_velocities(const Recording& recording);
+
+/// What holds the cable.
+struct HeldEnds {
+  FrameTrack start, end;
+};
+
+/// The frames in the outer markers, +x along the cable from start to end. Roll was not recorded: it is the smallest rotation from
+/// the world's axes at the first row, then the smallest from row to row.
+HeldEnds held_ends(const Recording& recording);
+
+}  // namespace verlet_cable::cable_fit

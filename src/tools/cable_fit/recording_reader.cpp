@@ -1,0 +1,145 @@
+#include <cerrno>
+#include <fstream>
+#include <optional>
+#include <system_error>
+
+#include "recording.h"
+#include "verlet_cable/core/number_text.h"
+#include "verlet_cable/core/scene_fields.h"
+#include "verlet_cable/scene/text.h"
+
+namespace verlet_cable::cable_fit {
+namespace {
+
+constexpr std::size_t fewest_markers = 4;  // two at each end give the direction in which the cable is held
+constexpr std::size_t fewest_rows = 10;    // of which the first two are the start of the prediction
+constexpr std::size_t most_errors = 100;
+constexpr double least_distance = 1e-6;  // [m] of two held markers, for a direction
+
+std::vector<std::string> split(const std::string& line) {
+  const auto trimmed = [](const std::string& text) -> std::string {
+    const auto first = text.find_first_not_of(" \t\r");
+    return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+  };
+  std::vector<std::string> cells;
+  std::size_t begin = 0;
+  for (std::size_t comma = line.find(','); comma != std::string::npos; comma = line.find(',', begin)) {
+    cells.push_back(trimmed(line.substr(begin, comma - begin)));
+    begin = comma + 1;
+  }
+  cells.push_back(trimmed(line.substr(begin)));
+  return cells;
+}
+
+std::vector<std::string> column_names(std::size_t markers) {
+  std::vector<std::string> names{"t"};
+  for (std::size_t i = 0; i < markers; ++i)
+    for (const char* axis : {"x", "y", "z"}) names.push_back(axis + std::to_string(i));
+  return names;
+}
+
+class RecordingReader {
+ public:
+  RecordingReader(const std::string& path, std::vector<std::string>& errors) : errors_(errors) { recording_.path = path; }
+
+  Recording read() {
+    errno = 0;
+    std::ifstream file(recording_.path, std::ios::binary);
+    if (!file.is_open() || (file.peek() == std::ifstream::traits_type::eof() && errno != 0)) {
+      errors_.push_back(recording_.path + ": cannot read: " + std::generic_category().message(errno != 0 ? errno : EIO));
+      return std::move(recording_);
+    }
+    file.clear();
+    std::string line;
+    if (!next_line(file, line)) {
+      add_error("", "empty", "the header t,x0,y0,z0,x1,... and rows");
+    } else if (read_header(line)) {
+      while (found_ < most_errors && next_line(file, line)) add_row(line);
+      if (found_ == 0 && recording_.times.size() < fewest_rows)
+        add_error("", std::to_string(recording_.times.size()) + " rows", std::to_string(fewest_rows) + " or more");
+    }
+    if (found_ == most_errors) errors_.push_back(recording_.path + ": not read further");
+    if (!recording_.times.empty()) {
+      const double first = recording_.times.front();
+      for (double& time : recording_.times) time -= first;
+    }
+    return std::move(recording_);
+  }
+
+ private:
+  /// The next line that is not empty.
+  bool next_line(std::istream& stream, std::string& line) {
+    while (std::getline(stream, line)) {
+      ++line_;
+      if (line_ == 1 && line.rfind("\xef\xbb\xbf", 0) == 0) line.erase(0, 3);
+      if (line.find_first_not_of(" \t\r") != std::string::npos) return true;
+    }
+    return false;
+  }
+
+  void add_error(const std::string& where, const std::string& what, const std::string& allowed) {
+    ++found_;
+    errors_.push_back(recording_.path + ": " + where + what + "; allowed: " + allowed);
+  }
+  void add_line_error(const std::string& what, const std::string& allowed) {
+    add_error("line " + std::to_string(line_) + ": ", what, allowed);
+  }
+
+  bool read_header(const std::string& line) {
+    const std::vector<std::string> cells = split(line);
+    names_ = column_names(cells.size() / 3);
+    if (cells == names_ && cells.size() / 3 >= fewest_markers) return true;
+    add_line_error("header " + quoted(line),
+                   "t,x0,y0,z0,x1,y1,z1,... with " + std::to_string(fewest_markers) + " markers or more");
+    return false;
+  }
+
+  void add_row(const std::string& line) {
+    const std::vector<std::string> cells = split(line);
+    if (cells.size() != names_.size())
+      return add_line_error(std::to_string(cells.size()) + " columns", std::to_string(names_.size()) + ", as the header has");
+    const std::size_t found_before = found_;
+    std::vector<double> numbers;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const std::optional<double> number = parse_number(cells[i]);
+      numbers.push_back(number.value_or(0));
+      if (!number || !coordinate.contains(*number))
+        add_line_error(names_[i] + " " + quoted(cells[i]), coordinate.text(i == 0 ? "s" : "m"));
+    }
+    if (found_ != found_before) return;
+    if (!recording_.times.empty() && numbers[0] <= recording_.times.back())
+      return add_line_error("t " + cells[0], "times that ascend, the one before is " + number_text(recording_.times.back()));
+    std::vector<Vector3> markers;
+    for (std::size_t i = 1; i < numbers.size(); i += 3) markers.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
+    for (const std::size_t i : {std::size_t{0}, markers.size() - 2}) {
+      if ((markers[i + 1] - markers[i]).norm() < least_distance)
+        add_line_error("markers " + std::to_string(i) + " and " + std::to_string(i + 1) + " at the same place",
+                       "two places, as they give the direction in which the cable is held");
+    }
+    recording_.times.push_back(numbers[0]);
+    recording_.markers.push_back(std::move(markers));
+  }
+
+  std::vector<std::string>& errors_;
+  std::size_t found_ = 0;
+  std::size_t line_ = 0;
+  std::vector<std::string> names_;
+  Recording recording_;
+};
+
+}  // namespace
+
+std::vector<Recording> read_recordings(const std::vector<std::string>& paths, std::vector<std::string>& errors) {
+  std::vector<Recording> recordings;
+  for (const std::string& path : paths) {
+    recordings.push_back(RecordingReader(path, errors).read());
+    if (recordings.front().markers.empty() || recordings.back().markers.empty()) continue;
+    const int first = recordings.front().marker_count(), count = recordings.back().marker_count();
+    if (count != first)
+      errors.push_back(path + ": " + std::to_string(count) + " markers; allowed: " + std::to_string(first) + ", as in " +
+                       recordings.front().path);
+  }
+  return recordings;
+}
+
+}  // namespace verlet_cable::cable_fit

@@ -1,0 +1,125 @@
+#include "report.h"
+
+#include <algorithm>
+#include <cstdarg>
+#include <cstdio>
+
+#include "cable_sim/json_writer.h"
+
+namespace verlet_cable::cable_fit {
+namespace {
+
+using cable_sim::JsonWriter;
+
+/// The interval of a parameter, as values of the scene's key.
+struct Interval {
+  double low, high;
+};
+
+Interval interval(const Parameter& parameter, double value, const Confidence& confidence) {
+  return {scene_value(parameter, value - confidence.half_width), scene_value(parameter, value + confidence.half_width)};
+}
+
+void write_boolean(const char* key, bool value, JsonWriter& json) {
+  json.entry(key, std::string(value ? "yes" : "no"));
+}
+
+void write_error(const PredictionError& error, JsonWriter& json) {
+  json.begin_object();
+  json.entry("mean", error.mean);
+  json.entry("largest", error.largest);
+  json.entry("last", error.last);
+  json.end_object();
+}
+
+void write_parameters(const Problem& problem, const FitResult& result, JsonWriter& json) {
+  json.begin_array();
+  for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
+    const Parameter& parameter = problem.parameters[i];
+    const Interval range = interval(parameter, result.values[i], result.confidence[i]);
+    json.begin_object();
+    json.entry("key", parameter.key);
+    json.entry("unit", parameter.unit);
+    json.entry("value", scene_value(parameter, result.values[i]));
+    json.entry("low", range.low);
+    json.entry("high", range.high);
+    write_boolean("told_by_the_data", result.confidence[i].told, json);
+    json.end_object();
+  }
+  json.end_array();
+}
+
+bool any_swapped(const std::vector<SwappedEnds>& swapped) {
+  return std::any_of(swapped.begin(), swapped.end(), [](const SwappedEnds& ends) { return ends.any(); });
+}
+
+std::string line(const char* format, ...) __attribute__((format(printf, 1, 2)));
+std::string line(const char* format, ...) {
+  char buffer[200];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(buffer, sizeof buffer, format, arguments);
+  va_end(arguments);
+  return buffer;
+}
+
+}  // namespace
+
+double mean_error(const std::vector<PredictionError>& errors) {
+  double sum = 0;
+  for (const PredictionError& error : errors) sum += error.mean;
+  return sum / static_cast<double>(errors.size());
+}
+
+std::string report_json(const Problem& problem, const std::vector<SwappedEnds>& swapped, const FitResult& result) {
+  const bool cross_validated = !result.left_out.as_numbered.empty();
+  JsonWriter json;
+  json.begin_object();
+  json.entry("name", problem.settings.name);
+  json.entry("segments", static_cast<std::int64_t>(problem.settings.segments));
+  json.entry("mean_error", mean_error(result.fitted.as_numbered));
+  if (cross_validated) json.entry("cross_validated_error", mean_error(result.left_out.as_numbered));
+  if (cross_validated && any_swapped(swapped)) json.entry("cross_validated_error_in_order", mean_error(result.left_out.in_order));
+  json.key("parameters");
+  write_parameters(problem, result, json);
+  json.key("recordings");
+  json.begin_array();
+  for (std::size_t i = 0; i < problem.recordings.size(); ++i) {
+    const auto write_errors = [&](const std::string& key, const Errors& errors) {
+      json.key(key);
+      write_error(errors.as_numbered[i], json);
+      if (!swapped[i].any()) return;
+      json.key(key + "_in_order");
+      write_error(errors.in_order[i], json);
+    };
+    json.begin_object();
+    json.entry("path", problem.recordings[i].path);
+    write_errors("fitted", result.fitted);
+    if (cross_validated) write_errors("left_out", result.left_out);
+    json.end_object();
+  }
+  json.end_array();
+  json.end_object();
+  return json.text() + "\n";
+}
+
+std::string summary_text(const Problem& problem, const std::vector<SwappedEnds>& swapped, const FitResult& result) {
+  std::string text;
+  for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
+    const Parameter& parameter = problem.parameters[i];
+    const Interval range = interval(parameter, result.values[i], result.confidence[i]);
+    text +=
+        line("%-44s %10.4g %-9s (%.3g to %.3g)%s\n", parameter.key.c_str(), scene_value(parameter, result.values[i]),
+             parameter.unit.c_str(), range.low, range.high, result.confidence[i].told ? "" : "  the recordings do not tell it");
+  }
+  const auto add_mean = [&](const char* what, const Errors& errors) {
+    text += line("mean absolute error of recordings %s: %.3f cm\n", what, 100 * mean_error(errors.as_numbered));
+    if (any_swapped(swapped))
+      text += line("  with the swapped markers in their order: %.3f cm\n", 100 * mean_error(errors.in_order));
+  };
+  add_mean("that were fitted", result.fitted);
+  if (!result.left_out.as_numbered.empty()) add_mean("left out of the fit", result.left_out);
+  return text;
+}
+
+}  // namespace verlet_cable::cable_fit

@@ -1,0 +1,40 @@
+#include <string>
+
+#include "report.h"
+#include "verlet_cable/core/number_text.h"
+#include "verlet_cable/core/scene_fields.h"
+
+namespace verlet_cable::cable_fit {
+namespace {
+
+void append(const std::string& indent, const char* key, const std::string& value, std::string& yaml) {
+  yaml += indent + key + ": " + value + "\n";
+}
+
+}  // namespace
+
+std::string scene_yaml(const Problem& problem, const FitResult& result) {
+  const SceneDesc scene = cable_scene(problem.settings, result.values);
+  const NamedMaterial& material = scene.materials.front();
+  const CableDesc& cable = scene.cables.front();
+  const std::size_t recordings = problem.recordings.size();
+  std::string yaml = "# Fitted by cable_fit to " + std::to_string(recordings) + (recordings == 1 ? " recording" : " recordings") +
+                     ". To be a scene, the cable needs `attachments`.\n";
+  append("", "time_step", number_text(scene.time_step), yaml);
+  yaml += "materials:\n  " + material.name + ":\n";
+  const MaterialDesc plain;
+  for (const Field<MaterialDesc>& field : material_fields)
+    if (material.material.*field.member != plain.*field.member)
+      append("    ", field.key, number_text(material.material.*field.member), yaml);
+  yaml += "cables:\n";
+  append("  - ", "name", cable.name, yaml);
+  append("    ", "length", number_text(cable.length), yaml);
+  append("    ", "segments", std::to_string(cable.segments), yaml);
+  append("    ", "material", cable.material, yaml);
+  yaml += "    rest_curvature:\n";
+  for (const auto& curvature : cable.rest_curvature.profile)
+    yaml += "      - [" + number_text(curvature[0]) + ", " + number_text(curvature[1]) + "]\n";
+  return yaml;
+}
+
+}  // namespace verlet_cable::cable_fit

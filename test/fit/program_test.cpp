@@ -1,0 +1,126 @@
+#include <sys/wait.h>
+
+#include <cmath>
+
+#include "../scene/cable_sim_fixture.h"
+#include "cable_fit/cable_parameters.h"
+#include "synthetic.h"
+#include "verlet_cable/core/number_text.h"
+#include "verlet_cable/scene/scene_reader.h"
+
+namespace verlet_cable::cable_fit {
+namespace {
+
+/// Both programs, in a directory of its own.
+class CableFit : public CableSim {
+ protected:
+  int fit(const std::string& arguments) {
+    const std::string command = std::string(CABLE_FIT_PROGRAM) + " " + arguments + " > " + path("out") + " 2> " + path("err");
+    const int status = std::system(command.c_str());
+    out = content(path("out"));
+    err = content(path("err"));
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  std::string write_recording(const std::string& name, const Recording& recording) {
+    std::string text = "t";
+    for (int i = 0; i < recording.marker_count(); ++i)
+      for (const char* axis : {"x", "y", "z"}) text += std::string(",") + axis + std::to_string(i);
+    for (int row = 0; row < recording.rows(); ++row) {
+      text += "\n" + number_text(recording.times[row]);
+      for (const Vector3& marker : recording.markers[row])
+        for (int axis = 0; axis < 3; ++axis) text += "," + number_text(marker[axis]);
+    }
+    return write(name, text + "\n");
+  }
+};
+
+std::string vector_text(const Vector3& v) {
+  return "[" + number_text(v.x()) + ", " + number_text(v.y()) + ", " + number_text(v.z()) + "]";
+}
+
+/// As the README tells users to add them.
+std::string initial_and_attachments(const Recording& recording) {
+  std::string points, velocities;
+  for (const Vector3& marker : recording.markers[0]) points += (points.empty() ? "" : ", ") + vector_text(marker);
+  for (const Vector3& velocity : initial_velocities(recording))
+    velocities += (velocities.empty() ? "" : ", ") + vector_text(velocity);
+  return "    initial: {type: points, points: [" + points + "], velocities: [" + velocities + "]}\n" +
+         "    attachments:\n      - {name: a, at: start, frame: start, type: clamp}\n"
+         "      - {name: b, at: end, frame: end, type: clamp}\n";
+}
+
+std::string motion_csv(const Recording& recording) {
+  const HeldEnds ends = held_ends(recording);
+  std::string text = "t,frame,x,y,z,qx,qy,qz,qw\n";
+  for (const double time : recording.times) {
+    for (const auto& [name, track] : {std::pair{"start", &ends.start}, std::pair{"end", &ends.end}}) {
+      const Pose pose = track->at(time);
+      text += number_text(time) + "," + name;
+      for (int axis = 0; axis < 3; ++axis) text += "," + number_text(pose.position[axis]);
+      for (int axis = 0; axis < 4; ++axis) text += "," + number_text(pose.orientation.coeffs()[axis]);
+      text += "\n";
+    }
+  }
+  return text;
+}
+
+TEST_F(CableFit, SceneIsWhatCableSimPredictsWith) {
+  const Recording recording = synthetic_recording(known_cable(), 0, 0.4, 5e-4);
+  const std::string file = write_recording("take.csv", recording);
+  ASSERT_EQ(fit(file + " --name lead --segments 12 --linear-density 0.08 --output " + path("scene.yaml")), 0) << err;
+  const SceneDesc cable = read_scene_text(content(path("scene.yaml")) + "    attachments: []\n");
+  EXPECT_EQ(cable.cables[0].name, "lead");
+  EXPECT_EQ(cable.cables[0].segments, 12);
+  EXPECT_EQ(cable.materials[0].material.linear_density, 0.08);
+
+  // The same bytes a second time.
+  ASSERT_EQ(fit(file + " --name lead --segments 12 --linear-density 0.08 --output " + path("again.yaml")), 0) << err;
+  EXPECT_EQ(content(path("again.yaml")), content(path("scene.yaml")));
+
+  write("full.yaml", content(path("scene.yaml")) + initial_and_attachments(recording));
+  write("motion.csv", motion_csv(recording));
+  ASSERT_EQ(run(path("full.yaml") + " --duration 0.4 --motion " + path("motion.csv") + " --output " + path("nodes.csv")), 0)
+      << err;
+  const std::vector<Row> nodes = rows("nodes.csv");
+  ASSERT_EQ(nodes.size(), 13u * recording.rows());
+  const Prediction prediction = predict(cable, recording);
+  const std::vector<double> places = marker_places(recording);
+  double gap = 0;
+  for (int row = 0; row < recording.rows(); ++row) {
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const int segment = std::min(static_cast<int>(places[i] * 12), 11);
+      const double fraction = places[i] * 12 - segment;
+      const Vector3 simulated =
+          (1 - fraction) * nodes[13 * row + segment].position + fraction * nodes[13 * row + segment + 1].position;
+      gap = std::max(gap, (simulated - prediction.positions[row][i]).norm());
+    }
+  }
+  // Numbers are written in full: only the orientations' rounding in the file differs.
+  EXPECT_LT(gap, 1e-9);
+}
+
+TEST_F(CableFit, BadInputIsRefusedAllAtOnceAndNothingWritten) {
+  const Recording sound = synthetic_recording(known_cable(), 0, 0.2, 0);
+  Recording short_start = sound;
+  for (Vector3& marker : short_start.markers[0]) marker *= 0.9;
+  write("bad.csv", "t,x0\n");
+  const std::string good = write_recording("good.csv", sound);
+  EXPECT_EQ(fit(good + " " + path("bad.csv") + " missing.csv --name 1 --segments 2.5 --linear-density -1 --sgments 3 --output " +
+                path("scene.yaml") + " --report " + good),
+            2);
+  for (const char* expected :
+       {"bad.csv: line 1: header \"t,x0\"", "missing.csv: cannot read", "--name: \"1\"", "--segments: \"2.5\"",
+        "--linear-density: \"-1\"", "--sgments: no such option (did you mean", "--report: ", "nothing was fitted"})
+    EXPECT_NE(err.find(expected), std::string::npos) << err << "lacks " << expected;
+  EXPECT_FALSE(exists("scene.yaml"));
+  EXPECT_EQ(fit(""), 2);
+  for (const char* expected : {"no recordings", "--name: missing", "--output: missing"})
+    EXPECT_NE(err.find(expected), std::string::npos) << err << "lacks " << expected;
+  EXPECT_EQ(fit(write_recording("short.csv", short_start) + " --name a --output " + path("scene.yaml")), 2);
+  EXPECT_NE(err.find("short.csv: the markers' distances in the first row are"), std::string::npos) << err;
+  EXPECT_FALSE(exists("scene.yaml"));
+  EXPECT_EQ(fit("--help"), 0);
+}
+
+}  // namespace
+}  // namespace verlet_cable::cable_fit

@@ -1,0 +1,124 @@
+#include "cable_fit/recording.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <fstream>
+
+namespace verlet_cable::cable_fit {
+namespace {
+
+const std::string header = "t,x0,y0,z0,x1,y1,z1,x2,y2,z2,x3,y3,z3\n";
+
+std::string row(const std::string& time, const std::string& x1 = "0.1") {
+  return time + ",0,0,0," + x1 + ",0,0,0.5,0,-0.1,0.6,0,0\n";
+}
+
+std::string rows(int count) {
+  std::string text;
+  for (int i = 0; i < count; ++i) text += row(std::to_string(0.5 + 0.01 * i));
+  return text;
+}
+
+class Recordings : public testing::Test {
+ protected:
+  std::string write(const std::string& text) {
+    const std::string path = testing::TempDir() + "recording_" + std::to_string(getpid()) + "_" + std::to_string(paths_.size());
+    std::ofstream(path) << text;
+    return paths_.emplace_back(path);
+  }
+  ~Recordings() override {
+    for (const std::string& path : paths_) std::remove(path.c_str());
+  }
+
+  std::string errors_of(const std::vector<std::string>& paths) {
+    std::vector<std::string> errors;
+    read_recordings(paths, errors);
+    std::string text;
+    for (const std::string& error : errors) text += error + "\n";
+    return text;
+  }
+  void expect_error(const std::string& text, const std::string& expected) {
+    const std::string path = write(text), errors = errors_of({path});
+    EXPECT_NE(errors.find(path + ": " + expected), std::string::npos) << errors << "instead of " << expected;
+  }
+
+  std::vector<std::string> paths_;
+};
+
+TEST_F(Recordings, AreReadFromTimeZero) {
+  std::vector<std::string> errors;
+  const std::vector<Recording> recordings = read_recordings({write(header + rows(12))}, errors);
+  ASSERT_TRUE(errors.empty());
+  EXPECT_EQ(recordings[0].rows(), 12);
+  EXPECT_EQ(recordings[0].marker_count(), 4);
+  EXPECT_EQ(recordings[0].times[0], 0);
+  EXPECT_NEAR(recordings[0].times[11], 0.11, 1e-12);
+  EXPECT_EQ(recordings[0].markers[3][2], Vector3(0.5, 0, -0.1));
+}
+
+TEST_F(Recordings, SayWhatIsWrong) {
+  EXPECT_NE(errors_of({"/no/such/file.csv"}).find("/no/such/file.csv: cannot read: No such file"), std::string::npos);
+  expect_error("", "empty; allowed: the header t,x0,y0,z0,x1,... and rows");
+  expect_error("a,b\n", "line 1: header \"a,b\"; allowed: t,x0,y0,z0");
+  expect_error("t,x0,y0,z0,x1,y1,z1,x2,y2,z2\n" + rows(12), "line 1: header");
+  expect_error(header, "0 rows; allowed: 10 or more");
+  expect_error(header + rows(9), "9 rows; allowed: 10 or more");
+  expect_error(header + rows(11) + row("0.9", "nan"), "line 13: x1 \"nan\"; allowed: finite numbers");
+  expect_error(header + rows(11) + row("0.9", "inf"), "line 13: x1 \"inf\"; allowed: finite numbers");
+  expect_error(header + rows(11) + row("0.9", ""), "line 13: x1 \"\"; allowed: finite numbers");
+  expect_error(header + rows(11) + row("0.6"), "line 13: t 0.6; allowed: times that ascend");
+  expect_error(header + rows(11) + "0.9,1,2\n", "line 13: 3 columns; allowed: 13, as the header has");
+  expect_error(header + rows(11) + row("0.9", "0"), "line 13: markers 0 and 1 at the same place; allowed: two places");
+}
+
+TEST_F(Recordings, AllErrorsAreSaidAtOnce) {
+  const std::string five = "t,x0,y0,z0,x1,y1,z1,x2,y2,z2,x3,y3,z3,x4,y4,z4\n";
+  std::string five_rows;
+  for (int i = 0; i < 10; ++i) five_rows += std::to_string(i) + ",0,0,0,1,0,0,2,0,0,3,0,0,4,0,0\n";
+  const std::string errors =
+      errors_of({write(header + rows(12)), write(five + five_rows), write(header + row("x", "y") + row("1") + row("0.5"))});
+  for (const char* expected : {"5 markers; allowed: 4, as in", "t \"x\"", "x1 \"y\"", "t 0.5; allowed: times that ascend"})
+    EXPECT_NE(errors.find(expected), std::string::npos) << errors << "lacks " << expected;
+}
+
+Recording straight_recording() {
+  Recording recording;
+  for (int i = 0; i < 20; ++i) {
+    recording.times.push_back(0.01 * i);
+    recording.markers.push_back({{0, 0, 0}, {0.1, 0, 0}, {0.5, 0, -0.1}, {0.6, 0, 0}, {0.7, 0.001 * i, 0}});
+  }
+  return recording;
+}
+
+TEST(Recording, EndsAreHeldInTheOuterMarkersWithTheSmallestRoll) {
+  const HeldEnds ends = held_ends(straight_recording());
+  EXPECT_EQ(ends.start.at(0).position, Vector3(0, 0, 0));
+  EXPECT_TRUE(ends.start.at(0).orientation.isApprox(Quaternion::Identity()));
+  const Pose last = ends.end.at(0.19);
+  EXPECT_EQ(last.position, Vector3(0.7, 0.019, 0));
+  // From row to row about z alone: nothing rolls.
+  const Quaternion expected(Eigen::AngleAxisd(std::atan2(0.019, 0.1), Vector3::UnitZ()));
+  EXPECT_TRUE(last.orientation.isApprox(expected, 1e-12));
+}
+
+TEST(Recording, SwappedMarkersAreSeenAndPutInOrder) {
+  const Recording sound = straight_recording();
+  EXPECT_FALSE(swapped_ends(sound).any());
+  const Recording wrong = in_order(sound, {false, true});
+  EXPECT_FALSE(swapped_ends(wrong).start);
+  EXPECT_TRUE(swapped_ends(wrong).end);
+  EXPECT_EQ(in_order(wrong, swapped_ends(wrong)).markers, sound.markers);
+  EXPECT_TRUE(swapped_ends(in_order(sound, {true, false})).start);
+}
+
+TEST(Recording, LengthIsTheMedianOverTheRows) {
+  Recording recording = straight_recording();
+  const double length = measured_length(recording);
+  recording.markers[5][2] = {3, 0, 0};  // a marker that was taken for another
+  EXPECT_NEAR(measured_length(recording), length, 1e-3);
+}
+
+}  // namespace
+}  // namespace verlet_cable::cable_fit

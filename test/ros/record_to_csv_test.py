@@ -1,0 +1,133 @@
+#!/usr/bin/python3
+"""record_to_csv: bags with state or points and the grippers' tf become recordings that cable_fit reads."""
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+import rosbag
+import rospkg
+import rospy
+import rostest
+from geometry_msgs.msg import Point, TransformStamped
+from sensor_msgs.msg import PointCloud2, PointField
+from tf2_msgs.msg import TFMessage
+
+from verlet_cable.msg import Cable, CableArray
+
+SCRIPTS = os.path.join(rospkg.RosPack().get_path('verlet_cable'), 'scripts')
+sys.path.insert(0, SCRIPTS)
+from recording import Recording  # noqa: E402
+
+ROWS = 20
+NODES = np.array([[0.1 * i, 0.02 * i, 0.5 - 0.1 * i] for i in range(1, 7)])
+
+
+def nodes_at(row):
+    return NODES + [0, 0.01 * row, 0]
+
+
+def stamp(row):
+    return rospy.Time.from_sec(100 + 0.02 * row)
+
+
+def state(row):
+    message = CableArray()
+    message.header.stamp = stamp(row)
+    message.header.frame_id = 'world'
+    for name in ('other', 'lead'):
+        shift = [0, 0, 5] if name == 'other' else [0, 0, 0]
+        message.cables.append(Cable(name=name, positions=[Point(*(p + shift)) for p in nodes_at(row)]))
+    return message
+
+
+def cloud(row, points):
+    message = PointCloud2(height=1, width=len(points), point_step=16, row_step=16 * len(points))
+    message.header.stamp = stamp(row)
+    message.header.frame_id = 'camera'
+    message.fields = [PointField(name, offset, PointField.FLOAT32, 1) for name, offset in zip('xyz', (4, 8, 12))]
+    data = np.zeros((len(points), 4), np.float32)
+    data[:, 1:] = points
+    message.data = data.tobytes()
+    return message
+
+
+def transform(child, row, position, quaternion):
+    message = TransformStamped()
+    message.header.stamp = stamp(row)
+    message.header.frame_id = 'world'
+    message.child_frame_id = child
+    for axis, value in zip('xyz', position):
+        setattr(message.transform.translation, axis, value)
+    for axis, value in zip('xyzw', quaternion):
+        setattr(message.transform.rotation, axis, value)
+    return message
+
+
+class RecordToCsv(unittest.TestCase):
+    def setUp(self):
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.bag = os.path.join(directory.name, 'take.bag')
+        self.csv = os.path.join(directory.name, 'take.csv')
+        # The camera looks from above: turned half a turn about x, 2 m up. The end's gripper is turned a quarter about z.
+        with rosbag.Bag(self.bag, 'w') as bag:
+            for row in range(ROWS):
+                half = np.sqrt(0.5)
+                bag.write('/tf', TFMessage([
+                    transform('camera', row, (0, 0, 2), (1, 0, 0, 0)),
+                    transform('start_hand', row, (0, 0.01 * row, 0.5), (0, 0, 0, 1)),
+                    transform('end_hand', row, (0.7, 0.1 + 0.01 * row, 0), (0, 0, half, half)),
+                ]), stamp(row))
+                bag.write('/cable/state', state(row), stamp(row))
+                seen = nodes_at(row) * [1, -1, -1] + [0, 0, 2]
+                bag.write('/points', cloud(row, seen), stamp(row))
+                bag.write('/uneven', cloud(row, seen[:3 + row % 2]), stamp(row))
+
+    def convert(self, *arguments):
+        command = [os.path.join(SCRIPTS, 'record_to_csv'), self.bag, self.csv, *arguments]
+        return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+
+    def expect_recorded(self, tolerance):
+        recording = Recording(self.csv)
+        self.assertEqual(recording.markers.shape, (ROWS, 10, 3))
+        np.testing.assert_allclose(recording.times, 0.02 * np.arange(ROWS), atol=1e-9)
+        for row in range(ROWS):
+            y = 0.01 * row
+            expected = np.vstack([[[0, y, 0.5], [0.03, y, 0.5]], nodes_at(row), [[0.7, 0.07 + y, 0], [0.7, 0.1 + y, 0]]])
+            np.testing.assert_allclose(recording.markers[row], expected, atol=tolerance)
+
+    def test_state_with_grippers(self):
+        done = self.convert('--state', '/cable/state', '--cable', 'lead', '--start', 'start_hand', '--end', 'end_hand',
+                            '--offset', '0.03')
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.expect_recorded(1e-12)
+
+    def test_points_seen_by_a_camera(self):
+        done = self.convert('--points', '/points', '--fixed', 'world', '--start', 'start_hand', '--end', 'end_hand',
+                            '--offset', '0.03')
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.expect_recorded(1e-6)  # float32
+
+    def test_points_alone(self):
+        done = self.convert('--state', '/cable/state', '--cable', 'lead')
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(Recording(self.csv).markers.shape, (ROWS, 6, 3))
+
+    def test_what_is_wrong_is_said_and_nothing_written(self):
+        for arguments, expected in (
+                (('--state', '/nothing'), '/nothing: no messages'),
+                (('--state', '/cable/state'), '--cable: None; allowed: one of other, lead'),
+                (('--points', '/uneven'), '3 to 4 points; allowed: the same number'),
+                (('--points', '/points', '--fixed', 'nowhere'), 'tf reaches none of its messages'),
+                (('--points', '/points', '--start', 'start_hand'), '--start and --end: only one is given')):
+            done = self.convert(*arguments)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(expected, done.stderr)
+            self.assertFalse(os.path.exists(self.csv))
+
+
+if __name__ == '__main__':
+    rostest.rosrun('verlet_cable', 'record_to_csv', RecordToCsv)
