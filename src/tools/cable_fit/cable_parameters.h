@@ -11,7 +11,7 @@ namespace verlet_cable::cable_fit {
 /// What is given, not looked for.
 struct CableSettings {
   std::string name;
-  int segments = 24;
+  int segments = 40;
   double linear_density = 0.1;       ///< [kg/m]; motion tells stiffnesses and dampings over weight only
   double radius = 0.005;             ///< [m]; motion does not tell it
   double length = 0;                 ///< [m] as measured between the outer markers

@@ -88,7 +88,7 @@ const char* const usage =
     "last two on what holds it.\n"
     "  --name NAME            of the cable and its material\n"
     "  --output YAML          the scene: materials and cables, without initial and attachments\n"
-    "  --segments N           of the cable, default 24\n"
+    "  --segments N           of the cable, default 40\n"
     "  --linear-density KG_M  default 0.1; recordings tell stiffnesses and dampings over weight only\n"
     "  --radius M             default 0.005; recordings do not tell it\n"
     "  --report JSON          intervals, errors, and errors on recordings that were left out\n"

@@ -11,7 +11,7 @@ struct Options {
   std::string name;                     ///< of the cable and its material
   std::string output;                   ///< path of the scene
   std::string report;                   ///< path, empty: none
-  int segments = 24;
+  int segments = 40;
   double linear_density = 0.1;  ///< [kg/m]
   double radius = 0.005;        ///< [m]
   bool help = false;
