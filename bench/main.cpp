@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
   const std::vector<NamedRow> rows{{"step", step_cost},
                                    {"precision", work_precision},
                                    {"cantilever", cantilever},
+                                   {"contact", contact},
                                    {"driven", driven_against_bullet},
                                    {"bullet", released_against_bullet},
                                    {"simbody", released_against_simbody}};
