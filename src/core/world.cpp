@@ -20,6 +20,7 @@ CableModel make_model(const SceneDesc& scene, const CableDesc& desc) {
   CableModel model;
   model.name = desc.name;
   model.material = *scene.find_material(desc.material);
+  model.material_name = desc.material;
   model.color = desc.color;
   const double length = desc.length / desc.segments;
   model.segment_length = length;

@@ -1,6 +1,8 @@
 #include "verlet_cable/ros/diagnostics.h"
 
+#include <cstdio>
 #include <string>
+#include <utility>
 
 #include "verlet_cable/core/quoted_text.h"
 
@@ -67,6 +69,15 @@ void Diagnostics::report_simulation(Status& status) {
   } else {
     status.summary(DiagnosticStatus::OK, "runs");
   }
+  const Nanoseconds dropped = simulation_.dropped() - std::exchange(dropped_, simulation_.dropped());
+  status.add("dropped_since_last_s", seconds(dropped));
+  if (dropped > 0 && s.steps > 0) {
+    const double simulated = static_cast<double>(s.steps) * time_step;
+    char share[32];
+    std::snprintf(share, sizeof share, "%.2f", simulated / (simulated + seconds(dropped)));
+    status.mergeSummary(DiagnosticStatus::WARN,
+                        std::string("overloaded, or time jumped: the cables moved at ") + share + " of real time");
+  }
   if (step_time > time_step) status.mergeSummary(DiagnosticStatus::WARN, "slower than real time");
   if (s.overstretched > 0) status.mergeSummary(DiagnosticStatus::WARN, "overstretched");
   if (s.degraded > 0) status.mergeSummary(DiagnosticStatus::WARN, "steps were degraded");
@@ -92,6 +103,11 @@ void Diagnostics::report_frames(Status& status) const {
     if (frame.too_fast) status.mergeSummary(DiagnosticStatus::WARN, "frame " + quoted(frame.name) + " too fast");
   }
   status.add("refused_transforms", simulation_.frames().buffer().refused_count());
+  for (const auto& [frame, sources] : simulation_.frames().buffer().disputed()) {
+    status.add("sources of " + frame, join(sources));
+    status.mergeSummary(DiagnosticStatus::WARN,
+                        "frame " + quoted(frame) + " comes from " + std::to_string(sources.size()) + " nodes");
+  }
   for (const auto& [frame, problem] : simulation_.frames().buffer().refused()) {
     status.add("refused " + frame, problem);
     status.mergeSummary(DiagnosticStatus::WARN, "tf of frame " + quoted(frame) + " refused");

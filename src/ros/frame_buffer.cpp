@@ -4,6 +4,7 @@
 #include <tf2/exceptions.h>
 
 #include <cmath>
+#include <iterator>
 #include <sstream>
 #include <utility>
 
@@ -13,6 +14,7 @@ namespace verlet_cable {
 namespace {
 
 const ros::Duration cache_time = ros::Duration().fromNSec(FrameBuffer::memory);
+const ros::WallDuration source_memory(1.0);
 const ros::WallDuration log_period(5.0);  // of each frame
 
 std::string without_slash(const std::string& frame) {
@@ -70,6 +72,7 @@ bool FrameBuffer::insert(const ReceivedTransform& received) {
   }
   refused_.erase(child);
   if (!received.is_static) {
+    note_source(child, received.source);
     // tf2 refuses repeated and very old stamps, too, but logs each of them.
     ros::Time& newest = newest_[child];
     const ros::Time& stamp = received.transform.header.stamp;
@@ -77,6 +80,25 @@ bool FrameBuffer::insert(const ReceivedTransform& received) {
     newest = std::max(newest, stamp);
   }
   return buffer_.setTransform(received.transform, "verlet_cable", received.is_static);
+}
+
+void FrameBuffer::note_source(const std::string& child, const std::string& source) {
+  std::map<std::string, ros::WallTime>& sources = sources_[child];
+  const ros::WallTime now = ros::WallTime::now();
+  if (!sources.insert_or_assign(source, now).second || sources.size() == 1) return;
+  for (auto it = sources.begin(); it != sources.end();) it = now - it->second > source_memory ? sources.erase(it) : std::next(it);
+}
+
+std::map<std::string, std::vector<std::string>> FrameBuffer::disputed() const {
+  std::map<std::string, std::vector<std::string>> disputed;
+  const ros::WallTime now = ros::WallTime::now();
+  for (const auto& [child, sources] : sources_) {
+    std::vector<std::string> names;
+    for (const auto& [name, time] : sources)
+      if (now - time <= source_memory) names.push_back(name);
+    if (names.size() > 1) disputed.emplace(child, std::move(names));
+  }
+  return disputed;
 }
 
 void FrameBuffer::clear() {

@@ -3,17 +3,23 @@
 #include "verlet_cable/ros/marker_publisher.h"
 #include "verlet_cable/ros/point_publisher.h"
 #include "verlet_cable/ros/state_publisher.h"
+#include "verlet_cable/ros/surface_publisher.h"
 #include "verlet_cable/ros/wrench_publisher.h"
 
 namespace verlet_cable {
 
 struct Publishers::Implementation {
   Implementation(ros::NodeHandle& private_node, const SceneDesc& scene)
-      : markers(private_node, scene), points(private_node, scene), state(private_node, scene), wrenches(private_node) {}
+      : markers(private_node, scene),
+        points(private_node, scene),
+        state(private_node, scene),
+        surface(private_node, scene),
+        wrenches(private_node) {}
 
   MarkerPublisher markers;
   PointPublisher points;
   StatePublisher state;
+  SurfacePublisher surface;
   WrenchPublisher wrenches;
 };
 
@@ -26,12 +32,14 @@ void Publishers::show(const SceneDesc& scene) {
   implementation_->markers.show(scene);
   implementation_->points.show(scene);
   implementation_->state.show(scene);
+  implementation_->surface.show(scene);
 }
 
 void Publishers::publish(const World& world, const ros::Time& stamp) {
   implementation_->markers.publish(world, stamp);
   implementation_->points.publish(world, stamp);
   implementation_->state.publish(world, stamp);
+  implementation_->surface.publish(world, stamp);
   implementation_->wrenches.publish(world, stamp);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
@@ -13,6 +14,8 @@ namespace {
 constexpr double hiccup = 0.5;
 /// Longer waits than this [s] cannot be caught up: tf would have forgotten the frames.
 constexpr double longest_wait = 50;
+/// A clock that is further ahead [s] than can be caught up has jumped.
+constexpr double clock_jump = 0.2;
 /// Between warnings about what may last [s].
 constexpr double log_period = 5;
 
@@ -95,18 +98,35 @@ void Simulation::start(Nanoseconds time) {
 void Simulation::catch_up(ros::WallDuration longest) {
   const ros::WallTime deadline = ros::WallTime::now() + longest;
   const Pacer::Due due = pacer_.due(stamp_, target());
-  stamp_ += due.dropped;
-  std::vector<bool> awaited = awaited_frames(world_);
-  for (Nanoseconds i = 0; i < due.steps && ros::WallTime::now() < deadline; ++i) {
-    const Nanoseconds next = stamp_ + grid_.step();
-    if (!frames_.sample(next, target(), awaited)) return;
-    if (!frames_.changes().empty()) {
-      waits_for_frames_ = frame_watch_.react(frames_.changes(), stamp_, world_);
-      if (waits_for_frames_) return;
-    }
-    if (!step_world(next)) return;
-    if (!frames_.changes().empty()) awaited = awaited_frames(world_);
+  Nanoseconds to_skip = due.dropped;
+  if (to_skip > nanoseconds(clock_jump)) {
+    stamp_ += to_skip;
+    to_skip = 0;
   }
+  // What a busy machine cannot do is left out evenly: the cables move slower, and frames do not jump.
+  const Nanoseconds steps_to_skip = to_skip / grid_.step();
+  const Nanoseconds share = (steps_to_skip + steps_in_update_ - 1) / steps_in_update_ * grid_.step();
+  std::vector<bool> awaited = awaited_frames(world_);
+  Nanoseconds done = 0;
+  for (; done < due.steps && ros::WallTime::now() < deadline; ++done) {
+    const Nanoseconds skip = std::min(share, to_skip);
+    if (!do_step(stamp_ + skip + grid_.step(), awaited)) break;
+    to_skip -= skip;
+  }
+  pacer_.take_back(to_skip);
+  steps_in_update_ = std::max<Nanoseconds>(done, 1);
+}
+
+/// One step of catching up, to `time`. False where it cannot be done now.
+bool Simulation::do_step(Nanoseconds time, std::vector<bool>& awaited) {
+  if (!frames_.sample(time, target(), awaited)) return false;
+  if (!frames_.changes().empty()) {
+    waits_for_frames_ = frame_watch_.react(frames_.changes(), stamp_, world_);
+    if (waits_for_frames_) return false;
+  }
+  if (!step_world(time)) return false;
+  if (!frames_.changes().empty()) awaited = awaited_frames(world_);
+  return true;
 }
 
 void Simulation::continue_if_frames_are_back() {
@@ -128,10 +148,10 @@ bool Simulation::step_world(Nanoseconds time) {
   statistics_.add(result, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   report_status(result);
   if (faulted_) return false;
-  stamp_ = time;
+  const Nanoseconds before = std::exchange(stamp_, time);
   report_breaks();
   if (!world_.waiting().empty() && !frames_.changes().empty()) world_.start_waiting(frames_.inputs());
-  if (grid_.is_tick(stamp_)) publish();
+  if (grid_.passes_tick(before, stamp_)) publish();
   return true;
 }
 
@@ -141,7 +161,7 @@ void Simulation::report_status(const StepResult& result) {
     faulted_ = true;
     ++faults_;
     announce(CableEvent::FAULT, {cable(), {}, result.node, {}},
-             "the simulation of cable " + quoted(cable()) + " failed at node " + std::to_string(result.node) + ": reset goes on");
+             "the simulation of cable " + quoted(cable()) + " failed at node " + std::to_string(result.node) + ": reset or restore_state goes on");
   }
   if (result.status == StepResult::Status::overstretched) {
     ROS_WARN_THROTTLE(log_period, "cable %s is overstretched at node %d: what holds it is further apart than it is long",

@@ -7,13 +7,12 @@ namespace verlet_cable {
 
 EditResult Simulation::load_scene(const SceneDesc& scene) {
   World world(scene, initial_frames(scene));
-  scene_ = scene;
+  use_scene(scene);
   grid_ = TimeGrid(scene.time_step, scene.publish_rate);
   pacer_.use(grid_.step(), longest_backlog(scene));
   world_ = std::move(world);
   frames_.follow_scene(scene, stamp_);
   place_added_obstacles();
-  publishers_.show(scene);
   events_.set_frame_id(scene.frame_id);
   frame_watch_.watch(scene);
   snapshots_.clear();
@@ -24,6 +23,17 @@ EditResult Simulation::load_scene(const SceneDesc& scene) {
     announce(CableEvent::RESET, {}, message);
   }
   return {true, message, {}};
+}
+
+void Simulation::tune(const SceneDesc& scene) {
+  world_.tune(scene);
+  use_scene(scene);
+}
+
+void Simulation::use_scene(const SceneDesc& scene) {
+  scene_ = scene;
+  ++scene_version_;
+  publishers_.show(scene);
 }
 
 }  // namespace verlet_cable

@@ -13,8 +13,9 @@ constexpr int queue_size = 1000;
 TfListener::TfListener(const ros::NodeHandle& node) : node_(node), spinner_(1, &queue_) {
   node_.setCallbackQueue(&queue_);
   const auto subscribe = [this](const std::string& topic, bool is_static) {
-    return node_.subscribe<tf2_msgs::TFMessage>(
-        topic, queue_size, [this, is_static](const tf2_msgs::TFMessageConstPtr& message) { receive(*message, is_static); });
+    using Event = const ros::MessageEvent<const tf2_msgs::TFMessage>&;
+    return node_.subscribe<Event>(topic, queue_size,
+                                  boost::function<void(Event)>([this, is_static](Event event) { receive(event, is_static); }));
   };
   dynamic_ = subscribe("/tf", false);
   static_ = subscribe("/tf_static", true);
@@ -26,9 +27,10 @@ std::vector<ReceivedTransform> TfListener::take() {
   return std::exchange(received_, {});
 }
 
-void TfListener::receive(const tf2_msgs::TFMessage& message, bool is_static) {
+void TfListener::receive(const ros::MessageEvent<const tf2_msgs::TFMessage>& event, bool is_static) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  for (const auto& transform : message.transforms) received_.push_back({transform, is_static});
+  for (const auto& transform : event.getConstMessage()->transforms)
+    received_.push_back({transform, is_static, event.getPublisherName()});
 }
 
 }  // namespace verlet_cable

@@ -45,7 +45,11 @@ Nanoseconds TimeGrid::tick_at_or_after(Nanoseconds time) const {
 }
 
 bool TimeGrid::is_tick(Nanoseconds step_time) const {
-  return floor_multiple(step_time, period_) > step_time - step_;
+  return passes_tick(step_time - step_, step_time);
+}
+
+bool TimeGrid::passes_tick(Nanoseconds from, Nanoseconds to) const {
+  return floor_multiple(to, period_) > from;
 }
 
 }  // namespace verlet_cable

@@ -13,6 +13,7 @@ namespace verlet_cable {
 struct CableModel {
   std::string name;
   MaterialDesc material;
+  std::string material_name;  ///< in the scene
   std::array<double, 4> color{0.1, 0.1, 0.1, 1.0};
   double segment_length = 0;         ///< [m] of the scene's segments: winches pay out and take in such
   std::vector<double> rest_lengths;  ///< [m] a segment, n; written by World's edits only

@@ -130,6 +130,9 @@ class World {
   EditResult set_obstacle(Obstacle obstacle);
   EditResult remove_obstacle(const std::string& name);
 
+  /// Takes over gravity, fluid, materials (those it has, by name) and the friction between cables from a sound scene.
+  void tune(const SceneDesc& scene);
+
   Energy energy() const;
   std::uint64_t hash() const;  ///< of all that the future depends on
 

@@ -6,7 +6,9 @@
 #include "verlet_cable/ros/cable_services.h"
 #include "verlet_cable/ros/diagnostics.h"
 #include "verlet_cable/ros/obstacle_listener.h"
+#include "verlet_cable/ros/rollouts.h"
 #include "verlet_cable/ros/simulation.h"
+#include "verlet_cable/ros/tuning.h"
 
 namespace verlet_cable {
 
@@ -24,6 +26,8 @@ class CableNode {
   Simulation simulation_;
   CableServices services_;
   ObstacleListener obstacles_;
+  Tuning tuning_;
+  Rollouts rollouts_;
   Diagnostics diagnostics_;
   ros::WallTimer timer_;
   double publish_rate_;  ///< [Hz] for which the timer runs

@@ -21,6 +21,7 @@ class Diagnostics {
 
   Simulation& simulation_;
   const ObstacleListener& obstacles_;
+  Nanoseconds dropped_ = 0;  ///< at the last report
   diagnostic_updater::Updater updater_;
   ros::WallTimer timer_;
 };

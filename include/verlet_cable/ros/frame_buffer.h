@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "verlet_cable/core/types.h"
 #include "verlet_cable/ros/tf_listener.h"
@@ -37,13 +38,18 @@ class FrameBuffer {
 
   const std::map<std::string, std::string>& refused() const {
     return refused_;
-  }                                                     ///< by child frame, whose last transform was bad
+  }  ///< by child frame, whose last transform was bad
+  /// The nodes that send a frame which more than one has sent in the last second, by child frame: they may disagree.
+  std::map<std::string, std::vector<std::string>> disputed() const;
   int refused_count() const { return refused_count_; }  ///< since the start
 
  private:
+  void note_source(const std::string& child, const std::string& source);
+
   std::string fixed_frame_;
   tf2::BufferCore buffer_;
-  std::map<std::string, ros::Time> newest_;  ///< by child frame, dynamic transforms
+  std::map<std::string, ros::Time> newest_;                              ///< by child frame, dynamic transforms
+  std::map<std::string, std::map<std::string, ros::WallTime>> sources_;  ///< by child frame and node: when it last came
   std::map<std::string, std::string> refused_;
   std::map<std::string, ros::WallTime> logged_;  ///< by child frame, when a refusal was last logged
   int refused_count_ = 0;

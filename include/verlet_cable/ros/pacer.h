@@ -21,6 +21,8 @@ class Pacer {
 
   /// Counts time that is skipped for another reason, such as a pause.
   void drop(Nanoseconds skipped);
+  /// Counts time that was to be skipped, and was not after all.
+  void take_back(Nanoseconds skipped) { dropped_ -= skipped; }
   Nanoseconds dropped() const { return dropped_; }  ///< in all
 
  private:

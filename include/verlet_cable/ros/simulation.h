@@ -22,6 +22,7 @@ namespace verlet_cable {
 /// What `save_state` keeps: with it a run goes on as it would have.
 struct Snapshot {
   World world;
+  SceneDesc scene;        ///< as it was tuned
   Nanoseconds stamp = 0;  ///< the simulated time
   std::vector<SavedFrame> frames;
 };
@@ -65,8 +66,11 @@ class Simulation {
   EditResult restore_state(const std::string& name);
   /// Goes on with another scene. Throws SceneError, and nothing has changed, if it is not sound.
   EditResult load_scene(const SceneDesc& scene);
+  /// Goes on with other gravity, fluid and materials; everything else of `scene` is as it is.
+  void tune(const SceneDesc& scene);
 
   const SceneDesc& scene() const { return scene_; }
+  int scene_version() const { return scene_version_; }  ///< another number, another scene or tuning
   const World& world() const { return world_; }
   const TfInputs& frames() const { return frames_; }
   /// Where a frame is at the simulated time; none if neither the world nor tf knows it.
@@ -89,10 +93,12 @@ class Simulation {
   /// What is further behind than this is not caught up.
   static Nanoseconds longest_backlog(const SceneDesc& scene);
   Nanoseconds target() const;  ///< the time at which the simulation should be
+  void use_scene(const SceneDesc& scene);
   void jump_back();
   void start_if_possible();
   void start(Nanoseconds time);
   void catch_up(ros::WallDuration longest);
+  bool do_step(Nanoseconds time, std::vector<bool>& awaited);
   void continue_if_frames_are_back();
   void stand();
   bool step_world(Nanoseconds time);
@@ -126,7 +132,9 @@ class Simulation {
   bool paused_ = false;
   bool faulted_ = false;
   bool waits_for_frames_ = false;
+  Nanoseconds steps_in_update_ = 1;  ///< that the last one did, at least 1
   int faults_ = 0;
+  int scene_version_ = 0;
   ros::WallTime last_published_;
   Statistics statistics_;
 };

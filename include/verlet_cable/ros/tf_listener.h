@@ -6,6 +6,7 @@
 #include <tf2_msgs/TFMessage.h>
 
 #include <mutex>
+#include <string>
 #include <vector>
 
 namespace verlet_cable {
@@ -13,6 +14,7 @@ namespace verlet_cable {
 struct ReceivedTransform {
   geometry_msgs::TransformStamped transform;
   bool is_static = false;
+  std::string source{};  ///< the node that sent it
 };
 
 /// Collects what is sent on `/tf` and `/tf_static` in a thread of its own, so that nothing is missed while the node computes.
@@ -25,7 +27,7 @@ class TfListener {
   std::vector<ReceivedTransform> take();
 
  private:
-  void receive(const tf2_msgs::TFMessage& message, bool is_static);
+  void receive(const ros::MessageEvent<const tf2_msgs::TFMessage>& event, bool is_static);
 
   ros::CallbackQueue queue_;
   ros::NodeHandle node_;

@@ -25,6 +25,8 @@ class TimeGrid {
   Nanoseconds step_at_or_after(Nanoseconds time) const;
   Nanoseconds tick_at_or_after(Nanoseconds time) const;
   bool is_tick(Nanoseconds step_time) const;
+  /// Whether a tick lies after `from` and not after `to`.
+  bool passes_tick(Nanoseconds from, Nanoseconds to) const;
 
  private:
   Nanoseconds step_;

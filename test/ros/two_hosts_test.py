@@ -1,0 +1,84 @@
+#!/usr/bin/env python3
+"""Master and user on one host, the node on another: two network namespaces with a cable between them."""
+import os
+import subprocess
+import sys
+import time
+import unittest
+
+import rosgraph
+import rostest
+
+NAMESPACE = f'cable{os.getpid()}'
+NEAR, FAR = '10.213.57.1', '10.213.57.2'
+PORT = 11497
+PATIENCE = 20.0  # [s] for a roscore and a node to start on a busy machine
+SCENE = """
+materials: {rope: {linear_density: 0.1, radius: 0.005}}
+cables: [{name: rope, length: 1.0, segments: 10, material: rope, attachments: [{name: left, at: start}]}]
+"""
+USER = """
+import rospy
+from std_srvs.srv import Trigger
+from verlet_cable.msg import CableArray
+rospy.init_node('user')
+for _ in range(10):
+    assert rospy.wait_for_message('/far/cable/state', CableArray, 10).cables[0].name == 'rope'
+rospy.wait_for_service('/far/cable/reset', 10)
+assert rospy.ServiceProxy('/far/cable/reset', Trigger)().success
+"""
+
+
+def ip(*arguments):
+    return subprocess.run(['ip', *arguments], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+
+def make_hosts():
+    """Why there can be no two hosts here, or None."""
+    for command in (['netns', 'add', NAMESPACE], ['link', 'add', 'cable_near', 'type', 'veth', 'peer', 'name', 'cable_far'],
+                    ['link', 'set', 'cable_far', 'netns', NAMESPACE], ['addr', 'add', NEAR + '/24', 'dev', 'cable_near'],
+                    ['link', 'set', 'cable_near', 'up'], ['-n', NAMESPACE, 'addr', 'add', FAR + '/24', 'dev', 'cable_far'],
+                    ['-n', NAMESPACE, 'link', 'set', 'cable_far', 'up'], ['-n', NAMESPACE, 'link', 'set', 'lo', 'up']):
+        try:
+            done = ip(*command)
+        except FileNotFoundError:
+            return 'there is no program ip'
+        if done.returncode != 0:
+            return done.stdout.strip()
+    return None
+
+
+class TwoHostsTest(unittest.TestCase):
+    def setUp(self):
+        self.addCleanup(ip, 'link', 'delete', 'cable_near')
+        self.addCleanup(ip, 'netns', 'delete', NAMESPACE)
+        problem = make_hosts()
+        if problem:
+            print('two_hosts_test is skipped, network namespaces cannot be made here:', problem)
+            self.skipTest(problem)
+
+    def start(self, command, host):
+        environment = dict(os.environ, ROS_MASTER_URI=f'http://{NEAR}:{PORT}', ROS_IP=host)
+        environment.pop('ROS_HOSTNAME', None)
+        process = subprocess.Popen(command, env=environment)
+
+        def end():
+            process.terminate()
+            process.wait()
+        self.addCleanup(end)
+        return process
+
+    def test_topics_and_services_cross_the_hosts(self):
+        self.start(['roscore', '-p', str(PORT)], NEAR)
+        master = rosgraph.Master('/two_hosts_test', f'http://{NEAR}:{PORT}')
+        deadline = time.monotonic() + PATIENCE
+        while not master.is_online():
+            self.assertLess(time.monotonic(), deadline, 'roscore that starts')
+            time.sleep(0.1)
+        self.assertEqual(self.start(['rosparam', 'set', '/far/cable', SCENE], NEAR).wait(PATIENCE), 0)
+        self.start(['ip', 'netns', 'exec', NAMESPACE, 'rosrun', 'verlet_cable', 'cable_node', '__name:=cable', '__ns:=/far'], FAR)
+        self.assertEqual(self.start([sys.executable, '-c', USER], NEAR).wait(2 * PATIENCE), 0)
+
+
+if __name__ == '__main__':
+    rostest.rosrun('verlet_cable', 'two_hosts', TwoHostsTest, sys.argv)
