@@ -8,7 +8,7 @@ namespace verlet_cable {
 namespace {
 
 /// An update is cut off after this, so that requests do not wait when the simulation cannot keep up.
-const ros::WallDuration longest_update(0.02);
+const ros::WallDuration longest_update(0.01);
 
 /// Ticks come as evenly as this fraction of their period, but no finer than a millisecond.
 ros::WallDuration update_period(const SceneDesc& scene) {
