@@ -1,7 +1,9 @@
 // The node as a nodelet: loaded in this process, its messages come as the very objects that it has published.
 #include <gtest/gtest.h>
 #include <nodelet/loader.h>
+#include <ros/network.h>
 #include <ros/ros.h>
+#include <ros/xmlrpc_manager.h>
 #include <sensor_msgs/PointCloud2.h>
 #include <verlet_cable/CableArray.h>
 #include <visualization_msgs/MarkerArray.h>
