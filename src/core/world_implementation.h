@@ -28,6 +28,7 @@ struct World::Implementation {
   SceneDesc scene;
   std::vector<int> waiting_descs;  ///< indices into scene.cables
   std::vector<std::string> waiting;
+  std::vector<std::string> unsettled;
   std::vector<std::string> frames;
   std::vector<Pose> poses;           ///< of the frames, at the world's time
   std::vector<Pose> previous_poses;  ///< a step before; of a frame that is new to a step, its first
@@ -57,7 +58,7 @@ struct World::Implementation {
   void find_contacts(ContactGroup& group, double from, double to);
   void note_substep(int cable, const SubstepResult& substep, double part);
   void give_up(int cable);
-  bool settle_cable(int cable);
+  void settle_cable(int cable);
   SubstepResult settle_substep(ContactGroup& alone, double h);
   int breaking_segment(int cable, const StepResult& result) const;
   void add_forces(int cable, double weight);

@@ -83,6 +83,10 @@ const std::vector<Attachment>& World::attachments() const {
   return implementation_->attachments;
 }
 
+const std::vector<std::string>& World::unsettled() const {
+  return implementation_->unsettled;
+}
+
 const std::vector<Break>& World::breaks() const {
   return implementation_->breaks;
 }

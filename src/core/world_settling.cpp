@@ -19,19 +19,18 @@ constexpr double settled_acceleration = 1e-7;  // [m/s^2]
 }  // namespace
 
 bool World::settle() {
-  bool settled = true;
+  implementation_->unsettled.clear();
   for (Attachment& attachment : implementation_->attachments) attachment.force = attachment.torque = Vector3::Zero();
-  for (int cable = 0; cable < static_cast<int>(implementation_->cables.size()); ++cable)
-    settled = implementation_->settle_cable(cable) && settled;
-  return settled;
+  for (int cable = 0; cable < static_cast<int>(implementation_->cables.size()); ++cable) implementation_->settle_cable(cable);
+  return implementation_->unsettled.empty();
 }
 
 /// Substeps without motion, ever longer as long as they converge, until inertia carries nothing: what is left is Newton's method
 /// for the equilibrium.
-bool World::Implementation::settle_cable(int index) {
+void World::Implementation::settle_cable(int index) {
   SimulatedCable& cable = cables[index];
   CableScratch& s = scratch[index];
-  if (s.holders.nodes.empty()) return true;
+  if (s.holders.nodes.empty()) return;
   aim_holders(cable.model, attachments, poses, time(), scene.time_step, s.holders);
   jump_to_aim(s.holders);
   hold_at(1, 1, s.holders, s.boundary);
@@ -52,7 +51,7 @@ bool World::Implementation::settle_cable(int index) {
   }
   add_forces(index, 1);
   follow_material(index);
-  return settled;
+  if (!settled) unsettled.push_back(cable.model.name);
 }
 
 /// One substep towards equilibrium of a cable that may lie on obstacles and on itself. It has not converged, too, if nodes have

@@ -57,6 +57,7 @@ void Diagnostics::report_simulation(Status& status) {
   status.add("degraded_steps", s.degraded);
   status.add("faults", simulation_.faults());
   status.add("waiting_cables", join(simulation_.world().waiting()));
+  status.add("unsettled_cables", join(simulation_.world().unsettled()));
 
   if (simulation_.faulted()) {
     status.summary(DiagnosticStatus::ERROR, "fault: the simulation stands until reset");
@@ -81,6 +82,7 @@ void Diagnostics::report_simulation(Status& status) {
   if (step_time > time_step) status.mergeSummary(DiagnosticStatus::WARN, "slower than real time");
   if (s.overstretched > 0) status.mergeSummary(DiagnosticStatus::WARN, "overstretched");
   if (s.degraded > 0) status.mergeSummary(DiagnosticStatus::WARN, "steps were degraded");
+  if (!simulation_.world().unsettled().empty()) status.mergeSummary(DiagnosticStatus::WARN, "no equilibrium to start from");
   if (!simulation_.world().waiting().empty()) status.mergeSummary(DiagnosticStatus::WARN, "cables wait for their frames");
 }
 

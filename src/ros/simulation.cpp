@@ -87,6 +87,7 @@ void Simulation::start(Nanoseconds time) {
     place_added_obstacles();
     frame_watch_.forget_from(0);
     faulted_ = false;
+    report_unsettled(0);
   }
   stamp_ = time;
   started_ = true;
@@ -150,7 +151,11 @@ bool Simulation::step_world(Nanoseconds time) {
   if (faulted_) return false;
   const Nanoseconds before = std::exchange(stamp_, time);
   report_breaks();
-  if (!world_.waiting().empty() && !frames_.changes().empty()) world_.start_waiting(frames_.inputs());
+  if (!world_.waiting().empty() && !frames_.changes().empty()) {
+    const std::size_t reported = world_.unsettled().size();
+    world_.start_waiting(frames_.inputs());
+    report_unsettled(reported);
+  }
   if (grid_.passes_tick(before, stamp_)) publish();
   return true;
 }
@@ -161,7 +166,8 @@ void Simulation::report_status(const StepResult& result) {
     faulted_ = true;
     ++faults_;
     announce(CableEvent::FAULT, {cable(), {}, result.node, {}},
-             "the simulation of cable " + quoted(cable()) + " failed at node " + std::to_string(result.node) + ": reset or restore_state goes on");
+             "the simulation of cable " + quoted(cable()) + " failed at node " + std::to_string(result.node) +
+                 ": reset or restore_state goes on");
   }
   if (result.status == StepResult::Status::overstretched) {
     ROS_WARN_THROTTLE(log_period, "cable %s is overstretched at node %d: what holds it is further apart than it is long",
@@ -177,6 +183,12 @@ void Simulation::report_breaks() const {
              "cable " + quoted(first.name) + " broke at segment " + std::to_string(broken.segment) + ", above " +
                  number_text(first.material.breaking_tension) + " N: the rest of it is " + quoted(second));
   }
+}
+
+void Simulation::report_unsettled(std::size_t first) const {
+  for (std::size_t i = first; i < world_.unsettled().size(); ++i)
+    ROS_WARN("cable %s found no static equilibrium to start from: it starts at rest near one",
+             quoted(world_.unsettled()[i]).c_str());
 }
 
 void Simulation::skip_to(Nanoseconds time) {

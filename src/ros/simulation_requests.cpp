@@ -31,6 +31,7 @@ EditResult Simulation::reset() {
   place_added_obstacles();
   faulted_ = false;
   frame_watch_.forget_from(static_cast<int>(world_.frames().size()));
+  report_unsettled(0);
   announce(CableEvent::RESET, {}, "reset to the initial state of the scene");
   if (paused_) publish();
   return done("reset to the initial state of the scene");

@@ -47,6 +47,24 @@ TEST_F(CableSim, aSceneMaySettleByItself) {
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR((a[i].position - b[i].position).norm(), 0, 1e-6);
 }
 
+TEST_F(CableSim, aCableWithoutEquilibriumIsReported) {
+  // Its weight would stretch it to fifty times its length, further than settling goes.
+  const std::string scene = write("scene.yaml", R"(
+materials: {gum: {linear_density: 0.1, radius: 0.005, axial_stiffness: 0.01}, rope: {linear_density: 0.1, radius: 0.005}}
+cables:
+  - {name: g, length: 1, segments: 20, material: gum, initial: {type: settled}, attachments: [{name: a, at: start}]}
+  - {name: r, length: 1, segments: 20, material: rope, initial: {type: settled}, attachments: [{name: b, at: start}]}
+)");
+  for (const std::string option : {"", " --settle"}) {
+    ASSERT_EQ(run(scene + option + " --duration 0 --summary " + path("s.json")), 0) << err;
+    const YAML::Node events = summary("s.json")["events"];
+    ASSERT_EQ(events.size(), 1u) << err;
+    EXPECT_EQ(events[0]["type"].Scalar(), "not_settled");
+    EXPECT_EQ(events[0]["cable"].Scalar(), "g");
+    EXPECT_NE(err.find("not_settled: g"), std::string::npos) << err;
+  }
+}
+
 TEST_F(CableSim, aBrokenCableIsTwoCables) {
   // Pulled at 0.05 m/s: it is strained by 15 N / 1 kN when the hand has moved by 15 mm.
   const std::string scene = write("scene.yaml", R"(

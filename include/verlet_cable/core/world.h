@@ -105,6 +105,8 @@ class World {
   const std::vector<std::string>& waiting() const;     ///< names of cables that wait for a frame
   const std::vector<Attachment>& attachments() const;  ///< of the started cables
   const std::vector<Break>& breaks() const;            ///< in the last step
+  /// Names of cables that found no equilibrium when they were to be settled, at their start or by `settle`.
+  const std::vector<std::string>& unsettled() const;
   std::vector<SimulatedContact> contacts() const;      ///< where cables touched something in the last substep
   int find_cable(const std::string& name) const;       ///< index, -1 if there is none
   int find_attachment(const std::string& name) const;  ///< index, -1 if there is none

@@ -104,6 +104,8 @@ class Simulation {
   bool step_world(Nanoseconds time);
   void report_status(const StepResult& result);
   void report_breaks() const;
+  /// From the `first` of World::unsettled() on.
+  void report_unsettled(std::size_t first) const;
   void skip_to(Nanoseconds time);
   void publish();
   void announce(std::uint8_t type, const EventSubject& subject, const std::string& message) const;

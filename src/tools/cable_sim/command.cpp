@@ -57,7 +57,8 @@ int simulate_job(const Options& options, const Job& job) {
 
   ProgressBar progress(options.duration);
   EventLog events(progress);
-  if (job.settle && !world.settle()) events.add_unsettled(world);
+  if (job.settle) world.settle();
+  events.add_unsettled(world);
   CsvWriter csv(outputs.csv);
   Summary summary(world, first_averaged_step(job));
   bool good = simulate(job, options.rate, frames, world, {options.output.empty() ? nullptr : &csv, summary, events, progress});

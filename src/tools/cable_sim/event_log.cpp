@@ -53,7 +53,8 @@ void EventLog::observe(const World& world, const StepResult& result, const std::
 }
 
 void EventLog::add_unsettled(const World& world) {
-  add({world.time(), "not_settled", "", -1, "", "no static equilibrium was found; the cables start at rest near it", ""});
+  for (const std::string& cable : world.unsettled())
+    add({world.time(), "not_settled", cable, -1, "", "no static equilibrium was found; the cable starts at rest near it", ""});
 }
 
 std::vector<Event> EventLog::events() const {

@@ -29,7 +29,7 @@ class EventLog {
   /// After each step. `held_back`: ids of the frames that moved faster than `max_frame_speed`.
   void observe(const World& world, const StepResult& result, const std::vector<int>& held_back);
 
-  /// Where settling found no equilibrium.
+  /// Cables that were to be settled and found no equilibrium.
   void add_unsettled(const World& world);
 
   /// In the order of their times.
