@@ -45,8 +45,8 @@ class SceneTest(unittest.TestCase):
                 rospy.sleep(0.1)
                 touched |= {contact.other for state in states.all() for cable in state.cables for contact in cable.contacts}
             self.assertLessEqual(TOUCHED, touched)
-            shown = markers.wait_for(lambda m: True, 'markers')
-            self.assertGreaterEqual(len([m for m in shown.markers if m.ns == 'obstacles']), OBSTACLES)
+            # Links of a robot are shown as soon as tf has them, one after the other.
+            markers.wait_for(lambda shown: sum(m.ns == 'obstacles' for m in shown.markers) >= OBSTACLES, 'markers of all obstacles')
             rospy.sleep(2)
             for state in states.all():
                 self.assertTrue(all_finite(state))
