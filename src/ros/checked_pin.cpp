@@ -1,19 +1,14 @@
 #include "verlet_cable/ros/checked_pin.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
+#include "verlet_cable/core/scene_fields.h"
 
 namespace verlet_cable {
 namespace {
-
-bool is_name(const std::string& name) {
-  return std::isalpha(static_cast<unsigned char>(name[0])) &&
-         std::all_of(name.begin(), name.end(), [](unsigned char c) { return c < 128 && (std::isalnum(c) || c == '_'); });
-}
 
 std::string text(const Vector3& v) {
   return "(" + number_text(v.x()) + ", " + number_text(v.y()) + ", " + number_text(v.z()) + ")";
@@ -23,7 +18,8 @@ std::string text(const Vector3& v) {
 Pose read_offset(const geometry_msgs::Pose& pose, std::vector<std::string>& errors) {
   constexpr double tolerance = 0.01;
   const Vector3 position(pose.position.x, pose.position.y, pose.position.z);
-  if (!position.allFinite()) errors.push_back("offset.position: " + text(position) + "; allowed: finite numbers [m]");
+  if (!(position.cwiseAbs().array() <= coordinate.highest).all())
+    errors.push_back("offset.position: " + text(position) + "; allowed: " + coordinate.text("m"));
   const Quaternion q(pose.orientation.w, pose.orientation.x, pose.orientation.y, pose.orientation.z);
   if ((q.coeffs().array() == 0).all()) return {position, Quaternion::Identity()};
   if (!(std::abs(q.norm() - 1) <= tolerance)) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "verlet_cable/core/quoted_text.h"
+#include "verlet_cable/core/scene_fields.h"
 
 namespace verlet_cable {
 namespace {
@@ -45,8 +46,8 @@ std::string transform_problem(const ReceivedTransform& received) {
     problem << "a frame without a name";
   } else if (without_slash(transform.child_frame_id) == without_slash(transform.header.frame_id)) {
     problem << "its parent is itself";
-  } else if (!std::isfinite(t.x) || !std::isfinite(t.y) || !std::isfinite(t.z)) {
-    problem << "translation (" << t.x << ", " << t.y << ", " << t.z << "); allowed: finite numbers";
+  } else if (!coordinate.contains(t.x) || !coordinate.contains(t.y) || !coordinate.contains(t.z)) {
+    problem << "translation (" << t.x << ", " << t.y << ", " << t.z << "); allowed: " << coordinate.text("m");
   } else if (!(std::abs(squared_length - 1) <= tolerance)) {
     problem << "rotation (" << r.x << ", " << r.y << ", " << r.z << ", " << r.w << "); allowed: quaternions of length 1";
   } else if (!received.is_static && transform.header.stamp.isZero()) {

@@ -6,6 +6,7 @@
 
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
+#include "verlet_cable/core/scene_fields.h"
 
 namespace verlet_cable {
 namespace {
@@ -71,8 +72,8 @@ void find_arc_length(const CableLocation& location, const World& world, PointOnC
 void find_nearest(const CableLocation& location, const World& world, const FindFrame& find_frame, PointOnCable& found) {
   const geometry_msgs::Point& point = location.point.point;
   found.field = "location.point: " + point_text(point);
-  if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z)) {
-    found.errors.push_back("location.point.point: " + point_text(point) + "; allowed: finite numbers [m]");
+  if (!coordinate.contains(point.x) || !coordinate.contains(point.y) || !coordinate.contains(point.z)) {
+    found.errors.push_back("location.point.point: " + point_text(point) + "; allowed: " + coordinate.text("m"));
   }
   const std::string& frame = location.point.header.frame_id;
   const std::optional<Pose> pose = frame.empty() ? Pose{} : find_frame(frame);
@@ -86,7 +87,8 @@ void find_nearest(const CableLocation& location, const World& world, const FindF
   const int first = any ? 0 : found.cable, last = any ? static_cast<int>(world.cables().size()) - 1 : found.cable;
   for (int cable = first; cable <= last; ++cable) {
     const NearestPoint nearest = nearest_point(world.cables()[cable], position);
-    if (nearest.distance >= least) continue;
+    // Squares of far points overflow: then one cable is as near as another.
+    if (found.cable >= 0 && !(nearest.distance < least)) continue;
     least = nearest.distance;
     found.cable = cable;
     found.segment = nearest.segment;

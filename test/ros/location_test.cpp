@@ -106,6 +106,20 @@ TEST(Location, NearestPointInAnyFrameOnAnyCable) {
   EXPECT_EQ(world.cables()[locate_node(nearest("", "world", 0.5, 0, 0.6), world, find_frame).cable].model.name, "upper");
 }
 
+TEST(Location, PointsThatAreTooFarAwayAreRefused) {
+  for (const double far : {1e200, -1e300, std::numeric_limits<double>::infinity()}) {
+    EXPECT_NE(node_errors(nearest("", "", far, 0, 0)).find("location.point.point: ("), std::string::npos) << far;
+  }
+}
+
+TEST(Location, FramesThatAreTooFarAwayHaveANearestCableAllTheSame) {
+  const FindFrame far_away = [](const std::string&) { return Pose{Vector3(1e200, 0, 0), Quaternion::Identity()}; };
+  const World world = two_cables();
+  const Location found = locate_cut(nearest("", "far", 0.5, 0, 0), world, far_away);
+  EXPECT_GE(found.cable, 0);
+  EXPECT_NE(join(found.errors), "") << "its segment 0 cannot be cut";
+}
+
 TEST(Location, ErrorsNameFieldValueAndWhatIsAllowed) {
   EXPECT_EQ(node_errors(at_node("hose", 3)), "location.cable: \"hose\"; allowed: lower, upper");
   EXPECT_EQ(node_errors(at_node("lower", 11)), "location.node: 11; allowed: 0 to 10");
@@ -170,6 +184,8 @@ TEST(CheckedPin, RefusesWithFieldAndValue) {
   Pin::Request request = pin_request();
   request.offset.position.z = nan;
   EXPECT_NE(pin_errors(request).find("offset.position: (0.9, 0, nan)"), std::string::npos) << pin_errors(request);
+  request.offset.position.z = 1e300;
+  EXPECT_NE(pin_errors(request).find("offset.position: (0.9, 0, 1e+300)"), std::string::npos) << pin_errors(request);
   request = pin_request();
   request.offset.orientation.w = 1e-9;
   EXPECT_NE(pin_errors(request).find("offset.orientation"), std::string::npos);
