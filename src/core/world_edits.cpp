@@ -84,6 +84,12 @@ EditResult World::pin(const std::string& name, int cable, int node, int frame, c
   if (!name.empty() && taken(name)) return refused("name: " + name + "; is taken by another attachment");
   if (holds_something(w.attachments, cable, node))
     return refused("node: " + std::to_string(node) + " of cable " + held.model.name + "; is already held by an attachment");
+  if (const std::optional<Reel>& reel = w.scratch[cable].reel; reel && !reel->is_winch()) {
+    const int other = node == reel->segment ? node + 1 : node == reel->segment + 1 ? node - 1 : -1;
+    if (other >= 0 && holds_something(w.attachments, cable, other))
+      return refused("node: " + std::to_string(node) + " of cable " + held.model.name + "; is being joined to node " +
+                     std::to_string(other) + ", which is held by an attachment");
+  }
 
   Attachment attachment;
   attachment.name = name.empty() ? numbered("pin", 1, taken) : name;
@@ -121,6 +127,11 @@ EditResult World::cut(int cable, int segment) {
   if (segment < 1 || segment > segments - 2)
     return refused("segment: " + std::to_string(segment) + " of cable " + name + "; must be from 1 to " +
                    std::to_string(segments - 2) + ", so that each piece keeps one");
+  if (const std::optional<Reel>& joint = w.scratch[cable].reel; joint && !joint->is_winch()) {
+    if ((segment == 1 && joint->segment == 0) || (segment == segments - 2 && joint->segment == segments - 1))
+      return refused("segment: " + std::to_string(segment) + " of cable " + name + "; leaves nothing but segment " +
+                     std::to_string(joint->segment) + ", which vanishes: it is still being joined there");
+  }
 
   const auto taken = [&](const std::string& n) {
     return find_cable(n) >= 0 ||

@@ -111,6 +111,35 @@ TEST(Join, KeepsStretchedCablesAtTheirTension) {
   EXPECT_LT(highest, 5);  // 1 % of slack is all there is to pull on
 }
 
+TEST(Join, CutsLeaveMoreThanTheGapThatCloses) {
+  const SceneDesc scene = two_ropes(0.3);
+  World world(scene, initial_frames(scene));
+  ASSERT_TRUE(world.join(0, true, 1, true).ok);
+  ASSERT_TRUE(world.cut(0, 26).ok);
+  const std::uint64_t before = world.hash();
+  const EditResult second = world.cut(0, 24);
+  EXPECT_FALSE(second.ok);
+  EXPECT_NE(second.message.find("still being joined"), std::string::npos) << second.message;
+  EXPECT_EQ(world.hash(), before);
+  // Ends that are drawn together at up to 2 m/s meet within 0.5 s.
+  for (int i = 0; i < 500; ++i) ASSERT_EQ(world.step({FrameInput{}}).status, Status::ok) << i;
+  EXPECT_EQ(world.cables()[0].model.segments(), 25);
+}
+
+TEST(Join, EndsThatAreBeingJoinedAreNotBothHeld) {
+  const SceneDesc scene = two_ropes(0.3, 0.005);
+  World world(scene, initial_frames(scene));
+  ASSERT_TRUE(world.join(0, true, 1, true).ok);
+  ASSERT_TRUE(
+      world.pin("first", 0, 25, 0, {world.cables()[0].state.positions[25], Quaternion::Identity()}, AttachmentType::clamp).ok);
+  const std::uint64_t before = world.hash();
+  const EditResult second =
+      world.pin("second", 0, 26, 0, {world.cables()[0].state.positions[26], Quaternion::Identity()}, AttachmentType::clamp);
+  EXPECT_FALSE(second.ok);
+  EXPECT_NE(second.message.find("being joined to node 25"), std::string::npos) << second.message;
+  EXPECT_EQ(world.hash(), before);
+}
+
 TEST(Join, BadRequestsChangeNothing) {
   SceneDesc scene = two_ropes(1.2);
   scene.materials.push_back(scene.materials[0]);
