@@ -28,11 +28,10 @@ class OverloadTest(unittest.TestCase):
         cls.busy, cls.idle = CableClient('/busy'), CableClient('/idle')
 
     def test_services_answer_and_time_slows_evenly(self):
-        with Frames(hand=hand), Messages('/diagnostics', DiagnosticArray) as diagnostics, self.busy.states() as states:
+        with Frames(busy_hand=hand), Messages('/diagnostics', DiagnosticArray) as diagnostics, self.busy.states() as states:
             states.wait_for(lambda s: cable(s, 'rope'), 'rope')
             diagnostics.wait_for(lambda a: any(s.name == 'busy: simulation' and 'overloaded' in s.message for s in a.status),
                                  'overloaded node that says so')
-            rospy.sleep(2.0)  # what other tests sent is behind the second by which the node may lag
             states.clear()
             answers = []
             for _ in range(100):
