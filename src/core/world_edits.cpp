@@ -14,6 +14,10 @@ EditResult refused(const std::string& message) {
   return {false, message, {}};
 }
 
+bool is_sound(const Pose& pose) {
+  return pose.position.allFinite() && pose.orientation.coeffs().allFinite() && pose.orientation.norm() >= 1e-6;
+}
+
 bool holds_something(const std::vector<Attachment>& attachments, int cable, int node) {
   return std::any_of(attachments.begin(), attachments.end(),
                      [&](const Attachment& a) { return a.cable == cable && a.node == node; });
@@ -79,8 +83,7 @@ EditResult World::pin(const std::string& name, int cable, int node, int frame, c
     return refused("node: " + std::to_string(node) + "; must be from 0 to " + std::to_string(held.model.segments()));
   if (frame < 0 || frame >= static_cast<int>(w.frames.size()))
     return refused("frame: " + std::to_string(frame) + "; must be the id of a frame");
-  if (!pose.position.allFinite() || !pose.orientation.coeffs().allFinite() || pose.orientation.norm() < 1e-6)
-    return refused("offset: must be finite, with an orientation of length 1");
+  if (!is_sound(pose)) return refused("offset: must be finite, with an orientation of length 1");
   if (!name.empty() && taken(name)) return refused("name: " + name + "; is taken by another attachment");
   if (holds_something(w.attachments, cable, node))
     return refused("node: " + std::to_string(node) + " of cable " + held.model.name + "; is already held by an attachment");
@@ -114,6 +117,14 @@ EditResult World::unpin(const std::string& name) {
     forget_attachment(index, s.holders.directions);
   }
   w.update_holders(cable);
+  return {true, "", name};
+}
+
+EditResult World::move_attachment(const std::string& name, const Pose& pose) {
+  const int index = find_attachment(name);
+  if (index < 0) return refused("name: " + name + "; there is no such attachment");
+  if (!is_sound(pose)) return refused("offset: must be finite, with an orientation of length 1");
+  implementation_->attachments[index].pose = {pose.position, pose.orientation.normalized()};
   return {true, "", name};
 }
 

@@ -24,6 +24,7 @@ CableNode::CableNode(ros::NodeHandle private_node)
       obstacles_(node_, simulation_),
       tuning_(node_, simulation_),
       rollouts_(node_, simulation_),
+      hands_(node_, simulation_),
       diagnostics_(node_, simulation_, obstacles_),
       timer_(node_.createWallTimer(update_period(simulation_.scene()), [this](const ros::WallTimerEvent&) { update(); })),
       publish_rate_(simulation_.scene().publish_rate) {}
@@ -31,6 +32,7 @@ CableNode::CableNode(ros::NodeHandle private_node)
 void CableNode::update() {
   simulation_.update(longest_update);
   tuning_.follow_scene();
+  hands_.update();
   if (simulation_.scene().publish_rate == publish_rate_) return;
   publish_rate_ = simulation_.scene().publish_rate;
   timer_.setPeriod(update_period(simulation_.scene()));

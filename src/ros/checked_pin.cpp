@@ -14,22 +14,6 @@ std::string text(const Vector3& v) {
   return "(" + number_text(v.x()) + ", " + number_text(v.y()) + ", " + number_text(v.z()) + ")";
 }
 
-/// Identity for all zeros; otherwise nearly of length one.
-Pose read_offset(const geometry_msgs::Pose& pose, std::vector<std::string>& errors) {
-  constexpr double tolerance = 0.01;
-  const Vector3 position(pose.position.x, pose.position.y, pose.position.z);
-  if (!(position.cwiseAbs().array() <= coordinate.highest).all())
-    errors.push_back("offset.position: " + text(position) + "; allowed: " + coordinate.text("m"));
-  const Quaternion q(pose.orientation.w, pose.orientation.x, pose.orientation.y, pose.orientation.z);
-  if ((q.coeffs().array() == 0).all()) return {position, Quaternion::Identity()};
-  if (!(std::abs(q.norm() - 1) <= tolerance)) {
-    errors.push_back("offset.orientation: (" + number_text(q.x()) + ", " + number_text(q.y()) + ", " + number_text(q.z()) + ", " +
-                     number_text(q.w()) + "); allowed: quaternions of length 1, or all zero for no rotation");
-    return {position, Quaternion::Identity()};
-  }
-  return {position, q.normalized()};
-}
-
 /// The node's place and the cable's direction there, between the directions of its segments.
 Pose node_pose(const SimulatedCable& cable, int node) {
   const std::vector<Quaternion> orientations = segment_orientations(cable);
@@ -59,6 +43,22 @@ void check_reach(const CheckedPin& pin, const World& world, std::vector<std::str
 
 }  // namespace
 
+/// Identity for all zeros; otherwise nearly of length one.
+Pose read_pose(const std::string& field, const geometry_msgs::Pose& pose, std::vector<std::string>& errors) {
+  constexpr double tolerance = 0.01;
+  const Vector3 position(pose.position.x, pose.position.y, pose.position.z);
+  if (!(position.cwiseAbs().array() <= coordinate.highest).all())
+    errors.push_back(field + ".position: " + text(position) + "; allowed: " + coordinate.text("m"));
+  const Quaternion q(pose.orientation.w, pose.orientation.x, pose.orientation.y, pose.orientation.z);
+  if ((q.coeffs().array() == 0).all()) return {position, Quaternion::Identity()};
+  if (!(std::abs(q.norm() - 1) <= tolerance)) {
+    errors.push_back(field + ".orientation: (" + number_text(q.x()) + ", " + number_text(q.y()) + ", " + number_text(q.z()) +
+                     ", " + number_text(q.w()) + "); allowed: quaternions of length 1, or all zero for no rotation");
+    return {position, Quaternion::Identity()};
+  }
+  return {position, q.normalized()};
+}
+
 CheckedPin check_pin(const Pin::Request& request, const World& world, const FindFrame& find_frame) {
   CheckedPin pin;
   const Location location = locate_node(request.location, world, find_frame);
@@ -66,7 +66,7 @@ CheckedPin check_pin(const Pin::Request& request, const World& world, const Find
   pin.cable = location.cable;
   pin.node = location.index;
   pin.frame = request.frame_id.empty() ? world.frames().front() : request.frame_id;
-  pin.offset = read_offset(request.offset, pin.errors);
+  pin.offset = read_pose("offset", request.offset, pin.errors);
   if (!request.name.empty() && !is_name(request.name)) {
     pin.errors.push_back("name: " + quoted(request.name) + "; allowed: a letter, then letters, digits and _; or empty");
   }

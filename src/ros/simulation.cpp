@@ -84,6 +84,7 @@ void Simulation::start(Nanoseconds time) {
   frames_.sample_without_waiting(time, true);
   if (!keeps_world_) {
     world_ = World(scene_, frames_.inputs());
+    moves_.clear();
     place_added_obstacles();
     frame_watch_.forget_from(0);
     faulted_ = false;
@@ -145,6 +146,7 @@ void Simulation::stand() {
 /// False, and the world stands, after a fault.
 bool Simulation::step_world(Nanoseconds time) {
   const auto begin = std::chrono::steady_clock::now();
+  moves_.advance(scene_.time_step, world_);
   const StepResult result = world_.step(frames_.inputs());
   statistics_.add(result, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   report_status(result);
@@ -212,6 +214,11 @@ std::optional<Pose> Simulation::find_frame(const std::string& frame) const {
   const auto id = static_cast<std::size_t>(found - names.begin());
   if (id == 0 || (id < names.size() && frames_.inputs()[id].known)) return world_.frame_pose(static_cast<int>(id));
   return frames_.find(frame, stamp_);
+}
+
+Pose Simulation::attachment_pose(const Attachment& attachment) const {
+  const Pose* const target = moves_.target(attachment.name);
+  return world_.frame_pose(attachment.frame) * (target ? *target : attachment.pose);
 }
 
 Statistics Simulation::take_statistics() {

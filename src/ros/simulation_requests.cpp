@@ -28,6 +28,7 @@ EditResult Simulation::reset() {
   if (!started_) return refused_before_start();
   frames_.reset(stamp_);
   world_ = World(scene_, frames_.inputs());
+  moves_.clear();
   place_added_obstacles();
   faulted_ = false;
   frame_watch_.forget_from(static_cast<int>(world_.frames().size()));
@@ -79,17 +80,28 @@ EditResult Simulation::pin(const std::string& name, int cable, int node, const s
 EditResult Simulation::unpin(const std::string& name) {
   if (!started_) return refused_before_start();
   const int index = world_.find_attachment(name);
-  if (index < 0) {
-    std::string names;
-    for (const Attachment& attachment : world_.attachments()) names += (names.empty() ? "" : ", ") + attachment.name;
-    return refused("name: " + quoted(name) + "; allowed: " + (names.empty() ? "nothing is attached" : names));
-  }
+  if (index < 0) return refused_attachment(name);
   const EventSubject subject = subject_of(world_, world_.attachments()[index]);
   const EditResult result = world_.unpin(name);
   if (!result.ok) return result;
+  moves_.forget(name);
   const std::string message = "attachment " + quoted(name) + " is undone";
   announce(CableEvent::UNPINNED, subject, message);
   return done(message);
+}
+
+EditResult Simulation::move_attachment(const std::string& name, const Pose& offset) {
+  if (!started_) return refused_before_start();
+  const int index = world_.find_attachment(name);
+  if (index < 0) return refused_attachment(name);
+  moves_.send(name, world_.attachments()[index].pose, offset);
+  return done("attachment " + quoted(name) + " is on its way");
+}
+
+EditResult Simulation::refused_attachment(const std::string& name) const {
+  std::string names;
+  for (const Attachment& attachment : world_.attachments()) names += (names.empty() ? "" : ", ") + attachment.name;
+  return refused("name: " + quoted(name) + "; allowed: " + (names.empty() ? "nothing is attached" : names));
 }
 
 EditResult Simulation::cut(int cable, int segment) {

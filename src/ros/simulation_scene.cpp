@@ -11,6 +11,7 @@ EditResult Simulation::load_scene(const SceneDesc& scene) {
   grid_ = TimeGrid(scene.time_step, scene.publish_rate);
   pacer_.use(grid_.step(), longest_backlog(scene));
   world_ = std::move(world);
+  moves_.clear();
   frames_.follow_scene(scene, stamp_);
   place_added_obstacles();
   events_.set_frame_id(scene.frame_id);

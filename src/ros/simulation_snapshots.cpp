@@ -44,6 +44,7 @@ EditResult Simulation::restore_state(const std::string& name) {
   if (found == snapshots_.end()) return refused("name: " + quoted(name) + "; allowed: " + names_of(snapshots_));
   const Snapshot& snapshot = found->second;
   world_ = snapshot.world;
+  moves_.clear();
   use_scene(snapshot.scene);
   if (paused_) {
     stamp_ = snapshot.stamp;

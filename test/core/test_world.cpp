@@ -39,6 +39,26 @@ TEST(World, ClampHoldsTheDirection) {
   EXPECT_LT(((x[40] - x[39]).normalized() - inputs[1].pose.orientation * Vector3::UnitX()).norm(), 1e-9);
 }
 
+TEST(World, AMovedAttachmentTakesItsNodeAlong) {
+  const SceneDesc scene = scenes::held_by_a_hand(40);
+  World world(scene, scenes::hand_at({0.6, 0, 0}));
+  const Attachment& hand = world.attachments().back();
+  const Pose start = hand.pose;
+  for (int i = 1; i <= 500; ++i) {
+    Pose pose = start;
+    pose.position.z() += 0.0004 * i;
+    ASSERT_TRUE(world.move_attachment(hand.name, pose).ok);
+    EXPECT_EQ(world.step(scenes::hand_at({0.6, 0, 0})).status, Status::ok);
+    EXPECT_LT((world.cables()[0].state.positions.back() - Vector3(0.6, 0, 0.0004 * i)).norm(), 1e-12);
+  }
+  const std::uint64_t before = world.hash();
+  Pose bad = start;
+  bad.position.x() = std::nan("");
+  EXPECT_FALSE(world.move_attachment(hand.name, bad).ok);
+  EXPECT_FALSE(world.move_attachment("nobody", start).ok);
+  EXPECT_EQ(world.hash(), before);
+}
+
 TEST(World, PulledTooFarItSaysSoAndRecovers) {
   const SceneDesc scene = scenes::held_by_a_hand(50);
   World world(scene, scenes::hand_at({0.6, 0, 0}));

@@ -117,6 +117,8 @@ class World {
   /// Holds a node at a pose in a frame. The node goes there smoothly. `name` empty: one is made.
   EditResult pin(const std::string& name, int cable, int node, int frame, const Pose& pose, AttachmentType type);
   EditResult unpin(const std::string& name);
+  /// Gives an attachment another pose in its frame: the next step takes the node there, so move it little by little.
+  EditResult move_attachment(const std::string& name, const Pose& pose);
   /// Removes a segment; its mass stays on its nodes. The first piece keeps the name.
   EditResult cut(int cable, int segment);
   /// Pays out or takes in cable at one end, at up to `speed` [m/s] and smoothly, until the cable is `length` [m] long; its nodes

@@ -5,6 +5,7 @@
 #include "verlet_cable/core/scene_desc.h"
 #include "verlet_cable/ros/cable_services.h"
 #include "verlet_cable/ros/diagnostics.h"
+#include "verlet_cable/ros/hands.h"
 #include "verlet_cable/ros/obstacle_listener.h"
 #include "verlet_cable/ros/rollouts.h"
 #include "verlet_cable/ros/simulation.h"
@@ -28,6 +29,7 @@ class CableNode {
   ObstacleListener obstacles_;
   Tuning tuning_;
   Rollouts rollouts_;
+  Hands hands_;
   Diagnostics diagnostics_;
   ros::WallTimer timer_;
   double publish_rate_;  ///< [Hz] for which the timer runs

@@ -20,6 +20,9 @@ struct CheckedPin {
   std::vector<std::string> errors;
 };
 
+/// The pose of a request: all zeros for no rotation. What is wrong with it is added to `errors`, with `field` for its name.
+Pose read_pose(const std::string& field, const geometry_msgs::Pose& pose, std::vector<std::string>& errors);
+
 CheckedPin check_pin(const Pin::Request& request, const World& world, const FindFrame& find_frame);
 
 }  // namespace verlet_cable

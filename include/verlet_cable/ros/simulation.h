@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "verlet_cable/core/world.h"
+#include "verlet_cable/ros/attachment_moves.h"
 #include "verlet_cable/ros/clock_watch.h"
 #include "verlet_cable/ros/event_publisher.h"
 #include "verlet_cable/ros/frame_watch.h"
@@ -54,6 +55,8 @@ class Simulation {
   EditResult pin(const std::string& name, int cable, int node, const std::string& frame, const Pose& frame_pose,
                  const Pose& offset, AttachmentType type);
   EditResult unpin(const std::string& name);
+  /// Sends an attachment to another pose in its frame; it gets there smoothly.
+  EditResult move_attachment(const std::string& name, const Pose& offset);
   EditResult cut(int cable, int segment);
   EditResult set_length(const std::string& cable, bool at_end, double length, double speed);
   EditResult join(const std::string& first, bool first_at_end, const std::string& second, bool second_at_end);
@@ -73,6 +76,8 @@ class Simulation {
   int scene_version() const { return scene_version_; }  ///< another number, another scene or tuning
   const World& world() const { return world_; }
   const TfInputs& frames() const { return frames_; }
+  /// Of an attachment in the fixed frame; of one that was sent somewhere, there.
+  Pose attachment_pose(const Attachment& attachment) const;
   /// Where a frame is at the simulated time; none if neither the world nor tf knows it.
   std::optional<Pose> find_frame(const std::string& frame) const;
   /// The snapshot of that name, the present state for an empty one; none if there is no such.
@@ -110,6 +115,7 @@ class Simulation {
   void publish();
   void announce(std::uint8_t type, const EventSubject& subject, const std::string& message) const;
   EditResult refused_before_start() const;
+  EditResult refused_attachment(const std::string& name) const;
   std::optional<EditResult> refused_cable(const std::string& field, const std::string& cable) const;
   EditResult place(const AddedObstacle& added);
   void place_added_obstacles();
@@ -124,6 +130,7 @@ class Simulation {
   Publishers publishers_;
   EventPublisher events_;
   FrameWatch frame_watch_;
+  AttachmentMoves moves_;
 
   std::map<std::string, Snapshot> snapshots_;
   std::map<std::string, AddedObstacle> added_obstacles_;

@@ -1,0 +1,118 @@
+#!/usr/bin/python3
+"""example_frames.py: moves the frames of one of config/examples, and says in rviz what there is to see.
+
+Publishes tf at 100 Hz and example/labels. `~example` names the example.
+"""
+import math
+
+import rospy
+import tf2_ros
+from geometry_msgs.msg import Point, Quaternion, TransformStamped, Vector3
+from std_msgs.msg import ColorRGBA
+from visualization_msgs.msg import Marker, MarkerArray
+
+FIXED_FRAME = 'world'
+RATE = 100.0  # [Hz]
+
+
+def swing(t, period, phase=0.0):
+    """-1 to 1."""
+    return math.sin(2 * math.pi * t / period + phase)
+
+
+def pose(x, y, z, roll=0.0, pitch=0.0, yaw=0.0):
+    """Position [m] and orientation, from fixed-axis roll, pitch and yaw [rad]."""
+    (sr, cr), (sp, cp), (sy, cy) = ((math.sin(a / 2), math.cos(a / 2)) for a in (roll, pitch, yaw))
+    return Vector3(x, y, z), Quaternion(sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy,
+                                        cr * cp * cy + sr * sp * sy)
+
+
+def hose_between_arms(t):
+    apart = 0.44 + 0.12 * swing(t, 10)  # [m] half the distance of the grippers
+    return {'left_gripper': pose(-apart, 0, 1, roll=2.0 * swing(t, 16), pitch=0.3 * swing(t, 10, 1)),
+            'right_gripper': pose(apart, 0.1 * swing(t, 7), 1, pitch=0.3 * swing(t, 10, 2), yaw=math.pi)}
+
+
+def tethered_drone(t):
+    return {'drone': pose(0.2 + 0.8 * swing(t, 12, math.pi / 2), 0.8 * swing(t, 12), 2.0 + 0.3 * swing(t, 8),
+                          roll=0.08 * swing(t, 3), pitch=0.15, yaw=0.3 * swing(t, 12))}
+
+
+def crane(t):
+    return {'trolley': pose(0.6 * swing(t, 14), 0, 2.2)}
+
+
+def rov_tether(t):
+    return {'ship': pose(0, 0, 0.08 * swing(t, 5), pitch=0.1 * swing(t, 5, 1)),
+            'rov': pose(1.1 + 0.3 * swing(t, 15), 0.3 * swing(t, 20), -1.8 + 0.25 * swing(t, 11), yaw=0.5 * swing(t, 20))}
+
+
+def tracker(t):
+    return {'left_hand': pose(-0.4 - 0.1 * swing(t, 6), 0.1 * swing(t, 8), 1.05),
+            'right_hand': pose(0.4 + 0.1 * swing(t, 6), -0.1 * swing(t, 8), 1.05 + 0.1 * swing(t, 5)),
+            # z forward, x right, y down
+            'camera_optical_frame': pose(0.15 * swing(t, 13), -1.2, 1.0, roll=-math.pi / 2)}
+
+
+def gripper_load(t):
+    return {'gripper': pose(0.55 + 0.15 * swing(t, 7), 0.15 * swing(t, 5), 1.0 + 0.15 * swing(t, 9), roll=0.8 * swing(t, 8),
+                            pitch=0.4 * swing(t, 6), yaw=math.pi)}
+
+
+# The frames over time, and texts [what, x, y, z, height: m].
+EXAMPLES = {
+    'hose_between_arms': (hose_between_arms, [
+        ('two arms bend and twist a hose', 0, 0, 1.32, 0.06), ('color: tension', 0, 0, 1.24, 0.045)]),
+    'tethered_drone': (tethered_drone, [
+        ('a drone on a tether, in wind', 0, 0, 2.75, 0.14), ('ground station', 0, 0, -0.15, 0.1), ('wind', -1.1, 0, 1.5, 0.1)]),
+    'crane': (crane, [
+        ('a crane: the winch on the trolley hoists a payload', 0, 0, 2.5, 0.1), ('5 kg', 0.9, 0, 0.4, 0.08)]),
+    'rov_tether': (rov_tether, [
+        ('ship', 0, 0, 0.35, 0.12), ('the tether of an underwater robot, in a current', 0.5, 0, 0.6, 0.12),
+        ('water surface', -1.1, 0, 0.06, 0.08), ('current', -1.1, 0, -0.9, 0.1)]),
+    'tracker': (tracker, [
+        ('what a depth camera sees of a rope: white', 0, 0, 1.42, 0.06),
+        ('and the truth at the same stamp: red', 0, 0, 1.33, 0.06)]),
+    'gripper_load': (gripper_load, [
+        ('the load of a cable on a gripper', 0.3, 0, 1.5, 0.06), ('orange: force, purple: torque', 0.3, 0, 1.42, 0.045),
+        ('wall', -0.05, 0, 1.25, 0.05)]),
+}
+
+
+def transform(name, frame_pose, stamp):
+    message = TransformStamped()
+    message.header.stamp = stamp
+    message.header.frame_id = FIXED_FRAME
+    message.child_frame_id = name
+    message.transform.translation, message.transform.rotation = frame_pose
+    return message
+
+
+def label(number, text, x, y, z, height):
+    marker = Marker(ns='labels', id=number, type=Marker.TEXT_VIEW_FACING, text=text, color=ColorRGBA(1, 1, 1, 1))
+    marker.header.frame_id = FIXED_FRAME
+    marker.pose.position = Point(x, y, z)
+    marker.pose.orientation.w = 1
+    marker.scale.z = height
+    return marker
+
+
+def main():
+    rospy.init_node('example_frames')
+    motion, texts = EXAMPLES[rospy.get_param('~example')]
+    labels = rospy.Publisher('example/labels', MarkerArray, queue_size=1, latch=True)
+    labels.publish([label(number, *text) for number, text in enumerate(texts)])
+    broadcaster = tf2_ros.TransformBroadcaster()
+    rate = rospy.Rate(RATE)
+    started = rospy.Time.now()
+    while not rospy.is_shutdown():
+        now = rospy.Time.now()
+        broadcaster.sendTransform([transform(name, at, now) for name, at in motion((now - started).to_sec()).items()])
+        rate.sleep()
+
+
+if __name__ == '__main__':
+    try:
+        main()
+    except rospy.ROSInterruptException:
+        pass

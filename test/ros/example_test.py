@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+"""One of launch/examples runs: what its rviz view shows arrives, finite, and it does what it is an example of."""
+import math
+import sys
+import unittest
+
+import numpy as np
+import rospy
+import rostest
+import yaml
+from geometry_msgs.msg import PoseArray, WrenchStamped
+from sensor_msgs.msg import PointCloud2
+from visualization_msgs.msg import InteractiveMarkerInit, InteractiveMarkerUpdate, MarkerArray
+
+from cable_client import CableClient, Messages, all_finite
+
+EXAMPLE = sys.argv[1]
+PACKAGE = sys.argv[0].partition('/test/ros/')[0]
+SECONDS = 3
+# Obstacles whose frames move are shown as soon as tf has them; a capsule is three markers.
+OBSTACLES = {'crane': 5, 'dress_pack': 6, 'gripper_load': 5, 'hose_between_arms': 8, 'rov_tether': 4, 'tethered_drone': 5,
+             'tracker': 0}[EXAMPLE]
+
+
+def is_finite(marker):
+    p, q, s = marker.pose.position, marker.pose.orientation, marker.scale
+    numbers = [p.x, p.y, p.z, q.x, q.y, q.z, q.w, s.x, s.y, s.z] + [x for v in marker.points for x in (v.x, v.y, v.z)]
+    return all(math.isfinite(x) for x in numbers)
+
+
+class ExampleTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        rospy.init_node('example_test')
+        cls.node = CableClient('/cable')
+
+    def test_cables_move_and_are_shown(self):
+        with self.node.states() as states, Messages('/cable/markers', MarkerArray) as markers:
+            markers.wait_for(lambda shown: sum(m.ns == 'obstacles' for m in shown.markers) >= OBSTACLES, 'all obstacles')
+            states.clear()
+            rospy.sleep(SECONDS)
+            seen = states.all()
+            self.assertGreater(len(seen), 20 * SECONDS)
+            self.assertTrue(all(all_finite(state) for state in seen))
+            self.assertTrue(all(is_finite(m) for message in markers.all() for m in message.markers))
+            for first, last in zip(seen[0].cables, seen[-1].cables):
+                moved = max(math.dist((p.x, p.y, p.z), (q.x, q.y, q.z)) for p, q in zip(first.positions, last.positions))
+                self.assertGreater(moved, 0.01)
+                # No cable is torn at: what holds it is never further apart than it is long.
+                lengths = [math.dist((p.x, p.y, p.z), (q.x, q.y, q.z)) for p, q in zip(last.positions, last.positions[1:])]
+                self.assertAlmostEqual(sum(lengths), last.rest_length, delta=0.01 * last.rest_length)
+
+    def test_handles_are_shown(self):
+        with Messages('/cable/hands/update', InteractiveMarkerUpdate), \
+                Messages('/cable/hands/update_full', InteractiveMarkerInit) as handles:
+            handles.wait_for(lambda message: any(m.name.startswith('attachment/') for m in message.markers), 'handles')
+
+    def test_its_view_shows_topics_that_are_there(self):
+        with open(f'{PACKAGE}/rviz/examples/{EXAMPLE}.rviz') as file:
+            displays = yaml.safe_load(file)['Visualization Manager']['Displays']
+        shown = {value for display in displays for key, value in display.items() if key.endswith('Topic')}
+        self.assertIn('/cable/markers', shown)
+        if EXAMPLE == 'dress_pack':
+            shown.discard('/example/labels')  # it is not one of those of example_frames.py
+        self.assertLessEqual(shown, {topic for topic, _ in rospy.get_published_topics()})
+
+    @unittest.skipUnless(EXAMPLE == 'crane', 'has no winch')
+    def test_the_winch_winds(self):
+        with self.node.states() as states:
+            for wanted in (1.7, 0.8):
+                deadline = rospy.get_time() + 20
+                while abs(states.next().cables[0].rest_length - wanted) > 1e-3 and rospy.get_time() < deadline:
+                    rospy.sleep(0.2)
+                self.assertAlmostEqual(states.next().cables[0].rest_length, wanted, delta=2e-3)
+
+    @unittest.skipUnless(EXAMPLE == 'gripper_load', 'shows no load')
+    def test_the_load_is_about_the_weight(self):
+        with Messages('/cable/wrench/gripper', WrenchStamped) as wrenches:
+            load = wrenches.next(5)
+        self.assertEqual(load.header.frame_id, 'gripper')
+        f, t = load.wrench.force, load.wrench.torque
+        self.assertTrue(all(math.isfinite(x) for x in (f.x, f.y, f.z, t.x, t.y, t.z)))
+        weight = 0.4 * 1.1 * 9.81
+        self.assertGreater(math.hypot(f.x, f.y, f.z), 0.2 * weight)
+        self.assertLess(math.hypot(f.x, f.y, f.z), 5 * weight)
+
+    @unittest.skipUnless(EXAMPLE == 'tracker', 'has no camera')
+    def test_the_camera_sees_the_rope_where_it_is(self):
+        with Messages('/camera/points', PointCloud2) as clouds, Messages('/camera/ground_truth', PoseArray) as truths:
+            for _ in range(5):
+                cloud = clouds.next()
+                truth = truths.wait_for(lambda t: t.header.stamp == cloud.header.stamp, 'truth of the same stamp')
+                self.assertEqual((cloud.header.frame_id, truth.header.frame_id), ('camera_optical_frame',) * 2)
+                points = np.frombuffer(cloud.data, np.float32).reshape(-1, 3)
+                nodes = np.array([(p.position.x, p.position.y, p.position.z) for p in truth.poses])
+                self.assertGreater(len(points), 200)
+                self.assertTrue(np.isfinite(points).all())
+                self.assertGreater(points[:, 2].min(), 0.5)  # in front of it
+                nearest = np.linalg.norm(points[:, None] - nodes[None], axis=2).min(axis=1)
+                self.assertLess(nearest.max(), 0.012 + 0.01 + 0.006)  # radius, half a segment, six times the noise
+                self.assertLess(np.median(points[:, 2]), np.median(nodes[:, 2]))  # the near side
+
+
+if __name__ == '__main__':
+    rostest.rosrun('verlet_cable', 'example_' + EXAMPLE, ExampleTest, sys.argv)
