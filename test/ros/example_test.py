@@ -18,7 +18,7 @@ EXAMPLE = sys.argv[1]
 PACKAGE = sys.argv[0].partition('/test/ros/')[0]
 SECONDS = 3
 # Obstacles whose frames move are shown as soon as tf has them; a capsule is three markers.
-OBSTACLES = {'crane': 5, 'dress_pack': 6, 'gripper_load': 5, 'hose_between_arms': 8, 'rov_tether': 4, 'tethered_drone': 5,
+OBSTACLES = {'arm_dress_pack': 6, 'crane': 5, 'gripper_load': 5, 'hose_between_arms': 8, 'rov_tether': 4, 'tethered_drone': 5,
              'tracker': 0}[EXAMPLE]
 
 
@@ -60,7 +60,7 @@ class ExampleTest(unittest.TestCase):
             displays = yaml.safe_load(file)['Visualization Manager']['Displays']
         shown = {value for display in displays for key, value in display.items() if key.endswith('Topic')}
         self.assertIn('/cable/markers', shown)
-        if EXAMPLE == 'dress_pack':
+        if EXAMPLE == 'arm_dress_pack':
             shown.discard('/example/labels')  # it is not one of those of example_frames.py
         self.assertLessEqual(shown, {topic for topic, _ in rospy.get_published_topics()})
 
