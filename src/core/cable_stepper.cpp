@@ -16,9 +16,6 @@ constexpr int maximum_iterations = 40;
 constexpr double velocity_tolerance = 1e-5;
 /// Of a free cable: nothing but the solution keeps its angular momentum.
 constexpr double free_velocity_tolerance = 1e-6;
-constexpr double longest_tolerated = 1e-3;  // [s]; beyond, the error of the place counts
-/// A larger correction, in segment lengths, leads to solutions that have nothing to do with the motion: halve the step.
-constexpr double largest_correction = 2;
 /// A matrix that is kept does not make corrections shrink faster than this for long, however fast the first one shrank.
 constexpr double fastest_convergence = 0.03;
 /// A correction that shrinks less than this from one iteration to the next calls for a new factorisation.

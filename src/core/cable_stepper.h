@@ -17,6 +17,11 @@ struct Environment {
   FluidDesc fluid;
 };
 
+/// A tolerated error is one of velocity in substeps up to this long [s]; beyond, the error of the place counts.
+constexpr double longest_tolerated = 1e-3;
+/// A larger correction, in segment lengths, leads to solutions that have nothing to do with the motion: halve the step.
+constexpr double largest_correction = 2;
+
 /// What a substep is done with.
 struct Substep {
   const CableModel& model;

@@ -19,6 +19,8 @@ constexpr double bulge = 0.08;
 constexpr double anchored_length = 0.05;
 /// Stiffness of a contact without load, relative to what stops a segment within a step.
 constexpr double stopping_stiffness = 2;
+/// Deeper than this, in radii, nothing comes through a surface before its contact is found.
+constexpr double deepest_arrival = 0.5;
 
 std::uint64_t key_of(int high, int low) {
   return static_cast<std::uint64_t>(high) << 32 | static_cast<std::uint32_t>(low);
@@ -79,6 +81,7 @@ void ContactSet::find(const std::vector<SimulatedCable>& cables, const std::vect
   rules_ = rules;
   time_ = rules.still ? 0 : contact_time(rules.time_step);
   touches_.clear();
+  intrusions_.clear();
   touched_.assign(cables.size(), 0);
   recalled_ = 0;
   for (const int cable : group) {
@@ -119,7 +122,8 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Mov
     local_[i] = to_shape.position + to_shape.orientation * state.positions[i];
     nearest_[i] = closest_point(shape, local_[i], far);
   };
-  const auto touch_at = [&](const CablePoint& point, std::uint64_t element, const SurfacePoint& nearest, int node) {
+  const double friction = moving.obstacle->friction.value_or(model.material.friction);
+  const auto touch_at = [&](const CablePoint& point, std::uint64_t element, const SurfacePoint& nearest, double friction_there) {
     if (anchored(cable, index, point, *moving.obstacle, attachments)) return;
     Touch touch;
     touch.key = key_of(index, moving.index);
@@ -128,7 +132,7 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Mov
     touch.obstacle = moving.index;
     touch.normal = moving.start.orientation * nearest.normal;
     touch.gap = nearest.distance - surface;
-    touch.friction = friction_of_arc(moving.obstacle->friction.value_or(model.material.friction), state, node, touch.normal);
+    touch.friction = friction_there;
     touch.radius = radius;
     touch.base_stiffness = stopping(cable, point.segment, rules_.time_step);
     touch.other_displacement = moving.end.position + moving.end.orientation * nearest.point -
@@ -149,7 +153,9 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Mov
       visit(i, far + length);
       visit(i + 1, far + length);
     }
-    if ((close || last) && held_[i] == 0) touch_at(node_point(index, i, n), 2 * i, nearest_[i], i);
+    if ((close || last) && held_[i] == 0)
+      touch_at(node_point(index, i, n), 2 * i, nearest_[i],
+               friction_of_arc(friction, state, i, moving.start.orientation * nearest_[i].normal));
     last = close;
     if (!close || flat || held_[i] != 0 || held_[i + 1] != 0) continue;
     const double first = nearest_[i].distance, second = nearest_[i + 1].distance;
@@ -158,7 +164,7 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Mov
     const double cut = first + deepest.fraction * (second - first) - deepest.surface.distance;
     if (deepest.surface.distance >= far || cut <= bulge * radius) continue;
     deepest.surface.distance += bulge * radius;
-    touch_at({index, i, deepest.fraction}, 2 * i + 1, deepest.surface, 0);
+    touch_at({index, i, deepest.fraction}, 2 * i + 1, deepest.surface, friction);
   }
 }
 
@@ -204,7 +210,10 @@ void ContactSet::add(Touch& touch, const Vector3& velocity, const Vector3& other
   const double approach = -touch.normal.dot(velocity - other);
   if (!(touch.gap < reach(std::max(0.0, approach), touch.radius, h))) return;
   const double gentle = gentle_gap(touch.radius, contact_time(rules_.time_step));
-  touch.inside = !recall(touch) || touch.inside;
+  const bool known = recall(touch);
+  if (!known && touch.obstacle >= 0 && touch.gap < -deepest_arrival * touch.radius)
+    intrusions_.push_back({touch.point.cable, touch.point.segment, touch.obstacle, -touch.gap});
+  touch.inside = !known || touch.inside;
   if (touch.gap >= gentle) touch.inside = false;
   if (touch.inside) touch.gap = gentle;
   anticipate(h, time_, velocity, touch);

@@ -52,6 +52,7 @@ class ContactSet {
   const std::vector<Touch>& touches() const { return touches_; }
   bool touched(int cable) const { return touched_[cable] != 0; }  ///< whether a cable is part of a touch
   const std::vector<Sticking>& sticking() const { return sticking_; }
+  const std::vector<Intrusion>& intrusions() const { return intrusions_; }  ///< that `find` came upon
 
  private:
   void set_held(const SimulatedCable& cable, int index, const std::vector<Attachment>& attachments);
@@ -69,6 +70,7 @@ class ContactSet {
   double time_ = 0;  ///< [s] in which contacts come to rest
   std::vector<Touch> touches_;
   std::vector<char> touched_;  ///< by cable
+  std::vector<Intrusion> intrusions_;
   std::size_t recalled_ = 0;   ///< the first of `sticking_` that may still be asked for
   // Nodes of one cable
   std::vector<char> held_, visited_;

@@ -10,8 +10,6 @@ namespace {
 constexpr int maximum_iterations = 60;
 /// Error of a node's velocity at which an iteration ends, in segment lengths per second.
 constexpr double velocity_tolerance = 4e-3;
-constexpr double longest_tolerated = 1e-3;  // [s]; beyond, the error of the place counts
-constexpr double largest_correction = 2;    // segment lengths
 constexpr double fastest_convergence = 0.1;
 constexpr double slow_convergence = 0.2;
 /// Where friction turns round slowly, a larger error is as good after so many iterations.

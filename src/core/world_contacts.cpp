@@ -66,6 +66,19 @@ void World::Implementation::find_contacts(ContactGroup& group, double from, doub
   group.contacts.find(cables, group.cables, moving_obstacles, attachments, contact_rules(false), (to - from) * scene.time_step);
 }
 
+void World::Implementation::note_intrusions(const ContactGroup& group) {
+  for (const Intrusion& found : group.contacts.intrusions()) {
+    const auto noted = std::find_if(intrusions.begin(), intrusions.end(), [&](const Intrusion& other) {
+      return other.cable == found.cable && other.obstacle == found.obstacle;
+    });
+    if (noted == intrusions.end()) {
+      intrusions.push_back(found);
+    } else if (noted->depth < found.depth) {
+      *noted = found;
+    }
+  }
+}
+
 std::vector<SimulatedContact> World::contacts() const {
   std::vector<SimulatedContact> contacts;
   for (const ContactGroup& group : implementation_->groups)

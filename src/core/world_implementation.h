@@ -38,8 +38,9 @@ struct World::Implementation {
   std::vector<CableScratch> scratch;  ///< one a cable
   std::vector<Attachment> attachments;
   std::vector<Obstacle> obstacles;
-  std::vector<ContactGroup> groups;  ///< every cable is in one
-  std::vector<Break> breaks;         ///< in the last step
+  std::vector<ContactGroup> groups;   ///< every cable is in one
+  std::vector<Break> breaks;          ///< in the last step
+  std::vector<Intrusion> intrusions;  ///< likewise
   // Scratch
   std::vector<StepResult> results;  ///< one a cable
   std::vector<MovingObstacle> moving_obstacles;
@@ -56,6 +57,7 @@ struct World::Implementation {
   void move_obstacles(double from, double to);
   ContactRules contact_rules(bool still) const;
   void find_contacts(ContactGroup& group, double from, double to);
+  void note_intrusions(const ContactGroup& group);
   void note_substep(int cable, const SubstepResult& substep, double part);
   void give_up(int cable);
   void settle_cable(int cable);

@@ -91,6 +91,10 @@ const std::vector<Break>& World::breaks() const {
   return implementation_->breaks;
 }
 
+const std::vector<Intrusion>& World::intrusions() const {
+  return implementation_->intrusions;
+}
+
 int World::find_cable(const std::string& name) const {
   for (std::size_t i = 0; i < cables().size(); ++i)
     if (cables()[i].model.name == name) return static_cast<int>(i);

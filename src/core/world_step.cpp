@@ -24,11 +24,11 @@ bool finite(const std::vector<Vector3>& vectors) {
 StepResult World::step(const BoundaryInputs& inputs) {
   Implementation& w = *implementation_;
   StepResult result;
-  w.previous_poses = w.poses;
   w.follow_frames(inputs);
   ++w.steps;
   for (Attachment& attachment : w.attachments) attachment.force = attachment.torque = Vector3::Zero();
   w.breaks.clear();
+  w.intrusions.clear();
   w.results.assign(w.cables.size(), StepResult{});
   for (ContactGroup& group : w.groups) w.step_group(group);
   const int cables = static_cast<int>(w.cables.size());
@@ -163,6 +163,7 @@ bool World::Implementation::advance(ContactGroup& group, double from, double to,
     if (converged && !tolerated) converged = !group.contacts.crossed(cables);
   }
   if (converged) {
+    note_intrusions(group);
     group.contacts.keep();
   } else if (touching || group.cables.size() > 1) {
     for (std::size_t k = 0; k < group.cables.size(); ++k) {

@@ -58,6 +58,7 @@ void Diagnostics::report_simulation(Status& status) {
   status.add("faults", simulation_.faults());
   status.add("waiting_cables", join(simulation_.world().waiting()));
   status.add("unsettled_cables", join(simulation_.world().unsettled()));
+  status.add("found_inside_obstacles", join({simulation_.intrusions().begin(), simulation_.intrusions().end()}));
 
   if (simulation_.faulted()) {
     status.summary(DiagnosticStatus::ERROR, "fault: the simulation stands until reset");
@@ -83,6 +84,7 @@ void Diagnostics::report_simulation(Status& status) {
   if (s.overstretched > 0) status.mergeSummary(DiagnosticStatus::WARN, "overstretched");
   if (s.degraded > 0) status.mergeSummary(DiagnosticStatus::WARN, "steps were degraded");
   if (!simulation_.world().unsettled().empty()) status.mergeSummary(DiagnosticStatus::WARN, "no equilibrium to start from");
+  if (!simulation_.intrusions().empty()) status.mergeSummary(DiagnosticStatus::WARN, "cables were found inside obstacles");
   if (!simulation_.world().waiting().empty()) status.mergeSummary(DiagnosticStatus::WARN, "cables wait for their frames");
 }
 

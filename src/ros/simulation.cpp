@@ -88,6 +88,7 @@ void Simulation::start(Nanoseconds time) {
     place_added_obstacles();
     frame_watch_.forget_from(0);
     faulted_ = false;
+    intrusions_.clear();
     report_unsettled(0);
   }
   stamp_ = time;
@@ -153,6 +154,7 @@ bool Simulation::step_world(Nanoseconds time) {
   if (faulted_) return false;
   const Nanoseconds before = std::exchange(stamp_, time);
   report_breaks();
+  report_intrusions();
   if (!world_.waiting().empty() && !frames_.changes().empty()) {
     const std::size_t reported = world_.unsettled().size();
     world_.start_waiting(frames_.inputs());
@@ -184,6 +186,16 @@ void Simulation::report_breaks() const {
     announce(CableEvent::BROKE, {first.name, {}, broken.segment, second},
              "cable " + quoted(first.name) + " broke at segment " + std::to_string(broken.segment) + ", above " +
                  number_text(first.material.breaking_tension) + " N: the rest of it is " + quoted(second));
+  }
+}
+
+void Simulation::report_intrusions() {
+  for (const Intrusion& intrusion : world_.intrusions()) {
+    const std::string& cable = world_.cables()[intrusion.cable].model.name;
+    const std::string& obstacle = world_.obstacles()[intrusion.obstacle].name;
+    if (!intrusions_.insert(cable + " in " + obstacle).second) continue;
+    ROS_WARN("cable %s is %s m inside obstacle %s at segment %d: it is pushed out", quoted(cable).c_str(),
+             number_text(intrusion.depth).c_str(), quoted(obstacle).c_str(), intrusion.segment);
   }
 }
 

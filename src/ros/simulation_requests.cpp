@@ -31,6 +31,7 @@ EditResult Simulation::reset() {
   moves_.clear();
   place_added_obstacles();
   faulted_ = false;
+  intrusions_.clear();
   frame_watch_.forget_from(static_cast<int>(world_.frames().size()));
   report_unsettled(0);
   announce(CableEvent::RESET, {}, "reset to the initial state of the scene");

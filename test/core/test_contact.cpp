@@ -172,6 +172,29 @@ TEST(Contact, CableSettlesOnAFloor) {
   EXPECT_LT(moved, 0.01 * radius);
 }
 
+TEST(Contact, CableInsideAnObstacleIsFoundAndPushedOutGently) {
+  SceneDesc scene = straight_rope(0.3, 30);
+  scene.cables[0].initial.from = {-0.15, 0, 0.03};
+  scene.cables[0].initial.to = {0.15, 0, 0.03};
+  add_obstacle("block", ShapeType::box, {0, 0, 0, 0, 0, 0}, scene);
+  World world(scene, BoundaryInputs(1));
+  const BoundaryInputs inputs(1);
+  world.step(inputs);
+  ASSERT_EQ(world.intrusions().size(), 1u);
+  EXPECT_EQ(world.intrusions()[0].cable, 0);
+  EXPECT_EQ(world.intrusions()[0].obstacle, 0);
+  EXPECT_NEAR(world.intrusions()[0].depth, 0.05 - 0.03 + radius, 0.01 * radius);
+  double speed = 0;
+  for (int i = 0; i < 3000; ++i) {
+    EXPECT_EQ(world.step(inputs).status, StepResult::Status::ok);
+    EXPECT_TRUE(world.intrusions().empty());
+    speed = std::max(speed, fastest(world));
+  }
+  EXPECT_LT(speed, 0.5);
+  EXPECT_NEAR(lowest(world), 0.05 + radius, 0.02 * radius);
+  EXPECT_LT(fastest(world), 1e-3);
+}
+
 TEST(Contact, CopiesOfAWorldWithContactsGoOnWithTheSameBytes) {
   SceneDesc scene = straight_rope(0.5, 50);
   scene.contact = ContactDesc{};

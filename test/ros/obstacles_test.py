@@ -96,6 +96,10 @@ class ObstaclesTest(unittest.TestCase):
         self.wait_for_diagnostics('obstacle cart', 'cart')
         self.wait_for_shown(lambda found: 3 in {round(m.pose.position.x) for m in found}, 'the cart where it was')
 
+    def test_a_cable_that_is_found_inside_is_told(self):
+        self.send(marker(1, position=(0, 0, 0.02)))
+        self.wait_for_diagnostics('found_inside_obstacles', 'rope in ')
+
     def test_markers_add_move_and_delete(self):
         before = self.wait_for_shown(lambda found: len(found) >= 4, 'floor and pill')
         others = {m.id for m in before}

@@ -47,6 +47,21 @@ TEST_F(CableSim, aSceneMaySettleByItself) {
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR((a[i].position - b[i].position).norm(), 0, 1e-6);
 }
 
+TEST_F(CableSim, aCableThatStartsInsideAnObstacleIsReportedOnce) {
+  const std::string scene = write("scene.yaml", R"(
+materials: {rope: {linear_density: 0.1, radius: 0.005}}
+cables:
+  - {name: r, length: 0.3, segments: 30, material: rope, initial: {type: straight, from: [-0.15, 0, 0.03], to: [0.15, 0, 0.03]}}
+obstacles: [{name: block, type: box, size: [0.4, 0.4, 0.1]}]
+)");
+  ASSERT_EQ(run(scene + " --duration 1 --summary " + path("s.json")), 0) << err;
+  const YAML::Node events = summary("s.json")["events"];
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0]["type"].as<std::string>(), "inside_obstacle");
+  EXPECT_EQ(events[0]["cable"].as<std::string>(), "r");
+  EXPECT_NE(err.find("inside block"), std::string::npos) << err;
+}
+
 TEST_F(CableSim, aCableWithoutEquilibriumIsReported) {
   // Its weight would stretch it to fifty times its length, further than settling goes.
   const std::string scene = write("scene.yaml", R"(

@@ -62,6 +62,15 @@ struct Break {
   int new_cable = 0;  ///< index of the second piece
 };
 
+/// A cable that is inside an obstacle without having come through its surface: it started there, or the obstacle appeared there.
+/// It is pushed out gently.
+struct Intrusion {
+  int cable = 0;     ///< index into World::cables()
+  int segment = 0;   ///< the deepest one
+  int obstacle = 0;  ///< index into World::obstacles()
+  double depth = 0;  ///< [m] of the cable's surface
+};
+
 /// Outcome of an edit: nothing has changed where `ok` is false, and `message` says why, with names and values.
 struct EditResult {
   bool ok = false;
@@ -105,6 +114,7 @@ class World {
   const std::vector<std::string>& waiting() const;     ///< names of cables that wait for a frame
   const std::vector<Attachment>& attachments() const;  ///< of the started cables
   const std::vector<Break>& breaks() const;            ///< in the last step
+  const std::vector<Intrusion>& intrusions() const;    ///< that the last step found, one a cable and obstacle
   /// Names of cables that found no equilibrium when they were to be settled, at their start or by `settle`.
   const std::vector<std::string>& unsettled() const;
   std::vector<SimulatedContact> contacts() const;      ///< where cables touched something in the last substep

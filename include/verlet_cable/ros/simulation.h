@@ -4,6 +4,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -93,6 +94,8 @@ class Simulation {
   bool waits_for_frames() const { return waits_for_frames_; }
   /// Since the last call.
   Statistics take_statistics();
+  /// "CABLE in OBSTACLE" of all that were found inside since the scene started.
+  const std::set<std::string>& intrusions() const { return intrusions_; }
 
  private:
   /// What is further behind than this is not caught up.
@@ -109,6 +112,7 @@ class Simulation {
   bool step_world(Nanoseconds time);
   void report_status(const StepResult& result);
   void report_breaks() const;
+  void report_intrusions();
   /// From the `first` of World::unsettled() on.
   void report_unsettled(std::size_t first) const;
   void skip_to(Nanoseconds time);
@@ -146,6 +150,7 @@ class Simulation {
   int scene_version_ = 0;
   ros::WallTime last_published_;
   Statistics statistics_;
+  std::set<std::string> intrusions_;
 };
 
 }  // namespace verlet_cable

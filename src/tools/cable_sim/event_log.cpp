@@ -43,6 +43,7 @@ void EventLog::observe(const World& world, const StepResult& result, const std::
     report({world.time(), text.type, cable, result.node, "", text.message, ""}, result.max_strain);
   }
   add_breaks(world);
+  add_intrusions(world);
   for (const int frame : held_back) {
     const std::string& name = world.frames()[static_cast<std::size_t>(frame)];
     report({world.time(), "frame_too_fast", "", -1, name,
@@ -72,6 +73,17 @@ void EventLog::add_breaks(const World& world) {
          "the segment that starts here was pulled harder than " + number_text(first.material.breaking_tension) +
              " N and is gone; the rest of the cable is " + second,
          second});
+  }
+}
+
+void EventLog::add_intrusions(const World& world) {
+  for (const Intrusion& intrusion : world.intrusions()) {
+    const std::string& cable = world.cables()[static_cast<std::size_t>(intrusion.cable)].model.name;
+    const std::string& obstacle = world.obstacles()[static_cast<std::size_t>(intrusion.obstacle)].name;
+    if (!intrusions_.emplace(cable, obstacle).second) continue;
+    add({world.time(), "inside_obstacle", cable, intrusion.segment, "",
+         "the segment that starts here is " + number_text(intrusion.depth) + " m inside " + obstacle + " and is pushed out",
+         obstacle});
   }
 }
 

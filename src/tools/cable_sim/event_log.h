@@ -1,7 +1,9 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "progress_bar.h"
@@ -17,7 +19,7 @@ struct Event {
   int node = -1;      ///< -1: none in particular
   std::string frame;  ///< empty: none in particular
   std::string message;
-  std::string other;  ///< BROKE: the new cable
+  std::string other;  ///< BROKE: the new cable; inside_obstacle: the obstacle
 };
 
 /// Turns what each step reports into events: one when something begins, one when it has ended, not one a step. Keeps the first
@@ -43,6 +45,7 @@ class EventLog {
   };
 
   void add_breaks(const World& world);
+  void add_intrusions(const World& world);
   void report(const Event& event, double strain);
   void end_episodes(double time);
   void add(const Event& event);
@@ -51,7 +54,8 @@ class EventLog {
   std::vector<Event> events_;
   std::size_t dropped_ = 0;
   double last_dropped_time_ = 0;
-  std::map<std::string, Episode> episodes_;  ///< that have not ended, by type and subject
+  std::map<std::string, Episode> episodes_;                   ///< that have not ended, by type and subject
+  std::set<std::pair<std::string, std::string>> intrusions_;  ///< that were told: cable and obstacle
 };
 
 }  // namespace verlet_cable::cable_sim
