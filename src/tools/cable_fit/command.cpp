@@ -1,7 +1,6 @@
 #include "command.h"
 
 #include <chrono>
-#include <filesystem>
 #include <iostream>
 #include <numeric>
 
@@ -21,12 +20,6 @@ int refuse(const std::vector<std::string>& errors) {
   return exit_bad_input;
 }
 
-bool is_same_file(const std::string& a, const std::string& b) {
-  std::error_code error;
-  return std::filesystem::equivalent(a, b, error) ||
-         std::filesystem::weakly_canonical(a, error) == std::filesystem::weakly_canonical(b, error);
-}
-
 void check_output(const char* option, const std::string& path, const std::vector<std::string>& others,
                   std::vector<std::string>& errors) {
   if (path.empty()) return;
@@ -35,7 +28,7 @@ void check_output(const char* option, const std::string& path, const std::vector
     errors.push_back(std::string(option) + ": cannot write " + quoted(path) + ": " + problem +
                      "; allowed: a file in a directory that can be written");
   for (const std::string& other : others)
-    if (!other.empty() && is_same_file(path, other))
+    if (!other.empty() && cable_sim::is_same_file(path, other))
       errors.push_back(std::string(option) + ": " + quoted(path) + " is " + quoted(other) + "; allowed: another file");
 }
 

@@ -1,7 +1,6 @@
 #include "job.h"
 
 #include <cmath>
-#include <filesystem>
 
 #include "frame_source.h"
 #include "output_file.h"
@@ -20,14 +19,6 @@ constexpr double most_steps = 1e12;
 
 void append(const std::string& prefix, const std::vector<std::string>& lines, std::vector<std::string>& errors) {
   for (const std::string& line : lines) errors.push_back(prefix + ": " + line);
-}
-
-bool is_same_file(const std::string& a, const std::string& b) {
-  std::error_code error;
-  if (std::filesystem::exists(a, error) && !std::filesystem::is_regular_file(a, error)) return false;
-  if (std::filesystem::equivalent(a, b, error)) return true;
-  const auto path_a = std::filesystem::weakly_canonical(a, error);
-  return !error && path_a == std::filesystem::weakly_canonical(b, error) && !error;
 }
 
 void check_outputs(const Options& options, std::vector<std::string>& errors) {

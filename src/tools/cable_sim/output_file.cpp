@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <filesystem>
 #include <system_error>
 
 namespace verlet_cable::cable_sim {
@@ -30,6 +31,14 @@ std::string why_not_writable(const std::string& path) {
   if (errno != ENOENT) return message_of(errno);
   if (path.back() == '/') return message_of(EISDIR);
   return access(directory_of(path).c_str(), W_OK | X_OK) == 0 ? "" : message_of(errno);
+}
+
+bool is_same_file(const std::string& a, const std::string& b) {
+  std::error_code error;
+  if (std::filesystem::exists(a, error) && !std::filesystem::is_regular_file(a, error)) return false;
+  if (std::filesystem::equivalent(a, b, error)) return true;
+  const auto path_a = std::filesystem::weakly_canonical(a, error);
+  return !error && path_a == std::filesystem::weakly_canonical(b, error) && !error;
 }
 
 OutputFile::~OutputFile() {

@@ -7,6 +7,8 @@ namespace verlet_cable::cable_sim {
 
 /// Why a file cannot be written, as far as can be said without touching it; empty if it seems that it can.
 std::string why_not_writable(const std::string& path);
+/// Whether two paths name one file, which may not be there yet. Devices and pipes are never the same.
+bool is_same_file(const std::string& a, const std::string& b);
 
 /// A file that is written to its end, or left as it was.
 class OutputFile {
