@@ -1,14 +1,11 @@
 #include "verlet_cable/ros/point_publisher.h"
 
-#include <sensor_msgs/PointCloud2.h>
-#include <sensor_msgs/point_cloud2_iterator.h>
-
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <vector>
 
 #include "verlet_cable/ros/conversions.h"
+#include "verlet_cable/ros/point_cloud.h"
 #include "verlet_cable/ros/queue_size.h"
 
 namespace verlet_cable {
@@ -21,12 +18,12 @@ struct PointRecord {
   float s;
 };
 
-void set_fields(sensor_msgs::PointCloud2& cloud) {
+std::vector<sensor_msgs::PointField> point_fields() {
   using sensor_msgs::PointField;
-  sensor_msgs::PointCloud2Modifier(cloud).setPointCloud2Fields(8, "x", 1, PointField::FLOAT32, "y", 1, PointField::FLOAT32, "z",
-                                                               1, PointField::FLOAT32, "rgb", 1, PointField::FLOAT32, "tension",
-                                                               1, PointField::FLOAT32, "cable_id", 1, PointField::UINT32,
-                                                               "node_id", 1, PointField::UINT32, "s", 1, PointField::FLOAT32);
+  return {point_field("x", PointField::FLOAT32, 0),       point_field("y", PointField::FLOAT32, 1),
+          point_field("z", PointField::FLOAT32, 2),       point_field("rgb", PointField::FLOAT32, 3),
+          point_field("tension", PointField::FLOAT32, 4), point_field("cable_id", PointField::UINT32, 5),
+          point_field("node_id", PointField::UINT32, 6),  point_field("s", PointField::FLOAT32, 7)};
 }
 
 void append_points(const SimulatedCable& cable, std::uint32_t cable_id, const std::vector<std_msgs::ColorRGBA>& colors,
@@ -61,17 +58,7 @@ void PointPublisher::publish(const World& world, const ros::Time& stamp) {
     if (is_finite(cable))
       append_points(cable, static_cast<std::uint32_t>(id), colors_.node_colors(cable, contact_forces[id]), points);
   }
-  const auto cloud = boost::make_shared<sensor_msgs::PointCloud2>();
-  cloud->header.stamp = stamp;
-  cloud->header.frame_id = frame_id_;
-  set_fields(*cloud);
-  cloud->height = 1;
-  cloud->width = static_cast<std::uint32_t>(points.size());
-  cloud->is_dense = true;
-  cloud->row_step = cloud->point_step * cloud->width;
-  cloud->data.resize(cloud->row_step);
-  if (!points.empty()) std::memcpy(cloud->data.data(), points.data(), cloud->data.size());
-  publisher_.publish(cloud);
+  publisher_.publish(make_point_cloud(frame_id_, stamp, point_fields(), points));
 }
 
 }  // namespace verlet_cable

@@ -1,15 +1,12 @@
 #include "verlet_cable/ros/surface_publisher.h"
 
-#include <sensor_msgs/PointCloud2.h>
-#include <sensor_msgs/point_cloud2_iterator.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <vector>
 
 #include "verlet_cable/ros/conversions.h"
+#include "verlet_cable/ros/point_cloud.h"
 #include "verlet_cable/ros/queue_size.h"
 
 namespace verlet_cable {
@@ -24,11 +21,11 @@ struct PointRecord {
   std::uint32_t cable_id;
 };
 
-void set_fields(sensor_msgs::PointCloud2& cloud) {
+std::vector<sensor_msgs::PointField> point_fields() {
   using sensor_msgs::PointField;
-  sensor_msgs::PointCloud2Modifier(cloud).setPointCloud2Fields(5, "x", 1, PointField::FLOAT32, "y", 1, PointField::FLOAT32, "z",
-                                                               1, PointField::FLOAT32, "rgb", 1, PointField::FLOAT32, "cable_id",
-                                                               1, PointField::UINT32);
+  return {point_field("x", PointField::FLOAT32, 0), point_field("y", PointField::FLOAT32, 1),
+          point_field("z", PointField::FLOAT32, 2), point_field("rgb", PointField::FLOAT32, 3),
+          point_field("cable_id", PointField::UINT32, 4)};
 }
 
 /// Of the rings of a segment, if they are as far apart as the points of a ring, times `coarseness`.
@@ -45,9 +42,8 @@ double find_coarseness(const World& world) {
   return std::max(1.0, points / most_points);
 }
 
-void append_points(const SimulatedCable& cable, std::uint32_t cable_id, double coarseness, const ColorScale& scale,
-                   std::vector<PointRecord>& points) {
-  const std::vector<std_msgs::ColorRGBA> colors = scale.node_colors(cable);
+void append_points(const SimulatedCable& cable, std::uint32_t cable_id, double coarseness,
+                   const std::vector<std_msgs::ColorRGBA>& colors, std::vector<PointRecord>& points) {
   const std::vector<Quaternion> orientations = segment_orientations(cable);
   for (int i = 0; i < cable.model.segments(); ++i) {
     const int count = rings(cable.model, i, coarseness);
@@ -81,22 +77,13 @@ void SurfacePublisher::publish(const World& world, const ros::Time& stamp) {
   if (publisher_.getNumSubscribers() == 0) return;
   const double coarseness = find_coarseness(world);
   std::vector<PointRecord> points;
+  const std::vector<std::vector<double>> contact_forces = colors_.contact_forces(world);
   for (std::size_t id = 0; id < world.cables().size(); ++id) {
     const SimulatedCable& cable = world.cables()[id];
-    if (is_finite(cable)) append_points(cable, static_cast<std::uint32_t>(id), coarseness, colors_, points);
+    if (!is_finite(cable)) continue;
+    append_points(cable, static_cast<std::uint32_t>(id), coarseness, colors_.node_colors(cable, contact_forces[id]), points);
   }
-  const auto cloud = boost::make_shared<sensor_msgs::PointCloud2>();
-  cloud->header.stamp = stamp;
-  cloud->header.frame_id = frame_id_;
-  set_fields(*cloud);
-  cloud->height = 1;
-  cloud->width = static_cast<std::uint32_t>(points.size());
-  cloud->is_dense = true;
-  cloud->point_step = sizeof(PointRecord);
-  cloud->row_step = cloud->point_step * cloud->width;
-  cloud->data.resize(cloud->row_step);
-  if (!points.empty()) std::memcpy(cloud->data.data(), points.data(), cloud->data.size());
-  publisher_.publish(cloud);
+  publisher_.publish(make_point_cloud(frame_id_, stamp, point_fields(), points));
 }
 
 }  // namespace verlet_cable

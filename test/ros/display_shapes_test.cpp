@@ -198,7 +198,7 @@ TEST(Color, OfANodeIsTheMeanOfItsSegments) {
   SceneDesc scene = scene_with(0.1, 2.0, 0.3, infinity);
   const double full = ColorScale(scene).full_tension();
   const SimulatedCable cable = two_segments(0.2 * full, 0.6 * full);
-  const auto by_tension = ColorScale(scene).node_colors(cable);
+  const auto by_tension = ColorScale(scene).node_colors(cable, {});
   ASSERT_EQ(by_tension.size(), 3u);
   EXPECT_TRUE(same(by_tension[0], color_of_load(0.2)));
   EXPECT_TRUE(same(by_tension[1], color_of_load(0.4)));
@@ -210,10 +210,10 @@ TEST(Color, ByStrainAndByCable) {
   const SimulatedCable cable = two_segments(0, 0);  // strained by 0 and 10 %
   scene.color_by = ColorBy::strain;
   const ColorScale by_strain(scene);
-  EXPECT_TRUE(same(by_strain.node_colors(cable)[0], color_of_load(0)));
-  EXPECT_TRUE(same(by_strain.node_colors(cable)[2], color_of_load(1)));
+  EXPECT_TRUE(same(by_strain.node_colors(cable, {})[0], color_of_load(0)));
+  EXPECT_TRUE(same(by_strain.node_colors(cable, {})[2], color_of_load(1)));
   scene.color_by = ColorBy::cable;
-  for (const std_msgs::ColorRGBA& color : ColorScale(scene).node_colors(cable)) {
+  for (const std_msgs::ColorRGBA& color : ColorScale(scene).node_colors(cable, {})) {
     EXPECT_FLOAT_EQ(color.r, 0.1f);
     EXPECT_FLOAT_EQ(color.g, 0.2f);
     EXPECT_FLOAT_EQ(color.b, 0.3f);

@@ -216,7 +216,7 @@ TEST_F(Topics, PointsAreTheNodesInOrder) {
     EXPECT_FLOAT_EQ(*z, static_cast<float>(state.positions[node].z()));
     EXPECT_FLOAT_EQ(*tension, static_cast<float>(state.tension[std::min(node, 9)]));
     EXPECT_FLOAT_EQ(*s, 0.1f * node);
-    const float expected_rgb = packed_rgb(colors.node_colors(world_.cables()[id])[node]);
+    const float expected_rgb = packed_rgb(colors.node_colors(world_.cables()[id], {})[node]);
     EXPECT_EQ(std::memcmp(&*rgb, &expected_rgb, sizeof(float)), 0);
   }
 }

@@ -27,7 +27,7 @@ class ColorScale {
 
   /// One color a node: the mean over the segments that meet there. `contact_forces` [N]: one a segment, or none where nothing
   /// touches.
-  std::vector<std_msgs::ColorRGBA> node_colors(const SimulatedCable& cable, const std::vector<double>& contact_forces = {}) const;
+  std::vector<std_msgs::ColorRGBA> node_colors(const SimulatedCable& cable, const std::vector<double>& contact_forces) const;
   /// The contact forces on the segments of each cable [N], for `node_colors`; none where they are not shown.
   std::vector<std::vector<double>> contact_forces(const World& world) const;
 
