@@ -64,15 +64,15 @@ EXAMPLES = {
     'hose_between_arms': (hose_between_arms, [
         ('two arms bend and twist a hose', 0, 0, 1.32, 0.06), ('color: tension', 0, 0, 1.24, 0.045)]),
     'tethered_drone': (tethered_drone, [
-        ('a drone on a tether, in wind', 0, 0, 2.75, 0.14), ('ground station', 0, 0, -0.15, 0.1), ('wind', -1.1, 0, 1.5, 0.1)]),
+        ('a drone on a tether, in wind', 0, 0, 2.75, 0.14), ('ground station', -0.1, 0, 0.35, 0.1), ('wind ->', -1.2, 0, 1.5, 0.12)]),
     'crane': (crane, [
-        ('a crane: the winch on the trolley hoists a payload', 0, 0, 2.5, 0.1), ('5 kg', 0.9, 0, 0.4, 0.08)]),
+        ('a crane: the winch on the trolley hoists a payload', 0, 0, 2.5, 0.1), ('5 kg', 0, 0, 0.2, 0.1)]),
     'rov_tether': (rov_tether, [
-        ('ship', 0, 0, 0.35, 0.12), ('the tether of an underwater robot, in a current', 0.5, 0, 0.6, 0.12),
-        ('water surface', -1.1, 0, 0.06, 0.08), ('current', -1.1, 0, -0.9, 0.1)]),
+        ('the tether between a ship and an underwater robot, in a current', 0.5, 0, 0.55, 0.12),
+        ('water surface', -1.1, 0, 0.06, 0.08), ('current ->', -1.1, 0, -0.9, 0.12)]),
     'tracker': (tracker, [
-        ('what a depth camera sees of a rope: white', 0, 0, 1.42, 0.06),
-        ('and the truth at the same stamp: red', 0, 0, 1.33, 0.06)]),
+        ('what a depth camera sees of a rope: white', 0, 0, 1.38, 0.055),
+        ('where its nodes are, at the same stamp: red', 0, 0, 1.3, 0.055)]),
     'gripper_load': (gripper_load, [
         ('the load of a cable on a gripper', 0.3, 0, 1.5, 0.06), ('orange: force, purple: torque', 0.3, 0, 1.42, 0.045),
         ('wall', -0.05, 0, 1.25, 0.05)]),

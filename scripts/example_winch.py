@@ -16,6 +16,8 @@ def main():
     before = lengths[-1]
     for length in itertools.cycle(lengths):
         rospy.sleep(pause + abs(length - before) / speed)
+        if rospy.is_shutdown():
+            return
         try:
             answer = set_length(cable=cable, at_end=False, length=length, speed=speed)
         except rospy.ServiceException as problem:  # the node went away; perhaps it comes back

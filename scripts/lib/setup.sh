@@ -42,7 +42,7 @@ if [[ -f /opt/ros/noetic/setup.bash ]]; then
     ros-noetic-{actionlib,diagnostic,geometry,sensor,std,visualization}-msgs ros-noetic-std-srvs
     ros-noetic-{actionlib,diagnostic-updater,dynamic-reconfigure,interactive-markers,nodelet,pluginlib,robot-state-publisher,roslib,tf2,tf2-msgs,tf2-ros}
   )
-  rviz_packages=(ros-noetic-rviz)
+  rviz_packages=(ros-noetic-rviz qtbase5-dev)
 else
   packages+=(
     catkin catkin-lint ros-message-generation ros-message-runtime ros-environment ros-robot-state-publisher rosbash roslang rospack-tools rosout
@@ -53,7 +53,7 @@ else
     python3-{std,geometry,sensor,visualization,diagnostic,actionlib}-msgs python3-std-srvs
     python3-{actionlib,dynamic-reconfigure,rospy,tf2-ros,roslaunch,rostest,rosbag,rosservice,rostopic}
   )
-  rviz_packages=(rviz libgl1-mesa-dri)
+  rviz_packages=(rviz librviz-dev qtbase5-dev libgl1-mesa-dri)
 fi
 
 # as_root COMMAND...: needs sudo where the user is not root.
