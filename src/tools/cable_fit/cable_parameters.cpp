@@ -31,10 +31,10 @@ constexpr std::size_t curvature_index = length_index + 1;
 
 /// Torsional over bending stiffness is between 2/3 and 1 of round solid sections, and not far from it of others.
 constexpr double likely_torsion = 0.5;  // decades
-/// Curvature is looked for at so many places: a little further apart than markers are.
-constexpr int curvature_places = 8;
+/// Curvature is looked for at so many places: about as far apart as markers are.
+constexpr int curvature_places = 12;
 constexpr double highest_curvature = 100;  // [1/m]
-constexpr double likely_curvature = 2.5;   // [1/m]
+constexpr double likely_curvature = 1.5;   // [1/m]
 /// The part of the measured length by which the effective one may differ.
 constexpr double length_tolerance = 0.015;
 /// A scene is an error where the markers at its start are 5 % longer or shorter than the cable; rounding stays inside.
@@ -55,21 +55,23 @@ double first_length(const Recording& recording) {
 
 }  // namespace
 
-void measure_length(const std::vector<Recording>& recordings, CableSettings& settings, std::vector<std::string>& errors) {
+void measure_length(const std::vector<Recording>& recordings, const std::vector<Smoothed>& inputs, CableSettings& settings,
+                    std::vector<std::string>& errors) {
   std::vector<double> lengths;
-  for (const Recording& recording : recordings) lengths.push_back(measured_length(recording));
+  for (const Smoothed& input : inputs) lengths.push_back(measured_length(input.recording));
   std::sort(lengths.begin(), lengths.end());
   settings.length = lengths[lengths.size() / 2];
   settings.shortest = (1 - length_tolerance) * settings.length;
   settings.longest = (1 + length_tolerance) * settings.length;
-  for (const Recording& recording : recordings) {
-    const double first = first_length(recording);
-    if (first > (1 + start_tolerance) * settings.length || first < (1 - start_tolerance) * settings.length)
-      errors.push_back(recording.path + ": the markers' distances in the first row are " + number_text(first) +
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    const double first = first_length(recordings[i]), smooth = first_length(inputs[i].recording);
+    const double shorter = std::min(first, smooth), longer = std::max(first, smooth);
+    if (longer > (1 + start_tolerance) * settings.length || shorter < (1 - start_tolerance) * settings.length)
+      errors.push_back(recordings[i].path + ": the markers' distances in the first row are " + number_text(first) +
                        " m in all; allowed: at most 5 % more or less than the cable's length, measured as " +
                        number_text(settings.length) + " m");
-    settings.shortest = std::max(settings.shortest, first / (1 + start_tolerance));
-    settings.longest = std::min(settings.longest, first / (1 - start_tolerance));
+    settings.shortest = std::max(settings.shortest, longer / (1 + start_tolerance));
+    settings.longest = std::min(settings.longest, shorter / (1 - start_tolerance));
   }
 }
 

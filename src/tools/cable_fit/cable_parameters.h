@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "recording.h"
+#include "smoothing.h"
 #include "verlet_cable/core/scene_desc.h"
 
 namespace verlet_cable::cable_fit {
@@ -31,9 +31,10 @@ struct Parameter {
   int relative_to = -1;
 };
 
-/// Measures the length and its limits: those with which every recording is a start that a scene may have. Adds a line to `errors`
-/// for recordings that have none in common with the others.
-void measure_length(const std::vector<Recording>& recordings, CableSettings& settings, std::vector<std::string>& errors);
+/// Measures the length and its limits: those with which every recording, as it is and smoothed, is a start that a scene may have.
+/// Adds a line to `errors` for recordings that have none in common with the others.
+void measure_length(const std::vector<Recording>& recordings, const std::vector<Smoothed>& inputs, CableSettings& settings,
+                    std::vector<std::string>& errors);
 
 /// Stiffnesses and dampings, the length, and natural curvature at places along the cable about two axes.
 std::vector<Parameter> cable_parameters(const CableSettings& settings);

@@ -9,6 +9,7 @@
 #include "least_squares.h"
 #include "options.h"
 #include "report.h"
+#include "smoothing.h"
 #include "verlet_cable/scene/text.h"
 
 namespace verlet_cable::cable_fit {
@@ -65,7 +66,7 @@ FitResult fit_all(Problem& problem, const std::vector<Recording>& as_numbered, b
                   prediction_errors(problem.settings, problem.recordings, values)};
   };
   result.fitted = errors(std::vector<std::vector<double>>(count, result.values));
-  if (cross_validated) result.left_out = errors(left_out_fits(problem, result.values));
+  if (cross_validated) result.left_out = errors(left_out_fits(problem));
   return result;
 }
 
@@ -90,7 +91,7 @@ int run(const std::vector<std::string>& arguments) {
     swapped.push_back(swapped_ends(recording));
     recordings.push_back(in_order(recording, swapped.back()));
     if (swapped.back().any())
-      std::cerr << "cable_fit: note: " << recording.path << ": " << (swapped.back().start ? "the first two" : "the last two")
+      std::cerr << "cable_fit: note: " << recording.path << ": " << swapped_text(swapped.back())
                 << " markers double back: fitted with their places swapped\n";
   }
   CableSettings settings;
@@ -98,10 +99,12 @@ int run(const std::vector<std::string>& arguments) {
   settings.segments = options.segments;
   settings.linear_density = options.linear_density;
   settings.radius = options.radius;
-  measure_length(recordings, settings, errors);
+  std::vector<Smoothed> inputs;
+  for (const Recording& recording : recordings) inputs.push_back(smoothed(recording));
+  measure_length(recordings, inputs, settings, errors);
   if (!errors.empty()) return refuse(errors);
 
-  Problem problem{recordings, settings, cable_parameters(settings), {}};
+  Problem problem{recordings, inputs, settings, cable_parameters(settings), {}};
   const FitResult result = fit_all(problem, as_numbered, !options.report.empty());
   std::cout << summary_text(problem, swapped, result);
   std::string failure = write_file(options.output, scene_yaml(problem, result));

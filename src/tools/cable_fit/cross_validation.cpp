@@ -32,14 +32,14 @@ std::vector<std::vector<int>> left_out_together(int recordings) {
   return folds;
 }
 
-std::vector<std::vector<double>> left_out_fits(const Problem& problem, const std::vector<double>& values) {
+std::vector<std::vector<double>> left_out_fits(const Problem& problem) {
   const int recordings = static_cast<int>(problem.recordings.size());
   std::vector<std::vector<double>> fits(recordings);
   for (const std::vector<int>& left_out : left_out_together(recordings)) {
     std::vector<int> training;
     for (int i = 0; i < recordings; ++i)
       if (std::find(left_out.begin(), left_out.end(), i) == left_out.end()) training.push_back(i);
-    const std::vector<double> of_training = fit(problem, training, values);
+    const std::vector<double> of_training = fit(problem, training, coarse_search(problem, training));
     for (const int i : left_out) fits[i] = of_training;
   }
   return fits;

@@ -14,8 +14,8 @@ std::vector<PredictionError> prediction_errors(const CableSettings& settings, co
 /// The recordings that are left out together: pairs in the order in which they were given, single ones where there are few.
 std::vector<std::vector<int>> left_out_together(int recordings);
 
-/// For each recording the parameters that fit those best which were not left out with it, looked for from `values` on. At least
-/// two recordings.
-std::vector<std::vector<double>> left_out_fits(const Problem& problem, const std::vector<double>& values);
+/// For each recording the parameters that fit those best which were not left out with it, looked for from the start: nothing
+/// carries over from a fit that knew it. At least two recordings.
+std::vector<std::vector<double>> left_out_fits(const Problem& problem);
 
 }  // namespace verlet_cable::cable_fit

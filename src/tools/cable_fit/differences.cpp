@@ -22,8 +22,8 @@ double robust(double difference) {
   return difference * std::sqrt(2 / (1 + std::sqrt(1 + ratio * ratio)));
 }
 
-Eigen::VectorXd scaled_differences(const SceneDesc& cable, const Recording& recording) {
-  const std::vector<double> errors = coordinate_errors(predict(cable, recording), recording);
+Eigen::VectorXd scaled_differences(const SceneDesc& cable, const Recording& input, const Recording& recording) {
+  const std::vector<double> errors = coordinate_errors(predict(cable, input), recording);
   Eigen::VectorXd values(static_cast<Eigen::Index>(errors.size()));
   const double unit = scatter * std::sqrt(alike);
   for (std::size_t i = 0; i < errors.size(); ++i) values[static_cast<Eigen::Index>(i)] = robust(errors[i]) / unit;
@@ -49,11 +49,11 @@ Linearization linearize(const Problem& problem, const std::vector<int>& recordin
   }
   std::mutex mutex;
   for_each_index(count * (changes + 1), [&](int i) {
-    const int change = i / count, recording = i % count;
+    const int change = i / count, recording = i % count, which = recordings[recording];
     std::vector<double> changed = values;
     if (change > 0) changed[change - 1] += steps[change - 1];
     columns[recording][change] =
-        scaled_differences(cable_scene(problem.settings, changed), problem.recordings[recordings[recording]]);
+        scaled_differences(cable_scene(problem.settings, changed), problem.inputs[which].recording, problem.recordings[which]);
     const std::lock_guard<std::mutex> lock(mutex);
     problem.simulated();
   });

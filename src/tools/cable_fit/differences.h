@@ -5,12 +5,14 @@
 #include <vector>
 
 #include "cable_parameters.h"
+#include "smoothing.h"
 
 namespace verlet_cable::cable_fit {
 
 /// The cable that is looked for, and where.
 struct Problem {
-  const std::vector<Recording>& recordings;
+  const std::vector<Recording>& recordings;  ///< what predictions are compared with
+  const std::vector<Smoothed>& inputs;       ///< what they start from and what holds the cable: the same, smoothed
   CableSettings settings;
   std::vector<Parameter> parameters;
   std::function<void()> simulated;  ///< called whenever a recording was simulated, from one thread at a time

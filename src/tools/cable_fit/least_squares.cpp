@@ -78,8 +78,9 @@ std::vector<double> coarse_search(const Problem& problem, const std::vector<int>
   std::vector<double> errors(guesses.size() * training.size());
   std::mutex mutex;
   for_each_index(static_cast<int>(errors.size()), [&](int i) {
-    const Recording& recording = problem.recordings[training[i % recordings]];
-    errors[i] = prediction_error(predict(coarse(problem.settings, guesses[i / recordings]), recording), recording).mean;
+    const int recording = training[i % recordings];
+    const Prediction prediction = predict(coarse(problem.settings, guesses[i / recordings]), problem.inputs[recording].recording);
+    errors[i] = prediction_error(prediction, problem.recordings[recording]).mean;
     const std::lock_guard<std::mutex> lock(mutex);
     problem.simulated();
   });

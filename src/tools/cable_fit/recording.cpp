@@ -30,6 +30,11 @@ std::vector<double> along(const std::vector<Vector3>& markers) {
 
 }  // namespace
 
+const char* swapped_text(const SwappedEnds& swapped) {
+  if (swapped.start && swapped.end) return "the first two and the last two";
+  return swapped.start ? "the first two" : swapped.end ? "the last two" : "none";
+}
+
 SwappedEnds swapped_ends(const Recording& recording) {
   const int last = recording.marker_count() - 1;
   const auto doubles_back = [&](int outer, int inner, int next) {

@@ -30,6 +30,7 @@ struct SwappedEnds {
   bool start = false, end = false;
   bool any() const { return start || end; }
 };
+const char* swapped_text(const SwappedEnds& swapped);  ///< "none", "the first two", ...
 SwappedEnds swapped_ends(const Recording& recording);
 
 /// The recording with the markers of such ends in their order along the cable.

@@ -94,6 +94,8 @@ std::string report_json(const Problem& problem, const std::vector<SwappedEnds>& 
     };
     json.begin_object();
     json.entry("path", problem.recordings[i].path);
+    json.entry("noise", problem.inputs[i].noise);
+    json.entry("swapped_markers", std::string(swapped_text(swapped[i])));
     write_errors("fitted", result.fitted);
     if (cross_validated) write_errors("left_out", result.left_out);
     json.end_object();
@@ -112,6 +114,12 @@ std::string summary_text(const Problem& problem, const std::vector<SwappedEnds>&
         line("%-44s %10.4g %-9s (%.3g to %.3g)%s\n", parameter.key.c_str(), scene_value(parameter, result.values[i]),
              parameter.unit.c_str(), range.low, range.high, result.confidence[i].told ? "" : "  the recordings do not tell it");
   }
+  for (std::size_t i = 0; i < swapped.size(); ++i)
+    if (swapped[i].any())
+      text += problem.recordings[i].path + ": " + swapped_text(swapped[i]) + " markers are numbered the wrong way round\n";
+  double noise = 0;
+  for (const Smoothed& input : problem.inputs) noise = std::max(noise, input.noise);
+  text += line("noise of a coordinate: at most %.2f mm\n", 1000 * noise);
   const auto add_mean = [&](const char* what, const Errors& errors) {
     text += line("mean absolute error of recordings %s: %.3f cm\n", what, 100 * mean_error(errors.as_numbered));
     if (any_swapped(swapped))
