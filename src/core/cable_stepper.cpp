@@ -107,13 +107,14 @@ void CableStepper::hold(const std::vector<HeldNode>& held) {
 
 /// The parts of the equations of motion that no iteration changes.
 void CableStepper::set_loads(const Substep& s) {
-  const Vector3& gravity = s.environment.gravity;
   const Vector3 wind = s.model.material.drag * s.environment.fluid.velocity;
   const double drag = s.model.material.drag / s.damping_time();
   for (int i = 0; i <= segments_; ++i) {
     const double mass = s.model.masses[i], inertia = 2 * mass / s.h;
     const double length = 0.5 * ((i > 0 ? s.model.rest_lengths[i - 1] : 0) + (i < segments_ ? s.model.rest_lengths[i] : 0));
     inertia_[i] = inertia / s.h + drag * length;
+    // In the middle of the substep, where the other forces are; velocities are zero in statics.
+    const Vector3 gravity = s.environment.gravity.at(get(position_, i) + 0.5 * s.h * get(velocity_, i));
     base_load_.x[i] = mass * gravity.x() + inertia * velocity_.x[i] + length * wind.x();
     base_load_.y[i] = mass * gravity.y() + inertia * velocity_.y[i] + length * wind.y();
     base_load_.z[i] = mass * gravity.z() + inertia * velocity_.z[i] + length * wind.z();
@@ -123,7 +124,7 @@ void CableStepper::set_loads(const Substep& s) {
   if (held.size() > 1) {
     const double mass = std::accumulate(s.model.masses.begin(), s.model.masses.end(), 0.0);
     const double length = s.model.length();
-    const double weight = std::max(gravity.norm(), standard_gravity) * mass;
+    const double weight = std::max(s.environment.gravity.at(get(position_, 0)).norm(), standard_gravity) * mass;
     const double stiffness = taut_stiffness * (weight + s.model.material.bending_stiffness / (length * length));
     for (int i = held.front().node; i < held.back().node; ++i)
       system_.compliance[i] = target_length_[i] * target_length_[i] * target_length_[i] / stiffness;

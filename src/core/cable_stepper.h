@@ -13,7 +13,7 @@ namespace verlet_cable {
 
 /// What acts on a cable from outside, the same in all substeps of a step.
 struct Environment {
-  Vector3 gravity{0, 0, -9.81};  ///< [m/s^2]
+  GravityDesc gravity;
   FluidDesc fluid;
 };
 

@@ -10,7 +10,7 @@ void FluidForces::resize(const CableModel& model) {
   stiffness_.assign(model.nodes(), 0.0);
 }
 
-void FluidForces::start(const FluidDesc& fluid, const Vector3& gravity, double damping_time) {
+void FluidForces::start(const FluidDesc& fluid, const GravityDesc& gravity, double damping_time) {
   active_ = fluid.density > 0;
   fluid_ = fluid;
   gravity_ = gravity;
@@ -37,7 +37,7 @@ void FluidForces::add_loads(const CableModel& model, const VectorArray& middle, 
     const double across = width * fluid_.normal_drag * flow_across.norm();
     const double tangential = width * fluid_.tangential_drag * flow_along.norm();
     const double displaced = immersed * fluid_.density * M_PI * radius * radius * length;
-    const Vector3 force = across * flow_across + tangential * flow_along - displaced * gravity_;
+    const Vector3 force = across * flow_across + tangential * flow_along - displaced * gravity_.at(get(position, i));
     stiffness_[i] = 2 * across / damping_time_;
     set(force_, i, force);
     set(load, i, get(load, i) + force);

@@ -13,7 +13,7 @@ class FluidForces {
  public:
   void resize(const CableModel& model);
   /// `damping_time` [s]: displacement over it is velocity; infinite in statics.
-  void start(const FluidDesc& fluid, const Vector3& gravity, double damping_time);
+  void start(const FluidDesc& fluid, const GravityDesc& gravity, double damping_time);
   bool active() const { return active_; }
   /// Adds the forces [N] to `load`. `middle`: segments [m]; `position`: nodes at the start [m]; `displacement`: of the nodes [m].
   void add_loads(const CableModel& model, const VectorArray& middle, const VectorArray& position, const VectorArray& displacement,
@@ -26,7 +26,7 @@ class FluidForces {
  private:
   bool active_ = false;
   FluidDesc fluid_;
-  Vector3 gravity_ = Vector3::Zero();
+  GravityDesc gravity_;
   double damping_time_ = 0;
   VectorArray force_;
   std::vector<double> stiffness_;

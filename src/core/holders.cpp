@@ -38,6 +38,39 @@ Vector3 tangent(const CableState& state, int node) {
   return state.positions[std::min(node + 1, last)] - state.positions[std::max(node - 1, 0)];
 }
 
+/// Aims a holder at a target. False if it would have to jump.
+bool aim(const Vector3& target, double time, double time_step, Holder& holder) {
+  const double left = remaining(holder.caught, holder.gap.norm(), time);
+  holder.next_position = target + left * holder.gap;
+  const Vector3 mean = (holder.next_position - holder.position) / time_step;
+  holder.next_velocity = mean + 0.5 * (mean - holder.mean_velocity);
+  return mean.norm() <= fastest_holder;
+}
+
+/// Catches a node where it is.
+Holder caught(int attachment, const Target& target, const Vector3& position, const Vector3& velocity, double time) {
+  Holder holder;
+  holder.attachment = attachment;
+  holder.node = target.node;
+  holder.position = position;
+  holder.velocity = velocity;
+  holder.mean_velocity = velocity;
+  holder.gap = position - target.position;
+  holder.caught = time;
+  return holder;
+}
+
+/// Adds the holder of a node: the one before, or one that catches it.
+void add_holder(int attachment, const Target& target, const std::vector<Vector3>& positions,
+                const std::vector<Vector3>& velocities, const Holders& before, double time, Holders& holders) {
+  const auto same_node = [&](const Holder& h) { return h.node == target.node; };
+  if (std::any_of(holders.nodes.begin(), holders.nodes.end(), same_node)) return;
+  const auto known = std::find_if(before.nodes.begin(), before.nodes.end(),
+                                  [&](const Holder& h) { return same_node(h) && h.attachment == attachment; });
+  holders.nodes.push_back(
+      known != before.nodes.end() ? *known : caught(attachment, target, positions[target.node], velocities[target.node], time));
+}
+
 }  // namespace
 
 std::vector<Target> attachment_targets(const CableModel& model, const Attachment& attachment, const Pose& frame) {
@@ -54,23 +87,7 @@ Holders find_holders(int cable, const CableModel& model, const CableState& state
                      const std::vector<Pose>& frames, const Holders& before, double time) {
   Holders holders;
   const auto add_node = [&](int attachment, const Target& target) {
-    const auto same_node = [&](const Holder& h) { return h.node == target.node; };
-    if (std::any_of(holders.nodes.begin(), holders.nodes.end(), same_node)) return;
-    const auto known = std::find_if(before.nodes.begin(), before.nodes.end(),
-                                    [&](const Holder& h) { return same_node(h) && h.attachment == attachment; });
-    if (known != before.nodes.end()) {
-      holders.nodes.push_back(*known);
-      return;
-    }
-    Holder holder;
-    holder.attachment = attachment;
-    holder.node = target.node;
-    holder.position = state.positions[target.node];
-    holder.velocity = state.velocities[target.node];
-    holder.mean_velocity = holder.velocity;
-    holder.gap = holder.position - target.position;
-    holder.caught = time;
-    holders.nodes.push_back(holder);
+    add_holder(attachment, target, state.positions, state.velocities, before, time, holders);
   };
   const auto add_direction = [&](int attachment) {
     const auto known = std::find_if(before.directions.begin(), before.directions.end(),
@@ -111,17 +128,36 @@ bool aim_holders(const CableModel& model, const std::vector<Attachment>& attachm
   for (Holder& holder : holders.nodes) {
     const Attachment& attachment = attachments[holder.attachment];
     const Pose pose = frames[attachment.frame] * attachment.pose;
-    const double left = remaining(holder.caught, holder.gap.norm(), time);
-    holder.next_position = target_position(model, attachment, pose, holder.node) + left * holder.gap;
-    const Vector3 mean = (holder.next_position - holder.position) / time_step;
-    holder.next_velocity = mean + 0.5 * (mean - holder.mean_velocity);
-    if (!(mean.norm() <= fastest_holder)) followed = false;
+    if (!aim(target_position(model, attachment, pose, holder.node), time, time_step, holder)) followed = false;
   }
   for (DirectionHolder& holder : holders.directions) {
     const Attachment& attachment = attachments[holder.attachment];
     const double left = remaining(holder.caught, approach_radius, time);
     holder.next_orientation =
         Quaternion::Identity().slerp(left, holder.gap) * (frames[attachment.frame] * attachment.pose).orientation;
+  }
+  return followed;
+}
+
+Holders find_net_holders(int net, const std::vector<Vector3>& positions, const std::vector<Vector3>& velocities,
+                         const std::vector<Attachment>& attachments, const std::vector<Pose>& frames, const Holders& before,
+                         double time) {
+  Holders holders;
+  for (int a = 0; a < static_cast<int>(attachments.size()); ++a) {
+    if (attachments[a].net != net) continue;
+    const Target target{attachments[a].node, (frames[attachments[a].frame] * attachments[a].pose).position};
+    add_holder(a, target, positions, velocities, before, time, holders);
+  }
+  std::sort(holders.nodes.begin(), holders.nodes.end(), [](const Holder& a, const Holder& b) { return a.node < b.node; });
+  return holders;
+}
+
+bool aim_hinges(const std::vector<Attachment>& attachments, const std::vector<Pose>& frames, double time, double time_step,
+                Holders& holders) {
+  bool followed = true;
+  for (Holder& holder : holders.nodes) {
+    const Attachment& attachment = attachments[holder.attachment];
+    if (!aim((frames[attachment.frame] * attachment.pose).position, time, time_step, holder)) followed = false;
   }
   return followed;
 }

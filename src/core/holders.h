@@ -50,10 +50,19 @@ std::vector<Target> attachment_targets(const CableModel& model, const Attachment
 Holders find_holders(int cable, const CableModel& model, const CableState& state, const std::vector<Attachment>& attachments,
                      const std::vector<Pose>& frames, const Holders& before, double time);
 
+/// The holders of a net likewise: hinges.
+Holders find_net_holders(int net, const std::vector<Vector3>& positions, const std::vector<Vector3>& velocities,
+                         const std::vector<Attachment>& attachments, const std::vector<Pose>& frames, const Holders& before,
+                         double time);
+
 /// Sets where the holders will be at the end of a step that ends at `time`, `frames` being the poses then. False if one of them
 /// would have to jump.
 bool aim_holders(const CableModel& model, const std::vector<Attachment>& attachments, const std::vector<Pose>& frames,
                  double time, double time_step, Holders& holders);
+
+/// The same for hinges.
+bool aim_hinges(const std::vector<Attachment>& attachments, const std::vector<Pose>& frames, double time, double time_step,
+                Holders& holders);
 
 /// Puts the holders where they aim, at rest.
 void jump_to_aim(Holders& holders);

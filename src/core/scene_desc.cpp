@@ -38,6 +38,31 @@ std::vector<ObstacleDesc> all_obstacles(const SceneDesc& scene) {
 
 SceneError::SceneError(std::vector<std::string> errors) : std::runtime_error(lines(errors)), errors_(std::move(errors)) {}
 
+Vector3 GravityDesc::at(const Vector3& position) const {
+  if (type == Type::uniform) return acceleration;
+  const Vector3 inwards = center - position;
+  const double distance = inwards.norm();
+  return distance > 0 ? Vector3(mu / (distance * distance * distance) * inwards) : Vector3(Vector3::Zero());
+}
+
+double GravityDesc::potential_at(const Vector3& position) const {
+  if (type == Type::uniform) return -acceleration.dot(position);
+  const double distance = (center - position).norm();
+  return distance > 0 ? -mu / distance : 0;
+}
+
+std::size_t NetDesc::node_count() const {
+  return grid ? static_cast<std::size_t>(std::max(0, grid->rows)) * static_cast<std::size_t>(std::max(0, grid->columns))
+              : nodes.size();
+}
+
+std::size_t NetDesc::link_count() const {
+  if (!grid) return links.size();
+  if (grid->rows < 1 || grid->columns < 1) return 0;
+  const std::size_t rows = static_cast<std::size_t>(grid->rows), columns = static_cast<std::size_t>(grid->columns);
+  return rows * (columns - 1) + (rows - 1) * columns + 2 * (rows - 1) * (columns - 1);
+}
+
 const MaterialDesc* SceneDesc::find_material(const std::string& name) const {
   const auto found = std::find_if(materials.begin(), materials.end(), [&](const NamedMaterial& m) { return m.name == name; });
   return found == materials.end() ? nullptr : &found->material;
@@ -59,29 +84,25 @@ int node_at(const CableDesc& cable, const PlaceDesc& place) {
 std::vector<std::string> frame_names(const SceneDesc& scene) {
   std::vector<std::string> names{scene.frame_id};
   std::set<std::string> seen;
-  for (const CableDesc& cable : scene.cables) {
-    for (const AttachmentDesc& attachment : cable.attachments) {
-      if (is_fixed_frame(scene, attachment.frame)) continue;
-      if (seen.insert(attachment.frame).second) names.push_back(attachment.frame);
-    }
-  }
-  for (const ObstacleDesc& obstacle : all_obstacles(scene)) {
-    if (is_fixed_frame(scene, obstacle.frame)) continue;
-    if (seen.insert(obstacle.frame).second) names.push_back(obstacle.frame);
-  }
+  const auto add = [&](const std::string& frame) {
+    if (!is_fixed_frame(scene, frame) && seen.insert(frame).second) names.push_back(frame);
+  };
+  for (const CableDesc& cable : scene.cables)
+    for (const AttachmentDesc& attachment : cable.attachments) add(attachment.frame);
+  for (const NetDesc& net : scene.nets)
+    for (const NetAttachmentDesc& attachment : net.attachments) add(attachment.frame);
+  for (const ObstacleDesc& obstacle : all_obstacles(scene)) add(obstacle.frame);
   return names;
 }
 
 BoundaryInputs initial_frames(const SceneDesc& scene) {
   std::map<std::string, InitialPose> poses;
-  for (const CableDesc& cable : scene.cables) {
-    for (const AttachmentDesc& attachment : cable.attachments) {
-      if (attachment.initial_pose) poses.emplace(attachment.frame, *attachment.initial_pose);
-    }
-  }
-  for (const ObstacleDesc& obstacle : scene.obstacles) {
-    if (obstacle.initial_pose) poses.emplace(obstacle.frame, *obstacle.initial_pose);
-  }
+  const auto add = [&](const auto& user) {
+    if (user.initial_pose) poses.emplace(user.frame, *user.initial_pose);
+  };
+  for (const CableDesc& cable : scene.cables) std::for_each(cable.attachments.begin(), cable.attachments.end(), add);
+  for (const NetDesc& net : scene.nets) std::for_each(net.attachments.begin(), net.attachments.end(), add);
+  std::for_each(scene.obstacles.begin(), scene.obstacles.end(), add);
   const std::vector<std::string> names = frame_names(scene);
   BoundaryInputs frames(names.size(), FrameInput{Pose{}, false});
   frames.front().known = true;

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "scene_errors.h"
+#include "validate_nets.h"
 #include "validate_obstacles.h"
 #include "verlet_cable/core/world.h"
 
@@ -156,6 +157,10 @@ void check_initial_poses(const SceneDesc& scene, Errors& errors) {
     const std::vector<AttachmentDesc>& attachments = scene.cables[c].attachments;
     for (std::size_t a = 0; a < attachments.size(); ++a) check(indexed(indexed("cables", c) + ".attachments", a), attachments[a]);
   }
+  for (std::size_t n = 0; n < scene.nets.size(); ++n) {
+    const std::vector<NetAttachmentDesc>& attachments = scene.nets[n].attachments;
+    for (std::size_t a = 0; a < attachments.size(); ++a) check(indexed(indexed("nets", n) + ".attachments", a), attachments[a]);
+  }
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i) check(indexed("obstacles", i), scene.obstacles[i]);
 }
 
@@ -186,6 +191,19 @@ void check_distances(const std::string& key, const CableDesc& cable, const std::
   }
 }
 
+/// `limits.segments` counts segments of cables, nodes or links of nets, whichever are more, and particles.
+void check_size(const SceneDesc& scene, Errors& errors) {
+  double segments = 0;
+  for (const CableDesc& cable : scene.cables) segments += std::max(0, cable.segments);
+  const bool cables_only = scene.nets.empty() && scene.particles.empty();
+  for (const NetDesc& net : scene.nets) segments += static_cast<double>(std::max(net.node_count(), net.link_count()));
+  segments += static_cast<double>(scene.particles.size());
+  if (!limits_fields[0].range.contains(scene.limits.segments) || segments <= scene.limits.segments) return;
+  errors.add(cables_only ? "cables" : "cables, nets, particles",
+             number_text(segments) + (cables_only ? " segments in all" : " segments, links and particles in all"),
+             "at most limits.segments = " + std::to_string(scene.limits.segments));
+}
+
 }  // namespace
 
 std::vector<std::string> validate_distances(const SceneDesc& scene, const BoundaryInputs& frames) {
@@ -210,7 +228,12 @@ std::vector<std::string> validate(const SceneDesc& scene) {
   check_fields("", scene_fields, scene, errors);
   check_fields("", scene_integer_fields, scene, errors);
   check_fields("limits.", limits_fields, scene.limits, errors);
-  check_vector("gravity", scene.gravity.acceleration, "m/s^2", errors);
+  if (scene.gravity.type == GravityDesc::Type::uniform) {
+    check_vector("gravity", scene.gravity.acceleration, "m/s^2", errors);
+  } else {
+    check_fields("gravity.", gravity_fields, scene.gravity, errors);
+    check_vector("gravity.center", scene.gravity.center, "m", errors);
+  }
   check_vector("fluid.velocity", scene.fluid.velocity, "m/s", errors);
   check_fields("fluid.", fluid_fields, scene.fluid, errors);
 
@@ -220,16 +243,15 @@ std::vector<std::string> validate(const SceneDesc& scene) {
     check_fields("materials." + escaped(named.name) + ".", material_fields, named.material, errors);
   }
 
-  UniqueNames cables, attachments;
-  std::int64_t segments = 0;
+  UniqueNames bodies, attachments;
   for (std::size_t i = 0; i < scene.cables.size(); ++i) {
-    cables.check(indexed("cables", i) + ".name", scene.cables[i].name, errors);
+    bodies.check(indexed("cables", i) + ".name", scene.cables[i].name, errors);
     check_cable(indexed("cables", i), scene, scene.cables[i], attachments, errors);
-    segments += std::max(0, scene.cables[i].segments);
   }
-  if (limits_fields[0].range.contains(scene.limits.segments) && segments > scene.limits.segments)
-    errors.add("cables", std::to_string(segments) + " segments in all",
-               "at most limits.segments = " + std::to_string(scene.limits.segments));
+  check_particles(scene, bodies, errors);
+  check_nets(scene, bodies, attachments, errors);
+  check_integrator(scene, errors);
+  check_size(scene, errors);
 
   check_obstacles(scene, errors);
   check_initial_poses(scene, errors);

@@ -67,6 +67,11 @@ World::World(const SceneDesc& scene, const BoundaryInputs& inputs) : implementat
     w.waiting_descs.push_back(i);
     w.waiting.push_back(scene.cables[i].name);
   }
+  for (int i = 0; i < static_cast<int>(scene.nets.size()); ++i) {
+    w.waiting_nets.push_back(i);
+    w.waiting.push_back(scene.nets[i].name);
+  }
+  for (const ParticleDesc& particle : scene.particles) w.add_particle(particle);
   w.follow_frames(inputs);
   start_waiting(inputs);
 }
@@ -83,23 +88,28 @@ World& World::operator=(World&&) noexcept = default;
 int World::start_waiting(const BoundaryInputs& inputs) {
   Implementation& w = *implementation_;
   int started = 0;
-  for (std::size_t k = 0; k < w.waiting_descs.size();) {
-    const CableDesc& desc = w.scene.cables[w.waiting_descs[k]];
-    if (!w.frames_known(desc, inputs)) {
-      ++k;
-      continue;
+  const auto start_known = [&](std::vector<int>& waiting, const auto& descs, const auto& start) {
+    for (std::size_t k = 0; k < waiting.size();) {
+      const auto& desc = descs[waiting[k]];
+      if (!w.frames_known(desc, inputs)) {
+        ++k;
+        continue;
+      }
+      w.follow_frames(inputs);
+      start(desc);
+      w.waiting.erase(std::find(w.waiting.begin(), w.waiting.end(), desc.name));
+      waiting.erase(waiting.begin() + k);
+      ++started;
     }
-    w.follow_frames(inputs);
-    w.start_cable(desc);
-    w.waiting_descs.erase(w.waiting_descs.begin() + k);
-    w.waiting.erase(w.waiting.begin() + k);
-    ++started;
-  }
+  };
+  start_known(w.waiting_descs, w.scene.cables, [&](const CableDesc& desc) { w.start_cable(desc); });
+  start_known(w.waiting_nets, w.scene.nets, [&](const NetDesc& desc) { w.start_net(desc); });
   return started;
 }
 
-bool World::Implementation::frames_known(const CableDesc& desc, const BoundaryInputs& inputs) const {
-  return std::all_of(desc.attachments.begin(), desc.attachments.end(), [&](const AttachmentDesc& attachment) {
+template <class Desc>
+bool World::Implementation::frames_known(const Desc& desc, const BoundaryInputs& inputs) const {
+  return std::all_of(desc.attachments.begin(), desc.attachments.end(), [&](const auto& attachment) {
     const int frame = attachment.frame.empty() ? 0 : find_frame(frames, attachment.frame);
     return frame == 0 || (frame < static_cast<int>(inputs.size()) && inputs[frame].known && finite(inputs[frame].pose));
   });
@@ -141,7 +151,9 @@ void World::Implementation::start_cable(const CableDesc& desc) {
   aim_holders(cable.model, attachments, poses, time(), scene.time_step, s.holders);
   jump_to_aim(s.holders);
   hold_at(1, 1, s.holders, s.boundary);
-  set_initial_state(desc.initial, cable.model, s.boundary.nodes, scene.gravity.acceleration, cable.state);
+  set_initial_state(desc.initial, cable.model, s.boundary.nodes,
+                    scene.gravity.at(s.boundary.nodes.empty() ? Vector3(Vector3::Zero()) : s.boundary.nodes.front().position),
+                    cable.state);
   cable.state.twist.assign(cable.model.segments(), 0.0);
   cable.state.reference_orientation =
       Quaternion::FromTwoVectors(Vector3::UnitX(), cable.state.positions[1] - cable.state.positions[0]);
@@ -188,8 +200,13 @@ void World::Implementation::update_holders(int index) {
   s.holders = find_holders(index, cable.model, cable.state, attachments, poses, s.holders, time());
   aim_holders(cable.model, attachments, poses, time(), scene.time_step, s.holders);
   hold_at(0, 0, s.holders, s.boundary);
-  restore_lengths(cable.model, s.boundary.nodes, scene.gravity.acceleration, cable.state);
+  restore_lengths(cable.model, s.boundary.nodes, gravity_near(index), cable.state);
   s.spans = find_spans(cable.model, cable.state, s.boundary.directions);
+}
+
+/// Where a cable hangs to: gravity at its first node.
+Vector3 World::Implementation::gravity_near(int cable) const {
+  return scene.gravity.at(cables[cable].state.positions.front());
 }
 
 /// Twist and roll of the material after a step: from the clamps where there are any, else the first segment's is carried along in

@@ -67,15 +67,17 @@ void split_holders(int first_node, std::vector<HolderType>& first, std::vector<H
 
 }  // namespace
 
+/// Whether an attachment has that name, or will have it when its frame is seen.
+bool World::Implementation::is_attachment(const std::string& name) const {
+  const auto has_name = [&](const auto& attachment) { return attachment.name == name; };
+  const auto any = [&](const auto& list) { return std::any_of(list.begin(), list.end(), has_name); };
+  return any(attachments) ||
+         std::any_of(waiting_descs.begin(), waiting_descs.end(), [&](int i) { return any(scene.cables[i].attachments); }) ||
+         std::any_of(waiting_nets.begin(), waiting_nets.end(), [&](int i) { return any(scene.nets[i].attachments); });
+}
+
 EditResult World::pin(const std::string& name, int cable, int node, int frame, const Pose& pose, AttachmentType type) {
   Implementation& w = *implementation_;
-  const auto taken = [&](const std::string& n) {
-    if (find_attachment(n) >= 0) return true;
-    for (const int i : w.waiting_descs)
-      for (const AttachmentDesc& a : w.scene.cables[i].attachments)
-        if (a.name == n) return true;
-    return false;
-  };
   if (cable < 0 || cable >= static_cast<int>(w.cables.size()))
     return refused("cable: " + std::to_string(cable) + "; must be the index of a cable");
   SimulatedCable& held = w.cables[cable];
@@ -84,7 +86,7 @@ EditResult World::pin(const std::string& name, int cable, int node, int frame, c
   if (frame < 0 || frame >= static_cast<int>(w.frames.size()))
     return refused("frame: " + std::to_string(frame) + "; must be the id of a frame");
   if (!is_sound(pose)) return refused("offset: must be finite, with an orientation of length 1");
-  if (!name.empty() && taken(name)) return refused("name: " + name + "; is taken by another attachment");
+  if (!name.empty() && w.is_attachment(name)) return refused("name: " + name + "; is taken by another attachment");
   if (holds_something(w.attachments, cable, node))
     return refused("node: " + std::to_string(node) + " of cable " + held.model.name + "; is already held by an attachment");
   if (const std::optional<Reel>& reel = w.scratch[cable].reel; reel && !reel->is_winch()) {
@@ -95,7 +97,7 @@ EditResult World::pin(const std::string& name, int cable, int node, int frame, c
   }
 
   Attachment attachment;
-  attachment.name = name.empty() ? numbered("pin", 1, taken) : name;
+  attachment.name = name.empty() ? numbered("pin", 1, [&](const std::string& n) { return w.is_attachment(n); }) : name;
   attachment.cable = cable;
   attachment.node = node;
   attachment.frame = frame;
@@ -106,17 +108,47 @@ EditResult World::pin(const std::string& name, int cable, int node, int frame, c
   return {true, "", attachment.name};
 }
 
+EditResult World::pin_net(const std::string& name, int net, int node, int frame, const Vector3& offset) {
+  Implementation& w = *implementation_;
+  if (net < 0 || net >= static_cast<int>(w.nets.size()))
+    return refused("net: " + std::to_string(net) + "; must be the index of a net");
+  const NetModel& model = w.nets[net].model;
+  if (node < 0 || node >= model.nodes())
+    return refused("node: " + std::to_string(node) + "; must be from 0 to " + std::to_string(model.nodes() - 1));
+  if (frame < 0 || frame >= static_cast<int>(w.frames.size()))
+    return refused("frame: " + std::to_string(frame) + "; must be the id of a frame");
+  if (!offset.allFinite()) return refused("offset: must be finite");
+  if (!name.empty() && w.is_attachment(name)) return refused("name: " + name + "; is taken by another attachment");
+  for (const Attachment& a : w.attachments)
+    if (a.net == net && a.node == node)
+      return refused("node: " + std::to_string(node) + " of net " + model.name + "; is already held by an attachment");
+  Attachment attachment;
+  attachment.name = name.empty() ? numbered("pin", 1, [&](const std::string& n) { return w.is_attachment(n); }) : name;
+  attachment.cable = -1;
+  attachment.net = net;
+  attachment.node = node;
+  attachment.frame = frame;
+  attachment.pose.position = offset;
+  w.attachments.push_back(attachment);
+  w.update_net(net);
+  return {true, "", attachment.name};
+}
+
 EditResult World::unpin(const std::string& name) {
   Implementation& w = *implementation_;
   const int index = find_attachment(name);
   if (index < 0) return refused("name: " + name + "; there is no such attachment");
-  const int cable = w.attachments[index].cable;
+  const int cable = w.attachments[index].cable, net = w.attachments[index].net;
   w.attachments.erase(w.attachments.begin() + index);
   for (CableScratch& s : w.scratch) {
     forget_attachment(index, s.holders.nodes);
     forget_attachment(index, s.holders.directions);
   }
-  w.update_holders(cable);
+  for (NetScratch& s : w.net_scratch) forget_attachment(index, s.holders.nodes);
+  if (net < 0)
+    w.update_holders(cable);
+  else
+    w.update_net(net);
   return {true, "", name};
 }
 
@@ -145,8 +177,9 @@ EditResult World::cut(int cable, int segment) {
   }
 
   const auto taken = [&](const std::string& n) {
-    return find_cable(n) >= 0 ||
-           std::any_of(w.scene.cables.begin(), w.scene.cables.end(), [&](const CableDesc& c) { return c.name == n; });
+    const auto has_name = [&](const auto& desc) { return desc.name == n; };
+    const auto any = [&](const auto& descs) { return std::any_of(descs.begin(), descs.end(), has_name); };
+    return find_cable(n) >= 0 || any(w.scene.cables) || any(w.scene.nets) || any(w.scene.particles);
   };
   const SimulatedCable& whole = w.cables[cable];
   SimulatedCable first = piece(whole, 0, segment), second = piece(whole, segment + 1, segments);

@@ -7,7 +7,10 @@
 #include "cable_stepper.h"
 #include "contact_group.h"
 #include "holders.h"
+#include "link_stepper.h"
+#include "particle_stepper.h"
 #include "reel.h"
+#include "spring_stepper.h"
 #include "verlet_cable/core/world.h"
 
 namespace verlet_cable {
@@ -24,9 +27,21 @@ struct CableScratch {
   std::optional<Reel> reel;  ///< of a winch that runs, or of a joint that closes
 };
 
+/// What a net needs besides its model and state: springs or links, by its kind, and what they remember.
+struct NetScratch {
+  Holders holders;
+  Boundary boundary;
+  SpringStepper springs;
+  PointState point_memory;
+  LinkStepper links;
+  LinkMemory link_memory;
+  NetState before;  ///< the step
+};
+
 struct World::Implementation {
   SceneDesc scene;
   std::vector<int> waiting_descs;  ///< indices into scene.cables
+  std::vector<int> waiting_nets;   ///< indices into scene.nets
   std::vector<std::string> waiting;
   std::vector<std::string> unsettled;
   std::vector<std::string> frames;
@@ -36,6 +51,11 @@ struct World::Implementation {
   std::int64_t steps = 0;
   std::vector<SimulatedCable> cables;
   std::vector<CableScratch> scratch;  ///< one a cable
+  std::vector<SimulatedNet> nets;
+  std::vector<NetScratch> net_scratch;  ///< one a net
+  std::vector<SimulatedParticle> particles;
+  std::vector<PointState> particle_memory;  ///< one a particle
+  ParticleStepper particle_stepper;
   std::vector<Attachment> attachments;
   std::vector<Obstacle> obstacles;
   std::vector<ContactGroup> groups;   ///< every cable is in one
@@ -45,8 +65,19 @@ struct World::Implementation {
   std::vector<StepResult> results;  ///< one a cable
   std::vector<MovingObstacle> moving_obstacles;
 
-  bool frames_known(const CableDesc& desc, const BoundaryInputs& inputs) const;
+  template <class Desc>
+  bool frames_known(const Desc& desc, const BoundaryInputs& inputs) const;
   void start_cable(const CableDesc& desc);
+  void start_net(const NetDesc& desc);
+  void update_net(int net);
+  void add_particle(const ParticleDesc& desc);
+  void step_nets_and_particles(StepResult& result);
+  void step_net(int net, StepResult& result);
+  void aim_net(int net, StepResult& result);
+  void step_particle(int particle, StepResult& result);
+  void add_net_energy(Energy& energy) const;
+  bool is_attachment(const std::string& name) const;
+  Vector3 gravity_near(int cable) const;
   void follow_frames(const BoundaryInputs& inputs);
   void add_scene_obstacles();
   void find_obstacle_holders();

@@ -47,6 +47,38 @@ class Hash {
     add(obstacle.friction.value_or(-1));
     add(obstacle.padding);
   }
+  void add(const std::vector<Vector3>& vectors) {
+    for (const Vector3& v : vectors) add(v);
+  }
+  void add(const Holder& h) {
+    add_bits(static_cast<std::uint64_t>(h.node));
+    for (const Vector3* v : {&h.position, &h.velocity, &h.mean_velocity, &h.gap}) add(*v);
+    add(h.caught);
+  }
+  void add(const PointState& points) {
+    add_bits(static_cast<std::uint64_t>(points.known) << 2 | static_cast<std::uint64_t>(points.started) << 1 |
+             static_cast<std::uint64_t>(points.is_first));
+    if (points.started) add(points.accelerations);
+    for (int i = 0; i < points.known; ++i) {
+      add(points.history[i].velocities);
+      add(points.history[i].accelerations);
+    }
+  }
+  void add(const SimulatedNet& net, const NetScratch& s) {
+    add(net.model.name);
+    for (const double m : net.model.masses) add(m);
+    for (const std::array<int, 2>& link : net.model.links)
+      add_bits(static_cast<std::uint64_t>(link[0]) << 32 | static_cast<std::uint64_t>(link[1]));
+    for (const double l : net.model.rest_lengths) add(l);
+    add(net.state.positions);
+    add(net.state.velocities);
+    for (const double t : net.state.tension) add(t);
+    add(s.point_memory);
+    add_bits(s.link_memory.started);
+    add(s.link_memory.midstep_velocities);
+    for (const double impulse : s.link_memory.impulses) add(impulse);
+    for (const Holder& h : s.holders.nodes) add(h);
+  }
   std::uint64_t value() const { return value_; }
 
  private:
@@ -109,13 +141,13 @@ int World::find_attachment(const std::string& name) const {
 
 Energy World::energy() const {
   Energy energy;
-  const Vector3& gravity = implementation_->scene.gravity.acceleration;
+  const GravityDesc& gravity = implementation_->scene.gravity;
   for (std::size_t k = 0; k < cables().size(); ++k) {
     const SimulatedCable& cable = cables()[k];
     energy.bend += bending_energy(cable.model, cable.state, implementation_->scratch[k].boundary.directions);
     for (int i = 0; i < cable.model.nodes(); ++i) {
       energy.kinetic += 0.5 * cable.model.masses[i] * cable.state.velocities[i].squaredNorm();
-      energy.gravity -= cable.model.masses[i] * gravity.dot(cable.state.positions[i]);
+      energy.gravity += cable.model.masses[i] * gravity.potential_at(cable.state.positions[i]);
     }
     for (int i = 0; i < cable.model.segments(); ++i)
       energy.twist += 0.5 * cable.model.material.torsional_stiffness * cable.model.rest_lengths[i] * cable.state.twist[i] *
@@ -126,6 +158,7 @@ Energy World::energy() const {
       energy.stretch += 0.5 * cable.model.material.axial_stiffness * cable.model.rest_lengths[i] * e * e;
     }
   }
+  implementation_->add_net_energy(energy);
   return energy;
 }
 
@@ -160,11 +193,14 @@ std::uint64_t World::hash() const {
       hash.add(h.gap);
       hash.add(h.caught);
     }
-    for (const Holder& h : w.scratch[i].holders.nodes) {
-      hash.add_bits(static_cast<std::uint64_t>(h.node));
-      for (const Vector3* v : {&h.position, &h.velocity, &h.mean_velocity, &h.gap}) hash.add(*v);
-      hash.add(h.caught);
-    }
+    for (const Holder& h : w.scratch[i].holders.nodes) hash.add(h);
+  }
+  for (std::size_t i = 0; i < w.nets.size(); ++i) hash.add(w.nets[i], w.net_scratch[i]);
+  for (std::size_t i = 0; i < w.particles.size(); ++i) {
+    hash.add(w.particles[i].desc.name);
+    hash.add(w.particles[i].position);
+    hash.add(w.particles[i].velocity);
+    hash.add(w.particle_memory[i]);
   }
   for (const Obstacle& obstacle : w.obstacles) hash.add(obstacle);
   for (const ContactGroup& group : w.groups) {
@@ -177,7 +213,7 @@ std::uint64_t World::hash() const {
   }
   for (const Attachment& a : w.attachments) {
     hash.add(a.name);
-    hash.add_bits(static_cast<std::uint64_t>(a.cable) << 32 | static_cast<std::uint64_t>(a.node));
+    hash.add_bits(static_cast<std::uint64_t>(a.net < 0 ? a.cable : ~a.net) << 32 | static_cast<std::uint64_t>(a.node));
     hash.add_bits(static_cast<std::uint64_t>(a.frame));
     hash.add(a.pose);
   }

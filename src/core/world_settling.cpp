@@ -60,7 +60,7 @@ SubstepResult World::Implementation::settle_substep(ContactGroup& alone, double 
   const int index = alone.cables.front();
   SimulatedCable& cable = cables[index];
   CableScratch& s = scratch[index];
-  const Environment environment{scene.gravity.acceleration, scene.fluid};
+  const Environment environment{scene.gravity, scene.fluid};
   const Substep substep{cable.model, environment, s.boundary, s.spans, h, true};
   if (moving_obstacles.empty() && !scene.contact) return s.stepper.advance(substep, cable.state);
   alone.contacts.find(cables, alone.cables, moving_obstacles, attachments, contact_rules(true), h);

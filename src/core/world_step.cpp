@@ -42,6 +42,7 @@ StepResult World::step(const BoundaryInputs& inputs) {
     if (segment < 0) continue;
     if (cut(cable, segment).ok) w.breaks.push_back({cable, segment, static_cast<int>(w.cables.size()) - 1});
   }
+  w.step_nets_and_particles(result);
   return result;
 }
 
@@ -106,7 +107,7 @@ void World::Implementation::aim(int index) {
   if (aim_holders(cable.model, attachments, poses, time(), scene.time_step, s.holders)) return;
   jump_to_aim(s.holders);
   hold_at(1, 1, s.holders, s.boundary);
-  carry_along(cable.model, s.boundary.nodes, scene.gravity.acceleration, cable.state);
+  carry_along(cable.model, s.boundary.nodes, gravity_near(index), cable.state);
   note_status(StepResult::Status::jumped, index, s.boundary.nodes.front().node, results[index]);
 }
 
@@ -115,7 +116,7 @@ void World::Implementation::give_up(int index) {
   SimulatedCable& cable = cables[index];
   CableScratch& s = scratch[index];
   hold_at(1, 1, s.holders, s.boundary);
-  carry_along(cable.model, s.boundary.nodes, scene.gravity.acceleration, cable.state);
+  carry_along(cable.model, s.boundary.nodes, gravity_near(index), cable.state);
   if (!finite(cable.state.positions)) note_status(StepResult::Status::fault, index, 0, results[index]);
 }
 
@@ -130,7 +131,7 @@ void World::Implementation::note_substep(int index, const SubstepResult& substep
 /// One substep of a group, from one part of the step to another. False if it has not converged or cables have passed through
 /// each other (where that is not `tolerated`); the states are then as before.
 bool World::Implementation::advance(ContactGroup& group, double from, double to, bool tolerated) {
-  const Environment environment{scene.gravity.acceleration, scene.fluid};
+  const Environment environment{scene.gravity, scene.fluid};
   const double h = (to - from) * scene.time_step;
   find_contacts(group, from, to);
   const bool touching = !group.contacts.touches().empty();

@@ -48,7 +48,9 @@ bool pin(Simulation& simulation, const Pin::Request& request, Pin::Response& res
   const CheckedPin pin = check_pin(request, simulation.world(), find_frame_in(simulation));
   if (!pin.errors.empty()) return answer(refused(pin.errors), response);
   const AttachmentType type = request.clamp ? AttachmentType::clamp : AttachmentType::hinge;
-  const EditResult result = simulation.pin(request.name, pin.cable, pin.node, pin.frame, pin.frame_pose, pin.offset, type);
+  const EditResult result =
+      pin.net >= 0 ? simulation.pin_net(request.name, pin.net, pin.node, pin.frame, pin.frame_pose, pin.offset.position)
+                   : simulation.pin(request.name, pin.cable, pin.node, pin.frame, pin.frame_pose, pin.offset, type);
   response.name = result.name;
   response.node = static_cast<std::uint32_t>(pin.node);
   return answer(result, response);
@@ -57,6 +59,10 @@ bool pin(Simulation& simulation, const Pin::Request& request, Pin::Response& res
 bool cut(Simulation& simulation, const Cut::Request& request, Cut::Response& response) {
   const Location location = locate_cut(request.location, simulation.world(), find_frame_in(simulation));
   if (!location.errors.empty()) return answer(refused(location.errors), response);
+  if (location.net >= 0) {
+    response.first = simulation.world().nets()[location.net].model.name;
+    return answer(simulation.cut_links(location.net, location.links), response);
+  }
   const EditResult result = simulation.cut(location.cable, location.index);
   if (result.ok) response.first = simulation.world().cables()[location.cable].model.name;
   response.second = result.name;

@@ -64,6 +64,7 @@ CheckedPin check_pin(const Pin::Request& request, const World& world, const Find
   const Location location = locate_node(request.location, world, find_frame);
   pin.errors = location.errors;
   pin.cable = location.cable;
+  pin.net = location.net;
   pin.node = location.index;
   pin.frame = request.frame_id.empty() ? world.frames().front() : request.frame_id;
   pin.offset = read_pose("offset", request.offset, pin.errors);
@@ -80,17 +81,20 @@ CheckedPin check_pin(const Pin::Request& request, const World& world, const Find
                          "; allowed: frames that tf knows, without a leading /; or empty");
   }
   if (!location.errors.empty()) return pin;
-
+  if (pin.net >= 0 && request.clamp) pin.errors.push_back("clamp: true; allowed: false, nets are held by hinges");
+  const std::string holder =
+      pin.net >= 0 ? "net " + quoted(world.nets()[pin.net].model.name) : "cable " + quoted(world.cables()[pin.cable].model.name);
   for (const Attachment& other : world.attachments()) {
-    if (other.cable != pin.cable || other.node != pin.node) continue;
-    pin.errors.push_back("location: node " + std::to_string(pin.node) + " of cable " +
-                         quoted(world.cables()[pin.cable].model.name) + " is held by " + quoted(other.name) +
+    if (other.cable != pin.cable || other.net != pin.net || other.node != pin.node) continue;
+    pin.errors.push_back("location: node " + std::to_string(pin.node) + " of " + holder + " is held by " + quoted(other.name) +
                          "; allowed: nodes that nothing holds");
   }
   if (!pin.errors.empty()) return pin;
   if (request.keep_offset) {
-    pin.offset = pin.frame_pose.inverse() * node_pose(world.cables()[pin.cable], pin.node);
-  } else {
+    const Pose node = pin.net >= 0 ? Pose{world.nets()[pin.net].state.positions[pin.node], Quaternion::Identity()}
+                                   : node_pose(world.cables()[pin.cable], pin.node);
+    pin.offset = pin.frame_pose.inverse() * node;
+  } else if (pin.net < 0) {
     check_reach(pin, world, pin.errors);
   }
   return pin;

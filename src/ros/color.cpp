@@ -24,7 +24,7 @@ double mass(const SceneDesc& scene, const CableDesc& cable) {
 double largest_weight(const SceneDesc& scene) {
   double largest = 0;
   for (const CableDesc& cable : scene.cables) largest = std::max(largest, mass(scene, cable));
-  const double gravity = scene.gravity.acceleration.norm();
+  const double gravity = scene.gravity.type == GravityDesc::Type::uniform ? scene.gravity.acceleration.norm() : 0;
   return largest * (gravity > 0 ? gravity : standard_gravity);
 }
 
@@ -71,6 +71,15 @@ float packed_rgb(const std_msgs::ColorRGBA& color) {
   return packed;
 }
 
+std_msgs::ColorRGBA to_color(const std::array<double, 4>& rgba) {
+  std_msgs::ColorRGBA color;
+  color.r = static_cast<float>(rgba[0]);
+  color.g = static_cast<float>(rgba[1]);
+  color.b = static_cast<float>(rgba[2]);
+  color.a = static_cast<float>(rgba[3]);
+  return color;
+}
+
 ColorScale::ColorScale(const SceneDesc& scene)
     : color_by_(scene.color_by),
       full_tension_(scene.cables.empty() ? 1 : largest_weight(scene)),
@@ -103,12 +112,7 @@ std::vector<std_msgs::ColorRGBA> ColorScale::node_colors(const SimulatedCable& c
       colors[node] = color_of_load((before + after) / 2);
     }
   } else {
-    std_msgs::ColorRGBA color;
-    color.r = static_cast<float>(cable.model.color[0]);
-    color.g = static_cast<float>(cable.model.color[1]);
-    color.b = static_cast<float>(cable.model.color[2]);
-    color.a = static_cast<float>(cable.model.color[3]);
-    std::fill(colors.begin(), colors.end(), color);
+    std::fill(colors.begin(), colors.end(), to_color(cable.model.color));
   }
   return colors;
 }

@@ -99,12 +99,46 @@ Cable to_message(const World& world, int index, const std::vector<SimulatedConta
   return message;
 }
 
+bool is_finite(const SimulatedNet& net) {
+  const auto all_finite = [](const Vector3& v) { return v.allFinite(); };
+  return std::all_of(net.state.positions.begin(), net.state.positions.end(), all_finite) &&
+         std::all_of(net.state.velocities.begin(), net.state.velocities.end(), all_finite) &&
+         std::all_of(net.state.tension.begin(), net.state.tension.end(), [](double t) { return std::isfinite(t); });
+}
+
+bool is_finite(const SimulatedParticle& particle) {
+  return particle.position.allFinite() && particle.velocity.allFinite();
+}
+
+Net to_message(const SimulatedNet& net) {
+  Net message;
+  message.name = net.model.name;
+  for (const Vector3& position : net.state.positions) message.positions.push_back(to_point(position));
+  for (const Vector3& velocity : net.state.velocities) message.velocities.push_back(to_vector(velocity));
+  for (const std::array<int, 2>& link : net.model.links)
+    for (const int node : link) message.links.push_back(static_cast<std::uint32_t>(node));
+  message.tension = net.state.tension;
+  return message;
+}
+
+Particle to_message(const SimulatedParticle& particle) {
+  Particle message;
+  message.name = particle.desc.name;
+  message.position = to_point(particle.position);
+  message.velocity = to_vector(particle.velocity);
+  return message;
+}
+
 CableArray to_message(const World& world) {
   CableArray message;
   const std::vector<SimulatedContact> contacts = contacts_of_both(world);
   for (int index = 0; index < static_cast<int>(world.cables().size()); ++index) {
     if (is_finite(world.cables()[index])) message.cables.push_back(to_message(world, index, contacts));
   }
+  for (const SimulatedNet& net : world.nets())
+    if (is_finite(net)) message.nets.push_back(to_message(net));
+  for (const SimulatedParticle& particle : world.particles())
+    if (is_finite(particle)) message.particles.push_back(to_message(particle));
   return message;
 }
 

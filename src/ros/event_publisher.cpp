@@ -7,7 +7,9 @@
 namespace verlet_cable {
 
 EventSubject subject_of(const World& world, const Attachment& attachment) {
-  return {world.cables()[attachment.cable].model.name, attachment.name, attachment.node, world.frames()[attachment.frame]};
+  const std::string& holds =
+      attachment.net >= 0 ? world.nets()[attachment.net].model.name : world.cables()[attachment.cable].model.name;
+  return {holds, attachment.name, attachment.node, world.frames()[attachment.frame]};
 }
 
 EventPublisher::EventPublisher(ros::NodeHandle& private_node, std::string frame_id)

@@ -83,6 +83,7 @@ void add_attachments(const Simulation& simulation, const std::set<std::string>& 
   const World& world = simulation.world();
   for (const Attachment& attachment : world.attachments()) {
     if (grabs.count(attachment.name) > 0) continue;
+    if (attachment.cable < 0) continue;  // nets have no handles
     Handle handle = handle_of(world.cables()[attachment.cable]);
     handle.name = "attachment/" + attachment.name;
     handle.attachment = attachment.name;

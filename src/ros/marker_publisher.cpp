@@ -17,6 +17,9 @@ using visualization_msgs::MarkerArray;
 constexpr double aluminium_density = 2700;  // [kg/m^3]
 constexpr double pin_size = 2.2;            // of a pin to the cable it holds, radius to radius
 constexpr int cable_id = 0;
+constexpr int net_lines_id = 0, net_triangles_id = 1, particle_id = 0;
+constexpr double net_line_width = 0.04;  // of the first link's length
+constexpr double net_pin_size = 0.4;     // likewise
 
 std_msgs::ColorRGBA grey(float level) {
   std_msgs::ColorRGBA color;
@@ -43,6 +46,21 @@ double payload(const CableModel& model, int node) {
   return excess > 1.5 * largest_half ? excess : 0;
 }
 
+/// [m] How long a net's links are, for the sizes of what shows it.
+double link_length(const NetModel& model) {
+  return model.rest_lengths.empty() ? 0.1 : model.rest_lengths.front();
+}
+
+/// Both sides of the two triangles of each cell.
+void add_triangles(const SimulatedNet& net, Marker& marker) {
+  const int columns = net.model.columns;
+  for (int row = 0; row + 1 < net.model.rows; ++row)
+    for (int column = 0; column + 1 < columns; ++column) {
+      const int a = row * columns + column, b = a + 1, c = a + columns, d = c + 1;
+      for (const int node : {a, c, b, b, c, a, d, b, c, c, b, d}) marker.points.push_back(to_point(net.state.positions[node]));
+    }
+}
+
 }  // namespace
 
 MarkerPublisher::MarkerPublisher(ros::NodeHandle& private_node, const SceneDesc& scene)
@@ -67,6 +85,10 @@ void MarkerPublisher::publish(const World& world, const ros::Time& stamp) {
     add_cable(cable, contact_forces[i], *markers);
     add_payloads(cable, *markers);
   }
+  for (const SimulatedNet& net : world.nets())
+    if (is_finite(net)) add_net(net, *markers);
+  for (const SimulatedParticle& particle : world.particles())
+    if (is_finite(particle)) add_particle(particle, *markers);
   for (const Attachment& attachment : world.attachments()) add_pin(world, attachment, *markers);
   for (const Obstacle& obstacle : world.obstacles()) add_obstacle(world, obstacle, *markers);
   delete_what_is_gone(*markers);
@@ -116,10 +138,37 @@ void MarkerPublisher::add_payloads(const SimulatedCable& cable, MarkerArray& mar
   }
 }
 
+void MarkerPublisher::add_net(const SimulatedNet& net, MarkerArray& markers) const {
+  if (!net.model.links.empty()) {
+    Marker lines = make_marker(net.model.name, net_lines_id, Marker::LINE_LIST);
+    lines.scale.x = net_line_width * link_length(net.model);
+    lines.color = to_color(net.model.color);
+    for (const std::array<int, 2>& link : net.model.links)
+      for (const int node : link) lines.points.push_back(to_point(net.state.positions[node]));
+    markers.markers.push_back(std::move(lines));
+  }
+  if (!net.model.is_grid() || style_ == MarkerStyle::line) return;
+  Marker triangles = make_marker(net.model.name, net_triangles_id, Marker::TRIANGLE_LIST);
+  set_scale(triangles, 1, 1, 1);
+  triangles.color = to_color(net.model.color);
+  add_triangles(net, triangles);
+  markers.markers.push_back(std::move(triangles));
+}
+
+void MarkerPublisher::add_particle(const SimulatedParticle& particle, MarkerArray& markers) const {
+  Marker marker = make_marker(particle.desc.name, particle_id, Marker::SPHERE);
+  marker.pose.position = to_point(particle.position);
+  const double diameter = 2 * particle.desc.radius;
+  set_scale(marker, diameter, diameter, diameter);
+  marker.color = to_color(particle.desc.color);
+  markers.markers.push_back(std::move(marker));
+}
+
 void MarkerPublisher::add_pin(const World& world, const Attachment& attachment, MarkerArray& markers) {
   const Pose pose = world.frame_pose(attachment.frame) * attachment.pose;
   if (!pose.position.allFinite() || !pose.orientation.coeffs().allFinite()) return;
-  const double size = 2 * pin_size * world.cables()[attachment.cable].model.material.radius;
+  const double size = attachment.net >= 0 ? net_pin_size * link_length(world.nets()[attachment.net].model)
+                                          : 2 * pin_size * world.cables()[attachment.cable].model.material.radius;
   const bool clamp = attachment.type == AttachmentType::clamp;
   Marker marker = make_marker("pins", id_of(attachment.name), clamp ? Marker::CUBE : Marker::SPHERE);
   marker.pose = to_pose(pose);

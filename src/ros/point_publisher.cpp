@@ -1,6 +1,7 @@
 #include "verlet_cable/ros/point_publisher.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -37,6 +38,34 @@ void append_points(const SimulatedCable& cable, std::uint32_t cable_id, const st
   }
 }
 
+PointRecord record(const Vector3& position, const std::array<double, 4>& color, double tension, std::size_t id,
+                   std::size_t node) {
+  const Eigen::Vector3f p = position.cast<float>();
+  return {p.x(),
+          p.y(),
+          p.z(),
+          packed_rgb(to_color(color)),
+          static_cast<float>(tension),
+          static_cast<std::uint32_t>(id),
+          static_cast<std::uint32_t>(node),
+          0};
+}
+
+/// Nets count on from the cables, particles from the nets.
+void append_nets_and_particles(const World& world, std::vector<PointRecord>& points) {
+  std::size_t id = world.cables().size();
+  for (const SimulatedNet& net : world.nets()) {
+    const std::vector<double> tension = node_tension(net);
+    for (std::size_t node = 0; is_finite(net) && node < tension.size(); ++node)
+      points.push_back(record(net.state.positions[node], net.model.color, tension[node], id, node));
+    ++id;
+  }
+  for (const SimulatedParticle& particle : world.particles()) {
+    if (is_finite(particle)) points.push_back(record(particle.position, particle.desc.color, 0, id, 0));
+    ++id;
+  }
+}
+
 }  // namespace
 
 PointPublisher::PointPublisher(ros::NodeHandle& private_node, const SceneDesc& scene)
@@ -58,6 +87,7 @@ void PointPublisher::publish(const World& world, const ros::Time& stamp) {
     if (is_finite(cable))
       append_points(cable, static_cast<std::uint32_t>(id), colors_.node_colors(cable, contact_forces[id]), points);
   }
+  append_nets_and_particles(world, points);
   publisher_.publish(make_point_cloud(frame_id_, stamp, point_fields(), points));
 }
 

@@ -6,6 +6,7 @@
 
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
+#include "verlet_cable/core/step_subject.h"
 
 namespace verlet_cable {
 namespace {
@@ -165,17 +166,21 @@ bool Simulation::step_world(Nanoseconds time) {
 }
 
 void Simulation::report_status(const StepResult& result) {
-  const auto cable = [&] { return world_.cables()[result.cable].model.name; };
+  const std::string subject = subject_of(world_, result);
   if (result.status == StepResult::Status::fault) {
     faulted_ = true;
     ++faults_;
-    announce(CableEvent::FAULT, {cable(), {}, result.node, {}},
-             "the simulation of cable " + quoted(cable()) + " failed at node " + std::to_string(result.node) +
+    announce(CableEvent::FAULT, {subject, {}, result.node, {}},
+             "the simulation of " + quoted(subject) + " failed at node " + std::to_string(result.node) +
                  ": reset or restore_state goes on");
   }
   if (result.status == StepResult::Status::overstretched) {
-    ROS_WARN_THROTTLE(log_period, "cable %s is overstretched at node %d: what holds it is further apart than it is long",
-                      quoted(cable()).c_str(), result.node);
+    ROS_WARN_THROTTLE(log_period, "%s is overstretched at node %d: what holds it is further apart than it is long",
+                      quoted(subject).c_str(), result.node);
+  }
+  if (result.status == StepResult::Status::degraded && result.cable < 0) {
+    ROS_WARN_THROTTLE(log_period, "%s ran away; its motion was taken away: stiff springs of light nodes need a shorter time_step",
+                      quoted(subject).c_str());
   }
 }
 

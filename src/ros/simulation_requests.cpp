@@ -78,6 +78,34 @@ EditResult Simulation::pin(const std::string& name, int cable, int node, const s
   return {true, message, result.name};
 }
 
+EditResult Simulation::pin_net(const std::string& name, int net, int node, const std::string& frame, const Pose& frame_pose,
+                               const Vector3& offset) {
+  if (!started_) return refused_before_start();
+  World trial = world_;  // a frame cannot be taken back
+  const EditResult result = trial.pin_net(name, net, node, trial.add_frame(frame, frame_pose), offset);
+  if (!result.ok) return result;
+  world_ = std::move(trial);
+  frames_.add(frame, stamp_);
+  const std::string message = "node " + std::to_string(node) + " of net " + quoted(world_.nets()[net].model.name) +
+                              " is pinned to frame " + quoted(frame) + " as " + quoted(result.name);
+  announce(CableEvent::PINNED, subject_of(world_, world_.attachments()[world_.find_attachment(result.name)]), message);
+  return {true, message, result.name};
+}
+
+EditResult Simulation::cut_links(int net, const std::vector<int>& links) {
+  if (!started_) return refused_before_start();
+  const std::string name = world_.nets()[net].model.name;
+  const int node = world_.nets()[net].model.links[links.front()][0];
+  for (auto link = links.rbegin(); link != links.rend(); ++link) {
+    const EditResult result = world_.cut_link(net, *link);
+    if (!result.ok) return result;
+  }
+  const std::string message =
+      std::to_string(links.size()) + (links.size() == 1 ? " link" : " links") + " of net " + quoted(name) + " cut";
+  announce(CableEvent::CUT, {name, {}, node, {}}, message);
+  return done(message);
+}
+
 EditResult Simulation::unpin(const std::string& name) {
   if (!started_) return refused_before_start();
   const int index = world_.find_attachment(name);

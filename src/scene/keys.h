@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "unsupported_keys.h"
 #include "value.h"
 
 namespace verlet_cable {
@@ -106,7 +105,7 @@ std::set<std::string> read_map(const Value& value, const Keys<Target>& keys, Tar
       key.read(child, target);
       known = true;
     }
-    if (known || (is_name(name) && is_unsupported_key(child.key))) continue;
+    if (known) continue;
     const std::string nearest = nearest_name(name, names);
     child.errors->add(
         child.key,

@@ -5,6 +5,7 @@
 #include "cable_keys.h"
 #include "keys.h"
 #include "material_keys.h"
+#include "net_keys.h"
 #include "obstacle_keys.h"
 #include "scene_files.h"
 #include "verlet_cable/scene/material_presets.h"
@@ -12,20 +13,18 @@
 namespace verlet_cable {
 namespace {
 
-struct NoTarget {};
-
-void ignore(const Value&, NoTarget&) {}
-
 void read_gravity(const Value& value, SceneDesc& scene) {
   if (!value.node.IsMap()) {
     scene.gravity.acceleration = read_vector(value, "m/s^2");
     return;
   }
-  static const Keys<NoTarget> central{{"type", "central", true, ignore},
-                                      {"mu", "a number [m^3/s^2]", false, ignore},
-                                      {"center", "three numbers [m]", false, ignore}};
-  NoTarget nothing;
-  read_map(value, central, nothing);
+  static const Keys<GravityDesc> central = [] {
+    Keys<GravityDesc> keys{choice_key("type", &GravityDesc::type, {{"central", GravityDesc::Type::central}}, true),
+                           vector_key("center", &GravityDesc::center, "m")};
+    append_fields(keys, gravity_fields);
+    return keys;
+  }();
+  read_map(value, central, scene.gravity);
 }
 
 void read_limits(const Value& value, SceneDesc& scene) {
@@ -62,12 +61,10 @@ Keys<SceneDesc> scene_keys(const std::vector<std::string>& ignored) {
       {"limits", "a map", false, read_limits},
       {"materials", "a map of names to materials", false,
        [](const Value& value, SceneDesc& scene) { scene.materials = read_materials(value); }},
-      {"cables", "a list of at least one cable", true,
-       [](const Value& value, SceneDesc& scene) {
-         scene.cables = read_list<CableDesc>(value, read_cable);
-         if (value.node.IsSequence() && scene.cables.empty()) value.reject("a list of at least one cable");
-       }},
+      {"cables", "a list of cables", false,
+       [](const Value& value, SceneDesc& scene) { scene.cables = read_list<CableDesc>(value, read_cable); }},
   };
+  append_net_keys(keys);
   append_obstacle_keys(keys);
   append_fields(keys, scene_fields);
   append_fields(keys, scene_integer_fields);
@@ -93,6 +90,15 @@ void add_presets(const Value& root, SceneDesc& scene) {
   }
 }
 
+/// A scene is of something that moves.
+void check_not_empty(const Value& root, const std::set<std::string>& given, const SceneDesc& scene) {
+  if (!scene.cables.empty() || !scene.nets.empty() || !scene.particles.empty()) return;
+  const char* allowed = "a list of at least one cable, or `nets` or `particles`";
+  const Value cables = root.child("cables", given.count("cables") ? root.node["cables"] : YAML::Node{});
+  if (!given.count("cables")) root.errors->add_unread(cables.key, "missing", allowed);
+  if (cables.node.IsSequence()) cables.reject(allowed);
+}
+
 }  // namespace
 
 SceneDesc read_scene(const YAML::Node& root, const std::vector<std::string>& ignored, const SceneSources& sources) {
@@ -100,11 +106,10 @@ SceneDesc read_scene(const YAML::Node& root, const std::vector<std::string>& ign
   ErrorList errors;
   const Value value{root, "", &errors};
   if (root.IsMap()) {
-    read_map(value, scene_keys(ignored), scene);
+    check_not_empty(value, read_map(value, scene_keys(ignored), scene), scene);
     add_presets(value, scene);
     read_scene_files(value, sources, scene);
     errors.add_validation(validate(scene));
-    reject_unsupported(value);
   } else {
     errors.add("scene", value_text(root), "a map of keys: materials, cables, ...");
   }

@@ -153,11 +153,10 @@ const Mistake mistakes[] = {
     {"surfaceBelowEverything", time_step, "fluid: {surface: -.inf}", "fluid.surface: -inf;"},
     {"negativeFluidDrag", time_step, "fluid: {normal_drag: -1.2}", "fluid.normal_drag: -1.2;"},
     {"fluidIsNoMap", time_step, "fluid: water", "fluid: \"water\";"},
-    {"centralGravity", gravity, "gravity: {type: central, mu: 1, center: [0, 0, 0]}",
-     "gravity.type: \"central\" is not supported yet;"},
-    {"particles", time_step, "particles: [{name: planet}]", "particles: [{name: planet}] is not supported yet;"},
-    {"nets", time_step, "nets: [{name: flag}]", "nets: [{name: flag}] is not supported yet;"},
-    {"integrator", time_step, "integrator: rk4", "integrator: \"rk4\" is not supported yet; allowed: only verlet"},
+    {"unknownGravity", gravity, "gravity: {type: lateral}", "gravity.type: \"lateral\"; allowed: central"},
+    {"gravityWithoutType", gravity, "gravity: {mu: 1}", "gravity.type: missing;"},
+    {"zeroMu", gravity, "gravity: {type: central, mu: 0}", "gravity.mu: 0;"},
+    {"nanCenter", gravity, "gravity: {type: central, center: [0, nan, 0]}", "gravity.center: [0, nan, 0];"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Each, SceneMistake, testing::ValuesIn(mistakes),

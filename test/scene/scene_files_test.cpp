@@ -48,10 +48,40 @@ TEST(SceneFiles, templateHoldsTheDefaults) {
   EXPECT_EQ(scene.cables[0].attachments[0].rotation, AttachmentDesc{}.rotation);
 }
 
+template <class Owner, class Fields>
+void expect_defaults(const Owner& owner, const Fields& fields) {
+  for (const auto& field : fields) {
+    if (field.required) continue;
+    EXPECT_EQ(owner.*field.member, Owner{}.*field.member) << field.key;
+  }
+}
+
+TEST(SceneFiles, templateHoldsTheDefaultsOfNetsAndParticles) {
+  const SceneDesc scene = read_scene_file(config("scene_template.yaml"));
+  EXPECT_EQ(scene.integrator.type, SceneDesc{}.integrator.type);
+  ASSERT_EQ(scene.particles.size(), 1u);
+  expect_defaults(scene.particles[0], particle_fields);
+  EXPECT_EQ(scene.particles[0].position, ParticleDesc{}.position);
+  EXPECT_EQ(scene.particles[0].velocity, ParticleDesc{}.velocity);
+  EXPECT_EQ(scene.particles[0].color, ParticleDesc{}.color);
+  ASSERT_EQ(scene.nets.size(), 1u);
+  const NetDesc& net = scene.nets[0];
+  expect_defaults(net, net_fields);
+  EXPECT_EQ(net.link_type, NetDesc{}.link_type);
+  EXPECT_EQ(net.velocity, NetDesc{}.velocity);
+  EXPECT_EQ(net.color, NetDesc{}.color);
+  ASSERT_TRUE(net.grid);
+  EXPECT_EQ(net.grid->origin, GridDesc{}.origin);
+  EXPECT_EQ(net.grid->x_axis, GridDesc{}.x_axis);
+  EXPECT_EQ(net.grid->y_axis, GridDesc{}.y_axis);
+  ASSERT_EQ(net.attachments.size(), 1u);
+  EXPECT_EQ(net.attachments[0].offset, NetAttachmentDesc{}.offset);
+}
+
 /// Whether the template has the key somewhere with a comment above it that has the unit.
 bool is_documented(const std::vector<std::string>& lines, const std::string& key, const std::string& unit) {
   for (std::size_t i = 1; i < lines.size(); ++i) {
-    const std::size_t at = lines[i].find_first_not_of(" -{");
+    const std::size_t at = lines[i].find_first_not_of(" -{#");
     if (at == std::string::npos || lines[i].compare(at, key.size() + 1, key + ":") != 0) continue;
     const std::string& comment = lines[i - 1];
     if (comment.find('#') != std::string::npos && (unit.empty() || comment.find("[" + unit + "]") != std::string::npos))
@@ -78,12 +108,54 @@ TEST(SceneFiles, templateDocumentsEveryKey) {
   expect_documented(lines, cable_integer_fields);
   expect_documented(lines, obstacle_fields);
   expect_documented(lines, contact_fields);
-  for (const char* key :
-       {"frame_id",     "gravity",   "on_lost_frame", "on_time_jump",  "marker_style", "color_by", "scene_directory",
-        "limits",       "materials", "cables",        "name",          "material",     "color",    "rest_curvature",
-        "attachments",  "at",        "frame",         "offset",        "rotation",     "type",     "initial_pose",
-        "point_masses", "initial",   "fluid",         "velocity",      "obstacles",    "pose",     "friction",
-        "size",         "contact",   "self",          "between_cables"})
+  expect_documented(lines, particle_fields);
+  expect_documented(lines, net_fields);
+  expect_documented(lines, grid_fields);
+  expect_documented(lines, grid_integer_fields);
+  for (const char* key : {"frame_id",
+                          "gravity",
+                          "on_lost_frame",
+                          "on_time_jump",
+                          "marker_style",
+                          "color_by",
+                          "scene_directory",
+                          "limits",
+                          "materials",
+                          "cables",
+                          "name",
+                          "material",
+                          "color",
+                          "rest_curvature",
+                          "attachments",
+                          "at",
+                          "frame",
+                          "offset",
+                          "rotation",
+                          "type",
+                          "initial_pose",
+                          "point_masses",
+                          "initial",
+                          "fluid",
+                          "velocity",
+                          "obstacles",
+                          "pose",
+                          "friction",
+                          "size",
+                          "contact",
+                          "self",
+                          "between_cables",
+                          "particles",
+                          "nets",
+                          "grid",
+                          "mass",
+                          "links",
+                          "position",
+                          "origin",
+                          "x_axis",
+                          "y_axis",
+                          "node",
+                          "minimum_distances",
+                          "integrator"})
     EXPECT_TRUE(is_documented(lines, key, "")) << key;
 }
 

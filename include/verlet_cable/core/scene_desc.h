@@ -130,9 +130,88 @@ struct ContactDesc {
   double friction = 0.3;  ///< Coulomb coefficient of cable against cable, >= 0
 };
 
-/// Uniform or central gravity.
+/// Uniform gravity, or that of a point mass: mu / r^2 towards a center. It acts on cables, nets and particles.
 struct GravityDesc {
-  Vector3 acceleration{0, 0, -9.81};  ///< [m/s^2]
+  enum class Type { uniform, central };
+  Type type = Type::uniform;
+  Vector3 acceleration{0, 0, -9.81};  ///< [m/s^2] uniform
+  double mu = 1;                      ///< [m^3/s^2] central, > 0: the gravitational constant times the mass in the center
+  Vector3 center = Vector3::Zero();   ///< [m] central
+
+  Vector3 at(const Vector3& position) const;           ///< [m/s^2] zero in the center
+  double potential_at(const Vector3& position) const;  ///< [J/kg] zero at the origin (uniform) or infinitely far (central)
+};
+
+/// A free material point.
+struct ParticleDesc {
+  std::string name;
+  double mass = 0;                     ///< [kg], > 0
+  Vector3 position = Vector3::Zero();  ///< [m]
+  Vector3 velocity = Vector3::Zero();  ///< [m/s]
+  double restitution = 1;              ///< of its bounces off obstacles, 0 to 1: elastic
+  double friction = 0;                 ///< Coulomb coefficient against obstacles that have none, >= 0
+  double radius = 0.02;                ///< [m] of the sphere that shows it, > 0; what bounces is the point
+  std::array<double, 4> color{0.1, 0.3, 0.8, 1.0};
+};
+
+/// Nodes in rows and columns: node = row * columns + column; row 0 starts at the origin, columns along x_axis, rows along y_axis.
+/// Links: horizontal, vertical, both diagonals.
+struct GridDesc {
+  int rows = 0;                        ///< >= 1
+  int columns = 0;                     ///< >= 1
+  double spacing = 0;                  ///< [m] > 0
+  Vector3 origin = Vector3::Zero();    ///< [m]
+  Vector3 x_axis = Vector3::UnitX();   ///< a direction
+  Vector3 y_axis = -Vector3::UnitZ();  ///< a direction that is not parallel to x_axis
+};
+
+enum class LinkType { spring, limited, rigid };
+
+/// A hinge that holds a node of a net.
+struct NetAttachmentDesc {
+  std::string name;
+  int node = 0;
+  std::string frame;                 ///< empty: the fixed frame
+  Vector3 offset = Vector3::Zero();  ///< [m] in the frame
+  std::optional<InitialPose> initial_pose;
+};
+
+/// Two nodes that may not come closer.
+struct MinimumDistanceDesc {
+  std::array<int, 2> nodes{0, 0};
+  double distance = 0;  ///< [m] > 0
+};
+
+/// Particles joined by links: either a grid, or nodes and links.
+struct NetDesc {
+  std::string name;
+  std::optional<GridDesc> grid;
+  std::vector<Vector3> nodes;             ///< [m] without a grid; at rest
+  std::vector<std::array<int, 2>> links;  ///< without a grid: pairs of nodes
+  double mass = 0;                        ///< [kg] in all, > 0, shared evenly; or
+  std::vector<double> masses;             ///< [kg] a node, > 0
+  LinkType link_type = LinkType::spring;
+  double stiffness = 500;                              ///< [N/m] >= 0; spring and limited
+  double damping = 0.5;                                ///< [N s/m] >= 0; spring and limited
+  double tolerance = 0.1;                              ///< limited: largest |l / l0 - 1|
+  std::vector<MinimumDistanceDesc> minimum_distances;  ///< limited and rigid
+  Vector3 velocity = Vector3::Zero();                  ///< [m/s] of all nodes at first
+  double restitution = 0;                              ///< of bounces off obstacles, 0 to 1
+  double friction = 0.5;                               ///< Coulomb coefficient against obstacles that have none, >= 0
+  std::array<double, 4> color{0.7, 0.2, 0.1, 1.0};
+  std::vector<NetAttachmentDesc> attachments;
+
+  std::size_t node_count() const;
+  std::size_t link_count() const;
+};
+
+/// How particles and nets of springs are integrated over time.
+struct IntegratorDesc {
+  enum class Type { verlet, euler, rk4, pc5 };
+  /// Of Verlet's method: r(1) = r(0) + h v(0) + 1/2 h^2 f(0)/m, or the lecture's r(1) = r(0) + h v(0) + h^2 f(0)/m.
+  enum class FirstStep { taylor, lecture };
+  Type type = Type::verlet;
+  FirstStep first_step = FirstStep::taylor;
 };
 
 /// The fluid around the cables. Drag is quadratic, with the diameter as width, besides the linear drag of the materials.
@@ -179,6 +258,9 @@ struct SceneDesc {
   int seed = 0;
   std::vector<NamedMaterial> materials;  ///< those that the cables name
   std::vector<CableDesc> cables;
+  std::vector<ParticleDesc> particles;
+  std::vector<NetDesc> nets;
+  IntegratorDesc integrator;
   std::vector<ObstacleDesc> obstacles;
   std::optional<RobotDesc> robot;
   std::optional<ContactDesc> contact;  ///< none: cables do not touch cables

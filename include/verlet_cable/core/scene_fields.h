@@ -92,6 +92,34 @@ constexpr std::array<Field<PointMassDesc>, 1> point_mass_fields{{
     {"mass", &PointMassDesc::mass, "kg", positive, true},
 }};
 
+constexpr std::array<Field<GravityDesc>, 1> gravity_fields{{
+    {"mu", &GravityDesc::mu, "m^3/s^2", positive},
+}};
+
+constexpr std::array<Field<ParticleDesc>, 4> particle_fields{{
+    {"mass", &ParticleDesc::mass, "kg", positive, true},
+    {"restitution", &ParticleDesc::restitution, "", {0, 1, "any number from 0 to 1"}},
+    {"friction", &ParticleDesc::friction, "", not_negative},
+    {"radius", &ParticleDesc::radius, "m", positive},
+}};
+
+constexpr std::array<Field<GridDesc>, 1> grid_fields{{
+    {"spacing", &GridDesc::spacing, "m", {1e-6, 1e6, "any number above 0"}, true},
+}};
+
+constexpr std::array<Field<GridDesc, int>, 2> grid_integer_fields{{
+    {"rows", &GridDesc::rows, "", {1, 1e7, "an integer"}, true},
+    {"columns", &GridDesc::columns, "", {1, 1e7, "an integer"}, true},
+}};
+
+constexpr std::array<Field<NetDesc>, 5> net_fields{{
+    {"stiffness", &NetDesc::stiffness, "N/m", not_negative},
+    {"damping", &NetDesc::damping, "N s/m", not_negative},
+    {"tolerance", &NetDesc::tolerance, "", {1e-6, 0.9, "any number above 0, at most 0.9"}},
+    {"restitution", &NetDesc::restitution, "", {0, 1, "any number from 0 to 1"}},
+    {"friction", &NetDesc::friction, "", not_negative},
+}};
+
 constexpr std::array<Field<ObstacleDesc>, 2> obstacle_fields{{
     {"radius", &ObstacleDesc::radius, "m", positive},
     {"length", &ObstacleDesc::length, "m", positive},

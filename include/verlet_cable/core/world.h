@@ -8,6 +8,7 @@
 
 #include "verlet_cable/core/cable.h"
 #include "verlet_cable/core/contact.h"
+#include "verlet_cable/core/net.h"
 #include "verlet_cable/core/obstacle.h"
 #include "verlet_cable/core/scene_desc.h"
 #include "verlet_cable/core/types.h"
@@ -21,10 +22,11 @@ struct FrameInput {
 };
 using BoundaryInputs = std::vector<FrameInput>;
 
-/// What holds a node of a cable to a frame.
+/// What holds a node of a cable or net to a frame.
 struct Attachment {
   std::string name;
-  int cable = 0;  ///< index into World::cables()
+  int cable = 0;  ///< index into World::cables(), -1 if it holds a net
+  int net = -1;   ///< index into World::nets(), -1 if it holds a cable
   int node = 0;
   int frame = 0;  ///< index into World::frames()
   AttachmentType type = AttachmentType::hinge;
@@ -36,20 +38,22 @@ struct Attachment {
 struct StepResult {
   enum class Status {
     ok,
-    overstretched,  ///< held points are further apart than an inextensible cable between them is long: it was lengthened
+    overstretched,  ///< held points are further apart than what is between them can be: it was lengthened
     jumped,         ///< a holder was suddenly elsewhere: the cable was carried along with it
     degraded,  ///< a substep did not converge at the smallest size: the cable's motion was taken away, and it goes on from rest
     fault      ///< not even that: the cable stays as it was last, finite
   };
   Status status = Status::ok;
   int cable = -1;         ///< the first cable that is not ok
+  int net = -1;           ///< or net
+  int particle = -1;      ///< or particle
   int node = -1;          ///< its first node that is not ok
   int substeps = 0;       ///< the most that any cable took
   int iterations = 0;     ///< of the solver, all cables and substeps
   double max_strain = 0;  ///< largest |l / l0 - 1| at the end of the step
 };
 
-/// [J]; gravity is zero at the fixed frame's origin.
+/// [J]; gravity is zero at the fixed frame's origin, central gravity infinitely far away.
 struct Energy {
   double kinetic = 0, gravity = 0, stretch = 0, bend = 0, twist = 0;
   double total() const { return kinetic + gravity + stretch + bend + twist; }
@@ -78,8 +82,8 @@ struct EditResult {
   std::string name;  ///< pin: of the pin; cut: of the new cable
 };
 
-/// The simulation: cables whose attachments follow frames, in the fixed frame. A value: a copy is a snapshot, and continuing a
-/// copy gives the same bytes. Reads no clock, logs nothing, throws nothing in `step`.
+/// The simulation: cables and nets whose attachments follow frames, and particles, in the fixed frame. A value: a copy is a
+/// snapshot, and continuing a copy gives the same bytes. Reads no clock, logs nothing, throws nothing in `step`.
 class World {
  public:
   /// Cables whose frames are all known start at once, the others wait for `start_waiting`. `inputs` is indexed like
@@ -95,7 +99,7 @@ class World {
   StepResult step(const BoundaryInputs& inputs);
 
   /// Puts every cable that is held into static equilibrium, its holders where they are (Newton's method, no waiting); free cables
-  /// stay as they are. False if one of them found none; it is then at rest near it.
+  /// and nets stay as they are. False if one of them found none; it is then at rest near it.
   bool settle();
 
   double time() const;  ///< [s] steps done times the time step
@@ -110,25 +114,32 @@ class World {
   /// Id of the new or the existing frame. Without a pose, a new one is unknown until a step knows it.
   int add_frame(const std::string& name, const std::optional<Pose>& pose);
 
-  const std::vector<SimulatedCable>& cables() const;   ///< those that have started, pieces of cuts included
-  const std::vector<std::string>& waiting() const;     ///< names of cables that wait for a frame
-  const std::vector<Attachment>& attachments() const;  ///< of the started cables
+  const std::vector<SimulatedCable>& cables() const;  ///< those that have started, pieces of cuts included
+  const std::vector<SimulatedNet>& nets() const;      ///< those that have started
+  const std::vector<SimulatedParticle>& particles() const;
+  const std::vector<std::string>& waiting() const;     ///< names of cables and nets that wait for a frame
+  const std::vector<Attachment>& attachments() const;  ///< of the started cables and nets
   const std::vector<Break>& breaks() const;            ///< in the last step
   const std::vector<Intrusion>& intrusions() const;    ///< that the last step found, one a cable and obstacle
   /// Names of cables that found no equilibrium when they were to be settled, at their start or by `settle`.
   const std::vector<std::string>& unsettled() const;
   std::vector<SimulatedContact> contacts() const;      ///< where cables touched something in the last substep
   int find_cable(const std::string& name) const;       ///< index, -1 if there is none
+  int find_net(const std::string& name) const;         ///< index, -1 if there is none
   int find_attachment(const std::string& name) const;  ///< index, -1 if there is none
 
-  /// Starts the waiting cables whose frames are known now, at their default or given shapes. How many.
+  /// Starts the waiting cables and nets whose frames are known now, at their default or given shapes. How many.
   int start_waiting(const BoundaryInputs& inputs);
 
   /// Holds a node at a pose in a frame. The node goes there smoothly. `name` empty: one is made.
   EditResult pin(const std::string& name, int cable, int node, int frame, const Pose& pose, AttachmentType type);
+  /// Holds a node of a net likewise, by a hinge.
+  EditResult pin_net(const std::string& name, int net, int node, int frame, const Vector3& offset);
   EditResult unpin(const std::string& name);
   /// Gives an attachment another pose in its frame: the next step takes the node there, so move it little by little.
   EditResult move_attachment(const std::string& name, const Pose& pose);
+  /// Removes a link of a net; those after it count one less.
+  EditResult cut_link(int net, int link);
   /// Removes a segment; its mass stays on its nodes. The first piece keeps the name.
   EditResult cut(int cable, int segment);
   /// Pays out or takes in cable at one end, at up to `speed` [m/s] and smoothly, until the cable is `length` [m] long; its nodes

@@ -2,6 +2,7 @@
 
 #include <std_msgs/ColorRGBA.h>
 
+#include <array>
 #include <vector>
 
 #include "verlet_cable/core/cable.h"
@@ -9,6 +10,8 @@
 #include "verlet_cable/core/world.h"
 
 namespace verlet_cable {
+
+std_msgs::ColorRGBA to_color(const std::array<double, 4>& rgba);
 
 /// From blue (0) over pale yellow to red (1), told apart by color-blind eyes, too; values outside are clamped. Opaque.
 std_msgs::ColorRGBA color_of_load(double load);

@@ -19,16 +19,22 @@ geometry_msgs::Pose to_pose(const Pose& pose);
 /// Whether every position, velocity and tension of a cable is a finite number: what is not must not leave the node.
 bool is_finite(const SimulatedCable& cable);
 
+bool is_finite(const SimulatedNet& net);
+bool is_finite(const SimulatedParticle& particle);
+
+Net to_message(const SimulatedNet& net);
+Particle to_message(const SimulatedParticle& particle);
+
 /// Everything the message knows about cable `index` of `world.cables()`, whose contacts are among `contacts`.
 Cable to_message(const World& world, int index, const std::vector<SimulatedContact>& contacts);
 
 /// Contacts of cables with cables as both of them feel it: each appears twice.
 std::vector<SimulatedContact> contacts_of_both(const World& world);
 
-/// All cables of a world that are finite. The header is left to the caller.
+/// All cables, nets and particles of a world that are finite. The header is left to the caller.
 CableArray to_message(const World& world);
 
-/// What a cable exerts on the frame that holds it: axes of the frame, torque [N m] about the frame's origin.
+/// What a cable or net exerts on the frame that holds it: axes of the frame, torque [N m] about the frame's origin.
 /// `frame` is the frame's pose in the fixed frame, in whose axes the attachment's own force and torque are.
 geometry_msgs::Wrench wrench_on_frame(const Attachment& attachment, const Pose& frame);
 

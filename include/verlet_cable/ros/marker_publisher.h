@@ -15,7 +15,9 @@ namespace verlet_cable {
 
 /// Topic `markers`. Complete at every tick, so that a viewer that starts late lacks nothing; what is gone is deleted once.
 ///  * namespace = name of a cable, id 0: the cable, a tube or a line;
-///  * namespace "pins", ids from 1: what holds the cables: hinges are spheres, clamps are boxes, long along the cable;
+///  * namespace = name of a net, id 0: its links, as lines; id 1, of a grid with marker_style tube: its triangles, both sides;
+///  * namespace = name of a particle, id 0: a sphere;
+///  * namespace "pins", ids from 1: what holds cables and nets: hinges are spheres, clamps are boxes, long along the cable;
 ///  cable's +x;
 ///  * namespace "obstacles", ids from 1: those that are there; a capsule is three markers;
 ///  * namespace "payloads", ids from 1: point masses, as balls of aluminium would be.
@@ -32,6 +34,8 @@ class MarkerPublisher {
   void add_cable(const SimulatedCable& cable, const std::vector<double>& contact_forces,
                  visualization_msgs::MarkerArray& markers) const;
   void add_payloads(const SimulatedCable& cable, visualization_msgs::MarkerArray& markers);
+  void add_net(const SimulatedNet& net, visualization_msgs::MarkerArray& markers) const;
+  void add_particle(const SimulatedParticle& particle, visualization_msgs::MarkerArray& markers) const;
   void add_pin(const World& world, const Attachment& attachment, visualization_msgs::MarkerArray& markers);
   void add_obstacle(const World& world, const Obstacle& obstacle, visualization_msgs::MarkerArray& markers);
   void delete_what_is_gone(visualization_msgs::MarkerArray& markers);

@@ -59,6 +59,9 @@ class Simulation {
   /// Sends an attachment to another pose in its frame; it gets there smoothly.
   EditResult move_attachment(const std::string& name, const Pose& offset);
   EditResult cut(int cable, int segment);
+  EditResult pin_net(const std::string& name, int net, int node, const std::string& frame, const Pose& frame_pose,
+                     const Vector3& offset);
+  EditResult cut_links(int net, const std::vector<int>& links);  ///< of a net, ascending
   EditResult set_length(const std::string& cable, bool at_end, double length, double speed);
   EditResult join(const std::string& first, bool first_at_end, const std::string& second, bool second_at_end);
   /// Adds an obstacle to those of the scene, or replaces one that was added; it follows `frame` from when that is known on. It

@@ -19,7 +19,7 @@ struct SceneSources {
   std::function<std::optional<std::string>(const std::string& name)> parameter;
 };
 
-/// Reads a scene from its tree of keys. Throws SceneError with every error at once: unknown, doubled and unsupported keys, wrong
+/// Reads a scene from its tree of keys. Throws SceneError with every error at once: unknown and doubled keys, wrong
 /// types, meshes and robots that cannot be read, and all that `validate` finds; in the order of the tree, then of `validate`.
 /// Scalars are text, as YAML has them: numbers may be written as integers, decimals or `.inf`. Top-level keys in `ignored` are
 /// not looked at. The tree must be finite: aliases are bounded for text by `read_scene_text`, and nowhere else.

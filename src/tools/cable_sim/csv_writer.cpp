@@ -18,16 +18,29 @@ void CsvWriter::write_nodes(const World& world) {
   for (const SimulatedCable& cable : world.cables()) {
     const std::string start = time + ',' + cable.model.name + ',';
     const auto nodes = static_cast<std::size_t>(cable.model.nodes());
-    for (std::size_t node = 0; node < nodes; ++node) {
-      buffer_ += start;
-      buffer_ += std::to_string(node);
-      for (const double number : cable.state.positions[node]) append(number);
-      for (const double number : cable.state.velocities[node]) append(number);
-      append(cable.state.tension[std::min(node, nodes - 2)]);
-      buffer_ += '\n';
-    }
-    if (buffer_.size() > full_buffer) flush();
+    for (std::size_t node = 0; node < nodes; ++node)
+      write_row(start, node, cable.state.positions[node], cable.state.velocities[node],
+                cable.state.tension[std::min(node, nodes - 2)]);
   }
+  for (const SimulatedNet& net : world.nets()) {
+    const std::string start = time + ',' + net.model.name + ',';
+    const std::vector<double> tension = node_tension(net);
+    for (std::size_t node = 0; node < tension.size(); ++node)
+      write_row(start, node, net.state.positions[node], net.state.velocities[node], tension[node]);
+  }
+  for (const SimulatedParticle& particle : world.particles())
+    write_row(time + ',' + particle.desc.name + ',', 0, particle.position, particle.velocity, 0);
+}
+
+void CsvWriter::write_row(const std::string& start, std::size_t node, const Vector3& position, const Vector3& velocity,
+                          double tension) {
+  buffer_ += start;
+  buffer_ += std::to_string(node);
+  for (const double number : position) append(number);
+  for (const double number : velocity) append(number);
+  append(tension);
+  buffer_ += '\n';
+  if (buffer_.size() > full_buffer) flush();
 }
 
 void CsvWriter::flush() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "output_file.h"
@@ -7,7 +8,8 @@
 
 namespace verlet_cable::cable_sim {
 
-/// Writes `t,cable,node,x,y,z,vx,vy,vz,tension`, a row a node; numbers that read back as the same doubles.
+/// Writes `t,cable,node,x,y,z,vx,vy,vz,tension`, a row a node of cables and nets and
+/// a row a particle; numbers that read back as the same doubles.
 class CsvWriter {
  public:
   /// `file` is started and outlives this.
@@ -18,6 +20,7 @@ class CsvWriter {
   void flush();
 
  private:
+  void write_row(const std::string& start, std::size_t node, const Vector3& position, const Vector3& velocity, double tension);
   void append(double number);
 
   OutputFile& file_;

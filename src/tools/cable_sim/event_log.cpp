@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "verlet_cable/core/number_text.h"
+#include "verlet_cable/core/step_subject.h"
 
 namespace verlet_cable::cable_sim {
 namespace {
@@ -21,11 +22,11 @@ struct StatusText {
 StatusText text_of(StepResult::Status status) {
   switch (status) {
     case StepResult::Status::overstretched:
-      return {"overstretched", "held points are further apart than the cable between them is long; it is lengthened"};
+      return {"overstretched", "held points are further apart than what is between them is long; it is lengthened"};
     case StepResult::Status::jumped:
-      return {"jumped", "a holder was suddenly elsewhere; the cable was carried along with it"};
+      return {"jumped", "a holder was suddenly elsewhere; what it holds was carried along with it"};
     case StepResult::Status::degraded:
-      return {"degraded", "the solver did not converge; the cable's motion was taken away"};
+      return {"degraded", "no solution was found, or it ran away; its motion was taken away"};
     case StepResult::Status::fault:
       return {"FAULT", "no finite state was found"};
     case StepResult::Status::ok:
@@ -39,7 +40,7 @@ StatusText text_of(StepResult::Status status) {
 void EventLog::observe(const World& world, const StepResult& result, const std::vector<int>& held_back) {
   if (result.status != StepResult::Status::ok) {
     const StatusText text = text_of(result.status);
-    const std::string cable = result.cable >= 0 ? world.cables()[static_cast<std::size_t>(result.cable)].model.name : "";
+    const std::string cable = subject_of(world, result);
     report({world.time(), text.type, cable, result.node, "", text.message, ""}, result.max_strain);
   }
   add_breaks(world);

@@ -46,6 +46,9 @@ void write_energy(JsonWriter& json, const Energy& energy, double initial_total) 
 Summary::Summary(const World& world, std::int64_t first_averaged_step)
     : first_averaged_step_(first_averaged_step), initial_energy_(world.energy().total()) {
   for (const SimulatedCable& cable : world.cables()) segments_ += cable.model.segments();
+  for (const SimulatedNet& net : world.nets())
+    segments_ += static_cast<std::int64_t>(std::max(net.model.links.size(), net.model.masses.size()));
+  segments_ += static_cast<std::int64_t>(world.particles().size());
 }
 
 void Summary::add_step(const World& world, const StepResult& result, std::chrono::steady_clock::duration wall_time) {

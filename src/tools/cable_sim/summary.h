@@ -34,8 +34,8 @@ class Summary {
   double wall_seconds() const { return std::chrono::duration<double>(wall_time_).count(); }
 
   std::int64_t first_averaged_step_;
-  std::int64_t segments_ = 0;
-  double initial_energy_;  ///< [J]
+  std::int64_t segments_ = 0;  ///< as `limits.segments` counts: links or nodes of nets and particles, too
+  double initial_energy_;      ///< [J]
   std::chrono::steady_clock::duration wall_time_{0};
   std::int64_t substeps_ = 0;
   double max_strain_ = 0;

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <vector>
+
+#include "contact_set.h"
+#include "held_node.h"
+#include "holders.h"
+#include "verlet_cable/core/net.h"
+
+namespace verlet_cable {
+
+/// What a net's step is done with.
+struct NetStep {
+  const NetModel& model;
+  const SceneDesc& scene;                        ///< time step, gravity, fluid, integrator
+  const std::vector<MovingObstacle>& obstacles;  ///< over the step
+  const Holders& holders;
+  std::vector<HeldNode>& held;  ///< at the end of the step; forces on the holders are written to it
+
+  double h() const { return scene.time_step; }
+};
+
+struct NetStepResult {
+  bool finite = true;           ///< false: the state is as it was before
+  int overstretched_node = -1;  ///< of a link that could not be kept within its bounds; -1: none
+  int iterations = 0;
+  double max_strain = 0;
+};
+
+/// What acts on a held node besides the net's links.
+inline Vector3 force_on_holder(const NetStep& s, const HeldNode& held, const Vector3& links, const Vector3& wind,
+                               const Vector3& acceleration) {
+  return links + wind + s.model.masses[held.node] * (s.scene.gravity.at(held.position) - acceleration);
+}
+
+/// Whether nothing has run away: positions and velocities are numbers of a scene's size.
+inline bool is_sane(const std::vector<Vector3>& vectors) {
+  for (const Vector3& v : vectors)
+    if (!(v.cwiseAbs().maxCoeff() <= 1e9)) return false;
+  return true;
+}
+
+}  // namespace verlet_cable
