@@ -16,8 +16,10 @@ constexpr double aimed_part = 0.97;
 constexpr double rigid_tolerance = 1e-4;
 /// Rounds over what is outside its bounds; then it is reported.
 constexpr int maximum_rounds = 800;
+/// Corrections of links in a step, for each link of the net; what takes longer is reported, too.
+constexpr std::size_t maximum_corrections = 50, fewest_corrections = 20000;
 /// So many of them along the links' directions at the start of the step.
-constexpr int rounds_along_start = 40;
+constexpr int rounds_along_start = 8;
 /// Rigid links are springs in the sweeps, so stiff that a step's motion leaves this part of an error: where more links than
 /// needed hold a net in shape, that shares the load between them.
 constexpr double rigid_softness = 1e-3;
@@ -270,8 +272,11 @@ void LinkStepper::correct(int link, bool along_end) {
 /// Corrects what is outside its bounds, then whatever that has pushed out, until nothing is.
 void LinkStepper::keep_bounds(NetStepResult& result) {
   if (!measure(result)) return;
-  for (int round = 0; round < maximum_rounds && !outside_.empty(); ++round) {
+  const std::size_t most = std::max(fewest_corrections, maximum_corrections * nodes_.size());
+  std::size_t visited = 0;
+  for (int round = 0; round < maximum_rounds && visited < most && !outside_.empty(); ++round) {
     ++result.iterations;
+    visited += outside_.size();
     next_outside_.clear();
     for (const int link : outside_) listed_[link] = 0;
     for (const int link : outside_) {
