@@ -66,7 +66,7 @@ EXAMPLES = {
     'tethered_drone': (tethered_drone, [
         ('a drone on a tether, in wind', 0, 0, 2.75, 0.14), ('ground station', -0.1, 0, 0.35, 0.1), ('wind ->', -1.2, 0, 1.5, 0.12)]),
     'crane': (crane, [
-        ('a crane: the winch on the trolley hoists a payload', 0, 0, 2.5, 0.1), ('5 kg', 0, 0, 0.2, 0.1)]),
+        ('a crane: the winch on the trolley hoists a payload', 0, 0, 2.5, 0.1), ('payload: 5 kg', 0, 0, 0.2, 0.1)]),
     'rov_tether': (rov_tether, [
         ('the tether between a ship and an underwater robot, in a current', 0.5, 0, 0.55, 0.12),
         ('water surface', -1.1, 0, 0.06, 0.08), ('current ->', -1.1, 0, -0.9, 0.12)]),

@@ -24,7 +24,8 @@
 namespace verlet_cable {
 namespace {
 
-constexpr int refresh_period = 200;  // [ms]
+constexpr int refresh_period = 200;                   // [ms]
+constexpr int row_height = 24, smallest_table = 130;  // [pixels]
 constexpr std::size_t most_attachments = 100;
 const ros::WallDuration speed_period(1);
 const ros::WallDuration longest_silence(2);
@@ -49,15 +50,17 @@ CablePanel::CablePanel(QWidget* parent)
       pause_button_(new QPushButton("Pause")),
       step_button_(new QPushButton("Step")),
       steps_(new QSpinBox),
-      table_(new QTableWidget(0, 4)),
+      table_(new QTableWidget(0, 3)),
       snapshot_(new QLineEdit("first")),
       answer_(new QLabel) {
   auto* const form = new QFormLayout;
   form->addRow("Node", node_edit_);
   form->addRow("Speed", speed_label_);
-  table_->setHorizontalHeaderLabels({"Attachment", "Cable", "Force [N]", "Torque [N m]"});
+  table_->setHorizontalHeaderLabels({"Attachment", "Cable", "Force [N]"});
   table_->horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
   table_->verticalHeader()->hide();
+  table_->verticalHeader()->setDefaultSectionSize(row_height);
+  table_->setMinimumHeight(smallest_table);
   table_->setEditTriggers(QAbstractItemView::NoEditTriggers);
   answer_->setWordWrap(true);
   answer_->setTextInteractionFlags(Qt::TextSelectableByMouse);
@@ -175,7 +178,6 @@ void CablePanel::followAttachment(const std::string& name, const std::string& ca
       nameOf("wrench/" + name), 1, [this, name](const geometry_msgs::WrenchStamped::ConstPtr& message) {
         Load& load = loads_[name];
         load.force = length(message->wrench.force);
-        load.torque = length(message->wrench.torque);
         load.known = true;
       });
 }
@@ -213,11 +215,9 @@ void CablePanel::showLoads() {
   table_->setRowCount(static_cast<int>(loads_.size()));
   int row = 0;
   for (const auto& [name, load] : loads_) {
-    const auto number = [&load = load](double value) { return load.known ? QString::number(value, 'f', 2) : QString("-"); };
     table_->setItem(row, 0, cell(QString::fromStdString(name), Qt::AlignLeft));
     table_->setItem(row, 1, cell(QString::fromStdString(load.cable), Qt::AlignLeft));
-    table_->setItem(row, 2, cell(number(load.force), Qt::AlignRight));
-    table_->setItem(row, 3, cell(number(load.torque), Qt::AlignRight));
+    table_->setItem(row, 2, cell(load.known ? QString::number(load.force, 'f', 2) : "-", Qt::AlignRight));
     ++row;
   }
 }

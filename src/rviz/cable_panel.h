@@ -36,8 +36,7 @@ class CablePanel : public rviz::Panel {
   struct Load {
     std::string cable;
     ros::Subscriber subscriber;
-    double force = 0;   ///< [N]
-    double torque = 0;  ///< [N m], about the frame's origin
+    double force = 0;  ///< [N]
     bool known = false;
   };
 

@@ -69,10 +69,9 @@ int ClickTool::processMouseEvent(rviz::ViewportMouseEvent& event) {
     click(event);
     return Render;
   }
-  if (!event.left() && event.panel->getViewController()) {
-    event.panel->getViewController()->handleMouseEvent(event);
-    setCursor(QCursor(Qt::CrossCursor));
-  }
+  // Where the mouse only passes, the view would write its own help over the last answer.
+  const bool moves_view = event.middle() || event.right() || event.wheel_delta != 0;
+  if (moves_view && !event.left() && event.panel->getViewController()) event.panel->getViewController()->handleMouseEvent(event);
   return 0;
 }
 

@@ -15,6 +15,7 @@ import time
 import rospy
 from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
+from visualization_msgs.msg import InteractiveMarkerFeedback, InteractiveMarkerUpdate
 
 from cable_client import CableClient, all_finite, arc_length_at, nearest_to, node_at, transform
 from verlet_cable.msg import CableArray
@@ -22,6 +23,7 @@ from verlet_cable.msg import CableArray
 NUMBERS = [0, 1, -1, 0.3, 0.7, 1e-9, 1e9, 1e300, float('nan'), float('inf'), -float('inf')]
 WORDS = ['', 'rope', 'line', 'rope_2', 'line_2', 'hand', 'left', 'right', 'pin1', 'world', 'nowhere', 'a b', '/hand', 'x' * 100000]
 SCENES = ['', 'cables: []', 'a: [1', '{materials: {m: {linear_density: .nan}}}', '[' * 1000, '#' * 2000000]
+HANDLES = ['attachment/left', 'attachment/right', 'attachment/pin1', 'rope/0', 'rope/10', 'line/3', 'rope_2/1', 'nobody', '']
 LARGEST_GROWTH = 1.3  # of the node's memory after the first quarter
 
 
@@ -99,6 +101,33 @@ class Caller:
             raise AssertionError(f'{name} was refused without a reason')
 
 
+class Mouse:
+    """Random feedback of interactive markers, some of it as rviz never sends it."""
+
+    def __init__(self, choice):
+        self.choice = choice
+        self.publisher = rospy.Publisher('/cable/hands/feedback', InteractiveMarkerFeedback, queue_size=100)
+        self.updates = rospy.Subscriber('/cable/hands/update', InteractiveMarkerUpdate, self.check)
+        self.bad_poses = 0
+
+    def check(self, update):
+        for shown in list(update.markers) + list(update.poses):
+            p, q = shown.pose.position, shown.pose.orientation
+            self.bad_poses += not all(math.isfinite(x) for x in (p.x, p.y, p.z, q.x, q.y, q.z, q.w))
+
+    def number(self):
+        return self.choice.choice(NUMBERS) if self.choice.random() < 0.2 else self.choice.uniform(-1, 1)
+
+    def move(self):
+        feedback = InteractiveMarkerFeedback(client_id='soak', marker_name=self.choice.choice(HANDLES),
+                                             event_type=self.choice.randrange(8), menu_entry_id=self.choice.randrange(6))
+        feedback.header.frame_id = self.choice.choice(['', 'world', 'world', 'hand', 'nowhere', 'x' * 100000])
+        p, q = feedback.pose.position, feedback.pose.orientation
+        p.x, p.y, p.z = (self.number() for _ in range(3))
+        q.w = self.choice.choice([1, 1, 1, 0, 0.5, float('nan')])
+        self.publisher.publish(feedback)
+
+
 def memory(pid):
     """[kB] that a process occupies."""
     with open(f'/proc/{pid}/status') as status:
@@ -115,6 +144,7 @@ def main():
     world = World(random.Random(options.seed))
     node = CableClient('/cable')
     caller = Caller(random.Random(options.seed + 1), node)
+    mouse = Mouse(random.Random(options.seed + 2))
     begin, early, states = time.monotonic(), None, [0, 0]
 
     def check(state):
@@ -124,12 +154,14 @@ def main():
     rospy.Subscriber('/cable/state', CableArray, check)
     while time.monotonic() - begin < 60 * options.minutes:
         caller.call()
+        mouse.move()
         if options.pid and early is None and time.monotonic() - begin > 15 * options.minutes:
             early = memory(options.pid)
     world.stop.set()
     late = memory(options.pid) if options.pid else 0
-    print(f'{states[0]} states, {states[1]} not finite; memory {early} -> {late} kB; calls (done, refused): {caller.calls}')
-    sys.exit(states[0] == 0 or states[1] > 0 or (early is not None and late > LARGEST_GROWTH * early))
+    print(f'{states[0]} states, {states[1]} not finite, {mouse.bad_poses} handles not finite; memory {early} -> {late} kB; '
+          f'calls (done, refused): {caller.calls}')
+    sys.exit(states[0] == 0 or states[1] > 0 or mouse.bad_poses > 0 or (early is not None and late > LARGEST_GROWTH * early))
 
 
 if __name__ == '__main__':
