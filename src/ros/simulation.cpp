@@ -82,7 +82,11 @@ void Simulation::start_if_possible() {
 }
 
 void Simulation::start(Nanoseconds time) {
+  // Frames of obstacles that came before the start are numbered anew, together with the new world's.
+  if (!keeps_world_) frames_.reset(time);
   frames_.sample_without_waiting(time, true);
+  stamp_ = time;
+  started_ = true;
   if (!keeps_world_) {
     world_ = World(scene_, frames_.inputs());
     moves_.clear();
@@ -92,8 +96,6 @@ void Simulation::start(Nanoseconds time) {
     intrusions_.clear();
     report_unsettled(0);
   }
-  stamp_ = time;
-  started_ = true;
   waits_for_frames_ = frame_watch_.react(frames_.changes(), stamp_, world_);
   frame_watch_.report_unseen(frames_.inputs(), frames_.report());
   publish();

@@ -34,7 +34,7 @@ EditResult Simulation::save_state(const std::string& name) {
     return refused("name: " + quoted(name) + "; limits.snapshots allows " + std::to_string(most) +
                    "; allowed: to replace one of them: " + names_of(snapshots_));
   }
-  snapshots_.insert_or_assign(name, Snapshot{world_, scene_, stamp_, frames_.save()});
+  snapshots_.insert_or_assign(name, Snapshot{world_, scene_, stamp_, frames_.save(), added_obstacles_});
   return done("saved as " + quoted(name));
 }
 
@@ -44,6 +44,7 @@ EditResult Simulation::restore_state(const std::string& name) {
   if (found == snapshots_.end()) return refused("name: " + quoted(name) + "; allowed: " + names_of(snapshots_));
   const Snapshot& snapshot = found->second;
   world_ = snapshot.world;
+  added_obstacles_ = snapshot.added_obstacles;
   moves_.clear();
   use_scene(snapshot.scene);
   if (paused_) {
@@ -61,7 +62,7 @@ EditResult Simulation::restore_state(const std::string& name) {
 }
 
 std::optional<Snapshot> Simulation::snapshot(const std::string& name) const {
-  if (name.empty()) return Snapshot{world_, scene_, stamp_, frames_.save()};
+  if (name.empty()) return Snapshot{world_, scene_, stamp_, frames_.save(), added_obstacles_};
   const auto found = snapshots_.find(name);
   return found == snapshots_.end() ? std::nullopt : std::optional<Snapshot>(found->second);
 }

@@ -116,6 +116,19 @@ class ObstaclesTest(unittest.TestCase):
         self.send(marker(0, action=Marker.DELETEALL))
         self.wait_for_shown(lambda found: {m.id for m in found} <= others | {m.id for m in before}, 'the scene alone')
 
+    def test_a_snapshot_brings_them_back_and_they_can_be_removed_again(self):
+        def is_there(found):
+            return 4 in {m.pose.position.y for m in found}
+        self.send(marker(1, position=(0, 4, 1)))
+        self.wait_for_shown(is_there, 'the obstacle')
+        self.assertTrue(self.node.save_state('with').success)
+        self.send(marker(1, action=Marker.DELETE))
+        self.wait_for_shown(lambda found: not is_there(found), 'it deleted')
+        self.assertTrue(self.node.restore_state('with').success)
+        self.wait_for_shown(is_there, 'it restored')
+        self.send(marker(1, action=Marker.DELETE))
+        self.wait_for_shown(lambda found: not is_there(found), 'it deleted again')
+
     def test_a_cable_is_carried_by_what_is_added_and_moved(self):
         began = rospy.get_time()
         self.frames.motions['lift'] = lambda t: (0, 0, min(-0.1 + 0.15 * (t - began), 0.2))

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
 """Snapshots: what follows them is the same every time, bit for bit; bad requests are refused and change nothing."""
+import json
+import math
 import sys
 import unittest
 
@@ -7,6 +9,22 @@ import rospy
 import rostest
 
 from cable_client import CableClient, Frames, cable, contents, distance, node_at
+
+
+# A hose twisted by its clamp, on a floor and on itself, that a winch pays out.
+BUSY_SCENE = """
+contact: {}
+materials: {hose: {linear_density: 0.1, radius: 0.01, bending_stiffness: 0.002, torsional_stiffness: 0.0015, bending_damping: 0.001}}
+cables:
+  - name: hose
+    length: 1.0
+    segments: 50
+    material: hose
+    attachments:
+      - {name: reel, at: start, offset: [0, 0, 0.3], type: clamp}
+      - {name: nozzle, at: end, frame: nozzle, initial_pose: [0.3, 0, 0.1, 0, 0, 0], type: clamp}
+obstacles: [{name: floor, type: plane}]
+"""
 
 
 class SnapshotsTest(unittest.TestCase):
@@ -43,6 +61,30 @@ class SnapshotsTest(unittest.TestCase):
         restored = self.node.state()
         self.assertEqual(contents(restored), contents(saved), 'back at the time of the snapshot, too')
         self.assertEqual(contents(self.run_on(1000)), contents(first))
+
+    def test_contacts_twist_and_a_winch_go_on_bit_for_bit(self):
+        def turning(t):
+            return (0.3, 0, 0.1), (math.sin(math.sin(t)), 0, 0, math.cos(math.sin(t)))
+        with Frames(nozzle=turning):
+            self.assertTrue(self.node.load_scene(yaml=BUSY_SCENE).success)
+            try:
+                self.assertTrue(self.node.set_length('hose', False, 1.8, 0.2).success)
+                with self.node.states() as states:
+                    states.wait_for(lambda s: cable(s, 'hose') and cable(s, 'hose').rest_length > 1.1, 'a longer hose')
+                self.assertTrue(self.node.pause(True).success)
+                rospy.sleep(1.3)  # tf has come for what follows
+                self.assertTrue(self.node.save_state('busy').success)
+                saved = cable(self.node.state(), 'hose')
+                first = self.run_on(1000)
+                self.assertTrue(self.node.restore_state('busy').success)
+                self.assertEqual(contents(self.run_on(1000)), contents(first))
+            finally:
+                scene = {key: value for key, value in rospy.get_param('/cable').items() if key != 'tuning'}
+                self.assertTrue(self.node.load_scene(yaml=json.dumps(scene)).success)
+        later = cable(first, 'hose')
+        self.assertGreater(len(saved.contacts), 0)
+        self.assertGreater(later.rest_length, saved.rest_length + 0.1)
+        self.assertGreater(max(abs(a - b) for a, b in zip(later.twist, saved.twist)), 0.01)
 
     def test_moving_frames_are_where_they_were(self):
         with Frames(hand=lambda t: (0.6 + 0.1 * (t % 1), 0, 0)):

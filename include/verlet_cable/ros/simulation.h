@@ -21,18 +21,19 @@
 
 namespace verlet_cable {
 
+/// An obstacle that was added while running.
+struct AddedObstacle {
+  Obstacle obstacle;
+  std::string frame;
+};
+
 /// What `save_state` keeps: with it a run goes on as it would have.
 struct Snapshot {
   World world;
   SceneDesc scene;        ///< as it was tuned
   Nanoseconds stamp = 0;  ///< the simulated time
   std::vector<SavedFrame> frames;
-};
-
-/// An obstacle that was added while running.
-struct AddedObstacle {
-  Obstacle obstacle;
-  std::string frame;
+  std::map<std::string, AddedObstacle> added_obstacles;
 };
 
 /// A world that runs `tf_latency` behind ROS time, follows tf, and is published. For one thread: requests are called between
