@@ -12,13 +12,15 @@ import sys
 import threading
 import time
 
+import actionlib
 import rospy
+from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
 from rosgraph_msgs.msg import Clock
 from tf2_msgs.msg import TFMessage
-from visualization_msgs.msg import InteractiveMarkerFeedback, InteractiveMarkerUpdate
+from visualization_msgs.msg import InteractiveMarkerFeedback, InteractiveMarkerUpdate, Marker, MarkerArray
 
 from cable_client import CableClient, all_finite, arc_length_at, nearest_to, node_at, transform
-from verlet_cable.msg import CableArray
+from verlet_cable.msg import CableArray, RolloutAction, RolloutGoal
 
 NUMBERS = [0, 1, -1, 0.3, 0.7, 1e-9, 1e9, 1e300, float('nan'), float('inf'), -float('inf')]
 WORDS = ['', 'rope', 'line', 'rope_2', 'line_2', 'hand', 'left', 'right', 'pin1', 'world', 'nowhere', 'a b', '/hand', 'x' * 100000]
@@ -64,6 +66,8 @@ class Caller:
     def __init__(self, choice, node):
         self.choice, self.node = choice, node
         self.calls = {}
+        self.obstacles = rospy.Publisher('/cable/obstacles', MarkerArray, queue_size=10)
+        self.rollouts = actionlib.SimpleActionClient('/cable/rollout', RolloutAction)
 
     def number(self):
         return self.choice.choice(NUMBERS) if self.choice.random() < 0.3 else self.choice.uniform(0, 2)
@@ -75,6 +79,29 @@ class Caller:
         name, number = self.word(), self.number()
         return self.choice.choice([lambda: node_at(name, self.choice.choice([0, 1, 10, 20, 4294967295])),
                                    lambda: arc_length_at(name, number), lambda: nearest_to(name, (number, 0, 0), self.word())])()
+
+    def pose(self):
+        rotation = self.choice.choice([(0, 0, 0, 1)] * 4 + [(0, 0, 0, 0), (self.number(), 0, 0, 1)])
+        return Pose(Point(self.number(), self.number(), self.number()), Quaternion(*rotation))
+
+    def send_obstacle(self):
+        marker = Marker(ns='soak', id=self.choice.randrange(20), type=self.choice.choice([1, 1, 2, 3, 10, 0, 99]),
+                        action=self.choice.choice([0] * 20 + [2] * 10 + [3, 7]), pose=self.pose(),
+                        mesh_resource=self.choice.choice(['', 'package://none/a.stl', 'file:///etc/passwd']))
+        marker.header.frame_id = self.choice.choice(['world', 'world', 'hand', 'nowhere', self.word()])
+        size = self.choice.choice([0.1, 0.3, self.number()])
+        marker.scale = Vector3(size, size, size)
+        self.obstacles.publish([marker])
+
+    def send_rollout(self):
+        motion = [transform(self.choice.choice(['hand', 'nowhere', self.word()]), self.choice.choice([0, 0.1, 0.5, 0.5, 1, 1e6]),
+                            (self.number(), 0, 0)) for _ in range(self.choice.randrange(4))]
+        self.rollouts.send_goal(RolloutGoal(snapshot=self.word(), motion=motion, duration=self.number(), rate=self.number()))
+        if self.choice.random() < 0.3:
+            self.rollouts.cancel_all_goals()
+
+    def send(self):
+        self.choice.choice([self.send_obstacle, self.send_rollout])()
 
     def call(self):
         node, flag = self.node, self.choice.random() < 0.5
@@ -155,6 +182,7 @@ def main():
     while time.monotonic() - begin < 60 * options.minutes:
         caller.call()
         mouse.move()
+        caller.send()
         if options.pid and early is None and time.monotonic() - begin > 15 * options.minutes:
             early = memory(options.pid)
     world.stop.set()
