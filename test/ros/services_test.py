@@ -147,7 +147,11 @@ class ServicesTest(unittest.TestCase):
         moved = cable(self.node.state(), 'rope')
         self.assertGreater(math.dist((moved.positions[0].x, moved.positions[0].z), (0, 1)), 0.1)
         self.assertTrue(self.node.reset().success)
-        self.assertEqual(cable(self.node.state(), 'rope'), first)
+        again = cable(self.node.state(), 'rope')
+        self.assertEqual(again.attachments, first.attachments)
+        # tf's interpolation rounds: a frame at rest is not at the same bits at all times.
+        for before, after in zip(first.positions + first.velocities, again.positions + again.velocities):
+            self.assertLess(math.dist((before.x, before.y, before.z), (after.x, after.y, after.z)), 1e-9)
 
 
 if __name__ == '__main__':
