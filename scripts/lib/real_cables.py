@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""real_cables.py PROGRAMS DATA PICTURES: fits the cables of DATA (dloK_R.csv) with the programs in PROGRAMS, prints the table of
-doc/real_cables.md, and draws its pictures."""
+"""real_cables.py PROGRAMS DATA WORK PICTURES [SEGMENTS]: fits the cables of DATA (dloK_R.csv) with the programs in PROGRAMS, keeps
+scenes and reports in WORK, prints the tables of doc/real_cables.md, and draws its pictures."""
 import glob
 import json
 import os
@@ -22,12 +22,12 @@ PUBLISHED = {1: 1.03, 2: 1.02, 3: 0.99, 4: 1.15}
 SHOWN_TIMES = (0.0, 1.0, 2.5, 4.9)  # [s]
 
 
-def fit(programs, cable, recordings, work):
-    """Runs cable_fit; the report, and how long it took [s]."""
+def fit(programs, cable, recordings, segments, work):
+    """Runs cable_fit; the report, and how long it took [s], cross-validation and all."""
     report = os.path.join(work, f'dlo{cable}.json')
     began = time.monotonic()
-    subprocess.run([os.path.join(programs, 'cable_fit'), *recordings, '--name', f'dlo{cable}', '--output',
-                    os.path.join(work, f'dlo{cable}.yaml'), '--report', report], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([os.path.join(programs, 'cable_fit'), *recordings, '--name', f'dlo{cable}', '--segments', str(segments),
+                    '--output', os.path.join(work, f'dlo{cable}.yaml'), '--report', report], check=True, stdout=subprocess.DEVNULL)
     with open(report, encoding='utf-8') as file:
         return json.load(file), time.monotonic() - began
 
@@ -67,8 +67,17 @@ def simulate(programs, cable, recording, segments, work):
 
 
 def errors_over_time(predicted, recording):
-    """Mean |predicted - measured| over markers and coordinates [m], a row."""
-    return np.abs(predicted - recording.markers).mean(axis=(1, 2))
+    """Mean |predicted - measured| over markers and coordinates [m], a row after the two that are given."""
+    return np.abs(predicted - recording.markers)[2:].mean(axis=(1, 2))
+
+
+def left_out_errors(report, in_order):
+    """Errors [cm] of the recordings that the fit did not know: mean, largest, at the end. `in_order`: where markers are swapped,
+    with them in their order."""
+    errors = [recording.get('left_out_in_order' if in_order else 'left_out', recording['left_out'])
+              for recording in report['recordings']]
+    return (100 * np.mean([error['mean'] for error in errors]), 100 * max(error['largest'] for error in errors),
+            100 * np.mean([error['last'] for error in errors]))
 
 
 def draw_shapes(cable, recording, predicted, pictures):
@@ -87,39 +96,46 @@ def draw_shapes(cable, recording, predicted, pictures):
     plt.close(figure)
 
 
+def table_row(cable, name, report, in_order):
+    mean, largest, last = left_out_errors(report, in_order)
+    fitted = [recording.get('fitted_in_order' if in_order else 'fitted', recording['fitted'])['mean']
+              for recording in report['recordings']]
+    print(f"| {name} | {mean:.2f} | {PUBLISHED.get(cable, '')} | {largest:.1f} | {last:.2f} | {100 * np.mean(fitted):.2f} |")
+
+
 def main():
-    if len(sys.argv) != 4:
-        sys.exit('usage: real_cables.py PROGRAMS DATA PICTURES')
-    programs, data, pictures = sys.argv[1:]
-    work = os.path.join(programs, 'real_cables')
+    if len(sys.argv) not in (5, 6):
+        sys.exit('usage: real_cables.py PROGRAMS DATA WORK PICTURES [SEGMENTS]')
+    programs, data, work, pictures = sys.argv[1:5]
+    segments = int(sys.argv[5]) if len(sys.argv) == 6 else 40
     os.makedirs(work, exist_ok=True)
     os.makedirs(pictures, exist_ok=True)
     figure, axis = plt.subplots(figsize=(8, 4.5), constrained_layout=True)
-    print('mean absolute errors [cm]')
-    print('cable  left out  in order  published  largest  at 5 s  fitted  half segments  twice  fit [s]  real-time factor')
+    other_numbers = []
+    print('| cable | left out [cm] | published [cm] | largest [cm] | at 5 s [cm] | fitted [cm] |\n|---|---|---|---|---|---|')
     for cable in range(1, 6):
         paths = sorted(glob.glob(os.path.join(data, f'dlo{cable}_*.csv')))
-        report, seconds = fit(programs, cable, paths, work)
+        report, seconds = fit(programs, cable, paths, segments, work)
+        table_row(cable, cable, report, in_order=False)
+        if 'cross_validated_error_in_order' in report:
+            table_row(cable, f'{cable}, markers in order', report, in_order=True)
         recordings = [Recording(path) for path in paths]
-        segments = report['segments']
-        means, factors, runs = {}, [], []
+        means = {}
         for count in (segments // 2, segments, 2 * segments):
-            results = [simulate(programs, cable, recording, count, work) for recording in recordings]
-            over_time = np.array([errors_over_time(predicted, recording)
-                                  for (predicted, _), recording in zip(results, recordings)])
-            means[count] = over_time.mean()
+            runs = [simulate(programs, cable, recording, count, work) for recording in recordings]
+            over_time = [errors_over_time(predicted, recording) for (predicted, _), recording in zip(runs, recordings)]
+            means[count] = 100 * np.mean([errors.mean() for errors in over_time])
             if count == segments:
-                runs = results
-                factors = [factor for _, factor in results]
-                axis.plot(recordings[0].times, 100 * over_time.mean(axis=0), label=f'cable {cable}')
-        left_out = [recording['left_out'] for recording in report['recordings']]
-        in_order = report.get('cross_validated_error_in_order', report['cross_validated_error'])
-        print(f"{cable:5d} {100 * report['cross_validated_error']:9.3f} {100 * in_order:9.3f} "
-              f"{PUBLISHED.get(cable, float('nan')):10.2f} {100 * max(e['largest'] for e in left_out):8.1f} "
-              f"{100 * np.mean([e['last'] for e in left_out]):7.2f} {100 * means[segments]:7.3f} "
-              f'{100 * means[segments // 2]:14.3f} {100 * means[2 * segments]:6.3f} {seconds:8.0f} {min(factors):17.0f}',
-              flush=True)
-        draw_shapes(cable, recordings[0], runs[0][0], pictures)
+                rows = min(len(errors) for errors in over_time)
+                axis.plot(recordings[0].times[2:rows + 2], 100 * np.mean([errors[:rows] for errors in over_time], axis=0),
+                          label=f'cable {cable}')
+                draw_shapes(cable, recordings[0], runs[0][0], pictures)
+                factor = min(factor for _, factor in runs)
+        other_numbers.append(f'| {cable} | ' + ' | '.join(f'{mean:.3f}' for mean in means.values()) +
+                             f' | {seconds:.0f} | {factor:.0f} |')
+        sys.stdout.flush()
+    print(f'\n| cable | fitted, {segments // 2} segments [cm] | {segments} | {2 * segments} | fit and cross-validation [s] '
+          '| times real time |\n|---|---|---|---|---|---|', *other_numbers, sep='\n')
     axis.set(xlabel='t [s]', ylabel='mean absolute error [cm]', ylim=(0, None), title='Fitted cables, mean over 8 recordings')
     axis.legend()
     figure.savefig(os.path.join(pictures, 'errors.png'), dpi=90)

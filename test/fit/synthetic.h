@@ -35,8 +35,8 @@ inline SceneDesc known_cable() {
 constexpr double held_distance = 0.025;
 
 /// A recording as a camera would make it, at 100 Hz: 8 markers on the cable and two on each of the hands that hold it, noise on
-/// every coordinate [m]. Hands at its ends swing it, in another way for every `take`.
-inline Recording synthetic_recording(const SceneDesc& known, int take, double duration, double noise) {
+/// every coordinate [m], another for every `seed`. Hands at its ends swing it, in another way for every `take`.
+inline Recording synthetic_recording(const SceneDesc& known, int take, double duration, double noise, int seed = 0) {
   SceneDesc scene = known;
   CableDesc& cable = scene.cables.front();
   FrameTrack start, end;
@@ -60,7 +60,7 @@ inline Recording synthetic_recording(const SceneDesc& known, int take, double du
 
   Recording recording;
   recording.path = "take" + std::to_string(take);
-  std::mt19937 random(static_cast<unsigned>(take));
+  std::mt19937 random(static_cast<unsigned>(seed + take));
   std::normal_distribution<double> scatter(0, 1);
   for (int row = 0; row <= static_cast<int>(duration * 100); ++row) {
     while (world.steps() < 10 * row) world.step(frames.at(static_cast<double>(world.steps() + 1) * scene.time_step));

@@ -62,7 +62,7 @@ std::vector<Confidence> confidence(const Problem& problem, const std::vector<dou
     confidence.told = parameter.logarithmic
                           ? confidence.half_width < widest_logarithmic && values[i] > parameter.lowest + near_limit &&
                                 values[i] < parameter.highest - near_limit
-                      : parameter.likely > 0 ? confidence.half_width < parameter.likely
+                      : parameter.likely > 0 ? confidence.half_width < std::max(parameter.likely, std::abs(values[i]))
                                              : confidence.half_width < infinity;
   }
   return result;

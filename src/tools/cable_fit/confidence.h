@@ -9,7 +9,7 @@ namespace verlet_cable::cable_fit {
 /// How well the recordings tell a parameter.
 struct Confidence {
   double half_width = 0;  ///< of its 95 % interval, in the scale in which it is looked for; infinite: they do not tell it
-  bool told = false;      ///< the interval is small enough to mean something, and the value not at its limit
+  bool told = false;      ///< the interval is small enough to mean something, or without 0, and the value not at its limit
 };
 
 /// One a parameter, of the values that were fitted to all recordings. The variance of what the recordings say is that between

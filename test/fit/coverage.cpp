@@ -1,0 +1,84 @@
+// Fits cables to synthetic recordings with 2 mm of noise, again and again with other noise, and prints what was found over what
+// is true, and how often the 95 % intervals hold the truth. Run by scripts/real.
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+
+#include "cable_fit/confidence.h"
+#include "cable_fit/least_squares.h"
+#include "synthetic.h"
+
+namespace verlet_cable::cable_fit {
+namespace {
+
+constexpr int tries = 10, takes = 4, segments = 32;
+constexpr double duration = 4, noise = 0.002;  // [s], [m]
+
+struct Known {
+  const char* name;
+  double MaterialDesc::*member;
+};
+constexpr Known known_values[] = {
+    // in the order of the parameters
+    {"bending_stiffness", &MaterialDesc::bending_stiffness},
+    {"bending_damping", &MaterialDesc::bending_damping},
+    {"drag", &MaterialDesc::drag},
+    {"torsional_stiffness", &MaterialDesc::torsional_stiffness},
+};
+
+struct Found {
+  double ratio[std::size(known_values)];
+  bool covered[std::size(known_values)];
+};
+
+Found one_try(int number) {
+  const SceneDesc known = known_cable();
+  const MaterialDesc& truth = known.materials[0].material;
+  std::vector<Recording> recordings;
+  std::vector<Smoothed> inputs;
+  for (int take = 0; take < takes; ++take) {
+    recordings.push_back(synthetic_recording(known, take, duration, noise, 100 * (number + 1)));
+    inputs.push_back(smoothed(recordings.back()));
+  }
+  CableSettings settings;
+  settings.name = "found";
+  settings.segments = segments;
+  settings.linear_density = truth.linear_density;
+  std::vector<std::string> errors;
+  measure_length(recordings, inputs, settings, errors);
+  const Problem problem{recordings, inputs, settings, cable_parameters(settings), [] {}};
+  std::vector<int> all(takes);
+  std::iota(all.begin(), all.end(), 0);
+  const std::vector<double> values = fit(problem, all, coarse_search(problem, all));
+  const std::vector<Confidence> intervals = confidence(problem, values);
+  Found found;
+  for (std::size_t i = 0; i < std::size(known_values); ++i) {
+    const double difference = values[i] - std::log10(truth.*known_values[i].member);
+    found.ratio[i] = std::pow(10, difference);
+    found.covered[i] = std::abs(difference) <= intervals[i].half_width;
+  }
+  return found;
+}
+
+void print_table() {
+  std::vector<Found> found;
+  for (int number = 0; number < tries; ++number) found.push_back(one_try(number));
+  std::printf("| parameter | mean of found / true | furthest from 1 | intervals that hold the truth |\n|---|---|---|---|\n");
+  for (std::size_t i = 0; i < std::size(known_values); ++i) {
+    double mean = 0, furthest = 1;
+    int covered = 0;
+    for (const Found& one : found) {
+      mean += one.ratio[i] / tries;
+      if (std::abs(one.ratio[i] - 1) > std::abs(furthest - 1)) furthest = one.ratio[i];
+      covered += one.covered[i];
+    }
+    std::printf("| %s | %.3f | %.3f | %d of %d |\n", known_values[i].name, mean, furthest, covered, tries);
+  }
+}
+
+}  // namespace
+}  // namespace verlet_cable::cable_fit
+
+int main() {
+  verlet_cable::cable_fit::print_table();
+}
