@@ -68,7 +68,7 @@ inline __attribute__((always_inline)) void start(const Pointers& p) {
 
 template <int stride>
 inline __attribute__((always_inline)) void sweep(const Pointers& p, const Law& law) {
-  const double *x = p.x, *y = p.y, *z = p.z, *w = p.w, *inverse = p.inverse_length;
+  const double *x = p.x, *y = p.y, *z = p.z, *w = p.w, *inverse_length = p.inverse_length;
   double *u = p.u, *v = p.v, *s = p.s, *impulse = p.impulse;
   const int step = stride > 0 ? stride : p.stride;
   const double h = law.h;
@@ -78,15 +78,16 @@ inline __attribute__((always_inline)) void sweep(const Pointers& p, const Law& l
     const double dx = x[j] - x[i], dy = y[j] - y[i], dz = z[j] - z[i];
     const double ex = dx + h * (u[j] - u[i]), ey = dy + h * (v[j] - v[i]), ez = dz + h * (s[j] - s[i]);
     const double length = std::sqrt(ex * ex + ey * ey + ez * ez);
-    const double e = inverse[link], mobility = h * (w[i] + w[j]), before = impulse[link];
-    // The law is solved for P with l' = length + mobility (P - before).
-    const double free = length - mobility * before;
-    const double spring =
-        -h * (law.total_stiffness * free - law.rest_stiffness - law.damping / e) / (1 + h * law.total_stiffness * mobility);
-    double next = free + mobility * spring;
+    const double e = inverse_length[link], mobility = h * (w[i] + w[j]), before = impulse[link];
+    // The law is solved for P with l' = length + mobility (P - before). Divisions are dear: both are made of one.
+    const double free = length - mobility * before, resistance = 1 + h * law.total_stiffness * mobility;
+    const double inverse = 1 / (mobility * resistance);
+    const double start_length = e * (dx * dx + dy * dy + dz * dz);
+    const double pull = law.total_stiffness * free - law.rest_stiffness - law.damping * start_length;
+    double next = free - h * mobility * mobility * inverse * pull;
     next = next < law.longest ? next : law.longest;
     next = next > law.shortest ? next : law.shortest;
-    const double change = (next - length) / mobility;
+    const double change = (next - length) * inverse * resistance;
     impulse[link] = before + change;
     const double size = change * e, of_i = size * w[i], of_j = size * w[j];
     u[i] -= of_i * dx;
@@ -159,7 +160,7 @@ double end_length(int i, int j, double h, const LinkArrays& a) {
   return (get(a.position, j) - get(a.position, i) + h * (get(a.velocity, j) - get(a.velocity, i))).norm();
 }
 
-void set_length(int link, int i, int j, double length, bool along_end, double h, LinkArrays& a) {
+Vector3 set_length(int link, int i, int j, double length, bool along_end, double h, LinkArrays& a) {
   // A link that turns round within a step is not shortened by what pulls along its direction at the start.
   constexpr double turned = 0.5;
   const Vector3 start = (get(a.position, j) - get(a.position, i)) * a.inverse_length[link];
@@ -168,9 +169,11 @@ void set_length(int link, int i, int j, double length, bool along_end, double h,
   if (before > 0 && start.dot(end) < turned * before) along_end = true;
   const Vector3 direction = along_end && before > 0 ? Vector3(end / before) : start;
   const double change = (length - before) / (h * (a.inverse_mass[i] + a.inverse_mass[j]));
-  if (!along_end) a.impulse[link] += change;
   set(a.velocity, i, get(a.velocity, i) - change * a.inverse_mass[i] * direction);
   set(a.velocity, j, get(a.velocity, j) + change * a.inverse_mass[j] * direction);
+  if (along_end) return change * direction;
+  a.impulse[link] += change;
+  return Vector3::Zero();
 }
 
 }  // namespace verlet_cable

@@ -48,8 +48,9 @@ SquareRange measure_links(const LinkRun& run, double rest_length, double h, cons
 
 /// Brings one link's length to `length` [m]: the part of `sweep_links` that is left when nothing but bounds counts. By an impulse
 /// along its direction at the start of the step, or by one along that at the end, which finds a way where the former cannot (a
-/// net in a plane cannot be kept in shape along its links when it leaves the plane), but is no part of the link's impulse.
-void set_length(int link, int first_node, int second_node, double length, bool along_end, double h, LinkArrays& arrays);
+/// net in a plane cannot be kept in shape along its links when it leaves the plane), but is no part of the link's impulse: then
+/// what the second node was given [N s] is returned, else nothing.
+Vector3 set_length(int link, int first_node, int second_node, double length, bool along_end, double h, LinkArrays& arrays);
 /// [m] of one link at the end of the step.
 double end_length(int first_node, int second_node, double h, const LinkArrays& arrays);
 

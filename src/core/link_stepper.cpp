@@ -12,6 +12,10 @@ constexpr int limited_sweeps = 4;
 constexpr int rigid_sweeps = 12;
 /// Of the tolerance: sweeps keep inside of this much of it, so that few links are outside of the whole of it afterwards.
 constexpr double aimed_part = 0.97;
+/// Impulses follow changes over so many links in a few sweeps. In larger nets they lag behind, and what lags behind feeds energy
+/// to what swings: there only a part of them is kept from step to step.
+constexpr int links_followed = 60;
+constexpr double kept_in_large_nets = 0.5;
 /// Relative error of a rigid link's length that is left.
 constexpr double rigid_tolerance = 1e-4;
 /// Rounds over what is outside its bounds; then it is reported.
@@ -40,7 +44,12 @@ void LinkStepper::resize(const NetModel& model, const std::vector<HeldNode>& hel
   arrays_.velocity.assign(nodes, 0.0);
   arrays_.inverse_mass.resize(nodes);
   for (std::size_t i = 0; i < nodes; ++i) arrays_.inverse_mass[i] = 1 / model.masses[i];
-  for (const HeldNode& h : held) arrays_.inverse_mass[h.node] = 0;
+  held_at_.assign(nodes, -1);
+  bound_impulses_.assign(held.size(), Vector3::Zero());
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    arrays_.inverse_mass[held[k].node] = 0;
+    held_at_[held[k].node] = static_cast<int>(k);
+  }
   arrays_.impulse.assign(links, 0.0);
   arrays_.inverse_length.assign(links, 0.0);
   nodes_ = model.links;
@@ -51,6 +60,9 @@ void LinkStepper::resize(const NetModel& model, const std::vector<HeldNode>& hel
   next_outside_.reserve(links);
   contacts_.reserve(nodes);
   wind_.resize(model);
+  const double tolerance = model.link_type == LinkType::rigid ? rigid_tolerance : model.tolerance;
+  tethers_.resize(model, held, 1 + aimed_part * tolerance);
+  kept_part_ = tethers_.most_links() > links_followed ? kept_in_large_nets : 1;
   add_rows(model, h);
   connect(nodes);
 }
@@ -132,6 +144,7 @@ NetStepResult LinkStepper::advance(const NetStep& step, NetState& state, LinkMem
   const int sweeps = step.model.link_type == LinkType::rigid ? rigid_sweeps : limited_sweeps;
   for (int i = 0; i < sweeps; ++i) sweep(i % 2 == 0);
   result.iterations = sweeps;
+  tethers_.pull(step.held, h_, arrays_);
   keep_bounds(result);
   react(step, memory);
   store(step, state, memory);
@@ -146,7 +159,7 @@ void LinkStepper::load(const NetStep& s, const NetState& state, LinkMemory& memo
     set(arrays_.position, static_cast<int>(i), state.positions[i]);
     set(arrays_.velocity, static_cast<int>(i), memory.midstep_velocities[i]);
   }
-  std::copy(memory.impulses.begin(), memory.impulses.end(), arrays_.impulse.begin());
+  for (std::size_t link = 0; link < memory.impulses.size(); ++link) arrays_.impulse[link] = kept_part_ * memory.impulses[link];
 }
 
 /// What the recursion's velocity would have been half a step ago.
@@ -266,11 +279,15 @@ void LinkStepper::correct(int link, bool along_end) {
   const double part = row.law.longest < unbounded ? aimed_part : 0;  // rigid links are brought to their rest length
   const double shortest = rest + part * (row.shortest - rest);
   const double longest = row.is_link ? rest + part * (row.longest - rest) : unbounded;
-  set_length(link, nodes_[link][0], nodes_[link][1], std::clamp(length, shortest, longest), along_end, h_, arrays_);
+  const auto [i, j] = nodes_[link];
+  const Vector3 impulse = set_length(link, i, j, std::clamp(length, shortest, longest), along_end, h_, arrays_);
+  if (held_at_[i] >= 0) bound_impulses_[held_at_[i]] -= impulse;
+  if (held_at_[j] >= 0) bound_impulses_[held_at_[j]] += impulse;
 }
 
 /// Corrects what is outside its bounds, then whatever that has pushed out, until nothing is.
 void LinkStepper::keep_bounds(NetStepResult& result) {
+  std::fill(bound_impulses_.begin(), bound_impulses_.end(), Vector3::Zero());
   if (!measure(result)) return;
   const std::size_t most = std::max(fewest_corrections, maximum_corrections * nodes_.size());
   std::size_t visited = 0;
@@ -297,10 +314,11 @@ void LinkStepper::keep_bounds(NetStepResult& result) {
 }
 
 void LinkStepper::react(const NetStep& s, const LinkMemory& memory) const {
-  for (HeldNode& held : s.held) {
-    Vector3 links = Vector3::Zero();
-    for (int k = first_at_[held.node]; k < first_at_[held.node + 1]; ++k) {
-      const int link = links_at_[k];
+  for (std::size_t k = 0; k < s.held.size(); ++k) {
+    HeldNode& held = s.held[k];
+    Vector3 links = (tethers_.impulse(k) + bound_impulses_[k]) / h_;
+    for (int at = first_at_[held.node]; at < first_at_[held.node + 1]; ++at) {
+      const int link = links_at_[at];
       const double sign = nodes_[link][1] == held.node ? 1 : -1;
       const Vector3 along = get(arrays_.position, nodes_[link][1]) - get(arrays_.position, nodes_[link][0]);
       links += sign * arrays_.impulse[link] * arrays_.inverse_length[link] / h_ * along;

@@ -4,6 +4,7 @@
 #include "net_step.h"
 #include "net_wind.h"
 #include "point_contact.h"
+#include "tethers.h"
 
 namespace verlet_cable {
 
@@ -16,8 +17,8 @@ struct LinkMemory {
 
 /// Advances a net of limited or rigid links by Verlet's recursion r(n+1) = 2 r(n) - r(n-1) + h^2 f/m, the links' forces and
 /// bounds by impulses at its end (Provot, Deformation Constraints in a Mass-Spring Model to Describe Rigid Cloth Behavior, 1995).
-/// They begin as in the step before, so that what hangs still is solved already; a few sweeps follow it where it moves, and what
-/// is then still outside its bounds is corrected alone, with its neighbours, until nothing is.
+/// They begin as in the step before, so that what hangs still is solved already; a few sweeps follow it where it moves, tethers
+/// bound the whole, and what is then still outside its bounds is corrected alone, with its neighbours, until nothing is.
 class LinkStepper {
  public:
   /// Sets what no step changes: after pins and cuts, too.
@@ -57,7 +58,11 @@ class LinkStepper {
   std::vector<int> first_at_, links_at_;   ///< the links at a node: links_at_[first_at_[node]] to [first_at_[node + 1]]
   LinkArrays arrays_;
   NetWind wind_;
+  Tethers tethers_;
+  double kept_part_ = 1;  ///< of the impulses of the step before
   std::vector<NodeContact> contacts_;
+  std::vector<int> held_at_;                 ///< by node: index of what holds it, -1: none
+  std::vector<Vector3> bound_impulses_;      ///< [N s] of links' bounds on what is held, besides the links' own impulses
   std::vector<int> outside_, next_outside_;  ///< links to look at
   std::vector<char> listed_;                 ///< by link
 };

@@ -112,6 +112,31 @@ TEST(Net, NothingIsStretchedBeyondItsTolerance) {
   }
 }
 
+TEST(Net, LargeFlagStaysCalmAndWithinItsTolerance) {
+  // So stiff that explicit springs would need steps of 0.1 ms, and far larger than its load travels in a step's sweeps.
+  SceneDesc scene = scenes::flag(100, 100, 0.01, LinkType::limited);
+  scene.nets[0].stiffness = 500;
+  scene.nets[0].damping = 0.5;
+  scene.fluid.velocity.setZero();
+  World world(scene, initial_frames(scene));
+  double weight = 0;
+  const int steps = 400;
+  for (int i = 0; i < steps; ++i) {
+    const StepResult result = world.step({FrameInput{}});
+    ASSERT_EQ(result.status, StepResult::Status::ok) << i;
+    EXPECT_LE(result.max_strain, 0.1);
+    for (const Attachment& attachment : world.attachments()) weight -= attachment.force.z() / steps;
+  }
+  // What holds it has taken its weight and its momentum.
+  double momentum = 0, fastest = 0;
+  for (const Vector3& v : world.nets()[0].state.velocities) {
+    momentum += 0.2 / 10000 * v.z();
+    fastest = std::max(fastest, v.norm());
+  }
+  EXPECT_NEAR(weight, -0.2 * -9.81 + momentum / (steps * scene.time_step), 0.05 * 0.2 * 9.81);
+  EXPECT_LT(fastest, 2.0);
+}
+
 TEST(Net, ElasticFlagSagsFarBeyondTheTolerance) {
   SceneDesc scene = scenes::flag(16, 24, 0.05, LinkType::spring);
   scene.nets[0].stiffness = 3;
