@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""picture_scenes.py OUTPUT_DIRECTORY: shows each of config/scenes in rviz on a display of its own, and keeps a picture of each.
+"""picture_scenes.py OUTPUT_DIRECTORY scenes|lecture [NAME...]: shows each of config/scenes, or of config/scenes/lecture, in rviz on a
+display of its own, and keeps a picture of each.
 
 Needs the workspace's setup sourced, Xvfb and ImageMagick.
 """
@@ -29,6 +30,17 @@ SCENES = {
     'crossed': (['scene.launch', 'scene:=crossed'], 4, 0.9, (0.1, 0, 0.87), 0.3, -1.2),
     'dress_pack': (['dress_pack.launch'], 8, 2.0, (0.15, 0, 0.55), 0.2, -1.2),
 }
+LECTURE = {
+    'box': (['lecture.launch', 'scene:=box'], 2, 4.5, (0, 0, 0), 0.3, -1.2),
+    'planet': (['lecture.launch', 'scene:=planet'], 3, 4.0, (-0.2, 0, 0), 1.2, -1.57),
+    'oscillator': (['lecture.launch', 'scene:=oscillator'], 2, 2.0, (0.5, 0.25, 0), 0.9, -1.57),
+    'ropes': (['lecture.launch', 'scene:=ropes'], 2, 2.8, (0.1, 0.25, 1.4), 0.15, -1.2),
+    'elastic_flag': (['lecture.launch', 'scene:=elastic_flag'], 2, 3.5, (0.6, 0.3, 1.5), 0.2, -1.0),
+    'semi_rigid_flag': (['lecture.launch', 'scene:=semi_rigid_flag'], 2, 3.5, (0.6, 0.3, 1.5), 0.2, -1.0),
+    'figure_on_stairs': (['lecture.launch', 'scene:=figure_on_stairs'], 0.5, 6, (1.0, 0, 1.2), 0.25, -1.2),
+    'dragged_figure': (['lecture.launch', 'scene:=dragged_figure'], 4, 4.5, (1.2, 0.4, 0.6), 0.3, -1.2),
+}
+SETS = {'scenes': SCENES, 'lecture': LECTURE}
 
 
 def view_of(distance, focus, pitch, yaw):
@@ -58,8 +70,7 @@ def running(*command, **environment):
             process.wait()
 
 
-def picture(scene, output):
-    launch, seconds, *view = SCENES[scene]
+def picture(launch, seconds, view, file):
     with tempfile.NamedTemporaryFile('w', suffix='.rviz') as config:
         config.write(view_of(*view))
         config.flush()
@@ -68,16 +79,17 @@ def picture(scene, output):
             time.sleep(STARTING)
             with running('roslaunch', 'verlet_cable', *launch, 'rviz:=false'):
                 time.sleep(STARTING + seconds)
-                subprocess.run(['import', '-display', DISPLAY, '-window', 'root', '-crop', VIEW, '+repage', output / f'{scene}.png'],
+                subprocess.run(['import', '-display', DISPLAY, '-window', 'root', '-crop', VIEW, '+repage', file],
                                check=True)
 
 
 def main():
-    output = pathlib.Path(sys.argv[1])
+    output, scenes = pathlib.Path(sys.argv[1]), SETS[sys.argv[2]]
     output.mkdir(parents=True, exist_ok=True)
     with running('Xvfb', DISPLAY, '-screen', '0', f'{SIZE[0]}x{SIZE[1]}x24', '-nolisten', 'tcp'):
-        for scene in sys.argv[2:] or SCENES:
-            picture(scene, output)
+        for name in sys.argv[3:] or scenes:
+            launch, seconds, *view = scenes[name]
+            picture(launch, seconds, view, output / f'{name}.png')
 
 
 if __name__ == '__main__':
