@@ -30,17 +30,16 @@ SCENES = {
     'crossed': (['scene.launch', 'scene:=crossed'], 4, 0.9, (0.1, 0, 0.87), 0.3, -1.2),
     'dress_pack': (['dress_pack.launch'], 8, 2.0, (0.15, 0, 0.55), 0.2, -1.2),
 }
-LECTURE = {
-    'box': (['lecture.launch', 'scene:=box'], 2, 4.5, (0, 0, 0), 0.3, -1.2),
-    'planet': (['lecture.launch', 'scene:=planet'], 3, 4.0, (-0.2, 0, 0), 1.2, -1.57),
-    'oscillator': (['lecture.launch', 'scene:=oscillator'], 2, 2.0, (0.5, 0.25, 0), 0.9, -1.57),
-    'ropes': (['lecture.launch', 'scene:=ropes'], 2, 2.8, (0.1, 0.25, 1.4), 0.15, -1.2),
-    'elastic_flag': (['lecture.launch', 'scene:=elastic_flag'], 2, 3.5, (0.6, 0.3, 1.5), 0.2, -1.0),
-    'semi_rigid_flag': (['lecture.launch', 'scene:=semi_rigid_flag'], 2, 3.5, (0.6, 0.3, 1.5), 0.2, -1.0),
-    'figure_on_stairs': (['lecture.launch', 'scene:=figure_on_stairs'], 0.5, 6, (1.0, 0, 1.2), 0.25, -1.2),
-    'dragged_figure': (['lecture.launch', 'scene:=dragged_figure'], 4, 4.5, (1.2, 0.4, 0.6), 0.3, -1.2),
-}
-SETS = {'scenes': SCENES, 'lecture': LECTURE}
+LECTURE = {  # [s] until the picture, and how many steps after a reset it is of; 0: time just stops for it; None: it goes on, for trails
+    'box': (2, None),
+    'planet': (6, None),
+    'oscillator': (0, 1000),
+    'ropes': (0, 350),
+    'elastic_flag': (0, 4000),
+    'semi_rigid_flag': (0, 4000),
+    'figure_on_stairs': (0, 750),
+    'dragged_figure': (3, 0),
+}  # their views are rviz/lecture
 
 
 def view_of(distance, focus, pitch, yaw):
@@ -52,6 +51,11 @@ def view_of(distance, focus, pitch, yaw):
             display['Enabled'] = False
     view = manager['Views']['Current']
     view.update({'Distance': distance, 'Pitch': pitch, 'Yaw': yaw, 'Focal Point': dict(zip('XYZ', focus))})
+    return as_window(config)
+
+
+def as_window(config):
+    """The text of a configuration in a window that fills the display."""
     config['Window Geometry'].update({'Width': SIZE[0], 'Height': SIZE[1], 'X': 0, 'Y': 0})
     return yaml.safe_dump(config)
 
@@ -70,26 +74,52 @@ def running(*command, **environment):
             process.wait()
 
 
-def picture(launch, seconds, view, file):
+def call(service, *arguments):
+    subprocess.run(['rosservice', 'call', service, *arguments], check=True, stdout=subprocess.DEVNULL)
+
+
+def stop(steps):
+    """Time stands still, so many steps after a reset, or now."""
+    call('/cable/pause', 'true')
+    if steps > 0:
+        call('/cable/reset')
+        call('/cable/step', str(steps))
+    time.sleep(1)
+
+
+def picture(launch, view, seconds, file, steps=None):
     with tempfile.NamedTemporaryFile('w', suffix='.rviz') as config:
-        config.write(view_of(*view))
+        config.write(view)
         config.flush()
         port = urlsplit(os.environ['ROS_MASTER_URI']).port
         with running('roscore', '-p', str(port)), running('rviz', '-d', config.name, DISPLAY=DISPLAY):
             time.sleep(STARTING)
             with running('roslaunch', 'verlet_cable', *launch, 'rviz:=false'):
                 time.sleep(STARTING + seconds)
+                if steps is not None:
+                    stop(steps)
                 subprocess.run(['import', '-display', DISPLAY, '-window', 'root', '-crop', VIEW, '+repage', file],
                                check=True)
 
 
+def picture_scene(name, file):
+    launch, seconds, *view = SCENES[name]
+    picture(launch, view_of(*view), seconds, file)
+
+
+def picture_lecture(name, file):
+    seconds, steps = LECTURE[name]
+    config = yaml.safe_load((PACKAGE / f'rviz/lecture/{name}.rviz').read_text())
+    picture(['lecture.launch', f'scene:={name}'], as_window(config), seconds, file, steps)
+
+
 def main():
-    output, scenes = pathlib.Path(sys.argv[1]), SETS[sys.argv[2]]
+    output = pathlib.Path(sys.argv[1])
     output.mkdir(parents=True, exist_ok=True)
+    names, draw = {'scenes': (SCENES, picture_scene), 'lecture': (LECTURE, picture_lecture)}[sys.argv[2]]
     with running('Xvfb', DISPLAY, '-screen', '0', f'{SIZE[0]}x{SIZE[1]}x24', '-nolisten', 'tcp'):
-        for name in sys.argv[3:] or scenes:
-            launch, seconds, *view = scenes[name]
-            picture(launch, seconds, view, output / f'{name}.png')
+        for name in sys.argv[3:] or names:
+            draw(name, output / f'{name}.png')
 
 
 if __name__ == '__main__':
