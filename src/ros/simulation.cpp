@@ -231,7 +231,9 @@ std::optional<Pose> Simulation::find_frame(const std::string& frame) const {
   const std::vector<std::string>& names = world_.frames();
   const auto found = std::find(names.begin(), names.end(), frame);
   const auto id = static_cast<std::size_t>(found - names.begin());
-  if (id == 0 || (id < names.size() && frames_.inputs()[id].known)) return world_.frame_pose(static_cast<int>(id));
+  // After a jump back the frames of pins are forgotten before the world that had them is.
+  const BoundaryInputs& inputs = frames_.inputs();
+  if (id == 0 || (id < std::min(names.size(), inputs.size()) && inputs[id].known)) return world_.frame_pose(static_cast<int>(id));
   return frames_.find(frame, stamp_);
 }
 
