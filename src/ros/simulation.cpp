@@ -63,7 +63,9 @@ void Simulation::jump_back() {
     stamp_ = std::max<Nanoseconds>(target(), 0);
     announce(CableEvent::TIME_JUMP, {}, std::string("ROS time went back: ") + (forget ? "reset" : "the cables keep their state"));
   }
-  keeps_world_ = started_ && !forget;
+  // The frames of pins are forgotten, and so must be the world that has them.
+  if (forget) world_ = World(scene_, initial_frames(scene_));
+  keeps_world_ = (started_ || keeps_world_) && !forget;
   started_ = false;
   waits_since_ = 0;
 }
@@ -231,9 +233,7 @@ std::optional<Pose> Simulation::find_frame(const std::string& frame) const {
   const std::vector<std::string>& names = world_.frames();
   const auto found = std::find(names.begin(), names.end(), frame);
   const auto id = static_cast<std::size_t>(found - names.begin());
-  // After a jump back the frames of pins are forgotten before the world that had them is.
-  const BoundaryInputs& inputs = frames_.inputs();
-  if (id == 0 || (id < std::min(names.size(), inputs.size()) && inputs[id].known)) return world_.frame_pose(static_cast<int>(id));
+  if (id == 0 || (id < names.size() && frames_.inputs()[id].known)) return world_.frame_pose(static_cast<int>(id));
   return frames_.find(frame, stamp_);
 }
 
