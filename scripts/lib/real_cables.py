@@ -32,9 +32,9 @@ def fit(programs, cable, recordings, segments, work):
         return json.load(file), time.monotonic() - began
 
 
-def simulate(programs, cable, recording, segments, work):
+def simulate(programs, cable, recording, places, segments, work):
     """Predicts a recording with cable_sim, as the contract says a fitted cable is used: positions of the markers [m] (rows,
-    markers, 3), and how many times faster than real time."""
+    markers, 3), which sit at `places` (fractions of the length), and how many times faster than real time."""
     with open(os.path.join(work, f'dlo{cable}.yaml'), encoding='utf-8') as file:
         scene = yaml.safe_load(file)
     desc = scene['cables'][0]
@@ -57,7 +57,7 @@ def simulate(programs, cable, recording, segments, work):
     nodes = np.genfromtxt(names['nodes.csv'], delimiter=',', skip_header=1, usecols=(0, 3, 4, 5))
     times = nodes[::segments + 1, 0]
     positions = nodes[:, 1:].reshape(-1, segments + 1, 3)
-    places = recording.marker_places() * segments
+    places = np.array(places) * segments
     before = np.minimum(places.astype(int), segments - 1)
     fraction = (places - before)[None, :, None]
     markers = (1 - fraction) * positions[:, before] + fraction * positions[:, before + 1]
@@ -122,7 +122,7 @@ def main():
         recordings = [Recording(path) for path in paths]
         means = {}
         for count in (segments // 2, segments, 2 * segments):
-            runs = [simulate(programs, cable, recording, count, work) for recording in recordings]
+            runs = [simulate(programs, cable, recording, report['marker_places'], count, work) for recording in recordings]
             over_time = [errors_over_time(predicted, recording) for (predicted, _), recording in zip(runs, recordings)]
             means[count] = 100 * np.mean([errors.mean() for errors in over_time])
             if count == segments:

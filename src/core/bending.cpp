@@ -39,7 +39,7 @@ void Bending::start(const CableModel& model, const VectorArray& segment, const s
   part_ = part;
   for (int i = 0; i < segments_; ++i) inverse_length_[i] = 1 / model.rest_lengths[i];
   for (int i = 1; i < segments_; ++i) {
-    const double joint = 2 / (model.rest_lengths[i - 1] + model.rest_lengths[i]);
+    const double joint = 1 / model.bending_length(i, 0.5 * (model.rest_lengths[i - 1] + model.rest_lengths[i]));
     stiffness_[i] = stiffness * joint;
     damping_[i] = damping * joint;
     const Vector3 e = inverse_length_[i] * get(segment, i) - inverse_length_[i - 1] * get(segment, i - 1);
@@ -57,8 +57,9 @@ void Bending::start(const CableModel& model, const VectorArray& segment, const s
       clamp.holder = static_cast<int>(k);
       clamp.segment = i;
       clamp.side = i < holder.node ? -1 : 1;
-      clamp.stiffness = 2 * stiffness * inverse_length_[i];
-      clamp.damping = 2 * damping * inverse_length_[i];
+      const double joint = 1 / model.bending_length(holder.node, 0.5 * model.rest_lengths[i]);
+      clamp.stiffness = stiffness * joint;
+      clamp.damping = damping * joint;
       // The axis is as long as the segment is stretched: a clamp does not resist stretch.
       const double stretch = inverse_length_[i] * get(segment, i).norm();
       clamp.start = inverse_length_[i] * get(segment, i) - stretch * start_axis;
@@ -75,12 +76,14 @@ void Bending::set_natural_shape(const CableModel& model, const VectorArray& midd
   for (int i = 1; i < segments_; ++i) {
     const Vector3 along = get(middle, i - 1) + get(middle, i), normal = 0.5 * (get(director, i - 1) + get(director, i));
     set(natural_, i,
-        natural_change(model.rest_curvature[i], 0.5 * (model.rest_lengths[i - 1] + model.rest_lengths[i]), along, normal));
+        natural_change(model.rest_curvature[i],
+                       model.bending_length(i, 0.5 * (model.rest_lengths[i - 1] + model.rest_lengths[i])), along, normal));
   }
   for (ClampJoint& clamp : clamps_) {
-    const int i = clamp.segment;
-    clamp.natural = clamp.side * natural_change(model.rest_curvature[clamp.side > 0 ? i : i + 1], 0.5 * model.rest_lengths[i],
-                                                get(middle, i), get(director, i));
+    const int i = clamp.segment, node = clamp.side > 0 ? i : i + 1;
+    clamp.natural =
+        clamp.side * natural_change(model.rest_curvature[node], model.bending_length(node, 0.5 * model.rest_lengths[i]),
+                                    get(middle, i), get(director, i));
   }
 }
 
@@ -170,13 +173,13 @@ double bending_energy(const CableModel& model, const CableState& state, const st
   double energy = 0;
   for (int i = 1; i < n; ++i) {
     const auto clamped = std::find_if(directions.begin(), directions.end(), [i](const HeldDirection& d) { return d.node == i; });
-    const double length = 0.5 * (model.rest_lengths[i - 1] + model.rest_lengths[i]);
+    const double length = model.bending_length(i, 0.5 * (model.rest_lengths[i - 1] + model.rest_lengths[i]));
     if (clamped == directions.end()) energy += joint(length, direction(i) - direction(i - 1), natural(i, length, i - 1, i));
   }
   for (const HeldDirection& clamp : directions) {
     for (const int i : {clamp.node - 1, clamp.node}) {
       if (i < 0 || i >= n) continue;
-      const double length = 0.5 * model.rest_lengths[i], side = i < clamp.node ? -1 : 1;
+      const double length = model.bending_length(clamp.node, 0.5 * model.rest_lengths[i]), side = i < clamp.node ? -1 : 1;
       energy += joint(length, direction(i) - direction(i).norm() * (clamp.end * Vector3::UnitX()),
                       side * natural(clamp.node, length, i, i));
     }

@@ -97,6 +97,8 @@ void insert_node(int segment, double first, SimulatedCable& cable) {
   model.rest_lengths[segment] = first;
   model.rest_lengths[node] = second;
   if (!model.rest_curvature.empty()) duplicate(model.rest_curvature, segment == 0 ? node : segment);
+  // What a winch pays out bends.
+  if (!model.bending_share.empty()) model.bending_share.insert(model.bending_share.begin() + node, 1.0);
   if (cable.state.reference_node >= node) ++cable.state.reference_node;
 }
 
@@ -126,6 +128,7 @@ double remove_node(int node, SimulatedCable& cable) {
   erase(model.rest_lengths, node);
   model.rest_lengths[before] = length;
   if (!model.rest_curvature.empty()) erase(model.rest_curvature, node);
+  if (!model.bending_share.empty()) erase(model.bending_share, node);
   if (state.reference_node >= node) --state.reference_node;
   return whole - length;
 }

@@ -116,6 +116,12 @@ void check_rest_curvature(const std::string& key, const RestCurvatureDesc& desc,
     check_numbers(indexed(key, i), desc.profile[i], coordinate, "1/m", errors);
 }
 
+void check_stiff_ends(const std::string& key, const CableDesc& cable, Errors& errors) {
+  check_numbers(key, cable.stiff_ends, not_negative, "m", errors);
+  if (is_sound(cable) && cable.stiff_ends[0] + cable.stiff_ends[1] >= cable.length)
+    errors.add(key, list_text(cable.stiff_ends), "together less than the cable's length, " + number_text(cable.length) + " m");
+}
+
 void check_cable(const std::string& key, const SceneDesc& scene, const CableDesc& cable, UniqueNames& attachments,
                  Errors& errors) {
   const std::string prefix = key + ".";
@@ -129,6 +135,7 @@ void check_cable(const std::string& key, const SceneDesc& scene, const CableDesc
   check_numbers(prefix + "color", cable.color, unit_interval, "", errors);
   check_initial(prefix + "initial", cable, errors);
   check_rest_curvature(prefix + "rest_curvature", cable.rest_curvature, errors);
+  check_stiff_ends(prefix + "stiff_ends", cable, errors);
   check_attachments(prefix, cable, attachments, errors);
   for (std::size_t i = 0; i < cable.point_masses.size(); ++i) {
     const std::string point_mass = indexed(prefix + "point_masses", i) + ".";

@@ -6,6 +6,7 @@
 
 #include "initial_shape.h"
 #include "rest_curvature.h"
+#include "stiff_ends.h"
 #include "world_implementation.h"
 
 namespace verlet_cable {
@@ -161,6 +162,7 @@ void World::Implementation::start_cable(const CableDesc& desc) {
   cables.push_back(std::move(cable));
   scratch.push_back(std::move(s));
   follow_material(index);
+  set_stiff_ends(desc.stiff_ends, cables.back().model);
   set_rest_curvature(desc.rest_curvature, scratch.back().holders.directions, cables.back());
   scratch.back().stepper.resize(cables.back().model);
   form_groups();

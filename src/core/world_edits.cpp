@@ -42,6 +42,7 @@ SimulatedCable piece(const SimulatedCable& whole, int first, int last) {
     part(*of_segments, last);
   part(cable.model.masses, last + 1);
   if (!cable.model.rest_curvature.empty()) part(cable.model.rest_curvature, last + 1);
+  if (!cable.model.bending_share.empty()) part(cable.model.bending_share, last + 1);
   for (auto* of_nodes : {&cable.state.positions, &cable.state.velocities, &cable.state.accelerations}) part(*of_nodes, last + 1);
   return cable;
 }

@@ -43,6 +43,7 @@ void reverse(SimulatedCable& cable) {
     std::reverse(values->begin(), values->end());
   for (auto* values : {&state.positions, &state.velocities, &state.accelerations}) std::reverse(values->begin(), values->end());
   std::reverse(model.rest_curvature.begin(), model.rest_curvature.end());
+  std::reverse(model.bending_share.begin(), model.bending_share.end());
   for (auto& curvature : model.rest_curvature) curvature[0] = -curvature[0];
   state.reference_node = model.segments() - state.reference_node;
   state.reference_orientation = state.reference_orientation * turned;
@@ -72,6 +73,11 @@ void append_cable(const SimulatedCable& second, SimulatedCable& first) {
     model.rest_curvature.resize(model.nodes());
     append(second.model.rest_curvature, model.rest_curvature);
     model.rest_curvature.resize(model.nodes() + second.model.nodes());
+  }
+  if (!model.bending_share.empty() || !second.model.bending_share.empty()) {
+    model.bending_share.resize(model.nodes(), 1.0);
+    append(second.model.bending_share, model.bending_share);
+    model.bending_share.resize(model.nodes() + second.model.nodes(), 1.0);
   }
   model.rest_lengths.push_back(gap);
   for (auto* values : {&state.tension, &state.axial_multiplier, &state.twist}) values->push_back(0);
@@ -227,6 +233,10 @@ void World::Implementation::close_joint(int index) {
     for (const int axis : {0, 1})
       model.rest_curvature[node][axis] = 0.5 * (model.rest_curvature[node][axis] + model.rest_curvature[gone][axis]);
     model.rest_curvature.erase(model.rest_curvature.begin() + gone);
+  }
+  if (!model.bending_share.empty()) {
+    model.bending_share[node] = 0.5 * (model.bending_share[node] + model.bending_share[gone]);
+    model.bending_share.erase(model.bending_share.begin() + gone);
   }
   if (state.reference_node >= gone) --state.reference_node;
   renumber(index, gone, -1);

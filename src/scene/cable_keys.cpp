@@ -5,6 +5,7 @@
 namespace verlet_cable {
 namespace {
 
+constexpr const char* stiff_ends_words = "[start, end], two numbers [m]";
 constexpr const char* rest_curvature_words = "straight | initial | [ky, kz], two numbers [1/m] | a list of at least two [ky, kz]";
 constexpr const char* place_words = "start, end, or an arc length [m] from 0 to the cable's length";
 
@@ -108,6 +109,8 @@ const Keys<CableDesc>& cable_keys() {
       {"initial", "a map", false, [](const Value& value, CableDesc& cable) { read_initial(value, cable.initial); }},
       {"rest_curvature", rest_curvature_words, false,
        [](const Value& value, CableDesc& cable) { read_rest_curvature(value, cable.rest_curvature); }},
+      {"stiff_ends", stiff_ends_words, false,
+       [](const Value& value, CableDesc& cable) { cable.stiff_ends = read_numbers<2>(value, stiff_ends_words); }},
       {"attachments", "a list", false,
        [](const Value& value, CableDesc& cable) {
          cable.attachments = read_list<AttachmentDesc>(

@@ -45,7 +45,7 @@ Found one_try(int number) {
   settings.segments = segments;
   settings.linear_density = truth.linear_density;
   std::vector<std::string> errors;
-  measure_length(recordings, inputs, settings, errors);
+  measure_cable(recordings, inputs, settings, errors);
   const Problem problem{recordings, inputs, settings, cable_parameters(settings), [] {}};
   std::vector<int> all(takes);
   std::iota(all.begin(), all.end(), 0);

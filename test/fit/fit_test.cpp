@@ -27,7 +27,7 @@ TEST(Fit, FindsTheMaterialThatMadeTheRecordings) {
   settings.segments = 32;
   settings.linear_density = known.materials[0].material.linear_density;
   std::vector<std::string> errors;
-  measure_length(recordings, inputs, settings, errors);
+  measure_cable(recordings, inputs, settings, errors);
   ASSERT_TRUE(errors.empty());
   int simulations = 0;
   const Problem problem{recordings, inputs, settings, cable_parameters(settings), [&] { ++simulations; }};
@@ -65,7 +65,7 @@ TEST(Fit, CableThatHangsStillDoesNotTellItsDampings) {
   std::vector<std::string> errors;
   const std::vector<Recording> recordings{still};
   const std::vector<Smoothed> inputs = smooth(recordings);
-  measure_length(recordings, inputs, settings, errors);
+  measure_cable(recordings, inputs, settings, errors);
   const Problem problem{recordings, inputs, settings, cable_parameters(settings), [] {}};
   const std::vector<Confidence> confident = confidence(problem, fit(problem, {0}, coarse_search(problem, {0})));
   // In the order of the parameters: bending_damping, drag.

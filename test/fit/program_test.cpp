@@ -83,8 +83,8 @@ TEST_F(CableFit, SceneIsWhatCableSimPredictsWith) {
       << err;
   const std::vector<Row> nodes = rows("nodes.csv");
   ASSERT_EQ(nodes.size(), 13u * recording.rows());
-  const Prediction prediction = predict(cable, recording);
-  const std::vector<double> places = marker_places(recording);
+  const std::vector<double> places = marker_places({&recording});
+  const Prediction prediction = predict(cable, places, recording);
   double gap = 0;
   for (int row = 0; row < recording.rows(); ++row) {
     for (std::size_t i = 0; i < places.size(); ++i) {

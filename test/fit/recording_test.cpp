@@ -120,5 +120,14 @@ TEST(Recording, LengthIsTheMedianOverTheRows) {
   EXPECT_NEAR(measured_length(recording), length, 1e-3);
 }
 
+TEST(Recording, PlacesOfMarkersAreMediansOverTheRowsOfAll) {
+  Recording even, bent;
+  for (int i = 0; i < 2; ++i) even.markers.push_back({{0, 0, 0}, {0.1, 0, 0}, {0.5, 0, 0}, {1, 0, 0}});
+  bent.markers.push_back({{0, 0, 0}, {0.1, 0, 0}, {0.2, 0, 0}, {1, 0, 0}});
+  const std::vector<double> places = marker_places({&even, &bent});
+  ASSERT_EQ(places.size(), 4u);
+  for (int i = 0; i < 4; ++i) EXPECT_NEAR(places[i], even.markers[0][i].x(), 1e-15);
+}
+
 }  // namespace
 }  // namespace verlet_cable::cable_fit

@@ -11,7 +11,10 @@
 
 namespace verlet_cable::cable_fit {
 
-/// A cable of known material, without natural curvature.
+/// [m] between the two markers on a hand.
+constexpr double held_distance = 0.025;
+
+/// A cable of known material, without natural curvature. What lies between the markers on a hand is held and does not bend.
 inline SceneDesc known_cable() {
   SceneDesc scene;
   scene.time_step = 0.001;
@@ -28,11 +31,9 @@ inline SceneDesc known_cable() {
   cable.material = "known";
   cable.length = 1.0;
   cable.segments = 40;
+  cable.stiff_ends = {held_distance, held_distance};
   return scene;
 }
-
-/// [m] between the two markers on a hand.
-constexpr double held_distance = 0.025;
 
 /// A recording as a camera would make it, at 100 Hz: 8 markers on the cable and two on each of the hands that hold it, noise on
 /// every coordinate [m], another for every `seed`. Hands at its ends swing it, in another way for every `take`.

@@ -126,6 +126,7 @@ TEST(SceneFiles, templateDocumentsEveryKey) {
                           "material",
                           "color",
                           "rest_curvature",
+                          "stiff_ends",
                           "attachments",
                           "at",
                           "frame",

@@ -124,6 +124,11 @@ TEST(SceneReader, restCurvatureMayChangeAlongTheCable) {
   EXPECT_EQ(scene.cables[0].rest_curvature.profile, (std::vector<std::array<double, 2>>{{0.5, -0.25}, {1, 2}, {0, 3}}));
 }
 
+TEST(SceneReader, endsOfACableMayBeStiff) {
+  const SceneDesc scene = read_scene_text(replaced(sound_scene, "segments: 20", "segments: 20\n    stiff_ends: [0.02, 0.03]"));
+  EXPECT_EQ(scene.cables[0].stiff_ends, (std::array<double, 2>{0.02, 0.03}));
+}
+
 TEST(SceneReader, elasticModuliMeanASolidRoundSection) {
   const SceneDesc scene =
       read_scene_text(replaced(sound_scene, "{linear_density: 0.1, radius: 0.005}",

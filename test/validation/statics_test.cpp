@@ -174,6 +174,25 @@ TEST(EndMoment, NaturalCurvatureThatGrowsMakesAClothoid) {
   report("natural clothoid: gap", samples, 1e-3, Order::second);
 }
 
+/// A rod between stiff ends: straight, an arc of a circle, straight, wherever nodes are.
+TEST(EndMoment, StiffEndsStayStraight) {
+  constexpr double first = 0.13, last = 0.05, curvature = M_PI, angle = curvature * (1 - first - last);
+  const Vector3 tip(first + std::sin(angle) / curvature + last * std::cos(angle),
+                    (1 - std::cos(angle)) / curvature + last * std::sin(angle), 0);
+  const auto samples = sample({25, 50, 100}, [&](int n) {
+    SceneDesc scene = rod(n, 0.1);
+    clamp_start(scene);
+    scene.cables[0].rest_curvature.type = RestCurvatureDesc::Type::constant;
+    scene.cables[0].rest_curvature.curvature = {0, curvature};
+    scene.cables[0].stiff_ends = {first, last};
+    start_at(scene, [](double s) { return Vector3(s, 0, 0); });
+    Simulation run(scene);
+    EXPECT_TRUE(run.world.settle());
+    return (run.positions().back() - tip).norm();
+  });
+  report("natural arc between stiff ends: gap", samples, 1e-3, Order::none);
+}
+
 /// Hooke's law does not know of bending: clamps that hold a straight rod feel EA times its strain.
 TEST(Stretch, ClampsHoldAStraightRodWithHookesForce) {
   constexpr double strain = 0.01, stiffness = 1000;

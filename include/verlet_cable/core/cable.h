@@ -21,12 +21,16 @@ struct CableModel {
   /// [1/m] a node, n + 1: curvature about the material's y and z axes that carries no moment; empty where the cable is straight
   /// unloaded
   std::vector<std::array<double, 2>> rest_curvature;
+  /// a node, n + 1: how much of the cable half a segment around it bends, above 0 to 1; empty where all of it does
+  std::vector<double> bending_share;
 
   int segments() const { return static_cast<int>(rest_lengths.size()); }
   int nodes() const { return static_cast<int>(masses.size()); }
   double length() const;                     ///< [m] at rest
   double length(int first, int last) const;  ///< [m] at rest, between two nodes
   std::vector<double> arc_length() const;    ///< [m] a node, n + 1, from the start, at rest
+  /// [m] of so much cable around a node, what bends
+  double bending_length(int node, double around) const { return bending_share.empty() ? around : bending_share[node] * around; }
 };
 
 /// What a step changes. Written by World only.

@@ -81,6 +81,7 @@ struct CableDesc {
   std::array<double, 4> color{0.1, 0.1, 0.1, 1.0};  ///< red, green, blue, alpha; 0 to 1
   InitialShapeDesc initial;
   RestCurvatureDesc rest_curvature;
+  std::array<double, 2> stiff_ends{0, 0};  ///< [m] at start and end, in plugs, sleeves or grips, that do not bend; >= 0
   std::vector<AttachmentDesc> attachments;
   std::vector<PointMassDesc> point_masses;
 };

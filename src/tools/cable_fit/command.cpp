@@ -61,11 +61,10 @@ FitResult fit_all(Problem& problem, const std::vector<Recording>& as_numbered, b
   FitResult result;
   result.values = fit(problem, all, coarse_search(problem, all));
   result.confidence = confidence(problem, result.values);
-  const auto errors = [&](const std::vector<std::vector<double>>& values) {
-    return Errors{prediction_errors(problem.settings, as_numbered, values),
-                  prediction_errors(problem.settings, problem.recordings, values)};
+  const auto errors = [&](const std::vector<FittedCable>& cables) {
+    return Errors{prediction_errors(cables, as_numbered), prediction_errors(cables, problem.recordings)};
   };
-  result.fitted = errors(std::vector<std::vector<double>>(count, result.values));
+  result.fitted = errors(std::vector<FittedCable>(count, {problem.settings, result.values}));
   if (cross_validated) result.left_out = errors(left_out_fits(problem));
   return result;
 }
@@ -101,7 +100,7 @@ int run(const std::vector<std::string>& arguments) {
   settings.radius = options.radius;
   std::vector<Smoothed> inputs;
   for (const Recording& recording : recordings) inputs.push_back(smoothed(recording));
-  measure_length(recordings, inputs, settings, errors);
+  measure_cable(recordings, inputs, settings, errors);
   if (!errors.empty()) return refuse(errors);
 
   Problem problem{recordings, inputs, settings, cable_parameters(settings), {}};

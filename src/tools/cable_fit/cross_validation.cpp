@@ -13,11 +13,11 @@ constexpr int fewest_for_pairs = 6;
 
 }  // namespace
 
-std::vector<PredictionError> prediction_errors(const CableSettings& settings, const std::vector<Recording>& recordings,
-                                               const std::vector<std::vector<double>>& values) {
+std::vector<PredictionError> prediction_errors(const std::vector<FittedCable>& cables, const std::vector<Recording>& recordings) {
   std::vector<PredictionError> errors(recordings.size());
   for_each_index(static_cast<int>(errors.size()), [&](int i) {
-    errors[i] = prediction_error(predict(cable_scene(settings, values[i]), recordings[i]), recordings[i]);
+    const auto& [settings, values] = cables[i];
+    errors[i] = prediction_error(predict(cable_scene(settings, values), settings.marker_places, recordings[i]), recordings[i]);
   });
   return errors;
 }
@@ -32,15 +32,17 @@ std::vector<std::vector<int>> left_out_together(int recordings) {
   return folds;
 }
 
-std::vector<std::vector<double>> left_out_fits(const Problem& problem) {
+std::vector<FittedCable> left_out_fits(const Problem& problem) {
   const int recordings = static_cast<int>(problem.recordings.size());
-  std::vector<std::vector<double>> fits(recordings);
+  std::vector<FittedCable> fits(recordings);
   for (const std::vector<int>& left_out : left_out_together(recordings)) {
     std::vector<int> training;
     for (int i = 0; i < recordings; ++i)
       if (std::find(left_out.begin(), left_out.end(), i) == left_out.end()) training.push_back(i);
-    const std::vector<double> of_training = fit(problem, training, coarse_search(problem, training));
-    for (const int i : left_out) fits[i] = of_training;
+    Problem of_training = problem;
+    of_training.settings.marker_places = marker_places(problem.inputs, training);
+    const std::vector<double> values = fit(of_training, training, coarse_search(of_training, training));
+    for (const int i : left_out) fits[i] = {of_training.settings, values};
   }
   return fits;
 }

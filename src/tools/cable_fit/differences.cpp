@@ -22,12 +22,14 @@ double robust(double difference) {
   return difference * std::sqrt(2 / (1 + std::sqrt(1 + ratio * ratio)));
 }
 
-Eigen::VectorXd scaled_differences(const SceneDesc& cable, const Recording& input, const Recording& recording) {
-  const std::vector<double> errors = coordinate_errors(predict(cable, input), recording);
-  Eigen::VectorXd values(static_cast<Eigen::Index>(errors.size()));
+Eigen::VectorXd scaled_differences(const Problem& problem, const std::vector<double>& values, int which) {
+  const Prediction prediction =
+      predict(cable_scene(problem.settings, values), problem.settings.marker_places, problem.inputs[which].recording);
+  const std::vector<double> errors = coordinate_errors(prediction, problem.recordings[which]);
+  Eigen::VectorXd differences(static_cast<Eigen::Index>(errors.size()));
   const double unit = scatter * std::sqrt(alike);
-  for (std::size_t i = 0; i < errors.size(); ++i) values[static_cast<Eigen::Index>(i)] = robust(errors[i]) / unit;
-  return values;
+  for (std::size_t i = 0; i < errors.size(); ++i) differences[static_cast<Eigen::Index>(i)] = robust(errors[i]) / unit;
+  return differences;
 }
 
 }  // namespace
@@ -52,8 +54,7 @@ Linearization linearize(const Problem& problem, const std::vector<int>& recordin
     const int change = i / count, recording = i % count, which = recordings[recording];
     std::vector<double> changed = values;
     if (change > 0) changed[change - 1] += steps[change - 1];
-    columns[recording][change] =
-        scaled_differences(cable_scene(problem.settings, changed), problem.inputs[which].recording, problem.recordings[which]);
+    columns[recording][change] = scaled_differences(problem, changed, which);
     const std::lock_guard<std::mutex> lock(mutex);
     problem.simulated();
   });
@@ -75,7 +76,7 @@ Prior::Prior(const std::vector<Parameter>& parameters, const std::vector<double>
   for (Eigen::Index i = 0; i < count; ++i) {
     const Parameter& parameter = parameters[i];
     if (parameter.likely == 0) continue;
-    values[i] = at[i] / parameter.likely;
+    values[i] = (at[i] - parameter.expected) / parameter.likely;
     slopes(i, i) = 1 / parameter.likely;
     if (parameter.relative_to < 0) continue;
     values[i] -= at[parameter.relative_to] / parameter.likely;

@@ -79,7 +79,8 @@ std::vector<double> coarse_search(const Problem& problem, const std::vector<int>
   std::mutex mutex;
   for_each_index(static_cast<int>(errors.size()), [&](int i) {
     const int recording = training[i % recordings];
-    const Prediction prediction = predict(coarse(problem.settings, guesses[i / recordings]), problem.inputs[recording].recording);
+    const Prediction prediction = predict(coarse(problem.settings, guesses[i / recordings]), problem.settings.marker_places,
+                                          problem.inputs[recording].recording);
     errors[i] = prediction_error(prediction, problem.recordings[recording]).mean;
     const std::lock_guard<std::mutex> lock(mutex);
     problem.simulated();

@@ -27,9 +27,9 @@ struct Place {
   double fraction;
 };
 
-std::vector<Place> places_on(int segments, const Recording& recording) {
+std::vector<Place> places_on(int segments, const std::vector<double>& marker_places) {
   std::vector<Place> places;
-  for (const double place : marker_places(recording)) {
+  for (const double place : marker_places) {
     const int segment = std::min(static_cast<int>(place * segments), segments - 1);
     places.push_back({segment, place * segments - segment});
   }
@@ -55,11 +55,11 @@ SceneDesc scene_of(const SceneDesc& cable, const Recording& recording) {
   return scene;
 }
 
-Prediction predict(const SceneDesc& cable, const Recording& recording) {
+Prediction predict(const SceneDesc& cable, const std::vector<double>& marker_places, const Recording& recording) {
   const SceneDesc scene = scene_of(cable, recording);
   const HeldEnds ends = held_ends(recording);
   const cable_sim::FrameSource frames(scene, {{start_frame, ends.start}, {end_frame, ends.end}});
-  const std::vector<Place> places = places_on(scene.cables.front().segments, recording);
+  const std::vector<Place> places = places_on(scene.cables.front().segments, marker_places);
   World world(scene, frames.at(0));
   const std::vector<Vector3>& nodes = world.cables().front().state.positions;
 

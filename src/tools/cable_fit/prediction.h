@@ -17,8 +17,8 @@ struct Prediction {
   std::vector<std::vector<Vector3>> positions;  ///< [m] a row of the recording, a marker
 };
 
-/// Predicts a recording from its first two rows and what holds the cable, as cable_sim would. Throws SceneError where the cable
-/// cannot be.
-Prediction predict(const SceneDesc& cable, const Recording& recording);
+/// Predicts a recording from its first two rows and what holds the cable, as cable_sim would; `marker_places`: fractions of the
+/// cable's length. Throws SceneError where the cable cannot be.
+Prediction predict(const SceneDesc& cable, const std::vector<double>& marker_places, const Recording& recording);
 
 }  // namespace verlet_cable::cable_fit

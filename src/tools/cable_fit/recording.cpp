@@ -30,6 +30,12 @@ std::vector<double> along(const std::vector<Vector3>& markers) {
 
 }  // namespace
 
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 const char* swapped_text(const SwappedEnds& swapped) {
   if (swapped.start && swapped.end) return "the first two and the last two";
   return swapped.start ? "the first two" : swapped.end ? "the last two" : "none";
@@ -59,13 +65,17 @@ Recording in_order(Recording recording, const SwappedEnds& swapped) {
 double measured_length(const Recording& recording) {
   std::vector<double> lengths;
   for (const std::vector<Vector3>& markers : recording.markers) lengths.push_back(along(markers).back());
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  return *middle;
+  return median(std::move(lengths));
 }
 
-std::vector<double> marker_places(const Recording& recording) {
-  std::vector<double> places = along(recording.markers.front());
+std::vector<double> marker_places(const std::vector<const Recording*>& recordings) {
+  std::vector<double> places{0};
+  for (int i = 1; i < recordings.front()->marker_count(); ++i) {
+    std::vector<double> distances;
+    for (const Recording* recording : recordings)
+      for (const std::vector<Vector3>& markers : recording->markers) distances.push_back((markers[i] - markers[i - 1]).norm());
+    places.push_back(places.back() + median(std::move(distances)));
+  }
   const double length = places.back();
   for (double& place : places) place /= length;
   return places;

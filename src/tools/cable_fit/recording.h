@@ -36,12 +36,15 @@ SwappedEnds swapped_ends(const Recording& recording);
 /// The recording with the markers of such ends in their order along the cable.
 Recording in_order(Recording recording, const SwappedEnds& swapped);
 
+/// The upper one of two in the middle.
+double median(std::vector<double> values);
+
 /// [m] along the cable between the outer markers: the median over the rows, as measured distances vary by some percent.
 double measured_length(const Recording& recording);
 
-/// Where the markers sit, as fractions of the cable's length from its start: by their distances in the first row, as a scene's
-/// `initial.points` are spread.
-std::vector<double> marker_places(const Recording& recording);
+/// Where the markers sit, as fractions of the cable's length from its start: by the median distances of neighbours over all rows
+/// of some recordings of the cable.
+std::vector<double> marker_places(const std::vector<const Recording*>& recordings);
 
 /// [m/s] a marker, from the first two rows.
 std::vector<Vector3> initial_velocities(const Recording& recording);

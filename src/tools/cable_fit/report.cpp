@@ -82,6 +82,10 @@ std::string report_json(const Problem& problem, const std::vector<SwappedEnds>& 
   if (cross_validated && any_swapped(swapped)) json.entry("cross_validated_error_in_order", mean_error(result.left_out.in_order));
   json.key("parameters");
   write_parameters(problem, result, json);
+  json.key("marker_places");
+  json.begin_array();
+  for (const double place : problem.settings.marker_places) json.value(place);
+  json.end_array();
   json.key("recordings");
   json.begin_array();
   for (std::size_t i = 0; i < problem.recordings.size(); ++i) {

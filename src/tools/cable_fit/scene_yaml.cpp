@@ -31,6 +31,7 @@ std::string scene_yaml(const Problem& problem, const FitResult& result) {
   append("    ", "length", number_text(cable.length), yaml);
   append("    ", "segments", std::to_string(cable.segments), yaml);
   append("    ", "material", cable.material, yaml);
+  append("    ", "stiff_ends", "[" + number_text(cable.stiff_ends[0]) + ", " + number_text(cable.stiff_ends[1]) + "]", yaml);
   yaml += "    rest_curvature:\n";
   for (const auto& curvature : cable.rest_curvature.profile)
     yaml += "      - [" + number_text(curvature[0]) + ", " + number_text(curvature[1]) + "]\n";
