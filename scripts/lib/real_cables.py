@@ -1,12 +1,13 @@
 #!/usr/bin/python3
 """real_cables.py PROGRAMS DATA WORK PICTURES [SEGMENTS]: fits the cables of DATA (dloK_R.csv) with the programs in PROGRAMS, keeps
-scenes and reports in WORK, prints the tables of doc/real_cables.md, and draws its pictures."""
+scenes and reports in WORK (those that are there already are taken), prints the tables of doc/real_cables.md, and draws its
+pictures."""
 import glob
 import json
 import os
+import resource
 import subprocess
 import sys
-import time
 
 import matplotlib
 matplotlib.use('Agg')
@@ -22,14 +23,26 @@ PUBLISHED = {1: 1.03, 2: 1.02, 3: 0.99, 4: 1.15}
 SHOWN_TIMES = (0.0, 1.0, 2.5, 4.9)  # [s]
 
 
+def processor_time():
+    """[s] of the programs that have ended."""
+    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+
+
 def fit(programs, cable, recordings, segments, work):
-    """Runs cable_fit; the report, and how long it took [s], cross-validation and all."""
-    report = os.path.join(work, f'dlo{cable}.json')
-    began = time.monotonic()
-    subprocess.run([os.path.join(programs, 'cable_fit'), *recordings, '--name', f'dlo{cable}', '--segments', str(segments),
-                    '--output', os.path.join(work, f'dlo{cable}.yaml'), '--report', report], check=True, stdout=subprocess.DEVNULL)
-    with open(report, encoding='utf-8') as file:
-        return json.load(file), time.monotonic() - began
+    """Runs cable_fit, unless its report is there; the report, and the processor time that it took [s], cross-validation and all."""
+    report, seconds = (os.path.join(work, f'dlo{cable}.{kind}') for kind in ('json', 'seconds'))
+    if not os.path.exists(seconds):
+        began = processor_time()
+        subprocess.run([os.path.join(programs, 'cable_fit'), *recordings, '--name', f'dlo{cable}', '--segments', str(segments),
+                        '--output', os.path.join(work, f'dlo{cable}.yaml'), '--report', report],
+                       check=True, stdout=subprocess.DEVNULL)
+        with open(seconds, 'w', encoding='utf-8') as file:
+            file.write(str(processor_time() - began))
+    with open(report, encoding='utf-8') as file, open(seconds, encoding='utf-8') as taken:
+        found = json.load(file)
+        if found['segments'] != segments:
+            sys.exit(f'{report}: of {found["segments"]} segments, asked for are {segments}; allowed: another WORK, or the same number')
+        return found, float(taken.read())
 
 
 def simulate(programs, cable, recording, places, segments, work):
@@ -134,7 +147,7 @@ def main():
         other_numbers.append(f'| {cable} | ' + ' | '.join(f'{mean:.3f}' for mean in means.values()) +
                              f' | {seconds:.0f} | {factor:.0f} |')
         sys.stdout.flush()
-    print(f'\n| cable | fitted, {segments // 2} segments [cm] | {segments} | {2 * segments} | fit and cross-validation [s] '
+    print(f'\n| cable | fitted, {segments // 2} segments [cm] | {segments} | {2 * segments} | fit and cross-validation, processor time [s] '
           '| times real time |\n|---|---|---|---|---|---|', *other_numbers, sep='\n')
     axis.set(xlabel='t [s]', ylabel='mean absolute error [cm]', ylim=(0, None), title='Fitted cables, mean over 8 recordings')
     axis.legend()

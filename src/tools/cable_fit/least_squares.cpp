@@ -15,9 +15,9 @@ namespace {
 constexpr double starting_bending[] = {1e-3, 3e-3, 1e-2, 3e-2, 1e-1, 3e-1, 1};  // EI over the linear density [N m^3 / kg]
 constexpr double starting_damping[] = {1e-4, 1e-3, 5e-3};                       // of bending, likewise [N m^3 s / kg]
 constexpr int coarse_segments = 16;
-constexpr int most_iterations = 20;
+constexpr int most_iterations = 12;
 /// Relative change of the cost at which the search ends: far below what the recordings tell.
-constexpr double cost_tolerance = 1e-3;
+constexpr double cost_tolerance = 3e-3;
 constexpr double first_trust_radius = 30;
 
 SceneDesc coarse(const CableSettings& settings, const std::vector<double>& values) {
