@@ -1,11 +1,9 @@
 #include <BulletSoftBody/btSoftBodyHelpers.h>
-#include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
-#include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
-#include <btBulletDynamicsCommon.h>
 
 #include <algorithm>
 #include <cstdio>
 
+#include "bullet_world.h"
 #include "rope.h"
 
 namespace verlet_cable::bench {
@@ -22,17 +20,10 @@ btVector3 vector(const Vector3& v) {
 /// A soft-body rope of stiffest links, without damping or collisions, its links in the order from the start.
 class BulletRope : public Rope {
  public:
-  BulletRope(const RopeTask& task, double time_step, int iterations)
-      : hand_(task.hand),
-        time_step_(time_step),
-        dispatcher_(&configuration_),
-        world_(&dispatcher_, &broadphase_, &solver_, &configuration_) {
-    const btVector3 gravity(0, 0, -9.81);
-    world_.setGravity(gravity);
-    world_.getWorldInfo().m_gravity = gravity;
+  BulletRope(const RopeTask& task, double time_step, int iterations) : hand_(task.hand), time_step_(time_step) {
     const int n = task.segments;
-    rope_ = btSoftBodyHelpers::CreateRope(world_.getWorldInfo(), vector(task.positions[0]), vector(task.positions[n]), n - 1,
-                                          hand_ ? 1 + 2 : 1);
+    rope_ = btSoftBodyHelpers::CreateRope(bullet_.world.getWorldInfo(), vector(task.positions[0]), vector(task.positions[n]),
+                                          n - 1, hand_ ? 1 + 2 : 1);
     for (int i = 0; i <= n; ++i) {
       btSoftBody::Node& node = rope_->m_nodes[i];
       node.m_x = node.m_q = vector(task.positions[i]);
@@ -40,16 +31,10 @@ class BulletRope : public Rope {
     }
     // The rest lengths were those of a straight rope between the ends.
     for (int i = 0; i < rope_->m_links.size(); ++i) rope_->m_links[i].m_rl = task.length / n;
-    rope_->m_materials[0]->m_kLST = 1;
-    rope_->updateConstants();
-    rope_->m_cfg.kDP = 0;
-    rope_->m_cfg.piterations = iterations;
-    rope_->m_cfg.collisions = 0;
-    rope_->setActivationState(DISABLE_DEACTIVATION);
-    world_.addSoftBody(rope_);
+    bullet_.add(*rope_, iterations);
   }
   ~BulletRope() override {
-    world_.removeSoftBody(rope_);
+    bullet_.world.removeSoftBody(rope_);
     delete rope_;
   }
   BulletRope(const BulletRope&) = delete;
@@ -63,7 +48,7 @@ class BulletRope : public Rope {
       // Nodes without inverse mass move by their velocity.
       node.m_v = (target - node.m_x) / time_step_;
     }
-    world_.stepSimulation(time_step_, 0);
+    bullet_.world.stepSimulation(time_step_, 0);
   }
   double time() const override { return static_cast<double>(steps_) * time_step_; }
   void observe(std::vector<Vector3>& positions, std::vector<Vector3>& velocities) const override {
@@ -81,11 +66,7 @@ class BulletRope : public Rope {
   std::function<Vector3(double)> hand_;
   double time_step_;
   long steps_ = 0;
-  btSoftBodyRigidBodyCollisionConfiguration configuration_;
-  btCollisionDispatcher dispatcher_;
-  btDbvtBroadphase broadphase_;
-  btSequentialImpulseConstraintSolver solver_;
-  btSoftRigidDynamicsWorld world_;
+  BulletWorld bullet_;
   btSoftBody* rope_;
 };
 

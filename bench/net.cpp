@@ -1,13 +1,11 @@
 #include <BulletSoftBody/btSoftBodyHelpers.h>
-#include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
-#include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
-#include <btBulletDynamicsCommon.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 
+#include "bullet_world.h"
 #include "nets.h"
 #include "rows.h"
 #include "stopwatch.h"
@@ -56,33 +54,20 @@ Run run_package(int nodes) {
 
 /// Bullet's patch held at the same corners; it has one diagonal a cell.
 Run run_bullet(int nodes, int iterations) {
-  btSoftBodyRigidBodyCollisionConfiguration configuration;
-  btCollisionDispatcher dispatcher(&configuration);
-  btDbvtBroadphase broadphase;
-  btSequentialImpulseConstraintSolver solver;
-  btSoftRigidDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
-  const btVector3 gravity(0, 0, -9.81);
-  world.setGravity(gravity);
-  world.getWorldInfo().m_gravity = gravity;
+  BulletWorld bullet;
   btSoftBody* const patch =
-      btSoftBodyHelpers::CreatePatch(world.getWorldInfo(), btVector3(0, 0, 0), btVector3(size, 0, 0), btVector3(0, 0, -size),
-                                     btVector3(size, 0, -size), nodes, nodes, 1 + 2, true);
-  patch->m_materials[0]->m_kLST = 1;
+      btSoftBodyHelpers::CreatePatch(bullet.world.getWorldInfo(), btVector3(0, 0, 0), btVector3(size, 0, 0),
+                                     btVector3(0, 0, -size), btVector3(size, 0, -size), nodes, nodes, 1 + 2, true);
   for (int i = 0; i < patch->m_nodes.size(); ++i)
     if (patch->m_nodes[i].m_im > 0) patch->setMass(i, mass / (nodes * nodes));
-  patch->updateConstants();
-  patch->m_cfg.kDP = 0;
-  patch->m_cfg.piterations = iterations;
-  patch->m_cfg.collisions = 0;
-  patch->setActivationState(DISABLE_DEACTIVATION);
-  world.addSoftBody(patch);
+  bullet.add(*patch, iterations);
   Run run;
   run.links = patch->m_links.size();
   run.sweeps = iterations;
   double seconds = 0;
   for (int i = 0; i < steps(); ++i) {
     const double start = processor_seconds();
-    world.stepSimulation(time_step, 0);
+    bullet.world.stepSimulation(time_step, 0);
     seconds += processor_seconds() - start;
     for (int k = 0; k < patch->m_links.size(); ++k) {
       const btSoftBody::Link& link = patch->m_links[k];
@@ -91,7 +76,7 @@ Run run_bullet(int nodes, int iterations) {
     }
   }
   run.cost = seconds / duration;
-  world.removeSoftBody(patch);
+  bullet.world.removeSoftBody(patch);
   delete patch;
   return run;
 }
