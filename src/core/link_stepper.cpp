@@ -36,6 +36,10 @@ constexpr double resting_speed = 0.05;
 constexpr double exit_speed = 1;
 constexpr double exit_part = 0.2;
 
+double tolerance_of(const NetModel& model) {
+  return model.link_type == LinkType::rigid ? rigid_tolerance : model.tolerance;
+}
+
 }  // namespace
 
 void LinkStepper::resize(const NetModel& model, const std::vector<HeldNode>& held, double h) {
@@ -60,8 +64,7 @@ void LinkStepper::resize(const NetModel& model, const std::vector<HeldNode>& hel
   next_outside_.reserve(links);
   contacts_.reserve(nodes);
   wind_.resize(model);
-  const double tolerance = model.link_type == LinkType::rigid ? rigid_tolerance : model.tolerance;
-  tethers_.resize(model, held, 1 + aimed_part * tolerance);
+  tethers_.resize(model, held, 1 + aimed_part * tolerance_of(model));
   kept_part_ = tethers_.most_links() > links_followed ? kept_in_large_nets : 1;
   add_rows(model, h);
   connect(nodes);
@@ -90,7 +93,7 @@ void LinkStepper::add_rows(const NetModel& model, double h) {
     return run;
   };
   const bool rigid = model.link_type == LinkType::rigid;
-  const double tolerance = rigid ? rigid_tolerance : model.tolerance, aimed = aimed_part * tolerance;
+  const double tolerance = tolerance_of(model), aimed = aimed_part * tolerance;
   for (int link = 0; link < links; ++link) {
     if (used[link]) continue;
     const LinkRun dense = run_from(link, 1), sparse = run_from(link, 2);
@@ -102,23 +105,22 @@ void LinkStepper::add_rows(const NetModel& model, double h) {
       const double mobility = arrays_.inverse_mass[nodes_[link][0]] + arrays_.inverse_mass[nodes_[link][1]];
       law = {length, 0, unbounded, 1 / (rigid_softness * h * h * mobility), 0};
     }
-    add_row(run, law, length * (1 - tolerance), length * (1 + tolerance), true);
+    rows_.push_back({run, law, length * (1 - tolerance), length * (1 + tolerance), true});
   }
   for (int link = links; link < static_cast<int>(nodes_.size()); ++link) {
     if (used[link]) continue;
     const double least = model.minimum_distances[link - links].distance;
-    add_row({link, nodes_[link][0], nodes_[link][1], 1, 1}, {least, least, unbounded, 0, 0}, least * (1 - rigid_tolerance),
-            unbounded, false);
+    rows_.push_back({{link, nodes_[link][0], nodes_[link][1], 1, 1},
+                     {least, least, unbounded, 0, 0},
+                     least * (1 - rigid_tolerance),
+                     unbounded,
+                     false});
   }
   if (!model.is_grid()) return;
   std::stable_sort(rows_.begin(), rows_.end(), [&](const Row& a, const Row& b) {
     return std::min(a.run.first_node, a.run.second_node) / model.columns <
            std::min(b.run.first_node, b.run.second_node) / model.columns;
   });
-}
-
-void LinkStepper::add_row(const LinkRun& run, const LinkLaw& law, double shortest, double longest, bool is_link) {
-  rows_.push_back({run, law, shortest, longest, is_link});
 }
 
 void LinkStepper::connect(std::size_t nodes) {

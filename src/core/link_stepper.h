@@ -34,7 +34,6 @@ class LinkStepper {
   };
 
   void add_rows(const NetModel& model, double h);
-  void add_row(const LinkRun& run, const LinkLaw& law, double shortest, double longest, bool is_link);
   void connect(std::size_t nodes);
   void load(const NetStep& step, const NetState& state, LinkMemory& memory);
   void begin(const NetStep& step, const NetState& state, LinkMemory& memory);
