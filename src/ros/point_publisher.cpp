@@ -19,14 +19,6 @@ struct PointRecord {
   float s;
 };
 
-std::vector<sensor_msgs::PointField> point_fields() {
-  using sensor_msgs::PointField;
-  return {point_field("x", PointField::FLOAT32, 0),       point_field("y", PointField::FLOAT32, 1),
-          point_field("z", PointField::FLOAT32, 2),       point_field("rgb", PointField::FLOAT32, 3),
-          point_field("tension", PointField::FLOAT32, 4), point_field("cable_id", PointField::UINT32, 5),
-          point_field("node_id", PointField::UINT32, 6),  point_field("s", PointField::FLOAT32, 7)};
-}
-
 void append_points(const SimulatedCable& cable, std::uint32_t cable_id, const std::vector<std_msgs::ColorRGBA>& colors,
                    std::vector<PointRecord>& points) {
   const std::vector<double> arc_length = cable.model.arc_length();
@@ -88,7 +80,11 @@ void PointPublisher::publish(const World& world, const ros::Time& stamp) {
       append_points(cable, static_cast<std::uint32_t>(id), colors_.node_colors(cable, contact_forces[id]), points);
   }
   append_nets_and_particles(world, points);
-  publisher_.publish(make_point_cloud(frame_id_, stamp, point_fields(), points));
+  using sensor_msgs::PointField;
+  publisher_.publish(make_point_cloud(frame_id_, stamp, points, "x", 1, PointField::FLOAT32, "y", 1, PointField::FLOAT32, "z", 1,
+                                      PointField::FLOAT32, "rgb", 1, PointField::FLOAT32, "tension", 1, PointField::FLOAT32,
+                                      "cable_id", 1, PointField::UINT32, "node_id", 1, PointField::UINT32, "s", 1,
+                                      PointField::FLOAT32));
 }
 
 }  // namespace verlet_cable

@@ -21,13 +21,6 @@ struct PointRecord {
   std::uint32_t cable_id;
 };
 
-std::vector<sensor_msgs::PointField> point_fields() {
-  using sensor_msgs::PointField;
-  return {point_field("x", PointField::FLOAT32, 0), point_field("y", PointField::FLOAT32, 1),
-          point_field("z", PointField::FLOAT32, 2), point_field("rgb", PointField::FLOAT32, 3),
-          point_field("cable_id", PointField::UINT32, 4)};
-}
-
 /// Of the rings of a segment, if they are as far apart as the points of a ring, times `coarseness`.
 int rings(const CableModel& model, int segment, double coarseness) {
   const double spacing = coarseness * 2 * M_PI * model.material.radius / sides;
@@ -83,7 +76,9 @@ void SurfacePublisher::publish(const World& world, const ros::Time& stamp) {
     if (!is_finite(cable)) continue;
     append_points(cable, static_cast<std::uint32_t>(id), coarseness, colors_.node_colors(cable, contact_forces[id]), points);
   }
-  publisher_.publish(make_point_cloud(frame_id_, stamp, point_fields(), points));
+  using sensor_msgs::PointField;
+  publisher_.publish(make_point_cloud(frame_id_, stamp, points, "x", 1, PointField::FLOAT32, "y", 1, PointField::FLOAT32, "z", 1,
+                                      PointField::FLOAT32, "rgb", 1, PointField::FLOAT32, "cable_id", 1, PointField::UINT32));
 }
 
 }  // namespace verlet_cable
