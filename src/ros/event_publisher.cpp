@@ -17,16 +17,23 @@ EventPublisher::EventPublisher(ros::NodeHandle& private_node, std::string frame_
 
 void EventPublisher::publish(std::uint8_t type, Nanoseconds stamp, const EventSubject& subject,
                              const std::string& message) const {
+  publish_each(type, stamp, {subject}, message);
+}
+
+void EventPublisher::publish_each(std::uint8_t type, Nanoseconds stamp, const std::vector<EventSubject>& subjects,
+                                  const std::string& message) const {
   CableEvent event;
   event.header.frame_id = frame_id_;
   event.header.stamp.fromNSec(static_cast<std::uint64_t>(stamp));
   event.type = type;
-  event.cable = subject.cable;
-  event.attachment = subject.attachment;
-  event.node = static_cast<std::uint32_t>(subject.node);
-  event.other = subject.other;
   event.message = message;
-  publisher_.publish(event);
+  for (const EventSubject& subject : subjects) {
+    event.cable = subject.cable;
+    event.attachment = subject.attachment;
+    event.node = static_cast<std::uint32_t>(subject.node);
+    event.other = subject.other;
+    publisher_.publish(event);
+  }
   if (type == CableEvent::FAULT) {
     ROS_ERROR("%s", message.c_str());
   } else if (type == CableEvent::FRAME_LOST || type == CableEvent::TIME_JUMP || type == CableEvent::BROKE) {

@@ -25,9 +25,10 @@ bool has_obstacles(int frame, const World& world) {
 /// One event for each attachment of the frame, or one without if there is none.
 void publish_for_frame(const EventPublisher& events, std::uint8_t type, int frame, Nanoseconds stamp, const World& world,
                        const std::string& message) {
-  const std::vector<Attachment> attachments = attachments_of(frame, world);
-  for (const Attachment& attachment : attachments) events.publish(type, stamp, subject_of(world, attachment), message);
-  if (attachments.empty()) events.publish(type, stamp, {{}, {}, 0, world.frames()[frame]}, message);
+  std::vector<EventSubject> subjects;
+  for (const Attachment& attachment : attachments_of(frame, world)) subjects.push_back(subject_of(world, attachment));
+  if (subjects.empty()) subjects.push_back({{}, {}, 0, world.frames()[frame]});
+  events.publish_each(type, stamp, subjects, message);
 }
 
 const char* consequence(LostFramePolicy policy) {

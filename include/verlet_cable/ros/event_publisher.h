@@ -4,6 +4,7 @@
 #include <verlet_cable/CableEvent.h>
 
 #include <string>
+#include <vector>
 
 #include "verlet_cable/core/world.h"
 #include "verlet_cable/ros/time_grid.h"
@@ -20,7 +21,7 @@ struct EventSubject {
 
 EventSubject subject_of(const World& world, const Attachment& attachment);
 
-/// The topic `events`. Each event is logged, too.
+/// The topic `events`. Events are logged, too.
 class EventPublisher {
  public:
   EventPublisher(ros::NodeHandle& private_node, std::string frame_id);
@@ -29,6 +30,9 @@ class EventPublisher {
 
   /// `type`: a constant of CableEvent; `stamp`: the simulated time.
   void publish(std::uint8_t type, Nanoseconds stamp, const EventSubject& subject, const std::string& message) const;
+  /// One event about each subject, logged once.
+  void publish_each(std::uint8_t type, Nanoseconds stamp, const std::vector<EventSubject>& subjects,
+                    const std::string& message) const;
 
  private:
   ros::Publisher publisher_;
