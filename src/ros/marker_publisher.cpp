@@ -16,6 +16,7 @@ using visualization_msgs::MarkerArray;
 
 constexpr double aluminium_density = 2700;  // [kg/m^3]
 constexpr double pin_size = 2.2;            // of a pin to the cable it holds, radius to radius
+constexpr int most_tube_corners = 60000;    // of all cables: what a network and rviz take 50 times a second
 constexpr int cable_id = 0;
 constexpr int net_lines_id = 0, net_triangles_id = 1, particle_id = 0;
 constexpr double net_line_width = 0.04;  // of the first link's length
@@ -79,10 +80,11 @@ void MarkerPublisher::publish(const World& world, const ros::Time& stamp) {
   if (publisher_.getNumSubscribers() == 0) return;
   const auto markers = boost::make_shared<MarkerArray>();
   const std::vector<std::vector<double>> contact_forces = colors_.contact_forces(world);
-  for (std::size_t i = 0; i < world.cables().size(); ++i) {
+  const int cables = static_cast<int>(world.cables().size());
+  for (int i = 0; i < cables; ++i) {
     const SimulatedCable& cable = world.cables()[i];
     if (!is_finite(cable)) continue;
-    add_cable(cable, contact_forces[i], *markers);
+    add_cable(cable, contact_forces[i], most_tube_corners / cables, *markers);
     add_payloads(cable, *markers);
   }
   for (const SimulatedNet& net : world.nets())
@@ -106,7 +108,7 @@ Marker MarkerPublisher::make_marker(const std::string& ns, int id, int type) con
   return marker;
 }
 
-void MarkerPublisher::add_cable(const SimulatedCable& cable, const std::vector<double>& contact_forces,
+void MarkerPublisher::add_cable(const SimulatedCable& cable, const std::vector<double>& contact_forces, int most_corners,
                                 MarkerArray& markers) const {
   const double radius = cable.model.material.radius;
   std::vector<std_msgs::ColorRGBA> colors = colors_.node_colors(cable, contact_forces);
@@ -115,7 +117,7 @@ void MarkerPublisher::add_cable(const SimulatedCable& cable, const std::vector<d
   marker.color = colors.front();
   if (tube) {
     set_scale(marker, 1, 1, 1);
-    fill_tube(cable.state.positions, colors, radius, marker);
+    fill_tube(cable.state.positions, colors, radius, most_corners, marker);
   } else {
     marker.scale.x = 2 * radius;
     for (const Vector3& position : cable.state.positions) marker.points.push_back(to_point(position));

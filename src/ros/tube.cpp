@@ -10,9 +10,28 @@ namespace {
 
 constexpr int most_rings = 200;
 constexpr int sides_times_rings = 700;
-constexpr int fewest_sides = 6;
-constexpr int most_sides = 8;
-constexpr int cap_rings = 2;  // of a half sphere, between its tip and its rim
+constexpr int fewest_sides = 6, most_sides = 8;
+constexpr int sides_in_a_crowd = 4;
+constexpr int corners_of_a_side = 6;  // two triangles from ring to ring
+
+struct Detail {
+  int rings;      ///< along the cable
+  int sides;      ///< of a ring
+  int cap_rings;  ///< of a half sphere, between its tip and its rim
+
+  int corners() const { return corners_of_a_side * sides * (rings + 2 * cap_rings + 1); }
+};
+
+/// Fewer sides first, then tips instead of half spheres, then fewer rings.
+Detail detail(std::size_t nodes, int most_corners) {
+  Detail detail{static_cast<int>(std::min<std::size_t>(nodes, most_rings)), 0, 2};
+  detail.sides = std::clamp(sides_times_rings / (detail.rings + 2 * detail.cap_rings + 2), fewest_sides, most_sides);
+  while (detail.sides > sides_in_a_crowd && detail.corners() > most_corners) --detail.sides;
+  if (detail.corners() <= most_corners) return detail;
+  detail.cap_rings = 0;
+  detail.rings = std::clamp(most_corners / (corners_of_a_side * detail.sides) - 1, 2, detail.rings);
+  return detail;
+}
 
 /// A circle of the tube's surface.
 struct Ring {
@@ -22,8 +41,7 @@ struct Ring {
   std_msgs::ColorRGBA color;
 };
 
-std::vector<std::size_t> evenly_spread_nodes(std::size_t nodes) {
-  const std::size_t rings = std::min<std::size_t>(nodes, most_rings);
+std::vector<std::size_t> evenly_spread_nodes(std::size_t nodes, std::size_t rings) {
   std::vector<std::size_t> chosen(rings);
   for (std::size_t ring = 0; ring < rings; ++ring) chosen[ring] = ring * (nodes - 1) / (rings - 1);
   return chosen;
@@ -57,7 +75,7 @@ void orient(std::vector<Ring>& rings) {
 }
 
 /// The rings of a half sphere on the outside of `rim`; `outwards` is +1 at the end of the tube, -1 at its start. From rim to tip.
-std::vector<Ring> cap(const Ring& rim, double outwards) {
+std::vector<Ring> cap(const Ring& rim, int cap_rings, double outwards) {
   std::vector<Ring> rings;
   for (int k = 1; k <= cap_rings + 1; ++k) {
     const double latitude = M_PI_2 * k / (cap_rings + 1);
@@ -69,14 +87,15 @@ std::vector<Ring> cap(const Ring& rim, double outwards) {
   return rings;
 }
 
-std::vector<Ring> make_rings(const std::vector<Vector3>& centers, const std::vector<std_msgs::ColorRGBA>& colors, double radius) {
+std::vector<Ring> make_rings(const std::vector<Vector3>& centers, const std::vector<std_msgs::ColorRGBA>& colors, double radius,
+                             const Detail& detail) {
   std::vector<Ring> rings;
-  for (const std::size_t node : evenly_spread_nodes(centers.size())) {
+  for (const std::size_t node : evenly_spread_nodes(centers.size(), detail.rings)) {
     rings.push_back({centers[node], Quaternion::Identity(), radius, colors[node]});
   }
   orient(rings);
-  const std::vector<Ring> start = cap(rings.front(), -1);
-  const std::vector<Ring> end = cap(rings.back(), 1);
+  const std::vector<Ring> start = cap(rings.front(), detail.cap_rings, -1);
+  const std::vector<Ring> end = cap(rings.back(), detail.cap_rings, 1);
   rings.insert(rings.begin(), start.rbegin(), start.rend());
   rings.insert(rings.end(), end.begin(), end.end());
   return rings;
@@ -85,10 +104,11 @@ std::vector<Ring> make_rings(const std::vector<Vector3>& centers, const std::vec
 }  // namespace
 
 void fill_tube(const std::vector<Vector3>& centers, const std::vector<std_msgs::ColorRGBA>& colors, double radius,
-               visualization_msgs::Marker& marker) {
-  const std::vector<Ring> rings = make_rings(centers, colors, radius);
+               int most_corners, visualization_msgs::Marker& marker) {
+  const Detail shown = detail(centers.size(), most_corners);
+  const int sides = shown.sides;
+  const std::vector<Ring> rings = make_rings(centers, colors, radius, shown);
   const int ring_count = static_cast<int>(rings.size());
-  const int sides = std::clamp(sides_times_rings / ring_count, fewest_sides, most_sides);
 
   std::vector<geometry_msgs::Point> surface;  // sides points a ring
   surface.reserve(rings.size() * sides);
@@ -100,8 +120,8 @@ void fill_tube(const std::vector<Vector3>& centers, const std::vector<std_msgs::
     }
   }
 
-  marker.points.reserve(6 * (rings.size() - 1) * sides);
-  marker.colors.reserve(6 * (rings.size() - 1) * sides);
+  marker.points.reserve(shown.corners());
+  marker.colors.reserve(shown.corners());
   const auto add_corner = [&](int ring, int side) {
     marker.points.push_back(surface[ring * sides + side % sides]);
     marker.colors.push_back(rings[ring].color);

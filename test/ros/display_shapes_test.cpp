@@ -26,9 +26,9 @@ Vector3 from_point(const geometry_msgs::Point& point) {
   return {point.x, point.y, point.z};
 }
 
-Marker tube_along(const std::vector<Vector3>& centers, double radius) {
+Marker tube_along(const std::vector<Vector3>& centers, double radius, int most_corners = 100000) {
   Marker marker;
-  fill_tube(centers, std::vector<std_msgs::ColorRGBA>(centers.size()), radius, marker);
+  fill_tube(centers, std::vector<std_msgs::ColorRGBA>(centers.size()), radius, most_corners, marker);
   return marker;
 }
 
@@ -115,6 +115,18 @@ TEST(Tube, OfAVeryLongCableStaysLight) {
   EXPECT_LT(bytes, 300000u);
   EXPECT_EQ(tube.points.size(), tube.colors.size());
   EXPECT_NEAR(from_point(tube.points.back()).x(), 1000.0, 0.011);
+}
+
+TEST(Tube, InACrowdHasNoMoreCornersThanItMayAndIsStillClosed) {
+  const std::vector<Vector3> line = straight_line(50, 1.0);
+  for (const int most : {72, 100, 600, 1300, 2000, 2600}) {
+    const Marker tube = tube_along(line, 0.01, most);
+    EXPECT_LE(tube.points.size(), static_cast<std::size_t>(most));
+    EXPECT_GT(tube.points.size(), most / 2u);
+    EXPECT_EQ(tube.points.size(), tube.colors.size());
+    EXPECT_EQ(unmatched_edges(tube), 0) << most;
+    EXPECT_GT(enclosed_volume(tube), 0.63 * M_PI * 1e-4) << "four corners have 0.64 of a circle's area";
+  }
 }
 
 TEST(Tube, SurvivesFoldsAndCoincidingNodes) {
