@@ -15,8 +15,6 @@ namespace {
 constexpr double hiccup = 0.5;
 /// Longer waits than this [s] cannot be caught up: tf would have forgotten the frames.
 constexpr double longest_wait = 50;
-/// A clock that is further ahead [s] than can be caught up has jumped.
-constexpr double clock_jump = 0.2;
 /// Between warnings about what may last [s].
 constexpr double log_period = 5;
 
@@ -29,7 +27,7 @@ Nanoseconds Simulation::longest_backlog(const SceneDesc& scene) {
 Simulation::Simulation(ros::NodeHandle& private_node, const SceneDesc& scene)
     : scene_(scene),
       grid_(scene.time_step, scene.publish_rate),
-      pacer_(grid_.step(), longest_backlog(scene)),
+      pacer_(grid_, longest_backlog(scene)),
       world_(scene, initial_frames(scene)),
       frames_(private_node, scene),
       publishers_(private_node, scene),
@@ -86,7 +84,7 @@ void Simulation::start_if_possible() {
 void Simulation::start(Nanoseconds time) {
   // Frames of obstacles that came before the start are numbered anew, together with the new world's.
   if (!keeps_world_) frames_.reset(time);
-  frames_.sample_without_waiting(time, true);
+  frames_.sample_at_once(time);
   stamp_ = time;
   started_ = true;
   if (!keeps_world_) {
@@ -105,29 +103,18 @@ void Simulation::start(Nanoseconds time) {
 
 void Simulation::catch_up(ros::WallDuration longest) {
   const ros::WallTime deadline = ros::WallTime::now() + longest;
-  const Pacer::Due due = pacer_.due(stamp_, target());
-  Nanoseconds to_skip = due.dropped;
-  if (to_skip > nanoseconds(clock_jump)) {
-    stamp_ += to_skip;
-    to_skip = 0;
-  }
-  // What a busy machine cannot do is left out evenly: the cables move slower, and frames do not jump.
-  const Nanoseconds steps_to_skip = to_skip / grid_.step();
-  const Nanoseconds share = (steps_to_skip + steps_in_update_ - 1) / steps_in_update_ * grid_.step();
+  stamp_ = pacer_.resume(stamp_, target());
   std::vector<bool> awaited = awaited_frames(world_);
-  Nanoseconds done = 0;
-  for (; done < due.steps && ros::WallTime::now() < deadline; ++done) {
-    const Nanoseconds skip = std::min(share, to_skip);
-    if (!do_step(stamp_ + skip + grid_.step(), awaited)) break;
-    to_skip -= skip;
+  for (auto time = pacer_.next(stamp_, target()); time && ros::WallTime::now() < deadline; time = pacer_.next(stamp_, target())) {
+    const Nanoseconds before = stamp_;
+    if (!do_step(*time, awaited)) break;
+    pacer_.done(before, stamp_, target());
   }
-  pacer_.take_back(to_skip);
-  steps_in_update_ = std::max<Nanoseconds>(done, 1);
 }
 
 /// One step of catching up, to `time`. False where it cannot be done now.
 bool Simulation::do_step(Nanoseconds time, std::vector<bool>& awaited) {
-  if (!frames_.sample(time, target(), awaited)) return false;
+  if (!frames_.sample(time, time - stamp_, target(), awaited)) return false;
   if (!frames_.changes().empty()) {
     waits_for_frames_ = frame_watch_.react(frames_.changes(), stamp_, world_);
     if (waits_for_frames_) return false;

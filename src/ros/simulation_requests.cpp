@@ -54,7 +54,7 @@ EditResult Simulation::step(std::int64_t steps) {
     return refused("steps: " + std::to_string(steps) + "; allowed: 1 to " + std::to_string(most_steps));
   }
   for (std::int64_t i = 0; i < steps && ros::ok(); ++i) {
-    frames_.sample_without_waiting(stamp_ + grid_.step());
+    frames_.sample_without_waiting(stamp_ + grid_.step(), grid_.step());
     frame_watch_.react(frames_.changes(), stamp_, world_);
     if (!step_world(stamp_ + grid_.step())) {
       return refused("the simulation failed after " + std::to_string(i) + " steps: call reset");

@@ -9,7 +9,7 @@ EditResult Simulation::load_scene(const SceneDesc& scene) {
   World world(scene, initial_frames(scene));
   use_scene(scene);
   grid_ = TimeGrid(scene.time_step, scene.publish_rate);
-  pacer_.use(grid_.step(), longest_backlog(scene));
+  pacer_.use(grid_, longest_backlog(scene));
   world_ = std::move(world);
   moves_.clear();
   frames_.follow_scene(scene, stamp_);

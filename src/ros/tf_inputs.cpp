@@ -22,7 +22,7 @@ TfInputs::TfInputs(const ros::NodeHandle& node, const SceneDesc& scene) : listen
 void TfInputs::follow_scene(const SceneDesc& scene, Nanoseconds time) {
   buffer_.see_from(scene.frame_id);
   timeout_ = nanoseconds(scene.tf_timeout);
-  longest_way_ = scene.max_frame_speed * scene.time_step;
+  max_frame_speed_ = scene.max_frame_speed;
   inputs_ = initial_frames(scene);
   const std::vector<std::string> names = frame_names(scene);
   scene_frames_ = static_cast<int>(names.size());
@@ -87,7 +87,7 @@ void TfInputs::reset(Nanoseconds time) {
   drop_pinned_frames();
   for (int i = 0; i < scene_frames_; ++i) {
     if (const auto pose = buffer_.pose(tracks_[i].name, time)) {
-      if (tracks_[i].history.at(time) == Coverage::covered) follow(i, *pose, true);
+      if (tracks_[i].history.at(time) == Coverage::covered) follow(i, *pose, infinity);
     }
   }
 }
@@ -158,18 +158,27 @@ Nanoseconds TfInputs::first_common_time() const {
   return first;
 }
 
-bool TfInputs::sample(Nanoseconds time, Nanoseconds target, const std::vector<bool>& needed) {
+bool TfInputs::sample(Nanoseconds time, Nanoseconds elapsed, Nanoseconds target, const std::vector<bool>& needed) {
   changes_.clear();
   bool wait = false;
   for (std::size_t i = 0; i < tracks_.size(); ++i) wait |= needed[i] && must_wait(tracks_[i], time, target);
   if (wait) return false;
-  for (std::size_t i = 0; i < tracks_.size(); ++i) sample_frame(static_cast<int>(i), time, target, false);
+  sample_frames(time, target, max_frame_speed_ * seconds(elapsed));
   return true;
 }
 
-void TfInputs::sample_without_waiting(Nanoseconds time, bool at_once) {
+void TfInputs::sample_without_waiting(Nanoseconds time, Nanoseconds elapsed) {
   changes_.clear();
-  for (std::size_t i = 0; i < tracks_.size(); ++i) sample_frame(static_cast<int>(i), time, 0, at_once);
+  sample_frames(time, 0, max_frame_speed_ * seconds(elapsed));
+}
+
+void TfInputs::sample_at_once(Nanoseconds time) {
+  changes_.clear();
+  sample_frames(time, 0, infinity);
+}
+
+void TfInputs::sample_frames(Nanoseconds time, Nanoseconds target, double longest_way) {
+  for (std::size_t i = 0; i < tracks_.size(); ++i) sample_frame(static_cast<int>(i), time, target, longest_way);
 }
 
 bool TfInputs::must_wait(Track& track, Nanoseconds time, Nanoseconds target) const {
@@ -179,7 +188,7 @@ bool TfInputs::must_wait(Track& track, Nanoseconds time, Nanoseconds target) con
   return late;
 }
 
-void TfInputs::sample_frame(int frame, Nanoseconds time, Nanoseconds target, bool at_once) {
+void TfInputs::sample_frame(int frame, Nanoseconds time, Nanoseconds target, double longest_way) {
   Track& track = tracks_[frame];
   const Coverage coverage = track.history.at(time);
   if (coverage == Coverage::covered) {
@@ -187,7 +196,7 @@ void TfInputs::sample_frame(int frame, Nanoseconds time, Nanoseconds target, boo
       if (track.status == FrameStatus::never_seen) change(FrameChange::Kind::seen, frame);
       if (track.status == FrameStatus::lost) change(FrameChange::Kind::back, frame);
       track.status = FrameStatus::ok;
-      follow(frame, *pose, at_once);
+      follow(frame, *pose, longest_way);
       return;
     }
   }
@@ -198,23 +207,23 @@ void TfInputs::sample_frame(int frame, Nanoseconds time, Nanoseconds target, boo
   }
   if (track.status == FrameStatus::lost) return;
   if (const Nanoseconds last = track.history.last_before(time); last > 0) {
-    if (const auto pose = buffer_.pose(track.name, last)) follow(frame, *pose, at_once);
+    if (const auto pose = buffer_.pose(track.name, last)) follow(frame, *pose, longest_way);
   }
   const bool late = coverage == Coverage::ahead && target - track.history.newest() <= timeout_;
   track.status = late ? FrameStatus::late : FrameStatus::lost;
   if (!late) change(FrameChange::Kind::lost, frame);
 }
 
-void TfInputs::follow(int frame, const Pose& pose, bool at_once) {
+void TfInputs::follow(int frame, const Pose& pose, double longest_way) {
   FrameInput& input = inputs_[frame];
   Track& track = tracks_[frame];
   const double way = (pose.position - input.pose.position).norm();
-  if (!input.known || at_once || way <= longest_way_) {
+  if (!input.known || way <= longest_way) {
     input = {pose, true};
     track.too_fast = false;
     return;
   }
-  const double part = longest_way_ / way;
+  const double part = longest_way / way;
   input.pose.position += part * (pose.position - input.pose.position);
   input.pose.orientation = input.pose.orientation.slerp(part, pose.orientation).normalized();
   if (!track.too_fast) change(FrameChange::Kind::too_fast, frame);

@@ -2,35 +2,110 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <vector>
+
 namespace verlet_cable {
 namespace {
 
-TEST(Pacer, DoesWholeStepsAndNotBeyondTheTarget) {
-  Pacer pacer(10, 1000);
-  EXPECT_EQ(pacer.due(100, 129).steps, 2);
-  EXPECT_EQ(pacer.due(100, 130).steps, 3);
-  EXPECT_EQ(pacer.due(100, 100).steps, 0);
-  EXPECT_EQ(pacer.due(100, 50).steps, 0) << "the target may lie behind, after a jump of the clock";
+constexpr Nanoseconds ms = 1000000;
+constexpr Nanoseconds second = 1000 * ms;
+constexpr Nanoseconds backlog = second;
+
+Pacer make_pacer() {
+  return Pacer(TimeGrid(0.001, 50), backlog);
+}
+
+struct Outcome {
+  std::vector<Nanoseconds> times;  ///< that were simulated
+  Nanoseconds behind = 0;          ///< at the end
+};
+/// A machine that takes `cost` of ROS time for each step, given ROS time and the way of the step, from ROS time 0 to `end`.
+template <class Cost>
+Outcome run(Pacer& pacer, Nanoseconds end, Cost cost) {
+  Outcome result;
+  Nanoseconds simulated = 0;
+  for (Nanoseconds clock = 0; clock < end;) {
+    simulated = pacer.resume(simulated, clock);
+    const auto time = pacer.next(simulated, clock);
+    if (!time) {
+      clock += ms / 4;
+      continue;
+    }
+    clock += cost(clock, *time - simulated);
+    pacer.done(simulated, *time, clock);
+    simulated = *time;
+    result.times.push_back(simulated);
+    result.behind = clock - simulated;
+  }
+  return result;
+}
+
+TEST(Pacer, StepsOnTheGridAndNotBeyondTheTarget) {
+  const Pacer pacer = make_pacer();
+  EXPECT_EQ(pacer.next(100 * ms, 101 * ms), 101 * ms);
+  EXPECT_EQ(pacer.next(100 * ms, 101 * ms - 1), std::nullopt);
+  EXPECT_EQ(pacer.next(100 * ms, 50 * ms), std::nullopt) << "the target may lie behind, after a jump of the clock";
+  EXPECT_EQ(pacer.next(100 * ms + 1, 110 * ms), 102 * ms) << "back to the grid";
+}
+
+TEST(Pacer, CatchesUpALateStartWithoutDropping) {
+  Pacer pacer = make_pacer();
+  const Outcome late = run(pacer, 3 * second, [](Nanoseconds clock, Nanoseconds) { return clock < ms ? backlog : ms / 2; });
   EXPECT_EQ(pacer.dropped(), 0);
+  EXPECT_LE(late.behind, ms);
+  for (std::size_t i = 0; i < late.times.size(); ++i) ASSERT_EQ(late.times[i], static_cast<Nanoseconds>(i + 1) * ms);
 }
 
-TEST(Pacer, CatchesUpTheLongestBacklogAndCountsTheRestAsDropped) {
-  Pacer pacer(10, 105);
-  const Pacer::Due due = pacer.due(0, 1005);
-  EXPECT_EQ(due.steps, 10);
-  EXPECT_EQ(due.dropped, 900);
-  EXPECT_EQ(due.dropped + due.steps * 10, 1000) << "it ends where it would have without dropping";
-  EXPECT_EQ(pacer.dropped(), 900);
-  pacer.due(1000, 1105);
-  EXPECT_EQ(pacer.dropped(), 900);
+TEST(Pacer, LeavesOutALeapOfTheClockAtOnce) {
+  Pacer pacer = make_pacer();
+  EXPECT_EQ(pacer.resume(0, ms), 0);
+  EXPECT_EQ(pacer.resume(0, backlog), 0) << "this can be caught up";
+  EXPECT_EQ(pacer.resume(0, backlog + 10 * second), 10 * second);
+  EXPECT_EQ(pacer.dropped(), 10 * second);
+  EXPECT_EQ(pacer.resume(10 * second, 9 * second), 10 * second) << "back";
+}
+
+TEST(Pacer, LeavesOutTimeEvenlyWhereTheMachineIsTooSlow) {
+  for (const Nanoseconds cost : {ms * 5 / 4, 2 * ms, 8 * ms, 40 * ms}) {
+    Pacer pacer = make_pacer();
+    // Every tenth step is followed by a hiccup of three.
+    int steps = 0;
+    const Outcome slow = run(pacer, 60 * second, [&](Nanoseconds, Nanoseconds) { return ++steps % 10 == 0 ? 4 * cost : cost; });
+    const double pace = 1.3 * static_cast<double>(cost) / ms;
+    for (std::size_t i = slow.times.size() / 2; i < slow.times.size(); ++i)
+      ASSERT_NEAR(static_cast<double>(slow.times[i] - slow.times[i - 1]) / ms, pace, 0.1 * pace) << "cost " << cost;
+    EXPECT_NEAR(seconds(slow.behind), 1 + 0.5 * std::log(pace), 0.1 + 1.3 * seconds(cost)) << "cost " << cost;
+    EXPECT_EQ(pacer.dropped(), slow.times.back() - static_cast<Nanoseconds>(slow.times.size()) * ms);
+  }
+}
+
+TEST(Pacer, DoesNotRunAwayWhereFasterFramesCostMore) {
+  Pacer pacer = make_pacer();
+  const Outcome whip = run(pacer, 60 * second, [](Nanoseconds, Nanoseconds way) {
+    return static_cast<Nanoseconds>(ms * (0.7 + 0.5 * std::sqrt(static_cast<double>(way) / ms)));
+  });
+  // 0.7 + 0.5 sqrt(pace) = pace
+  const double pace = 1.264;
+  for (std::size_t i = whip.times.size() / 2; i < whip.times.size(); ++i)
+    ASSERT_NEAR(static_cast<double>(whip.times[i] - whip.times[i - 1]) / ms, pace, 0.02);
+}
+
+TEST(Pacer, ReturnsToTheGridAfterAnOverload) {
+  Pacer pacer = make_pacer();
+  const Outcome both =
+      run(pacer, 20 * second, [](Nanoseconds clock, Nanoseconds) { return clock < 10 * second ? 2 * ms : ms / 5; });
+  EXPECT_LE(both.behind, ms);
+  EXPECT_NEAR(seconds(pacer.dropped()), 4, 0.5) << "of 10 s half, without what is caught up";
+  EXPECT_EQ(both.times.back() % ms, 0);
+  EXPECT_EQ(both.times[both.times.size() - 1000], both.times.back() - 999 * ms);
+}
+
+TEST(Pacer, CountsWhatIsDroppedElsewhere) {
+  Pacer pacer = make_pacer();
   pacer.drop(50);
-  EXPECT_EQ(pacer.dropped(), 950);
   pacer.drop(-50);
-  EXPECT_EQ(pacer.dropped(), 950);
-}
-
-TEST(Pacer, DoesAStepEvenWhereTheBacklogAllowsLess) {
-  EXPECT_EQ(Pacer(10, 3).due(0, 25).steps, 1);
+  EXPECT_EQ(pacer.dropped(), 50);
 }
 
 }  // namespace

@@ -149,7 +149,6 @@ class Simulation {
   bool paused_ = false;
   bool faulted_ = false;
   bool waits_for_frames_ = false;
-  Nanoseconds steps_in_update_ = 1;  ///< that the last one did, at least 1
   int faults_ = 0;
   int scene_version_ = 0;
   ros::WallTime last_published_;

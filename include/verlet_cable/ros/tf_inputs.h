@@ -71,10 +71,12 @@ class TfInputs {
 
   /// The frames at `time`, for `inputs` and `changes`. False, and nothing changed, if a needed frame (by id) is late and has to
   /// be waited for: it is lost when its newest pose is more than `tf_timeout` older than `target`, the time at which the
-  /// simulation should be.
-  bool sample(Nanoseconds time, Nanoseconds target, const std::vector<bool>& needed);
-  /// The same, with the newest pose of a frame that is late; without a limit of speed if `at_once`.
-  void sample_without_waiting(Nanoseconds time, bool at_once = false);
+  /// simulation should be. No frame is followed faster than `max_frame_speed` in the `elapsed` time since the last sample.
+  bool sample(Nanoseconds time, Nanoseconds elapsed, Nanoseconds target, const std::vector<bool>& needed);
+  /// The same, with the newest pose of a frame that is late.
+  void sample_without_waiting(Nanoseconds time, Nanoseconds elapsed);
+  /// The same, without a limit of speed.
+  void sample_at_once(Nanoseconds time);
 
   const BoundaryInputs& inputs() const { return inputs_; }
   const std::vector<FrameChange>& changes() const { return changes_; }  ///< that the last sample found
@@ -105,15 +107,16 @@ class TfInputs {
   const Track* find_track(const std::string& frame) const;
   Track track_from(const std::string& frame, const FrameInput& at, Nanoseconds time) const;
   bool must_wait(Track& track, Nanoseconds time, Nanoseconds target) const;
-  void sample_frame(int frame, Nanoseconds time, Nanoseconds target, bool at_once);
-  void follow(int frame, const Pose& pose, bool at_once);
+  void sample_frames(Nanoseconds time, Nanoseconds target, double longest_way);
+  void sample_frame(int frame, Nanoseconds time, Nanoseconds target, double longest_way);
+  void follow(int frame, const Pose& pose, double longest_way);
   void change(FrameChange::Kind kind, int frame) { changes_.push_back({kind, frame}); }
 
   TfListener listener_;
   FrameBuffer buffer_;
   std::deque<std::pair<ros::WallTime, ReceivedTransform>> recent_;  ///< with the time of arrival
   Nanoseconds timeout_ = 0;
-  double longest_way_ = infinity;  ///< [m] that a frame is followed in a step
+  double max_frame_speed_ = infinity;
   int scene_frames_ = 0;
   std::vector<Track> tracks_;  ///< by frame id; the first is the fixed frame
   BoundaryInputs inputs_;      ///< by frame id
