@@ -14,6 +14,8 @@ struct GroupScratch {
   std::vector<CableState> before;                    ///< one a cable, at the start of the substep
   std::vector<std::vector<TwistSpan>> spans_before;  ///< likewise
   std::vector<SubstepResult> results;                ///< one a cable
+  std::vector<MovingObstacle> obstacles;             ///< over the substep
+  std::vector<Intrusion> intrusions;                 ///< found in the step
 
   GroupScratch() = default;
   GroupScratch(const GroupScratch&) {}

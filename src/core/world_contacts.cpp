@@ -17,6 +17,20 @@ double largest_distance(const Aabb& box, const Vector3& from) {
 
 }  // namespace
 
+void note_intrusions(ContactGroup& group) {
+  std::vector<Intrusion>& noted = group.scratch.intrusions;
+  for (const Intrusion& found : group.contacts.intrusions()) {
+    const auto same = std::find_if(noted.begin(), noted.end(), [&](const Intrusion& other) {
+      return other.cable == found.cable && other.obstacle == found.obstacle;
+    });
+    if (same == noted.end()) {
+      noted.push_back(found);
+    } else if (same->depth < found.depth) {
+      *same = found;
+    }
+  }
+}
+
 /// Cables that may touch each other are one group; else each is its own.
 void World::Implementation::form_groups() {
   groups.clear();
@@ -30,8 +44,8 @@ void World::Implementation::form_groups() {
 }
 
 /// The obstacles that are there, as they move over a part of the step.
-void World::Implementation::move_obstacles(double from, double to) {
-  moving_obstacles.clear();
+void World::Implementation::move_obstacles(double from, double to, std::vector<MovingObstacle>& all) const {
+  all.clear();
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     const Obstacle& obstacle = obstacles[i];
     if (!obstacle.present) continue;
@@ -46,7 +60,7 @@ void World::Implementation::move_obstacles(double from, double to) {
     double distance = (after.position - before.position).norm();
     if (angle > 0) distance += angle * largest_distance(moving.box, moving.start.position);
     moving.speed = distance / scene.time_step;
-    moving_obstacles.push_back(moving);
+    all.push_back(moving);
   }
 }
 
@@ -62,21 +76,9 @@ ContactRules World::Implementation::contact_rules(bool still) const {
 }
 
 void World::Implementation::find_contacts(ContactGroup& group, double from, double to) {
-  move_obstacles(from, to);
-  group.contacts.find(cables, group.cables, moving_obstacles, attachments, contact_rules(false), (to - from) * scene.time_step);
-}
-
-void World::Implementation::note_intrusions(const ContactGroup& group) {
-  for (const Intrusion& found : group.contacts.intrusions()) {
-    const auto noted = std::find_if(intrusions.begin(), intrusions.end(), [&](const Intrusion& other) {
-      return other.cable == found.cable && other.obstacle == found.obstacle;
-    });
-    if (noted == intrusions.end()) {
-      intrusions.push_back(found);
-    } else if (noted->depth < found.depth) {
-      *noted = found;
-    }
-  }
+  move_obstacles(from, to, group.scratch.obstacles);
+  group.contacts.find(cables, group.cables, group.scratch.obstacles, attachments, contact_rules(false),
+                      (to - from) * scene.time_step);
 }
 
 std::vector<SimulatedContact> World::contacts() const {

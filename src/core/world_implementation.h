@@ -62,8 +62,9 @@ struct World::Implementation {
   std::vector<Break> breaks;          ///< in the last step
   std::vector<Intrusion> intrusions;  ///< likewise
   // Scratch
-  std::vector<StepResult> results;  ///< one a cable
-  std::vector<MovingObstacle> moving_obstacles;
+  std::vector<StepResult> results;               ///< one a cable
+  std::vector<MovingObstacle> moving_obstacles;  ///< of nets, particles and cables that settle
+  bool one_by_one = false;                       ///< as World::step_one_by_one asks
 
   template <class Desc>
   bool frames_known(const Desc& desc, const BoundaryInputs& inputs) const;
@@ -82,13 +83,13 @@ struct World::Implementation {
   void add_scene_obstacles();
   void find_obstacle_holders();
   void form_groups();
+  void step_groups();
   void step_group(ContactGroup& group);
   void aim(int cable);
   bool advance(ContactGroup& group, double from, double to, bool tolerated);
-  void move_obstacles(double from, double to);
+  void move_obstacles(double from, double to, std::vector<MovingObstacle>& moving) const;
   ContactRules contact_rules(bool still) const;
   void find_contacts(ContactGroup& group, double from, double to);
-  void note_intrusions(const ContactGroup& group);
   void note_substep(int cable, const SubstepResult& substep, double part);
   void give_up(int cable);
   void settle_cable(int cable);
@@ -117,6 +118,9 @@ int find_frame(const std::vector<std::string>& frames, const std::string& name);
 
 /// Keeps the worst status, and of equals the first cable's.
 void note_status(StepResult::Status status, int cable, int node, StepResult& result);
+
+/// Keeps the deepest place of each cable in each obstacle that a substep of the group has found.
+void note_intrusions(ContactGroup& group);
 
 /// Takes a cable's motion away.
 void bring_to_rest(CableState& state);

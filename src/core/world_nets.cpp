@@ -72,7 +72,7 @@ void World::Implementation::add_particle(const ParticleDesc& desc) {
 
 void World::Implementation::step_nets_and_particles(StepResult& result) {
   if (nets.empty() && particles.empty()) return;
-  move_obstacles(0, 1);
+  move_obstacles(0, 1, moving_obstacles);
   for (int net = 0; net < static_cast<int>(nets.size()); ++net) step_net(net, result);
   for (int particle = 0; particle < static_cast<int>(particles.size()); ++particle) step_particle(particle, result);
   result.substeps = std::max(result.substeps, 1);

@@ -37,7 +37,7 @@ void World::Implementation::settle_cable(int index) {
   bring_to_rest(cable.state);
   ContactGroup alone;
   alone.cables.push_back(index);
-  move_obstacles(1, 1);
+  move_obstacles(1, 1, moving_obstacles);
   double h = first_settling_step;
   bool settled = false;
   for (int i = 0; i < maximum_settling_steps && !settled; ++i) {

@@ -1,3 +1,5 @@
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -14,6 +16,8 @@ constexpr int maximum_substeps = 4096;
 /// A substep that took no more iterations than this may be doubled; with contacts it always takes some more.
 constexpr int easy_iterations = 6;
 constexpr int easy_contact_iterations = 12;
+/// Less [segments] is not worth another core.
+constexpr int least_share = 500;
 
 bool finite(const std::vector<Vector3>& vectors) {
   return std::all_of(vectors.begin(), vectors.end(), [](const Vector3& v) { return v.allFinite(); });
@@ -30,7 +34,7 @@ StepResult World::step(const BoundaryInputs& inputs) {
   w.breaks.clear();
   w.intrusions.clear();
   w.results.assign(w.cables.size(), StepResult{});
-  for (ContactGroup& group : w.groups) w.step_group(group);
+  w.step_groups();
   const int cables = static_cast<int>(w.cables.size());
   for (int cable = 0; cable < cables; ++cable) {
     const StepResult& of_cable = w.results[cable];
@@ -46,10 +50,36 @@ StepResult World::step(const BoundaryInputs& inputs) {
   return result;
 }
 
+void World::step_one_by_one(bool one_by_one) {
+  implementation_->one_by_one = one_by_one;
+}
+
+/// Groups do not know of each other: the result is the same whether one after the other or all at once. Only winches and joints
+/// that close number attachments anew, which others read.
+void World::Implementation::step_groups() {
+  std::size_t segments = 0;
+  bool alone = one_by_one;
+  for (std::size_t i = 0; i < cables.size(); ++i) {
+    segments += cables[i].model.segments();
+    alone = alone || scratch[i].reel;
+  }
+  if (alone || groups.size() < 2 || segments < 2 * least_share) {
+    for (std::size_t i = 0; i < groups.size(); ++i) step_group(groups[i]);
+  } else {
+    const std::size_t share = std::max<std::size_t>(1, least_share * groups.size() / segments);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, groups.size(), share), [&](const auto& some) {
+      for (std::size_t i = some.begin(); i < some.end(); ++i) step_group(groups[i]);
+    });
+  }
+  for (const ContactGroup& group : groups)
+    intrusions.insert(intrusions.end(), group.scratch.intrusions.begin(), group.scratch.intrusions.end());
+}
+
 /// Steps cables in as many substeps as they need: halved where the solver does not converge, doubled where it does easily.
 void World::Implementation::step_group(ContactGroup& group) {
   using Status = StepResult::Status;
   const double dt = scene.time_step;
+  group.scratch.intrusions.clear();
   for (const int cable : group.cables) aim(cable);
 
   const int finest = std::max(0, static_cast<int>(std::ceil(std::log2(dt / shortest_substep))));

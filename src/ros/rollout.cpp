@@ -84,6 +84,7 @@ Rollout::Rollout(const RolloutGoal& goal, RolloutStart start)
   check_times(goal, world_, errors);
   motion_ = read_motion(goal, world_, errors);
   if (!errors.empty()) throw SceneError(std::move(errors));
+  world_.step_one_by_one(true);
 }
 
 bool Rollout::run(const std::function<bool(double)>& goes_on, RolloutResult& result) {

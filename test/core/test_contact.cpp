@@ -209,6 +209,46 @@ TEST(Contact, CopiesOfAWorldWithContactsGoOnWithTheSameBytes) {
   EXPECT_EQ(world.hash(), copy.hash());
 }
 
+TEST(Contact, CablesSteppedAtOnceAreThoseSteppedOneByOne) {
+  SceneDesc scene = straight_rope(0.5, 50);
+  scene.materials[0].material.bending_stiffness = 1e-4;
+  scene.materials[0].material.breaking_tension = 3;
+  add_obstacle("block", ShapeType::box, {0, 0, 0, 0, 0, 0}, scene);
+  const CableDesc cable = scene.cables[0];
+  scene.cables.clear();
+  for (int i = 0; i < 40; ++i) {
+    // Some begin inside of the block, some fall on it, some are thrown about by a hand and break.
+    CableDesc other = cable;
+    other.name = "cable" + std::to_string(i);
+    other.initial.from = {-0.25 + 0.01 * i, 0.002 * i, 0.03 + 0.01 * i};
+    other.initial.to = {0.25 + 0.01 * i, 0.004 * i, 0.03 + 0.01 * i};
+    if (i % 3 == 0)
+      other.attachments = {scenes::attachment("held" + std::to_string(i), PlaceDesc::At::start, {0, 0, 0.01 * i}, "hand")};
+    scene.cables.push_back(other);
+  }
+  const auto hand = [](int i) { return scenes::hand_at({0.2 * std::sin(0.05 * i), 0, 0.1}); };
+  World at_once(scene, hand(0)), one_by_one(scene, hand(0));
+  one_by_one.step_one_by_one(true);
+  bool intruded = false, broke = false;
+  for (int i = 1; i <= 400; ++i) {
+    const StepResult a = at_once.step(hand(i)), b = one_by_one.step(hand(i));
+    ASSERT_EQ(at_once.hash(), one_by_one.hash()) << "step " << i;
+    ASSERT_EQ(a.status, b.status);
+    ASSERT_EQ(a.cable, b.cable);
+    ASSERT_EQ(a.iterations, b.iterations);
+    ASSERT_EQ(a.max_strain, b.max_strain);
+    ASSERT_EQ(at_once.intrusions().size(), one_by_one.intrusions().size());
+    for (std::size_t k = 0; k < at_once.intrusions().size(); ++k) {
+      ASSERT_EQ(at_once.intrusions()[k].cable, one_by_one.intrusions()[k].cable);
+      ASSERT_EQ(at_once.intrusions()[k].depth, one_by_one.intrusions()[k].depth);
+    }
+    intruded = intruded || at_once.intrusions().size() > 1;
+    broke = broke || !at_once.breaks().empty();
+  }
+  EXPECT_TRUE(intruded);
+  EXPECT_TRUE(broke);
+}
+
 TEST(ContactLaw, StiffensWithDepthAndKeepsFrictionInItsCone) {
   Touch touch;
   touch.radius = radius;

@@ -97,6 +97,9 @@ class World {
 
   /// Advances by the scene's time step. `inputs`: one entry a frame, see frames().
   StepResult step(const BoundaryInputs& inputs);
+  /// Cables that cannot touch are stepped by all cores at once where they are many, with the same result; or not, for programs
+  /// that run many worlds at once.
+  void step_one_by_one(bool one_by_one);
 
   /// Puts every cable that is held into static equilibrium, its holders where they are (Newton's method, no waiting); free cables
   /// and nets stay as they are. False if one of them found none; it is then at rest near it.
