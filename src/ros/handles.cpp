@@ -18,6 +18,7 @@ constexpr std::size_t most_nodes = 200;
 constexpr double node_size = 1.6, attachment_size = 3.2;
 constexpr double largest_arm = 0.3;      // [m]
 constexpr double arm_of_cable = 0.12;    // of its length
+constexpr double arm_of_net = 3;         // of its first link's length
 constexpr double smallest_arm = 10;      // [radii]
 constexpr double sphere_in_arm = 0.25;   // a sphere is no larger than this part of the arrows
 constexpr double smallest_node = 0.004;  // [m] radius: thinner cables cannot be hit
@@ -35,7 +36,7 @@ void add_menu(const Handle& handle, InteractiveMarker& marker) {
   } else {
     add(HandleAction::release, "Release");
   }
-  add(HandleAction::cut, "Cut here");
+  if (!handle.cable.empty()) add(HandleAction::cut, "Cut here");
   add(HandleAction::reset, "Reset all");
 }
 
@@ -79,12 +80,20 @@ Handle handle_of(const SimulatedCable& cable) {
   return handle;
 }
 
+/// Of what holds a net; it has no cable.
+Handle handle_of(const SimulatedNet& net) {
+  Handle handle;
+  handle.arm_length = largest_arm;
+  if (!net.model.rest_lengths.empty()) handle.arm_length = std::min(arm_of_net * net.model.rest_lengths.front(), largest_arm);
+  handle.radius = handle.arm_length / smallest_arm;
+  return handle;
+}
+
 void add_attachments(const Simulation& simulation, const std::set<std::string>& grabs, std::vector<Handle>& handles) {
   const World& world = simulation.world();
   for (const Attachment& attachment : world.attachments()) {
     if (grabs.count(attachment.name) > 0) continue;
-    if (attachment.cable < 0) continue;  // nets have no handles
-    Handle handle = handle_of(world.cables()[attachment.cable]);
+    Handle handle = attachment.net >= 0 ? handle_of(world.nets()[attachment.net]) : handle_of(world.cables()[attachment.cable]);
     handle.name = "attachment/" + attachment.name;
     handle.attachment = attachment.name;
     handle.node = attachment.node;

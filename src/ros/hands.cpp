@@ -134,6 +134,7 @@ EditResult Hands::pin(const Handle& handle) {
 }
 
 EditResult Hands::cut(const Handle& handle) {
+  if (handle.cable.empty()) return refused({"menu_entry_id: 3; what holds a net has 2 and 4 only"});
   const Location location = locate_cut(location_of(handle), simulation_.world(), {});
   if (!location.errors.empty()) return refused(location.errors);
   return simulation_.cut(location.cable, location.index);
@@ -145,7 +146,7 @@ EditResult Hands::move(const std::string& name, Pose place) {
   const int index = world.find_attachment(name);
   if (index < 0) return refused({"attachment " + quoted(name) + " is not there any more"});
   const Attachment& attachment = world.attachments()[index];
-  place.position = within_reach(world, attachment.cable, attachment.node, name, place.position);
+  if (attachment.cable >= 0) place.position = within_reach(world, attachment.cable, attachment.node, name, place.position);
   return simulation_.move_attachment(name, world.frame_pose(attachment.frame).inverse() * place);
 }
 

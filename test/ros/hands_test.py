@@ -94,10 +94,11 @@ class HandsTest(unittest.TestCase):
         self.shown.clear()
         markers = self.shown.wait_for(lambda _: True, 'handles')
         nodes = {f'rope/{i}' for i in range(1, 20)} | {f'chain/{i}' for i in range(1, 11)}
-        self.assertEqual(set(markers), nodes | {'attachment/left', 'attachment/right', 'attachment/ceiling'})
+        self.assertEqual(set(markers), nodes | {f'attachment/{name}' for name in ('left', 'right', 'ceiling', 'upper', 'lower')})
         self.assertEqual(len(markers['attachment/left'].controls), 4)   # taken, three arrows
         self.assertEqual(len(markers['attachment/right'].controls), 7)  # and three rings: a clamp
         self.assertEqual([e.id for e in markers['attachment/left'].menu_entries], [RELEASE, CUT, RESET])
+        self.assertEqual([e.id for e in markers['attachment/upper'].menu_entries], [RELEASE, RESET])
         self.assertEqual([e.id for e in markers['rope/3'].menu_entries], [PIN, CUT, RESET])
         self.assertLess(distance(markers['attachment/right'].pose.position, (0.7, 0, 1)), 1e-6)
 
@@ -112,6 +113,18 @@ class HandsTest(unittest.TestCase):
             self.frames.motions['left_hand'] = lambda t: (0, 0, 1)
             self.assertTrue(self.node.reset().success)
             states.wait_for(lambda s: distance(cable(s, 'rope').positions[0], (0, 0, 1)) < 1e-3, 'start as in the scene')
+
+    def test_what_holds_a_net_is_dragged_and_released(self):
+        def node(state, number):
+            return state.nets[0].positions[number]
+
+        with self.node.states() as states:
+            self.drag('attachment/upper', 0.05, 3, 1.05)
+            states.wait_for(lambda s: distance(node(s, 0), (0.05, 3, 1.05)) < 1e-6, 'corner at the mouse')
+            self.select('attachment/upper', CUT)  # not in its menu
+            self.select('attachment/upper', RELEASE)
+            states.wait_for(lambda s: node(s, 0).z < 0.8, 'corner that falls')
+        self.assertLess(distance(node(self.node.state(), 8), (0, 3, 0.8)), 1e-9)
 
     def test_a_drag_is_smooth(self):
         with self.node.states() as states:
@@ -144,7 +157,7 @@ class HandsTest(unittest.TestCase):
             self.shown.clear()
             markers = self.shown.wait_for(lambda _: True, 'handles')
             self.assertIn('chain/10', markers)
-            self.assertEqual(sum(name.startswith('attachment/') for name in markers), 3)
+            self.assertEqual(sum(name.startswith('attachment/') for name in markers), 5)
             self.send('chain/10', InteractiveMarkerFeedback.MOUSE_UP)
             states.wait_for(lambda s: cable(s, 'chain').attachments == ['ceiling'] and
                             distance(cable(s, 'chain').positions[10], (0.2, 1, 0.9)) > 0.05, 'node that fell')
