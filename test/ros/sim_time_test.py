@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Nodes in simulated time: a clock that was never there, runs, stands and goes back."""
+"""Nodes in simulated time: a clock that was never there, runs, stands, goes back, creeps and races."""
 import math
 import sys
 import time
@@ -13,7 +13,7 @@ from tf2_msgs.msg import TFMessage
 from cable_client import CableClient, all_finite, cable, distance, transform
 from verlet_cable.msg import CableEvent
 
-SPEED = 4  # of the clock, times real time
+SPEED = 4  # of the clock, times real time, where nothing else is said
 
 
 def positions(state):
@@ -26,15 +26,19 @@ class SimTimeTest(unittest.TestCase):
         self.tf = rospy.Publisher('/tf', TFMessage, queue_size=100)
         self.resetting, self.keeping = CableClient('/resetting'), CableClient('/keeping')
 
-    def play(self, start, seconds):
-        """The clock and a frame that moves with the time since `start`, every 10 ms of simulated time.
+    def play(self, start, seconds, speed=SPEED):
+        """A frame that moves with the time since `start`, every 10 ms of simulated time, and the clock, about every 10 ms of real
+        time where it races.
 
         tf and the clock come by two connections: at the beginning tf is ahead.
         """
-        for i in range(int(round(seconds * 100)) + 1):
+        frames_a_tick = max(1, round(speed))
+        for i in range(round(seconds * 100) + 1):
             t = i / 100
             self.tf.publish([transform('hand', start + t, (0.1 * math.sin(5 * t), 0, 1))])
-            time.sleep(0.05 if i == 0 else 0.01 / SPEED)
+            if i % frames_a_tick:
+                continue
+            time.sleep(0.05 if i == 0 else frames_a_tick * 0.01 / speed)
             self.clock.publish(rospy.Time.from_sec(start + t))
 
     def test_the_life_of_a_clock(self):
@@ -93,6 +97,18 @@ class SimTimeTest(unittest.TestCase):
             self.assertLess(kept.header.stamp.to_sec(), 51)
             self.assertLess(math.dist(positions(before)[-1], positions(kept)[-1]), 0.2)
             self.assertGreater(math.dist(positions(second_run[0])[-1], positions(kept)[-1]), 0.2)
+
+    def test_the_speed_of_the_clock_changes_nothing(self):
+        runs = []
+        with self.resetting.states() as states, self.resetting.events() as events:
+            for speed in (1, 0.1, 10):
+                events.clear(), states.clear()
+                self.play(20, 0.6, speed)
+                states.wait_for(lambda s: 20.54 <= s.header.stamp.to_sec() < 21, 'last tick')
+                runs.append({s.header.stamp.to_nsec(): positions(s) for s in states.all() if 20 <= s.header.stamp.to_sec() < 21})
+        self.assertEqual(sorted(runs[0]), [int(20e9) + 20_000_000 * i for i in range(28)])
+        for run in runs[1:]:
+            self.assertEqual(run, runs[0])
 
 
 if __name__ == '__main__':
