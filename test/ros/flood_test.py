@@ -1,0 +1,87 @@
+#!/usr/bin/env python3
+"""Thousands of bad requests and messages a second: all answered, nothing changed, states still come, memory stays."""
+import subprocess
+import sys
+import time
+import unittest
+import xmlrpc.client
+
+import rosgraph
+import rospy
+import rostest
+from visualization_msgs.msg import Marker, MarkerArray
+
+from cable_client import CableClient, Messages
+from verlet_cable.msg import CableArray
+from verlet_cable.srv import Cut, CutRequest, Pin, PinRequest, Unpin, UnpinRequest
+
+FLOODS = 2
+SECONDS = 5
+NAN = float('nan')
+
+
+def flood():
+    """Calls over connections that stay open; prints the number of answers."""
+    rospy.init_node('flood', anonymous=True)
+    services = [(rospy.ServiceProxy(f'/cable/{name}', kind, persistent=True), request) for name, kind, request in
+                (('unpin', Unpin, UnpinRequest('nobody')), ('pin', Pin, PinRequest()), ('cut', Cut, CutRequest()))]
+    obstacles = rospy.Publisher('/cable/obstacles', MarkerArray, queue_size=1000)
+    bad = Marker(ns='bad', type=Marker.SPHERE)
+    bad.pose.position.x = NAN
+    answers = 0
+    end = time.monotonic() + SECONDS
+    while time.monotonic() < end:
+        for call, request in services:
+            if call(request).success:
+                raise AssertionError(f'{call.resolved_name} did what it was not asked for')
+            answers += 1
+        bad.id = answers
+        obstacles.publish([bad])
+    print(answers, flush=True)
+
+
+def memory_of(node):
+    """Resident, in MB."""
+    api = rosgraph.Master('/flood_test').lookupNode(node)
+    pid = xmlrpc.client.ServerProxy(api).getPid('/flood_test')[2]
+    with open(f'/proc/{pid}/status') as status:
+        return next(int(line.split()[1]) / 1e3 for line in status if line.startswith('VmRSS'))
+
+
+class FloodTest(unittest.TestCase):
+    def flood(self):
+        floods = [subprocess.Popen([sys.executable, __file__, '--flood'], stdout=subprocess.PIPE, text=True) for _ in range(FLOODS)]
+        outputs = [process.communicate(timeout=60)[0] for process in floods]
+        for process in floods:
+            self.assertEqual(process.returncode, 0)
+        return sum(int(output) for output in outputs)
+
+    def test_a_flood_changes_nothing(self):
+        node = CableClient('/cable')
+        with Messages('/cable/state', CableArray) as states:
+            states.next(5)
+            self.flood()  # whatever is allocated once
+            before = memory_of('/cable')
+            states.clear()
+            begin = time.monotonic()
+            answers = self.flood()
+            elapsed = time.monotonic() - begin
+            seen = states.all()
+            grown = memory_of('/cable') - before
+            last = states.next()
+        rospy.loginfo('%d requests a second refused, %.1f states a second meanwhile, %.1f MB more', answers / SECONDS,
+                      len(seen) / elapsed, grown)
+        self.assertGreater(answers / SECONDS, 1000)
+        self.assertGreater(len(seen) / elapsed, 25)
+        self.assertLess(grown, 5)
+        self.assertEqual([c.name for c in last.cables], ['rope'])
+        self.assertEqual(len(last.cables[0].positions), 51)
+        self.assertTrue(node.unpin('left').success, 'what is asked for properly is still done')
+
+
+if __name__ == '__main__':
+    if '--flood' in sys.argv:
+        flood()
+    else:
+        rospy.init_node('flood_test')
+        rostest.rosrun('verlet_cable', 'flood_requests', FloodTest, sys.argv)
