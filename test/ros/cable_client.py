@@ -183,5 +183,7 @@ def distance(point, position):
 
 
 def all_finite(state):
-    return all(math.isfinite(v) for c in state.cables
-               for v in [x for p in c.positions + c.velocities for x in (p.x, p.y, p.z)] + list(c.tension))
+    shapes = state.cables + state.nets
+    vectors = [v for s in shapes for v in s.positions + s.velocities]
+    vectors += [v for p in state.particles for v in (p.position, p.velocity)]
+    return all(math.isfinite(x) for v in vectors for x in (v.x, v.y, v.z)) and all(math.isfinite(x) for s in shapes for x in s.tension)

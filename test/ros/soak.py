@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Random valid and invalid calls, frames that fail and a clock that jumps, for minutes: no death, no NaN, no growing memory.
 
-Usage, with a master that has use_sim_time set, beside a node /cable of soak.test's scene:
+Usage, with a master that has use_sim_time set, beside a node /cable of soak.yaml's scene:
   soak.py [--minutes M] [--seed N] [--pid PID of the node]
 Ends with a line of counts, and exit status 1 if something was found. scripts/soak runs it with sanitizers.
 """
@@ -23,9 +23,9 @@ from cable_client import CableClient, all_finite, arc_length_at, nearest_to, nod
 from verlet_cable.msg import CableArray, RolloutAction, RolloutGoal
 
 NUMBERS = [0, 1, -1, 0.3, 0.7, 1e-9, 1e9, 1e300, float('nan'), float('inf'), -float('inf')]
-WORDS = ['', 'rope', 'line', 'rope_2', 'line_2', 'hand', 'left', 'right', 'pin1', 'world', 'nowhere', 'a b', '/hand', 'x' * 100000]
+WORDS = ['', 'rope', 'line', 'rope_2', 'line_2', 'flag', 'figure', 'ball', 'upper', 'hand', 'left', 'right', 'pin1', 'world', 'nowhere', 'a b', '/hand', 'x' * 100000]
 SCENES = ['', 'cables: []', 'a: [1', '{materials: {m: {linear_density: .nan}}}', '[' * 1000, '#' * 2000000]
-HANDLES = ['attachment/left', 'attachment/right', 'attachment/pin1', 'rope/0', 'rope/10', 'line/3', 'rope_2/1', 'nobody', '']
+HANDLES = ['attachment/left', 'attachment/right', 'attachment/pin1', 'rope/0', 'rope/10', 'line/3', 'rope_2/1', 'attachment/upper', 'nobody', '']
 LARGEST_GROWTH = 1.3  # of the node's memory after the first quarter
 
 
