@@ -51,7 +51,7 @@ FitResult fit_all(Problem& problem, const std::vector<Recording>& as_numbered, b
   const bool cross_validated = with_cross_validation && count > 1;
   if (cross_validated)
     for (const std::vector<int>& left_out : left_out_together(count))
-      simulations += most_simulations(problem, count - static_cast<int>(left_out.size()));
+      simulations += most_simulations(problem, count - static_cast<int>(left_out.size()), for_predictions);
   cable_sim::ProgressBar progress(simulations, "simulations at most");
   int done = 0;
   problem.simulated = [&] { progress.show(++done, std::chrono::steady_clock::now()); };

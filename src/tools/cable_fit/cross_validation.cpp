@@ -41,7 +41,7 @@ std::vector<FittedCable> left_out_fits(const Problem& problem) {
       if (std::find(left_out.begin(), left_out.end(), i) == left_out.end()) training.push_back(i);
     Problem of_training = problem;
     of_training.settings.marker_places = marker_places(problem.inputs, training);
-    const std::vector<double> values = fit(of_training, training, coarse_search(of_training, training));
+    const std::vector<double> values = fit(of_training, training, coarse_search(of_training, training), for_predictions);
     for (const int i : left_out) fits[i] = {of_training.settings, values};
   }
   return fits;

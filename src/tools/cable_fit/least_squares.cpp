@@ -15,9 +15,6 @@ namespace {
 constexpr double starting_bending[] = {1e-3, 3e-3, 1e-2, 3e-2, 1e-1, 3e-1, 1};  // EI over the linear density [N m^3 / kg]
 constexpr double starting_damping[] = {1e-4, 1e-3, 5e-3};                       // of bending, likewise [N m^3 s / kg]
 constexpr int coarse_segments = 16;
-constexpr int most_iterations = 12;
-/// Relative change of the cost at which the search ends: far below what the recordings tell.
-constexpr double cost_tolerance = 3e-3;
 constexpr double first_trust_radius = 30;
 
 SceneDesc coarse(const CableSettings& settings, const std::vector<double>& values) {
@@ -65,9 +62,9 @@ class Cost : public ceres::CostFunction {
 
 }  // namespace
 
-int most_simulations(const Problem& problem, int recordings) {
+int most_simulations(const Problem& problem, int recordings, const Ending& ending) {
   const int guesses = static_cast<int>(std::size(starting_bending) * std::size(starting_damping));
-  return recordings * (guesses + most_iterations * static_cast<int>(problem.parameters.size() + 1));
+  return recordings * (guesses + ending.iterations * static_cast<int>(problem.parameters.size() + 1));
 }
 
 std::vector<double> coarse_search(const Problem& problem, const std::vector<int>& training) {
@@ -90,7 +87,8 @@ std::vector<double> coarse_search(const Problem& problem, const std::vector<int>
   return guesses[std::min_element(sums.begin(), sums.end()) - sums.begin()];
 }
 
-std::vector<double> fit(const Problem& problem, const std::vector<int>& training, std::vector<double> values) {
+std::vector<double> fit(const Problem& problem, const std::vector<int>& training, std::vector<double> values,
+                        const Ending& ending) {
   Cost cost(problem, training);
   ceres::Problem::Options ownership;
   ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -102,8 +100,8 @@ std::vector<double> fit(const Problem& problem, const std::vector<int>& training
   }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = most_iterations;
-  options.function_tolerance = cost_tolerance;
+  options.max_num_iterations = ending.iterations;
+  options.function_tolerance = ending.tolerance;
   options.initial_trust_region_radius = first_trust_radius;
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;

@@ -6,13 +6,24 @@
 
 namespace verlet_cable::cable_fit {
 
+/// When a fit ends.
+struct Ending {
+  int iterations;    ///< at most
+  double tolerance;  ///< relative change of the cost in an iteration
+};
+/// Parameters move along where predictions hardly change: noise that predictions cannot know is most of the cost.
+constexpr Ending for_parameters{20, 1e-3};
+/// Fits that are only predicted with, and take most of the time.
+constexpr Ending for_predictions{12, 3e-3};
+
 /// Largest number of recordings that a fit to so many simulates.
-int most_simulations(const Problem& problem, int recordings);
+int most_simulations(const Problem& problem, int recordings, const Ending& ending = for_parameters);
 
 /// A search over coarse steps of stiffness and damping: where to begin. `training`: indices of recordings; a value a parameter.
 std::vector<double> coarse_search(const Problem& problem, const std::vector<int>& training);
 
 /// Finds the parameters that predict some of the recordings best, from those given: Levenberg-Marquardt (Ceres).
-std::vector<double> fit(const Problem& problem, const std::vector<int>& training, std::vector<double> values);
+std::vector<double> fit(const Problem& problem, const std::vector<int>& training, std::vector<double> values,
+                        const Ending& ending = for_parameters);
 
 }  // namespace verlet_cable::cable_fit
