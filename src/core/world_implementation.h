@@ -87,7 +87,7 @@ struct World::Implementation {
   void step_group(ContactGroup& group);
   void aim(int cable);
   bool advance(ContactGroup& group, double from, double to, bool tolerated);
-  void move_obstacles(double from, double to, std::vector<MovingObstacle>& moving) const;
+  void move_obstacles(double from, double to, std::vector<MovingObstacle>& all) const;
   ContactRules contact_rules(bool still) const;
   void find_contacts(ContactGroup& group, double from, double to);
   void note_substep(int cable, const SubstepResult& substep, double part);
