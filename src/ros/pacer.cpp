@@ -8,6 +8,8 @@ namespace {
 
 /// A target that is further ahead [s] than can be caught up has leapt.
 constexpr double leap = 0.2;
+/// Further behind [s], beyond the longest backlog, no pace leads anywhere.
+constexpr double most_beyond = 5;
 /// Beyond the longest backlog the pace grows by a factor of e each time the backlog grows by this [s]: whatever the load, there
 /// is a pace that keeps up.
 constexpr double backlog_scale = 0.5;
@@ -26,18 +28,22 @@ void Pacer::use(const TimeGrid& grid, Nanoseconds longest_backlog) {
 }
 
 Nanoseconds Pacer::resume(Nanoseconds simulated, Nanoseconds target) {
-  const Nanoseconds leapt = target - std::max(last_target_, simulated + longest_backlog_);
+  const Nanoseconds beyond = target - simulated - longest_backlog_, leapt = std::min(beyond, target - last_target_);
   last_target_ = target;
-  if (leapt <= nanoseconds(leap)) return simulated;
-  const Nanoseconds time = grid_.step_at_or_after(simulated + leapt);
+  Nanoseconds skipped = leapt > nanoseconds(leap) ? leapt : 0;
+  if (beyond - skipped > nanoseconds(most_beyond)) skipped = beyond;
+  if (skipped == 0) return simulated;
+  const Nanoseconds time = grid_.step_at_or_after(simulated + skipped);
   drop(time - simulated);
   return time;
 }
 
 std::optional<Nanoseconds> Pacer::next(Nanoseconds simulated, Nanoseconds target) const {
   const Nanoseconds step = grid_.step();
-  const Nanoseconds time =
-      pace_ > 1 ? simulated + std::llround(pace_ * static_cast<double>(step)) : grid_.step_at_or_after(simulated + step);
+  // After a pause the pace may still be that of before: a step does not wait for what is not there to be left out.
+  const Nanoseconds longest = step + (target - simulated) / 4;
+  const Nanoseconds way = std::min<Nanoseconds>(std::llround(pace_ * static_cast<double>(step)), longest);
+  const Nanoseconds time = pace_ > 1 ? simulated + way : grid_.step_at_or_after(simulated + step);
   return time <= target ? std::optional(time) : std::nullopt;
 }
 

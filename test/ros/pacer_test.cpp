@@ -66,6 +66,27 @@ TEST(Pacer, LeavesOutALeapOfTheClockAtOnce) {
   EXPECT_EQ(pacer.resume(10 * second, 9 * second), 10 * second) << "back";
 }
 
+TEST(Pacer, IsNeverFarBehindWhateverTheClockDid) {
+  Pacer pacer = make_pacer();
+  EXPECT_EQ(pacer.resume(100 * second, 100 * second), 100 * second);
+  // Back by 30 s and ahead by 100 s, unseen, with a start in between.
+  const Nanoseconds time = pacer.resume(70 * second, 170 * second);
+  EXPECT_EQ(time, 169 * second);
+  EXPECT_EQ(pacer.next(time, 170 * second), time + ms);
+  // A machine that does nothing for as long as it can.
+  Pacer slow = make_pacer();
+  Nanoseconds simulated = 0;
+  for (Nanoseconds clock = ms; clock < 100 * second; clock += 190 * ms) {
+    simulated = slow.resume(simulated, clock);
+    const auto next = slow.next(simulated, clock);
+    if (!next) continue;
+    slow.done(simulated, *next, clock);
+    EXPECT_GT(*next, simulated);
+    simulated = *next;
+    EXPECT_LT(clock - simulated, 7 * second);
+  }
+}
+
 TEST(Pacer, LeavesOutTimeEvenlyWhereTheMachineIsTooSlow) {
   for (const Nanoseconds cost : {ms * 5 / 4, 2 * ms, 8 * ms, 40 * ms}) {
     Pacer pacer = make_pacer();
@@ -99,6 +120,12 @@ TEST(Pacer, ReturnsToTheGridAfterAnOverload) {
   EXPECT_NEAR(seconds(pacer.dropped()), 4, 0.5) << "of 10 s half, without what is caught up";
   EXPECT_EQ(both.times.back() % ms, 0);
   EXPECT_EQ(both.times[both.times.size() - 1000], both.times.back() - 999 * ms);
+}
+
+TEST(Pacer, DoesNotWaitAfterAnOverloadThatAPauseEnds) {
+  Pacer pacer = make_pacer();
+  run(pacer, 20 * second, [](Nanoseconds, Nanoseconds) { return 60 * ms; });
+  EXPECT_TRUE(pacer.next(30 * second, 30 * second + 2 * ms));
 }
 
 TEST(Pacer, CountsWhatIsDroppedElsewhere) {
