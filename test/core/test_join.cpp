@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -109,6 +110,49 @@ TEST(Join, KeepsStretchedCablesAtTheirTension) {
     for (const double t : world.cables()[0].state.tension) highest = std::max(highest, t);
   }
   EXPECT_LT(highest, 5);  // 1 % of slack is all there is to pull on
+}
+
+TEST(Join, StiffEndsStayWithTheirMaterial) {
+  SceneDesc scene = two_ropes(0.3, 0.005);
+  scene.cables[0].stiff_ends = {0.05, 0.03};  // 25 segments of 0.02 m
+  World world(scene, initial_frames(scene));
+  const auto shares = [&](int cable) -> const std::vector<double>& { return world.cables()[cable].model.bending_share; };
+  const auto run = [&](int steps) {
+    for (int i = 0; i < steps; ++i) ASSERT_EQ(world.step({FrameInput{}}).status, Status::ok) << i;
+    for (const SimulatedCable& cable : world.cables()) {
+      if (!cable.model.bending_share.empty()) EXPECT_EQ(cable.model.bending_share.size(), cable.model.masses.size());
+      for (const Vector3& x : cable.state.positions) ASSERT_TRUE(x.allFinite());
+    }
+  };
+  const auto softest_before = [&](int cable, int node) {
+    return *std::max_element(shares(cable).begin(), shares(cable).begin() + node);
+  };
+  EXPECT_LT(softest_before(0, 2), 0.01);
+  EXPECT_NEAR(shares(0)[2], 0.01 / 0.02, 0.51);
+  EXPECT_EQ(shares(0)[10], 1);
+  EXPECT_LT(shares(0)[25], 0.01);
+  EXPECT_TRUE(shares(1).empty());
+  run(100);
+
+  ASSERT_TRUE(world.cut(0, 12).ok);  // the second piece is the last cable
+  EXPECT_LT(softest_before(0, 2), 0.01);
+  EXPECT_EQ(shares(0).back(), 1);
+  EXPECT_EQ(shares(2).front(), 1);
+  EXPECT_LT(shares(2).back(), 0.01);
+  run(100);
+
+  ASSERT_TRUE(world.join(1, true, 0, true).ok);  // turned round: its stiff end comes last
+  run(1000);
+  const int joined = world.find_cable("right");
+  EXPECT_EQ(shares(joined)[5], 1);
+  EXPECT_LT(shares(joined).back(), 0.01);
+  EXPECT_LT(*(shares(joined).end() - 2), 0.01);
+
+  // What is paid out at the stiff end bends.
+  ASSERT_TRUE(world.set_length(joined, true, 1, 0.5).ok);
+  run(1000);
+  const int nodes = world.cables()[joined].model.nodes();
+  EXPECT_EQ(shares(joined)[nodes - 2], 1);
 }
 
 TEST(Join, CutsLeaveMoreThanTheGapThatCloses) {
