@@ -11,7 +11,7 @@ import rostest
 from std_msgs.msg import Float64
 
 SPEED = 0.3      # [m/s] downwards
-DURATION = 1.5   # [s]
+DURATION = 4.0   # [s]
 LAUNCH_LIMIT = 60.0  # [s]
 
 
