@@ -5,9 +5,9 @@ pictures."""
 import glob
 import json
 import os
-import resource
 import subprocess
 import sys
+import time
 
 import matplotlib
 matplotlib.use('Agg')
@@ -23,30 +23,30 @@ PUBLISHED = {1: 1.03, 2: 1.02, 3: 0.99, 4: 1.15}
 SHOWN_TIMES = (0.0, 1.0, 2.5, 4.9)  # [s]
 
 
-def processor_time():
-    """[s] of the programs that have ended."""
-    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-
-
 def fit(programs, cable, recordings, segments, work):
-    """Runs cable_fit, unless its report is there; the report, and the processor time that it took [s], cross-validation and all."""
+    """Runs cable_fit, unless its report is there; the report, and how long [s] it took to fit, without and with the centre line,
+    neither cross-validated."""
     report, seconds = (os.path.join(work, f'dlo{cable}.{kind}') for kind in ('json', 'seconds'))
     if not os.path.exists(seconds):
-        began = processor_time()
-        subprocess.run([os.path.join(programs, 'cable_fit'), *recordings, '--name', f'dlo{cable}', '--segments', str(segments),
-                        '--output', os.path.join(work, f'dlo{cable}.yaml'), '--report', report],
-                       check=True, stdout=subprocess.DEVNULL)
+        command = [os.path.join(programs, 'cable_fit'), *recordings, '--name', f'dlo{cable}', '--segments', str(segments),
+                   '--output', os.path.join(work, f'dlo{cable}.yaml')]
+        centre_line = ['--centre-line', os.path.join(work, f'dlo{cable}_centre_line.yaml')]
+        taken = []
+        for more in ([], centre_line, [*centre_line, '--report', report, '--predictions', os.path.join(work, f'predicted{cable}')]):
+            began = time.monotonic()
+            subprocess.run(command + more, check=True, stdout=subprocess.DEVNULL)
+            taken.append(time.monotonic() - began)
         with open(seconds, 'w', encoding='utf-8') as file:
-            file.write(str(processor_time() - began))
+            json.dump(taken[:2], file)
     with open(report, encoding='utf-8') as file, open(seconds, encoding='utf-8') as taken:
         found = json.load(file)
         if found['segments'] != segments:
             sys.exit(f'{report}: of {found["segments"]} segments, asked for are {segments}; allowed: another WORK, or the same number')
-        return found, float(taken.read())
+        return found, json.load(taken)
 
 
 def simulate(programs, cable, recording, places, segments, work):
-    """Predicts a recording with cable_sim, as the contract says a fitted cable is used: positions of the markers [m] (rows,
+    """Predicts a recording with cable_sim by the scene of the line through the markers: positions of the markers [m] (rows,
     markers, 3), which sit at `places` (fractions of the length), and how many times faster than real time."""
     with open(os.path.join(work, f'dlo{cable}.yaml'), encoding='utf-8') as file:
         scene = yaml.safe_load(file)
@@ -84,13 +84,12 @@ def errors_over_time(predicted, recording):
     return np.abs(predicted - recording.markers)[2:].mean(axis=(1, 2))
 
 
-def left_out_errors(report, in_order):
-    """Errors [cm] of the recordings that the fit did not know: mean, largest, at the end. `in_order`: where markers are swapped,
+def errors(report, kind, in_order):
+    """Errors [cm] of the recordings, `kind` fitted or left_out: mean, largest, at the end. `in_order`: where markers are swapped,
     with them in their order."""
-    errors = [recording.get('left_out_in_order' if in_order else 'left_out', recording['left_out'])
-              for recording in report['recordings']]
-    return (100 * np.mean([error['mean'] for error in errors]), 100 * max(error['largest'] for error in errors),
-            100 * np.mean([error['last'] for error in errors]))
+    found = [recording.get(f'{kind}_in_order' if in_order else kind, recording[kind]) for recording in report['recordings']]
+    return (100 * np.mean([error['mean'] for error in found]), 100 * max(error['largest'] for error in found),
+            100 * np.mean([error['last'] for error in found]))
 
 
 def draw_shapes(cable, recording, predicted, pictures):
@@ -110,10 +109,19 @@ def draw_shapes(cable, recording, predicted, pictures):
 
 
 def table_row(cable, name, report, in_order):
-    mean, largest, last = left_out_errors(report, in_order)
-    fitted = [recording.get('fitted_in_order' if in_order else 'fitted', recording['fitted'])['mean']
-              for recording in report['recordings']]
-    print(f"| {name} | {mean:.2f} | {PUBLISHED.get(cable, '')} | {largest:.1f} | {last:.2f} | {100 * np.mean(fitted):.2f} |")
+    centre_line = report['centre_line']
+    mean, largest, last = errors(centre_line, 'left_out', in_order)
+    print(f"| {name} | {mean:.2f} | {errors(report, 'left_out', in_order)[0]:.2f} | {PUBLISHED.get(cable, '')} | {largest:.1f} | "
+          f"{last:.2f} | {errors(centre_line, 'fitted', in_order)[0]:.2f} |")
+
+
+def other_numbers(cable, report, seconds, factor):
+    """Errors [cm] with half, as many and twice the segments; times."""
+    cells = [str(cable)]
+    for fitted in (report['centre_line'], report):
+        half, twice = (100 * other['mean_error'] for other in fitted['resegmented'])
+        cells += [f'{error:.3f}' for error in (half, errors(fitted, 'fitted', True)[0], twice)]
+    return '| ' + ' | '.join(cells + [f'{taken:.0f}' for taken in seconds] + [f'{factor:.0f}']) + ' |'
 
 
 def main():
@@ -124,32 +132,30 @@ def main():
     os.makedirs(work, exist_ok=True)
     os.makedirs(pictures, exist_ok=True)
     figure, axis = plt.subplots(figsize=(8, 4.5), constrained_layout=True)
-    other_numbers = []
-    print('| cable | left out [cm] | published [cm] | largest [cm] | at 5 s [cm] | fitted [cm] |\n|---|---|---|---|---|---|')
+    others = []
+    print('| cable | left out [cm] | line through the markers [cm] | published [cm] | largest [cm] | at 5 s [cm] | fitted [cm] |\n'
+          '|---|---|---|---|---|---|---|')
     for cable in range(1, 6):
         paths = sorted(glob.glob(os.path.join(data, f'dlo{cable}_*.csv')))
         report, seconds = fit(programs, cable, paths, segments, work)
-        table_row(cable, cable, report, in_order=False)
         if 'cross_validated_error_in_order' in report:
-            table_row(cable, f'{cable}, markers in order', report, in_order=True)
+            table_row(cable, f'{cable}, as numbered', report, in_order=False)
+        table_row(cable, cable, report, in_order=True)
         recordings = [Recording(path) for path in paths]
-        means = {}
-        for count in (segments // 2, segments, 2 * segments):
-            runs = [simulate(programs, cable, recording, report['marker_places'], count, work) for recording in recordings]
-            over_time = [errors_over_time(predicted, recording) for (predicted, _), recording in zip(runs, recordings)]
-            means[count] = 100 * np.mean([errors.mean() for errors in over_time])
-            if count == segments:
-                rows = min(len(errors) for errors in over_time)
-                axis.plot(recordings[0].times[2:rows + 2], 100 * np.mean([errors[:rows] for errors in over_time], axis=0),
-                          label=f'cable {cable}')
-                draw_shapes(cable, recordings[0], runs[0][0], pictures)
-                factor = min(factor for _, factor in runs)
-        other_numbers.append(f'| {cable} | ' + ' | '.join(f'{mean:.3f}' for mean in means.values()) +
-                             f' | {seconds:.0f} | {factor:.0f} |')
+        factor = min(simulate(programs, cable, recording, report['marker_places'], segments, work)[1] for recording in recordings)
+        others.append(other_numbers(cable, report, seconds, factor))
+        predicted = [Recording(os.path.join(work, f'predicted{cable}', os.path.basename(path))).markers for path in paths]
+        in_order = [recording['swapped_markers'] == 'none' for recording in report['recordings']]
+        over_time = [errors_over_time(*pair) for pair, sound in zip(zip(predicted, recordings), in_order) if sound]
+        rows = min(map(len, over_time))
+        axis.plot(recordings[0].times[2:rows + 2], 100 * np.mean([one[:rows] for one in over_time], axis=0),
+                  label=f'cable {cable}')
+        draw_shapes(cable, recordings[0], predicted[0], pictures)
         sys.stdout.flush()
-    print(f'\n| cable | fitted, {segments // 2} segments [cm] | {segments} | {2 * segments} | fit and cross-validation, processor time [s] '
-          '| times real time |\n|---|---|---|---|---|---|', *other_numbers, sep='\n')
-    axis.set(xlabel='t [s]', ylabel='mean absolute error [cm]', ylim=(0, None), title='Fitted cables, mean over 8 recordings')
+    counts = f'{segments // 2} segments [cm] | {segments} | {2 * segments}'
+    print(f'\n| cable | centre line: {counts} | line through the markers: {counts} | fit [s] | and centre line [s] | times real time |\n'
+          + 10 * '|---' + '|', *others, sep='\n')
+    axis.set(xlabel='t [s]', ylabel='mean absolute error [cm]', ylim=(0, None), title='Recordings left out of the fit, mean')
     axis.legend()
     figure.savefig(os.path.join(pictures, 'errors.png'), dpi=90)
 

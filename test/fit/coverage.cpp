@@ -44,11 +44,10 @@ Found one_try(int number) {
   settings.name = "found";
   settings.segments = segments;
   settings.linear_density = truth.linear_density;
-  std::vector<std::string> errors;
-  measure_cable(recordings, inputs, settings, errors);
-  const Problem problem{recordings, inputs, settings, cable_parameters(settings), [] {}};
   std::vector<int> all(takes);
   std::iota(all.begin(), all.end(), 0);
+  measure_cable(recordings, inputs, all, settings);
+  const Problem problem{recordings, inputs, settings, cable_parameters(settings), [] {}};
   const std::vector<double> values = fit(problem, all, coarse_search(problem, all));
   const std::vector<Confidence> intervals = confidence(problem, values);
   Found found;

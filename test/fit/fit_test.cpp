@@ -17,6 +17,12 @@ std::vector<Smoothed> smooth(const std::vector<Recording>& recordings) {
   return inputs;
 }
 
+std::vector<int> all_of(const std::vector<Recording>& recordings) {
+  std::vector<int> all(recordings.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
 TEST(Fit, FindsTheMaterialThatMadeTheRecordings) {
   const SceneDesc known = known_cable();
   std::vector<Recording> recordings;
@@ -26,13 +32,13 @@ TEST(Fit, FindsTheMaterialThatMadeTheRecordings) {
   settings.name = "found";
   settings.segments = 32;
   settings.linear_density = known.materials[0].material.linear_density;
+  const std::vector<int> all = all_of(recordings);
+  measure_cable(recordings, inputs, all, settings);
   std::vector<std::string> errors;
-  measure_cable(recordings, inputs, settings, errors);
+  check_starts(recordings, inputs, settings, errors);
   ASSERT_TRUE(errors.empty());
   int simulations = 0;
   const Problem problem{recordings, inputs, settings, cable_parameters(settings), [&] { ++simulations; }};
-  std::vector<int> all(recordings.size());
-  std::iota(all.begin(), all.end(), 0);
   const std::vector<double> values = fit(problem, all, coarse_search(problem, all));
   EXPECT_LE(simulations, most_simulations(problem, 3));
 
@@ -62,14 +68,94 @@ TEST(Fit, CableThatHangsStillDoesNotTellItsDampings) {
   CableSettings settings;
   settings.name = "still";
   settings.segments = 12;
-  std::vector<std::string> errors;
   const std::vector<Recording> recordings{still};
   const std::vector<Smoothed> inputs = smooth(recordings);
-  measure_cable(recordings, inputs, settings, errors);
+  measure_cable(recordings, inputs, {0}, settings);
   const Problem problem{recordings, inputs, settings, cable_parameters(settings), [] {}};
   const std::vector<Confidence> confident = confidence(problem, fit(problem, {0}, coarse_search(problem, {0})));
   // In the order of the parameters: bending_damping, drag.
   EXPECT_FALSE(confident[2].told);
+}
+
+TEST(Fit, FindsHowFarMarkersSitOffTheCentreLine) {
+  const SceneDesc known = known_cable();
+  const Vector3 hand_offset(0, -0.01, 0.005);
+  std::vector<Recording> recordings;
+  for (int take = 0; take < 3; ++take) recordings.push_back(synthetic_recording(known, take, 3, 0, 0, hand_offset));
+  const std::vector<Smoothed> inputs = smooth(recordings);
+  const std::vector<int> all = all_of(recordings);
+  CableSettings settings;
+  settings.name = "found";
+  settings.segments = 24;
+  settings.linear_density = known.materials[0].material.linear_density;
+  measure_cable(recordings, inputs, all, settings);
+  const Problem on_markers{recordings, inputs, settings, cable_parameters(settings), [] {}};
+  const std::vector<double> line = fit(on_markers, all, coarse_search(on_markers, all), for_predictions);
+  settings.centre_line = true;
+  const Problem beside{recordings, inputs, settings, cable_parameters(settings), [] {}};
+  const std::vector<double> values = fit(beside, all, with_markers_on_line(settings, line), for_predictions);
+
+  const auto error = [&](const Problem& problem, const std::vector<double>& found) {
+    double sum = 0;
+    for (const PredictionError& one :
+         prediction_errors(std::vector<FittedCable>(recordings.size(), {problem.settings, found}), recordings))
+      sum += one.mean / static_cast<double>(recordings.size());
+    return sum;
+  };
+  EXPECT_LT(error(beside, values), 0.3 * error(on_markers, line));
+  EXPECT_LT(error(beside, values), 0.001);
+  // Alike offsets of all would only move the cable: those of markers on hands and between differ.
+  const Markers markers = markers_of(settings, values);
+  const auto off = [&](std::size_t marker) { return Vector3(0, markers.offsets[marker][0], markers.offsets[marker][1]); };
+  for (const std::size_t marker : {0, 1, 10, 11}) EXPECT_NEAR(off(marker).norm(), hand_offset.norm(), 0.002) << marker;
+  for (std::size_t marker = 2; marker < 10; ++marker) EXPECT_LT(off(marker).norm(), 0.003) << marker;
+  const double found = cable_scene(settings, values).materials[0].material.bending_stiffness;
+  EXPECT_NEAR(found / known.materials[0].material.bending_stiffness, 1, 0.05);
+}
+
+TEST(Markers, OnTheLineThroughThemNothingChanges) {
+  const Recording recording = synthetic_recording(known_cable(), 1, 0.3, 0);
+  CableSettings settings;
+  settings.name = "found";
+  settings.segments = 16;
+  const std::vector<Recording> recordings{recording};
+  measure_cable(recordings, smooth(recordings), {0}, settings);
+  const std::vector<double> line = first_guess(settings, 1e-2, 1e-3);
+  EXPECT_TRUE(markers_of(settings, line).offsets.empty());
+  settings.centre_line = true;
+  const std::vector<double> values = with_markers_on_line(settings, line);
+  ASSERT_EQ(values.size(), cable_parameters(settings).size());
+  const Markers markers = markers_of(settings, values);
+  ASSERT_EQ(markers.offsets.size(), 12u);
+  for (const auto& offset : markers.offsets) EXPECT_EQ(std::hypot(offset[0], offset[1]), 0);
+  EXPECT_EQ(markers.places, settings.marker_places);
+  // The markers on the hands are given.
+  const Prediction prediction = predict(cable_scene(settings, values), markers, recording);
+  for (int row = 0; row < recording.rows(); ++row)
+    for (const int marker : {0, 1, 10, 11})
+      EXPECT_LT((prediction.positions[row][marker] - recording.markers[row][marker]).norm(), 1e-9) << row << ", " << marker;
+}
+
+TEST(CrossValidation, KnowsNothingOfWhatItLeavesOut) {
+  std::vector<Recording> recordings;
+  for (int take = 0; take < 3; ++take) recordings.push_back(synthetic_recording(known_cable(), take, 0.2, 0));
+  CableSettings settings;
+  settings.name = "found";
+  settings.segments = 8;
+  const auto folds = [&] {
+    const std::vector<Smoothed> inputs = smooth(recordings);
+    measure_cable(recordings, inputs, {0, 1, 2}, settings);
+    const Problem problem{recordings, inputs, settings, cable_parameters(settings), [] {}};
+    return left_out_fits(problem, {});
+  };
+  const FittedCable before = folds()[0];
+  // Another first recording, of a cable that is a little longer, changes nothing of the fit that leaves it out.
+  for (std::vector<Vector3>& markers : recordings[0].markers)
+    for (Vector3& marker : markers) marker *= 1.01;
+  const FittedCable after = folds()[0];
+  EXPECT_EQ(before.values, after.values);
+  EXPECT_EQ(before.settings.marker_places, after.settings.marker_places);
+  EXPECT_EQ(before.settings.length, after.settings.length);
 }
 
 TEST(CrossValidation, LeavesEveryRecordingOutOnce) {

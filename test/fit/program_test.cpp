@@ -84,7 +84,7 @@ TEST_F(CableFit, SceneIsWhatCableSimPredictsWith) {
   const std::vector<Row> nodes = rows("nodes.csv");
   ASSERT_EQ(nodes.size(), 13u * recording.rows());
   const std::vector<double> places = marker_places({&recording});
-  const Prediction prediction = predict(cable, places, recording);
+  const Prediction prediction = predict(cable, {places, {}, {}, {}}, recording);
   double gap = 0;
   for (int row = 0; row < recording.rows(); ++row) {
     for (std::size_t i = 0; i < places.size(); ++i) {
@@ -97,6 +97,36 @@ TEST_F(CableFit, SceneIsWhatCableSimPredictsWith) {
   }
   // Numbers are written in full: only the orientations' rounding in the file differs.
   EXPECT_LT(gap, 1e-9);
+}
+
+TEST_F(CableFit, CentreLineIsASceneAndPredictionsAreRecordings) {
+  std::string files;
+  for (int take = 0; take < 2; ++take)
+    files += write_recording("take" + std::to_string(take) + ".csv",
+                             synthetic_recording(known_cable(), take, 0.3, 0, 0, {0, 0, 0.01})) +
+             " ";
+  ASSERT_EQ(fit(files + " --name lead --segments 8 --output " + path("scene.yaml") + " --centre-line " + path("centre.yaml") +
+                " --report " + path("report.json") + " --predictions " + path("predictions/of")),
+            0)
+      << err;
+  const SceneDesc scene = read_scene_text(content(path("centre.yaml")));
+  ASSERT_EQ(scene.cables[0].attachments.size(), 2u);
+  EXPECT_GT(scene.cables[0].attachments[0].offset.norm(), 1e-3);
+  EXPECT_EQ(scene.cables[0].attachments[0].offset.x(), 0);
+  for (const char* expected : {"\"centre_line\"", "\"marker_offsets\"", "\"resegmented\"", "\"cross_validated_error\""})
+    EXPECT_NE(content(path("report.json")).find(expected), std::string::npos) << expected;
+  std::vector<std::string> errors;
+  const std::vector<Recording> predicted =
+      read_recordings({path("predictions/of/take0.csv"), path("predictions/of/take1.csv")}, errors);
+  ASSERT_TRUE(errors.empty()) << errors.front();
+  EXPECT_EQ(predicted[0].rows(), 31);
+  EXPECT_EQ(predicted[0].marker_count(), 12);
+
+  write("file", "");
+  EXPECT_EQ(fit(files + " --name lead --segments 8 --output " + path("scene.yaml") + " --predictions " + path("file")), 2);
+  EXPECT_NE(err.find("--predictions: no directory"), std::string::npos) << err;
+  EXPECT_EQ(fit(files + " --name lead --segments 8 --output " + path("scene.yaml") + " --predictions " + path("")), 2);
+  EXPECT_NE(err.find("take1.csv\" is a recording"), std::string::npos) << err;
 }
 
 TEST_F(CableFit, BadInputIsRefusedAllAtOnceAndNothingWritten) {

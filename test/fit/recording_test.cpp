@@ -103,6 +103,23 @@ TEST(Recording, EndsAreHeldInTheOuterMarkersWithTheSmallestRoll) {
   EXPECT_TRUE(last.orientation.isApprox(expected, 1e-12));
 }
 
+TEST(Recording, RollOfHandsIsTheSmallestFromTheUsualDirection) {
+  Recording recording = straight_recording();
+  for (std::vector<Vector3>& markers : recording.markers) markers[1] = {0, 0.03, -0.1};
+  const HeldDirections usual{-Vector3::UnitZ(), Vector3::UnitX()};
+  const Quaternion down = Quaternion::FromTwoVectors(Vector3::UnitX(), usual[0]);
+  const Quaternion tilt(Eigen::AngleAxisd(std::atan2(0.03, 0.1), Vector3::UnitX()));
+  EXPECT_TRUE(held_ends(recording, usual).start.at(0).orientation.isApprox(tilt * down, 1e-12));
+  EXPECT_TRUE(held_ends(recording, usual).end.at(0).orientation.isApprox(held_ends(recording).end.at(0).orientation, 1e-12));
+}
+
+TEST(Recording, UsualDirectionsAreTheMeanOnes) {
+  Recording along_y = straight_recording();
+  for (std::vector<Vector3>& markers : along_y.markers) markers[1] = {0, 0.2, 0};
+  const Recording along_x = straight_recording();
+  EXPECT_TRUE(usual_directions({&along_x, &along_y})[0].isApprox(Vector3(1, 1, 0).normalized(), 1e-12));
+}
+
 TEST(Recording, SwappedMarkersAreSeenAndPutInOrder) {
   const Recording sound = straight_recording();
   EXPECT_FALSE(swapped_ends(sound).any());

@@ -36,8 +36,10 @@ inline SceneDesc known_cable() {
 }
 
 /// A recording as a camera would make it, at 100 Hz: 8 markers on the cable and two on each of the hands that hold it, noise on
-/// every coordinate [m], another for every `seed`. Hands at its ends swing it, in another way for every `take`.
-inline Recording synthetic_recording(const SceneDesc& known, int take, double duration, double noise, int seed = 0) {
+/// every coordinate [m], another for every `seed`. Hands at its ends swing it, in another way for every `take`. Their markers are
+/// `hand_offset` [m] off the cable's centre line, along the hands' axes.
+inline Recording synthetic_recording(const SceneDesc& known, int take, double duration, double noise, int seed = 0,
+                                     const Vector3& hand_offset = Vector3::Zero()) {
   SceneDesc scene = known;
   CableDesc& cable = scene.cables.front();
   FrameTrack start, end;
@@ -70,9 +72,10 @@ inline Recording synthetic_recording(const SceneDesc& known, int take, double du
     const std::vector<Vector3>& nodes = world.cables().front().state.positions;
     const Vector3 to_second(held_distance, 0, 0);
     const Pose first = start.at(0.01 * row), last = end.at(0.01 * row);
-    markers = {first.position, first.position + first.orientation * to_second};
+    const auto on = [](const Pose& pose, const Vector3& point) -> Vector3 { return pose.position + pose.orientation * point; };
+    markers = {on(first, hand_offset), on(first, hand_offset + to_second)};
     for (const int node : {5, 9, 13, 17, 22, 26, 30, 35}) markers.push_back(nodes[node]);
-    markers.insert(markers.end(), {last.position - last.orientation * to_second, last.position});
+    markers.insert(markers.end(), {on(last, hand_offset - to_second), on(last, hand_offset)});
     for (Vector3& marker : markers)
       for (int axis = 0; axis < 3; ++axis) marker[axis] += noise * scatter(random);
   }

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numeric>
+#include <utility>
 
+#include "start.h"
 #include "verlet_cable/core/number_text.h"
 
 namespace verlet_cable::cable_fit {
@@ -26,7 +27,7 @@ constexpr MaterialParameter material_parameters[] = {
     {"drag", "kg/(m s)", &MaterialDesc::drag, -4, 2},
     {"torsional_stiffness", "N m^2", &MaterialDesc::torsional_stiffness, -5, 2},
 };
-constexpr std::size_t bending_index = 0, torsion_index = 3;
+constexpr std::size_t bending_index = 0, drag_index = 2, torsion_index = 3;
 constexpr std::size_t length_index = std::size(material_parameters);
 constexpr std::size_t stiff_index = length_index + 1;
 constexpr std::size_t curvature_index = stiff_index + 2;
@@ -38,33 +39,42 @@ constexpr int curvature_places = 12;
 constexpr double highest_curvature = 100;  // [1/m]
 constexpr double likely_curvature = 1.5;   // [1/m]
 /// The part of the measured length by which the effective one may differ.
-constexpr double length_tolerance = 0.015;
+constexpr double length_tolerance = 0.02;
+/// So little told drag does not drift to where it has no effect.
+constexpr double likely_drag = 2;  // decades
 /// A hand holds about as much as lies between its two markers; but the second may sit where the cable bends already, or a sleeve
 /// may reach further.
-constexpr double likely_stiff = 0.02;   // [m] from what lies between them
-constexpr double longest_stiff = 0.05;  // of the cable's length
-/// A scene is an error where the markers at its start are 5 % longer or shorter than the cable; rounding stays inside.
-constexpr double start_tolerance = 0.0499;
+constexpr double likely_stiff = 0.3;                          // decades
+constexpr double shortest_stiff = 1e-4, longest_stiff = 0.1;  // of the cable's length
+
+/// Markers are stuck on from outside, grippers are thicker than cables.
+constexpr double likely_hand_offset = 0.01, likely_marker_offset = 0.005;  // [m]
+constexpr double likely_shift = 0.003;                                     // [m] of markers along the cable
+constexpr double farthest_offset = 0.1, farthest_shift = 0.02;             // [m]
 
 /// What the simulation leaves unsolved in a step is far below what these change.
 constexpr double logarithmic_step = 0.02;  // decades
 constexpr double relative_length_step = 5e-4;
-constexpr double stiff_step = 0.002;     // [m]
 constexpr double curvature_step = 0.05;  // [1/m]
+constexpr double offset_step = 0.001;    // [m]
 constexpr double guessed_drag = 0.1;     // [1/s] over the linear density
 
+constexpr std::size_t marker_index = curvature_index + 2 * curvature_places;
+
 double first_length(const Recording& recording) {
-  double length = 0;
-  const std::vector<Vector3>& markers = recording.markers.front();
-  for (std::size_t i = 1; i < markers.size(); ++i) length += (markers[i] - markers[i - 1]).norm();
-  return length;
+  return distances_along(recording.markers.front()).back();
+}
+
+/// [m] the start, as it is and smoothed: shorter and longer one.
+std::pair<double, double> first_lengths(const Recording& recording, const Smoothed& input) {
+  return std::minmax({first_length(recording), first_length(input.recording)});
 }
 
 /// Distances of the first and of the last two markers.
-std::array<double, 2> held_lengths(const std::vector<Smoothed>& inputs) {
+std::array<double, 2> held_lengths(const std::vector<const Recording*>& recordings) {
   std::vector<double> first, last;
-  for (const Smoothed& input : inputs) {
-    for (const std::vector<Vector3>& markers : input.recording.markers) {
+  for (const Recording* recording : recordings) {
+    for (const std::vector<Vector3>& markers : recording->markers) {
       first.push_back((markers[1] - markers[0]).norm());
       last.push_back((markers[markers.size() - 1] - markers[markers.size() - 2]).norm());
     }
@@ -72,38 +82,60 @@ std::array<double, 2> held_lengths(const std::vector<Smoothed>& inputs) {
   return {median(first), median(last)};
 }
 
+void add_marker_parameters(const CableSettings& settings, std::vector<Parameter>& parameters) {
+  for (int end = 0; end < 2; ++end)
+    for (int axis = 1; axis <= 2; ++axis)
+      parameters.push_back({"cables[0].attachments[" + std::to_string(end) + "].offset[" + std::to_string(axis) + "]", "m", false,
+                            -farthest_offset, farthest_offset, offset_step, likely_hand_offset});
+  for (std::size_t i = 2; i + 2 < settings.marker_places.size(); ++i) {
+    const std::string marker = "markers[" + std::to_string(i) + "].";
+    for (int axis = 1; axis <= 2; ++axis)
+      parameters.push_back({marker + "offset[" + std::to_string(axis) + "]", "m", false, -farthest_offset, farthest_offset,
+                            offset_step, likely_marker_offset});
+    parameters.push_back({marker + "shift", "m", false, -farthest_shift, farthest_shift, offset_step, likely_shift});
+  }
+}
+
+/// In its scale, which ends above zero.
 double expected_stiff(const CableSettings& settings, int end) {
-  return std::min(settings.held[end], longest_stiff * settings.length);
+  return std::log10(std::clamp(settings.held[end], shortest_stiff * settings.length, longest_stiff * settings.length));
 }
 
 }  // namespace
 
-std::vector<double> marker_places(const std::vector<Smoothed>& inputs, const std::vector<int>& which) {
-  std::vector<const Recording*> recordings;
-  for (const int i : which) recordings.push_back(&inputs[i].recording);
-  return marker_places(recordings);
-}
-
-void measure_cable(const std::vector<Recording>& recordings, const std::vector<Smoothed>& inputs, CableSettings& settings,
-                   std::vector<std::string>& errors) {
+void measure_cable(const std::vector<Recording>& recordings, const std::vector<Smoothed>& inputs, const std::vector<int>& which,
+                   CableSettings& settings) {
+  std::vector<const Recording*> measured;
   std::vector<double> lengths;
-  for (const Smoothed& input : inputs) lengths.push_back(measured_length(input.recording));
+  for (const int i : which) {
+    measured.push_back(&inputs[i].recording);
+    lengths.push_back(measured_length(inputs[i].recording));
+  }
   settings.length = median(lengths);
-  settings.held = held_lengths(inputs);
-  std::vector<int> all(inputs.size());
-  std::iota(all.begin(), all.end(), 0);
-  settings.marker_places = marker_places(inputs, all);
+  settings.held = held_lengths(measured);
+  settings.usual_directions = usual_directions(measured);
+  settings.marker_places = marker_places(measured);
   settings.shortest = (1 - length_tolerance) * settings.length;
   settings.longest = (1 + length_tolerance) * settings.length;
-  for (std::size_t i = 0; i < recordings.size(); ++i) {
-    const double first = first_length(recordings[i]), smooth = first_length(inputs[i].recording);
-    const double shorter = std::min(first, smooth), longer = std::max(first, smooth);
-    if (longer > (1 + start_tolerance) * settings.length || shorter < (1 - start_tolerance) * settings.length)
-      errors.push_back(recordings[i].path + ": the markers' distances in the first row are " + number_text(first) +
-                       " m in all; allowed: at most 5 % more or less than the cable's length, measured as " +
-                       number_text(settings.length) + " m");
+  // A centre line starts along a smooth curve, which is not shorter than the cable.
+  if (settings.centre_line) return;
+  for (const int i : which) {
+    const auto [shorter, longer] = first_lengths(recordings[i], inputs[i]);
     settings.shortest = std::max(settings.shortest, longer / (1 + start_tolerance));
     settings.longest = std::min(settings.longest, shorter / (1 - start_tolerance));
+  }
+  if (settings.shortest > settings.longest) std::swap(settings.shortest, settings.longest);
+}
+
+void check_starts(const std::vector<Recording>& recordings, const std::vector<Smoothed>& inputs, const CableSettings& settings,
+                  std::vector<std::string>& errors) {
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    const auto [shorter, longer] = first_lengths(recordings[i], inputs[i]);
+    if (longer > (1 + start_tolerance) * settings.length || shorter < (1 - start_tolerance) * settings.length)
+      errors.push_back(recordings[i].path + ": the markers' distances in the first row are " +
+                       number_text(first_length(recordings[i])) +
+                       " m in all; allowed: at most 5 % more or less than the cable's length, measured as " +
+                       number_text(settings.length) + " m");
   }
 }
 
@@ -113,18 +145,22 @@ std::vector<Parameter> cable_parameters(const CableSettings& settings) {
   for (const MaterialParameter& p : material_parameters)
     parameters.push_back({"materials." + settings.name + "." + p.key, p.unit, true, density + p.lowest, density + p.highest,
                           logarithmic_step, 0, -1});
+  parameters[drag_index].likely = likely_drag;
+  parameters[drag_index].expected = density + std::log10(guessed_drag);
   parameters[torsion_index].likely = likely_torsion;
   parameters[torsion_index].relative_to = bending_index;
   parameters.push_back(
       {"cables[0].length", "m", false, settings.shortest, settings.longest, relative_length_step * settings.length, 0, -1});
   for (int end = 0; end < 2; ++end)
-    parameters.push_back({"cables[0].stiff_ends[" + std::to_string(end) + "]", "m", false, 0, longest_stiff * settings.length,
-                          stiff_step, likely_stiff, -1, expected_stiff(settings, end)});
+    parameters.push_back({"cables[0].stiff_ends[" + std::to_string(end) + "]", "m", true,
+                          std::log10(shortest_stiff * settings.length), std::log10(longest_stiff * settings.length),
+                          logarithmic_step, likely_stiff, -1, expected_stiff(settings, end)});
   for (int i = 0; i < curvature_places; ++i) {
     for (int axis = 0; axis < 2; ++axis)
       parameters.push_back({"cables[0].rest_curvature[" + std::to_string(i) + "][" + std::to_string(axis) + "]", "1/m", false,
                             -highest_curvature, highest_curvature, curvature_step, likely_curvature, -1});
   }
+  if (settings.centre_line) add_marker_parameters(settings, parameters);
   return parameters;
 }
 
@@ -137,8 +173,31 @@ std::vector<double> first_guess(const CableSettings& settings, double bending, d
                              std::clamp(settings.length, settings.shortest, settings.longest),
                              expected_stiff(settings, 0),
                              expected_stiff(settings, 1)};
-  values.resize(curvature_index + 2 * curvature_places, 0.0);
+  values.resize(marker_index, 0.0);
   return values;
+}
+
+std::vector<double> with_markers_on_line(const CableSettings& settings, std::vector<double> values) {
+  values.resize(cable_parameters(settings).size(), 0.0);
+  return values;
+}
+
+Markers markers_of(const CableSettings& settings, const std::vector<double>& values) {
+  Markers markers{settings.marker_places, {}, settings.usual_directions, settings.held};
+  if (!settings.centre_line) return markers;
+  const std::size_t count = markers.places.size();
+  markers.offsets.resize(count);
+  // A hand holds the cable where its markers do not: they are off the other way.
+  auto value = values.begin() + marker_index;
+  for (const std::array<std::size_t, 2>& on_hand : {std::array<std::size_t, 2>{0, 1}, {count - 2, count - 1}}) {
+    for (int axis = 0; axis < 2; ++axis, ++value)
+      for (const std::size_t marker : on_hand) markers.offsets[marker][axis] = -*value;
+  }
+  for (std::size_t i = 2; i + 2 < count; ++i) {
+    for (int axis = 0; axis < 2; ++axis) markers.offsets[i][axis] = *value++;
+    markers.places[i] += *value++ / settings.length;
+  }
+  return markers;
 }
 
 double scene_value(const Parameter& parameter, double value) {
@@ -158,9 +217,9 @@ SceneDesc cable_scene(const CableSettings& settings, const std::vector<double>& 
   cable.material = settings.name;
   cable.segments = settings.segments;
   cable.length = values[length_index];
-  cable.stiff_ends = {values[stiff_index], values[stiff_index + 1]};
+  cable.stiff_ends = {std::pow(10, values[stiff_index]), std::pow(10, values[stiff_index + 1])};
   cable.rest_curvature.type = RestCurvatureDesc::Type::profile;
-  for (std::size_t i = curvature_index; i < values.size(); i += 2)
+  for (std::size_t i = curvature_index; i < marker_index; i += 2)
     cable.rest_curvature.profile.push_back({values[i], values[i + 1]});
   return scene;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "prediction.h"
 #include "smoothing.h"
 #include "verlet_cable/core/scene_desc.h"
 
@@ -19,6 +20,9 @@ struct CableSettings {
   double shortest = 0, longest = 0;   ///< [m] what the cable's length may be
   std::vector<double> marker_places;  ///< fractions of the length, as measured
   std::array<double, 2> held{0, 0};   ///< [m] between the two markers on each hand, as measured
+  HeldDirections usual_directions;    ///< of the hands, as measured
+  /// What is looked for is the cable's centre line, and how far off it the markers sit; else the line through the markers.
+  bool centre_line = false;
 };
 
 /// A number that a fit looks for, in the scale in which it looks: the decimal logarithm where that can only be above zero.
@@ -35,17 +39,18 @@ struct Parameter {
   double expected = 0;
 };
 
-/// `marker_places` of some of the recordings.
-std::vector<double> marker_places(const std::vector<Smoothed>& inputs, const std::vector<int>& which);
+/// Measures on some of the recordings what the hands hold and how, where the markers are, and the length and its limits: those
+/// with which each of them, as it is and smoothed, is a start that a scene may have.
+void measure_cable(const std::vector<Recording>& recordings, const std::vector<Smoothed>& inputs, const std::vector<int>& which,
+                   CableSettings& settings);
 
-/// Measures what the hands hold, where the markers are, and the length and its limits: those with which every recording, as it is
-/// and smoothed, is a start that a scene may have. Adds a line to `errors` for recordings that have none in common with the
-/// others.
-void measure_cable(const std::vector<Recording>& recordings, const std::vector<Smoothed>& inputs, CableSettings& settings,
-                   std::vector<std::string>& errors);
+/// Adds a line to `errors` for each recording whose start does not go with the measured length.
+void check_starts(const std::vector<Recording>& recordings, const std::vector<Smoothed>& inputs, const CableSettings& settings,
+                  std::vector<std::string>& errors);
 
 /// Stiffnesses and dampings, the length, what is stiff at the ends, and natural curvature at places along the cable about two
-/// axes.
+/// axes; then, where the centre line is looked for, how far off it the hands hold the cable and the markers sit, and how far
+/// along the cable markers are from where they were measured.
 std::vector<Parameter> cable_parameters(const CableSettings& settings);
 
 /// Where to begin: a straight cable of the measured length. `bending`: EI over the linear density [N m^3 / kg], `damping`: of
@@ -54,6 +59,12 @@ std::vector<double> first_guess(const CableSettings& settings, double bending, d
 
 /// The value that the scene's key has, out of the scale in which it is looked for.
 double scene_value(const Parameter& parameter, double value);
+
+/// Values of a line through the markers, where a fit of the centre line begins.
+std::vector<double> with_markers_on_line(const CableSettings& settings, std::vector<double> values);
+
+/// Where the markers sit.
+Markers markers_of(const CableSettings& settings, const std::vector<double>& values);
 
 /// The scene of a cable: materials, and the cable without `initial` and `attachments`.
 SceneDesc cable_scene(const CableSettings& settings, const std::vector<double>& values);

@@ -13,12 +13,19 @@ constexpr int fewest_for_pairs = 6;
 
 }  // namespace
 
-std::vector<PredictionError> prediction_errors(const std::vector<FittedCable>& cables, const std::vector<Recording>& recordings) {
-  std::vector<PredictionError> errors(recordings.size());
-  for_each_index(static_cast<int>(errors.size()), [&](int i) {
+std::vector<Prediction> predictions(const std::vector<FittedCable>& cables, const std::vector<Recording>& recordings) {
+  std::vector<Prediction> predictions(recordings.size());
+  for_each_index(static_cast<int>(predictions.size()), [&](int i) {
     const auto& [settings, values] = cables[i];
-    errors[i] = prediction_error(predict(cable_scene(settings, values), settings.marker_places, recordings[i]), recordings[i]);
+    predictions[i] = predict(cable_scene(settings, values), markers_of(settings, values), recordings[i]);
   });
+  return predictions;
+}
+
+std::vector<PredictionError> prediction_errors(const std::vector<FittedCable>& cables, const std::vector<Recording>& recordings) {
+  std::vector<PredictionError> errors;
+  const std::vector<Prediction> predicted = predictions(cables, recordings);
+  for (std::size_t i = 0; i < recordings.size(); ++i) errors.push_back(prediction_error(predicted[i], recordings[i]));
   return errors;
 }
 
@@ -32,7 +39,7 @@ std::vector<std::vector<int>> left_out_together(int recordings) {
   return folds;
 }
 
-std::vector<FittedCable> left_out_fits(const Problem& problem) {
+std::vector<FittedCable> left_out_fits(const Problem& problem, const std::vector<FittedCable>& on_markers) {
   const int recordings = static_cast<int>(problem.recordings.size());
   std::vector<FittedCable> fits(recordings);
   for (const std::vector<int>& left_out : left_out_together(recordings)) {
@@ -40,8 +47,12 @@ std::vector<FittedCable> left_out_fits(const Problem& problem) {
     for (int i = 0; i < recordings; ++i)
       if (std::find(left_out.begin(), left_out.end(), i) == left_out.end()) training.push_back(i);
     Problem of_training = problem;
-    of_training.settings.marker_places = marker_places(problem.inputs, training);
-    const std::vector<double> values = fit(of_training, training, coarse_search(of_training, training), for_predictions);
+    measure_cable(problem.recordings, problem.inputs, training, of_training.settings);
+    of_training.parameters = cable_parameters(of_training.settings);
+    const std::vector<double> start = on_markers.empty()
+                                          ? coarse_search(of_training, training)
+                                          : with_markers_on_line(of_training.settings, on_markers[left_out.front()].values);
+    const std::vector<double> values = fit(of_training, training, start, for_predictions);
     for (const int i : left_out) fits[i] = {of_training.settings, values};
   }
   return fits;

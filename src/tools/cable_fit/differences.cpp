@@ -24,7 +24,7 @@ double robust(double difference) {
 
 Eigen::VectorXd scaled_differences(const Problem& problem, const std::vector<double>& values, int which) {
   const Prediction prediction =
-      predict(cable_scene(problem.settings, values), problem.settings.marker_places, problem.inputs[which].recording);
+      predict(cable_scene(problem.settings, values), markers_of(problem.settings, values), problem.inputs[which].recording);
   const std::vector<double> errors = coordinate_errors(prediction, problem.recordings[which]);
   Eigen::VectorXd differences(static_cast<Eigen::Index>(errors.size()));
   const double unit = scatter * std::sqrt(alike);

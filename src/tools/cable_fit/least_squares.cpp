@@ -14,7 +14,8 @@ namespace {
 
 constexpr double starting_bending[] = {1e-3, 3e-3, 1e-2, 3e-2, 1e-1, 3e-1, 1};  // EI over the linear density [N m^3 / kg]
 constexpr double starting_damping[] = {1e-4, 1e-3, 5e-3};                       // of bending, likewise [N m^3 s / kg]
-constexpr int coarse_segments = 16;
+constexpr int coarse_segments = 16;                                             ///< of the search
+constexpr int few_segments = 24;                                                ///< of a fit's first part
 constexpr double first_trust_radius = 30;
 
 SceneDesc coarse(const CableSettings& settings, const std::vector<double>& values) {
@@ -60,11 +61,33 @@ class Cost : public ceres::CostFunction {
   const std::vector<int>& training_;
 };
 
+std::vector<double> minimize(const Problem& problem, const std::vector<int>& training, std::vector<double> values, int iterations,
+                             double tolerance) {
+  Cost cost(problem, training);
+  ceres::Problem::Options ownership;
+  ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem least_squares(ownership);
+  least_squares.AddResidualBlock(&cost, nullptr, values.data());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    least_squares.SetParameterLowerBound(values.data(), static_cast<int>(i), problem.parameters[i].lowest);
+    least_squares.SetParameterUpperBound(values.data(), static_cast<int>(i), problem.parameters[i].highest);
+  }
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+  options.max_num_iterations = iterations;
+  options.function_tolerance = tolerance;
+  options.initial_trust_region_radius = first_trust_radius;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &least_squares, &summary);
+  return values;
+}
+
 }  // namespace
 
 int most_simulations(const Problem& problem, int recordings, const Ending& ending) {
   const int guesses = static_cast<int>(std::size(starting_bending) * std::size(starting_damping));
-  return recordings * (guesses + ending.iterations * static_cast<int>(problem.parameters.size() + 1));
+  return recordings * (guesses + (ending.iterations + ending.refinements) * static_cast<int>(problem.parameters.size() + 1));
 }
 
 std::vector<double> coarse_search(const Problem& problem, const std::vector<int>& training) {
@@ -76,8 +99,9 @@ std::vector<double> coarse_search(const Problem& problem, const std::vector<int>
   std::mutex mutex;
   for_each_index(static_cast<int>(errors.size()), [&](int i) {
     const int recording = training[i % recordings];
-    const Prediction prediction = predict(coarse(problem.settings, guesses[i / recordings]), problem.settings.marker_places,
-                                          problem.inputs[recording].recording);
+    const std::vector<double>& guess = guesses[i / recordings];
+    const Prediction prediction =
+        predict(coarse(problem.settings, guess), markers_of(problem.settings, guess), problem.inputs[recording].recording);
     errors[i] = prediction_error(prediction, problem.recordings[recording]).mean;
     const std::lock_guard<std::mutex> lock(mutex);
     problem.simulated();
@@ -89,24 +113,13 @@ std::vector<double> coarse_search(const Problem& problem, const std::vector<int>
 
 std::vector<double> fit(const Problem& problem, const std::vector<int>& training, std::vector<double> values,
                         const Ending& ending) {
-  Cost cost(problem, training);
-  ceres::Problem::Options ownership;
-  ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ceres::Problem least_squares(ownership);
-  least_squares.AddResidualBlock(&cost, nullptr, values.data());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    least_squares.SetParameterLowerBound(values.data(), static_cast<int>(i), problem.parameters[i].lowest);
-    least_squares.SetParameterUpperBound(values.data(), static_cast<int>(i), problem.parameters[i].highest);
+  if (problem.settings.segments > few_segments) {
+    Problem with_few = problem;
+    with_few.settings.segments = few_segments;
+    values = minimize(with_few, training, std::move(values), ending.iterations, ending.tolerance);
+    return minimize(problem, training, std::move(values), ending.refinements, ending.tolerance);
   }
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = ending.iterations;
-  options.function_tolerance = ending.tolerance;
-  options.initial_trust_region_radius = first_trust_radius;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &least_squares, &summary);
-  return values;
+  return minimize(problem, training, std::move(values), ending.iterations, ending.tolerance);
 }
 
 }  // namespace verlet_cable::cable_fit

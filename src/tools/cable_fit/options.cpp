@@ -10,7 +10,7 @@
 namespace verlet_cable::cable_fit {
 namespace {
 
-constexpr Range segments_range{4, 10000, "an integer"};
+constexpr Range segments_range{fewest_segments, 10000, "an integer"};
 
 /// An option and where its value is kept: one of the three.
 struct ValueOption {
@@ -26,6 +26,8 @@ constexpr ValueOption value_options[] = {
     {"--name", &Options::name, nullptr, nullptr, {}, name_words},
     {"--output", &Options::output, nullptr, nullptr, {}, "the name of a file"},
     {"--report", &Options::report, nullptr, nullptr, {}, "the name of a file"},
+    {"--centre-line", &Options::centre_line, nullptr, nullptr, {}, "the name of a file"},
+    {"--predictions", &Options::predictions, nullptr, nullptr, {}, "the name of a directory"},
     {"--segments", nullptr, nullptr, &Options::segments, segments_range, ""},
     {"--linear-density", nullptr, &Options::linear_density, nullptr, positive, "kg/m"},
     {"--radius", nullptr, &Options::radius, nullptr, positive, "m"},
@@ -92,6 +94,9 @@ const char* const usage =
     "  --linear-density KG_M  default 0.1; recordings tell stiffnesses and dampings over weight only\n"
     "  --radius M             default 0.005; recordings do not tell it\n"
     "  --report JSON          intervals, errors, and errors on recordings that were left out\n"
+    "  --centre-line YAML     the scene, with attachments, of the cable's centre line, looked for together with how far off it\n"
+    "                         the markers sit; its errors are in the report, too\n"
+    "  --predictions DIR      recordings as predicted by fits that did not know them, of the centre line if it is looked for\n"
     "  --help                 this text\n"
     "exit status: 0 done, 2 a bad recording or option, 3 the fit had to stop\n";
 

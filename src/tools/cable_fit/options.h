@@ -5,12 +5,16 @@
 
 namespace verlet_cable::cable_fit {
 
+constexpr int fewest_segments = 4;
+
 /// The command line.
 struct Options {
   std::vector<std::string> recordings;  ///< paths
   std::string name;                     ///< of the cable and its material
   std::string output;                   ///< path of the scene
   std::string report;                   ///< path, empty: none
+  std::string centre_line;              ///< path of the scene of the centre line, empty: it is not looked for
+  std::string predictions;              ///< directory, empty: none
   int segments = 40;
   double linear_density = 0.1;  ///< [kg/m]
   double radius = 0.005;        ///< [m]

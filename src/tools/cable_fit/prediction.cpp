@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cable_sim/frame_source.h"
+#include "start.h"
 #include "verlet_cable/core/world.h"
 
 namespace verlet_cable::cable_fit {
@@ -21,62 +22,50 @@ AttachmentDesc clamp(const char* name, PlaceDesc::At at, const char* frame) {
   return desc;
 }
 
-/// Where markers are on a cable's nodes: in which segment, and how far along it.
-struct Place {
-  int segment;
-  double fraction;
-};
-
-std::vector<Place> places_on(int segments, const std::vector<double>& marker_places) {
-  std::vector<Place> places;
-  for (const double place : marker_places) {
-    const int segment = std::min(static_cast<int>(place * segments), segments - 1);
-    places.push_back({segment, place * segments - segment});
-  }
-  return places;
-}
-
-std::vector<Vector3> markers_on(const std::vector<Vector3>& nodes, const std::vector<Place>& places) {
-  std::vector<Vector3> markers;
-  for (const Place& place : places)
-    markers.emplace_back((1 - place.fraction) * nodes[place.segment] + place.fraction * nodes[place.segment + 1]);
-  return markers;
+/// The markers on the hands are where the hands are.
+void place_held(const HeldEnds& ends, double time, const std::array<double, 2>& held, std::vector<Vector3>& markers) {
+  const Pose start = ends.start.at(time), end = ends.end.at(time);
+  const std::size_t last = markers.size() - 1;
+  markers[0] = start.position;
+  markers[1] = start.position + start.orientation * Vector3(held[0], 0, 0);
+  markers[last - 1] = end.position - end.orientation * Vector3(held[1], 0, 0);
+  markers[last] = end.position;
 }
 
 }  // namespace
 
-SceneDesc scene_of(const SceneDesc& cable, const Recording& recording) {
-  SceneDesc scene = cable;
-  CableDesc& desc = scene.cables.front();
-  desc.initial.type = InitialShapeDesc::Type::points;
-  desc.initial.points = recording.markers.front();
-  desc.initial.velocities = initial_velocities(recording);
-  desc.attachments = {clamp("start", PlaceDesc::At::start, start_frame), clamp("end", PlaceDesc::At::end, end_frame)};
-  return scene;
+std::vector<AttachmentDesc> clamps(const Markers& markers) {
+  std::vector<AttachmentDesc> clamps = {clamp("start", PlaceDesc::At::start, start_frame),
+                                        clamp("end", PlaceDesc::At::end, end_frame)};
+  if (markers.offsets.empty()) return clamps;
+  clamps[0].offset = {0, -markers.offsets.front()[0], -markers.offsets.front()[1]};
+  clamps[1].offset = {0, -markers.offsets.back()[0], -markers.offsets.back()[1]};
+  return clamps;
 }
 
-Prediction predict(const SceneDesc& cable, const std::vector<double>& marker_places, const Recording& recording) {
-  const SceneDesc scene = scene_of(cable, recording);
-  const HeldEnds ends = held_ends(recording);
+Prediction predict(const SceneDesc& cable, const Markers& markers, const Recording& recording) {
+  SceneDesc scene = cable;
+  scene.cables.front().attachments = clamps(markers);
+  const HeldEnds ends = markers.offsets.empty() ? held_ends(recording) : held_ends(recording, markers.usual_directions);
   const cable_sim::FrameSource frames(scene, {{start_frame, ends.start}, {end_frame, ends.end}});
-  const std::vector<Place> places = places_on(scene.cables.front().segments, marker_places);
+  start_along(markers, recording, frames.at(0), scene);
   World world(scene, frames.at(0));
-  const std::vector<Vector3>& nodes = world.cables().front().state.positions;
 
   Prediction prediction;
-  std::vector<Vector3> markers = markers_on(nodes, places), before = markers;
+  std::vector<Vector3> positions = marker_positions(world.cables().front(), markers), before = positions;
   for (const double time : recording.times) {
     // The first step at or after the row; rounding does not add one.
     const auto step = static_cast<std::int64_t>(std::ceil(time / scene.time_step - 1e-6));
     while (world.steps() < step && prediction.sound) {
       const StepResult result = world.step(frames.at(static_cast<double>(world.steps() + 1) * scene.time_step));
       prediction.sound = result.status != StepResult::Status::fault;
-      before = std::move(markers);
-      markers = markers_on(nodes, places);
+      before = std::move(positions);
+      positions = marker_positions(world.cables().front(), markers);
     }
     const double back = static_cast<double>(step) - time / scene.time_step;
-    prediction.positions.push_back(markers);
-    for (std::size_t i = 0; i < markers.size(); ++i) prediction.positions.back()[i] += back * (before[i] - markers[i]);
+    std::vector<Vector3>& row = prediction.positions.emplace_back(positions);
+    for (std::size_t i = 0; i < row.size(); ++i) row[i] += back * (before[i] - positions[i]);
+    if (!markers.offsets.empty()) place_held(ends, time, markers.held, row);
   }
   return prediction;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "recording.h"
@@ -7,9 +8,17 @@
 
 namespace verlet_cable::cable_fit {
 
-/// The scene of a fitted cable (`cable`: its materials, and the cable without `initial` and `attachments`), held and started as
-/// it was in a recording: clamps at its ends, its nodes and their velocities by the first two rows.
-SceneDesc scene_of(const SceneDesc& cable, const Recording& recording);
+/// Where the markers sit.
+struct Markers {
+  std::vector<double> places;  ///< fractions of the cable's length
+  /// [m] a marker, from the cable's centre line along the material's y and z axes; empty: they sit on it
+  std::vector<std::array<double, 2>> offsets;
+  HeldDirections usual_directions;  ///< of the hands; what roll of theirs offsets refer to
+  std::array<double, 2> held;       ///< [m] between the two markers on each hand
+};
+
+/// The clamps that hold a cable's ends, in frames at the outer markers.
+std::vector<AttachmentDesc> clamps(const Markers& markers);
 
 /// Where the markers are predicted to be.
 struct Prediction {
@@ -17,8 +26,10 @@ struct Prediction {
   std::vector<std::vector<Vector3>> positions;  ///< [m] a row of the recording, a marker
 };
 
-/// Predicts a recording from its first two rows and what holds the cable, as cable_sim would; `marker_places`: fractions of the
-/// cable's length. Throws SceneError where the cable cannot be.
-Prediction predict(const SceneDesc& cable, const std::vector<double>& marker_places, const Recording& recording);
+/// Predicts a recording from its first two rows and what holds the cable, as cable_sim would. `cable`: its materials, and the
+/// cable without `initial` and `attachments`. Without offsets it starts along the markers; with them along a smooth curve beside,
+/// and the markers on the hands are where the hands are. A length that does not go with the start is brought within what a scene
+/// allows. Throws SceneError where the cable cannot be.
+Prediction predict(const SceneDesc& cable, const Markers& markers, const Recording& recording);
 
 }  // namespace verlet_cable::cable_fit

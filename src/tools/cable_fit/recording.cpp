@@ -8,10 +8,11 @@ namespace {
 
 constexpr double doubled_back = -0.5;  ///< cosine of the turn behind a held end: 120 degrees
 
-/// Orientations whose x axes are the directions, each turned as little as possible from the one before.
-void carry_along(const Recording& recording, int from, int to, int origin, FrameTrack& track) {
-  Vector3 last = Vector3::UnitX();
-  Quaternion orientation = Quaternion::Identity();
+/// Orientations whose x axes are the directions, each turned as little as possible from the one before, the first from the usual
+/// one.
+void carry_along(const Recording& recording, int from, int to, int origin, const Vector3& usual, FrameTrack& track) {
+  Vector3 last = usual;
+  Quaternion orientation = Quaternion::FromTwoVectors(Vector3::UnitX(), usual);
   for (int row = 0; row < recording.rows(); ++row) {
     const std::vector<Vector3>& markers = recording.markers[row];
     const Vector3 direction = (markers[to] - markers[from]).normalized();
@@ -19,13 +20,6 @@ void carry_along(const Recording& recording, int from, int to, int origin, Frame
     last = direction;
     track.add(recording.times[row], {markers[origin], orientation});
   }
-}
-
-/// [m] from the first marker along the others, one a marker.
-std::vector<double> along(const std::vector<Vector3>& markers) {
-  std::vector<double> lengths{0};
-  for (std::size_t i = 1; i < markers.size(); ++i) lengths.push_back(lengths.back() + (markers[i] - markers[i - 1]).norm());
-  return lengths;
 }
 
 }  // namespace
@@ -62,9 +56,15 @@ Recording in_order(Recording recording, const SwappedEnds& swapped) {
   return recording;
 }
 
+std::vector<double> distances_along(const std::vector<Vector3>& points) {
+  std::vector<double> distances{0};
+  for (std::size_t i = 1; i < points.size(); ++i) distances.push_back(distances.back() + (points[i] - points[i - 1]).norm());
+  return distances;
+}
+
 double measured_length(const Recording& recording) {
   std::vector<double> lengths;
-  for (const std::vector<Vector3>& markers : recording.markers) lengths.push_back(along(markers).back());
+  for (const std::vector<Vector3>& markers : recording.markers) lengths.push_back(distances_along(markers).back());
   return median(std::move(lengths));
 }
 
@@ -89,11 +89,24 @@ std::vector<Vector3> initial_velocities(const Recording& recording) {
   return velocities;
 }
 
-HeldEnds held_ends(const Recording& recording) {
+HeldDirections usual_directions(const std::vector<const Recording*>& recordings) {
+  HeldDirections sums{Vector3::Zero(), Vector3::Zero()};
+  for (const Recording* recording : recordings) {
+    const int last = recording->marker_count() - 1;
+    for (const std::vector<Vector3>& markers : recording->markers) {
+      sums[0] += (markers[1] - markers[0]).normalized();
+      sums[1] += (markers[last] - markers[last - 1]).normalized();
+    }
+  }
+  for (Vector3& sum : sums) sum = sum.norm() > 0 ? Vector3(sum.normalized()) : Vector3(Vector3::UnitX());
+  return sums;
+}
+
+HeldEnds held_ends(const Recording& recording, const HeldDirections& usual) {
   const int last = recording.marker_count() - 1;
   HeldEnds ends;
-  carry_along(recording, 0, 1, 0, ends.start);
-  carry_along(recording, last - 1, last, last, ends.end);
+  carry_along(recording, 0, 1, 0, usual[0], ends.start);
+  carry_along(recording, last - 1, last, last, usual[1], ends.end);
   return ends;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,9 @@ Recording in_order(Recording recording, const SwappedEnds& swapped);
 /// The upper one of two in the middle.
 double median(std::vector<double> values);
 
+/// [m] from the first point along the others, one a point.
+std::vector<double> distances_along(const std::vector<Vector3>& points);
+
 /// [m] along the cable between the outer markers: the median over the rows, as measured distances vary by some percent.
 double measured_length(const Recording& recording);
 
@@ -54,8 +58,15 @@ struct HeldEnds {
   FrameTrack start, end;
 };
 
-/// The frames in the outer markers, +x along the cable from start to end. Roll was not recorded: it is the smallest rotation from
-/// the world's axes at the first row, then the smallest from row to row.
-HeldEnds held_ends(const Recording& recording);
+/// The directions in which hands hold start and end, as unit vectors from start to end of the cable.
+using HeldDirections = std::array<Vector3, 2>;
+
+/// The mean ones of some recordings; +x where there is none.
+HeldDirections usual_directions(const std::vector<const Recording*>& recordings);
+
+/// The frames in the outer markers, +x along the cable from start to end. Roll was not recorded: the hands' axes are the world's,
+/// turned the smallest way from +x to the usual direction, from there to that of the first row, then from row to row. With the
+/// default it is the smallest rotation from the world's axes at the first row.
+HeldEnds held_ends(const Recording& recording, const HeldDirections& usual = {Vector3::UnitX(), Vector3::UnitX()});
 
 }  // namespace verlet_cable::cable_fit

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "cable_sim/json_writer.h"
+#include "verlet_cable/core/number_text.h"
 
 namespace verlet_cable::cable_fit {
 namespace {
@@ -32,7 +33,8 @@ void write_error(const PredictionError& error, JsonWriter& json) {
   json.end_object();
 }
 
-void write_parameters(const Problem& problem, const FitResult& result, JsonWriter& json) {
+void write_parameters(const Fit& fit, JsonWriter& json) {
+  const auto& [problem, result] = fit;
   json.begin_array();
   for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
     const Parameter& parameter = problem.parameters[i];
@@ -63,28 +65,36 @@ std::string line(const char* format, ...) {
   return buffer;
 }
 
-}  // namespace
-
-double mean_error(const std::vector<PredictionError>& errors) {
-  double sum = 0;
-  for (const PredictionError& error : errors) sum += error.mean;
-  return sum / static_cast<double>(errors.size());
-}
-
-std::string report_json(const Problem& problem, const std::vector<SwappedEnds>& swapped, const FitResult& result) {
+/// Entries of an object.
+void write_fit(const std::vector<SwappedEnds>& swapped, const Fit& fit, JsonWriter& json) {
+  const auto& [problem, result] = fit;
   const bool cross_validated = !result.left_out.as_numbered.empty();
-  JsonWriter json;
-  json.begin_object();
-  json.entry("name", problem.settings.name);
-  json.entry("segments", static_cast<std::int64_t>(problem.settings.segments));
   json.entry("mean_error", mean_error(result.fitted.as_numbered));
   if (cross_validated) json.entry("cross_validated_error", mean_error(result.left_out.as_numbered));
   if (cross_validated && any_swapped(swapped)) json.entry("cross_validated_error_in_order", mean_error(result.left_out.in_order));
+  json.key("resegmented");
+  json.begin_array();
+  for (const Resegmented& other : result.resegmented) {
+    json.begin_object();
+    json.entry("segments", static_cast<std::int64_t>(other.segments));
+    json.entry("mean_error", other.error);
+    json.end_object();
+  }
+  json.end_array();
   json.key("parameters");
-  write_parameters(problem, result, json);
+  write_parameters(fit, json);
+  const Markers markers = markers_of(problem.settings, result.values);
   json.key("marker_places");
   json.begin_array();
-  for (const double place : problem.settings.marker_places) json.value(place);
+  for (const double place : markers.places) json.value(place);
+  json.end_array();
+  json.key("marker_offsets");
+  json.begin_array();
+  for (const auto& offset : markers.offsets) {
+    json.begin_array();
+    for (const double value : offset) json.value(value);
+    json.end_array();
+  }
   json.end_array();
   json.key("recordings");
   json.begin_array();
@@ -105,11 +115,10 @@ std::string report_json(const Problem& problem, const std::vector<SwappedEnds>& 
     json.end_object();
   }
   json.end_array();
-  json.end_object();
-  return json.text() + "\n";
 }
 
-std::string summary_text(const Problem& problem, const std::vector<SwappedEnds>& swapped, const FitResult& result) {
+std::string parameter_lines(const Fit& fit) {
+  const auto& [problem, result] = fit;
   std::string text;
   for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
     const Parameter& parameter = problem.parameters[i];
@@ -118,12 +127,11 @@ std::string summary_text(const Problem& problem, const std::vector<SwappedEnds>&
         line("%-44s %10.4g %-9s (%.3g to %.3g)%s\n", parameter.key.c_str(), scene_value(parameter, result.values[i]),
              parameter.unit.c_str(), range.low, range.high, result.confidence[i].told ? "" : "  the recordings do not tell it");
   }
-  for (std::size_t i = 0; i < swapped.size(); ++i)
-    if (swapped[i].any())
-      text += problem.recordings[i].path + ": " + swapped_text(swapped[i]) + " markers are numbered the wrong way round\n";
-  double noise = 0;
-  for (const Smoothed& input : problem.inputs) noise = std::max(noise, input.noise);
-  text += line("noise of a coordinate: at most %.2f mm\n", 1000 * noise);
+  return text;
+}
+
+std::string error_lines(const std::vector<SwappedEnds>& swapped, const FitResult& result) {
+  std::string text;
   const auto add_mean = [&](const char* what, const Errors& errors) {
     text += line("mean absolute error of recordings %s: %.3f cm\n", what, 100 * mean_error(errors.as_numbered));
     if (any_swapped(swapped))
@@ -131,6 +139,59 @@ std::string summary_text(const Problem& problem, const std::vector<SwappedEnds>&
   };
   add_mean("that were fitted", result.fitted);
   if (!result.left_out.as_numbered.empty()) add_mean("left out of the fit", result.left_out);
+  return text;
+}
+
+}  // namespace
+
+double mean_error(const std::vector<PredictionError>& errors) {
+  double sum = 0;
+  for (const PredictionError& error : errors) sum += error.mean;
+  return sum / static_cast<double>(errors.size());
+}
+
+std::string report_json(const std::vector<SwappedEnds>& swapped, const Fit& fit, const Fit* centre_line) {
+  JsonWriter json;
+  json.begin_object();
+  json.entry("name", fit.problem.settings.name);
+  json.entry("segments", static_cast<std::int64_t>(fit.problem.settings.segments));
+  write_fit(swapped, fit, json);
+  if (centre_line) {
+    json.key("centre_line");
+    json.begin_object();
+    write_fit(swapped, *centre_line, json);
+    json.end_object();
+  }
+  json.end_object();
+  return json.text() + "\n";
+}
+
+std::string summary_text(const std::vector<SwappedEnds>& swapped, const Fit& fit, const Fit* centre_line) {
+  std::string text = parameter_lines(fit);
+  double noise = 0;
+  for (std::size_t i = 0; i < swapped.size(); ++i) {
+    if (swapped[i].any())
+      text += fit.problem.recordings[i].path + ": " + swapped_text(swapped[i]) + " markers are numbered the wrong way round\n";
+    noise = std::max(noise, fit.problem.inputs[i].noise);
+  }
+  text += line("noise of a coordinate: at most %.2f mm\n", 1000 * noise) + error_lines(swapped, fit.result);
+  if (centre_line)
+    text += "\nthe centre line, with the markers beside it:\n" + parameter_lines(*centre_line) +
+            error_lines(swapped, centre_line->result);
+  return text;
+}
+
+std::string prediction_csv(const Recording& recording, const Prediction& prediction) {
+  std::string text = "t";
+  for (int i = 0; i < recording.marker_count(); ++i)
+    for (const char* axis : {"x", "y", "z"}) text += std::string(",") + axis + std::to_string(i);
+  text += "\n";
+  for (int row = 0; row < recording.rows(); ++row) {
+    text += number_text(recording.times[row]);
+    for (const Vector3& marker : prediction.positions[row])
+      for (int axis = 0; axis < 3; ++axis) text += "," + number_text(marker[axis]);
+    text += "\n";
+  }
   return text;
 }
 

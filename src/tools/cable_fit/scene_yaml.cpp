@@ -13,13 +13,16 @@ void append(const std::string& indent, const char* key, const std::string& value
 
 }  // namespace
 
-std::string scene_yaml(const Problem& problem, const FitResult& result) {
+std::string scene_yaml(const Fit& fit) {
+  const auto& [problem, result] = fit;
   const SceneDesc scene = cable_scene(problem.settings, result.values);
   const NamedMaterial& material = scene.materials.front();
   const CableDesc& cable = scene.cables.front();
   const std::size_t recordings = problem.recordings.size();
-  std::string yaml = "# Fitted by cable_fit to " + std::to_string(recordings) + (recordings == 1 ? " recording" : " recordings") +
-                     ". To be a scene, the cable needs `attachments`.\n";
+  std::string yaml =
+      "# Fitted by cable_fit to " + std::to_string(recordings) + (recordings == 1 ? " recording" : " recordings") +
+      (problem.settings.centre_line ? ". Frames: origins in the outer markers, x along the cable, from start to end.\n"
+                                    : ". To be a scene, the cable needs `attachments`.\n");
   append("", "time_step", number_text(scene.time_step), yaml);
   yaml += "materials:\n  " + material.name + ":\n";
   const MaterialDesc plain;
@@ -35,6 +38,11 @@ std::string scene_yaml(const Problem& problem, const FitResult& result) {
   yaml += "    rest_curvature:\n";
   for (const auto& curvature : cable.rest_curvature.profile)
     yaml += "      - [" + number_text(curvature[0]) + ", " + number_text(curvature[1]) + "]\n";
+  if (!problem.settings.centre_line) return yaml;
+  yaml += "    attachments:\n";
+  for (const AttachmentDesc& clamp : clamps(markers_of(problem.settings, result.values)))
+    yaml += "      - {name: " + clamp.name + ", at: " + clamp.name + ", frame: " + clamp.frame + ", type: clamp, offset: [0, " +
+            number_text(clamp.offset.y()) + ", " + number_text(clamp.offset.z()) + "]}\n";
   return yaml;
 }
 
