@@ -86,7 +86,9 @@ class ExampleTest(unittest.TestCase):
 
     @unittest.skipUnless(EXAMPLE == 'tracker', 'has no camera')
     def test_the_camera_sees_the_rope_where_it_is(self):
-        with Messages('/camera/points', PointCloud2) as clouds, Messages('/camera/ground_truth', PoseArray) as truths:
+        # Clouds only count from when truths come: the first would have none.
+        with Messages('/camera/ground_truth', PoseArray) as truths, Messages('/camera/points', PointCloud2) as clouds:
+            truths.next()
             for _ in range(5):
                 cloud = clouds.next()
                 truth = truths.wait_for(lambda t: t.header.stamp == cloud.header.stamp, 'truth of the same stamp')
