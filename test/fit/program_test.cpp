@@ -111,6 +111,7 @@ TEST_F(CableFit, CentreLineIsASceneAndPredictionsAreRecordings) {
       << err;
   const SceneDesc scene = read_scene_text(content(path("centre.yaml")));
   ASSERT_EQ(scene.cables[0].attachments.size(), 2u);
+  EXPECT_NE(content(path("centre.yaml")).find("turned the smallest way to x = ["), std::string::npos);
   EXPECT_GT(scene.cables[0].attachments[0].offset.norm(), 1e-3);
   EXPECT_EQ(scene.cables[0].attachments[0].offset.x(), 0);
   for (const char* expected : {"\"centre_line\"", "\"marker_offsets\"", "\"resegmented\"", "\"cross_validated_error\""})

@@ -11,6 +11,16 @@ void append(const std::string& indent, const char* key, const std::string& value
   yaml += indent + key + ": " + value + "\n";
 }
 
+std::string direction_text(const Vector3& v) {
+  return "[" + number_text(v.x()) + ", " + number_text(v.y()) + ", " + number_text(v.z()) + "]";
+}
+
+std::string frames_text(const HeldDirections& usual) {
+  return "Frames: origins in the outer markers, x along the cable, from start to end.\n"
+         "# Their roll: the world's axes, turned the smallest way to x = " +
+         direction_text(usual[0]) + " at the start, " + direction_text(usual[1]) + " at the end, and from there on.\n";
+}
+
 }  // namespace
 
 std::string scene_yaml(const Fit& fit) {
@@ -19,10 +29,9 @@ std::string scene_yaml(const Fit& fit) {
   const NamedMaterial& material = scene.materials.front();
   const CableDesc& cable = scene.cables.front();
   const std::size_t recordings = problem.recordings.size();
-  std::string yaml =
-      "# Fitted by cable_fit to " + std::to_string(recordings) + (recordings == 1 ? " recording" : " recordings") +
-      (problem.settings.centre_line ? ". Frames: origins in the outer markers, x along the cable, from start to end.\n"
-                                    : ". To be a scene, the cable needs `attachments`.\n");
+  std::string yaml = "# Fitted by cable_fit to " + std::to_string(recordings) + (recordings == 1 ? " recording" : " recordings") +
+                     (problem.settings.centre_line ? ". " + frames_text(problem.settings.usual_directions)
+                                                   : ". To be a scene, the cable needs `attachments`.\n");
   append("", "time_step", number_text(scene.time_step), yaml);
   yaml += "materials:\n  " + material.name + ":\n";
   const MaterialDesc plain;
