@@ -45,13 +45,11 @@ def fit(programs, cable, recordings, segments, work):
         return found, json.load(taken)
 
 
-def simulate(programs, cable, recording, places, segments, work):
-    """Predicts a recording with cable_sim by the scene of the line through the markers: positions of the markers [m] (rows,
-    markers, 3), which sit at `places` (fractions of the length), and how many times faster than real time."""
+def real_time_factor(programs, cable, recording, work):
+    """How many times faster than real time cable_sim predicts a recording, by the scene of the line through the markers."""
     with open(os.path.join(work, f'dlo{cable}.yaml'), encoding='utf-8') as file:
         scene = yaml.safe_load(file)
     desc = scene['cables'][0]
-    desc['segments'] = segments
     desc['initial'] = {'type': 'points', 'points': recording.markers[0].tolist(),
                        'velocities': recording.initial_velocities().tolist()}
     desc['attachments'] = [{'name': at, 'at': at, 'frame': at, 'type': 'clamp'} for at in ('start', 'end')]
@@ -67,16 +65,8 @@ def simulate(programs, cable, recording, places, segments, work):
     subprocess.run([os.path.join(programs, 'cable_sim'), names['scene.yaml'], '--duration', repr(float(recording.duration)),
                     '--motion', names['motion.csv'], '--output', names['nodes.csv'], '--summary', names['summary.json']],
                    check=True, stdout=subprocess.DEVNULL)
-    nodes = np.genfromtxt(names['nodes.csv'], delimiter=',', skip_header=1, usecols=(0, 3, 4, 5))
-    times = nodes[::segments + 1, 0]
-    positions = nodes[:, 1:].reshape(-1, segments + 1, 3)
-    places = np.array(places) * segments
-    before = np.minimum(places.astype(int), segments - 1)
-    fraction = (places - before)[None, :, None]
-    markers = (1 - fraction) * positions[:, before] + fraction * positions[:, before + 1]
-    rows = np.searchsorted(times, recording.times - 1e-9)
     with open(names['summary.json'], encoding='utf-8') as file:
-        return markers[np.minimum(rows, len(markers) - 1)], json.load(file)['real_time_factor']
+        return json.load(file)['real_time_factor']
 
 
 def errors_over_time(predicted, recording):
@@ -142,7 +132,7 @@ def main():
             table_row(cable, f'{cable}, as numbered', report, in_order=False)
         table_row(cable, cable, report, in_order=True)
         recordings = [Recording(path) for path in paths]
-        factor = min(simulate(programs, cable, recording, report['marker_places'], segments, work)[1] for recording in recordings)
+        factor = min(real_time_factor(programs, cable, recording, work) for recording in recordings)
         others.append(other_numbers(cable, report, seconds, factor))
         predicted = [Recording(os.path.join(work, f'predicted{cable}', os.path.basename(path))).markers for path in paths]
         in_order = [recording['swapped_markers'] == 'none' for recording in report['recordings']]

@@ -63,7 +63,6 @@ std::array<Found, 2> one_try(int number) {
   const Problem on_markers{recordings, inputs, settings, cable_parameters(settings), [] {}};
   const std::vector<double> line = fit(on_markers, all, coarse_search(on_markers, all));
   settings.centre_line = true;
-  measure_cable(recordings, inputs, all, settings);
   const Problem beside{recordings, inputs, settings, cable_parameters(settings), [] {}};
   return {found_by(on_markers, line, truth), found_by(beside, fit(beside, all, with_markers_on_line(settings, line)), truth)};
 }

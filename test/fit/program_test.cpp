@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "../scene/cable_sim_fixture.h"
-#include "cable_fit/cable_parameters.h"
+#include "cable_fit/report.h"
 #include "synthetic.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/scene/scene_reader.h"
@@ -22,15 +22,7 @@ class CableFit : public CableSim {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
   std::string write_recording(const std::string& name, const Recording& recording) {
-    std::string text = "t";
-    for (int i = 0; i < recording.marker_count(); ++i)
-      for (const char* axis : {"x", "y", "z"}) text += std::string(",") + axis + std::to_string(i);
-    for (int row = 0; row < recording.rows(); ++row) {
-      text += "\n" + number_text(recording.times[row]);
-      for (const Vector3& marker : recording.markers[row])
-        for (int axis = 0; axis < 3; ++axis) text += "," + number_text(marker[axis]);
-    }
-    return write(name, text + "\n");
+    return write(name, prediction_csv(recording, {true, recording.markers}));
   }
 };
 
@@ -128,6 +120,10 @@ TEST_F(CableFit, CentreLineIsASceneAndPredictionsAreRecordings) {
   EXPECT_NE(err.find("--predictions: no directory"), std::string::npos) << err;
   EXPECT_EQ(fit(files + " --name lead --segments 8 --output " + path("scene.yaml") + " --predictions " + path("")), 2);
   EXPECT_NE(err.find("take1.csv\" is a recording"), std::string::npos) << err;
+
+  // What is refused makes no directory.
+  EXPECT_EQ(fit(files + " --name 1 --segments 8 --output " + path("scene.yaml") + " --predictions " + path("refused/of")), 2);
+  EXPECT_FALSE(exists("refused"));
 }
 
 TEST_F(CableFit, BadInputIsRefusedAllAtOnceAndNothingWritten) {

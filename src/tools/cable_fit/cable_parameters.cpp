@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <tuple>
 #include <utility>
 
 #include "start.h"
@@ -96,6 +97,11 @@ void add_marker_parameters(const CableSettings& settings, std::vector<Parameter>
   }
 }
 
+/// [m] the shortest and the longest one, whatever the starts.
+std::pair<double, double> likely_lengths(const CableSettings& settings) {
+  return {(1 - length_tolerance) * settings.length, (1 + length_tolerance) * settings.length};
+}
+
 /// In its scale, which ends above zero.
 double expected_stiff(const CableSettings& settings, int end) {
   return std::log10(std::clamp(settings.held[end], shortest_stiff * settings.length, longest_stiff * settings.length));
@@ -115,10 +121,7 @@ void measure_cable(const std::vector<Recording>& recordings, const std::vector<S
   settings.held = held_lengths(measured);
   settings.usual_directions = usual_directions(measured);
   settings.marker_places = marker_places(measured);
-  settings.shortest = (1 - length_tolerance) * settings.length;
-  settings.longest = (1 + length_tolerance) * settings.length;
-  // A centre line starts along a smooth curve, which is not shorter than the cable.
-  if (settings.centre_line) return;
+  std::tie(settings.shortest, settings.longest) = likely_lengths(settings);
   for (const int i : which) {
     const auto [shorter, longer] = first_lengths(recordings[i], inputs[i]);
     settings.shortest = std::max(settings.shortest, longer / (1 + start_tolerance));
@@ -149,8 +152,10 @@ std::vector<Parameter> cable_parameters(const CableSettings& settings) {
   parameters[drag_index].expected = density + std::log10(guessed_drag);
   parameters[torsion_index].likely = likely_torsion;
   parameters[torsion_index].relative_to = bending_index;
-  parameters.push_back(
-      {"cables[0].length", "m", false, settings.shortest, settings.longest, relative_length_step * settings.length, 0, -1});
+  // A centre line starts along a smooth curve, which is not shorter than the cable.
+  const auto [shortest, longest] =
+      settings.centre_line ? likely_lengths(settings) : std::pair(settings.shortest, settings.longest);
+  parameters.push_back({"cables[0].length", "m", false, shortest, longest, relative_length_step * settings.length, 0, -1});
   for (int end = 0; end < 2; ++end)
     parameters.push_back({"cables[0].stiff_ends[" + std::to_string(end) + "]", "m", true,
                           std::log10(shortest_stiff * settings.length), std::log10(longest_stiff * settings.length),

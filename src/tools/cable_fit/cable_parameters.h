@@ -17,7 +17,7 @@ struct CableSettings {
   double linear_density = 0.1;        ///< [kg/m]; motion tells stiffnesses and dampings over weight only
   double radius = 0.005;              ///< [m]; motion does not tell it
   double length = 0;                  ///< [m] as measured between the outer markers
-  double shortest = 0, longest = 0;   ///< [m] what the cable's length may be
+  double shortest = 0, longest = 0;   ///< [m] what the length of a line through the markers may be
   std::vector<double> marker_places;  ///< fractions of the length, as measured
   std::array<double, 2> held{0, 0};   ///< [m] between the two markers on each hand, as measured
   HeldDirections usual_directions;    ///< of the hands, as measured

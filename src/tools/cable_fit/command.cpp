@@ -40,17 +40,15 @@ std::string prediction_path(const std::string& directory, const std::string& rec
   return (std::filesystem::path(directory) / std::filesystem::path(recording).filename()).string();
 }
 
-/// Makes the directory where it is missing.
+/// The directory may not be there yet; nothing is made of what may still be refused.
 void check_predictions(const std::string& directory, const std::vector<std::string>& recordings,
                        std::vector<std::string>& errors) {
   if (directory.empty()) return;
-  std::error_code problem;
-  std::filesystem::create_directories(directory, problem);
-  if (problem || !std::filesystem::is_directory(directory)) {
-    errors.push_back("--predictions: no directory " + quoted(directory) + " can be made: " +
-                     (problem ? problem.message() : "there is a file") + "; allowed: a directory, or where one can be made");
-    return;
-  }
+  std::filesystem::path nearest = std::filesystem::absolute(directory);
+  while (!std::filesystem::exists(nearest)) nearest = nearest.parent_path();
+  if (!std::filesystem::is_directory(nearest))
+    errors.push_back("--predictions: no directory " + quoted(directory) + " can be made: " + quoted(nearest.string()) +
+                     " is a file; allowed: a directory, or where one can be made");
   std::set<std::string> names;
   for (const std::string& recording : recordings) {
     const std::string path = prediction_path(directory, recording);
@@ -118,6 +116,9 @@ int most_simulations(const Problem& problem, bool cross_validated) {
 
 /// Empty, or why not all could be written.
 std::string write_predictions(const std::string& directory, const Fit& fit) {
+  std::error_code problem;
+  std::filesystem::create_directories(directory, problem);
+  if (problem) return "cannot make the directory " + quoted(directory) + ": " + problem.message();
   const std::vector<Recording>& recordings = fit.problem.recordings;
   const std::vector<Prediction> predicted = predictions(fit.result.folds, recordings);
   std::string failure;
@@ -171,7 +172,6 @@ int run(const std::vector<std::string>& arguments) {
   const bool cross_validated = recordings.size() > 1 && !(options.report.empty() && options.predictions.empty());
   Fit on_markers{{recordings, inputs, settings, cable_parameters(settings), {}}, {}};
   settings.centre_line = true;
-  measure_cable(recordings, inputs, all, settings);
   Fit centre_line{{recordings, inputs, settings, cable_parameters(settings), {}}, {}};
   const bool with_centre_line = !options.centre_line.empty();
   cable_sim::ProgressBar progress(most_simulations(on_markers.problem, cross_validated) +

@@ -11,14 +11,14 @@ void append(const std::string& indent, const char* key, const std::string& value
   yaml += indent + key + ": " + value + "\n";
 }
 
-std::string direction_text(const Vector3& v) {
+std::string vector_text(const Vector3& v) {
   return "[" + number_text(v.x()) + ", " + number_text(v.y()) + ", " + number_text(v.z()) + "]";
 }
 
 std::string frames_text(const HeldDirections& usual) {
   return "Frames: origins in the outer markers, x along the cable, from start to end.\n"
          "# Their roll: the world's axes, turned the smallest way to x = " +
-         direction_text(usual[0]) + " at the start, " + direction_text(usual[1]) + " at the end, and from there on.\n";
+         vector_text(usual[0]) + " at the start, " + vector_text(usual[1]) + " at the end, and from there on.\n";
 }
 
 }  // namespace
@@ -50,8 +50,8 @@ std::string scene_yaml(const Fit& fit) {
   if (!problem.settings.centre_line) return yaml;
   yaml += "    attachments:\n";
   for (const AttachmentDesc& clamp : clamps(markers_of(problem.settings, result.values)))
-    yaml += "      - {name: " + clamp.name + ", at: " + clamp.name + ", frame: " + clamp.frame + ", type: clamp, offset: [0, " +
-            number_text(clamp.offset.y()) + ", " + number_text(clamp.offset.z()) + "]}\n";
+    yaml += "      - {name: " + clamp.name + ", at: " + clamp.name + ", frame: " + clamp.frame +
+            ", type: clamp, offset: " + vector_text(clamp.offset) + "}\n";
   return yaml;
 }
 
