@@ -44,7 +44,7 @@ class CrowdTest(unittest.TestCase):
         with Frames(hand=hand), Messages('/crowd/markers', rospy.AnyMsg) as markers:
             answer = self.node.load_scene(yaml=scene())
             self.assertTrue(answer.success, answer.message)
-            rospy.sleep(2)
+            rospy.sleep(6)  # until it is as late as it gets
             markers.clear()
             begin = time.monotonic()
             answers = []
@@ -62,7 +62,7 @@ class CrowdTest(unittest.TestCase):
                       1e-6 * len(raw[-1]._buff), now - last, 1e3 * statistics.median(answers))
         self.assertGreater(rate, 20)
         self.assertLess(len(raw[-1]._buff), 3e6)
-        self.assertAlmostEqual(last - first, SECONDS, delta=2)  # how late it is changes with the load
+        self.assertAlmostEqual(last - first, SECONDS, delta=1)
         self.assertLess(now - last, 3)
         self.assertLess(statistics.median(answers), 0.05)
         tubes = {m.ns: m for m in messages[1].markers if m.ns.startswith('rope')}
