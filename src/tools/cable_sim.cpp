@@ -1,13 +1,6 @@
-#include <exception>
-#include <iostream>
-
 #include "cable_sim/command.h"
+#include "common/program.h"
 
 int main(int argc, char** argv) {
-  try {
-    return verlet_cable::cable_sim::run({argv + 1, argv + argc});
-  } catch (const std::exception& error) {
-    std::cerr << "cable_sim: stopped: " << error.what() << "\n";
-    return verlet_cable::cable_sim::exit_stopped;
-  }
+  return verlet_cable::tools::run_program("cable_sim", verlet_cable::cable_sim::run, argc, argv);
 }

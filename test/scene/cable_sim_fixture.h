@@ -4,8 +4,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -49,9 +51,25 @@ class CableSim : public testing::Test {
   }
   bool exists(const std::string& name) const { return access(path(name).c_str(), F_OK) == 0; }
 
-  /// Exit status of the program; what it printed is in `out` and `err`.
-  int run(const std::string& arguments) {
-    const std::string command = std::string(CABLE_SIM_PROGRAM) + " " + arguments + " > " + path("out") + " 2> " + path("err");
+  /// All that is in the directory, sorted.
+  std::vector<std::string> names() const {
+    std::vector<std::string> found;
+    for (const auto& entry : std::filesystem::directory_iterator(directory_)) found.push_back(entry.path().filename().string());
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+  /// Those of files that are written aside.
+  std::vector<std::string> parts() const {
+    std::vector<std::string> found = names();
+    found.erase(std::remove_if(found.begin(), found.end(),
+                               [](const std::string& name) { return name.find(".part") == std::string::npos; }),
+                found.end());
+    return found;
+  }
+
+  /// Exit status of the program; what it printed is in `out` and `err`. `before`: commands of the same shell.
+  int run(const std::string& arguments, const std::string& before = "") {
+    const std::string command = before + CABLE_SIM_PROGRAM + " " + arguments + " > " + path("out") + " 2> " + path("err");
     const int status = std::system(command.c_str());
     out = content(path("out"));
     err = content(path("err"));

@@ -1,15 +1,12 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <fstream>
 #include <limits>
 
 #include "cable_sim/event_log.h"
 #include "cable_sim/frame_source.h"
 #include "cable_sim/job.h"
-#include "cable_sim/json_writer.h"
 #include "cable_sim/options.h"
-#include "cable_sim/output_file.h"
+#include "common/json_writer.h"
 #include "scene_text.h"
 
 namespace verlet_cable::cable_sim {
@@ -81,7 +78,7 @@ TEST(Steps, reachTheDurationAndNoFurther) {
 }
 
 TEST(JsonWriter, writesJson) {
-  JsonWriter json;
+  tools::JsonWriter json;
   json.begin_object();
   json.entry("number", 0.1);
   json.entry("none", std::numeric_limits<double>::infinity());
@@ -102,41 +99,6 @@ TEST(JsonWriter, writesJson) {
             "{\n  \"number\": 0.1,\n  \"none\": null,\n  \"count\": 3,\n  \"text\": \"a\\\"b\\\\c\\u000a\",\n  \"vector\": [1, "
             "2.5, -3],\n"
             "  \"empty\": [],\n  \"list\": [\n    1,\n    {}\n  ]\n}");
-}
-
-TEST(OutputFile, leavesFilesAsTheyWereUntilItStarts) {
-  const std::string old_path = testing::TempDir() + "output_file_test_old";
-  const std::string new_path = testing::TempDir() + "output_file_test_new";
-  std::ofstream(old_path) << "old";
-  unlink(new_path.c_str());
-  {
-    OutputFile old_file, new_file;
-    EXPECT_EQ(old_file.open(old_path), "");
-    EXPECT_EQ(new_file.open(new_path), "");
-  }
-  std::string text;
-  std::ifstream(old_path) >> text;
-  EXPECT_EQ(text, "old");
-  EXPECT_NE(access(new_path.c_str(), F_OK), 0);
-
-  OutputFile file;
-  EXPECT_EQ(file.open(old_path), "");
-  file.start();
-  file.write("ab", 2);
-  EXPECT_EQ(file.close(), "");
-  std::ifstream(old_path) >> text;
-  EXPECT_EQ(text, "ab");
-  EXPECT_EQ(file.open("/dev/full"), "");
-  file.start();
-  file.write("ab", 2);
-  EXPECT_EQ(file.close(), "No space left on device");
-}
-
-TEST(OutputFile, saysWhyItCannotBeWritten) {
-  EXPECT_EQ(why_not_writable(testing::TempDir() + "cable_sim_new_file"), "");
-  EXPECT_EQ(why_not_writable("/nonexistent/file"), "No such file or directory");
-  EXPECT_EQ(why_not_writable("/"), "Is a directory");
-  EXPECT_EQ(why_not_writable("/dev/null/file"), "Not a directory");
 }
 
 TEST(FrameSource, framesMoveRestAtTheirPoseOrTheOrigin) {
@@ -161,7 +123,7 @@ TEST(EventLog, anEpisodeIsTwoEventsHoweverManySteps) {
   const SceneDesc scene = read_scene_text(test::sound_scene);
   const BoundaryInputs frames = FrameSource(scene, {}).at(0);
   World world(scene, frames);
-  ProgressBar progress(1);
+  tools::ProgressBar progress(1);
   EventLog log(progress);
   StepResult bad;
   bad.status = StepResult::Status::degraded;

@@ -7,8 +7,10 @@
 #include <numeric>
 #include <set>
 
-#include "cable_sim/output_file.h"
-#include "cable_sim/progress_bar.h"
+#include "common/messages.h"
+#include "common/output_file.h"
+#include "common/program.h"
+#include "common/progress_bar.h"
 #include "least_squares.h"
 #include "options.h"
 #include "report.h"
@@ -18,21 +20,19 @@
 namespace verlet_cable::cable_fit {
 namespace {
 
+constexpr const char* program = "cable_fit";
+
 int refuse(const std::vector<std::string>& errors) {
-  for (const std::string& error : errors) std::cerr << "cable_fit: " << error << "\n";
-  std::cerr << "cable_fit: " << errors.size() << (errors.size() == 1 ? " error" : " errors") << ", nothing was fitted\n";
-  return exit_bad_input;
+  return tools::refuse(program, errors, "nothing was fitted");
 }
 
 void check_output(const char* option, const std::string& path, const std::vector<std::string>& others,
                   std::vector<std::string>& errors) {
   if (path.empty()) return;
-  const std::string problem = cable_sim::why_not_writable(path);
-  if (!problem.empty())
-    errors.push_back(std::string(option) + ": cannot write " + quoted(path) + ": " + problem +
-                     "; allowed: a file in a directory that can be written");
+  const std::string problem = tools::why_not_writable(path);
+  if (!problem.empty()) errors.push_back(std::string(option) + ": " + tools::cannot_write(path, problem));
   for (const std::string& other : others)
-    if (!other.empty() && cable_sim::is_same_file(path, other))
+    if (!other.empty() && tools::is_same_file(path, other))
       errors.push_back(std::string(option) + ": " + quoted(path) + " is " + quoted(other) + "; allowed: another file");
 }
 
@@ -40,36 +40,39 @@ std::string prediction_path(const std::string& directory, const std::string& rec
   return (std::filesystem::path(directory) / std::filesystem::path(recording).filename()).string();
 }
 
-/// The directory may not be there yet; nothing is made of what may still be refused.
+/// Why files cannot be made in a directory that may not be there yet.
+std::string why_no_predictions(const std::string& directory) {
+  std::error_code error;
+  std::filesystem::path missing, nearest = std::filesystem::absolute(directory);
+  while (!std::filesystem::exists(nearest, error) && nearest.has_relative_path()) {
+    missing = nearest;
+    nearest = nearest.parent_path();
+  }
+  if (!std::filesystem::is_directory(nearest, error)) return tools::quoted_path(nearest.string()) + " is a file";
+  return missing.empty() ? "" : tools::why_not_writable(missing.string());
+}
+
+/// Nothing is made of what may still be refused.
 void check_predictions(const std::string& directory, const std::vector<std::string>& recordings,
                        std::vector<std::string>& errors) {
   if (directory.empty()) return;
-  std::filesystem::path nearest = std::filesystem::absolute(directory);
-  while (!std::filesystem::exists(nearest)) nearest = nearest.parent_path();
-  if (!std::filesystem::is_directory(nearest))
-    errors.push_back("--predictions: no directory " + quoted(directory) + " can be made: " + quoted(nearest.string()) +
-                     " is a file; allowed: a directory, or where one can be made");
+  const std::string problem = why_no_predictions(directory);
+  if (!problem.empty()) {
+    errors.push_back("--predictions: no directory " + tools::quoted_path(directory) + " can be made: " + problem +
+                     "; allowed: a directory, or where one can be made");
+    return;
+  }
   std::set<std::string> names;
   for (const std::string& recording : recordings) {
     const std::string path = prediction_path(directory, recording);
     if (!names.insert(path).second)
       errors.push_back("--predictions: two recordings would be " + quoted(path) +
                        "; allowed: recordings with names of their own");
-    if (cable_sim::is_same_file(path, recording))
+    if (tools::is_same_file(path, recording))
       errors.push_back("--predictions: " + quoted(path) + " is a recording; allowed: another directory");
+    const std::string refused = std::filesystem::is_directory(directory) ? tools::why_not_writable(path) : "";
+    if (!refused.empty()) errors.push_back("--predictions: " + tools::cannot_write(path, refused));
   }
-}
-
-/// Empty, or why not all of the text could be written.
-std::string write_file(const std::string& path, const std::string& text) {
-  cable_sim::OutputFile file;
-  std::string problem = file.open(path);
-  if (problem.empty()) {
-    file.start();
-    file.write(text.data(), text.size());
-    problem = file.close();
-  }
-  return problem.empty() ? "" : "cannot write " + quoted(path) + ": " + problem;
 }
 
 /// The same error with half and twice the segments.
@@ -114,17 +117,31 @@ int most_simulations(const Problem& problem, bool cross_validated) {
   return simulations;
 }
 
-/// Empty, or why not all could be written.
-std::string write_predictions(const std::string& directory, const Fit& fit) {
+/// Adds what could not be written to `failures`.
+void write_predictions(const std::string& directory, const Fit& fit, std::vector<std::string>& failures) {
   std::error_code problem;
   std::filesystem::create_directories(directory, problem);
-  if (problem) return "cannot make the directory " + quoted(directory) + ": " + problem.message();
+  if (problem) return failures.push_back("cannot make the directory " + tools::quoted_path(directory) + ": " + problem.message());
   const std::vector<Recording>& recordings = fit.problem.recordings;
   const std::vector<Prediction> predicted = predictions(fit.result.folds, recordings);
-  std::string failure;
-  for (std::size_t i = 0; i < predicted.size() && failure.empty(); ++i)
-    failure = write_file(prediction_path(directory, recordings[i].path), prediction_csv(recordings[i], predicted[i]));
-  return failure;
+  for (std::size_t i = 0; i < predicted.size(); ++i)
+    failures.push_back(
+        tools::write_file(prediction_path(directory, recordings[i].path), prediction_csv(recordings[i], predicted[i])));
+}
+
+/// Writes all that was asked for, whatever else fails. `also`: the fit of the centre line, or null.
+bool write_results(const Options& options, const std::vector<SwappedEnds>& swapped, const Fit& on_markers, const Fit* also) {
+  std::vector<std::string> failures{tools::write_file(options.output, scene_yaml(on_markers))};
+  if (also) failures.push_back(tools::write_file(options.centre_line, scene_yaml(*also)));
+  if (!options.report.empty()) failures.push_back(tools::write_file(options.report, report_json(swapped, on_markers, also)));
+  if (!options.predictions.empty()) write_predictions(options.predictions, also ? *also : on_markers, failures);
+  bool good = true;
+  for (const std::string& failure : failures) {
+    if (failure.empty()) continue;
+    std::cerr << program << ": stopped: " << failure << "\n";
+    good = false;
+  }
+  return good;
 }
 
 }  // namespace
@@ -134,7 +151,7 @@ int run(const std::vector<std::string>& arguments) {
   const Options options = parse_options(arguments, errors);
   if (options.help) {
     std::cout << usage;
-    return exit_done;
+    return tools::exit_done;
   }
   std::vector<std::string> others = options.recordings;
   check_output("--output", options.output, others, errors);
@@ -174,24 +191,21 @@ int run(const std::vector<std::string>& arguments) {
   settings.centre_line = true;
   Fit centre_line{{recordings, inputs, settings, cable_parameters(settings), {}}, {}};
   const bool with_centre_line = !options.centre_line.empty();
-  cable_sim::ProgressBar progress(most_simulations(on_markers.problem, cross_validated) +
-                                      (with_centre_line ? most_simulations(centre_line.problem, cross_validated) : 0),
-                                  "simulations at most");
+  tools::ProgressBar progress(most_simulations(on_markers.problem, cross_validated) +
+                                  (with_centre_line ? most_simulations(centre_line.problem, cross_validated) : 0),
+                              "simulations at most");
   int done = 0;
   on_markers.problem.simulated = centre_line.problem.simulated = [&] { progress.show(++done, std::chrono::steady_clock::now()); };
   on_markers.result = fit_all(on_markers.problem, as_numbered, cross_validated, nullptr);
   if (with_centre_line) centre_line.result = fit_all(centre_line.problem, as_numbered, cross_validated, &on_markers.result);
   const Fit* const also = with_centre_line ? &centre_line : nullptr;
 
-  std::cout << summary_text(swapped, on_markers, also);
-  std::string failure = write_file(options.output, scene_yaml(on_markers));
-  if (failure.empty() && also) failure = write_file(options.centre_line, scene_yaml(*also));
-  if (failure.empty() && !options.report.empty()) failure = write_file(options.report, report_json(swapped, on_markers, also));
-  if (failure.empty() && !options.predictions.empty())
-    failure = write_predictions(options.predictions, also ? *also : on_markers);
-  if (failure.empty()) return exit_done;
-  std::cerr << "cable_fit: stopped: " << failure << "\n";
-  return exit_stopped;
+  const bool good = write_results(options, swapped, on_markers, also);
+  const bool has_data = tools::is_standard_output(options.output) || tools::is_standard_output(options.report) ||
+                        tools::is_standard_output(options.centre_line);
+  progress.clear();
+  const bool printed = tools::print_result(program, summary_text(swapped, on_markers, also), has_data);
+  return good && printed ? tools::exit_done : tools::exit_stopped;
 }
 
 }  // namespace verlet_cable::cable_fit

@@ -4,13 +4,13 @@
 #include <cstdarg>
 #include <cstdio>
 
-#include "cable_sim/json_writer.h"
+#include "common/json_writer.h"
 #include "verlet_cable/core/number_text.h"
 
 namespace verlet_cable::cable_fit {
 namespace {
 
-using cable_sim::JsonWriter;
+using tools::JsonWriter;
 
 /// The interval of a parameter, as values of the scene's key.
 struct Interval {

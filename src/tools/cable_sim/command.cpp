@@ -2,47 +2,54 @@
 
 #include <iostream>
 
+#include "common/messages.h"
+#include "common/program.h"
 #include "simulation.h"
+#include "verlet_cable/core/number_text.h"
 #include "verlet_cable/scene/text.h"
 
 namespace verlet_cable::cable_sim {
 namespace {
 
+constexpr const char* program = "cable_sim";
+
 int refuse(const std::vector<std::string>& errors) {
-  for (const std::string& error : errors) std::cerr << "cable_sim: " << error << "\n";
-  std::cerr << "cable_sim: " << errors.size() << (errors.size() == 1 ? " error" : " errors") << ", nothing was simulated\n";
-  return exit_bad_input;
+  return tools::refuse(program, errors, "nothing was simulated");
 }
 
 /// The files that a run writes; those that were not asked for stay closed.
 struct Outputs {
-  OutputFile csv;
-  OutputFile summary;
+  tools::OutputFile csv;
+  tools::OutputFile summary;
 
-  /// Opens and empties both, or neither.
   void open(const Options& options, std::vector<std::string>& errors) {
     open_one("--output", options.output, csv, errors);
     open_one("--summary", options.summary, summary, errors);
-    if (!errors.empty()) return;
-    if (!options.output.empty()) csv.start();
-    if (!options.summary.empty()) summary.start();
   }
 
  private:
-  static void open_one(const char* option, const std::string& path, OutputFile& file, std::vector<std::string>& errors) {
+  static void open_one(const char* option, const std::string& path, tools::OutputFile& file, std::vector<std::string>& errors) {
     if (path.empty()) return;
     const std::string problem = file.open(path);
-    if (!problem.empty())
-      errors.push_back(std::string(option) + ": cannot write " + quoted(path) + ": " + problem +
-                       "; allowed: a file that can be written");
+    if (!problem.empty()) errors.push_back(std::string(option) + ": " + tools::cannot_write(path, problem));
   }
 };
 
-bool finish(OutputFile& file, const std::string& path) {
+/// `time`: simulated so far [s].
+bool finish(tools::OutputFile& file, const std::string& path, double time) {
   if (path.empty()) return true;
-  const std::string problem = file.close();
-  if (!problem.empty()) std::cerr << "cable_sim: stopped: cannot write " << quoted(path) << ": " << problem << "\n";
+  const std::string problem = file.finish();
+  if (!problem.empty())
+    std::cerr << program << ": stopped at " << number_text(time) << " s: cannot write " << tools::quoted_path(path) << ": "
+              << problem << "\n";
   return problem.empty();
+}
+
+/// Says why a run ended early, but for a file that cannot be written, of which `finish` tells.
+void report(RunEnd end, const char* signal, double time) {
+  const std::string start = std::string(program) + ": stopped at " + number_text(time) + " s: ";
+  if (end == RunEnd::fault) std::cerr << start << "a fault\n";
+  if (end == RunEnd::signal) std::cerr << start << "ended by " << signal << "; what was simulated by then is written\n";
 }
 
 int simulate_job(const Options& options, const Job& job) {
@@ -55,25 +62,29 @@ int simulate_job(const Options& options, const Job& job) {
   for (const std::string& frame : unused_frames(job.scene, job.motion))
     std::cerr << "cable_sim: note: " << options.motion << ": nothing in the scene follows frame " << quoted(frame) << "\n";
 
-  ProgressBar progress(options.duration);
+  tools::ProgressBar progress(options.duration);
   EventLog events(progress);
   if (job.settle) world.settle();
+  const tools::StopRequest stop;
   events.add_unsettled(world);
   CsvWriter csv(outputs.csv);
-  Summary summary(world, first_averaged_step(job));
-  bool good = simulate(job, options.rate, frames, world, {options.output.empty() ? nullptr : &csv, summary, events, progress});
+  Summary summary(world, averaged_steps(job));
+  const RunEnd end =
+      simulate(job, options.rate, frames, world, {options.output.empty() ? nullptr : &csv, summary, events, progress, stop});
   progress.clear();
-  if (!good) std::cerr << "cable_sim: stopped: a fault at " << world.time() << " s\n";
+  report(end, stop.signal(), world.time());
 
   if (!options.output.empty()) csv.flush();
+  // First, so that a summary has room where the rows had not.
+  bool good = finish(outputs.csv, options.output, world.time());
   if (!options.summary.empty()) {
     const std::string json = summary.json(world, events.events());
     outputs.summary.write(json.data(), json.size());
   }
-  good = finish(outputs.csv, options.output) && good;
-  good = finish(outputs.summary, options.summary) && good;
-  std::cout << summary.line(world) << "\n";
-  return good ? exit_done : exit_stopped;
+  good = finish(outputs.summary, options.summary, world.time()) && good;
+  const bool has_data = tools::is_standard_output(options.output) || tools::is_standard_output(options.summary);
+  good = tools::print_result(program, summary.line(world) + "\n", has_data) && good;
+  return good && end == RunEnd::done ? tools::exit_done : tools::exit_stopped;
 }
 
 }  // namespace
@@ -83,7 +94,7 @@ int run(const std::vector<std::string>& arguments) {
   const Options options = parse_options(arguments, errors);
   if (options.help) {
     std::cout << usage;
-    return exit_done;
+    return tools::exit_done;
   }
   const Job job = prepare(options, errors);
   if (!errors.empty()) return refuse(errors);

@@ -5,10 +5,6 @@
 
 namespace verlet_cable::cable_sim {
 
-constexpr int exit_done = 0;
-constexpr int exit_bad_input = 2;
-constexpr int exit_stopped = 3;
-
 /// The whole program: arguments after its name, exit status back. Reports to standard output and standard error.
 int run(const std::vector<std::string>& arguments);
 

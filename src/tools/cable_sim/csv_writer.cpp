@@ -11,7 +11,7 @@ constexpr std::size_t full_buffer = std::size_t{1} << 20;
 
 }  // namespace
 
-CsvWriter::CsvWriter(OutputFile& file) : file_(file), buffer_("t,cable,node,x,y,z,vx,vy,vz,tension\n") {}
+CsvWriter::CsvWriter(tools::OutputFile& file) : file_(file), buffer_("t,cable,node,x,y,z,vx,vy,vz,tension\n") {}
 
 void CsvWriter::write_nodes(const World& world) {
   const std::string time = number_text(world.time());
@@ -30,6 +30,8 @@ void CsvWriter::write_nodes(const World& world) {
   }
   for (const SimulatedParticle& particle : world.particles())
     write_row(time + ',' + particle.desc.name + ',', 0, particle.position, particle.velocity, 0);
+  // Who reads from a pipe sees each row when it is there.
+  if (file_.is_direct()) flush();
 }
 
 void CsvWriter::write_row(const std::string& start, std::size_t node, const Vector3& position, const Vector3& velocity,

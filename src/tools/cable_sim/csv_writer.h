@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <string>
 
-#include "output_file.h"
+#include "common/output_file.h"
 #include "verlet_cable/core/world.h"
 
 namespace verlet_cable::cable_sim {
@@ -12,18 +12,19 @@ namespace verlet_cable::cable_sim {
 /// a row a particle; numbers that read back as the same doubles.
 class CsvWriter {
  public:
-  /// `file` is started and outlives this.
-  explicit CsvWriter(OutputFile& file);
+  /// `file` is open and outlives this.
+  explicit CsvWriter(tools::OutputFile& file);
 
   void write_nodes(const World& world);
   /// Hands the file what is not written yet.
   void flush();
+  bool has_failed() const { return file_.has_failed(); }
 
  private:
   void write_row(const std::string& start, std::size_t node, const Vector3& position, const Vector3& velocity, double tension);
   void append(double number);
 
-  OutputFile& file_;
+  tools::OutputFile& file_;
   std::string buffer_;
 };
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "progress_bar.h"
+#include "common/progress_bar.h"
 #include "verlet_cable/core/world.h"
 
 namespace verlet_cable::cable_sim {
@@ -26,7 +26,7 @@ struct Event {
 /// 1000 and prints the first 20 to standard error.
 class EventLog {
  public:
-  explicit EventLog(ProgressBar& progress) : progress_(progress) {}
+  explicit EventLog(tools::ProgressBar& progress) : progress_(progress) {}
 
   /// After each step. `held_back`: ids of the frames that moved faster than `max_frame_speed`.
   void observe(const World& world, const StepResult& result, const std::vector<int>& held_back);
@@ -50,7 +50,7 @@ class EventLog {
   void end_episodes(double time);
   void add(const Event& event);
 
-  ProgressBar& progress_;
+  tools::ProgressBar& progress_;
   std::vector<Event> events_;
   std::size_t dropped_ = 0;
   double last_dropped_time_ = 0;

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "common/output_file.h"
 #include "frame_source.h"
-#include "output_file.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/scene/scene_reader.h"
 #include "verlet_cable/scene/text.h"
@@ -21,6 +21,12 @@ void append(const std::string& prefix, const std::vector<std::string>& lines, st
   for (const std::string& line : lines) errors.push_back(prefix + ": " + line);
 }
 
+/// Throws SceneError for what would hang where it is opened.
+void check_input(const std::string& path) {
+  const std::string problem = tools::why_not_readable(path);
+  if (!problem.empty()) throw SceneError({"cannot read: " + problem + "; allowed: a file"});
+}
+
 void check_outputs(const Options& options, std::vector<std::string>& errors) {
   struct Output {
     const char* option;
@@ -33,12 +39,10 @@ void check_outputs(const Options& options, std::vector<std::string>& errors) {
   const Other others[] = {{"the scene", options.scene}, {"the motion", options.motion}, {"the output", options.output}};
   for (const Output& output : {Output{"--output", options.output}, Output{"--summary", options.summary}}) {
     if (output.path.empty()) continue;
-    const std::string problem = why_not_writable(output.path);
-    if (!problem.empty())
-      errors.push_back(std::string(output.option) + ": cannot write " + quoted(output.path) + ": " + problem +
-                       "; allowed: a file in a directory that can be written");
+    const std::string problem = tools::why_not_writable(output.path);
+    if (!problem.empty()) errors.push_back(std::string(output.option) + ": " + tools::cannot_write(output.path, problem));
     for (const Other& other : others) {
-      if (&other.path == &output.path || other.path.empty() || !is_same_file(output.path, other.path)) continue;
+      if (&other.path == &output.path || other.path.empty() || !tools::is_same_file(output.path, other.path)) continue;
       errors.push_back(std::string(output.option) + ": " + quoted(output.path) + " is " + other.what + "; allowed: another file");
     }
   }
@@ -75,6 +79,7 @@ Job prepare(const Options& options, std::vector<std::string>& errors) {
   bool motion_is_sound = true;
   if (!options.scene.empty()) {
     try {
+      check_input(options.scene);
       job.scene = read_scene_file(options.scene);
       scene_is_sound = true;
     } catch (const SceneError& error) {
@@ -83,6 +88,7 @@ Job prepare(const Options& options, std::vector<std::string>& errors) {
   }
   if (!options.motion.empty()) {
     try {
+      check_input(options.motion);
       job.motion = read_motion_file(options.motion);
     } catch (const SceneError& error) {
       append(options.motion, error.errors(), errors);

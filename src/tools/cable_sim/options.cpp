@@ -62,7 +62,10 @@ const char* const usage =
     "  --summary JSON      times, energies, forces and events\n"
     "  --settle            put the cables into static equilibrium before t = 0\n"
     "  --help              this text\n"
-    "exit status: 0 done, 2 a bad scene, motion or option, 3 the simulation had to stop\n";
+    "Files are written aside, as NAME.PID-N.part, and renamed when they are whole; devices are written directly. A signal ends "
+    "the\n"
+    "run between two steps, with what was simulated by then; a second one ends it at once.\n"
+    "exit status: 0 done, 2 a bad scene, motion or option, 3 it had to stop: a fault, a full disk, a signal\n";
 
 Options parse_options(const std::vector<std::string>& arguments, std::vector<std::string>& errors) {
   Options options;

@@ -12,12 +12,11 @@ constexpr double averaged_time = 0.1;  // [s]
 
 }  // namespace
 
-std::int64_t first_averaged_step(const Job& job) {
-  const auto averaged = std::max<std::int64_t>(1, std::llround(averaged_time / job.scene.time_step));
-  return job.steps - averaged + 1;
+std::int64_t averaged_steps(const Job& job) {
+  return std::max<std::int64_t>(1, std::llround(averaged_time / job.scene.time_step));
 }
 
-bool simulate(const Job& job, double rate, const FrameSource& frames, World& world, const Recorders& recorders) {
+RunEnd simulate(const Job& job, double rate, const FrameSource& frames, World& world, const Recorders& recorders) {
   using Clock = std::chrono::steady_clock;
   const double time_step = job.scene.time_step;
   const RowSchedule schedule(rate, time_step);
@@ -31,6 +30,8 @@ bool simulate(const Job& job, double rate, const FrameSource& frames, World& wor
   BoundaryInputs inputs = frames.at(0);
   write_due_rows();
   while (world.steps() < job.steps) {
+    if (recorders.stop.signal()) return RunEnd::signal;
+    if (recorders.csv && recorders.csv->has_failed()) return RunEnd::output_failed;
     BoundaryInputs targets = frames.at(static_cast<double>(world.steps() + 1) * time_step);
     const std::vector<int> held_back = limit_frame_motion(inputs, job.scene.max_frame_speed * time_step, targets);
     inputs = std::move(targets);
@@ -41,11 +42,11 @@ bool simulate(const Job& job, double rate, const FrameSource& frames, World& wor
 
     recorders.summary.add_step(world, result, end - start);
     recorders.events.observe(world, result, held_back);
-    if (result.status == StepResult::Status::fault) return false;
+    if (result.status == StepResult::Status::fault) return RunEnd::fault;
     write_due_rows();
     recorders.progress.show(world.time(), end);
   }
-  return true;
+  return RunEnd::done;
 }
 
 }  // namespace verlet_cable::cable_sim

@@ -1,10 +1,11 @@
 #pragma once
 
+#include "common/program.h"
+#include "common/progress_bar.h"
 #include "csv_writer.h"
 #include "event_log.h"
 #include "frame_source.h"
 #include "job.h"
-#include "progress_bar.h"
 #include "summary.h"
 
 namespace verlet_cable::cable_sim {
@@ -14,13 +15,21 @@ struct Recorders {
   CsvWriter* csv;  ///< may be null
   Summary& summary;
   EventLog& events;
-  ProgressBar& progress;
+  tools::ProgressBar& progress;
+  const tools::StopRequest& stop;
 };
 
-/// The first step whose forces belong to the average of the last 0.1 s.
-std::int64_t first_averaged_step(const Job& job);
+/// How many steps the average of the last 0.1 s is over.
+std::int64_t averaged_steps(const Job& job);
 
-/// Steps the world to the end of the job. False if it had to stop at a fault, which is the last event then.
-bool simulate(const Job& job, double rate, const FrameSource& frames, World& world, const Recorders& recorders);
+enum class RunEnd {
+  done,
+  fault,          ///< the last event
+  signal,         ///< that asked to stop
+  output_failed,  ///< rows cannot be written
+};
+
+/// Steps the world to the end of the job, or until it has to stop.
+RunEnd simulate(const Job& job, double rate, const FrameSource& frames, World& world, const Recorders& recorders);
 
 }  // namespace verlet_cable::cable_sim

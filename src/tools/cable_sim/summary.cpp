@@ -4,7 +4,7 @@
 #include <cinttypes>
 #include <cstdio>
 
-#include "json_writer.h"
+#include "common/json_writer.h"
 
 namespace verlet_cable::cable_sim {
 namespace {
@@ -17,7 +17,7 @@ std::string hash_text(std::uint64_t hash) {
   return text;
 }
 
-void write_event(JsonWriter& json, const Event& event) {
+void write_event(tools::JsonWriter& json, const Event& event) {
   json.begin_object();
   json.entry("time", event.time);
   json.entry("type", event.type);
@@ -29,7 +29,7 @@ void write_event(JsonWriter& json, const Event& event) {
   json.end_object();
 }
 
-void write_energy(JsonWriter& json, const Energy& energy, double initial_total) {
+void write_energy(tools::JsonWriter& json, const Energy& energy, double initial_total) {
   json.begin_object();
   json.entry("kinetic", energy.kinetic);
   json.entry("gravity", energy.gravity);
@@ -43,8 +43,8 @@ void write_energy(JsonWriter& json, const Energy& energy, double initial_total) 
 
 }  // namespace
 
-Summary::Summary(const World& world, std::int64_t first_averaged_step)
-    : first_averaged_step_(first_averaged_step), initial_energy_(world.energy().total()) {
+Summary::Summary(const World& world, std::int64_t averaged_steps)
+    : averaged_steps_(static_cast<std::size_t>(averaged_steps)), initial_energy_(world.energy().total()) {
   for (const SimulatedCable& cable : world.cables()) segments_ += cable.model.segments();
   for (const SimulatedNet& net : world.nets())
     segments_ += static_cast<std::int64_t>(std::max(net.model.links.size(), net.model.masses.size()));
@@ -55,17 +55,30 @@ void Summary::add_step(const World& world, const StepResult& result, std::chrono
   wall_time_ += wall_time;
   substeps_ += result.substeps;
   max_strain_ = std::max(max_strain_, result.max_strain);
-  if (world.steps() < first_averaged_step_) return;
   for (const Attachment& attachment : world.attachments()) {
-    Wrench& sum = sums_[attachment.name];
-    sum.force += attachment.force;
-    sum.torque += attachment.torque;
-    ++sum.steps;
+    std::vector<Wrench>& last = wrenches_[attachment.name];
+    if (steps_ < averaged_steps_) last.emplace_back();
+    last[steps_ % averaged_steps_] = {attachment.force, attachment.torque};
   }
+  ++steps_;
+}
+
+Summary::Wrench Summary::mean_wrench(const Attachment& attachment) const {
+  if (steps_ == 0) return {attachment.force, attachment.torque};
+  const std::vector<Wrench>& last = wrenches_.at(attachment.name);
+  const std::size_t count = last.size();
+  Wrench mean;
+  for (std::size_t step = steps_ - count; step < steps_; ++step) {
+    mean.force += last[step % averaged_steps_].force;
+    mean.torque += last[step % averaged_steps_].torque;
+  }
+  mean.force /= static_cast<double>(count);
+  mean.torque /= static_cast<double>(count);
+  return mean;
 }
 
 std::string Summary::json(const World& world, const std::vector<Event>& events) const {
-  JsonWriter json;
+  tools::JsonWriter json;
   json.begin_object();
   json.entry("sim_time", world.time());
   json.entry("wall_time", wall_seconds());
@@ -80,13 +93,11 @@ std::string Summary::json(const World& world, const std::vector<Event>& events) 
   json.key("attachments");
   json.begin_object();
   for (const Attachment& attachment : world.attachments()) {
-    const auto found = sums_.find(attachment.name);
-    // A run that stopped before the time of averages has only the last step.
-    const Wrench sum = found != sums_.end() ? found->second : Wrench{attachment.force, attachment.torque, 1};
+    const Wrench mean = mean_wrench(attachment);
     json.key(attachment.name);
     json.begin_object();
-    json.entry("force", Vector3(sum.force / static_cast<double>(sum.steps)));
-    json.entry("torque", Vector3(sum.torque / static_cast<double>(sum.steps)));
+    json.entry("force", mean.force);
+    json.entry("torque", mean.torque);
     json.entry("force_now", attachment.force);
     json.entry("torque_now", attachment.torque);
     json.end_object();

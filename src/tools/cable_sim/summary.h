@@ -14,8 +14,8 @@ namespace verlet_cable::cable_sim {
 /// What is gathered over a run.
 class Summary {
  public:
-  /// The forces of attachments are averaged from `first_averaged_step` on.
-  Summary(const World& world, std::int64_t first_averaged_step);
+  /// The forces of attachments are averaged over the last `averaged_steps`, as far as there are so many.
+  Summary(const World& world, std::int64_t averaged_steps);
 
   void add_step(const World& world, const StepResult& result, std::chrono::steady_clock::duration wall_time);
 
@@ -28,18 +28,21 @@ class Summary {
   struct Wrench {
     Vector3 force = Vector3::Zero();   ///< [N]
     Vector3 torque = Vector3::Zero();  ///< [N m]
-    std::int64_t steps = 0;
   };
+
+  /// Over the last steps; that of the attachment now if there was none.
+  Wrench mean_wrench(const Attachment& attachment) const;
 
   double wall_seconds() const { return std::chrono::duration<double>(wall_time_).count(); }
 
-  std::int64_t first_averaged_step_;
+  std::size_t averaged_steps_;
   std::int64_t segments_ = 0;  ///< as `limits.segments` counts: links or nodes of nets and particles, too
   double initial_energy_;      ///< [J]
   std::chrono::steady_clock::duration wall_time_{0};
+  std::size_t steps_ = 0;
   std::int64_t substeps_ = 0;
   double max_strain_ = 0;
-  std::map<std::string, Wrench> sums_;  ///< by attachment
+  std::map<std::string, std::vector<Wrench>> wrenches_;  ///< by attachment: step k at k modulo `averaged_steps_`
 };
 
 }  // namespace verlet_cable::cable_sim

@@ -5,7 +5,7 @@
 
 #include "verlet_cable/core/types.h"
 
-namespace verlet_cable::cable_sim {
+namespace verlet_cable::tools {
 
 /// Writes JSON, indented. Numbers that JSON does not have are null.
 class JsonWriter {
@@ -42,4 +42,4 @@ class JsonWriter {
   bool after_key_ = false;
 };
 
-}  // namespace verlet_cable::cable_sim
+}  // namespace verlet_cable::tools

@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-namespace verlet_cable::cable_sim {
+namespace verlet_cable::tools {
 
 /// A bar on standard error, if that is a terminal; otherwise nothing.
 class ProgressBar {
@@ -27,4 +27,4 @@ class ProgressBar {
   std::chrono::steady_clock::time_point last_;
 };
 
-}  // namespace verlet_cable::cable_sim
+}  // namespace verlet_cable::tools

@@ -4,7 +4,7 @@
 
 #include "verlet_cable/core/number_text.h"
 
-namespace verlet_cable::cable_sim {
+namespace verlet_cable::tools {
 namespace {
 
 std::string number_or_null(double number) {
@@ -75,4 +75,4 @@ void JsonWriter::append_quoted(const std::string& text) {
   text_ += '"';
 }
 
-}  // namespace verlet_cable::cable_sim
+}  // namespace verlet_cable::tools

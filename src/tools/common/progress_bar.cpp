@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <string>
 
-namespace verlet_cable::cable_sim {
+namespace verlet_cable::tools {
 namespace {
 
 constexpr auto interval = std::chrono::milliseconds(100);
@@ -32,4 +32,4 @@ void ProgressBar::clear() {
   is_visible_ = false;
 }
 
-}  // namespace verlet_cable::cable_sim
+}  // namespace verlet_cable::tools

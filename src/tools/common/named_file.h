@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+namespace verlet_cable::tools {
+
+/// What a path leads to.
+struct NamedFile {
+  std::string path;     ///< links followed, also those to what is not there yet
+  int descriptor = -1;  ///< of a stream that is open already (/dev/stdout, /dev/fd/N), else -1
+  std::string problem;  ///< why it leads nowhere, empty if it does
+};
+
+NamedFile named_file(const std::string& path);
+
+/// With its slash; "./" if none is named.
+std::string directory_of(const std::string& path);
+
+}  // namespace verlet_cable::tools

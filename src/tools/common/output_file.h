@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace verlet_cable::tools {
+
+/// Why a file cannot be written, as far as can be said without touching it; empty if it seems that it can. Named pipes, sockets
+/// and disks are refused.
+std::string why_not_writable(const std::string& path);
+/// An error for `why_not_writable`'s answer: with the path, and what is allowed.
+std::string cannot_write(const std::string& path, const std::string& why);
+/// Why a file is not to be read, for what would hang: a named pipe. Empty for all others, also where there is nothing.
+std::string why_not_readable(const std::string& path);
+/// Whether two paths name one file, which may not be there yet; also the same open stream. Devices are never the same.
+bool is_same_file(const std::string& a, const std::string& b);
+/// Whether a path names this program's standard output.
+bool is_standard_output(const std::string& path);
+
+/// A file that is there when it is whole, and else as it was: written aside, to NAME.PID-N.part beside it, and renamed. Links are
+/// followed and stay; permissions stay. Devices, and streams that are open already (/dev/stdout, /dev/fd/N), are written
+/// directly.
+class OutputFile {
+ public:
+  OutputFile() = default;
+  /// What is not finished is removed.
+  ~OutputFile() { discard(); }
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  /// Returns why the file cannot be written, empty if it is open.
+  std::string open(const std::string& path);
+  /// Does nothing after an error.
+  void write(const char* text, std::size_t size);
+  bool has_failed() const { return error_ != 0; }
+  bool is_open() const { return descriptor_ >= 0; }
+  /// Whether it is written directly, so that others may read it already.
+  bool is_direct() const { return part_.empty(); }
+  /// Puts the whole file in its place. Returns what went wrong since `open`, empty if nothing: nothing is left of it then, but
+  /// for a whole file that could not be renamed, which is named.
+  std::string finish();
+
+ private:
+  std::string open_aside(const std::string& target);
+  void close();
+  void discard();
+
+  std::string target_;  ///< links followed
+  std::string part_;    ///< empty: written directly
+  int descriptor_ = -1;
+  int error_ = 0;  ///< the first one
+  int slot_ = -1;  ///< in the list of what is to be removed when the program ends early
+};
+
+/// Writes all of a file. Returns why not, with its name; empty if it was written.
+std::string write_file(const std::string& path, const std::string& text);
+
+/// Removes what is not finished. For signal handlers, too.
+void remove_unfinished_files();
+
+}  // namespace verlet_cable::tools
