@@ -6,6 +6,7 @@
 
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/scene_fields.h"
+#include "verlet_cable/scene/csv_lines.h"
 #include "verlet_cable/scene/motion.h"
 #include "verlet_cable/scene/text.h"
 
@@ -15,41 +16,27 @@ namespace {
 constexpr const char* header = "t,frame,x,y,z,qx,qy,qz,qw";
 constexpr std::array<const char*, 9> columns{"t", "frame", "x", "y", "z", "qx", "qy", "qz", "qw"};
 constexpr std::size_t frame_column = 1;
-constexpr std::size_t longest_line = 4096;
+constexpr std::size_t longest_line = 4095;
 constexpr std::size_t most_errors = 100;
 constexpr double least_quaternion = 1e-6;
 
-/// The part of a line between blanks.
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> cells;
-  std::size_t begin = 0;
-  for (std::size_t comma = line.find(','); comma != std::string::npos; comma = line.find(',', begin)) {
-    cells.push_back(trimmed(line.substr(begin, comma - begin)));
-    begin = comma + 1;
-  }
-  cells.push_back(trimmed(line.substr(begin)));
-  return cells;
-}
-
 class MotionReader {
  public:
-  explicit MotionReader(std::istream& stream) : stream_(stream) {}
+  explicit MotionReader(std::istream& stream) : lines_(stream, longest_line) {}
 
   Motion read() {
     std::string line;
-    if (next_line(line)) {
+    if (lines_.next(line)) {
       if (line == header) {
-        while (errors_.size() < most_errors && next_line(line)) add_row(line);
+        while (errors_.size() < most_errors && lines_.next(line)) add_row(line);
+        if (!lines_.problem().empty()) add_error(lines_.problem(), lines_.allowed());
         if (motion_.empty() && errors_.empty()) errors_.push_back("no rows; allowed: at least one pose");
       } else {
         add_error("header " + quoted(line), header);
       }
-    } else if (errors_.empty()) {
+    } else if (!lines_.problem().empty()) {
+      add_error(lines_.problem(), lines_.allowed());
+    } else {
       errors_.push_back("empty; allowed: the header " + std::string(header) + " and rows");
     }
     if (errors_.size() == most_errors) errors_.push_back("not read further");
@@ -58,28 +45,13 @@ class MotionReader {
   }
 
  private:
-  /// The next line that is not empty, without blanks at its ends.
-  bool next_line(std::string& line) {
-    std::array<char, longest_line> buffer;
-    while (stream_.getline(buffer.data(), buffer.size())) {
-      ++line_;
-      line = trimmed(buffer.data());
-      if (line_ == 1 && line.rfind("\xef\xbb\xbf", 0) == 0) line.erase(0, 3);
-      if (!line.empty()) return true;
-    }
-    if (!stream_.eof()) {
-      ++line_;
-      add_error("too long", "at most " + std::to_string(longest_line - 1) + " characters");
-    }
-    return false;
-  }
-
   void add_error(const std::string& what, const std::string& allowed) {
-    errors_.push_back("line " + std::to_string(line_) + ": " + what + "; allowed: " + allowed);
+    if (errors_.size() < most_errors)
+      errors_.push_back("line " + std::to_string(lines_.number()) + ": " + what + "; allowed: " + allowed);
   }
 
   void add_row(const std::string& line) {
-    const std::vector<std::string> cells = split(line);
+    const std::vector<std::string> cells = csv_cells(line);
     if (cells.size() != columns.size())
       return add_error(std::to_string(cells.size()) + " columns", std::to_string(columns.size()) + ": " + header);
     const std::size_t errors_before = errors_.size();
@@ -106,8 +78,7 @@ class MotionReader {
     track.add(numbers[0], {{numbers[2], numbers[3], numbers[4]}, orientation.normalized()});
   }
 
-  std::istream& stream_;
-  std::size_t line_ = 0;
+  CsvLines lines_;
   Motion motion_;
   std::vector<std::string> errors_;
 };

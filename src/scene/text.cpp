@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <locale>
 #include <numeric>
 #include <sstream>
+#include <system_error>
 #include <vector>
 
 #include "verlet_cable/core/scene_desc.h"
@@ -52,6 +54,12 @@ std::optional<double> parse_number(const std::string& text) {
     if (unsigned_word == ".inf" || unsigned_word == "inf" || unsigned_word == "infinity") return negative ? -infinity : infinity;
   }
   if (!is_decimal(text)) return std::nullopt;
+#if defined(__cpp_lib_to_chars)
+  // Much the faster; it does not say which of too large and too small a number is.
+  double value = 0;
+  const char* const begin = text.data() + (text[0] == '+' ? 1 : 0);
+  if (std::from_chars(begin, text.data() + text.size(), value).ec == std::errc()) return value;
+#endif
   std::istringstream stream(text);
   stream.imbue(std::locale::classic());
   double number = 0;

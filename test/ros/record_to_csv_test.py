@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 """record_to_csv: bags with state or points and the grippers' tf become recordings that cable_fit reads."""
 import os
+import resource
+import signal
 import subprocess
 import sys
 import tempfile
@@ -19,6 +21,7 @@ from verlet_cable.msg import Cable, CableArray
 
 SCRIPTS = os.path.join(rospkg.RosPack().get_path('verlet_cable'), 'scripts')
 sys.path.insert(0, SCRIPTS)
+from output_file import stopped_by_signals, written_whole  # noqa: E402
 from recording import Recording  # noqa: E402
 
 ROWS = 20
@@ -86,9 +89,9 @@ class RecordToCsv(unittest.TestCase):
                 bag.write('/points', cloud(row, seen), stamp(row))
                 bag.write('/uneven', cloud(row, seen[:3 + row % 2]), stamp(row))
 
-    def convert(self, *arguments):
-        command = [os.path.join(SCRIPTS, 'record_to_csv'), self.bag, self.csv, *arguments]
-        return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    def convert(self, *arguments, output=None, **kwargs):
+        command = [os.path.join(SCRIPTS, 'record_to_csv'), self.bag, output or self.csv, *arguments]
+        return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False, **kwargs)
 
     def expect_recorded(self, tolerance):
         recording = Recording(self.csv)
@@ -127,6 +130,56 @@ class RecordToCsv(unittest.TestCase):
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(expected, done.stderr)
             self.assertFalse(os.path.exists(self.csv))
+
+    def test_a_full_disk_leaves_what_was_there(self):
+        with open(self.csv, 'w', encoding='utf-8') as file:
+            file.write('old')
+        done = self.convert('--state', '/cable/state', '--cable', 'lead',
+                            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000)))
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn('File too large', done.stderr)
+        self.expect_only_old()
+
+    def expect_only_old(self):
+        with open(self.csv, encoding='utf-8') as file:
+            self.assertEqual(file.read(), 'old')
+        self.assertEqual(sorted(os.listdir(os.path.dirname(self.csv))), ['take.bag', 'take.csv'])
+
+    def test_a_signal_leaves_what_was_there(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            with open(self.csv, 'w', encoding='utf-8') as file:
+                file.write('old')
+            with self.assertRaises(KeyboardInterrupt), stopped_by_signals(), written_whole(self.csv) as file:
+                file.write('new')
+                os.kill(os.getpid(), number)
+                signal.sigtimedwait([], 10)  # never so long
+            self.expect_only_old()
+
+    def test_links_and_permissions_stay(self):
+        link = self.csv + '.link'
+        os.symlink('take.csv', link)
+        with written_whole(link) as file:
+            file.write('old')
+        os.chmod(self.csv, 0o640)
+        with written_whole(link) as file:
+            file.write('new')
+        self.assertTrue(os.path.islink(link))
+        self.assertEqual(os.stat(self.csv).st_mode & 0o7777, 0o640)
+
+    def test_standard_output_has_the_rows_alone(self):
+        done = self.convert('--state', '/cable/state', '--cable', 'lead', output='/dev/stdout')
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(len(done.stdout.splitlines()), 1 + ROWS)
+        self.assertIn('20 rows of 6 markers', done.stderr)
+
+    def test_what_cannot_be_written_is_refused_before_the_bag_is_read(self):
+        pipe = self.csv + '.pipe'
+        os.mkfifo(pipe)
+        for output, expected in ((pipe, 'it is a named pipe'), ('/nonexistent/o.csv', 'No such file or directory'), ('/', 'Is a directory'),
+                                 (self.bag, 'is the bag; allowed: another file')):
+            done = self.convert('--state', '/cable/state', '--cable', 'lead', output=output)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(expected, done.stderr)
 
 
 if __name__ == '__main__':

@@ -3,9 +3,11 @@
 #include <optional>
 #include <system_error>
 
+#include "common/output_file.h"
 #include "recording.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/scene_fields.h"
+#include "verlet_cable/scene/csv_lines.h"
 #include "verlet_cable/scene/text.h"
 
 namespace verlet_cable::cable_fit {
@@ -14,22 +16,9 @@ namespace {
 constexpr std::size_t fewest_markers = 4;  // two at each end give the direction in which the cable is held
 constexpr std::size_t fewest_rows = 10;    // of which the first two are the start of the prediction
 constexpr std::size_t most_errors = 100;
+constexpr std::size_t longest_line = 1'000'000;
+constexpr std::size_t most_numbers = 100'000'000;
 constexpr double least_distance = 1e-6;  // [m] of two held markers, for a direction
-
-std::vector<std::string> split(const std::string& line) {
-  const auto trimmed = [](const std::string& text) -> std::string {
-    const auto first = text.find_first_not_of(" \t\r");
-    return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-  };
-  std::vector<std::string> cells;
-  std::size_t begin = 0;
-  for (std::size_t comma = line.find(','); comma != std::string::npos; comma = line.find(',', begin)) {
-    cells.push_back(trimmed(line.substr(begin, comma - begin)));
-    begin = comma + 1;
-  }
-  cells.push_back(trimmed(line.substr(begin)));
-  return cells;
-}
 
 std::vector<std::string> column_names(std::size_t markers) {
   std::vector<std::string> names{"t"};
@@ -43,6 +32,11 @@ class RecordingReader {
   RecordingReader(const std::string& path, std::vector<std::string>& errors) : errors_(errors) { recording_.path = path; }
 
   Recording read() {
+    const std::string refused = tools::why_not_readable(recording_.path);
+    if (!refused.empty()) {
+      errors_.push_back(recording_.path + ": cannot read: " + refused + "; allowed: a file");
+      return std::move(recording_);
+    }
     errno = 0;
     std::ifstream file(recording_.path, std::ios::binary);
     if (!file.is_open() || (file.peek() == std::ifstream::traits_type::eof() && errno != 0)) {
@@ -50,11 +44,18 @@ class RecordingReader {
       return std::move(recording_);
     }
     file.clear();
+    CsvLines lines(file, longest_line);
     std::string line;
-    if (!next_line(file, line)) {
-      add_error("", "empty", "the header t,x0,y0,z0,x1,... and rows");
+    const auto next = [&] {
+      const bool good = lines.next(line);
+      line_ = lines.number();
+      if (!lines.problem().empty()) add_line_error(lines.problem(), lines.allowed());
+      return good;
+    };
+    if (!next()) {
+      if (found_ == 0) add_error("", "empty", "the header t,x0,y0,z0,x1,... and rows");
     } else if (read_header(line)) {
-      while (found_ < most_errors && next_line(file, line)) add_row(line);
+      while (found_ < most_errors && next()) add_row(line);
       if (found_ == 0 && recording_.times.size() < fewest_rows)
         add_error("", std::to_string(recording_.times.size()) + " rows", std::to_string(fewest_rows) + " or more");
     }
@@ -67,17 +68,8 @@ class RecordingReader {
   }
 
  private:
-  /// The next line that is not empty.
-  bool next_line(std::istream& stream, std::string& line) {
-    while (std::getline(stream, line)) {
-      ++line_;
-      if (line_ == 1 && line.rfind("\xef\xbb\xbf", 0) == 0) line.erase(0, 3);
-      if (line.find_first_not_of(" \t\r") != std::string::npos) return true;
-    }
-    return false;
-  }
-
   void add_error(const std::string& where, const std::string& what, const std::string& allowed) {
+    if (found_ == most_errors) return;
     ++found_;
     errors_.push_back(recording_.path + ": " + where + what + "; allowed: " + allowed);
   }
@@ -86,7 +78,7 @@ class RecordingReader {
   }
 
   bool read_header(const std::string& line) {
-    const std::vector<std::string> cells = split(line);
+    const std::vector<std::string> cells = csv_cells(line);
     names_ = column_names(cells.size() / 3);
     if (cells == names_ && cells.size() / 3 >= fewest_markers) return true;
     add_line_error("header " + quoted(line),
@@ -95,9 +87,14 @@ class RecordingReader {
   }
 
   void add_row(const std::string& line) {
-    const std::vector<std::string> cells = split(line);
+    const std::vector<std::string> cells = csv_cells(line);
     if (cells.size() != names_.size())
       return add_line_error(std::to_string(cells.size()) + " columns", std::to_string(names_.size()) + ", as the header has");
+    if ((recording_.times.size() + 1) * cells.size() > most_numbers) {
+      add_line_error("too many numbers", "at most " + std::to_string(most_numbers));
+      found_ = most_errors;
+      return;
+    }
     const std::size_t found_before = found_;
     std::vector<double> numbers;
     for (std::size_t i = 0; i < cells.size(); ++i) {
