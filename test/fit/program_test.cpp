@@ -1,3 +1,4 @@
+#include <sys/stat.h>
 #include <sys/wait.h>
 
 #include <cmath>
@@ -14,8 +15,9 @@ namespace {
 /// Both programs, in a directory of its own.
 class CableFit : public CableSim {
  protected:
-  int fit(const std::string& arguments) {
-    const std::string command = std::string(CABLE_FIT_PROGRAM) + " " + arguments + " > " + path("out") + " 2> " + path("err");
+  /// `before`: commands of the same shell.
+  int fit(const std::string& arguments, const std::string& before = "") {
+    const std::string command = before + CABLE_FIT_PROGRAM + " " + arguments + " > " + path("out") + " 2> " + path("err");
     const int status = std::system(command.c_str());
     out = content(path("out"));
     err = content(path("err"));
@@ -147,6 +149,55 @@ TEST_F(CableFit, BadInputIsRefusedAllAtOnceAndNothingWritten) {
   EXPECT_NE(err.find("short.csv: the markers' distances in the first row are"), std::string::npos) << err;
   EXPECT_FALSE(exists("scene.yaml"));
   EXPECT_EQ(fit("--help"), 0);
+}
+
+TEST_F(CableFit, FilesAreThereWhenTheyAreWhole) {
+  const std::string take = write_recording("take.csv", synthetic_recording(known_cable(), 0, 0.2, 0));
+  const std::string start = take + " --name lead --segments 8 --output ";
+  write("scene.yaml", "old");
+  // A limit on the size of files is a disk that is full: the report does not fit, the scene does.
+  write("report.json", "old");
+  EXPECT_EQ(fit(start + path("scene.yaml") + " --report " + path("report.json"), "ulimit -f 4; "), 3);
+  EXPECT_NE(err.find("cannot write \"" + path("report.json") + "\": File too large"), std::string::npos) << err;
+  EXPECT_EQ(content(path("report.json")), "old");
+  EXPECT_NE(content(path("scene.yaml")).find("lead"), std::string::npos);
+  EXPECT_EQ(parts(), std::vector<std::string>());
+
+  ASSERT_EQ(fit(start + "/dev/stdout"), 0) << err;
+  EXPECT_EQ(out, content(path("scene.yaml")));
+  EXPECT_NE(err.find("bending_stiffness"), std::string::npos) << err;
+}
+
+TEST_F(CableFit, WhatCannotBeWrittenIsRefusedBeforeTheFit) {
+  const std::string take = write_recording("take.csv", synthetic_recording(known_cable(), 0, 0.2, 0));
+  const std::string other = write_recording("other.csv", synthetic_recording(known_cable(), 1, 0.2, 0));
+  const std::string pipe = path("pipe");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0666), 0);
+  EXPECT_EQ(fit(take + " " + pipe + " /dev/zero --name lead --output " + pipe), 2);
+  for (const std::string& expected : {pipe + ": cannot read: it is a named pipe", "--output: cannot write \"" + pipe,
+                                      std::string("/dev/zero: line 1: too long")})
+    EXPECT_NE(err.find(expected), std::string::npos) << err << "lacks " << expected;
+  std::filesystem::create_directories(path("predictions/take.csv"));
+  EXPECT_EQ(fit(take + " " + other + " --name lead --output " + path("scene.yaml") + " --predictions " + path("predictions")), 2);
+  EXPECT_NE(err.find("--predictions: cannot write \"" + path("predictions/take.csv") + "\": Is a directory"), std::string::npos)
+      << err;
+}
+
+TEST_F(CableFit, ASignalEndsItAtOnce) {
+  const std::string take = write_recording("take.csv", synthetic_recording(known_cable(), 0, 2, 0));
+  const std::string other = write_recording("other.csv", synthetic_recording(known_cable(), 1, 2, 0));
+  write("scene.yaml", "old");
+  // Fits of 400 segments take minutes. The signal is sent when the program catches it (bit 14 of the mask).
+  const std::string command = CABLE_FIT_PROGRAM " " + take + " " + other + " --name lead --segments 400 --report " +
+                              path("report.json") + " --output " + path("scene.yaml") + " 2> " + path("err") +
+                              " & until [ $((0x$(sed -n 's/^SigCgt:\\t//p' /proc/$!/status) & 0x4000)) != 0 ]; do sleep 0.05; "
+                              "done; kill $!; wait $!";
+  const int status = std::system(command.c_str());
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 3) << status;
+  err = content(path("err"));
+  EXPECT_NE(err.find("cable_fit: stopped: ended by SIGTERM"), std::string::npos) << err;
+  EXPECT_EQ(content(path("scene.yaml")), "old");
+  EXPECT_FALSE(exists("report.json"));
 }
 
 }  // namespace
