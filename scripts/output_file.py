@@ -49,8 +49,8 @@ def is_standard_output(path):
 
 @contextlib.contextmanager
 def written_whole(path):
-    """A text file to write to. It is written aside, as NAME.PID-N.part, and renamed at the end of the block; an exception leaves what
-    was there. Links are followed and stay; permissions stay. Devices, and streams that are open already (/dev/stdout), are written
+    """A text file to write to, written aside, as NAME.PID-N.part, and renamed at the end of the block; an exception leaves what was
+    there. Links are followed and stay; permissions stay. Devices, and streams that are open already (/dev/stdout), are written
     directly. Raises OSError."""
     problem = why_not_writable(path)
     if problem:

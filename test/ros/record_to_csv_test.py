@@ -89,9 +89,9 @@ class RecordToCsv(unittest.TestCase):
                 bag.write('/points', cloud(row, seen), stamp(row))
                 bag.write('/uneven', cloud(row, seen[:3 + row % 2]), stamp(row))
 
-    def convert(self, *arguments, output=None, **kwargs):
+    def convert(self, *arguments, output=None):
         command = [os.path.join(SCRIPTS, 'record_to_csv'), self.bag, output or self.csv, *arguments]
-        return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False, **kwargs)
+        return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
 
     def expect_recorded(self, tolerance):
         recording = Recording(self.csv)
@@ -134,11 +134,18 @@ class RecordToCsv(unittest.TestCase):
     def test_a_full_disk_leaves_what_was_there(self):
         with open(self.csv, 'w', encoding='utf-8') as file:
             file.write('old')
-        done = self.convert('--state', '/cable/state', '--cable', 'lead',
-                            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000)))
-        self.assertEqual(done.returncode, 3, done.stderr)
+        # Not the whole script with this limit: rosbag writes files of its own.
+        script = ("import sys; sys.path.insert(0, sys.argv[1]); from output_file import written_whole\n"
+                  "with written_whole(sys.argv[2]) as file: file.write('x' * 1001)")
+        done = subprocess.run([sys.executable, '-c', script, SCRIPTS, self.csv], capture_output=True, text=True, timeout=60,
+                              check=False, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000)))
         self.assertIn('File too large', done.stderr)
         self.expect_only_old()
+
+    def test_a_full_device_exits_with_three(self):
+        done = self.convert('--state', '/cable/state', '--cable', 'lead', output='/dev/full')
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn('/dev/full: [Errno 28] No space left on device', done.stderr)
 
     def expect_only_old(self):
         with open(self.csv, encoding='utf-8') as file:
@@ -175,8 +182,8 @@ class RecordToCsv(unittest.TestCase):
     def test_what_cannot_be_written_is_refused_before_the_bag_is_read(self):
         pipe = self.csv + '.pipe'
         os.mkfifo(pipe)
-        for output, expected in ((pipe, 'it is a named pipe'), ('/nonexistent/o.csv', 'No such file or directory'), ('/', 'Is a directory'),
-                                 (self.bag, 'is the bag; allowed: another file')):
+        for output, expected in ((pipe, 'it is a named pipe'), ('/nonexistent/o.csv', 'No such file or directory'),
+                                 ('/', 'Is a directory'), (self.bag, 'is the bag; allowed: another file')):
             done = self.convert('--state', '/cable/state', '--cable', 'lead', output=output)
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(expected, done.stderr)
