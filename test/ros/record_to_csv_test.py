@@ -114,6 +114,12 @@ class RecordToCsv(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.expect_recorded(1e-6)  # float32
 
+    def test_rosrun_finds_it_and_what_it_needs(self):
+        command = ['rosrun', 'verlet_cable', 'record_to_csv', self.bag, self.csv, '--state', '/cable/state', '--cable', 'lead']
+        done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(Recording(self.csv).markers.shape, (ROWS, 6, 3))
+
     def test_points_alone(self):
         done = self.convert('--state', '/cable/state', '--cable', 'lead')
         self.assertEqual(done.returncode, 0, done.stderr)
