@@ -211,7 +211,7 @@ TEST_F(CableSim, helpIsNoError) {
 }
 
 /// What the program prints to a terminal.
-std::string output_on_terminal(const std::string& scene, const std::string& duration) {
+std::string output_on_terminal(const std::string& scene, const std::string& duration, const std::string& summary) {
   const int terminal = posix_openpt(O_RDWR | O_NOCTTY);
   if (terminal < 0 || grantpt(terminal) != 0 || unlockpt(terminal) != 0) return {};
   const std::string name = ptsname(terminal);
@@ -220,7 +220,8 @@ std::string output_on_terminal(const std::string& scene, const std::string& dura
     const int side = open(name.c_str(), O_RDWR | O_NOCTTY);
     dup2(side, STDOUT_FILENO);
     dup2(side, STDERR_FILENO);
-    execl(CABLE_SIM_PROGRAM, "cable_sim", scene.c_str(), "--duration", duration.c_str(), static_cast<char*>(nullptr));
+    execl(CABLE_SIM_PROGRAM, "cable_sim", scene.c_str(), "--duration", duration.c_str(), "--summary", summary.c_str(),
+          static_cast<char*>(nullptr));
     _exit(127);
   }
   std::string text;
@@ -244,9 +245,11 @@ std::string output_on_terminal(const std::string& scene, const std::string& dura
 TEST_F(CableSim, progressIsShownOnATerminalOnly) {
   const std::string scene = write("scene.yaml", replaced(sound_scene, "time_step: 0.002", "time_step: 0.0001"));
   // 200,000 steps take longer than the 0.1 s between two looks at the bar.
-  const std::string text = output_on_terminal(scene, "20");
+  const std::string text = output_on_terminal(scene, "20", "/dev/null");
   EXPECT_NE(text.find("\r["), std::string::npos) << text;
   EXPECT_NE(text.find("times real time"), std::string::npos) << text;
+  // Data on the terminal is not overwritten.
+  EXPECT_EQ(output_on_terminal(scene, "20", "/dev/stdout").find("\r["), std::string::npos);
   ASSERT_EQ(run(scene + " --duration 20"), 0);
   EXPECT_EQ((out + err).find('\r'), std::string::npos);
 }

@@ -191,9 +191,11 @@ int run(const std::vector<std::string>& arguments) {
   settings.centre_line = true;
   Fit centre_line{{recordings, inputs, settings, cable_parameters(settings), {}}, {}};
   const bool with_centre_line = !options.centre_line.empty();
+  const bool has_data = tools::is_standard_output(options.output) || tools::is_standard_output(options.report) ||
+                        tools::is_standard_output(options.centre_line);
   tools::ProgressBar progress(most_simulations(on_markers.problem, cross_validated) +
                                   (with_centre_line ? most_simulations(centre_line.problem, cross_validated) : 0),
-                              "simulations at most");
+                              "simulations at most", has_data);
   int done = 0;
   on_markers.problem.simulated = centre_line.problem.simulated = [&] { progress.show(++done, std::chrono::steady_clock::now()); };
   on_markers.result = fit_all(on_markers.problem, as_numbered, cross_validated, nullptr);
@@ -201,8 +203,6 @@ int run(const std::vector<std::string>& arguments) {
   const Fit* const also = with_centre_line ? &centre_line : nullptr;
 
   const bool good = write_results(options, swapped, on_markers, also);
-  const bool has_data = tools::is_standard_output(options.output) || tools::is_standard_output(options.report) ||
-                        tools::is_standard_output(options.centre_line);
   progress.clear();
   const bool printed = tools::print_result(program, summary_text(swapped, on_markers, also), has_data);
   return good && printed ? tools::exit_done : tools::exit_stopped;

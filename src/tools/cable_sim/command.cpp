@@ -60,9 +60,11 @@ int simulate_job(const Options& options, const Job& job) {
   outputs.open(options, errors);
   if (!errors.empty()) return refuse(errors);
   for (const std::string& frame : unused_frames(job.scene, job.motion))
-    std::cerr << "cable_sim: note: " << options.motion << ": nothing in the scene follows frame " << quoted(frame) << "\n";
+    std::cerr << "cable_sim: note: " << tools::path_text(options.motion) << ": nothing in the scene follows frame "
+              << quoted(frame) << "\n";
 
-  tools::ProgressBar progress(options.duration);
+  const bool has_data = tools::is_standard_output(options.output) || tools::is_standard_output(options.summary);
+  tools::ProgressBar progress(options.duration, "s", has_data);
   EventLog events(progress);
   if (job.settle) world.settle();
   const tools::StopRequest stop;
@@ -82,7 +84,6 @@ int simulate_job(const Options& options, const Job& job) {
     outputs.summary.write(json.data(), json.size());
   }
   good = finish(outputs.summary, options.summary, world.time()) && good;
-  const bool has_data = tools::is_standard_output(options.output) || tools::is_standard_output(options.summary);
   good = tools::print_result(program, summary.line(world) + "\n", has_data) && good;
   return good && end == RunEnd::done ? tools::exit_done : tools::exit_stopped;
 }

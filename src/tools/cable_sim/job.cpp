@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "common/messages.h"
 #include "common/output_file.h"
 #include "frame_source.h"
 #include "verlet_cable/core/number_text.h"
@@ -43,7 +44,8 @@ void check_outputs(const Options& options, std::vector<std::string>& errors) {
     if (!problem.empty()) errors.push_back(std::string(output.option) + ": " + tools::cannot_write(output.path, problem));
     for (const Other& other : others) {
       if (&other.path == &output.path || other.path.empty() || !tools::is_same_file(output.path, other.path)) continue;
-      errors.push_back(std::string(output.option) + ": " + quoted(output.path) + " is " + other.what + "; allowed: another file");
+      errors.push_back(std::string(output.option) + ": " + tools::quoted_path(output.path) + " is " + other.what +
+                       "; allowed: another file");
     }
   }
 }
@@ -58,8 +60,9 @@ void check_times(const Options& options, double time_step, std::vector<std::stri
 
 void check_motion(const Options& options, const SceneDesc& scene, const Motion& motion, std::vector<std::string>& errors) {
   if (motion.count(scene.frame_id))
-    errors.push_back(options.motion + ": frame " + quoted(scene.frame_id) + " moves; allowed: any but the fixed frame");
-  append(options.motion + " at t = 0", validate_distances(scene, FrameSource(scene, motion).at(0)), errors);
+    errors.push_back(tools::path_text(options.motion) + ": frame " + quoted(scene.frame_id) +
+                     " moves; allowed: any but the fixed frame");
+  append(tools::path_text(options.motion) + " at t = 0", validate_distances(scene, FrameSource(scene, motion).at(0)), errors);
 }
 
 }  // namespace
@@ -83,7 +86,7 @@ Job prepare(const Options& options, std::vector<std::string>& errors) {
       job.scene = read_scene_file(options.scene);
       scene_is_sound = true;
     } catch (const SceneError& error) {
-      append(options.scene, error.errors(), errors);
+      append(tools::path_text(options.scene), error.errors(), errors);
     }
   }
   if (!options.motion.empty()) {
@@ -91,7 +94,7 @@ Job prepare(const Options& options, std::vector<std::string>& errors) {
       check_input(options.motion);
       job.motion = read_motion_file(options.motion);
     } catch (const SceneError& error) {
-      append(options.motion, error.errors(), errors);
+      append(tools::path_text(options.motion), error.errors(), errors);
       motion_is_sound = false;
     }
   }

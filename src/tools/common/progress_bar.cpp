@@ -13,8 +13,12 @@ constexpr int width = 40;
 
 }  // namespace
 
-ProgressBar::ProgressBar(double amount, const char* unit)
-    : is_on_(isatty(STDERR_FILENO) == 1), amount_(amount), unit_(unit), start_(std::chrono::steady_clock::now()), last_(start_) {}
+ProgressBar::ProgressBar(double amount, const char* unit, bool has_data)
+    : is_on_(isatty(STDERR_FILENO) == 1 && !(has_data && isatty(STDOUT_FILENO) == 1)),
+      amount_(amount),
+      unit_(unit),
+      start_(std::chrono::steady_clock::now()),
+      last_(start_) {}
 
 void ProgressBar::show(double done, std::chrono::steady_clock::time_point now) {
   if (!is_on_ || now - last_ < interval) return;

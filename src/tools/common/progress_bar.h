@@ -4,11 +4,11 @@
 
 namespace verlet_cable::tools {
 
-/// A bar on standard error, if that is a terminal; otherwise nothing.
+/// A bar on standard error, if that is a terminal, and no data goes to one; otherwise nothing.
 class ProgressBar {
  public:
-  /// `amount` of what is to be done, counted in `unit`.
-  explicit ProgressBar(double amount, const char* unit = "s");
+  /// `amount` of what is to be done, counted in `unit`. `has_data`: standard output is for data.
+  explicit ProgressBar(double amount, const char* unit = "s", bool has_data = false);
   ~ProgressBar() { clear(); }
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
