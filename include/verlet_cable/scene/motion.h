@@ -32,7 +32,8 @@ class FrameTrack {
 using Motion = std::map<std::string, FrameTrack>;
 
 /// Reads a CSV file with the header `t,frame,x,y,z,qx,qy,qz,qw` [s, m]: frames in any order, times ascending per frame,
-/// quaternions of any length but 0, at most ten million rows. Throws SceneError with all errors (at most 100), each with its line.
+/// quaternions of any length but 0, at most ten million rows. Throws SceneError with all errors (at most 100), each with its
+/// line.
 Motion read_motion_file(const std::string& path);
 
 }  // namespace verlet_cable
