@@ -49,7 +49,7 @@ bool finish(tools::OutputFile& file, const std::string& path, double time) {
 void report(RunEnd end, const char* signal, double time) {
   const std::string start = std::string(program) + ": stopped at " + number_text(time) + " s: ";
   if (end == RunEnd::fault) std::cerr << start << "a fault\n";
-  if (end == RunEnd::signal) std::cerr << start << "ended by " << signal << "; what was simulated by then is written\n";
+  if (end == RunEnd::signal) std::cerr << start << "ended by " << signal << ", before its duration was over\n";
 }
 
 int simulate_job(const Options& options, const Job& job) {
