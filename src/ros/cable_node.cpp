@@ -7,18 +7,21 @@
 namespace verlet_cable {
 namespace {
 
-/// An update is cut off after this, so that requests do not wait when the simulation cannot keep up.
-const ros::WallDuration longest_update(0.01);
-
 /// Ticks come as evenly as this fraction of their period, but no finer than a millisecond.
 ros::WallDuration update_period(const SceneDesc& scene) {
   return ros::WallDuration(std::clamp(0.25 / scene.publish_rate, 1e-3, 5e-3));
 }
 
+ros::NodeHandle guarded(ros::NodeHandle node, GuardedQueue& guard) {
+  node.setCallbackQueue(&guard);
+  return node;
+}
+
 }  // namespace
 
 CableNode::CableNode(ros::NodeHandle private_node)
-    : node_(private_node),
+    : guard_(*private_node.getCallbackQueue()),
+      node_(guarded(private_node, guard_)),
       simulation_(node_, read_scene_parameters(node_)),
       services_(node_, simulation_),
       obstacles_(node_, simulation_),
@@ -26,11 +29,11 @@ CableNode::CableNode(ros::NodeHandle private_node)
       rollouts_(node_, simulation_),
       hands_(node_, simulation_),
       diagnostics_(node_, simulation_, obstacles_),
-      timer_(node_.createWallTimer(update_period(simulation_.scene()), [this](const ros::WallTimerEvent&) { update(); })),
+      timer_(node_.createWallTimer(update_period(simulation_.scene()), [this](const ros::WallTimerEvent&) { run_guarded("an update", [this] { update(); }); })),
       publish_rate_(simulation_.scene().publish_rate) {}
 
 void CableNode::update() {
-  simulation_.update(longest_update);
+  simulation_.update(Simulation::longest_slice);
   tuning_.follow_scene();
   hands_.update();
   if (simulation_.scene().publish_rate == publish_rate_) return;

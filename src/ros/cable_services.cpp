@@ -13,6 +13,7 @@
 #include <verlet_cable/Unpin.h>
 
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "verlet_cable/ros/checked_pin.h"
@@ -30,13 +31,7 @@ bool answer(const EditResult& result, Response& response) {
   return true;
 }
 
-EditResult refused(std::vector<std::string> errors) {
-  constexpr std::size_t most = 20;
-  if (errors.size() > most) {
-    const std::string more = "and " + std::to_string(errors.size() - most) + " more";
-    errors.resize(most);
-    errors.push_back(more);
-  }
+EditResult refused(const std::vector<std::string>& errors) {
   return {false, join(errors), {}};
 }
 
@@ -69,17 +64,25 @@ bool cut(Simulation& simulation, const Cut::Request& request, Cut::Response& res
   return answer(result, response);
 }
 
-bool load_scene(Simulation& simulation, const LoadScene::Request& request, LoadScene::Response& response) {
+/// What the thread of the service does: reads and checks, which may take long.
+EditResult load_scene(Simulation& simulation, OwnerCalls& owner, const SceneDesc& current, const LoadScene::Request& request) {
   try {
-    return answer(simulation.load_scene(read_requested_scene(request, simulation.scene())), response);
+    const SceneDesc scene = read_requested_scene(request, current);
+    return owner.ask([&simulation, scene](const Answer& answer) { simulation.load_scene(scene, answer); });
   } catch (const SceneError& error) {
-    return answer(refused(error.errors()), response);
+    return refused(error.errors());
   }
 }
 
-bool step(Simulation& simulation, const Step::Request& request, Step::Response& response) {
-  const EditResult result = simulation.step(request.steps);
-  response.time = seconds(simulation.stamp());
+bool step(Simulation& simulation, OwnerCalls& owner, const Step::Request& request, Step::Response& response) {
+  const auto time = std::make_shared<double>(0);
+  const EditResult result = owner.ask([&simulation, time, steps = request.steps](const Answer& answer) {
+    simulation.step(steps, [&simulation, time, answer](const EditResult& done) {
+      *time = seconds(simulation.stamp());
+      answer(done);
+    });
+  });
+  response.time = *time;
   return answer(result, response);
 }
 
@@ -94,12 +97,11 @@ ros::ServiceServer serve(ros::NodeHandle& node, const std::string& name,
 
 }  // namespace
 
-CableServices::CableServices(ros::NodeHandle& node, Simulation& simulation) {
+CableServices::CableServices(ros::NodeHandle& node, Simulation& simulation) : owner_(*node.getCallbackQueue()) {
   using std_srvs::SetBool;
   using std_srvs::Trigger;
   Simulation* const s = &simulation;
   servers_ = {
-      serve<Trigger>(node, "reset", [s](const auto&, auto& response) { return answer(s->reset(), response); }),
       serve<SetBool>(node, "pause",
                      [s](const auto& request, auto& response) { return answer(s->set_paused(request.data), response); }),
       serve<Unpin>(node, "unpin", [s](const auto& request, auto& response) { return answer(s->unpin(request.name), response); }),
@@ -118,10 +120,32 @@ CableServices::CableServices(ros::NodeHandle& node, Simulation& simulation) {
                        [s](const auto& request, auto& response) { return answer(s->save_state(request.name), response); }),
       serve<RestoreState>(node, "restore_state",
                           [s](const auto& request, auto& response) { return answer(s->restore_state(request.name), response); }),
-      serve<LoadScene>(node, "load_scene",
-                       [s](const auto& request, auto& response) { return load_scene(*s, request, response); }),
-      serve<Step>(node, "step", [s](const auto& request, auto& response) { return step(*s, request, response); }),
   };
+  SceneDesc lasting;  // what no request changes
+  lasting.scene_directory = s->scene().scene_directory;
+  lasting.limits = s->scene().limits;
+  serve_aside<Trigger>(node, "reset", [this, s](const auto&, auto& response) {
+    return answer(owner_.ask([s](const Answer& done) { s->reset(done); }), response);
+  });
+  serve_aside<Step>(node, "step",
+                    [this, s](const auto& request, auto& response) { return step(*s, owner_, request, response); });
+  serve_aside<LoadScene>(node, "load_scene", [this, s, lasting](const auto& request, auto& response) {
+    return answer(load_scene(*s, owner_, lasting, request), response);
+  });
+}
+
+CableServices::~CableServices() {
+  // First, as a service that is shut down waits for its callbacks.
+  owner_.end();
+}
+
+template <typename Service, typename Handler>
+void CableServices::serve_aside(const ros::NodeHandle& node, const std::string& name, Handler handler) {
+  Aside& aside = *asides_.emplace_back(std::make_unique<Aside>());
+  ros::NodeHandle own(node);
+  own.setCallbackQueue(&aside.guard);
+  aside.server = serve<Service>(own, name, handler);
+  aside.spinner.start();
 }
 
 }  // namespace verlet_cable

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "verlet_cable/core/quoted_text.h"
+#include "verlet_cable/ros/guarded_queue.h"
 
 namespace verlet_cable {
 namespace {
@@ -39,7 +40,9 @@ Diagnostics::Diagnostics(ros::NodeHandle& private_node, Simulation& simulation, 
   updater_.add("frames", [this](Status& status) { report_frames(status); });
   updater_.add("obstacles", [this](Status& status) { report_obstacles(status); });
   // Not the updater's own pace, which is in ROS time and stands with it.
-  timer_ = private_node.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { updater_.force_update(); });
+  timer_ = private_node.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) {
+    run_guarded("a report", [this] { updater_.force_update(); });
+  });
 }
 
 void Diagnostics::report_simulation(Status& status) {

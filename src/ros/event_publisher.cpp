@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "verlet_cable/ros/queue_size.h"
+#include "verlet_cable/ros/ros_time.h"
 
 namespace verlet_cable {
 
@@ -24,7 +25,7 @@ void EventPublisher::publish_each(std::uint8_t type, Nanoseconds stamp, const st
                                   const std::string& message) const {
   CableEvent event;
   event.header.frame_id = frame_id_;
-  event.header.stamp.fromNSec(static_cast<std::uint64_t>(stamp));
+  event.header.stamp = to_ros_time(stamp);
   event.type = type;
   event.message = message;
   for (const EventSubject& subject : subjects) {

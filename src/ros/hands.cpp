@@ -117,7 +117,10 @@ EditResult Hands::select(const Handle& handle, std::uint32_t menu_entry) {
     case HandleAction::cut:
       return cut(handle);
     case HandleAction::reset:
-      return simulation_.reset();
+      simulation_.reset([](const EditResult& result) {
+        if (!result.ok) ROS_WARN_THROTTLE(log_period, "hands: %s", result.message.c_str());
+      });
+      return {true, {}, {}};
   }
   return {false, "menu_entry_id: " + std::to_string(menu_entry) + "; allowed: 1 to 4", {}};
 }

@@ -212,9 +212,10 @@ Location locate_cut(const CableLocation& location, const World& world, const Fin
 }
 
 std::string join(const std::vector<std::string>& errors) {
+  constexpr std::size_t most = 20;
   std::string text;
-  for (const std::string& error : errors) text += (text.empty() ? "" : "; ") + error;
-  return text;
+  for (std::size_t i = 0; i < std::min(errors.size(), most); ++i) text += (i == 0 ? "" : "; ") + errors[i];
+  return errors.size() <= most ? text : text + "; and " + std::to_string(errors.size() - most) + " more";
 }
 
 }  // namespace verlet_cable

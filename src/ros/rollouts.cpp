@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "verlet_cable/core/quoted_text.h"
+#include "verlet_cable/ros/guarded_queue.h"
 #include "verlet_cable/ros/location.h"
 
 namespace verlet_cable {
@@ -29,7 +30,7 @@ Rollouts::Rollouts(ros::NodeHandle& node, const Simulation& simulation)
     : simulation_(simulation),
       server_(
           node, "rollout", [this](Server::GoalHandle goal) { accept(std::move(goal)); },
-          [this](Server::GoalHandle goal) { cancel(std::move(goal)); }, false) {
+          [this](Server::GoalHandle goal) { cancel(std::move(goal)); }) {
   const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
   for (unsigned i = 0; i < cores; ++i) threads_.emplace_back([this] { work(); });
   server_.start();
@@ -88,7 +89,7 @@ void Rollouts::work() {
       job = std::move(waiting_.front());
       waiting_.pop_front();
     }
-    run(*job);
+    run_guarded("a rollout", [&] { run(*job); });
     const std::lock_guard<std::mutex> lock(mutex_);
     jobs_.remove(job);
   }

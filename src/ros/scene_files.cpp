@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 const std::string package_scheme = "package://";
 constexpr std::size_t longest_path = 4096;
-/// Longer texts keep all other requests waiting for too long while they are parsed; a file has no such limit.
+/// Nobody writes longer ones by hand; a file has no such limit.
 constexpr std::size_t longest_text = 1 << 20;
 
 [[noreturn]] void reject(const std::string& key, const std::string& file, const std::string& allowed) {

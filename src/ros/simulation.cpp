@@ -7,6 +7,7 @@
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/core/step_subject.h"
+#include "verlet_cable/ros/ros_time.h"
 
 namespace verlet_cable {
 namespace {
@@ -20,6 +21,8 @@ constexpr double log_period = 5;
 
 }  // namespace
 
+const ros::WallDuration Simulation::longest_slice(0.01);
+
 Nanoseconds Simulation::longest_backlog(const SceneDesc& scene) {
   return nanoseconds(std::min(scene.tf_timeout, longest_wait) + hiccup);
 }
@@ -28,7 +31,7 @@ Simulation::Simulation(ros::NodeHandle& private_node, const SceneDesc& scene)
     : scene_(scene),
       grid_(scene.time_step, scene.publish_rate),
       pacer_(grid_, longest_backlog(scene)),
-      world_(scene, initial_frames(scene)),
+      world_(build(initial_frames(scene))),
       frames_(private_node, scene),
       publishers_(private_node, scene),
       events_(private_node, scene.frame_id),
@@ -36,11 +39,13 @@ Simulation::Simulation(ros::NodeHandle& private_node, const SceneDesc& scene)
 
 void Simulation::update(ros::WallDuration longest) {
   if (clock_.update() == ClockWatch::Motion::back) jump_back();
-  frames_.receive();
+  frames_.receive(clock_.now());
+  finish_rebuilds();
   if (!started_) {
     start_if_possible();
     return;
   }
+  if (!awaited_steps_.empty()) return do_awaited_steps(longest);
   if (waits_for_frames_ && !paused_) continue_if_frames_are_back();
   if (paused_ || faulted_ || waits_for_frames_) {
     stand();
@@ -56,13 +61,15 @@ Nanoseconds Simulation::target() const {
 void Simulation::jump_back() {
   // What was collected before the jump belongs to the time before it.
   const bool forget = scene_.on_time_jump == TimeJumpPolicy::reset;
-  frames_.restart(ros::Time().fromNSec(static_cast<std::uint64_t>(clock_.now())), forget);
+  interrupt_steps("ROS time went back");
+  forget_resets("ROS time went back");
+  frames_.restart(clock_.now(), forget);
   if (started_) {
     stamp_ = std::max<Nanoseconds>(target(), 0);
     announce(CableEvent::TIME_JUMP, {}, std::string("ROS time went back: ") + (forget ? "reset" : "the cables keep their state"));
   }
   // The frames of pins are forgotten, and so must be the world that has them.
-  if (forget) world_ = World(scene_, initial_frames(scene_));
+  if (forget) world_ = build(initial_frames(scene_));
   keeps_world_ = (started_ || keeps_world_) && !forget;
   started_ = false;
   waits_since_ = 0;
@@ -81,14 +88,15 @@ void Simulation::start_if_possible() {
   if (late || time <= target()) start(time);
 }
 
-void Simulation::start(Nanoseconds time) {
+void Simulation::start(Nanoseconds time, bool builds) {
   // Frames of obstacles that came before the start are numbered anew, together with the new world's.
   if (!keeps_world_) frames_.reset(time);
   frames_.sample_at_once(time);
   stamp_ = time;
   started_ = true;
   if (!keeps_world_) {
-    world_ = World(scene_, frames_.inputs());
+    if (builds) world_ = build(frames_.inputs());
+    world_.start_waiting(frames_.inputs());
     moves_.clear();
     place_added_obstacles();
     frame_watch_.forget_from(0);
@@ -209,7 +217,7 @@ void Simulation::skip_to(Nanoseconds time) {
 
 void Simulation::publish() {
   last_published_ = ros::WallTime::now();
-  publishers_.publish(world_, ros::Time().fromNSec(static_cast<std::uint64_t>(stamp_)));
+  publishers_.publish(world_, to_ros_time(stamp_));
 }
 
 void Simulation::announce(std::uint8_t type, const EventSubject& subject, const std::string& message) const {

@@ -14,9 +14,6 @@ EditResult refused(const std::string& message) {
   return {false, message, {}};
 }
 
-/// A longer run would keep every other request waiting.
-constexpr std::int64_t most_steps = 1000000;
-
 }  // namespace
 
 EditResult Simulation::refused_before_start() const {
@@ -24,49 +21,18 @@ EditResult Simulation::refused_before_start() const {
                             : "the simulation has not started: it waits for its frames, for tf_timeout at most");
 }
 
-EditResult Simulation::reset() {
-  if (!started_) return refused_before_start();
-  frames_.reset(stamp_);
-  world_ = World(scene_, frames_.inputs());
-  moves_.clear();
-  place_added_obstacles();
-  faulted_ = false;
-  intrusions_.clear();
-  frame_watch_.forget_from(static_cast<int>(world_.frames().size()));
-  report_unsettled(0);
-  announce(CableEvent::RESET, {}, "reset to the initial state of the scene");
-  if (paused_) publish();
-  return done("reset to the initial state of the scene");
-}
-
 EditResult Simulation::set_paused(bool paused) {
   if (paused == paused_) return done(paused ? "paused already" : "runs already");
   paused_ = paused;
+  if (!paused) interrupt_steps("the pause has ended");
   if (started_ && !paused) skip_to(grid_.step_at_or_before(target()));
   return done(paused ? "paused" : "runs");
-}
-
-EditResult Simulation::step(std::int64_t steps) {
-  if (!started_) return refused_before_start();
-  if (!paused_) return refused("the simulation is not paused; step is for a paused one: call pause first");
-  if (faulted_) return refused("the simulation has failed: call reset first");
-  if (steps < 1 || steps > most_steps) {
-    return refused("steps: " + std::to_string(steps) + "; allowed: 1 to " + std::to_string(most_steps));
-  }
-  for (std::int64_t i = 0; i < steps && ros::ok(); ++i) {
-    frames_.sample_without_waiting(stamp_ + grid_.step(), grid_.step());
-    frame_watch_.react(frames_.changes(), stamp_, world_);
-    if (!step_world(stamp_ + grid_.step())) {
-      return refused("the simulation failed after " + std::to_string(i) + " steps: call reset");
-    }
-  }
-  if (!grid_.is_tick(stamp_)) publish();
-  return done(std::to_string(steps) + " steps done");
 }
 
 EditResult Simulation::pin(const std::string& name, int cable, int node, const std::string& frame, const Pose& frame_pose,
                            const Pose& offset, AttachmentType type) {
   if (!started_) return refused_before_start();
+  if (const auto reason = refused_frame(frame)) return *reason;
   World trial = world_;  // a frame cannot be taken back
   const EditResult result = trial.pin(name, cable, node, trial.add_frame(frame, frame_pose), offset, type);
   if (!result.ok) return result;
@@ -81,6 +47,7 @@ EditResult Simulation::pin(const std::string& name, int cable, int node, const s
 EditResult Simulation::pin_net(const std::string& name, int net, int node, const std::string& frame, const Pose& frame_pose,
                                const Vector3& offset) {
   if (!started_) return refused_before_start();
+  if (const auto reason = refused_frame(frame)) return *reason;
   World trial = world_;  // a frame cannot be taken back
   const EditResult result = trial.pin_net(name, net, node, trial.add_frame(frame, frame_pose), offset);
   if (!result.ok) return result;

@@ -43,6 +43,9 @@ EditResult Simulation::restore_state(const std::string& name) {
   const auto found = snapshots_.find(name);
   if (found == snapshots_.end()) return refused("name: " + quoted(name) + "; allowed: " + names_of(snapshots_));
   const Snapshot& snapshot = found->second;
+  const std::string message = "restored the snapshot " + quoted(name);
+  interrupt_steps(message);
+  forget_resets(message);
   world_ = snapshot.world;
   added_obstacles_ = snapshot.added_obstacles;
   moves_.clear();
@@ -55,7 +58,6 @@ EditResult Simulation::restore_state(const std::string& name) {
   }
   faulted_ = false;
   frame_watch_.forget_from(static_cast<int>(frame_names(scene_).size()));
-  const std::string message = "restored the snapshot " + quoted(name);
   announce(CableEvent::RESET, {}, message);
   if (paused_) publish();
   return done(message);

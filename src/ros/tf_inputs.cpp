@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "verlet_cable/ros/ros_time.h"
+
 namespace verlet_cable {
 namespace {
 
@@ -11,7 +13,7 @@ using Coverage = FrameHistory::Coverage;
 // tf and the clock are two connections: how much earlier than the clock's jump back the first transforms after it may arrive, and
 // how much later than the clock their stamps may be.
 const ros::WallDuration longest_overtaking(1.0);
-const ros::Duration longest_ahead(0.5);
+constexpr Nanoseconds longest_ahead = 500'000'000;
 
 }  // namespace
 
@@ -40,17 +42,17 @@ TfInputs::Track TfInputs::track_from(const std::string& frame, const FrameInput&
   return track;
 }
 
-void TfInputs::receive() {
+void TfInputs::receive(Nanoseconds ros_now) {
   const ros::WallTime now = ros::WallTime::now();
   while (!recent_.empty() && recent_.front().first + longest_overtaking < now) recent_.pop_front();
   for (const ReceivedTransform& received : listener_.take()) {
     recent_.emplace_back(now, received);
-    insert(received);
+    insert(received, ros_now);
   }
 }
 
-void TfInputs::insert(const ReceivedTransform& received) {
-  if (!buffer_.insert(received)) return;
+void TfInputs::insert(const ReceivedTransform& received, Nanoseconds now) {
+  if (!buffer_.insert(received, now)) return;
   for (Track& track : tracks_) update_history(track);
 }
 
@@ -65,7 +67,7 @@ void TfInputs::update_history(Track& track) const {
   }
 }
 
-void TfInputs::restart(const ros::Time& now, bool forget) {
+void TfInputs::restart(Nanoseconds now, bool forget) {
   buffer_.clear();
   if (forget) drop_pinned_frames();
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
@@ -79,7 +81,7 @@ void TfInputs::restart(const ros::Time& now, bool forget) {
     update_history(track);
   }
   for (const auto& [arrival, received] : recent_) {
-    if (received.transform.header.stamp <= now + longest_ahead) insert(received);
+    if (from_ros_time(received.transform.header.stamp) <= now + longest_ahead) insert(received, now);
   }
 }
 

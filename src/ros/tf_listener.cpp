@@ -10,8 +10,8 @@ constexpr int queue_size = 1000;
 
 }  // namespace
 
-TfListener::TfListener(const ros::NodeHandle& node) : node_(node), spinner_(1, &queue_) {
-  node_.setCallbackQueue(&queue_);
+TfListener::TfListener(const ros::NodeHandle& node) : guard_(queue_), node_(node), spinner_(1, &queue_) {
+  node_.setCallbackQueue(&guard_);
   const auto subscribe = [this](const std::string& topic, bool is_static) {
     using Event = const ros::MessageEvent<const tf2_msgs::TFMessage>&;
     return node_.subscribe<Event>(topic, queue_size,

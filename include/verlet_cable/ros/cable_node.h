@@ -5,6 +5,7 @@
 #include "verlet_cable/core/scene_desc.h"
 #include "verlet_cable/ros/cable_services.h"
 #include "verlet_cable/ros/diagnostics.h"
+#include "verlet_cable/ros/guarded_queue.h"
 #include "verlet_cable/ros/hands.h"
 #include "verlet_cable/ros/obstacle_listener.h"
 #include "verlet_cable/ros/rollouts.h"
@@ -23,6 +24,7 @@ class CableNode {
  private:
   void update();
 
+  GuardedQueue guard_;
   ros::NodeHandle node_;
   Simulation simulation_;
   CableServices services_;

@@ -1,21 +1,40 @@
 #pragma once
 
+#include <ros/callback_queue.h>
 #include <ros/ros.h>
 
+#include <memory>
+#include <string>
 #include <vector>
 
+#include "verlet_cable/ros/guarded_queue.h"
+#include "verlet_cable/ros/owner_calls.h"
 #include "verlet_cable/ros/simulation.h"
 
 namespace verlet_cable {
 
 /// The services of the node. Requests are checked and applied at once: the simulation's updates and they share one queue of
-/// callbacks, so each is applied between steps, in the order they came.
+/// callbacks, so each is applied between steps, in the order they came. `reset`, `step` and `load_scene` may take long: each has
+/// a thread that waits for the answer, and reads what is to be read, while the simulation does the others.
 class CableServices {
  public:
   CableServices(ros::NodeHandle& private_node, Simulation& simulation);
+  ~CableServices();
 
  private:
+  /// A service with a thread of its own.
+  struct Aside {
+    ros::CallbackQueue queue;
+    GuardedQueue guard{queue};
+    ros::AsyncSpinner spinner{1, &queue};
+    ros::ServiceServer server;
+  };
+  template <typename Service, typename Handler>
+  void serve_aside(const ros::NodeHandle& node, const std::string& name, Handler handler);
+
+  OwnerCalls owner_;
   std::vector<ros::ServiceServer> servers_;
+  std::vector<std::unique_ptr<Aside>> asides_;
 };
 
 }  // namespace verlet_cable

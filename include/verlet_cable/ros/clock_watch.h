@@ -2,7 +2,7 @@
 
 #include <ros/time.h>
 
-#include "verlet_cable/ros/time_grid.h"
+#include "verlet_cable/ros/ros_time.h"
 
 namespace verlet_cable {
 
@@ -13,10 +13,8 @@ class ClockWatch {
   /// Reads the clock.
   Motion update();
 
-  Nanoseconds now() const {
-    return static_cast<Nanoseconds>(now_.toNSec());
-  }                     ///< at the last update; 0 before there was any time
-  bool stands() const;  ///< has not moved for a second of wall time
+  Nanoseconds now() const { return from_ros_time(now_); }  ///< at the last update; 0 before there was any time
+  bool stands() const;                                      ///< has not moved for a second of wall time
 
  private:
   ros::Time now_;

@@ -5,6 +5,7 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,9 @@
 namespace verlet_cable {
 
 /// Why a transform cannot be used; empty if it can. Refused are values that are not finite, quaternions that are not of length
-/// one, missing or equal frame names, and a transform over time without a stamp.
-std::string transform_problem(const ReceivedTransform& received);
+/// one, missing, endless or equal frame names, and a transform over time without a stamp, or with one that is further ahead of
+/// ROS time `now` than transforms are kept: tf2 would take everything else for too old. `now` is 0 where there is no time.
+std::string transform_problem(const ReceivedTransform& received, Nanoseconds now = 0);
 
 /// The tree of frames over the last 60 s, seen from the fixed frame. The one place that talks to tf2 and catches what it throws.
 class FrameBuffer {
@@ -26,7 +28,7 @@ class FrameBuffer {
   explicit FrameBuffer(std::string fixed_frame);
 
   /// Whether the transform is in the tree now. What is wrong with it is logged now and then, and counted.
-  bool insert(const ReceivedTransform& received);
+  bool insert(const ReceivedTransform& received, Nanoseconds now = 0);
   void see_from(const std::string& fixed_frame) { fixed_frame_ = fixed_frame; }
   /// Forgets everything but static transforms.
   void clear();
@@ -38,17 +40,20 @@ class FrameBuffer {
 
   const std::map<std::string, std::string>& refused() const {
     return refused_;
-  }  ///< by child frame, whose last transform was bad
+  }  ///< by child frame, whose last transform was bad; of so many that people can read them
   /// The nodes that send a frame which more than one has sent in the last second, by child frame: they may disagree.
   std::map<std::string, std::vector<std::string>> disputed() const;
   int refused_count() const { return refused_count_; }  ///< since the start
 
  private:
+  void refuse(const std::string& child, const std::string& problem);
+  bool know(const std::string& frame);
   void note_source(const std::string& child, const std::string& source);
 
   std::string fixed_frame_;
   tf2::BufferCore buffer_;
-  std::map<std::string, ros::Time> newest_;                              ///< by child frame, dynamic transforms
+  std::set<std::string> frames_;                                         ///< names that tf2 has, which it never forgets
+  std::map<std::string, Nanoseconds> newest_;                            ///< by child frame, dynamic transforms
   std::map<std::string, std::map<std::string, ros::WallTime>> sources_;  ///< by child frame and node: when it last came
   std::map<std::string, std::string> refused_;
   std::map<std::string, ros::WallTime> logged_;  ///< by child frame, when a refusal was last logged

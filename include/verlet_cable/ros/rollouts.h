@@ -1,6 +1,5 @@
 #pragma once
 
-#include <actionlib/server/action_server.h>
 #include <ros/ros.h>
 #include <verlet_cable/RolloutAction.h>
 
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "verlet_cable/ros/rollout.h"
+#include "verlet_cable/ros/rollout_server.h"
 #include "verlet_cable/ros/simulation.h"
 
 namespace verlet_cable {
@@ -26,7 +26,7 @@ class Rollouts {
   ~Rollouts();
 
  private:
-  using Server = actionlib::ActionServer<RolloutAction>;
+  using Server = RolloutServer;
   struct Job {
     Job(const Server::GoalHandle& handle, Rollout run) : goal(handle), rollout(std::move(run)) {}
     Server::GoalHandle goal;

@@ -2,6 +2,9 @@
 
 #include <ros/ros.h>
 
+#include <deque>
+#include <future>
+#include <list>
 #include <map>
 #include <optional>
 #include <set>
@@ -13,6 +16,7 @@
 #include "verlet_cable/ros/clock_watch.h"
 #include "verlet_cable/ros/event_publisher.h"
 #include "verlet_cable/ros/frame_watch.h"
+#include "verlet_cable/ros/owner_calls.h"
 #include "verlet_cable/ros/pacer.h"
 #include "verlet_cable/ros/publishers.h"
 #include "verlet_cable/ros/statistics.h"
@@ -40,6 +44,9 @@ struct Snapshot {
 /// updates.
 class Simulation {
  public:
+  /// An update, and a part of a request, is cut off after this, so that others do not wait.
+  static const ros::WallDuration longest_slice;
+
   /// Throws SceneError.
   Simulation(ros::NodeHandle& private_node, const SceneDesc& scene);
 
@@ -47,12 +54,13 @@ class Simulation {
   /// published.
   void update(ros::WallDuration longest);
 
-  // Requests. One that is refused changes nothing.
-  /// Back to the scene's initial state, with the frames where they are now.
-  EditResult reset();
+  // Requests. One that is refused changes nothing. Those with an Answer may take many updates, between which others are done.
+  /// Back to the scene's initial state, with the frames where they are now. Where that takes long to build the old world goes on
+  /// until the new one is there.
+  void reset(const Answer& answer);
   EditResult set_paused(bool paused);
-  /// Does steps while paused, and publishes the last.
-  EditResult step(std::int64_t steps);
+  /// Does steps while paused, and publishes the last. Resets, other scenes and the end of the pause interrupt them.
+  void step(std::int64_t steps, const Answer& answer);
   /// Holds a node of a cable at `offset` in a frame, which is at `frame_pose` if the world does not know it yet.
   EditResult pin(const std::string& name, int cable, int node, const std::string& frame, const Pose& frame_pose,
                  const Pose& offset, AttachmentType type);
@@ -72,8 +80,8 @@ class Simulation {
   EditResult save_state(const std::string& name);
   /// Continues a snapshot: while paused at its time and with its frames, while running at the present ones.
   EditResult restore_state(const std::string& name);
-  /// Goes on with another scene. Throws SceneError, and nothing has changed, if it is not sound.
-  EditResult load_scene(const SceneDesc& scene);
+  /// Goes on with another scene, as soon as it is built; refused if it is not sound.
+  void load_scene(const SceneDesc& scene, const Answer& answer);
   /// Goes on with other gravity, fluid and materials; everything else of `scene` is as it is.
   void tune(const SceneDesc& scene);
 
@@ -101,14 +109,42 @@ class Simulation {
   /// "CABLE in OBSTACLE" of all that were found inside since the scene started.
   const std::set<std::string>& intrusions() const { return intrusions_; }
 
+  struct BuiltWorld {
+    World world;
+    double time = 0;  ///< [s] that it took
+  };
+
  private:
+  /// A world that is built by a thread of its own, from values.
+  struct Rebuild {
+    std::future<BuiltWorld> built;
+    SceneDesc scene;
+    int scene_version = 0;        ///< when it began
+    bool loads = false;           ///< another scene; or it is a reset
+    std::vector<Answer> answers;  ///< to all that asked for it
+  };
+  struct AwaitedSteps {
+    std::int64_t asked = 0, done = 0;
+    Answer answer;
+  };
+
   /// What is further behind than this is not caught up.
   static Nanoseconds longest_backlog(const SceneDesc& scene);
   Nanoseconds target() const;  ///< the time at which the simulation should be
   void use_scene(const SceneDesc& scene);
   void jump_back();
   void start_if_possible();
-  void start(Nanoseconds time);
+  /// `builds`: with a new world, not the one that is there.
+  void start(Nanoseconds time, bool builds = true);
+  World build(const BoundaryInputs& frames);
+  void build_aside(const SceneDesc& scene, bool loads, const Answer& answer);
+  BoundaryInputs present_frames(const SceneDesc& scene) const;
+  void finish_rebuilds();
+  void forget_resets(const std::string& reason);
+  EditResult start_anew(World world);
+  EditResult replace_scene(const SceneDesc& scene, World world);
+  void do_awaited_steps(ros::WallDuration longest);
+  void interrupt_steps(const std::string& reason);
   void catch_up(ros::WallDuration longest);
   bool do_step(Nanoseconds time, std::vector<bool>& awaited);
   void continue_if_frames_are_back();
@@ -125,11 +161,13 @@ class Simulation {
   EditResult refused_before_start() const;
   EditResult refused_attachment(const std::string& name) const;
   std::optional<EditResult> refused_cable(const std::string& field, const std::string& cable) const;
+  std::optional<EditResult> refused_frame(const std::string& frame) const;
   EditResult place(const AddedObstacle& added);
   void place_added_obstacles();
   std::size_t find_frame_id(const std::string& frame) const;
 
   SceneDesc scene_;
+  double build_time_ = 0;  ///< [s] that the last world took to build
   TimeGrid grid_;
   Pacer pacer_;
   ClockWatch clock_;
@@ -154,6 +192,8 @@ class Simulation {
   ros::WallTime last_published_;
   Statistics statistics_;
   std::set<std::string> intrusions_;
+  std::deque<AwaitedSteps> awaited_steps_;
+  std::list<Rebuild> rebuilds_;  ///< in the order they were asked for
 };
 
 }  // namespace verlet_cable

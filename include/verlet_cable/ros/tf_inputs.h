@@ -51,10 +51,10 @@ class TfInputs {
   /// Follows the frames of another scene from `time` on.
   void follow_scene(const SceneDesc& scene, Nanoseconds time);
 
-  /// Takes in what has come on tf.
-  void receive();
+  /// Takes in what has come on tf; `now`: ROS time, 0 if there is none yet.
+  void receive(Nanoseconds now);
   /// After ROS time went back to `now`: what tf said before is void. With `forget`, frames count as never seen, too.
-  void restart(const ros::Time& now, bool forget);
+  void restart(Nanoseconds now, bool forget);
   /// Drops the frames that pins and obstacles added, and puts the others where they are at `time`.
   void reset(Nanoseconds time);
   /// Follows another frame from now on, or from when tf shows it; its id.
@@ -101,7 +101,7 @@ class TfInputs {
     bool too_fast = false;
   };
 
-  void insert(const ReceivedTransform& received);
+  void insert(const ReceivedTransform& received, Nanoseconds now);
   void update_history(Track& track) const;
   void drop_pinned_frames();
   const Track* find_track(const std::string& frame) const;

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "verlet_cable/ros/guarded_queue.h"
+
 namespace verlet_cable {
 
 struct ReceivedTransform {
@@ -30,6 +32,7 @@ class TfListener {
   void receive(const ros::MessageEvent<const tf2_msgs::TFMessage>& event, bool is_static);
 
   ros::CallbackQueue queue_;
+  GuardedQueue guard_;
   ros::NodeHandle node_;
   std::mutex mutex_;
   std::vector<ReceivedTransform> received_;  ///< guarded by mutex_
