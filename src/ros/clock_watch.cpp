@@ -12,7 +12,7 @@ ClockWatch::Motion ClockWatch::update() {
 }
 
 bool ClockWatch::stands() const {
-  return !last_motion_.isZero() && ros::WallTime::now() - last_motion_ > ros::WallDuration(1.0);
+  return !last_motion_.isZero() && ros::WallTime::now() - last_motion_ > ros::WallDuration(0.5);
 }
 
 }  // namespace verlet_cable

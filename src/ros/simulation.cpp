@@ -18,6 +18,8 @@ constexpr double hiccup = 0.5;
 constexpr double longest_wait = 50;
 /// Between warnings about what may last [s].
 constexpr double log_period = 5;
+/// Between messages while the clock stands: whoever subscribes then sees something.
+const ros::WallDuration standing_period(0.5);
 
 }  // namespace
 
@@ -115,9 +117,14 @@ void Simulation::catch_up(ros::WallDuration longest) {
   std::vector<bool> awaited = awaited_frames(world_);
   for (auto time = pacer_.next(stamp_, target()); time && ros::WallTime::now() < deadline; time = pacer_.next(stamp_, target())) {
     const Nanoseconds before = stamp_;
-    if (!do_step(*time, awaited)) break;
+    if (!do_step(*time, awaited)) {
+      pacer_.rest();
+      break;
+    }
     pacer_.done(before, stamp_, target());
   }
+  report_overload();
+  if (clock_.stands() && ros::WallTime::now() - last_published_ >= standing_period) publish();
 }
 
 /// One step of catching up, to `time`. False where it cannot be done now.
@@ -201,6 +208,15 @@ void Simulation::report_intrusions() {
     ROS_WARN("cable %s is %s m inside obstacle %s at segment %d: it is pushed out", quoted(cable).c_str(),
              number_text(intrusion.depth).c_str(), quoted(obstacle).c_str(), intrusion.segment);
   }
+}
+
+void Simulation::report_overload() {
+  const auto overload = overload_watch_.look(target(), pacer_.left_out(), ros::WallTime::now().toSec());
+  if (!overload) return;
+  ROS_WARN(
+      "cannot keep up: the cables move at %.2g of real time (%.2g s dropped); a larger time_step, fewer segments or less contact "
+      "would help",
+      overload->real_time_factor, overload->left_out);
 }
 
 void Simulation::report_unsettled(std::size_t first) const {

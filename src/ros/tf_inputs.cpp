@@ -13,6 +13,7 @@ using Coverage = FrameHistory::Coverage;
 // tf and the clock are two connections: how much earlier than the clock's jump back the first transforms after it may arrive, and
 // how much later than the clock their stamps may be.
 const ros::WallDuration longest_overtaking(1.0);
+const ros::WallDuration longest_receiving(0.005);
 constexpr Nanoseconds longest_ahead = 500'000'000;
 
 }  // namespace
@@ -45,9 +46,11 @@ TfInputs::Track TfInputs::track_from(const std::string& frame, const FrameInput&
 void TfInputs::receive(Nanoseconds ros_now) {
   const ros::WallTime now = ros::WallTime::now();
   while (!recent_.empty() && recent_.front().first + longest_overtaking < now) recent_.pop_front();
-  for (const ReceivedTransform& received : listener_.take()) {
-    recent_.emplace_back(now, received);
-    insert(received, ros_now);
+  for (ReceivedTransform& received : listener_.take()) received_.push_back(std::move(received));
+  // The rest waits for the next call: however much somebody sends, others do not wait.
+  for (; !received_.empty() && ros::WallTime::now() - now < longest_receiving; received_.pop_front()) {
+    insert(received_.front(), ros_now);
+    recent_.emplace_back(now, std::move(received_.front()));
   }
 }
 

@@ -7,6 +7,8 @@ namespace {
 
 // As in tf2_ros: a static transform may be sent by each of many nodes at once.
 constexpr int queue_size = 1000;
+/// Between two looks; more is a flood.
+constexpr std::size_t most_received = 100000;
 
 }  // namespace
 
@@ -29,8 +31,13 @@ std::vector<ReceivedTransform> TfListener::take() {
 
 void TfListener::receive(const ros::MessageEvent<const tf2_msgs::TFMessage>& event, bool is_static) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  for (const auto& transform : event.getConstMessage()->transforms)
+  for (const auto& transform : event.getConstMessage()->transforms) {
+    if (received_.size() >= most_received) {
+      ROS_ERROR_THROTTLE(1, "tf: more than %zu transforms at once; the rest is left out", most_received);
+      return;
+    }
     received_.push_back({transform, is_static, event.getPublisherName()});
+  }
 }
 
 }  // namespace verlet_cable

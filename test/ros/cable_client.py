@@ -86,9 +86,9 @@ class Messages:
         with self._new:
             self._messages.clear()
 
-    def wait_for(self, wanted, what):
+    def wait_for(self, wanted, what, patience=PATIENCE):
         """The first message, of those that are there and those to come, for which `wanted` is true."""
-        deadline = time.monotonic() + PATIENCE
+        deadline = time.monotonic() + patience
         checked = 0
         with self._new:
             while True:
@@ -98,7 +98,7 @@ class Messages:
                 checked = len(self._messages)
                 left = deadline - time.monotonic()
                 if left <= 0 or not self._new.wait(left):
-                    raise AssertionError(f'{self._subscriber.name}: no {what} in {PATIENCE} s, of {checked} messages')
+                    raise AssertionError(f'{self._subscriber.name}: no {what} in {patience} s, of {checked} messages')
 
     def next(self, count=1):
         """The `count`th message from now on."""

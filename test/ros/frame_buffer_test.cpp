@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <limits>
+#include <string>
+#include <utility>
+
+#include "verlet_cable/ros/ros_time.h"
 
 namespace verlet_cable {
 namespace {
@@ -52,6 +57,71 @@ TEST(TransformProblem, FramesNeedNamesAndADynamicTransformAStamp) {
   received = good();
   received.transform.header.stamp = ros::Time();
   EXPECT_NE(transform_problem(received), "");
+}
+
+TEST(TransformProblem, StampsThatArithmeticCannotTake) {
+  constexpr std::uint32_t last = std::numeric_limits<std::uint32_t>::max();
+  ReceivedTransform received = good();
+  for (const auto& [stamp, words] : {std::pair<ros::Time, std::string>{{last, 0}, "stamp 4294967295 s"},
+                                     {{last, 999999999}, "stamp 4294967295 s"},
+                                     {{last - 59, 0}, "allowed: up to 4294967235 s"},
+                                     {{5, 0}, ""}}) {
+    received.transform.header.stamp = stamp;
+    const std::string problem = transform_problem(received);
+    EXPECT_EQ(problem.empty(), words.empty());
+    EXPECT_NE(problem.find(words), std::string::npos) << problem;
+  }
+  // Values that a message may have, and ros::Time's constructor would carry over.
+  received.transform.header.stamp.sec = 5;
+  received.transform.header.stamp.nsec = last;
+  EXPECT_NE(transform_problem(received).find("4294967295 ns"), std::string::npos);
+  received.transform.header.stamp = ros::Time(1000);
+  EXPECT_EQ(transform_problem(received, nanoseconds(941)), "");
+  EXPECT_NE(transform_problem(received, nanoseconds(939)).find("61 s ahead of ROS time"), std::string::npos);
+  received.is_static = true;
+  EXPECT_EQ(transform_problem(received, nanoseconds(1)), "");
+}
+
+TEST(RosTime, ConvertsEveryInstant) {
+  constexpr std::uint32_t last = std::numeric_limits<std::uint32_t>::max();
+  for (const std::uint32_t sec : {0U, 1U, 1U << 31, last})
+    for (const std::uint32_t nsec : {0U, 1U, 999999999U})
+      EXPECT_EQ(to_ros_time(from_ros_time({sec, nsec})), ros::Time(sec, nsec));
+  EXPECT_EQ(to_ros_time(-1), ros::Time(0, 0));
+  EXPECT_EQ(to_ros_time(std::numeric_limits<Nanoseconds>::min()), ros::Time(0, 0));
+  EXPECT_EQ(to_ros_time(last_ros_time + 1), ros::Time(last, 999999999));
+  EXPECT_EQ(to_ros_time(std::numeric_limits<Nanoseconds>::max()), ros::Time(last, 999999999));
+}
+
+TEST(FrameBuffer, TakesEveryStampThatItDoesNotRefuse) {
+  constexpr std::uint32_t last = std::numeric_limits<std::uint32_t>::max();
+  FrameBuffer buffer("world");
+  ReceivedTransform received = good();
+  for (const std::uint32_t sec : {1U, 1U << 31, last - 61, last - 60, last, 0U, 5U, last - 60}) {
+    for (const std::uint32_t nsec : {1U, 999999999U, last}) {
+      received.transform.header.stamp.sec = sec;
+      received.transform.header.stamp.nsec = nsec;
+      EXPECT_NO_THROW(buffer.insert(received));
+      for (const Nanoseconds time : {Nanoseconds{0}, Nanoseconds{1}, nanoseconds(5), last_ros_time})
+        EXPECT_NO_THROW(buffer.pose("hand", time));
+      EXPECT_NO_THROW(buffer.newest("hand"));
+    }
+  }
+}
+
+TEST(FrameBuffer, AFloodOfNamesIsBounded) {
+  FrameBuffer buffer("world");
+  ReceivedTransform received = good();
+  for (int i = 0; i < 30000; ++i) {
+    received.transform.child_frame_id = "f" + std::to_string(i);
+    EXPECT_EQ(buffer.insert(received), i < 19999) << i;  // and the parent
+  }
+  EXPECT_LE(buffer.refused().size(), 100U);
+  EXPECT_NE(buffer.refused().begin()->second.find("more than 20000 frames"), std::string::npos);
+  received = good();
+  received.transform.child_frame_id = "f0";
+  received.transform.header.stamp = ros::Time(6);
+  EXPECT_TRUE(buffer.insert(received)) << "those that are there go on";
 }
 
 TEST(FrameBuffer, RefusesBadTransformsAndGoesOnWithGoodOnes) {

@@ -9,6 +9,7 @@ import unittest
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
+from rosgraph_msgs.msg import Log
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
@@ -48,6 +49,18 @@ class OverloadTest(unittest.TestCase):
                 # the hand is where it is at the stamp: nothing is followed in leaps
                 self.assertLess(abs(b - a), SWING * (u - t) * 1.1 + 1e-6)
             self.assertTrue(all(all_finite(s) for s in states.all()))
+
+    def test_time_is_dropped_rather_than_late_for_good_and_the_log_says_so(self):
+        with Frames(busy_hand=hand), Messages('/rosout', Log) as log, self.busy.states() as states:
+            warnings = [log.wait_for(lambda m: m.name == '/busy' and 'cannot keep up' in m.msg, 'warning of an overload', 30)]
+            self.assertRegex(warnings[0].msg, r'the cables move at 0\.\d+ of real time \([\d.]+ s dropped\)')
+            self.assertEqual(warnings[0].level, Log.WARN)
+            log.wait_for(lambda m: m.name == '/busy' and 'cannot keep up' in m.msg and m is not warnings[0], 'second warning', 30)
+            states.clear()
+            late = [rospy.get_time() - states.next().header.stamp.to_sec() for _ in range(20)]
+            rospy.loginfo('overloaded: %.2f s late at most, %s', max(late), warnings[0].msg)
+            # 2.2 s before, with this scene on an idle machine
+            self.assertLess(statistics.median(late), 1.2)
 
     def test_bursts_and_disorder_of_tf_cost_nothing(self):
         publisher = rospy.Publisher('/tf', TFMessage, queue_size=100)

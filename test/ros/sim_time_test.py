@@ -8,10 +8,12 @@ import unittest
 import rospy
 import rostest
 from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import PointCloud2
 from tf2_msgs.msg import TFMessage
+from visualization_msgs.msg import MarkerArray
 
-from cable_client import CableClient, all_finite, cable, distance, transform
-from verlet_cable.msg import CableEvent
+from cable_client import CableClient, Messages, all_finite, cable, distance, transform
+from verlet_cable.msg import CableArray, CableEvent
 
 SPEED = 4  # of the clock, times real time, where nothing else is said
 
@@ -61,6 +63,16 @@ class SimTimeTest(unittest.TestCase):
             resetting.clear()
             time.sleep(0.2)
             self.assertEqual(resetting.all(), [], 'no tick while the clock stands')
+            # who comes now sees how things stand, soon; nothing else has changed
+            for topic, kind in (('state', CableArray), ('markers', MarkerArray), ('points', PointCloud2)):
+                with Messages(f'/resetting/{topic}', kind) as late:
+                    begin = time.monotonic()
+                    first = late.next()
+                    header = first.markers[0].header if kind is MarkerArray else first.header
+                    rospy.loginfo('%s after %.2f s', topic, time.monotonic() - begin)
+                    self.assertLess(time.monotonic() - begin, 2)
+                    self.assertEqual(header.stamp.to_nsec(), int(100.95e9))
+            self.assertEqual({s.header.stamp.to_nsec() for s in resetting.all()}, {int(100.95e9)})
             self.assertFalse(self.resetting.step(1).success)
             self.assertTrue(self.resetting.pause(True).success)
             resetting.next(3)

@@ -10,6 +10,7 @@ namespace verlet_cable {
 ///
 /// Steps that are late are caught up. Where they cannot be, time is left out evenly: a step leads further than it is long, at a
 /// pace that changes gently, so that frames which move smoothly still do and cables are not whipped by the hiccups of a machine.
+/// What a machine cannot do for good is not caught up: after some seconds it is only a little late.
 class Pacer {
  public:
   /// `longest_backlog`: what is further behind than this is not caught up.
@@ -25,16 +26,23 @@ class Pacer {
   /// The step from `simulated` to `time` was done.
   void done(Nanoseconds simulated, Nanoseconds time, Nanoseconds target);
 
+  /// Nothing is late for want of time: what is due is done, or waits for something else.
+  void rest();
+
   /// Counts time that is skipped for another reason, such as a pause.
   void drop(Nanoseconds skipped);
-  Nanoseconds dropped() const { return dropped_; }  ///< in all
+  Nanoseconds dropped() const { return dropped_; }    ///< in all
+  Nanoseconds left_out() const { return left_out_; }  ///< of that, because the machine was too slow
 
  private:
   TimeGrid grid_;
   Nanoseconds longest_backlog_;
   Nanoseconds last_target_ = 0;
   Nanoseconds dropped_ = 0;
+  Nanoseconds left_out_ = 0;
   double pace_ = 1;  ///< how far a step leads, in steps
+  double usual_way_ = 0;  ///< [s] of a step, a mean of the last ones
+  double busy_ = 0;  ///< [s] of the target's time since all that was due was done
 };
 
 }  // namespace verlet_cable

@@ -16,6 +16,7 @@
 #include "verlet_cable/ros/clock_watch.h"
 #include "verlet_cable/ros/event_publisher.h"
 #include "verlet_cable/ros/frame_watch.h"
+#include "verlet_cable/ros/overload_watch.h"
 #include "verlet_cable/ros/owner_calls.h"
 #include "verlet_cable/ros/pacer.h"
 #include "verlet_cable/ros/publishers.h"
@@ -153,6 +154,7 @@ class Simulation {
   void report_status(const StepResult& result);
   void report_breaks() const;
   void report_intrusions();
+  void report_overload();
   /// From the `first` of World::unsettled() on.
   void report_unsettled(std::size_t first) const;
   void skip_to(Nanoseconds time);
@@ -190,6 +192,7 @@ class Simulation {
   int faults_ = 0;
   int scene_version_ = 0;
   ros::WallTime last_published_;
+  OverloadWatch overload_watch_;
   Statistics statistics_;
   std::set<std::string> intrusions_;
   std::deque<AwaitedSteps> awaited_steps_;

@@ -114,6 +114,7 @@ class TfInputs {
 
   TfListener listener_;
   FrameBuffer buffer_;
+  std::deque<ReceivedTransform> received_;                          ///< not yet in the buffer
   std::deque<std::pair<ros::WallTime, ReceivedTransform>> recent_;  ///< with the time of arrival
   Nanoseconds timeout_ = 0;
   double max_frame_speed_ = infinity;

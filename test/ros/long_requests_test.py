@@ -1,0 +1,163 @@
+#!/usr/bin/env python3
+"""While a request takes long the others are answered, and each ends as it says."""
+import signal
+import subprocess
+import sys
+import threading
+import time
+import unittest
+
+import rospy
+import rostest
+from tf2_msgs.msg import TFMessage
+
+from cable_client import CableClient, cable, node_at, transform
+
+ROPE = 'materials: {rope: {linear_density: 0.1, radius: 0.005, drag: 0.2, bending_stiffness: 1.0e-3}}\n'
+
+
+def rope(name, segments, frame='world'):
+    return (f'  - {{name: {name}, length: 1.0, segments: {segments}, material: rope, attachments: [{{name: a_{name}, at: start, '
+            f'frame: {frame}, type: clamp}}]}}\n')
+
+
+class Aside:
+    """A call in a thread of its own."""
+
+    def __init__(self, call, *arguments, **named):
+        self.answer = None
+        self._thread = threading.Thread(target=lambda: setattr(self, 'answer', call(*arguments, **named)), daemon=True)
+        self._thread.start()
+
+    def runs(self):
+        return self._thread.is_alive()
+
+    def result(self):
+        self._thread.join(60)
+        return self.answer
+
+
+class LongRequestsTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        rospy.init_node('long_requests_test')
+        cls.node = CableClient('/cable')
+        cls.node.state()
+
+    def setUp(self):
+        self.node.pause(False)
+        self.assertTrue(self.node.load_scene(yaml=ROPE + 'cables:\n' + rope('rope', 50)).success)
+
+    def slowest(self, request, during, what):
+        """Of the answers to a request that is repeated, 100 times a second, as long as another runs [s]."""
+        slowest, count = 0, 0
+        while during.runs():
+            begin = time.monotonic()
+            request()
+            slowest = max(slowest, time.monotonic() - begin)
+            count += 1
+            time.sleep(0.01)
+        rospy.loginfo('%s: %d requests meanwhile, slowest answer %.0f ms', what, count, 1e3 * slowest)
+        self.assertGreater(count, 3)
+        return slowest
+
+    def test_steps_let_others_through(self):
+        self.assertTrue(self.node.pause(True).success)
+        before = self.node.state().header.stamp.to_sec()
+        steps = Aside(self.node.step, 30000)
+        # 3 s at once, before; on a busy machine a slice takes its time
+        self.assertLess(self.slowest(lambda: self.node.unpin('nothing'), steps, 'step of 30000'), 0.5)
+        answer = steps.result()
+        self.assertTrue(answer.success, answer.message)
+        self.assertAlmostEqual(answer.time, before + 30, places=6)
+        self.assertAlmostEqual(self.node.state().header.stamp.to_sec(), answer.time, places=6)
+
+    def test_edits_are_applied_between_steps_and_steps_go_on(self):
+        self.node.pause(True)
+        steps = Aside(self.node.step, 20000)
+        time.sleep(0.1)
+        pinned = self.node.pin(node_at('rope', 50), name='tip', keep_offset=True)
+        self.assertTrue(pinned.success, pinned.message)
+        self.assertTrue(steps.runs())
+        self.assertTrue(steps.result().success)
+        self.assertIn('tip', cable(self.node.state(), 'rope').attachments)
+
+    def test_what_interrupts_steps_says_so(self):
+        other = ROPE + 'cables:\n' + rope('other', 20)
+        for interrupt, reason in ((self.node.reset, 'reset'), (lambda: self.node.pause(False), 'the pause has ended'),
+                                  (lambda: self.node.load_scene(yaml=other), 'the scene is replaced')):
+            self.node.pause(True)
+            steps = Aside(self.node.step, 10**6)
+            second = Aside(self.node.step, 10)
+            time.sleep(0.3)
+            self.assertTrue(steps.runs() or second.runs())
+            answer = interrupt()
+            self.assertTrue(answer.success, answer.message)
+            answers = [steps.result(), second.result()]
+            interrupted = next(a for a in answers if 'interrupted' in a.message)
+            self.assertFalse(interrupted.success)
+            self.assertIn(reason, interrupted.message)
+            self.assertIn('of 1000000 steps', interrupted.message)
+
+    def test_scenes_are_read_and_built_aside(self):
+        names = [f'r{i}' for i in range(7000)]
+        text = ROPE + 'cables:\n' + ''.join(rope(name, 10) for name in names)
+        self.assertLess(len(text), 2**20)
+        loading = Aside(self.node.load_scene, yaml=text)
+        self.assertLess(self.slowest(self.node.reset, loading, f'load_scene of {len(text)} bytes'), 0.5)
+        answer = loading.result()
+        self.assertTrue(answer.success, answer.message)
+        self.assertEqual(len(self.node.state().cables), len(names))
+
+    def test_a_bad_scene_changes_nothing(self):
+        loading = Aside(self.node.load_scene, yaml=ROPE + 'cables:\n' + rope('rope', 50).replace('1.0', '-1.0') * 3000)
+        self.slowest(self.node.reset, loading, 'bad scene')
+        answer = loading.result()
+        self.assertFalse(answer.success)
+        self.assertIn('cables[0].length', answer.message)
+        self.assertEqual([c.name for c in self.node.state().cables], ['rope'])
+
+    def test_pins_share_the_limit_of_frames(self):
+        static = rospy.Publisher('/tf_static', TFMessage, queue_size=10, latch=True)
+        static.publish([transform(f'peg{i}', 1, (0, 0, 0)) for i in range(2100)])
+        pinned, refusal = 0, None
+        deadline = time.monotonic() + 60
+        while refusal is None and time.monotonic() < deadline:
+            answer = self.node.pin(node_at('rope', 25), name='peg', frame_id=f'peg{pinned}', keep_offset=True)
+            if answer.success:
+                pinned += 1
+                self.assertTrue(self.node.unpin('peg').success)
+            elif 'used' in answer.message:
+                refusal = answer.message
+        self.assertIn('frame_id: "peg1999"; allowed: one of the 2000', refusal)
+        self.assertEqual(pinned, 1999)  # and the fixed frame
+        self.assertTrue(self.node.reset().success)
+        self.assertTrue(self.node.pin(node_at('rope', 25), name='peg', frame_id='peg2000', keep_offset=True).success)
+
+    def test_the_node_ends_in_the_middle(self):
+        process = subprocess.Popen(['rosrun', 'verlet_cable', 'cable_node', '__name:=victim'])
+        try:
+            victim = CableClient('/victim')
+            victim.state()
+            victim.pause(True)
+
+            def call(service, *arguments):
+                try:
+                    return service(*arguments)
+                except rospy.ServiceException as error:
+                    return error
+
+            steps = [Aside(call, victim.step, 10**6) for _ in range(3)]
+            time.sleep(0.5)
+            self.assertTrue(all(s.runs() for s in steps))
+            process.send_signal(signal.SIGINT)
+            self.assertEqual(process.wait(20), 0)
+            for s in steps:
+                self.assertFalse(getattr(s.result(), 'success', False))
+        finally:
+            process.kill()
+            process.wait()
+
+
+if __name__ == '__main__':
+    rostest.rosrun('verlet_cable', 'long_requests', LongRequestsTest, sys.argv)
