@@ -1,4 +1,3 @@
-#include <ros/callback_queue.h>
 #include <ros/ros.h>
 
 #include "verlet_cable/ros/cable_node.h"
@@ -9,9 +8,7 @@ int main(int argc, char** argv) {
   const ros::NodeHandle node("~");
   try {
     const verlet_cable::CableNode cable_node(node);
-    while (ros::ok()) {
-      verlet_cable::run_guarded("a message", [] { ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.1)); });
-    }
+    ros::spin();
   } catch (const verlet_cable::SceneError& error) {
     verlet_cable::log_errors(error);
     return 2;

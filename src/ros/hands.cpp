@@ -39,11 +39,9 @@ CableLocation location_of(const Handle& handle) {
 
 Hands::Hands(ros::NodeHandle& private_node, Simulation& simulation)
     : simulation_(simulation),
-      viewers_(private_node.advertise<visualization_msgs::InteractiveMarkerUpdate>("hands/update", 100)),
-      server_(private_node.resolveName("hands")) {}
+      server_(private_node, "hands", [this](const Feedback& feedback) { receive(feedback); }) {}
 
 void Hands::receive(const Feedback& feedback) {
-  const std::lock_guard<std::mutex> lock(mutex_);
   const bool drags = feedback.event_type == Feedback::POSE_UPDATE;
   const std::string& frame = feedback.header.frame_id;
   if (frame.size() > longest_frame) {
@@ -61,14 +59,13 @@ void Hands::receive(const Feedback& feedback) {
 }
 
 std::deque<Hands::Request> Hands::take_requests() {
-  const std::lock_guard<std::mutex> lock(mutex_);
   return std::exchange(requests_, {});
 }
 
 void Hands::update() {
   for (const Request& request : take_requests()) apply(request);
   drop_lost_grabs();
-  if (viewers_.getNumSubscribers() == 0) return;
+  if (server_.viewers() == 0) return;
   const ros::WallTime now = ros::WallTime::now();
   if (now - last_shown_ < show_period) return;
   last_shown_ = now;
@@ -182,13 +179,13 @@ void Hands::show() {
   for (const auto& [name, handle] : handles) {
     const auto before = shown_.find(name);
     if (before == shown_.end() || !look_alike(before->second, handle)) {
-      server_.insert(interactive_marker(handle, frame), [this](const Feedback::ConstPtr& feedback) { receive(*feedback); });
+      server_.insert(interactive_marker(handle, frame));
     } else {
-      // Also where it has not moved: the server has put it where feedback said, be that finite or not.
-      server_.setPose(name, to_pose(handle.pose));
+      // Also where it has not moved: a viewer has put it where the mouse was.
+      server_.set_pose(name, to_pose(handle.pose));
     }
   }
-  server_.applyChanges();
+  server_.apply_changes();
   shown_ = std::move(handles);
 }
 

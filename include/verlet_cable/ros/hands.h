@@ -1,14 +1,13 @@
 #pragma once
 
-#include <interactive_markers/interactive_marker_server.h>
 #include <ros/ros.h>
 
 #include <deque>
 #include <map>
-#include <mutex>
 #include <string>
 #include <vector>
 
+#include "verlet_cable/ros/handle_server.h"
 #include "verlet_cable/ros/handles.h"
 #include "verlet_cable/ros/simulation.h"
 
@@ -52,14 +51,12 @@ class Hands {
   std::set<std::string> grabbed_attachments() const;
 
   Simulation& simulation_;
-  ros::Publisher viewers_;  // shares the server's topic, and counts its subscribers
-  std::mutex mutex_;        // in a nodelet feedback comes in a thread of its own
   std::deque<Request> requests_;
   std::map<std::string, Handle> shown_;  // by name
   std::map<std::string, Grab> grabs_;    // by the name of the handle
   std::string shown_frame_;
   ros::WallTime last_shown_;
-  interactive_markers::InteractiveMarkerServer server_;  // the last: it calls back until it is gone
+  HandleServer server_;  // the last: it calls back until it is gone
 };
 
 }  // namespace verlet_cable
