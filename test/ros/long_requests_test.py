@@ -50,24 +50,26 @@ class LongRequestsTest(unittest.TestCase):
         self.assertTrue(self.node.load_scene(yaml=ROPE + 'cables:\n' + rope('rope', 50)).success)
 
     def slowest(self, request, during, what):
-        """Of the answers to a request that is repeated, 100 times a second, as long as another runs [s]."""
+        """Of the answers to a request that is repeated, 100 times a second, as long as another runs; as a part of that time."""
         slowest, count = 0, 0
+        start = time.monotonic()
         while during.runs():
             begin = time.monotonic()
             request()
             slowest = max(slowest, time.monotonic() - begin)
             count += 1
             time.sleep(0.01)
-        rospy.loginfo('%s: %d requests meanwhile, slowest answer %.0f ms', what, count, 1e3 * slowest)
+        took = time.monotonic() - start
+        rospy.loginfo('%s: %.1f s, %d requests meanwhile, slowest answer %.0f ms', what, took, count, 1e3 * slowest)
         self.assertGreater(count, 3)
-        return slowest
+        return slowest / took
 
     def test_steps_let_others_through(self):
         self.assertTrue(self.node.pause(True).success)
         before = self.node.state().header.stamp.to_sec()
         steps = Aside(self.node.step, 30000)
-        # 3 s at once, before; on a busy machine a slice takes its time
-        self.assertLess(self.slowest(lambda: self.node.unpin('nothing'), steps, 'step of 30000'), 0.5)
+        # however busy the machine is
+        self.assertLess(self.slowest(lambda: self.node.unpin('nothing'), steps, 'step of 30000'), 0.3)
         answer = steps.result()
         self.assertTrue(answer.success, answer.message)
         self.assertAlmostEqual(answer.time, before + 30, places=6)
@@ -105,7 +107,8 @@ class LongRequestsTest(unittest.TestCase):
         text = ROPE + 'cables:\n' + ''.join(rope(name, 10) for name in names)
         self.assertLess(len(text), 2**20)
         loading = Aside(self.node.load_scene, yaml=text)
-        self.assertLess(self.slowest(self.node.reset, loading, f'load_scene of {len(text)} bytes'), 0.5)
+        # not reset, which the last time is that of the new scene
+        self.assertLess(self.slowest(lambda: self.node.unpin('nothing'), loading, f'load_scene of {len(text)} bytes'), 0.5)
         answer = loading.result()
         self.assertTrue(answer.success, answer.message)
         self.assertEqual(len(self.node.state().cables), len(names))
