@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """play_motion.py: sends the frames of a motion (CSV: t,frame,x,y,z,qx,qy,qz,qw, as for cable_sim) on tf at 100 Hz.
 
-Between rows positions follow a cubic Hermite spline (Catmull-Rom), as in cable_sim, orientations a normalized line. When all is
-played, the frames stay for `~pause` seconds; then the cables are reset, and it begins again. Nothing moves where there is no file.
+Between rows the frames move as in cable_sim (src/scene/motion.cpp): positions follow a cubic Hermite spline with limited tangents,
+orientations slerp. When all is played, the frames stay for `~pause` seconds; then the cables are reset, and it begins again. Nothing moves where there is no file.
 """
 import csv
 import os
@@ -23,26 +23,48 @@ class Track:
         self.times = np.array([row[0] for row in rows])
         self._positions = np.array([row[1:4] for row in rows])
         self._orientations = np.array([row[4:8] for row in rows])
-        self._velocities = np.zeros_like(self._positions)
-        if len(rows) > 2:
-            spans = self.times[2:] - self.times[:-2]
-            self._velocities[1:-1] = (self._positions[2:] - self._positions[:-2]) / spans[:, None]
+        self._orientations /= np.linalg.norm(self._orientations, axis=1)[:, None]
 
     def at(self, time):
         """Position and quaternion; held before the first row and after the last."""
         last = len(self.times) - 1
-        time = min(max(time, self.times[0]), self.times[last])
-        i = min(int(np.searchsorted(self.times, time, side='right')) - 1, last - 1)
-        if i < 0:
+        if time <= self.times[0] or last == 0:
             return self._positions[0], self._orientations[0]
-        h = self.times[i + 1] - self.times[i]
-        s = (time - self.times[i]) / h
-        p, v = self._positions, self._velocities
-        position = ((1 + 2 * s) * (1 - s) ** 2 * p[i] + s * (1 - s) ** 2 * h * v[i]
-                    + s * s * (3 - 2 * s) * p[i + 1] + s * s * (s - 1) * h * v[i + 1])
-        first, second = self._orientations[i], self._orientations[i + 1]
-        orientation = (1 - s) * first + s * (second if first @ second >= 0 else -second)
-        return position, orientation / np.linalg.norm(orientation)
+        if time >= self.times[last]:
+            return self._positions[last], self._orientations[last]
+        i = int(np.searchsorted(self.times, time, side='right')) - 1
+        duration = self.times[i + 1] - self.times[i]
+        u = (time - self.times[i]) / duration
+        way = (u * u * (3 - 2 * u) * (self._positions[i + 1] - self._positions[i])
+               + u * (1 - u) * ((1 - u) * self._tangent(i, duration) - u * self._tangent(i + 1, duration)))
+        return self._positions[i] + way, slerp(self._orientations[i], self._orientations[i + 1], u)
+
+    def _tangent(self, row, duration):
+        """The spline's tangent at a row times the duration [m] of the interval before or after it."""
+        def velocity(start, end):
+            return (self._positions[end] - self._positions[start]) / ((self.times[end] - self.times[start]) / duration)
+
+        if row == 0:
+            return velocity(0, 1)
+        if row == len(self.times) - 1:
+            return velocity(row - 1, row)
+        mean = velocity(row - 1, row + 1)
+        longest = 3 * min(np.linalg.norm(velocity(row - 1, row)), np.linalg.norm(velocity(row, row + 1)))
+        length = np.linalg.norm(mean)
+        return longest / length * mean if length > longest else mean
+
+
+def slerp(first, second, u):
+    """Between two unit quaternions, the short way."""
+    cosine = first @ second
+    if cosine < 0:
+        second, cosine = -second, -cosine
+    weights = 1 - u, u
+    if cosine < 1 - np.finfo(float).eps:
+        angle = np.arccos(cosine)
+        weights = np.sin((1 - u) * angle) / np.sin(angle), np.sin(u * angle) / np.sin(angle)
+    orientation = weights[0] * first + weights[1] * second
+    return orientation / np.linalg.norm(orientation)
 
 
 def read_motion(path):

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
+#include <random>
 
 #include "scene_text.h"
 #include "verlet_cable/scene/frame_speed.h"
@@ -69,6 +71,114 @@ TEST(FrameTrack, velocityIsContinuous) {
     const double after = (track.at(t + h).position.x() - track.at(t).position.x()) / h;
     EXPECT_NEAR(before, after, 1e-4) << t;  // the acceleration is some 10, times h, and rounding / h
   }
+}
+
+/// Random numbers for tracks, the same on every machine.
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+  double operator()(double lowest, double highest) {
+    return lowest + (highest - lowest) * static_cast<double>(engine_()) / static_cast<double>(std::mt19937::max());
+  }
+
+ private:
+  std::mt19937 engine_;
+};
+
+FrameTrack along_x(const std::vector<double>& times, const std::vector<double>& places) {
+  FrameTrack track;
+  for (std::size_t i = 0; i < times.size(); ++i) track.add(times[i], {{places[i], 0, 0}, Quaternion::Identity()});
+  return track;
+}
+
+TEST(FrameTrack, aQuickStepBetweenTwoRestsStaysBetweenThem) {
+  for (const double quick : {1e-2, 1e-4, 1e-9, 1e-300}) {
+    const FrameTrack track = along_x({-1, 0, quick, 1}, {0, 0, 0.1, 0.1});
+    for (double t = -1.1; t < 1.1; t += 1e-3) {
+      const double x = track.at(t).position.x();
+      EXPECT_GE(x, 0) << quick << " " << t;
+      EXPECT_LE(x, 0.1) << quick << " " << t;
+      if (t <= 0) EXPECT_EQ(x, 0) << quick << " " << t;
+      if (t >= quick) EXPECT_EQ(x, 0.1) << quick << " " << t;
+    }
+  }
+}
+
+TEST(FrameTrack, rowsThatGoOneWayNeverTurnBackAndWhatStandsStands) {
+  Random random(7);
+  for (int trial = 0; trial < 2000; ++trial) {
+    std::vector<double> times{0}, places{0};
+    const int rows = 2 + trial % 8;
+    while (static_cast<int>(times.size()) < rows) {
+      times.push_back(times.back() + std::pow(10, random(-5, 1)));
+      places.push_back(places.back() + (random(0, 1) < 0.3 ? 0 : std::pow(10, random(-5, 1))));
+    }
+    const FrameTrack track = along_x(times, places);
+    double before = 0;
+    for (std::size_t i = 0; i + 1 < times.size(); ++i) {
+      for (int k = 0; k <= 50; ++k) {
+        const double t = times[i] + k / 50.0 * (times[i + 1] - times[i]);
+        const double x = track.at(t).position.x();
+        ASSERT_GE(x, before - 1e-15 * places.back()) << trial << " " << t;
+        if (places[i] == places[i + 1]) ASSERT_EQ(x, places[i]) << trial << " " << t;
+        before = std::max(before, x);
+      }
+    }
+  }
+}
+
+TEST(FrameTrack, theSplineDoesNotDependOnUnitsOrAxes) {
+  Random random(3);
+  const Quaternion turn = Quaternion(Eigen::AngleAxisd(1.1, Vector3(1, 2, 3).normalized()));
+  const Vector3 shift(0.3, -2, 5);
+  for (int trial = 0; trial < 200; ++trial) {
+    FrameTrack track, changed, mirrored;
+    std::vector<std::pair<double, Vector3>> rows;
+    for (double t = 0; rows.size() < 6; t += random(0.01, 1))
+      rows.emplace_back(t, Vector3(random(-1, 1), random(-1, 1), random(-1, 1)));
+    for (const auto& [t, x] : rows) {
+      track.add(t, {x, Quaternion::Identity()});
+      changed.add(8 * t, {shift + 4 * (turn * x), Quaternion::Identity()});
+    }
+    for (auto row = rows.rbegin(); row != rows.rend(); ++row) mirrored.add(-row->first, {row->second, Quaternion::Identity()});
+    for (double t = -0.1; t < rows.back().first + 0.1; t += 0.01) {
+      const Vector3 x = track.at(t).position;
+      ASSERT_NEAR((changed.at(8 * t).position - shift - 4 * (turn * x)).norm(), 0, 10 * rounding) << t;
+      ASSERT_NEAR((mirrored.at(-t).position - x).norm(), 0, 10 * rounding) << t;
+    }
+  }
+}
+
+TEST(FrameTrack, uniformMotionIsExactOverUnequalIntervals) {
+  FrameTrack track;
+  const Vector3 velocity(1, -2, 0.5);
+  for (const double t : {-1.0, 0.0, 0.01, 0.8, 5.0}) track.add(t, {t * velocity, turned(0.3 * t)});
+  for (double t = -1; t < 5; t += 0.01) {
+    EXPECT_NEAR((track.at(t).position - t * velocity).norm(), 0, 20 * rounding) << t;
+    EXPECT_NEAR((track.velocity_from(t).linear - velocity).norm(), 0, 1e-11) << t;  // rounding over the shortest interval
+    EXPECT_NEAR((track.velocity_from(t).angular - Vector3(0, 0, 0.3)).norm(), 0, 1e-11) << t;
+  }
+}
+
+TEST(FrameTrack, velocityIsThatOfTheMotionThatBegins) {
+  Random random(5);
+  FrameTrack track;
+  for (int i = 0; i < 8; ++i)
+    track.add(0.3 * i + random(0, 0.2), {{random(-1, 1), random(-1, 1), random(-1, 1)},
+                                         Quaternion(random(-1, 1), random(-1, 1), random(-1, 1), random(-1, 1)).normalized()});
+  constexpr double h = 1e-6;
+  for (double t = 0.2; t < 2; t += 0.0137) {
+    const Pose now = track.at(t), next = track.at(t + h);
+    // Curvatures of some 100 m/s^2 over h, and the rounding of places over h.
+    EXPECT_NEAR((track.velocity_from(t).linear - (next.position - now.position) / h).norm(), 0, 1e-3) << t;
+    const Vector3 turn = rotation_vector(next.orientation * now.orientation.conjugate());
+    EXPECT_NEAR((track.velocity_from(t).angular - turn / h).norm(), 0, 1e-3) << t;
+  }
+  EXPECT_EQ(track.velocity_from(-0.1).linear, Vector3(0, 0, 0));
+  EXPECT_EQ(track.velocity_from(track.last_time()).linear, Vector3(0, 0, 0));
+  FrameTrack one;
+  one.add(0, {});
+  EXPECT_EQ(one.velocity_from(0).linear, Vector3(0, 0, 0));
 }
 
 TEST(FrameTrack, turnsTheShortWay) {

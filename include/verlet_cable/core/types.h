@@ -26,6 +26,18 @@ struct Pose {
   }
 };
 
+/// How a frame moves, seen from the fixed frame.
+struct FrameVelocity {
+  Vector3 linear = Vector3::Zero();   ///< [m/s] of its origin
+  Vector3 angular = Vector3::Zero();  ///< [rad/s]
+};
+
+/// The rotation as axis times angle [rad], the short way.
+inline Vector3 rotation_vector(const Quaternion& rotation) {
+  const Eigen::AngleAxisd turn(rotation);
+  return turn.angle() * turn.axis();
+}
+
 /// Rotation of fixed-axis roll, pitch and yaw [rad], as in URDF: Rz(yaw) Ry(pitch) Rx(roll).
 inline Quaternion quaternion_from_rpy(const Vector3& rpy) {
   return Eigen::AngleAxisd(rpy.z(), Vector3::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Vector3::UnitY()) *

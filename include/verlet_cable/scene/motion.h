@@ -8,8 +8,9 @@
 
 namespace verlet_cable {
 
-/// The pose of a frame over time, through given poses: positions follow a cubic Hermite spline (Catmull-Rom), orientations slerp;
-/// held before the first pose and after the last.
+/// The pose of a frame over time, through given poses, its rows: positions follow a cubic Hermite spline with limited tangents,
+/// orientations slerp; held before the first row and after the last. What stands between two rows stands, and rows that go one way
+/// along a line never turn back. scripts/play_motion.py does the same.
 class FrameTrack {
  public:
   /// Adds a pose [m] at a time [s] above that of the last one.
@@ -17,12 +18,15 @@ class FrameTrack {
 
   /// At least one pose was added.
   Pose at(double time) const;
+  /// Of the motion that begins at a time; zero before the first row, and at the last and after it.
+  FrameVelocity velocity_from(double time) const;
 
   bool empty() const { return times_.empty(); }
   double last_time() const { return times_.back(); }  ///< [s]
 
  private:
-  Vector3 velocity(std::size_t row) const;
+  std::size_t row_after(double time) const;
+  Vector3 tangent(std::size_t row, double duration) const;
 
   std::vector<double> times_;  ///< [s] ascending
   std::vector<Pose> poses_;    ///< one a time
