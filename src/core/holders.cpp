@@ -7,8 +7,15 @@ namespace verlet_cable {
 
 namespace {
 
-/// A holder that would have to be faster [m/s] has jumped: its frame was set anew.
-constexpr double fastest_holder = 50;
+/// No hand or machine changes its velocity by more [m/s] within a step: a holder that does jumps, if that does not last longer [s].
+constexpr double greatest_change = 5;
+constexpr double longest_jump = 5e-3;
+/// Nothing starts to move like this [m/s] at once: it is a jump between two messages or rows, spread over the time between them [s].
+constexpr double greatest_lasting_change = 20;
+constexpr double longest_spread_jump = 0.1;
+/// Frames may be on vehicles: one that starts is believed to move as fast as this [m/s].
+constexpr double fastest_start = 50;
+constexpr double rounding = 1e-9;
 /// A node that is pinned elsewhere than it is goes there at about this speed [m/s], in no less than this time [s].
 constexpr double approach_speed = 2;
 constexpr double shortest_approach = 0.1;
@@ -38,13 +45,42 @@ Vector3 tangent(const CableState& state, int node) {
   return state.positions[std::min(node + 1, last)] - state.positions[std::max(node - 1, 0)];
 }
 
-/// Aims a holder at a target. False if it would have to jump.
-bool aim(const Vector3& target, double time, double time_step, Holder& holder) {
-  const double left = remaining(holder.caught, holder.gap.norm(), time);
-  holder.next_position = target + left * holder.gap;
-  const Vector3 mean = (holder.next_position - holder.position) / time_step;
-  holder.next_velocity = mean + 0.5 * (mean - holder.mean_velocity);
-  return mean.norm() <= fastest_holder;
+void aim(const Vector3& target, double time, Holder& holder) {
+  holder.next_position = target + remaining(holder.caught, holder.gap.norm(), time) * holder.gap;
+}
+
+bool is_greater_than_a_motion(const Vector3& change) {
+  return change.norm() > greatest_change;
+}
+
+/// The time [s] in whole steps in which a jump that does not last too long may be seen: it need not begin with a step.
+double longest_jump_time(const Vector3& change, double time_step) {
+  const double longest = change.norm() > greatest_lasting_change ? longest_spread_jump : longest_jump;
+  return (std::ceil(longest / time_step * (1 - rounding)) + 1) * time_step;
+}
+
+void end_jump(Holder& holder) {
+  holder.jumps_for = 0;
+  holder.jumped_from = holder.carried = Vector3::Zero();
+}
+
+/// Whether a holder jumps in a step with this mean velocity. A change of velocity that lasts is a motion, and to be followed; while
+/// that is not known it is a jump. What trembles goes as its mean does.
+bool jumps(const Vector3& mean, double time_step, Holder& holder) {
+  if (!is_greater_than_a_motion(mean - holder.mean_velocity)) return false;
+  if (holder.jumps_for == 0) holder.jumped_from = holder.position;
+  const double time = holder.jumps_for + time_step;
+  if (time <= longest_jump_time(mean - holder.mean_velocity, time_step) * (1 + rounding)) return true;
+  const Vector3 lasting = (holder.next_position - holder.jumped_from) / time;
+  end_jump(holder);
+  holder.jumped_from = holder.position;
+  if (!is_greater_than_a_motion(lasting - holder.mean_velocity)) {
+    holder.mean_velocity = lasting;
+    return is_greater_than_a_motion(mean - lasting);
+  }
+  if (is_greater_than_a_motion(mean - lasting)) return true;
+  holder.mean_velocity = mean;
+  return false;
 }
 
 /// Catches a node where it is.
@@ -122,13 +158,27 @@ Holders find_holders(int cable, const CableModel& model, const CableState& state
   return holders;
 }
 
-bool aim_holders(const CableModel& model, const std::vector<Attachment>& attachments, const std::vector<Pose>& frames,
-                 double time, double time_step, Holders& holders) {
-  bool followed = true;
+void start_holders(const std::vector<Attachment>& attachments, const std::vector<Pose>& frames, const BoundaryInputs& inputs,
+                   Holders& holders) {
+  for (Holder& holder : holders.nodes) {
+    const auto frame = static_cast<std::size_t>(attachments[holder.attachment].frame);
+    if (frame == 0) continue;
+    holder.starts = true;
+    if (frame >= inputs.size() || !inputs[frame].velocity) continue;
+    const FrameVelocity& of_frame = *inputs[frame].velocity;
+    const Vector3 velocity = of_frame.linear + of_frame.angular.cross(holder.position - frames[frame].position);
+    if (!velocity.allFinite()) continue;
+    holder.starts = false;
+    holder.velocity = holder.mean_velocity = holder.next_velocity = velocity;
+  }
+}
+
+void aim_holders(const CableModel& model, const std::vector<Attachment>& attachments, const std::vector<Pose>& frames,
+                 double time, Holders& holders) {
   for (Holder& holder : holders.nodes) {
     const Attachment& attachment = attachments[holder.attachment];
     const Pose pose = frames[attachment.frame] * attachment.pose;
-    if (!aim(target_position(model, attachment, pose, holder.node), time, time_step, holder)) followed = false;
+    aim(target_position(model, attachment, pose, holder.node), time, holder);
   }
   for (DirectionHolder& holder : holders.directions) {
     const Attachment& attachment = attachments[holder.attachment];
@@ -136,7 +186,6 @@ bool aim_holders(const CableModel& model, const std::vector<Attachment>& attachm
     holder.next_orientation =
         Quaternion::Identity().slerp(left, holder.gap) * (frames[attachment.frame] * attachment.pose).orientation;
   }
-  return followed;
 }
 
 Holders find_net_holders(int net, const std::vector<Vector3>& positions, const std::vector<Vector3>& velocities,
@@ -152,22 +201,50 @@ Holders find_net_holders(int net, const std::vector<Vector3>& positions, const s
   return holders;
 }
 
-bool aim_hinges(const std::vector<Attachment>& attachments, const std::vector<Pose>& frames, double time, double time_step,
-                Holders& holders) {
-  bool followed = true;
+void aim_hinges(const std::vector<Attachment>& attachments, const std::vector<Pose>& frames, double time, Holders& holders) {
   for (Holder& holder : holders.nodes) {
     const Attachment& attachment = attachments[holder.attachment];
-    if (!aim((frames[attachment.frame] * attachment.pose).position, time, time_step, holder)) followed = false;
+    aim((frames[attachment.frame] * attachment.pose).position, time, holder);
   }
-  return followed;
 }
 
-void jump_to_aim(Holders& holders) {
+void put_at_aim(Holders& holders) {
   for (Holder& holder : holders.nodes) {
     holder.position = holder.next_position;
-    holder.velocity = holder.next_velocity = holder.mean_velocity = Vector3::Zero();
+    holder.next_velocity = holder.velocity;
   }
   for (DirectionHolder& holder : holders.directions) holder.orientation = holder.next_orientation;
+}
+
+Following follow_aims(const std::vector<Attachment>& attachments, double time, double time_step, Holders& holders,
+                      std::vector<Jump>& over) {
+  Following following;
+  for (Holder& holder : holders.nodes) {
+    const Vector3 mean = (holder.next_position - holder.position) / time_step;
+    if (holder.starts) {
+      holder.starts = false;
+      if (mean.norm() <= fastest_start) holder.velocity = holder.mean_velocity = mean;
+      following.started = true;
+    }
+    // What a node that has just been caught was doing is no motion of a frame.
+    const bool is_new = time - holder.caught < 1.5 * time_step;
+    if (!is_new && jumps(mean, time_step, holder)) {
+      const Vector3 way = holder.next_position - holder.position - time_step * holder.mean_velocity;
+      holder.position += way;
+      holder.carried += way;
+      holder.jumps_for += time_step;
+      holder.next_velocity = holder.mean_velocity;
+      if (following.jumping_node < 0) following.jumping_node = holder.node;
+      for (DirectionHolder& direction : holders.directions)
+        if (direction.attachment == holder.attachment) direction.orientation = direction.next_orientation;
+      continue;
+    }
+    if (holder.jumps_for > 0 && holder.node == attachments[holder.attachment].node)
+      over.push_back({holder.attachment, holder.carried.norm(), time - time_step - holder.jumps_for, holder.jumps_for});
+    end_jump(holder);
+    holder.next_velocity = mean + 0.5 * (mean - holder.mean_velocity);
+  }
+  return following;
 }
 
 void hold_at(double from, double to, const Holders& holders, Boundary& boundary) {

@@ -14,11 +14,16 @@ struct Holder {
   int node = 0;
   Vector3 position = Vector3::Zero();       ///< [m] at the world's time
   Vector3 velocity = Vector3::Zero();       ///< [m/s] at the world's time
-  Vector3 mean_velocity = Vector3::Zero();  ///< [m/s] over the last step
+  Vector3 mean_velocity = Vector3::Zero();  ///< [m/s] over the last step; while it jumps, of the motion before
+  bool starts = false;                      ///< its velocity is not known before its first step is
   Vector3 gap = Vector3::Zero();            ///< [m] from its place to where it was when it was caught; closed smoothly
   double caught = -infinity;                ///< [s] when that was
   Vector3 next_position = Vector3::Zero();  ///< [m] at the end of the step
   Vector3 next_velocity = Vector3::Zero();  ///< [m/s]
+  // Of a jump: a change of velocity that is too great for a motion, as long as it is not known to last.
+  double jumps_for = 0;                   ///< [s] that it has lasted; 0: there is none
+  Vector3 jumped_from = Vector3::Zero();  ///< [m] where the holder was then
+  Vector3 carried = Vector3::Zero();      ///< [m] how far it has carried the cable
 };
 
 /// The motion of a direction and roll that a clamp holds, over a step.
@@ -55,17 +60,31 @@ Holders find_net_holders(int net, const std::vector<Vector3>& positions, const s
                          const std::vector<Attachment>& attachments, const std::vector<Pose>& frames, const Holders& before,
                          double time);
 
-/// Sets where the holders will be at the end of a step that ends at `time`, `frames` being the poses then. False if one of them
-/// would have to jump.
-bool aim_holders(const CableModel& model, const std::vector<Attachment>& attachments, const std::vector<Pose>& frames,
-                 double time, double time_step, Holders& holders);
+/// How the holders of a cable or net that starts begin to move: as their frames do (`inputs`, by frame id) or, where that is not
+/// given, as they will in their first step.
+void start_holders(const std::vector<Attachment>& attachments, const std::vector<Pose>& frames, const BoundaryInputs& inputs,
+                   Holders& holders);
+
+/// Sets where the holders will be at the end of a step that ends at `time`, `frames` being the poses then.
+void aim_holders(const CableModel& model, const std::vector<Attachment>& attachments, const std::vector<Pose>& frames,
+                 double time, Holders& holders);
 
 /// The same for hinges.
-bool aim_hinges(const std::vector<Attachment>& attachments, const std::vector<Pose>& frames, double time, double time_step,
-                Holders& holders);
+void aim_hinges(const std::vector<Attachment>& attachments, const std::vector<Pose>& frames, double time, Holders& holders);
 
-/// Puts the holders where they aim, at rest.
-void jump_to_aim(Holders& holders);
+/// Puts the holders where they aim; they move on as before.
+void put_at_aim(Holders& holders);
+
+/// What following the aims over a step found.
+struct Following {
+  bool started = false;  ///< a holder's velocity has become known
+  int jumping_node = -1;  ///< the first whose holder jumps, -1: none does
+};
+
+/// Sets how the holders move over a step that ends at `time`. Those that jump are taken as far as they jump, to be followed on from
+/// there. Jumps that are over are added to `jumps`.
+Following follow_aims(const std::vector<Attachment>& attachments, double time, double time_step, Holders& holders,
+                      std::vector<Jump>& jumps);
 
 /// What is held at the end of a substep that goes from one part of the step to another, 0 to 1.
 void hold_at(double from, double to, const Holders& holders, Boundary& boundary);

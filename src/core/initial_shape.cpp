@@ -83,7 +83,6 @@ void set_initial_state(const InitialShapeDesc& initial, const CableModel& model,
       project_positions(model, held, state.positions);
       break;
   }
-  project_velocities(model, held, state.positions, state.velocities);
 }
 
 void carry_along(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {

@@ -8,7 +8,7 @@
 namespace verlet_cable {
 
 /// Puts a cable into its initial shape and motion (`desc.initial`), its held nodes where their holders are (`held`, ascending),
-/// its lengths kept if it is inextensible. `gravity` [m/s^2] says where cables hang.
+/// its lengths kept if it is inextensible; velocities are those given, not projected. `gravity` [m/s^2] says where cables hang.
 void set_initial_state(const InitialShapeDesc& initial, const CableModel& model, const std::vector<HeldNode>& held,
                        const Vector3& gravity, CableState& state);
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "initial_shape.h"
+#include "length_projection.h"
 #include "rest_curvature.h"
 #include "stiff_ends.h"
 #include "world_implementation.h"
@@ -103,8 +104,8 @@ int World::start_waiting(const BoundaryInputs& inputs) {
       ++started;
     }
   };
-  start_known(w.waiting_descs, w.scene.cables, [&](const CableDesc& desc) { w.start_cable(desc); });
-  start_known(w.waiting_nets, w.scene.nets, [&](const NetDesc& desc) { w.start_net(desc); });
+  start_known(w.waiting_descs, w.scene.cables, [&](const CableDesc& desc) { w.start_cable(desc, inputs); });
+  start_known(w.waiting_nets, w.scene.nets, [&](const NetDesc& desc) { w.start_net(desc, inputs); });
   return started;
 }
 
@@ -128,7 +129,7 @@ void World::Implementation::follow_frames(const BoundaryInputs& inputs) {
   for (Obstacle& obstacle : obstacles) obstacle.present = known[obstacle.frame];
 }
 
-void World::Implementation::start_cable(const CableDesc& desc) {
+void World::Implementation::start_cable(const CableDesc& desc, const BoundaryInputs& inputs) {
   const int index = static_cast<int>(cables.size());
   SimulatedCable cable;
   cable.model = make_model(scene, desc);
@@ -147,14 +148,22 @@ void World::Implementation::start_cable(const CableDesc& desc) {
   cable.state.velocities.assign(cable.model.nodes(), Vector3::Zero());
   CableScratch s;
   s.holders = find_holders(index, cable.model, cable.state, attachments, poses, {}, time());
-  for (Holder& holder : s.holders.nodes) holder.gap.setZero();
+  for (Holder& holder : s.holders.nodes) {
+    holder.gap.setZero();
+    holder.caught = -infinity;
+  }
   for (DirectionHolder& holder : s.holders.directions) holder.gap.setIdentity();
-  aim_holders(cable.model, attachments, poses, time(), scene.time_step, s.holders);
-  jump_to_aim(s.holders);
+  aim_holders(cable.model, attachments, poses, time(), s.holders);
+  put_at_aim(s.holders);
+  start_holders(attachments, poses, inputs, s.holders);
   hold_at(1, 1, s.holders, s.boundary);
   set_initial_state(desc.initial, cable.model, s.boundary.nodes,
                     scene.gravity.at(s.boundary.nodes.empty() ? Vector3(Vector3::Zero()) : s.boundary.nodes.front().position),
                     cable.state);
+  // Where velocities of holders are not known yet, the first step finds them, and all go together.
+  const auto starts = [](const Holder& holder) { return holder.starts; };
+  if (std::none_of(s.holders.nodes.begin(), s.holders.nodes.end(), starts))
+    project_velocities(cable.model, s.boundary.nodes, cable.state.positions, cable.state.velocities);
   cable.state.twist.assign(cable.model.segments(), 0.0);
   cable.state.reference_orientation =
       Quaternion::FromTwoVectors(Vector3::UnitX(), cable.state.positions[1] - cable.state.positions[0]);
@@ -200,7 +209,7 @@ void World::Implementation::update_holders(int index) {
   SimulatedCable& cable = cables[index];
   CableScratch& s = scratch[index];
   s.holders = find_holders(index, cable.model, cable.state, attachments, poses, s.holders, time());
-  aim_holders(cable.model, attachments, poses, time(), scene.time_step, s.holders);
+  aim_holders(cable.model, attachments, poses, time(), s.holders);
   hold_at(0, 0, s.holders, s.boundary);
   restore_lengths(cable.model, s.boundary.nodes, gravity_near(index), cable.state);
   s.spans = find_spans(cable.model, cable.state, s.boundary.directions);

@@ -24,6 +24,7 @@ struct CableScratch {
   CableStepper stepper;
   Boundary boundary;
   std::vector<TwistSpan> spans;
+  std::vector<Jump> jumps;   ///< that this step found to be over
   std::optional<Reel> reel;  ///< of a winch that runs, or of a joint that closes
 };
 
@@ -60,6 +61,7 @@ struct World::Implementation {
   std::vector<Obstacle> obstacles;
   std::vector<ContactGroup> groups;   ///< every cable is in one
   std::vector<Break> breaks;          ///< in the last step
+  std::vector<Jump> jumps;            ///< likewise
   std::vector<Intrusion> intrusions;  ///< likewise
   // Scratch
   std::vector<StepResult> results;               ///< one a cable
@@ -68,8 +70,8 @@ struct World::Implementation {
 
   template <class Desc>
   bool frames_known(const Desc& desc, const BoundaryInputs& inputs) const;
-  void start_cable(const CableDesc& desc);
-  void start_net(const NetDesc& desc);
+  void start_cable(const CableDesc& desc, const BoundaryInputs& inputs);
+  void start_net(const NetDesc& desc, const BoundaryInputs& inputs);
   void update_net(int net);
   void add_particle(const ParticleDesc& desc);
   void step_nets_and_particles(StepResult& result);

@@ -11,6 +11,9 @@ namespace {
 
 using Status = StepResult::Status;
 
+/// Nodes that are nearer than this to a held one [m] are carried along with it.
+constexpr double nearest = 1e-6;
+
 void note_net(Status status, int net, int node, StepResult& result) {
   if (status <= result.status) return;
   note_status(status, -1, node, result);
@@ -23,13 +26,35 @@ void forget_motion(const NetModel& model, NetScratch& s) {
   s.point_memory.resize(model.masses.size());
 }
 
+/// Held nodes move as their holders do.
+void take_velocities(const Holders& holders, NetState& state) {
+  for (const Holder& holder : holders.nodes) state.velocities[holder.node] = holder.velocity;
+}
+
+/// Carries a net along with holders that have jumped: each node by the holders' ways, weighted by the inverse squares of their
+/// distances (Shepard 1968).
+void carry_along(const Holders& holders, NetState& state) {
+  const std::vector<Vector3> before = state.positions;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    Vector3 sum = Vector3::Zero();
+    double weights = 0;
+    for (const Holder& holder : holders.nodes) {
+      const double weight = 1 / std::max((before[i] - before[holder.node]).squaredNorm(), nearest * nearest);
+      sum += weight * (holder.position - before[holder.node]);
+      weights += weight;
+    }
+    state.positions[i] += sum / weights;
+  }
+  for (const Holder& holder : holders.nodes) state.positions[holder.node] = holder.position;
+}
+
 void bring_to_rest(NetState& state) {
   std::fill(state.velocities.begin(), state.velocities.end(), Vector3::Zero());
 }
 
 }  // namespace
 
-void World::Implementation::start_net(const NetDesc& desc) {
+void World::Implementation::start_net(const NetDesc& desc, const BoundaryInputs& inputs) {
   const int index = static_cast<int>(nets.size());
   for (const NetAttachmentDesc& a : desc.attachments) {
     Attachment attachment;
@@ -48,6 +73,8 @@ void World::Implementation::start_net(const NetDesc& desc) {
   net_scratch.back().link_memory.midstep_velocities.assign(model.masses.size(), Vector3::Zero());
   net_scratch.back().link_memory.impulses.assign(model.links.size() + model.minimum_distances.size(), 0.0);
   update_net(index);
+  start_holders(attachments, poses, inputs, net_scratch.back().holders);
+  take_velocities(net_scratch.back().holders, nets.back().state);
 }
 
 /// After a change of what holds a net or what it is made of.
@@ -55,7 +82,7 @@ void World::Implementation::update_net(int index) {
   const SimulatedNet& net = nets[index];
   NetScratch& s = net_scratch[index];
   s.holders = find_net_holders(index, net.state.positions, net.state.velocities, attachments, poses, s.holders, time());
-  aim_hinges(attachments, poses, time(), scene.time_step, s.holders);
+  aim_hinges(attachments, poses, time(), s.holders);
   hold_at(0, 0, s.holders, s.boundary);
   if (net.model.link_type == LinkType::spring) {
     s.springs.resize(net.model);
@@ -103,18 +130,16 @@ void World::Implementation::step_net(int index, StepResult& result) {
   complete_step(scene.time_step, s.holders);
 }
 
-/// Aims what holds a net at where it will be. Where that is a jump, the net is carried along.
+/// Aims what holds a net at where it will be. Where that jumps, the net is carried along, and keeps its velocities.
 void World::Implementation::aim_net(int index, StepResult& result) {
   NetScratch& s = net_scratch[index];
-  if (aim_hinges(attachments, poses, time(), scene.time_step, s.holders)) return;
-  NetState& state = nets[index].state;
-  const Holder& first = s.holders.nodes.front();
-  const Vector3 way = first.next_position - state.positions[first.node];
-  for (Vector3& position : state.positions) position += way;
-  bring_to_rest(state);
-  forget_motion(nets[index].model, s);
-  jump_to_aim(s.holders);
-  note_net(Status::jumped, index, first.node, result);
+  aim_hinges(attachments, poses, time(), s.holders);
+  const Following following = follow_aims(attachments, time(), scene.time_step, s.holders, jumps);
+  if (following.started) take_velocities(s.holders, nets[index].state);
+  if (following.jumping_node < 0) return;
+  carry_along(s.holders, nets[index].state);
+  s.point_memory.restart();
+  note_net(Status::jumped, index, following.jumping_node, result);
 }
 
 void World::Implementation::step_particle(int index, StepResult& result) {

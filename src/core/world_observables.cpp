@@ -52,8 +52,10 @@ class Hash {
   }
   void add(const Holder& h) {
     add_bits(static_cast<std::uint64_t>(h.node));
-    for (const Vector3* v : {&h.position, &h.velocity, &h.mean_velocity, &h.gap}) add(*v);
+    for (const Vector3* v : {&h.position, &h.velocity, &h.mean_velocity, &h.gap, &h.jumped_from, &h.carried}) add(*v);
     add(h.caught);
+    add(h.jumps_for);
+    add_bits(h.starts);
   }
   void add(const PointState& points) {
     add_bits(static_cast<std::uint64_t>(points.known) << 2 | static_cast<std::uint64_t>(points.started) << 1 |
@@ -121,6 +123,10 @@ const std::vector<std::string>& World::unsettled() const {
 
 const std::vector<Break>& World::breaks() const {
   return implementation_->breaks;
+}
+
+const std::vector<Jump>& World::jumps() const {
+  return implementation_->jumps;
 }
 
 const std::vector<Intrusion>& World::intrusions() const {

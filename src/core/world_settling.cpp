@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "length_projection.h"
 #include "verlet_cable/core/world.h"
 #include "world_implementation.h"
 
@@ -31,8 +32,8 @@ void World::Implementation::settle_cable(int index) {
   SimulatedCable& cable = cables[index];
   CableScratch& s = scratch[index];
   if (s.holders.nodes.empty()) return;
-  aim_holders(cable.model, attachments, poses, time(), scene.time_step, s.holders);
-  jump_to_aim(s.holders);
+  aim_holders(cable.model, attachments, poses, time(), s.holders);
+  put_at_aim(s.holders);
   hold_at(1, 1, s.holders, s.boundary);
   bring_to_rest(cable.state);
   ContactGroup alone;
@@ -49,6 +50,7 @@ void World::Implementation::settle_cable(int index) {
       settled = settled && substep.displacement < settled_contact * cable.model.material.radius;
     h = substep.converged ? std::min(4 * h, last_settling_step) : std::max(h / 8, shortest_substep);
   }
+  project_velocities(cable.model, s.boundary.nodes, cable.state.positions, cable.state.velocities);
   add_forces(index, 1);
   follow_material(index);
   if (!settled) unsettled.push_back(cable.model.name);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "initial_shape.h"
+#include "length_projection.h"
 #include "verlet_cable/core/world.h"
 #include "world_implementation.h"
 
@@ -32,6 +33,7 @@ StepResult World::step(const BoundaryInputs& inputs) {
   ++w.steps;
   for (Attachment& attachment : w.attachments) attachment.force = attachment.torque = Vector3::Zero();
   w.breaks.clear();
+  w.jumps.clear();
   w.intrusions.clear();
   w.results.assign(w.cables.size(), StepResult{});
   w.step_groups();
@@ -71,6 +73,7 @@ void World::Implementation::step_groups() {
       for (std::size_t i = some.begin(); i < some.end(); ++i) step_group(groups[i]);
     });
   }
+  for (const CableScratch& s : scratch) jumps.insert(jumps.end(), s.jumps.begin(), s.jumps.end());
   for (const ContactGroup& group : groups)
     intrusions.insert(intrusions.end(), group.scratch.intrusions.begin(), group.scratch.intrusions.end());
 }
@@ -129,16 +132,23 @@ void World::Implementation::step_group(ContactGroup& group) {
   }
 }
 
-/// Aims a cable's holders at where they will be at the end of the step.
+/// Aims a cable's holders at where they will be at the end of the step. Where they jump, the cable is carried along with them before
+/// it is stepped, and keeps its velocities.
 void World::Implementation::aim(int index) {
   SimulatedCable& cable = cables[index];
   CableScratch& s = scratch[index];
   if (s.reel) plan_reel_step(index);
-  if (aim_holders(cable.model, attachments, poses, time(), scene.time_step, s.holders)) return;
-  jump_to_aim(s.holders);
-  hold_at(1, 1, s.holders, s.boundary);
-  carry_along(cable.model, s.boundary.nodes, gravity_near(index), cable.state);
-  note_status(StepResult::Status::jumped, index, s.boundary.nodes.front().node, results[index]);
+  aim_holders(cable.model, attachments, poses, time(), s.holders);
+  s.jumps.clear();
+  const Following following = follow_aims(attachments, time(), scene.time_step, s.holders, s.jumps);
+  const bool jumps = following.jumping_node >= 0;
+  if (!following.started && !jumps) return;
+  hold_at(0, 0, s.holders, s.boundary);
+  if (jumps) {
+    carry_along(cable.model, s.boundary.nodes, gravity_near(index), cable.state);
+    note_status(StepResult::Status::jumped, index, following.jumping_node, results[index]);
+  }
+  project_velocities(cable.model, s.boundary.nodes, cable.state.positions, cable.state.velocities);
 }
 
 /// Not even from rest: the cable is put where its holders will be, and goes on from there.

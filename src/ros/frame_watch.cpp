@@ -1,13 +1,22 @@
 #include "verlet_cable/ros/frame_watch.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <string>
 
+#include "verlet_cable/core/jump_text.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 
 namespace verlet_cable {
 namespace {
+
+/// Less is not worth a word.
+constexpr double least_distance = 5e-4;  // [m]
+constexpr double least_degrees = 0.05;
+/// Between reports of a frame's jumps.
+constexpr Nanoseconds jump_period = 1000000000;
 
 std::vector<Attachment> attachments_of(int frame, const World& world) {
   std::vector<Attachment> attachments;
@@ -31,6 +40,28 @@ void publish_for_frame(const EventPublisher& events, std::uint8_t type, int fram
   events.publish_each(type, stamp, subjects, message);
 }
 
+std::string rounded(const char* format, double number) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, number);
+  return text;
+}
+
+/// How far a frame is from where it was held [m], [rad], and how fast that is made good [m/s].
+std::string gap_words(double distance, double angle, double speed) {
+  const double degrees = angle * 180 / M_PI;
+  const bool is_away = distance >= least_distance, is_turned = degrees >= least_degrees;
+  if (!is_away && !is_turned) return " where it was lost";
+  std::string words = ", ";
+  if (is_away) words += rounded("%.3g m", distance);
+  if (is_away && is_turned) words += " and ";
+  if (is_turned) words += rounded("%.3g degrees", degrees);
+  words += " from where it was lost: what it holds goes there at ";
+  if (is_away) words += rounded("%.3g m/s", speed);
+  if (is_away && is_turned) words += " and ";
+  if (is_turned) words += rounded("%.3g degrees/s", FrameGap::turn_speed * 180 / M_PI);
+  return words;
+}
+
 const char* consequence(LostFramePolicy policy) {
   switch (policy) {
     case LostFramePolicy::hold:
@@ -52,6 +83,7 @@ void FrameWatch::watch(const SceneDesc& scene) {
   max_frame_speed_ = scene.max_frame_speed;
   timeout_ = scene.tf_timeout;
   lost_.clear();
+  jumped_.clear();
 }
 
 bool FrameWatch::react(const std::vector<FrameChange>& changes, Nanoseconds stamp, World& world) {
@@ -75,11 +107,22 @@ bool FrameWatch::react(const std::vector<FrameChange>& changes, Nanoseconds stam
         wait |= needed && policy_ == LostFramePolicy::pause;
         break;
       case FrameChange::Kind::back:
-        report_back(change.frame, stamp, world);
+        report_back(change, stamp, world);
         break;
     }
   }
   return wait;
+}
+
+void FrameWatch::report_jumps(Nanoseconds stamp, const World& world) {
+  for (const Jump& jump : world.jumps()) {
+    if (std::abs(jump.time - skipped_) < 0.5 * world.time_step()) continue;
+    const Attachment& attachment = world.attachments()[jump.attachment];
+    const auto [reported, is_new] = jumped_.emplace(attachment.frame, stamp);
+    if (!is_new && stamp > reported->second && stamp - reported->second < jump_period) continue;
+    reported->second = stamp;
+    events_.publish(CableEvent::JUMPED, stamp, subject_of(world, attachment), jump_text(world, jump));
+  }
 }
 
 void FrameWatch::report_unseen(const BoundaryInputs& inputs, const std::vector<FrameReport>& frames) const {
@@ -99,9 +142,12 @@ void FrameWatch::report_lost(int frame, Nanoseconds stamp, const World& world) {
                         (attachments_of(frame, world).empty() ? "its obstacles stay where they are" : consequence(policy_)));
 }
 
-void FrameWatch::report_back(int frame, Nanoseconds stamp, const World& world) {
-  if (lost_.erase(frame) == 0) return;
-  publish_for_frame(events_, CableEvent::FRAME_BACK, frame, stamp, world, "frame " + quoted(world.frames()[frame]) + " is back");
+void FrameWatch::report_back(const FrameChange& change, Nanoseconds stamp, const World& world) {
+  if (lost_.erase(change.frame) == 0) return;
+  std::string message = "frame " + quoted(world.frames()[change.frame]) + " is back";
+  if (policy_ != LostFramePolicy::release)
+    message += gap_words(change.distance, change.angle, std::min(FrameGap::speed, max_frame_speed_));
+  publish_for_frame(events_, CableEvent::FRAME_BACK, change.frame, stamp, world, message);
 }
 
 void FrameWatch::release(int frame, Nanoseconds stamp, World& world) const {

@@ -91,7 +91,7 @@ bool Rollout::run(const std::function<bool(double)>& goes_on, RolloutResult& res
   const double step = world_.time_step();
   const auto steps = static_cast<std::int64_t>(std::llround(duration_ / step));
   const auto follow = [&](double time) {
-    for (const auto& [frame, track] : motion_) frames_[frame] = {track.at(time), true};
+    for (const auto& [frame, track] : motion_) frames_[frame] = {track.at(time), true, track.velocity_from(time)};
   };
   follow(0);
   world_.start_waiting(frames_);

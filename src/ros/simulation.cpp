@@ -155,11 +155,14 @@ void Simulation::stand() {
 bool Simulation::step_world(Nanoseconds time) {
   const auto begin = std::chrono::steady_clock::now();
   moves_.advance(scene_.time_step, world_);
+  if (stamp_ != stepped_to_) frame_watch_.skip(world_.time());
   const StepResult result = world_.step(frames_.inputs());
   statistics_.add(result, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   report_status(result);
   if (faulted_) return false;
   const Nanoseconds before = std::exchange(stamp_, time);
+  stepped_to_ = stamp_;
+  frame_watch_.report_jumps(stamp_, world_);
   report_breaks();
   report_intrusions();
   if (!world_.waiting().empty() && !frames_.changes().empty()) {

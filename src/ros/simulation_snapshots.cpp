@@ -57,6 +57,7 @@ EditResult Simulation::restore_state(const std::string& name) {
     frames_.restore(snapshot.frames, stamp_);
   }
   faulted_ = false;
+  stepped_to_ = 0;
   frame_watch_.forget_from(static_cast<int>(frame_names(scene_).size()));
   announce(CableEvent::RESET, {}, message);
   if (paused_) publish();

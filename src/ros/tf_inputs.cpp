@@ -26,6 +26,7 @@ void TfInputs::follow_scene(const SceneDesc& scene, Nanoseconds time) {
   buffer_.see_from(scene.frame_id);
   timeout_ = nanoseconds(scene.tf_timeout);
   max_frame_speed_ = scene.max_frame_speed;
+  approaches_ = scene.on_lost_frame != LostFramePolicy::release;
   inputs_ = initial_frames(scene);
   const std::vector<std::string> names = frame_names(scene);
   scene_frames_ = static_cast<int>(names.size());
@@ -79,6 +80,7 @@ void TfInputs::restart(Nanoseconds now, bool forget) {
     if (forget) {
       track.status = i == 0 ? FrameStatus::ok : FrameStatus::never_seen;
       track.too_fast = false;
+      track.gap = {};
       inputs_[i] = track.initial;
     }
     update_history(track);
@@ -92,7 +94,7 @@ void TfInputs::reset(Nanoseconds time) {
   drop_pinned_frames();
   for (int i = 0; i < scene_frames_; ++i) {
     if (const auto pose = buffer_.pose(tracks_[i].name, time)) {
-      if (tracks_[i].history.at(time) == Coverage::covered) follow(i, *pose, infinity);
+      if (tracks_[i].history.at(time) == Coverage::covered) place(i, *pose);
     }
   }
 }
@@ -119,7 +121,7 @@ const TfInputs::Track* TfInputs::find_track(const std::string& frame) const {
 
 std::vector<SavedFrame> TfInputs::save() const {
   std::vector<SavedFrame> frames;
-  for (std::size_t i = 0; i < tracks_.size(); ++i) frames.push_back({tracks_[i].name, inputs_[i], tracks_[i].status});
+  for (std::size_t i = 0; i < tracks_.size(); ++i) frames.push_back({tracks_[i].name, inputs_[i], tracks_[i].gap, tracks_[i].status});
   return frames;
 }
 
@@ -133,6 +135,7 @@ void TfInputs::restore(const std::vector<SavedFrame>& saved, Nanoseconds time) {
     if (!input.known) {
       input = frame.input;
       track.status = frame.status;
+      track.gap = frame.gap;
     }
     if (!followed) track.status = track.history.at(time) == Coverage::covered ? FrameStatus::ok : FrameStatus::lost;
     inputs.push_back(input);
@@ -146,6 +149,7 @@ void TfInputs::rewind(const std::vector<SavedFrame>& saved, Nanoseconds time) {
   for (std::size_t i = 0; i < saved.size(); ++i) {
     inputs_[i] = saved[i].input;
     tracks_[i].too_fast = false;
+    tracks_[i].gap = saved[i].gap;
     const bool covered = tracks_[i].history.at(time) == Coverage::covered;
     const bool unseen = saved[i].status == FrameStatus::never_seen;
     // A frame that is not known then is not lost anew: it stays where it was saved until tf knows it.
@@ -168,22 +172,22 @@ bool TfInputs::sample(Nanoseconds time, Nanoseconds elapsed, Nanoseconds target,
   bool wait = false;
   for (std::size_t i = 0; i < tracks_.size(); ++i) wait |= needed[i] && must_wait(tracks_[i], time, target);
   if (wait) return false;
-  sample_frames(time, target, max_frame_speed_ * seconds(elapsed));
+  sample_frames(time, target, seconds(elapsed));
   return true;
 }
 
 void TfInputs::sample_without_waiting(Nanoseconds time, Nanoseconds elapsed) {
   changes_.clear();
-  sample_frames(time, 0, max_frame_speed_ * seconds(elapsed));
+  sample_frames(time, 0, seconds(elapsed));
 }
 
 void TfInputs::sample_at_once(Nanoseconds time) {
   changes_.clear();
-  sample_frames(time, 0, infinity);
+  sample_frames(time, 0, 0);
 }
 
-void TfInputs::sample_frames(Nanoseconds time, Nanoseconds target, double longest_way) {
-  for (std::size_t i = 0; i < tracks_.size(); ++i) sample_frame(static_cast<int>(i), time, target, longest_way);
+void TfInputs::sample_frames(Nanoseconds time, Nanoseconds target, double elapsed) {
+  for (std::size_t i = 0; i < tracks_.size(); ++i) sample_frame(static_cast<int>(i), time, target, elapsed);
 }
 
 bool TfInputs::must_wait(Track& track, Nanoseconds time, Nanoseconds target) const {
@@ -193,15 +197,15 @@ bool TfInputs::must_wait(Track& track, Nanoseconds time, Nanoseconds target) con
   return late;
 }
 
-void TfInputs::sample_frame(int frame, Nanoseconds time, Nanoseconds target, double longest_way) {
+void TfInputs::sample_frame(int frame, Nanoseconds time, Nanoseconds target, double elapsed) {
   Track& track = tracks_[frame];
   const Coverage coverage = track.history.at(time);
   if (coverage == Coverage::covered) {
     if (const auto pose = buffer_.pose(track.name, time)) {
       if (track.status == FrameStatus::never_seen) change(FrameChange::Kind::seen, frame);
-      if (track.status == FrameStatus::lost) change(FrameChange::Kind::back, frame);
+      if (track.status == FrameStatus::lost) come_back(frame, *pose);
       track.status = FrameStatus::ok;
-      follow(frame, *pose, longest_way);
+      follow(frame, *pose, elapsed);
       return;
     }
   }
@@ -212,27 +216,49 @@ void TfInputs::sample_frame(int frame, Nanoseconds time, Nanoseconds target, dou
   }
   if (track.status == FrameStatus::lost) return;
   if (const Nanoseconds last = track.history.last_before(time); last > 0) {
-    if (const auto pose = buffer_.pose(track.name, last)) follow(frame, *pose, longest_way);
+    if (const auto pose = buffer_.pose(track.name, last)) follow(frame, *pose, elapsed);
   }
   const bool late = coverage == Coverage::ahead && target - track.history.newest() <= timeout_;
   track.status = late ? FrameStatus::late : FrameStatus::lost;
   if (!late) change(FrameChange::Kind::lost, frame);
 }
 
-void TfInputs::follow(int frame, const Pose& pose, double longest_way) {
+/// Without a way to get there.
+void TfInputs::place(int frame, const Pose& pose) {
+  inputs_[frame] = {pose, true};
+  tracks_[frame].gap = {};
+  tracks_[frame].too_fast = false;
+}
+
+/// What the frame holds goes on from where it was held meanwhile.
+void TfInputs::come_back(int frame, const Pose& pose) {
+  const FrameGap gap = FrameGap::between(pose, inputs_[frame].pose);
+  changes_.push_back({FrameChange::Kind::back, frame, gap.distance(), gap.angle()});
+  tracks_[frame].gap = gap;
+  if (!approaches_) place(frame, pose);
+}
+
+/// `elapsed` 0: as far as the frame went, at once.
+void TfInputs::follow(int frame, const Pose& pose, double elapsed) {
+  if (!inputs_[frame].known) return place(frame, pose);
   FrameInput& input = inputs_[frame];
   Track& track = tracks_[frame];
-  const double way = (pose.position - input.pose.position).norm();
-  if (!input.known || way <= longest_way) {
-    input = {pose, true};
+  Pose followed = track.gap.frame(input.pose);
+  const double way = (pose.position - followed.position).norm();
+  const double longest_way = elapsed > 0 ? max_frame_speed_ * elapsed : infinity;
+  if (way <= longest_way) {
+    followed = pose;
     track.too_fast = false;
-    return;
+  } else {
+    const double part = longest_way / way;
+    followed.position += part * (pose.position - followed.position);
+    followed.orientation = followed.orientation.slerp(part, pose.orientation).normalized();
+    if (!track.too_fast) change(FrameChange::Kind::too_fast, frame);
+    track.too_fast = true;
   }
-  const double part = longest_way / way;
-  input.pose.position += part * (pose.position - input.pose.position);
-  input.pose.orientation = input.pose.orientation.slerp(part, pose.orientation).normalized();
-  if (!track.too_fast) change(FrameChange::Kind::too_fast, frame);
-  track.too_fast = true;
+  if (!track.gap.is_closed())
+    track.gap.close_by(std::min(FrameGap::speed, max_frame_speed_) * elapsed, FrameGap::turn_speed * elapsed);
+  input = {track.gap.followed(followed), true};
 }
 
 std::optional<Nanoseconds> TfInputs::back_after(Nanoseconds time, const std::vector<bool>& needed) const {

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Frames that are lost and come back, under each policy; transforms that are no numbers; frames that are too fast."""
+"""Frames that are lost and come back, under each policy; transforms that are no numbers; frames that are too fast, or jump."""
+import math
 import sys
 import unittest
 
@@ -8,7 +9,7 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from tf2_msgs.msg import TFMessage
 
-from cable_client import CableClient, Frames, Messages, all_finite, cable, distance, transform
+from cable_client import CableClient, Frames, Messages, all_finite, cable, contents, distance, transform
 from verlet_cable.msg import CableEvent
 
 HELD = (0, 0, 1)
@@ -28,7 +29,8 @@ class LostFramesTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         rospy.init_node('lost_frames_test')
-        cls.hold, cls.release, cls.pause, cls.slow = (CableClient(f'/policy/{name}') for name in ('hold', 'release', 'pause', 'slow'))
+        names = ('hold', 'release', 'pause', 'slow', 'brisk')
+        cls.hold, cls.release, cls.pause, cls.slow, cls.brisk = (CableClient(f'/policy/{name}') for name in names)
 
     def start(self, node):
         """With the frame there: from the beginning of the scene."""
@@ -69,8 +71,10 @@ class LostFramesTest(unittest.TestCase):
         self.assertGreater(len(states[2].all()), 5, 'messages go on')
 
         with Frames(hand=lambda t: BACK):
-            for log in events:
-                self.assertEqual(log.wait_for(back, 'FRAME_BACK').other, 'hand')
+            for node, log in zip(nodes, events):
+                event = log.wait_for(back, 'FRAME_BACK')
+                self.assertEqual(event.other, 'hand')
+                self.assertEqual('0.1 m from where it was lost' in event.message, node is not self.release, event.message)
             for log in (states[0], states[2]):
                 log.wait_for(lambda s: distance(cable(s, 'rope').positions[0], BACK) < 1e-9, 'rope at the frame that is back')
             states[2].wait_for(lambda s: s.header.stamp.to_nsec() > min(standing), 'simulation that goes on')
@@ -79,6 +83,78 @@ class LostFramesTest(unittest.TestCase):
             self.assertEqual(cable(self.release.state(), 'rope').attachments, ['held', 'fixed'])
         for log in states:
             self.assertTrue(all(all_finite(s) for s in log.all()))
+        for log in (states[0], states[2]):
+            self.assert_speed(log.all(), 1)
+
+    def assert_speed(self, states, speed):
+        """The rope's start moves, and never faster [m/s]."""
+        path = [(s.header.stamp.to_sec(), cable(s, 'rope').positions[0].x) for s in states]
+        self.assertGreater(max(x for _, x in path) - min(x for _, x in path), 0.05)
+        for (t, a), (u, b) in zip(path, path[1:]):
+            # stamps are doubles of about 1e9 s, exact to 2e-7 s; a reset puts the rope where its frame is
+            self.assertLessEqual(abs(b - a), speed * max(u - t, 0) + 1e-6)
+
+    def test_the_gap_closes_on_top_of_the_frames_own_motion_and_is_in_snapshots(self):
+        node = self.brisk
+        start = rospy.get_time()
+
+        def moving(time):
+            return (0.05 * (time - start), 0, 1)
+
+        def away(time):
+            return (moving(time)[0], 0.4, 1)
+
+        def at(motion):
+            return lambda s: cable(s, 'rope') and distance(cable(s, 'rope').positions[0], motion(s.header.stamp.to_sec())) < 1e-4
+
+        def run_on():
+            self.assertTrue(node.restore_state('closing').success)
+            self.assertTrue(node.step(300).success)
+            return contents(node.state())
+
+        with node.states() as states, node.events() as events:
+            with Frames(hand=moving):
+                states.wait_for(at(moving), 'rope at its frame')
+            events.wait_for(lost, 'FRAME_LOST')
+            states.clear()
+            events.clear()
+            with Frames(hand=away):
+                self.assertIn('at 0.5 m/s', events.wait_for(back, 'FRAME_BACK').message)
+                states.wait_for(lambda s: cable(s, 'rope').positions[0].y > 0.05, 'rope on its way')
+                self.assertTrue(node.save_state('closing').success)
+                states.wait_for(at(away), 'rope at its frame')
+                path = [(s.header.stamp.to_sec(), cable(s, 'rope').positions[0]) for s in states.all()]
+                for (t, a), (u, b) in zip(path, path[1:]):
+                    self.assertLessEqual(b.y - a.y, 0.5 * (u - t) + 1e-6)
+                self.assertTrue(node.pause(True).success)
+                self.assertTrue(node.restore_state('closing').success)
+                saved = cable(node.state(), 'rope').positions[0].y
+                self.assertEqual(run_on(), run_on(), 'the same, bit for bit')
+                y = cable(node.state(), 'rope').positions[0].y
+                self.assertTrue(saved < y <= 0.4, (saved, y))
+                self.assertTrue(node.pause(False).success)
+
+    def test_a_jump_is_told_and_carries_the_rope_along(self):
+        node = self.hold
+        away = (0.3, 0, 1)
+        at = [math.inf]  # the time of the jump
+        publisher = rospy.Publisher('/tf', TFMessage, queue_size=10)
+        frames = Frames(hand=lambda t: HELD if t < at[0] else away)
+        with frames, node.events() as events, node.states() as states:
+            self.start(node)
+            rospy.sleep(0.2)
+            states.clear()
+            at[0] = rospy.get_time() + 0.2
+            # tf interpolates: both sides of the jump, ahead of time
+            publisher.publish([transform('hand', at[0] - 5e-4, HELD), transform('hand', at[0] + 5e-4, away)])
+            event = events.wait_for(lambda e: e.type == CableEvent.JUMPED, 'JUMPED')
+            self.assertEqual((event.cable, event.attachment, event.node, event.other), ('rope', 'held', 0, 'hand'))
+            self.assertRegex(event.message, r'^frame "hand" jumped by 0\.3 m within [12] ms: cable "rope" was carried along with it$')
+            states.wait_for(lambda s: distance(cable(s, 'rope').positions[0], away) < 1e-9, 'rope at its frame')
+            for state in states.all():
+                # struck by 0.3 m in a step or two, it would have some 200 m/s; it swings on
+                self.assertLess(max(abs(v.x) for v in cable(state, 'rope').velocities), 5)
+        self.assertEqual(len([e for e in events.all() if e.type == CableEvent.JUMPED]), 1)
 
     def test_transforms_that_are_no_numbers_are_refused_and_lose_the_frame(self):
         publisher = rospy.Publisher('/tf', TFMessage, queue_size=10)

@@ -19,6 +19,9 @@ namespace verlet_cable {
 struct FrameInput {
   Pose pose;
   bool known = true;  ///< false: never seen; cables that need it wait, obstacles in it are not there
+  /// What cables and nets that start now begin to move with, at what holds them. Steps do not read it: they follow the poses. Without
+  /// it a frame begins with its mean velocity over the first step.
+  std::optional<FrameVelocity> velocity = std::nullopt;
 };
 using BoundaryInputs = std::vector<FrameInput>;
 
@@ -39,7 +42,7 @@ struct StepResult {
   enum class Status {
     ok,
     overstretched,  ///< held points are further apart than what is between them can be: it was lengthened
-    jumped,         ///< a holder was suddenly elsewhere: the cable was carried along with it
+    jumped,         ///< a frame changed its velocity too much for a motion: what it holds was carried along with it
     degraded,  ///< a substep did not converge at the smallest size: the cable's motion was taken away, and it goes on from rest
     fault      ///< not even that: the cable stays as it was last, finite
   };
@@ -64,6 +67,15 @@ struct Break {
   int cable = 0;      ///< index of the cable, now the first piece
   int segment = 0;    ///< that is gone
   int new_cable = 0;  ///< index of the second piece
+};
+
+/// What an attachment holds was carried along with it instead of being struck: its velocity had changed by more than 5 m/s within a
+/// step, and not for longer than 5 ms; or by more than 20 m/s and not for longer than 0.1 s, as where tf interpolates over a jump.
+struct Jump {
+  int attachment = 0;   ///< index into World::attachments()
+  double distance = 0;  ///< [m] that the attachment was carried
+  double time = 0;      ///< [s] the world's time when it began
+  double duration = 0;  ///< [s] in whole steps
 };
 
 /// A cable that is inside an obstacle without having come through its surface: it started there, or the obstacle appeared there.
@@ -123,6 +135,7 @@ class World {
   const std::vector<std::string>& waiting() const;     ///< names of cables and nets that wait for a frame
   const std::vector<Attachment>& attachments() const;  ///< of the started cables and nets
   const std::vector<Break>& breaks() const;            ///< in the last step
+  const std::vector<Jump>& jumps() const;              ///< that the last step found to be over, one an attachment
   const std::vector<Intrusion>& intrusions() const;    ///< that the last step found, one a cable and obstacle
   /// Names of cables that found no equilibrium when they were to be settled, at their start or by `settle`.
   const std::vector<std::string>& unsettled() const;

@@ -16,7 +16,7 @@ struct EventSubject {
   std::string cable;
   std::string attachment;
   int node = 0;
-  std::string other;  ///< the new cable; the frame of FRAME_LOST and FRAME_BACK
+  std::string other;  ///< the new cable; the frame of FRAME_LOST, FRAME_BACK and JUMPED
 };
 
 EventSubject subject_of(const World& world, const Attachment& attachment);

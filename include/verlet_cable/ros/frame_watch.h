@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <set>
 #include <vector>
 
@@ -19,6 +20,10 @@ class FrameWatch {
   /// Acts on what a sample of the frames found; `stamp` is the simulated time. Releases attachments if the scene wants that. True
   /// if the simulation has to wait for a frame.
   bool react(const std::vector<FrameChange>& changes, Nanoseconds stamp, World& world);
+  /// Reports frames whose jumps the last step found to be over, each once a second at most.
+  void report_jumps(Nanoseconds stamp, const World& world);
+  /// Time is skipped at the world's `time`: what frames do over it is no jump of theirs.
+  void skip(double time) { skipped_ = time; }
   /// Logs which frames are missing still, and what waits for them.
   void report_unseen(const BoundaryInputs& inputs, const std::vector<FrameReport>& frames) const;
   /// Forgets which frames were lost, from an id on.
@@ -26,14 +31,16 @@ class FrameWatch {
 
  private:
   void report_lost(int frame, Nanoseconds stamp, const World& world);
-  void report_back(int frame, Nanoseconds stamp, const World& world);
+  void report_back(const FrameChange& change, Nanoseconds stamp, const World& world);
   void release(int frame, Nanoseconds stamp, World& world) const;
 
   LostFramePolicy policy_;
   double max_frame_speed_;  ///< [m/s]
   double timeout_;          ///< [s]
   const EventPublisher& events_;
-  std::set<int> lost_;  ///< ids of the frames whose loss was reported
+  std::set<int> lost_;                  ///< ids of the frames whose loss was reported
+  std::map<int, Nanoseconds> jumped_;  ///< by frame id: the stamp of the last jump that was reported
+  double skipped_ = -1;                 ///< [s] the world's time when time was skipped last
 };
 
 /// By frame id: whether the frame holds a cable.

@@ -183,6 +183,7 @@ class Simulation {
   std::map<std::string, Snapshot> snapshots_;
   std::map<std::string, AddedObstacle> added_obstacles_;
   Nanoseconds stamp_ = 0;
+  Nanoseconds stepped_to_ = 0;  ///< the stamp after the last step; another one now: time was skipped
   Nanoseconds waits_since_ = 0;  ///< ROS time since which the start waits for frames; 0 before there was any
   bool started_ = false;
   bool keeps_world_ = false;  ///< the next start goes on with the world as it is

@@ -10,6 +10,7 @@
 
 #include "verlet_cable/core/world.h"
 #include "verlet_cable/ros/frame_buffer.h"
+#include "verlet_cable/ros/frame_gap.h"
 #include "verlet_cable/ros/frame_history.h"
 #include "verlet_cable/ros/tf_listener.h"
 
@@ -25,7 +26,9 @@ enum class FrameStatus {
 struct FrameChange {
   enum class Kind { seen, lost, back, too_fast };
   Kind kind;
-  int frame;  ///< id
+  int frame;            ///< id
+  double distance = 0;  ///< [m] back: from where the frame was held
+  double angle = 0;     ///< [rad] likewise
 };
 
 struct FrameReport {
@@ -40,6 +43,7 @@ struct FrameReport {
 struct SavedFrame {
   std::string name;
   FrameInput input;
+  FrameGap gap;
   FrameStatus status = FrameStatus::never_seen;
 };
 
@@ -71,7 +75,8 @@ class TfInputs {
 
   /// The frames at `time`, for `inputs` and `changes`. False, and nothing changed, if a needed frame (by id) is late and has to
   /// be waited for: it is lost when its newest pose is more than `tf_timeout` older than `target`, the time at which the
-  /// simulation should be. No frame is followed faster than `max_frame_speed` in the `elapsed` time since the last sample.
+  /// simulation should be. No frame is followed faster than `max_frame_speed` in the `elapsed` time since the last sample. A frame
+  /// that was lost and comes back elsewhere is approached as FrameGap says, or at once where its loss released what it held.
   bool sample(Nanoseconds time, Nanoseconds elapsed, Nanoseconds target, const std::vector<bool>& needed);
   /// The same, with the newest pose of a frame that is late.
   void sample_without_waiting(Nanoseconds time, Nanoseconds elapsed);
@@ -99,6 +104,7 @@ class TfInputs {
     FrameHistory history;
     FrameStatus status = FrameStatus::never_seen;
     bool too_fast = false;
+    FrameGap gap;
   };
 
   void insert(const ReceivedTransform& received, Nanoseconds now);
@@ -107,9 +113,11 @@ class TfInputs {
   const Track* find_track(const std::string& frame) const;
   Track track_from(const std::string& frame, const FrameInput& at, Nanoseconds time) const;
   bool must_wait(Track& track, Nanoseconds time, Nanoseconds target) const;
-  void sample_frames(Nanoseconds time, Nanoseconds target, double longest_way);
-  void sample_frame(int frame, Nanoseconds time, Nanoseconds target, double longest_way);
-  void follow(int frame, const Pose& pose, double longest_way);
+  void sample_frames(Nanoseconds time, Nanoseconds target, double elapsed);
+  void sample_frame(int frame, Nanoseconds time, Nanoseconds target, double elapsed);
+  void come_back(int frame, const Pose& pose);
+  void place(int frame, const Pose& pose);
+  void follow(int frame, const Pose& pose, double elapsed);
   void change(FrameChange::Kind kind, int frame) { changes_.push_back({kind, frame}); }
 
   TfListener listener_;
@@ -118,6 +126,7 @@ class TfInputs {
   std::deque<std::pair<ros::WallTime, ReceivedTransform>> recent_;  ///< with the time of arrival
   Nanoseconds timeout_ = 0;
   double max_frame_speed_ = infinity;
+  bool approaches_ = true;  ///< frames that come back
   int scene_frames_ = 0;
   std::vector<Track> tracks_;  ///< by frame id; the first is the fixed frame
   BoundaryInputs inputs_;      ///< by frame id

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "verlet_cable/core/jump_text.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/step_subject.h"
 
@@ -11,6 +12,8 @@ namespace {
 
 /// [s] what does not come back for so long has ended; what comes and goes faster is one event.
 constexpr double quiet_time = 0.1;
+/// [s] of a frame's jumps no more than one is told.
+constexpr double jump_quiet_time = 1;
 constexpr std::size_t most_events = 1000;
 constexpr std::size_t most_printed = 20;
 
@@ -23,12 +26,11 @@ StatusText text_of(StepResult::Status status) {
   switch (status) {
     case StepResult::Status::overstretched:
       return {"overstretched", "held points are further apart than what is between them is long; it is lengthened"};
-    case StepResult::Status::jumped:
-      return {"jumped", "a holder was suddenly elsewhere; what it holds was carried along with it"};
     case StepResult::Status::degraded:
       return {"degraded", "no solution was found, or it ran away; its motion was taken away"};
     case StepResult::Status::fault:
       return {"FAULT", "no finite state was found"};
+    case StepResult::Status::jumped:
     case StepResult::Status::ok:
       break;
   }
@@ -38,12 +40,14 @@ StatusText text_of(StepResult::Status status) {
 }  // namespace
 
 void EventLog::observe(const World& world, const StepResult& result, const std::vector<int>& held_back) {
-  if (result.status != StepResult::Status::ok) {
+  // A jump is told when it is over, by the frame's name.
+  if (result.status != StepResult::Status::ok && result.status != StepResult::Status::jumped) {
     const StatusText text = text_of(result.status);
     const std::string cable = subject_of(world, result);
     report({world.time(), text.type, cable, result.node, "", text.message, ""}, result.max_strain);
   }
   add_breaks(world);
+  add_jumps(world);
   add_intrusions(world);
   for (const int frame : held_back) {
     const std::string& name = world.frames()[static_cast<std::size_t>(frame)];
@@ -74,6 +78,20 @@ void EventLog::add_breaks(const World& world) {
          "the segment that starts here was pulled harder than " + number_text(first.material.breaking_tension) +
              " N and is gone; the rest of the cable is " + second,
          second});
+  }
+}
+
+void EventLog::add_jumps(const World& world) {
+  for (const Jump& jump : world.jumps()) {
+    const Attachment& attachment = world.attachments()[static_cast<std::size_t>(jump.attachment)];
+    const std::string& frame = world.frames()[static_cast<std::size_t>(attachment.frame)];
+    const auto [told, is_new] = jumps_.emplace(frame, jump.time);
+    if (!is_new && jump.time > told->second && jump.time - told->second < jump_quiet_time) continue;
+    told->second = jump.time;
+    const bool is_net = attachment.net >= 0;
+    const std::string& held = is_net ? world.nets()[static_cast<std::size_t>(attachment.net)].model.name
+                                     : world.cables()[static_cast<std::size_t>(attachment.cable)].model.name;
+    add({jump.time, "JUMPED", held, attachment.node, frame, jump_text(world, jump), ""});
   }
 }
 

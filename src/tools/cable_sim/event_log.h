@@ -45,6 +45,7 @@ class EventLog {
   };
 
   void add_breaks(const World& world);
+  void add_jumps(const World& world);
   void add_intrusions(const World& world);
   void report(const Event& event, double strain);
   void end_episodes(double time);
@@ -55,6 +56,7 @@ class EventLog {
   std::size_t dropped_ = 0;
   double last_dropped_time_ = 0;
   std::map<std::string, Episode> episodes_;                   ///< that have not ended, by type and subject
+  std::map<std::string, double> jumps_;                       ///< when a frame's last one was told [s]
   std::set<std::pair<std::string, std::string>> intrusions_;  ///< that were told: cable and obstacle
 };
 

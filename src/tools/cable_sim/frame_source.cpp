@@ -3,6 +3,16 @@
 #include <algorithm>
 
 namespace verlet_cable::cable_sim {
+namespace {
+
+/// What is fixed to a moving parent.
+FrameInput carried(const FrameInput& parent, const Pose& origin) {
+  const Vector3 arm = parent.pose.orientation * origin.position;
+  const FrameVelocity& velocity = *parent.velocity;
+  return {parent.pose * origin, true, FrameVelocity{velocity.linear + velocity.angular.cross(arm), velocity.angular}};
+}
+
+}  // namespace
 
 FrameSource::FrameSource(const SceneDesc& scene, const Motion& motion) {
   const std::vector<std::string> names = frame_names(scene);
@@ -32,16 +42,18 @@ int FrameSource::add_frame(const std::string& name, const FrameInput& resting, c
 }
 
 BoundaryInputs FrameSource::at(double time) const {
-  std::vector<Pose> poses;
-  for (const Frame& frame : frames_) poses.push_back(frame.track.empty() ? frame.resting : frame.track.at(time));
-  std::vector<Pose> links;
-  for (const Link& link : links_) {
-    const Pose parent = link.parent < 0 ? Pose{} : links[link.parent];
-    links.push_back(link.frame < 0 ? parent * link.origin : poses[link.frame]);
-    if (link.id >= 0) poses[link.id] = links.back();
-  }
   BoundaryInputs inputs;
-  for (int id = 0; id < ids_; ++id) inputs.push_back({poses[id], true});
+  for (const Frame& frame : frames_) {
+    inputs.push_back({frame.resting, true, FrameVelocity{}});
+    if (!frame.track.empty()) inputs.back() = {frame.track.at(time), true, frame.track.velocity_from(time)};
+  }
+  BoundaryInputs links;
+  for (const Link& link : links_) {
+    const FrameInput parent = link.parent < 0 ? FrameInput{{}, true, FrameVelocity{}} : links[link.parent];
+    links.push_back(link.frame < 0 ? carried(parent, link.origin) : inputs[link.frame]);
+    if (link.id >= 0) inputs[link.id] = links.back();
+  }
+  inputs.resize(ids_);
   return inputs;
 }
 

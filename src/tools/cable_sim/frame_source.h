@@ -14,7 +14,7 @@ class FrameSource {
  public:
   FrameSource(const SceneDesc& scene, const Motion& motion);
 
-  /// One entry a frame id, all known.
+  /// One entry a frame id, all known, with the velocities of the motions that begin then.
   BoundaryInputs at(double time) const;
 
  private:
