@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -17,12 +16,16 @@ namespace fs = std::filesystem;
 /// Packages are looked for so many directories below the paths.
 constexpr int deepest_level = 8;
 
-/// The text between <name> and </name> of a package.xml, its own name: tags inside of other names do not come before it.
+/// The text between <name> and </name> of a package.xml, its own name: tags inside of other names do not come before it. Empty if
+/// there is none.
 std::string name_in(const fs::path& package_xml) {
-  std::ifstream stream(package_xml);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  const std::string xml = text.str(), open = "<name>";
+  std::string xml;
+  try {
+    xml = read_file(package_xml.string());
+  } catch (const ResourceError&) {
+    return "";
+  }
+  const std::string open = "<name>";
   const std::size_t begin = xml.find(open), end = xml.find("</name>");
   if (begin == std::string::npos || end == std::string::npos || end < begin) return "";
   const std::string name = xml.substr(begin + open.size(), end - begin - open.size());
@@ -42,9 +45,7 @@ std::vector<fs::path> search_paths() {
 }
 
 bool is_package(const fs::path& directory, const std::string& name) {
-  std::error_code error;
-  const fs::path package_xml = directory / "package.xml";
-  return fs::is_regular_file(package_xml, error) && name_in(package_xml) == name;
+  return name_in(directory / "package.xml") == name;
 }
 
 /// As rospack does: links are followed, packages inside packages are not looked for, nor anything hidden or marked CATKIN_IGNORE.

@@ -1,74 +1,148 @@
 #include "verlet_cable/scene/mesh_file.h"
 
-#include <assimp/config.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
+#include <dlfcn.h>
+#include <sys/wait.h>
 
+#include <algorithm>
 #include <array>
-#include <assimp/Importer.hpp>
-#include <cmath>
-#include <map>
+#include <cctype>
+#include <cfloat>
+#include <csignal>
+#include <filesystem>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 #include <vector>
 
+#include "child_process.h"
+#include "mesh_protocol.h"
+#include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
+#include "verlet_cable/core/scene_fields.h"
+#include "weld.h"
 
 namespace verlet_cable {
 namespace {
 
-constexpr std::size_t most_triangles = 1'000'000;
+namespace fs = std::filesystem;
+
 constexpr std::size_t longest_message = 200;
+constexpr double largest_weld = 1e-3;  // of the mesh's size
 
-/// Triangles whose vertices are found by their coordinates.
-class TriangleList {
- public:
-  explicit TriangleList(const Vector3& scale) : scale_(scale) {}
-
-  void add(const aiMesh& mesh) {
-    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
-      const aiFace& face = mesh.mFaces[f];
-      if (face.mNumIndices != 3) continue;  // points and lines
-      TriangleMesh::Triangle triangle;
-      for (int i = 0; i < 3; ++i) triangle[i] = index_of(mesh.mVertices[face.mIndices[i]]);
-      // A triangle between two points: its neighbours on both sides are neighbours.
-      if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) continue;
-      triangles_.push_back(triangle);
-      if (triangles_.size() > most_triangles)
-        throw ResourceError("it has more than " + std::to_string(most_triangles) + " triangles");
-    }
+/// The program beside this library, in development and install space: lib/libverlet_cable_scene.so, lib/verlet_cable/mesh_reader.
+/// Where the library is part of a program, that is beside it.
+std::string mesh_reader_program() {
+  std::vector<fs::path> directories;
+  std::error_code error;
+  Dl_info library;
+  if (dladdr(reinterpret_cast<const void*>(&read_mesh_file), &library) && library.dli_fname) {
+    const fs::path directory = fs::absolute(library.dli_fname, error).parent_path();
+    directories = {directory / "verlet_cable", directory};
   }
-
-  std::shared_ptr<const TriangleMesh> mesh() && {
-    return std::make_shared<TriangleMesh>(std::move(vertices_), std::move(triangles_));
+  directories.push_back(fs::read_symlink("/proc/self/exe", error).parent_path());
+  for (const fs::path& directory : directories) {
+    const fs::path program = directory / "mesh_reader";
+    if (fs::is_regular_file(program, error)) return program.string();
   }
+  throw ResourceError("the program mesh_reader, which reads meshes, is not in " + directories.front().string());
+}
 
- private:
-  int index_of(const aiVector3D& vertex) {
-    const std::array<float, 3> key{vertex.x, vertex.y, vertex.z};
-    if (!std::isfinite(vertex.x + vertex.y + vertex.z)) throw ResourceError("a vertex is not finite");
-    const auto [found, is_new] = indices_.emplace(key, static_cast<int>(vertices_.size()));
-    if (is_new) vertices_.push_back(Vector3(vertex.x, vertex.y, vertex.z).cwiseProduct(scale_));
-    return found->second;
-  }
+/// stl, obj or dae, by the name.
+std::string format_of(const std::string& path) {
+  std::string extension = fs::path(path).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  for (const char* format : {"stl", "obj", "dae"})
+    if (extension == std::string(".") + format) return format;
+  throw ResourceError("its name ends neither with .stl, .obj nor .dae");
+}
 
-  Vector3 scale_;
-  std::map<std::array<float, 3>, int> indices_;
-  std::vector<Vector3> vertices_;
-  std::vector<TriangleMesh::Triangle> triangles_;
+[[noreturn]] void fail_ended(int status) {
+  const int signal = status >= 0 && WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  if (signal == SIGXCPU || signal == SIGKILL)
+    throw ResourceError("it takes more than " + std::to_string(mesh_protocol::processor_time) + " s to read");
+  throw ResourceError("its reader crashed" + (signal ? " (signal " + std::to_string(signal) + ")" : std::string()));
+}
+
+void read_whole(ChildProcess& reader, void* data, std::size_t size, const Patience& patience) {
+  if (reader.read(data, size, patience) < size) fail_ended(reader.wait());
+}
+
+template <class Element>
+std::vector<Element> read_elements(ChildProcess& reader, std::size_t count, const Patience& patience) {
+  std::vector<Element> elements(count);
+  read_whole(reader, elements.data(), count * sizeof(Element), patience);
+  return elements;
+}
+
+struct Triangles {
+  std::vector<Vector3> vertices;
+  std::vector<TriangleMesh::Triangle> triangles;
 };
+
+/// In the file's units. What the other process says is not trusted: sizes and numbers are checked here; indices by TriangleMesh.
+Triangles read_triangles(const std::string& path, const Patience& patience) {
+  const std::string format = format_of(path);
+  patience.check();
+  ChildProcess reader(mesh_reader_program(), {format}, open_regular_file(path));
+  char outcome;
+  read_whole(reader, &outcome, 1, patience);
+  if (outcome != mesh_protocol::success) {
+    std::string text(mesh_protocol::longest_refusal, ' ');
+    text.resize(reader.read(text.data(), text.size(), patience));
+    throw ResourceError(escaped(text, longest_message));
+  }
+  mesh_protocol::Header header;
+  read_whole(reader, &header, sizeof header, patience);
+  if (header.vertices > mesh_protocol::most_vertices || header.triangles > mesh_protocol::most_triangles)
+    throw ResourceError("its reader made too much of it");
+  const auto vertices = read_elements<mesh_protocol::Vertex>(reader, header.vertices, patience);
+  const auto triangles = read_elements<mesh_protocol::Triangle>(reader, header.triangles, patience);
+  Triangles result;
+  for (const auto& [x, y, z] : vertices) result.vertices.emplace_back(x, y, z);
+  result.triangles.assign(triangles.begin(), triangles.end());
+  for (const Vector3& vertex : result.vertices)
+    if (!vertex.allFinite()) throw ResourceError("a vertex is not finite");
+  return result;
+}
+
+std::shared_ptr<const TriangleMesh> scaled(const Triangles& mesh, const Vector3& scale) {
+  std::vector<Vector3> vertices;
+  for (const Vector3& vertex : mesh.vertices) {
+    vertices.push_back(vertex.cwiseProduct(scale));
+    const double farthest = vertices.back().cwiseAbs().maxCoeff();
+    if (!(farthest <= coordinate.highest))
+      throw ResourceError("a vertex has a coordinate of " + number_text(farthest) + " m, beyond " + number_text(coordinate.highest) +
+                          " m");
+  }
+  return std::make_shared<TriangleMesh>(std::move(vertices), mesh.triangles);
+}
+
+/// How far apart two vertices may be that were one before they were rounded to single precision, in a file or on reading it.
+double rounding_of(const std::vector<Vector3>& vertices) {
+  Aabb box;
+  for (const Vector3& vertex : vertices) box.extend(vertex);
+  const double farthest = std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
+  return std::min(4 * FLT_EPSILON * farthest, largest_weld * box.sizes().maxCoeff());
+}
 
 }  // namespace
 
-std::shared_ptr<const TriangleMesh> read_mesh_file(const std::string& path, const Vector3& scale) {
-  Assimp::Importer importer;
-  importer.SetPropertyInteger(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, 1);
-  const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate | aiProcess_PreTransformVertices);
-  if (!scene) throw ResourceError("no mesh: " + escaped(importer.GetErrorString(), longest_message));
-  TriangleList triangles(scale);
-  for (unsigned i = 0; i < scene->mNumMeshes; ++i) triangles.add(*scene->mMeshes[i]);
+void Patience::check() const {
+  if (cancelled && *cancelled) throw ResourceError("reading it was cancelled");
+  if (std::chrono::steady_clock::now() >= until) throw ResourceError("it takes too long to read");
+}
+
+std::shared_ptr<const TriangleMesh> read_mesh_file(const std::string& path, const Vector3& scale, const Patience& patience) {
+  Triangles mesh = read_triangles(path, patience);
   try {
-    return std::move(triangles).mesh();
+    return scaled(mesh, scale);
+  } catch (const std::invalid_argument& error) {
+    const double tolerance = mesh.vertices.empty() ? 0 : rounding_of(mesh.vertices);
+    if (!(tolerance > 0)) throw ResourceError(error.what());
+    weld(tolerance, mesh.vertices, mesh.triangles);
+  }
+  try {
+    return scaled(mesh, scale);
   } catch (const std::invalid_argument& error) {
     throw ResourceError(error.what());
   }

@@ -1,12 +1,15 @@
 #include "verlet_cable/scene/resource.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <system_error>
+#include <vector>
 
+#include "file_descriptor.h"
 #include "verlet_cable/core/quoted_text.h"
 
 namespace verlet_cable {
@@ -15,6 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uintmax_t largest_file = std::uintmax_t{64} << 20;
+constexpr const char* too_large = "it is larger than 64 MB";
 
 bool starts_with(const std::string& text, const std::string& start) {
   return text.compare(0, start.size(), start) == 0;
@@ -32,7 +36,7 @@ fs::path existing_file(const fs::path& path) {
   const fs::path file = fs::canonical(path, error);
   if (error) throw ResourceError(error.message());
   if (!fs::is_regular_file(file, error)) throw ResourceError("it is not a file");
-  if (fs::file_size(file, error) > largest_file) throw ResourceError("it is larger than 64 MB");
+  if (fs::file_size(file, error) > largest_file) throw ResourceError(too_large);
   return file;
 }
 
@@ -50,6 +54,7 @@ fs::path file_in_package(const std::string& path) {
 }  // namespace
 
 std::string file_of(const std::string& uri, const FileAccess& access) {
+  if (uri.find('\0') != std::string::npos) throw ResourceError("it names no file");
   const std::string package = "package://", file = "file://";
   if (starts_with(uri, package)) return file_in_package(uri.substr(package.size())).string();
   fs::path path;
@@ -70,12 +75,30 @@ std::string file_of(const std::string& uri, const FileAccess& access) {
   return found.string();
 }
 
+FileDescriptor open_regular_file(const std::string& path) {
+  const auto fail = [](int error) { throw ResourceError(std::generic_category().message(error)); };
+  // Without O_NONBLOCK, opening a pipe waits for its other end.
+  FileDescriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  if (file.number() < 0) fail(errno);
+  struct stat status;
+  if (fstat(file.number(), &status) != 0) fail(errno);
+  if (!S_ISREG(status.st_mode)) throw ResourceError("it is not a file");
+  if (static_cast<std::uintmax_t>(status.st_size) > largest_file) throw ResourceError(too_large);
+  return file;
+}
+
 std::string read_file(const std::string& path) {
-  errno = 0;
-  std::ifstream stream(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (!stream.is_open() || stream.bad()) throw ResourceError(std::generic_category().message(errno ? errno : EIO));
-  return text;
+  const FileDescriptor file = open_regular_file(path);
+  std::string text;
+  std::vector<char> block(std::size_t{1} << 16);
+  while (true) {
+    const ssize_t size = read(file.number(), block.data(), block.size());
+    if (size < 0 && errno == EINTR) continue;
+    if (size < 0) throw ResourceError(std::generic_category().message(errno));
+    if (size == 0) return text;
+    text.append(block.data(), static_cast<std::size_t>(size));
+    if (text.size() > largest_file) throw ResourceError(too_large);  // it grows
+  }
 }
 
 }  // namespace verlet_cable

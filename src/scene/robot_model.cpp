@@ -8,11 +8,15 @@
 
 #include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/scene/resource.h"
+#include "xml_outline.h"
 
 namespace verlet_cable {
 namespace {
 
 constexpr std::size_t longest_message = 300;
+constexpr std::size_t largest_text = std::size_t{4} << 20;  // [byte]
+constexpr std::size_t deepest_level = 64;
+constexpr std::size_t most_links = 1000;
 
 /// What urdfdom would print, as long as this is there.
 class CapturedErrors : public console_bridge::OutputHandler {
@@ -64,6 +68,18 @@ void set_shape(const urdf::Geometry& geometry, ObstacleDesc& obstacle) {
   }
 }
 
+/// The parser and the model call themselves for each level of elements and of links.
+void check_size(const std::string& text) {
+  const auto check = [](std::size_t number, std::size_t most, const std::string& what) {
+    if (number > most) throw ResourceError("no URDF: " + std::to_string(number) + " " + what + ", more than " + std::to_string(most));
+  };
+  check(text.size(), largest_text, "bytes");
+  const XmlOutline outline = outline_of(text);
+  check(outline.levels, deepest_level, "levels of nested elements");
+  check(outline.links, most_links, "links");
+  if (!outline.problem.empty()) throw ResourceError("no URDF: " + outline.problem);
+}
+
 class TreeBuilder {
  public:
   TreeBuilder(const urdf::ModelInterface& model, const RobotDesc& robot) : robot_(robot) {
@@ -113,6 +129,7 @@ class TreeBuilder {
 }  // namespace
 
 std::vector<LinkDesc> read_urdf(const std::string& text, const RobotDesc& robot) {
+  check_size(text);
   const CapturedErrors errors;
   const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
   // urdfdom goes on without a collision that it cannot read.

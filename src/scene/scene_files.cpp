@@ -1,6 +1,7 @@
 #include "scene_files.h"
 
 #include <algorithm>
+#include <chrono>
 #include <map>
 #include <tuple>
 
@@ -11,8 +12,10 @@ namespace verlet_cable {
 namespace {
 
 constexpr const char* urdf_words = "a URDF";
+constexpr std::chrono::seconds patience_for_meshes(60);
+constexpr std::size_t most_triangles = 2'000'000;  // of all meshes
 
-/// Meshes by file and scale, each read once.
+/// Meshes by file and scale, each read once, within limits for all.
 class MeshReader {
  public:
   explicit MeshReader(const FileAccess& files) : files_(files) {}
@@ -21,12 +24,18 @@ class MeshReader {
     const std::string file = file_of(obstacle.uri, files_);
     const Vector3& scale = obstacle.scale;
     std::shared_ptr<const TriangleMesh>& mesh = meshes_[{file, scale.x(), scale.y(), scale.z()}];
-    if (!mesh) mesh = read_mesh_file(file, scale);
-    return mesh;
+    if (mesh) return mesh;
+    const auto read = read_mesh_file(file, scale, patience_);
+    triangles_ += read->triangles().size();
+    if (triangles_ > most_triangles)
+      throw ResourceError("with it all meshes have more than " + std::to_string(most_triangles) + " triangles");
+    return mesh = read;
   }
 
  private:
   const FileAccess& files_;
+  const Patience patience_{std::chrono::steady_clock::now() + patience_for_meshes};
+  std::size_t triangles_ = 0;
   std::map<std::tuple<std::string, double, double, double>, std::shared_ptr<const TriangleMesh>> meshes_;
 };
 

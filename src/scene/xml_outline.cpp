@@ -1,0 +1,113 @@
+#include "xml_outline.h"
+
+#include <algorithm>
+#include <cctype>
+#include <utility>
+
+namespace verlet_cable {
+namespace {
+
+/// The number of bytes of the character of UTF-8 that starts at `at`; 0 where there is none.
+std::size_t length_of_character(const std::string& text, std::size_t at) {
+  const auto byte = static_cast<unsigned char>(text[at]);
+  if (byte == 0) return 0;
+  if (byte < 0x80) return 1;
+  const std::size_t length = byte >= 0xc2 && byte < 0xe0 ? 2 : (byte & 0xf0) == 0xe0 ? 3 : byte >= 0xf0 && byte < 0xf5 ? 4 : 0;
+  if (length == 0 || at + length > text.size()) return 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((static_cast<unsigned char>(text[at + i]) & 0xc0) != 0x80) return 0;
+  return length;
+}
+
+std::size_t length_of_text(const std::string& text) {
+  std::size_t at = 0;
+  while (at < text.size()) {
+    const std::size_t length = length_of_character(text, at);
+    if (length == 0) break;
+    at += length;
+  }
+  return at;
+}
+
+/// Goes through the markup once. It refuses what parsers read differently (they disagree on where a stray `<` ends, and skip bytes
+/// that are no UTF-8), since the levels of one parser would not be those of another.
+class Scanner {
+ public:
+  explicit Scanner(const std::string& xml) : xml_(xml), end_(length_of_text(xml)) {}
+
+  XmlOutline outline() && {
+    while (outline_.problem.empty() && (at_ = xml_.find('<', at_)) < end_) {
+      if (starts("<!--")) {
+        skip_to("-->", "a comment without end");
+      } else if (starts("<![CDATA[")) {
+        skip_to("]]>", "a CDATA section without end");
+      } else if (starts("<?")) {
+        skip_instruction();
+      } else if (starts("<!")) {
+        skip_declaration();
+      } else if (starts("</")) {
+        skip_to(">", "an end tag without end");
+        open_ -= std::min<std::size_t>(open_, 1);
+      } else {
+        read_start_tag();
+      }
+    }
+    if (outline_.problem.empty() && end_ < xml_.size()) fail(end_, "no text in UTF-8");
+    return std::move(outline_);
+  }
+
+ private:
+  bool starts(const char* with) const { return xml_.compare(at_, std::string(with).size(), with) == 0; }
+
+  void fail(std::size_t at, const std::string& what) { outline_.problem = "byte " + std::to_string(at) + ": " + what; }
+
+  void skip_to(const std::string& end, const char* problem) {
+    const std::size_t found = xml_.find(end, at_);
+    if (found == std::string::npos) return fail(at_, problem);
+    at_ = found + end.size();
+  }
+
+  /// Some parsers end it at the first `>`, others at `?>`.
+  void skip_instruction() {
+    const std::size_t end = xml_.find('>', at_);
+    if (end == std::string::npos || xml_[end - 1] != '?') return fail(at_, "a processing instruction that does not end with its first >");
+    at_ = end + 1;
+  }
+
+  void skip_declaration() {
+    const std::size_t end = xml_.find('>', at_), inner = xml_.find_first_of("<[", at_ + 1);
+    if (end == std::string::npos || inner < end) return fail(at_, "a document type with definitions");
+    at_ = end + 1;
+  }
+
+  void read_start_tag() {
+    const std::size_t name = at_ + 1;
+    const auto first = static_cast<unsigned char>(name < xml_.size() ? xml_[name] : 0);
+    if (!std::isalpha(first) && first != '_' && first < 0x80) return fail(at_, "a < that starts no tag");
+    const std::size_t name_end = std::min(xml_.find_first_of(" \t\r\n/>", name), xml_.size());
+    std::size_t at = name_end;
+    while (at < xml_.size() && xml_[at] != '>') {
+      if (xml_[at] == '<') return fail(at, "a < inside of a tag");
+      if (xml_[at] == '"' || xml_[at] == '\'') at = xml_.find(xml_[at], at + 1);
+      if (at == std::string::npos) break;
+      ++at;
+    }
+    if (at >= xml_.size()) return fail(at_, "a tag without end");
+    outline_.levels = std::max(outline_.levels, open_ + 1);
+    if (xml_.compare(name, name_end - name, "link") == 0) ++outline_.links;
+    if (xml_[at - 1] != '/') ++open_;
+    at_ = at + 1;
+  }
+
+  const std::string& xml_;
+  const std::size_t end_;  ///< of what is text
+  XmlOutline outline_;
+  std::size_t at_ = 0;
+  std::size_t open_ = 0;
+};
+
+}  // namespace
+
+XmlOutline outline_of(const std::string& xml) { return Scanner(xml).outline(); }
+
+}  // namespace verlet_cable

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace verlet_cable {
+
+/// What is known of an XML text before a recursive parser sees it.
+struct XmlOutline {
+  std::size_t levels = 0;  ///< of nested elements
+  std::size_t links = 0;   ///< elements named `link`
+  /// Why the text is not one that all parsers take alike, with the byte where; empty if it is. Levels and links are those before it.
+  std::string problem;
+};
+
+XmlOutline outline_of(const std::string& xml);
+
+}  // namespace verlet_cable
