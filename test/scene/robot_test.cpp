@@ -169,6 +169,44 @@ TEST_F(Robot, mistakesAreNamed) {
   expect("{" + file() + ", links: [base]}\nseed: -1", "seed: -1");  // what is not selected is not read
 }
 
+TEST_F(Robot, whatIsTooDeepOrTooLongForTheParserIsNamed) {
+  const auto expect = [&](const std::string& text, const std::string& error) {
+    write("bad.urdf", text);
+    const std::vector<std::string> lines = errors_of(sound_scene + "robot: {file: " + path("bad.urdf") + "}\n");
+    EXPECT_EQ(lines.size(), 1u) << joined(lines);
+    EXPECT_TRUE(has_line(lines, "robot.file: \"" + path("bad.urdf") + "\": no URDF: " + error)) << joined(lines);
+  };
+  const auto link = [](int i) { return "<link name='l" + std::to_string(i) + "'/>"; };
+  std::string chain = "<robot name='r'>" + link(0);
+  for (int i = 1; i < 20'000; ++i)
+    chain += link(i) + "<joint name='j" + std::to_string(i) + "' type='fixed'><parent link='l" + std::to_string(i - 1) +
+             "'/><child link='l" + std::to_string(i) + "'/></joint>";
+  expect(chain + "</robot>", "20000 links, more than 1000");
+  std::string nested = "<robot name='r'>", hidden = nested, misread = nested;
+  for (int i = 0; i < 100'000; ++i) {
+    nested += "<a>";
+    if (i < 20'000) hidden += "<a b='>' c=\"'/>\">text<!-- </a> --><![CDATA[</a>]]>";
+    misread += "<a>\xf0</a>";  // where a parser skips four bytes for the first, `a` is never closed
+  }
+  expect(nested, "100001 levels of nested elements, more than 64");
+  expect(hidden, "20001 levels of nested elements, more than 64");
+  expect(misread, "byte 19: no text in UTF-8");
+  expect("<robot name='r'><?x ></a>?></robot>", "byte 16: a processing instruction that does not end with its first >");
+  expect("<robot name='r'><a <b></robot>", "byte 19: a < inside of a tag");
+  expect("<robot name='r'>1 < 2</robot>", "byte 18: a < that starts no tag");
+  expect("<!DOCTYPE r [<!ENTITY a '&b;&b;'>]><robot name='r'/>", "byte 0: a document type with definitions");
+  expect("<robot name='r'/>" + std::string(5'000'000, ' '), "5000017 bytes, more than 4194304");
+}
+
+TEST_F(Robot, markupThatIsNoElementDoesNotCount) {
+  std::string text = "<?xml version='1.0' encoding='UTF-8'?><!DOCTYPE robot><!-- a > b <c> -->";
+  text += "<robot name=\"caf\u00e9 > a\"><!-- <a><b>'\" --><link name='one'><x><![CDATA[<a><b></x>]]></x></link>";
+  for (int i = 0; i < 1000; ++i) text += "<!-- <a> --><material name='a" + std::to_string(i) + "'><color rgba='1 1 1 1'/></material>";
+  write("good.urdf", text + "</robot>");
+  const SceneDesc scene = read("{file: " + path("good.urdf") + "}");
+  EXPECT_EQ(scene.robot->tree.size(), 1u);
+}
+
 TEST_F(Robot, meshesThatAreNoSolidAreNamed) {
   const auto expect = [&](const std::string& name, const std::string& error) {
     const auto lines = errors_of(sound_scene + "obstacles: [{name: a, type: mesh, uri: \"file://" + path(name) + "\"}]\n");
