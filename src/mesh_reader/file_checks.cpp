@@ -13,7 +13,9 @@ constexpr std::size_t stl_header = 84;    ///< [byte]
 constexpr std::size_t stl_triangle = 50;  ///< [byte]
 constexpr std::size_t deepest_level = 256;
 
-bool is_text(const std::string& content) { return content.find('\0') == std::string::npos; }
+bool is_text(const std::string& content) {
+  return content.find('\0') == std::string::npos;
+}
 
 void check_stl(const std::string& content) {
   if (content.size() >= stl_header) {
@@ -21,7 +23,8 @@ void check_stl(const std::string& content) {
     std::memcpy(&triangles, content.data() + stl_header - sizeof triangles, sizeof triangles);
     const std::uint64_t size = stl_header + stl_triangle * std::uint64_t{triangles};
     if (content.size() == size && triangles > mesh_protocol::most_triangles)
-      throw Refused("it has " + std::to_string(triangles) + " triangles, more than " + std::to_string(mesh_protocol::most_triangles));
+      throw Refused("it has " + std::to_string(triangles) + " triangles, more than " +
+                    std::to_string(mesh_protocol::most_triangles));
     if (content.size() == size) return;
     if (!is_text(content))
       throw Refused("no mesh: an STL of " + std::to_string(content.size()) + " bytes, but the " + std::to_string(triangles) +
@@ -33,10 +36,12 @@ void check_stl(const std::string& content) {
 }
 
 void check_dae(const std::string& content) {
-  if (content.find("<COLLADA") == std::string::npos || !is_text(content)) throw Refused("no mesh: a .dae without an element COLLADA");
+  if (content.find("<COLLADA") == std::string::npos || !is_text(content))
+    throw Refused("no mesh: a .dae without an element COLLADA");
   const std::size_t levels = outline_of(content).levels;
   if (levels > deepest_level)
-    throw Refused("its elements are nested " + std::to_string(levels) + " levels deep, more than " + std::to_string(deepest_level));
+    throw Refused("its elements are nested " + std::to_string(levels) + " levels deep, more than " +
+                  std::to_string(deepest_level));
 }
 
 }  // namespace

@@ -48,9 +48,13 @@ void keep_importer(const std::string& format, Assimp::Importer& importer) {
     if (importer.GetImporter(i) != kept) importer.UnregisterLoader(importer.GetImporter(i));
 }
 
-[[noreturn]] void refuse(const Assimp::Importer& importer) { throw Refused(std::string("no mesh: ") + importer.GetErrorString()); }
+[[noreturn]] void refuse(const Assimp::Importer& importer) {
+  throw Refused(std::string("no mesh: ") + importer.GetErrorString());
+}
 
-[[noreturn]] void refuse_size() { throw Refused("it has more than " + std::to_string(most_triangles) + " triangles"); }
+[[noreturn]] void refuse_size() {
+  throw Refused("it has more than " + std::to_string(most_triangles) + " triangles");
+}
 
 /// Before faces are cut into triangles.
 void check_faces(const aiScene& scene) {

@@ -51,7 +51,8 @@ void write_all(const std::vector<Element>& elements) {
 /// What the process that started this one had open.
 void close_other_files() {
   std::vector<int> files;
-  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) files.push_back(std::stoi(entry.path().filename()));
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd"))
+    files.push_back(std::stoi(entry.path().filename()));
   for (const int file : files)
     if (file > STDERR_FILENO) close(file);
 }

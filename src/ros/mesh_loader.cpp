@@ -15,7 +15,8 @@ auto as_tuple(const MeshRequest& request) {
   return std::make_tuple(request.uri, request.scale.x(), request.scale.y(), request.scale.z());
 }
 
-LoadedMesh load(const MeshRequest& request, const std::string& scene_directory, const std::atomic<bool>& stopped, MeshCache& cache) {
+LoadedMesh load(const MeshRequest& request, const std::string& scene_directory, const std::atomic<bool>& stopped,
+                MeshCache& cache) {
   LoadedMesh loaded{request, nullptr, ""};
   Patience patience;
   patience.cancelled = &stopped;
@@ -34,9 +35,13 @@ LoadedMesh load(const MeshRequest& request, const std::string& scene_directory, 
 
 }  // namespace
 
-bool operator<(const MeshRequest& a, const MeshRequest& b) { return as_tuple(a) < as_tuple(b); }
+bool operator<(const MeshRequest& a, const MeshRequest& b) {
+  return as_tuple(a) < as_tuple(b);
+}
 
-bool operator==(const MeshRequest& a, const MeshRequest& b) { return as_tuple(a) == as_tuple(b); }
+bool operator==(const MeshRequest& a, const MeshRequest& b) {
+  return as_tuple(a) == as_tuple(b);
+}
 
 /// In the queue of the node.
 class MeshLoader::Delivery : public ros::CallbackInterface {
@@ -53,10 +58,7 @@ class MeshLoader::Delivery : public ros::CallbackInterface {
 
 MeshLoader::MeshLoader(ros::CallbackQueueInterface* queue, std::string scene_directory,
                        std::function<void(const LoadedMesh&)> receive)
-    : queue_(queue),
-      scene_directory_(std::move(scene_directory)),
-      receive_(std::move(receive)),
-      thread_([this] { run(); }) {}
+    : queue_(queue), scene_directory_(std::move(scene_directory)), receive_(std::move(receive)), thread_([this] { run(); }) {}
 
 MeshLoader::~MeshLoader() {
   {

@@ -111,8 +111,8 @@ std::shared_ptr<const TriangleMesh> scaled(const Triangles& mesh, const Vector3&
     vertices.push_back(vertex.cwiseProduct(scale));
     const double farthest = vertices.back().cwiseAbs().maxCoeff();
     if (!(farthest <= coordinate.highest))
-      throw ResourceError("a vertex has a coordinate of " + number_text(farthest) + " m, beyond " + number_text(coordinate.highest) +
-                          " m");
+      throw ResourceError("a vertex has a coordinate of " + number_text(farthest) + " m, beyond " +
+                          number_text(coordinate.highest) + " m");
   }
   return std::make_shared<TriangleMesh>(std::move(vertices), mesh.triangles);
 }

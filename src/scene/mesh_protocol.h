@@ -6,8 +6,8 @@
 
 namespace verlet_cable {
 
-/// What `mesh_reader FORMAT`, FORMAT being stl, obj or dae, makes of the file on its standard input, on its standard output: either
-/// `refusal` and why, as text; or `success`, a header, the vertices and the triangles. The byte order is this machine's.
+/// What `mesh_reader FORMAT`, FORMAT being stl, obj or dae, makes of the file on its standard input, on its standard output:
+/// either `refusal` and why, as text; or `success`, a header, the vertices and the triangles. The byte order is this machine's.
 namespace mesh_protocol {
 
 constexpr char refusal = 'E';

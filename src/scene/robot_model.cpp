@@ -71,7 +71,8 @@ void set_shape(const urdf::Geometry& geometry, ObstacleDesc& obstacle) {
 /// The parser and the model call themselves for each level of elements and of links.
 void check_size(const std::string& text) {
   const auto check = [](std::size_t number, std::size_t most, const std::string& what) {
-    if (number > most) throw ResourceError("no URDF: " + std::to_string(number) + " " + what + ", more than " + std::to_string(most));
+    if (number > most)
+      throw ResourceError("no URDF: " + std::to_string(number) + " " + what + ", more than " + std::to_string(most));
   };
   check(text.size(), largest_text, "bytes");
   const XmlOutline outline = outline_of(text);

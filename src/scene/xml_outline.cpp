@@ -29,8 +29,8 @@ std::size_t length_of_text(const std::string& text) {
   return at;
 }
 
-/// Goes through the markup once. It refuses what parsers read differently (they disagree on where a stray `<` ends, and skip bytes
-/// that are no UTF-8), since the levels of one parser would not be those of another.
+/// Goes through the markup once. It refuses what parsers read differently (they disagree on where a stray `<` ends, and skip
+/// bytes that are no UTF-8), since the levels of one parser would not be those of another.
 class Scanner {
  public:
   explicit Scanner(const std::string& xml) : xml_(xml), end_(length_of_text(xml)) {}
@@ -70,7 +70,8 @@ class Scanner {
   /// Some parsers end it at the first `>`, others at `?>`.
   void skip_instruction() {
     const std::size_t end = xml_.find('>', at_);
-    if (end == std::string::npos || xml_[end - 1] != '?') return fail(at_, "a processing instruction that does not end with its first >");
+    if (end == std::string::npos || xml_[end - 1] != '?')
+      return fail(at_, "a processing instruction that does not end with its first >");
     at_ = end + 1;
   }
 
@@ -108,6 +109,8 @@ class Scanner {
 
 }  // namespace
 
-XmlOutline outline_of(const std::string& xml) { return Scanner(xml).outline(); }
+XmlOutline outline_of(const std::string& xml) {
+  return Scanner(xml).outline();
+}
 
 }  // namespace verlet_cable

@@ -125,8 +125,10 @@ class BadMeshesTest(unittest.TestCase):
         before = self.diagnostics('refused_markers')
         with Resets(self.node) as resets:
             self.send(*(mesh(number, self.file(name)) for number, name in enumerate(names)))
+            deadline = time.monotonic() + PATIENCE
             while self.diagnostics('refused_markers') < before + len(names):
                 self.assertEqual(resets.problems, [])
+                self.assertLess(time.monotonic(), deadline, 'not all are refused')
         self.assertAnswered(resets)
         self.send(mesh(1, self.file('inside/names_a_pipe.obj'), 3))
         self.wait_for_places([3])

@@ -49,7 +49,8 @@ Triangles torn(const Triangles& mesh, double rounding) {
   Triangles result;
   for (const auto& triangle : mesh.triangles) {
     const int first = static_cast<int>(result.vertices.size());
-    for (int i = 0; i < 3; ++i) result.vertices.push_back(mesh.vertices[triangle[i]] + rounding * Vector3(i - 1, first % 2, i % 2));
+    for (int i = 0; i < 3; ++i)
+      result.vertices.push_back(mesh.vertices[triangle[i]] + rounding * Vector3(i - 1, first % 2, i % 2));
     result.triangles.push_back({first, first + 1, first + 2});
   }
   return result;
@@ -126,8 +127,8 @@ class MeshFile : public testing::Test {
 
 TEST_F(MeshFile, formatsAreStlObjAndDae) {
   const Triangles box = box_triangles({1, 1, 1});
-  for (const auto& mesh : {read("a.stl", binary_stl_of(box, 12)), read("b.STL", binary_stl_of(box, 12)), read("a.obj", obj_of(box)),
-                           read("a.dae", collada)}) {
+  for (const auto& mesh : {read("a.stl", binary_stl_of(box, 12)), read("b.STL", binary_stl_of(box, 12)),
+                           read("a.obj", obj_of(box)), read("a.dae", collada)}) {
     EXPECT_EQ(mesh->vertices().size(), 8u);
     EXPECT_EQ(mesh->triangles().size(), 12u);
     EXPECT_EQ(mesh->bounds().sizes(), Vector3(1, 1, 1));
@@ -180,8 +181,13 @@ TEST_F(MeshFile, badFilesAreRefusedByName) {
   expect_refused("count.dae", replaced(collada, "count=\"24\"", "count=\"4000000000\""), "it takes more than 1 GB of memory");
   expect_refused("doubling.dae", doubling_collada(), "it takes ");  // more than 1 GB or 15 s, or on a busy machine too long
   const std::string circle = "<library_nodes><node id=\"n\"><instance_node url=\"#n\"/></node></library_nodes>";
-  expect_refused("circle.dae", replaced(replaced(collada, "<library_nodes/>", circle), "<instance_geometry url=\"#box\"/></node>", "<instance_node url=\"#n\"/></node>"), "its reader crashed (signal 11)");
-  expect_refused("deep.dae", replaced(replaced(collada, "<node>", repeated("<node>", 20000)), "</node></visual", repeated("</node>", 20000) + "</visual"),
+  expect_refused("circle.dae",
+                 replaced(replaced(collada, "<library_nodes/>", circle), "<instance_geometry url=\"#box\"/></node>",
+                          "<instance_node url=\"#n\"/></node>"),
+                 "its reader crashed (signal 11)");
+  expect_refused("deep.dae",
+                 replaced(replaced(collada, "<node>", repeated("<node>", 20000)), "</node></visual",
+                          repeated("</node>", 20000) + "</visual"),
                  "its elements are nested 20004 levels deep, more than 256");
   expect_refused("scene.dae", "<X3D>" + repeated("<Transform>", 20000), "no mesh: a .dae without an element COLLADA");
   expect_refused("cut_off.dae", collada.substr(0, 600), "no mesh: ");
@@ -192,7 +198,8 @@ TEST_F(MeshFile, badFilesAreRefusedByName) {
   expect_refused("far.obj", "v 1e300 0 0\n" + obj_of(box) + "f 1 2 3\n", "a vertex is not finite");
   expect_refused("beyond.obj", obj_of(moved(box, {1e20, 0, 0})), "a vertex has a coordinate of 1");
   expect_refused("binary.obj", std::string(100, '\0'), "no mesh: an .obj that is no text");
-  expect_refused("count.stl", binary_stl_of(box, 4'000'000'000), "no mesh: an STL of 684 bytes, but the 4000000000 triangles of its header");
+  expect_refused("count.stl", binary_stl_of(box, 4'000'000'000),
+                 "no mesh: an STL of 684 bytes, but the 4000000000 triangles of its header");
   expect_refused("cut_off.stl", binary_stl_of(box, 12).substr(0, 680), "no mesh: an STL of 680 bytes");
   expect_refused("dae.stl", collada, "no mesh: neither binary STL nor text that starts with \"solid\"");
   for (const char* name : {"empty.stl", "empty.obj", "empty.dae"}) expect_refused(name, "", "no mesh: it is empty");

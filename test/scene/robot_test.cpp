@@ -201,7 +201,8 @@ TEST_F(Robot, whatIsTooDeepOrTooLongForTheParserIsNamed) {
 TEST_F(Robot, markupThatIsNoElementDoesNotCount) {
   std::string text = "<?xml version='1.0' encoding='UTF-8'?><!DOCTYPE robot><!-- a > b <c> -->";
   text += "<robot name=\"caf\u00e9 > a\"><!-- <a><b>'\" --><link name='one'><x><![CDATA[<a><b></x>]]></x></link>";
-  for (int i = 0; i < 1000; ++i) text += "<!-- <a> --><material name='a" + std::to_string(i) + "'><color rgba='1 1 1 1'/></material>";
+  for (int i = 0; i < 1000; ++i)
+    text += "<!-- <a> --><material name='a" + std::to_string(i) + "'><color rgba='1 1 1 1'/></material>";
   write("good.urdf", text + "</robot>");
   const SceneDesc scene = read("{file: " + path("good.urdf") + "}");
   EXPECT_EQ(scene.robot->tree.size(), 1u);

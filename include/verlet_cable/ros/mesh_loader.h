@@ -31,8 +31,8 @@ struct LoadedMesh {
   std::string problem;                       ///< then why not: the URI, what is wrong, what is allowed
 };
 
-/// Reads meshes on a thread of its own, one after the other, in the order in which they were asked for. All its functions are for the
-/// thread that serves the queue.
+/// Reads meshes on a thread of its own, one after the other, in the order in which they were asked for. All its functions are for
+/// the thread that serves the queue.
 class MeshLoader {
  public:
   /// `receive` is called from `queue`. Files are read as a scene's may be that is read from `scene_directory`.

@@ -14,8 +14,8 @@
 namespace verlet_cable {
 
 /// Topic `obstacles`: a perception node adds, moves and removes obstacles by markers. What it asks for is done between steps, as
-/// all callbacks come from one thread. A marker that is refused is logged, counted, and changes nothing. An obstacle whose mesh has to
-/// be read is there when that has been done, unless a later marker has replaced or deleted it.
+/// all callbacks come from one thread. A marker that is refused is logged, counted, and changes nothing. An obstacle whose mesh
+/// has to be read is there when that has been done, unless a later marker has replaced or deleted it.
 class ObstacleListener {
  public:
   ObstacleListener(ros::NodeHandle& private_node, Simulation& simulation);
@@ -46,8 +46,9 @@ class ObstacleListener {
 
   Simulation& simulation_;
   std::map<std::string, Failure> failures_;  ///< of meshes that could not be read, by their URIs
-  std::map<MeshRequest, std::weak_ptr<const TriangleMesh>> meshes_;  ///< that were read; those that obstacles have are not read again
-  std::map<std::string, Pending> pending_;                           ///< obstacles that wait for their meshes, by their names
+  std::map<MeshRequest, std::weak_ptr<const TriangleMesh>>
+      meshes_;                              ///< that were read; those that obstacles have are not read again
+  std::map<std::string, Pending> pending_;  ///< obstacles that wait for their meshes, by their names
   int refused_count_ = 0;
   std::string last_problem_;
   MeshLoader loader_;

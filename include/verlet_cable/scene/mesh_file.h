@@ -19,9 +19,9 @@ struct Patience {
 };
 
 /// Reads an STL, OBJ or Collada (.dae) file, its vertices multiplied by `scale`; no file that it names is opened. As in rviz,
-/// Collada's unit counts, its up axis does not. Vertices at the same place are one; where the mesh is not closed then, vertices that
-/// differ by rounding are, too: by up to four units in the last place of single precision at its largest coordinate, and a thousandth
-/// of its size. Triangles that end as lines are left out.
+/// Collada's unit counts, its up axis does not. Vertices at the same place are one; where the mesh is not closed then, vertices
+/// that differ by rounding are, too: by up to four units in the last place of single precision at its largest coordinate, and a
+/// thousandth of its size. Triangles that end as lines are left out.
 ///
 /// The file is read by the program `mesh_reader`, so that neither memory, time nor a crash of the library that parses it are this
 /// process's. May be called by any thread, and blocks it. Throws ResourceError where there is no closed mesh, or not in time.
