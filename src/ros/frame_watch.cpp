@@ -17,6 +17,10 @@ constexpr double least_distance = 5e-4;  // [m]
 constexpr double least_degrees = 0.05;
 /// Between reports of a frame's jumps.
 constexpr Nanoseconds jump_period = 1000000000;
+/// Between warnings that something waits for frames.
+const ros::WallDuration reminder_period(10.0);
+/// Longer lists are cut off in messages.
+constexpr std::size_t most_listed = 8;
 
 std::vector<Attachment> attachments_of(int frame, const World& world) {
   std::vector<Attachment> attachments;
@@ -65,12 +69,44 @@ std::string gap_words(double distance, double angle, double speed) {
 const char* consequence(LostFramePolicy policy) {
   switch (policy) {
     case LostFramePolicy::hold:
-      return "its attachments stay where they are";
+      return "its attachments stay where they are until it is back (on_lost_frame: hold)";
     case LostFramePolicy::release:
-      return "its attachments are undone";
+      return "its attachments are released until reset (on_lost_frame: release)";
     default:
-      return "the simulation waits";
+      return "the simulation waits until it is back (on_lost_frame: pause)";
   }
+}
+
+/// In quotes, with "and" before the last; the first of many.
+std::string list(const std::vector<std::string>& names) {
+  const std::size_t shown = names.size() > most_listed ? most_listed : names.size();
+  std::string text;
+  for (std::size_t i = 0; i < shown; ++i) {
+    const bool last = i + 1 == names.size();
+    text += (i == 0 ? "" : last ? " and " : ", ") + quoted(names[i]);
+  }
+  return shown < names.size() ? text + " and " + std::to_string(names.size() - shown) + " more" : text;
+}
+
+/// The frames that cables and nets wait for, each once, in the scene's order.
+std::vector<std::string> missing_frames(const SceneDesc& scene, const World& world, const BoundaryInputs& inputs) {
+  std::set<std::string> unknown;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    if (!inputs[i].known) unknown.insert(world.frames()[i]);
+  }
+  const std::set<std::string> waiting(world.waiting().begin(), world.waiting().end());
+  std::vector<std::string> missing;
+  const auto add_of = [&](const auto& holders) {
+    for (const auto& holder : holders) {
+      if (waiting.count(holder.name) == 0) continue;
+      for (const auto& attachment : holder.attachments) {
+        if (unknown.erase(attachment.frame) > 0) missing.push_back(attachment.frame);
+      }
+    }
+  };
+  add_of(scene.cables);
+  add_of(scene.nets);
+  return missing;
 }
 
 }  // namespace
@@ -93,11 +129,11 @@ bool FrameWatch::react(const std::vector<FrameChange>& changes, Nanoseconds stam
     const bool needed = !attachments_of(change.frame, world).empty();
     switch (change.kind) {
       case FrameChange::Kind::seen:
-        ROS_INFO("frame %s is there: it is followed", name.c_str());
+        ROS_INFO("frame %s has appeared on tf and is followed", name.c_str());
         break;
       case FrameChange::Kind::too_fast:
         if (needed)
-          ROS_WARN_THROTTLE(5, "frame %s is faster than max_frame_speed, %g m/s: followed at that", name.c_str(),
+          ROS_WARN_THROTTLE(5, "frame %s moves faster than max_frame_speed, %g m/s: it is followed at that speed", name.c_str(),
                             max_frame_speed_);
         break;
       case FrameChange::Kind::lost:
@@ -125,21 +161,45 @@ void FrameWatch::report_jumps(Nanoseconds stamp, const World& world) {
   }
 }
 
-void FrameWatch::report_unseen(const BoundaryInputs& inputs, const std::vector<FrameReport>& frames) const {
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (frames[i].status != FrameStatus::never_seen) continue;
-    ROS_INFO(
-        "frame %s was never seen: %s", quoted(frames[i].name).c_str(),
-        inputs[i].known ? "its attachments wait at its initial_pose" : "its cables wait for it, its obstacles are not there");
+void FrameWatch::report_unseen(const SceneDesc& scene, const World& world, const TfInputs& frames) {
+  const std::vector<FrameReport> reports = frames.report();
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    if (reports[i].status != FrameStatus::never_seen) continue;
+    const std::string frame = quoted(reports[i].name);
+    if (frames.inputs()[i].known) {
+      ROS_INFO("frame %s is not on tf yet: what it holds stays at its initial_pose until it is", frame.c_str());
+    } else if (has_obstacles(static_cast<int>(i), world)) {
+      ROS_INFO("frame %s is not on tf yet: its obstacles appear when it is", frame.c_str());
+    }
   }
+  warn_of_waiting(scene, world, frames.inputs());
+}
+
+void FrameWatch::remind(const SceneDesc& scene, const World& world, const TfInputs& frames) {
+  if (!world.waiting().empty() && ros::WallTime::now() - last_warning_ >= reminder_period)
+    warn_of_waiting(scene, world, frames.inputs());
+}
+
+void FrameWatch::warn_of_waiting(const SceneDesc& scene, const World& world, const BoundaryInputs& inputs) {
+  if (world.waiting().empty()) return;
+  last_warning_ = ros::WallTime::now();
+  const std::vector<std::string> missing = missing_frames(scene, world, inputs);
+  if (missing.empty()) return;
+  ROS_WARN(
+      "not shown yet: %s, because tf has no transform from %s to %s. If nothing else is to publish them, type for each: rosrun "
+      "tf2_ros "
+      "static_transform_publisher 0 0 1 0 0 0 %s %s",
+      list(world.waiting()).c_str(), quoted(scene.frame_id).c_str(), list(missing).c_str(), escaped(scene.frame_id).c_str(),
+      escaped(missing.front()).c_str());
 }
 
 void FrameWatch::report_lost(int frame, Nanoseconds stamp, const World& world) {
   lost_.insert(frame);
-  publish_for_frame(events_, CableEvent::FRAME_LOST, frame, stamp, world,
-                    "frame " + quoted(world.frames()[frame]) + " is lost, tf has had nothing for more than tf_timeout, " +
-                        number_text(timeout_) + " s: " +
-                        (attachments_of(frame, world).empty() ? "its obstacles stay where they are" : consequence(policy_)));
+  publish_for_frame(
+      events_, CableEvent::FRAME_LOST, frame, stamp, world,
+      "frame " + quoted(world.frames()[frame]) + " is lost: nothing new on tf for longer than tf_timeout, " +
+          number_text(timeout_) + " s; " +
+          (attachments_of(frame, world).empty() ? "its obstacles stay where they are until it is back" : consequence(policy_)));
 }
 
 void FrameWatch::report_back(const FrameChange& change, Nanoseconds stamp, const World& world) {
@@ -155,7 +215,7 @@ void FrameWatch::release(int frame, Nanoseconds stamp, World& world) const {
     const EventSubject subject = subject_of(world, attachment);
     world.unpin(attachment.name);
     events_.publish(CableEvent::UNPINNED, stamp, subject,
-                    "attachment " + quoted(attachment.name) + " is undone: its frame is lost");
+                    "attachment " + quoted(attachment.name) + " is released, as its frame is lost; reset restores it");
   }
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <ros/time.h>
+
 #include <map>
 #include <set>
 #include <vector>
@@ -24,12 +26,15 @@ class FrameWatch {
   void report_jumps(Nanoseconds stamp, const World& world);
   /// Time is skipped at the world's `time`: what frames do over it is no jump of theirs.
   void skip(double time) { skipped_ = time; }
-  /// Logs which frames are missing still, and what waits for them.
-  void report_unseen(const BoundaryInputs& inputs, const std::vector<FrameReport>& frames) const;
+  /// At a start: logs which frames are missing still, and what waits for them.
+  void report_unseen(const SceneDesc& scene, const World& world, const TfInputs& frames);
+  /// Says again, every 10 s of wall time, which cables and nets wait for which frames.
+  void remind(const SceneDesc& scene, const World& world, const TfInputs& frames);
   /// Forgets which frames were lost, from an id on.
   void forget_from(int frame) { lost_.erase(lost_.lower_bound(frame), lost_.end()); }
 
  private:
+  void warn_of_waiting(const SceneDesc& scene, const World& world, const BoundaryInputs& inputs);
   void report_lost(int frame, Nanoseconds stamp, const World& world);
   void report_back(const FrameChange& change, Nanoseconds stamp, const World& world);
   void release(int frame, Nanoseconds stamp, World& world) const;
@@ -38,9 +43,10 @@ class FrameWatch {
   double max_frame_speed_;  ///< [m/s]
   double timeout_;          ///< [s]
   const EventPublisher& events_;
-  std::set<int> lost_;                  ///< ids of the frames whose loss was reported
+  std::set<int> lost_;                 ///< ids of the frames whose loss was reported
   std::map<int, Nanoseconds> jumped_;  ///< by frame id: the stamp of the last jump that was reported
-  double skipped_ = -1;                 ///< [s] the world's time when time was skipped last
+  double skipped_ = -1;                ///< [s] the world's time when time was skipped last
+  ros::WallTime last_warning_;         ///< that something waits for frames
 };
 
 /// By frame id: whether the frame holds a cable.
