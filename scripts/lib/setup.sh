@@ -45,7 +45,7 @@ if [[ -f /opt/ros/noetic/setup.bash ]]; then
   rviz_packages=(ros-noetic-rviz qtbase5-dev)
 else
   packages+=(
-    catkin catkin-lint ros-message-generation ros-message-runtime ros-environment ros-robot-state-publisher rosbash roslang rospack-tools rosout
+    catkin catkin-lint ros-message-generation ros-message-runtime ros-environment ros-robot-state-publisher rosbash roslang rospack-tools rosout tf2-tools
     libroscpp-dev libroslib-dev libactionlib-dev libdiagnostic-updater-dev libdynamic-reconfigure-config-init-mutex-dev libinteractive-markers-dev
     libnodelet-dev libnodeletlib-dev libnodeletlib-tools pluginlib-dev libtf2-dev libtf2-msgs-dev libtf2-ros-dev librostest-dev librosbag-dev
     lib{std,geometry,sensor,visualization,diagnostic,actionlib}-msgs-dev libstd-srvs-dev

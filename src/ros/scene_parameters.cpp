@@ -74,7 +74,8 @@ SceneDesc read_scene_parameters(const ros::NodeHandle& private_node) {
   private_node.getParam(private_node.getNamespace(), parameters);
   if (parameters.getType() != XmlRpcValue::TypeStruct) {
     throw SceneError({"no scene: the parameters under " + private_node.getNamespace() +
-                      " are empty; load a scene file into them, inside <node>: <rosparam command=\"load\" file=\"...\"/>"});
+                      " are empty. To start the node with a scene: roslaunch verlet_cable cable.launch scene:=FILE.yaml; in a "
+                      "launch file of your own, inside <node>: <rosparam command=\"load\" file=\"FILE.yaml\"/>"});
   }
   std::string scene_directory;
   private_node.getParam("scene_directory", scene_directory);
