@@ -6,6 +6,7 @@ orientations slerp. When all is played, the frames stay for `~pause` seconds; th
 """
 import csv
 import os
+import sys
 
 import numpy as np
 import rospy
@@ -89,9 +90,11 @@ def transform(frame, pose, stamp):
 
 def main():
     rospy.init_node('play_motion')
-    path = rospy.get_param('~motion')
+    path = rospy.get_param('~motion', '')
+    if not path:
+        sys.exit('play_motion.py: no motion; type: rosrun verlet_cable play_motion.py _motion:=MOTION.csv')
     if not os.path.exists(path):
-        rospy.loginfo('no motion: there is no %s', path)
+        rospy.loginfo('no motion file %s: nothing moves', path)
         return
     tracks = read_motion(path)
     duration = max(track.times[-1] for track in tracks.values()) + rospy.get_param('~pause', 2.0)

@@ -57,7 +57,7 @@ std::string TriangleMesh::problem(const std::vector<Vector3>& vertices, const st
   if (triangles.empty()) return "it has no triangles";
   const auto in_range = [&](int vertex) { return vertex >= 0 && vertex < static_cast<int>(vertices.size()); };
   for (const auto& [a, b, c] : triangles) {
-    if (!in_range(a) || !in_range(b) || !in_range(c)) return "a triangle has a vertex that is not there";
+    if (!in_range(a) || !in_range(b) || !in_range(c)) return "a triangle names a vertex that does not exist";
     if (a == b || b == c || c == a) return "a triangle has a vertex twice";
   }
   for (const Vector3& vertex : vertices)

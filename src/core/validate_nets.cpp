@@ -53,7 +53,7 @@ void check_links(const std::string& prefix, const NetDesc& net, Errors& errors) 
       errors.add(key, pair_text(link), "nodes that no other link joins; " + indexed(prefix + "links", first->second) + " does");
     const double length = (net.nodes[link[1]] - net.nodes[link[0]]).norm();
     if (length < shortest_link)
-      errors.add(key, "nodes that are " + number_text(length) + " m apart", "at least " + number_text(shortest_link) + " m");
+      errors.add(key, "nodes that are " + rounded_text(length) + " m apart", "at least " + number_text(shortest_link) + " m");
   }
 }
 
@@ -65,7 +65,7 @@ void check_masses(const std::string& prefix, const NetDesc& net, Errors& errors)
   if (net.mass != 0) errors.add(prefix + "mass", number_text(net.mass), "either mass, of all nodes together, or masses");
   if (net.masses.size() != net.node_count())
     errors.add(prefix + "masses", std::to_string(net.masses.size()) + " numbers",
-               "one a node: " + std::to_string(net.node_count()));
+               "one for each node: " + std::to_string(net.node_count()));
   for (std::size_t i = 0; i < net.masses.size(); ++i)
     if (!positive.contains(net.masses[i]))
       errors.add(indexed(prefix + "masses", i), number_text(net.masses[i]), positive.text("kg"));
@@ -74,7 +74,7 @@ void check_masses(const std::string& prefix, const NetDesc& net, Errors& errors)
 void check_minimum_distances(const std::string& prefix, const NetDesc& net, Errors& errors) {
   const std::string key = prefix + "minimum_distances";
   if (!net.minimum_distances.empty() && net.link_type == LinkType::spring)
-    errors.add(key, "given beside links of springs", "only with limited or rigid links");
+    errors.add(key, "given for links that are springs", "only with limited or rigid links");
   for (std::size_t i = 0; i < net.minimum_distances.size(); ++i) {
     const MinimumDistanceDesc& minimum = net.minimum_distances[i];
     if (!is_pair(minimum.nodes, net.node_count()))
@@ -110,9 +110,9 @@ void check_net(const std::string& prefix, const NetDesc& net, UniqueNames& attac
   check_fields(prefix, net_fields, net, errors);
   if (net.grid) {
     check_grid(prefix + "grid.", *net.grid, errors);
-    if (!net.nodes.empty()) errors.add(prefix + "nodes", "given beside a grid", "either grid, or nodes and links");
+    if (!net.nodes.empty()) errors.add(prefix + "nodes", "given together with grid", "either grid, or nodes and links");
     if (!net.links.empty())
-      errors.add(prefix + "links", "a list beside a grid", "spring | limited | rigid, a grid has its links");
+      errors.add(prefix + "links", "a list, given together with grid", "spring | limited | rigid, a grid has its links");
   } else {
     if (net.nodes.empty()) errors.add(prefix + "nodes", "none", "a grid, or a list of at least one point");
     check_links(prefix, net, errors);
@@ -165,7 +165,7 @@ void check_integrator(const SceneDesc& scene, Errors& errors) {
   if (integrator.type == IntegratorDesc::Type::verlet) return;
   const std::string name = name_of(integrator.type);
   if (integrator.first_step != IntegratorDesc::FirstStep::taylor)
-    errors.add("integrator.first_step", "given beside " + name, "only with verlet");
+    errors.add("integrator.first_step", "given for " + name, "only with verlet");
   if (!scene.cables.empty())
     errors.add("integrator", name + " with cables", "verlet; the others are for particles and nets of springs");
   for (std::size_t i = 0; i < scene.nets.size(); ++i) {

@@ -18,7 +18,7 @@ void check_shape(const std::string& prefix, const ObstacleDesc& obstacle, Errors
   if (obstacle.type == ShapeType::box) check_vector_is_positive(prefix + "size", obstacle.size, "m", errors);
   if (obstacle.type != ShapeType::mesh) return;
   check_vector_is_positive(prefix + "scale", obstacle.scale, "", errors);
-  if (!obstacle.mesh) errors.add(prefix + "uri", quoted(obstacle.uri), "a mesh that has been read");
+  if (!obstacle.mesh) errors.add(prefix + "uri", quoted(obstacle.uri), "a mesh file that could be read");
 }
 
 void check_obstacle(const std::string& key, const ObstacleDesc& obstacle, Errors& errors) {

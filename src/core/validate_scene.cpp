@@ -49,13 +49,13 @@ void check_initial(const std::string& key, const CableDesc& cable, Errors& error
     check_vector(indexed(key + ".velocities", i), initial.velocities[i], "m/s", errors);
   if (!initial.velocities.empty() && initial.velocities.size() != initial.points.size())
     errors.add(key + ".velocities", std::to_string(initial.velocities.size()) + " entries",
-               "none, or one a point: " + std::to_string(initial.points.size()));
+               "none, or one for each point: " + std::to_string(initial.points.size()));
   if (initial.points.size() < 2)
     return errors.add(key + ".points", std::to_string(initial.points.size()) + " points", "at least two points");
   double length = 0;
   for (std::size_t i = 1; i < initial.points.size(); ++i) length += (initial.points[i] - initial.points[i - 1]).norm();
   if (std::isfinite(length) && is_sound(cable) && std::abs(length - cable.length) > largest_length_error * cable.length)
-    errors.add(key + ".points", "a polyline of " + number_text(length) + " m",
+    errors.add(key + ".points", "a polyline of " + rounded_text(length) + " m",
                "at most 5 % more or less than the cable's length " + number_text(cable.length) + " m");
 }
 
@@ -103,8 +103,9 @@ void check_damping(const std::string& key, const SceneDesc& scene, const CableDe
     // What is out of its range is an error of the material already.
     if (limit.value <= limit.most || !not_negative.contains(limit.value)) continue;
     errors.add("materials." + escaped(cable.material) + "." + limit.key, number_text(limit.value),
-               "at most " + number_text(limit.most) + " [" + limit.unit + "] for " + key + ", " + number_text(largest_ratio) +
-                   " linear_density " + limit.words + " / time_step; no step can carry more");
+               "at most " + rounded_bound_text(limit.most, -1) + " [" + limit.unit + "] for " + key + ", " +
+                   number_text(largest_ratio) + " linear_density " + limit.words +
+                   " / time_step, the most that can be simulated at this time_step");
   }
 }
 
@@ -156,9 +157,9 @@ void check_initial_poses(const SceneDesc& scene, Errors& errors) {
     const std::string& frame = desc.frame.empty() ? scene.frame_id : desc.frame;
     const auto [first, is_new] = first_use.emplace(frame, FirstUse{*desc.initial_pose, key});
     if (!is_new && first->second.pose != *desc.initial_pose)
-      errors.add(
-          key, list_text(*desc.initial_pose),
-          "one initial_pose a frame; " + quoted(frame) + " has " + list_text(first->second.pose) + " by " + first->second.key);
+      errors.add(key, list_text(*desc.initial_pose),
+                 "the same initial_pose wherever a frame is named; " + quoted(frame) + " has " + list_text(first->second.pose) +
+                     " by " + first->second.key);
   };
   for (std::size_t c = 0; c < scene.cables.size(); ++c) {
     const std::vector<AttachmentDesc>& attachments = scene.cables[c].attachments;
@@ -192,8 +193,8 @@ void check_distances(const std::string& key, const CableDesc& cable, const std::
     const double distance = (held_point(second, frames.at(second.frame)) - held_point(first, frames.at(first.frame))).norm();
     if (length > 0 && distance > length * (1 + distance_tolerance))
       errors.add(key + ".length",
-                 number_text(length) + " m of cable between " + quoted(first.name) + " and " + quoted(second.name),
-                 "at least the distance of these attachments, " + number_text(distance) +
+                 rounded_text(length) + " m of cable between " + quoted(first.name) + " and " + quoted(second.name),
+                 "at least the distance of these attachments, " + rounded_bound_text(distance, 1) +
                      " m, as the cable is inextensible (axial_stiffness .inf)");
   }
 }

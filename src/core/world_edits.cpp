@@ -173,8 +173,8 @@ EditResult World::cut(int cable, int segment) {
                    std::to_string(segments - 2) + ", so that each piece keeps one");
   if (const std::optional<Reel>& joint = w.scratch[cable].reel; joint && !joint->is_winch()) {
     if ((segment == 1 && joint->segment == 0) || (segment == segments - 2 && joint->segment == segments - 1))
-      return refused("segment: " + std::to_string(segment) + " of cable " + name + "; leaves nothing but segment " +
-                     std::to_string(joint->segment) + ", which vanishes: it is still being joined there");
+      return refused("segment: " + std::to_string(segment) + " of cable " + name + "; this leaves only segment " +
+                     std::to_string(joint->segment) + ", which is still being drawn in by join");
   }
 
   const auto taken = [&](const std::string& n) {

@@ -122,7 +122,8 @@ EditResult World::join(int first, bool first_at_end, int second, bool second_at_
   if (first == second) return refused("second: " + other.name + "; must be another cable than first");
   for (const int index : {first, second})
     if (w.scratch[index].reel)
-      return refused("cable: " + w.cables[index].model.name + "; its winch still runs, or it is still being joined");
+      return refused("cable: " + w.cables[index].model.name +
+                     "; it is still being wound by its winch or drawn together by an earlier join; wait until that is done");
   if (const auto differing = difference(model.material, other.material))
     return refused("second: " + other.name + "; must be of the same material as " + model.name + ", but they differ in " +
                    *differing);
@@ -136,7 +137,7 @@ EditResult World::join(int first, bool first_at_end, int second, bool second_at_
     const double distance = (place(*end.next) - place(*other_end.next)).norm(), length = end.length + other_end.length;
     if (model.material.axial_stiffness == infinity && distance > length * (1 + rounding))
       return refused("first, second: the ends cannot meet: " + end.next->name + " and " + other_end.next->name + " are " +
-                     number_text(distance) + " m apart, the cable between them would be " + number_text(length) + " m long");
+                     rounded_text(distance) + " m apart, the cable between them would be " + rounded_text(length) + " m long");
   }
 
   // The second cable in the direction of the first.

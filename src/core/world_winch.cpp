@@ -48,19 +48,20 @@ EditResult World::set_length(int index, bool at_end, double length, double speed
   const CableModel& model = w.cables[index].model;
   CableScratch& s = w.scratch[index];
   const Reel::Place place = at_end ? Reel::Place::end : Reel::Place::start;
-  if (s.reel && !s.reel->is_winch()) return refused("cable: " + model.name + " is still being joined");
+  if (s.reel && !s.reel->is_winch())
+    return refused("cable: " + model.name + " is still being drawn together with another by join; wait until they have met");
   if (s.reel && s.reel->place != place)
-    return refused("at_end: the winch at the other end of cable " + model.name + " still runs");
+    return refused("at_end: the winch at the other end of cable " + model.name + " is still winding; wait until it is done");
 
   // One segment a step can be taken in, and is to be left over.
   const double fastest = shortest_segment * model.segment_length / w.scene.time_step;
   if (!(speed > 0 && speed <= fastest))
-    return refused("speed: " + number_text(speed) + "; must be above 0, and at most " + number_text(fastest) + " m/s");
+    return refused("speed: " + number_text(speed) + "; must be above 0, and at most " + rounded_bound_text(fastest, -1) + " m/s");
   int others = 0;
   for (int i = 0; i < static_cast<int>(w.cables.size()); ++i) others += i == index ? 0 : w.cables[i].model.segments();
   const double longest = (w.scene.limits.segments - others) * model.segment_length;
   if (!(length > 0 && length <= longest))
-    return refused("length: " + number_text(length) + "; must be above 0, and at most " + number_text(longest) +
+    return refused("length: " + number_text(length) + "; must be above 0, and at most " + rounded_bound_text(longest, -1) +
                    " m, as limits.segments allows");
 
   Reel reel = s.reel.value_or(Reel{});
@@ -74,9 +75,10 @@ EditResult World::set_length(int index, bool at_end, double length, double speed
   const double needed = model.length() - w.slack_at_winch(index);
   if (length >= shortest && length >= needed) return {true, "", model.name};
   s.reel = before;
-  return refused("length: " + number_text(length) + "; must be at least " + number_text(std::max(shortest, needed)) + " m, " +
-                 (needed > shortest ? "the distance of its attachments"
-                                    : "which leaves a piece of a segment between the winch and what the cable carries"));
+  return refused(
+      "length: " + number_text(length) + "; must be at least " + rounded_bound_text(std::max(shortest, needed), 1) + " m, " +
+      (needed > shortest ? "the distance of its attachments"
+                         : "so that a part of a segment is left between the winch and the next attachment, payload or end"));
 }
 
 /// [m] That can be taken in: up to the next node that is attached or carries a payload, or to the other end.

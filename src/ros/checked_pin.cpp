@@ -36,7 +36,7 @@ void check_reach(const CheckedPin& pin, const World& world, std::vector<std::str
     const double length = std::abs(arc_length[pin.node] - arc_length[other.node]);
     if (distance <= length * (1 + rounding)) continue;
     errors.push_back("offset.position: " + text(pin.offset.position) + " in frame " + verlet_cable::quoted(pin.frame) + " is " +
-                     number_text(distance) + " m from " + quoted(other.name) + "; allowed: the " + number_text(length) +
+                     rounded_text(distance) + " m from " + quoted(other.name) + "; allowed: at most the " + rounded_text(length) +
                      " m of cable between them");
   }
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/ros/guarded_queue.h"
 
@@ -64,15 +65,17 @@ void Diagnostics::report_simulation(Status& status) {
   status.add("found_inside_obstacles", join({simulation_.intrusions().begin(), simulation_.intrusions().end()}));
 
   if (simulation_.faulted()) {
-    status.summary(DiagnosticStatus::ERROR, "fault: the simulation stands until reset");
+    status.summary(DiagnosticStatus::ERROR, "fault: the simulation has stopped; call reset or restore_state to go on");
   } else if (!simulation_.started()) {
-    status.summary(DiagnosticStatus::WARN, simulation_.now() == 0 ? "no ROS time yet" : "waits for frames to start");
+    status.summary(DiagnosticStatus::WARN, simulation_.now() == 0
+                                               ? "no ROS time yet: use_sim_time is true, and nothing publishes /clock"
+                                               : "waits for its tf frames to start");
   } else if (simulation_.paused()) {
     status.summary(DiagnosticStatus::OK, "paused");
   } else if (simulation_.waits_for_frames()) {
-    status.summary(DiagnosticStatus::WARN, "waits for a lost frame");
+    status.summary(DiagnosticStatus::WARN, "waits for a lost frame to come back");
   } else {
-    status.summary(DiagnosticStatus::OK, "runs");
+    status.summary(DiagnosticStatus::OK, "running");
   }
   const Nanoseconds dropped = simulation_.dropped() - std::exchange(dropped_, simulation_.dropped());
   status.add("dropped_since_last_s", seconds(dropped));
@@ -84,11 +87,14 @@ void Diagnostics::report_simulation(Status& status) {
                         std::string("overloaded, or time jumped: the cables moved at ") + share + " of real time");
   }
   if (step_time > time_step) status.mergeSummary(DiagnosticStatus::WARN, "slower than real time");
-  if (s.overstretched > 0) status.mergeSummary(DiagnosticStatus::WARN, "overstretched");
-  if (s.degraded > 0) status.mergeSummary(DiagnosticStatus::WARN, "steps were degraded");
-  if (!simulation_.world().unsettled().empty()) status.mergeSummary(DiagnosticStatus::WARN, "no equilibrium to start from");
+  if (s.overstretched > 0)
+    status.mergeSummary(DiagnosticStatus::WARN, "overstretched: what holds a cable or net is further apart than it is long");
+  if (s.degraded > 0) status.mergeSummary(DiagnosticStatus::WARN, "steps without a solution: motion was taken away");
+  if (!simulation_.world().unsettled().empty())
+    status.mergeSummary(DiagnosticStatus::WARN, "no static equilibrium was found to start from");
   if (!simulation_.intrusions().empty()) status.mergeSummary(DiagnosticStatus::WARN, "cables were found inside obstacles");
-  if (!simulation_.world().waiting().empty()) status.mergeSummary(DiagnosticStatus::WARN, "cables wait for their frames");
+  if (!simulation_.world().waiting().empty())
+    status.mergeSummary(DiagnosticStatus::WARN, "cables or nets wait for their tf frames and are not there yet");
 }
 
 void Diagnostics::report_frames(Status& status) const {
@@ -100,7 +106,7 @@ void Diagnostics::report_frames(Status& status) const {
     if (frame.is_static) {
       value += ", static";
     } else if (frame.newest > 0) {
-      value += ", age " + std::to_string(seconds(simulation_.now() - frame.newest)) + " s";
+      value += ", age " + rounded_text(seconds(simulation_.now() - frame.newest), 3) + " s";
     }
     if (frame.too_fast) value += ", faster than max_frame_speed";
     status.add("frame " + frame.name, value);
@@ -129,8 +135,10 @@ void Diagnostics::report_obstacles(Status& status) const {
     const bool lost = frames[obstacle.frame].status == FrameStatus::lost;
     if (obstacle.present && !lost) continue;
     const std::string& frame = world.frames()[obstacle.frame];
-    status.add("obstacle " + obstacle.name, (lost ? "stands, as its frame is lost: " : "waits for its frame: ") + frame);
-    status.mergeSummary(DiagnosticStatus::WARN, "obstacle " + quoted(obstacle.name) + (lost ? " stands" : " waits"));
+    status.add("obstacle " + obstacle.name,
+               (lost ? "stays where it was, as its frame is lost: " : "is not there yet, as its frame is not on tf: ") + frame);
+    status.mergeSummary(DiagnosticStatus::WARN,
+                        "obstacle " + quoted(obstacle.name) + (lost ? " has lost its frame" : " waits for its frame"));
   }
   status.add("added", simulation_.added_obstacles().size());
   status.add("refused_markers", obstacles_.refused_count());

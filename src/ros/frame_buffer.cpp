@@ -53,7 +53,7 @@ std::string transform_problem(const ReceivedTransform& received, Nanoseconds now
     problem << "a frame's name of " << std::max(transform.child_frame_id.size(), transform.header.frame_id.size())
             << " characters; allowed: at most " << longest_name;
   } else if (without_slash(transform.child_frame_id) == without_slash(transform.header.frame_id)) {
-    problem << "its parent is itself";
+    problem << "a frame cannot be its own parent";
   } else if (!coordinate.contains(t.x) || !coordinate.contains(t.y) || !coordinate.contains(t.z)) {
     problem << "translation (" << t.x << ", " << t.y << ", " << t.z << "); allowed: " << coordinate.text("m");
   } else if (!(std::abs(squared_length - 1) <= tolerance)) {

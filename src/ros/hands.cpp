@@ -54,7 +54,7 @@ void Hands::receive(const Feedback& feedback) {
   } else if (requests_.size() < most_requests) {
     requests_.push_back(std::move(request));
   } else {
-    ROS_WARN_THROTTLE(log_period, "hands: more than %zu requests at once; the rest is left out", most_requests);
+    ROS_WARN_THROTTLE(log_period, "hands: more than %zu requests of rviz at once; the others are ignored", most_requests);
   }
 }
 
@@ -144,7 +144,7 @@ EditResult Hands::cut(const Handle& handle) {
 EditResult Hands::move(const std::string& name, Pose place) {
   const World& world = simulation_.world();
   const int index = world.find_attachment(name);
-  if (index < 0) return refused({"attachment " + quoted(name) + " is not there any more"});
+  if (index < 0) return refused({"attachment " + quoted(name) + " does not exist any more"});
   const Attachment& attachment = world.attachments()[index];
   if (attachment.cable >= 0) place.position = within_reach(world, attachment.cable, attachment.node, name, place.position);
   return simulation_.move_attachment(name, world.frame_pose(attachment.frame).inverse() * place);

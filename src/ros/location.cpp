@@ -31,13 +31,15 @@ void find_cable(const CableLocation& location, const World& world, PointOnCable&
   if (found.cable >= 0) return;
   const std::vector<std::string>& waiting = world.waiting();
   if (std::find(waiting.begin(), waiting.end(), location.cable) != waiting.end()) {
-    found.errors.push_back("location.cable: " + quoted(location.cable) + " waits for its frames; allowed: cables that are there");
+    found.errors.push_back("location.cable: " + quoted(location.cable) +
+                           " waits for its tf frames; allowed: cables that are simulated already");
     return;
   }
   std::string names;
   for (const SimulatedCable& cable : world.cables()) names += (names.empty() ? "" : ", ") + cable.model.name;
   for (const SimulatedNet& net : world.nets()) names += (names.empty() ? "" : ", ") + net.model.name;
-  found.errors.push_back("location.cable: " + quoted(location.cable) + "; allowed: " + (names.empty() ? "none is there" : names));
+  found.errors.push_back("location.cable: " + quoted(location.cable) +
+                         "; allowed: " + (names.empty() ? "none, there are no cables or nets" : names));
 }
 
 void find_node(const CableLocation& location, const World& world, PointOnCable& found) {
@@ -63,7 +65,7 @@ void find_arc_length(const CableLocation& location, const World& world, PointOnC
   // The end is a sum, rounded.
   constexpr double rounding = 1e-9;
   if (!(location.arc_length >= 0 && location.arc_length <= arc_length.back() * (1 + rounding))) {
-    found.errors.push_back(found.field + "; allowed: 0 to " + number_text(arc_length.back()) + " m");
+    found.errors.push_back(found.field + "; allowed: 0 to " + rounded_text(arc_length.back()) + " m");
     return;
   }
   const auto after = std::upper_bound(arc_length.begin(), arc_length.end(), location.arc_length);
@@ -89,7 +91,7 @@ void find_nearest(const CableLocation& location, const World& world, const FindF
   found.field = "location.point: " + point_text(location.point.point);
   const std::optional<Vector3> position = read_point(location, find_frame, found.errors);
   if (!found.errors.empty()) return;
-  if (world.cables().empty()) found.errors.push_back("location.cable: \"\"; allowed: none is there");
+  if (world.cables().empty()) found.errors.push_back("location.cable: \"\"; allowed: none, there are no cables");
 
   double least = infinity;
   const bool any = found.cable < 0;
@@ -180,7 +182,7 @@ Location locate_links(const CableLocation& location, const World& world, int ind
       if (net.model.links[link][0] == found.index || net.model.links[link][1] == found.index) found.links.push_back(link);
   }
   if (found.links.empty())
-    found.errors.push_back("location: no link of net " + quoted(net.model.name) + " is there; allowed: places with links");
+    found.errors.push_back("location: net " + quoted(net.model.name) + " has no link there; allowed: nodes that links join");
   return found;
 }
 

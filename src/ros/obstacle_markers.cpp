@@ -101,7 +101,7 @@ std::string set_pose(const geometry_msgs::Pose& pose, Obstacle& obstacle) {
   if (orientation.coeffs().isZero(0)) orientation.setIdentity();
   const double length = orientation.norm();
   if (!(std::abs(length - 1) <= length_tolerance))
-    return "pose.orientation: of length " + number_text(length) + "; allowed: a quaternion of length 1, or all zero";
+    return "pose.orientation: of length " + rounded_text(length) + "; allowed: a quaternion of length 1, or all zero";
   obstacle.pose = {position, orientation.normalized()};
   return "";
 }

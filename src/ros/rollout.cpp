@@ -33,7 +33,7 @@ void check_times(const RolloutGoal& goal, const World& world, std::vector<std::s
     errors.push_back("duration: " + number_text(goal.duration) + "; allowed: above 0, at most " + number_text(longest) + " s");
   if (!(goal.rate > 0 && goal.rate * step <= 1 + 1e-9)) {
     errors.push_back("rate: " + number_text(goal.rate) + "; allowed: above 0, at most one state a step, " +
-                     number_text(1 / step) + " Hz");
+                     rounded_text(1 / step) + " Hz");
   } else if (goal.duration * goal.rate * count_nodes(world) > most_nodes) {
     errors.push_back("rate: " + number_text(goal.rate) + " for " + number_text(goal.duration) + " s of " +
                      std::to_string(count_nodes(world)) + " nodes; allowed: at most " + number_text(most_nodes) +
@@ -102,7 +102,7 @@ bool Rollout::run(const std::function<bool(double)>& goes_on, RolloutResult& res
     follow(time);
     const StepResult done = world_.step(frames_);
     if (done.status == StepResult::Status::fault) {
-      result.message = "the simulation failed after " + number_text(time) + " s";
+      result.message = "the simulation failed after " + rounded_text(time) + " s";
       return false;
     }
     // Half a step's tolerance: states are those of the steps nearest to their times.
@@ -112,7 +112,7 @@ bool Rollout::run(const std::function<bool(double)>& goes_on, RolloutResult& res
       ++recorded;
     }
     if (!goes_on(static_cast<double>(i) / static_cast<double>(steps))) {
-      result.message = "cancelled after " + number_text(time) + " s";
+      result.message = "cancelled after " + rounded_text(time) + " s";
       return false;
     }
   }

@@ -69,7 +69,9 @@ void Simulation::jump_back() {
   frames_.restart(clock_.now(), forget);
   if (started_) {
     stamp_ = std::max<Nanoseconds>(target(), 0);
-    announce(CableEvent::TIME_JUMP, {}, std::string("ROS time went back: ") + (forget ? "reset" : "the cables keep their state"));
+    announce(CableEvent::TIME_JUMP, {},
+             std::string("ROS time jumped back: ") +
+                 (forget ? "everything is reset (on_time_jump: reset)" : "everything keeps its state (on_time_jump: keep)"));
   }
   // The frames of pins are forgotten, and so must be the world that has them.
   if (forget) world_ = build(initial_frames(scene_));
@@ -182,14 +184,17 @@ void Simulation::report_status(const StepResult& result) {
     ++faults_;
     announce(CableEvent::FAULT, {subject, {}, result.node, {}},
              "the simulation of " + quoted(subject) + " failed at node " + std::to_string(result.node) +
-                 ": reset or restore_state goes on");
+                 " and has stopped; call reset or restore_state to go on");
   }
   if (result.status == StepResult::Status::overstretched) {
-    ROS_WARN_THROTTLE(log_period, "%s is overstretched at node %d: what holds it is further apart than it is long",
-                      quoted(subject).c_str(), result.node);
+    ROS_WARN_THROTTLE(
+        log_period,
+        "%s is overstretched at node %d: the points that hold it are further apart than the material between them is long",
+        quoted(subject).c_str(), result.node);
   }
   if (result.status == StepResult::Status::degraded && result.cable < 0) {
-    ROS_WARN_THROTTLE(log_period, "%s ran away; its motion was taken away: stiff springs of light nodes need a shorter time_step",
+    ROS_WARN_THROTTLE(log_period,
+                      "%s became unstable and was stopped: stiff springs between light nodes need a shorter time_step",
                       quoted(subject).c_str());
   }
 }
@@ -199,8 +204,9 @@ void Simulation::report_breaks() const {
     const CableModel& first = world_.cables()[broken.cable].model;
     const std::string& second = world_.cables()[broken.new_cable].model.name;
     announce(CableEvent::BROKE, {first.name, {}, broken.segment, second},
-             "cable " + quoted(first.name) + " broke at segment " + std::to_string(broken.segment) + ", above " +
-                 number_text(first.material.breaking_tension) + " N: the rest of it is " + quoted(second));
+             "cable " + quoted(first.name) + " broke at segment " + std::to_string(broken.segment) +
+                 ", where its tension was above breaking_tension, " + number_text(first.material.breaking_tension) +
+                 " N; the part behind it is now cable " + quoted(second));
   }
 }
 
@@ -209,8 +215,8 @@ void Simulation::report_intrusions() {
     const std::string& cable = world_.cables()[intrusion.cable].model.name;
     const std::string& obstacle = world_.obstacles()[intrusion.obstacle].name;
     if (!intrusions_.insert(cable + " in " + obstacle).second) continue;
-    ROS_WARN("cable %s is %s m inside obstacle %s at segment %d: it is pushed out", quoted(cable).c_str(),
-             number_text(intrusion.depth).c_str(), quoted(obstacle).c_str(), intrusion.segment);
+    ROS_WARN("cable %s is %s m deep inside obstacle %s at segment %d and is pushed out of it", quoted(cable).c_str(),
+             rounded_text(intrusion.depth).c_str(), quoted(obstacle).c_str(), intrusion.segment);
   }
 }
 
@@ -225,7 +231,7 @@ void Simulation::report_overload() {
 
 void Simulation::report_unsettled(std::size_t first) const {
   for (std::size_t i = first; i < world_.unsettled().size(); ++i)
-    ROS_WARN("cable %s found no static equilibrium to start from: it starts at rest near one",
+    ROS_WARN("cable %s: no static equilibrium was found to start from; it starts at rest near one, and may move at first",
              quoted(world_.unsettled()[i]).c_str());
 }
 

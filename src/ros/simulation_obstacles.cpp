@@ -16,7 +16,7 @@ constexpr std::size_t most_frames = 2000;
 EditResult Simulation::set_obstacle(Obstacle obstacle, const std::string& frame) {
   const bool is_new = added_obstacles_.count(obstacle.name) == 0;
   if (is_new && added_obstacles_.size() >= most_obstacles)
-    return {false, "there are " + std::to_string(most_obstacles) + " obstacles; allowed: no more", {}};
+    return {false, "there are " + std::to_string(most_obstacles) + " obstacles already; allowed: no more than these", {}};
   if (const auto reason = refused_frame(frame)) return *reason;
   const EditResult result = place({obstacle, frame});
   if (result.ok) added_obstacles_.insert_or_assign(result.name, AddedObstacle{std::move(obstacle), frame});

@@ -18,15 +18,15 @@ EditResult refused(const std::string& message) {
 
 EditResult Simulation::refused_before_start() const {
   return refused(now() == 0 ? "the simulation has not started: there is no ROS time yet (use_sim_time without /clock?)"
-                            : "the simulation has not started: it waits for its frames, for tf_timeout at most");
+                            : "the simulation has not started: it waits for its tf frames, but no longer than tf_timeout");
 }
 
 EditResult Simulation::set_paused(bool paused) {
-  if (paused == paused_) return done(paused ? "paused already" : "runs already");
+  if (paused == paused_) return done(paused ? "it is paused already" : "it is running already");
   paused_ = paused;
   if (!paused) interrupt_steps("the pause has ended");
   if (started_ && !paused) skip_to(grid_.step_at_or_before(target()));
-  return done(paused ? "paused" : "runs");
+  return done(paused ? "paused" : "running");
 }
 
 EditResult Simulation::pin(const std::string& name, int cable, int node, const std::string& frame, const Pose& frame_pose,
@@ -81,7 +81,7 @@ EditResult Simulation::unpin(const std::string& name) {
   const EditResult result = world_.unpin(name);
   if (!result.ok) return result;
   moves_.forget(name);
-  const std::string message = "attachment " + quoted(name) + " is undone";
+  const std::string message = "attachment " + quoted(name) + " is released";
   announce(CableEvent::UNPINNED, subject, message);
   return done(message);
 }
@@ -91,13 +91,13 @@ EditResult Simulation::move_attachment(const std::string& name, const Pose& offs
   const int index = world_.find_attachment(name);
   if (index < 0) return refused_attachment(name);
   moves_.send(name, world_.attachments()[index].pose, offset);
-  return done("attachment " + quoted(name) + " is on its way");
+  return done("attachment " + quoted(name) + " moves to its new place");
 }
 
 EditResult Simulation::refused_attachment(const std::string& name) const {
   std::string names;
   for (const Attachment& attachment : world_.attachments()) names += (names.empty() ? "" : ", ") + attachment.name;
-  return refused("name: " + quoted(name) + "; allowed: " + (names.empty() ? "nothing is attached" : names));
+  return refused("name: " + quoted(name) + "; allowed: " + (names.empty() ? "none, nothing is attached" : names));
 }
 
 EditResult Simulation::cut(int cable, int segment) {
@@ -106,7 +106,7 @@ EditResult Simulation::cut(int cable, int segment) {
   if (!result.ok) return result;
   const std::string& name = world_.cables()[cable].model.name;
   const std::string message = "segment " + std::to_string(segment) + " of cable " + quoted(name) +
-                              " is cut out: the rest is cable " + quoted(result.name);
+                              " is cut out: the part behind it is now cable " + quoted(result.name);
   announce(CableEvent::CUT, {name, {}, segment, result.name}, message);
   return {true, message, result.name};
 }
@@ -116,14 +116,14 @@ std::optional<EditResult> Simulation::refused_cable(const std::string& field, co
   if (world_.find_cable(cable) >= 0) return std::nullopt;
   std::string names;
   for (const SimulatedCable& other : world_.cables()) names += (names.empty() ? "" : ", ") + other.model.name;
-  return refused(field + ": " + quoted(cable) + "; allowed: " + (names.empty() ? "none is there" : names));
+  return refused(field + ": " + quoted(cable) + "; allowed: " + (names.empty() ? "none, there are no cables" : names));
 }
 
 EditResult Simulation::set_length(const std::string& cable, bool at_end, double length, double speed) {
   if (!started_) return refused_before_start();
   if (const auto reason = refused_cable("cable", cable)) return *reason;
   const EditResult result = world_.set_length(world_.find_cable(cable), at_end, length, speed);
-  return result.ok ? done("cable " + quoted(cable) + " is wound to " + number_text(length) + " m") : result;
+  return result.ok ? done("cable " + quoted(cable) + " is being wound to a length of " + number_text(length) + " m") : result;
 }
 
 EditResult Simulation::join(const std::string& first, bool first_at_end, const std::string& second, bool second_at_end) {

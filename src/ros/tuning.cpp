@@ -66,7 +66,7 @@ SceneDesc changed_scene(SceneDesc scene, const std::vector<TunableNumber>& numbe
     }
   }
   if (!changes.bools.empty() || !changes.ints.empty() || !changes.strs.empty())
-    errors.push_back("tuning: parameters that are no doubles; allowed: doubles");
+    errors.push_back("tuning: a parameter that is not of type double; allowed: those of type double");
   if (errors.empty()) errors = validate(scene);
   if (!errors.empty()) throw SceneError(std::move(errors));
   return scene;

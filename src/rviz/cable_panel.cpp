@@ -147,7 +147,7 @@ void CablePanel::followNode() {
   node_ = node;
   std::string problem;
   if (node.empty() || !ros::names::validate(node, problem)) {
-    tell({false, node.empty() ? "the name of a node is missing" : problem});
+    tell({false, node.empty() ? "Node is empty; type the name of the cable node, such as /cable" : problem});
     return;
   }
   state_ = ros::NodeHandle().subscribe<CableArray>(nameOf("state"), 1,
@@ -202,9 +202,9 @@ void CablePanel::refresh() {
     measured_ = {};
     paused_ = speed_known_ = false;
   }
-  speed_label_->setText(!there          ? "nothing is heard of the node"
+  speed_label_->setText(!there          ? "no messages from this node"
                         : !speed_known_ ? "..."
-                        : paused_       ? "stands"
+                        : paused_       ? "paused"
                                         : QString::number(speed_, 'f', 2) + " × real time");
   pause_button_->setText(paused_ ? "Resume" : "Pause");
   step_button_->setEnabled(there && paused_);

@@ -78,13 +78,13 @@ int ClickTool::processMouseEvent(rviz::ViewportMouseEvent& event) {
 void ClickTool::click(rviz::ViewportMouseEvent& event) {
   Ogre::Vector3 picked;
   if (!context_->getSelectionManager()->get3DPoint(event.viewport, event.x, event.y, picked)) {
-    tell({false, "there is nothing; click on a cable"});
+    tell({false, "nothing was hit; click on a cable"});
     return;
   }
   Ogre::Vector3 position;
   Ogre::Quaternion orientation;
   if (!cables_ || !context_->getFrameManager()->getTransform(cables_->header.frame_id, ros::Time(), position, orientation)) {
-    tell({false, "nothing is heard of the cables of " + node_->getStdString() + "; see Node in the tool's properties"});
+    tell({false, "no messages from " + node_->getStdString() + "; see Node in the tool's properties"});
     return;
   }
   const Ogre::Vector3 point = orientation.Inverse() * (picked - position);
@@ -97,7 +97,7 @@ void ClickTool::click(rviz::ViewportMouseEvent& event) {
   if (isOnCable(location.point.point)) {
     clicked(location);
   } else {
-    tell({false, "that is no cable; click on a cable"});
+    tell({false, "that is not a cable; click on a cable"});
   }
 }
 

@@ -30,7 +30,7 @@ void ServiceCaller::add(std::function<ServiceAnswer()> run, Done done) {
       return;
     }
   }
-  done({false, "the node has not answered earlier requests yet"});
+  done({false, "the node has not answered the last request yet; try again in a moment"});
 }
 
 void ServiceCaller::run() {

@@ -17,9 +17,10 @@ void CutTool::clicked(const CableLocation& location) {
 
 PinTool::PinTool()
     : ClickTool('p', "it is pinned there"),
-      frame_(
-          new rviz::StringProperty("Frame", "", "That the node follows; empty: the node's fixed frame", getPropertyContainer())),
-      clamp_(new rviz::BoolProperty("Clamp", false, "Holds the direction, too", getPropertyContainer())) {}
+      frame_(new rviz::StringProperty("Frame", "",
+                                      "The tf frame that the pinned place follows; empty: the fixed frame of the simulation",
+                                      getPropertyContainer())),
+      clamp_(new rviz::BoolProperty("Clamp", false, "Hold the cable's direction, too", getPropertyContainer())) {}
 
 void PinTool::clicked(const CableLocation& location) {
   Pin::Request request;

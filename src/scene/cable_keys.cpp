@@ -72,7 +72,7 @@ void read_initial(const Value& value, InitialShapeDesc& initial) {
   if (initial.type == InitialShapeDesc::Type::automatic) return;
   const auto only_with = [&](const char* name, InitialShapeDesc::Type type, const char* type_name) {
     if (given.count(name) && initial.type != type)
-      value.errors->add(value.child(name, {}).key, "given beside another type", std::string("only with type: ") + type_name);
+      value.errors->add(value.child(name, {}).key, "given with another type", std::string("only with type: ") + type_name);
   };
   only_with("from", InitialShapeDesc::Type::straight, "straight");
   only_with("to", InitialShapeDesc::Type::straight, "straight");

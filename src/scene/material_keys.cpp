@@ -74,7 +74,7 @@ void read_moduli(const Value& value, const std::set<std::string>& given, Materia
   for (const std::string& name : replaced_keys) {
     if (!given.count(name)) continue;
     value.errors->add(
-        child_key(name), "given beside elastic moduli",
+        child_key(name), "given together with elastic moduli",
         "either linear_density, axial_stiffness, bending_stiffness and torsional_stiffness, or density, youngs_modulus and "
         "poisson_ratio");
     good = false;

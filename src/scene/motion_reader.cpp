@@ -39,7 +39,7 @@ class MotionReader {
     } else {
       errors_.push_back("empty; allowed: the header " + std::string(header) + " and rows");
     }
-    if (errors_.size() == most_errors) errors_.push_back("not read further");
+    if (errors_.size() == most_errors) errors_.push_back("the rest of the file was not read");
     if (!errors_.empty()) throw SceneError(std::move(errors_));
     return std::move(motion_);
   }

@@ -138,13 +138,13 @@ void read_net(const Value& value, NetDesc& net) {
   const std::set<std::string> given = read_map(value, net_keys(), net);
   const auto key = [&](const char* name) { return value.child(name, {}).key; };
   if (given.count("link_type") && given.count("links") && !value.node["links"].IsSequence())
-    value.errors->add(key("link_type"), "given twice, by links as well", "one of both");
+    value.errors->add(key("link_type"), "given, although links says it as well", "one of the two");
   if (!given.count("grid") && !given.count("nodes"))
     value.errors->add_unread(key("nodes"), "missing", "a grid, or nodes and links");
   if (!given.count("mass") && !given.count("masses"))
-    value.errors->add_unread(key("mass"), "missing", "mass of all nodes together, or masses, one a node");
+    value.errors->add_unread(key("mass"), "missing", "mass of all nodes together, or masses, one for each node");
   if (net.link_type != LinkType::limited && !value.errors->is_unread(key("links")) && given.count("tolerance"))
-    value.errors->add(key("tolerance"), "given beside other links", "only with limited links");
+    value.errors->add(key("tolerance"), "given with other links", "only with limited links");
 }
 
 const Keys<IntegratorDesc>& integrator_keys() {

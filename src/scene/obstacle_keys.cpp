@@ -59,9 +59,9 @@ void read_obstacle(const Value& value, ObstacleDesc& obstacle) {
   for (const char* key : {"radius", "length", "size", "uri", "scale"}) {
     const std::string full_key = value.child(key, {}).key;
     const bool has = has_dimension(obstacle.type, key);
-    if (given.count(key) && !has) value.errors->add(full_key, "given beside another type", "only with a type that has it");
+    if (given.count(key) && !has) value.errors->add(full_key, "given with another type", "only with a type that has this key");
     if (!given.count(key) && has && key != std::string("scale"))
-      value.errors->add_unread(full_key, "missing", "to give it for an obstacle of this type");
+      value.errors->add_unread(full_key, "missing", "a value, as obstacles of this type need it");
   }
 }
 

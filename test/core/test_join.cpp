@@ -163,7 +163,7 @@ TEST(Join, CutsLeaveMoreThanTheGapThatCloses) {
   const std::uint64_t before = world.hash();
   const EditResult second = world.cut(0, 24);
   EXPECT_FALSE(second.ok);
-  EXPECT_NE(second.message.find("still being joined"), std::string::npos) << second.message;
+  EXPECT_NE(second.message.find("still being drawn in"), std::string::npos) << second.message;
   EXPECT_EQ(world.hash(), before);
   // Ends that are drawn together at up to 2 m/s meet within 0.5 s.
   for (int i = 0; i < 500; ++i) ASSERT_EQ(world.step({FrameInput{}}).status, Status::ok) << i;

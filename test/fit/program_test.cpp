@@ -200,5 +200,23 @@ TEST_F(CableFit, ASignalEndsItAtOnce) {
   EXPECT_FALSE(exists("report.json"));
 }
 
+// Those that the README fits; config/recordings/README.md has the table.
+TEST_F(CableFit, FindsTheHoseOfTheRecordingsThatShip) {
+  const std::string recordings = RECORDINGS;
+  const SceneDesc truth = read_scene_file(recordings + "/hose.yaml");
+  ASSERT_EQ(fit(recordings + "/take1.csv " + recordings + "/take2.csv " + recordings +
+                "/take3.csv --name hose --linear-density 0.08 --radius 0.004 --output " + path("fitted.yaml")),
+            0)
+      << err;
+  const SceneDesc fitted = read_scene_text(content(path("fitted.yaml")) + "    attachments: []\n");
+  const auto& found = fitted.materials[0].material;
+  const auto& known = truth.materials[0].material;
+  EXPECT_NEAR(found.bending_stiffness / known.bending_stiffness, 1, 0.02);
+  EXPECT_NEAR(found.torsional_stiffness / known.torsional_stiffness, 1, 0.05);
+  EXPECT_NEAR(found.bending_damping / known.bending_damping, 1, 0.1);
+  EXPECT_NEAR(found.drag / known.drag, 1, 0.05);
+  EXPECT_NEAR(fitted.cables[0].length / truth.cables[0].length, 1, 0.002);
+}
+
 }  // namespace
 }  // namespace verlet_cable::cable_fit

@@ -45,7 +45,7 @@ class CableReportsTest(unittest.TestCase):
             array = diagnostics.wait_for(lambda a: any(s.name == 'cable: simulation' for s in a.status), 'status')
         status = next(s for s in array.status if s.name == 'cable: simulation')
         self.assertGreaterEqual(status.level, DiagnosticStatus.WARN)
-        self.assertIn('no equilibrium', status.message)
+        self.assertIn('no static equilibrium', status.message)
         self.assertEqual({v.key: v.value for v in status.values}['unsettled_cables'], 'gum')
 
 

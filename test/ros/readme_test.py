@@ -7,12 +7,12 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
-from rosgraph_msgs.msg import Log
 
 from cable_client import CableClient, Messages, all_finite, cable
 
@@ -23,7 +23,9 @@ PATIENCE = 60  # [s] for a program that ends by itself
 def blocks(kind):
     """The code blocks of the README, those of a kind."""
     with open(f'{PACKAGE}/README.md', encoding='utf-8') as file:
-        return re.findall(rf'^```{kind}\n(.*?)^```$', file.read(), re.MULTILINE | re.DOTALL)
+        parts = re.split(r'^```(.*)\n', file.read(), flags=re.MULTILINE)
+    # text, kind, block, '', text, kind, block, '', text
+    return [block for k, block in zip(parts[1::4], parts[2::4]) if k == kind]
 
 
 def typed(start):
@@ -34,8 +36,31 @@ def typed(start):
     return [re.sub(r'\s+(#.*|&)$', '', line) for line in lines]
 
 
-def waits(log):
-    return log.level == Log.WARN and 'hose' in log.msg and 'left_gripper' in log.msg
+class Program:
+    """What runs in a terminal of its own."""
+
+    def __init__(self, line, directory, environment):
+        self._log = tempfile.TemporaryFile()
+        self._process = subprocess.Popen(['bash', '-c', 'exec ' + line], cwd=directory, env=environment, stdout=self._log,
+                                         stderr=subprocess.STDOUT)
+
+    def stop(self):
+        self._process.send_signal(signal.SIGINT)
+        self._process.wait(PATIENCE)
+        self._log.close()
+
+    def text(self):
+        return os.pread(self._log.fileno(), 1 << 20, 0).decode()
+
+    def wait_for_lines(self, part, count=1):
+        """The first lines that contain a text."""
+        deadline = time.monotonic() + PATIENCE
+        while time.monotonic() < deadline:
+            lines = [line for line in self.text().splitlines(keepends=True) if part in line and line.endswith('\n')]
+            if len(lines) >= count:
+                return lines[:count]
+            time.sleep(0.1)
+        raise AssertionError(f'not {count} lines with {part!r} in {PATIENCE} s, but:\n{self.text()}')
 
 
 class ReadmeTest(unittest.TestCase):
@@ -51,15 +76,10 @@ class ReadmeTest(unittest.TestCase):
         self.environment = {**os.environ, 'PWD': self.directory}
 
     def start(self, line):
-        """Until the end of the test, or until the function that it returns is called."""
-        process = subprocess.Popen(['bash', '-c', 'exec ' + line], cwd=self.directory, env=self.environment)
-
-        def stop():
-            process.send_signal(signal.SIGINT)
-            process.wait(PATIENCE)
-
-        self.addCleanup(stop)
-        return stop
+        """Until the end of the test."""
+        program = Program(line, self.directory, self.environment)
+        self.addCleanup(program.stop)
+        return program
 
     def run_to_end(self, line):
         return subprocess.run(line, shell=True, executable='/bin/bash', cwd=self.directory, env=self.environment, timeout=PATIENCE,
@@ -67,20 +87,19 @@ class ReadmeTest(unittest.TestCase):
 
     def start_hose(self):
         line = typed('roslaunch verlet_cable cable.launch scene:=config/hose.yaml rviz:=true')[0]
-        self.start(line.replace('rviz:=true', 'rviz:=false'))
-        return CableClient('/cable')
+        return self.start(line.replace('rviz:=true', 'rviz:=false')), CableClient('/cable')
 
     def test_the_scene_is_the_one_that_ships(self):
         with open(f'{PACKAGE}/config/hose.yaml', encoding='utf-8') as file:
             self.assertEqual(blocks('yaml')[0], file.read())
 
     def test_the_hose_asks_for_its_frames_and_follows_them(self):
-        with Messages('/rosout_agg', Log) as logs, Messages('/diagnostics', DiagnosticArray) as diagnostics:
-            node = self.start_hose()
-            warning = logs.wait_for(waits, 'warning that the hose waits')
-            self.assertIn('"left_gripper" and "right_gripper"', warning.msg)
-            suggested = re.search(r'rosrun tf2_ros static_transform_publisher .* world left_gripper$', warning.msg)
-            self.assertTrue(suggested, warning.msg)
+        program, node = self.start_hose()
+        with Messages('/diagnostics', DiagnosticArray) as diagnostics:
+            warning, = program.wait_for_lines('WARN')
+            self.assertIn('"hose"', warning)
+            self.assertIn('from "world" to "left_gripper" and "right_gripper"', warning)
+            self.assertRegex(warning, r': rosrun tf2_ros static_transform_publisher 0 0 1 0 0 0 world left_gripper')
             self.assertEqual(node.state().cables, [])
             diagnostics.wait_for(lambda a: any(v.key == 'waiting_cables' and v.value == 'hose' for s in a.status for v in s.values),
                                  'hose among waiting_cables')
@@ -94,21 +113,17 @@ class ReadmeTest(unittest.TestCase):
 
     def test_the_hose_follows_moving_frames(self):
         line, = typed('rosrun verlet_cable play_motion.py')
-        node = self.start_hose()
+        _, node = self.start_hose()
         self.start(line)
         with node.states() as states:
             start = cable(states.wait_for(lambda s: cable(s, 'hose'), 'hose'), 'hose').positions[0]
+            states.clear()
             states.wait_for(lambda s: abs(cable(s, 'hose').positions[0].y - start.y) > 0.05, 'hose that moves')
 
     def test_the_warning_comes_again(self):
-        with Messages('/rosout_agg', Log) as logs:
-            self.start_hose()
-            first = logs.wait_for(waits, 'warning')
-            deadline = rospy.get_time() + PATIENCE
-            while sum(waits(log) for log in logs.all()) < 2 and rospy.get_time() < deadline:
-                rospy.sleep(0.1)
-            second = [log for log in logs.all() if waits(log)][1]
-            self.assertAlmostEqual((second.header.stamp - first.header.stamp).to_sec(), 10, delta=2)
+        program, _ = self.start_hose()
+        first, second = (float(re.search(r'\[(\d+\.\d+)\]', line)[1]) for line in program.wait_for_lines('not shown yet', 2))
+        self.assertAlmostEqual(second - first, 10, delta=2)
 
     def test_offline(self):
         line, = typed('rosrun verlet_cable cable_sim')

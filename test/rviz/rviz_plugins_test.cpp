@@ -83,7 +83,7 @@ TEST_F(CablePanelTest, ShowsSpeedAndLoads) {
 TEST_F(CablePanelTest, PausesStepsAndResets) {
   wait_for("speed", [this] { return shows<QLabel>("real time"); });
   click("Pause");
-  wait_for("that the node stands", [this] { return shows<QLabel>("stands"); });
+  wait_for("that the node stands", [this] { return shows<QLabel>("paused"); });
   click("Step");
   wait_for("steps", [this] { return shows<QLabel>("10 steps done"); });
   click("Reset");
@@ -106,7 +106,7 @@ TEST_F(CablePanelTest, SavesAndRestores) {
 TEST_F(CablePanelTest, SurvivesANodeThatIsNotThere) {
   wait_for("speed", [this] { return shows<QLabel>("real time"); });
   write("/cable", "/nobody");
-  wait_for("silence", [this] { return shows<QLabel>("nothing is heard of the node") && table().rowCount() == 0; });
+  wait_for("silence", [this] { return shows<QLabel>("no messages from this node") && table().rowCount() == 0; });
   click("Reset");
   wait_for("that nobody answers", [this] { return shows<QLabel>("no answer from /nobody/reset"); });
   write("/nobody", "not a name!");

@@ -82,7 +82,7 @@ const Mistake mistakes[] = {
     {"nanLength", "{name: a, type: cylinder, radius: 1, length: .nan}", "obstacles[1].length: \".nan\";"},
     {"infiniteSize", "{name: a, type: box, size: [1, .inf, 1]}", "obstacles[1].size: [1, inf, 1];"},
     {"negativeSize", "{name: a, type: box, size: [1, -1, 1]}", "obstacles[1].size: [1, -1, 1];"},
-    {"sizeOfASphere", "{name: a, type: sphere, radius: 1, size: [1, 1, 1]}", "obstacles[1].size: given beside another type;"},
+    {"sizeOfASphere", "{name: a, type: sphere, radius: 1, size: [1, 1, 1]}", "obstacles[1].size: given with another type;"},
     {"nanPose", "{name: a, type: plane, pose: [0, 0, .nan, 0, 0, 0]}", "obstacles[1].pose: [0, 0, .nan, 0, 0, 0];"},
     {"farPose", "{name: a, type: plane, pose: [0, 0, 1e300, 0, 0, 0]}", "obstacles[1].pose: [0, 0, 1e+300, 0, 0, 0];"},
     {"shortPose", "{name: a, type: plane, pose: [0, 0, 0]}", "obstacles[1].pose: [0, 0, 0]; allowed: six numbers"},

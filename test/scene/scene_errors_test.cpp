@@ -99,7 +99,7 @@ const Mistake mistakes[] = {
     {"shapeIsNoMap", color, "initial: straight", "cables[0].initial: \"straight\";"},
     {"noDirection", color, "initial: {type: straight, from: [1, 0, 0], to: [1, 0, 0]}", "cables[0].initial.to: [1, 0, 0];"},
     {"pointsBesideStraight", color, "initial: {type: straight, points: [[0, 0, 0], [1, 0, 0]]}",
-     "cables[0].initial.points: given beside another type;"},
+     "cables[0].initial.points: given with another type;"},
     {"onePoint", color, "initial: {type: points, points: [[0, 0, 0]]}", "cables[0].initial.points: 1 points;"},
     {"noPoints", color, "initial: {type: points}", "cables[0].initial.points: 0 points;"},
     {"longPoints", color, "initial: {type: points, points: [[0, 0, 0], [1.06, 0, 0]]}",
@@ -210,7 +210,7 @@ TEST(SceneErrors, elasticModuliAreOneSetOfKeys) {
                        "materials.m.poisson_ratio: 0.6;"));
   EXPECT_TRUE(
       has_line(errors_of_material("density: 1200, youngs_modulus: 1e7, poisson_ratio: 0.4, radius: 0.005, linear_density: 1"),
-               "materials.m.linear_density: given beside elastic moduli;"));
+               "materials.m.linear_density: given together with elastic moduli;"));
 }
 
 TEST(SceneErrors, differentInitialPosesOfAFrame) {

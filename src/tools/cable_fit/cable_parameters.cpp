@@ -136,9 +136,9 @@ void check_starts(const std::vector<Recording>& recordings, const std::vector<Sm
     const auto [shorter, longer] = first_lengths(recordings[i], inputs[i]);
     if (longer > (1 + start_tolerance) * settings.length || shorter < (1 - start_tolerance) * settings.length)
       errors.push_back(recordings[i].path + ": the markers' distances in the first row are " +
-                       number_text(first_length(recordings[i])) +
+                       rounded_text(first_length(recordings[i])) +
                        " m in all; allowed: at most 5 % more or less than the cable's length, measured as " +
-                       number_text(settings.length) + " m");
+                       rounded_text(settings.length) + " m");
   }
 }
 

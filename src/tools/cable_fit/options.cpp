@@ -70,7 +70,9 @@ void add_unknown(const std::string& argument, const std::string& name, std::vect
 }
 
 void check_required(const Options& options, std::vector<std::string>& errors) {
-  if (options.recordings.empty()) errors.emplace_back("no recordings; allowed: cable_fit RECORDING.csv..., see --help");
+  if (options.recordings.empty())
+    errors.emplace_back(
+        "no recordings; type: cable_fit RECORDING.csv... --name NAME --output SCENE.yaml; cable_fit --help lists the options");
   std::set<std::string> seen;
   for (const std::string& path : options.recordings)
     if (!seen.insert(path).second) errors.push_back(quoted(path) + ": given twice; allowed: each recording once");

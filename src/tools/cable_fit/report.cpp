@@ -123,9 +123,9 @@ std::string parameter_lines(const Fit& fit) {
   for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
     const Parameter& parameter = problem.parameters[i];
     const Interval range = interval(parameter, result.values[i], result.confidence[i]);
-    text +=
-        line("%-44s %10.4g %-9s (%.3g to %.3g)%s\n", parameter.key.c_str(), scene_value(parameter, result.values[i]),
-             parameter.unit.c_str(), range.low, range.high, result.confidence[i].told ? "" : "  the recordings do not tell it");
+    text += line("%-44s %10.4g %-9s (%.3g to %.3g)%s\n", parameter.key.c_str(), scene_value(parameter, result.values[i]),
+                 parameter.unit.c_str(), range.low, range.high,
+                 result.confidence[i].told ? "" : "  not determined by these recordings");
   }
   return text;
 }

@@ -60,7 +60,7 @@ int simulate_job(const Options& options, const Job& job) {
   outputs.open(options, errors);
   if (!errors.empty()) return refuse(errors);
   for (const std::string& frame : unused_frames(job.scene, job.motion))
-    std::cerr << "cable_sim: note: " << tools::path_text(options.motion) << ": nothing in the scene follows frame "
+    std::cerr << "cable_sim: note: " << tools::path_text(options.motion) << ": the scene does not use frame "
               << quoted(frame) << "\n";
 
   const bool has_data = tools::is_standard_output(options.output) || tools::is_standard_output(options.summary);

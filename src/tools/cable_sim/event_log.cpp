@@ -25,11 +25,12 @@ struct StatusText {
 StatusText text_of(StepResult::Status status) {
   switch (status) {
     case StepResult::Status::overstretched:
-      return {"overstretched", "held points are further apart than what is between them is long; it is lengthened"};
+      return {"overstretched",
+              "the points that hold it are further apart than the material between them is long; it is lengthened to reach"};
     case StepResult::Status::degraded:
-      return {"degraded", "no solution was found, or it ran away; its motion was taken away"};
+      return {"degraded", "no solution was found for a step, or it became unstable; its motion was taken away"};
     case StepResult::Status::fault:
-      return {"FAULT", "no finite state was found"};
+      return {"FAULT", "the simulation failed: it has no finite state any more"};
     case StepResult::Status::jumped:
     case StepResult::Status::ok:
       break;
@@ -60,7 +61,8 @@ void EventLog::observe(const World& world, const StepResult& result, const std::
 
 void EventLog::add_unsettled(const World& world) {
   for (const std::string& cable : world.unsettled())
-    add({world.time(), "not_settled", cable, -1, "", "no static equilibrium was found; the cable starts at rest near it", ""});
+    add({world.time(), "not_settled", cable, -1, "",
+         "no static equilibrium was found; the cable starts at rest near one, and may move at first", ""});
 }
 
 std::vector<Event> EventLog::events() const {
@@ -101,7 +103,7 @@ void EventLog::add_intrusions(const World& world) {
     const std::string& obstacle = world.obstacles()[static_cast<std::size_t>(intrusion.obstacle)].name;
     if (!intrusions_.emplace(cable, obstacle).second) continue;
     add({world.time(), "inside_obstacle", cable, intrusion.segment, "",
-         "the segment that starts here is " + number_text(intrusion.depth) + " m inside " + obstacle + " and is pushed out",
+         "the segment that starts here is " + rounded_text(intrusion.depth) + " m deep inside " + obstacle + " and is pushed out",
          obstacle});
   }
 }
@@ -123,8 +125,8 @@ void EventLog::end_episodes(double time) {
     Event end = episode.first;
     end.time = episode.last_time;
     end.type += "_end";
-    end.message = "ended, after " + number_text(episode.last_time - episode.first.time) + " s";
-    if (episode.first.frame.empty()) end.message += "; largest strain " + number_text(episode.largest_strain);
+    end.message = "ended, after " + rounded_text(episode.last_time - episode.first.time) + " s";
+    if (episode.first.frame.empty()) end.message += "; largest strain " + rounded_text(episode.largest_strain);
     add(end);
     it = episodes_.erase(it);
   }
@@ -142,7 +144,7 @@ void EventLog::add(const Event& event) {
   const std::string where = event.cable.empty() ? event.frame
                             : event.node < 0    ? event.cable
                                                 : event.cable + " node " + std::to_string(event.node);
-  std::fprintf(stderr, "cable_sim: at %s s: %s: %s: %s\n", number_text(event.time).c_str(), event.type.c_str(), where.c_str(),
+  std::fprintf(stderr, "cable_sim: at %s s: %s: %s: %s\n", rounded_text(event.time, 6).c_str(), event.type.c_str(), where.c_str(),
                event.message.c_str());
   if (events_.size() == most_printed) std::fputs("cable_sim: further events are in the summary only\n", stderr);
 }

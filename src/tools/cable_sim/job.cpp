@@ -53,9 +53,10 @@ void check_outputs(const Options& options, std::vector<std::string>& errors) {
 void check_times(const Options& options, double time_step, std::vector<std::string>& errors) {
   if (options.duration / time_step > most_steps)
     errors.push_back("--duration: " + number_text(options.duration) + "; allowed: at most " +
-                     number_text(most_steps * time_step) + ", which is " + number_text(most_steps) + " steps");
+                     rounded_text(most_steps * time_step) + " s, which is " + number_text(most_steps) + " steps");
   if (options.rate * time_step > 1 + rate_tolerance)
-    errors.push_back("--rate: " + number_text(options.rate) + "; allowed: at most 1 / time_step = " + number_text(1 / time_step));
+    errors.push_back("--rate: " + number_text(options.rate) +
+                     "; allowed: at most 1 / time_step = " + rounded_text(1 / time_step) + " Hz");
 }
 
 void check_motion(const Options& options, const SceneDesc& scene, const Motion& motion, std::vector<std::string>& errors) {

@@ -106,7 +106,8 @@ Options parse_options(const std::vector<std::string>& arguments, std::vector<std
                        "; allowed: " + allowed);
     }
   }
-  if (options.scene.empty() && !options.help) errors.push_back("no scene; allowed: cable_sim SCENE.yaml [options], see --help");
+  if (options.scene.empty() && !options.help)
+    errors.push_back("no scene; type: cable_sim SCENE.yaml [options]; cable_sim --help lists the options");
   return options;
 }
 
