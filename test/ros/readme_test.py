@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """The README's first scene and what it tells to type; and what a new user types wrong."""
+import glob
 import os
 import re
 import shutil
@@ -131,6 +132,18 @@ class ReadmeTest(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout)
         for file in ('rows.csv', 'summary.json'):
             self.assertGreater(os.path.getsize(f'{self.directory}/{file}'), 100)
+
+    def test_the_recording_is_replayed(self):
+        line = typed('roslaunch verlet_cable replay.launch')[0]
+        program = self.start(line + ' rviz:=false loop:=false')
+        result, = program.wait_for_lines('mean error')
+        self.assertLess(float(re.search(r'mean error ([\d.]+) cm over 250 frames', result)[1]), 0.2)  # noise alone is 0.08
+
+    def test_the_files_it_names_are_there(self):
+        named = {name for block in blocks('') for name in re.findall(r'config/[\w/.*]+', block)}
+        self.assertGreater(len(named), 3)
+        for name in named:
+            self.assertTrue(glob.glob(f'{PACKAGE}/{name}'), name)
 
     def test_a_scene_that_is_not_there(self):
         done = self.run_to_end('roslaunch verlet_cable cable.launch scene:=hoose.yaml')
