@@ -78,11 +78,15 @@ install_packages() {
   as_root "${apt[@]}" install -y --no-install-recommends "${missing[@]}" || fail "apt-get could not install ${missing[*]}"
 }
 
-# A root file system without /etc/hosts (a container, a chroot) does not know the name that roslaunch gives this machine.
+# A root file system without /etc/hosts (a container, a chroot) may not know the names that roslaunch gives this machine: localhost
+# from here, the machine's own name in another terminal.
 name_localhost() {
-  getent hosts localhost >/dev/null && return
-  echo "Adding localhost to /etc/hosts"
-  echo '127.0.0.1 localhost' | as_root tee -a /etc/hosts >/dev/null
+  local name
+  for name in localhost "$(uname -n)"; do
+    getent hosts "$name" >/dev/null && continue
+    echo "Adding $name to /etc/hosts"
+    echo "127.0.0.1 $name" | as_root tee -a /etc/hosts >/dev/null
+  done
 }
 
 # Two builds, or a build and a test run, of one checkout wait for each other. Held until unlock_workspace or the end.

@@ -48,7 +48,7 @@ void ObstacleListener::receive(const visualization_msgs::MarkerArray& markers) {
 void ObstacleListener::refuse(const std::string& name, const std::string& problem) {
   ++refused_count_;
   last_problem_ = "marker " + quoted(name) + ": " + problem;
-  ROS_WARN_THROTTLE(log_period, "obstacles: refused %s", last_problem_.c_str());
+  ROS_WARN_THROTTLE(log_period, "topic obstacles: refused %s", last_problem_.c_str());
 }
 
 std::string ObstacleListener::apply(const Marker& marker, std::set<std::string>& gone) {

@@ -48,7 +48,7 @@ bool finish(tools::OutputFile& file, const std::string& path, double time) {
 /// Says why a run ended early, but for a file that cannot be written, of which `finish` tells.
 void report(RunEnd end, const char* signal, double time) {
   const std::string start = std::string(program) + ": stopped at " + number_text(time) + " s: ";
-  if (end == RunEnd::fault) std::cerr << start << "a fault\n";
+  if (end == RunEnd::fault) std::cerr << start << "the simulation failed, see the event FAULT\n";
   if (end == RunEnd::signal) std::cerr << start << "ended by " << signal << ", before its duration was over\n";
 }
 
