@@ -88,7 +88,9 @@ class ReadmeTest(unittest.TestCase):
 
     def start_hose(self):
         line = typed('roslaunch verlet_cable cable.launch scene:=config/hose.yaml rviz:=true')[0]
-        return self.start(line.replace('rviz:=true', 'rviz:=false')), CableClient('/cable')
+        program = self.start(line.replace('rviz:=true', 'rviz:=false'))
+        program.wait_for_lines('not shown yet')
+        return program, CableClient('/cable')
 
     def test_the_scene_is_the_one_that_ships(self):
         with open(f'{PACKAGE}/config/hose.yaml', encoding='utf-8') as file:
@@ -107,6 +109,7 @@ class ReadmeTest(unittest.TestCase):
         with node.states() as states:
             for line in typed('rosrun tf2_ros static_transform_publisher'):
                 self.start(line)
+            program.wait_for_lines('has appeared on tf', 2)
             state = states.wait_for(lambda s: cable(s, 'hose'), 'hose')
             self.assertTrue(all_finite(state))
             ends = cable(state, 'hose').positions[0], cable(state, 'hose').positions[-1]
@@ -114,8 +117,9 @@ class ReadmeTest(unittest.TestCase):
 
     def test_the_hose_follows_moving_frames(self):
         line, = typed('rosrun verlet_cable play_motion.py')
-        _, node = self.start_hose()
+        program, node = self.start_hose()
         self.start(line)
+        program.wait_for_lines('has appeared on tf', 2)
         with node.states() as states:
             start = cable(states.wait_for(lambda s: cable(s, 'hose'), 'hose'), 'hose').positions[0]
             states.clear()
