@@ -23,7 +23,6 @@ CYCLE = 24.0          # [s] three pulls
 CUT_AT = 20.0         # [s] of the cycle, at a pull
 RESET_AT = 23.9       # [s] of the cycle, when the hands are close again
 CUT_PLACE = 0.6       # [m] from the start of the rope
-LEGEND = 'color: tension, from blue (slack) to red (taut)'
 
 
 def turn(t, period):
@@ -99,8 +98,7 @@ class Director:
             rospy.logwarn('%s', answer.message)
 
     def _show(self, rope):
-        self._labels.publish([label(0, rope, 0, 1.12), label(1, 'a payload', -1.5, 1.2), label(2, 'a free end', 1.5, 1.2),
-                              label(3, LEGEND, 0, 1.4)])
+        self._labels.publish([label(0, rope, 0, 1.12), label(1, 'a payload', -1.5, 1.2), label(2, 'a free end', 1.5, 1.2)])
 
 
 def main():

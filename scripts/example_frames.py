@@ -62,7 +62,7 @@ def gripper_load(t):
 # The frames over time, and texts [what, x, y, z, height: m].
 EXAMPLES = {
     'hose_between_arms': (hose_between_arms, [
-        ('two arms bend and twist a hose', 0, 0, 1.32, 0.06), ('color: tension', 0, 0, 1.24, 0.045)]),
+        ('two arms bend and twist a hose', 0, 0, 1.28, 0.06)]),
     'tethered_drone': (tethered_drone, [
         ('a drone on a tether, in wind', 0, 0, 2.75, 0.14), ('ground station', -0.1, 0, 0.35, 0.1), ('wind ->', -1.2, 0, 1.5, 0.12)]),
     'crane': (crane, [

@@ -13,6 +13,16 @@ namespace {
 
 constexpr double standard_gravity = 9.81;             // [m/s^2] where the scene has none to weigh its cables with
 constexpr double full_strain_if_inextensible = 1e-3;  // nothing to see as long as the solver keeps its lengths
+/// ColorBrewer's RdYlBu (Harrower and Brewer 2003), nine classes, without its two darkest ends.
+constexpr std::array<std::array<float, 3>, 9> stops{{{0.27f, 0.46f, 0.71f},
+                                                     {0.45f, 0.68f, 0.82f},
+                                                     {0.67f, 0.85f, 0.91f},
+                                                     {0.88f, 0.95f, 0.97f},
+                                                     {1.00f, 1.00f, 0.75f},
+                                                     {1.00f, 0.88f, 0.56f},
+                                                     {0.99f, 0.68f, 0.38f},
+                                                     {0.96f, 0.43f, 0.26f},
+                                                     {0.84f, 0.19f, 0.15f}}};
 
 double mass(const SceneDesc& scene, const CableDesc& cable) {
   const MaterialDesc* material = scene.find_material(cable.material);
@@ -41,16 +51,6 @@ double largest_strain(const SceneDesc& scene, double tension) {
 }  // namespace
 
 std_msgs::ColorRGBA color_of_load(double load) {
-  // ColorBrewer's RdYlBu (Harrower and Brewer 2003), nine classes, without its two darkest ends
-  static constexpr std::array<std::array<float, 3>, 9> stops{{{0.27f, 0.46f, 0.71f},
-                                                              {0.45f, 0.68f, 0.82f},
-                                                              {0.67f, 0.85f, 0.91f},
-                                                              {0.88f, 0.95f, 0.97f},
-                                                              {1.00f, 1.00f, 0.75f},
-                                                              {1.00f, 0.88f, 0.56f},
-                                                              {0.99f, 0.68f, 0.38f},
-                                                              {0.96f, 0.43f, 0.26f},
-                                                              {0.84f, 0.19f, 0.15f}}};
   const double place = std::clamp(load, 0.0, 1.0) * (stops.size() - 1);
   const std::size_t below = std::min(static_cast<std::size_t>(place), stops.size() - 2);
   const float fraction = static_cast<float>(place - static_cast<double>(below));
@@ -82,12 +82,28 @@ std_msgs::ColorRGBA to_color(const std::array<double, 4>& rgba) {
 
 ColorScale::ColorScale(const SceneDesc& scene)
     : color_by_(scene.color_by),
+      has_cables_(!scene.cables.empty()),
       full_tension_(scene.cables.empty() ? 1 : largest_weight(scene)),
       full_strain_(largest_strain(scene, full_tension_)) {}
 
 double ColorScale::load(const SimulatedCable& cable, int segment, const std::vector<double>& contact_forces) const {
   if (color_by_ == ColorBy::contact) return contact_forces.empty() ? 0 : std::cbrt(contact_forces[segment] / full_tension_);
   return color_by_ == ColorBy::strain ? strain(cable, segment) / full_strain_ : cable.state.tension[segment] / full_tension_;
+}
+
+Legend ColorScale::legend() const {
+  Legend legend;
+  if (color_by_ == ColorBy::cable || !has_cables_) return legend;
+  legend.quantity = color_by_ == ColorBy::contact ? "contact force" : color_by_ == ColorBy::strain ? "strain" : "tension";
+  legend.unit = color_by_ == ColorBy::strain ? "%" : "N";
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    const double load = static_cast<double>(i) / (stops.size() - 1);
+    legend.colors.push_back(color_of_load(load));
+    legend.values.push_back(color_by_ == ColorBy::contact  ? load * load * load * full_tension_
+                            : color_by_ == ColorBy::strain ? 100 * load * full_strain_
+                                                           : load * full_tension_);
+  }
+  return legend;
 }
 
 std::vector<std::vector<double>> ColorScale::contact_forces(const World& world) const {

@@ -1,5 +1,6 @@
 #include "verlet_cable/ros/publishers.h"
 
+#include "verlet_cable/ros/legend_publisher.h"
 #include "verlet_cable/ros/marker_publisher.h"
 #include "verlet_cable/ros/point_publisher.h"
 #include "verlet_cable/ros/state_publisher.h"
@@ -10,12 +11,14 @@ namespace verlet_cable {
 
 struct Publishers::Implementation {
   Implementation(ros::NodeHandle& private_node, const SceneDesc& scene)
-      : markers(private_node, scene),
+      : legend(private_node, scene),
+        markers(private_node, scene),
         points(private_node, scene),
         state(private_node, scene),
         surface(private_node, scene),
         wrenches(private_node) {}
 
+  LegendPublisher legend;
   MarkerPublisher markers;
   PointPublisher points;
   StatePublisher state;
@@ -29,6 +32,7 @@ Publishers::Publishers(ros::NodeHandle& private_node, const SceneDesc& scene)
 Publishers::~Publishers() = default;
 
 void Publishers::show(const SceneDesc& scene) {
+  implementation_->legend.show(scene);
   implementation_->markers.show(scene);
   implementation_->points.show(scene);
   implementation_->state.show(scene);

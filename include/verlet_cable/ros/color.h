@@ -1,6 +1,7 @@
 #pragma once
 
 #include <std_msgs/ColorRGBA.h>
+#include <verlet_cable/Legend.h>
 
 #include <array>
 #include <vector>
@@ -34,6 +35,9 @@ class ColorScale {
   /// The contact forces on the segments of each cable [N], for `node_colors`; none where they are not shown.
   std::vector<std::vector<double>> contact_forces(const World& world) const;
 
+  /// What the colors mean, in numbers.
+  Legend legend() const;
+
   double full_tension() const { return full_tension_; }  ///< [N] what is red
   double full_strain() const { return full_strain_; }    ///< what is red
 
@@ -41,6 +45,7 @@ class ColorScale {
   double load(const SimulatedCable& cable, int segment, const std::vector<double>& contact_forces) const;
 
   ColorBy color_by_;
+  bool has_cables_;
   double full_tension_;
   double full_strain_;
 };

@@ -10,7 +10,7 @@
 namespace verlet_cable {
 
 /// What the node shows of a world: `markers`, `points`, `surface`, `state` and `wrench/<attachment>`, in the scene's fixed frame
-/// (a wrench in its attachment's frame). Nothing is computed for a topic without subscribers, and no cable with a value that is
+/// (a wrench in its attachment's frame), and `legend`. Nothing is computed for a topic without subscribers, and no cable with a value that is
 /// not finite is published.
 class Publishers {
  public:

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <ros/ros.h>
+
+#include "verlet_cable/core/scene_desc.h"
+
+namespace verlet_cable {
+
+/// Topic `legend`, latched: what the colors of `markers`, `points` and `surface` mean. Once for each scene that is shown.
+class LegendPublisher {
+ public:
+  LegendPublisher(ros::NodeHandle& private_node, const SceneDesc& scene);
+  void show(const SceneDesc& scene);
+
+ private:
+  ros::Publisher publisher_;
+};
+
+}  // namespace verlet_cable
