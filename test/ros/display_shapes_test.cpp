@@ -1,6 +1,7 @@
 // Tubes, colors and wrenches of the display, without a ROS master.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -215,6 +216,34 @@ TEST(Color, OfANodeIsTheMeanOfItsSegments) {
   EXPECT_TRUE(same(by_tension[0], color_of_load(0.2)));
   EXPECT_TRUE(same(by_tension[1], color_of_load(0.4)));
   EXPECT_TRUE(same(by_tension[2], color_of_load(0.6)));
+}
+
+TEST(Color, LegendHasTheColorsOfTheCables) {
+  SceneDesc scene = scene_with(0.1, 2.0, 0.3, 1000.0);
+  const SimulatedCable first = two_segments(0, 0);
+  for (const ColorBy color_by : {ColorBy::tension, ColorBy::strain, ColorBy::contact}) {
+    scene.color_by = color_by;
+    const ColorScale scale(scene);
+    const Legend legend = scale.legend();
+    ASSERT_EQ(legend.values.size(), legend.colors.size());
+    for (std::size_t i = 0; i < legend.values.size(); ++i) {
+      SimulatedCable cable = two_segments(legend.values[i], legend.values[i]);
+      if (color_by == ColorBy::strain)
+        for (int node = 1; node < 3; ++node) cable.state.positions[node].x() = node * (1 + legend.values[i] / 100);
+      const std_msgs::ColorRGBA shown = scale.node_colors(cable, {legend.values[i], legend.values[i]})[1];
+      for (const auto& channel : {&std_msgs::ColorRGBA::r, &std_msgs::ColorRGBA::g, &std_msgs::ColorRGBA::b})
+        EXPECT_NEAR(shown.*channel, legend.colors[i].*channel, 1e-5) << legend.quantity << " " << legend.values[i];
+    }
+    EXPECT_TRUE(std::is_sorted(legend.values.begin(), legend.values.end()));
+    EXPECT_EQ(legend.unit, color_by == ColorBy::strain ? "%" : "N");
+  }
+}
+
+TEST(Color, LegendIsEmptyWhereColorsMeanNothing) {
+  SceneDesc scene = scene_with(0.1, 2.0, 0.3, 1000.0);
+  scene.color_by = ColorBy::cable;
+  EXPECT_TRUE(ColorScale(scene).legend().values.empty());
+  EXPECT_TRUE(ColorScale(SceneDesc{}).legend().quantity.empty());
 }
 
 TEST(Color, ByStrainAndByCable) {

@@ -194,6 +194,26 @@ TEST_F(Topics, MarkersOfWhatIsGoneAreDeletedOnceAndIdsStay) {
   EXPECT_EQ(keys(*listener.last, Marker::ADD), before);
 }
 
+TEST_F(Topics, LegendIsThatOfTheScene) {
+  const auto wait_for = [](Listener<Legend>& listener, const std::string& quantity) {
+    const ros::WallTime end = ros::WallTime::now() + patience;
+    while ((!listener.last || listener.last->quantity != quantity) && ros::WallTime::now() < end) {
+      ros::spinOnce();
+      ros::WallDuration(0.002).sleep();
+    }
+    ASSERT_TRUE(listener.last);
+    EXPECT_EQ(listener.last->quantity, quantity);
+  };
+  Listener<Legend> early(node_, "legend");
+  wait_for(early, "tension");
+  EXPECT_EQ(early.last->values.back(), ColorScale(scene_).full_tension());
+  scene_.color_by = ColorBy::strain;
+  publishers_.show(scene_);
+  wait_for(early, "strain");
+  Listener<Legend> late(node_, "legend");
+  wait_for(late, "strain");
+}
+
 TEST_F(Topics, PointsAreTheNodesInOrder) {
   Listener<sensor_msgs::PointCloud2> listener(node_, "points");
   const sensor_msgs::PointCloud2& cloud = next(listener);

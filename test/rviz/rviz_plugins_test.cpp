@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
+#include <rviz/display.h>
 #include <rviz/panel.h>
 #include <rviz/tool.h>
 #include <std_srvs/Trigger.h>
@@ -72,6 +73,12 @@ TEST(RvizPlugins, ToolsAreLoaded) {
     const auto tool = loader.createUniqueInstance(name);
     EXPECT_NE(tool->getPropertyContainer(), nullptr) << name;
   }
+}
+
+TEST(RvizPlugins, LegendIsLoaded) {
+  pluginlib::ClassLoader<rviz::Display> loader("rviz", "rviz::Display");
+  const auto display = loader.createUniqueInstance("verlet_cable/Legend");
+  EXPECT_EQ(display->subProp("Topic")->getValue().toString(), "/cable/legend");
 }
 
 TEST_F(CablePanelTest, ShowsSpeedAndLoads) {
