@@ -102,6 +102,13 @@ class HandsTest(unittest.TestCase):
         self.assertEqual([e.id for e in markers['rope/3'].menu_entries], [PIN, CUT, RESET])
         self.assertLess(distance(markers['attachment/right'].pose.position, (0.7, 0, 1)), 1e-6)
 
+    def test_handles_of_nodes_are_not_seen(self):
+        self.shown.clear()
+        markers = self.shown.wait_for(lambda _: True, 'handles')
+        for name, marker in markers.items():
+            seen = [shape.color.a > 0 for control in marker.controls for shape in control.markers]
+            self.assertEqual(any(seen), name.startswith('attachment/'), name)
+
     def test_a_dragged_attachment_moves_in_its_frame(self):
         with self.node.states() as states:
             self.drag('attachment/left', 0, 0.1, 1.1)
