@@ -2,11 +2,13 @@
 """play_motion.py: sends the frames of a motion (CSV: t,frame,x,y,z,qx,qy,qz,qw, as for cable_sim) on tf at 100 Hz.
 
 Between rows the frames move as in cable_sim (src/scene/motion.cpp): positions follow a cubic Hermite spline with limited tangents,
-orientations slerp. When all is played, the frames stay for `~pause` seconds; then the cables are reset, and it begins again. Nothing moves where there is no file.
+orientations slerp. When all is played, the frames stay for `~pause` seconds and go back the way they came; then the cables are reset,
+and it begins again. Where there is no file, nothing moves: there is only a frame `scene`, so that tf knows `world`.
 """
 import csv
 import os
 import sys
+import threading
 
 import numpy as np
 import rospy
@@ -14,7 +16,10 @@ import tf2_ros
 from geometry_msgs.msg import Quaternion, TransformStamped, Vector3
 from std_srvs.srv import Trigger
 
+from verlet_cable.msg import CableArray
+
 RATE = 100.0  # [Hz]
+REWIND = 3.0  # times as fast as forward
 
 
 class Track:
@@ -88,6 +93,45 @@ def transform(frame, pose, stamp):
     return message
 
 
+class Player:
+    """Sends the frames. What they do next begins where they are: none ever jumps, and no stamp comes twice."""
+
+    def __init__(self, tracks):
+        self._tracks = tracks
+        self._duration = max(track.times[-1] for track in tracks.values())
+        self._broadcaster = tf2_ros.TransformBroadcaster()
+        self._rate = rospy.Rate(RATE)
+
+    def play(self, pause):
+        """From the first row to the last, and stays there."""
+        self._go(lambda elapsed: elapsed, self._duration + pause)
+
+    def rewind(self):
+        """The same way back."""
+        self._go(lambda elapsed: self._duration - REWIND * elapsed, self._duration / REWIND)
+
+    def wait_for_simulation(self):
+        """Stays at the first row until the cables have been simulated up to now: they run behind ROS time."""
+        arrived = rospy.Time.now()
+        seen = threading.Event()
+        subscriber = rospy.Subscriber('cable/state', CableArray, lambda state: seen.set() if state.header.stamp > arrived else None)
+        while not seen.is_set() and not rospy.is_shutdown():
+            self._send(0)
+        subscriber.unregister()
+
+    def _go(self, time_at, seconds):
+        started = rospy.Time.now()
+        elapsed = 0
+        while elapsed < seconds and not rospy.is_shutdown():
+            self._send(time_at(elapsed))
+            elapsed = (rospy.Time.now() - started).to_sec()
+
+    def _send(self, time):
+        now = rospy.Time.now()
+        self._broadcaster.sendTransform([transform(frame, track.at(time), now) for frame, track in self._tracks.items()])
+        self._rate.sleep()
+
+
 def main():
     rospy.init_node('play_motion')
     path = rospy.get_param('~motion', '')
@@ -95,27 +139,24 @@ def main():
         sys.exit('play_motion.py: no motion; type: rosrun verlet_cable play_motion.py _motion:=MOTION.csv')
     if not os.path.exists(path):
         rospy.loginfo('no motion file %s: nothing moves', path)
+        # rviz warns of a fixed frame that tf does not know.
+        broadcaster = tf2_ros.StaticTransformBroadcaster()
+        broadcaster.sendTransform(transform('scene', ((0, 0, 0), (0, 0, 0, 1)), rospy.Time.now()))
+        rospy.spin()
         return
-    tracks = read_motion(path)
-    duration = max(track.times[-1] for track in tracks.values()) + rospy.get_param('~pause', 2.0)
+    player = Player(read_motion(path))
     reset = rospy.ServiceProxy('cable/reset', Trigger)
-    broadcaster = tf2_ros.TransformBroadcaster()
-    rate = rospy.Rate(RATE)
-    started = rospy.Time.now()
     while not rospy.is_shutdown():
-        now = rospy.Time.now()
-        elapsed = (now - started).to_sec()
-        broadcaster.sendTransform([transform(frame, track.at(min(elapsed, duration)), now) for frame, track in tracks.items()])
-        if elapsed > duration:
-            started = now
-            broadcaster.sendTransform([transform(frame, track.at(0), now) for frame, track in tracks.items()])
-            rospy.sleep(0.2)  # the simulation runs behind ROS time
+        player.play(rospy.get_param('~pause', 2.0))
+        player.rewind()
+        player.wait_for_simulation()
+        if not rospy.is_shutdown():
             reset()
-        rate.sleep()
 
 
 if __name__ == '__main__':
     try:
         main()
-    except rospy.ROSInterruptException:
-        pass
+    except (rospy.ROSException, rospy.ServiceException):
+        if not rospy.is_shutdown():  # else it has only been ended
+            raise

@@ -1,0 +1,67 @@
+#!/usr/bin/env python3
+"""play_motion.py: no stamp of a frame comes twice, and where the motion begins again nothing jumps; cables are reset once they are there."""
+import os
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+import rospy
+import rostest
+from std_srvs.srv import Trigger, TriggerResponse
+from tf2_msgs.msg import TFMessage
+
+from verlet_cable.msg import CableArray
+
+MOTION = 't,frame,x,y,z,qx,qy,qz,qw\n0,hand,0,0,1,0,0,0,1\n0.5,hand,0.2,0,1,0,0,0,1\n1,hand,0.5,0,1,0,0,0,1\n'
+FASTEST = 4.0      # [m/s] 1 m/s or less between the rows, three times as fast on the way back
+BEHIND = 0.3       # [s] the cables run behind ROS time
+LIMIT = 30.0       # [s]
+
+
+class PlayMotionTest(unittest.TestCase):
+    def setUp(self):
+        self.poses = []   # stamp [s], x [m]
+        self.resets = []  # how many poses there were, and the last of them
+        self._tf = rospy.Subscriber('/tf', TFMessage, self._on_tf, queue_size=1000)
+        self._state = rospy.Publisher('/cable/state', CableArray, queue_size=10)
+        self._reset = rospy.Service('/cable/reset', Trigger, self._on_reset)
+
+    def _on_tf(self, message):
+        self.poses += [(t.header.stamp.to_sec(), t.transform.translation.x) for t in message.transforms if t.child_frame_id == 'hand']
+        state = CableArray()
+        state.header.stamp = message.transforms[-1].header.stamp - rospy.Duration.from_sec(BEHIND)
+        self._state.publish(state)
+
+    def _on_reset(self, _):
+        self.resets.append(list(self.poses))
+        return TriggerResponse(success=True)
+
+    def test_frames_do_not_jump(self):
+        with tempfile.NamedTemporaryFile('w', suffix='.csv') as motion:
+            motion.write(MOTION)
+            motion.flush()
+            process = subprocess.Popen(['rosrun', 'verlet_cable', 'play_motion.py', f'_motion:={motion.name}', '_pause:=0.1'],
+                                       stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True)
+            try:
+                deadline = time.monotonic() + LIMIT
+                while len(self.resets) < 2 and time.monotonic() < deadline:
+                    time.sleep(0.02)
+            finally:
+                os.killpg(process.pid, signal.SIGINT)
+                output = process.communicate(timeout=LIMIT)[0]
+        self.assertEqual(len(self.resets), 2, output)
+        for (before, x), (stamp, y) in zip(self.poses, self.poses[1:]):
+            self.assertGreater(stamp, before)
+            self.assertLessEqual(abs(y - x), FASTEST * (stamp - before) + 1e-6)
+        self.assertAlmostEqual(max(x for _, x in self.poses), 0.5, delta=1e-6)
+        for poses in self.resets:
+            still = [stamp for stamp, x in poses if x > 1e-9][-1]
+            self.assertGreater(poses[-1][0] - BEHIND, still)  # what is shown of the cables is of when the hand had arrived
+        self.assertNotIn('Traceback', output)
+
+
+if __name__ == '__main__':
+    rospy.init_node('play_motion_test')
+    rostest.rosrun('verlet_cable', 'motion_again', PlayMotionTest)
