@@ -21,15 +21,14 @@ DISPLAY = ':79'
 SIZE = (960, 640)   # [pixels]
 VIEW = '580x546+364+63'  # of it, without rviz's panels
 STARTING = 6.0      # [s] until rviz has drawn something
-# scene: launch file and arguments, [s] until the picture, distance [m], focal point [m], pitch and yaw [rad] of the view
-SCENES = {
-    'pole': (['scene.launch', 'scene:=pole'], 2, 1.8, (0, 0, 0.75), 0.2, -1.1),
-    'pile': (['scene.launch', 'scene:=pile'], 3, 0.5, (0, 0, 0.02), 0.6, -1.2),
-    'table': (['scene.launch', 'scene:=table'], 4, 2.2, (-0.1, 0, 0.6), 0.3, -1.0),
-    'knot': (['scene.launch', 'scene:=knot'], 5, 0.45, (0, 0, 0.96), 0.3, -1.3),
-    'crossed': (['scene.launch', 'scene:=crossed'], 4, 0.9, (0.1, 0, 0.87), 0.3, -1.2),
-    'dress_pack': (['dress_pack.launch'], 8, 2.0, (0.15, 0, 0.55), 0.2, -1.2),
-}
+SCENES = {  # [s] until the picture
+    'pole': 2,
+    'pile': 3,
+    'table': 0,
+    'knot': 2,
+    'crossed': 4,
+    'dress_pack': 8,
+}  # their views are rviz/scenes
 LECTURE = {  # [s] until the picture, and how many steps after a reset it is of; 0: time just stops for it; None: it goes on, for trails
     'box': (2, None),
     'planet': (6, None),
@@ -42,20 +41,9 @@ LECTURE = {  # [s] until the picture, and how many steps after a reset it is of;
 }  # their views are rviz/lecture
 
 
-def view_of(distance, focus, pitch, yaw):
-    """The text of an rviz configuration."""
-    config = yaml.safe_load((PACKAGE / 'rviz/cable.rviz').read_text())
-    manager = config['Visualization Manager']
-    for display in manager['Displays']:
-        if display['Class'] == 'rviz/TF':
-            display['Enabled'] = False
-    view = manager['Views']['Current']
-    view.update({'Distance': distance, 'Pitch': pitch, 'Yaw': yaw, 'Focal Point': dict(zip('XYZ', focus))})
-    return as_window(config)
-
-
-def as_window(config):
-    """The text of a configuration in a window that fills the display."""
+def view_of(name):
+    """The text of a view in a window that fills the display."""
+    config = yaml.safe_load((PACKAGE / f'rviz/{name}.rviz').read_text())
     config['Window Geometry'].update({'Width': SIZE[0], 'Height': SIZE[1], 'X': 0, 'Y': 0})
     return yaml.safe_dump(config)
 
@@ -103,14 +91,13 @@ def picture(launch, view, seconds, file, steps=None):
 
 
 def picture_scene(name, file):
-    launch, seconds, *view = SCENES[name]
-    picture(launch, view_of(*view), seconds, file)
+    launch = ['dress_pack.launch'] if name == 'dress_pack' else ['scene.launch', f'scene:={name}']
+    picture(launch, view_of(f'scenes/{name}'), SCENES[name], file)
 
 
 def picture_lecture(name, file):
     seconds, steps = LECTURE[name]
-    config = yaml.safe_load((PACKAGE / f'rviz/lecture/{name}.rviz').read_text())
-    picture(['lecture.launch', f'scene:={name}'], as_window(config), seconds, file, steps)
+    picture(['lecture.launch', f'scene:={name}'], view_of(f'lecture/{name}'), seconds, file, steps)
 
 
 def main():

@@ -127,10 +127,12 @@ void MarkerPublisher::add_cable(const SimulatedCable& cable, const std::vector<d
 }
 
 void MarkerPublisher::add_payloads(const SimulatedCable& cable, MarkerArray& markers) {
+  int payloads = 0;
   for (int node = 0; node < cable.model.nodes(); ++node) {
     const double mass = payload(cable.model, node);
     if (mass <= 0) continue;
-    Marker marker = make_marker("payloads", id_of(cable.model.name + "/" + std::to_string(node)), Marker::SPHERE);
+    // Counted, since a winch changes the numbers of the nodes.
+    Marker marker = make_marker("payloads", id_of(cable.model.name + "/" + std::to_string(payloads++)), Marker::SPHERE);
     marker.pose.position = to_point(cable.state.positions[node]);
     const double ball = 2 * std::cbrt(3 * mass / (4 * M_PI * aluminium_density));
     const double diameter = std::max(ball, 2 * pin_size * cable.model.material.radius);

@@ -14,6 +14,7 @@ using visualization_msgs::Marker;
 
 constexpr double plane_size = 20;          // [m]
 constexpr double plane_thickness = 0.01;   // [m]
+constexpr float plane_brightness = 1.4f;   // what lies or stands on it is told apart
 constexpr double scale_tolerance = 1e-6;   // between edges that have to be equal
 constexpr double length_tolerance = 0.01;  // of an orientation: it may have been rounded
 
@@ -31,7 +32,11 @@ Marker make_marker(int type, const Pose& pose, const Vector3& scale) {
 
 std::vector<Marker> markers_of(const PlaneShape&, const Pose& pose) {
   const Pose below{{0, 0, -plane_thickness / 2}, Quaternion::Identity()};
-  return {make_marker(Marker::CUBE, pose * below, {plane_size, plane_size, plane_thickness})};
+  Marker plane = make_marker(Marker::CUBE, pose * below, {plane_size, plane_size, plane_thickness});
+  plane.color.r = plane_brightness * plane.color.r;
+  plane.color.g = plane_brightness * plane.color.g;
+  plane.color.b = plane_brightness * plane.color.b;
+  return {plane};
 }
 
 std::vector<Marker> markers_of(const SphereShape& sphere, const Pose& pose) {
