@@ -17,6 +17,7 @@ from verlet_cable.msg import CableArray
 FOCAL_LENGTH = 525.0      # [pixels]
 SIZE = 640, 480           # [pixels]
 BLOCK = 4                 # [pixels] a nearer point hides others in its block
+STARTING = 3.0            # [s] the first cables may be older than what is known of the camera
 THICKNESS = 0.006         # [m] points this far behind the nearest one are still seen
 NEAREST = 0.1             # [m]
 FIELDS = [PointField(name, 4 * i, PointField.FLOAT32, 1) for i, name in enumerate('xyz')]
@@ -56,24 +57,37 @@ def product(a, b):
                       aw * bz + ax * by - ay * bx + az * bw, aw * bw - ax * bx - ay * by - az * bz)
 
 
+def until_shutdown(callback):
+    """The same, but without a word when the topics are closed."""
+    def call(message):
+        try:
+            callback(message)
+        except rospy.ROSException:
+            if not rospy.is_shutdown():
+                raise
+    return call
+
+
 class Camera:
     def __init__(self):
         self._frame = rospy.get_param('~optical_frame')
         self._noise = rospy.get_param('~noise', 0.001)
         self._random = np.random.default_rng(0)
+        self._started = rospy.Time.now()
         self._buffer = tf2_ros.Buffer()
         self._listener = tf2_ros.TransformListener(self._buffer)
         self._points = rospy.Publisher('camera/points', PointCloud2, queue_size=5)
         self._truth = rospy.Publisher('camera/ground_truth', PoseArray, queue_size=5)
-        self._subscribers = [rospy.Subscriber('cable/surface', PointCloud2, self._see, queue_size=5),
-                             rospy.Subscriber('cable/state', CableArray, self._know, queue_size=5)]
+        self._subscribers = [rospy.Subscriber('cable/surface', PointCloud2, until_shutdown(self._see), queue_size=5),
+                             rospy.Subscriber('cable/state', CableArray, until_shutdown(self._know), queue_size=5)]
 
     def _transform(self, header):
         """From a message's frame at its time into the optical frame; None where tf does not know it."""
         try:
             return self._buffer.lookup_transform(self._frame, header.frame_id, header.stamp, rospy.Duration(0.2)).transform
         except tf2_ros.TransformException as problem:
-            rospy.logwarn_throttle(5, str(problem))
+            if (rospy.Time.now() - self._started).to_sec() > STARTING:
+                rospy.logwarn_throttle(5, str(problem))
             return None
 
     def _see(self, cloud):

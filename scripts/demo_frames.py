@@ -76,6 +76,13 @@ class Director:
         self._reset = rospy.ServiceProxy('cable/reset', Trigger)
 
     def run(self, started):
+        try:
+            self._run(started)
+        except (rospy.ROSException, rospy.ServiceException):
+            if not rospy.is_shutdown():
+                raise
+
+    def _run(self, started):
         rospy.wait_for_service('cable/cut')
         rospy.wait_for_service('cable/reset')
         cycle = 0
@@ -118,5 +125,6 @@ def main():
 if __name__ == '__main__':
     try:
         main()
-    except rospy.ROSInterruptException:
-        pass
+    except rospy.ROSException:
+        if not rospy.is_shutdown():  # else it has only been ended
+            raise

@@ -114,5 +114,6 @@ def main():
 if __name__ == '__main__':
     try:
         main()
-    except rospy.ROSInterruptException:
-        pass
+    except rospy.ROSException:
+        if not rospy.is_shutdown():  # else it has only been ended
+            raise

@@ -21,7 +21,8 @@ def main():
         try:
             answer = set_length(cable=cable, at_end=False, length=length, speed=speed)
         except rospy.ServiceException as problem:  # the node went away; perhaps it comes back
-            rospy.logwarn('%s', problem)
+            if not rospy.is_shutdown():
+                rospy.logwarn('%s', problem)
             continue
         if not answer.success:
             rospy.logwarn('%s', answer.message)

@@ -11,6 +11,7 @@ of a run, all markers, the three coordinates of |simulated - measured|).
 import os
 import sys
 import threading
+import time
 
 import numpy as np
 import rospy
@@ -32,6 +33,7 @@ HOLD_AFTER = 1.0          # [s] at the last pose
 RETURN = 2.0              # [s] from the last pose to the first
 STANDSTILL = 0.15         # [s] without tf after which the simulation has used up what it had: a multiple of tf_latency
 ANSWER_TIMEOUT = 10.0     # [s] for the node
+LOOK_PERIOD = 0.1         # [s] while it is waited for
 MEASURED_COLOR = ColorRGBA(0.25, 0.9, 0.35, 0.8)
 TEXT_COLOR = ColorRGBA(1.0, 1.0, 1.0, 1.0)
 
@@ -130,7 +132,8 @@ class Replay:
         self._measured = MeasuredCable()
         self._error_publisher = rospy.Publisher('replay/error', Float64, queue_size=5)
         self._lock = threading.Lock()
-        self._start = None       # stamp at which the run in progress was at row 0
+        self._start = None       # stamp at which the last run was at row 0
+        self._time = 0.0         # [s] of the recording, up to the last state
         self._compared = 0.0     # [s] of the recording, up to here
         self._error = MeanError()
         self._cable_seen = threading.Event()
@@ -143,13 +146,12 @@ class Replay:
         """One run; returns its mean error."""
         self._hold(self._grippers.row(0), HOLD_BEFORE, until=self._cable_seen)
         start = self._begin_at_row_0()
-        for row, time in enumerate(self._recording.times[1:], start=1):
-            stamp = start + rospy.Duration.from_sec(time)
+        for row, moment in enumerate(self._recording.times[1:], start=1):
+            stamp = start + rospy.Duration.from_sec(moment)
             self._sleep_until(stamp)
             self._grippers.send(self._grippers.row(row), stamp)
         self._hold(self._grippers.row(-1), HOLD_AFTER)
         with self._lock:
-            self._start = None
             return self._error
 
     def go_back(self):
@@ -167,16 +169,20 @@ class Replay:
         """Resets the cable while the simulation waits for tf; the stamp at which that was."""
         rospy.sleep(STANDSTILL)
         self._reset_seen.clear()
-        with self._lock:
-            self._error = MeanError()
-            self._compared = 0.0
         answer = rospy.ServiceProxy('cable/reset', Trigger)()
         if not answer.success:
             raise rospy.ServiceException(f'/cable/reset: {answer.message}')
-        if not self._reset_seen.wait(ANSWER_TIMEOUT):
+        if not self._wait_for_reset():
             raise rospy.ServiceException(f'/cable/events: no RESET within {ANSWER_TIMEOUT} s of /cable/reset')
         with self._lock:
             return self._start
+
+    def _wait_for_reset(self):
+        deadline = time.monotonic() + ANSWER_TIMEOUT
+        while time.monotonic() < deadline and not rospy.is_shutdown():
+            if self._reset_seen.wait(LOOK_PERIOD):
+                return True
+        return False
 
     def _hold(self, poses, duration, until=None):
         """Holds the grippers for a duration, counted from when `until` has happened."""
@@ -200,18 +206,29 @@ class Replay:
         if event.type == CableEvent.RESET and not self._reset_seen.is_set():
             with self._lock:
                 self._start = event.header.stamp
+                self._compared = 0.0
+                self._error = MeanError()
             self._reset_seen.set()
 
     def _on_state(self, state):
+        try:
+            self._compare(state)
+        except rospy.ROSException:
+            if not rospy.is_shutdown():  # else the topics are closed
+                raise
+
+    def _compare(self, state):
         if not state.cables:
             return
         self._cable_seen.set()
         stamp = state.header.stamp
         with self._lock:
-            time = (stamp - self._start).to_sec() if self._start is not None else 0.0
-            measured = self._recording.at(time)
-            if self._compared < time <= self._recording.duration:
-                self._compared = time
+            # A state from before the reset is of the run before: the measured cable begins again together with the simulated one.
+            if self._start is not None and stamp > self._start:
+                self._time = (stamp - self._start).to_sec()
+            measured = self._recording.at(self._time)
+            if self._compared < self._time <= self._recording.duration:
+                self._compared = self._time
                 self._error.add(points_at(state.cables[0], self._places), measured)
                 self._error_publisher.publish(self._error.mean)
             self._measured.publish(measured, stamp, f'orange: simulated, green: measured\nmean error {100 * self._error.mean:.1f} cm')
@@ -237,6 +254,7 @@ if __name__ == '__main__':
         main()
     except (rospy.ROSInterruptException, rospy.exceptions.ROSInitException):
         pass  # ended from outside
-    except (RecordingError, rospy.ServiceException) as problem:
-        rospy.logfatal('%s', problem)
-        sys.exit(1)
+    except (RecordingError, rospy.ROSException, rospy.ServiceException) as problem:
+        if not rospy.is_shutdown():  # else the node has only been ended first
+            rospy.logfatal('%s', problem)
+            sys.exit(1)

@@ -1,14 +1,19 @@
 #!/usr/bin/python3
 """replay.launch as a user starts it: a recording whose simulation is known, and bad recordings."""
 import os
+import signal
 import subprocess
 import tempfile
+import time
 import unittest
 
 import numpy as np
 import rospy
 import rostest
 from std_msgs.msg import Float64
+from visualization_msgs.msg import MarkerArray
+
+from verlet_cable.msg import CableEvent
 
 SPEED = 0.3      # [m/s] downwards
 DURATION = 4.0   # [s]
@@ -59,6 +64,33 @@ class ReplayTest(unittest.TestCase):
         # three coordinates.
         self.assertLess(max(errors), 0.0005)
         self.assertGreater(max(errors), 0)
+
+    def test_measured_and_simulated_begin_again_together_and_end_quietly(self):
+        write_recording(self.path)
+        shapes, resets = [], []
+        subscribers = [
+            rospy.Subscriber('/replay/markers', MarkerArray, lambda message: shapes.append(message.markers[0]), queue_size=1000),
+            rospy.Subscriber('/cable/events', CableEvent,
+                             lambda event: resets.append(event.header.stamp) if event.type == CableEvent.RESET else None)]
+        command = ['roslaunch', 'verlet_cable', 'replay.launch', f'data:={self.path}', 'rviz:=false']
+        launch = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True)
+        try:
+            deadline = time.monotonic() + LAUNCH_LIMIT
+            while not (len(resets) > 1 and shapes[-1].header.stamp > resets[1]) and time.monotonic() < deadline:
+                time.sleep(0.02)
+        finally:
+            os.killpg(launch.pid, signal.SIGINT)
+            output = launch.communicate(timeout=LAUNCH_LIMIT)[0]
+        for subscriber in subscribers:
+            subscriber.unregister()
+        self.assertGreater(len(resets), 1, output)
+        fallen = {shape.header.stamp: shapes[0].points[0].z - shape.points[0].z for shape in shapes}
+        before = [fallen[stamp] for stamp in fallen if stamp <= resets[1]]
+        after = [(stamp - resets[1]).to_sec() * SPEED - fallen[stamp] for stamp in fallen if stamp > resets[1]]
+        self.assertAlmostEqual(before[-1], SPEED * DURATION, delta=1e-4)  # the recording has five places
+        self.assertLess(max(map(abs, after)), 1e-4)
+        for word in ('WARN', 'ERROR', 'FATAL', 'Traceback', 'REQUIRED'):
+            self.assertNotIn(word, output)
 
     def test_no_such_file(self):
         self.assertIn(f'{self.path}: cannot be read', self.replay())
