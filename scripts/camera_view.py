@@ -63,7 +63,7 @@ def until_shutdown(callback):
         try:
             callback(message)
         except rospy.ROSException:
-            if not rospy.is_shutdown():
+            if not rospy.core.is_shutdown_requested():
                 raise
     return call
 

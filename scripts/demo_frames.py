@@ -79,7 +79,7 @@ class Director:
         try:
             self._run(started)
         except (rospy.ROSException, rospy.ServiceException):
-            if not rospy.is_shutdown():
+            if not rospy.core.is_shutdown_requested():
                 raise
 
     def _run(self, started):
@@ -126,5 +126,5 @@ if __name__ == '__main__':
     try:
         main()
     except rospy.ROSException:
-        if not rospy.is_shutdown():  # else it has only been ended
+        if not rospy.core.is_shutdown_requested():  # else it has only been ended
             raise

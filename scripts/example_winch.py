@@ -21,7 +21,7 @@ def main():
         try:
             answer = set_length(cable=cable, at_end=False, length=length, speed=speed)
         except rospy.ServiceException as problem:  # the node went away; perhaps it comes back
-            if not rospy.is_shutdown():
+            if not rospy.core.is_shutdown_requested():
                 rospy.logwarn('%s', problem)
             continue
         if not answer.success:

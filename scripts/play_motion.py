@@ -158,5 +158,5 @@ if __name__ == '__main__':
     try:
         main()
     except (rospy.ROSException, rospy.ServiceException):
-        if not rospy.is_shutdown():  # else it has only been ended
+        if not rospy.core.is_shutdown_requested():  # else it has only been ended
             raise

@@ -214,7 +214,7 @@ class Replay:
         try:
             self._compare(state)
         except rospy.ROSException:
-            if not rospy.is_shutdown():  # else the topics are closed
+            if not rospy.core.is_shutdown_requested():  # else the topics are closed
                 raise
 
     def _compare(self, state):
@@ -255,6 +255,6 @@ if __name__ == '__main__':
     except (rospy.ROSInterruptException, rospy.exceptions.ROSInitException):
         pass  # ended from outside
     except (RecordingError, rospy.ROSException, rospy.ServiceException) as problem:
-        if not rospy.is_shutdown():  # else the node has only been ended first
+        if not rospy.core.is_shutdown_requested():  # else the node has only been ended first
             rospy.logfatal('%s', problem)
             sys.exit(1)
