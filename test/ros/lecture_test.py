@@ -5,6 +5,7 @@ import unittest
 
 import rospy
 import rostest
+from cable_client import Messages, distance
 from geometry_msgs.msg import Pose, WrenchStamped
 from sensor_msgs import point_cloud2
 from sensor_msgs.msg import PointCloud2
@@ -56,7 +57,9 @@ class LectureTest(unittest.TestCase):
         self.assertEqual(markers['ball', 0].type, Marker.SPHERE)
 
     def test_holders_carry_the_net(self):
-        rospy.sleep(2.0)
+        start = receive('state', CableArray).header.stamp
+        with Messages('/cable/state', CableArray) as states:
+            states.wait_for(lambda s: s.header.stamp - start > rospy.Duration(2), 'state 2 s later')
         weight = sum(-receive('wrench/' + name, WrenchStamped).wrench.force.z for name in ('left', 'right'))
         self.assertAlmostEqual(weight, 0.1 * 9.81, delta=0.3)
 
@@ -68,9 +71,11 @@ class LectureTest(unittest.TestCase):
         self.assertFalse(call('pin', Pin, node('flag', 24), '', '', offset, False, False).success)
         self.assertFalse(call('pin', Pin, node('flag', 30), '', '', offset, False, False).success)
         self.assertFalse(call('pin', Pin, node('flag', 20), '', '', offset, True, False).success)
-        rospy.sleep(1.0)
-        held = receive('state', CableArray).nets[0].positions[24]
+        with Messages('/cable/state', CableArray) as states:
+            states.wait_for(lambda s: distance(s.nets[0].positions[24], (0.2, 0, 1.7)) < 5e-7, 'node 24 where it is pinned')
+            held = states.next().nets[0].positions[24]
         self.assertAlmostEqual(held.x, 0.2, places=6)
+        self.assertAlmostEqual(held.y, 0, places=6)
         self.assertAlmostEqual(held.z, 1.7, places=6)
         self.assertTrue(call('unpin', Unpin, 'corner').success)
 

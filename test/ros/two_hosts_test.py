@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Master and user on one host, the node on another: two network namespaces with a cable between them."""
 import os
+import shutil
 import subprocess
 import sys
 import time
@@ -9,7 +10,6 @@ import unittest
 import rosgraph
 import rostest
 
-NAMESPACE = f'cable{os.getpid()}'
 NEAR, FAR = '10.213.57.1', '10.213.57.2'
 PORT = 11497
 PATIENCE = 20.0  # [s] for a roscore and a node to start on a busy machine
@@ -29,33 +29,42 @@ assert rospy.ServiceProxy('/far/cable/reset', Trigger)().success
 """
 
 
-def ip(*arguments):
-    return subprocess.run(['ip', *arguments], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-
-
-def make_hosts():
-    """Why there can be no two hosts here, or None."""
-    for command in (['netns', 'add', NAMESPACE], ['link', 'add', 'cable_near', 'type', 'veth', 'peer', 'name', 'cable_far'],
-                    ['link', 'set', 'cable_far', 'netns', NAMESPACE], ['addr', 'add', NEAR + '/24', 'dev', 'cable_near'],
-                    ['link', 'set', 'cable_near', 'up'], ['-n', NAMESPACE, 'addr', 'add', FAR + '/24', 'dev', 'cable_far'],
-                    ['-n', NAMESPACE, 'link', 'set', 'cable_far', 'up'], ['-n', NAMESPACE, 'link', 'set', 'lo', 'up']):
-        try:
-            done = ip(*command)
-        except FileNotFoundError:
-            return 'there is no program ip'
-        if done.returncode != 0:
-            return done.stdout.strip()
-    return None
+def network_of(process):
+    return f'/proc/{process}/ns/net'
 
 
 class TwoHostsTest(unittest.TestCase):
     def setUp(self):
-        self.addCleanup(ip, 'link', 'delete', 'cable_near')
-        self.addCleanup(ip, 'netns', 'delete', NAMESPACE)
-        problem = make_hosts()
+        problem = self.make_hosts()
         if problem:
             print('two_hosts_test is skipped, network namespaces cannot be made here:', problem)
             self.skipTest(problem)
+
+    def make_hosts(self):
+        """Why there can be no two hosts here, or None. The far one is the network of a process: a name for it (`ip netns add`)
+        would need mounts, which are not to be had everywhere."""
+        if not shutil.which('ip'):
+            return 'there is no program ip'
+        far = subprocess.Popen(['unshare', '--net', 'sleep', 'infinity'], stderr=subprocess.PIPE, text=True)
+        self.addCleanup(far.stderr.close)
+        self.addCleanup(far.wait)
+        self.addCleanup(far.kill)
+        while os.readlink(network_of(far.pid)) == os.readlink(network_of('self')):
+            if far.poll() is not None:
+                return far.stderr.read().strip()
+            time.sleep(0.01)
+        self.far = ['nsenter', f'--net={network_of(far.pid)}']
+        for command in (['ip', 'link', 'add', 'cable_near', 'type', 'veth', 'peer', 'name', 'cable_far'],
+                        ['ip', 'link', 'set', 'cable_far', 'netns', str(far.pid)],
+                        ['ip', 'addr', 'add', NEAR + '/24', 'dev', 'cable_near'], ['ip', 'link', 'set', 'cable_near', 'up'],
+                        [*self.far, 'ip', 'addr', 'add', FAR + '/24', 'dev', 'cable_far'],
+                        [*self.far, 'ip', 'link', 'set', 'cable_far', 'up'], [*self.far, 'ip', 'link', 'set', 'lo', 'up']):
+            done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+            if done.returncode != 0:
+                return done.stdout.strip()
+            if 'add' in command and 'veth' in command:
+                self.addCleanup(subprocess.run, ['ip', 'link', 'delete', 'cable_near'])
+        return None
 
     def start(self, command, host):
         environment = dict(os.environ, ROS_MASTER_URI=f'http://{NEAR}:{PORT}', ROS_IP=host)
@@ -76,7 +85,7 @@ class TwoHostsTest(unittest.TestCase):
             self.assertLess(time.monotonic(), deadline, 'roscore that starts')
             time.sleep(0.1)
         self.assertEqual(self.start(['rosparam', 'set', '/far/cable', SCENE], NEAR).wait(PATIENCE), 0)
-        self.start(['ip', 'netns', 'exec', NAMESPACE, 'rosrun', 'verlet_cable', 'cable_node', '__name:=cable', '__ns:=/far'], FAR)
+        self.start([*self.far, 'rosrun', 'verlet_cable', 'cable_node', '__name:=cable', '__ns:=/far'], FAR)
         self.assertEqual(self.start([sys.executable, '-c', USER], NEAR).wait(2 * PATIENCE), 0)
 
 
