@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "verlet_cable/core/rotation.h"
+
 namespace verlet_cable {
 
 namespace {
@@ -137,7 +139,7 @@ Holders find_holders(int cable, const CableModel& model, const CableState& state
     holder.node = attachments[attachment].node;
     const Quaternion target = (frames[attachments[attachment].frame] * attachments[attachment].pose).orientation;
     // Its roll is followed from the start; a pinned node is not twisted by being pinned.
-    holder.gap = Quaternion::FromTwoVectors(target * Vector3::UnitX(), tangent(state, holder.node));
+    holder.gap = smallest_rotation(target * Vector3::UnitX(), tangent(state, holder.node));
     holder.orientation = holder.gap * target;
     holder.caught = time;
     holders.directions.push_back(holder);

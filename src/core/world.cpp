@@ -8,6 +8,7 @@
 #include "length_projection.h"
 #include "rest_curvature.h"
 #include "stiff_ends.h"
+#include "verlet_cable/core/rotation.h"
 #include "world_implementation.h"
 
 namespace verlet_cable {
@@ -166,7 +167,7 @@ void World::Implementation::start_cable(const CableDesc& desc, const BoundaryInp
     project_velocities(cable.model, s.boundary.nodes, cable.state.positions, cable.state.velocities);
   cable.state.twist.assign(cable.model.segments(), 0.0);
   cable.state.reference_orientation =
-      Quaternion::FromTwoVectors(Vector3::UnitX(), cable.state.positions[1] - cable.state.positions[0]);
+      smallest_rotation(Vector3::UnitX(), cable.state.positions[1] - cable.state.positions[0]);
   s.spans = find_spans(cable.model, cable.state, s.boundary.directions);
   cables.push_back(std::move(cable));
   scratch.push_back(std::move(s));
@@ -228,7 +229,7 @@ void World::Implementation::follow_material(int index) {
   if (s.boundary.directions.empty()) {
     const Vector3 before = state.reference_orientation * Vector3::UnitX(), now = state.positions[1] - state.positions[0];
     state.reference_node = 0;
-    state.reference_orientation = (Quaternion::FromTwoVectors(before, now) * state.reference_orientation).normalized();
+    state.reference_orientation = (smallest_rotation(before, now) * state.reference_orientation).normalized();
   } else {
     state.reference_node = s.boundary.directions.front().node;
     state.reference_orientation = s.boundary.directions.front().end;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "verlet_cable/core/rotation.h"
 #include "verlet_cable/ros/conversions.h"
 
 namespace verlet_cable {
@@ -63,13 +64,13 @@ std::vector<Vector3> directions_between(const std::vector<Ring>& rings) {
 /// ring.
 void orient(std::vector<Ring>& rings) {
   const std::vector<Vector3> directions = directions_between(rings);
-  Quaternion orientation = Quaternion::FromTwoVectors(Vector3::UnitX(), directions.front());
+  Quaternion orientation = smallest_rotation(Vector3::UnitX(), directions.front());
   for (std::size_t i = 0; i < rings.size(); ++i) {
     const Vector3& before = directions[i == 0 ? 0 : i - 1];
     const Vector3& after = directions[std::min(i, directions.size() - 1)];
     const Vector3 sum = before + after;
     const Vector3 along = sum.squaredNorm() > 1e-12 ? sum : after;  // a fold straight back has no mean direction
-    orientation = (Quaternion::FromTwoVectors(orientation * Vector3::UnitX(), along) * orientation).normalized();
+    orientation = (smallest_rotation(orientation * Vector3::UnitX(), along) * orientation).normalized();
     rings[i].orientation = orientation;
   }
 }

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <fstream>
 
+#include "verlet_cable/core/rotation.h"
+
 namespace verlet_cable::cable_fit {
 namespace {
 
@@ -107,7 +109,7 @@ TEST(Recording, RollOfHandsIsTheSmallestFromTheUsualDirection) {
   Recording recording = straight_recording();
   for (std::vector<Vector3>& markers : recording.markers) markers[1] = {0, 0.03, -0.1};
   const HeldDirections usual{-Vector3::UnitZ(), Vector3::UnitX()};
-  const Quaternion down = Quaternion::FromTwoVectors(Vector3::UnitX(), usual[0]);
+  const Quaternion down = smallest_rotation(Vector3::UnitX(), usual[0]);
   const Quaternion tilt(Eigen::AngleAxisd(std::atan2(0.03, 0.1), Vector3::UnitX()));
   EXPECT_TRUE(held_ends(recording, usual).start.at(0).orientation.isApprox(tilt * down, 1e-12));
   EXPECT_TRUE(held_ends(recording, usual).end.at(0).orientation.isApprox(held_ends(recording).end.at(0).orientation, 1e-12));

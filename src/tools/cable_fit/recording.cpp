@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "verlet_cable/core/rotation.h"
+
 namespace verlet_cable::cable_fit {
 namespace {
 
@@ -12,11 +14,11 @@ constexpr double doubled_back = -0.5;  ///< cosine of the turn behind a held end
 /// one.
 void carry_along(const Recording& recording, int from, int to, int origin, const Vector3& usual, FrameTrack& track) {
   Vector3 last = usual;
-  Quaternion orientation = Quaternion::FromTwoVectors(Vector3::UnitX(), usual);
+  Quaternion orientation = smallest_rotation(Vector3::UnitX(), usual);
   for (int row = 0; row < recording.rows(); ++row) {
     const std::vector<Vector3>& markers = recording.markers[row];
     const Vector3 direction = (markers[to] - markers[from]).normalized();
-    orientation = (Quaternion::FromTwoVectors(last, direction) * orientation).normalized();
+    orientation = (smallest_rotation(last, direction) * orientation).normalized();
     last = direction;
     track.add(recording.times[row], {markers[origin], orientation});
   }
