@@ -29,7 +29,8 @@ CableNode::CableNode(ros::NodeHandle private_node)
       rollouts_(node_, simulation_),
       hands_(node_, simulation_),
       diagnostics_(node_, simulation_, obstacles_),
-      timer_(node_.createWallTimer(update_period(simulation_.scene()), [this](const ros::WallTimerEvent&) { run_guarded("an update", [this] { update(); }); })),
+      timer_(node_.createWallTimer(update_period(simulation_.scene()),
+                                   [this](const ros::WallTimerEvent&) { run_guarded("an update", [this] { update(); }); })),
       publish_rate_(simulation_.scene().publish_rate) {}
 
 void CableNode::update() {

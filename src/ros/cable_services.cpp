@@ -127,8 +127,7 @@ CableServices::CableServices(ros::NodeHandle& node, Simulation& simulation) : ow
   serve_aside<Trigger>(node, "reset", [this, s](const auto&, auto& response) {
     return answer(owner_.ask([s](const Answer& done) { s->reset(done); }), response);
   });
-  serve_aside<Step>(node, "step",
-                    [this, s](const auto& request, auto& response) { return step(*s, owner_, request, response); });
+  serve_aside<Step>(node, "step", [this, s](const auto& request, auto& response) { return step(*s, owner_, request, response); });
   serve_aside<LoadScene>(node, "load_scene", [this, s, lasting](const auto& request, auto& response) {
     return answer(load_scene(*s, owner_, lasting, request), response);
   });

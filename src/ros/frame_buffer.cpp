@@ -45,7 +45,8 @@ std::string transform_problem(const ReceivedTransform& received, Nanoseconds now
   const double squared_length = r.x * r.x + r.y * r.y + r.z * r.z + r.w * r.w;
   const Nanoseconds stamp = from_ros_time(transform.header.stamp);
   // What tf2 adds to a stamp stays a ROS time.
-  const Nanoseconds latest = std::min(now > 0 ? now : last_ros_time, last_ros_time - 2 * FrameBuffer::memory) + FrameBuffer::memory;
+  const Nanoseconds latest =
+      std::min(now > 0 ? now : last_ros_time, last_ros_time - 2 * FrameBuffer::memory) + FrameBuffer::memory;
   std::ostringstream problem;
   if (without_slash(transform.child_frame_id).empty() || without_slash(transform.header.frame_id).empty()) {
     problem << "a frame without a name";
@@ -97,8 +98,7 @@ void FrameBuffer::refuse(const std::string& child, const std::string& problem) {
   ++refused_count_;
   if (refused_.size() < most_refused || refused_.count(child) > 0) refused_[child] = problem;
   const ros::WallTime now = ros::WallTime::now();
-  for (auto it = logged_.begin(); it != logged_.end();)
-    it = now - it->second > log_period ? logged_.erase(it) : std::next(it);
+  for (auto it = logged_.begin(); it != logged_.end();) it = now - it->second > log_period ? logged_.erase(it) : std::next(it);
   if (logged_.size() >= most_refused || !logged_.emplace(child, now).second) return;
   ROS_WARN("tf of frame %s refused: %s", quoted(child).c_str(), problem.c_str());
 }

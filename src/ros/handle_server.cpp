@@ -20,8 +20,7 @@ const ros::WallDuration hold_time(1.0);  // in which nobody else drags what a cl
 
 }  // namespace
 
-HandleServer::HandleServer(const ros::NodeHandle& parent, const std::string& topic,
-                           std::function<void(const Feedback&)> receive)
+HandleServer::HandleServer(const ros::NodeHandle& parent, const std::string& topic, std::function<void(const Feedback&)> receive)
     : receive_(std::move(receive)) {
   ros::NodeHandle node(parent, topic);
   all_ = node.advertise<InteractiveMarkerInit>("update_full", queue_size, true);

@@ -38,8 +38,7 @@ CableLocation location_of(const Handle& handle) {
 }  // namespace
 
 Hands::Hands(ros::NodeHandle& private_node, Simulation& simulation)
-    : simulation_(simulation),
-      server_(private_node, "hands", [this](const Feedback& feedback) { receive(feedback); }) {}
+    : simulation_(simulation), server_(private_node, "hands", [this](const Feedback& feedback) { receive(feedback); }) {}
 
 void Hands::receive(const Feedback& feedback) {
   const bool drags = feedback.event_type == Feedback::POSE_UPDATE;

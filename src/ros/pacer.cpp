@@ -63,7 +63,8 @@ void Pacer::done(Nanoseconds simulated, Nanoseconds time, Nanoseconds target) {
   const double way = seconds(time - simulated), longest = seconds(longest_backlog_);
   usual_way_ += std::min(way / way_memory, 1.0) * (way - usual_way_);
   const double given_up = std::exp(-std::max(busy_ - patience, 0.0) / surrender);
-  const double backlog = std::max(given_up * longest, std::min(std::max(shortest_backlog, steps_of_backlog * usual_way_), longest));
+  const double backlog =
+      std::max(given_up * longest, std::min(std::max(shortest_backlog, steps_of_backlog * usual_way_), longest));
   const double scale = std::max(given_up * longest_scale, std::clamp(steps_of_scale * usual_way_, shortest_scale, longest_scale));
   const double beyond = std::max(seconds(target - time) - backlog, 0.0);
   pace_ += std::min(way / pace_lag, 1.0) * (std::exp(beyond / scale) - pace_);

@@ -26,8 +26,10 @@ EditResult Simulation::set_obstacle(Obstacle obstacle, const std::string& frame)
 /// Why no frame of that name can be added; nothing if it can, or is there.
 std::optional<EditResult> Simulation::refused_frame(const std::string& frame) const {
   if (world_.frames().size() < most_frames || find_frame_id(frame) < world_.frames().size()) return std::nullopt;
-  return EditResult{
-      false, "frame_id: " + quoted(frame) + "; allowed: one of the " + std::to_string(most_frames) + " that were used since the last reset", {}};
+  return EditResult{false,
+                    "frame_id: " + quoted(frame) + "; allowed: one of the " + std::to_string(most_frames) +
+                        " that were used since the last reset",
+                    {}};
 }
 
 void Simulation::remove_obstacle(const std::string& name) {

@@ -42,8 +42,8 @@ void Simulation::do_awaited_steps(ros::WallDuration longest) {
 
 void Simulation::interrupt_steps(const std::string& reason) {
   for (const AwaitedSteps& run : std::exchange(awaited_steps_, {})) {
-    run.answer({false, "interrupted after " + std::to_string(run.done) + " of " + std::to_string(run.asked) + " steps: " + reason,
-                {}});
+    run.answer(
+        {false, "interrupted after " + std::to_string(run.done) + " of " + std::to_string(run.asked) + " steps: " + reason, {}});
   }
 }
 

@@ -32,7 +32,9 @@ void WrenchPublisher::publish(const World& world, const ros::Time& stamp) {
   follow_attachments(world);
   for (const Attachment& attachment : world.attachments()) {
     const auto publisher = publishers_.find(attachment.name);
-    if (publisher == publishers_.end() || publisher->second.getNumSubscribers() == 0 || !attachment.force.allFinite() || !attachment.torque.allFinite()) continue;
+    if (publisher == publishers_.end() || publisher->second.getNumSubscribers() == 0 || !attachment.force.allFinite() ||
+        !attachment.torque.allFinite())
+      continue;
     const auto message = boost::make_shared<geometry_msgs::WrenchStamped>();
     message->header.stamp = stamp;
     message->header.frame_id = world.frames()[attachment.frame];

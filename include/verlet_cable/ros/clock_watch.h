@@ -14,7 +14,7 @@ class ClockWatch {
   Motion update();
 
   Nanoseconds now() const { return from_ros_time(now_); }  ///< at the last update; 0 before there was any time
-  bool stands() const;                                      ///< has not moved for half a second of wall time
+  bool stands() const;                                     ///< has not moved for half a second of wall time
 
  private:
   ros::Time now_;

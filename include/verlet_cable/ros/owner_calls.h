@@ -20,8 +20,8 @@ class OwnerCalls {
   explicit OwnerCalls(ros::CallbackQueueInterface& queue) : queue_(queue) {}
   ~OwnerCalls();
 
-  /// The owner calls `request`, after what was in its queue before. Returns what that, or who it passed the Answer on to, answers,
-  /// or a failure where the node ends first. Not to be called by the owner.
+  /// The owner calls `request`, after what was in its queue before. Returns what that, or who it passed the Answer on to,
+  /// answers, or a failure where the node ends first. Not to be called by the owner.
   EditResult ask(std::function<void(const Answer&)> request);
 
   /// Nobody waits any longer.

@@ -42,7 +42,7 @@ class Pacer {
   Nanoseconds left_out_ = 0;
   double pace_ = 1;  ///< how far a step leads, in steps
   double usual_way_ = 0;  ///< [s] of a step, a mean of the last ones
-  double busy_ = 0;  ///< [s] of the target's time since all that was due was done
+  double busy_ = 0;       ///< [s] of the target's time since all that was due was done
 };
 
 }  // namespace verlet_cable
