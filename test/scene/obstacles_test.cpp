@@ -90,7 +90,8 @@ const Mistake mistakes[] = {
     {"frameWithSlash", "{name: a, type: plane, frame: /hand}", "obstacles[1].frame: \"/hand\";"},
     {"poseOfTheFixedFrame", "{name: a, type: plane, initial_pose: [1, 0, 0, 0, 0, 0]}", "obstacles[1].initial_pose: [1, 0, 0,"},
     {"anotherPoseOfTheHand", "{name: a, type: plane, frame: hand, initial_pose: [1, 0, 0, 0, 0, 0]}",
-     "obstacles[1].initial_pose: [1, 0, 0, 0, 0, 0]; allowed: one initial_pose a frame; \"hand\" has [0.7, 0, 0, 0, 0, 0] by "
+     "obstacles[1].initial_pose: [1, 0, 0, 0, 0, 0]; allowed: the same initial_pose wherever a frame is named; \"hand\" has "
+     "[0.7, 0, 0, 0, 0, 0] by "
      "cables[0].attachments[1].initial_pose"},
     {"noUri", "{name: a, type: mesh}", "obstacles[1].uri: missing;"},
     {"noSuchMesh", "{name: a, type: mesh, uri: \"file:///nonexistent.stl\"}",

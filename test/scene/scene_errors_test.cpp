@@ -127,7 +127,8 @@ const Mistake mistakes[] = {
     {"nanRotation", "type: hinge", "rotation: [0, nan, 0]", "cables[0].attachments[0].rotation: [0, nan, 0];"},
     {"shortPose", right, "frame: hand, initial_pose: [0, 0, 0]}", "cables[0].attachments[1].initial_pose: [0, 0, 0];"},
     {"poseOfTheFixedFrame", right, "offset: [0.5, 0, 0], initial_pose: [0.7, 0, 0, 0, 0, 0]}",
-     "cables[0].attachments[1].initial_pose: [0.7, 0, 0, 0, 0, 0]; allowed: one initial_pose a frame; \"world\""},
+     "cables[0].attachments[1].initial_pose: [0.7, 0, 0, 0, 0, 0]; allowed: the same initial_pose wherever a frame is named; "
+     "\"world\""},
     {"zeroPayload", payload, "{at: 0.5, mass: 0}", "cables[0].point_masses[0].mass: 0;"},
     {"payloadBeyondTheEnd", payload, "{at: 2, mass: 1}", "cables[0].point_masses[0].at: 2;"},
     {"payloadWithoutMass", payload, "{at: end}", "cables[0].point_masses[0].mass: missing;"},
@@ -218,10 +219,10 @@ TEST(SceneErrors, differentInitialPosesOfAFrame) {
       errors_of(replaced(sound_scene, "{name: left, at: start, type: hinge}",
                          "{name: left, at: start, frame: hand, offset: [-0.5, 0, 0], initial_pose: [0.7, 0, 0, 0, 0, 1]}"));
   ASSERT_EQ(errors.size(), 1u) << joined(errors);
-  EXPECT_EQ(
-      errors[0].rfind(
-          "cables[0].attachments[1].initial_pose: [0.7, 0, 0, 0, 0, 0]; allowed: one initial_pose a frame; \"hand\" has", 0),
-      0u);
+  EXPECT_EQ(errors[0].rfind("cables[0].attachments[1].initial_pose: [0.7, 0, 0, 0, 0, 0]; allowed: the same initial_pose "
+                            "wherever a frame is named; \"hand\" has",
+                            0),
+            0u);
 }
 
 TEST(SceneErrors, sceneIsNotAMap) {
