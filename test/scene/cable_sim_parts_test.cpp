@@ -116,6 +116,9 @@ TEST(FrameSource, framesMoveRestAtTheirPoseOrTheOrigin) {
   EXPECT_EQ(frames[1].pose.position, Vector3(0, 0, 0));
   EXPECT_EQ(frames[2].pose.position, Vector3(0.7, 0, 0));
   EXPECT_EQ(frames[3].pose.position, Vector3(1, 0, 0));
+  ASSERT_TRUE(frames[2].velocity && frames[3].velocity);
+  EXPECT_EQ(frames[2].velocity->linear, Vector3(0, 0, 0));
+  EXPECT_NEAR((frames[3].velocity->linear - Vector3(2, 0, 0)).norm(), 0, 1e-14);
   EXPECT_EQ(unused_frames(scene, motion), std::vector<std::string>{"unused"});
 }
 
