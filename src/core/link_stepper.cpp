@@ -210,7 +210,6 @@ void LinkStepper::find_contacts(const NetStep& s) {
     for (int i = 0; i < s.model.nodes(); ++i) {
       const Vector3 position = get(arrays_.position, i);
       if (arrays_.inverse_mass[i] == 0 || !wide.contains(position)) continue;
-      if (contacts_.size() == contacts_.capacity()) return;
       NodeContact contact;
       contact.surface = surface_near(moving, position, 0, h_, reach);
       const double gap = contact.surface.distance;
