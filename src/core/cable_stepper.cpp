@@ -16,6 +16,8 @@ constexpr int maximum_iterations = 40;
 constexpr double velocity_tolerance = 1e-5;
 /// Of a free cable: nothing but the solution keeps its angular momentum.
 constexpr double free_velocity_tolerance = 1e-6;
+/// Of what stands: errors times the stiffness are loads that would set it moving.
+constexpr double static_velocity_tolerance = 1e-8;
 /// A matrix that is kept does not make corrections shrink faster than this for long, however fast the first one shrank.
 constexpr double fastest_convergence = 0.03;
 /// A correction that shrinks less than this from one iteration to the next calls for a new factorisation.
@@ -187,7 +189,8 @@ void CableStepper::set_natural_shape(const Substep& s, const CableState& state) 
 /// Newton's method on places and tensions together, its matrix kept as long as it converges fast.
 bool CableStepper::solve(const Substep& s, const CableState& state, SubstepResult& result) {
   const bool free = s.boundary.nodes.empty();
-  const double tolerance = (free ? free_velocity_tolerance : velocity_tolerance) * std::min(s.h, longest_tolerated);
+  const double error = s.statics ? static_velocity_tolerance : free ? free_velocity_tolerance : velocity_tolerance;
+  const double tolerance = error * std::min(s.h, longest_tolerated);
   double last = 0;
   bool stale = true;
   for (int i = 0; i < maximum_iterations; ++i) {

@@ -44,11 +44,13 @@ std::vector<Vector3> hanging_chain(const Vector3& from, const Vector3& to, const
   const double length = std::accumulate(lengths.begin(), lengths.end(), 0.0);
   const double weight = std::accumulate(weights.begin(), weights.end(), 0.0);
   if (lengths.size() == 1) return {from, to};
-  std::vector<Vector3> nodes{from};
+  // Added up from zero: far from the origin each sum would round.
+  std::vector<Vector3> nodes{Vector3::Zero()};
   Vector3 span = to - from;
   if (span.norm() >= straight * length && !(axial_stiffness < std::numeric_limits<double>::infinity())) {
     double along = 0;
-    for (const double l : lengths) nodes.push_back(from + (along += l) / length * span);
+    for (const double l : lengths) nodes.push_back((along += l) / length * span);
+    for (Vector3& node : nodes) node += from;
     return nodes;
   }
   const Vector3 level = span - span.dot(down) * down;
@@ -78,6 +80,7 @@ std::vector<Vector3> hanging_chain(const Vector3& from, const Vector3& to, const
     nodes.push_back(nodes.back() + lengths[i] * (1 / tension + 1 / axial_stiffness) * force);
     if (i < weights.size()) force -= weights[i] * down;
   }
+  for (Vector3& node : nodes) node += from;
   return nodes;
 }
 

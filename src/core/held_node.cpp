@@ -1,11 +1,15 @@
 #include "held_node.h"
 
+#include <limits>
+
 namespace verlet_cable {
 
 namespace {
 
 /// Further apart than this is worth a report [relative].
 constexpr double reported_stretch = 1e-9;
+/// Of places far from the origin, which is no stretch [relative].
+constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
@@ -17,7 +21,8 @@ int reachable_lengths(const CableModel& model, const std::vector<HeldNode>& held
     const int first = held[k].node, last = held[k + 1].node;
     const double rest_length = model.length(first, last);
     const double distance = (held[k + 1].position - held[k].position).norm();
-    if (distance > rest_length * (1 + reported_stretch) && overstretched < 0) overstretched = first;
+    const double rounded = rounding * held[k].position.cwiseAbs().maxCoeff();
+    if (distance > rest_length * (1 + reported_stretch) + rounded && overstretched < 0) overstretched = first;
     const double stretch = distance / rest_length;
     if (stretch <= 1) continue;
     for (int i = first; i < last; ++i) lengths[i] *= stretch;

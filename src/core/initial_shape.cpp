@@ -59,22 +59,23 @@ std::vector<Vector3> spread(const std::vector<Vector3>& points, const std::vecto
 
 }  // namespace
 
-void set_initial_state(const InitialShapeDesc& initial, const CableModel& model, const std::vector<HeldNode>& held,
+bool set_initial_state(const InitialShapeDesc& initial, const CableModel& model, const std::vector<HeldNode>& held,
                        const Vector3& gravity, CableState& state) {
   using Type = InitialShapeDesc::Type;
   state.velocities.assign(model.nodes(), Vector3::Zero());
   state.accelerations.assign(model.nodes(), Vector3::Zero());
   state.tension.assign(model.segments(), 0.0);
   state.axial_multiplier.assign(model.segments(), 0.0);
+  bool fits = true;
   switch (initial.type) {
     case Type::straight:
       state.positions = straight_line(initial.from, (initial.to - initial.from).normalized(), model);
-      carry_along(model, held, gravity, state);
+      fits = carry_along(model, held, gravity, state);
       break;
     case Type::points:
       state.positions = spread(initial.points, initial.points, model);
       if (!initial.velocities.empty()) state.velocities = spread(initial.points, initial.velocities, model);
-      carry_along(model, held, gravity, state);
+      fits = carry_along(model, held, gravity, state);
       break;
     case Type::automatic:
     case Type::catenary:
@@ -83,9 +84,16 @@ void set_initial_state(const InitialShapeDesc& initial, const CableModel& model,
       project_positions(model, held, state.positions);
       break;
   }
+  return fits;
 }
 
-void carry_along(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {
+bool settles_by_default(const CableDesc& desc, const MaterialDesc& material) {
+  return desc.initial.type == InitialShapeDesc::Type::automatic && material.bending_stiffness > 0 &&
+         std::any_of(desc.attachments.begin(), desc.attachments.end(),
+                     [](const AttachmentDesc& a) { return a.type == AttachmentType::clamp; });
+}
+
+bool carry_along(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {
   if (!held.empty()) {
     const std::vector<double> arc_length = model.arc_length();
     std::vector<Vector3> jumps;
@@ -103,10 +111,11 @@ void carry_along(const CableModel& model, const std::vector<HeldNode>& held, con
       state.positions[i] += jumps[k] + fraction * (jumps[k + 1] - jumps[k]);
     }
   }
-  if (project_positions(model, held, state.positions)) return;
+  if (project_positions(model, held, state.positions)) return true;
   // Holders that come close along a straight cable do not tell where its slack goes.
   state.positions = hanging(model, held, gravity);
   project_positions(model, held, state.positions);
+  return false;
 }
 
 void restore_lengths(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {

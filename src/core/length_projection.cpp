@@ -45,6 +45,7 @@ class LengthSystem {
     }
   }
 
+  bool movable_node(int node) const { return mobility_[node] > 0; }
   bool movable(int segment) const { return mobility_[segment] + mobility_[segment + 1] > 0; }
 
  private:
@@ -82,18 +83,26 @@ bool project_lengths(const CableModel& model, const std::vector<HeldNode>& held,
   const int n = model.segments();
   std::vector<double> changes(n);
   LengthSystem system(model, held);
+  // Seen from the cable's first node: far from the origin, rounding of the places outweighs what is left of the lengths.
+  const Vector3 origin = positions.front();
+  std::vector<Vector3> local;
+  for (const Vector3& position : positions) local.push_back(position - origin);
   for (int iteration = 0; iteration < maximum_iterations; ++iteration) {
     double error = 0;
     for (int i = 0; i < n; ++i) {
-      const double square = (positions[i + 1] - positions[i]).squaredNorm(), target = lengths[i] * lengths[i];
+      const double square = (local[i + 1] - local[i]).squaredNorm(), target = lengths[i] * lengths[i];
       // A segment is not asked to grow or shrink by more than a part of itself at a time: Newton's model holds no further.
       changes[i] = 0.5 * std::clamp(target - square, -0.75 * square, 0.75 * std::max(square, 0.01 * target));
       if (system.movable(i)) error = std::max(error, std::abs(target - square) / target);
     }
     if (!std::isfinite(error)) return false;
-    if (error < length_tolerance) return true;
-    const std::vector<Vector3> from = positions;
-    system.apply(from, changes, positions);
+    if (error < length_tolerance) {
+      for (int i = 0; i <= n; ++i)
+        if (system.movable_node(i)) positions[i] = origin + local[i];
+      return true;
+    }
+    const std::vector<Vector3> from = local;
+    system.apply(from, changes, local);
   }
   return false;
 }

@@ -8,16 +8,14 @@
 #include "length_projection.h"
 #include "rest_curvature.h"
 #include "stiff_ends.h"
+#include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/rotation.h"
+#include "verlet_cable/core/scene_fields.h"
 #include "world_implementation.h"
 
 namespace verlet_cable {
 
 namespace {
-
-bool finite(const Pose& pose) {
-  return pose.position.allFinite() && pose.orientation.coeffs().allFinite() && pose.orientation.norm() > 0.5;
-}
 
 CableModel make_model(const SceneDesc& scene, const CableDesc& desc) {
   CableModel model;
@@ -38,6 +36,20 @@ CableModel make_model(const SceneDesc& scene, const CableDesc& desc) {
 }
 
 }  // namespace
+
+bool is_sound(const Pose& pose) {
+  const double length = pose.orientation.norm();
+  return (pose.position.cwiseAbs().array() <= coordinate.highest).all() && length >= 0.5 && length <= 2;
+}
+
+std::string pose_problem(const std::string& field, const Pose& pose) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (!coordinate.contains(pose.position[axis]))
+      return field + ".position." + "xyz"[axis] + ": " + number_text(pose.position[axis]) + "; allowed: " + coordinate.text("m");
+  if (is_sound(pose)) return "";
+  return field + ".orientation: of length " + number_text(pose.orientation.norm()) +
+         "; allowed: 1 (from 0.5 to 2 is brought to 1)";
+}
 
 int find_frame(const std::vector<std::string>& frames, const std::string& name) {
   return static_cast<int>(std::find(frames.begin(), frames.end(), name) - frames.begin());
@@ -114,20 +126,27 @@ template <class Desc>
 bool World::Implementation::frames_known(const Desc& desc, const BoundaryInputs& inputs) const {
   return std::all_of(desc.attachments.begin(), desc.attachments.end(), [&](const auto& attachment) {
     const int frame = attachment.frame.empty() ? 0 : find_frame(frames, attachment.frame);
-    return frame == 0 || (frame < static_cast<int>(inputs.size()) && inputs[frame].known && finite(inputs[frame].pose));
+    return frame == 0 || (frame < static_cast<int>(inputs.size()) && inputs[frame].known && is_sound(inputs[frame].pose));
   });
 }
 
-void World::Implementation::follow_frames(const BoundaryInputs& inputs) {
-  // A frame that is unknown or not finite stays where it was. The fixed frame does not move.
+/// A frame that is unknown, or whose pose is not sound, stays where it was; the first of the latter is returned, else -1. The
+/// fixed frame does not move.
+int World::Implementation::follow_frames(const BoundaryInputs& inputs) {
+  int ignored = -1;
   previous_poses = poses;
   for (std::size_t i = 1; i < std::min(poses.size(), inputs.size()); ++i) {
-    if (!inputs[i].known || !finite(inputs[i].pose)) continue;
+    if (!inputs[i].known) continue;
+    if (!is_sound(inputs[i].pose)) {
+      if (ignored < 0) ignored = static_cast<int>(i);
+      continue;
+    }
     poses[i] = {inputs[i].pose.position, inputs[i].pose.orientation.normalized()};
     if (!known[i]) previous_poses[i] = poses[i];
     known[i] = true;
   }
   for (Obstacle& obstacle : obstacles) obstacle.present = known[obstacle.frame];
+  return ignored;
 }
 
 void World::Implementation::start_cable(const CableDesc& desc, const BoundaryInputs& inputs) {
@@ -158,9 +177,9 @@ void World::Implementation::start_cable(const CableDesc& desc, const BoundaryInp
   put_at_aim(s.holders);
   start_holders(attachments, poses, inputs, s.holders);
   hold_at(1, 1, s.holders, s.boundary);
-  set_initial_state(desc.initial, cable.model, s.boundary.nodes,
-                    scene.gravity.at(s.boundary.nodes.empty() ? Vector3(Vector3::Zero()) : s.boundary.nodes.front().position),
-                    cable.state);
+  const Vector3 gravity =
+      scene.gravity.at(s.boundary.nodes.empty() ? Vector3(Vector3::Zero()) : s.boundary.nodes.front().position);
+  if (!set_initial_state(desc.initial, cable.model, s.boundary.nodes, gravity, cable.state)) misfits.push_back(desc.name);
   // Where velocities of holders are not known yet, the first step finds them, and all go together.
   const auto starts = [](const Holder& holder) { return holder.starts; };
   if (std::none_of(s.holders.nodes.begin(), s.holders.nodes.end(), starts))
@@ -176,7 +195,8 @@ void World::Implementation::start_cable(const CableDesc& desc, const BoundaryInp
   set_rest_curvature(desc.rest_curvature, scratch.back().holders.directions, cables.back());
   scratch.back().stepper.resize(cables.back().model);
   form_groups();
-  if (desc.initial.type == InitialShapeDesc::Type::settled) settle_cable(index);
+  if (desc.initial.type == InitialShapeDesc::Type::settled || settles_by_default(desc, cables.back().model.material))
+    settle_start(index);
 }
 
 /// The segment of a cable that breaks now, -1 if it holds. A piece keeps at least one segment, so that the outermost ones do not

@@ -14,10 +14,6 @@ EditResult refused(const std::string& message) {
   return {false, message, {}};
 }
 
-bool is_sound(const Pose& pose) {
-  return pose.position.allFinite() && pose.orientation.coeffs().allFinite() && pose.orientation.norm() >= 1e-6;
-}
-
 bool holds_something(const std::vector<Attachment>& attachments, int cable, int node) {
   return std::any_of(attachments.begin(), attachments.end(),
                      [&](const Attachment& a) { return a.cable == cable && a.node == node; });
@@ -86,7 +82,7 @@ EditResult World::pin(const std::string& name, int cable, int node, int frame, c
     return refused("node: " + std::to_string(node) + "; must be from 0 to " + std::to_string(held.model.segments()));
   if (frame < 0 || frame >= static_cast<int>(w.frames.size()))
     return refused("frame: " + std::to_string(frame) + "; must be the id of a frame");
-  if (!is_sound(pose)) return refused("offset: must be finite, with an orientation of length 1");
+  if (const std::string problem = pose_problem("offset", pose); !problem.empty()) return refused(problem);
   if (!name.empty() && w.is_attachment(name)) return refused("name: " + name + "; is taken by another attachment");
   if (holds_something(w.attachments, cable, node))
     return refused("node: " + std::to_string(node) + " of cable " + held.model.name + "; is already held by an attachment");
@@ -118,7 +114,8 @@ EditResult World::pin_net(const std::string& name, int net, int node, int frame,
     return refused("node: " + std::to_string(node) + "; must be from 0 to " + std::to_string(model.nodes() - 1));
   if (frame < 0 || frame >= static_cast<int>(w.frames.size()))
     return refused("frame: " + std::to_string(frame) + "; must be the id of a frame");
-  if (!offset.allFinite()) return refused("offset: must be finite");
+  if (const std::string problem = pose_problem("offset", Pose{offset, Quaternion::Identity()}); !problem.empty())
+    return refused(problem);
   if (!name.empty() && w.is_attachment(name)) return refused("name: " + name + "; is taken by another attachment");
   for (const Attachment& a : w.attachments)
     if (a.net == net && a.node == node)
@@ -156,7 +153,7 @@ EditResult World::unpin(const std::string& name) {
 EditResult World::move_attachment(const std::string& name, const Pose& pose) {
   const int index = find_attachment(name);
   if (index < 0) return refused("name: " + name + "; there is no such attachment");
-  if (!is_sound(pose)) return refused("offset: must be finite, with an orientation of length 1");
+  if (const std::string problem = pose_problem("offset", pose); !problem.empty()) return refused(problem);
   implementation_->attachments[index].pose = {pose.position, pose.orientation.normalized()};
   return {true, "", name};
 }
@@ -190,11 +187,7 @@ EditResult World::cut(int cable, int segment) {
   const std::string new_name = second.model.name;
   w.cables[cable] = std::move(first);
   w.cables.push_back(std::move(second));
-  for (Attachment& a : w.attachments) {
-    if (a.cable != cable || a.node <= segment) continue;
-    a.cable = new_cable;
-    a.node -= segment + 1;
-  }
+  w.follow_cut(cable, segment, new_cable);
   w.scratch.emplace_back();
   Holders &of_first = w.scratch[cable].holders, &of_second = w.scratch[new_cable].holders;
   split_holders(segment + 1, of_first.nodes, of_second.nodes);
@@ -214,6 +207,24 @@ EditResult World::cut(int cable, int segment) {
   return {true, "", new_name};
 }
 
+/// What names places of a cable names those of its pieces.
+void World::Implementation::follow_cut(int cable, int segment, int new_cable) {
+  for (Attachment& a : attachments) {
+    if (a.cable != cable || a.node <= segment) continue;
+    a.cable = new_cable;
+    a.node -= segment + 1;
+  }
+  for (Intrusion& intrusion : intrusions) {
+    if (intrusion.cable != cable || intrusion.segment < segment) continue;
+    if (intrusion.segment == segment) {
+      --intrusion.segment;
+      continue;
+    }
+    intrusion.cable = new_cable;
+    intrusion.segment -= segment + 1;
+  }
+}
+
 int World::add_frame(const std::string& name, const std::optional<Pose>& pose) {
   Implementation& w = *implementation_;
   const int frame = static_cast<int>(std::find(w.frames.begin(), w.frames.end(), name) - w.frames.begin());
@@ -224,8 +235,8 @@ int World::add_frame(const std::string& name, const std::optional<Pose>& pose) {
     w.known.push_back(false);
     w.find_obstacle_holders();
   }
-  if (pose && !w.known[frame]) {
-    w.poses[frame] = w.previous_poses[frame] = *pose;
+  if (pose && is_sound(*pose) && !w.known[frame]) {
+    w.poses[frame] = w.previous_poses[frame] = {pose->position, pose->orientation.normalized()};
     w.known[frame] = true;
   }
   return frame;

@@ -39,12 +39,22 @@ struct NetScratch {
   NetState before;  ///< the step
 };
 
+/// A cable on its way to equilibrium, alone.
+struct Settling {
+  Settling(int cable, bool may_touch) : touches(may_touch) { alone.cables.push_back(cable); }
+  int cable() const { return alone.cables.front(); }
+
+  bool touches;  ///< looks for what it touches
+  ContactGroup alone;
+};
+
 struct World::Implementation {
   SceneDesc scene;
   std::vector<int> waiting_descs;  ///< indices into scene.cables
   std::vector<int> waiting_nets;   ///< indices into scene.nets
   std::vector<std::string> waiting;
   std::vector<std::string> unsettled;
+  std::vector<std::string> misfits;
   std::vector<std::string> frames;
   std::vector<Pose> poses;           ///< of the frames, at the world's time
   std::vector<Pose> previous_poses;  ///< a step before; of a frame that is new to a step, its first
@@ -81,7 +91,7 @@ struct World::Implementation {
   void add_net_energy(Energy& energy) const;
   bool is_attachment(const std::string& name) const;
   Vector3 gravity_near(int cable) const;
-  void follow_frames(const BoundaryInputs& inputs);
+  int follow_frames(const BoundaryInputs& inputs);
   void add_scene_obstacles();
   void find_obstacle_holders();
   void form_groups();
@@ -94,8 +104,15 @@ struct World::Implementation {
   void find_contacts(ContactGroup& group, double from, double to);
   void note_substep(int cable, const SubstepResult& substep, double part);
   void give_up(int cable);
-  void settle_cable(int cable);
-  SubstepResult settle_substep(ContactGroup& alone, double h);
+  void hold_still(int cable);
+  void settle_start(int cable);
+  void turn_clamps(Settling& settling);
+  bool find_equilibrium(Settling& settling);
+  bool relax(double h, double longest, int steps, Settling& settling);
+  bool leaves_equilibrium(Settling& settling, double& h);
+  SubstepResult settle_substep(Settling& settling, double h);
+  bool may_touch() const;
+  void note_settled(int cable, bool settled);
   int breaking_segment(int cable, const StepResult& result) const;
   void add_forces(int cable, double weight);
   void update_holders(int cable);
@@ -111,12 +128,17 @@ struct World::Implementation {
   void close_joint(int cable);
   void reverse_cable(int cable);
   void renumber(int cable, int first_node, int shift);
+  void follow_cut(int cable, int segment, int new_cable);
+  void follow_join(int first, int second);
   void after_remeshing(int cable);
   double time() const { return static_cast<double>(steps) * scene.time_step; }
 };
 
 /// The index of a name, their number if it is not there.
 int find_frame(const std::vector<std::string>& frames, const std::string& name);
+
+/// What is wrong with a pose that is not sound, under the name of its field; empty if nothing is.
+std::string pose_problem(const std::string& field, const Pose& pose);
 
 /// Keeps the worst status, and of equals the first cable's.
 void note_status(StepResult::Status status, int cable, int node, StepResult& result);

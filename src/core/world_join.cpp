@@ -165,8 +165,6 @@ EditResult World::join(int first, bool first_at_end, int second, bool second_at_
   Holders &holders = w.scratch[first].holders, &holders_of_gone = w.scratch[second].holders;
   append(holders_of_gone.nodes, holders.nodes);
   append(holders_of_gone.directions, holders.directions);
-  for (Attachment& a : w.attachments)
-    if (a.cable == second) a.cable = first;
 
   Reel reel;
   reel.place = Reel::Place::inside;
@@ -177,10 +175,9 @@ EditResult World::join(int first, bool first_at_end, int second, bool second_at_
   reel.acceleration = joining_acceleration;
   w.scratch[first].reel = reel;
 
+  w.follow_join(first, second);
   w.cables.erase(w.cables.begin() + second);
   w.scratch.erase(w.scratch.begin() + second);
-  for (Attachment& a : w.attachments)
-    if (a.cable > second) --a.cable;
   w.form_groups();
   const int joined = first > second ? first - 1 : first;
   if (reel.left == 0) {
@@ -193,9 +190,25 @@ EditResult World::join(int first, bool first_at_end, int second, bool second_at_
   return {true, "", name};
 }
 
+/// The second cable has become a part of the first, and those after it count one less.
+void World::Implementation::follow_join(int first, int second) {
+  const auto follow = [&](int& cable) {
+    if (cable == second) cable = first;
+    if (cable > second) --cable;
+  };
+  for (Attachment& a : attachments) follow(a.cable);
+  for (Intrusion& intrusion : intrusions) follow(intrusion.cable);
+  for (Break& broken : breaks) {
+    follow(broken.cable);
+    follow(broken.new_cable);
+  }
+}
+
 void World::Implementation::reverse_cable(int index) {
   reverse(cables[index]);
   const int n = cables[index].model.segments();
+  for (Intrusion& intrusion : intrusions)
+    if (intrusion.cable == index) intrusion.segment = n - 1 - intrusion.segment;
   for (Attachment& a : attachments) {
     if (a.cable != index) continue;
     a.node = n - a.node;

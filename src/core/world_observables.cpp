@@ -121,6 +121,10 @@ const std::vector<std::string>& World::unsettled() const {
   return implementation_->unsettled;
 }
 
+const std::vector<std::string>& World::misfits() const {
+  return implementation_->misfits;
+}
+
 const std::vector<Break>& World::breaks() const {
   return implementation_->breaks;
 }

@@ -69,9 +69,7 @@ std::string problem_of(const Obstacle& obstacle, std::size_t frames) {
   if (obstacle.name.empty()) return "name: empty; allowed: any other";
   if (obstacle.frame < 0 || obstacle.frame >= static_cast<int>(frames))
     return "frame: " + std::to_string(obstacle.frame) + "; allowed: the id of a frame";
-  const bool placed =
-      obstacle.pose.position.cwiseAbs().maxCoeff() <= coordinate.highest && std::abs(obstacle.pose.orientation.norm() - 1) < 1e-6;
-  if (!placed) return "pose: allowed: finite numbers [m], with an orientation of length 1";
+  if (const std::string problem = pose_problem("pose", obstacle.pose); !problem.empty()) return problem;
   if (obstacle.friction && !not_negative.contains(*obstacle.friction))
     return "friction: " + number_text(*obstacle.friction) + "; allowed: " + not_negative.text();
   if (!not_negative.contains(obstacle.padding)) return number_problem("padding", obstacle.padding, not_negative);
@@ -109,7 +107,12 @@ EditResult World::remove_obstacle(const std::string& name) {
   Implementation& w = *implementation_;
   const auto found = find_obstacle(w.obstacles, name);
   if (found == w.obstacles.end()) return {false, "obstacle: " + quoted(name) + "; there is no such obstacle", {}};
+  const int index = static_cast<int>(found - w.obstacles.begin());
   w.obstacles.erase(found);
+  const auto names_it = [&](const Intrusion& intrusion) { return intrusion.obstacle == index; };
+  w.intrusions.erase(std::remove_if(w.intrusions.begin(), w.intrusions.end(), names_it), w.intrusions.end());
+  for (Intrusion& intrusion : w.intrusions)
+    if (intrusion.obstacle > index) --intrusion.obstacle;
   w.form_groups();  // contacts name obstacles by their indices
   return {true, "", name};
 }

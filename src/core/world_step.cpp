@@ -29,7 +29,7 @@ bool finite(const std::vector<Vector3>& vectors) {
 StepResult World::step(const BoundaryInputs& inputs) {
   Implementation& w = *implementation_;
   StepResult result;
-  w.follow_frames(inputs);
+  result.ignored_frame = w.follow_frames(inputs);
   ++w.steps;
   for (Attachment& attachment : w.attachments) attachment.force = attachment.torque = Vector3::Zero();
   w.breaks.clear();
@@ -46,7 +46,12 @@ StepResult World::step(const BoundaryInputs& inputs) {
     result.max_strain = std::max(result.max_strain, of_cable.max_strain);
     const int segment = w.breaking_segment(cable, of_cable);
     if (segment < 0) continue;
-    if (cut(cable, segment).ok) w.breaks.push_back({cable, segment, static_cast<int>(w.cables.size()) - 1});
+    if (!cut(cable, segment).ok) continue;
+    const int rest = static_cast<int>(w.cables.size()) - 1;
+    w.breaks.push_back({cable, segment, rest});
+    if (result.cable != cable || result.node <= segment) continue;
+    result.cable = rest;
+    result.node -= segment + 1;
   }
   w.step_nets_and_particles(result);
   return result;
@@ -156,8 +161,11 @@ void World::Implementation::give_up(int index) {
   SimulatedCable& cable = cables[index];
   CableScratch& s = scratch[index];
   hold_at(1, 1, s.holders, s.boundary);
+  const std::vector<Vector3> before = cable.state.positions;
   carry_along(cable.model, s.boundary.nodes, gravity_near(index), cable.state);
-  if (!finite(cable.state.positions)) note_status(StepResult::Status::fault, index, 0, results[index]);
+  if (finite(cable.state.positions)) return;
+  cable.state.positions = before;
+  note_status(StepResult::Status::fault, index, 0, results[index]);
 }
 
 void World::Implementation::note_substep(int index, const SubstepResult& substep, double part) {

@@ -224,6 +224,8 @@ void World::Implementation::renumber(int index, int first, int shift) {
   };
   for (Attachment& a : attachments)
     if (a.cable == index) follow(a.node);
+  for (Intrusion& intrusion : intrusions)
+    if (intrusion.cable == index) follow(intrusion.segment);
   for (Holder& h : scratch[index].holders.nodes) follow(h.node);
   for (DirectionHolder& h : scratch[index].holders.directions) follow(h.node);
 }

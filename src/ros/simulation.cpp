@@ -107,7 +107,7 @@ void Simulation::start(Nanoseconds time, bool builds) {
     frame_watch_.forget_from(0);
     faulted_ = false;
     intrusions_.clear();
-    report_unsettled(0);
+    report_starts(0, 0);
   }
   waits_for_frames_ = frame_watch_.react(frames_.changes(), stamp_, world_);
   frame_watch_.report_unseen(scene_, world_, frames_);
@@ -169,9 +169,9 @@ bool Simulation::step_world(Nanoseconds time) {
   report_breaks();
   report_intrusions();
   if (!world_.waiting().empty() && !frames_.changes().empty()) {
-    const std::size_t reported = world_.unsettled().size();
+    const std::size_t unsettled = world_.unsettled().size(), misfits = world_.misfits().size();
     world_.start_waiting(frames_.inputs());
-    report_unsettled(reported);
+    report_starts(unsettled, misfits);
   }
   if (grid_.passes_tick(before, stamp_)) publish();
   return true;
@@ -229,8 +229,11 @@ void Simulation::report_overload() {
       overload->real_time_factor, overload->left_out);
 }
 
-void Simulation::report_unsettled(std::size_t first) const {
-  for (std::size_t i = first; i < world_.unsettled().size(); ++i)
+void Simulation::report_starts(std::size_t first_unsettled, std::size_t first_misfit) const {
+  for (std::size_t i = first_misfit; i < world_.misfits().size(); ++i)
+    ROS_WARN("the initial shape of cable %s does not fit between its attachments: it hangs between them instead",
+             quoted(world_.misfits()[i]).c_str());
+  for (std::size_t i = first_unsettled; i < world_.unsettled().size(); ++i)
     ROS_WARN("cable %s: no static equilibrium was found to start from; it starts at rest near one, and may move at first",
              quoted(world_.unsettled()[i]).c_str());
 }

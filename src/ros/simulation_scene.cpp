@@ -95,7 +95,7 @@ EditResult Simulation::start_anew(World world) {
   faulted_ = false;
   intrusions_.clear();
   frame_watch_.forget_from(static_cast<int>(world_.frames().size()));
-  report_unsettled(0);
+  report_starts(0, 0);
   const std::string message = "reset to the initial state of the scene";
   announce(CableEvent::RESET, {}, message);
   if (paused_) publish();

@@ -15,7 +15,8 @@
 
 namespace verlet_cable {
 
-/// Where the frames are at the end of a step, seen from the fixed frame; one entry a frame, by frame id.
+/// Where the frames are at the end of a step, seen from the fixed frame; one entry a frame, by frame id. A pose that is not sound
+/// (see `is_sound`) counts as none: the frame stays where it was.
 struct FrameInput {
   Pose pose;
   bool known = true;  ///< false: never seen; cables that need it wait, obstacles in it are not there
@@ -47,13 +48,14 @@ struct StepResult {
     fault      ///< not even that: the cable stays as it was last, finite
   };
   Status status = Status::ok;
-  int cable = -1;         ///< the first cable that is not ok
-  int net = -1;           ///< or net
-  int particle = -1;      ///< or particle
-  int node = -1;          ///< its first node that is not ok
-  int substeps = 0;       ///< the most that any cable took
-  int iterations = 0;     ///< of the solver, all cables and substeps
-  double max_strain = 0;  ///< largest |l / l0 - 1| at the end of the step
+  int cable = -1;          ///< the first cable that is not ok
+  int net = -1;            ///< or net
+  int particle = -1;       ///< or particle
+  int node = -1;           ///< its first node that is not ok
+  int ignored_frame = -1;  ///< the first frame whose pose was not sound
+  int substeps = 0;        ///< the most that any cable took
+  int iterations = 0;      ///< of the solver, all cables and substeps
+  double max_strain = 0;   ///< largest |l / l0 - 1| at the end of the step
 };
 
 /// [J]; gravity is zero at the fixed frame's origin, central gravity infinitely far away.
@@ -79,7 +81,7 @@ struct Jump {
 };
 
 /// A cable that is inside an obstacle without having come through its surface: it started there, or the obstacle appeared there.
-/// It is pushed out gently.
+/// It is pushed out gently. Edits and breaks keep its indices valid.
 struct Intrusion {
   int cable = 0;     ///< index into World::cables()
   int segment = 0;   ///< the deepest one
@@ -126,7 +128,7 @@ class World {
   const std::vector<std::string>& frames() const;
   const Pose& frame_pose(int frame) const;  ///< at the world's time
   bool frame_known(int frame) const;        ///< whether it has been seen, or given a pose
-  /// Id of the new or the existing frame. Without a pose, a new one is unknown until a step knows it.
+  /// Id of the new or the existing frame. Without a (sound) pose, a new one is unknown until a step knows it.
   int add_frame(const std::string& name, const std::optional<Pose>& pose);
 
   const std::vector<SimulatedCable>& cables() const;  ///< those that have started, pieces of cuts included
@@ -139,6 +141,9 @@ class World {
   const std::vector<Intrusion>& intrusions() const;    ///< that the last step found, one a cable and obstacle
   /// Names of cables that found no equilibrium when they were to be settled, at their start or by `settle`.
   const std::vector<std::string>& unsettled() const;
+  /// Names of cables whose given initial shape could not be brought to their lengths between their attachments: they hang
+  /// instead.
+  const std::vector<std::string>& misfits() const;
   std::vector<SimulatedContact> contacts() const;      ///< where cables touched something in the last substep
   int find_cable(const std::string& name) const;       ///< index, -1 if there is none
   int find_net(const std::string& name) const;         ///< index, -1 if there is none
@@ -182,6 +187,9 @@ class World {
   std::unique_ptr<Implementation> implementation_;
 };
 
+/// Whether a pose can be worked with: coordinates within 1e9 m, and an orientation whose length is from 0.5 to 2, which is
+/// brought to 1.
+bool is_sound(const Pose& pose);
 /// Frames that a scene names, by id: the fixed frame first, then in order of appearance, each once.
 std::vector<std::string> frame_names(const SceneDesc& scene);
 /// Their initial poses, by id; `known` is false where the scene gives none.

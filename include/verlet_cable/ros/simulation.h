@@ -155,8 +155,8 @@ class Simulation {
   void report_breaks() const;
   void report_intrusions();
   void report_overload();
-  /// From the `first` of World::unsettled() on.
-  void report_unsettled(std::size_t first) const;
+  /// From these of World::unsettled() and World::misfits() on.
+  void report_starts(std::size_t first_unsettled, std::size_t first_misfit) const;
   void skip_to(Nanoseconds time);
   void publish();
   void announce(std::uint8_t type, const EventSubject& subject, const std::string& message) const;

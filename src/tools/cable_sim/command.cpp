@@ -68,7 +68,7 @@ int simulate_job(const Options& options, const Job& job) {
   EventLog events(progress);
   if (job.settle) world.settle();
   const tools::StopRequest stop;
-  events.add_unsettled(world);
+  events.add_starts(world);
   CsvWriter csv(outputs.csv);
   Summary summary(world, averaged_steps(job));
   const RunEnd end =

@@ -59,7 +59,10 @@ void EventLog::observe(const World& world, const StepResult& result, const std::
   end_episodes(world.time());
 }
 
-void EventLog::add_unsettled(const World& world) {
+void EventLog::add_starts(const World& world) {
+  for (const std::string& cable : world.misfits())
+    add({world.time(), "not_fitted", cable, -1, "",
+         "the initial shape does not fit between the cable's attachments; it hangs between them instead", ""});
   for (const std::string& cable : world.unsettled())
     add({world.time(), "not_settled", cable, -1, "",
          "no static equilibrium was found; the cable starts at rest near one, and may move at first", ""});

@@ -31,8 +31,8 @@ class EventLog {
   /// After each step. `held_back`: ids of the frames that moved faster than `max_frame_speed`.
   void observe(const World& world, const StepResult& result, const std::vector<int>& held_back);
 
-  /// Cables that were to be settled and found no equilibrium.
-  void add_unsettled(const World& world);
+  /// Cables that hang instead of having the shape they were given, or found no equilibrium.
+  void add_starts(const World& world);
 
   /// In the order of their times.
   std::vector<Event> events() const;
