@@ -19,8 +19,20 @@ std::vector<Vector3> straight_line(const Vector3& from, const Vector3& direction
   return nodes;
 }
 
-/// Hangs between each two neighbouring holders, straight down from the outer ones.
-std::vector<Vector3> hanging(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity) {
+/// Holders that are closer to being above each other are moved apart for a cable that is to be settled [of its length].
+constexpr double narrowest = 0.2;
+
+/// A place like `to`, but not so nearly above or below `from` that a chain between the two would fold at its lowest point.
+Vector3 moved_apart(const Vector3& from, const Vector3& to, const Vector3& down, double length) {
+  const Vector3 span = to - from, level = span - span.dot(down) * down;
+  if (level.norm() >= narrowest * length) return to;
+  const Vector3 side = level.norm() > 0 ? Vector3(level.normalized()) : Vector3(down.unitOrthogonal());
+  const Vector3 apart = span - level + narrowest * length * side;
+  return apart.norm() < length ? Vector3(from + apart) : to;
+}
+
+/// Hangs between each two neighbouring holders, straight down from the outer ones; `open`: without folds.
+std::vector<Vector3> hanging(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, bool open) {
   if (held.empty()) return straight_line(Vector3::Zero(), Vector3::UnitX(), model);
   const bool weightless = gravity.norm() == 0;
   const Vector3 down = weightless ? Vector3(-Vector3::UnitZ()) : Vector3(gravity.normalized());
@@ -33,8 +45,10 @@ std::vector<Vector3> hanging(const CableModel& model, const std::vector<HeldNode
     const std::vector<double> lengths(model.rest_lengths.begin() + first, model.rest_lengths.begin() + last);
     std::vector<double> weights;
     for (int i = first + 1; i < last; ++i) weights.push_back(weight * model.masses[i]);
-    const std::vector<Vector3> span =
-        hanging_chain(held[k].position, held[k + 1].position, lengths, weights, down, model.material.axial_stiffness);
+    const Vector3 &from = held[k].position, &to = held[k + 1].position;
+    const Vector3 end = open ? moved_apart(from, to, down, model.length(first, last)) : to;
+    std::vector<Vector3> span = hanging_chain(from, end, lengths, weights, down, model.material.axial_stiffness);
+    for (int i = 0; i <= last - first; ++i) span[i] += static_cast<double>(i) / (last - first) * (to - end);
     std::copy(span.begin(), span.end(), nodes.begin() + first);
   }
   for (int i = held.back().node; i < model.segments(); ++i) nodes[i + 1] = nodes[i] + model.rest_lengths[i] * down;
@@ -59,7 +73,7 @@ std::vector<Vector3> spread(const std::vector<Vector3>& points, const std::vecto
 
 }  // namespace
 
-bool set_initial_state(const InitialShapeDesc& initial, const CableModel& model, const std::vector<HeldNode>& held,
+bool set_initial_state(const InitialShapeDesc& initial, bool settles, const CableModel& model, const std::vector<HeldNode>& held,
                        const Vector3& gravity, CableState& state) {
   using Type = InitialShapeDesc::Type;
   state.velocities.assign(model.nodes(), Vector3::Zero());
@@ -80,14 +94,15 @@ bool set_initial_state(const InitialShapeDesc& initial, const CableModel& model,
     case Type::automatic:
     case Type::catenary:
     case Type::settled:
-      state.positions = hanging(model, held, gravity);
+      state.positions = hanging(model, held, gravity, settles);
       project_positions(model, held, state.positions);
       break;
   }
   return fits;
 }
 
-bool settles_by_default(const CableDesc& desc, const MaterialDesc& material) {
+bool settles_at_start(const CableDesc& desc, const MaterialDesc& material) {
+  if (desc.initial.type == InitialShapeDesc::Type::settled) return true;
   return desc.initial.type == InitialShapeDesc::Type::automatic && material.bending_stiffness > 0 &&
          std::any_of(desc.attachments.begin(), desc.attachments.end(),
                      [](const AttachmentDesc& a) { return a.type == AttachmentType::clamp; });
@@ -113,7 +128,7 @@ bool carry_along(const CableModel& model, const std::vector<HeldNode>& held, con
   }
   if (project_positions(model, held, state.positions)) return true;
   // Holders that come close along a straight cable do not tell where its slack goes.
-  state.positions = hanging(model, held, gravity);
+  state.positions = hanging(model, held, gravity, false);
   project_positions(model, held, state.positions);
   return false;
 }

@@ -179,7 +179,9 @@ void World::Implementation::start_cable(const CableDesc& desc, const BoundaryInp
   hold_at(1, 1, s.holders, s.boundary);
   const Vector3 gravity =
       scene.gravity.at(s.boundary.nodes.empty() ? Vector3(Vector3::Zero()) : s.boundary.nodes.front().position);
-  if (!set_initial_state(desc.initial, cable.model, s.boundary.nodes, gravity, cable.state)) misfits.push_back(desc.name);
+  const bool settles = settles_at_start(desc, cable.model.material);
+  if (!set_initial_state(desc.initial, settles, cable.model, s.boundary.nodes, gravity, cable.state))
+    misfits.push_back(desc.name);
   // Where velocities of holders are not known yet, the first step finds them, and all go together.
   const auto starts = [](const Holder& holder) { return holder.starts; };
   if (std::none_of(s.holders.nodes.begin(), s.holders.nodes.end(), starts))
@@ -195,8 +197,7 @@ void World::Implementation::start_cable(const CableDesc& desc, const BoundaryInp
   set_rest_curvature(desc.rest_curvature, scratch.back().holders.directions, cables.back());
   scratch.back().stepper.resize(cables.back().model);
   form_groups();
-  if (desc.initial.type == InitialShapeDesc::Type::settled || settles_by_default(desc, cables.back().model.material))
-    settle_start(index);
+  if (settles) settle_start(index);
 }
 
 /// The segment of a cable that breaks now, -1 if it holds. A piece keeps at least one segment, so that the outermost ones do not

@@ -1,0 +1,153 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "../support/scenes.h"
+
+// Cables that are given no shape start at rest, and stay there.
+
+namespace verlet_cable {
+namespace {
+
+using At = PlaceDesc::At;
+
+struct Case {
+  std::string name;
+  std::vector<AttachmentDesc> attachments;
+  bool floor = false;
+  bool weightless = false;
+};
+
+std::ostream& operator<<(std::ostream& stream, const Case& start) {
+  return stream << start.name;
+}
+
+AttachmentDesc clamp(const std::string& name, At at, const Vector3& offset, const Vector3& rotation = Vector3::Zero()) {
+  AttachmentDesc desc = scenes::attachment(name, at, offset, "", AttachmentType::clamp);
+  desc.rotation = rotation;
+  desc.place.arc_length = 0.4;
+  return desc;
+}
+
+std::vector<Case> cases() {
+  const Vector3 up{0, -M_PI / 2, 0}, down{0, M_PI / 2, 0}, back{0, 0, M_PI};
+  const auto two = [](const Vector3& end, const Vector3& first = Vector3::Zero(), const Vector3& second = Vector3::Zero()) {
+    return std::vector<AttachmentDesc>{clamp("a", At::start, {0, 0, 0}, first), clamp("b", At::end, end, second)};
+  };
+  std::vector<Case> all{{"level", two({0.7, 0, 0})},
+                        {"slack", two({0.3, 0, 0})},
+                        {"taut", two({1, 0, 0})},
+                        {"nearly_taut", two({0.999, 0, 0})},
+                        {"coincident", two({0.001, 0, 0})},
+                        {"opposite", two({0.5, 0, 0}, back, back)},
+                        {"up_and_down", two({0.5, 0, 0}, up, down)},
+                        {"down_and_up", two({0.5, 0, 0}, down, up)},
+                        {"above_each_other", two({0, 0, -0.8}, down, down)},
+                        {"rolled", two({0.6, 0, 0}, Vector3::Zero(), {3, 0, 0})},
+                        {"askew", two({0.3, 0.4, 0.2}, {0.3, 0.5, 1.2}, {1, -0.6, -2})},
+                        {"cantilever", {clamp("a", At::start, {0, 0, 0})}},
+                        {"one_up", {clamp("a", At::start, {0, 0, 0}, up)}},
+                        {"one_down", {clamp("a", At::start, {0, 0, 0}, down)}},
+                        {"inner", {clamp("a", At::arc_length, {0, 0, 0})}},
+                        {"inner_up", {clamp("a", At::arc_length, {0, 0, 0}, up)}}};
+  Case hinged{"clamp_and_hinge", two({0.6, 0, 0.1}, {0, 0, M_PI / 2})};
+  hinged.attachments[1].type = AttachmentType::hinge;
+  all.push_back(hinged);
+  Case three{"three", two({0.6, 0, 0})};
+  three.attachments.push_back(clamp("c", At::arc_length, {0.25, 0.1, -0.1}));
+  all.push_back(three);
+  all.push_back({"weightless", two({0.6, 0, 0}), false, true});
+  all.push_back({"on_a_floor", two({0.5, 0, 0}), true});
+  return all;
+}
+
+SceneDesc make_scene(const Case& start, double bending, double axial) {
+  SceneDesc scene = scenes::one_cable(50);
+  MaterialDesc& material = scene.materials[0].material;
+  material.bending_stiffness = bending;
+  material.torsional_stiffness = 0.8 * bending;
+  material.axial_stiffness = axial;
+  scene.cables[0].attachments = start.attachments;
+  if (start.weightless) scene.gravity.acceleration.setZero();
+  if (start.floor) {
+    ObstacleDesc floor;
+    floor.name = "floor";
+    floor.pose = {0, 0, -0.2, 0, 0, 0};
+    scene.obstacles = {floor};
+  }
+  return scene;
+}
+
+double fastest(World& world, int steps) {
+  double speed = 0;
+  const BoundaryInputs inputs(world.frames().size());
+  for (int i = 0; i < steps; ++i) {
+    EXPECT_EQ(world.step(inputs).status, StepResult::Status::ok);
+    for (const Vector3& v : world.cables()[0].state.velocities) speed = std::max(speed, v.norm());
+  }
+  return speed;
+}
+
+class Starts : public ::testing::TestWithParam<Case> {};
+
+TEST_P(Starts, StayAtRest) {
+  for (const double bending : {1e-4, 1e-2, 0.1})
+    for (const double axial : {infinity, 1e6}) {
+      // A stiff bow that is pressed onto a floor has many equilibria that friction alone holds.
+      if (GetParam().floor && bending > 0.05) continue;
+      const SceneDesc scene = make_scene(GetParam(), bending, axial);
+      World world(scene, initial_frames(scene));
+      EXPECT_TRUE(world.unsettled().empty());
+      // Equilibria that would not last are left in fractions of a second; on a floor friction may hold what creeps.
+      EXPECT_LT(fastest(world, 300), GetParam().floor ? 5e-3 : 2e-4) << "bending stiffness " << bending << ", axial " << axial;
+      for (const double twist : world.cables()[0].state.twist) EXPECT_LT(std::abs(twist), 1e-3);
+      EXPECT_EQ(World(scene, initial_frames(scene)).hash(), World(scene, initial_frames(scene)).hash());
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cables, Starts, ::testing::ValuesIn(cases()), [](const auto& info) { return info.param.name; });
+
+TEST(Start, WaitingCableStartsAtRest) {
+  SceneDesc scene = scenes::held_by_a_hand(50, AttachmentType::clamp);
+  scene.materials[0].material.bending_stiffness = 0.02;
+  BoundaryInputs inputs = scenes::hand_at({0.6, 0, 0.1});
+  inputs[1].known = false;
+  World world(scene, inputs);
+  inputs[1].known = true;
+  for (int i = 0; i < 10; ++i) world.step(inputs);
+  ASSERT_EQ(world.start_waiting(inputs), 1);
+  for (int i = 0; i < 300; ++i) world.step(inputs);
+  double speed = 0;
+  for (const Vector3& v : world.cables()[0].state.velocities) speed = std::max(speed, v.norm());
+  EXPECT_LT(speed, 1e-6);
+}
+
+TEST(Start, ShapeThatIsGivenIsKept) {
+  Case level = cases()[0];
+  SceneDesc scene = make_scene(level, 0.1, infinity);
+  const double settled = World(scene, initial_frames(scene)).energy().total();
+  scene.cables[0].initial.type = InitialShapeDesc::Type::catenary;
+  const double catenary = World(scene, initial_frames(scene)).energy().total();
+  EXPECT_GT(catenary, 5 * settled);
+  // Without a clamp or without stiffness: a catenary.
+  scene.cables[0].initial.type = InitialShapeDesc::Type::automatic;
+  for (AttachmentDesc& attachment : scene.cables[0].attachments) attachment.type = AttachmentType::hinge;
+  World hinged(scene, initial_frames(scene));
+  EXPECT_GT(hinged.energy().bend, 0);
+  EXPECT_EQ(hinged.cables()[0].state.tension[20], 0);
+}
+
+TEST(Start, ShapeThatDoesNotFitIsNamed) {
+  SceneDesc scene = scenes::between_two_points(20, 0.5);
+  scene.cables[0].initial.type = InitialShapeDesc::Type::straight;
+  EXPECT_EQ(World(scene, initial_frames(scene)).misfits(), std::vector<std::string>{"cable"});
+  scene = scenes::between_two_points(20, 1);
+  scene.cables[0].initial.type = InitialShapeDesc::Type::straight;
+  EXPECT_TRUE(World(scene, initial_frames(scene)).misfits().empty());
+}
+
+}  // namespace
+}  // namespace verlet_cable
