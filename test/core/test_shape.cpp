@@ -255,7 +255,7 @@ TEST(TriangleMesh, RefusesWhatBoundsNoSolid) {
   EXPECT_EQ(problem({box.vertices, {}}), "it has no triangles");
   Triangles stray = box;
   stray.triangles[3][1] = 8;
-  EXPECT_EQ(problem(stray), "a triangle has a vertex that is not there");
+  EXPECT_EQ(problem(stray), "a triangle names a vertex that does not exist");
   Triangles twice = box;
   twice.triangles[3][1] = twice.triangles[3][0];
   EXPECT_EQ(problem(twice), "a triangle has a vertex twice");

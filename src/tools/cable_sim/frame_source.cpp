@@ -47,9 +47,11 @@ BoundaryInputs FrameSource::at(double time) const {
     inputs.push_back({frame.resting, true, FrameVelocity{}});
     if (!frame.track.empty()) inputs.back() = {frame.track.at(time), true, frame.track.velocity_from(time)};
   }
+  const FrameInput fixed{{}, true, FrameVelocity{}};
   BoundaryInputs links;
+  links.reserve(links_.size());
   for (const Link& link : links_) {
-    const FrameInput parent = link.parent < 0 ? FrameInput{{}, true, FrameVelocity{}} : links[link.parent];
+    const FrameInput& parent = link.parent < 0 ? fixed : links[link.parent];
     links.push_back(link.frame < 0 ? carried(parent, link.origin) : inputs[link.frame]);
     if (link.id >= 0) inputs[link.id] = links.back();
   }
