@@ -2,7 +2,9 @@
 import math
 import threading
 import time
+import xmlrpc.client
 
+import rosgraph
 import rospy
 from geometry_msgs.msg import Point, Quaternion, TransformStamped, Vector3
 from std_srvs.srv import SetBool, Trigger
@@ -151,6 +153,27 @@ class CableClient:
     def state(self):
         with self.states() as states:
             return states.next()
+
+
+def process_of(node):
+    """Its id."""
+    caller = rospy.get_name()
+    return xmlrpc.client.ServerProxy(rosgraph.Master(caller).lookupNode(node)).getPid(caller)[2]
+
+
+class Processor:
+    """What part of the time since then the node's main thread was not kept waiting for a processor that others had."""
+
+    def __init__(self, node):
+        self._file = f'/proc/{process_of(node)}/schedstat'
+        self._begin, self._waited = time.monotonic(), self._waiting()
+
+    def _waiting(self):
+        with open(self._file) as file:
+            return 1e-9 * int(file.read().split()[1])
+
+    def share(self):
+        return 1 - (self._waiting() - self._waited) / (time.monotonic() - self._begin)
 
 
 def node_at(cable, node):

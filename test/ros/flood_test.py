@@ -4,14 +4,12 @@ import subprocess
 import sys
 import time
 import unittest
-import xmlrpc.client
 
-import rosgraph
 import rospy
 import rostest
 from visualization_msgs.msg import Marker, MarkerArray
 
-from cable_client import CableClient, Messages
+from cable_client import CableClient, Messages, process_of
 from verlet_cable.msg import CableArray
 from verlet_cable.srv import Cut, CutRequest, Pin, PinRequest, Unpin, UnpinRequest
 
@@ -42,9 +40,7 @@ def flood():
 
 def memory_of(node):
     """Resident, in MB."""
-    api = rosgraph.Master('/flood_test').lookupNode(node)
-    pid = xmlrpc.client.ServerProxy(api).getPid('/flood_test')[2]
-    with open(f'/proc/{pid}/status') as status:
+    with open(f'/proc/{process_of(node)}/status') as status:
         return next(int(line.split()[1]) / 1e3 for line in status if line.startswith('VmRSS'))
 
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """An overloaded node answers, says that it is overloaded and slows down evenly; tf late, in bursts, out of order and disputed."""
 import statistics
+import struct
 import subprocess
 import sys
 import time
@@ -12,11 +13,17 @@ from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped
 from rosgraph_msgs.msg import Log
 from tf2_msgs.msg import TFMessage
-from visualization_msgs.msg import MarkerArray
 
 from cable_client import CableClient, Frames, Messages, all_finite, cable, distance, transform
 
 SWING = 0.1  # [m/s] of the hand
+
+
+def first_stamp(raw):
+    """[ns] Of the first marker of a MarkerArray: to read all of it takes Python longer than the next one takes to come."""
+    count, _, seconds, nanoseconds = struct.unpack_from('<4I', raw._buff)
+    assert count > 0
+    return seconds * 10**9 + nanoseconds
 
 
 def hand(t):
@@ -35,14 +42,17 @@ class OverloadTest(unittest.TestCase):
             diagnostics.wait_for(lambda a: any(s.name == 'busy: simulation' and 'overloaded' in s.message for s in a.status),
                                  'overloaded node that says so')
             states.clear()
-            answers = []
+            answers, idle_answers = [], []
             for _ in range(100):
-                begin = time.monotonic()
-                self.busy.unpin('nothing')
-                answers.append(time.monotonic() - begin)
-            rospy.loginfo('overloaded: services answer in %.1f ms, 99 %%: %.1f ms', 1e3 * statistics.median(answers),
-                          1e3 * sorted(answers)[98])
-            self.assertLess(statistics.median(answers), 0.05)
+                for node, times in ((self.busy, answers), (self.idle, idle_answers)):
+                    begin = time.monotonic()
+                    node.unpin('nothing')
+                    times.append(time.monotonic() - begin)
+            median, idle = statistics.median(answers), statistics.median(idle_answers)
+            rospy.loginfo('overloaded: services answer in %.1f ms, 99 %%: %.1f ms; of an idle node in %.1f ms', 1e3 * median,
+                          1e3 * sorted(answers)[98], 1e3 * idle)
+            # what an idle node takes is the machine, and the way there
+            self.assertLess(median - idle, 0.05)
             states.next(10)
             moved = [(s.header.stamp.to_sec(), cable(s, 'rope').positions[0].x) for s in states.all()]
             for (t, a), (u, b) in zip(moved, moved[1:]):
@@ -96,11 +106,10 @@ class OverloadTest(unittest.TestCase):
     def test_latency_from_tf_to_markers(self):
         publisher = rospy.Publisher('/tf', TFMessage, queue_size=100)
         latencies = []
-        with Messages('/idle/markers', MarkerArray) as markers:
+        with Messages('/idle/markers', rospy.AnyMsg):
             sent = {}
             arrived = {}
-            receive = rospy.Subscriber('/idle/markers', MarkerArray,
-                                       lambda m: arrived.setdefault(m.markers[0].header.stamp.to_nsec(), time.monotonic()))
+            receive = rospy.Subscriber('/idle/markers', rospy.AnyMsg, lambda m: arrived.setdefault(first_stamp(m), time.monotonic()))
             for _ in range(300):
                 now = rospy.get_time()
                 publisher.publish([transform('hand', now, (0.3, 0, 1))])
