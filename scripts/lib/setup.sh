@@ -40,13 +40,13 @@ if [[ -f /opt/ros/noetic/setup.bash ]]; then
   packages+=(
     ros-noetic-{catkin,message-generation,message-runtime,roscpp,rospy,rosbash,roslaunch,rostest,rosbag,rosservice,rostopic}
     ros-noetic-{actionlib,diagnostic,geometry,sensor,std,visualization}-msgs ros-noetic-std-srvs
-    ros-noetic-{actionlib,diagnostic-updater,dynamic-reconfigure,interactive-markers,nodelet,pluginlib,robot-state-publisher,roslib,tf2,tf2-msgs,tf2-ros}
+    ros-noetic-{actionlib,diagnostic-updater,dynamic-reconfigure,nodelet,pluginlib,robot-state-publisher,roslib,tf2,tf2-msgs,tf2-ros}
   )
   rviz_packages=(ros-noetic-rviz qtbase5-dev)
 else
   packages+=(
     catkin catkin-lint ros-message-generation ros-message-runtime ros-environment ros-robot-state-publisher rosbash roslang rospack-tools rosout tf2-tools
-    libroscpp-dev libroslib-dev libactionlib-dev libdiagnostic-updater-dev libdynamic-reconfigure-config-init-mutex-dev libinteractive-markers-dev
+    libroscpp-dev libroslib-dev libactionlib-dev libdiagnostic-updater-dev libdynamic-reconfigure-config-init-mutex-dev
     libnodelet-dev libnodeletlib-dev libnodeletlib-tools pluginlib-dev libtf2-dev libtf2-msgs-dev libtf2-ros-dev librostest-dev librosbag-dev
     lib{std,geometry,sensor,visualization,diagnostic,actionlib}-msgs-dev libstd-srvs-dev
     ros-{std,geometry,sensor,visualization,diagnostic,actionlib}-msgs ros-std-srvs
