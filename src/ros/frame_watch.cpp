@@ -8,6 +8,7 @@
 #include "verlet_cable/core/jump_text.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
+#include "verlet_cable/core/scene_fields.h"
 
 namespace verlet_cable {
 namespace {
@@ -120,6 +121,7 @@ void FrameWatch::watch(const SceneDesc& scene) {
   timeout_ = scene.tf_timeout;
   lost_.clear();
   jumped_.clear();
+  ignored_.clear();
 }
 
 bool FrameWatch::react(const std::vector<FrameChange>& changes, Nanoseconds stamp, World& world) {
@@ -158,6 +160,19 @@ void FrameWatch::report_jumps(Nanoseconds stamp, const World& world) {
     if (!is_new && stamp > reported->second && stamp - reported->second < jump_period) continue;
     reported->second = stamp;
     events_.publish(CableEvent::JUMPED, stamp, subject_of(world, attachment), jump_text(world, jump));
+  }
+}
+
+void FrameWatch::warn_of_ignored(const World& world, const BoundaryInputs& inputs) {
+  const ros::WallTime now = ros::WallTime::now();
+  for (std::size_t i = 1; i < inputs.size(); ++i) {
+    const Vector3& position = inputs[i].pose.position;
+    if (!inputs[i].known || is_sound(inputs[i].pose)) continue;
+    ros::WallTime& last = ignored_[world.frames()[i]];
+    if (now - last < reminder_period) continue;
+    last = now;
+    ROS_WARN("frame %s is at (%g, %g, %g): it is not followed there, and what it holds stays where it was; allowed: %s",
+             quoted(world.frames()[i]).c_str(), position.x(), position.y(), position.z(), coordinate.text("m").c_str());
   }
 }
 

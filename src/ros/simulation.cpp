@@ -161,6 +161,7 @@ bool Simulation::step_world(Nanoseconds time) {
   if (stamp_ != stepped_to_) frame_watch_.skip(world_.time());
   const StepResult result = world_.step(frames_.inputs());
   statistics_.add(result, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  if (result.ignored_frame >= 0) frame_watch_.warn_of_ignored(world_, frames_.inputs());
   report_status(result);
   if (faulted_) return false;
   const Nanoseconds before = std::exchange(stamp_, time);

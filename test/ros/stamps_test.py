@@ -8,7 +8,7 @@ import rospy
 import rostest
 from actionlib_msgs.msg import GoalID
 from geometry_msgs.msg import TransformStamped
-from rosgraph_msgs.msg import Clock
+from rosgraph_msgs.msg import Clock, Log
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import InteractiveMarkerFeedback, InteractiveMarkerUpdate, Marker, MarkerArray
 
@@ -46,14 +46,15 @@ class StampsTest(unittest.TestCase):
             time.sleep(0.01)
 
     def goes_on(self, start):
-        """Runs for a second from `start` on, and expects what a healthy node shows."""
+        """Runs for two seconds of ROS time from `start` on, and expects what a healthy node shows, also when the hand was lost before and
+        is approached."""
         with self.node.states() as states:
-            for i in range(100):
+            for i in range(200):
                 t = start + 0.01 * i
                 self.tf.publish([transform('hand', t, (0.1, 0.2, 1))])
                 self.clock.publish(rospy.Time.from_sec(t))
-                time.sleep(0.01)
-            state = states.wait_for(lambda s: start + 0.5 < s.header.stamp.to_sec() < start + 1 and cable(s, 'rope'), 'rope')
+                time.sleep(0.005)
+            state = states.wait_for(lambda s: start + 1.5 < s.header.stamp.to_sec() < start + 2 and cable(s, 'rope'), 'rope')
             self.assertTrue(all(all_finite(s) for s in states.all()))
             self.assertLess(distance(cable(state, 'rope').positions[0], (0.1, 0.2, 1)), 1e-9)
         answer = self.node.reset()
@@ -77,21 +78,38 @@ class StampsTest(unittest.TestCase):
         self.goes_on(2000)
         for frame, parent in (('', 'world'), ('hand', ''), ('hand', 'hand'), ('/', '/'), ('/hand', 'world'), ('a', 'b'), ('b', 'c'),
                               ('c', 'a'), ('x' * 10**6, 'world'), ('hand', 'y' * 10**6), ('h\0and', 'wo\nrld')):
-            self.tf.publish([stamped(frame, (2001, 0), parent)])
+            self.tf.publish([stamped(frame, (2002, 0), parent)])
         for bad in (NAN, INF, 1e308):
-            self.tf.publish([stamped('hand', (2001, 1), position=(bad, 0, 0)), stamped('hand', (2001, 2), rotation=(0, 0, 0, bad))])
-        self.tf.publish([stamped('hand', (2001, 3), rotation=(0, 0, 0, 0))])
+            self.tf.publish([stamped('hand', (2002, 1), position=(bad, 0, 0)), stamped('hand', (2002, 2), rotation=(0, 0, 0, bad))])
+        self.tf.publish([stamped('hand', (2002, 3), rotation=(0, 0, 0, 0))])
         self.tf.publish([TransformStamped()] * 10000)
-        self.tf.publish([stamped(f'f{i}', (2001, 0), f'p{i}') for i in range(12000)])
+        self.tf.publish([stamped(f'f{i}', (2002, 0), f'p{i}') for i in range(12000)])
         self.answers()
         # a second parent holds from its stamp on, and the first again
         self.goes_on(2100)
+
+    def test_frames_that_are_too_far_away_stay_and_are_named(self):
+        self.goes_on(2500)
+        with Messages('/rosout', Log) as log, self.node.states() as states:
+            for i in range(50):
+                t = (2502, 10**7 * i)
+                # each is allowed, but not their sum
+                self.tf.publish([stamped('arm', t, position=(9e8, 0, 0)), stamped('hand', t, 'arm', position=(9e8, 0, 0))])
+                self.clock.publish(stamp(*t))
+                time.sleep(0.01)
+            warning = log.wait_for(lambda m: 'is not followed there' in m.msg, 'warning')
+            self.assertIn('frame "hand" is at (1.8e+09, 0, 0)', warning.msg)
+            self.assertIn('allowed: finite numbers [m] (from -1e+09 to 1e+09)', warning.msg)
+            state = states.wait_for(lambda s: s.header.stamp.to_sec() > 2502.2, 'state')
+            self.assertLess(distance(cable(state, 'rope').positions[0], (0.1, 0.2, 1)), 1e-9)
+        self.assertEqual(len([m for m in log.all() if 'is not followed there' in m.msg]), 1)
+        self.goes_on(2600)
 
     def test_the_clock_at_the_ends_of_time_and_back(self):
         viewer = rospy.Subscriber('/cable/hands/update', InteractiveMarkerUpdate, lambda _: None)
         self.goes_on(3000)
         for at in TIMES:
-            for clock in ((3001, 0), at, at, (at[0], at[1] // 2)):
+            for clock in ((3002, 0), at, at, (at[0], at[1] // 2)):
                 self.clock.publish(stamp(*clock))
                 self.tf.publish([stamped('hand', clock)])
                 time.sleep(0.05)

@@ -151,6 +151,21 @@ TEST_F(CableSim, aFrameThatIsTooFastIsFollowedAtTheAllowedSpeed) {
   EXPECT_EQ(events[0]["frame"].Scalar(), "hand");
 }
 
+TEST_F(CableSim, aFrameThatASplineTakesTooFarAwayIsReported) {
+  const std::string scene =
+      write("scene.yaml", std::string(sound_scene) +
+                              "obstacles: [{name: ball, type: sphere, radius: 0.1, pose: [0, 0, -5, 0, 0, 0], frame: far}]\n");
+  // On its way back it overshoots what rows may say.
+  const std::string motion = write("m.csv",
+                                   "t,frame,x,y,z,qx,qy,qz,qw\n0,far,9e8,0,0,0,0,0,1\n0.5,far,1e9,0,0,0,0,0,1\n"
+                                   "1,far,9.9e8,0,0,0,0,0,1\n");
+  ASSERT_EQ(run(scene + " --duration 2 --motion " + motion + " --summary " + path("s.json")), 0) << err;
+  std::map<std::string, std::string> frames;
+  for (const auto& event : summary("s.json")["events"]) frames[event["type"].Scalar()] = event["frame"].Scalar();
+  EXPECT_EQ(frames["frame_out_of_range"], "far");
+  EXPECT_EQ(frames["frame_out_of_range_end"], "far");
+}
+
 TEST_F(CableSim, everyErrorOfSceneMotionAndOptionsIsListedAndNothingIsWritten) {
   const std::string scene =
       write("scene.yaml", replaced(replaced(sound_scene, "gravity", "gravty"), "material: m", "material: none_such"));

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "verlet_cable/core/world.h"
@@ -24,6 +25,8 @@ class FrameWatch {
   bool react(const std::vector<FrameChange>& changes, Nanoseconds stamp, World& world);
   /// Reports frames whose jumps the last step found to be over, each once a second at most.
   void report_jumps(Nanoseconds stamp, const World& world);
+  /// Warns of frames whose poses the world ignores, each every 10 s of wall time at most.
+  void warn_of_ignored(const World& world, const BoundaryInputs& inputs);
   /// Time is skipped at the world's `time`: what frames do over it is no jump of theirs.
   void skip(double time) { skipped_ = time; }
   /// At a start: logs which frames are missing still, and what waits for them.
@@ -43,10 +46,11 @@ class FrameWatch {
   double max_frame_speed_;  ///< [m/s]
   double timeout_;          ///< [s]
   const EventPublisher& events_;
-  std::set<int> lost_;                 ///< ids of the frames whose loss was reported
-  std::map<int, Nanoseconds> jumped_;  ///< by frame id: the stamp of the last jump that was reported
-  double skipped_ = -1;                ///< [s] the world's time when time was skipped last
-  ros::WallTime last_warning_;         ///< that something waits for frames
+  std::set<int> lost_;                            ///< ids of the frames whose loss was reported
+  std::map<int, Nanoseconds> jumped_;             ///< by frame id: the stamp of the last jump that was reported
+  double skipped_ = -1;                           ///< [s] the world's time when time was skipped last
+  ros::WallTime last_warning_;                    ///< that something waits for frames
+  std::map<std::string, ros::WallTime> ignored_;  ///< by frame: the last warning
 };
 
 /// By frame id: whether the frame holds a cable.

@@ -56,6 +56,10 @@ void EventLog::observe(const World& world, const StepResult& result, const std::
             "the frame moves faster than max_frame_speed and is followed at that speed", ""},
            0);
   }
+  if (result.ignored_frame >= 0)
+    report({world.time(), "frame_out_of_range", "", -1, world.frames()[static_cast<std::size_t>(result.ignored_frame)],
+            "the frame is further than 1e9 m from the origin along an axis; it is not followed there and stays where it was", ""},
+           0);
   end_episodes(world.time());
 }
 
