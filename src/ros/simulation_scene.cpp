@@ -10,11 +10,17 @@ namespace {
 
 /// A world that takes longer than this to build [s] is built aside.
 constexpr double longest_build = 0.02;
+/// So many worlds that nobody waits for any longer may still be being built.
+constexpr std::size_t most_abandoned = 4;
 
 Simulation::BuiltWorld timed_build(const SceneDesc& scene, const BoundaryInputs& frames) {
   const auto begin = std::chrono::steady_clock::now();
   World world(scene, frames);
   return {std::move(world), std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()};
+}
+
+bool is_ready(const std::future<Simulation::BuiltWorld>& built) {
+  return built.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
 }  // namespace
@@ -41,7 +47,8 @@ BoundaryInputs Simulation::present_frames(const SceneDesc& scene) const {
 }
 
 void Simulation::finish_rebuilds() {
-  while (!rebuilds_.empty() && rebuilds_.front().built.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+  abandoned_.remove_if([](const std::future<BuiltWorld>& built) { return is_ready(built); });
+  while (!rebuilds_.empty() && is_ready(rebuilds_.front().built)) {
     Rebuild rebuild = std::move(rebuilds_.front());
     rebuilds_.pop_front();
     EditResult result;
@@ -69,8 +76,11 @@ void Simulation::forget_resets(const std::string& reason) {
       continue;
     }
     for (const Answer& answer : rebuild->answers) answer({true, "reset, and " + reason + " since", {}});
+    // Its end would be waited for.
+    abandoned_.push_back(std::move(rebuild->built));
     rebuild = rebuilds_.erase(rebuild);
   }
+  if (abandoned_.size() > most_abandoned) abandoned_.pop_front();
 }
 
 void Simulation::reset(const Answer& answer) {

@@ -113,6 +113,29 @@ class LongRequestsTest(unittest.TestCase):
         self.assertTrue(answer.success, answer.message)
         self.assertEqual(len(self.node.state().cables), len(names))
 
+    def test_a_reset_that_is_overtaken_is_not_waited_for(self):
+        text = ROPE + 'cables:\n' + ''.join(rope(f'r{i}', 400) for i in range(60))
+        self.assertTrue(self.node.load_scene(yaml=text).success)
+        self.node.pause(True)
+        self.node.save_state('there')
+        begin = time.monotonic()
+        self.assertTrue(self.node.reset().success)
+        took = time.monotonic() - begin
+        answer = None
+        for _ in range(20):  # the reset may come too late, or be done already
+            resetting = Aside(self.node.reset)
+            time.sleep(took / 10)
+            begin = time.monotonic()
+            self.assertTrue(self.node.restore_state('there').success)
+            restored = time.monotonic() - begin
+            answer = resetting.result()
+            self.assertTrue(answer.success)
+            if 'restored the snapshot "there" since' in answer.message:
+                break
+        self.assertIn('restored the snapshot "there" since', answer.message)
+        rospy.loginfo('a reset takes %.0f ms, a state that is restored meanwhile %.0f ms', 1e3 * took, 1e3 * restored)
+        self.assertLess(restored, took / 2)
+
     def test_a_bad_scene_changes_nothing(self):
         loading = Aside(self.node.load_scene, yaml=ROPE + 'cables:\n' + rope('rope', 50).replace('1.0', '-1.0') * 3000)
         self.slowest(self.node.reset, loading, 'bad scene')

@@ -183,7 +183,7 @@ class Simulation {
   std::map<std::string, Snapshot> snapshots_;
   std::map<std::string, AddedObstacle> added_obstacles_;
   Nanoseconds stamp_ = 0;
-  Nanoseconds stepped_to_ = 0;  ///< the stamp after the last step; another one now: time was skipped
+  Nanoseconds stepped_to_ = 0;   ///< the stamp after the last step; another one now: time was skipped
   Nanoseconds waits_since_ = 0;  ///< ROS time since which the start waits for frames; 0 before there was any
   bool started_ = false;
   bool keeps_world_ = false;  ///< the next start goes on with the world as it is
@@ -197,7 +197,8 @@ class Simulation {
   Statistics statistics_;
   std::set<std::string> intrusions_;
   std::deque<AwaitedSteps> awaited_steps_;
-  std::list<Rebuild> rebuilds_;  ///< in the order they were asked for
+  std::list<Rebuild> rebuilds_;                   ///< in the order they were asked for
+  std::list<std::future<BuiltWorld>> abandoned_;  ///< that nobody waits for any longer
 };
 
 }  // namespace verlet_cable
