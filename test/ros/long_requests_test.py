@@ -13,6 +13,7 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
 
 from cable_client import CableClient, Messages, cable, node_at, transform
+from verlet_cable.srv import Unpin
 
 ROPE = 'materials: {rope: {linear_density: 0.1, radius: 0.005, drag: 0.2, bending_stiffness: 1.0e-3}}\n'
 
@@ -44,6 +45,8 @@ class LongRequestsTest(unittest.TestCase):
         rospy.init_node('long_requests_test')
         cls.node = CableClient('/cable')
         cls.node.state()
+        # Over a connection that stays open: otherwise the master is asked each time, which many new topics keep busy.
+        cls.unpin = rospy.ServiceProxy('/cable/unpin', Unpin, persistent=True)
 
     def setUp(self):
         self.node.pause(False)
@@ -69,7 +72,7 @@ class LongRequestsTest(unittest.TestCase):
         before = self.node.state().header.stamp.to_sec()
         steps = Aside(self.node.step, 30000)
         # however busy the machine is
-        self.assertLess(self.slowest(lambda: self.node.unpin('nothing'), steps, 'step of 30000'), 0.3)
+        self.assertLess(self.slowest(lambda: self.unpin('nothing'), steps, 'step of 30000'), 0.3)
         answer = steps.result()
         self.assertTrue(answer.success, answer.message)
         self.assertAlmostEqual(answer.time, before + 30, places=6)
@@ -108,7 +111,7 @@ class LongRequestsTest(unittest.TestCase):
         self.assertLess(len(text), 2**20)
         loading = Aside(self.node.load_scene, yaml=text)
         # not reset, which the last time is that of the new scene
-        self.assertLess(self.slowest(lambda: self.node.unpin('nothing'), loading, f'load_scene of {len(text)} bytes'), 0.5)
+        self.assertLess(self.slowest(lambda: self.unpin('nothing'), loading, f'load_scene of {len(text)} bytes'), 0.5)
         answer = loading.result()
         self.assertTrue(answer.success, answer.message)
         self.assertEqual(len(self.node.state().cables), len(names))
