@@ -13,6 +13,10 @@ namespace {
 constexpr double first_settling_step = 0.01;
 constexpr double last_settling_step = 1e6;
 constexpr int maximum_settling_steps = 2000;
+/// From one step to the next; the second once a step was too long, to come back slowly to what was.
+constexpr double fastest_growth = 4, slow_growth = 1.5;
+constexpr int easy_iterations = 5;
+constexpr int calm_steps = 50;
 /// Where there is something to touch, no node goes further at a time than this, in radii.
 constexpr double settling_reach = 1;
 constexpr double settled_contact = 1e-4;       // radii
@@ -78,7 +82,7 @@ bool World::settle() {
     if (w.scratch[cable].holders.nodes.empty()) continue;
     w.hold_still(cable);
     Settling settling(cable, w.may_touch());
-    w.note_settled(cable, w.find_equilibrium(settling));
+    w.note_settled(cable, w.relax(shortest_step(w.cables[cable].model), last_settling_step, maximum_settling_steps, settling));
   }
   return w.unsettled.empty();
 }
@@ -170,7 +174,9 @@ bool World::Implementation::find_equilibrium(Settling& settling) {
 /// nothing: what is left is Newton's method for the equilibrium. True if that was found.
 bool World::Implementation::relax(double h, double longest, int steps, Settling& settling) {
   const double radius = cables[settling.cable()].model.material.radius;
-  double last = infinity;
+  double last = infinity, growth = fastest_growth;
+  bool failed = false;
+  int calm = 0;
   for (int i = 0; i < steps; ++i) {
     const SubstepResult substep = settle_substep(settling, h);
     // What inertia still carries of the loads.
@@ -178,13 +184,21 @@ bool World::Implementation::relax(double h, double longest, int steps, Settling&
     const bool lies = settling.touches && !settling.alone.contacts.touches().empty();
     // What starts inside an obstacle is pushed out at the same pace, however long the step.
     const bool stands = !lies || substep.displacement < settled_contact * radius;
-    if (substep.converged && acceleration < settled_acceleration && stands) return true;
+    if (substep.converged) {
+      calm = acceleration < settled_acceleration && stands ? calm + 1 : 0;
+      // What is slow hardly accelerates: only the longest steps tell it from what stands, or many.
+      if (calm > 0 && (lies || h >= longest || calm >= calm_steps)) return true;
+    }
     // The way grows with the square of a step.
     const double reach = settling_reach * radius, way = settling.touches ? substep.displacement : 0;
-    const double factor = way > 0 ? std::clamp(0.9 * std::sqrt(reach / way), 0.125, 4.0) : 4;
+    const double factor = way > 0 ? std::clamp(0.9 * std::sqrt(reach / way), 0.125, growth) : growth;
     if (!substep.converged) {
-      h = std::max(h * (way > reach ? factor : 0.125), shortest_substep);
+      h = std::max(h * (way > reach ? factor : failed ? 0.125 : 0.5), shortest_substep);
+      if (!(way > reach)) growth = slow_growth;
+      failed = true;
     } else {
+      failed = false;
+      if (substep.iterations <= easy_iterations) growth = fastest_growth;
       // A fold that opens is followed: longer steps would hold on to it.
       if (lies || acceleration < last) h = std::min(h * std::max(factor, 1.0), longest);
       last = acceleration;
