@@ -45,8 +45,8 @@ struct Settling {
   Settling(int cable, bool may_touch) : touches(may_touch) { alone.cables.push_back(cable); }
   int cable() const { return alone.cables.front(); }
 
-  bool touches;         ///< looks for what it touches
-  bool let_go = false;  ///< moves, instead of coming to rest
+  bool touches;                                      ///< looks for what it touches
+  bool let_go = false;                               ///< moves, instead of coming to rest
   int iterations = std::numeric_limits<int>::max();  ///< that are left
   ContactGroup alone;
 };

@@ -128,9 +128,9 @@ std::vector<Case> cases() {
   for (const LinkType type : {LinkType::spring, LinkType::limited, LinkType::rigid}) {
     const char* names[] = {"spring", "limited", "rigid"};
     const bool rigid = type == LinkType::rigid;
-    // A rigid link that leaves its bounds (a part in ten thousand) is set to its rest length in one step. Near that, rounding of any
-    // size decides: at the origin a push of 1e-10 m, too, makes the sheet differ by 2e-4 m after 0.25 s, the flag by 1e-10 m already
-    // after as much. Until then both are far away what they are here.
+    // A rigid link that leaves its bounds (a part in ten thousand) is set to its rest length in one step. Near that, rounding of
+    // any size decides: at the origin a push of 1e-10 m, too, makes the sheet differ by 2e-4 m after 0.25 s, the flag by 1e-10 m
+    // already after as much. Until then both are far away what they are here.
     if (rigid) {
       SceneDesc chain;
       chain.nets = {scenes::chain({{0, 0, 0}, {0.1, 0, 0}, {0.2, 0, 0}, {0.3, 0, 0}, {0.4, 0, 0}}, type)};
