@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -44,7 +45,9 @@ struct Settling {
   Settling(int cable, bool may_touch) : touches(may_touch) { alone.cables.push_back(cable); }
   int cable() const { return alone.cables.front(); }
 
-  bool touches;  ///< looks for what it touches
+  bool touches;                                      ///< looks for what it touches
+  bool let_go = false;                               ///< moves, instead of coming to rest
+  int iterations = std::numeric_limits<int>::max();  ///< that are left
   ContactGroup alone;
 };
 
@@ -110,6 +113,7 @@ struct World::Implementation {
   bool find_equilibrium(Settling& settling);
   bool relax(double h, double longest, int steps, Settling& settling);
   bool leaves_equilibrium(Settling& settling, double& h);
+  bool leaves_when_let_go(Settling& settling, double& h);
   SubstepResult settle_substep(Settling& settling, double h);
   bool may_touch() const;
   void note_settled(int cable, bool settled);

@@ -219,6 +219,8 @@ TEST(Jumps, AFrameThatIsSuddenlyElsewhereCarriesItsCableAlong) {
       }
 }
 
+/// How a frame would have moved on in the step in which it jumps is not known: it is taken to keep its velocity. What that leaves
+/// out, its acceleration (here 5 m/s^2), makes a difference of second order in the step; without acceleration it is 1e-10 m.
 TEST(Jumps, MotionGoesOnAsBefore) {
   Hanging still(0.001), jumping(0.001);
   for (int i = 1; i <= 1000; ++i) {
@@ -228,7 +230,7 @@ TEST(Jumps, MotionGoesOnAsBefore) {
     const double away = (i > 300 ? 0.2 : 0) - (i > 700 ? 0.5 : 0);
     for (int k = 0; k <= 20; ++k) {
       const Vector3 difference = jumping.world_->cables()[0].state.positions[k] - still.world_->cables()[0].state.positions[k];
-      ASSERT_NEAR((difference - Vector3(away, 0, 0)).norm(), 0, 1e-3) << i << " " << k;
+      ASSERT_NEAR((difference - Vector3(away, 0, 0)).norm(), 0, 5e-4) << i << " " << k;
     }
   }
   ASSERT_EQ(jumping.jumps_.size(), 2u);

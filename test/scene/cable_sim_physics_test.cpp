@@ -63,9 +63,9 @@ obstacles: [{name: block, type: box, size: [0.4, 0.4, 0.1]}]
 }
 
 TEST_F(CableSim, aCableWithoutEquilibriumIsReported) {
-  // Its weight would stretch it to fifty times its length, further than settling goes.
+  // Its weight would stretch it to five hundred times its length, further than settling goes.
   const std::string scene = write("scene.yaml", R"(
-materials: {gum: {linear_density: 0.1, radius: 0.005, axial_stiffness: 0.01}, rope: {linear_density: 0.1, radius: 0.005}}
+materials: {gum: {linear_density: 0.1, radius: 0.005, axial_stiffness: 0.001}, rope: {linear_density: 0.1, radius: 0.005}}
 cables:
   - {name: g, length: 1, segments: 20, material: gum, initial: {type: settled}, attachments: [{name: a, at: start}]}
   - {name: r, length: 1, segments: 20, material: rope, initial: {type: settled}, attachments: [{name: b, at: start}]}
