@@ -85,7 +85,7 @@ TEST(Nodelet, MessagesAreNotCopied) {
   for (const char* topic : {"/cables/state", "/cables/points", "/cables/surface", "/cables/markers"})
     EXPECT_TRUE(is_inside_the_process(topic)) << topic;
   EXPECT_TRUE(loader.unload("/cables"));
-  EXPECT_FALSE(ros::service::exists("/cables/reset", false));
+  EXPECT_TRUE(wait_until([] { return !ros::service::exists("/cables/reset", false); }));
 }
 
 TEST(Nodelet, ABadSceneIsNotLoaded) {
