@@ -1,5 +1,7 @@
 #include "particle_stepper.h"
 
+#include <algorithm>
+
 #include "net_step.h"
 #include "point_contact.h"
 
@@ -10,6 +12,8 @@ namespace {
 /// In one step; then a particle lies.
 constexpr int most_bounces = 8;
 constexpr int bisections = 40;
+/// Of a flight: what is thinner than one of them may be missed.
+constexpr int most_probes = 32;
 
 class Gravity : public PointForces {
  public:
@@ -40,7 +44,26 @@ struct Hit {
   double time = 0;  ///< [s] since the start of the flight
 };
 
-/// The first obstacle that a flight of `time` [s] from a part of the step ends in.
+/// A time within a flight from a part of the step at which it is inside an obstacle that it is not inside of at its start; below
+/// 0 if there is none. Where the obstacle is far, the flight is followed in strides that do not reach it (conservative
+/// advancement).
+double time_inside(const SceneDesc& scene, const MovingObstacle& moving, const Flight& from, double part, double time) {
+  const double h = scene.time_step;
+  const auto near_at = [&](double t, double reach) {
+    return surface_near(moving, fly(scene.gravity, from, t).position, part + t / h, h, reach).distance;
+  };
+  if (near_at(time, 0) < 0) return time;
+  const double speed = std::max(from.velocity.norm(), fly(scene.gravity, from, time).velocity.norm()) + moving.speed;
+  for (double t = 0; t < time;) {
+    const double left = speed * (time - t), distance = near_at(t, left);
+    if (distance >= left) return -1;
+    if (distance < 0) return t > 0 ? t : -1;
+    t += std::max(distance / speed, time / most_probes);
+  }
+  return -1;
+}
+
+/// The first obstacle that a flight of `time` [s] from a part of the step meets.
 Hit first_hit(const SceneDesc& scene, const std::vector<MovingObstacle>& obstacles, const Flight& from, double part,
               double time) {
   const double h = scene.time_step;
@@ -49,9 +72,8 @@ Hit first_hit(const SceneDesc& scene, const std::vector<MovingObstacle>& obstacl
     const auto is_inside = [&](double t) {
       return surface_near(moving, fly(scene.gravity, from, t).position, part + t / h, h, 0).distance < 0;
     };
-    const double latest = hit.moving ? hit.time : time;
-    if (!is_inside(latest)) continue;
-    double outside = 0, inside = latest;
+    double outside = 0, inside = time_inside(scene, moving, from, part, hit.moving ? hit.time : time);
+    if (inside < 0) continue;
     for (int i = 0; i < bisections; ++i) {
       const double middle = 0.5 * (outside + inside);
       (is_inside(middle) ? inside : outside) = middle;
@@ -77,6 +99,11 @@ Flight bounce_along(const SceneDesc& scene, const std::vector<MovingObstacle>& o
     const double friction = hit.moving->obstacle->friction.value_or(desc.friction);
     flight.velocity = bounced(flight.velocity, surface, desc.restitution, friction);
   }
+  // It lies, and what it lies on carries it for the rest of the step.
+  for (const MovingObstacle& moving : obstacles) {
+    const SurfaceNear surface = surface_near(moving, flight.position, 1, h, 0);
+    if (surface.distance < 0) flight.position -= surface.distance * surface.normal;
+  }
   return flight;
 }
 
@@ -89,7 +116,9 @@ bool ParticleStepper::advance(const SceneDesc& scene, const std::vector<MovingOb
   Gravity gravity(scene.gravity);
   integrator_.advance(scene.integrator, scene.time_step, gravity, memory);
   for (const MovingObstacle& moving : obstacles) {
-    if (!(surface_near(moving, memory.positions[0], 1, scene.time_step, 0).distance < 0)) continue;
+    if (time_inside(scene, moving, {particle.position, particle.velocity}, 0, scene.time_step) < 0 &&
+        !(surface_near(moving, memory.positions[0], 1, scene.time_step, 0).distance < 0))
+      continue;
     const Flight flight = bounce_along(scene, obstacles, particle.desc, {particle.position, particle.velocity});
     memory.positions[0] = flight.position;
     memory.velocities[0] = flight.velocity;

@@ -31,13 +31,13 @@ SurfacePoint TriangleMesh::surface_point(const Vector3& point, const Vector3& on
   const Vector3& pseudonormal = normal(triangle, feature);
   const double length = arm.norm();
   const double sign = pseudonormal.dot(arm) < 0 ? -1 : 1;
-  if (length > rounding * on_surface.cwiseAbs().maxCoeff()) return {sign * length, on_surface, sign / length * arm};
+  if (feature != whole_face && length > rounding * on_surface.cwiseAbs().maxCoeff()) return {sign * length, on_surface, sign / length * arm};
   return {sign * length, on_surface, pseudonormal};
 }
 
 SurfacePoint TriangleMesh::closest_point(const Vector3& point, double reach) const {
   const double to_bounds = std::sqrt(bounds().squaredExteriorDistance(point));
-  if (to_bounds >= reach) return {to_bounds, point, Vector3::UnitZ()};
+  if (to_bounds > 0 && to_bounds >= reach) return {to_bounds, point, Vector3::UnitZ()};
   Stack stack;
   int pending = 0;
   stack[pending++] = {0, 0};
@@ -69,7 +69,7 @@ SurfacePoint TriangleMesh::closest_point(const Vector3& point, double reach) con
 SegmentSurfacePoint TriangleMesh::deepest_point(const Vector3& start, const Vector3& end, double reach) const {
   Aabb box(start.cwiseMin(end), start.cwiseMax(end));
   const double to_bounds = bounds().exteriorDistance(box);
-  if (to_bounds >= reach) return {0, {to_bounds, start, Vector3::UnitZ()}};
+  if (to_bounds > 0 && to_bounds >= reach) return {0, {to_bounds, start, Vector3::UnitZ()}};
   Stack stack;
   int pending = 0;
   stack[pending++] = {0, 0};

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "../support/meshes.h"
 #include "../support/nets.h"
 #include "../support/scenes.h"
 
@@ -119,6 +120,83 @@ TEST(Particle, LiesWhereNothingBounces) {
   scenes::run(world, 2000);
   EXPECT_NEAR(world.particles()[0].position.z(), -0.5, 1e-6);
   EXPECT_NEAR(world.particles()[0].velocity.norm(), 0, 1e-2);
+}
+
+/// A box of 0.4 m, or the same as a mesh.
+ObstacleDesc box_obstacle(bool is_mesh, const Vector3& size = {0.4, 0.4, 0.4}) {
+  ObstacleDesc box;
+  box.name = "box";
+  box.type = is_mesh ? ShapeType::mesh : ShapeType::box;
+  box.size = size;
+  if (is_mesh) box.mesh = box_triangles(size).mesh();
+  return box;
+}
+
+SceneDesc above_a_box(bool is_mesh, double restitution) {
+  SceneDesc scene;
+  scene.particles = scenes::planet(1, Type::verlet).particles;
+  scene.particles[0].position = {0.02, 0.01, 0.35};
+  scene.particles[0].velocity = {0.1, 0, 0};
+  scene.particles[0].restitution = restitution;
+  scene.particles[0].friction = 0.2;
+  scene.obstacles = {box_obstacle(is_mesh)};
+  return scene;
+}
+
+TEST(Particle, BouncesOffAMeshAsOffTheShapeItCovers) {
+  for (const Type type : {Type::verlet, Type::rk4})
+    for (const double restitution : {1.0, 0.5, 0.0}) {
+      SceneDesc of_box = above_a_box(false, restitution), of_mesh = above_a_box(true, restitution);
+      of_box.integrator.type = of_mesh.integrator.type = type;
+      World box(of_box, {FrameInput{}}), mesh(of_mesh, {FrameInput{}});
+      for (int i = 0; i < 1000; ++i) {
+        scenes::run(box, 1);
+        scenes::run(mesh, 1);
+        ASSERT_GT(mesh.particles()[0].position.z(), 0.2 - 1e-9);
+        ASSERT_LT((mesh.particles()[0].position - box.particles()[0].position).norm(), 1e-9) << restitution << " " << i;
+      }
+    }
+}
+
+TEST(Particle, IsPushedByAMeshThatRises) {
+  SceneDesc scene = above_a_box(true, 0);
+  scene.particles[0].velocity.setZero();
+  scene.particles[0].position.z() = 0.21;
+  scene.obstacles[0].frame = "lift";
+  World world(scene, initial_frames(scene));
+  BoundaryInputs inputs(world.frames().size());
+  for (int i = 1; i <= 1000; ++i) {
+    inputs.back().pose.position = {0, 0, 0.3e-3 * i};
+    world.step(inputs);
+    ASSERT_GT(world.particles()[0].position.z(), 0.2 + 0.3e-3 * i - 1e-9) << i;
+  }
+  EXPECT_NEAR(world.particles()[0].position.z(), 0.5, 1e-3);
+}
+
+TEST(Particle, ThatIsFastDoesNotPassThroughAThinWall) {
+  for (const bool is_mesh : {false, true})
+    for (const double speed : {10.0, 100.0, 300.0}) {
+      SceneDesc scene = scenes::weightless();
+      scene.particles = scenes::planet(1, Type::verlet).particles;
+      scene.particles[0].position = {0.02, 0.01, 1.03};
+      scene.particles[0].velocity = {0, 0, -speed};
+      scene.obstacles = {box_obstacle(is_mesh, {1, 1, 0.02})};
+      World world(scene, {FrameInput{}});
+      scenes::run(world, static_cast<int>(1500 / speed));
+      EXPECT_NEAR(world.particles()[0].velocity.z(), speed, 1e-9);
+      EXPECT_NEAR(world.particles()[0].position.z(), 0.01 + 1e-3 * speed * std::floor(1500 / speed) - 1.02, 1e-6);
+    }
+}
+
+TEST(Particle, ThatStartsInsideIsPutOnTheSurface) {
+  for (const bool is_mesh : {false, true}) {
+    SceneDesc scene = above_a_box(is_mesh, 0);
+    scene.particles[0].position = {0.02, 0.01, 0.15};
+    scene.particles[0].velocity.setZero();
+    World world(scene, {FrameInput{}});
+    scenes::run(world, 1000);
+    EXPECT_NEAR(world.particles()[0].position.z(), 0.2, 1e-6);
+  }
 }
 
 TEST(Particle, CentralGravityActsOnCablesNodeByNode) {
