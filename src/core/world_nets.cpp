@@ -122,6 +122,7 @@ void World::Implementation::step_net(int index, StepResult& result) {
     complete_step(scene.time_step, s.holders);
     return;
   }
+  if (of_net.softened) note_net(Status::degraded, index, 0, result);
   if (of_net.overstretched_node >= 0) note_net(Status::overstretched, index, of_net.overstretched_node, result);
   result.iterations += of_net.iterations;
   result.max_strain = std::max(result.max_strain, of_net.max_strain);

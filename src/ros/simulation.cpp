@@ -195,7 +195,7 @@ void Simulation::report_status(const StepResult& result) {
   }
   if (result.status == StepResult::Status::degraded && result.cable < 0) {
     ROS_WARN_THROTTLE(log_period,
-                      "%s became unstable and was stopped: stiff springs between light nodes need a shorter time_step",
+                      "%s is unstable and was softened or stopped: stiff springs between light nodes need a shorter time_step",
                       quoted(subject).c_str());
   }
 }

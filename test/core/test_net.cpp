@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "../support/meshes.h"
 #include "../support/nets.h"
 
 namespace verlet_cable {
@@ -206,6 +207,71 @@ TEST(Net, WhatBlowsUpIsReportedAndStaysFinite) {
     for (const Vector3& x : world.nets()[0].state.positions) ASSERT_TRUE(x.allFinite());
   }
   EXPECT_TRUE(degraded);
+}
+
+/// 0.1 kg, 0.4 m by 0.4 m, level, 5 cm above what it falls on.
+SceneDesc cloth_above(const ObstacleDesc& obstacle, double stiffness, double damping) {
+  SceneDesc scene;
+  NetDesc net = scenes::grid(9, 9, 0.05, LinkType::spring);
+  net.mass = 0.1;
+  net.stiffness = stiffness;
+  net.damping = damping;
+  net.grid->origin = {-0.2, -0.2, 0.2};
+  net.grid->x_axis = {1, 0, 0};
+  net.grid->y_axis = {0, 1, 0};
+  scene.nets = {net};
+  scene.obstacles = {obstacle};
+  return scene;
+}
+
+TEST(Net, OfSpringsLiesOnAMeshAsOnABox) {
+  ObstacleDesc box;
+  box.name = "box";
+  box.type = ShapeType::box;
+  box.size = {0.6, 0.6, 0.3};
+  ObstacleDesc mesh = box;
+  mesh.type = ShapeType::mesh;
+  mesh.mesh = box_triangles(box.size).mesh();
+  const SceneDesc on_box = cloth_above(box, 200, 0.1), on_mesh = cloth_above(mesh, 200, 0.1);
+  World one(on_box, initial_frames(on_box)), other(on_mesh, initial_frames(on_mesh));
+  run(one, 500);
+  run(other, 500);
+  for (int i = 0; i < 81; ++i) {
+    EXPECT_GT(other.nets()[0].state.positions[i].z(), 0.15 - 1e-9);
+    EXPECT_LT((other.nets()[0].state.positions[i] - one.nets()[0].state.positions[i]).norm(), 1e-9);
+  }
+}
+
+TEST(Net, ThatIsStiffOrDampedIsCalmOnABall) {
+  ObstacleDesc ball;
+  ball.name = "ball";
+  ball.type = ShapeType::sphere;
+  ball.radius = 0.15;
+  for (const auto& [stiffness, damping] : {std::pair{200.0, 0.5}, {200.0, 3.0}, {5e3, 0.5}, {5e4, 0.1}, {5e4, 2.0}}) {
+    const SceneDesc scene = cloth_above(ball, stiffness, damping);
+    World world(scene, initial_frames(scene));
+    const double energy = world.energy().total();
+    for (int i = 0; i < 1000; ++i) {
+      const StepResult result = world.step({FrameInput{}});
+      ASSERT_EQ(result.status, StepResult::Status::ok) << stiffness << " " << damping;
+      ASSERT_LT(result.max_strain, 0.3) << stiffness << " " << damping << " " << i;
+    }
+    EXPECT_LT(world.energy().total(), energy);
+  }
+}
+
+TEST(Net, ThatIsTooStiffForItsStepIsSoftenedAndReported) {
+  SceneDesc scene = scenes::flag(6, 8, 0.05, LinkType::spring);
+  scene.nets[0].mass = 1e-4;
+  scene.nets[0].stiffness = 1e6;
+  scene.nets[0].damping = 10;
+  World world(scene, initial_frames(scene));
+  for (int i = 0; i < 1000; ++i) {
+    const StepResult result = world.step({FrameInput{}});
+    ASSERT_EQ(result.status, StepResult::Status::degraded);
+    ASSERT_EQ(result.net, 0);
+    for (const Vector3& x : world.nets()[0].state.positions) ASSERT_LT(x.norm(), 2);
+  }
 }
 
 TEST(Net, CopyGoesOnAlikeAfterEdits) {
