@@ -13,6 +13,8 @@ namespace {
 
 /// Rounding in offsets, rotations and lengths that were written with a few digits.
 constexpr double distance_tolerance = 1e-9;
+/// Of the length of a segment between two nodes that are held.
+constexpr double held_tolerance = 1e-4;
 constexpr double largest_length_error = 0.05;
 
 bool is_sound(const CableDesc& cable) {
@@ -177,7 +179,31 @@ Vector3 held_point(const AttachmentDesc& attachment, const Pose& frame) {
   return frame.position + frame.orientation * attachment.offset;
 }
 
-void check_distances(const std::string& key, const CableDesc& cable, const std::map<std::string, Pose>& frames, Errors& errors) {
+/// Where two attachments leave no node between them free, the one segment that is not held along its clamp has the length that it
+/// has at rest only if they are in the right places. Clamps of a cable without bending stiffness hold the nodes beside theirs.
+void check_held_segment(const std::string& key, const CableDesc& cable, bool bends, const AttachmentDesc& first,
+                        const AttachmentDesc& second, const std::map<std::string, Pose>& frames, Errors& errors) {
+  const double length = cable.length / cable.segments;
+  int free = node_at(cable, second.place) - node_at(cable, first.place) - 1;
+  const auto end_of = [&](const AttachmentDesc& attachment, double way) -> Vector3 {
+    const Pose& frame = frames.at(attachment.frame);
+    const Vector3 point = held_point(attachment, frame);
+    if (bends || attachment.type != AttachmentType::clamp || free == 0) return point;
+    --free;
+    return point + frame.orientation * quaternion_from_rpy(attachment.rotation) * Vector3(way, 0, 0);
+  };
+  if (free < 0) return;
+  const Vector3 start = end_of(first, length), end = end_of(second, -length);
+  const double distance = (end - start).norm();
+  if (free > 0 || std::abs(distance - length) <= held_tolerance * length) return;
+  errors.add(key + ".segments",
+             std::to_string(cable.segments) + ", no node between " + quoted(first.name) + " and " + quoted(second.name) +
+                 " is free, and a segment of " + rounded_text(length) + " m would be " + rounded_text(distance) + " m long",
+             "so many that a node between them is free, as the cable is inextensible (axial_stiffness .inf)");
+}
+
+void check_distances(const std::string& key, const CableDesc& cable, bool bends, const std::map<std::string, Pose>& frames,
+                     Errors& errors) {
   std::vector<std::size_t> order(cable.attachments.size());
   std::iota(order.begin(), order.end(), 0);
   const auto node = [&](std::size_t i) { return node_at(cable, cable.attachments[i].place); };
@@ -191,11 +217,14 @@ void check_distances(const std::string& key, const CableDesc& cable, const std::
     const AttachmentDesc& second = cable.attachments[order[i]];
     const double length = cable.length * (node(order[i]) - node(order[i - 1])) / cable.segments;
     const double distance = (held_point(second, frames.at(second.frame)) - held_point(first, frames.at(first.frame))).norm();
-    if (length > 0 && distance > length * (1 + distance_tolerance))
+    if (length > 0 && distance > length * (1 + distance_tolerance)) {
       errors.add(key + ".length",
                  rounded_text(length) + " m of cable between " + quoted(first.name) + " and " + quoted(second.name),
                  "at least the distance of these attachments, " + rounded_bound_text(distance, 1) +
                      " m, as the cable is inextensible (axial_stiffness .inf)");
+      continue;
+    }
+    check_held_segment(key, cable, bends, first, second, frames, errors);
   }
 }
 
@@ -225,7 +254,7 @@ std::vector<std::string> validate_distances(const SceneDesc& scene, const Bounda
     const CableDesc& cable = scene.cables[i];
     const MaterialDesc* material = scene.find_material(cable.material);
     if (material && material->axial_stiffness == infinity && is_sound(cable))
-      check_distances(indexed("cables", i), cable, poses, errors);
+      check_distances(indexed("cables", i), cable, material->bending_stiffness > 0, poses, errors);
   }
   return errors.take();
 }

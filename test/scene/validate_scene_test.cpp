@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "scene_text.h"
 #include "verlet_cable/core/scene_fields.h"
@@ -151,6 +152,38 @@ TEST(ValidateScene, distancesAreThoseOfNeighboursAlongTheCable) {
   const auto errors = validate(scene);
   ASSERT_EQ(errors.size(), 1u) << joined(errors);
   EXPECT_TRUE(has_line(errors, "cables[0].length: 0.3 m of cable between \"a\" and \"middle\"")) << joined(errors);
+}
+
+TEST(ValidateScene, heldSegmentsHaveTheirLength) {
+  SceneDesc scene = held_scene(0.6);
+  scene.cables[0].segments = 1;
+  const auto errors = validate(scene);
+  ASSERT_EQ(errors.size(), 1u) << joined(errors);
+  EXPECT_TRUE(has_line(
+      errors, "cables[0].segments: 1, no node between \"a\" and \"b\" is free, and a segment of 1 m would be 0.6 m long; "))
+      << joined(errors);
+  EXPECT_EQ(joined(validate(held_scene(0.6))), "");
+  scene.cables[0].attachments[1].offset.x() = 1;
+  EXPECT_EQ(joined(validate(scene)), "");
+  scene.cables[0].attachments[1].offset.x() = 0.6;
+  scene.materials[0].material.axial_stiffness = 100;
+  EXPECT_EQ(joined(validate(scene)), "");
+}
+
+TEST(ValidateScene, clampsOfACableThatDoesNotBendHoldTheirNeighbours) {
+  SceneDesc scene = held_scene(0.9);
+  CableDesc& cable = scene.cables[0];
+  for (AttachmentDesc& clamp : cable.attachments) clamp.type = AttachmentType::clamp;
+  const double third = 1.0 / 3, half = 0.5;
+  for (const auto& [segments, distance, is_fit] :
+       {std::tuple{2, 2 * half, true}, {2, 0.9, false}, {3, 3 * third, true}, {3, 0.9, false}, {4, 0.9, true}}) {
+    cable.segments = segments;
+    cable.attachments[1].offset.x() = distance;
+    EXPECT_EQ(has_line(validate(scene), "cables[0].segments: "), !is_fit) << segments << " " << joined(validate(scene));
+  }
+  cable.segments = 2;
+  scene.materials[0].material.bending_stiffness = 0.01;
+  EXPECT_EQ(joined(validate(scene)), "");
 }
 
 TEST(ValidateScene, distancesUseInitialPosesAndLeaveUnknownFramesOut) {
