@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t longest_message = 200;
-constexpr double largest_weld = 1e-3;  // of the mesh's size
+constexpr double least_weld = 1e-6, largest_weld = 1e-3;  // of the mesh's size
 
 /// The program beside this library, in development and install space: lib/libverlet_cable_scene.so, lib/verlet_cable/mesh_reader.
 /// Where the library is part of a program, that is beside it.
@@ -117,12 +117,14 @@ std::shared_ptr<const TriangleMesh> scaled(const Triangles& mesh, const Vector3&
   return std::make_shared<TriangleMesh>(std::move(vertices), mesh.triangles);
 }
 
-/// How far apart two vertices may be that were one before they were rounded to single precision, in a file or on reading it.
+/// How far apart two vertices may be that are one but for rounding: to single precision, in a file or on reading it, or by the
+/// program that computed each triangle's corners anew.
 double rounding_of(const std::vector<Vector3>& vertices) {
   Aabb box;
   for (const Vector3& vertex : vertices) box.extend(vertex);
   const double farthest = std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
-  return std::min(4 * FLT_EPSILON * farthest, largest_weld * box.sizes().maxCoeff());
+  const double size = box.sizes().maxCoeff();
+  return std::clamp(4 * FLT_EPSILON * farthest, least_weld * size, largest_weld * size);
 }
 
 }  // namespace

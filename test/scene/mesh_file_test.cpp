@@ -147,6 +147,8 @@ TEST_F(MeshFile, verticesThatDifferByRoundingAreOne) {
     EXPECT_EQ(read("scaled.obj", obj_of(torn(other, 6e-8 * size)))->vertices().size(), 8u) << size;
   }
   EXPECT_EQ(read("far.obj", obj_of(torn(moved(box, {100, 0, 0}), 4e-6)))->vertices().size(), 8u);
+  const Triangles small = box_triangles(Vector3::Constant(0.4));
+  EXPECT_EQ(read("jitter.obj", obj_of(torn(small, 1.5e-7)))->vertices().size(), 8u);
   // What is further apart is no rounding.
   EXPECT_EQ(problem_of(write("gap.obj", obj_of(torn(box, 1e-5)))).rfind("it is not closed: 36 edges", 0), 0u);
 }
