@@ -17,7 +17,8 @@ constexpr double sudden = 0.5;
 /// In steps longer than a jump all changes are great: one that is so many times greater than those before is no motion.
 constexpr double out_of_proportion = 3;
 constexpr double fading = 0.5;  // of what went before, in a step
-/// Below this change [m/s] in a step a velocity is a motion's; above it may be noise, and the average over some time [s] is better.
+/// Below this change [m/s] in a step a velocity is a motion's; above it may be noise, and the average over some time [s] is
+/// better.
 constexpr double steady_change = 1;
 constexpr double averaging_time = 0.02;
 /// A jump at one speed may begin and end inside steps: up to this fraction it is one speed.
@@ -68,8 +69,8 @@ void end_jump(Holder& holder) {
   holder.first_excess = holder.last_excess = holder.least_excess = holder.greatest_excess = 0;
 }
 
-/// Whether a jump may begin in a step with this mean velocity, and its velocity before. An acceleration that goes on is none, nor is
-/// what comes back from a change that was no jump.
+/// Whether a jump may begin in a step with this mean velocity, and its velocity before. An acceleration that goes on is none, nor
+/// is what comes back from a change that was no jump.
 bool may_begin_jump(const Vector3& mean, double time_step, Holder& holder) {
   const Vector3 change = mean - holder.mean_velocity;
   if (!is_greater_than_a_motion(change)) return false;

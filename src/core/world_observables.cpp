@@ -52,8 +52,8 @@ class Hash {
   }
   void add(const Holder& h) {
     add_bits(static_cast<std::uint64_t>(h.node));
-    for (const Vector3* v : {&h.position, &h.velocity, &h.mean_velocity, &h.gap, &h.frame_velocity, &h.average_velocity, &h.change,
-                             &h.jumped_from, &h.carried})
+    for (const Vector3* v : {&h.position, &h.velocity, &h.mean_velocity, &h.gap, &h.frame_velocity, &h.average_velocity,
+                             &h.change, &h.jumped_from, &h.carried})
       add(*v);
     add(h.caught);
     for (const double v : {h.liveliness, h.first_excess, h.last_excess, h.least_excess, h.greatest_excess}) add(v);

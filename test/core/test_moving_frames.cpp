@@ -301,10 +301,11 @@ TEST(Jumps, AJumpInTheFirstStepIsOne) {
     world.step(scenes::hand_at({1, 0, 0}));
     ASSERT_EQ(world.jumps().size(), 1u);
     EXPECT_EQ(jump_text(world, world.jumps()[0]), "frame \"hand\" jumped by 1 m within " +
-                                                    std::to_string(std::lround(1e3 * scene.time_step)) +
-                                                    " ms: cable \"cable\" was carried along with it");
-    EXPECT_EQ(jump_text(world, {0, 0.25, 0, 0.2}), "frame \"hand\" jumped by 0.25 m within 200 ms: cable \"cable\" was carried "
-                                                   "along with it");
+                                                      std::to_string(std::lround(1e3 * scene.time_step)) +
+                                                      " ms: cable \"cable\" was carried along with it");
+    EXPECT_EQ(jump_text(world, {0, 0.25, 0, 0.2}),
+              "frame \"hand\" jumped by 0.25 m within 200 ms: cable \"cable\" was carried "
+              "along with it");
     EXPECT_LT(largest_tension(world), 1.001 * 9.81 * 0.1);
   }
 }

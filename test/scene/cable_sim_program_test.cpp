@@ -172,15 +172,16 @@ TEST_F(CableSim, theStartObeysTheAllowedSpeed) {
   const std::string motion = write("m.csv", "t,frame,x,y,z,qx,qy,qz,qw\n0,hand,0.7,0,0,0,0,0,1\n1,hand,0.2,0,0,0,0,0,1\n");
   ASSERT_EQ(run(scene + " --duration 0.02 --rate 500 --motion " + motion + " --output " + path("o.csv")), 0) << err;
   for (const Row& row : rows("o.csv")) {
-    if (row.node == 20) EXPECT_NEAR(row.velocity.x(), -0.1, 1e-9) << row.time;
+    if (row.node != 20) continue;
+    EXPECT_NEAR(row.velocity.x(), -0.1, 1e-9) << row.time;
   }
 }
 
 TEST_F(CableSim, aJumpIsToldInTheFirstStepAndInTheLast) {
   const std::string scene = write("scene.yaml", sound_scene);
   const std::string header = "t,frame,x,y,z,qx,qy,qz,qw\n0,hand,0.7,0,0,0,0,0,1\n";
-  for (const std::string& jump : {"0.002,hand,0.6,0,0,0,0,0,1\n1,hand,0.6,0,0,0,0,0,1\n",
-                                  "0.098,hand,0.7,0,0,0,0,0,1\n0.1,hand,0.6,0,0,0,0,0,1\n"}) {
+  for (const char* jump :
+       {"0.002,hand,0.6,0,0,0,0,0,1\n1,hand,0.6,0,0,0,0,0,1\n", "0.098,hand,0.7,0,0,0,0,0,1\n0.1,hand,0.6,0,0,0,0,0,1\n"}) {
     const std::string motion = write("m.csv", header + jump);
     ASSERT_EQ(run(scene + " --duration 0.1 --motion " + motion + " --summary " + path("s.json")), 0) << err;
     const YAML::Node events = summary("s.json")["events"];

@@ -16,7 +16,8 @@ class FrameSource {
 
   /// One entry a frame id, all known, with the velocities of the motions that begin then.
   BoundaryInputs at(double time) const;
-  /// Those that a run begins with: a motion that does not go on for longer than a jump (5 ms) is one, and no velocity to begin with.
+  /// Those that a run begins with: a motion that does not go on for longer than a jump (5 ms) is one, and no velocity to begin
+  /// with.
   BoundaryInputs at_start() const;
 
  private:
