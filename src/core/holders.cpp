@@ -12,12 +12,20 @@ namespace {
 /// No hand or machine changes its velocity by more [m/s] within a step: a holder that does jumps, if that does not last longer [s].
 constexpr double greatest_change = 5;
 constexpr double longest_jump = 5e-3;
-/// Nothing starts to move like this [m/s] at once: it is a jump between two messages or rows, spread over the time between them [s].
-constexpr double greatest_lasting_change = 20;
-constexpr double longest_spread_jump = 0.1;
+/// A change of velocity that is not greater than the one before by this fraction goes on with an acceleration.
+constexpr double sudden = 0.5;
+/// In steps longer than a jump all changes are great: one that is so many times greater than those before is no motion.
+constexpr double out_of_proportion = 3;
+constexpr double fading = 0.5;  // of what went before, in a step
+/// Below this change [m/s] in a step a velocity is a motion's; above it may be noise, and the average over some time [s] is
+/// better.
+constexpr double steady_change = 1;
+constexpr double averaging_time = 0.02;
+/// A jump at one speed may begin and end inside steps: up to this fraction it is one speed.
+constexpr double one_speed = 0.1;
 /// Frames may be on vehicles: one that starts is believed to move as fast as this [m/s].
 constexpr double fastest_start = 50;
-constexpr double rounding = 1e-9;
+constexpr double rounding = 1e-6;
 /// A node that is pinned elsewhere than it is goes there at about this speed [m/s], in no less than this time [s].
 constexpr double approach_speed = 2;
 constexpr double shortest_approach = 0.1;
@@ -55,34 +63,77 @@ bool is_greater_than_a_motion(const Vector3& change) {
   return change.norm() > greatest_change;
 }
 
-/// The time [s] in whole steps in which a jump that does not last too long may be seen: it need not begin with a step.
-double longest_jump_time(const Vector3& change, double time_step) {
-  const double longest = change.norm() > greatest_lasting_change ? longest_spread_jump : longest_jump;
-  return (std::ceil(longest / time_step * (1 - rounding)) + 1) * time_step;
-}
-
 void end_jump(Holder& holder) {
-  holder.jumps_for = 0;
+  holder.jumping_steps = 0;
   holder.jumped_from = holder.carried = Vector3::Zero();
+  holder.first_excess = holder.last_excess = holder.least_excess = holder.greatest_excess = 0;
 }
 
-/// Whether a holder jumps in a step with this mean velocity. A change of velocity that lasts is a motion, and to be followed; while
-/// that is not known it is a jump. What trembles goes as its mean does.
-bool jumps(const Vector3& mean, double time_step, Holder& holder) {
-  if (!is_greater_than_a_motion(mean - holder.mean_velocity)) return false;
-  if (holder.jumps_for == 0) holder.jumped_from = holder.position;
-  const double time = holder.jumps_for + time_step;
-  if (time <= longest_jump_time(mean - holder.mean_velocity, time_step) * (1 + rounding)) return true;
-  const Vector3 lasting = (holder.next_position - holder.jumped_from) / time;
-  end_jump(holder);
-  holder.jumped_from = holder.position;
-  if (!is_greater_than_a_motion(lasting - holder.mean_velocity)) {
-    holder.mean_velocity = lasting;
-    return is_greater_than_a_motion(mean - lasting);
+/// Whether a jump may begin in a step with this mean velocity, and its velocity before. An acceleration that goes on is none, nor
+/// is what comes back from a change that was no jump.
+bool may_begin_jump(const Vector3& mean, double time_step, Holder& holder) {
+  const Vector3 change = mean - holder.mean_velocity;
+  if (!is_greater_than_a_motion(change)) return false;
+  const double jerk = (change - holder.change).norm();
+  if (jerk <= greatest_change || jerk <= sudden * holder.change.norm()) return false;
+  if (time_step > longest_jump * (1 + rounding) && change.norm() <= out_of_proportion * holder.liveliness) return false;
+  const Vector3 before = holder.change.norm() <= steady_change ? holder.mean_velocity : holder.average_velocity;
+  if (!is_greater_than_a_motion(mean - before)) return false;
+  holder.mean_velocity = before;
+  return true;
+}
+
+/// Whether what has gone on for some steps, and goes on with this excess of velocity, may be a jump. Where it does not fit into
+/// the longest time with its whole first and last step, it does with parts of them if it has one speed.
+bool is_short(double excess, double time_step, const Holder& holder) {
+  const int steps = holder.jumping_steps + 1;
+  const double longest = longest_jump / time_step * (1 + rounding);
+  // Two steps may both be parts: how long it lasted in them cannot be told.
+  if (steps <= std::max(longest, 2.0)) return true;
+  const double least = holder.jumping_steps > 2 ? std::min(holder.least_excess, holder.last_excess) : holder.last_excess;
+  const double greatest = std::max(holder.greatest_excess, holder.last_excess);
+  return greatest - least <= one_speed * greatest && steps - 2 + (holder.first_excess + excess) / greatest <= longest;
+}
+
+void begin_or_continue_jump(double excess, Holder& holder) {
+  if (holder.jumping_steps == 0) {
+    holder.jumped_from = holder.position;
+    holder.first_excess = excess;
+  } else if (holder.jumping_steps > 1) {
+    holder.least_excess = holder.jumping_steps == 2 ? holder.last_excess : std::min(holder.least_excess, holder.last_excess);
+    holder.greatest_excess = std::max(holder.greatest_excess, holder.last_excess);
   }
-  if (is_greater_than_a_motion(mean - lasting)) return true;
-  holder.mean_velocity = mean;
-  return false;
+  holder.last_excess = excess;
+  ++holder.jumping_steps;
+}
+
+/// What a change of velocity turns out to be.
+enum class Change { none, undecided, jump, motion };
+
+/// The change in a step with this mean velocity. One that lasts is a motion, and to be followed; until that is known it may be a
+/// jump. What trembles goes as its mean does.
+Change judge(const Vector3& mean, double time_step, Holder& holder) {
+  if (holder.jumping_steps == 0 && !may_begin_jump(mean, time_step, holder)) return Change::none;
+  const double excess = (mean - holder.mean_velocity).norm();
+  if (excess <= greatest_change) return Change::jump;
+  if (is_short(excess, time_step, holder)) {
+    begin_or_continue_jump(excess, holder);
+    return Change::undecided;
+  }
+  const Vector3 lasting = (holder.next_position - holder.jumped_from) / ((holder.jumping_steps + 1) * time_step);
+  if (is_greater_than_a_motion(lasting - holder.mean_velocity)) return Change::motion;
+  end_jump(holder);
+  holder.mean_velocity = lasting;
+  if (!is_greater_than_a_motion(mean - lasting)) return Change::none;
+  begin_or_continue_jump((mean - lasting).norm(), holder);
+  return Change::undecided;
+}
+
+/// Keeps in mind how a holder moves in a step.
+void note_motion(const Vector3& change, const Vector3& mean, double time_step, Holder& holder) {
+  holder.change = change;
+  holder.liveliness = std::max(fading * holder.liveliness, change.norm());
+  holder.average_velocity += time_step / (averaging_time + time_step) * (mean - holder.average_velocity);
 }
 
 /// Catches a node where it is.
@@ -92,7 +143,7 @@ Holder caught(int attachment, const Target& target, const Vector3& position, con
   holder.node = target.node;
   holder.position = position;
   holder.velocity = velocity;
-  holder.mean_velocity = velocity;
+  holder.mean_velocity = holder.frame_velocity = holder.average_velocity = velocity;
   holder.gap = position - target.position;
   holder.caught = time;
   return holder;
@@ -166,12 +217,14 @@ void start_holders(const std::vector<Attachment>& attachments, const std::vector
     const auto frame = static_cast<std::size_t>(attachments[holder.attachment].frame);
     if (frame == 0) continue;
     holder.starts = true;
+    holder.liveliness = greatest_change;
     if (frame >= inputs.size() || !inputs[frame].velocity) continue;
     const FrameVelocity& of_frame = *inputs[frame].velocity;
     const Vector3 velocity = of_frame.linear + of_frame.angular.cross(holder.position - frames[frame].position);
     if (!velocity.allFinite()) continue;
     holder.starts = false;
     holder.velocity = holder.mean_velocity = holder.next_velocity = velocity;
+    holder.frame_velocity = holder.average_velocity = velocity;
   }
 }
 
@@ -225,28 +278,50 @@ Following follow_aims(const std::vector<Attachment>& attachments, double time, d
     const Vector3 mean = (holder.next_position - holder.position) / time_step;
     if (holder.starts) {
       holder.starts = false;
-      if (mean.norm() <= fastest_start) holder.velocity = holder.mean_velocity = mean;
+      if (mean.norm() <= fastest_start) holder.velocity = holder.mean_velocity = holder.average_velocity = mean;
       following.started = true;
     }
     // What a node that has just been caught was doing is no motion of a frame.
     const bool is_new = time - holder.caught < 1.5 * time_step;
-    if (!is_new && jumps(mean, time_step, holder)) {
+    const Change change = is_new ? Change::none : judge(mean, time_step, holder);
+    if (change == Change::undecided) {
       const Vector3 way = holder.next_position - holder.position - time_step * holder.mean_velocity;
       holder.position += way;
       holder.carried += way;
-      holder.jumps_for += time_step;
+      holder.frame_velocity = mean;
       holder.next_velocity = holder.mean_velocity;
       if (following.jumping_node < 0) following.jumping_node = holder.node;
       for (DirectionHolder& direction : holders.directions)
         if (direction.attachment == holder.attachment) direction.orientation = direction.next_orientation;
       continue;
     }
-    if (holder.jumps_for > 0 && holder.node == attachments[holder.attachment].node)
-      over.push_back({holder.attachment, holder.carried.norm(), time - time_step - holder.jumps_for, holder.jumps_for});
+    if (change == Change::jump && holder.node == attachments[holder.attachment].node) {
+      const double duration = holder.jumping_steps * time_step;
+      over.push_back({holder.attachment, holder.carried.norm(), time - time_step - duration, duration});
+    }
+    if (change == Change::motion) {
+      note_motion(mean - holder.frame_velocity, mean, time_step, holder);
+      holder.average_velocity = holder.mean_velocity = mean;
+    } else {
+      note_motion(mean - holder.mean_velocity, mean, time_step, holder);
+      if (is_new) holder.average_velocity = mean;
+    }
     end_jump(holder);
+    holder.frame_velocity = mean;
     holder.next_velocity = mean + 0.5 * (mean - holder.mean_velocity);
   }
   return following;
+}
+
+void show_velocities(const Holders& holders, std::vector<Vector3>& velocities) {
+  for (const Holder& holder : holders.nodes)
+    if (holder.jumping_steps > 0 && holder.frame_velocity.norm() < holder.velocity.norm())
+      velocities[holder.node] = holder.frame_velocity;
+}
+
+void take_back_shown_velocities(const Holders& holders, std::vector<Vector3>& velocities) {
+  for (const Holder& holder : holders.nodes)
+    if (holder.jumping_steps > 0) velocities[holder.node] = holder.velocity;
 }
 
 void hold_at(double from, double to, const Holders& holders, Boundary& boundary) {

@@ -20,10 +20,19 @@ struct Holder {
   double caught = -infinity;                ///< [s] when that was
   Vector3 next_position = Vector3::Zero();  ///< [m] at the end of the step
   Vector3 next_velocity = Vector3::Zero();  ///< [m/s]
+  // What tells a jump from a motion.
+  Vector3 frame_velocity = Vector3::Zero();    ///< [m/s] over the last step, also while it jumps
+  Vector3 average_velocity = Vector3::Zero();  ///< [m/s] of the last 20 ms or so, without jumps
+  Vector3 change = Vector3::Zero();            ///< [m/s] of the velocity from step to step, the last one
+  double liveliness = 0;                       ///< [m/s] the greatest change of late
   // Of a jump: a change of velocity that is too great for a motion, as long as it is not known to last.
-  double jumps_for = 0;                   ///< [s] that it has lasted; 0: there is none
+  int jumping_steps = 0;                  ///< in which it has lasted; 0: there is none
   Vector3 jumped_from = Vector3::Zero();  ///< [m] where the holder was then
   Vector3 carried = Vector3::Zero();      ///< [m] how far it has carried the cable
+  double first_excess = 0;                ///< [m/s] over the velocity before, in the first step
+  double last_excess = 0;                 ///< [m/s] in the last one
+  double least_excess = 0;                ///< [m/s] of those between
+  double greatest_excess = 0;             ///< [m/s] of those between
 };
 
 /// The motion of a direction and roll that a clamp holds, over a step.
@@ -91,5 +100,10 @@ void hold_at(double from, double to, const Holders& holders, Boundary& boundary)
 
 /// The step is done: what was next is now.
 void complete_step(double time_step, Holders& holders);
+
+/// A holder that jumps keeps the velocity from before for its cable; its node shows the frame's if that is slower: what stands is
+/// seen to stand. Before the next step it is taken back.
+void show_velocities(const Holders& holders, std::vector<Vector3>& velocities);
+void take_back_shown_velocities(const Holders& holders, std::vector<Vector3>& velocities);
 
 }  // namespace verlet_cable

@@ -120,6 +120,7 @@ void World::Implementation::step_net(int index, StepResult& result) {
     forget_motion(net.model, s);
     note_net(Status::degraded, index, 0, result);
     complete_step(scene.time_step, s.holders);
+    show_velocities(s.holders, net.state.velocities);
     return;
   }
   if (of_net.softened) note_net(Status::degraded, index, 0, result);
@@ -129,12 +130,14 @@ void World::Implementation::step_net(int index, StepResult& result) {
   for (std::size_t k = 0; k < s.boundary.nodes.size(); ++k)
     attachments[s.holders.nodes[k].attachment].force = s.boundary.nodes[k].force;
   complete_step(scene.time_step, s.holders);
+  show_velocities(s.holders, net.state.velocities);
 }
 
 /// Aims what holds a net at where it will be. Where that jumps, the net is carried along, and keeps its velocities.
 void World::Implementation::aim_net(int index, StepResult& result) {
   NetScratch& s = net_scratch[index];
   aim_hinges(attachments, poses, time(), s.holders);
+  take_back_shown_velocities(s.holders, nets[index].state.velocities);
   const Following following = follow_aims(attachments, time(), scene.time_step, s.holders, jumps);
   if (following.started) take_velocities(s.holders, nets[index].state);
   if (following.jumping_node < 0) return;

@@ -52,9 +52,12 @@ class Hash {
   }
   void add(const Holder& h) {
     add_bits(static_cast<std::uint64_t>(h.node));
-    for (const Vector3* v : {&h.position, &h.velocity, &h.mean_velocity, &h.gap, &h.jumped_from, &h.carried}) add(*v);
+    for (const Vector3* v : {&h.position, &h.velocity, &h.mean_velocity, &h.gap, &h.frame_velocity, &h.average_velocity,
+                             &h.change, &h.jumped_from, &h.carried})
+      add(*v);
     add(h.caught);
-    add(h.jumps_for);
+    for (const double v : {h.liveliness, h.first_excess, h.last_excess, h.least_excess, h.greatest_excess}) add(v);
+    add_bits(static_cast<std::uint64_t>(h.jumping_steps));
     add_bits(h.starts);
   }
   void add(const PointState& points) {

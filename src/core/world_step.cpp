@@ -134,6 +134,7 @@ void World::Implementation::step_group(ContactGroup& group) {
     follow_material(cable);
     results[cable].substeps = substeps;
     complete_step(dt, scratch[cable].holders);
+    show_velocities(scratch[cable].holders, cables[cable].state.velocities);
   }
 }
 
@@ -145,6 +146,7 @@ void World::Implementation::aim(int index) {
   if (s.reel) plan_reel_step(index);
   aim_holders(cable.model, attachments, poses, time(), s.holders);
   s.jumps.clear();
+  take_back_shown_velocities(s.holders, cable.state.velocities);
   const Following following = follow_aims(attachments, time(), scene.time_step, s.holders, s.jumps);
   const bool jumps = following.jumping_node >= 0;
   if (!following.started && !jumps) return;

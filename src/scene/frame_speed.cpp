@@ -24,4 +24,13 @@ std::vector<int> limit_frame_motion(const BoundaryInputs& before, double distanc
   return held_back;
 }
 
+void limit_frame_velocities(double speed, BoundaryInputs& frames) {
+  for (FrameInput& frame : frames) {
+    if (!frame.velocity || frame.velocity->linear.norm() <= speed) continue;
+    const double fraction = speed / frame.velocity->linear.norm();
+    frame.velocity->linear *= fraction;
+    frame.velocity->angular *= fraction;
+  }
+}
+
 }  // namespace verlet_cable

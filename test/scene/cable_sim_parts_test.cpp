@@ -122,6 +122,24 @@ TEST(FrameSource, framesMoveRestAtTheirPoseOrTheOrigin) {
   EXPECT_EQ(unused_frames(scene, motion), std::vector<std::string>{"unused"});
 }
 
+TEST(FrameSource, aJumpAtTheStartIsNoVelocityToBeginWith) {
+  SceneDesc scene = read_scene_text(test::sound_scene);
+  scene.cables[0].attachments[0].frame = "moved";
+  const auto start = [&](double duration) {
+    Motion motion;
+    motion["moved"].add(0, {});
+    motion["moved"].add(duration, {{1, 0, 0}, Quaternion::Identity()});
+    motion["moved"].add(1, {{1, 0, 0}, Quaternion::Identity()});
+    const BoundaryInputs inputs = FrameSource(scene, motion).at_start();
+    for (const FrameInput& input : inputs)
+      if (input.velocity->linear.norm() > 0) return input.velocity->linear.x();
+    return 0.0;
+  };
+  EXPECT_EQ(start(0.001), 0);
+  EXPECT_EQ(start(0.005), 0);
+  EXPECT_NEAR(start(0.5), 2, 1e-12);
+}
+
 TEST(EventLog, anEpisodeIsTwoEventsHoweverManySteps) {
   const SceneDesc scene = read_scene_text(test::sound_scene);
   const BoundaryInputs frames = FrameSource(scene, {}).at(0);

@@ -166,6 +166,31 @@ TEST_F(CableSim, aFrameThatASplineTakesTooFarAwayIsReported) {
   EXPECT_EQ(frames["frame_out_of_range_end"], "far");
 }
 
+TEST_F(CableSim, theStartObeysTheAllowedSpeed) {
+  const std::string scene =
+      write("scene.yaml", replaced(sound_scene, "time_step: 0.002", "time_step: 0.002\nmax_frame_speed: 0.1"));
+  const std::string motion = write("m.csv", "t,frame,x,y,z,qx,qy,qz,qw\n0,hand,0.7,0,0,0,0,0,1\n1,hand,0.2,0,0,0,0,0,1\n");
+  ASSERT_EQ(run(scene + " --duration 0.02 --rate 500 --motion " + motion + " --output " + path("o.csv")), 0) << err;
+  for (const Row& row : rows("o.csv")) {
+    if (row.node != 20) continue;
+    EXPECT_NEAR(row.velocity.x(), -0.1, 1e-9) << row.time;
+  }
+}
+
+TEST_F(CableSim, aJumpIsToldInTheFirstStepAndInTheLast) {
+  const std::string scene = write("scene.yaml", sound_scene);
+  const std::string header = "t,frame,x,y,z,qx,qy,qz,qw\n0,hand,0.7,0,0,0,0,0,1\n";
+  for (const char* jump :
+       {"0.002,hand,0.6,0,0,0,0,0,1\n1,hand,0.6,0,0,0,0,0,1\n", "0.098,hand,0.7,0,0,0,0,0,1\n0.1,hand,0.6,0,0,0,0,0,1\n"}) {
+    const std::string motion = write("m.csv", header + jump);
+    ASSERT_EQ(run(scene + " --duration 0.1 --motion " + motion + " --summary " + path("s.json")), 0) << err;
+    const YAML::Node events = summary("s.json")["events"];
+    ASSERT_EQ(events.size(), 1u) << jump;
+    EXPECT_EQ(events[0]["type"].Scalar(), "JUMPED");
+    EXPECT_NE(events[0]["message"].Scalar().find("jumped by 0.1 m within 2 ms: "), std::string::npos);
+  }
+}
+
 TEST_F(CableSim, everyErrorOfSceneMotionAndOptionsIsListedAndNothingIsWritten) {
   const std::string scene =
       write("scene.yaml", replaced(replaced(sound_scene, "gravity", "gravty"), "material: m", "material: none_such"));

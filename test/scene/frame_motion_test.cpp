@@ -256,5 +256,17 @@ TEST(FrameSpeed, holdsBackWhatIsTooFast) {
   EXPECT_TRUE(limit_frame_motion(before, infinity, frames).empty());
 }
 
+TEST(FrameSpeed, slowsDownVelocitiesThatAreTooGreat) {
+  BoundaryInputs frames(3);
+  frames[1].velocity = FrameVelocity{{0, 20, 0}, {0, 0, 4}};
+  frames[2].velocity = FrameVelocity{{0, 0, 1}, {9, 0, 0}};
+  limit_frame_velocities(1, frames);
+  EXPECT_FALSE(frames[0].velocity);
+  EXPECT_NEAR((frames[1].velocity->linear - Vector3(0, 1, 0)).norm(), 0, rounding);
+  EXPECT_NEAR((frames[1].velocity->angular - Vector3(0, 0, 0.2)).norm(), 0, rounding);
+  EXPECT_EQ(frames[2].velocity->linear, Vector3(0, 0, 1));
+  EXPECT_EQ(frames[2].velocity->angular, Vector3(9, 0, 0));
+}
+
 }  // namespace
 }  // namespace verlet_cable

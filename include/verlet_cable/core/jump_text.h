@@ -15,7 +15,10 @@ inline std::string jump_text(const World& world, const Jump& jump) {
   const std::string& name = is_net ? world.nets()[static_cast<std::size_t>(attachment.net)].model.name
                                    : world.cables()[static_cast<std::size_t>(attachment.cable)].model.name;
   char measure[64];
-  std::snprintf(measure, sizeof measure, " jumped by %.2g m within %.2g ms: ", jump.distance, 1e3 * jump.duration);
+  const double milliseconds = 1e3 * jump.duration;
+  std::snprintf(measure, sizeof measure,
+                milliseconds < 10 ? " jumped by %.2g m within %.2g ms: " : " jumped by %.2g m within %.0f ms: ", jump.distance,
+                milliseconds);
   return "frame " + quoted(world.frames()[static_cast<std::size_t>(attachment.frame)]) + measure + (is_net ? "net " : "cable ") +
          quoted(name) + " was carried along with it";
 }

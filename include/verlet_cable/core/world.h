@@ -71,8 +71,9 @@ struct Break {
   int new_cable = 0;  ///< index of the second piece
 };
 
-/// What an attachment holds was carried along with it instead of being struck: its velocity had changed by more than 5 m/s within a
-/// step, and not for longer than 5 ms; or by more than 20 m/s and not for longer than 0.1 s, as where tf interpolates over a jump.
+/// What an attachment holds was carried along with it instead of being struck: its velocity had changed by more than 5 m/s within
+/// a step, and not for longer than 5 ms. It is known when that is over: a change that lasts is a motion, and is followed from
+/// then on.
 struct Jump {
   int attachment = 0;   ///< index into World::attachments()
   double distance = 0;  ///< [m] that the attachment was carried

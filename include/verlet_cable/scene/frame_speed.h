@@ -10,4 +10,7 @@ namespace verlet_cable {
 /// that far on the straight way, and turn by the same fraction. Returns the ids of those held back, ascending.
 std::vector<int> limit_frame_motion(const BoundaryInputs& before, double distance, BoundaryInputs& frames);
 
+/// Slows down the velocities of frames that are above `speed` [m/s], and their turning by the same fraction.
+void limit_frame_velocities(double speed, BoundaryInputs& frames);
+
 }  // namespace verlet_cable

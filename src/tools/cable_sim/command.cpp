@@ -6,6 +6,7 @@
 #include "common/program.h"
 #include "simulation.h"
 #include "verlet_cable/core/number_text.h"
+#include "verlet_cable/scene/frame_speed.h"
 #include "verlet_cable/scene/text.h"
 
 namespace verlet_cable::cable_sim {
@@ -54,7 +55,9 @@ void report(RunEnd end, const char* signal, double time) {
 
 int simulate_job(const Options& options, const Job& job) {
   const FrameSource frames(job.scene, job.motion);
-  World world(job.scene, frames.at(0));
+  BoundaryInputs start = frames.at_start();
+  limit_frame_velocities(job.scene.max_frame_speed, start);
+  World world(job.scene, start);
   Outputs outputs;
   std::vector<std::string> errors;
   outputs.open(options, errors);

@@ -31,6 +31,9 @@ class EventLog {
   /// After each step. `held_back`: ids of the frames that moved faster than `max_frame_speed`.
   void observe(const World& world, const StepResult& result, const std::vector<int>& held_back);
 
+  /// Jumps that the last step found to be over.
+  void add_jumps(const World& world);
+
   /// Cables that hang instead of having the shape they were given, or found no equilibrium.
   void add_starts(const World& world);
 
@@ -45,7 +48,6 @@ class EventLog {
   };
 
   void add_breaks(const World& world);
-  void add_jumps(const World& world);
   void add_intrusions(const World& world);
   void report(const Event& event, double strain);
   void end_episodes(double time);

@@ -5,6 +5,10 @@
 namespace verlet_cable::cable_sim {
 namespace {
 
+/// A velocity that has changed by more [m/s] in this time [s] was a jump's, see Jump.
+constexpr double greatest_change = 5;
+constexpr double longest_jump = 5e-3;
+
 /// What is fixed to a moving parent.
 FrameInput carried(const FrameInput& parent, const Pose& origin) {
   const Vector3 arm = parent.pose.orientation * origin.position;
@@ -42,10 +46,22 @@ int FrameSource::add_frame(const std::string& name, const FrameInput& resting, c
 }
 
 BoundaryInputs FrameSource::at(double time) const {
+  return at(time, 0);
+}
+
+BoundaryInputs FrameSource::at_start() const {
+  BoundaryInputs inputs = at(0);
+  const BoundaryInputs later = at(0, longest_jump);
+  for (std::size_t i = 0; i < inputs.size(); ++i)
+    if ((later[i].velocity->linear - inputs[i].velocity->linear).norm() > greatest_change) inputs[i].velocity = later[i].velocity;
+  return inputs;
+}
+
+BoundaryInputs FrameSource::at(double time, double lead) const {
   BoundaryInputs inputs;
   for (const Frame& frame : frames_) {
     inputs.push_back({frame.resting, true, FrameVelocity{}});
-    if (!frame.track.empty()) inputs.back() = {frame.track.at(time), true, frame.track.velocity_from(time)};
+    if (!frame.track.empty()) inputs.back() = {frame.track.at(time), true, frame.track.velocity_from(time + lead)};
   }
   const FrameInput fixed{{}, true, FrameVelocity{}};
   BoundaryInputs links;

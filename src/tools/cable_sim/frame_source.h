@@ -16,8 +16,14 @@ class FrameSource {
 
   /// One entry a frame id, all known, with the velocities of the motions that begin then.
   BoundaryInputs at(double time) const;
+  /// Those that a run begins with: a motion that does not go on for longer than a jump (5 ms) is one, and no velocity to begin
+  /// with.
+  BoundaryInputs at_start() const;
 
  private:
+  /// `lead` [s]: how much later the velocities are of.
+  BoundaryInputs at(double time, double lead) const;
+
   struct Frame {
     FrameTrack track;  ///< empty where it rests
     Pose resting;

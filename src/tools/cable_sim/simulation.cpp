@@ -9,6 +9,7 @@ namespace verlet_cable::cable_sim {
 namespace {
 
 constexpr double averaged_time = 0.1;  // [s]
+constexpr double longest_jump = 5e-3;  // [s] see Jump
 
 }  // namespace
 
@@ -28,14 +29,18 @@ RunEnd simulate(const Job& job, double rate, const FrameSource& frames, World& w
   };
 
   BoundaryInputs inputs = frames.at(0);
+  const auto inputs_of_next_step = [&](const World& of, std::vector<int>& held_back) {
+    BoundaryInputs targets = frames.at(static_cast<double>(of.steps() + 1) * time_step);
+    held_back = limit_frame_motion(inputs, job.scene.max_frame_speed * time_step, targets);
+    inputs = std::move(targets);
+  };
+  std::vector<int> held_back;
+  bool jumps = false;
   write_due_rows();
   while (world.steps() < job.steps) {
     if (recorders.stop.signal()) return RunEnd::signal;
     if (recorders.csv && recorders.csv->has_failed()) return RunEnd::output_failed;
-    BoundaryInputs targets = frames.at(static_cast<double>(world.steps() + 1) * time_step);
-    const std::vector<int> held_back = limit_frame_motion(inputs, job.scene.max_frame_speed * time_step, targets);
-    inputs = std::move(targets);
-
+    inputs_of_next_step(world, held_back);
     const Clock::time_point start = Clock::now();
     const StepResult result = world.step(inputs);
     const Clock::time_point end = Clock::now();
@@ -45,6 +50,15 @@ RunEnd simulate(const Job& job, double rate, const FrameSource& frames, World& w
     if (result.status == StepResult::Status::fault) return RunEnd::fault;
     write_due_rows();
     recorders.progress.show(world.time(), end);
+    jumps = result.status == StepResult::Status::jumped;
+  }
+  if (!jumps) return RunEnd::done;
+  // Whether the last steps were a jump is known only when it is over.
+  World later = world;
+  while (jumps && later.time() - world.time() <= longest_jump) {
+    inputs_of_next_step(later, held_back);
+    jumps = later.step(inputs).status == StepResult::Status::jumped;
+    recorders.events.add_jumps(later);
   }
   return RunEnd::done;
 }
