@@ -101,7 +101,7 @@ TEST_F(CableSim, namedPipesAreRefused) {
 TEST_F(CableSim, endlessInputIsRefused) {
   const std::string scene = write("scene.yaml", sound_scene);
   EXPECT_EQ(run("/dev/zero"), 2);
-  EXPECT_NE(err.find("allowed: at most 67108864"), std::string::npos) << err;
+  EXPECT_NE(err.find("allowed: at most 16777216"), std::string::npos) << err;
   EXPECT_EQ(run(scene + " --motion /dev/zero"), 2);
   EXPECT_NE(err.find("line 1: too long"), std::string::npos) << err;
   EXPECT_EQ(run(path("")), 2);
