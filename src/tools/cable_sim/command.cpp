@@ -12,6 +12,7 @@ namespace verlet_cable::cable_sim {
 namespace {
 
 constexpr const char* program = "cable_sim";
+constexpr std::size_t room_for_events = 65536;  // [byte]
 
 int refuse(const std::vector<std::string>& errors) {
   return tools::refuse(program, errors, "nothing was simulated");
@@ -35,14 +36,14 @@ struct Outputs {
   }
 };
 
-/// `time`: simulated so far [s].
-bool finish(tools::OutputFile& file, const std::string& path, double time) {
+/// `time`: simulated so far [s]. `full`: what happened where the disk became full and some is kept, else empty.
+bool finish(tools::OutputFile& file, const std::string& path, double time, const std::string& full = "") {
   if (path.empty()) return true;
   const std::string problem = file.finish();
-  if (!problem.empty())
-    std::cerr << program << ": stopped at " << number_text(time) << " s: cannot write " << tools::quoted_path(path) << ": "
-              << problem << "\n";
-  return problem.empty();
+  if (problem.empty() && full.empty()) return true;
+  std::cerr << program << ": stopped at " << number_text(time) << " s: cannot write " << tools::quoted_path(path) << ": "
+            << (problem.empty() ? full : problem) << "\n";
+  return false;
 }
 
 /// Says why a run ended early, but for a file that cannot be written, of which `finish` tells.
@@ -71,14 +72,15 @@ int simulate_job(const Options& options, const Job& job) {
   events.add_starts(world);
   CsvWriter csv(outputs.csv);
   Summary summary(world, averaged_steps(job));
+  // A summary tells of a disk that rows have filled.
+  if (!options.summary.empty()) outputs.summary.reserve(2 * summary.json(world, {}).size() + room_for_events);
   const RunEnd end =
       simulate(job, options.rate, frames, world, {options.output.empty() ? nullptr : &csv, summary, events, progress, stop});
   progress.clear();
   report(end, stop.signal(), world.time());
 
   if (!options.output.empty()) csv.flush();
-  // First, so that a summary has room where the rows had not.
-  bool good = finish(outputs.csv, options.output, world.time());
+  bool good = finish(outputs.csv, options.output, world.time(), csv.keep_whole_times());
   if (!options.summary.empty()) {
     const std::string json = summary.json(world, events.events());
     outputs.summary.write(json.data(), json.size());
