@@ -1,5 +1,6 @@
 #include "command.h"
 
+#include <algorithm>
 #include <iostream>
 
 #include "common/messages.h"
@@ -13,6 +14,7 @@ namespace {
 
 constexpr const char* program = "cable_sim";
 constexpr std::size_t room_for_events = 65536;  // [byte]
+constexpr std::size_t most_noted = 10;
 
 int refuse(const std::vector<std::string>& errors) {
   return tools::refuse(program, errors, "nothing was simulated");
@@ -53,6 +55,16 @@ void report(RunEnd end, const char* signal, double time) {
   if (end == RunEnd::signal) std::cerr << start << "ended by " << signal << ", before its duration was over\n";
 }
 
+void note_unused(const Options& options, const std::vector<std::string>& frames) {
+  if (frames.empty()) return;
+  const std::size_t listed = std::min(frames.size(), most_noted);
+  std::cerr << program << ": note: " << tools::path_text(options.motion) << ": the scene does not use "
+            << (frames.size() == 1 ? "frame" : "frames");
+  for (std::size_t i = 0; i < listed; ++i) std::cerr << (i == 0 ? " " : ", ") << quoted(frames[i]);
+  if (listed < frames.size()) std::cerr << " and " << frames.size() - listed << " more";
+  std::cerr << "\n";
+}
+
 int simulate_job(const Options& options, const Job& job) {
   const FrameSource frames(job.scene, job.motion);
   World world(job.scene, frames.at(0));
@@ -60,9 +72,7 @@ int simulate_job(const Options& options, const Job& job) {
   std::vector<std::string> errors;
   outputs.open(options, errors);
   if (!errors.empty()) return refuse(errors);
-  for (const std::string& frame : unused_frames(job.scene, job.motion))
-    std::cerr << "cable_sim: note: " << tools::path_text(options.motion) << ": the scene does not use frame "
-              << quoted(frame) << "\n";
+  note_unused(options, unused_frames(job.scene, job.motion));
 
   const bool has_data = tools::is_standard_output(options.output) || tools::is_standard_output(options.summary);
   tools::ProgressBar progress(options.duration, "s", has_data);
