@@ -10,12 +10,14 @@ namespace verlet_cable {
 bool is_name(const std::string& name) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
   const auto is_other = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; };
-  return !name.empty() && is_letter(name[0]) && std::all_of(name.begin(), name.end(), is_other);
+  return !name.empty() && name.size() <= most_name_characters && is_letter(name[0]) &&
+         std::all_of(name.begin(), name.end(), is_other);
 }
 
 bool is_frame_name(const std::string& name) {
   const auto is_printable = [](char c) { return static_cast<unsigned char>(c) > ' ' && c != '\x7f'; };
-  return !name.empty() && name[0] != '/' && std::all_of(name.begin(), name.end(), is_printable);
+  return !name.empty() && name.size() <= most_name_characters && name[0] != '/' &&
+         std::all_of(name.begin(), name.end(), is_printable);
 }
 
 bool has_dimension(ShapeType type, const std::string& key) {

@@ -69,7 +69,7 @@ CheckedPin check_pin(const Pin::Request& request, const World& world, const Find
   pin.frame = request.frame_id.empty() ? world.frames().front() : request.frame_id;
   pin.offset = read_pose("offset", request.offset, pin.errors);
   if (!request.name.empty() && !is_name(request.name)) {
-    pin.errors.push_back("name: " + quoted(request.name) + "; allowed: a letter, then letters, digits and _; or empty");
+    pin.errors.push_back("name: " + quoted(request.name) + "; allowed: " + name_words + "; or empty");
   }
   if (world.find_attachment(request.name) >= 0) {
     pin.errors.push_back("name: " + quoted(request.name) + "; allowed: names that no attachment has");

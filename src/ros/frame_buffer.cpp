@@ -19,7 +19,6 @@ namespace {
 const ros::Duration cache_time = ros::Duration().fromNSec(FrameBuffer::memory);
 const ros::WallDuration source_memory(1.0);
 const ros::WallDuration log_period(5.0);  // of each frame
-constexpr std::size_t longest_name = 1000;  // characters
 /// tf2 never forgets a name: nobody's robot has so many, and a flood of names must not take all memory.
 constexpr std::size_t most_frames = 20000;
 constexpr std::size_t most_refused = 100;  // that are remembered
@@ -50,9 +49,9 @@ std::string transform_problem(const ReceivedTransform& received, Nanoseconds now
   std::ostringstream problem;
   if (without_slash(transform.child_frame_id).empty() || without_slash(transform.header.frame_id).empty()) {
     problem << "a frame without a name";
-  } else if (std::max(transform.child_frame_id.size(), transform.header.frame_id.size()) > longest_name) {
+  } else if (std::max(transform.child_frame_id.size(), transform.header.frame_id.size()) > most_name_characters) {
     problem << "a frame's name of " << std::max(transform.child_frame_id.size(), transform.header.frame_id.size())
-            << " characters; allowed: at most " << longest_name;
+            << " characters; allowed: at most " << most_name_characters;
   } else if (without_slash(transform.child_frame_id) == without_slash(transform.header.frame_id)) {
     problem << "a frame cannot be its own parent";
   } else if (!coordinate.contains(t.x) || !coordinate.contains(t.y) || !coordinate.contains(t.z)) {
@@ -79,7 +78,7 @@ bool FrameBuffer::insert(const ReceivedTransform& received, Nanoseconds now) {
   if (problem.empty() && !(know(child) && know(without_slash(received.transform.header.frame_id))))
     problem = "it would be more than " + std::to_string(most_frames) + " frames";
   if (!problem.empty()) {
-    refuse(child.substr(0, longest_name), problem);
+    refuse(child.substr(0, most_name_characters), problem);
     return false;
   }
   refused_.erase(child);

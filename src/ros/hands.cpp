@@ -19,9 +19,8 @@ using Feedback = visualization_msgs::InteractiveMarkerFeedback;
 const ros::WallDuration show_period(0.05);
 /// rviz is heard of four times a second while a handle is dragged, even where the mouse does not move.
 const ros::WallDuration longest_silence(2);
-constexpr std::size_t most_requests = 200;   // between two updates
-constexpr std::size_t longest_frame = 1000;  // characters
-constexpr double log_period = 1;             // [s]
+constexpr std::size_t most_requests = 200;  // between two updates
+constexpr double log_period = 1;            // [s]
 
 EditResult refused(const std::vector<std::string>& errors) {
   return {false, join(errors), {}};
@@ -43,7 +42,7 @@ Hands::Hands(ros::NodeHandle& private_node, Simulation& simulation)
 void Hands::receive(const Feedback& feedback) {
   const bool drags = feedback.event_type == Feedback::POSE_UPDATE;
   const std::string& frame = feedback.header.frame_id;
-  if (frame.size() > longest_frame) {
+  if (frame.size() > most_name_characters) {
     ROS_WARN_THROTTLE(log_period, "hands: header.frame_id: %s; allowed: frames that tf knows", quoted(frame).c_str());
     return;
   }

@@ -17,6 +17,7 @@ constexpr double plane_thickness = 0.01;   // [m]
 constexpr float plane_brightness = 1.4f;   // what lies or stands on it is told apart
 constexpr double scale_tolerance = 1e-6;   // between edges that have to be equal
 constexpr double length_tolerance = 0.01;  // of an orientation: it may have been rounded
+constexpr std::size_t longest_uri = 4096;  // [characters] as paths
 
 Marker make_marker(int type, const Pose& pose, const Vector3& scale) {
   Marker marker;
@@ -68,6 +69,10 @@ std::string vector_text(const Vector3& v) {
   return "[" + number_text(v.x()) + ", " + number_text(v.y()) + ", " + number_text(v.z()) + "]";
 }
 
+std::string too_long(const std::string& text, std::size_t longest) {
+  return std::to_string(text.size()) + " characters; allowed: at most " + std::to_string(longest);
+}
+
 bool are_equal(double a, double b) {
   return std::abs(a - b) <= scale_tolerance * std::abs(a);
 }
@@ -90,6 +95,8 @@ std::string set_shape(const Marker& marker, Obstacle& obstacle) {
       obstacle.shape = CylinderShape{scale.x() / 2, scale.z()};
       return are_equal(scale.x(), scale.y()) ? "" : scale_text + "equal x and y for a CYLINDER, no elliptic ones";
     case Marker::MESH_RESOURCE:
+      if (marker.mesh_resource.size() > longest_uri)
+        return "mesh_resource: " + quoted(marker.mesh_resource) + ", of " + too_long(marker.mesh_resource, longest_uri);
       obstacle.shape = MeshShape{nullptr, marker.mesh_resource, scale};
       return "";
     default:
@@ -119,6 +126,10 @@ std::vector<Marker> obstacle_markers(const Obstacle& obstacle, const Pose& frame
 
 MarkerObstacle obstacle_of(const Marker& marker) {
   MarkerObstacle result;
+  if (marker.ns.size() > most_name_characters) {
+    result.problem = "ns: " + quoted(marker.ns) + ", of " + too_long(marker.ns, most_name_characters);
+    return result;
+  }
   result.obstacle.name = marker.ns + "/" + std::to_string(marker.id);
   if (!is_frame_name(marker.header.frame_id)) {
     result.problem = "header.frame_id: " + quoted(marker.header.frame_id) + "; allowed: " + frame_words;

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "verlet_cable/core/quoted_text.h"
+#include "verlet_cable/core/scene_fields.h"
 #include "verlet_cable/scene/resource.h"
 #include "xml_outline.h"
 
@@ -84,7 +85,12 @@ void check_size(const std::string& text) {
 class TreeBuilder {
  public:
   TreeBuilder(const urdf::ModelInterface& model, const RobotDesc& robot) : robot_(robot) {
-    for (const auto& link : model.links_) taken_.insert(link.first);
+    for (const auto& link : model.links_) {
+      if (link.first.size() > most_name_characters)
+        throw ResourceError("no URDF: link " + quoted(link.first) + ", a name of " + std::to_string(link.first.size()) +
+                            " characters, more than " + std::to_string(most_name_characters));
+      taken_.insert(link.first);
+    }
     add(*model.getRoot(), -1);
   }
 

@@ -9,6 +9,7 @@
 #include "obstacle_keys.h"
 #include "scene_files.h"
 #include "verlet_cable/scene/material_presets.h"
+#include "within_memory.h"
 
 namespace verlet_cable {
 namespace {
@@ -99,9 +100,7 @@ void check_not_empty(const Value& root, const std::set<std::string>& given, cons
   if (cables.node.IsSequence()) cables.reject(allowed);
 }
 
-}  // namespace
-
-SceneDesc read_scene(const YAML::Node& root, const std::vector<std::string>& ignored, const SceneSources& sources) {
+SceneDesc read_all(const YAML::Node& root, const std::vector<std::string>& ignored, const SceneSources& sources) {
   SceneDesc scene;
   ErrorList errors;
   const Value value{root, "", &errors};
@@ -115,6 +114,12 @@ SceneDesc read_scene(const YAML::Node& root, const std::vector<std::string>& ign
   }
   if (!errors.empty()) throw SceneError(errors.take());
   return scene;
+}
+
+}  // namespace
+
+SceneDesc read_scene(const YAML::Node& root, const std::vector<std::string>& ignored, const SceneSources& sources) {
+  return within_memory([&] { return read_all(root, ignored, sources); });
 }
 
 }  // namespace verlet_cable

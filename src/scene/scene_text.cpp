@@ -4,17 +4,19 @@
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
+#include <istream>
 #include <map>
-#include <sstream>
 #include <system_error>
 
+#include "guarded_text.h"
 #include "value.h"
 #include "verlet_cable/scene/scene_reader.h"
+#include "within_memory.h"
 
 namespace verlet_cable {
 namespace {
 
-constexpr std::size_t largest_text = std::size_t{64} << 20;
+constexpr std::size_t largest_text = std::size_t{16} << 20;  // [byte] 10,000 cables are 3 MB
 constexpr std::size_t most_values = 1'000'000;
 constexpr std::size_t deepest_level = 32;
 constexpr std::size_t longest_message = 300;
@@ -26,6 +28,9 @@ std::string place_text(const YAML::Mark& mark) {
 /// Counts values and levels while YAML is parsed, before anything is built of it: a short text can stand for a tree without end.
 class SizeCheck : public YAML::EventHandler {
  public:
+  /// `text` outlives this.
+  explicit SizeCheck(GuardedText& text) : text_(text) {}
+
   void OnDocumentStart(const YAML::Mark& mark) override {
     if (++documents_ > 1) fail(mark, "a second document (---); allowed: one");
   }
@@ -65,6 +70,7 @@ class SizeCheck : public YAML::EventHandler {
   }
 
   void count(const YAML::Mark& mark, std::size_t values) {
+    text_.let_go();
     values_ += values;
     if (values_ > most_values) fail(mark, "more than " + std::to_string(most_values) + " values");
   }
@@ -90,6 +96,7 @@ class SizeCheck : public YAML::EventHandler {
     if (closed.anchor != 0) subtrees_[closed.anchor] = {values_ - closed.values_before, closed.levels};
   }
 
+  GuardedText& text_;
   std::size_t documents_ = 0;
   std::size_t values_ = 0;
   std::vector<Open> open_;
@@ -97,32 +104,20 @@ class SizeCheck : public YAML::EventHandler {
 };
 
 void check_size(const std::string& text) {
-  std::istringstream stream(text);
+  GuardedText guarded(text);
+  std::istream stream(&guarded);
   YAML::Parser parser(stream);
-  SizeCheck check;
-  while (parser.HandleNextDocument(check)) {
-  }
-}
-
-}  // namespace
-
-SceneDesc read_scene_text(const std::string& text, const SceneSources& sources) {
-  if (text.size() > largest_text)
-    throw SceneError(
-        {"scene: " + std::to_string(text.size()) + " bytes or more; allowed: at most " + std::to_string(largest_text)});
+  SizeCheck check(guarded);
   try {
-    check_size(text);
-    return read_scene(YAML::Load(text), {}, sources);
-  } catch (const YAML::Exception& error) {
-    throw SceneError({place_text(error.mark) + escaped(error.msg, longest_message)});
+    while (parser.HandleNextDocument(check)) {
+    }
+  } catch (const YAML::Exception&) {
+    if (guarded.problem().empty()) throw;
   }
+  if (!guarded.problem().empty()) throw SceneError({guarded.problem()});
 }
 
-SceneDesc read_scene_file(const std::string& path) {
-  return read_scene_file(path, {{true, std::filesystem::path(path).parent_path().string()}, {}});
-}
-
-SceneDesc read_scene_file(const std::string& path, const SceneSources& sources) {
+std::string text_of(const std::string& path) {
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   std::string text;
@@ -134,7 +129,31 @@ SceneDesc read_scene_file(const std::string& path, const SceneSources& sources) 
   }
   if (!file.is_open() || file.bad())
     throw SceneError({"scene: cannot read " + quoted(path) + ": " + std::generic_category().message(errno ? errno : EIO)});
-  return read_scene_text(text, sources);
+  return text;
+}
+
+}  // namespace
+
+SceneDesc read_scene_text(const std::string& text, const SceneSources& sources) {
+  if (text.size() > largest_text)
+    throw SceneError(
+        {"scene: " + std::to_string(text.size()) + " bytes or more; allowed: at most " + std::to_string(largest_text)});
+  try {
+    return within_memory([&] {
+      check_size(text);
+      return read_scene(YAML::Load(text), {}, sources);
+    });
+  } catch (const YAML::Exception& error) {
+    throw SceneError({place_text(error.mark) + escaped(error.msg, longest_message)});
+  }
+}
+
+SceneDesc read_scene_file(const std::string& path) {
+  return read_scene_file(path, {{true, std::filesystem::path(path).parent_path().string()}, {}});
+}
+
+SceneDesc read_scene_file(const std::string& path, const SceneSources& sources) {
+  return read_scene_text(within_memory([&] { return text_of(path); }), sources);
 }
 
 }  // namespace verlet_cable

@@ -75,6 +75,15 @@ TEST_F(Recordings, SayWhatIsWrong) {
   expect_error(header + rows(11) + row("0.9", "0"), "line 13: markers 0 and 1 at the same place; allowed: two places");
 }
 
+TEST_F(Recordings, TimesThatCannotBeMeantAreRefused) {
+  const std::string far = write(header + rows(11) + row("1e6"));
+  EXPECT_EQ(errors_of({far}), far + ": 1000000 s long in all; allowed: at most 10000 s\n");
+  const std::string half = write(header + rows(11) + row("6000"));
+  EXPECT_EQ(errors_of({half}), "");
+  EXPECT_EQ(errors_of({half, half}), "the recordings: 11999 s long in all; allowed: at most 10000 s\n");
+  expect_error(header + rows(11) + row("0.600000000001", "0.2"), "line 13: marker 1 moves at 1e+11 m/s since the row before, ");
+}
+
 TEST_F(Recordings, AllErrorsAreSaidAtOnce) {
   const std::string five = "t,x0,y0,z0,x1,y1,z1,x2,y2,z2,x3,y3,z3,x4,y4,z4\n";
   std::string five_rows;

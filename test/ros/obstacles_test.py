@@ -16,8 +16,9 @@ from verlet_cable.msg import CableEvent
 NAN = float('nan')
 
 
-def marker(number, kind=Marker.CUBE, action=Marker.ADD, frame='world', position=(0, 1, 1), scale=(0.1, 0.1, 0.1), **fields):
-    message = Marker(ns='seen', id=number, type=kind, action=action, **fields)
+def marker(number, kind=Marker.CUBE, action=Marker.ADD, frame='world', position=(0, 1, 1), scale=(0.1, 0.1, 0.1), ns='seen',
+           **fields):
+    message = Marker(ns=ns, id=number, type=kind, action=action, **fields)
     message.header.frame_id = frame
     message.pose = Pose(Point(*position), Quaternion(0, 0, 0, 1))
     message.scale = Vector3(*scale)
@@ -147,6 +148,8 @@ class ObstaclesTest(unittest.TestCase):
         bad = {
             'scale: [': marker(1, scale=(NAN, 1, 1)),
             'scale: [0, 1, 1]': marker(2, scale=(0, 1, 1)),
+            'ns: "nnn': marker(5, ns=1001 * 'n'),
+            'mesh_resource: "file:///aaa': marker(6, Marker.MESH_RESOURCE, mesh_resource='file:///' + 5000 * 'a'),
             'pose.position': marker(3, position=(math.inf, 0, 0)),
             'no ellipsoids': marker(4, Marker.SPHERE, scale=(1, 2, 1)),
             'no elliptic ones': marker(5, Marker.CYLINDER, scale=(1, 2, 1)),

@@ -19,25 +19,50 @@ TEST_F(CableSim, aFullDeviceExitsWithThree) {
   EXPECT_NE(err.find("stopped at 0.1 s: cannot write \"/dev/full\": No space left on device"), std::string::npos) << err;
 }
 
-TEST_F(CableSim, aFullDiskStopsTheRunAndLeavesNoHalfFile) {
+/// Rows of the scene's 21 nodes, for all times until the last.
+void expect_whole_times(const std::vector<Row>& rows) {
+  ASSERT_FALSE(rows.empty());
+  ASSERT_EQ(rows.size() % 21, 0u);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    ASSERT_EQ(rows[i].node, static_cast<int>(i % 21));
+    ASSERT_EQ(rows[i].time, rows[i - i % 21].time);
+  }
+}
+
+TEST_F(CableSim, aFullDiskStopsTheRunAndKeepsWhatWasDone) {
   const std::string scene = write("scene.yaml", sound_scene);
   write("o.csv", "old");
   const std::string arguments = scene + " --duration 1e6 --output " + path("o.csv") + " --summary " + path("s.json");
   EXPECT_EQ(run(arguments, small_disk), 3);
-  EXPECT_NE(err.find("cannot write \"" + path("o.csv") + "\": File too large"), std::string::npos) << err;
-  EXPECT_EQ(content(path("o.csv")), "old");
+  const std::vector<Row> kept = rows("o.csv");
+  expect_whole_times(kept);
+  EXPECT_GT(content(path("o.csv")).size(), 45000u);
+  EXPECT_EQ(content(path("o.csv")).back(), '\n');
+  std::ostringstream until;
+  until << "cannot write \"" << path("o.csv") << "\": File too large; it holds all until " << kept.back().time << " s\n";
+  EXPECT_NE(err.find(until.str()), std::string::npos) << err;
   // The summary had room.
   const double time = summary("s.json")["sim_time"].as<double>();
-  EXPECT_GT(time, 0);
+  EXPECT_GE(time, kept.back().time);
   EXPECT_LT(time, 1000);
   EXPECT_NE(err.find("stopped at " + summary("s.json")["sim_time"].Scalar() + " s: "), std::string::npos) << err;
   EXPECT_EQ(parts(), std::vector<std::string>());
 }
 
-TEST_F(CableSim, whatComesLateAndDoesNotFitIsNotLeftEither) {
+TEST_F(CableSim, whatComesLateAndDoesNotFitIsCutAfterAWholeTime) {
   const std::string scene = write("scene.yaml", sound_scene);
   EXPECT_EQ(run(scene + " --duration 1 --output " + path("o.csv"), small_disk), 3);
-  EXPECT_FALSE(exists("o.csv"));
+  expect_whole_times(rows("o.csv"));
+  EXPECT_EQ(parts(), std::vector<std::string>());
+}
+
+/// Not one time is whole: nothing takes the place of what was there.
+TEST_F(CableSim, aDiskWithoutRoomForOneTimeLeavesWhatWasThere) {
+  const std::string scene = write("scene.yaml", sound_scene);
+  write("o.csv", "old");
+  EXPECT_EQ(run(scene + " --duration 1 --output " + path("o.csv"), "ulimit -f 1; "), 3);
+  EXPECT_NE(err.find("\": File too large\n"), std::string::npos) << err;
+  EXPECT_EQ(content(path("o.csv")), "old");
   EXPECT_EQ(parts(), std::vector<std::string>());
 }
 
@@ -101,7 +126,7 @@ TEST_F(CableSim, namedPipesAreRefused) {
 TEST_F(CableSim, endlessInputIsRefused) {
   const std::string scene = write("scene.yaml", sound_scene);
   EXPECT_EQ(run("/dev/zero"), 2);
-  EXPECT_NE(err.find("allowed: at most 67108864"), std::string::npos) << err;
+  EXPECT_NE(err.find("allowed: at most 16777216"), std::string::npos) << err;
   EXPECT_EQ(run(scene + " --motion /dev/zero"), 2);
   EXPECT_NE(err.find("line 1: too long"), std::string::npos) << err;
   EXPECT_EQ(run(path("")), 2);

@@ -108,6 +108,15 @@ cables:
   EXPECT_EQ(json["state_hash"].Scalar().size(), 16u);
 }
 
+TEST_F(CableSim, atMostTenFramesThatAreNotUsedAreNamed) {
+  const std::string scene = write("scene.yaml", sound_scene);
+  std::string motion = "t,frame,x,y,z,qx,qy,qz,qw\n";
+  for (int i = 10; i < 30; ++i) motion += "0,f" + std::to_string(i) + ",0,0,0,0,0,0,1\n";
+  ASSERT_EQ(run(scene + " --duration 0 --motion " + write("m.csv", motion)), 0) << err;
+  EXPECT_NE(err.find("the scene does not use frames \"f10\", \"f11\""), std::string::npos) << err;
+  EXPECT_NE(err.find("\"f19\" and 10 more\n"), std::string::npos) << err;
+}
+
 TEST_F(CableSim, motionIsFollowedAndHeld) {
   const std::string scene = write("scene.yaml", sound_scene);
   const std::string motion = write(

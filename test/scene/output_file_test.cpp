@@ -160,6 +160,27 @@ TEST_F(OutputFileTest, whatCannotBeRenamedIsNamed) {
   EXPECT_EQ(content(path(names()[1])), "new");
 }
 
+TEST_F(OutputFileTest, onlyWhatIsThereIsNamed) {
+  std::filesystem::create_directory(path("d"));
+  OutputFile file;
+  begin(file, "d/o");
+  std::filesystem::remove_all(path("d"));
+  EXPECT_EQ(file.finish(), "No such file or directory");
+}
+
+TEST_F(OutputFileTest, roomThatIsNotUsedIsGivenBack) {
+  OutputFile file;
+  begin(file, "o");
+  file.reserve(1'000'000);
+  struct stat status {};
+  ASSERT_EQ(stat(path(parts().at(0)).c_str(), &status), 0);
+  EXPECT_EQ(status.st_size, 3);
+  EXPECT_EQ(file.finish(), "");
+  EXPECT_EQ(content(path("o")), "new");
+  ASSERT_EQ(stat(path("o").c_str(), &status), 0);
+  EXPECT_LT(status.st_blocks * 512, 100'000);
+}
+
 TEST_F(OutputFileTest, unfinishedFilesCanBeRemovedAtOnce) {
   OutputFile file, whole;
   begin(file, "a");

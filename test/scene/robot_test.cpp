@@ -195,6 +195,7 @@ TEST_F(Robot, whatIsTooDeepOrTooLongForTheParserIsNamed) {
   expect("<robot name='r'><a <b></robot>", "byte 19: a < inside of a tag");
   expect("<robot name='r'>1 < 2</robot>", "byte 18: a < that starts no tag");
   expect("<!DOCTYPE r [<!ENTITY a '&b;&b;'>]><robot name='r'/>", "byte 0: a document type with definitions");
+  expect("<robot name='r'><link name='" + std::string(1001, 'l') + "'/></robot>", "link \"lll");
   expect("<robot name='r'/>" + std::string(5'000'000, ' '), "5000017 bytes, more than 4194304");
 }
 

@@ -189,6 +189,20 @@ TEST(SceneErrors, allComeAtOnceAndInTheSameOrder) {
   EXPECT_EQ(errors, errors_of(text));
 }
 
+/// Every contact and every marker has a copy of a name.
+TEST(SceneErrors, namesAreNotLongerThanAThousandCharacters) {
+  const auto named = [](const std::string& cable, const std::string& frame) {
+    return replaced(replaced(sound_scene, "hose", cable), "frame: hand", "frame: " + frame);
+  };
+  EXPECT_EQ(joined(errors_of(named(std::string(1000, 'c'), std::string(1000, 'f')))), "");
+  const auto errors = errors_of(named(std::string(1001, 'c'), std::string(1001, 'f')));
+  EXPECT_EQ(errors.size(), 2u) << joined(errors);
+  EXPECT_TRUE(has_line(errors, "cables[0].name: \"ccc")) << joined(errors);
+  EXPECT_NE(joined(errors).find("...\"; allowed: at most 1000 letters, digits and _, a letter first\n"), std::string::npos);
+  EXPECT_TRUE(has_line(errors, "cables[0].attachments[1].frame: \"fff")) << joined(errors);
+  EXPECT_NE(joined(errors).find("without blanks, at most 1000 characters\n"), std::string::npos);
+}
+
 TEST(SceneErrors, elasticModuliAreOneSetOfKeys) {
   const auto errors_of_material = [](const std::string& keys) {
     return errors_of(replaced(sound_scene, "{linear_density: 0.1, radius: 0.005}", "{" + keys + "}"));

@@ -133,6 +133,8 @@ constexpr std::array<Field<ContactDesc>, 1> contact_fields{{
     {"friction", &ContactDesc::friction, "", not_negative},
 }};
 
+/// Of every name, also of frames and of obstacles of the topic: each contact and each marker has a copy.
+constexpr std::size_t most_name_characters = 1000;
 /// Whether a scene may use `name` for a material, cable, attachment or obstacle: letters, digits and _, a letter first.
 bool is_name(const std::string& name);
 /// Whether `name` can be a tf frame: not empty, no leading /, no blanks or control characters.
@@ -145,7 +147,7 @@ bool has_dimension(ShapeType type, const std::string& key);
 std::string material_names(const std::vector<NamedMaterial>& materials);
 
 /// What is allowed, for messages.
-constexpr const char* name_words = "letters, digits and _, a letter first";
-constexpr const char* frame_words = "a frame name without leading / and without blanks";
+constexpr const char* name_words = "at most 1000 letters, digits and _, a letter first";
+constexpr const char* frame_words = "a frame name without leading / and without blanks, at most 1000 characters";
 
 }  // namespace verlet_cable

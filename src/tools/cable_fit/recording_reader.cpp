@@ -19,6 +19,9 @@ constexpr std::size_t most_errors = 100;
 constexpr std::size_t longest_line = 1'000'000;
 constexpr std::size_t most_numbers = 100'000'000;
 constexpr double least_distance = 1e-6;  // [m] of two held markers, for a direction
+constexpr double greatest_speed = 1e4;   // [m/s] of a marker
+/// [s] of all recordings: a fit simulates them hundreds of times.
+constexpr double longest_time = 1e4;
 
 std::vector<std::string> column_names(std::size_t markers) {
   std::vector<std::string> names{"t"};
@@ -113,8 +116,20 @@ class RecordingReader {
         add_line_error("markers " + std::to_string(i) + " and " + std::to_string(i + 1) + " at the same place",
                        "two places, as they give the direction in which the cable is held");
     }
+    if (!recording_.times.empty()) check_speeds(numbers[0] - recording_.times.back(), markers);
     recording_.times.push_back(numbers[0]);
     recording_.markers.push_back(std::move(markers));
+  }
+
+  /// `interval`: since the row before [s].
+  void check_speeds(double interval, const std::vector<Vector3>& markers) {
+    for (std::size_t i = 0; i < markers.size(); ++i) {
+      const double speed = (markers[i] - recording_.markers.back()[i]).norm() / interval;
+      if (!(speed <= greatest_speed))
+        return add_line_error("marker " + std::to_string(i) + " moves at " + rounded_text(speed) + " m/s since the row before, " +
+                                  number_text(interval) + " s earlier",
+                              "at most " + number_text(greatest_speed) + " m/s");
+    }
   }
 
   std::vector<std::string>& errors_;
@@ -128,14 +143,19 @@ class RecordingReader {
 
 std::vector<Recording> read_recordings(const std::vector<std::string>& paths, std::vector<std::string>& errors) {
   std::vector<Recording> recordings;
+  double time = 0;
   for (const std::string& path : paths) {
     recordings.push_back(RecordingReader(path, errors).read());
+    if (!recordings.back().times.empty()) time += recordings.back().times.back();
     if (recordings.front().markers.empty() || recordings.back().markers.empty()) continue;
     const int first = recordings.front().marker_count(), count = recordings.back().marker_count();
     if (count != first)
       errors.push_back(path + ": " + std::to_string(count) + " markers; allowed: " + std::to_string(first) + ", as in " +
                        recordings.front().path);
   }
+  if (time > longest_time)
+    errors.push_back((paths.size() == 1 ? paths.front() : "the recordings") + ": " + rounded_text(time) +
+                     " s long in all; allowed: at most " + number_text(longest_time) + " s");
   return recordings;
 }
 

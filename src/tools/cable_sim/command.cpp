@@ -1,5 +1,6 @@
 #include "command.h"
 
+#include <algorithm>
 #include <iostream>
 
 #include "common/messages.h"
@@ -13,6 +14,8 @@ namespace verlet_cable::cable_sim {
 namespace {
 
 constexpr const char* program = "cable_sim";
+constexpr std::size_t room_for_events = 65536;  // [byte]
+constexpr std::size_t most_noted = 10;
 
 int refuse(const std::vector<std::string>& errors) {
   return tools::refuse(program, errors, "nothing was simulated");
@@ -36,14 +39,14 @@ struct Outputs {
   }
 };
 
-/// `time`: simulated so far [s].
-bool finish(tools::OutputFile& file, const std::string& path, double time) {
+/// `time`: simulated so far [s]. `full`: what happened where the disk became full and some is kept, else empty.
+bool finish(tools::OutputFile& file, const std::string& path, double time, const std::string& full = "") {
   if (path.empty()) return true;
   const std::string problem = file.finish();
-  if (!problem.empty())
-    std::cerr << program << ": stopped at " << number_text(time) << " s: cannot write " << tools::quoted_path(path) << ": "
-              << problem << "\n";
-  return problem.empty();
+  if (problem.empty() && full.empty()) return true;
+  std::cerr << program << ": stopped at " << number_text(time) << " s: cannot write " << tools::quoted_path(path) << ": "
+            << (problem.empty() ? full : problem) << "\n";
+  return false;
 }
 
 /// Says why a run ended early, but for a file that cannot be written, of which `finish` tells.
@@ -51,6 +54,16 @@ void report(RunEnd end, const char* signal, double time) {
   const std::string start = std::string(program) + ": stopped at " + number_text(time) + " s: ";
   if (end == RunEnd::fault) std::cerr << start << "the simulation failed, see the event FAULT\n";
   if (end == RunEnd::signal) std::cerr << start << "ended by " << signal << ", before its duration was over\n";
+}
+
+void note_unused(const Options& options, const std::vector<std::string>& frames) {
+  if (frames.empty()) return;
+  const std::size_t listed = std::min(frames.size(), most_noted);
+  std::cerr << program << ": note: " << tools::path_text(options.motion) << ": the scene does not use "
+            << (frames.size() == 1 ? "frame" : "frames");
+  for (std::size_t i = 0; i < listed; ++i) std::cerr << (i == 0 ? " " : ", ") << quoted(frames[i]);
+  if (listed < frames.size()) std::cerr << " and " << frames.size() - listed << " more";
+  std::cerr << "\n";
 }
 
 int simulate_job(const Options& options, const Job& job) {
@@ -62,9 +75,7 @@ int simulate_job(const Options& options, const Job& job) {
   std::vector<std::string> errors;
   outputs.open(options, errors);
   if (!errors.empty()) return refuse(errors);
-  for (const std::string& frame : unused_frames(job.scene, job.motion))
-    std::cerr << "cable_sim: note: " << tools::path_text(options.motion) << ": the scene does not use frame "
-              << quoted(frame) << "\n";
+  note_unused(options, unused_frames(job.scene, job.motion));
 
   const bool has_data = tools::is_standard_output(options.output) || tools::is_standard_output(options.summary);
   tools::ProgressBar progress(options.duration, "s", has_data);
@@ -74,14 +85,15 @@ int simulate_job(const Options& options, const Job& job) {
   events.add_starts(world);
   CsvWriter csv(outputs.csv);
   Summary summary(world, averaged_steps(job));
+  // A summary tells of a disk that rows have filled.
+  if (!options.summary.empty()) outputs.summary.reserve(2 * summary.json(world, {}).size() + room_for_events);
   const RunEnd end =
       simulate(job, options.rate, frames, world, {options.output.empty() ? nullptr : &csv, summary, events, progress, stop});
   progress.clear();
   report(end, stop.signal(), world.time());
 
   if (!options.output.empty()) csv.flush();
-  // First, so that a summary has room where the rows had not.
-  bool good = finish(outputs.csv, options.output, world.time());
+  bool good = finish(outputs.csv, options.output, world.time(), csv.keep_whole_times());
   if (!options.summary.empty()) {
     const std::string json = summary.json(world, events.events());
     outputs.summary.write(json.data(), json.size());

@@ -30,6 +30,7 @@ void CsvWriter::write_nodes(const World& world) {
   }
   for (const SimulatedParticle& particle : world.particles())
     write_row(time + ',' + particle.desc.name + ',', 0, particle.position, particle.velocity, 0);
+  if (!has_failed()) whole_.push_back({file_.written() + buffer_.size(), world.time()});
   // Who reads from a pipe sees each row when it is there.
   if (file_.is_direct()) flush();
 }
@@ -48,6 +49,17 @@ void CsvWriter::write_row(const std::string& start, std::size_t node, const Vect
 void CsvWriter::flush() {
   file_.write(buffer_.data(), buffer_.size());
   buffer_.clear();
+  if (has_failed()) return;
+  const auto behind = [this](const Whole& whole) { return whole.size > file_.written(); };
+  const auto first_behind = std::find_if(whole_.begin(), whole_.end(), behind);
+  if (first_behind - whole_.begin() > 1) whole_.erase(whole_.begin(), first_behind - 1);
+}
+
+std::string CsvWriter::keep_whole_times() {
+  const auto is_there = [this](const Whole& whole) { return whole.size <= file_.written(); };
+  const auto last = std::find_if(whole_.rbegin(), whole_.rend(), is_there);
+  const std::string problem = last == whole_.rend() ? "" : file_.keep_first(last->size);
+  return problem.empty() ? "" : problem + "; it holds all until " + number_text(last->time) + " s";
 }
 
 void CsvWriter::append(double number) {

@@ -143,6 +143,7 @@ void OutputFile::write(const char* text, std::size_t size) {
     if (written >= 0) {
       text += written;
       size -= static_cast<std::size_t>(written);
+      written_ += static_cast<std::size_t>(written);
     } else if (errno == EAGAIN) {
       pollfd ready{descriptor_, POLLOUT, 0};
       poll(&ready, 1, -1);
@@ -152,7 +153,21 @@ void OutputFile::write(const char* text, std::size_t size) {
   }
 }
 
+void OutputFile::reserve(std::size_t size) {
+  if (is_direct() || fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(size)) != 0) return;
+  is_reserved_ = true;
+}
+
+std::string OutputFile::keep_first(std::size_t size) {
+  const bool is_full = error_ == ENOSPC || error_ == EFBIG || error_ == EDQUOT;
+  if (!is_full || is_direct() || size > written_ || ftruncate(descriptor_, static_cast<off_t>(size)) != 0) return "";
+  written_ = size;
+  return error_text(std::exchange(error_, 0));
+}
+
 std::string OutputFile::finish() {
+  // To its own size: that gives back the room behind it.
+  if (error_ == 0 && is_reserved_ && ftruncate(descriptor_, static_cast<off_t>(written_)) != 0) error_ = errno;
   // Some file systems find out only then that there is no room.
   if (error_ == 0 && !is_direct() && fsync(descriptor_) != 0 && errno != EINVAL) error_ = errno;
   close();
@@ -165,7 +180,8 @@ std::string OutputFile::finish() {
   const std::string whole = std::exchange(part_, "");
   if (rename(whole.c_str(), target_.c_str()) == 0) return "";
   error_ = errno;
-  return error_text(error_) + "; all of it is in " + quoted_path(whole);
+  const bool is_left = access(whole.c_str(), F_OK) == 0;
+  return error_text(error_) + (is_left ? "; all of it is in " + quoted_path(whole) : "");
 }
 
 void OutputFile::close() {

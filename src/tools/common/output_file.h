@@ -33,11 +33,18 @@ class OutputFile {
   /// Does nothing after an error.
   void write(const char* text, std::size_t size);
   bool has_failed() const { return error_ != 0; }
+  /// [byte] in the file so far.
+  std::size_t written() const { return written_; }
+  /// Takes room on the disk for so many bytes, if it can.
+  void reserve(std::size_t size);
+  /// Where the disk became full, keeps the first `size` bytes for `finish` to put in their place. Returns what the error was;
+  /// empty if there was none or nothing can be kept.
+  std::string keep_first(std::size_t size);
   bool is_open() const { return descriptor_ >= 0; }
   /// Whether it is written directly, so that others may read it already.
   bool is_direct() const { return part_.empty(); }
   /// Puts the whole file in its place. Returns what went wrong since `open`, empty if nothing: nothing is left of it then, but
-  /// for a whole file that could not be renamed, which is named.
+  /// for a whole file that is there and could not be renamed, which is named.
   std::string finish();
 
  private:
@@ -48,6 +55,8 @@ class OutputFile {
   std::string target_;  ///< links followed
   std::string part_;    ///< empty: written directly
   int descriptor_ = -1;
+  std::size_t written_ = 0;
+  bool is_reserved_ = false;
   int error_ = 0;  ///< the first one
   int slot_ = -1;  ///< in the list of what is to be removed when the program ends early
 };

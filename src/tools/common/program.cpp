@@ -79,8 +79,8 @@ void occupy_standard_streams() {
 
 int run_program(const char* name, int (*run)(const std::vector<std::string>& arguments), int argc, char** argv) {
   program_name = name;
-  occupy_standard_streams();
   handle_signals();
+  occupy_standard_streams();
   try {
     return run({argv + std::min(argc, 1), argv + argc});
   } catch (const std::exception& error) {
