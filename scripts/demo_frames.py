@@ -90,7 +90,7 @@ class Director:
             self._show('a rope between two moving frames')
             self._sleep_until(started, cycle * CYCLE + CUT_AT)
             self._check(self._cut(CableLocation(cable='rope', mode=CableLocation.ARC_LENGTH, arc_length=CUT_PLACE)))
-            self._show('cut!')
+            self._show(f'cut by the demo, whole again in {RESET_AT - CUT_AT:.0f} s')
             self._sleep_until(started, cycle * CYCLE + RESET_AT)
             self._check(self._reset())
             cycle += 1

@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""play_motion.py: sends the frames of a motion (CSV: t,frame,x,y,z,qx,qy,qz,qw, as for cable_sim) on tf at 100 Hz.
+"""Sends the frames of a motion (CSV: t,frame,x,y,z,qx,qy,qz,qw, as for cable_sim) on tf at 100 Hz.
 
 Between rows the frames move as in cable_sim (src/scene/motion.cpp): positions follow a cubic Hermite spline with limited tangents,
 orientations slerp. When all is played, the frames stay for `~pause` seconds and go back the way they came; then the cables are reset,
-and it begins again. Where there is no file, nothing moves: there is only a frame `scene`, so that tf knows `world`.
+and it begins again.
 """
-import csv
+import math
 import os
 import sys
 import threading
@@ -20,6 +20,14 @@ from verlet_cable.msg import CableArray
 
 RATE = 100.0  # [Hz]
 REWIND = 3.0  # times as fast as forward
+HEADER = 't,frame,x,y,z,qx,qy,qz,qw'
+LARGEST = 1e9  # [s, m] as for cable_sim
+LEAST_QUATERNION = 1e-6
+USAGE = 'usage: rosrun verlet_cable play_motion.py _motion:=MOTION.csv [_pause:=SECONDS]'
+
+
+class MotionError(Exception):
+    """A file that is not a motion; the message names the file, the line, what was found and what is allowed."""
 
 
 class Track:
@@ -74,13 +82,58 @@ def slerp(first, second, u):
 
 
 def read_motion(path):
-    """Tracks by frame."""
+    """Tracks by frame. Raises MotionError."""
+    try:
+        with open(path, encoding='utf-8-sig') as file:
+            lines = [(number, line.strip()) for number, line in enumerate(file, start=1)]
+    except FileNotFoundError as error:
+        raise MotionError(f'motion: "{os.path.abspath(path)}": no such file') from error
+    except OSError as error:
+        raise MotionError(f'motion: "{os.path.abspath(path)}": cannot be read: {error.strerror}') from error
+    except UnicodeDecodeError as error:
+        raise MotionError(f'{path}: not a text file; allowed: {HEADER}') from error
+    lines = [(number, line) for number, line in lines if line]
+    if not lines:
+        raise MotionError(f'{path}: empty; allowed: the header {HEADER} and rows')
+    number, header = lines[0]
+    if header != HEADER:
+        raise MotionError(f'{path}: line {number}: header "{header[:80]}"; allowed: {HEADER}')
     rows = {}
-    with open(path, newline='') as file:
-        for row in csv.DictReader(file):
-            numbers = [float(row[key]) for key in ('t', 'x', 'y', 'z', 'qx', 'qy', 'qz', 'qw')]
-            rows.setdefault(row['frame'], []).append(numbers)
+    for number, line in lines[1:]:
+        frame, row = read_row(line, f'{path}: line {number}')
+        earlier = rows.setdefault(frame, [])
+        if earlier and row[0] <= earlier[-1][0]:
+            raise MotionError(f'{path}: line {number}: t {row[0]:g} of "{frame}"; allowed: times that ascend, the frame\'s last one is '
+                              f'{earlier[-1][0]:g}')
+        earlier.append(row)
+    if not rows:
+        raise MotionError(f'{path}: no rows; allowed: at least one pose')
     return {frame: Track(numbers) for frame, numbers in rows.items()}
+
+
+def read_row(line, place):
+    """The frame of a row, and its numbers: t, x, y, z, qx, qy, qz, qw."""
+    cells = [cell.strip() for cell in line.split(',')]
+    names = HEADER.split(',')
+    if len(cells) != len(names):
+        raise MotionError(f'{place}: {len(cells)} columns; allowed: {len(names)}: {HEADER}')
+    numbers = []
+    for name, cell in zip(names, cells):
+        if name == 'frame':
+            continue
+        try:
+            number = float(cell)
+        except ValueError:
+            number = math.nan
+        if not abs(number) <= LARGEST:
+            raise MotionError(f'{place}: {name} "{cell}"; allowed: numbers from {-LARGEST:g} to {LARGEST:g}')
+        numbers.append(number)
+    frame = cells[names.index('frame')]
+    if not frame or frame.startswith('/'):
+        raise MotionError(f'{place}: frame "{frame}"; allowed: names of tf frames, without a leading /')
+    if np.linalg.norm(numbers[4:]) < LEAST_QUATERNION:
+        raise MotionError(f'{place}: quaternion of length 0; allowed: any other, it is normalized')
+    return frame, numbers
 
 
 def transform(frame, pose, stamp):
@@ -132,19 +185,25 @@ class Player:
         self._rate.sleep()
 
 
+def check_arguments(arguments):
+    """Answers --help, and ends with the usage where there is anything but ROS's own arguments."""
+    if any(argument in ('-h', '--help') for argument in arguments):
+        print(f'{USAGE}\n\n{__doc__.strip()}')
+        sys.exit()
+    if arguments:
+        sys.exit(f'play_motion.py: argument "{arguments[0]}"; allowed: _name:=value\n{USAGE}')
+
+
 def main():
+    check_arguments(rospy.myargv()[1:])
     rospy.init_node('play_motion')
     path = rospy.get_param('~motion', '')
     if not path:
-        sys.exit('play_motion.py: no motion; type: rosrun verlet_cable play_motion.py _motion:=MOTION.csv')
-    if not os.path.exists(path):
-        rospy.loginfo('no motion file %s: nothing moves', path)
-        # rviz warns of a fixed frame that tf does not know.
-        broadcaster = tf2_ros.StaticTransformBroadcaster()
-        broadcaster.sendTransform(transform('scene', ((0, 0, 0), (0, 0, 0, 1)), rospy.Time.now()))
-        rospy.spin()
-        return
-    player = Player(read_motion(path))
+        sys.exit(f'play_motion.py: no motion\n{USAGE}')
+    try:
+        player = Player(read_motion(path))
+    except MotionError as error:
+        sys.exit(f'play_motion.py: {error}')
     reset = rospy.ServiceProxy('cable/reset', Trigger)
     while not rospy.is_shutdown():
         player.play(rospy.get_param('~pause', 2.0))

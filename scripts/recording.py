@@ -68,6 +68,7 @@ def _read(path):
         raise RecordingError(f'{path}: cannot be read: {error.strerror}') from error
     except UnicodeDecodeError as error:
         raise RecordingError(f'{path}: is not a text file: {error}') from error
+    _check_header(path, header)
     rows = []
     for number, line in enumerate(lines, start=2):
         if not line:
@@ -75,19 +76,23 @@ def _read(path):
         try:
             row = [float(value) for value in line.split(',')]
         except ValueError as error:
-            raise RecordingError(f'{path}:{number}: {error}; only numbers are allowed') from error
+            raise RecordingError(f'{path}: line {number}: {error}; allowed: numbers') from error
         if len(row) != len(header):
-            raise RecordingError(f'{path}:{number}: {len(row)} values, but the header has {len(header)} columns')
+            raise RecordingError(f'{path}: line {number}: {len(row)} columns; allowed: {len(header)}, as the header has')
         rows.append(row)
     return header, np.array(rows)
 
 
-def _check(path, header, rows):
+def _check_header(path, header):
     markers = (len(header) - 1) // 3
     wanted = ['t'] + [f'{axis}{marker}' for marker in range(markers) for axis in 'xyz']
     if header != wanted or markers < FEWEST_MARKERS:
-        raise RecordingError(f'{path}: header is "{",".join(header)[:80]}", allowed is t,x0,y0,z0,x1,y1,z1,... '
+        raise RecordingError(f'{path}: line 1: header "{",".join(header)[:80]}"; allowed: t,x0,y0,z0,x1,y1,z1,... '
                              f'with {FEWEST_MARKERS} markers or more')
+
+
+def _check(path, header, rows):
+    markers = (len(header) - 1) // 3
     if len(rows) < FEWEST_ROWS:
         raise RecordingError(f'{path}: {len(rows)} rows, allowed are {FEWEST_ROWS} or more')
     if not np.isfinite(rows).all():

@@ -2,26 +2,31 @@
 """replay.py _data:=FILE.csv [_loop:=true]: plays a recorded cable against the simulated one, see replay.launch.
 
 A run: the grippers are held at the first pose until the cable hangs still; tf stops, so that the simulation has to wait for it;
-`reset` puts the cable into the recorded shape and motion; the recording plays from exactly that time on. Without `loop`
-one run is played and its mean error logged.
+`reset` puts the cable into the recorded shape and motion; the recording plays from exactly that time on. From its end to the next
+reset the measured cable is not shown, as there is nothing to compare. Without `loop` one run is played and its mean error logged.
 
 Publishes tf start_gripper and end_gripper, replay/markers (the measured cable) and replay/error (running mean [m] over the frames
 of a run, all markers, the three coordinates of |simulated - measured|).
 """
-import os
-import sys
-import threading
-import time
+import signal
 
-import numpy as np
-import rospy
-import tf2_ros
-from geometry_msgs.msg import Point, Quaternion, TransformStamped, Vector3
-from std_msgs.msg import ColorRGBA, Float64
-from std_srvs.srv import Trigger
-from visualization_msgs.msg import Marker, MarkerArray
+# Where replay.launch ends while this still starts, SIGINT is no traceback of an import; rospy takes it over later.
+signal.signal(signal.SIGINT, signal.SIG_DFL)
 
-from verlet_cable.msg import CableArray, CableEvent
+import os  # noqa: E402
+import sys  # noqa: E402
+import threading  # noqa: E402
+import time  # noqa: E402
+
+import numpy as np  # noqa: E402
+import rospy  # noqa: E402
+import tf2_ros  # noqa: E402
+from geometry_msgs.msg import Point, Quaternion, TransformStamped, Vector3  # noqa: E402
+from std_msgs.msg import ColorRGBA, Float64  # noqa: E402
+from std_srvs.srv import Trigger  # noqa: E402
+from visualization_msgs.msg import Marker, MarkerArray  # noqa: E402
+
+from verlet_cable.msg import CableArray, CableEvent  # noqa: E402
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from recording import Recording, RecordingError  # noqa: E402
@@ -98,7 +103,8 @@ class MeasuredCable:
     def __init__(self):
         self._publisher = rospy.Publisher('replay/markers', MarkerArray, queue_size=5)
 
-    def publish(self, positions, stamp, text):
+    def publish(self, positions, stamp, text, shown):
+        """The markers at their positions, or where they are not shown only the text."""
         points = [Point(*position) for position in positions]
         line = self._marker('measured', Marker.LINE_STRIP, stamp)
         line.scale.x = 0.006
@@ -106,6 +112,8 @@ class MeasuredCable:
         balls = self._marker('measured markers', Marker.SPHERE_LIST, stamp)
         balls.scale = Vector3(0.022, 0.022, 0.022)
         balls.points = points
+        if not shown:
+            line.action = balls.action = Marker.DELETE
         label = self._marker('error', Marker.TEXT_VIEW_FACING, stamp)
         label.color = TEXT_COLOR
         label.scale.z = 0.045
@@ -231,14 +239,16 @@ class Replay:
                 self._compared = self._time
                 self._error.add(points_at(state.cables[0], self._places), measured)
                 self._error_publisher.publish(self._error.mean)
-            self._measured.publish(measured, stamp, f'orange: simulated, green: measured\nmean error {100 * self._error.mean:.1f} cm')
+            ended = self._time > self._recording.duration
+            title = 'back to the start' if ended else 'orange: simulated, green: measured'
+            self._measured.publish(measured, stamp, f'{title}\nmean error {100 * self._error.mean:.1f} cm', shown=not ended)
 
 
 def main():
     rospy.init_node('replay')
     loop = rospy.get_param('~loop', True)
+    rospy.wait_for_service('cable/reset')  # first: what is wrong with the recording, replay_scene.py has said before the node starts
     replay = Replay(Recording(rospy.get_param('~data')))
-    rospy.wait_for_service('cable/reset')
     while not rospy.is_shutdown():
         error = replay.play()
         if rospy.is_shutdown():

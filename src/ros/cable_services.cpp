@@ -16,6 +16,7 @@
 #include <memory>
 #include <string>
 
+#include "verlet_cable/core/number_text.h"
 #include "verlet_cable/ros/checked_pin.h"
 #include "verlet_cable/ros/location.h"
 #include "verlet_cable/ros/scene_files.h"
@@ -39,6 +40,13 @@ FindFrame find_frame_in(const Simulation& simulation) {
   return [&simulation](const std::string& frame) { return simulation.find_frame(frame); };
 }
 
+/// Says how far the place that was found is from the point that was given.
+EditResult with_distance(EditResult result, const CableLocation& location, double distance) {
+  if (result.ok && location.mode == CableLocation::NEAREST)
+    result.message += "; the nearest point, " + rounded_text(distance, 3) + " m away";
+  return result;
+}
+
 bool pin(Simulation& simulation, const Pin::Request& request, Pin::Response& response) {
   const CheckedPin pin = check_pin(request, simulation.world(), find_frame_in(simulation));
   if (!pin.errors.empty()) return answer(refused(pin.errors), response);
@@ -56,12 +64,13 @@ bool cut(Simulation& simulation, const Cut::Request& request, Cut::Response& res
   if (!location.errors.empty()) return answer(refused(location.errors), response);
   if (location.net >= 0) {
     response.first = simulation.world().nets()[location.net].model.name;
-    return answer(simulation.cut_links(location.net, location.links), response);
+    return answer(with_distance(simulation.cut_links(location.net, location.links), request.location, location.distance),
+                  response);
   }
   const EditResult result = simulation.cut(location.cable, location.index);
   if (result.ok) response.first = simulation.world().cables()[location.cable].model.name;
   response.second = result.name;
-  return answer(result, response);
+  return answer(with_distance(result, request.location, location.distance), response);
 }
 
 /// What the thread of the service does: reads and checks, which may take long.

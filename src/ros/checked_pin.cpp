@@ -96,6 +96,7 @@ CheckedPin check_pin(const Pin::Request& request, const World& world, const Find
     pin.offset = pin.frame_pose.inverse() * node;
   } else if (pin.net < 0) {
     check_reach(pin, world, pin.errors);
+    if (!pin.errors.empty()) pin.errors.back() += "; to hold it where it is: keep_offset: true";
   }
   return pin;
 }

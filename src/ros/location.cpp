@@ -17,6 +17,7 @@ struct PointOnCable {
   int cable = -1;
   int segment = 0;
   double fraction = 0;  ///< along the segment
+  double distance = 0;  ///< [m] from the given point
   std::string field;    ///< that gave it, and its value
   std::vector<std::string> errors;
 };
@@ -102,6 +103,7 @@ void find_nearest(const CableLocation& location, const World& world, const FindF
     if (found.cable >= 0 && !(nearest.distance < least)) continue;
     least = nearest.distance;
     found.cable = cable;
+    found.distance = nearest.distance;
     found.segment = nearest.segment;
     found.fraction = nearest.fraction;
   }
@@ -162,7 +164,10 @@ Location locate_net_node(const CableLocation& location, const World& world, int 
                              std::to_string(net.model.nodes() - 1));
   } else if (location.mode == CableLocation::NEAREST) {
     const std::optional<Vector3> point = read_point(location, find_frame, found.errors);
-    if (point) found.index = nearest_node(net, *point);
+    if (point) {
+      found.index = nearest_node(net, *point);
+      found.distance = distance(net, *point);
+    }
   } else {
     found.errors.push_back("location.mode: " + std::to_string(location.mode) + " for net " + quoted(net.model.name) +
                            "; allowed: 0 (NODE), 2 (NEAREST)");
@@ -175,8 +180,9 @@ Location locate_links(const CableLocation& location, const World& world, int ind
   Location found = locate_net_node(location, world, index, find_frame);
   if (!found.errors.empty()) return found;
   if (location.mode == CableLocation::NEAREST) {
-    const int link = nearest_link(net, *read_point(location, find_frame, found.errors)).segment;
-    if (link >= 0) found.links.push_back(link);
+    const NearestPoint nearest = nearest_link(net, *read_point(location, find_frame, found.errors));
+    if (nearest.segment >= 0) found.links.push_back(nearest.segment);
+    found.distance = nearest.distance;
   } else {
     for (int link = 0; link < static_cast<int>(net.model.links.size()); ++link)
       if (net.model.links[link][0] == found.index || net.model.links[link][1] == found.index) found.links.push_back(link);
@@ -191,7 +197,7 @@ Location locate_links(const CableLocation& location, const World& world, int ind
 Location locate_node(const CableLocation& location, const World& world, const FindFrame& find_frame) {
   if (const int net = find_net(location, world, find_frame); net >= 0) return locate_net_node(location, world, net, find_frame);
   const PointOnCable found = find_point(location, world, find_frame);
-  return {found.cable, found.segment + (found.fraction > 0.5 ? 1 : 0), found.errors, -1, {}};
+  return {found.cable, found.segment + (found.fraction > 0.5 ? 1 : 0), found.errors, -1, {}, found.distance};
 }
 
 Location locate_cut(const CableLocation& location, const World& world, const FindFrame& find_frame) {
@@ -210,7 +216,7 @@ Location locate_cut(const CableLocation& location, const World& world, const Fin
           quoted(cable.model.name) + "; allowed: segments 1 to " + std::to_string(last) + ", so that each piece keeps one");
     }
   }
-  return {found.cable, found.segment, found.errors, -1, {}};
+  return {found.cable, found.segment, found.errors, -1, {}, found.distance};
 }
 
 std::string join(const std::vector<std::string>& errors) {

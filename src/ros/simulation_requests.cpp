@@ -1,3 +1,4 @@
+#include <cmath>
 #include <utility>
 
 #include "verlet_cable/core/number_text.h"
@@ -97,7 +98,7 @@ EditResult Simulation::move_attachment(const std::string& name, const Pose& offs
 EditResult Simulation::refused_attachment(const std::string& name) const {
   std::string names;
   for (const Attachment& attachment : world_.attachments()) names += (names.empty() ? "" : ", ") + attachment.name;
-  return refused("name: " + quoted(name) + "; allowed: " + (names.empty() ? "none, nothing is attached" : names));
+  return refused("name: " + quoted(name) + " is no attachment; allowed: " + (names.empty() ? "none, nothing is attached" : names));
 }
 
 EditResult Simulation::cut(int cable, int segment) {
@@ -106,7 +107,7 @@ EditResult Simulation::cut(int cable, int segment) {
   if (!result.ok) return result;
   const std::string& name = world_.cables()[cable].model.name;
   const std::string message = "segment " + std::to_string(segment) + " of cable " + quoted(name) +
-                              " is cut out: the part behind it is now cable " + quoted(result.name);
+                              " is cut out: the part from there to its end is now cable " + quoted(result.name);
   announce(CableEvent::CUT, {name, {}, segment, result.name}, message);
   return {true, message, result.name};
 }
@@ -122,8 +123,13 @@ std::optional<EditResult> Simulation::refused_cable(const std::string& field, co
 EditResult Simulation::set_length(const std::string& cable, bool at_end, double length, double speed) {
   if (!started_) return refused_before_start();
   if (const auto reason = refused_cable("cable", cable)) return *reason;
-  const EditResult result = world_.set_length(world_.find_cable(cable), at_end, length, speed);
-  return result.ok ? done("cable " + quoted(cable) + " is being wound to a length of " + number_text(length) + " m") : result;
+  const int index = world_.find_cable(cable);
+  const double before = world_.cables()[index].model.length();
+  const EditResult result = world_.set_length(index, at_end, length, speed);
+  if (!result.ok) return result;
+  return done("cable " + quoted(cable) + (length < before ? " is taken in from " : " is paid out from ") + rounded_text(before) +
+              " m to " + number_text(length) + " m, which takes at least " + rounded_text(std::abs(length - before) / speed, 3) +
+              " s");
 }
 
 EditResult Simulation::join(const std::string& first, bool first_at_end, const std::string& second, bool second_at_end) {

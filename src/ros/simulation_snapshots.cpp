@@ -34,8 +34,9 @@ EditResult Simulation::save_state(const std::string& name) {
     return refused("name: " + quoted(name) + "; limits.snapshots allows " + std::to_string(most) +
                    "; allowed: to replace one of them: " + names_of(snapshots_));
   }
+  const bool replaces = known != snapshots_.end();
   snapshots_.insert_or_assign(name, Snapshot{world_, scene_, stamp_, frames_.save(), added_obstacles_});
-  return done("saved as " + quoted(name));
+  return done("saved as " + quoted(name) + (replaces ? ", which is replaced" : ""));
 }
 
 EditResult Simulation::restore_state(const std::string& name) {

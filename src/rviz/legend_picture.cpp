@@ -10,7 +10,7 @@ namespace verlet_cable {
 namespace {
 
 // In heights of a line of text.
-constexpr double bar_width = 13, bar_height = 0.8, margin = 0.5;
+constexpr double least_bar_width = 13, bar_height = 0.8, margin = 0.5;
 const QColor background(25, 26, 30, 190), foreground(240, 240, 240);
 constexpr int significant_digits = 2;
 constexpr int longest_text = 40;  // characters
@@ -46,7 +46,8 @@ QString legend_number(double value) {
 QImage legend_picture(const Legend& legend, const QFont& font) {
   if (!has_scale(legend)) return {};
   const double line = QFontMetrics(font).height();
-  const QRectF bar(margin * line, (margin + 1.2) * line, bar_width * line, bar_height * line);
+  const double width = std::max<double>(least_bar_width * line, QFontMetrics(font).horizontalAdvance(title(legend)));
+  const QRectF bar(margin * line, (margin + 1.2) * line, width, bar_height * line);
   const QRectF numbers(bar.left(), bar.bottom() + 0.1 * line, bar.width(), line);
   QImage picture(static_cast<int>(bar.right() + margin * line), static_cast<int>(numbers.bottom() + margin * line),
                  QImage::Format_ARGB32);

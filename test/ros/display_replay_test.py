@@ -11,7 +11,7 @@ import numpy as np
 import rospy
 import rostest
 from std_msgs.msg import Float64
-from visualization_msgs.msg import MarkerArray
+from visualization_msgs.msg import Marker, MarkerArray
 
 from verlet_cable.msg import CableEvent
 
@@ -67,16 +67,25 @@ class ReplayTest(unittest.TestCase):
 
     def test_measured_and_simulated_begin_again_together_and_end_quietly(self):
         write_recording(self.path)
-        shapes, resets = [], []
+        shapes, hidden, resets = [], [], []
+
+        def on_markers(message):
+            line, balls, label = message.markers
+            self.assertEqual(line.action, balls.action)
+            if line.action == Marker.ADD:
+                shapes.append(line)
+            else:
+                hidden.append(label)
+
         subscribers = [
-            rospy.Subscriber('/replay/markers', MarkerArray, lambda message: shapes.append(message.markers[0]), queue_size=1000),
+            rospy.Subscriber('/replay/markers', MarkerArray, on_markers, queue_size=1000),
             rospy.Subscriber('/cable/events', CableEvent,
                              lambda event: resets.append(event.header.stamp) if event.type == CableEvent.RESET else None)]
         command = ['roslaunch', 'verlet_cable', 'replay.launch', f'data:={self.path}', 'rviz:=false']
         launch = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True)
         try:
             deadline = time.monotonic() + LAUNCH_LIMIT
-            while not (len(resets) > 1 and shapes[-1].header.stamp > resets[1]) and time.monotonic() < deadline:
+            while not (len(resets) > 1 and shapes and shapes[-1].header.stamp > resets[1]) and time.monotonic() < deadline:
                 time.sleep(0.02)
         finally:
             os.killpg(launch.pid, signal.SIGINT)
@@ -85,22 +94,37 @@ class ReplayTest(unittest.TestCase):
             subscriber.unregister()
         self.assertGreater(len(resets), 1, output)
         fallen = {shape.header.stamp: shapes[0].points[0].z - shape.points[0].z for shape in shapes}
-        before = [fallen[stamp] for stamp in fallen if stamp <= resets[1]]
+        before = [stamp for stamp in fallen if resets[0] < stamp <= resets[1]]
         after = [(stamp - resets[1]).to_sec() * SPEED - fallen[stamp] for stamp in fallen if stamp > resets[1]]
-        self.assertAlmostEqual(before[-1], SPEED * DURATION, delta=1e-4)  # the recording has five places
+        for stamp in before:  # the recording has five places
+            self.assertAlmostEqual(fallen[stamp], (stamp - resets[0]).to_sec() * SPEED, delta=1e-4)
+        end = resets[0] + rospy.Duration.from_sec(DURATION)
+        self.assertLess(abs((before[-1] - end).to_sec()), 0.1)
         self.assertLess(max(map(abs, after)), 1e-4)
+        # From the end of the recording to the reset there is nothing to compare.
+        self.assertLess(max(before), end + rospy.Duration.from_sec(0.001))
+        between = [label for label in hidden if end < label.header.stamp < resets[1]]
+        self.assertGreater((between[-1].header.stamp - between[0].header.stamp).to_sec(), 2)
+        for label in between:
+            self.assertIn('back to the start', label.text)
         for word in ('WARN', 'ERROR', 'FATAL', 'Traceback', 'REQUIRED'):
             self.assertNotIn(word, output)
 
+    def assert_refused(self, message):
+        """Once, and with nothing else of a program's."""
+        output = self.replay()
+        self.assertEqual(output.count(self.path + ': '), 1, output)
+        self.assertIn(f'{self.path}: {message}', output)
+        for word in ('FATAL', 'Traceback', 'KeyboardInterrupt'):
+            self.assertNotIn(word, output)
+
     def test_no_such_file(self):
-        self.assertIn(f'{self.path}: cannot be read', self.replay())
+        self.assert_refused('cannot be read')
 
     def test_other_file(self):
         with open(self.path, 'w', encoding='utf-8') as file:
-            file.write('time,x,y\n1,2,3\n')
-        output = self.replay()
-        self.assertIn('time,x,y', output)
-        self.assertIn('t,x0,y0,z0', output)
+            file.write('time,x,frame\n1,2,left\n')
+        self.assert_refused('line 1: header "time,x,frame"; allowed: t,x0,y0,z0')
 
 
 if __name__ == '__main__':

@@ -207,6 +207,10 @@ TEST(CheckedPin, RefusesWithFieldAndValue) {
   request = pin_request();
   request.offset.position.x = 1.01;
   EXPECT_NE(pin_errors(request).find("is 1.01 m from \"lower_start\""), std::string::npos) << pin_errors(request);
+  const std::string advice = "; to hold it where it is: keep_offset: true";
+  EXPECT_EQ(pin_errors(request).find(advice), pin_errors(request).size() - advice.size()) << pin_errors(request);
+  request.keep_offset = true;
+  EXPECT_EQ(pin_errors(request), "");
 }
 
 }  // namespace

@@ -28,6 +28,11 @@ class PlayMotionTest(unittest.TestCase):
         self._state = rospy.Publisher('/cable/state', CableArray, queue_size=10)
         self._reset = rospy.Service('/cable/reset', Trigger, self._on_reset)
 
+    def tearDown(self):
+        self._tf.unregister()
+        self._reset.shutdown()
+        self._state.unregister()
+
     def _on_tf(self, message):
         self.poses += [(t.header.stamp.to_sec(), t.transform.translation.x) for t in message.transforms if t.child_frame_id == 'hand']
         state = CableArray()
@@ -60,6 +65,44 @@ class PlayMotionTest(unittest.TestCase):
             still = [stamp for stamp, x in poses if x > 1e-9][-1]
             self.assertGreater(poses[-1][0] - BEHIND, still)  # what is shown of the cables is of when the hand had arrived
         self.assertNotIn('Traceback', output)
+
+    def refuse(self, *arguments):
+        """What is written of a wrong start, after the program's name."""
+        done = subprocess.run(['rosrun', 'verlet_cable', 'play_motion.py', *arguments], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              text=True, timeout=LIMIT)
+        self.assertEqual(done.returncode, 1, done.stdout)
+        program, _, message = done.stdout.partition(': ')
+        self.assertEqual(program, 'play_motion.py', done.stdout)
+        return message
+
+    def test_motions_that_cannot_be_played(self):
+        self.assertEqual(self.refuse('_motion:=nope.csv'), f'motion: "{os.path.abspath("nope.csv")}": no such file\n')
+        header = MOTION.splitlines()[0]
+        with tempfile.TemporaryDirectory() as directory:
+            path = os.path.join(directory, 'motion.csv')
+            for text, message in (
+                    ('', f'empty; allowed: the header {header} and rows'),
+                    ('t,x0,y0\n0,1,2\n', f'line 1: header "t,x0,y0"; allowed: {header}'),
+                    (f'{header}\n', 'no rows; allowed: at least one pose'),
+                    (f'{MOTION}2,hand,0,0,1\n', f'line 5: 5 columns; allowed: 9: {header}'),
+                    (f'{MOTION}2,hand,0,high,1,0,0,0,1\n', 'line 5: y "high"; allowed: numbers from -1e+09 to 1e+09'),
+                    (f'{MOTION}2,hand,0,nan,1,0,0,0,1\n', 'line 5: y "nan"; allowed: numbers from -1e+09 to 1e+09'),
+                    (f'{MOTION}2,,0,0,1,0,0,0,1\n', 'line 5: frame ""; allowed: names of tf frames, without a leading /'),
+                    (f'{MOTION}2,hand,0,0,1,0,0,0,0\n', 'line 5: quaternion of length 0; allowed: any other, it is normalized'),
+                    (f'{MOTION}1,hand,0,0,1,0,0,0,1\n',
+                     'line 5: t 1 of "hand"; allowed: times that ascend, the frame\'s last one is 1')):
+                with open(path, 'w', encoding='utf-8') as file:
+                    file.write(text)
+                self.assertEqual(self.refuse(f'_motion:={path}'), f'{path}: {message}\n')
+
+    def test_arguments(self):
+        message = self.refuse('motion.csv')
+        self.assertIn('argument "motion.csv"', message)
+        self.assertIn('_motion:=MOTION.csv', message)
+        without_master = {**os.environ, 'ROS_MASTER_URI': 'http://localhost:1'}
+        output = subprocess.run(['rosrun', 'verlet_cable', 'play_motion.py', '--help'], check=True, stdout=subprocess.PIPE, text=True,
+                                env=without_master, timeout=LIMIT).stdout
+        self.assertTrue(output.startswith('usage: rosrun verlet_cable play_motion.py _motion:='), output)
 
 
 if __name__ == '__main__':

@@ -125,6 +125,19 @@ class ReadmeTest(unittest.TestCase):
             states.clear()
             states.wait_for(lambda s: abs(cable(s, 'hose').positions[0].y - start.y) > 0.05, 'hose that moves')
 
+    def test_the_services_are_called(self):
+        program, node = self.start_hose()
+        for line in typed('rosrun tf2_ros static_transform_publisher'):
+            self.start(line)
+        program.wait_for_lines('has appeared on tf', 2)
+        with node.states() as states:
+            states.wait_for(lambda s: cable(s, 'hose'), 'hose')
+        lines = typed('rosservice call /cable/')
+        self.assertEqual([line.split()[2] for line in lines], ['/cable/pin', '/cable/unpin', '/cable/set_length', '/cable/cut'])
+        for line in lines:
+            self.assertIn('success: True', self.run_to_end(line).stdout)
+        self.assertEqual(len(node.state().cables), 2)
+
     def test_the_warning_comes_again(self):
         program, _ = self.start_hose()
         first, second = (float(re.search(r'\[(\d+\.\d+)\]', line)[1]) for line in program.wait_for_lines('not shown yet', 2))
@@ -158,6 +171,8 @@ class ReadmeTest(unittest.TestCase):
         for launch, allowed in (('scene', 'pole, pile, table, knot, crossed, dress_pack'), ('lecture', 'box, planet, oscillator')):
             done = self.run_to_end(f'roslaunch verlet_cable {launch}.launch scene:=knott rviz:=false')
             self.assertIn(f'{launch}.launch: scene: "knott"; allowed: {allowed}', done.stdout)
+            self.assertNotIn('Traceback', done.stdout)
+            self.assertNotIn('[play_motion', done.stdout)
 
     def test_a_node_without_a_scene(self):
         done = self.run_to_end('rosrun verlet_cable cable_node __name:=alone')

@@ -47,6 +47,14 @@ TEST(LegendPicture, ShowsTheColors) {
   EXPECT_FALSE(has_color(picture, QColor(Qt::magenta)));
 }
 
+TEST(LegendPicture, IsAsWideAsItsTitle) {
+  Legend legend = legend_from_blue_to_red();
+  const int least = legend_picture(legend, QApplication::font()).width();
+  legend.quantity = "contact force, cube-root scale";
+  const int needed = QFontMetrics(QApplication::font()).horizontalAdvance(QString::fromStdString(legend.quantity) + " [N]");
+  EXPECT_GE(legend_picture(legend, QApplication::font()).width(), std::max(least, needed));
+}
+
 TEST(LegendPicture, IsNoneWhereThereIsNothingToShow) {
   EXPECT_TRUE(legend_picture({}, QApplication::font()).isNull());
   Legend legend = legend_from_blue_to_red();

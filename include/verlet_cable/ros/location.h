@@ -21,6 +21,7 @@ struct Location {
   std::vector<std::string> errors;
   int net = -1;            ///< index into World::nets(), -1 on a cable
   std::vector<int> links;  ///< of a net, to be cut; ascending
+  double distance = 0;     ///< [m] NEAREST: from the given point
 };
 
 /// The node that is meant: the given one, or the one nearest to the arc length or to the point.
