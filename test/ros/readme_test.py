@@ -14,8 +14,9 @@ import unittest
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
+from tf2_msgs.msg import TFMessage
 
-from cable_client import CableClient, Messages, all_finite, cable
+from cable_client import CableClient, Messages, all_finite, cable, transform
 
 PACKAGE = sys.argv[0].partition('/test/ros/')[0]
 PATIENCE = 60  # [s] for a program that ends by itself
@@ -114,6 +115,14 @@ class ReadmeTest(unittest.TestCase):
             self.assertTrue(all_finite(state))
             ends = cable(state, 'hose').positions[0], cable(state, 'hose').positions[-1]
             self.assertEqual([(round(p.x, 6), p.y, p.z) for p in ends], [(-0.4, 0, 1), (0.4, 0, 1)])
+
+    def test_frames_that_come_with_the_node_are_not_asked_for(self):
+        frames = rospy.Publisher('/tf_static', TFMessage, queue_size=1, latch=True)
+        program = self.start('roslaunch verlet_cable cable.launch scene:=config/hose.yaml')
+        self.assertEqual(CableClient('/cable').state().cables, [])  # it no longer waits for them to start
+        frames.publish([transform('left_gripper', 1, (-0.4, 0, 1)), transform('right_gripper', 1, (0.4, 0, 1))])
+        program.wait_for_lines('has appeared on tf', 2)
+        self.assertNotIn('WARN', program.text())
 
     def test_the_hose_follows_moving_frames(self):
         line, = typed('rosrun verlet_cable play_motion.py')
