@@ -40,6 +40,7 @@ FindFrame find_frame_in(const Simulation& simulation) {
 }
 
 bool pin(Simulation& simulation, const Pin::Request& request, Pin::Response& response) {
+  if (!simulation.started()) return answer(simulation.refused_before_start(), response);
   const CheckedPin pin = check_pin(request, simulation.world(), find_frame_in(simulation));
   if (!pin.errors.empty()) return answer(refused(pin.errors), response);
   const AttachmentType type = request.clamp ? AttachmentType::clamp : AttachmentType::hinge;
@@ -52,6 +53,7 @@ bool pin(Simulation& simulation, const Pin::Request& request, Pin::Response& res
 }
 
 bool cut(Simulation& simulation, const Cut::Request& request, Cut::Response& response) {
+  if (!simulation.started()) return answer(simulation.refused_before_start(), response);
   const Location location = locate_cut(request.location, simulation.world(), find_frame_in(simulation));
   if (!location.errors.empty()) return answer(refused(location.errors), response);
   if (location.net >= 0) {

@@ -102,6 +102,7 @@ class Simulation {
   Nanoseconds dropped() const { return pacer_.dropped(); }
   int faults() const { return faults_; }
   bool started() const { return started_; }
+  EditResult refused_before_start() const;  ///< what it waits for, as the refusal of a request
   bool paused() const { return paused_; }
   bool faulted() const { return faulted_; }
   bool waits_for_frames() const { return waits_for_frames_; }
@@ -160,7 +161,6 @@ class Simulation {
   void skip_to(Nanoseconds time);
   void publish();
   void announce(std::uint8_t type, const EventSubject& subject, const std::string& message) const;
-  EditResult refused_before_start() const;
   EditResult refused_attachment(const std::string& name) const;
   std::optional<EditResult> refused_cable(const std::string& field, const std::string& cable) const;
   std::optional<EditResult> refused_frame(const std::string& frame) const;
