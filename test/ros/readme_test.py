@@ -105,6 +105,9 @@ class ReadmeTest(unittest.TestCase):
             self.assertIn('from "world" to "left_gripper" and "right_gripper"', warning)
             self.assertRegex(warning, r': rosrun tf2_ros static_transform_publisher 0 0 1 0 0 0 world left_gripper')
             self.assertEqual(node.state().cables, [])
+            for answer in (node.set_length('hose', False, 1.0, 0.1), node.join('hose', True, 'hose', False)):
+                self.assertFalse(answer.success)
+                self.assertIn('"hose" waits for its tf frames', answer.message)
             diagnostics.wait_for(lambda a: any(v.key == 'waiting_cables' and v.value == 'hose' for s in a.status for v in s.values),
                                  'hose among waiting_cables')
         with node.states() as states:
@@ -172,6 +175,22 @@ class ReadmeTest(unittest.TestCase):
         done = self.run_to_end('rosrun verlet_cable cable_node __name:=alone')
         self.assertEqual(done.returncode, 2)
         self.assertIn('roslaunch verlet_cable cable.launch scene:=', done.stdout)
+
+    def test_arguments_are_answered_without_a_master(self):
+        self.environment['ROS_MASTER_URI'] = 'http://localhost:9'
+        for argument, status, part in (('--help', 0, ''), ('hose.yaml', 2, '"hose.yaml"'), ('--halp', 2, '"--halp"')):
+            done = self.run_to_end('rosrun verlet_cable cable_node ' + argument)
+            self.assertEqual(done.returncode, status, done.stdout)
+            self.assertIn(part, done.stdout)
+            self.assertIn('usage: cable_node', done.stdout)
+
+    def test_a_node_without_a_master(self):
+        self.environment['ROS_MASTER_URI'] = 'http://localhost:9'
+        node = self.start('rosrun verlet_cable cable_node')
+        line, = node.wait_for_lines('no ROS master')
+        self.assertIn('no ROS master at http://localhost:9: start roscore, or use roslaunch', line)
+        time.sleep(1)
+        self.assertEqual(node.text().count('\n'), 1, node.text())
 
 
 if __name__ == '__main__':
