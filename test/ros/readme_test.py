@@ -17,6 +17,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from tf2_msgs.msg import TFMessage
 
 from cable_client import CableClient, Messages, all_finite, cable, transform
+from verlet_cable.msg import CableArray
 
 PACKAGE = sys.argv[0].partition('/test/ros/')[0]
 PATIENCE = 60  # [s] for a program that ends by itself
@@ -122,7 +123,8 @@ class ReadmeTest(unittest.TestCase):
     def test_frames_that_come_with_the_node_are_not_asked_for(self):
         frames = rospy.Publisher('/tf_static', TFMessage, queue_size=1, latch=True)
         program = self.start('roslaunch verlet_cable cable.launch scene:=config/hose.yaml')
-        self.assertEqual(CableClient('/cable').state().cables, [])  # it no longer waits for them to start
+        # It no longer waits for them to start.
+        self.assertEqual(rospy.wait_for_message('/cable/state', CableArray, PATIENCE).cables, [])
         frames.publish([transform('left_gripper', 1, (-0.4, 0, 1)), transform('right_gripper', 1, (0.4, 0, 1))])
         program.wait_for_lines('has appeared on tf', 2)
         self.assertNotIn('WARN', program.text())
