@@ -24,6 +24,9 @@
 namespace verlet_cable {
 namespace {
 
+/// So many may be read and built at once; more wait.
+constexpr std::uint32_t most_loads = 4;
+
 template <typename Response>
 bool answer(const EditResult& result, Response& response) {
   response.success = result.ok;
@@ -48,6 +51,7 @@ EditResult with_distance(EditResult result, const CableLocation& location, doubl
 }
 
 bool pin(Simulation& simulation, const Pin::Request& request, Pin::Response& response) {
+  if (!simulation.started()) return answer(simulation.refused_before_start(), response);
   const CheckedPin pin = check_pin(request, simulation.world(), find_frame_in(simulation));
   if (!pin.errors.empty()) return answer(refused(pin.errors), response);
   const AttachmentType type = request.clamp ? AttachmentType::clamp : AttachmentType::hinge;
@@ -60,6 +64,7 @@ bool pin(Simulation& simulation, const Pin::Request& request, Pin::Response& res
 }
 
 bool cut(Simulation& simulation, const Cut::Request& request, Cut::Response& response) {
+  if (!simulation.started()) return answer(simulation.refused_before_start(), response);
   const Location location = locate_cut(request.location, simulation.world(), find_frame_in(simulation));
   if (!location.errors.empty()) return answer(refused(location.errors), response);
   if (location.net >= 0) {
@@ -73,14 +78,19 @@ bool cut(Simulation& simulation, const Cut::Request& request, Cut::Response& res
   return answer(with_distance(result, request.location, location.distance), response);
 }
 
-/// What the thread of the service does: reads and checks, which may take long.
-EditResult load_scene(Simulation& simulation, OwnerCalls& owner, const SceneDesc& current, const LoadScene::Request& request) {
+/// What a thread of the service does: reads and checks, which may take long, and waits for the scene. `reads`: one reads at a
+/// time, so that scenes are asked for in the order they came.
+EditResult load_scene(Simulation& simulation, OwnerCalls& owner, std::mutex& reads, const SceneDesc& current,
+                      const LoadScene::Request& request) {
+  std::future<EditResult> asked;
   try {
+    const std::lock_guard<std::mutex> lock(reads);
     const SceneDesc scene = read_requested_scene(request, current);
-    return owner.ask([&simulation, scene](const Answer& answer) { simulation.load_scene(scene, answer); });
+    asked = owner.begin([&simulation, scene](const Answer& answer) { simulation.load_scene(scene, answer); });
   } catch (const SceneError& error) {
     return refused(error.errors());
   }
+  return owner.wait(std::move(asked));
 }
 
 bool step(Simulation& simulation, OwnerCalls& owner, const Step::Request& request, Step::Response& response) {
@@ -137,9 +147,12 @@ CableServices::CableServices(ros::NodeHandle& node, Simulation& simulation) : ow
     return answer(owner_.ask([s](const Answer& done) { s->reset(done); }), response);
   });
   serve_aside<Step>(node, "step", [this, s](const auto& request, auto& response) { return step(*s, owner_, request, response); });
-  serve_aside<LoadScene>(node, "load_scene", [this, s, lasting](const auto& request, auto& response) {
-    return answer(load_scene(*s, owner_, lasting, request), response);
-  });
+  serve_aside<LoadScene>(
+      node, "load_scene",
+      [this, s, lasting](const auto& request, auto& response) {
+        return answer(load_scene(*s, owner_, reads_scene_, lasting, request), response);
+      },
+      most_loads);
 }
 
 CableServices::~CableServices() {
@@ -148,8 +161,8 @@ CableServices::~CableServices() {
 }
 
 template <typename Service, typename Handler>
-void CableServices::serve_aside(const ros::NodeHandle& node, const std::string& name, Handler handler) {
-  Aside& aside = *asides_.emplace_back(std::make_unique<Aside>());
+void CableServices::serve_aside(const ros::NodeHandle& node, const std::string& name, Handler handler, std::uint32_t threads) {
+  Aside& aside = *asides_.emplace_back(std::make_unique<Aside>(threads));
   ros::NodeHandle own(node);
   own.setCallbackQueue(&aside.guard);
   aside.server = serve<Service>(own, name, handler);

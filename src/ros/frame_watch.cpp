@@ -18,6 +18,8 @@ constexpr double least_distance = 5e-4;  // [m]
 constexpr double least_degrees = 0.05;
 /// Between reports of a frame's jumps.
 constexpr Nanoseconds jump_period = 1000000000;
+/// Whoever publishes frames may have been started together with the node, and may need so long.
+const ros::WallDuration first_warning(5.0);
 /// Between warnings that something waits for frames.
 const ros::WallDuration reminder_period(10.0);
 /// Longer lists are cut off in messages.
@@ -122,6 +124,7 @@ void FrameWatch::watch(const SceneDesc& scene) {
   lost_.clear();
   jumped_.clear();
   ignored_.clear();
+  next_warning_ = ros::WallTime();
 }
 
 bool FrameWatch::react(const std::vector<FrameChange>& changes, Nanoseconds stamp, World& world) {
@@ -176,7 +179,7 @@ void FrameWatch::warn_of_ignored(const World& world, const BoundaryInputs& input
   }
 }
 
-void FrameWatch::report_unseen(const SceneDesc& scene, const World& world, const TfInputs& frames) {
+void FrameWatch::report_unseen(const World& world, const TfInputs& frames) const {
   const std::vector<FrameReport> reports = frames.report();
   for (std::size_t i = 0; i < reports.size(); ++i) {
     if (reports[i].status != FrameStatus::never_seen) continue;
@@ -187,18 +190,18 @@ void FrameWatch::report_unseen(const SceneDesc& scene, const World& world, const
       ROS_INFO("frame %s is not on tf yet: its obstacles appear when it is", frame.c_str());
     }
   }
-  warn_of_waiting(scene, world, frames.inputs());
 }
 
-void FrameWatch::remind(const SceneDesc& scene, const World& world, const TfInputs& frames) {
-  if (!world.waiting().empty() && ros::WallTime::now() - last_warning_ >= reminder_period)
-    warn_of_waiting(scene, world, frames.inputs());
-}
-
-void FrameWatch::warn_of_waiting(const SceneDesc& scene, const World& world, const BoundaryInputs& inputs) {
-  if (world.waiting().empty()) return;
-  last_warning_ = ros::WallTime::now();
-  const std::vector<std::string> missing = missing_frames(scene, world, inputs);
+void FrameWatch::warn_of_waiting(const SceneDesc& scene, const World& world, const TfInputs& frames) {
+  const ros::WallTime now = ros::WallTime::now();
+  if (world.waiting().empty()) {
+    next_warning_ = ros::WallTime();
+    return;
+  }
+  if (next_warning_.isZero()) next_warning_ = now + first_warning;
+  if (now < next_warning_) return;
+  next_warning_ = now + reminder_period;
+  const std::vector<std::string> missing = missing_frames(scene, world, frames.inputs());
   if (missing.empty()) return;
   ROS_WARN(
       "not shown yet: %s, because tf has no transform from %s to %s. If nothing else is to publish them, type for each: rosrun "

@@ -40,7 +40,7 @@ OwnerCalls::~OwnerCalls() {
   queue_.removeByID(reinterpret_cast<std::uint64_t>(this));
 }
 
-EditResult OwnerCalls::ask(std::function<void(const Answer&)> request) {
+std::future<EditResult> OwnerCalls::begin(std::function<void(const Answer&)> request) {
   // Shared, as the answer may come when nobody waits any longer.
   const auto promise = std::make_shared<std::promise<EditResult>>();
   std::future<EditResult> future = promise->get_future();
@@ -49,9 +49,13 @@ EditResult OwnerCalls::ask(std::function<void(const Answer&)> request) {
     if (!answered->test_and_set()) promise->set_value(result);
   };
   queue_.addCallback(boost::make_shared<Call>(std::move(request), answer), reinterpret_cast<std::uint64_t>(this));
+  return future;
+}
+
+EditResult OwnerCalls::wait(std::future<EditResult> answer) const {
   // Not ros::ok(), which is true until all callbacks have ended.
   while (!ending_ && !ros::isShuttingDown()) {
-    if (future.wait_for(patience) == std::future_status::ready) return future.get();
+    if (answer.wait_for(patience) == std::future_status::ready) return answer.get();
   }
   return {false, "the node shuts down", {}};
 }

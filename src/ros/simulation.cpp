@@ -47,7 +47,7 @@ void Simulation::update(ros::WallDuration longest) {
     start_if_possible();
     return;
   }
-  frame_watch_.remind(scene_, world_, frames_);
+  frame_watch_.warn_of_waiting(scene_, world_, frames_);
   if (!awaited_steps_.empty()) return do_awaited_steps(longest);
   if (waits_for_frames_ && !paused_) continue_if_frames_are_back();
   if (paused_ || faulted_ || waits_for_frames_) {
@@ -110,7 +110,7 @@ void Simulation::start(Nanoseconds time, bool builds) {
     report_starts(0, 0);
   }
   waits_for_frames_ = frame_watch_.react(frames_.changes(), stamp_, world_);
-  frame_watch_.report_unseen(scene_, world_, frames_);
+  frame_watch_.report_unseen(world_, frames_);
   publish();
 }
 

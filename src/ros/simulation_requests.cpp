@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -115,6 +116,9 @@ EditResult Simulation::cut(int cable, int segment) {
 /// Why there is no such cable; nothing if there is.
 std::optional<EditResult> Simulation::refused_cable(const std::string& field, const std::string& cable) const {
   if (world_.find_cable(cable) >= 0) return std::nullopt;
+  const std::vector<std::string>& waiting = world_.waiting();
+  if (std::find(waiting.begin(), waiting.end(), cable) != waiting.end())
+    return refused(field + ": " + quoted(cable) + " waits for its tf frames; allowed: cables that are simulated already");
   std::string names;
   for (const SimulatedCable& other : world_.cables()) names += (names.empty() ? "" : ", ") + other.model.name;
   return refused(field + ": " + quoted(cable) + "; allowed: " + (names.empty() ? "none, there are no cables" : names));

@@ -48,24 +48,41 @@ BoundaryInputs Simulation::present_frames(const SceneDesc& scene) const {
 
 void Simulation::finish_rebuilds() {
   abandoned_.remove_if([](const std::future<BuiltWorld>& built) { return is_ready(built); });
-  while (!rebuilds_.empty() && is_ready(rebuilds_.front().built)) {
-    Rebuild rebuild = std::move(rebuilds_.front());
-    rebuilds_.pop_front();
-    EditResult result;
-    try {
-      BuiltWorld built = rebuild.built.get();
-      build_time_ = built.time;
-      if (rebuild.loads) {
-        result = replace_scene(rebuild.scene, std::move(built.world));
-      } else {
-        if (rebuild.scene_version != scene_version_) built.world.tune(scene_);
-        result = start_anew(std::move(built.world));
-      }
-    } catch (const SceneError& error) {
-      result = {false, verlet_cable::join(error.errors()), {}};
+  const auto ready = [this](bool loads) {
+    const auto first = std::find_if(rebuilds_.begin(), rebuilds_.end(), [&](const Rebuild& r) { return r.loads == loads; });
+    return first != rebuilds_.end() && is_ready(first->built) ? first : rebuilds_.end();
+  };
+  // Scenes in the order they were asked for. Resets do not wait for them: a scene ends whatever was done before it came.
+  for (const bool loads : {true, false}) {
+    for (auto first = ready(loads); first != rebuilds_.end(); first = ready(loads)) {
+      Rebuild rebuild = std::move(*first);
+      rebuilds_.erase(first);
+      finish(std::move(rebuild));
     }
-    for (const Answer& answer : rebuild.answers) answer(result);
   }
+}
+
+void Simulation::finish(Rebuild rebuild) {
+  EditResult result;
+  try {
+    BuiltWorld built = rebuild.built.get();
+    build_time_ = built.time;
+    if (rebuild.loads) {
+      result = replace_scene(rebuild.scene, std::move(built.world));
+    } else {
+      if (rebuild.scene_version != scene_version_) built.world.tune(scene_);
+      result = start_anew(std::move(built.world));
+    }
+  } catch (const SceneError& error) {
+    result = {false, verlet_cable::join(error.errors()), {}};
+  }
+  for (const Answer& answer : rebuild.answers) answer(result);
+}
+
+bool Simulation::builds() const {
+  const auto goes_on = [](const std::future<BuiltWorld>& built) { return !is_ready(built); };
+  return std::any_of(rebuilds_.begin(), rebuilds_.end(), [&](const Rebuild& rebuild) { return goes_on(rebuild.built); }) ||
+         std::any_of(abandoned_.begin(), abandoned_.end(), goes_on);
 }
 
 /// Something that came after them puts the world where it has to be.

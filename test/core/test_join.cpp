@@ -120,7 +120,9 @@ TEST(Join, StiffEndsStayWithTheirMaterial) {
   const auto run = [&](int steps) {
     for (int i = 0; i < steps; ++i) ASSERT_EQ(world.step({FrameInput{}}).status, Status::ok) << i;
     for (const SimulatedCable& cable : world.cables()) {
-      if (!cable.model.bending_share.empty()) EXPECT_EQ(cable.model.bending_share.size(), cable.model.masses.size());
+      if (!cable.model.bending_share.empty()) {
+        EXPECT_EQ(cable.model.bending_share.size(), cable.model.masses.size());
+      }
       for (const Vector3& x : cable.state.positions) ASSERT_TRUE(x.allFinite());
     }
   };

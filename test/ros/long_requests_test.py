@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """While a request takes long the others are answered, and each ends as it says."""
+import contextlib
 import signal
 import subprocess
 import sys
@@ -21,6 +22,11 @@ ROPE = 'materials: {rope: {linear_density: 0.1, radius: 0.005, drag: 0.2, bendin
 def rope(name, segments, frame='world'):
     return (f'  - {{name: {name}, length: 1.0, segments: {segments}, material: rope, attachments: [{{name: a_{name}, at: start, '
             f'frame: {frame}, type: clamp}}]}}\n')
+
+
+# Takes seconds to build, as it starts in equilibrium.
+SLOW = (ROPE.replace('1.0e-3', '1.0') + 'cables:\n' +
+        rope('slow', 30000).replace('material: rope', 'material: rope, initial: {type: settled}'))
 
 
 class Aside:
@@ -147,6 +153,17 @@ class LongRequestsTest(unittest.TestCase):
         self.assertIn('cables[0].length', answer.message)
         self.assertEqual([c.name for c in self.node.state().cables], ['rope'])
 
+    def test_a_bad_scene_does_not_wait_for_another_one(self):
+        loading = Aside(self.node.load_scene, yaml=SLOW)
+        time.sleep(0.5)
+        answer = self.node.load_scene(yaml='5')
+        self.assertFalse(answer.success)
+        self.assertTrue(loading.runs(), answer.message)
+        # Applied after the one that was asked for before.
+        self.assertTrue(self.node.load_scene(yaml=ROPE + 'cables:\n' + rope('second', 20)).success)
+        self.assertTrue(loading.result().success)
+        self.assertEqual([c.name for c in self.node.state().cables], ['second'])
+
     def test_pins_share_the_limit_of_frames(self):
         static = rospy.Publisher('/tf_static', TFMessage, queue_size=10, latch=True)
         static.publish([transform(f'peg{i}', 1, (0, 0, 0)) for i in range(2100)])
@@ -199,6 +216,27 @@ class LongRequestsTest(unittest.TestCase):
             self.assertEqual(process.wait(20), 0)
             for s in steps:
                 self.assertFalse(getattr(s.result(), 'success', False))
+        finally:
+            process.kill()
+            process.wait()
+
+    def test_a_node_that_builds_a_scene_ends_at_once(self):
+        process = subprocess.Popen(['rosrun', 'verlet_cable', 'cable_node', '__name:=victim'])
+        try:
+            victim = CableClient('/victim')
+            victim.state()
+
+            def load():
+                with contextlib.suppress(rospy.ServiceException):
+                    victim.load_scene(yaml=SLOW.replace('30000', '90000'))
+
+            loading = Aside(load)
+            time.sleep(2)
+            self.assertTrue(loading.runs())
+            begin = time.monotonic()
+            process.send_signal(signal.SIGINT)
+            self.assertEqual(process.wait(20), 0)
+            rospy.loginfo('a node that builds a scene ended in %.1f s', time.monotonic() - begin)
         finally:
             process.kill()
             process.wait()

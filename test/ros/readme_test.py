@@ -14,8 +14,10 @@ import unittest
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
+from tf2_msgs.msg import TFMessage
 
-from cable_client import CableClient, Messages, all_finite, cable
+from cable_client import CableClient, Messages, all_finite, cable, transform
+from verlet_cable.msg import CableArray
 
 PACKAGE = sys.argv[0].partition('/test/ros/')[0]
 PATIENCE = 60  # [s] for a program that ends by itself
@@ -104,6 +106,9 @@ class ReadmeTest(unittest.TestCase):
             self.assertIn('from "world" to "left_gripper" and "right_gripper"', warning)
             self.assertRegex(warning, r': rosrun tf2_ros static_transform_publisher 0 0 1 0 0 0 world left_gripper')
             self.assertEqual(node.state().cables, [])
+            for answer in (node.set_length('hose', False, 1.0, 0.1), node.join('hose', True, 'hose', False)):
+                self.assertFalse(answer.success)
+                self.assertIn('"hose" waits for its tf frames', answer.message)
             diagnostics.wait_for(lambda a: any(v.key == 'waiting_cables' and v.value == 'hose' for s in a.status for v in s.values),
                                  'hose among waiting_cables')
         with node.states() as states:
@@ -114,6 +119,15 @@ class ReadmeTest(unittest.TestCase):
             self.assertTrue(all_finite(state))
             ends = cable(state, 'hose').positions[0], cable(state, 'hose').positions[-1]
             self.assertEqual([(round(p.x, 6), p.y, p.z) for p in ends], [(-0.4, 0, 1), (0.4, 0, 1)])
+
+    def test_frames_that_come_with_the_node_are_not_asked_for(self):
+        frames = rospy.Publisher('/tf_static', TFMessage, queue_size=1, latch=True)
+        program = self.start('roslaunch verlet_cable cable.launch scene:=config/hose.yaml')
+        # It no longer waits for them to start.
+        self.assertEqual(rospy.wait_for_message('/cable/state', CableArray, PATIENCE).cables, [])
+        frames.publish([transform('left_gripper', 1, (-0.4, 0, 1)), transform('right_gripper', 1, (0.4, 0, 1))])
+        program.wait_for_lines('has appeared on tf', 2)
+        self.assertNotIn('WARN', program.text())
 
     def test_the_hose_follows_moving_frames(self):
         line, = typed('rosrun verlet_cable play_motion.py')
@@ -178,6 +192,22 @@ class ReadmeTest(unittest.TestCase):
         done = self.run_to_end('rosrun verlet_cable cable_node __name:=alone')
         self.assertEqual(done.returncode, 2)
         self.assertIn('roslaunch verlet_cable cable.launch scene:=', done.stdout)
+
+    def test_arguments_are_answered_without_a_master(self):
+        self.environment['ROS_MASTER_URI'] = 'http://localhost:9'
+        for argument, status, part in (('--help', 0, ''), ('hose.yaml', 2, '"hose.yaml"'), ('--halp', 2, '"--halp"')):
+            done = self.run_to_end('rosrun verlet_cable cable_node ' + argument)
+            self.assertEqual(done.returncode, status, done.stdout)
+            self.assertIn(part, done.stdout)
+            self.assertIn('usage: cable_node', done.stdout)
+
+    def test_a_node_without_a_master(self):
+        self.environment['ROS_MASTER_URI'] = 'http://localhost:9'
+        node = self.start('rosrun verlet_cable cable_node')
+        line, = node.wait_for_lines('no ROS master')
+        self.assertIn('no ROS master at http://localhost:9: start roscore, or use roslaunch', line)
+        time.sleep(1)
+        self.assertEqual(node.text().count('\n'), 1, node.text())
 
 
 if __name__ == '__main__':

@@ -1,7 +1,12 @@
 #!/usr/bin/env python3
 """Nodes in simulated time: a clock that was never there, runs, stands, goes back, creeps and races."""
 import math
+import os
+import re
+import signal
+import subprocess
 import sys
+import tempfile
 import time
 import unittest
 
@@ -12,7 +17,7 @@ from sensor_msgs.msg import PointCloud2
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
-from cable_client import CableClient, Messages, all_finite, cable, distance, transform
+from cable_client import CableClient, Messages, all_finite, cable, distance, node_at, transform
 from verlet_cable.msg import CableArray, CableEvent
 
 SPEED = 4  # of the clock, times real time, where nothing else is said
@@ -42,6 +47,25 @@ class SimTimeTest(unittest.TestCase):
                 continue
             time.sleep(0.05 if i == 0 else frames_a_tick * 0.01 / speed)
             self.clock.publish(rospy.Time.from_sec(start + t))
+
+    def test_a_clock_that_never_comes(self):
+        """Another node, for which another topic is the clock: that of this one may have run before."""
+        command = ['rosrun', 'verlet_cable', 'cable_node', '__name:=timeless', '/clock:=/no_clock']
+        with tempfile.TemporaryFile('w+') as log:
+            process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT)
+            try:
+                timeless = CableClient('/timeless')
+                for answer in (timeless.pin(node_at('rope', 3), name='third'), timeless.cut(node_at('rope', 3))):
+                    self.assertFalse(answer.success)
+                    self.assertIn('no ROS time', answer.message)
+                self.assertTrue(timeless.pause(True).success)
+                deadline = time.monotonic() + 60
+                while (text := os.pread(log.fileno(), 1 << 20, 0).decode()).count('WARN') < 2 and time.monotonic() < deadline:
+                    time.sleep(0.1)
+                self.assertEqual(len(re.findall('WARN.*nothing publishes /clock', text)), 2, text)
+            finally:
+                process.send_signal(signal.SIGINT)
+                process.wait(20)
 
     def test_the_life_of_a_clock(self):
         with self.resetting.states() as resetting, self.keeping.states() as keeping, \

@@ -98,8 +98,12 @@ TEST(FrameTrack, aQuickStepBetweenTwoRestsStaysBetweenThem) {
       const double x = track.at(t).position.x();
       EXPECT_GE(x, 0) << quick << " " << t;
       EXPECT_LE(x, 0.1) << quick << " " << t;
-      if (t <= 0) EXPECT_EQ(x, 0) << quick << " " << t;
-      if (t >= quick) EXPECT_EQ(x, 0.1) << quick << " " << t;
+      if (t <= 0) {
+        EXPECT_EQ(x, 0) << quick << " " << t;
+      }
+      if (t >= quick) {
+        EXPECT_EQ(x, 0.1) << quick << " " << t;
+      }
     }
   }
 }
@@ -120,7 +124,9 @@ TEST(FrameTrack, rowsThatGoOneWayNeverTurnBackAndWhatStandsStands) {
         const double t = times[i] + k / 50.0 * (times[i + 1] - times[i]);
         const double x = track.at(t).position.x();
         ASSERT_GE(x, before - 1e-15 * places.back()) << trial << " " << t;
-        if (places[i] == places[i + 1]) ASSERT_EQ(x, places[i]) << trial << " " << t;
+        if (places[i] == places[i + 1]) {
+          ASSERT_EQ(x, places[i]) << trial << " " << t;
+        }
         before = std::max(before, x);
       }
     }

@@ -21,6 +21,9 @@ class CableNode {
   /// Throws SceneError.
   explicit CableNode(ros::NodeHandle private_node);
 
+  /// The destructor waits until what is being built is built.
+  bool builds() const { return simulation_.builds(); }
+
  private:
   void update();
 

@@ -29,15 +29,14 @@ class FrameWatch {
   void warn_of_ignored(const World& world, const BoundaryInputs& inputs);
   /// Time is skipped at the world's `time`: what frames do over it is no jump of theirs.
   void skip(double time) { skipped_ = time; }
-  /// At a start: logs which frames are missing still, and what waits for them.
-  void report_unseen(const SceneDesc& scene, const World& world, const TfInputs& frames);
-  /// Says again, every 10 s of wall time, which cables and nets wait for which frames.
-  void remind(const SceneDesc& scene, const World& world, const TfInputs& frames);
+  /// At a start: logs which frames are missing still.
+  void report_unseen(const World& world, const TfInputs& frames) const;
+  /// Warns which cables and nets wait for which frames: once they have for 5 s of wall time, and every 10 s from then on.
+  void warn_of_waiting(const SceneDesc& scene, const World& world, const TfInputs& frames);
   /// Forgets which frames were lost, from an id on.
   void forget_from(int frame) { lost_.erase(lost_.lower_bound(frame), lost_.end()); }
 
  private:
-  void warn_of_waiting(const SceneDesc& scene, const World& world, const BoundaryInputs& inputs);
   void report_lost(int frame, Nanoseconds stamp, const World& world);
   void report_back(const FrameChange& change, Nanoseconds stamp, const World& world);
   void release(int frame, Nanoseconds stamp, World& world) const;
@@ -49,7 +48,7 @@ class FrameWatch {
   std::set<int> lost_;                            ///< ids of the frames whose loss was reported
   std::map<int, Nanoseconds> jumped_;             ///< by frame id: the stamp of the last jump that was reported
   double skipped_ = -1;                           ///< [s] the world's time when time was skipped last
-  ros::WallTime last_warning_;                    ///< that something waits for frames
+  ros::WallTime next_warning_;                    ///< that something waits for frames; zero while nothing does
   std::map<std::string, ros::WallTime> ignored_;  ///< by frame: the last warning
 };
 

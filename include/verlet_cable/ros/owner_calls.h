@@ -4,6 +4,8 @@
 
 #include <atomic>
 #include <functional>
+#include <future>
+#include <utility>
 
 #include "verlet_cable/core/world.h"
 
@@ -22,7 +24,10 @@ class OwnerCalls {
 
   /// The owner calls `request`, after what was in its queue before. Returns what that, or who it passed the Answer on to,
   /// answers, or a failure where the node ends first. Not to be called by the owner.
-  EditResult ask(std::function<void(const Answer&)> request);
+  EditResult ask(std::function<void(const Answer&)> request) { return wait(begin(std::move(request))); }
+  /// The two parts of that: what begins later is called later.
+  std::future<EditResult> begin(std::function<void(const Answer&)> request);
+  EditResult wait(std::future<EditResult> answer) const;
 
   /// Nobody waits any longer.
   void end() { ending_ = true; }

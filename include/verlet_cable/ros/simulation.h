@@ -102,6 +102,8 @@ class Simulation {
   Nanoseconds dropped() const { return pacer_.dropped(); }
   int faults() const { return faults_; }
   bool started() const { return started_; }
+  EditResult refused_before_start() const;  ///< what it waits for, as the refusal of a request
+  bool builds() const;                      ///< a world is being built aside; the end of the simulation waits for it
   bool paused() const { return paused_; }
   bool faulted() const { return faulted_; }
   bool waits_for_frames() const { return waits_for_frames_; }
@@ -141,6 +143,7 @@ class Simulation {
   void build_aside(const SceneDesc& scene, bool loads, const Answer& answer);
   BoundaryInputs present_frames(const SceneDesc& scene) const;
   void finish_rebuilds();
+  void finish(Rebuild rebuild);
   void forget_resets(const std::string& reason);
   EditResult start_anew(World world);
   EditResult replace_scene(const SceneDesc& scene, World world);
@@ -160,7 +163,6 @@ class Simulation {
   void skip_to(Nanoseconds time);
   void publish();
   void announce(std::uint8_t type, const EventSubject& subject, const std::string& message) const;
-  EditResult refused_before_start() const;
   EditResult refused_attachment(const std::string& name) const;
   std::optional<EditResult> refused_cable(const std::string& field, const std::string& cable) const;
   std::optional<EditResult> refused_frame(const std::string& frame) const;
