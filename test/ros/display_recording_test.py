@@ -111,11 +111,11 @@ class RecordingTest(unittest.TestCase):
 
     def test_text_in_a_number(self):
         self.write(self.header() + self.row(0) + self.row(1, 'twelve'))
-        self.assert_refused(':3:', 'twelve')
+        self.assert_refused('line 3:', 'twelve')
 
     def test_missing_value(self):
         self.write(self.header() + self.row(0) + '1,2,3\n')
-        self.assert_refused(':3:', '3 values', '13 columns')
+        self.assert_refused('line 3:', '3 columns', 'allowed: 13')
 
     def test_nan(self):
         self.write(self.header() + self.row(0) + self.row(1, 'nan'))

@@ -122,6 +122,7 @@ class ReadmeTest(unittest.TestCase):
 
     def test_frames_that_come_with_the_node_are_not_asked_for(self):
         frames = rospy.Publisher('/tf_static', TFMessage, queue_size=1, latch=True)
+        self.addCleanup(frames.unregister)
         program = self.start('roslaunch verlet_cable cable.launch scene:=config/hose.yaml')
         # It no longer waits for them to start.
         self.assertEqual(rospy.wait_for_message('/cable/state', CableArray, PATIENCE).cables, [])
