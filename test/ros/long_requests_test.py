@@ -86,7 +86,7 @@ class LongRequestsTest(unittest.TestCase):
 
     def test_edits_are_applied_between_steps_and_steps_go_on(self):
         self.node.pause(True)
-        steps = Aside(self.node.step, 30000)
+        steps = Aside(self.node.step, 20000)
         time.sleep(0.02)
         pinned = self.node.pin(node_at('rope', 50), name='tip', keep_offset=True)
         self.assertTrue(pinned.success, pinned.message)
