@@ -34,7 +34,13 @@ constexpr double noticed_jerk = 1e-9;
 
 }  // namespace
 
+void bring_to_rest(CableState& state) {
+  std::fill(state.velocities.begin(), state.velocities.end(), Vector3::Zero());
+  std::fill(state.accelerations.begin(), state.accelerations.end(), Vector3::Zero());
+}
+
 void CableStepper::resize(const CableModel& model) {
+  if (model.segments() == segments_) return;
   segments_ = model.segments();
   const std::size_t nodes = model.nodes();
   for (VectorArray* a : {&position_, &velocity_, &acceleration_, &segment_, &displacement_, &middle_, &pull_, &end_velocity_,

@@ -22,6 +22,9 @@ constexpr double longest_tolerated = 1e-3;
 /// A larger correction, in segment lengths, leads to solutions that have nothing to do with the motion: halve the step.
 constexpr double largest_correction = 2;
 
+/// No substep is shorter [s]; a cable that needs one has lost its way.
+constexpr double shortest_substep = 1e-6;
+
 /// What a substep is done with.
 struct Substep {
   const CableModel& model;
@@ -43,6 +46,9 @@ struct SubstepResult {
   double displacement = 0;  ///< largest of a node [m]; in statics only
 };
 
+/// Takes a cable's motion away.
+void bring_to_rest(CableState& state);
+
 /// Advances one cable by one substep. Holds the buffers, all sized by `resize`; keeps nothing from one call to the next.
 ///
 /// The scheme is Verlet's with the stiff forces averaged over the step (Simo and Tarnow 1992; Gonzalez 1996):
@@ -51,7 +57,7 @@ struct SubstepResult {
 /// s' = l; for an elastic one it is EA ((s + s') / (2 l) - 1) + axial damping. Both conserve momentum and energy exactly.
 class CableStepper {
  public:
-  void resize(const CableModel& model);
+  void resize(const CableModel& model);  ///< does nothing where the number of segments stays
 
   /// If it has not converged, `state` is untouched.
   SubstepResult advance(const Substep& substep, CableState& state);

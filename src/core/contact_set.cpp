@@ -22,12 +22,6 @@ constexpr double stopping_stiffness = 2;
 /// Deeper than this, in radii, nothing comes through a surface before its contact is found.
 constexpr double deepest_arrival = 0.5;
 
-std::uint64_t key_of(int high, int low) {
-  return static_cast<std::uint64_t>(high) << 32 | static_cast<std::uint32_t>(low);
-}
-
-constexpr std::uint64_t pair_key = std::uint64_t{1} << 63;  // pairs come after obstacles
-
 double stopping(const SimulatedCable& cable, int segment, double time_step) {
   const double mass = cable.model.rest_lengths[segment] * cable.model.material.linear_density;
   return stopping_stiffness * mass / (time_step * time_step);
@@ -58,16 +52,18 @@ bool apart(const Vector3& a, const Vector3& b, const Aabb& box, double reach) {
 }
 
 /// Whether a point is close to where an attachment joins the cable to the obstacle's own frame.
-bool anchored(const SimulatedCable& cable, int index, const CablePoint& point, const Obstacle& obstacle,
+bool anchored(const CableModel& model, const Holders& holders, const CablePoint& point, const Obstacle& obstacle,
               const std::vector<Attachment>& attachments) {
   if (obstacle.holders.empty()) return false;
-  const double length = cable.model.rest_lengths[point.segment];
-  for (const Attachment& attachment : attachments) {
-    if (attachment.cable != index || !std::binary_search(obstacle.holders.begin(), obstacle.holders.end(), attachment.frame))
+  const double length = model.rest_lengths[point.segment];
+  for (const Holder& holder : holders.nodes) {
+    const Attachment& attachment = attachments[holder.attachment];
+    if (attachment.node != holder.node ||
+        !std::binary_search(obstacle.holders.begin(), obstacle.holders.end(), attachment.frame))
       continue;
     const double distance = attachment.node <= point.segment
-                                ? cable.model.length(attachment.node, point.segment) + point.fraction * length
-                                : cable.model.length(point.segment, attachment.node) - point.fraction * length;
+                                ? model.length(attachment.node, point.segment) + point.fraction * length
+                                : model.length(point.segment, attachment.node) - point.fraction * length;
     if (distance <= anchored_length) return true;
   }
   return false;
@@ -75,37 +71,41 @@ bool anchored(const SimulatedCable& cable, int index, const CablePoint& point, c
 
 }  // namespace
 
-void ContactSet::find(const std::vector<SimulatedCable>& cables, const std::vector<int>& group,
-                      const std::vector<MovingObstacle>& obstacles, const std::vector<Attachment>& attachments,
-                      const ContactRules& rules, double h) {
+void ContactSet::find(const std::vector<SimulatedCable>& cables, const std::vector<int>& island,
+                      const std::vector<ContactMember>& members, const std::vector<MovingObstacle>& obstacles, const std::vector<Attachment>& attachments,
+                      const ContactRules& rules, double h, SegmentGrid& pairs) {
   rules_ = rules;
   time_ = rules.still ? 0 : contact_time(rules.time_step);
   touches_.clear();
   intrusions_.clear();
-  touched_.assign(cables.size(), 0);
-  recalled_ = 0;
-  for (const int cable : group) {
-    set_held(cables[cable], cable, attachments);
-    for (const MovingObstacle& obstacle : obstacles) find_obstacle(cables[cable], cable, obstacle, attachments, h);
+  touched_.assign(members.size(), 0);
+  recalled_.assign(members.size(), 0);
+  if (places_.size() < cables.size()) places_.resize(cables.size());
+  for (std::size_t k = 0; k < island.size(); ++k) {
+    const SimulatedCable& cable = cables[island[k]];
+    places_[island[k]] = static_cast<int>(k);
+    if (obstacles.empty()) continue;
+    set_held(cable, *members[k].holders, attachments);
+    for (const MovingObstacle& obstacle : obstacles) find_obstacle(cable, island[k], members[k], obstacle, attachments, h);
   }
   if (!rules.pairs.self && !rules.pairs.between_cables) return;
   double radius = 0, square = 0;
-  for (const int cable : group) {
+  for (const int cable : island) {
     radius = std::max(radius, cables[cable].model.material.radius);
     for (const Vector3& v : cables[cable].state.velocities) square = std::max(square, v.squaredNorm());
   }
-  grid_.update(cables, group, rules.pairs, reach(0, radius, h) + radius, h);
-  find_pairs(cables, std::sqrt(square), h);
+  pairs.update(cables, island, rules.pairs, reach(0, radius, h) + radius, h);
+  find_pairs(cables, members, pairs.pairs(), std::sqrt(square), h);
 }
 
 /// Which nodes are attached: nothing but their holders moves them.
-void ContactSet::set_held(const SimulatedCable& cable, int index, const std::vector<Attachment>& attachments) {
+void ContactSet::set_held(const SimulatedCable& cable, const Holders& holders, const std::vector<Attachment>& attachments) {
   held_.assign(cable.model.nodes(), 0);
-  for (const Attachment& attachment : attachments)
-    if (attachment.cable == index) held_[attachment.node] = 1;
+  for (const Holder& holder : holders.nodes)
+    if (attachments[holder.attachment].node == holder.node) held_[holder.node] = 1;
 }
 
-void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const MovingObstacle& moving,
+void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const ContactMember& member, const MovingObstacle& moving,
                                const std::vector<Attachment>& attachments, double h) {
   const CableModel& model = cable.model;
   const CableState& state = cable.state;
@@ -124,9 +124,9 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Mov
   };
   const double friction = moving.obstacle->friction.value_or(model.material.friction);
   const auto touch_at = [&](const CablePoint& point, std::uint64_t element, const SurfacePoint& nearest, double friction_there) {
-    if (anchored(cable, index, point, *moving.obstacle, attachments)) return;
+    if (anchored(model, *member.holders, point, *moving.obstacle, attachments)) return;
     Touch touch;
-    touch.key = key_of(index, moving.index);
+    touch.key = moving.obstacle->id;
     touch.other_key = element;
     touch.point = point;
     touch.obstacle = moving.index;
@@ -138,7 +138,7 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Mov
     touch.other_displacement = moving.end.position + moving.end.orientation * nearest.point -
                                (moving.start.position + moving.start.orientation * nearest.point);
     touch.position = interpolate(state.positions, point.segment, point.fraction);
-    add(touch, interpolate(state.velocities, point.segment, point.fraction), touch.other_displacement / h, h);
+    add(touch, member, interpolate(state.velocities, point.segment, point.fraction), touch.other_displacement / h, h);
   };
 
   visited_.assign(n + 1, 0);
@@ -168,8 +168,9 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Mov
   }
 }
 
-void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, double speed, double h) {
-  for (const SegmentGrid::Pair& pair : grid_.pairs()) {
+void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members,
+                            const std::vector<SegmentGrid::Pair>& pairs, double speed, double h) {
+  for (const SegmentGrid::Pair& pair : pairs) {
     const SimulatedCable &a = cables[pair.first.cable], &b = cables[pair.second.cable];
     const int i = pair.first.segment, j = pair.second.segment;
     const Vector3 &a0 = a.state.positions[i], &a1 = a.state.positions[i + 1];
@@ -188,8 +189,9 @@ void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, double sp
     if (distance > far) continue;
 
     Touch touch;
-    touch.key = pair_key | key_of(pair.first.cable, i);
-    touch.other_key = key_of(pair.second.cable, j);
+    const ContactMember& member = members[places_[pair.first.cable]];
+    touch.key = pair_key | i;
+    touch.other_key = key_of(members[places_[pair.second.cable]].id, j);
     touch.point = {pair.first.cable, i, closest.first};
     touch.other = {pair.second.cable, j, closest.second};
     touch.normal = distance > 0 ? Vector3(closest.between / distance) : along_a.unitOrthogonal();
@@ -200,17 +202,17 @@ void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, double sp
     touch.position = a0 + closest.first * along_a;
     const Vector3 velocity =
         interpolate(a.state.velocities, i, closest.first) - interpolate(b.state.velocities, j, closest.second);
-    add(touch, velocity, Vector3::Zero(), h);
+    add(touch, member, velocity, Vector3::Zero(), h);
   }
 }
 
 /// Adds a touch if its gap may close; `velocity` [m/s] is that of the point, relative to another cable's, `other` that of an
 /// obstacle.
-void ContactSet::add(Touch& touch, const Vector3& velocity, const Vector3& other, double h) {
+void ContactSet::add(Touch& touch, const ContactMember& member, const Vector3& velocity, const Vector3& other, double h) {
   const double approach = -touch.normal.dot(velocity - other);
   if (!(touch.gap < reach(std::max(0.0, approach), touch.radius, h))) return;
   const double gentle = gentle_gap(touch.radius, contact_time(rules_.time_step));
-  const bool known = recall(touch);
+  const bool known = recall(member, touch);
   if (!known && touch.obstacle >= 0 && touch.gap < -deepest_arrival * touch.radius)
     intrusions_.push_back({touch.point.cable, touch.point.segment, touch.obstacle, -touch.gap});
   touch.inside = !known || touch.inside;
@@ -218,8 +220,8 @@ void ContactSet::add(Touch& touch, const Vector3& velocity, const Vector3& other
   if (touch.inside) touch.gap = gentle;
   anticipate(h, time_, velocity, touch);
   start_touch(touch);
-  touched_[touch.point.cable] = 1;
-  if (touch.other.cable >= 0) touched_[touch.other.cable] = 1;
+  touched_[places_[touch.point.cable]] = 1;
+  if (touch.other.cable >= 0) touched_[places_[touch.other.cable]] = 1;
   touches_.push_back(touch);
 }
 
@@ -229,14 +231,16 @@ double ContactSet::reach(double speed, double radius, double h) const {
   return std::min((h + time_) * speed, radius + h * speed) + spare_reach * radius;
 }
 
-/// What a touch was in the last substep; false if it was none. Touches are asked for in ascending order.
-bool ContactSet::recall(Touch& touch) {
+/// What a touch was in the last substep; false if it was none. A member's touches are asked for in ascending order.
+bool ContactSet::recall(const ContactMember& member, Touch& touch) {
   const auto keys = [](const auto& of) { return std::tie(of.key, of.other_key); };
-  while (recalled_ < sticking_.size() && keys(sticking_[recalled_]) < keys(touch)) ++recalled_;
-  if (recalled_ == sticking_.size() || keys(sticking_[recalled_]) != keys(touch)) return false;
-  touch.stuck_force = sticking_[recalled_].force;
-  touch.mode = sticking_[recalled_].mode;
-  touch.inside = sticking_[recalled_].inside;
+  const ContactCache& cache = *member.cache;
+  std::size_t& recalled = recalled_[places_[touch.point.cable]];
+  while (recalled < cache.size() && keys(cache[recalled]) < keys(touch)) ++recalled;
+  if (recalled == cache.size() || keys(cache[recalled]) != keys(touch)) return false;
+  touch.stuck_force = cache[recalled].force;
+  touch.mode = cache[recalled].mode;
+  touch.inside = cache[recalled].inside;
   return true;
 }
 
@@ -249,15 +253,11 @@ bool ContactSet::crossed(const std::vector<SimulatedCable>& cables) const {
   });
 }
 
-void ContactSet::keep() {
-  sticking_.clear();
+void ContactSet::keep(const std::vector<ContactMember>& members) const {
+  for (const ContactMember& member : members) member.cache->clear();
   for (const Touch& touch : touches_)
-    sticking_.push_back({touch.key, touch.other_key, remaining_friction(touch), touch.mode, touch.inside});
-}
-
-void ContactSet::forget() {
-  sticking_.clear();
-  grid_.invalidate();
+    members[places_[touch.point.cable]].cache->push_back(
+        {touch.key, touch.other_key, remaining_friction(touch), touch.mode, touch.inside});
 }
 
 }  // namespace verlet_cable

@@ -2,21 +2,13 @@
 
 #include <vector>
 
-#include "contact_law.h"
+#include "contact_cache.h"
+#include "holders.h"
+#include "moving_obstacle.h"
 #include "segment_grid.h"
-#include "verlet_cable/core/obstacle.h"
 #include "verlet_cable/core/world.h"
 
 namespace verlet_cable {
-
-/// An obstacle during a substep.
-struct MovingObstacle {
-  const Obstacle* obstacle = nullptr;
-  int index = 0;     ///< into World::obstacles()
-  Pose start, end;   ///< of its shape
-  Aabb box;          ///< around it at the start, in the fixed frame [m]
-  double speed = 0;  ///< [m/s] no point of it is faster
-};
 
 /// What contacts are found with.
 struct ContactRules {
@@ -26,52 +18,48 @@ struct ContactRules {
   double cable_friction = 0;  ///< Coulomb coefficient of cable against cable
 };
 
-/// What a contact takes from one substep to the next.
-struct Sticking {
-  std::uint64_t key = 0, other_key = 0;  ///< of the touch
-  Vector3 force = Vector3::Zero();       ///< [N] friction of what sticks
-  Touch::Mode mode = Touch::Mode::open;
-  bool inside = false;
+/// A cable whose contacts are looked for.
+struct ContactMember {
+  std::uint32_t id = 0;  ///< by which contacts name it
+  const Holders* holders = nullptr;
+  ContactCache* cache = nullptr;
 };
 
-/// The contacts of a group of cables: found anew for every substep, but for what sticks.
+/// The contacts of cables that are stepped together: found anew for every substep, but for what their caches keep.
 class ContactSet {
  public:
-  /// Finds what may touch in the next h [s]. `group`: ascending indices into `cables`.
-  void find(const std::vector<SimulatedCable>& cables, const std::vector<int>& group,
+  /// Finds what may touch in the next h [s]. `island`: ascending indices into `cables`; `members`: the same cables; `pairs`: of
+  /// their segments, as the last call for them left it, or empty.
+  void find(const std::vector<SimulatedCable>& cables, const std::vector<int>& island, const std::vector<ContactMember>& members,
             const std::vector<MovingObstacle>& obstacles, const std::vector<Attachment>& attachments, const ContactRules& rules,
-            double h);
+            double h, SegmentGrid& pairs);
   /// Whether segments that touch have passed through each other since `find`.
   bool crossed(const std::vector<SimulatedCable>& cables) const;
-  /// The substep is done: keeps what sticks.
-  void keep();
-  /// Nodes have been renumbered: nothing sticks any more.
-  void forget();
+  /// The substep is done: the caches of the members take what sticks.
+  void keep(const std::vector<ContactMember>& members) const;
 
   std::vector<Touch>& touches() { return touches_; }
   const std::vector<Touch>& touches() const { return touches_; }
-  bool touched(int cable) const { return touched_[cable] != 0; }  ///< whether a cable is part of a touch
-  const std::vector<Sticking>& sticking() const { return sticking_; }
+  bool touched(std::size_t member) const { return touched_[member] != 0; }  ///< whether it is part of a touch
   const std::vector<Intrusion>& intrusions() const { return intrusions_; }  ///< that `find` came upon
 
  private:
-  void set_held(const SimulatedCable& cable, int index, const std::vector<Attachment>& attachments);
-  void find_obstacle(const SimulatedCable& cable, int index, const MovingObstacle& moving,
+  void set_held(const SimulatedCable& cable, const Holders& holders, const std::vector<Attachment>& attachments);
+  void find_obstacle(const SimulatedCable& cable, int index, const ContactMember& member, const MovingObstacle& moving,
                      const std::vector<Attachment>& attachments, double h);
-  void find_pairs(const std::vector<SimulatedCable>& cables, double speed, double h);
-  void add(Touch& touch, const Vector3& velocity, const Vector3& other, double h);
+  void find_pairs(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members,
+                  const std::vector<SegmentGrid::Pair>& pairs, double speed, double h);
+  void add(Touch& touch, const ContactMember& member, const Vector3& velocity, const Vector3& other, double h);
   double reach(double speed, double radius, double h) const;
-  bool recall(Touch& touch);
+  bool recall(const ContactMember& member, Touch& touch);
 
-  std::vector<Sticking> sticking_;  ///< ascending by keys
-  // Scratch
-  SegmentGrid grid_;
   ContactRules rules_;
   double time_ = 0;  ///< [s] in which contacts come to rest
   std::vector<Touch> touches_;
-  std::vector<char> touched_;  ///< by cable
   std::vector<Intrusion> intrusions_;
-  std::size_t recalled_ = 0;   ///< the first of `sticking_` that may still be asked for
+  std::vector<int> places_;            ///< among the members, by cable; set for these only
+  std::vector<char> touched_;          ///< by member
+  std::vector<std::size_t> recalled_;  ///< by member: the first of its cache that may still be asked for
   // Nodes of one cable
   std::vector<char> held_, visited_;
   std::vector<Vector3> local_;         ///< [m] in an obstacle's frame; where visited

@@ -172,8 +172,15 @@ std::vector<Target> attachment_targets(const CableModel& model, const Attachment
   return targets;
 }
 
-Holders find_holders(int cable, const CableModel& model, const CableState& state, const std::vector<Attachment>& attachments,
-                     const std::vector<Pose>& frames, const Holders& before, double time) {
+std::vector<int> attachments_of(int index, bool net, const std::vector<Attachment>& attachments) {
+  std::vector<int> own;
+  for (int a = 0; a < static_cast<int>(attachments.size()); ++a)
+    if ((net ? attachments[a].net : attachments[a].cable) == index) own.push_back(a);
+  return own;
+}
+
+Holders find_holders(const CableModel& model, const CableState& state, const std::vector<Attachment>& attachments,
+                     const std::vector<int>& attached, const std::vector<Pose>& frames, const Holders& before, double time) {
   Holders holders;
   const auto add_node = [&](int attachment, const Target& target) {
     add_holder(attachment, target, state.positions, state.velocities, before, time, holders);
@@ -197,8 +204,7 @@ Holders find_holders(int cable, const CableModel& model, const CableState& state
   };
   // The attachments' own nodes first, then the neighbours that clamps want.
   for (const bool own : {true, false}) {
-    for (int a = 0; a < static_cast<int>(attachments.size()); ++a) {
-      if (attachments[a].cable != cable) continue;
+    for (const int a : attached) {
       const std::vector<Target> targets = attachment_targets(model, attachments[a], frames[attachments[a].frame]);
       for (const Target& target : targets)
         if ((target.node == attachments[a].node) == own) add_node(a, target);
@@ -243,12 +249,11 @@ void aim_holders(const CableModel& model, const std::vector<Attachment>& attachm
   }
 }
 
-Holders find_net_holders(int net, const std::vector<Vector3>& positions, const std::vector<Vector3>& velocities,
-                         const std::vector<Attachment>& attachments, const std::vector<Pose>& frames, const Holders& before,
-                         double time) {
+Holders find_net_holders(const std::vector<Vector3>& positions, const std::vector<Vector3>& velocities,
+                         const std::vector<Attachment>& attachments, const std::vector<int>& attached,
+                         const std::vector<Pose>& frames, const Holders& before, double time) {
   Holders holders;
-  for (int a = 0; a < static_cast<int>(attachments.size()); ++a) {
-    if (attachments[a].net != net) continue;
+  for (const int a : attached) {
     const Target target{attachments[a].node, (frames[attachments[a].frame] * attachments[a].pose).position};
     add_holder(a, target, positions, velocities, before, time, holders);
   }
@@ -340,6 +345,12 @@ void hold_at(double from, double to, const Holders& holders, Boundary& boundary)
     boundary.directions[k].start = holder.orientation.slerp(from, holder.next_orientation);
     boundary.directions[k].end = holder.orientation.slerp(to, holder.next_orientation);
   }
+}
+
+Boundary boundary_now(const Holders& holders) {
+  Boundary boundary;
+  hold_at(0, 0, holders, boundary);
+  return boundary;
 }
 
 void complete_step(double time_step, Holders& holders) {

@@ -59,15 +59,18 @@ struct Target {
 };
 std::vector<Target> attachment_targets(const CableModel& model, const Attachment& attachment, const Pose& frame);
 
-/// The holders of a cable, ascending by node; a node that two attachments want belongs to the one that is attached to it.
+/// Indices of the attachments of a cable or, `net`, a net; ascending.
+std::vector<int> attachments_of(int index, bool net, const std::vector<Attachment>& attachments);
+
+/// The holders of a cable whose attachments are `own`, ascending by node; a node that two attachments want belongs to the one that is attached to it.
 /// Those that `before` has keep their motion; others catch their node where it is at `time`.
-Holders find_holders(int cable, const CableModel& model, const CableState& state, const std::vector<Attachment>& attachments,
-                     const std::vector<Pose>& frames, const Holders& before, double time);
+Holders find_holders(const CableModel& model, const CableState& state, const std::vector<Attachment>& attachments,
+                     const std::vector<int>& own, const std::vector<Pose>& frames, const Holders& before, double time);
 
 /// The holders of a net likewise: hinges.
-Holders find_net_holders(int net, const std::vector<Vector3>& positions, const std::vector<Vector3>& velocities,
-                         const std::vector<Attachment>& attachments, const std::vector<Pose>& frames, const Holders& before,
-                         double time);
+Holders find_net_holders(const std::vector<Vector3>& positions, const std::vector<Vector3>& velocities,
+                         const std::vector<Attachment>& attachments, const std::vector<int>& own, const std::vector<Pose>& frames,
+                         const Holders& before, double time);
 
 /// How the holders of a cable or net that starts begin to move: as their frames do (`inputs`, by frame id) or, where that is not
 /// given, as they will in their first step.
@@ -97,6 +100,9 @@ Following follow_aims(const std::vector<Attachment>& attachments, double time, d
 
 /// What is held at the end of a substep that goes from one part of the step to another, 0 to 1.
 void hold_at(double from, double to, const Holders& holders, Boundary& boundary);
+
+/// What is held at the world's time.
+Boundary boundary_now(const Holders& holders);
 
 /// The step is done: what was next is now.
 void complete_step(double time_step, Holders& holders);

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "contact_set.h"
+#include "moving_obstacle.h"
 #include "held_node.h"
 #include "holders.h"
 #include "verlet_cable/core/net.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "contact_set.h"
+#include "moving_obstacle.h"
 #include "integrator.h"
 #include "verlet_cable/core/net.h"
 

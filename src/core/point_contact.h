@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "contact_set.h"
+#include "moving_obstacle.h"
 
 namespace verlet_cable {
 

@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <memory>
 #include <utility>
 
 #include "initial_shape.h"
+#include "island_stepper.h"
 #include "length_projection.h"
 #include "rest_curvature.h"
+#include "settling.h"
 #include "stiff_ends.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/rotation.h"
@@ -35,11 +39,50 @@ CableModel make_model(const SceneDesc& scene, const CableDesc& desc) {
   return model;
 }
 
+template <class Desc>
+bool frames_known(const Desc& desc, const FrameIds& ids, const BoundaryInputs& inputs) {
+  return std::all_of(desc.attachments.begin(), desc.attachments.end(), [&](const auto& attachment) {
+    const auto frame = static_cast<std::size_t>(ids.at(attachment.frame));
+    return frame == 0 || (frame < inputs.size() && inputs[frame].known && is_sound(inputs[frame].pose));
+  });
+}
+
+/// The indices for which `starts` is true; the others stay.
+template <class Starts>
+std::vector<int> take_out(std::vector<int>& waiting, const Starts& starts) {
+  std::vector<int> taken;
+  std::copy_if(waiting.begin(), waiting.end(), std::back_inserter(taken), starts);
+  waiting.erase(std::remove_if(waiting.begin(), waiting.end(), starts), waiting.end());
+  return taken;
+}
+
 }  // namespace
+
+int Frames::find(const std::string& name) const {
+  return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+FrameIds Frames::ids() const {
+  FrameIds ids{{"", 0}};
+  for (std::size_t i = 0; i < names.size(); ++i) ids.emplace(names[i], static_cast<int>(i));
+  return ids;
+}
 
 bool is_sound(const Pose& pose) {
   const double length = pose.orientation.norm();
   return (pose.position.cwiseAbs().array() <= coordinate.highest).all() && length >= 0.5 && length <= 2;
+}
+
+bool World::settle() {
+  Implementation& w = *implementation_;
+  w.findings.unsettled.clear();
+  for (Attachment& attachment : w.state.attachments) attachment.force = attachment.torque = Vector3::Zero();
+  for (int cable = 0; cable < static_cast<int>(w.state.cables.size()); ++cable) {
+    if (w.state.cable_memory[cable].holders.nodes.empty()) continue;
+    if (!Settling(cable, w.state, w.workspaces.value.local()).settle())
+      w.findings.unsettled.push_back(w.state.cables[cable].model.name);
+  }
+  return w.findings.unsettled.empty();
 }
 
 std::string pose_problem(const std::string& field, const Pose& pose) {
@@ -51,43 +94,22 @@ std::string pose_problem(const std::string& field, const Pose& pose) {
          "; allowed: 1 (from 0.5 to 2 is brought to 1)";
 }
 
-int find_frame(const std::vector<std::string>& frames, const std::string& name) {
-  return static_cast<int>(std::find(frames.begin(), frames.end(), name) - frames.begin());
-}
-
-void note_status(StepResult::Status status, int cable, int node, StepResult& result) {
-  if (status <= result.status) return;
-  result.status = status;
-  result.cable = cable;
-  result.node = node;
-}
-
-void bring_to_rest(CableState& state) {
-  std::fill(state.velocities.begin(), state.velocities.end(), Vector3::Zero());
-  std::fill(state.accelerations.begin(), state.accelerations.end(), Vector3::Zero());
-}
-
 World::World(const SceneDesc& scene, const BoundaryInputs& inputs) : implementation_(std::make_unique<Implementation>()) {
   std::vector<std::string> errors = validate(scene);
   if (!errors.empty()) throw SceneError(std::move(errors));
   Implementation& w = *implementation_;
-  w.scene = scene;
-  w.frames = frame_names(scene);
-  w.poses.resize(w.frames.size());
-  w.previous_poses.resize(w.frames.size());
-  w.known.assign(w.frames.size(), false);
-  w.known.front() = true;
+  w.state.scene = std::make_shared<const SceneDesc>(scene);
+  w.state.frames.names = frame_names(scene);
+  w.state.frames.poses.resize(w.state.frames.names.size());
+  w.state.frames.previous_poses.resize(w.state.frames.names.size());
+  w.state.frames.known.assign(w.state.frames.names.size(), false);
+  w.state.frames.known.front() = true;
   w.add_scene_obstacles();
-  for (int i = 0; i < static_cast<int>(scene.cables.size()); ++i) {
-    w.waiting_descs.push_back(i);
-    w.waiting.push_back(scene.cables[i].name);
-  }
-  for (int i = 0; i < static_cast<int>(scene.nets.size()); ++i) {
-    w.waiting_nets.push_back(i);
-    w.waiting.push_back(scene.nets[i].name);
-  }
+  for (int i = 0; i < static_cast<int>(scene.cables.size()); ++i) w.state.waiting_cables.push_back(i);
+  for (int i = 0; i < static_cast<int>(scene.nets.size()); ++i) w.state.waiting_nets.push_back(i);
+  w.name_waiting();
   for (const ParticleDesc& particle : scene.particles) w.add_particle(particle);
-  w.follow_frames(inputs);
+  w.update_frames(inputs);
   start_waiting(inputs);
 }
 
@@ -102,164 +124,128 @@ World& World::operator=(World&&) noexcept = default;
 
 int World::start_waiting(const BoundaryInputs& inputs) {
   Implementation& w = *implementation_;
-  int started = 0;
-  const auto start_known = [&](std::vector<int>& waiting, const auto& descs, const auto& start) {
-    for (std::size_t k = 0; k < waiting.size();) {
-      const auto& desc = descs[waiting[k]];
-      if (!w.frames_known(desc, inputs)) {
-        ++k;
-        continue;
-      }
-      w.follow_frames(inputs);
-      start(desc);
-      w.waiting.erase(std::find(w.waiting.begin(), w.waiting.end(), desc.name));
-      waiting.erase(waiting.begin() + k);
-      ++started;
-    }
-  };
-  start_known(w.waiting_descs, w.scene.cables, [&](const CableDesc& desc) { w.start_cable(desc, inputs); });
-  start_known(w.waiting_nets, w.scene.nets, [&](const NetDesc& desc) { w.start_net(desc, inputs); });
-  return started;
+  const FrameIds ids = w.state.frames.ids();
+  const SceneDesc& scene = *w.state.scene;
+  const std::vector<int> cables =
+      take_out(w.state.waiting_cables, [&](int i) { return frames_known(scene.cables[i], ids, inputs); });
+  const std::vector<int> nets = take_out(w.state.waiting_nets, [&](int i) { return frames_known(scene.nets[i], ids, inputs); });
+  if (cables.empty() && nets.empty()) return 0;
+  w.update_frames(inputs);
+  for (const int i : cables) w.start_cable(scene.cables[i], ids, inputs);
+  for (const int i : nets) w.start_net(scene.nets[i], ids, inputs);
+  w.name_waiting();
+  return static_cast<int>(cables.size() + nets.size());
 }
 
-template <class Desc>
-bool World::Implementation::frames_known(const Desc& desc, const BoundaryInputs& inputs) const {
-  return std::all_of(desc.attachments.begin(), desc.attachments.end(), [&](const auto& attachment) {
-    const int frame = attachment.frame.empty() ? 0 : find_frame(frames, attachment.frame);
-    return frame == 0 || (frame < static_cast<int>(inputs.size()) && inputs[frame].known && is_sound(inputs[frame].pose));
-  });
+void World::Implementation::name_waiting() {
+  findings.waiting.clear();
+  for (const int i : state.waiting_cables) findings.waiting.push_back(state.scene->cables[i].name);
+  for (const int i : state.waiting_nets) findings.waiting.push_back(state.scene->nets[i].name);
 }
 
 /// A frame that is unknown, or whose pose is not sound, stays where it was; the first of the latter is returned, else -1. The
 /// fixed frame does not move.
-int World::Implementation::follow_frames(const BoundaryInputs& inputs) {
+int World::Implementation::update_frames(const BoundaryInputs& inputs) {
   int ignored = -1;
-  previous_poses = poses;
-  for (std::size_t i = 1; i < std::min(poses.size(), inputs.size()); ++i) {
+  state.frames.previous_poses = state.frames.poses;
+  for (std::size_t i = 1; i < std::min(state.frames.poses.size(), inputs.size()); ++i) {
     if (!inputs[i].known) continue;
     if (!is_sound(inputs[i].pose)) {
       if (ignored < 0) ignored = static_cast<int>(i);
       continue;
     }
-    poses[i] = {inputs[i].pose.position, inputs[i].pose.orientation.normalized()};
-    if (!known[i]) previous_poses[i] = poses[i];
-    known[i] = true;
+    state.frames.poses[i] = {inputs[i].pose.position, inputs[i].pose.orientation.normalized()};
+    if (!state.frames.known[i]) state.frames.previous_poses[i] = state.frames.poses[i];
+    state.frames.known[i] = true;
   }
-  for (Obstacle& obstacle : obstacles) obstacle.present = known[obstacle.frame];
+  for (Obstacle& obstacle : state.obstacles) obstacle.present = state.frames.known[obstacle.frame];
   return ignored;
 }
 
-void World::Implementation::start_cable(const CableDesc& desc, const BoundaryInputs& inputs) {
-  const int index = static_cast<int>(cables.size());
+void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& ids, const BoundaryInputs& inputs) {
+  const int index = static_cast<int>(state.cables.size());
   SimulatedCable cable;
-  cable.model = make_model(scene, desc);
+  cable.model = make_model(*state.scene, desc);
+  std::vector<int> own;
   for (const AttachmentDesc& a : desc.attachments) {
     Attachment attachment;
     attachment.name = a.name;
     attachment.cable = index;
     attachment.node = node_at(desc, a.place);
-    attachment.frame = a.frame.empty() ? 0 : find_frame(frames, a.frame);
+    attachment.frame = ids.at(a.frame);
     attachment.type = a.type;
     attachment.pose = {a.offset, quaternion_from_rpy(a.rotation)};
-    attachments.push_back(attachment);
+    own.push_back(static_cast<int>(state.attachments.size()));
+    state.attachments.push_back(attachment);
   }
   // The holders catch the nodes where they want them: there is no gap to close.
   cable.state.positions.assign(cable.model.nodes(), Vector3::Zero());
   cable.state.velocities.assign(cable.model.nodes(), Vector3::Zero());
-  CableScratch s;
-  s.holders = find_holders(index, cable.model, cable.state, attachments, poses, {}, time());
-  for (Holder& holder : s.holders.nodes) {
+  CableMemory memory;
+  memory.id = state.next_cable_id++;
+  memory.holders = find_holders(cable.model, cable.state, state.attachments, own, state.frames.poses, {}, state.time());
+  for (Holder& holder : memory.holders.nodes) {
     holder.gap.setZero();
     holder.caught = -infinity;
   }
-  for (DirectionHolder& holder : s.holders.directions) holder.gap.setIdentity();
-  aim_holders(cable.model, attachments, poses, time(), s.holders);
-  put_at_aim(s.holders);
-  start_holders(attachments, poses, inputs, s.holders);
-  hold_at(1, 1, s.holders, s.boundary);
+  for (DirectionHolder& holder : memory.holders.directions) holder.gap.setIdentity();
+  aim_holders(cable.model, state.attachments, state.frames.poses, state.time(), memory.holders);
+  put_at_aim(memory.holders);
+  start_holders(state.attachments, state.frames.poses, inputs, memory.holders);
+  Boundary boundary;
+  hold_at(1, 1, memory.holders, boundary);
   const Vector3 gravity =
-      scene.gravity.at(s.boundary.nodes.empty() ? Vector3(Vector3::Zero()) : s.boundary.nodes.front().position);
+      state.scene->gravity.at(boundary.nodes.empty() ? Vector3(Vector3::Zero()) : boundary.nodes.front().position);
   const bool settles = settles_at_start(desc, cable.model.material);
-  if (!set_initial_state(desc.initial, settles, cable.model, s.boundary.nodes, gravity, cable.state))
-    misfits.push_back(desc.name);
+  if (!set_initial_state(desc.initial, settles, cable.model, boundary.nodes, gravity, cable.state))
+    findings.misfits.push_back(desc.name);
   // Where velocities of holders are not known yet, the first step finds them, and all go together.
   const auto starts = [](const Holder& holder) { return holder.starts; };
-  if (std::none_of(s.holders.nodes.begin(), s.holders.nodes.end(), starts))
-    project_velocities(cable.model, s.boundary.nodes, cable.state.positions, cable.state.velocities);
+  if (std::none_of(memory.holders.nodes.begin(), memory.holders.nodes.end(), starts))
+    project_velocities(cable.model, boundary.nodes, cable.state.positions, cable.state.velocities);
   cable.state.twist.assign(cable.model.segments(), 0.0);
   cable.state.reference_orientation =
       smallest_rotation(Vector3::UnitX(), cable.state.positions[1] - cable.state.positions[0]);
-  s.spans = find_spans(cable.model, cable.state, s.boundary.directions);
-  cables.push_back(std::move(cable));
-  scratch.push_back(std::move(s));
-  follow_material(index);
-  set_stiff_ends(desc.stiff_ends, cables.back().model);
-  set_rest_curvature(desc.rest_curvature, scratch.back().holders.directions, cables.back());
-  scratch.back().stepper.resize(cables.back().model);
-  form_groups();
-  if (settles) settle_start(index);
+  memory.spans = find_spans(cable.model, cable.state, boundary.directions);
+  follow_material(boundary.directions, memory.spans, cable);
+  set_stiff_ends(desc.stiff_ends, cable.model);
+  set_rest_curvature(desc.rest_curvature, memory.holders.directions, cable);
+  const bool held = !memory.holders.nodes.empty();
+  state.cables.push_back(std::move(cable));
+  state.cable_memory.push_back(std::move(memory));
+  if (settles && held && !Settling(index, state, workspaces.value.local()).settle_start())
+    findings.unsettled.push_back(desc.name);
 }
 
 /// The segment of a cable that breaks now, -1 if it holds. A piece keeps at least one segment, so that the outermost ones do not
 /// break.
 int World::Implementation::breaking_segment(int index, const StepResult& result) const {
-  const SimulatedCable& cable = cables[index];
+  const SimulatedCable& cable = state.cables[index];
   const double limit = cable.model.material.breaking_tension;
   const std::vector<double>& tension = cable.state.tension;
   if (!(limit < infinity) || tension.size() < 3) return -1;
   const auto tightest = std::max_element(tension.begin() + 1, tension.end() - 1);
-  // What cannot stretch and is pulled beyond its length breaks at any strength.
+  // What cannot stretch and is pulled beyond its length findings.breaks at any strength.
   const bool torn = result.status == StepResult::Status::overstretched && cable.model.material.axial_stiffness == infinity;
   const bool exceeded = *std::max_element(tension.begin(), tension.end()) > limit;
   return torn || exceeded ? static_cast<int>(tightest - tension.begin()) : -1;
 }
 
-void World::Implementation::add_forces(int cable, double weight) {
-  const CableScratch& s = scratch[cable];
-  for (std::size_t k = 0; k < s.boundary.nodes.size(); ++k) {
-    Attachment& attachment = attachments[s.holders.nodes[k].attachment];
-    const Vector3 force = weight * s.boundary.nodes[k].force;
-    const Vector3 arm = s.boundary.nodes[k].position - (poses[attachment.frame] * attachment.pose).position;
-    attachment.force += force;
-    if (s.holders.nodes[k].node != attachment.node) attachment.torque += arm.cross(force);
-  }
-  for (std::size_t k = 0; k < s.boundary.directions.size(); ++k)
-    attachments[s.holders.directions[k].attachment].torque += weight * s.boundary.directions[k].torque;
-}
-
+/// After a change of what holds a cable, or of its nodes.
 void World::Implementation::update_holders(int index) {
-  SimulatedCable& cable = cables[index];
-  CableScratch& s = scratch[index];
-  s.holders = find_holders(index, cable.model, cable.state, attachments, poses, s.holders, time());
-  aim_holders(cable.model, attachments, poses, time(), s.holders);
-  hold_at(0, 0, s.holders, s.boundary);
-  restore_lengths(cable.model, s.boundary.nodes, gravity_near(index), cable.state);
-  s.spans = find_spans(cable.model, cable.state, s.boundary.directions);
+  SimulatedCable& cable = state.cables[index];
+  CableMemory& memory = state.cable_memory[index];
+  memory.holders = find_holders(cable.model, cable.state, state.attachments, attachments_of(index, false, state.attachments),
+                                state.frames.poses, memory.holders, state.time());
+  aim_holders(cable.model, state.attachments, state.frames.poses, state.time(), memory.holders);
+  const Boundary boundary = boundary_now(memory.holders);
+  restore_lengths(cable.model, boundary.nodes, gravity_near(index), cable.state);
+  memory.spans = find_spans(cable.model, cable.state, boundary.directions);
 }
 
 /// Where a cable hangs to: gravity at its first node.
 Vector3 World::Implementation::gravity_near(int cable) const {
-  return scene.gravity.at(cables[cable].state.positions.front());
-}
-
-/// Twist and roll of the material after a step: from the clamps where there are any, else the first segment's is carried along in
-/// time.
-void World::Implementation::follow_material(int index) {
-  CableState& state = cables[index].state;
-  const CableScratch& s = scratch[index];
-  if (s.boundary.directions.empty()) {
-    const Vector3 before = state.reference_orientation * Vector3::UnitX(), now = state.positions[1] - state.positions[0];
-    state.reference_node = 0;
-    state.reference_orientation = (smallest_rotation(before, now) * state.reference_orientation).normalized();
-  } else {
-    state.reference_node = s.boundary.directions.front().node;
-    state.reference_orientation = s.boundary.directions.front().end;
-  }
-  std::fill(state.twist.begin(), state.twist.end(), 0.0);
-  for (const TwistSpan& span : s.spans) {
-    const double length = cables[index].model.length(span.first_node, span.last_node);
-    std::fill(state.twist.begin() + span.first_node, state.twist.begin() + span.last_node, span.angle / length);
-  }
+  return state.scene->gravity.at(state.cables[cable].state.positions.front());
 }
 
 }  // namespace verlet_cable

@@ -68,27 +68,27 @@ void split_holders(int first_node, std::vector<HolderType>& first, std::vector<H
 bool World::Implementation::is_attachment(const std::string& name) const {
   const auto has_name = [&](const auto& attachment) { return attachment.name == name; };
   const auto any = [&](const auto& list) { return std::any_of(list.begin(), list.end(), has_name); };
-  return any(attachments) ||
-         std::any_of(waiting_descs.begin(), waiting_descs.end(), [&](int i) { return any(scene.cables[i].attachments); }) ||
-         std::any_of(waiting_nets.begin(), waiting_nets.end(), [&](int i) { return any(scene.nets[i].attachments); });
+  return any(state.attachments) ||
+         std::any_of(state.waiting_cables.begin(), state.waiting_cables.end(), [&](int i) { return any(state.scene->cables[i].attachments); }) ||
+         std::any_of(state.waiting_nets.begin(), state.waiting_nets.end(), [&](int i) { return any(state.scene->nets[i].attachments); });
 }
 
 EditResult World::pin(const std::string& name, int cable, int node, int frame, const Pose& pose, AttachmentType type) {
   Implementation& w = *implementation_;
-  if (cable < 0 || cable >= static_cast<int>(w.cables.size()))
+  if (cable < 0 || cable >= static_cast<int>(w.state.cables.size()))
     return refused("cable: " + std::to_string(cable) + "; must be the index of a cable");
-  SimulatedCable& held = w.cables[cable];
+  SimulatedCable& held = w.state.cables[cable];
   if (node < 0 || node > held.model.segments())
     return refused("node: " + std::to_string(node) + "; must be from 0 to " + std::to_string(held.model.segments()));
-  if (frame < 0 || frame >= static_cast<int>(w.frames.size()))
+  if (frame < 0 || frame >= static_cast<int>(w.state.frames.names.size()))
     return refused("frame: " + std::to_string(frame) + "; must be the id of a frame");
   if (const std::string problem = pose_problem("offset", pose); !problem.empty()) return refused(problem);
   if (!name.empty() && w.is_attachment(name)) return refused("name: " + name + "; is taken by another attachment");
-  if (holds_something(w.attachments, cable, node))
+  if (holds_something(w.state.attachments, cable, node))
     return refused("node: " + std::to_string(node) + " of cable " + held.model.name + "; is already held by an attachment");
-  if (const std::optional<Reel>& reel = w.scratch[cable].reel; reel && !reel->is_winch()) {
+  if (const std::optional<Reel>& reel = w.state.cable_memory[cable].reel; reel && !reel->is_winch()) {
     const int other = node == reel->segment ? node + 1 : node == reel->segment + 1 ? node - 1 : -1;
-    if (other >= 0 && holds_something(w.attachments, cable, other))
+    if (other >= 0 && holds_something(w.state.attachments, cable, other))
       return refused("node: " + std::to_string(node) + " of cable " + held.model.name + "; is being joined to node " +
                      std::to_string(other) + ", which is held by an attachment");
   }
@@ -100,24 +100,24 @@ EditResult World::pin(const std::string& name, int cable, int node, int frame, c
   attachment.frame = frame;
   attachment.type = type;
   attachment.pose = {pose.position, pose.orientation.normalized()};
-  w.attachments.push_back(attachment);
+  w.state.attachments.push_back(attachment);
   w.update_holders(cable);
   return {true, "", attachment.name};
 }
 
 EditResult World::pin_net(const std::string& name, int net, int node, int frame, const Vector3& offset) {
   Implementation& w = *implementation_;
-  if (net < 0 || net >= static_cast<int>(w.nets.size()))
+  if (net < 0 || net >= static_cast<int>(w.state.nets.size()))
     return refused("net: " + std::to_string(net) + "; must be the index of a net");
-  const NetModel& model = w.nets[net].model;
+  const NetModel& model = w.state.nets[net].model;
   if (node < 0 || node >= model.nodes())
     return refused("node: " + std::to_string(node) + "; must be from 0 to " + std::to_string(model.nodes() - 1));
-  if (frame < 0 || frame >= static_cast<int>(w.frames.size()))
+  if (frame < 0 || frame >= static_cast<int>(w.state.frames.names.size()))
     return refused("frame: " + std::to_string(frame) + "; must be the id of a frame");
   if (const std::string problem = pose_problem("offset", Pose{offset, Quaternion::Identity()}); !problem.empty())
     return refused(problem);
   if (!name.empty() && w.is_attachment(name)) return refused("name: " + name + "; is taken by another attachment");
-  for (const Attachment& a : w.attachments)
+  for (const Attachment& a : w.state.attachments)
     if (a.net == net && a.node == node)
       return refused("node: " + std::to_string(node) + " of net " + model.name + "; is already held by an attachment");
   Attachment attachment;
@@ -127,7 +127,7 @@ EditResult World::pin_net(const std::string& name, int net, int node, int frame,
   attachment.node = node;
   attachment.frame = frame;
   attachment.pose.position = offset;
-  w.attachments.push_back(attachment);
+  w.state.attachments.push_back(attachment);
   w.update_net(net);
   return {true, "", attachment.name};
 }
@@ -136,13 +136,13 @@ EditResult World::unpin(const std::string& name) {
   Implementation& w = *implementation_;
   const int index = find_attachment(name);
   if (index < 0) return refused("name: " + name + "; there is no such attachment");
-  const int cable = w.attachments[index].cable, net = w.attachments[index].net;
-  w.attachments.erase(w.attachments.begin() + index);
-  for (CableScratch& s : w.scratch) {
+  const int cable = w.state.attachments[index].cable, net = w.state.attachments[index].net;
+  w.state.attachments.erase(w.state.attachments.begin() + index);
+  for (CableMemory& s : w.state.cable_memory) {
     forget_attachment(index, s.holders.nodes);
     forget_attachment(index, s.holders.directions);
   }
-  for (NetScratch& s : w.net_scratch) forget_attachment(index, s.holders.nodes);
+  for (NetMemory& s : w.state.net_memory) forget_attachment(index, s.holders.nodes);
   if (net < 0)
     w.update_holders(cable);
   else
@@ -154,21 +154,24 @@ EditResult World::move_attachment(const std::string& name, const Pose& pose) {
   const int index = find_attachment(name);
   if (index < 0) return refused("name: " + name + "; there is no such attachment");
   if (const std::string problem = pose_problem("offset", pose); !problem.empty()) return refused(problem);
-  implementation_->attachments[index].pose = {pose.position, pose.orientation.normalized()};
+  implementation_->state.attachments[index].pose = {pose.position, pose.orientation.normalized()};
   return {true, "", name};
 }
 
 EditResult World::cut(int cable, int segment) {
-  Implementation& w = *implementation_;
-  if (cable < 0 || cable >= static_cast<int>(w.cables.size()))
+  return implementation_->cut(cable, segment);
+}
+
+EditResult World::Implementation::cut(int cable, int segment) {
+  if (cable < 0 || cable >= static_cast<int>(state.cables.size()))
     return refused("cable: " + std::to_string(cable) + "; must be the index of a cable");
-  const int segments = w.cables[cable].model.segments();
-  const std::string& name = w.cables[cable].model.name;
+  const int segments = state.cables[cable].model.segments();
+  const std::string& name = state.cables[cable].model.name;
   if (segments < 3) return refused("cable: " + name + "; has " + std::to_string(segments) + " segments, a cut needs 3");
   if (segment < 1 || segment > segments - 2)
     return refused("segment: " + std::to_string(segment) + " of cable " + name + "; must be from 1 to " +
                    std::to_string(segments - 2) + ", so that each piece keeps one");
-  if (const std::optional<Reel>& joint = w.scratch[cable].reel; joint && !joint->is_winch()) {
+  if (const std::optional<Reel>& joint = state.cable_memory[cable].reel; joint && !joint->is_winch()) {
     if ((segment == 1 && joint->segment == 0) || (segment == segments - 2 && joint->segment == segments - 1))
       return refused("segment: " + std::to_string(segment) + " of cable " + name + "; this leaves only segment " +
                      std::to_string(joint->segment) + ", which is still being drawn in by join");
@@ -177,44 +180,42 @@ EditResult World::cut(int cable, int segment) {
   const auto taken = [&](const std::string& n) {
     const auto has_name = [&](const auto& desc) { return desc.name == n; };
     const auto any = [&](const auto& descs) { return std::any_of(descs.begin(), descs.end(), has_name); };
-    return find_cable(n) >= 0 || any(w.scene.cables) || any(w.scene.nets) || any(w.scene.particles);
+    const bool in_use = std::any_of(state.cables.begin(), state.cables.end(), [&](const SimulatedCable& c) { return c.model.name == n; });
+    return in_use || any(state.scene->cables) || any(state.scene->nets) || any(state.scene->particles);
   };
-  const SimulatedCable& whole = w.cables[cable];
+  const SimulatedCable& whole = state.cables[cable];
   SimulatedCable first = piece(whole, 0, segment), second = piece(whole, segment + 1, segments);
   second.model.name = numbered(name + "_", 2, taken);
 
-  const int new_cable = static_cast<int>(w.cables.size());
+  const int new_cable = static_cast<int>(state.cables.size());
   const std::string new_name = second.model.name;
-  w.cables[cable] = std::move(first);
-  w.cables.push_back(std::move(second));
-  w.follow_cut(cable, segment, new_cable);
-  w.scratch.emplace_back();
-  Holders &of_first = w.scratch[cable].holders, &of_second = w.scratch[new_cable].holders;
+  state.cables[cable] = std::move(first);
+  state.cables.push_back(std::move(second));
+  follow_cut(cable, segment, new_cable);
+  state.cable_memory.emplace_back();
+  state.cable_memory.back().id = state.next_cable_id++;
+  state.cable_memory[cable].level = 0;
+  Holders &of_first = state.cable_memory[cable].holders, &of_second = state.cable_memory[new_cable].holders;
   split_holders(segment + 1, of_first.nodes, of_second.nodes);
   split_holders(segment + 1, of_first.directions, of_second.directions);
-  std::optional<Reel>&reel = w.scratch[cable].reel, &reel_of_second = w.scratch[new_cable].reel;
+  std::optional<Reel>&reel = state.cable_memory[cable].reel, &reel_of_second = state.cable_memory[new_cable].reel;
   if (reel && reel->segment > segment) {
     reel_of_second = reel;
     reel_of_second->segment -= segment + 1;
   }
   if (reel && reel->segment >= segment) reel.reset();
-  w.scratch[cable].boundary.growing.clear();
-  for (const int piece : {cable, new_cable}) {
-    w.update_holders(piece);
-    w.scratch[piece].stepper.resize(w.cables[piece].model);
-  }
-  w.form_groups();
+  for (const int piece : {cable, new_cable}) after_remeshing(piece);
   return {true, "", new_name};
 }
 
 /// What names places of a cable names those of its pieces.
 void World::Implementation::follow_cut(int cable, int segment, int new_cable) {
-  for (Attachment& a : attachments) {
+  for (Attachment& a : state.attachments) {
     if (a.cable != cable || a.node <= segment) continue;
     a.cable = new_cable;
     a.node -= segment + 1;
   }
-  for (Intrusion& intrusion : intrusions) {
+  for (Intrusion& intrusion : findings.intrusions) {
     if (intrusion.cable != cable || intrusion.segment < segment) continue;
     if (intrusion.segment == segment) {
       --intrusion.segment;
@@ -227,17 +228,17 @@ void World::Implementation::follow_cut(int cable, int segment, int new_cable) {
 
 int World::add_frame(const std::string& name, const std::optional<Pose>& pose) {
   Implementation& w = *implementation_;
-  const int frame = static_cast<int>(std::find(w.frames.begin(), w.frames.end(), name) - w.frames.begin());
-  if (frame == static_cast<int>(w.frames.size())) {
-    w.frames.push_back(name);
-    w.poses.emplace_back();
-    w.previous_poses.emplace_back();
-    w.known.push_back(false);
+  const int frame = w.state.frames.find(name);
+  if (frame == static_cast<int>(w.state.frames.names.size())) {
+    w.state.frames.names.push_back(name);
+    w.state.frames.poses.emplace_back();
+    w.state.frames.previous_poses.emplace_back();
+    w.state.frames.known.push_back(false);
     w.find_obstacle_holders();
   }
-  if (pose && is_sound(*pose) && !w.known[frame]) {
-    w.poses[frame] = w.previous_poses[frame] = {pose->position, pose->orientation.normalized()};
-    w.known[frame] = true;
+  if (pose && is_sound(*pose) && !w.state.frames.known[frame]) {
+    w.state.frames.poses[frame] = w.state.frames.previous_poses[frame] = {pose->position, pose->orientation.normalized()};
+    w.state.frames.known[frame] = true;
   }
   return frame;
 }

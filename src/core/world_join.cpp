@@ -115,22 +115,22 @@ JointEnd find_end(const CableModel& model, int cable, bool at_end, const std::ve
 
 EditResult World::join(int first, bool first_at_end, int second, bool second_at_end) {
   Implementation& w = *implementation_;
-  const int count = static_cast<int>(w.cables.size());
+  const int count = static_cast<int>(w.state.cables.size());
   for (const int index : {first, second})
     if (index < 0 || index >= count) return refused("cable: " + std::to_string(index) + "; must be the index of a cable");
-  const CableModel &model = w.cables[first].model, &other = w.cables[second].model;
+  const CableModel &model = w.state.cables[first].model, &other = w.state.cables[second].model;
   if (first == second) return refused("second: " + other.name + "; must be another cable than first");
   for (const int index : {first, second})
-    if (w.scratch[index].reel)
-      return refused("cable: " + w.cables[index].model.name +
+    if (w.state.cable_memory[index].reel)
+      return refused("cable: " + w.state.cables[index].model.name +
                      "; it is still being wound by its winch or drawn together by an earlier join; wait until that is done");
   if (const auto differing = difference(model.material, other.material))
     return refused("second: " + other.name + "; must be of the same material as " + model.name + ", but they differ in " +
                    *differing);
-  const JointEnd end = find_end(model, first, first_at_end, w.attachments);
-  const JointEnd other_end = find_end(other, second, second_at_end, w.attachments);
+  const JointEnd end = find_end(model, first, first_at_end, w.state.attachments);
+  const JointEnd other_end = find_end(other, second, second_at_end, w.state.attachments);
   if (end.next && other_end.next) {
-    const auto place = [&](const Attachment& a) { return (w.poses[a.frame] * a.pose).position; };
+    const auto place = [&](const Attachment& a) { return (w.state.frames.poses[a.frame] * a.pose).position; };
     if (end.next->node == end.node && other_end.next->node == other_end.node)
       return refused("first, second: both ends are held, by " + end.next->name + " and " + other_end.next->name +
                      "; one of them must be unpinned");
@@ -142,7 +142,7 @@ EditResult World::join(int first, bool first_at_end, int second, bool second_at_
 
   // The second cable in the direction of the first.
   if (first_at_end == second_at_end) w.reverse_cable(second);
-  SimulatedCable &kept = w.cables[first], &gone = w.cables[second];
+  SimulatedCable &kept = w.state.cables[first], &gone = w.state.cables[second];
   const int shift = first_at_end ? kept.model.nodes() : gone.model.nodes();
   const std::string name = kept.model.name;
   if (!gone.model.rest_curvature.empty()) {
@@ -162,7 +162,7 @@ EditResult World::join(int first, bool first_at_end, int second, bool second_at_
     kept = std::move(joined);
   }
   w.renumber(first_at_end ? second : first, 0, shift);
-  Holders &holders = w.scratch[first].holders, &holders_of_gone = w.scratch[second].holders;
+  Holders &holders = w.state.cable_memory[first].holders, &holders_of_gone = w.state.cable_memory[second].holders;
   append(holders_of_gone.nodes, holders.nodes);
   append(holders_of_gone.directions, holders.directions);
 
@@ -173,19 +173,20 @@ EditResult World::join(int first, bool first_at_end, int second, bool second_at_
   reel.left = -std::max(gap - approach * kept.model.segment_length, 0.0);
   reel.speed = joining_speed;
   reel.acceleration = joining_acceleration;
-  w.scratch[first].reel = reel;
+  w.state.cable_memory[first].reel = reel;
 
   w.follow_join(first, second);
-  w.cables.erase(w.cables.begin() + second);
-  w.scratch.erase(w.scratch.begin() + second);
-  w.form_groups();
+  w.state.cables.erase(w.state.cables.begin() + second);
+  w.state.cable_memory.erase(w.state.cable_memory.begin() + second);
   const int joined = first > second ? first - 1 : first;
+  w.state.cable_memory[joined].level = 0;
   if (reel.left == 0) {
     w.close_joint(joined);
   } else {
     w.after_remeshing(joined);
-    SimulatedCable& cable = w.cables[joined];
-    project_velocities(cable.model, w.scratch[joined].boundary.nodes, cable.state.positions, cable.state.velocities);
+    SimulatedCable& cable = w.state.cables[joined];
+    project_velocities(cable.model, boundary_now(w.state.cable_memory[joined].holders).nodes, cable.state.positions,
+                       cable.state.velocities);
   }
   return {true, "", name};
 }
@@ -196,26 +197,26 @@ void World::Implementation::follow_join(int first, int second) {
     if (cable == second) cable = first;
     if (cable > second) --cable;
   };
-  for (Attachment& a : attachments) follow(a.cable);
-  for (Intrusion& intrusion : intrusions) follow(intrusion.cable);
-  for (Break& broken : breaks) {
+  for (Attachment& a : state.attachments) follow(a.cable);
+  for (Intrusion& intrusion : findings.intrusions) follow(intrusion.cable);
+  for (Break& broken : findings.breaks) {
     follow(broken.cable);
     follow(broken.new_cable);
   }
 }
 
 void World::Implementation::reverse_cable(int index) {
-  reverse(cables[index]);
-  const int n = cables[index].model.segments();
-  for (Intrusion& intrusion : intrusions)
+  reverse(state.cables[index]);
+  const int n = state.cables[index].model.segments();
+  for (Intrusion& intrusion : findings.intrusions)
     if (intrusion.cable == index) intrusion.segment = n - 1 - intrusion.segment;
-  for (Attachment& a : attachments) {
+  for (Attachment& a : state.attachments) {
     if (a.cable != index) continue;
     a.node = n - a.node;
     a.pose.orientation = a.pose.orientation * turned;
   }
-  for (Holder& h : scratch[index].holders.nodes) h.node = n - h.node;
-  for (DirectionHolder& h : scratch[index].holders.directions) {
+  for (Holder& h : state.cable_memory[index].holders.nodes) h.node = n - h.node;
+  for (DirectionHolder& h : state.cable_memory[index].holders.directions) {
     h.node = n - h.node;
     h.orientation = h.orientation * turned;
   }
@@ -223,25 +224,23 @@ void World::Implementation::reverse_cable(int index) {
 
 /// The two ends become one node; all segments keep the lengths that they have.
 void World::Implementation::close_joint(int index) {
-  SimulatedCable& cable = cables[index];
-  CableModel& model = cable.model;
-  CableState& state = cable.state;
-  CableScratch& s = scratch[index];
+  CableMemory& s = state.cable_memory[index];
+  CableModel& model = state.cables[index].model;
+  CableState& cable = state.cables[index].state;
   const int node = s.reel->segment, gone = node + 1;
   s.reel.reset();
-  s.boundary.growing.clear();
   std::vector<double> lengths;
   for (int i = 0; i < model.segments(); ++i)
-    if (i != node) lengths.push_back((state.positions[i + 1] - state.positions[i]).norm());
+    if (i != node) lengths.push_back((cable.positions[i + 1] - cable.positions[i]).norm());
 
   const double mass = model.masses[node] + model.masses[gone], part = model.masses[gone] / mass;
   model.masses[node] = mass;
   model.masses.erase(model.masses.begin() + gone);
-  for (auto* values : {&state.positions, &state.velocities, &state.accelerations}) {
+  for (auto* values : {&cable.positions, &cable.velocities, &cable.accelerations}) {
     (*values)[node] += part * ((*values)[gone] - (*values)[node]);
     values->erase(values->begin() + gone);
   }
-  for (auto* values : {&model.rest_lengths, &state.tension, &state.axial_multiplier, &state.twist})
+  for (auto* values : {&model.rest_lengths, &cable.tension, &cable.axial_multiplier, &cable.twist})
     values->erase(values->begin() + node);
   if (!model.rest_curvature.empty()) {
     for (const int axis : {0, 1})
@@ -252,16 +251,16 @@ void World::Implementation::close_joint(int index) {
     model.bending_share[node] = 0.5 * (model.bending_share[node] + model.bending_share[gone]);
     model.bending_share.erase(model.bending_share.begin() + gone);
   }
-  if (state.reference_node >= gone) --state.reference_node;
+  if (cable.reference_node >= gone) --cable.reference_node;
   renumber(index, gone, -1);
 
   std::vector<HeldNode> held;
   for (const Holder& h : s.holders.nodes) held.push_back({h.node, h.position, h.velocity});
   std::sort(held.begin(), held.end(), [](const HeldNode& a, const HeldNode& b) { return a.node < b.node; });
-  for (const HeldNode& h : held) state.positions[h.node] = h.position;
-  project_lengths(model, held, lengths, state.positions);
+  for (const HeldNode& h : held) cable.positions[h.node] = h.position;
+  project_lengths(model, held, lengths, cable.positions);
   after_remeshing(index);
-  project_velocities(model, s.boundary.nodes, state.positions, state.velocities);
+  project_velocities(model, boundary_now(s.holders).nodes, cable.positions, cable.velocities);
 }
 
 }  // namespace verlet_cable

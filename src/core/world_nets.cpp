@@ -20,10 +20,10 @@ void note_net(Status status, int net, int node, StepResult& result) {
   result.net = net;
 }
 
-void forget_motion(const NetModel& model, NetScratch& s) {
-  s.link_memory.started = false;
-  std::fill(s.link_memory.impulses.begin(), s.link_memory.impulses.end(), 0.0);
-  s.point_memory.resize(model.masses.size());
+void forget_motion(const NetModel& model, NetMemory& memory) {
+  memory.links.started = false;
+  std::fill(memory.links.impulses.begin(), memory.links.impulses.end(), 0.0);
+  memory.points.resize(model.masses.size());
 }
 
 /// Held nodes move as their holders do.
@@ -54,103 +54,117 @@ void bring_to_rest(NetState& state) {
 
 }  // namespace
 
-void World::Implementation::start_net(const NetDesc& desc, const BoundaryInputs& inputs) {
-  const int index = static_cast<int>(nets.size());
+void World::Implementation::start_net(const NetDesc& desc, const FrameIds& ids, const BoundaryInputs& inputs) {
+  const int index = static_cast<int>(state.nets.size());
   for (const NetAttachmentDesc& a : desc.attachments) {
     Attachment attachment;
     attachment.name = a.name;
     attachment.cable = -1;
     attachment.net = index;
     attachment.node = a.node;
-    attachment.frame = a.frame.empty() ? 0 : find_frame(frames, a.frame);
+    attachment.frame = ids.at(a.frame);
     attachment.pose.position = a.offset;
-    attachments.push_back(attachment);
+    state.attachments.push_back(attachment);
   }
-  nets.push_back(make_net(desc));
-  net_scratch.emplace_back();
-  const NetModel& model = nets.back().model;
-  net_scratch.back().point_memory.resize(model.masses.size());
-  net_scratch.back().link_memory.midstep_velocities.assign(model.masses.size(), Vector3::Zero());
-  net_scratch.back().link_memory.impulses.assign(model.links.size() + model.minimum_distances.size(), 0.0);
+  state.nets.push_back(make_net(desc));
+  const NetModel& model = state.nets.back().model;
+  NetMemory& memory = state.net_memory.emplace_back();
+  memory.points.resize(model.masses.size());
+  memory.links.midstep_velocities.assign(model.masses.size(), Vector3::Zero());
+  memory.links.impulses.assign(model.links.size() + model.minimum_distances.size(), 0.0);
   update_net(index);
-  start_holders(attachments, poses, inputs, net_scratch.back().holders);
-  take_velocities(net_scratch.back().holders, nets.back().state);
+  start_holders(state.attachments, state.frames.poses, inputs, memory.holders);
+  take_velocities(memory.holders, state.nets.back().state);
 }
 
 /// After a change of what holds a net or what it is made of.
 void World::Implementation::update_net(int index) {
-  const SimulatedNet& net = nets[index];
-  NetScratch& s = net_scratch[index];
-  s.holders = find_net_holders(index, net.state.positions, net.state.velocities, attachments, poses, s.holders, time());
-  aim_hinges(attachments, poses, time(), s.holders);
-  hold_at(0, 0, s.holders, s.boundary);
-  if (net.model.link_type == LinkType::spring) {
-    s.springs.resize(net.model);
-    s.point_memory.restart();
-  } else {
-    s.links.resize(net.model, s.boundary.nodes, scene.time_step);
+  const SimulatedNet& net = state.nets[index];
+  NetMemory& memory = state.net_memory[index];
+  memory.holders = find_net_holders(net.state.positions, net.state.velocities, state.attachments,
+                                    attachments_of(index, true, state.attachments), state.frames.poses, memory.holders,
+                                    state.time());
+  aim_hinges(state.attachments, state.frames.poses, state.time(), memory.holders);
+  if (net.model.link_type == LinkType::spring) memory.points.restart();
+  if (static_cast<int>(net_solvers.value.size()) > index) net_solvers.value.resize(index);
+}
+
+/// Made where it is missing: for a new or changed net, or in a copy.
+NetSolver& World::Implementation::solver_of(int index) {
+  std::vector<NetSolver>& solvers = net_solvers.value;
+  for (int i = static_cast<int>(solvers.size()); i <= index; ++i) {
+    const NetModel& model = state.nets[i].model;
+    NetSolver& solver = solvers.emplace_back();
+    solver.boundary = boundary_now(state.net_memory[i].holders);
+    if (model.link_type == LinkType::spring)
+      solver.springs.resize(model);
+    else
+      solver.links.resize(model, solver.boundary.nodes, state.scene->time_step);
   }
+  return solvers[index];
 }
 
 void World::Implementation::add_particle(const ParticleDesc& desc) {
-  particles.push_back({desc, desc.position, desc.velocity});
-  particle_memory.emplace_back().resize(1);
+  state.particles.push_back({desc, desc.position, desc.velocity});
+  state.particle_memory.emplace_back().resize(1);
 }
 
 void World::Implementation::step_nets_and_particles(StepResult& result) {
-  if (nets.empty() && particles.empty()) return;
-  move_obstacles(0, 1, moving_obstacles);
-  for (int net = 0; net < static_cast<int>(nets.size()); ++net) step_net(net, result);
-  for (int particle = 0; particle < static_cast<int>(particles.size()); ++particle) step_particle(particle, result);
+  if (state.nets.empty() && state.particles.empty()) return;
+  move_obstacles(state.obstacles, state.frames.previous_poses, state.frames.poses, state.scene->time_step, 0, 1,
+                 moving_obstacles.value);
+  for (int net = 0; net < static_cast<int>(state.nets.size()); ++net) step_net(net, result);
+  for (int particle = 0; particle < static_cast<int>(state.particles.size()); ++particle) step_particle(particle, result);
   result.substeps = std::max(result.substeps, 1);
 }
 
 void World::Implementation::step_net(int index, StepResult& result) {
-  SimulatedNet& net = nets[index];
-  NetScratch& s = net_scratch[index];
+  SimulatedNet& net = state.nets[index];
+  NetMemory& memory = state.net_memory[index];
+  NetSolver& solver = solver_of(index);
   aim_net(index, result);
-  hold_at(0, 1, s.holders, s.boundary);
-  s.before = net.state;
-  const NetStep step{net.model, scene, moving_obstacles, s.holders, s.boundary.nodes};
-  const NetStepResult of_net = net.model.link_type == LinkType::spring ? s.springs.advance(step, net.state, s.point_memory)
-                                                                       : s.links.advance(step, net.state, s.link_memory);
+  hold_at(0, 1, memory.holders, solver.boundary);
+  solver.before = net.state;
+  const NetStep step{net.model, *state.scene, moving_obstacles.value, memory.holders, solver.boundary.nodes};
+  const NetStepResult of_net = net.model.link_type == LinkType::spring ? solver.springs.advance(step, net.state, memory.points)
+                                                                       : solver.links.advance(step, net.state, memory.links);
   if (!of_net.finite) {
-    net.state = s.before;
+    net.state = solver.before;
     bring_to_rest(net.state);
-    forget_motion(net.model, s);
+    forget_motion(net.model, memory);
     note_net(Status::degraded, index, 0, result);
-    complete_step(scene.time_step, s.holders);
-    show_velocities(s.holders, net.state.velocities);
+    complete_step(state.scene->time_step, memory.holders);
+    show_velocities(memory.holders, net.state.velocities);
     return;
   }
   if (of_net.softened) note_net(Status::degraded, index, 0, result);
   if (of_net.overstretched_node >= 0) note_net(Status::overstretched, index, of_net.overstretched_node, result);
   result.iterations += of_net.iterations;
   result.max_strain = std::max(result.max_strain, of_net.max_strain);
-  for (std::size_t k = 0; k < s.boundary.nodes.size(); ++k)
-    attachments[s.holders.nodes[k].attachment].force = s.boundary.nodes[k].force;
-  complete_step(scene.time_step, s.holders);
-  show_velocities(s.holders, net.state.velocities);
+  for (std::size_t k = 0; k < solver.boundary.nodes.size(); ++k)
+    state.attachments[memory.holders.nodes[k].attachment].force = solver.boundary.nodes[k].force;
+  complete_step(state.scene->time_step, memory.holders);
+  show_velocities(memory.holders, net.state.velocities);
 }
 
 /// Aims what holds a net at where it will be. Where that jumps, the net is carried along, and keeps its velocities.
 void World::Implementation::aim_net(int index, StepResult& result) {
-  NetScratch& s = net_scratch[index];
-  aim_hinges(attachments, poses, time(), s.holders);
-  take_back_shown_velocities(s.holders, nets[index].state.velocities);
-  const Following following = follow_aims(attachments, time(), scene.time_step, s.holders, jumps);
-  if (following.started) take_velocities(s.holders, nets[index].state);
+  NetMemory& memory = state.net_memory[index];
+  aim_hinges(state.attachments, state.frames.poses, state.time(), memory.holders);
+  take_back_shown_velocities(memory.holders, state.nets[index].state.velocities);
+  const Following following = follow_aims(state.attachments, state.time(), state.scene->time_step, memory.holders, findings.jumps);
+  if (following.started) take_velocities(memory.holders, state.nets[index].state);
   if (following.jumping_node < 0) return;
-  carry_along(s.holders, nets[index].state);
-  s.point_memory.restart();
+  carry_along(memory.holders, state.nets[index].state);
+  memory.points.restart();
   note_net(Status::jumped, index, following.jumping_node, result);
 }
 
 void World::Implementation::step_particle(int index, StepResult& result) {
-  SimulatedParticle& particle = particles[index];
-  if (particle_stepper.advance(scene, moving_obstacles, particle, particle_memory[index])) return;
+  SimulatedParticle& particle = state.particles[index];
+  if (particle_stepper.value.advance(*state.scene, moving_obstacles.value, particle, state.particle_memory[index])) return;
   particle.velocity.setZero();
-  particle_memory[index].restart();
+  state.particle_memory[index].restart();
   if (result.status >= Status::degraded) return;
   note_status(Status::degraded, -1, 0, result);
   result.particle = index;
@@ -159,24 +173,24 @@ void World::Implementation::step_particle(int index, StepResult& result) {
 void World::Implementation::add_net_energy(Energy& energy) const {
   const auto add_point = [&](double mass, const Vector3& position, const Vector3& velocity) {
     energy.kinetic += 0.5 * mass * velocity.squaredNorm();
-    energy.gravity += mass * scene.gravity.potential_at(position);
+    energy.gravity += mass * state.scene->gravity.potential_at(position);
   };
-  for (const SimulatedNet& net : nets) {
+  for (const SimulatedNet& net : state.nets) {
     for (int i = 0; i < net.model.nodes(); ++i) add_point(net.model.masses[i], net.state.positions[i], net.state.velocities[i]);
     for (std::size_t i = 0; i < net.model.links.size(); ++i) {
       const double stretch = strain(net, static_cast<int>(i)) * net.model.rest_lengths[i];
       energy.stretch += 0.5 * net.model.stiffness * stretch * stretch;
     }
   }
-  for (const SimulatedParticle& particle : particles) add_point(particle.desc.mass, particle.position, particle.velocity);
+  for (const SimulatedParticle& particle : state.particles) add_point(particle.desc.mass, particle.position, particle.velocity);
 }
 
 const std::vector<SimulatedNet>& World::nets() const {
-  return implementation_->nets;
+  return implementation_->state.nets;
 }
 
 const std::vector<SimulatedParticle>& World::particles() const {
-  return implementation_->particles;
+  return implementation_->state.particles;
 }
 
 int World::find_net(const std::string& name) const {
@@ -187,9 +201,9 @@ int World::find_net(const std::string& name) const {
 
 EditResult World::cut_link(int index, int link) {
   Implementation& w = *implementation_;
-  if (index < 0 || index >= static_cast<int>(w.nets.size()))
+  if (index < 0 || index >= static_cast<int>(w.state.nets.size()))
     return {false, "net: " + std::to_string(index) + "; must be the index of a net", {}};
-  SimulatedNet& net = w.nets[index];
+  SimulatedNet& net = w.state.nets[index];
   const int links = static_cast<int>(net.model.links.size());
   if (link < 0 || link >= links)
     return {false,
@@ -199,7 +213,7 @@ EditResult World::cut_link(int index, int link) {
   net.model.links.erase(net.model.links.begin() + link);
   net.model.rest_lengths.erase(net.model.rest_lengths.begin() + link);
   net.state.tension.erase(net.state.tension.begin() + link);
-  std::vector<double>& impulses = w.net_scratch[index].link_memory.impulses;
+  std::vector<double>& impulses = w.state.net_memory[index].links.impulses;
   impulses.erase(impulses.begin() + link);
   w.update_net(index);
   return {true, "", net.model.name};

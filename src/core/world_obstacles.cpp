@@ -83,19 +83,20 @@ auto find_obstacle(std::vector<Obstacle>& obstacles, const std::string& name) {
 }  // namespace
 
 const std::vector<Obstacle>& World::obstacles() const {
-  return implementation_->obstacles;
+  return implementation_->state.obstacles;
 }
 
 EditResult World::set_obstacle(Obstacle obstacle) {
   Implementation& w = *implementation_;
-  if (const std::string problem = problem_of(obstacle, w.frames.size()); !problem.empty())
+  if (const std::string problem = problem_of(obstacle, w.state.frames.names.size()); !problem.empty())
     return {false, "obstacle " + quoted(obstacle.name) + ": " + problem, {}};
   obstacle.pose.orientation.normalize();
-  obstacle.present = w.known[obstacle.frame];
+  obstacle.present = w.state.frames.known[obstacle.frame];
   const std::string name = obstacle.name;
-  const auto same = find_obstacle(w.obstacles, name);
-  if (same == w.obstacles.end()) {
-    w.obstacles.push_back(std::move(obstacle));
+  const auto same = find_obstacle(w.state.obstacles, name);
+  obstacle.id = same == w.state.obstacles.end() ? w.state.next_obstacle_id++ : same->id;
+  if (same == w.state.obstacles.end()) {
+    w.state.obstacles.push_back(std::move(obstacle));
   } else {
     *same = std::move(obstacle);
   }
@@ -105,29 +106,30 @@ EditResult World::set_obstacle(Obstacle obstacle) {
 
 EditResult World::remove_obstacle(const std::string& name) {
   Implementation& w = *implementation_;
-  const auto found = find_obstacle(w.obstacles, name);
-  if (found == w.obstacles.end()) return {false, "obstacle: " + quoted(name) + "; there is no such obstacle", {}};
-  const int index = static_cast<int>(found - w.obstacles.begin());
-  w.obstacles.erase(found);
+  const auto found = find_obstacle(w.state.obstacles, name);
+  if (found == w.state.obstacles.end()) return {false, "obstacle: " + quoted(name) + "; there is no such obstacle", {}};
+  const int index = static_cast<int>(found - w.state.obstacles.begin());
+  w.state.obstacles.erase(found);
   const auto names_it = [&](const Intrusion& intrusion) { return intrusion.obstacle == index; };
-  w.intrusions.erase(std::remove_if(w.intrusions.begin(), w.intrusions.end(), names_it), w.intrusions.end());
-  for (Intrusion& intrusion : w.intrusions)
+  w.findings.intrusions.erase(std::remove_if(w.findings.intrusions.begin(), w.findings.intrusions.end(), names_it), w.findings.intrusions.end());
+  for (Intrusion& intrusion : w.findings.intrusions)
     if (intrusion.obstacle > index) --intrusion.obstacle;
-  w.form_groups();  // contacts name obstacles by their indices
+  w.findings.contacts.clear();
   return {true, "", name};
 }
 
 void World::Implementation::add_scene_obstacles() {
-  for (const ObstacleDesc& desc : all_obstacles(scene)) {
+  for (const ObstacleDesc& desc : all_obstacles(*state.scene)) {
     Obstacle obstacle;
     obstacle.name = desc.name;
-    obstacle.frame = desc.frame.empty() ? 0 : find_frame(frames, desc.frame);
+    obstacle.frame = desc.frame.empty() ? 0 : state.frames.find(desc.frame);
     obstacle.pose = pose_of(desc.pose);
     obstacle.shape = make_shape(desc);
     obstacle.friction = desc.friction;
     obstacle.padding = desc.padding;
-    obstacle.present = known[obstacle.frame];
-    obstacles.push_back(std::move(obstacle));
+    obstacle.present = state.frames.known[obstacle.frame];
+    obstacle.id = state.next_obstacle_id++;
+    state.obstacles.push_back(std::move(obstacle));
   }
   find_obstacle_holders();
 }
@@ -136,16 +138,16 @@ void World::Implementation::add_scene_obstacles() {
 /// much to belong to anything.
 void World::Implementation::find_obstacle_holders() {
   static const std::vector<LinkDesc> no_links;
-  const std::vector<LinkDesc>& tree = scene.robot ? scene.robot->tree : no_links;
-  for (Obstacle& obstacle : obstacles) {
+  const std::vector<LinkDesc>& tree = state.scene->robot ? state.scene->robot->tree : no_links;
+  for (Obstacle& obstacle : state.obstacles) {
     obstacle.holders.clear();
     if (obstacle.frame == 0) continue;
     obstacle.holders.push_back(obstacle.frame);
-    const auto link = std::find_if(tree.begin(), tree.end(), [&](const LinkDesc& l) { return l.name == frames[obstacle.frame]; });
+    const auto link = std::find_if(tree.begin(), tree.end(), [&](const LinkDesc& l) { return l.name == state.frames.names[obstacle.frame]; });
     if (link == tree.end()) continue;
     for (const int i : rigid_links(tree, static_cast<int>(link - tree.begin()))) {
-      const int frame = find_frame(frames, tree[i].name);
-      if (frame > 0 && frame < static_cast<int>(frames.size()) && frame != obstacle.frame) obstacle.holders.push_back(frame);
+      const int frame = state.frames.find(tree[i].name);
+      if (frame > 0 && frame < static_cast<int>(state.frames.names.size()) && frame != obstacle.frame) obstacle.holders.push_back(frame);
     }
     std::sort(obstacle.holders.begin(), obstacle.holders.end());
   }

@@ -43,10 +43,10 @@ void add_material_motion(const Reel& reel, double side, SimulatedCable& cable) {
 
 EditResult World::set_length(int index, bool at_end, double length, double speed) {
   Implementation& w = *implementation_;
-  if (index < 0 || index >= static_cast<int>(w.cables.size()))
+  if (index < 0 || index >= static_cast<int>(w.state.cables.size()))
     return refused("cable: " + std::to_string(index) + "; must be the index of a cable");
-  const CableModel& model = w.cables[index].model;
-  CableScratch& s = w.scratch[index];
+  const CableModel& model = w.state.cables[index].model;
+  CableMemory& s = w.state.cable_memory[index];
   const Reel::Place place = at_end ? Reel::Place::end : Reel::Place::start;
   if (s.reel && !s.reel->is_winch())
     return refused("cable: " + model.name + " is still being drawn together with another by join; wait until they have met");
@@ -54,12 +54,12 @@ EditResult World::set_length(int index, bool at_end, double length, double speed
     return refused("at_end: the winch at the other end of cable " + model.name + " is still winding; wait until it is done");
 
   // One segment a step can be taken in, and is to be left over.
-  const double fastest = shortest_segment * model.segment_length / w.scene.time_step;
+  const double fastest = shortest_segment * model.segment_length / w.state.scene->time_step;
   if (!(speed > 0 && speed <= fastest))
     return refused("speed: " + number_text(speed) + "; must be above 0, and at most " + rounded_bound_text(fastest, -1) + " m/s");
   int others = 0;
-  for (int i = 0; i < static_cast<int>(w.cables.size()); ++i) others += i == index ? 0 : w.cables[i].model.segments();
-  const double longest = (w.scene.limits.segments - others) * model.segment_length;
+  for (int i = 0; i < static_cast<int>(w.state.cables.size()); ++i) others += i == index ? 0 : w.state.cables[i].model.segments();
+  const double longest = (w.state.scene->limits.segments - others) * model.segment_length;
   if (!(length > 0 && length <= longest))
     return refused("length: " + number_text(length) + "; must be above 0, and at most " + rounded_bound_text(longest, -1) +
                    " m, as limits.segments allows");
@@ -83,11 +83,11 @@ EditResult World::set_length(int index, bool at_end, double length, double speed
 
 /// [m] That can be taken in: up to the next node that is attached or carries a payload, or to the other end.
 double World::Implementation::available_length(int index) const {
-  const CableModel& model = cables[index].model;
-  const bool from_start = scratch[index].reel->place == Reel::Place::start;
+  const CableModel& model = state.cables[index].model;
+  const bool from_start = state.cable_memory[index].reel->place == Reel::Place::start;
   const int n = model.segments();
   int stop = from_start ? n : 0;
-  for (const Attachment& a : attachments) {
+  for (const Attachment& a : state.attachments) {
     if (a.cable != index || a.node == (from_start ? 0 : n)) continue;
     stop = from_start ? std::min(stop, a.node) : std::max(stop, a.node);
   }
@@ -102,11 +102,11 @@ double World::Implementation::available_length(int index) const {
 
 /// [m] That the cable between the winch and the next attachment is longer than they are apart; infinite where there are no two.
 double World::Implementation::slack_at_winch(int index) const {
-  const CableModel& model = cables[index].model;
-  const bool from_start = scratch[index].reel->place == Reel::Place::start;
+  const CableModel& model = state.cables[index].model;
+  const bool from_start = state.cable_memory[index].reel->place == Reel::Place::start;
   const int end = from_start ? 0 : model.segments();
   const Attachment *winch = nullptr, *next = nullptr;
-  for (const Attachment& a : attachments) {
+  for (const Attachment& a : state.attachments) {
     if (a.cable != index) continue;
     if (a.node == end) {
       winch = &a;
@@ -115,74 +115,44 @@ double World::Implementation::slack_at_winch(int index) const {
     }
   }
   if (!winch || !next) return infinity;
-  const auto place = [&](const Attachment& a) { return (poses[a.frame] * a.pose).position; };
+  const auto place = [&](const Attachment& a) { return (state.frames.poses[a.frame] * a.pose).position; };
   return model.length(std::min(end, next->node), std::max(end, next->node)) - (place(*winch) - place(*next)).norm();
 }
 
 void World::Implementation::plan_reel_step(int index) {
-  CableScratch& s = scratch[index];
-  const CableModel& model = cables[index].model;
+  CableMemory& s = state.cable_memory[index];
+  const CableModel& model = state.cables[index].model;
   if (!s.reel->is_winch() && model.rest_lengths[s.reel->segment] <= closing_distance * model.segment_length) {
     close_joint(index);
     return;
   }
-  plan_reel(s.reel->is_winch() ? available_length(index) : infinity, scene.time_step, *s.reel);
+  plan_reel(s.reel->is_winch() ? available_length(index) : infinity, state.scene->time_step, *s.reel);
   if (s.reel->is_winch()) remesh_winch(index);
   Reel& reel = *s.reel;
   reel.start_length = model.rest_lengths[reel.segment];
   for (const int side : {0, 1}) reel.start_masses[side] = model.masses[reel.segment + side];
-  wind_reel(index, 1, 1);
-}
-
-/// For a substep that goes from one part of the step to another, 0 to 1.
-void World::Implementation::wind_reel(int index, double from, double to) {
-  CableScratch& s = scratch[index];
-  // An inextensible segment has its length at the end of the substep, an elastic one strains about that in the middle.
-  const bool elastic = cables[index].model.material.axial_stiffness < infinity;
-  wind(*s.reel, elastic ? 0.5 * (from + to) : to, scene.time_step, cables[index].model);
-  s.boundary.growing.assign(1, {s.reel->segment, growth_at(*s.reel, to)});
-}
-
-void World::Implementation::complete_reel_step(int index) {
-  CableScratch& s = scratch[index];
-  const CableModel& model = cables[index].model;
-  wind(*s.reel, 1, scene.time_step, cables[index].model);
-  if (s.reel->is_winch()) {
-    // What goes through the winch is as twisted as the cable is.
-    const int end = s.reel->end_node(model.segments());
-    for (TwistSpan& span : s.spans) {
-      if (span.first_node != end && span.last_node != end) continue;
-      const double length = model.length(span.first_node, span.last_node);
-      const double change = span.angle * s.reel->wound / (length - s.reel->wound);
-      span.angle += change;
-      span.origin -= change;
-    }
-  }
-  if (!complete_reel(*s.reel)) {
-    s.reel.reset();
-    s.boundary.growing.clear();
-  }
+  wind(reel, 1, state.scene->time_step, state.cables[index].model);
 }
 
 /// Segments appear and vanish at the winch, so that the one there stays about as long as the others.
 void World::Implementation::remesh_winch(int index) {
-  const CableModel& model = cables[index].model;
-  const Reel& reel = *scratch[index].reel;
+  const CableModel& model = state.cables[index].model;
+  const Reel& reel = *state.cable_memory[index].reel;
   while (model.rest_lengths[reel.segment] > longest_segment * model.segment_length) add_winch_node(index);
   const auto too_short = [&] {
     return model.rest_lengths[reel.segment] + std::min(reel.change, 0.0) < shortest_segment * model.segment_length;
   };
   const auto is_free = [&](int node) {
     return node > 0 && node < model.segments() && !carries_payload(model, node) &&
-           std::none_of(attachments.begin(), attachments.end(),
+           std::none_of(state.attachments.begin(), state.attachments.end(),
                         [&](const Attachment& a) { return a.cable == index && a.node == node; });
   };
   while (too_short() && is_free(reel.place == Reel::Place::start ? 1 : model.segments() - 1)) take_in_winch_node(index);
 }
 
 void World::Implementation::add_winch_node(int index) {
-  SimulatedCable& cable = cables[index];
-  Reel& reel = *scratch[index].reel;
+  SimulatedCable& cable = state.cables[index];
+  Reel& reel = *state.cable_memory[index].reel;
   const double whole = cable.model.rest_lengths[reel.segment], regular = cable.model.segment_length;
   const int node = reel.segment + 1;
   add_material_motion(reel, 1, cable);
@@ -194,8 +164,8 @@ void World::Implementation::add_winch_node(int index) {
 }
 
 void World::Implementation::take_in_winch_node(int index) {
-  SimulatedCable& cable = cables[index];
-  CableScratch& s = scratch[index];
+  SimulatedCable& cable = state.cables[index];
+  CableMemory& s = state.cable_memory[index];
   Reel& reel = *s.reel;
   const int node = reel.place == Reel::Place::start ? 1 : cable.model.segments() - 1;
   add_material_motion(reel, 1, cable);
@@ -206,7 +176,7 @@ void World::Implementation::take_in_winch_node(int index) {
   renumber(index, node, -1);
   after_remeshing(index);
   // Nothing but the rest length at the winch changes lengths now, either.
-  std::vector<HeldNode> nodes = s.boundary.nodes;
+  std::vector<HeldNode> nodes = boundary_now(s.holders).nodes;
   for (HeldNode& h : nodes) {
     if (h.node != reel.end_node(cable.model.segments())) continue;
     cable.state.velocities[h.node] = h.velocity;
@@ -222,19 +192,30 @@ void World::Implementation::renumber(int index, int first, int shift) {
   const auto follow = [&](int& node) {
     if (node >= first) node += shift;
   };
-  for (Attachment& a : attachments)
+  for (Attachment& a : state.attachments)
     if (a.cable == index) follow(a.node);
-  for (Intrusion& intrusion : intrusions)
+  for (Intrusion& intrusion : findings.intrusions)
     if (intrusion.cable == index) follow(intrusion.segment);
-  for (Holder& h : scratch[index].holders.nodes) follow(h.node);
-  for (DirectionHolder& h : scratch[index].holders.directions) follow(h.node);
+  for (Holder& h : state.cable_memory[index].holders.nodes) follow(h.node);
+  for (DirectionHolder& h : state.cable_memory[index].holders.directions) follow(h.node);
 }
 
 void World::Implementation::after_remeshing(int index) {
   update_holders(index);
-  scratch[index].stepper.resize(cables[index].model);
-  for (ContactGroup& group : groups)
-    if (std::binary_search(group.cables.begin(), group.cables.end(), index)) group.contacts.forget();
+  forget_contacts(index);
+}
+
+/// What names segments of a cable names others now.
+void World::Implementation::forget_contacts(int index) {
+  const std::uint32_t id = state.cable_memory[index].id;
+  state.cable_memory[index].contacts.clear();
+  for (CableMemory& memory : state.cable_memory) {
+    ContactCache& cache = memory.contacts;
+    cache.erase(std::remove_if(cache.begin(), cache.end(), [&](const CachedContact& c) { return names_other_cable(c, id); }),
+                cache.end());
+  }
+  findings.contacts.clear();
+  islands.value.invalidate();
 }
 
 }  // namespace verlet_cable

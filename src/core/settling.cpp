@@ -1,9 +1,10 @@
+#include "settling.h"
+
 #include <algorithm>
 #include <cmath>
 
+#include "island_stepper.h"
 #include "length_projection.h"
-#include "verlet_cable/core/world.h"
-#include "world_implementation.h"
 
 namespace verlet_cable {
 
@@ -97,81 +98,83 @@ Eigen::AngleAxisd turn_to_cable(const Quaternion& clamp, int node, const std::ve
 
 }  // namespace
 
-bool World::settle() {
-  Implementation& w = *implementation_;
-  w.unsettled.clear();
-  for (Attachment& attachment : w.attachments) attachment.force = attachment.torque = Vector3::Zero();
-  w.move_obstacles(1, 1, w.moving_obstacles);
-  for (int cable = 0; cable < static_cast<int>(w.cables.size()); ++cable) {
-    if (w.scratch[cable].holders.nodes.empty()) continue;
-    w.hold_still(cable);
-    Settling settling(cable, w.may_touch());
-    w.note_settled(cable, w.relax(shortest_step(w.cables[cable].model), last_settling_step, maximum_settling_steps, settling));
-  }
-  return w.unsettled.empty();
+Settling::Settling(int cable, State& state, Workspace& workspace)
+    : index_(cable),
+      state_(state),
+      workspace_(workspace),
+      cable_(state.cables[cable]),
+      memory_(state.cable_memory[cable]),
+      work_(workspace.cables.empty() ? workspace.cables.emplace_back() : workspace.cables.front()) {
+  work_.stepper.resize(cable_.model);
+  work_.boundary.growing.clear();
 }
 
-bool World::Implementation::may_touch() const {
-  return !moving_obstacles.empty() || scene.contact;
+void Settling::find_obstacles() {
+  move_obstacles(state_.obstacles, state_.frames.previous_poses, state_.frames.poses, state_.scene->time_step, 1, 1,
+                 workspace_.obstacles);
 }
 
-/// Puts the holders of a cable where they are to be, and takes its motion away.
-void World::Implementation::hold_still(int index) {
-  CableScratch& s = scratch[index];
-  aim_holders(cables[index].model, attachments, poses, time(), s.holders);
-  put_at_aim(s.holders);
-  hold_at(1, 1, s.holders, s.boundary);
-  bring_to_rest(cables[index].state);
+bool Settling::settle() {
+  hold_still();
+  find_obstacles();
+  Approach approach(index_, may_touch());
+  const bool settled = relax(shortest_step(cable_.model), last_settling_step, maximum_settling_steps, approach);
+  complete();
+  return settled;
 }
 
-/// Its holders move with their frames, and take along what cannot stretch.
-void World::Implementation::note_settled(int index, bool settled) {
-  CableState& state = cables[index].state;
-  project_velocities(cables[index].model, scratch[index].boundary.nodes, state.positions, state.velocities);
-  add_forces(index, 1);
-  follow_material(index);
-  if (!settled) unsettled.push_back(cables[index].model.name);
-}
-
-/// A cable that hangs as if its clamps were hinges is taken by them in its own directions, and turned to theirs: that leads to
-/// the shape that whoever mounts it would find, where Newton's method alone finds folds and loops. It is not twisted by that.
-void World::Implementation::settle_start(int index) {
-  SimulatedCable& cable = cables[index];
-  CableScratch& s = scratch[index];
-  if (s.holders.nodes.empty()) return;
-  hold_still(index);
-  s.spans.clear();
-  const CableState hanging = cable.state;
+bool Settling::settle_start() {
+  hold_still();
+  memory_.spans.clear();
+  const CableState hanging = cable_.state;
   // As if there was nothing to touch, which is much faster; if that ends where something is, once more.
-  Settling settling(index, false);
-  settling.iterations = std::max(most_start_iterations, short_start_iterations / cable.model.segments());
-  turn_clamps(settling);
-  bool settled = find_equilibrium(settling);
-  move_obstacles(1, 1, moving_obstacles);
+  workspace_.obstacles.clear();
+  Approach approach(index_, false);
+  approach.iterations = std::max(most_start_iterations, short_start_iterations / cable_.model.segments());
+  turn_clamps(approach);
+  bool settled = find_equilibrium(approach);
+  find_obstacles();
   if (may_touch()) {
-    settling.alone.contacts.find(cables, settling.alone.cables, moving_obstacles, attachments, contact_rules(true), 1);
-    if (!settling.alone.contacts.touches().empty() || !settling.alone.contacts.intrusions().empty()) {
-      const int iterations = settling.iterations;
-      settling = Settling(index, true);
-      settling.iterations = iterations;
-      cable.state = hanging;
-      turn_clamps(settling);
-      settled = find_equilibrium(settling);
+    find_contacts(approach, true, 1);
+    if (!workspace_.contacts.touches().empty() || !workspace_.contacts.intrusions().empty()) {
+      Approach touching(index_, true);
+      touching.iterations = approach.iterations;
+      cable_.state = hanging;
+      turn_clamps(touching);
+      settled = find_equilibrium(touching);
     }
   }
-  s.spans = find_spans(cable.model, cable.state, s.boundary.directions);
-  note_settled(index, settled);
+  memory_.spans = find_spans(cable_.model, cable_.state, work_.boundary.directions);
+  complete();
+  return settled;
+}
+
+/// Puts the holders where they are to be, and takes the cable's motion away.
+void Settling::hold_still() {
+  aim_holders(cable_.model, state_.attachments, state_.frames.poses, state_.time(), memory_.holders);
+  put_at_aim(memory_.holders);
+  hold_at(1, 1, memory_.holders, work_.boundary);
+  bring_to_rest(cable_.state);
+}
+
+/// The holders move with their frames, and take along what cannot stretch.
+void Settling::complete() {
+  project_velocities(cable_.model, work_.boundary.nodes, cable_.state.positions, cable_.state.velocities);
+  add_forces(work_.boundary, memory_.holders, state_.frames.poses, 1, state_.attachments);
+  follow_material();
+}
+
+void Settling::follow_material() {
+  verlet_cable::follow_material(work_.boundary.directions, memory_.spans, cable_);
 }
 
 /// From the directions of the cable that hangs from them to their own.
-void World::Implementation::turn_clamps(Settling& settling) {
-  const SimulatedCable& cable = cables[settling.cable()];
-  CableScratch& s = scratch[settling.cable()];
-  std::vector<HeldDirection>& directions = s.boundary.directions;
+void Settling::turn_clamps(Approach& approach) {
+  std::vector<HeldDirection>& directions = work_.boundary.directions;
   std::vector<Eigen::AngleAxisd> turns;
   double most = 0;
   for (const HeldDirection& direction : directions) {
-    turns.push_back(turn_to_cable(direction.end, direction.node, cable.state.positions));
+    turns.push_back(turn_to_cable(direction.end, direction.node, cable_.state.positions));
     most = std::max(most, turns.back().angle());
   }
   const int stages = static_cast<int>(std::ceil(most / turning_angle));
@@ -179,51 +182,51 @@ void World::Implementation::turn_clamps(Settling& settling) {
     const double left = 1 - static_cast<double>(stage) / stages;
     for (std::size_t k = 0; k < directions.size(); ++k) {
       const Quaternion turn(Eigen::AngleAxisd(left * turns[k].angle(), turns[k].axis()));
-      directions[k].start = directions[k].end = turn * s.holders.directions[k].next_orientation;
+      directions[k].start = directions[k].end = turn * memory_.holders.directions[k].next_orientation;
     }
-    follow_material(settling.cable());
-    relax(shortest_step(cable.model), longest_turning_step, turning_steps, settling);
+    follow_material();
+    relax(shortest_step(cable_.model), longest_turning_step, turning_steps, approach);
   }
-  hold_at(1, 1, s.holders, s.boundary);
-  follow_material(settling.cable());
+  hold_at(1, 1, memory_.holders, work_.boundary);
+  follow_material();
 }
 
 /// Brings a cable that is held still into an equilibrium that lasts. False if none was found: it is then where it first came to.
-bool World::Implementation::find_equilibrium(Settling& settling) {
-  double h = shortest_step(cables[settling.cable()].model);
-  bool settled = relax(h, last_settling_step, maximum_settling_steps, settling);
-  const CableState first = cables[settling.cable()].state;
-  const std::vector<TwistSpan> first_spans = scratch[settling.cable()].spans;
+bool Settling::find_equilibrium(Approach& approach) {
+  double h = shortest_step(cable_.model);
+  bool settled = relax(h, last_settling_step, maximum_settling_steps, approach);
+  const CableState first = cable_.state;
+  const std::vector<TwistSpan> first_spans = memory_.spans;
   for (int nudges = 0, trials = 0; settled;) {
     // What goes on leaving has a flat valley to go along: it may stand where it is.
-    if (nudges < maximum_nudges && leaves_equilibrium(settling, h)) {
+    if (nudges < maximum_nudges && leaves_equilibrium(approach, h)) {
       ++nudges;
-    } else if (leaves_when_let_go(settling, h)) {
+    } else if (leaves_when_let_go(approach, h)) {
       ++trials;
     } else {
       break;
     }
-    settled = trials <= maximum_trials && relax(h, last_settling_step, maximum_settling_steps, settling);
+    settled = trials <= maximum_trials && relax(h, last_settling_step, maximum_settling_steps, approach);
   }
   if (!settled) {
-    cables[settling.cable()].state = first;
-    scratch[settling.cable()].spans = first_spans;
+    cable_.state = first;
+    memory_.spans = first_spans;
   }
   return settled;
 }
 
 /// Substeps without motion, ever longer as long as they converge and the loads that are left grow less, until inertia carries
 /// nothing: what is left is Newton's method for the equilibrium. True if that was found.
-bool World::Implementation::relax(double h, double longest, int steps, Settling& settling) {
-  const double radius = cables[settling.cable()].model.material.radius;
+bool Settling::relax(double h, double longest, int steps, Approach& approach) {
+  const double radius = cable_.model.material.radius;
   double last = infinity, growth = fastest_growth;
   bool failed = false;
   int calm = 0;
-  for (int i = 0; i < steps && settling.iterations > 0; ++i) {
-    const SubstepResult substep = settle_substep(settling, h);
+  for (int i = 0; i < steps && approach.iterations > 0; ++i) {
+    const SubstepResult substep = advance(approach, h);
     // What inertia still carries of the loads.
     const double acceleration = 2 * substep.displacement / (h * h);
-    const bool lies = settling.touches && !settling.alone.contacts.touches().empty();
+    const bool lies = touches(approach);
     // What starts inside an obstacle is pushed out at the same pace, however long the step.
     const bool stands = !lies || substep.displacement < settled_contact * radius;
     if (substep.converged) {
@@ -232,7 +235,7 @@ bool World::Implementation::relax(double h, double longest, int steps, Settling&
       if (calm > 0 && (lies || h >= longest || calm >= calm_steps)) return true;
     }
     // The way grows with the square of a step.
-    const double reach = settling_reach * radius, way = settling.touches ? substep.displacement : 0;
+    const double reach = settling_reach * radius, way = approach.touches ? substep.displacement : 0;
     const double factor = way > 0 ? std::clamp(0.9 * std::sqrt(reach / way), 0.125, growth) : growth;
     if (!substep.converged) {
       h = std::max(h * (way > reach ? factor : failed ? 0.125 : 0.5), shortest_substep);
@@ -251,50 +254,46 @@ bool World::Implementation::relax(double h, double longest, int steps, Settling&
 
 /// Whether a cable that is nudged goes away from its equilibrium instead of back; it is then left on its way, which steps of `h`
 /// [s] follow, else where it was.
-bool World::Implementation::leaves_equilibrium(Settling& settling, double& h) {
-  SimulatedCable& cable = cables[settling.cable()];
-  CableScratch& s = scratch[settling.cable()];
+bool Settling::leaves_equilibrium(Approach& approach, double& h) {
   // What lies is held by what it lies on.
-  if (settling.touches && !settling.alone.contacts.touches().empty()) return false;
-  const CableState before = cable.state;
-  const std::vector<TwistSpan> spans_before = s.spans;
-  const double size = nudge * cable.model.segment_length;
-  for (int i = 0; i < cable.model.nodes(); ++i)
-    cable.state.positions[i] += size * direction_at(static_cast<double>(i) / cable.model.segments());
-  project_positions(cable.model, s.boundary.nodes, cable.state.positions);
-  const double first = largest_distance(cable.state.positions, before.positions);
-  for (h = shortest_step(cable.model); h < last_nudged_step; h *= 2)
+  if (touches(approach)) return false;
+  const CableState before = cable_.state;
+  const std::vector<TwistSpan> spans_before = memory_.spans;
+  const double size = nudge * cable_.model.segment_length;
+  for (int i = 0; i < cable_.model.nodes(); ++i)
+    cable_.state.positions[i] += size * direction_at(static_cast<double>(i) / cable_.model.segments());
+  project_positions(cable_.model, work_.boundary.nodes, cable_.state.positions);
+  const double first = largest_distance(cable_.state.positions, before.positions);
+  for (h = shortest_step(cable_.model); h < last_nudged_step; h *= 2)
     for (int i = 0; i < nudged_steps; ++i) {
-      if (!settle_substep(settling, h).converged) break;
-      if (largest_distance(cable.state.positions, before.positions) > grown * first) return true;
+      if (!advance(approach, h).converged) break;
+      if (largest_distance(cable_.state.positions, before.positions) > grown * first) return true;
     }
-  cable.state = before;
-  s.spans = spans_before;
+  cable_.state = before;
+  memory_.spans = spans_before;
   return false;
 }
 
 /// Whether a cable that is let go moves, be it that its contacts do not hold it or that it was no equilibrium; it is then left
 /// where it got to, at rest.
-bool World::Implementation::leaves_when_let_go(Settling& settling, double& h) {
-  SimulatedCable& cable = cables[settling.cable()];
-  CableScratch& s = scratch[settling.cable()];
-  const CableState before = cable.state;
-  const std::vector<TwistSpan> spans_before = s.spans;
-  Settling trial(settling.cable(), may_touch());
+bool Settling::leaves_when_let_go(Approach& approach, double& h) {
+  const CableState before = cable_.state;
+  const std::vector<TwistSpan> spans_before = memory_.spans;
+  Approach trial(index_, may_touch());
   trial.let_go = true;
-  trial.iterations = settling.iterations;
-  for (HeldNode& held : s.boundary.nodes) held.velocity.setZero();
+  trial.iterations = approach.iterations;
+  for (HeldNode& held : work_.boundary.nodes) held.velocity.setZero();
   bool leaves = false;
   double step = first_trial_step;
   // What leaves is followed until it is far from where it would only come back to.
-  const double far = far_away * cable.model.segment_length;
+  const double far = far_away * cable_.model.segment_length;
   for (double time = 0; time < (leaves ? 2 : 1) * trial_time && trial.iterations > 0;) {
-    if (settle_substep(trial, step).converged) {
-      leaves = leaves || fastest(cable.state) > moving;
-      if (leaves && largest_distance(cable.state.positions, before.positions) > far) break;
+    if (advance(trial, step).converged) {
+      leaves = leaves || fastest(cable_.state) > moving;
+      if (leaves && largest_distance(cable_.state.positions, before.positions) > far) break;
       time += step;
       step *= trial_growth;
-      step = std::min(step, trial.alone.contacts.touches().empty() ? longest_trial_step : longest_touching_step);
+      step = std::min(step, workspace_.contacts.touches().empty() ? longest_trial_step : longest_touching_step);
     } else {
       step *= 0.5;
       leaves = leaves || step < shortest_trial_step;
@@ -302,52 +301,54 @@ bool World::Implementation::leaves_when_let_go(Settling& settling, double& h) {
     }
   }
   leaves = leaves || trial.iterations <= 0;
-  settling.iterations = trial.iterations;
-  hold_at(1, 1, s.holders, s.boundary);
-  bring_to_rest(cable.state);
+  approach.iterations = trial.iterations;
+  hold_at(1, 1, memory_.holders, work_.boundary);
+  bring_to_rest(cable_.state);
   if (leaves) {
-    h = shortest_step(cable.model);
+    h = shortest_step(cable_.model);
     return true;
   }
-  cable.state = before;
-  s.spans = spans_before;
+  cable_.state = before;
+  memory_.spans = spans_before;
   return false;
 }
 
 /// One substep towards equilibrium of a cable that may lie on obstacles and on itself. It has not converged, too, if nodes have
 /// gone so far that they may have gone through something.
-SubstepResult World::Implementation::settle_substep(Settling& settling, double h) {
-  const int index = settling.cable();
-  ContactGroup& alone = settling.alone;
-  SimulatedCable& cable = cables[index];
-  CableScratch& s = scratch[index];
-  const Environment environment{scene.gravity, scene.fluid};
-  const Substep substep{cable.model, environment, s.boundary, s.spans, h, !settling.let_go};
-  if (!settling.touches) {
-    const SubstepResult result = s.stepper.advance(substep, cable.state);
-    settling.iterations -= result.iterations;
+SubstepResult Settling::advance(Approach& approach, double h) {
+  const Environment environment{state_.scene->gravity, state_.scene->fluid};
+  const Substep substep{cable_.model, environment, work_.boundary, memory_.spans, h, !approach.let_go};
+  if (!approach.touches) {
+    const SubstepResult result = work_.stepper.advance(substep, cable_.state);
+    approach.iterations -= result.iterations;
     return result;
   }
-  alone.contacts.find(cables, alone.cables, moving_obstacles, attachments, contact_rules(!settling.let_go), h);
-  const CableState before = cable.state;
-  const std::vector<TwistSpan> spans_before = s.spans;
+  find_contacts(approach, !approach.let_go, h);
+  const CableState before = cable_.state;
+  const std::vector<TwistSpan> spans_before = memory_.spans;
   SubstepResult result;
-  if (alone.contacts.touches().empty()) {
-    result = s.stepper.advance(substep, cable.state);
+  if (workspace_.contacts.touches().empty()) {
+    result = work_.stepper.advance(substep, cable_.state);
   } else {
-    alone.scratch.participants.clear();
-    alone.scratch.participants.push_back({0, index, &s.stepper, substep, &cable.state, {}});
-    alone.scratch.stepper.advance(alone.scratch.participants, alone.contacts.touches());
-    result = alone.scratch.participants.front().result;
+    workspace_.participants.clear();
+    workspace_.participants.push_back({0, index_, &work_.stepper, substep, &cable_.state, {}});
+    workspace_.coupled_stepper.advance(workspace_.participants, workspace_.contacts.touches());
+    result = workspace_.participants.front().result;
   }
-  settling.iterations -= result.iterations;
-  if (result.converged && result.displacement > settling_reach * cable.model.material.radius) {
-    cable.state = before;
-    s.spans = spans_before;
+  approach.iterations -= result.iterations;
+  if (result.converged && result.displacement > settling_reach * cable_.model.material.radius) {
+    cable_.state = before;
+    memory_.spans = spans_before;
     result.converged = false;
   }
-  if (result.converged) alone.contacts.keep();
+  if (result.converged) workspace_.contacts.keep({{memory_.id, &memory_.holders, &approach.contacts}});
   return result;
+}
+
+void Settling::find_contacts(Approach& approach, bool still, double h) {
+  workspace_.contacts.find(state_.cables, approach.island.cables, {{memory_.id, &memory_.holders, &approach.contacts}},
+                           workspace_.obstacles, state_.attachments, contact_rules(*state_.scene, still), h,
+                           approach.island.pairs);
 }
 
 }  // namespace verlet_cable
