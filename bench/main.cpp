@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
                                    {"precision", work_precision},
                                    {"cantilever", cantilever},
                                    {"contact", contact},
+                                   {"many", many},
                                    {"net", net},
                                    {"driven", driven_against_bullet},
                                    {"bullet", released_against_bullet},

@@ -12,6 +12,7 @@ void released_against_simbody(Report& report, bool quick);
 void driven_against_bullet(Report& report, bool quick);
 void cantilever(Report& report, bool quick);
 void contact(Report& report, bool quick);
+void many(Report& report, bool quick);
 void net(Report& report, bool quick);
 
 }  // namespace verlet_cable::bench

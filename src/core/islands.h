@@ -3,27 +3,38 @@
 #include <vector>
 
 #include "segment_grid.h"
+#include "verlet_cable/core/surface_point.h"
 #include "world_state.h"
 
 namespace verlet_cable {
 
-/// Cables that may touch each other: they are advanced in the same substeps.
+/// Cables that may touch each other in a step: they are advanced in the same substeps.
 struct Island {
   std::vector<int> cables;  ///< indices into State::cables, ascending
   SegmentGrid pairs;        ///< of their segments
 };
 
-/// What cables are stepped together with; follows from the state.
+/// What cables are stepped together with. Follows from the state; islands whose cables stay the same keep their pairs.
 class Islands {
  public:
-  /// Brings them up to date: cables that may touch each other are in one, every cable is in one. Ascending by the first cable.
+  /// Every cable is in one island, and those that may come close enough to touch in the next step are in the same one. Holders aim
+  /// at the end of that step. Ascending by the first cable.
   void build(const State& state);
   /// Segments have been numbered anew.
   void invalidate() { islands_.clear(); }
   std::vector<Island>& all() { return islands_; }
 
  private:
+  void find_labels(const State& state);
+  int root(int cable);
+  void join(int first, int second);
+
   std::vector<Island> islands_;
+  std::vector<int> labels_;       ///< by cable: the first one of its island
+  std::vector<int> last_labels_;  ///< those of `islands_`
+  // Scratch
+  std::vector<Aabb> reaches_;     ///< by cable: where it may touch something in the step
+  std::vector<int> order_, open_;
 };
 
 }  // namespace verlet_cable
