@@ -184,6 +184,7 @@ class World {
   std::uint64_t hash() const;  ///< of all that the future depends on
 
  private:
+  friend struct WorldInspector;  // tests
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
