@@ -84,6 +84,7 @@ void ContactSet::find(const std::vector<SimulatedCable>& cables, const std::vect
   intrusions_.clear();
   touched_.assign(cables.size(), 0);
   recalled_ = 0;
+  if (obstacles.empty() && !rules.pairs.self && !rules.pairs.between_cables) return;
   for (const int cable : group) {
     set_held(cables[cable], cable, attachments);
     for (const MovingObstacle& obstacle : obstacles) find_obstacle(cables[cable], cable, obstacle, attachments, h);

@@ -118,6 +118,7 @@ int World::start_waiting(const BoundaryInputs& inputs) {
     }
   };
   start_known(w.waiting_descs, w.scene.cables, [&](const CableDesc& desc) { w.start_cable(desc, inputs); });
+  if (started > 0) w.form_groups();
   start_known(w.waiting_nets, w.scene.nets, [&](const NetDesc& desc) { w.start_net(desc, inputs); });
   return started;
 }
@@ -196,7 +197,6 @@ void World::Implementation::start_cable(const CableDesc& desc, const BoundaryInp
   set_stiff_ends(desc.stiff_ends, cables.back().model);
   set_rest_curvature(desc.rest_curvature, scratch.back().holders.directions, cables.back());
   scratch.back().stepper.resize(cables.back().model);
-  form_groups();
   if (settles) settle_start(index);
 }
 
