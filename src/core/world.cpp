@@ -67,7 +67,14 @@ void bring_to_rest(CableState& state) {
   std::fill(state.accelerations.begin(), state.accelerations.end(), Vector3::Zero());
 }
 
-World::World(const SceneDesc& scene, const BoundaryInputs& inputs) : implementation_(std::make_unique<Implementation>()) {
+World::World(const SceneDesc& scene, const BoundaryInputs& inputs, const std::atomic<bool>* cancelled) : World(scene) {
+  implementation_->cancelled = cancelled;
+  implementation_->follow_frames(inputs);
+  start_waiting(inputs);
+  implementation_->cancelled = nullptr;
+}
+
+World::World(const SceneDesc& scene) : implementation_(std::make_unique<Implementation>()) {
   std::vector<std::string> errors = validate(scene);
   if (!errors.empty()) throw SceneError(std::move(errors));
   Implementation& w = *implementation_;
@@ -87,8 +94,7 @@ World::World(const SceneDesc& scene, const BoundaryInputs& inputs) : implementat
     w.waiting.push_back(scene.nets[i].name);
   }
   for (const ParticleDesc& particle : scene.particles) w.add_particle(particle);
-  w.follow_frames(inputs);
-  start_waiting(inputs);
+  w.follow_frames({});
 }
 
 World::~World() = default;
@@ -104,22 +110,24 @@ int World::start_waiting(const BoundaryInputs& inputs) {
   Implementation& w = *implementation_;
   int started = 0;
   const auto start_known = [&](std::vector<int>& waiting, const auto& descs, const auto& start) {
-    for (std::size_t k = 0; k < waiting.size();) {
-      const auto& desc = descs[waiting[k]];
-      if (!w.frames_known(desc, inputs)) {
-        ++k;
+    std::vector<int> unknown;
+    for (const int index : waiting) {
+      if (w.is_cancelled() || !w.frames_known(descs[index], inputs)) {
+        unknown.push_back(index);
         continue;
       }
       w.follow_frames(inputs);
-      start(desc);
-      w.waiting.erase(std::find(w.waiting.begin(), w.waiting.end(), desc.name));
-      waiting.erase(waiting.begin() + k);
+      start(descs[index]);
       ++started;
     }
+    waiting = std::move(unknown);
   };
   start_known(w.waiting_descs, w.scene.cables, [&](const CableDesc& desc) { w.start_cable(desc, inputs); });
   if (started > 0) w.form_groups();
   start_known(w.waiting_nets, w.scene.nets, [&](const NetDesc& desc) { w.start_net(desc, inputs); });
+  w.waiting.clear();
+  for (const int index : w.waiting_descs) w.waiting.push_back(w.scene.cables[index].name);
+  for (const int index : w.waiting_nets) w.waiting.push_back(w.scene.nets[index].name);
   return started;
 }
 
@@ -188,8 +196,7 @@ void World::Implementation::start_cable(const CableDesc& desc, const BoundaryInp
   if (std::none_of(s.holders.nodes.begin(), s.holders.nodes.end(), starts))
     project_velocities(cable.model, s.boundary.nodes, cable.state.positions, cable.state.velocities);
   cable.state.twist.assign(cable.model.segments(), 0.0);
-  cable.state.reference_orientation =
-      smallest_rotation(Vector3::UnitX(), cable.state.positions[1] - cable.state.positions[0]);
+  cable.state.reference_orientation = smallest_rotation(Vector3::UnitX(), cable.state.positions[1] - cable.state.positions[0]);
   s.spans = find_spans(cable.model, cable.state, s.boundary.directions);
   cables.push_back(std::move(cable));
   scratch.push_back(std::move(s));

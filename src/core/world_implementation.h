@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <limits>
 #include <optional>
 #include <string>
@@ -80,6 +81,7 @@ struct World::Implementation {
   std::vector<StepResult> results;               ///< one a cable
   std::vector<MovingObstacle> moving_obstacles;  ///< of nets, particles and cables that settle
   bool one_by_one = false;                       ///< as World::step_one_by_one asks
+  const std::atomic<bool>* cancelled = nullptr;  ///< during construction
 
   template <class Desc>
   bool frames_known(const Desc& desc, const BoundaryInputs& inputs) const;
@@ -116,6 +118,7 @@ struct World::Implementation {
   bool leaves_when_let_go(Settling& settling, double& h);
   SubstepResult settle_substep(Settling& settling, double h);
   bool may_touch() const;
+  bool is_cancelled() const { return cancelled && *cancelled; }
   void note_settled(int cable, bool settled);
   int breaking_segment(int cable, const StepResult& result) const;
   void add_forces(int cable, double weight);

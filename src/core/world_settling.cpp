@@ -317,6 +317,10 @@ bool World::Implementation::leaves_when_let_go(Settling& settling, double& h) {
 /// One substep towards equilibrium of a cable that may lie on obstacles and on itself. It has not converged, too, if nodes have
 /// gone so far that they may have gone through something.
 SubstepResult World::Implementation::settle_substep(Settling& settling, double h) {
+  if (is_cancelled()) {
+    settling.iterations = 0;
+    return {};
+  }
   const int index = settling.cable();
   ContactGroup& alone = settling.alone;
   SimulatedCable& cable = cables[index];
