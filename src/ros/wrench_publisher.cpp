@@ -2,6 +2,9 @@
 
 #include <geometry_msgs/WrenchStamped.h>
 
+#include <string_view>
+#include <unordered_set>
+
 #include "verlet_cable/ros/conversions.h"
 #include "verlet_cable/ros/queue_size.h"
 
@@ -18,8 +21,10 @@ WrenchPublisher::WrenchPublisher(ros::NodeHandle& private_node) : node_(private_
 void WrenchPublisher::follow_attachments(const World& world) {
   const ros::WallTime deadline = ros::WallTime::now() + longest_registering;
   const auto late = [&] { return ros::WallTime::now() > deadline; };
+  std::unordered_set<std::string_view> names;
+  for (const Attachment& attachment : world.attachments()) names.insert(attachment.name);
   for (auto entry = publishers_.begin(); entry != publishers_.end() && !late();) {
-    entry = world.find_attachment(entry->first) < 0 ? publishers_.erase(entry) : std::next(entry);
+    entry = names.count(entry->first) == 0 ? publishers_.erase(entry) : std::next(entry);
   }
   for (const Attachment& attachment : world.attachments()) {
     if (publishers_.count(attachment.name) > 0) continue;

@@ -21,8 +21,8 @@ class CableNode {
   /// Throws SceneError.
   explicit CableNode(ros::NodeHandle private_node);
 
-  /// The destructor waits until what is being built is built.
-  bool builds() const { return simulation_.builds(); }
+  /// The destructor waits for what is being done aside.
+  bool busy() const { return simulation_.busy(); }
 
  private:
   void update();
