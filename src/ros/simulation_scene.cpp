@@ -8,7 +8,7 @@ namespace verlet_cable {
 namespace {
 
 /// A world that takes longer than this to build [s] is built aside.
-constexpr double longest_build = 0.02;
+constexpr double longest_build = 0.01;
 
 }  // namespace
 
