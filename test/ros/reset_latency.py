@@ -131,7 +131,7 @@ def long_text(cable):
 def valid_texts(_):
     # Comments and blanks make it long: the cables, which are simulated afterwards, are as before.
     few = ROPE + 'cables:\n' + ''.join(CABLE.format(i) for i in range(5))
-    points = 75001
+    points = 74001
     long_list = SCENE.replace('cables: [', 'cables: [{name: long, length: 1.0, segments: 5, material: rope, initial: {type: points, points: ['
                               + ','.join('[%.5f,0,0]' % (i / (points - 1)) for i in range(points)) + ']}}, ')
     yield from load([few + '#' * (LONGEST_TEXT - len(few)), few + ' \n' * ((LONGEST_TEXT - len(few)) // 2), long_list])
