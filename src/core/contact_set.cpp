@@ -80,6 +80,7 @@ void ContactSet::find(const std::vector<SimulatedCable>& cables, const std::vect
   intrusions_.clear();
   touched_.assign(members.size(), 0);
   recalled_.assign(members.size(), 0);
+  if (obstacles.empty() && !rules.pairs.self && !rules.pairs.between_cables) return;
   if (places_.size() < cables.size()) places_.resize(cables.size());
   for (std::size_t k = 0; k < island.size(); ++k) {
     const SimulatedCable& cable = cables[island[k]];

@@ -98,8 +98,9 @@ Eigen::AngleAxisd turn_to_cable(const Quaternion& clamp, int node, const std::ve
 
 }  // namespace
 
-Settling::Settling(int cable, State& state, Workspace& workspace)
-    : index_(cable),
+Settling::Settling(int cable, State& state, Workspace& workspace, const std::atomic<bool>* cancelled)
+    : cancelled_(cancelled),
+      index_(cable),
       state_(state),
       workspace_(workspace),
       cable_(state.cables[cable]),
@@ -316,6 +317,10 @@ bool Settling::leaves_when_let_go(Approach& approach, double& h) {
 /// One substep towards equilibrium of a cable that may lie on obstacles and on itself. It has not converged, too, if nodes have
 /// gone so far that they may have gone through something.
 SubstepResult Settling::advance(Approach& approach, double h) {
+  if (cancelled_ && *cancelled_) {
+    approach.iterations = 0;
+    return {};
+  }
   const Environment environment{state_.scene->gravity, state_.scene->fluid};
   const Substep substep{cable_.model, environment, work_.boundary, memory_.spans, h, !approach.let_go};
   if (!approach.touches) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <limits>
 #include <vector>
 
@@ -12,7 +13,8 @@ namespace verlet_cable {
 /// Brings a cable into static equilibrium, its holders where they aim: Newton's method, no waiting. Other cables are not there.
 class Settling {
  public:
-  Settling(int cable, State& state, Workspace& workspace);
+  /// Ends soon after another thread has set `cancelled`.
+  Settling(int cable, State& state, Workspace& workspace, const std::atomic<bool>* cancelled = nullptr);
   /// From where the cable is. False if no equilibrium was found; it is then at rest near it.
   bool settle();
   /// A cable that starts, and hangs as if its clamps were hinges, is taken by them in its own directions, and turned to theirs: that
@@ -45,6 +47,7 @@ class Settling {
   void follow_material();
   void complete();
 
+  const std::atomic<bool>* cancelled_;
   int index_;
   State& state_;
   Workspace& workspace_;

@@ -94,7 +94,14 @@ std::string pose_problem(const std::string& field, const Pose& pose) {
          "; allowed: 1 (from 0.5 to 2 is brought to 1)";
 }
 
-World::World(const SceneDesc& scene, const BoundaryInputs& inputs) : implementation_(std::make_unique<Implementation>()) {
+World::World(const SceneDesc& scene, const BoundaryInputs& inputs, const std::atomic<bool>* cancelled) : World(scene) {
+  implementation_->cancelled = cancelled;
+  implementation_->update_frames(inputs);
+  start_waiting(inputs);
+  implementation_->cancelled = nullptr;
+}
+
+World::World(const SceneDesc& scene) : implementation_(std::make_unique<Implementation>()) {
   std::vector<std::string> errors = validate(scene);
   if (!errors.empty()) throw SceneError(std::move(errors));
   Implementation& w = *implementation_;
@@ -109,8 +116,7 @@ World::World(const SceneDesc& scene, const BoundaryInputs& inputs) : implementat
   for (int i = 0; i < static_cast<int>(scene.nets.size()); ++i) w.state.waiting_nets.push_back(i);
   w.name_waiting();
   for (const ParticleDesc& particle : scene.particles) w.add_particle(particle);
-  w.update_frames(inputs);
-  start_waiting(inputs);
+  w.update_frames({});
 }
 
 World::~World() = default;
@@ -131,8 +137,10 @@ int World::start_waiting(const BoundaryInputs& inputs) {
   const std::vector<int> nets = take_out(w.state.waiting_nets, [&](int i) { return frames_known(scene.nets[i], ids, inputs); });
   if (cables.empty() && nets.empty()) return 0;
   w.update_frames(inputs);
-  for (const int i : cables) w.start_cable(scene.cables[i], ids, inputs);
-  for (const int i : nets) w.start_net(scene.nets[i], ids, inputs);
+  for (const int i : cables)
+    if (!w.is_cancelled()) w.start_cable(scene.cables[i], ids, inputs);
+  for (const int i : nets)
+    if (!w.is_cancelled()) w.start_net(scene.nets[i], ids, inputs);
   w.name_waiting();
   return static_cast<int>(cables.size() + nets.size());
 }
@@ -213,7 +221,7 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   const bool held = !memory.holders.nodes.empty();
   state.cables.push_back(std::move(cable));
   state.cable_memory.push_back(std::move(memory));
-  if (settles && held && !Settling(index, state, workspaces.value.local()).settle_start())
+  if (settles && held && !Settling(index, state, workspaces.value.local(), cancelled).settle_start())
     findings.unsettled.push_back(desc.name);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,7 +28,8 @@ struct Findings {
 struct World::Implementation {
   State state;
   Findings findings;
-  bool one_by_one = false;  ///< as World::step_one_by_one asks
+  bool one_by_one = false;                       ///< as World::step_one_by_one asks
+  const std::atomic<bool>* cancelled = nullptr;  ///< during construction
   // Scratch, and what follows from the state
   NotCopied<Workspaces> workspaces;
   NotCopied<Islands> islands;
@@ -47,6 +49,7 @@ struct World::Implementation {
   void apply_breaks(StepResult& result);
   void step_nets_and_particles(StepResult& result);
 
+  bool is_cancelled() const { return cancelled && *cancelled; }
   template <class Work>
   void for_each(std::size_t count, const Work& work) const;
   void name_waiting();

@@ -2,7 +2,15 @@
 
 #include <algorithm>
 
+#include "verlet_cable/ros/cable_services.h"
+#include "verlet_cable/ros/diagnostics.h"
+#include "verlet_cable/ros/guarded_queue.h"
+#include "verlet_cable/ros/hands.h"
+#include "verlet_cable/ros/obstacle_listener.h"
+#include "verlet_cable/ros/rollouts.h"
 #include "verlet_cable/ros/scene_parameters.h"
+#include "verlet_cable/ros/simulation.h"
+#include "verlet_cable/ros/tuning.h"
 
 namespace verlet_cable {
 namespace {
@@ -19,27 +27,51 @@ ros::NodeHandle guarded(ros::NodeHandle node, GuardedQueue& guard) {
 
 }  // namespace
 
-CableNode::CableNode(ros::NodeHandle private_node)
-    : guard_(*private_node.getCallbackQueue()),
-      node_(guarded(private_node, guard_)),
-      simulation_(node_, read_scene_parameters(node_)),
-      services_(node_, simulation_),
-      obstacles_(node_, simulation_),
-      tuning_(node_, simulation_),
-      rollouts_(node_, simulation_),
-      hands_(node_, simulation_),
-      diagnostics_(node_, simulation_, obstacles_),
-      timer_(node_.createWallTimer(update_period(simulation_.scene()),
-                                   [this](const ros::WallTimerEvent&) { run_guarded("an update", [this] { update(); }); })),
-      publish_rate_(simulation_.scene().publish_rate) {}
+struct CableNode::Parts {
+  explicit Parts(ros::NodeHandle private_node);
+  void update();
 
-void CableNode::update() {
-  simulation_.update(Simulation::longest_slice);
-  tuning_.follow_scene();
-  hands_.update();
-  if (simulation_.scene().publish_rate == publish_rate_) return;
-  publish_rate_ = simulation_.scene().publish_rate;
-  timer_.setPeriod(update_period(simulation_.scene()));
+  GuardedQueue guard;
+  ros::NodeHandle node;
+  Simulation simulation;
+  CableServices services;
+  ObstacleListener obstacles;
+  Tuning tuning;
+  Rollouts rollouts;
+  Hands hands;
+  Diagnostics diagnostics;
+  ros::WallTimer timer;
+  double publish_rate;  ///< [Hz] for which the timer runs
+};
+
+CableNode::Parts::Parts(ros::NodeHandle private_node)
+    : guard(*private_node.getCallbackQueue()),
+      node(guarded(private_node, guard)),
+      simulation(node, read_scene_parameters(node)),
+      services(node, simulation),
+      obstacles(node, simulation),
+      tuning(node, simulation),
+      rollouts(node, simulation),
+      hands(node, simulation),
+      diagnostics(node, simulation, obstacles),
+      timer(node.createWallTimer(update_period(simulation.scene()),
+                                 [this](const ros::WallTimerEvent&) { run_guarded("an update", [this] { update(); }); })),
+      publish_rate(simulation.scene().publish_rate) {}
+
+void CableNode::Parts::update() {
+  simulation.update(Simulation::longest_slice);
+  tuning.follow_scene();
+  hands.update();
+  if (simulation.scene().publish_rate == publish_rate) return;
+  publish_rate = simulation.scene().publish_rate;
+  timer.setPeriod(update_period(simulation.scene()));
+}
+
+CableNode::CableNode(ros::NodeHandle private_node) : parts_(std::make_unique<Parts>(private_node)) {}
+CableNode::~CableNode() = default;
+
+bool CableNode::busy() const {
+  return parts_->simulation.busy();
 }
 
 void log_errors(const SceneError& error) {

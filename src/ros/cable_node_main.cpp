@@ -46,7 +46,7 @@ int main(int argc, char** argv) {
     ros::spin();
     ros::shutdown();
     // A process need not wait for its threads.
-    if (cable_node.builds()) std::_Exit(0);
+    if (cable_node.busy()) std::_Exit(0);
   } catch (const verlet_cable::SceneError& error) {
     verlet_cable::log_errors(error);
     return 2;

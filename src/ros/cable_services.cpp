@@ -12,6 +12,7 @@
 #include <verlet_cable/Step.h>
 #include <verlet_cable/Unpin.h>
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <string>
@@ -94,7 +95,8 @@ EditResult load_scene(Simulation& simulation, OwnerCalls& owner, std::mutex& rea
 }
 
 bool step(Simulation& simulation, OwnerCalls& owner, const Step::Request& request, Step::Response& response) {
-  const auto time = std::make_shared<double>(0);
+  // Atomic, as the answer may come when nobody waits any longer, because the node ends.
+  const auto time = std::make_shared<std::atomic<double>>(0);
   const EditResult result = owner.ask([&simulation, time, steps = request.steps](const Answer& answer) {
     simulation.step(steps, [&simulation, time, answer](const EditResult& done) {
       *time = seconds(simulation.stamp());

@@ -67,7 +67,8 @@ void Diagnostics::report_simulation(Status& status) {
   if (simulation_.faulted()) {
     status.summary(DiagnosticStatus::ERROR, "fault: the simulation has stopped; call reset or restore_state to go on");
   } else if (!simulation_.started()) {
-    status.summary(DiagnosticStatus::WARN, simulation_.now() == 0
+    status.summary(DiagnosticStatus::WARN, simulation_.starting() ? "the scene is being built"
+                                           : simulation_.now() == 0
                                                ? "no ROS time yet: use_sim_time is true, and nothing publishes /clock"
                                                : "waits for its tf frames to start");
   } else if (simulation_.paused()) {
@@ -93,7 +94,7 @@ void Diagnostics::report_simulation(Status& status) {
   if (!simulation_.world().unsettled().empty())
     status.mergeSummary(DiagnosticStatus::WARN, "no static equilibrium was found to start from");
   if (!simulation_.intrusions().empty()) status.mergeSummary(DiagnosticStatus::WARN, "cables were found inside obstacles");
-  if (!simulation_.world().waiting().empty())
+  if (simulation_.started() && !simulation_.world().waiting().empty())
     status.mergeSummary(DiagnosticStatus::WARN, "cables or nets wait for their tf frames and are not there yet");
 }
 

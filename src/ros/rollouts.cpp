@@ -43,7 +43,8 @@ Rollouts::~Rollouts() {
   }
   new_job_.notify_all();
   for (std::thread& thread : threads_) thread.join();
-  // Goals must not outlive the server.
+  // Goals must not outlive the server, and may still come: who unloads a nodelet is not the thread that serves it.
+  const std::lock_guard<std::mutex> lock(mutex_);
   waiting_.clear();
   jobs_.clear();
 }
@@ -61,6 +62,7 @@ void Rollouts::accept(Server::GoalHandle goal) {
   try {
     auto job = std::make_shared<Job>(goal, Rollout(request, std::move(start)));
     const std::lock_guard<std::mutex> lock(mutex_);
+    if (ending_) return reject("the node ends");
     const auto most = static_cast<std::size_t>(simulation_.scene().limits.rollouts);
     if (jobs_.size() >= most) return reject("limits.rollouts: " + std::to_string(most) + " run or wait already");
     goal.setAccepted();

@@ -33,7 +33,7 @@ Simulation::Simulation(ros::NodeHandle& private_node, const SceneDesc& scene)
     : scene_(scene),
       grid_(scene.time_step, scene.publish_rate),
       pacer_(grid_, longest_backlog(scene)),
-      world_(build(initial_frames(scene))),
+      world_(scene),
       frames_(private_node, scene),
       publishers_(private_node, scene),
       events_(private_node, scene.frame_id),
@@ -43,10 +43,7 @@ void Simulation::update(ros::WallDuration longest) {
   if (clock_.update() == ClockWatch::Motion::back) jump_back();
   frames_.receive(clock_.now());
   finish_rebuilds();
-  if (!started_) {
-    start_if_possible();
-    return;
-  }
+  if (!started_) return start_if_possible();
   frame_watch_.warn_of_waiting(scene_, world_, frames_);
   if (!awaited_steps_.empty()) return do_awaited_steps(longest);
   if (waits_for_frames_ && !paused_) continue_if_frames_are_back();
@@ -74,7 +71,8 @@ void Simulation::jump_back() {
                  (forget ? "everything is reset (on_time_jump: reset)" : "everything keeps its state (on_time_jump: keep)"));
   }
   // The frames of pins are forgotten, and so must be the world that has them.
-  if (forget) world_ = build(initial_frames(scene_));
+  if (forget) use_world(World(scene_));
+  start_.reset();
   keeps_world_ = (started_ || keeps_world_) && !forget;
   started_ = false;
   waits_since_ = 0;
@@ -84,23 +82,31 @@ void Simulation::jump_back() {
 /// do not show up within `tf_timeout` are not waited for.
 void Simulation::start_if_possible() {
   if (clock_.now() == 0) return;
+  if (start_) {
+    if (start_->build.is_ready()) finish_start();
+    return;
+  }
   if (waits_since_ == 0) waits_since_ = clock_.now();
   const bool late = clock_.now() - waits_since_ > nanoseconds(scene_.tf_timeout) || clock_.stands();
   const Nanoseconds common = frames_.first_common_time();
   if (!late && !frames_.all_seen()) return;
   const bool anchored = frames_.all_seen() && common > 0;
   const Nanoseconds time = grid_.tick_at_or_after(std::max<Nanoseconds>(anchored ? common : target() - grid_.period(), 1));
-  if (late || time <= target()) start(time);
+  if (late || time <= target()) prepare_start(time);
 }
 
-void Simulation::start(Nanoseconds time, bool builds) {
-  // Frames of obstacles that came before the start are numbered anew, together with the new world's.
+void Simulation::sample_at_start(Nanoseconds time) {
   if (!keeps_world_) frames_.reset(time);
   frames_.sample_at_once(time);
+}
+
+/// With the world that is there, and the frames that were sampled for it.
+void Simulation::start(Nanoseconds time) {
   stamp_ = time;
   started_ = true;
   if (!keeps_world_) {
-    if (builds) world_ = build(frames_.inputs());
+    // Frames of obstacles that came before the start are numbered anew, together with the new world's.
+    frames_.drop_pinned_frames();
     world_.start_waiting(frames_.inputs());
     moves_.clear();
     place_added_obstacles();

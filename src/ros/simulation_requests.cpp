@@ -19,8 +19,10 @@ EditResult refused(const std::string& message) {
 }  // namespace
 
 EditResult Simulation::refused_before_start() const {
-  return refused(now() == 0 ? "the simulation has not started: there is no ROS time yet (use_sim_time without /clock?)"
-                            : "the simulation has not started: it waits for its tf frames, but no longer than tf_timeout");
+  const std::string what = "the simulation has not started: ";
+  if (starting()) return refused(what + "its scene is being built");
+  return refused(what + (now() == 0 ? "there is no ROS time yet (use_sim_time without /clock?)"
+                                    : "it waits for its tf frames, but no longer than tf_timeout"));
 }
 
 EditResult Simulation::set_paused(bool paused) {
@@ -99,7 +101,8 @@ EditResult Simulation::move_attachment(const std::string& name, const Pose& offs
 EditResult Simulation::refused_attachment(const std::string& name) const {
   std::string names;
   for (const Attachment& attachment : world_.attachments()) names += (names.empty() ? "" : ", ") + attachment.name;
-  return refused("name: " + quoted(name) + " is no attachment; allowed: " + (names.empty() ? "none, nothing is attached" : names));
+  return refused("name: " + quoted(name) +
+                 " is no attachment; allowed: " + (names.empty() ? "none, nothing is attached" : names));
 }
 
 EditResult Simulation::cut(int cable, int segment) {

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "verlet_cable/ros/location.h"
@@ -9,31 +8,42 @@ namespace verlet_cable {
 namespace {
 
 /// A world that takes longer than this to build [s] is built aside.
-constexpr double longest_build = 0.02;
-/// So many worlds that nobody waits for any longer may still be being built.
-constexpr std::size_t most_abandoned = 4;
-
-Simulation::BuiltWorld timed_build(const SceneDesc& scene, const BoundaryInputs& frames) {
-  const auto begin = std::chrono::steady_clock::now();
-  World world(scene, frames);
-  return {std::move(world), std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()};
-}
-
-bool is_ready(const std::future<Simulation::BuiltWorld>& built) {
-  return built.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-}
+constexpr double longest_build = 0.01;
 
 }  // namespace
 
 World Simulation::build(const BoundaryInputs& frames) {
-  BuiltWorld built = timed_build(scene_, frames);
+  BuiltWorld built = build_world(scene_, frames);
   build_time_ = built.time;
   return std::move(built.world);
 }
 
+/// In place of the one that is there.
+void Simulation::use_world(World world) {
+  std::swap(world_, world);
+  tasks_.dispose(std::move(world));
+}
+
 void Simulation::build_aside(const SceneDesc& scene, bool loads, const Answer& answer) {
-  auto built = std::async(std::launch::async, timed_build, scene, present_frames(scene));
-  rebuilds_.push_back({std::move(built), scene, scene_version_, loads, {answer}});
+  rebuilds_.push_back({WorldBuild(scene, present_frames(scene), tasks_), scene, scene_version_, loads, {answer}});
+}
+
+/// The world that a run starts with is built aside, but for one that is built fast: that starts at once.
+void Simulation::prepare_start(Nanoseconds time) {
+  sample_at_start(time);
+  if (keeps_world_) return start(time);
+  start_.emplace(Start{WorldBuild(scene_, frames_.inputs(), tasks_), time, scene_version_});
+  if (start_->build.is_ready(longest_build)) finish_start();
+}
+
+void Simulation::finish_start() {
+  Start prepared = std::move(*start_);
+  start_.reset();
+  BuiltWorld built = prepared.build.take();
+  build_time_ = built.time;
+  if (prepared.scene_version != scene_version_) built.world.tune(scene_);
+  use_world(std::move(built.world));
+  start(prepared.time);
 }
 
 /// Where the frames of a scene are now, as far as that is known.
@@ -47,25 +57,32 @@ BoundaryInputs Simulation::present_frames(const SceneDesc& scene) const {
 }
 
 void Simulation::finish_rebuilds() {
-  abandoned_.remove_if([](const std::future<BuiltWorld>& built) { return is_ready(built); });
-  const auto ready = [this](bool loads) {
-    const auto first = std::find_if(rebuilds_.begin(), rebuilds_.end(), [&](const Rebuild& r) { return r.loads == loads; });
-    return first != rebuilds_.end() && is_ready(first->built) ? first : rebuilds_.end();
-  };
-  // Scenes in the order they were asked for. Resets do not wait for them: a scene ends whatever was done before it came.
-  for (const bool loads : {true, false}) {
-    for (auto first = ready(loads); first != rebuilds_.end(); first = ready(loads)) {
-      Rebuild rebuild = std::move(*first);
-      rebuilds_.erase(first);
-      finish(std::move(rebuild));
-    }
-  }
+  while (finish_newest_load()) continue;
+  // Resets do not wait for scenes: a scene ends whatever was done before it came.
+  const auto reset = std::find_if(rebuilds_.begin(), rebuilds_.end(), [](const Rebuild& rebuild) { return !rebuild.loads; });
+  if (reset == rebuilds_.end() || !reset->build.is_ready()) return;
+  Rebuild rebuild = std::move(*reset);
+  rebuilds_.erase(reset);
+  finish(std::move(rebuild));
 }
 
-void Simulation::finish(Rebuild rebuild) {
+/// Those that were asked for before it would only be replaced by it. False where none is built.
+bool Simulation::finish_newest_load() {
+  const auto loads = [](const Rebuild& rebuild) { return rebuild.loads; };
+  const auto is_built = [](const Rebuild& rebuild) { return rebuild.loads && rebuild.build.is_ready(); };
+  const auto newest = std::find_if(rebuilds_.rbegin(), rebuilds_.rend(), is_built);
+  if (newest == rebuilds_.rend()) return false;
+  Rebuild rebuild = std::move(*newest);
+  const auto next = std::find_if(rebuilds_.erase(std::prev(newest.base())), rebuilds_.end(), loads);
+  const EditResult result = finish(std::move(rebuild));
+  if (result.ok) forget(true, next, "loaded, and " + result.message + " since");
+  return true;
+}
+
+EditResult Simulation::finish(Rebuild rebuild) {
   EditResult result;
   try {
-    BuiltWorld built = rebuild.built.get();
+    BuiltWorld built = rebuild.build.take();
     build_time_ = built.time;
     if (rebuild.loads) {
       result = replace_scene(rebuild.scene, std::move(built.world));
@@ -75,29 +92,27 @@ void Simulation::finish(Rebuild rebuild) {
     }
   } catch (const SceneError& error) {
     result = {false, verlet_cable::join(error.errors()), {}};
+  } catch (const std::exception& error) {
+    result = {false, std::string("the scene could not be built: ") + error.what(), {}};
   }
   for (const Answer& answer : rebuild.answers) answer(result);
+  return result;
 }
 
-bool Simulation::builds() const {
-  const auto goes_on = [](const std::future<BuiltWorld>& built) { return !is_ready(built); };
-  return std::any_of(rebuilds_.begin(), rebuilds_.end(), [&](const Rebuild& rebuild) { return goes_on(rebuild.built); }) ||
-         std::any_of(abandoned_.begin(), abandoned_.end(), goes_on);
-}
-
-/// Something that came after them puts the world where it has to be.
-void Simulation::forget_resets(const std::string& reason) {
-  for (auto rebuild = rebuilds_.begin(); rebuild != rebuilds_.end();) {
-    if (rebuild->loads) {
+/// Scenes, or resets, that were asked for before `end`: something that came after them puts the world where it has to be.
+void Simulation::forget(bool loads, std::list<Rebuild>::iterator end, const std::string& message) {
+  for (auto rebuild = rebuilds_.begin(); rebuild != end;) {
+    if (rebuild->loads != loads) {
       ++rebuild;
       continue;
     }
-    for (const Answer& answer : rebuild->answers) answer({true, "reset, and " + reason + " since", {}});
-    // Its end would be waited for.
-    abandoned_.push_back(std::move(rebuild->built));
+    for (const Answer& answer : rebuild->answers) answer({true, message, {}});
     rebuild = rebuilds_.erase(rebuild);
   }
-  if (abandoned_.size() > most_abandoned) abandoned_.pop_front();
+}
+
+void Simulation::forget_resets(const std::string& reason) {
+  forget(false, rebuilds_.end(), "reset, and " + reason + " since");
 }
 
 void Simulation::reset(const Answer& answer) {
@@ -114,7 +129,7 @@ void Simulation::reset(const Answer& answer) {
 
 EditResult Simulation::start_anew(World world) {
   frames_.reset(stamp_);
-  world_ = std::move(world);
+  use_world(std::move(world));
   // What was built aside may not know the newest frames.
   world_.start_waiting(frames_.inputs());
   moves_.clear();
@@ -140,16 +155,20 @@ EditResult Simulation::replace_scene(const SceneDesc& scene, World world) {
   use_scene(scene);
   grid_ = TimeGrid(scene.time_step, scene.publish_rate);
   pacer_.use(grid_, longest_backlog(scene));
-  world_ = std::move(world);
+  use_world(std::move(world));
   moves_.clear();
   frames_.follow_scene(scene, stamp_);
   events_.set_frame_id(scene.frame_id);
   frame_watch_.watch(scene);
-  snapshots_.clear();
+  tasks_.dispose(std::exchange(snapshots_, {}));
+  start_.reset();
   faulted_ = waits_for_frames_ = keeps_world_ = false;
   if (started_) {
+    const Nanoseconds time = grid_.step_at_or_after(stamp_);
+    sample_at_start(time);
     // What is built fast is built again, with the frames where they are at the step that it starts from.
-    start(grid_.step_at_or_after(stamp_), build_time_ <= longest_build);
+    if (build_time_ <= longest_build) use_world(build(frames_.inputs()));
+    start(time);
     announce(CableEvent::RESET, {}, message);
   } else {
     place_added_obstacles();

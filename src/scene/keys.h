@@ -12,12 +12,16 @@
 
 namespace verlet_cable {
 
-/// A key of a map and how its value gets into `Target`.
-template <class Target>
-struct Key {
+/// A key of a map, whatever the map describes.
+struct KeyName {
   std::string name;
   std::string allowed;  ///< for messages
   bool required;
+};
+
+/// A key of a map and how its value gets into `Target`.
+template <class Target>
+struct Key : KeyName {
   std::function<void(const Value&, Target&)> read;
 };
 template <class Target>
@@ -74,48 +78,17 @@ Key<Owner> vector_key(const std::string& name, Vector3 Owner::*member, const cha
   return {name, "three numbers", false, [=](const Value& value, Owner& owner) { owner.*member = read_vector(value, unit); }};
 }
 
-/// Reads a map by its keys: unknown, doubled and missing keys are errors. Returns the names of the keys that are there.
+/// Calls `read` with the index in `keys` and the value of each key that is there: unknown, doubled and missing keys are errors.
+/// Returns the names of the keys that are there.
+std::set<std::string> read_keys(const Value& value, const std::vector<const KeyName*>& keys,
+                                const std::function<void(std::size_t, const Value&)>& read);
+
+/// Reads a map by its keys, as read_keys() does.
 template <class Target>
 std::set<std::string> read_map(const Value& value, const Keys<Target>& keys, Target& target) {
-  std::vector<std::string> names;
-  std::string all_names;
-  for (const Key<Target>& key : keys) {
-    names.push_back(key.name);
-    all_names += (all_names.empty() ? "" : ", ") + key.name;
-  }
-  std::set<std::string> seen;
-  if (!value.node.IsMap()) {
-    value.reject("a map of " + all_names);
-    return seen;
-  }
-  for (const auto& entry : value.node) {
-    if (!entry.first.IsScalar()) {
-      value.errors->add(value.key.empty() ? "scene" : value.key, "key " + value_text(entry.first), all_names);
-      continue;
-    }
-    const std::string& name = entry.first.Scalar();
-    const Value child = value.child(escaped(name), entry.second);
-    if (!seen.insert(name).second) {
-      child.errors->add(child.key, "given twice, again as " + value_text(entry.second), "each key once");
-      continue;
-    }
-    bool known = false;
-    for (const Key<Target>& key : keys) {
-      if (key.name != name) continue;
-      key.read(child, target);
-      known = true;
-    }
-    if (known) continue;
-    const std::string nearest = nearest_name(name, names);
-    child.errors->add(
-        child.key,
-        "unknown key, its value is " + value_text(entry.second) + (nearest.empty() ? "" : " (did you mean " + nearest + "?)"),
-        all_names);
-  }
-  for (const Key<Target>& key : keys) {
-    if (key.required && !seen.count(key.name)) value.errors->add_unread(value.child(key.name, {}).key, "missing", key.allowed);
-  }
-  return seen;
+  std::vector<const KeyName*> names;
+  for (const Key<Target>& key : keys) names.push_back(&key);
+  return read_keys(value, names, [&](std::size_t key, const Value& child) { keys[key].read(child, target); });
 }
 
 /// Reads a list of maps. An element that is no map is an error and a default element, so that indices stay what they are in the

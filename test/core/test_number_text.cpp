@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "verlet_cable/core/number_text.h"
@@ -19,6 +20,15 @@ TEST(NumberText, MeasuredNumbersAreRoundedForPeople) {
 
 TEST(NumberText, GivenNumbersStayWhatTheyAre) {
   EXPECT_EQ(std::stod(number_text(0.4000000000000001)), 0.4000000000000001);
+}
+
+TEST(NumberText, WhatIsNoNumberHasNoSign) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double value : {nan, std::copysign(nan, -1.0), std::copysign(nan, 1.0)}) {
+    EXPECT_EQ(number_text(value), "nan");
+    EXPECT_EQ(rounded_text(value), "nan");
+    EXPECT_EQ(rounded_bound_text(value, -1), "nan");
+  }
 }
 
 TEST(NumberText, WhatABoundSaysIsAllowed) {

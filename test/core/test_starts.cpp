@@ -1,10 +1,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <ctime>
 #include <random>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "../support/scenes.h"
@@ -204,6 +207,34 @@ TEST(Start, ShapeThatDoesNotFitIsNamed) {
   scene = scenes::between_two_points(20, 1);
   scene.cables[0].initial.type = InitialShapeDesc::Type::straight;
   EXPECT_TRUE(World(scene, initial_frames(scene)).misfits().empty());
+}
+
+/// Takes seconds.
+SceneDesc slow_scene() {
+  SceneDesc scene = scenes::one_cable(30000);
+  scene.materials[0].material.bending_stiffness = 1;
+  scene.cables[0].attachments = {clamp("held", At::start, {0, 0, 0})};
+  return scene;
+}
+
+TEST(Starts, AWorldThatIsCancelledStartsNothing) {
+  const std::atomic<bool> cancelled{true};
+  const SceneDesc scene = slow_scene();
+  const World world(scene, initial_frames(scene), &cancelled);
+  EXPECT_TRUE(world.cables().empty());
+  EXPECT_EQ(world.waiting(), std::vector<std::string>{"cable"});
+}
+
+TEST(Starts, SettlingEndsWhenTheWorldIsCancelled) {
+  std::atomic<bool> cancelled{false};
+  const SceneDesc scene = slow_scene();
+  std::thread canceller([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    cancelled = true;
+  });
+  const World world(scene, initial_frames(scene), &cancelled);
+  canceller.join();
+  EXPECT_TRUE(world.cables().empty() || !world.unsettled().empty());
 }
 
 }  // namespace

@@ -159,9 +159,16 @@ class LongRequestsTest(unittest.TestCase):
         answer = self.node.load_scene(yaml='5')
         self.assertFalse(answer.success)
         self.assertTrue(loading.runs(), answer.message)
-        # Applied after the one that was asked for before.
+
+    def test_a_scene_does_not_wait_for_those_that_it_replaces(self):
+        loading = [Aside(self.node.load_scene, yaml=SLOW) for _ in range(2)]
+        time.sleep(0.5)
+        self.assertTrue(all(each.runs() for each in loading))
         self.assertTrue(self.node.load_scene(yaml=ROPE + 'cables:\n' + rope('second', 20)).success)
-        self.assertTrue(loading.result().success)
+        for each in loading:
+            answer = each.result()
+            self.assertTrue(answer.success, answer.message)
+            self.assertIn('loaded, and the scene is replaced by one of 1 cables since', answer.message)
         self.assertEqual([c.name for c in self.node.state().cables], ['second'])
 
     def test_pins_share_the_limit_of_frames(self):

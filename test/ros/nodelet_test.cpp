@@ -5,15 +5,22 @@
 #include <ros/ros.h>
 #include <ros/xmlrpc_manager.h>
 #include <sensor_msgs/PointCloud2.h>
+#include <std_srvs/SetBool.h>
+#include <std_srvs/Trigger.h>
 #include <verlet_cable/CableArray.h>
+#include <verlet_cable/RolloutAction.h>
+#include <verlet_cable/Step.h>
 #include <visualization_msgs/MarkerArray.h>
 #include <xmlrpcpp/XmlRpc.h>
 
 #include <array>
+#include <atomic>
 #include <functional>
 #include <map>
 #include <mutex>
 #include <string>
+#include <thread>
+#include <vector>
 
 namespace {
 
@@ -86,6 +93,50 @@ TEST(Nodelet, MessagesAreNotCopied) {
     EXPECT_TRUE(is_inside_the_process(topic)) << topic;
   EXPECT_TRUE(loader.unload("/cables"));
   EXPECT_TRUE(wait_until([] { return !ros::service::exists("/cables/reset", false); }));
+}
+
+/// By another thread than the one that serves it: goals, resets and steps are under way, and more come.
+TEST(Nodelet, IsUnloadedWhileItIsAsked) {
+  ros::NodeHandle node;
+  ros::Publisher goals = node.advertise<verlet_cable::RolloutActionGoal>("/cables/rollout/goal", 50);
+  std::atomic<int> answers{0};
+  const ros::Subscriber results = node.subscribe<verlet_cable::RolloutActionResult>(
+      "/cables/rollout/result", 50, [&](const verlet_cable::RolloutActionResultConstPtr&) { ++answers; });
+  for (int round = 0; round < 3; ++round) {
+    nodelet::Loader loader;
+    ASSERT_TRUE(loader.load("/cables", "verlet_cable/CableNodelet", {}, {}));
+    ASSERT_TRUE(wait_until([&] { return goals.getNumSubscribers() > 0 && results.getNumPublishers() > 0; }));
+    answers = 0;
+    std::atomic<bool> ended{false};
+    std::atomic<int> resets{0};
+    std::vector<std::thread> others;
+    others.emplace_back([&] {
+      for (int i = 0; !ended; ++i) {
+        verlet_cable::RolloutActionGoal goal;
+        goal.goal_id.id = std::to_string(round) + "/" + std::to_string(i);
+        goal.goal.duration = i % 2 ? 0.01 : 1000;
+        goal.goal.rate = 10;
+        goals.publish(goal);
+        ros::WallDuration(0.001).sleep();
+      }
+    });
+    others.emplace_back([&] {
+      std_srvs::Trigger reset;
+      while (!ended) resets += ros::service::call("/cables/reset", reset);
+    });
+    others.emplace_back([&] {
+      std_srvs::SetBool pause;
+      pause.request.data = true;
+      verlet_cable::Step step;
+      step.request.steps = 1000000;
+      while (!ended) ros::service::call("/cables/pause", pause) && ros::service::call("/cables/step", step);
+    });
+    EXPECT_TRUE(wait_until([&] { return answers > 0 && resets > 0; }));
+    EXPECT_TRUE(loader.unload("/cables"));
+    ended = true;
+    for (std::thread& other : others) other.join();
+    EXPECT_TRUE(wait_until([] { return !ros::service::exists("/cables/reset", false); }));
+  }
 }
 
 TEST(Nodelet, ABadSceneIsNotLoaded) {

@@ -3,7 +3,8 @@
 
     roscore & test/ros/reset_latency.py [SECONDS] [ATTACK...]
 
-prints a row for each attack: calls, median, 99th percentile and longest [ms] of both nodes, each asked 100 times a second.
+prints a row for each attack: calls, median, 99th percentile and longest [ms], and how many were refused, of `reset` of both nodes, each asked 100
+times a second; and of `unpin` of nothing on the attacked node, which takes no time itself: how long requests wait for others.
 """
 import os
 import shutil
@@ -17,13 +18,14 @@ import roslib.packages
 import rospy
 from geometry_msgs.msg import Vector3
 from rosgraph_msgs.msg import Clock
-from std_srvs.srv import SetBool, Trigger
+from std_srvs.srv import Trigger
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
 
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 from bad_meshes import bad_files
 from cable_client import CableClient, node_at, transform
+from verlet_cable.srv import Unpin
 
 PERIOD = 0.01  # [s] of the calls
 LAST = 2**32 - 1  # [s] of ROS time
@@ -129,15 +131,39 @@ def long_text(cable):
 def valid_texts(_):
     # Comments and blanks make it long: the cables, which are simulated afterwards, are as before.
     few = ROPE + 'cables:\n' + ''.join(CABLE.format(i) for i in range(5))
+    points = 74001
     long_list = SCENE.replace('cables: [', 'cables: [{name: long, length: 1.0, segments: 5, material: rope, initial: {type: points, points: ['
-                              + ', '.join('[%.5f, 0, 0]' % (i / 80000) for i in range(80001)) + ']}}, ')
-    yield from load([few + '#' * (LONGEST_TEXT - len(few)), few + ' \n' * ((LONGEST_TEXT - len(few)) // 2), long_list[:LONGEST_TEXT]])
+                              + ','.join('[%.5f,0,0]' % (i / (points - 1)) for i in range(points)) + ']}}, ')
+    yield from load([few + '#' * (LONGEST_TEXT - len(few)), few + ' \n' * ((LONGEST_TEXT - len(few)) // 2), long_list])
 
 
 def many_cables(_):
     """Between two loads the resets are those of a large scene, which take as long as it takes to build."""
     text = ROPE + 'cables:\n' + ''.join(CABLE.format(i) for i in range(1500))
-    yield from load([text, SCENE])
+    yield from load([text + '#' * (LONGEST_TEXT - len(text)), SCENE])
+
+
+def slow_scenes(_):
+    """Of one cable that takes seconds to build; in between, scenes that do not wait for it."""
+    slow = SCENE.replace('drag: 0.2', 'drag: 0.2, bending_stiffness: 1.0').replace('segments: 50', 'segments: 30000')
+    slow = slow.replace('at: start', 'at: start, type: clamp')
+    threading.Thread(target=lambda: list(load([slow])), daemon=True).start()
+    time.sleep(1)
+    for _ in load([SCENE]):
+        yield 1
+
+
+def back_and_forth(_):
+    """A clock, and a scene of many cables that is built anew each time it goes back: until then resets are refused."""
+    clock = rospy.Publisher('/clock', Clock, queue_size=1000)
+    many = ROPE + 'cables:\n' + ''.join(CABLE.format(i) for i in range(1500))
+    CableClient('/attacked').load_scene(yaml=many)
+    while True:
+        for i in range(100):
+            message = Clock()
+            message.clock = rospy.Time.from_sec(100 + 0.02 * i)
+            clock.publish(message)
+            yield 0.02
 
 
 def invalid_texts(_):
@@ -179,7 +205,9 @@ def obstacles(_):
             yield 0.02
 
 
-ATTACKS = {f.__name__: f for f in (late_tf, late_clock, meshes, robots, valid_texts, invalid_texts, many_cables, steps, pins, obstacles)}
+ATTACKS = {f.__name__: f for f in (late_tf, late_clock, meshes, robots, valid_texts, invalid_texts, many_cables, slow_scenes, back_and_forth, steps,
+                                  pins, obstacles)}
+SIMULATED_TIME = ('late_clock', 'back_and_forth')
 
 
 def attack(name, directory):
@@ -189,13 +217,14 @@ def attack(name, directory):
 
 
 class Calls:
-    """Of `reset`, one after the other over a connection that stays open."""
+    """Of a service, one after the other over a connection that stays open."""
 
-    def __init__(self, node, seconds):
+    def __init__(self, service, kind, seconds, *arguments, expected=True):
         self.durations = []
         self.problems = 0
-        rospy.wait_for_service(f'{node}/reset', 20)
-        self._reset = rospy.ServiceProxy(f'{node}/reset', Trigger, persistent=True)
+        rospy.wait_for_service(service, 20)
+        proxy = rospy.ServiceProxy(service, kind, persistent=True)
+        self._call = lambda: proxy(*arguments).success == expected
         self._thread = threading.Thread(target=self._run, args=(seconds,), daemon=True)
         self._thread.start()
 
@@ -205,7 +234,7 @@ class Calls:
         while due < begin + seconds:
             time.sleep(max(0.0, due - time.monotonic()))
             asked = time.monotonic()
-            self.problems += not self._reset().success
+            self.problems += not self._call()
             now = time.monotonic()
             self.durations.append(1e3 * (now - asked))
             due = max(due + PERIOD, now)
@@ -236,7 +265,9 @@ def main():
     seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 10
     rospy.init_node('reset_latency', disable_rostime=True)
     directory = tempfile.mkdtemp()
-    print(f'{"":14s} {"attacked:":40s}  alone:\n{"":14s}' + 2 * '  calls  median    99 %     max >50ms  refused', flush=True)
+    columns = f'{"calls":>6s} {"median":>7s} {"99 %":>7s} {"max":>7s} {">50":>5s} {"ref.":>5s}'
+    titles = ('reset of the attacked', 'unpin of the attacked', 'reset of the one left alone')
+    print(f'{"":14s}' + '  '.join(f'{t:42s}' for t in titles) + f'\n{"":14s}' + '  '.join([columns] * 3), flush=True)
     try:
         for name in sys.argv[2:] or ['nothing', *ATTACKS]:
             measure(name, seconds, directory)
@@ -245,7 +276,7 @@ def main():
 
 
 def measure(name, seconds, directory):
-    rospy.set_param('/use_sim_time', name == 'late_clock')
+    rospy.set_param('/use_sim_time', name in SIMULATED_TIME)
     nodes = [node(n, directory) for n in ('attacked', 'alone')]
     ticking = rospy.Publisher('/alone/clock', Clock, queue_size=10)
     stop = threading.Event()
@@ -255,7 +286,7 @@ def measure(name, seconds, directory):
             ticking.publish(rospy.Time.from_sec(time.time()))
 
     ticker = threading.Thread(target=tick, daemon=True)
-    if name == 'late_clock':
+    if name in SIMULATED_TIME:
         ticker.start()
     attacker = None
     try:
@@ -265,7 +296,8 @@ def measure(name, seconds, directory):
         if name != 'nothing':
             attacker = subprocess.Popen([sys.executable, os.path.realpath(__file__), '--attack', name, directory])
         time.sleep(1)
-        calls = [Calls(f'/{n}', seconds) for n in ('attacked', 'alone')]
+        calls = [Calls('/attacked/reset', Trigger, seconds), Calls('/attacked/unpin', Unpin, seconds, 'nothing', expected=False),
+                 Calls('/alone/reset', Trigger, seconds)]
         print(f'{name:14s}' + '  '.join(c.result() for c in calls), f'  load {os.getloadavg()[0]:.1f}', flush=True)
         if nodes[0].poll() is not None:
             print(f'{name}: the node has ended: {nodes[0].returncode}')

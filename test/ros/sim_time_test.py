@@ -67,6 +67,33 @@ class SimTimeTest(unittest.TestCase):
                 process.send_signal(signal.SIGINT)
                 process.wait(20)
 
+    def test_a_scene_that_takes_long_is_built_aside(self):
+        """When the node starts, and when the clock goes back; services answer meanwhile, and say so."""
+        process = subprocess.Popen(['rosrun', 'verlet_cable', 'cable_node', '__name:=slow', '/clock:=/slow_clock'])
+        try:
+            slow = CableClient('/slow')
+            clock = rospy.Publisher('/slow_clock', Clock, queue_size=100)
+            for start in (100, 50):
+                begin, slowest, refused = time.monotonic(), 0, 0
+                while True:
+                    asked = time.monotonic()
+                    self.assertLess(asked, begin + 100, 'the scene is not built')
+                    clock.publish(rospy.Time.from_sec(start + asked - begin))
+                    answer = slow.reset()  # the last takes as long as the scene takes to build
+                    if 'the simulation has not started: its scene is being built' in answer.message:
+                        slowest = max(slowest, time.monotonic() - asked)
+                        refused += 1
+                    elif refused:
+                        break
+                    time.sleep(0.01)
+                took = time.monotonic() - begin
+                rospy.loginfo('built in %.1f s, %d resets refused meanwhile, slowest answer %.0f ms', took, refused, 1e3 * slowest)
+                self.assertTrue(answer.success, answer.message)
+                self.assertLess(slowest, 0.5 * took)
+        finally:
+            process.kill()
+            process.wait()
+
     def test_the_life_of_a_clock(self):
         with self.resetting.states() as resetting, self.keeping.states() as keeping, \
                 self.resetting.events() as resets, self.keeping.events() as keeps:

@@ -14,8 +14,9 @@ namespace verlet_cable {
 constexpr std::size_t number_text_size = 32;
 
 /// Writes a number so that reading it back gives the same double; the shortest such text where the standard library has it.
-/// `buffer` has room for `number_text_size` characters. Returns the end of the text, which is not terminated.
+/// `buffer` has room for `number_text_size` characters. Returns the end of the text, which is not terminated. A NaN has no sign.
 inline char* write_number(char* buffer, double value) {
+  if (std::isnan(value)) return std::copy_n("nan", 3, buffer);
 #if defined(__cpp_lib_to_chars)
   return std::to_chars(buffer, buffer + number_text_size, value).ptr;
 #else
@@ -31,6 +32,7 @@ inline std::string number_text(double value) {
 
 /// A number that was measured or computed, for people: rounded to so many significant digits, but to 1 at least below 1e9.
 inline std::string rounded_text(double value, int digits = 4) {
+  if (std::isnan(value)) return "nan";
   char buffer[number_text_size];
   const bool is_long = std::abs(value) >= std::pow(10.0, digits) && std::abs(value) < 1e9;
   std::snprintf(buffer, sizeof buffer, is_long ? "%.*f" : "%.*g", is_long ? 0 : digits, value);

@@ -4,6 +4,8 @@
 #include <Eigen/Geometry>
 #include <limits>
 
+// Whatever multiplies quaternions is compiled once, in types.cpp: Eigen's templates for it would cost every file half a second.
+
 namespace verlet_cable {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -17,13 +19,8 @@ struct Pose {
   Quaternion orientation = Quaternion::Identity();
 
   /// The pose `child`, given in this pose's frame, seen from this pose's parent.
-  Pose operator*(const Pose& child) const {
-    return {position + orientation * child.position, (orientation * child.orientation).normalized()};
-  }
-  Pose inverse() const {
-    const Quaternion back = orientation.conjugate();
-    return {-(back * position), back};
-  }
+  Pose operator*(const Pose& child) const;
+  Pose inverse() const;
 };
 
 /// How a frame moves, seen from the fixed frame.
@@ -33,15 +30,9 @@ struct FrameVelocity {
 };
 
 /// The rotation as axis times angle [rad], the short way.
-inline Vector3 rotation_vector(const Quaternion& rotation) {
-  const Eigen::AngleAxisd turn(rotation);
-  return turn.angle() * turn.axis();
-}
+Vector3 rotation_vector(const Quaternion& rotation);
 
 /// Rotation of fixed-axis roll, pitch and yaw [rad], as in URDF: Rz(yaw) Ry(pitch) Rx(roll).
-inline Quaternion quaternion_from_rpy(const Vector3& rpy) {
-  return Eigen::AngleAxisd(rpy.z(), Vector3::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Vector3::UnitY()) *
-         Eigen::AngleAxisd(rpy.x(), Vector3::UnitX());
-}
+Quaternion quaternion_from_rpy(const Vector3& rpy);
 
 }  // namespace verlet_cable

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -102,8 +103,11 @@ struct EditResult {
 class World {
  public:
   /// Cables whose frames are all known start at once, the others wait for `start_waiting`. `inputs` is indexed like
-  /// `frame_names(scene)`. Throws SceneError with everything that `validate` finds.
-  World(const SceneDesc& scene, const BoundaryInputs& inputs);
+  /// `frame_names(scene)`. Throws SceneError with everything that `validate` finds. Soon after another thread has set `cancelled` it
+  /// ends, and the world is good for nothing.
+  World(const SceneDesc& scene, const BoundaryInputs& inputs, const std::atomic<bool>* cancelled = nullptr);
+  /// None of the cables and nets has started yet. Throws SceneError likewise.
+  explicit World(const SceneDesc& scene);
   ~World();
   World(const World&);
   World& operator=(const World&);

@@ -2,15 +2,9 @@
 
 #include <ros/ros.h>
 
+#include <memory>
+
 #include "verlet_cable/core/scene_desc.h"
-#include "verlet_cable/ros/cable_services.h"
-#include "verlet_cable/ros/diagnostics.h"
-#include "verlet_cable/ros/guarded_queue.h"
-#include "verlet_cable/ros/hands.h"
-#include "verlet_cable/ros/obstacle_listener.h"
-#include "verlet_cable/ros/rollouts.h"
-#include "verlet_cable/ros/simulation.h"
-#include "verlet_cable/ros/tuning.h"
 
 namespace verlet_cable {
 
@@ -20,24 +14,15 @@ class CableNode {
  public:
   /// Throws SceneError.
   explicit CableNode(ros::NodeHandle private_node);
+  ~CableNode();
 
-  /// The destructor waits until what is being built is built.
-  bool builds() const { return simulation_.builds(); }
+  /// The destructor waits for what is being done aside.
+  bool busy() const;
 
  private:
-  void update();
-
-  GuardedQueue guard_;
-  ros::NodeHandle node_;
-  Simulation simulation_;
-  CableServices services_;
-  ObstacleListener obstacles_;
-  Tuning tuning_;
-  Rollouts rollouts_;
-  Hands hands_;
-  Diagnostics diagnostics_;
-  ros::WallTimer timer_;
-  double publish_rate_;  ///< [Hz] for which the timer runs
+  /// Declared only: its headers would cost every file that includes this one seconds to compile.
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
 };
 
 /// Logs every error of a scene as fatal.

@@ -3,7 +3,6 @@
 #include <ros/ros.h>
 
 #include <deque>
-#include <future>
 #include <list>
 #include <map>
 #include <optional>
@@ -13,6 +12,7 @@
 
 #include "verlet_cable/core/world.h"
 #include "verlet_cable/ros/attachment_moves.h"
+#include "verlet_cable/ros/background_tasks.h"
 #include "verlet_cable/ros/clock_watch.h"
 #include "verlet_cable/ros/event_publisher.h"
 #include "verlet_cable/ros/frame_watch.h"
@@ -23,6 +23,7 @@
 #include "verlet_cable/ros/statistics.h"
 #include "verlet_cable/ros/tf_inputs.h"
 #include "verlet_cable/ros/time_grid.h"
+#include "verlet_cable/ros/world_build.h"
 
 namespace verlet_cable {
 
@@ -48,7 +49,7 @@ class Simulation {
   /// An update, and a part of a request, is cut off after this, so that others do not wait.
   static const ros::WallDuration longest_slice;
 
-  /// Throws SceneError.
+  /// Throws SceneError. The scene is built when it starts, aside: until then requests are refused that need it.
   Simulation(ros::NodeHandle& private_node, const SceneDesc& scene);
 
   /// Does the steps that are due now, for no longer than about `longest` of wall time; to be called more often than ticks are
@@ -81,7 +82,8 @@ class Simulation {
   EditResult save_state(const std::string& name);
   /// Continues a snapshot: while paused at its time and with its frames, while running at the present ones.
   EditResult restore_state(const std::string& name);
-  /// Goes on with another scene, as soon as it is built; refused if it is not sound.
+  /// Goes on with another scene, as soon as it is built; refused if it is not sound. One that was asked for before and is not
+  /// built yet then is given up.
   void load_scene(const SceneDesc& scene, const Answer& answer);
   /// Goes on with other gravity, fluid and materials; everything else of `scene` is as it is.
   void tune(const SceneDesc& scene);
@@ -102,8 +104,9 @@ class Simulation {
   Nanoseconds dropped() const { return pacer_.dropped(); }
   int faults() const { return faults_; }
   bool started() const { return started_; }
-  EditResult refused_before_start() const;  ///< what it waits for, as the refusal of a request
-  bool builds() const;                      ///< a world is being built aside; the end of the simulation waits for it
+  EditResult refused_before_start() const;              ///< what it waits for, as the refusal of a request
+  bool starting() const { return start_.has_value(); }  ///< the frames are there, and the scene is being built
+  bool busy() const { return tasks_.busy(); }           ///< aside; the end of the simulation waits for what it can cancel
   bool paused() const { return paused_; }
   bool faulted() const { return faulted_; }
   bool waits_for_frames() const { return waits_for_frames_; }
@@ -112,19 +115,20 @@ class Simulation {
   /// "CABLE in OBSTACLE" of all that were found inside since the scene started.
   const std::set<std::string>& intrusions() const { return intrusions_; }
 
-  struct BuiltWorld {
-    World world;
-    double time = 0;  ///< [s] that it took
-  };
-
  private:
-  /// A world that is built by a thread of its own, from values.
+  /// What replaces the world when it is built.
   struct Rebuild {
-    std::future<BuiltWorld> built;
+    WorldBuild build;
     SceneDesc scene;
     int scene_version = 0;        ///< when it began
     bool loads = false;           ///< another scene; or it is a reset
     std::vector<Answer> answers;  ///< to all that asked for it
+  };
+  /// The first world of a run.
+  struct Start {
+    WorldBuild build;
+    Nanoseconds time = 0;   ///< from which it goes on
+    int scene_version = 0;  ///< when it began
   };
   struct AwaitedSteps {
     std::int64_t asked = 0, done = 0;
@@ -137,13 +141,18 @@ class Simulation {
   void use_scene(const SceneDesc& scene);
   void jump_back();
   void start_if_possible();
-  /// `builds`: with a new world, not the one that is there.
-  void start(Nanoseconds time, bool builds = true);
+  void prepare_start(Nanoseconds time);
+  void finish_start();
+  void start(Nanoseconds time);
+  void sample_at_start(Nanoseconds time);
   World build(const BoundaryInputs& frames);
+  void use_world(World world);
   void build_aside(const SceneDesc& scene, bool loads, const Answer& answer);
   BoundaryInputs present_frames(const SceneDesc& scene) const;
   void finish_rebuilds();
-  void finish(Rebuild rebuild);
+  bool finish_newest_load();
+  EditResult finish(Rebuild rebuild);
+  void forget(bool loads, std::list<Rebuild>::iterator end, const std::string& message);
   void forget_resets(const std::string& reason);
   EditResult start_anew(World world);
   EditResult replace_scene(const SceneDesc& scene, World world);
@@ -171,6 +180,7 @@ class Simulation {
   std::size_t find_frame_id(const std::string& frame) const;
 
   SceneDesc scene_;
+  BackgroundTasks tasks_;
   double build_time_ = 0;  ///< [s] that the last world took to build
   TimeGrid grid_;
   Pacer pacer_;
@@ -199,8 +209,8 @@ class Simulation {
   Statistics statistics_;
   std::set<std::string> intrusions_;
   std::deque<AwaitedSteps> awaited_steps_;
-  std::list<Rebuild> rebuilds_;                   ///< in the order they were asked for
-  std::list<std::future<BuiltWorld>> abandoned_;  ///< that nobody waits for any longer
+  std::optional<Start> start_;
+  std::list<Rebuild> rebuilds_;  ///< in the order they were asked for
 };
 
 }  // namespace verlet_cable

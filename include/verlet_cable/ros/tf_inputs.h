@@ -59,7 +59,9 @@ class TfInputs {
   void receive(Nanoseconds now);
   /// After ROS time went back to `now`: what tf said before is void. With `forget`, frames count as never seen, too.
   void restart(Nanoseconds now, bool forget);
-  /// Drops the frames that pins and obstacles added, and puts the others where they are at `time`.
+  /// Drops the frames that pins and obstacles added.
+  void drop_pinned_frames();
+  /// Drops them, and puts the others where they are at `time`.
   void reset(Nanoseconds time);
   /// Follows another frame from now on, or from when tf shows it; its id.
   int add(const std::string& frame, Nanoseconds time);
@@ -109,7 +111,6 @@ class TfInputs {
 
   void insert(const ReceivedTransform& received, Nanoseconds now);
   void update_history(Track& track) const;
-  void drop_pinned_frames();
   const Track* find_track(const std::string& frame) const;
   Track track_from(const std::string& frame, const FrameInput& at, Nanoseconds time) const;
   bool must_wait(Track& track, Nanoseconds time, Nanoseconds target) const;

@@ -2,6 +2,7 @@
 
 #include <ros/ros.h>
 
+#include <future>
 #include <map>
 #include <string>
 
@@ -10,17 +11,21 @@
 namespace verlet_cable {
 
 /// Topics `wrench/<attachment>`: what the cable exerts on what holds it, in the axes of the attachment's frame and with the
-/// torque about that frame's origin. A topic is there as long as its attachment.
+/// torque about that frame's origin. A topic is there as long as its attachment, but for the moment that the master takes, which
+/// is not waited for.
 class WrenchPublisher {
  public:
   explicit WrenchPublisher(ros::NodeHandle& private_node);
   void publish(const World& world, const ros::Time& stamp);
 
  private:
+  using Topics = std::map<std::string, ros::Publisher>;  // by attachment name
+
   void follow_attachments(const World& world);
 
   ros::NodeHandle node_;
-  std::map<std::string, ros::Publisher> publishers_;  // by attachment name
+  Topics topics_;
+  std::future<Topics> new_topics_;  // that are being registered
 };
 
 }  // namespace verlet_cable

@@ -1,0 +1,1 @@
+// Empty: for the headers that CMakeLists.txt has precompiled for all test programs.
