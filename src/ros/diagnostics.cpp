@@ -134,6 +134,9 @@ void Diagnostics::report_frames(Status& status) const {
     status.mergeSummary(DiagnosticStatus::WARN,
                         "frame " + quoted(frame) + " comes from " + std::to_string(sources.size()) + " nodes");
   }
+  for (const std::string& frame : simulation_.frames().buffer().mixed())
+    status.mergeSummary(DiagnosticStatus::WARN,
+                        "frame " + quoted(frame) + " came on /tf and on /tf_static: start the node again");
   for (const auto& [frame, problem] : simulation_.frames().buffer().refused()) {
     status.add("refused " + frame, problem);
     status.mergeSummary(DiagnosticStatus::WARN, "tf of frame " + quoted(frame) + " refused");
