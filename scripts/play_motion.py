@@ -151,17 +151,17 @@ class Player:
 
     def __init__(self, tracks):
         self._tracks = tracks
-        self._duration = max(track.times[-1] for track in tracks.values())
+        self.duration = max(track.times[-1] for track in tracks.values())
         self._broadcaster = tf2_ros.TransformBroadcaster()
         self._rate = rospy.Rate(RATE)
 
     def play(self, pause):
         """From the first row to the last, and stays there."""
-        self._go(lambda elapsed: elapsed, self._duration + pause)
+        self._go(lambda elapsed: elapsed, self.duration + pause)
 
     def rewind(self):
         """The same way back."""
-        self._go(lambda elapsed: self._duration - REWIND * elapsed, self._duration / REWIND)
+        self._go(lambda elapsed: self.duration - REWIND * elapsed, self.duration / REWIND)
 
     def wait_for_simulation(self):
         """Stays at the first row until the cables have been simulated up to now: they run behind ROS time."""
@@ -204,6 +204,7 @@ def main():
         player = Player(read_motion(path))
     except MotionError as error:
         sys.exit(f'play_motion.py: {error}')
+    rospy.loginfo('plays %s, %.3g s, goes back, resets the cables and begins again; Ctrl-C ends it', path, player.duration)
     reset = rospy.ServiceProxy('cable/reset', Trigger)
     while not rospy.is_shutdown():
         player.play(rospy.get_param('~pause', 2.0))

@@ -1,17 +1,22 @@
 #include "verlet_cable/ros/diagnostics.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <string>
 #include <utility>
 
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
+#include "verlet_cable/ros/frame_watch.h"
 #include "verlet_cable/ros/guarded_queue.h"
 
 namespace verlet_cable {
 namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
+
+/// More would only make the message long.
+constexpr std::size_t most_waiting = 100;
 
 std::string text(FrameStatus status) {
   switch (status) {
@@ -61,6 +66,7 @@ void Diagnostics::report_simulation(Status& status) {
   status.add("degraded_steps", s.degraded);
   status.add("faults", simulation_.faults());
   status.add("waiting_cables", join(simulation_.world().waiting()));
+  report_waiting(status);
   status.add("unsettled_cables", join(simulation_.world().unsettled()));
   status.add("found_inside_obstacles", join({simulation_.intrusions().begin(), simulation_.intrusions().end()}));
 
@@ -98,6 +104,13 @@ void Diagnostics::report_simulation(Status& status) {
     status.mergeSummary(DiagnosticStatus::WARN, "cables or nets wait for their tf frames and are not there yet");
 }
 
+void Diagnostics::report_waiting(Status& status) const {
+  const std::vector<WaitingAttachment> waiting =
+      waiting_attachments(simulation_.scene(), simulation_.world(), simulation_.frames().inputs());
+  for (std::size_t i = 0; i < std::min(waiting.size(), most_waiting); ++i)
+    status.add("waiting_attachment " + waiting[i].holds + "/" + waiting[i].name, waiting[i].frame);
+}
+
 void Diagnostics::report_frames(Status& status) const {
   status.summary(DiagnosticStatus::OK, "all frames are there");
   std::vector<FrameReport> frames = simulation_.frames().report();
@@ -122,6 +135,9 @@ void Diagnostics::report_frames(Status& status) const {
     status.mergeSummary(DiagnosticStatus::WARN,
                         "frame " + quoted(frame) + " comes from " + std::to_string(sources.size()) + " nodes");
   }
+  for (const std::string& frame : simulation_.frames().buffer().mixed())
+    status.mergeSummary(DiagnosticStatus::WARN,
+                        "frame " + quoted(frame) + " came on /tf and on /tf_static: start the node again");
   for (const auto& [frame, problem] : simulation_.frames().buffer().refused()) {
     status.add("refused " + frame, problem);
     status.mergeSummary(DiagnosticStatus::WARN, "tf of frame " + quoted(frame) + " refused");

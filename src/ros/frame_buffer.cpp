@@ -82,6 +82,7 @@ bool FrameBuffer::insert(const ReceivedTransform& received, Nanoseconds now) {
     return false;
   }
   refused_.erase(child);
+  note_kind(child, received.is_static);
   if (!received.is_static) {
     note_source(child, received.source);
     // tf2 refuses repeated and very old stamps, too, but logs each of them.
@@ -108,6 +109,23 @@ bool FrameBuffer::know(const std::string& frame) {
   if (frames_.size() >= most_frames) return false;
   frames_.insert(frame);
   return true;
+}
+
+/// tf2 keeps a frame as what it came as first.
+void FrameBuffer::note_kind(const std::string& child, bool is_static) {
+  const bool was_static = static_.emplace(child, is_static).first->second;
+  if (was_static == is_static || !mixed_.insert(child).second) return;
+  if (is_static) {
+    ROS_WARN(
+        "frame %s came on /tf and now comes on /tf_static, which ROS cannot change while a node runs: it counts as lost; start "
+        "the node again",
+        quoted(child).c_str());
+  } else {
+    ROS_WARN(
+        "frame %s came on /tf_static and now comes on /tf, which ROS cannot change while a node runs: it is followed in jerks; "
+        "start the node again",
+        quoted(child).c_str());
+  }
 }
 
 void FrameBuffer::note_source(const std::string& child, const std::string& source) {

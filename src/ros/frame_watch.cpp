@@ -92,23 +92,12 @@ std::string list(const std::vector<std::string>& names) {
 }
 
 /// The frames that cables and nets wait for, each once, in the scene's order.
-std::vector<std::string> missing_frames(const SceneDesc& scene, const World& world, const BoundaryInputs& inputs) {
-  std::set<std::string> unknown;
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    if (!inputs[i].known) unknown.insert(world.frames()[i]);
-  }
-  const std::set<std::string> waiting(world.waiting().begin(), world.waiting().end());
+std::vector<std::string> missing_frames(const std::vector<WaitingAttachment>& waiting) {
+  std::set<std::string> seen;
   std::vector<std::string> missing;
-  const auto add_of = [&](const auto& holders) {
-    for (const auto& holder : holders) {
-      if (waiting.count(holder.name) == 0) continue;
-      for (const auto& attachment : holder.attachments) {
-        if (unknown.erase(attachment.frame) > 0) missing.push_back(attachment.frame);
-      }
-    }
-  };
-  add_of(scene.cables);
-  add_of(scene.nets);
+  for (const WaitingAttachment& attachment : waiting) {
+    if (seen.insert(attachment.frame).second) missing.push_back(attachment.frame);
+  }
   return missing;
 }
 
@@ -201,7 +190,7 @@ void FrameWatch::warn_of_waiting(const SceneDesc& scene, const World& world, con
   if (next_warning_.isZero()) next_warning_ = now + first_warning;
   if (now < next_warning_) return;
   next_warning_ = now + reminder_period;
-  const std::vector<std::string> missing = missing_frames(scene, world, frames.inputs());
+  const std::vector<std::string> missing = missing_frames(waiting_attachments(scene, world, frames.inputs()));
   if (missing.empty()) return;
   ROS_WARN(
       "not shown yet: %s, because tf has no transform from %s to %s. If nothing else is to publish them, type for each: rosrun "
@@ -235,6 +224,26 @@ void FrameWatch::release(int frame, Nanoseconds stamp, World& world) const {
     events_.publish(CableEvent::UNPINNED, stamp, subject,
                     "attachment " + quoted(attachment.name) + " is released, as its frame is lost; reset restores it");
   }
+}
+
+std::vector<WaitingAttachment> waiting_attachments(const SceneDesc& scene, const World& world, const BoundaryInputs& inputs) {
+  std::set<std::string> unknown;
+  for (std::size_t i = 0; i < std::min(inputs.size(), world.frames().size()); ++i) {
+    if (!inputs[i].known) unknown.insert(world.frames()[i]);
+  }
+  const std::set<std::string> waiting(world.waiting().begin(), world.waiting().end());
+  std::vector<WaitingAttachment> attachments;
+  const auto add_of = [&](const auto& held) {
+    for (const auto& desc : held) {
+      if (waiting.count(desc.name) == 0) continue;
+      for (const auto& attachment : desc.attachments) {
+        if (unknown.count(attachment.frame) > 0) attachments.push_back({attachment.name, desc.name, attachment.frame});
+      }
+    }
+  };
+  add_of(scene.cables);
+  add_of(scene.nets);
+  return attachments;
 }
 
 std::vector<bool> awaited_frames(const World& world) {

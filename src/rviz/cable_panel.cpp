@@ -17,6 +17,7 @@
 #include <QTableWidget>
 #include <QTimer>
 #include <QVBoxLayout>
+#include <algorithm>
 #include <cmath>
 #include <pluginlib/class_list_macros.hpp>
 #include <set>
@@ -30,6 +31,8 @@ constexpr std::size_t most_attachments = 100;
 const ros::WallDuration speed_period(1);
 const ros::WallDuration longest_silence(2);
 constexpr double standing = 0.001;  // of real time
+/// In diagnostics: what follows is CABLE/ATTACHMENT, and the value a frame.
+const std::string waiting_key = "waiting_attachment ";
 
 double length(const geometry_msgs::Vector3& v) {
   return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
@@ -58,6 +61,7 @@ CablePanel::CablePanel(QWidget* parent)
   form->addRow("Speed", speed_label_);
   table_->setHorizontalHeaderLabels({"Attachment", "Cable", "Force [N]"});
   table_->horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
+  table_->horizontalHeader()->setSectionResizeMode(2, QHeaderView::ResizeToContents);
   table_->verticalHeader()->hide();
   table_->verticalHeader()->setDefaultSectionSize(row_height);
   table_->setMinimumHeight(smallest_table);
@@ -142,7 +146,9 @@ void CablePanel::followNode() {
   const std::string node = node_edit_->text().trimmed().toStdString();
   if (node == node_) return;
   state_.shutdown();
+  diagnostics_.shutdown();
   loads_.clear();
+  waiting_.clear();
   heard_ = {};
   node_ = node;
   std::string problem;
@@ -152,6 +158,9 @@ void CablePanel::followNode() {
   }
   state_ = ros::NodeHandle().subscribe<CableArray>(nameOf("state"), 1,
                                                    [this](const CableArray::ConstPtr& state) { receiveState(*state); });
+  diagnostics_ = ros::NodeHandle().subscribe<diagnostic_msgs::DiagnosticArray>(
+      "/diagnostics", 10,
+      [this](const diagnostic_msgs::DiagnosticArray::ConstPtr& diagnostics) { receiveDiagnostics(*diagnostics); });
   Q_EMIT configChanged();
 }
 
@@ -168,6 +177,21 @@ void CablePanel::receiveState(const CableArray& state) {
   }
   for (auto entry = loads_.begin(); entry != loads_.end();)
     entry = there.count(entry->first) > 0 ? std::next(entry) : loads_.erase(entry);
+}
+
+void CablePanel::receiveDiagnostics(const diagnostic_msgs::DiagnosticArray& diagnostics) {
+  const std::string wanted = ros::names::resolve(node_).substr(1) + ": simulation";
+  for (const diagnostic_msgs::DiagnosticStatus& status : diagnostics.status) {
+    if (status.name != wanted) continue;
+    waiting_.clear();
+    for (const diagnostic_msgs::KeyValue& value : status.values) {
+      if (value.key.rfind(waiting_key, 0) != 0) continue;
+      const std::size_t slash = value.key.find('/');
+      if (slash == std::string::npos) continue;
+      waiting_.push_back(
+          {value.key.substr(slash + 1), value.key.substr(waiting_key.size(), slash - waiting_key.size()), value.value});
+    }
+  }
 }
 
 void CablePanel::followAttachment(const std::string& name, const std::string& cable) {
@@ -199,6 +223,7 @@ void CablePanel::refresh() {
     measureSpeed();
   } else {
     loads_.clear();
+    waiting_.clear();
     measured_ = {};
     paused_ = speed_known_ = false;
   }
@@ -211,15 +236,22 @@ void CablePanel::refresh() {
   showLoads();
 }
 
+/// Diagnostics are older than the state: what waits by them may be there already.
 void CablePanel::showLoads() {
-  table_->setRowCount(static_cast<int>(loads_.size()));
+  const auto there = [this](const Waiting& waiting) { return loads_.count(waiting.name) > 0; };
+  waiting_.erase(std::remove_if(waiting_.begin(), waiting_.end(), there), waiting_.end());
+  table_->setRowCount(static_cast<int>(loads_.size() + waiting_.size()));
   int row = 0;
-  for (const auto& [name, load] : loads_) {
-    table_->setItem(row, 0, cell(QString::fromStdString(name), Qt::AlignLeft));
-    table_->setItem(row, 1, cell(QString::fromStdString(load.cable), Qt::AlignLeft));
-    table_->setItem(row, 2, cell(load.known ? QString::number(load.force, 'f', 2) : "-", Qt::AlignRight));
-    ++row;
-  }
+  for (const auto& [name, load] : loads_)
+    showRow(row++, name, load.cable, load.known ? QString::number(load.force, 'f', 2) : "-");
+  for (const Waiting& waiting : waiting_)
+    showRow(row++, waiting.name, waiting.cable, "waits for " + QString::fromStdString(waiting.frame));
+}
+
+void CablePanel::showRow(int row, const std::string& attachment, const std::string& cable, const QString& force) {
+  table_->setItem(row, 0, cell(QString::fromStdString(attachment), Qt::AlignLeft));
+  table_->setItem(row, 1, cell(QString::fromStdString(cable), Qt::AlignLeft));
+  table_->setItem(row, 2, cell(force, Qt::AlignRight));
 }
 
 void CablePanel::tell(const ServiceAnswer& answer) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <diagnostic_msgs/DiagnosticArray.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <ros/ros.h>
 #include <rviz/panel.h>
@@ -7,6 +8,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "service_caller.h"
 
@@ -18,7 +20,8 @@ class QTableWidget;
 
 namespace verlet_cable {
 
-/// A panel for one node: pause, step, reset, snapshots, how fast simulated time runs, and what every attachment bears.
+/// A panel for one node: pause, step, reset, snapshots, how fast simulated time runs, and what every attachment bears
+/// or which frame it waits for.
 class CablePanel : public rviz::Panel {
   Q_OBJECT
  public:
@@ -40,13 +43,22 @@ class CablePanel : public rviz::Panel {
     bool known = false;
   };
 
+  /// An attachment of a cable that is not there yet.
+  struct Waiting {
+    std::string name;
+    std::string cable;
+    std::string frame;
+  };
+
   QWidget* makeControls();
   QWidget* makeSnapshots();
   std::string nameOf(const std::string& topic) const { return node_ + "/" + topic; }
   void receiveState(const CableArray& state);
+  void receiveDiagnostics(const diagnostic_msgs::DiagnosticArray& diagnostics);
   void followAttachment(const std::string& name, const std::string& cable);
   void measureSpeed();
   void showLoads();
+  void showRow(int row, const std::string& attachment, const std::string& cable, const QString& force);
   void tell(const ServiceAnswer& answer);
   /// Calls a service of the node, and tells what it answered.
   template <typename Service>
@@ -54,7 +66,9 @@ class CablePanel : public rviz::Panel {
 
   std::string node_;
   ros::Subscriber state_;
+  ros::Subscriber diagnostics_;
   std::map<std::string, Load> loads_;  // by attachment
+  std::vector<Waiting> waiting_;       // as diagnostics told last
   ros::WallTime heard_;                // of the node
   ros::Time stamp_;                    // of the last state
   ros::WallTime measured_;             // when the speed was measured last, at

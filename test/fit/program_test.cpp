@@ -168,6 +168,18 @@ TEST_F(CableFit, FilesAreThereWhenTheyAreWhole) {
   EXPECT_NE(err.find("bending_stiffness"), std::string::npos) << err;
 }
 
+TEST_F(CableFit, TellsWhatWasWrittenAndHowToSeeIt) {
+  const std::string take = write_recording("take.csv", synthetic_recording(known_cable(), 0, 0.2, 0));
+  const std::string scene = path("a scene.yaml"), report = path("report.json");
+  ASSERT_EQ(fit(take + " --name lead --segments 8 --output '" + scene + "' --report " + report), 0) << err;
+  const std::string last = "\nwritten: " + scene + ", " + report +
+                           "; see it with: roslaunch verlet_cable replay.launch data:=" + take + " scene:='" + scene + "'\n";
+  EXPECT_EQ(out.substr(out.size() - std::min(out.size(), last.size())), last) << out;
+  // What standard output takes is no file.
+  ASSERT_EQ(fit(take + " --name lead --segments 8 --output /dev/stdout --report " + report), 0) << err;
+  EXPECT_NE(err.find("\nwritten: " + report + "\n"), std::string::npos) << err;
+}
+
 TEST_F(CableFit, WhatCannotBeWrittenIsRefusedBeforeTheFit) {
   const std::string take = write_recording("take.csv", synthetic_recording(known_cable(), 0, 0.2, 0));
   const std::string other = write_recording("other.csv", synthetic_recording(known_cable(), 1, 0.2, 0));
@@ -208,6 +220,12 @@ TEST_F(CableFit, FindsTheHoseOfTheRecordingsThatShip) {
                 "/take3.csv --name hose --linear-density 0.08 --radius 0.004 --output " + path("fitted.yaml")),
             0)
       << err;
+  EXPECT_NE(
+      out.find("cables[0].rest_curvature: of 24 numbers, two axes at 12 places along the cable, 24 are not determined by these\n"
+               "  recordings: there the cable may as well be straight while nothing bends it; --report FILE lists them\n"),
+      std::string::npos)
+      << out;
+  EXPECT_EQ(out.find("rest_curvature["), std::string::npos) << out;
   const SceneDesc fitted = read_scene_text(content(path("fitted.yaml")) + "    attachments: []\n");
   const auto& found = fitted.materials[0].material;
   const auto& known = truth.materials[0].material;

@@ -164,5 +164,24 @@ TEST(FrameBuffer, ChainsOfStaticAndDynamicTransforms) {
   EXPECT_EQ(buffer.newest("post"), 0) << "static transforms are not sent again";
 }
 
+TEST(FrameBuffer, NamesFramesThatAreStaticAndNot) {
+  FrameBuffer buffer("world");
+  ReceivedTransform received = good();
+  buffer.insert(received);
+  buffer.insert(received);
+  received.transform.child_frame_id = "post";
+  received.is_static = true;
+  buffer.insert(received);
+  EXPECT_TRUE(buffer.mixed().empty());
+  received.transform.child_frame_id = "hand";
+  buffer.insert(received);
+  EXPECT_EQ(buffer.mixed(), std::set<std::string>{"hand"});
+  buffer.clear();
+  received.transform.child_frame_id = "post";
+  received.is_static = false;
+  buffer.insert(received);
+  EXPECT_EQ(buffer.mixed(), (std::set<std::string>{"hand", "post"})) << "tf2 keeps what was static through its clear";
+}
+
 }  // namespace
 }  // namespace verlet_cable

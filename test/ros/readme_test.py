@@ -133,7 +133,7 @@ class ReadmeTest(unittest.TestCase):
     def test_the_hose_follows_moving_frames(self):
         line, = typed('rosrun verlet_cable play_motion.py')
         program, node = self.start_hose()
-        self.start(line)
+        self.start(line).wait_for_lines('plays config/hose_motion.csv, 8 s, goes back, resets the cables')
         program.wait_for_lines('has appeared on tf', 2)
         with node.states() as states:
             start = cable(states.wait_for(lambda s: cable(s, 'hose'), 'hose'), 'hose').positions[0]

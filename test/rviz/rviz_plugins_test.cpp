@@ -5,6 +5,7 @@
 #include <rviz/panel.h>
 #include <rviz/tool.h>
 #include <std_srvs/Trigger.h>
+#include <tf2_ros/static_transform_broadcaster.h>
 
 #include <QApplication>
 #include <QLabel>
@@ -13,6 +14,7 @@
 #include <QTableWidget>
 #include <functional>
 #include <pluginlib/class_loader.hpp>
+#include <stdexcept>
 
 namespace {
 
@@ -46,11 +48,13 @@ class CablePanelTest : public testing::Test {
     return false;
   }
 
-  void click(const QString& text) {
+  QPushButton& button(const QString& text) const {
     for (QPushButton* button : panel_->findChildren<QPushButton*>())
-      if (button->text() == text) return button->click();
-    FAIL() << "no button " << text.toStdString();
+      if (button->text() == text) return *button;
+    throw std::runtime_error("no button " + text.toStdString());
   }
+
+  void click(const QString& text) { button(text).click(); }
 
   void write(const QString& before, const QString& after) {
     for (QLineEdit* edit : panel_->findChildren<QLineEdit*>()) {
@@ -87,10 +91,39 @@ TEST_F(CablePanelTest, ShowsSpeedAndLoads) {
            [this] { return table().rowCount() == 2 && table().item(0, 2) && table().item(0, 2)->text().toDouble() > 0.01; });
 }
 
+TEST_F(CablePanelTest, ShowsWhatWaitsForWhichFrame) {
+  const auto shows_row = [this](int row, const QString& attachment, const QString& force) {
+    return table().item(row, 0) && table().item(row, 0)->text() == attachment && table().item(row, 2)->text() == force;
+  };
+  write("/cable", "/waiting");
+  wait_for("waiting attachments", [&] {
+    return table().rowCount() == 2 && shows_row(0, "left", "waits for left_gripper") &&
+           shows_row(1, "right", "waits for right_gripper");
+  });
+  EXPECT_EQ(table().item(0, 1)->text(), "hose");
+
+  tf2_ros::StaticTransformBroadcaster broadcaster;
+  std::vector<geometry_msgs::TransformStamped> transforms(2);
+  for (int i = 0; i < 2; ++i) {
+    transforms[i].header.frame_id = "world";
+    transforms[i].header.stamp = ros::Time::now();
+    transforms[i].child_frame_id = i == 0 ? "left_gripper" : "right_gripper";
+    transforms[i].transform.translation.x = i == 0 ? -0.4 : 0.4;
+    transforms[i].transform.rotation.w = 1;
+  }
+  broadcaster.sendTransform(transforms);
+  wait_for("forces", [this] {
+    if (table().rowCount() != 2) return false;
+    for (int row = 0; row < 2; ++row)
+      if (table().item(row, 2)->text().toDouble() < 0.01) return false;
+    return true;
+  });
+}
+
 TEST_F(CablePanelTest, PausesStepsAndResets) {
   wait_for("speed", [this] { return shows<QLabel>("real time"); });
   click("Pause");
-  wait_for("that the node stands", [this] { return shows<QLabel>("paused"); });
+  wait_for("that the node stands", [this] { return shows<QLabel>("paused") && button("Step").isEnabled(); });
   click("Step");
   wait_for("steps", [this] { return shows<QLabel>("10 steps done"); });
   click("Reset");

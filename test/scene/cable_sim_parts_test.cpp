@@ -120,6 +120,7 @@ TEST(FrameSource, framesMoveRestAtTheirPoseOrTheOrigin) {
   EXPECT_EQ(frames[2].velocity->linear, Vector3(0, 0, 0));
   EXPECT_NEAR((frames[3].velocity->linear - Vector3(2, 0, 0)).norm(), 0, 1e-14);
   EXPECT_EQ(unused_frames(scene, motion), std::vector<std::string>{"unused"});
+  EXPECT_EQ(unplaced_frames(scene, motion), std::vector<std::string>{"other"});
 }
 
 TEST(FrameSource, aJumpAtTheStartIsNoVelocityToBeginWith) {

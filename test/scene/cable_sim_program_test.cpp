@@ -117,6 +117,25 @@ TEST_F(CableSim, atMostTenFramesThatAreNotUsedAreNamed) {
   EXPECT_NE(err.find("\"f19\" and 10 more\n"), std::string::npos) << err;
 }
 
+TEST_F(CableSim, framesThatNothingPlacesAreNamed) {
+  const std::string scene = write("scene.yaml", replaced(sound_scene, ", initial_pose: [0.7, 0, 0, 0, 0, 0]", ""));
+  ASSERT_NE(content(scene), sound_scene);
+  ASSERT_EQ(run(scene + " --duration 0 --output " + path("o.csv")), 0) << err;
+  EXPECT_EQ(err.find("cable_sim: warning: nothing says where frame \"hand\" is: it stands at the origin; --motion MOTION.csv or "
+                     "an initial_pose in the scene tells\n"),
+            0u)
+      << err;
+  // As before, it is at the origin.
+  for (const Row& row : rows("o.csv"))
+    if (row.node == 20) EXPECT_EQ(row.position, Vector3::Zero());
+
+  const std::string motion = write("m.csv", "t,frame,x,y,z,qx,qy,qz,qw\n0,hand,0.7,0,0,0,0,0,1\n");
+  for (const std::string& told : {scene + " --motion " + motion, write("told.yaml", sound_scene)}) {
+    ASSERT_EQ(run(told + " --duration 0"), 0) << err;
+    EXPECT_EQ(err, "");
+  }
+}
+
 TEST_F(CableSim, motionIsFollowedAndHeld) {
   const std::string scene = write("scene.yaml", sound_scene);
   const std::string motion = write(

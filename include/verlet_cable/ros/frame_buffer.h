@@ -43,16 +43,21 @@ class FrameBuffer {
   }  ///< by child frame, whose last transform was bad; of so many that people can read them
   /// The nodes that send a frame which more than one has sent in the last second, by child frame: they may disagree.
   std::map<std::string, std::vector<std::string>> disputed() const;
+  /// Child frames that came on /tf and on /tf_static: tf2 cannot follow them well.
+  const std::set<std::string>& mixed() const { return mixed_; }
   int refused_count() const { return refused_count_; }  ///< since the start
 
  private:
   void refuse(const std::string& child, const std::string& problem);
   bool know(const std::string& frame);
+  void note_kind(const std::string& child, bool is_static);
   void note_source(const std::string& child, const std::string& source);
 
   std::string fixed_frame_;
   tf2::BufferCore buffer_;
-  std::set<std::string> frames_;                                         ///< names that tf2 has, which it never forgets
+  std::set<std::string> frames_;        ///< names that tf2 has, which it never forgets
+  std::map<std::string, bool> static_;  ///< by child frame: whether it came as a static one first
+  std::set<std::string> mixed_;
   std::map<std::string, Nanoseconds> newest_;                            ///< by child frame, dynamic transforms
   std::map<std::string, std::map<std::string, ros::WallTime>> sources_;  ///< by child frame and node: when it last came
   std::map<std::string, std::string> refused_;

@@ -52,6 +52,16 @@ class FrameWatch {
   std::map<std::string, ros::WallTime> ignored_;  ///< by frame: the last warning
 };
 
+/// What holds a cable or net that is not there yet, in a frame that tf has not had yet.
+struct WaitingAttachment {
+  std::string name;
+  std::string holds;  ///< name of the cable or net
+  std::string frame;
+};
+
+/// In the scene's order.
+std::vector<WaitingAttachment> waiting_attachments(const SceneDesc& scene, const World& world, const BoundaryInputs& inputs);
+
 /// By frame id: whether the frame holds a cable.
 std::vector<bool> needed_frames(const World& world);
 /// By frame id: whether a step waits for the frame while it is late, as it holds a cable or moves an obstacle.

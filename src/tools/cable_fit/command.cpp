@@ -144,6 +144,27 @@ bool write_results(const Options& options, const std::vector<SwappedEnds>& swapp
   return good;
 }
 
+/// As an argument in a shell.
+std::string shell_text(const std::string& path) {
+  constexpr const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./+-=,@%";
+  if (path.find_first_not_of(plain) == std::string::npos) return path;
+  std::string text = "'";
+  for (const char c : path) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+/// Which files were written, and how to look at the scene among them.
+std::string written_text(const Options& options) {
+  std::string files;
+  for (const std::string* path : {&options.output, &options.centre_line, &options.report, &options.predictions})
+    if (!path->empty() && !tools::is_standard_output(*path)) files += (files.empty() ? "" : ", ") + tools::path_text(*path);
+  if (files.empty()) return "";
+  const std::string text = "written: " + files;
+  if (tools::is_standard_output(options.output)) return text + "\n";
+  return text + "; see it with: roslaunch verlet_cable replay.launch data:=" + shell_text(options.recordings.front()) +
+         " scene:=" + shell_text(options.output) + "\n";
+}
+
 }  // namespace
 
 int run(const std::vector<std::string>& arguments) {
@@ -204,7 +225,8 @@ int run(const std::vector<std::string>& arguments) {
 
   const bool good = write_results(options, swapped, on_markers, also);
   progress.clear();
-  const bool printed = tools::print_result(program, summary_text(swapped, on_markers, also), has_data);
+  const std::string written = good ? written_text(options) : "";
+  const bool printed = tools::print_result(program, summary_text(swapped, on_markers, also) + written, has_data);
   return good && printed ? tools::exit_done : tools::exit_stopped;
 }
 

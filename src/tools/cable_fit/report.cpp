@@ -57,7 +57,7 @@ bool any_swapped(const std::vector<SwappedEnds>& swapped) {
 
 std::string line(const char* format, ...) __attribute__((format(printf, 1, 2)));
 std::string line(const char* format, ...) {
-  char buffer[200];
+  char buffer[400];
   va_list arguments;
   va_start(arguments, format);
   std::vsnprintf(buffer, sizeof buffer, format, arguments);
@@ -117,16 +117,34 @@ void write_fit(const std::vector<SwappedEnds>& swapped, const Fit& fit, JsonWrit
   json.end_array();
 }
 
+bool is_curvature(const Parameter& parameter) {
+  return parameter.key.rfind("cables[0].rest_curvature[", 0) == 0;
+}
+
+/// Curvatures that the recordings do not tell are many, and one line.
 std::string parameter_lines(const Fit& fit) {
   const auto& [problem, result] = fit;
   std::string text;
+  int curvatures = 0, untold = 0;
   for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
     const Parameter& parameter = problem.parameters[i];
+    if (is_curvature(parameter)) {
+      ++curvatures;
+      if (!result.confidence[i].told) {
+        ++untold;
+        continue;
+      }
+    }
     const Interval range = interval(parameter, result.values[i], result.confidence[i]);
     text += line("%-44s %10.4g %-9s (%.3g to %.3g)%s\n", parameter.key.c_str(), scene_value(parameter, result.values[i]),
                  parameter.unit.c_str(), range.low, range.high,
                  result.confidence[i].told ? "" : "  not determined by these recordings");
   }
+  if (untold > 0)
+    text += line(
+        "cables[0].rest_curvature: of %d numbers, two axes at %d places along the cable, %d are not determined by these\n"
+        "  recordings: there the cable may as well be straight while nothing bends it; --report FILE lists them\n",
+        curvatures, curvatures / 2, untold);
   return text;
 }
 

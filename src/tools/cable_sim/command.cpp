@@ -56,14 +56,25 @@ void report(RunEnd end, const char* signal, double time) {
   if (end == RunEnd::signal) std::cerr << start << "ended by " << signal << ", before its duration was over\n";
 }
 
+/// "frame" or "frames", and their names, the first of many.
+std::string frames_text(const std::vector<std::string>& frames) {
+  const std::size_t listed = std::min(frames.size(), most_noted);
+  std::string text = frames.size() == 1 ? "frame" : "frames";
+  for (std::size_t i = 0; i < listed; ++i) text += (i == 0 ? " " : ", ") + quoted(frames[i]);
+  return listed < frames.size() ? text + " and " + std::to_string(frames.size() - listed) + " more" : text;
+}
+
 void note_unused(const Options& options, const std::vector<std::string>& frames) {
   if (frames.empty()) return;
-  const std::size_t listed = std::min(frames.size(), most_noted);
-  std::cerr << program << ": note: " << tools::path_text(options.motion) << ": the scene does not use "
-            << (frames.size() == 1 ? "frame" : "frames");
-  for (std::size_t i = 0; i < listed; ++i) std::cerr << (i == 0 ? " " : ", ") << quoted(frames[i]);
-  if (listed < frames.size()) std::cerr << " and " << frames.size() - listed << " more";
-  std::cerr << "\n";
+  std::cerr << program << ": note: " << tools::path_text(options.motion) << ": the scene does not use " << frames_text(frames)
+            << "\n";
+}
+
+void warn_of_unplaced(const std::vector<std::string>& frames) {
+  if (frames.empty()) return;
+  const bool one = frames.size() == 1;
+  std::cerr << program << ": warning: nothing says where " << frames_text(frames) << (one ? " is: it stands" : " are: they stand")
+            << " at the origin; --motion MOTION.csv or an initial_pose in the scene tells\n";
 }
 
 int simulate_job(const Options& options, const Job& job) {
@@ -76,6 +87,7 @@ int simulate_job(const Options& options, const Job& job) {
   outputs.open(options, errors);
   if (!errors.empty()) return refuse(errors);
   note_unused(options, unused_frames(job.scene, job.motion));
+  warn_of_unplaced(unplaced_frames(job.scene, job.motion));
 
   const bool has_data = tools::is_standard_output(options.output) || tools::is_standard_output(options.summary);
   tools::ProgressBar progress(options.duration, "s", has_data);

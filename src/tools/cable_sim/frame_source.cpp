@@ -1,6 +1,7 @@
 #include "frame_source.h"
 
 #include <algorithm>
+#include <set>
 
 namespace verlet_cable::cable_sim {
 namespace {
@@ -84,6 +85,19 @@ std::vector<std::string> unused_frames(const SceneDesc& scene, const Motion& mot
     if (std::find(used.begin(), used.end(), track.first) == used.end()) unused.push_back(track.first);
   }
   return unused;
+}
+
+std::vector<std::string> unplaced_frames(const SceneDesc& scene, const Motion& motion) {
+  const std::vector<std::string> names = frame_names(scene);
+  const BoundaryInputs initial = initial_frames(scene);
+  std::set<std::string> links;
+  if (scene.robot)
+    for (const LinkDesc& link : scene.robot->tree) links.insert(link.name);
+  std::vector<std::string> unplaced;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (!initial[i].known && motion.count(names[i]) == 0 && links.count(names[i]) == 0) unplaced.push_back(names[i]);
+  }
+  return unplaced;
 }
 
 }  // namespace verlet_cable::cable_sim

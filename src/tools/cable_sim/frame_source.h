@@ -45,4 +45,7 @@ class FrameSource {
 /// Names of the motion's frames that nothing in the scene uses.
 std::vector<std::string> unused_frames(const SceneDesc& scene, const Motion& motion);
 
+/// Names of the scene's frames that nothing gives a place: they stand at the origin.
+std::vector<std::string> unplaced_frames(const SceneDesc& scene, const Motion& motion);
+
 }  // namespace verlet_cable::cable_sim
