@@ -130,6 +130,7 @@ World& World::operator=(World&&) noexcept = default;
 
 int World::start_waiting(const BoundaryInputs& inputs) {
   Implementation& w = *implementation_;
+  if (w.is_cancelled()) return 0;
   const FrameIds ids = w.state.frames.ids();
   const SceneDesc& scene = *w.state.scene;
   const std::vector<int> cables =
