@@ -73,7 +73,7 @@ bool anchored(const CableModel& model, const Holders& holders, const CablePoint&
 
 void ContactSet::find(const std::vector<SimulatedCable>& cables, const std::vector<int>& island,
                       const std::vector<ContactMember>& members, const std::vector<MovingObstacle>& obstacles, const std::vector<Attachment>& attachments,
-                      const ContactRules& rules, double h, SegmentGrid& pairs) {
+                      const ContactRules& rules, double h, SegmentPairs& pairs) {
   rules_ = rules;
   time_ = rules.still ? 0 : contact_time(rules.time_step);
   touches_.clear();
@@ -95,8 +95,8 @@ void ContactSet::find(const std::vector<SimulatedCable>& cables, const std::vect
     radius = std::max(radius, cables[cable].model.material.radius);
     for (const Vector3& v : cables[cable].state.velocities) square = std::max(square, v.squaredNorm());
   }
-  pairs.update(cables, island, rules.pairs, reach(0, radius, h) + radius, h);
-  find_pairs(cables, members, pairs.pairs(), std::sqrt(square), h);
+  grid_.update(cables, island, rules.pairs, reach(0, radius, h) + radius, h, pairs);
+  find_pairs(cables, members, pairs.pairs, std::sqrt(square), h);
 }
 
 /// Which nodes are attached: nothing but their holders moves them.
@@ -170,8 +170,8 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
 }
 
 void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members,
-                            const std::vector<SegmentGrid::Pair>& pairs, double speed, double h) {
-  for (const SegmentGrid::Pair& pair : pairs) {
+                            const std::vector<SegmentPairs::Pair>& pairs, double speed, double h) {
+  for (const SegmentPairs::Pair& pair : pairs) {
     const SimulatedCable &a = cables[pair.first.cable], &b = cables[pair.second.cable];
     const int i = pair.first.segment, j = pair.second.segment;
     const Vector3 &a0 = a.state.positions[i], &a1 = a.state.positions[i + 1];

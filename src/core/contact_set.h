@@ -32,7 +32,7 @@ class ContactSet {
   /// their segments, as the last call for them left it, or empty.
   void find(const std::vector<SimulatedCable>& cables, const std::vector<int>& island, const std::vector<ContactMember>& members,
             const std::vector<MovingObstacle>& obstacles, const std::vector<Attachment>& attachments, const ContactRules& rules,
-            double h, SegmentGrid& pairs);
+            double h, SegmentPairs& pairs);
   /// Whether segments that touch have passed through each other since `find`.
   bool crossed(const std::vector<SimulatedCable>& cables) const;
   /// The substep is done: the caches of the members take what sticks.
@@ -48,11 +48,12 @@ class ContactSet {
   void find_obstacle(const SimulatedCable& cable, int index, const ContactMember& member, const MovingObstacle& moving,
                      const std::vector<Attachment>& attachments, double h);
   void find_pairs(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members,
-                  const std::vector<SegmentGrid::Pair>& pairs, double speed, double h);
+                  const std::vector<SegmentPairs::Pair>& pairs, double speed, double h);
   void add(Touch& touch, const ContactMember& member, const Vector3& velocity, const Vector3& other, double h);
   double reach(double speed, double radius, double h) const;
   bool recall(const ContactMember& member, Touch& touch);
 
+  SegmentGrid grid_;
   ContactRules rules_;
   double time_ = 0;  ///< [s] in which contacts come to rest
   std::vector<Touch> touches_;

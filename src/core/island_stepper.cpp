@@ -28,6 +28,19 @@ Vector3 gravity_near(const State& state, int cable) {
   return state.scene->gravity.at(state.cables[cable].state.positions.front());
 }
 
+/// The segment of a cable that breaks now, -1 if it holds. A piece keeps at least one segment, so that the outermost ones do not
+/// break.
+int find_breaking_segment(const SimulatedCable& cable, const StepResult& result) {
+  const double limit = cable.model.material.breaking_tension;
+  const std::vector<double>& tension = cable.state.tension;
+  if (!(limit < infinity) || tension.size() < 3) return -1;
+  const auto tightest = std::max_element(tension.begin() + 1, tension.end() - 1);
+  // What cannot stretch and is pulled beyond its length findings.breaks at any strength.
+  const bool torn = result.status == StepResult::Status::overstretched && cable.model.material.axial_stiffness == infinity;
+  const bool exceeded = *std::max_element(tension.begin(), tension.end()) > limit;
+  return torn || exceeded ? static_cast<int>(tightest - tension.begin()) : -1;
+}
+
 }  // namespace
 
 ContactRules contact_rules(const SceneDesc& scene, bool still) {
@@ -78,10 +91,18 @@ void follow_material(const std::vector<HeldDirection>& directions, const std::ve
   }
 }
 
+void forget_forces(const Holders& holders, std::vector<Attachment>& attachments) {
+  for (const Holder& holder : holders.nodes) {
+    Attachment& attachment = attachments[holder.attachment];
+    attachment.force = attachment.torque = Vector3::Zero();
+  }
+}
+
 void update_targets(int index, State& state, CableOutcome& outcome) {
   SimulatedCable& cable = state.cables[index];
   Holders& holders = state.cable_memory[index].holders;
   aim_holders(cable.model, state.attachments, state.frames.poses, state.time(), holders);
+  forget_forces(holders, state.attachments);
   outcome.jumps.clear();
   take_back_shown_velocities(holders, cable.state.velocities);
   const Following following = follow_aims(state.attachments, state.time(), state.scene->time_step, holders, outcome.jumps);
@@ -290,6 +311,7 @@ void IslandStepper::complete(const Island& island, int substeps, IslandOutcome& 
     if (memory.reel) complete_reel_step(index, state_);
     follow_material(workspace_.cables[k].boundary.directions, memory.spans, state_.cables[index]);
     outcomes_[index].result.substeps = substeps;
+    outcomes_[index].breaking_segment = find_breaking_segment(state_.cables[index], outcomes_[index].result);
     complete_step(state_.scene->time_step, memory.holders);
     show_velocities(memory.holders, state_.cables[index].state.velocities);
   }

@@ -11,7 +11,8 @@ namespace verlet_cable {
 /// What a step does to a cable, for who reads the world.
 struct CableOutcome {
   StepResult result;
-  std::vector<Jump> jumps;  ///< that the step found to be over
+  std::vector<Jump> jumps;    ///< that the step found to be over
+  int breaking_segment = -1;  ///< -1: none
 };
 
 /// What a step of an island finds.
@@ -29,6 +30,9 @@ void note_status(StepResult::Status status, int cable, int node, StepResult& res
 /// Adds what a cable exerted on its holders, weighted, to its attachments.
 void add_forces(const Boundary& boundary, const Holders& holders, const std::vector<Pose>& frames, double weight,
                 std::vector<Attachment>& attachments);
+
+/// Before a step's forces are added.
+void forget_forces(const Holders& holders, std::vector<Attachment>& attachments);
 
 /// Twist and roll of the material: from the clamps where there are any, else the first segment's is carried along in time.
 void follow_material(const std::vector<HeldDirection>& directions, const std::vector<TwistSpan>& spans, SimulatedCable& cable);

@@ -46,7 +46,7 @@ int longest_axis(const std::vector<Aabb>& boxes) {
 void Islands::build(const State& state) {
   labels_.resize(state.cables.size());
   std::iota(labels_.begin(), labels_.end(), 0);
-  if (state.scene->contact && state.scene->contact->between_cables) find_labels(state);
+  if (are_islands_of_many(*state.scene)) find_labels(state);
   if (!islands_.empty() && labels_ == last_labels_) return;
   std::vector<Island> before;
   before.swap(islands_);
@@ -64,6 +64,8 @@ void Islands::build(const State& state) {
     if (same != before.end() && same->cables == island.cables) island.pairs = std::move(same->pairs);
   }
   last_labels_ = labels_;
+  segments_ = 0;
+  for (const SimulatedCable& cable : state.cables) segments_ += cable.model.segments();
 }
 
 /// Joins cables whose reaches overlap: a sweep along the axis on which they are spread furthest.

@@ -11,8 +11,13 @@ namespace verlet_cable {
 /// Cables that may touch each other in a step: they are advanced in the same substeps.
 struct Island {
   std::vector<int> cables;  ///< indices into State::cables, ascending
-  SegmentGrid pairs;        ///< of their segments
+  SegmentPairs pairs;       ///< of their segments
 };
+
+/// Whether islands may be of more than one cable.
+inline bool are_islands_of_many(const SceneDesc& scene) {
+  return scene.contact && scene.contact->between_cables;
+}
 
 /// What cables are stepped together with. Follows from the state; islands whose cables stay the same keep their pairs.
 class Islands {
@@ -23,6 +28,7 @@ class Islands {
   /// Segments have been numbered anew.
   void invalidate() { islands_.clear(); }
   std::vector<Island>& all() { return islands_; }
+  std::size_t segments() const { return segments_; }  ///< of all cables
 
  private:
   void find_labels(const State& state);
@@ -30,6 +36,7 @@ class Islands {
   void join(int first, int second);
 
   std::vector<Island> islands_;
+  std::size_t segments_ = 0;
   std::vector<int> labels_;       ///< by cable: the first one of its island
   std::vector<int> last_labels_;  ///< those of `islands_`
   // Scratch

@@ -28,51 +28,57 @@ bool longer(const CableModel& model, int first, int last, double length) {
   return false;
 }
 
-}  // namespace
-
-void SegmentGrid::update(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, const Rules& rules,
-                         double reach, double h) {
-  if (still_valid(cables, group, h)) return;
-  fill(cables, group, reach, h);
-  collect(cables, rules);
-  valid_ = true;
-}
-
-bool SegmentGrid::still_valid(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, double h) const {
-  if (!valid_) return false;
+bool still_valid(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, double h, const SegmentPairs& found) {
+  if (found.places.empty()) return false;
   std::size_t k = 0;
   for (const int cable : group) {
     const CableState& state = cables[cable].state;
-    if (k + state.positions.size() > built_.size()) return false;
+    if (k + state.positions.size() > found.places.size()) return false;
     for (std::size_t i = 0; i < state.positions.size(); ++i, ++k) {
-      const double left = margin_ - h * state.velocities[i].norm();
-      if (left < 0 || (state.positions[i] - built_[k]).squaredNorm() > left * left) return false;
+      const double left = found.margin - h * state.velocities[i].norm();
+      if (left < 0 || (state.positions[i] - found.places[k]).squaredNorm() > left * left) return false;
     }
   }
-  return k == built_.size();
+  return k == found.places.size();
 }
 
-void SegmentGrid::fill(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, double reach, double h) {
+/// [m] That nodes may move until the pairs have to be found anew.
+double find_margin(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, double h) {
   double longest = 0, thickest = 0;
   for (const int cable : group) {
     longest =
         std::max(longest, *std::max_element(cables[cable].model.rest_lengths.begin(), cables[cable].model.rest_lengths.end()));
     thickest = std::max(thickest, cables[cable].model.material.radius);
   }
-  margin_ = std::max(thickest, margin_segments * longest) + 2 * h * largest_speed(cables, group);
+  return std::max(thickest, margin_segments * longest) + 2 * h * largest_speed(cables, group);
+}
 
-  built_.clear();
+}  // namespace
+
+void SegmentGrid::update(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, const Rules& rules,
+                         double reach, double h, SegmentPairs& found) {
+  if (still_valid(cables, group, h, found)) return;
+  found.margin = find_margin(cables, group, h);
+  found.places.clear();
+  for (const int cable : group) {
+    const std::vector<Vector3>& places = cables[cable].state.positions;
+    found.places.insert(found.places.end(), places.begin(), places.end());
+  }
+  fill(cables, group, reach, found.margin);
+  collect(cables, rules, found.pairs);
+}
+
+void SegmentGrid::fill(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, double reach, double margin) {
   entries_.clear();
   double largest = 0;
   for (const int cable : group) {
     const CableModel& model = cables[cable].model;
     const std::vector<Vector3>& x = cables[cable].state.positions;
-    built_.insert(built_.end(), x.begin(), x.end());
     for (int i = 0; i < model.segments(); ++i) {
       Entry entry;
       entry.id = {cable, i};
       entry.middle = 0.5 * (x[i] + x[i + 1]);
-      entry.radius = 0.5 * (x[i + 1] - x[i]).norm() + model.material.radius + 0.5 * reach + margin_;
+      entry.radius = 0.5 * (x[i + 1] - x[i]).norm() + model.material.radius + 0.5 * reach + margin;
       entry.next = -1;
       largest = std::max(largest, entry.radius);
       entries_.push_back(entry);
@@ -94,8 +100,8 @@ void SegmentGrid::fill(const std::vector<SimulatedCable>& cables, const std::vec
   }
 }
 
-void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules& rules) {
-  pairs_.clear();
+void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules& rules, std::vector<SegmentPairs::Pair>& pairs) {
+  pairs.clear();
   for (int a = 0; a < static_cast<int>(entries_.size()); ++a) {
     const Entry& first = entries_[a];
     const CableModel& model = cables[first.id.cable].model;
@@ -118,7 +124,7 @@ void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules
           }
         }
     std::sort(near_.begin(), near_.end());
-    for (const int b : near_) pairs_.push_back({first.id, entries_[b].id});
+    for (const int b : near_) pairs.push_back({first.id, entries_[b].id});
   }
 }
 

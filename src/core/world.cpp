@@ -226,20 +226,6 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
     findings.unsettled.push_back(desc.name);
 }
 
-/// The segment of a cable that breaks now, -1 if it holds. A piece keeps at least one segment, so that the outermost ones do not
-/// break.
-int World::Implementation::breaking_segment(int index, const StepResult& result) const {
-  const SimulatedCable& cable = state.cables[index];
-  const double limit = cable.model.material.breaking_tension;
-  const std::vector<double>& tension = cable.state.tension;
-  if (!(limit < infinity) || tension.size() < 3) return -1;
-  const auto tightest = std::max_element(tension.begin() + 1, tension.end() - 1);
-  // What cannot stretch and is pulled beyond its length findings.breaks at any strength.
-  const bool torn = result.status == StepResult::Status::overstretched && cable.model.material.axial_stiffness == infinity;
-  const bool exceeded = *std::max_element(tension.begin(), tension.end()) > limit;
-  return torn || exceeded ? static_cast<int>(tightest - tension.begin()) : -1;
-}
-
 /// After a change of what holds a cable, or of its nodes.
 void World::Implementation::update_holders(int index) {
   SimulatedCable& cable = state.cables[index];

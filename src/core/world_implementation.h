@@ -43,15 +43,13 @@ struct World::Implementation {
   void begin_step();
   int update_frames(const BoundaryInputs& inputs);
   void advance_winches();
-  void update_targets();
+  void build_islands();
   void advance_islands();
   void collect_outcomes(StepResult& result);
   void apply_breaks(StepResult& result);
   void step_nets_and_particles(StepResult& result);
 
   bool is_cancelled() const { return cancelled && *cancelled; }
-  template <class Work>
-  void for_each(std::size_t count, const Work& work) const;
   void name_waiting();
   void start_cable(const CableDesc& desc, const FrameIds& ids, const BoundaryInputs& inputs);
   void start_net(const NetDesc& desc, const FrameIds& ids, const BoundaryInputs& inputs);
@@ -67,7 +65,6 @@ struct World::Implementation {
   Vector3 gravity_near(int cable) const;
   void add_scene_obstacles();
   void find_obstacle_holders();
-  int breaking_segment(int cable, const StepResult& result) const;
   void update_holders(int cable);
   void plan_reel_step(int cable);
   double available_length(int cable) const;

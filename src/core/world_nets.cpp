@@ -151,6 +151,7 @@ void World::Implementation::step_net(int index, StepResult& result) {
 void World::Implementation::aim_net(int index, StepResult& result) {
   NetMemory& memory = state.net_memory[index];
   aim_hinges(state.attachments, state.frames.poses, state.time(), memory.holders);
+  forget_forces(memory.holders, state.attachments);
   take_back_shown_velocities(memory.holders, state.nets[index].state.velocities);
   const Following following = follow_aims(state.attachments, state.time(), state.scene->time_step, memory.holders, findings.jumps);
   if (following.started) take_velocities(memory.holders, state.nets[index].state);

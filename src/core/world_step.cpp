@@ -26,8 +26,7 @@ StepResult World::step(const BoundaryInputs& inputs) {
   w.begin_step();
   result.ignored_frame = w.update_frames(inputs);
   w.advance_winches();
-  w.update_targets();
-  w.islands.value.build(w.state);
+  w.build_islands();
   w.advance_islands();
   w.collect_outcomes(result);
   w.apply_breaks(result);
@@ -41,7 +40,6 @@ void World::step_one_by_one(bool one_by_one) {
 
 void World::Implementation::begin_step() {
   ++state.steps;
-  for (Attachment& attachment : state.attachments) attachment.force = attachment.torque = Vector3::Zero();
   findings.breaks.clear();
   findings.jumps.clear();
   findings.intrusions.clear();
@@ -56,33 +54,31 @@ void World::Implementation::advance_winches() {
     if (state.cable_memory[i].reel) plan_reel_step(static_cast<int>(i));
 }
 
-/// Calls `work` with each of `count` indices, on all cores where that is worth it. What it does for one must not depend on others.
-template <class Work>
-void World::Implementation::for_each(std::size_t count, const Work& work) const {
-  std::size_t segments = 0;
-  for (const SimulatedCable& cable : state.cables) segments += cable.model.segments();
-  if (one_by_one || count < 2 || segments < 2 * least_share) {
-    for (std::size_t i = 0; i < count; ++i) work(i);
-    return;
+/// Where cables may touch each other, that depends on where their targets take them.
+void World::Implementation::build_islands() {
+  if (are_islands_of_many(*state.scene)) {
+    for (std::size_t i = 0; i < state.cables.size(); ++i) update_targets(static_cast<int>(i), state, cable_outcomes.value[i]);
   }
-  const std::size_t share = std::max<std::size_t>(1, least_share * count / segments);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, share), [&](const auto& some) {
-    for (std::size_t i = some.begin(); i < some.end(); ++i) work(i);
-  });
-}
-
-void World::Implementation::update_targets() {
-  for_each(state.cables.size(), [&](std::size_t cable) {
-    verlet_cable::update_targets(static_cast<int>(cable), state, cable_outcomes.value[cable]);
-  });
+  islands.value.build(state);
 }
 
 /// Islands do not know of each other: the result is the same whether one after the other or all at once.
 void World::Implementation::advance_islands() {
   std::vector<Island>& all = islands.value.all();
   island_outcomes.value.resize(all.size());
-  for_each(all.size(), [&](std::size_t i) {
+  const bool updates_targets = !are_islands_of_many(*state.scene);
+  const auto advance = [&](std::size_t i) {
+    if (updates_targets) update_targets(static_cast<int>(i), state, cable_outcomes.value[i]);
     IslandStepper(state, workspaces.value.local(), cable_outcomes.value).step(all[i], island_outcomes.value[i]);
+  };
+  const std::size_t segments = islands.value.segments();
+  if (one_by_one || all.size() < 2 || segments < 2 * least_share) {
+    for (std::size_t i = 0; i < all.size(); ++i) advance(i);
+    return;
+  }
+  const std::size_t share = std::max<std::size_t>(1, least_share * all.size() / segments);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, all.size(), share), [&](const auto& some) {
+    for (std::size_t i = some.begin(); i < some.end(); ++i) advance(i);
   });
 }
 
@@ -102,7 +98,7 @@ void World::Implementation::collect_outcomes(StepResult& result) {
 
 void World::Implementation::apply_breaks(StepResult& result) {
   for (int cable = 0; cable < static_cast<int>(cable_outcomes.value.size()); ++cable) {
-    const int segment = breaking_segment(cable, cable_outcomes.value[cable].result);
+    const int segment = cable_outcomes.value[cable].breaking_segment;
     if (segment < 0 || !cut(cable, segment).ok) continue;
     const int rest = static_cast<int>(state.cables.size()) - 1;
     findings.breaks.push_back({cable, segment, rest});
