@@ -1,5 +1,5 @@
-// Prints a line for each scene of the benchmarks: the bytes of every node's place and velocity on the way, summed up. Two builds that
-// print the same compute the same; scripts/same_bytes compares them.
+// Prints a line for each scene of the benchmarks: the bytes of every node's place and velocity on the way, summed up. Two builds
+// that print the same compute the same; scripts/same_bytes compares them.
 
 #include <cinttypes>
 #include <cmath>
@@ -146,7 +146,8 @@ void print_nets() {
     });
   }
   print("figure on stairs", scenes::figure_on_stairs(), 600);
-  for (const IntegratorDesc::Type type : {IntegratorDesc::Type::verlet, IntegratorDesc::Type::euler, IntegratorDesc::Type::rk4, IntegratorDesc::Type::pc5})
+  for (const IntegratorDesc::Type type :
+       {IntegratorDesc::Type::verlet, IntegratorDesc::Type::euler, IntegratorDesc::Type::rk4, IntegratorDesc::Type::pc5})
     print("planet " + std::to_string(static_cast<int>(type)), scenes::planet(0.01, type), 500);
 }
 

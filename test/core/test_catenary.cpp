@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "../support/scenes.h"
-#include "catenary.h"
+#include "rod/catenary.h"
 
 namespace verlet_cable {
 namespace {

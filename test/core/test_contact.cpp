@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "../support/scenes.h"
-#include "contact_law.h"
-#include "segment_distance.h"
+#include "contact/law.h"
+#include "geometry/segment_distance.h"
 #include "verlet_cable/core/world.h"
 
 namespace verlet_cable {

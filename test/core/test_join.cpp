@@ -116,12 +116,12 @@ TEST(Join, StiffEndsStayWithTheirMaterial) {
   SceneDesc scene = two_ropes(0.3, 0.005);
   scene.cables[0].stiff_ends = {0.05, 0.03};  // 25 segments of 0.02 m
   World world(scene, initial_frames(scene));
-  const auto shares = [&](int cable) -> const std::vector<double>& { return world.cables()[cable].model.bending_share; };
+  const auto shares = [&](int cable) -> const std::vector<double>& { return world.cables()[cable].model.flexible_fraction; };
   const auto run = [&](int steps) {
     for (int i = 0; i < steps; ++i) ASSERT_EQ(world.step({FrameInput{}}).status, Status::ok) << i;
     for (const SimulatedCable& cable : world.cables()) {
-      if (!cable.model.bending_share.empty()) {
-        EXPECT_EQ(cable.model.bending_share.size(), cable.model.masses.size());
+      if (!cable.model.flexible_fraction.empty()) {
+        EXPECT_EQ(cable.model.flexible_fraction.size(), cable.model.masses.size());
       }
       for (const Vector3& x : cable.state.positions) ASSERT_TRUE(x.allFinite());
     }

@@ -60,8 +60,8 @@ double largest_tension(const World& world) {
   return largest;
 }
 
-/// A motion of everything alike changes no force, from the first step on. The inputs of the boosted world say how its frames begin
-/// to move, or it finds out.
+/// A motion of everything alike changes no force, from the first step on. The inputs of the boosted world say how its frames
+/// begin to move, or it finds out.
 void expect_galilean_invariance(const SceneDesc& scene, const std::vector<Pose>& frames, bool told) {
   const World shape(scene, moving(frames, {}));
   const std::vector<Vector3> places = shape.cables()[0].state.positions;

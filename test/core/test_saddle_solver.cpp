@@ -5,7 +5,7 @@
 #include <set>
 #include <tuple>
 
-#include "saddle_solver.h"
+#include "rod/block_elimination.h"
 
 namespace verlet_cable {
 namespace {
@@ -19,7 +19,7 @@ TEST_P(SaddleSolverAgainstDense, SolvesTheSystem) {
   const auto [n, bending, held] = GetParam();
   std::mt19937 generator(n);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  SaddleSystem system;
+  KktSystem system;
   system.resize(n);
   const int nodes = n + 1, size = 3 * nodes + n;
   Eigen::MatrixXd a = Eigen::MatrixXd::Zero(size, size);
@@ -58,7 +58,7 @@ TEST_P(SaddleSolverAgainstDense, SolvesTheSystem) {
     }
   }
 
-  SaddleSolver solver;
+  BlockElimination solver;
   solver.resize(n);
   solver.factor(system, bending);
   solver.solve(system);

@@ -6,8 +6,8 @@
 
 #include "../support/nets.h"
 #include "../support/scenes.h"
-#include "state_fields.h"
-#include "world_implementation.h"
+#include "world/implementation.h"
+#include "world/state_fields.h"
 
 // What decides the future is the state, all of it is hashed, and what is done to one cable is nothing to another.
 
@@ -19,8 +19,8 @@ struct WorldInspector {
 
 namespace {
 
-/// Something of everything: clamps, twist, rest curvature, stiff ends, breaking, a winch, a joint, contacts, nets of each kind, each
-/// integrator's memory, a mesh, a robot, waiting cables and nets.
+/// Something of everything: clamps, twist, rest curvature, stiff ends, breaking, a winch, a joint, contacts, nets of each kind,
+/// each integrator's memory, a mesh, a robot, waiting cables and nets.
 SceneDesc rich_scene() {
   SceneDesc scene = scenes::held_by_a_hand(8, AttachmentType::clamp);
   MaterialDesc& rope = scene.materials[0].material;
@@ -149,13 +149,13 @@ void expect_all_hashed(State& state) {
 TEST(State, EveryNumberOfItIsHashed) {
   World world = rich_world();
   State& state = WorldInspector::state(world);
-  ASSERT_FALSE(state.cable_memory[1].contacts.empty());
-  ASSERT_TRUE(state.cable_memory[0].reel);
+  ASSERT_FALSE(state.cable_progress[1].contacts.empty());
+  ASSERT_TRUE(state.cable_progress[0].drive);
   ASSERT_EQ(state.waiting_cables.size(), 1u);
   ASSERT_EQ(state.waiting_nets.size(), 1u);
   expect_all_hashed(state);
   World remembering = remembering_world();
-  ASSERT_EQ(WorldInspector::state(remembering).particle_memory[0].known, 4);
+  ASSERT_EQ(WorldInspector::state(remembering).particle_integrators[0].known, 4);
   expect_all_hashed(WorldInspector::state(remembering));
 }
 
@@ -192,9 +192,10 @@ std::size_t size_of_fields() {
 
 template <class Type>
 class Fields : public ::testing::Test {};
-using Types = ::testing::Types<MaterialDesc, CableDesc, AttachmentDesc, NetDesc, ParticleDesc, GravityDesc, FluidDesc, CableModel,
-                               CableState, Holder, DirectionHolder, TwistSpan, Reel, CachedContact, CableMemory, NetModel, NetState,
-                               PointState, LinkMemory, NetMemory, SimulatedParticle, Attachment, Obstacle, Frames, State>;
+using Types =
+    ::testing::Types<MaterialDesc, CableDesc, AttachmentDesc, NetDesc, ParticleDesc, GravityDesc, FluidDesc, CableModel,
+                     CableState, KinematicTarget, DirectionTarget, TwistSpan, LengthDrive, CachedContact, CableProgress, NetModel,
+                     NetState, PointState, LinkMemory, NetProgress, SimulatedParticle, Attachment, Obstacle, Frames, State>;
 TYPED_TEST_SUITE(Fields, Types);
 
 TYPED_TEST(Fields, AreAllListed) {
@@ -231,10 +232,13 @@ TEST(State, AnEditOfOneCableLeavesTheBytesOfOthers) {
   using Edit = std::function<EditResult(World&)>;
   const std::vector<Edit> edits{
       [](World& w) { return w.cut(0, 9); },
-      [](World& w) { return w.pin("pin", 0, 10, 0, Pose{{0.3, 0, -0.2}, Quaternion::Identity()}, AttachmentType::hinge); },
-      [](World& w) { return w.set_length(0, true, 1.1, 1); },
-      [](World& w) { return w.unpin("left"); },
-      [](World& w) { return w.move_attachment("left", Pose{{0.05, 0, 0}, Quaternion::Identity()}); }};
+      [](World& w) {
+        return w.pin("pin", 0, 10, 0, Pose{{0.3, 0, -0.2}, Quaternion::Identity()}, AttachmentType::hinge);
+      },
+      [](World& w) { return w.set_length(0, true, 1.1, 1); }, [](World& w) { return w.unpin("left"); },
+      [](World& w) {
+        return w.move_attachment("left", Pose{{0.05, 0, 0}, Quaternion::Identity()});
+      }};
   for (const bool contact : {false, true})
     for (const Edit& edit : edits) {
       const SceneDesc scene = two_cables(1, contact);
@@ -276,7 +280,8 @@ TEST(State, CablesThatComeAtEachOtherMeet) {
         InitialShapeDesc& initial = scene.cables[i].initial;
         const double side = i == 0 ? -1 : 1;
         initial.type = InitialShapeDesc::Type::points;
-        initial.points = {{i == 0 ? -0.5 : 0.0, i == 0 ? 0.0 : -0.5, 0.3 * side}, {i == 0 ? 0.5 : 0.0, i == 0 ? 0.0 : 0.5, 0.3 * side}};
+        initial.points = {{i == 0 ? -0.5 : 0.0, i == 0 ? 0.0 : -0.5, 0.3 * side},
+                          {i == 0 ? 0.5 : 0.0, i == 0 ? 0.0 : 0.5, 0.3 * side}};
         initial.velocities = {{0, 0, -speed * side}, {0, 0, -speed * side}};
       }
       World world(scene, initial_frames(scene));

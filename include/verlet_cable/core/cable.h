@@ -22,7 +22,7 @@ struct CableModel {
   /// unloaded
   std::vector<std::array<double, 2>> rest_curvature;
   /// a node, n + 1: how much of the cable half a segment around it bends, above 0 to 1; empty where all of it does
-  std::vector<double> bending_share;
+  std::vector<double> flexible_fraction;
 
   int segments() const { return static_cast<int>(rest_lengths.size()); }
   int nodes() const { return static_cast<int>(masses.size()); }
@@ -30,7 +30,9 @@ struct CableModel {
   double length(int first, int last) const;  ///< [m] at rest, between two nodes
   std::vector<double> arc_length() const;    ///< [m] a node, n + 1, from the start, at rest
   /// [m] of so much cable around a node, what bends
-  double bending_length(int node, double around) const { return bending_share.empty() ? around : bending_share[node] * around; }
+  double bending_length(int node, double around) const {
+    return flexible_fraction.empty() ? around : flexible_fraction[node] * around;
+  }
 };
 
 /// What a step changes. Written by World only.

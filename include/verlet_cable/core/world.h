@@ -21,8 +21,8 @@ namespace verlet_cable {
 struct FrameInput {
   Pose pose;
   bool known = true;  ///< false: never seen; cables that need it wait, obstacles in it are not there
-  /// What cables and nets that start now begin to move with, at what holds them. Steps do not read it: they follow the poses. Without
-  /// it a frame begins with its mean velocity over the first step.
+  /// What cables and nets that start now begin to move with, at what holds them. Steps do not read it: they follow the poses.
+  /// Without it a frame begins with its mean velocity over the first step.
   std::optional<FrameVelocity> velocity = std::nullopt;
 };
 using BoundaryInputs = std::vector<FrameInput>;
@@ -103,8 +103,8 @@ struct EditResult {
 class World {
  public:
   /// Cables whose frames are all known start at once, the others wait for `start_waiting`. `inputs` is indexed like
-  /// `frame_names(scene)`. Throws SceneError with everything that `validate` finds. Soon after another thread has set `cancelled` it
-  /// ends, and the world is good for nothing.
+  /// `frame_names(scene)`. Throws SceneError with everything that `validate` finds. Soon after another thread has set `cancelled`
+  /// it ends, and the world is good for nothing.
   World(const SceneDesc& scene, const BoundaryInputs& inputs, const std::atomic<bool>* cancelled = nullptr);
   /// None of the cables and nets has started yet. Throws SceneError likewise.
   explicit World(const SceneDesc& scene);

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "contact/law.h"
+
+namespace verlet_cable {
+
+/// What a contact takes from one substep to the next.
+struct CachedContact {
+  std::uint64_t key = 0, other_key = 0;  ///< of the touch
+  Vector3 force = Vector3::Zero();       ///< [N] friction of what sticks
+  Touch::Mode mode = Touch::Mode::open;
+  bool inside = false;
+};
+
+/// Of the touches whose point is on one cable: ascending by keys.
+using ContactCache = std::vector<CachedContact>;
+
+/// Keys of touches: cables and obstacles by their ids, which no edit changes.
+constexpr std::uint64_t pair_key = std::uint64_t{1} << 63;  // pairs come after obstacles
+inline std::uint64_t key_of(std::uint32_t high, std::uint32_t low) {
+  return static_cast<std::uint64_t>(high) << 32 | low;
+}
+inline bool names_other_cable(const CachedContact& contact, std::uint32_t id) {
+  return (contact.key & pair_key) != 0 && contact.other_key >> 32 == id;
+}
+
+}  // namespace verlet_cable

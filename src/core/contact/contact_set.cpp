@@ -1,0 +1,264 @@
+#include "contact/contact_set.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "geometry/segment_distance.h"
+
+namespace verlet_cable {
+
+namespace {
+
+/// Contacts are looked for this far beyond where they are expected, in radii: velocities change during a substep.
+constexpr double spare_reach = 0.1;
+/// A smooth cable through the nodes bulges out over round obstacles, where straight segments cut in: so much, in radii, is
+/// not counted as contact between nodes.
+constexpr double bulge = 0.08;
+/// So far from an attachment to what holds the cable it is not pushed by it [m]: the first few centimetres.
+constexpr double anchored_length = 0.05;
+/// Stiffness of a contact without load, relative to what stops a segment within a step.
+constexpr double stopping_stiffness = 2;
+/// Deeper than this, in radii, nothing comes through a surface before its contact is found.
+constexpr double deepest_arrival = 0.5;
+
+double stopping(const SimulatedCable& cable, int segment, double time_step) {
+  const double mass = cable.model.rest_lengths[segment] * cable.model.material.linear_density;
+  return stopping_stiffness * mass / (time_step * time_step);
+}
+
+Vector3 interpolate(const std::vector<Vector3>& nodes, int segment, double fraction) {
+  return (1 - fraction) * nodes[segment] + fraction * nodes[segment + 1];
+}
+
+/// A node as a point of a segment.
+CablePoint node_point(int cable, int node, int segments) {
+  return node < segments ? CablePoint{cable, node, 0.0} : CablePoint{cable, node - 1, 1.0};
+}
+
+/// What Coulomb's friction on the arc of a smooth cable comes to at the node that stands for it: turned around an obstacle by an
+/// angle, tension grows by exp(friction * angle) along the arc (Euler), where the node's forces alone would make it
+/// (1 + f tan(angle / 2)) / (1 - f tan(angle / 2)).
+double friction_of_arc(double friction, const CableState& state, int node, const Vector3& normal) {
+  if (node == 0 || node + 1 == static_cast<int>(state.positions.size())) return friction;
+  const Vector3 before = (state.positions[node] - state.positions[node - 1]).normalized();
+  const Vector3 after = (state.positions[node + 1] - state.positions[node]).normalized();
+  const double half_angle = std::asin(std::clamp(0.5 * normal.dot(before - after), 0.0, 1.0));
+  return half_angle > 0 ? std::tanh(friction * half_angle) / std::tan(half_angle) : friction;
+}
+
+bool apart(const Vector3& a, const Vector3& b, const Aabb& box, double reach) {
+  return (a.cwiseMax(b).array() + reach < box.min().array()).any() || (a.cwiseMin(b).array() - reach > box.max().array()).any();
+}
+
+/// Whether a point is close to where an attachment joins the cable to the obstacle's own frame.
+bool anchored(const CableModel& model, const KinematicTargets& targets, const CablePoint& point, const Obstacle& obstacle,
+              const std::vector<Attachment>& attachments) {
+  if (obstacle.holders.empty()) return false;
+  const double length = model.rest_lengths[point.segment];
+  for (const KinematicTarget& target : targets.nodes) {
+    const Attachment& attachment = attachments[target.attachment];
+    if (attachment.node != target.node || !std::binary_search(obstacle.holders.begin(), obstacle.holders.end(), attachment.frame))
+      continue;
+    const double distance = attachment.node <= point.segment
+                                ? model.length(attachment.node, point.segment) + point.fraction * length
+                                : model.length(point.segment, attachment.node) - point.fraction * length;
+    if (distance <= anchored_length) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void ContactSet::find(const std::vector<SimulatedCable>& cables, const std::vector<int>& island,
+                      const std::vector<ContactMember>& members, const std::vector<MovingObstacle>& obstacles,
+                      const std::vector<Attachment>& attachments, const ContactRules& rules, double h, SegmentPairs& pairs) {
+  rules_ = rules;
+  time_ = rules.still ? 0 : contact_time(rules.time_step);
+  touches_.clear();
+  intrusions_.clear();
+  touched_.assign(members.size(), 0);
+  recalled_.assign(members.size(), 0);
+  if (obstacles.empty() && !rules.pairs.self && !rules.pairs.between_cables) return;
+  if (places_.size() < cables.size()) places_.resize(cables.size());
+  for (std::size_t k = 0; k < island.size(); ++k) {
+    const SimulatedCable& cable = cables[island[k]];
+    places_[island[k]] = static_cast<int>(k);
+    if (obstacles.empty()) continue;
+    set_held(cable, *members[k].targets, attachments);
+    for (const MovingObstacle& obstacle : obstacles) find_obstacle(cable, island[k], members[k], obstacle, attachments, h);
+  }
+  if (!rules.pairs.self && !rules.pairs.between_cables) return;
+  double radius = 0, square = 0;
+  for (const int cable : island) {
+    radius = std::max(radius, cables[cable].model.material.radius);
+    for (const Vector3& v : cables[cable].state.velocities) square = std::max(square, v.squaredNorm());
+  }
+  grid_.update(cables, island, rules.pairs, reach(0, radius, h) + radius, h, pairs);
+  find_pairs(cables, members, pairs.pairs, std::sqrt(square), h);
+}
+
+/// Which nodes are attached: nothing but their holders moves them.
+void ContactSet::set_held(const SimulatedCable& cable, const KinematicTargets& targets,
+                          const std::vector<Attachment>& attachments) {
+  held_.assign(cable.model.nodes(), 0);
+  for (const KinematicTarget& target : targets.nodes)
+    if (attachments[target.attachment].node == target.node) held_[target.node] = 1;
+}
+
+void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const ContactMember& member, const MovingObstacle& moving,
+                               const std::vector<Attachment>& attachments, double h) {
+  const CableModel& model = cable.model;
+  const CableState& state = cable.state;
+  const int n = model.segments();
+  const double radius = model.material.radius, surface = radius + moving.obstacle->padding;
+  const Pose to_shape = moving.start.inverse();
+  const Shape& shape = moving.obstacle->shape;
+  const bool flat = std::holds_alternative<PlaneShape>(shape);
+
+  const auto node_reach = [&](int i) { return surface + reach(state.velocities[i].norm() + moving.speed, radius, h); };
+  const auto visit = [&](int i, double far) {
+    if (visited_[i] != 0) return;
+    visited_[i] = 1;
+    local_[i] = to_shape.position + to_shape.orientation * state.positions[i];
+    nearest_[i] = closest_point(shape, local_[i], far);
+  };
+  const double friction = moving.obstacle->friction.value_or(model.material.friction);
+  const auto touch_at = [&](const CablePoint& point, std::uint64_t element, const SurfacePoint& nearest, double friction_there) {
+    if (anchored(model, *member.targets, point, *moving.obstacle, attachments)) return;
+    Touch touch;
+    touch.key = moving.obstacle->id;
+    touch.other_key = element;
+    touch.point = point;
+    touch.obstacle = moving.index;
+    touch.normal = moving.start.orientation * nearest.normal;
+    touch.gap = nearest.distance - surface;
+    touch.friction = friction_there;
+    touch.radius = radius;
+    touch.base_stiffness = stopping(cable, point.segment, rules_.time_step);
+    touch.other_displacement = moving.end.position + moving.end.orientation * nearest.point -
+                               (moving.start.position + moving.start.orientation * nearest.point);
+    touch.position = interpolate(state.positions, point.segment, point.fraction);
+    add(touch, member, interpolate(state.velocities, point.segment, point.fraction), touch.other_displacement / h, h);
+  };
+
+  visited_.assign(n + 1, 0);
+  local_.resize(n + 1);
+  nearest_.resize(n + 1);
+  bool last = false;
+  for (int i = 0; i <= n; ++i) {
+    const double far = std::max(node_reach(i), i < n ? node_reach(i + 1) : 0.0);
+    const bool close = i < n && !apart(state.positions[i], state.positions[i + 1], moving.box, far);
+    const double length = i < n ? (state.positions[i + 1] - state.positions[i]).norm() : 0;
+    if (close) {
+      visit(i, far + length);
+      visit(i + 1, far + length);
+    }
+    if ((close || last) && held_[i] == 0)
+      touch_at(node_point(index, i, n), 2 * i, nearest_[i],
+               friction_of_arc(friction, state, i, moving.start.orientation * nearest_[i].normal));
+    last = close;
+    if (!close || flat || held_[i] != 0 || held_[i + 1] != 0) continue;
+    const double first = nearest_[i].distance, second = nearest_[i + 1].distance;
+    if (0.5 * (first + second - length) > far) continue;
+    SegmentSurfacePoint deepest = deepest_point(shape, local_[i], local_[i + 1], far);
+    const double cut = first + deepest.fraction * (second - first) - deepest.surface.distance;
+    if (deepest.surface.distance >= far || cut <= bulge * radius) continue;
+    deepest.surface.distance += bulge * radius;
+    touch_at({index, i, deepest.fraction}, 2 * i + 1, deepest.surface, friction);
+  }
+}
+
+void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members,
+                            const std::vector<SegmentPairs::Pair>& pairs, double speed, double h) {
+  for (const SegmentPairs::Pair& pair : pairs) {
+    const SimulatedCable &a = cables[pair.first.cable], &b = cables[pair.second.cable];
+    const int i = pair.first.segment, j = pair.second.segment;
+    const Vector3 &a0 = a.state.positions[i], &a1 = a.state.positions[i + 1];
+    const Vector3 &b0 = b.state.positions[j], &b1 = b.state.positions[j + 1];
+    const double radius = std::min(a.model.material.radius, b.model.material.radius);
+    const double surface = a.model.material.radius + b.model.material.radius;
+    const double far = surface + reach(2 * speed, radius, h);
+    const Vector3 along_a = a1 - a0, along_b = b1 - b0;
+    // Twice the distance of the middles, squared, against a bound of the square of the sum by twice the sum of the squares
+    const Vector3 middles = a0 + a1 - b0 - b1;
+    if (middles.squaredNorm() > 4 * far * (far + 2 * std::max(a.model.rest_lengths[i], b.model.rest_lengths[j])) +
+                                    2 * (along_a.squaredNorm() + along_b.squaredNorm()))
+      continue;
+    const ClosestPoints closest = closest_points(a0, along_a, b0, along_b);
+    const double distance = closest.between.norm();
+    if (distance > far) continue;
+
+    Touch touch;
+    const ContactMember& member = members[places_[pair.first.cable]];
+    touch.key = pair_key | i;
+    touch.other_key = key_of(members[places_[pair.second.cable]].id, j);
+    touch.point = {pair.first.cable, i, closest.first};
+    touch.other = {pair.second.cable, j, closest.second};
+    touch.normal = distance > 0 ? Vector3(closest.between / distance) : along_a.unitOrthogonal();
+    touch.gap = distance - surface;
+    touch.friction = rules_.cable_friction;
+    touch.radius = radius;
+    touch.base_stiffness = std::min(stopping(a, i, rules_.time_step), stopping(b, j, rules_.time_step));
+    touch.position = a0 + closest.first * along_a;
+    const Vector3 velocity =
+        interpolate(a.state.velocities, i, closest.first) - interpolate(b.state.velocities, j, closest.second);
+    add(touch, member, velocity, Vector3::Zero(), h);
+  }
+}
+
+/// Adds a touch if its gap may close; `velocity` [m/s] is that of the point, relative to another cable's, `other` that of an
+/// obstacle.
+void ContactSet::add(Touch& touch, const ContactMember& member, const Vector3& velocity, const Vector3& other, double h) {
+  const double approach = -touch.normal.dot(velocity - other);
+  if (!(touch.gap < reach(std::max(0.0, approach), touch.radius, h))) return;
+  const double gentle = gentle_gap(touch.radius, contact_time(rules_.time_step));
+  const bool known = recall(member, touch);
+  if (!known && touch.obstacle >= 0 && touch.gap < -deepest_arrival * touch.radius)
+    intrusions_.push_back({touch.point.cable, touch.point.segment, touch.obstacle, -touch.gap});
+  touch.inside = !known || touch.inside;
+  if (touch.gap >= gentle) touch.inside = false;
+  if (touch.inside) touch.gap = gentle;
+  anticipate(h, time_, velocity, touch);
+  start_touch(touch);
+  touched_[places_[touch.point.cable]] = 1;
+  if (touch.other.cable >= 0) touched_[places_[touch.other.cable]] = 1;
+  touches_.push_back(touch);
+}
+
+/// How far [m] from a surface contact may matter in a substep, at a velocity of approach [m/s].
+double ContactSet::reach(double speed, double radius, double h) const {
+  if (rules_.still) return (1 + spare_reach) * radius;
+  return std::min((h + time_) * speed, radius + h * speed) + spare_reach * radius;
+}
+
+/// What a touch was in the last substep; false if it was none. A member's touches are asked for in ascending order.
+bool ContactSet::recall(const ContactMember& member, Touch& touch) {
+  const auto keys = [](const auto& of) { return std::tie(of.key, of.other_key); };
+  const ContactCache& cache = *member.cache;
+  std::size_t& recalled = recalled_[places_[touch.point.cable]];
+  while (recalled < cache.size() && keys(cache[recalled]) < keys(touch)) ++recalled;
+  if (recalled == cache.size() || keys(cache[recalled]) != keys(touch)) return false;
+  touch.stuck_force = cache[recalled].force;
+  touch.mode = cache[recalled].mode;
+  touch.inside = cache[recalled].inside;
+  return true;
+}
+
+bool ContactSet::crossed(const std::vector<SimulatedCable>& cables) const {
+  return std::any_of(touches_.begin(), touches_.end(), [&](const Touch& touch) {
+    if (touch.other.cable < 0) return false;
+    const std::vector<Vector3>&a = cables[touch.point.cable].state.positions, &b = cables[touch.other.cable].state.positions;
+    const int i = touch.point.segment, j = touch.other.segment;
+    return closest_points(a[i], a[i + 1] - a[i], b[j], b[j + 1] - b[j]).between.dot(touch.normal) < 0;
+  });
+}
+
+void ContactSet::keep(const std::vector<ContactMember>& members) const {
+  for (const ContactMember& member : members) member.cache->clear();
+  for (const Touch& touch : touches_)
+    members[places_[touch.point.cable]].cache->push_back(
+        {touch.key, touch.other_key, remaining_friction(touch), touch.mode, touch.inside});
+}
+
+}  // namespace verlet_cable

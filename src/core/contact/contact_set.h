@@ -1,0 +1,70 @@
+#pragma once
+
+#include <vector>
+
+#include "contact/cache.h"
+#include "contact/moving_obstacle.h"
+#include "contact/segment_grid.h"
+#include "target/kinematic_targets.h"
+#include "verlet_cable/core/world.h"
+
+namespace verlet_cable {
+
+/// What contacts are found with.
+struct ContactRules {
+  bool still = false;         ///< nothing moves but towards equilibrium, by less than a radius at a time
+  double time_step = 0;       ///< [s] the world's
+  SegmentGrid::Rules pairs;   ///< which cables touch which
+  double cable_friction = 0;  ///< Coulomb coefficient of cable against cable
+};
+
+/// A cable whose contacts are looked for.
+struct ContactMember {
+  std::uint32_t id = 0;  ///< by which contacts name it
+  const KinematicTargets* targets = nullptr;
+  ContactCache* cache = nullptr;
+};
+
+/// The contacts of cables that are stepped together: found anew for every substep, but for what their caches keep.
+class ContactSet {
+ public:
+  /// Finds what may touch in the next h [s]. `island`: ascending indices into `cables`; `members`: the same cables; `pairs`: of
+  /// their segments, as the last call for them left it, or empty.
+  void find(const std::vector<SimulatedCable>& cables, const std::vector<int>& island, const std::vector<ContactMember>& members,
+            const std::vector<MovingObstacle>& obstacles, const std::vector<Attachment>& attachments, const ContactRules& rules,
+            double h, SegmentPairs& pairs);
+  /// Whether segments that touch have passed through each other since `find`.
+  bool crossed(const std::vector<SimulatedCable>& cables) const;
+  /// The substep is done: the caches of the members take what sticks.
+  void keep(const std::vector<ContactMember>& members) const;
+
+  std::vector<Touch>& touches() { return touches_; }
+  const std::vector<Touch>& touches() const { return touches_; }
+  bool touched(std::size_t member) const { return touched_[member] != 0; }  ///< whether it is part of a touch
+  const std::vector<Intrusion>& intrusions() const { return intrusions_; }  ///< that `find` came upon
+
+ private:
+  void set_held(const SimulatedCable& cable, const KinematicTargets& targets, const std::vector<Attachment>& attachments);
+  void find_obstacle(const SimulatedCable& cable, int index, const ContactMember& member, const MovingObstacle& moving,
+                     const std::vector<Attachment>& attachments, double h);
+  void find_pairs(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members,
+                  const std::vector<SegmentPairs::Pair>& pairs, double speed, double h);
+  void add(Touch& touch, const ContactMember& member, const Vector3& velocity, const Vector3& other, double h);
+  double reach(double speed, double radius, double h) const;
+  bool recall(const ContactMember& member, Touch& touch);
+
+  SegmentGrid grid_;
+  ContactRules rules_;
+  double time_ = 0;  ///< [s] in which contacts come to rest
+  std::vector<Touch> touches_;
+  std::vector<Intrusion> intrusions_;
+  std::vector<int> places_;            ///< among the members, by cable; set for these only
+  std::vector<char> touched_;          ///< by member
+  std::vector<std::size_t> recalled_;  ///< by member: the first of its cache that may still be asked for
+  // Nodes of one cable
+  std::vector<char> held_, visited_;
+  std::vector<Vector3> local_;         ///< [m] in an obstacle's frame; where visited
+  std::vector<SurfacePoint> nearest_;  ///< on its surface; where visited
+};
+
+}  // namespace verlet_cable

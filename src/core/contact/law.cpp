@@ -1,0 +1,100 @@
+#include "contact/law.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace verlet_cable {
+
+namespace {
+
+/// Pressed by a force F, a cable of radius r is dented by about r sqrt(F / (contact_modulus r²)): like rubber.
+constexpr double contact_modulus = 1e8;  // [Pa]
+/// Beyond this depth, relative to the radius, it gets much stiffer, so that no load presses it flat.
+constexpr double soft_depth = 0.06;
+/// The law goes on linearly from here, relative to the radius.
+constexpr double deepest = 0.18;
+/// What is inside an obstacle is pushed out at no more than about this.
+constexpr double gentle_velocity = 0.5;  // [m/s]
+/// Steps within which a contact comes to rest.
+constexpr double contact_steps = 2;
+/// A linearisation is as good as the law if the forces differ by no more than this, relatively.
+constexpr double linear_enough = 0.05;
+
+struct ForceAndSlope {
+  double force = 0, slope = 0;
+};
+
+/// Of a depth [m], >= 0.
+ForceAndSlope depth_law(double depth, const Touch& touch) {
+  const double x = std::min(depth / touch.radius, deepest), y = x / soft_depth, y4 = y * y * y * y;
+  const double scale = contact_modulus * touch.radius;
+  const double slope = touch.base_stiffness + scale * x * (2 + 6 * y4);
+  const double force = touch.base_stiffness * x * touch.radius + scale * touch.radius * x * x * (1 + y4);
+  return {force + slope * (depth - x * touch.radius), slope};
+}
+
+}  // namespace
+
+double contact_time(double time_step) {
+  return contact_steps * time_step;
+}
+
+void anticipate(double h, double contact_time, const Vector3& velocity, Touch& touch) {
+  touch.rate = 1 + 2 * contact_time / h;
+  touch.offset = (1 + contact_time / h) * touch.other_displacement + contact_time * velocity;
+}
+
+double gentle_gap(double radius, double contact_time) {
+  return -std::clamp(gentle_velocity * contact_time, 0.05 * radius, 0.15 * radius);
+}
+
+void start_touch(Touch& touch) {
+  touch.depth = std::max(0.0, -touch.gap);
+  touch.stiffness = depth_law(touch.depth, touch).slope;
+}
+
+bool evaluate_touch(const Vector3& w, Touch& touch) {
+  touch.displacement = w;
+  const Vector3 e = touch.rate * w - touch.offset;
+  const double along = touch.normal.dot(e), depth = -touch.gap - along;
+  const Touch::Mode before = touch.mode;
+  if (depth <= 0) {
+    touch.mode = Touch::Mode::open;
+    touch.normal_force = 0;
+    touch.force.setZero();
+    return before != touch.mode;
+  }
+  const ForceAndSlope law = depth_law(depth, touch), here = depth_law(touch.depth, touch);
+  const bool bent = std::abs(here.force + here.slope * (depth - touch.depth) - law.force) > linear_enough * law.force;
+  if (bent) {
+    touch.depth = depth;
+    touch.stiffness = law.slope;
+  }
+  touch.normal_force = law.force;
+  const Eigen::Matrix3d across = touch.normal * touch.normal.transpose(), tangential = Eigen::Matrix3d::Identity() - across;
+  const double stiffness = touch.rate * touch.stiffness;
+  const Vector3 trial = tangential * (touch.stuck_force - touch.stiffness * e);
+  const double size = trial.norm(), limit = touch.friction * touch.normal_force;
+  if (size <= limit) {
+    touch.mode = Touch::Mode::sticks;
+    touch.force = touch.normal_force * touch.normal + trial;
+    touch.slope = stiffness * Eigen::Matrix3d::Identity();
+  } else {
+    touch.mode = Touch::Mode::slides;
+    touch.force = touch.normal_force * touch.normal + limit / size * trial;
+    // The secant, not the tangent, which is nothing along the slip: iterations would turn it to and fro.
+    touch.slope = stiffness * (across + limit / size * tangential);
+  }
+  return bent || before != touch.mode;
+}
+
+Vector3 remaining_friction(const Touch& touch) {
+  if (touch.mode == Touch::Mode::open) return Vector3::Zero();
+  const Vector3 slip = touch.displacement - touch.other_displacement;
+  Vector3 force = touch.stuck_force - touch.stiffness * slip;
+  force -= touch.normal * touch.normal.dot(force);
+  const double limit = touch.friction * touch.normal_force, size = force.norm();
+  return size <= limit ? force : Vector3(force * (limit / size));
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,137 @@
+#include "contact/segment_grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace verlet_cable {
+
+namespace {
+
+/// Segments of one cable touch only where the cable between them is longer than this, in radii: it cannot bend more sharply.
+constexpr double bend_radii = 2.5;
+/// A margin of so many segment lengths lets nodes move for a while until the pairs have to be found anew.
+constexpr double margin_segments = 0.5;
+
+double largest_speed(const std::vector<SimulatedCable>& cables, const std::vector<int>& group) {
+  double square = 0;
+  for (const int cable : group)
+    for (const Vector3& v : cables[cable].state.velocities) square = std::max(square, v.squaredNorm());
+  return std::sqrt(square);
+}
+
+/// Whether the cable from one node to another is longer than `length` [m], at rest.
+bool longer(const CableModel& model, int first, int last, double length) {
+  for (int i = first; i < last; ++i) {
+    length -= model.rest_lengths[i];
+    if (length < 0) return true;
+  }
+  return false;
+}
+
+bool still_valid(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, double h, const SegmentPairs& found) {
+  if (found.places.empty()) return false;
+  std::size_t k = 0;
+  for (const int cable : group) {
+    const CableState& state = cables[cable].state;
+    if (k + state.positions.size() > found.places.size()) return false;
+    for (std::size_t i = 0; i < state.positions.size(); ++i, ++k) {
+      const double left = found.margin - h * state.velocities[i].norm();
+      if (left < 0 || (state.positions[i] - found.places[k]).squaredNorm() > left * left) return false;
+    }
+  }
+  return k == found.places.size();
+}
+
+/// [m] That nodes may move until the pairs have to be found anew.
+double find_margin(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, double h) {
+  double longest = 0, thickest = 0;
+  for (const int cable : group) {
+    longest =
+        std::max(longest, *std::max_element(cables[cable].model.rest_lengths.begin(), cables[cable].model.rest_lengths.end()));
+    thickest = std::max(thickest, cables[cable].model.material.radius);
+  }
+  return std::max(thickest, margin_segments * longest) + 2 * h * largest_speed(cables, group);
+}
+
+}  // namespace
+
+void SegmentGrid::update(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, const Rules& rules,
+                         double reach, double h, SegmentPairs& found) {
+  if (still_valid(cables, group, h, found)) return;
+  found.margin = find_margin(cables, group, h);
+  found.places.clear();
+  for (const int cable : group) {
+    const std::vector<Vector3>& places = cables[cable].state.positions;
+    found.places.insert(found.places.end(), places.begin(), places.end());
+  }
+  fill(cables, group, reach, found.margin);
+  collect(cables, rules, found.pairs);
+}
+
+void SegmentGrid::fill(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, double reach, double margin) {
+  entries_.clear();
+  double largest = 0;
+  for (const int cable : group) {
+    const CableModel& model = cables[cable].model;
+    const std::vector<Vector3>& x = cables[cable].state.positions;
+    for (int i = 0; i < model.segments(); ++i) {
+      Entry entry;
+      entry.id = {cable, i};
+      entry.middle = 0.5 * (x[i] + x[i + 1]);
+      entry.radius = 0.5 * (x[i + 1] - x[i]).norm() + model.material.radius + 0.5 * reach + margin;
+      entry.next = -1;
+      largest = std::max(largest, entry.radius);
+      entries_.push_back(entry);
+    }
+  }
+  std::size_t buckets = 1;
+  while (buckets < 2 * entries_.size()) buckets *= 2;
+  buckets_.assign(buckets, -1);
+  const double cell = 2 * largest;
+  for (int k = static_cast<int>(entries_.size()) - 1; k >= 0; --k) {
+    Entry& entry = entries_[k];
+    for (int axis = 0; axis < 3; ++axis) {
+      constexpr double far = 1e9;  // what is further away shares the outermost cells
+      entry.cell[axis] = static_cast<std::int32_t>(std::floor(std::clamp(entry.middle[axis] / cell, -far, far)));
+    }
+    int& first = buckets_[bucket(entry.cell)];
+    entry.next = first;
+    first = k;
+  }
+}
+
+void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules& rules, std::vector<SegmentPairs::Pair>& pairs) {
+  pairs.clear();
+  for (int a = 0; a < static_cast<int>(entries_.size()); ++a) {
+    const Entry& first = entries_[a];
+    const CableModel& model = cables[first.id.cable].model;
+    near_.clear();
+    for (int dx = -1; dx <= 1; ++dx)
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dz = -1; dz <= 1; ++dz) {
+          const std::array<std::int32_t, 3> cell{first.cell[0] + dx, first.cell[1] + dy, first.cell[2] + dz};
+          for (int b = buckets_[bucket(cell)]; b >= 0; b = entries_[b].next) {
+            const Entry& second = entries_[b];
+            if (b <= a || second.cell != cell) continue;
+            const double sum = first.radius + second.radius;
+            if ((first.middle - second.middle).squaredNorm() > sum * sum) continue;
+            const bool same = first.id.cable == second.id.cable;
+            if (same ? !rules.self : !rules.between_cables) continue;
+            if (same) {
+              if (!longer(model, first.id.segment + 1, second.id.segment, bend_radii * model.material.radius)) continue;
+            }
+            near_.push_back(b);
+          }
+        }
+    std::sort(near_.begin(), near_.end());
+    for (const int b : near_) pairs.push_back({first.id, entries_[b].id});
+  }
+}
+
+std::size_t SegmentGrid::bucket(const std::array<std::int32_t, 3>& cell) const {
+  const std::uint64_t hash = static_cast<std::uint64_t>(cell[0]) * 73856093u ^ static_cast<std::uint64_t>(cell[1]) * 19349663u ^
+                             static_cast<std::uint64_t>(cell[2]) * 83492791u;
+  return hash & (buckets_.size() - 1);
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "verlet_cable/core/cable.h"
+
+namespace verlet_cable {
+
+/// A segment of one of several cables.
+struct SegmentId {
+  int cable = 0, segment = 0;
+};
+
+/// Pairs of segments that may touch soon. They stay valid as long as no node has moved by more than a margin, so that most
+/// substeps find them ready.
+struct SegmentPairs {
+  struct Pair {
+    SegmentId first, second;  ///< ascending
+  };
+  std::vector<Pair> pairs;  ///< ascending
+  // When they were found; nowhere: never
+  std::vector<Vector3> places;  ///< [m] of the nodes
+  double margin = 0;            ///< [m] that a node may move
+};
+
+/// Finds pairs of segments with a hash of cubic cells (Teschner et al., Optimized Spatial Hashing for Collision Detection of
+/// Deformable Objects, 2003).
+class SegmentGrid {
+ public:
+  /// Which pairs count.
+  struct Rules {
+    bool self = false;            ///< segments of one cable
+    bool between_cables = false;  ///< segments of two
+  };
+
+  /// Brings `found` up to date: those of `group`, ascending indices into `cables`, whose centre lines may come closer in the
+  /// next h [s] than the sum of the radii and `reach` [m].
+  void update(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, const Rules& rules, double reach,
+              double h, SegmentPairs& found);
+
+ private:
+  struct Entry {
+    SegmentId id;
+    Vector3 middle;
+    double radius;  ///< of a ball around the capsule, with margin
+    std::array<std::int32_t, 3> cell{};
+    int next;  ///< in the same bucket, -1: none
+  };
+
+  void fill(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, double reach, double margin);
+  void collect(const std::vector<SimulatedCable>& cables, const Rules& rules, std::vector<SegmentPairs::Pair>& pairs);
+  std::size_t bucket(const std::array<std::int32_t, 3>& cell) const;
+
+  std::vector<Entry> entries_;
+  std::vector<int> buckets_;  ///< first entry, -1: none; a power of two of them
+  std::vector<int> near_;
+};
+
+}  // namespace verlet_cable

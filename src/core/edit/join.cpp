@@ -1,0 +1,266 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "rod/length_projection.h"
+#include "rod/material_frames.h"
+#include "verlet_cable/core/number_text.h"
+#include "verlet_cable/core/scene_fields.h"
+#include "world/implementation.h"
+
+namespace verlet_cable {
+
+namespace {
+
+/// [m/s], [m/s^2] With which ends that are apart are drawn together.
+constexpr double joining_speed = 2, joining_acceleration = 20;
+/// Of a segment's length: how near they are drawn before they are welded.
+constexpr double approach = 0.2;
+/// Relative, of what a cable between two holders must span.
+constexpr double rounding = 1e-9;
+
+EditResult refused(const std::string& message) {
+  return {false, message, {}};
+}
+
+/// The first property in which two materials differ; none if they are the same.
+std::optional<std::string> difference(const MaterialDesc& first, const MaterialDesc& second) {
+  for (const auto& field : material_fields) {
+    if (first.*field.member != second.*field.member)
+      return std::string(field.key) + " " + number_text(first.*field.member) + " and " + number_text(second.*field.member);
+  }
+  return std::nullopt;
+}
+
+/// The material's axes, seen in the cable's other direction: x and z turn around.
+const Quaternion turned(0, 0, 1, 0);
+
+/// The same cable from its end to its start.
+void reverse(SimulatedCable& cable) {
+  CableModel& model = cable.model;
+  CableState& state = cable.state;
+  for (auto* values : {&model.rest_lengths, &model.masses, &state.tension, &state.axial_multiplier, &state.twist})
+    std::reverse(values->begin(), values->end());
+  for (auto* values : {&state.positions, &state.velocities, &state.accelerations}) std::reverse(values->begin(), values->end());
+  std::reverse(model.rest_curvature.begin(), model.rest_curvature.end());
+  std::reverse(model.flexible_fraction.begin(), model.flexible_fraction.end());
+  for (auto& curvature : model.rest_curvature) curvature[0] = -curvature[0];
+  state.reference_node = model.segments() - state.reference_node;
+  state.reference_orientation = state.reference_orientation * turned;
+}
+
+/// The unloaded curvature of `cable` about the axes of a cable that is welded to it, and whose material is carried on into it.
+void turn_rest_curvature(const Quaternion& welded, const Quaternion& own, SimulatedCable& cable) {
+  const double roll = relative_roll(welded, own, nullptr, 0);
+  const double cosine = std::cos(roll), sine = std::sin(roll);
+  for (auto& curvature : cable.model.rest_curvature) {
+    const auto [y, z] = curvature;
+    curvature = {y * cosine - z * sine, z * cosine + y * sine};
+  }
+}
+
+template <typename Array>
+void append(const Array& tail, Array& array) {
+  array.insert(array.end(), tail.begin(), tail.end());
+}
+
+/// `first` followed by `second`, with a weightless segment between them that is as long as they are apart.
+void append_cable(const SimulatedCable& second, SimulatedCable& first) {
+  const double gap = (second.state.positions.front() - first.state.positions.back()).norm();
+  CableModel& model = first.model;
+  CableState& state = first.state;
+  if (!model.rest_curvature.empty() || !second.model.rest_curvature.empty()) {
+    model.rest_curvature.resize(model.nodes());
+    append(second.model.rest_curvature, model.rest_curvature);
+    model.rest_curvature.resize(model.nodes() + second.model.nodes());
+  }
+  if (!model.flexible_fraction.empty() || !second.model.flexible_fraction.empty()) {
+    model.flexible_fraction.resize(model.nodes(), 1.0);
+    append(second.model.flexible_fraction, model.flexible_fraction);
+    model.flexible_fraction.resize(model.nodes() + second.model.nodes(), 1.0);
+  }
+  model.rest_lengths.push_back(gap);
+  for (auto* values : {&state.tension, &state.axial_multiplier, &state.twist}) values->push_back(0);
+  append(second.model.rest_lengths, model.rest_lengths);
+  append(second.model.masses, model.masses);
+  append(second.state.positions, state.positions);
+  append(second.state.velocities, state.velocities);
+  append(second.state.accelerations, state.accelerations);
+  append(second.state.tension, state.tension);
+  append(second.state.axial_multiplier, state.axial_multiplier);
+  append(second.state.twist, state.twist);
+}
+
+/// An end that is to be joined: the next attachment from there on, and how much cable is between.
+struct JointEnd {
+  int node = 0;
+  const Attachment* next = nullptr;
+  double length = 0;  ///< [m]
+};
+
+JointEnd find_end(const CableModel& model, int cable, bool at_end, const std::vector<Attachment>& attachments) {
+  JointEnd end;
+  end.node = at_end ? model.segments() : 0;
+  for (const Attachment& a : attachments) {
+    if (a.cable != cable) continue;
+    const double length = model.length(std::min(a.node, end.node), std::max(a.node, end.node));
+    if (end.next && length >= end.length) continue;
+    end.next = &a;
+    end.length = length;
+  }
+  return end;
+}
+
+}  // namespace
+
+EditResult World::join(int first, bool first_at_end, int second, bool second_at_end) {
+  Implementation& w = *implementation_;
+  const int count = static_cast<int>(w.state.cables.size());
+  for (const int index : {first, second})
+    if (index < 0 || index >= count) return refused("cable: " + std::to_string(index) + "; must be the index of a cable");
+  const CableModel &model = w.state.cables[first].model, &other = w.state.cables[second].model;
+  if (first == second) return refused("second: " + other.name + "; must be another cable than first");
+  for (const int index : {first, second})
+    if (w.state.cable_progress[index].drive)
+      return refused("cable: " + w.state.cables[index].model.name +
+                     "; it is still being wound by its winch or drawn together by an earlier join; wait until that is done");
+  if (const auto differing = difference(model.material, other.material))
+    return refused("second: " + other.name + "; must be of the same material as " + model.name + ", but they differ in " +
+                   *differing);
+  const JointEnd end = find_end(model, first, first_at_end, w.state.attachments);
+  const JointEnd other_end = find_end(other, second, second_at_end, w.state.attachments);
+  if (end.next && other_end.next) {
+    const auto place = [&](const Attachment& a) { return (w.state.frames.poses[a.frame] * a.pose).position; };
+    if (end.next->node == end.node && other_end.next->node == other_end.node)
+      return refused("first, second: both ends are held, by " + end.next->name + " and " + other_end.next->name +
+                     "; one of them must be unpinned");
+    const double distance = (place(*end.next) - place(*other_end.next)).norm(), length = end.length + other_end.length;
+    if (model.material.axial_stiffness == infinity && distance > length * (1 + rounding))
+      return refused("first, second: the ends cannot meet: " + end.next->name + " and " + other_end.next->name + " are " +
+                     rounded_text(distance) + " m apart, the cable between them would be " + rounded_text(length) + " m long");
+  }
+
+  // The second cable in the direction of the first.
+  if (first_at_end == second_at_end) w.reverse_cable(second);
+  SimulatedCable &kept = w.state.cables[first], &gone = w.state.cables[second];
+  const int shift = first_at_end ? kept.model.nodes() : gone.model.nodes();
+  const std::string name = kept.model.name;
+  if (!gone.model.rest_curvature.empty()) {
+    const std::vector<Quaternion> axes = segment_orientations(kept), own = segment_orientations(gone);
+    turn_rest_curvature(first_at_end ? axes.back() : axes.front(), first_at_end ? own.front() : own.back(), gone);
+  }
+  if (first_at_end) {
+    append_cable(gone, kept);
+  } else {
+    SimulatedCable joined = gone;
+    append_cable(kept, joined);
+    joined.model.name = name;
+    joined.model.color = kept.model.color;
+    joined.model.segment_length = kept.model.segment_length;
+    joined.state.reference_node = kept.state.reference_node + shift;
+    joined.state.reference_orientation = kept.state.reference_orientation;
+    kept = std::move(joined);
+  }
+  w.renumber(first_at_end ? second : first, 0, shift);
+  KinematicTargets &targets = w.state.cable_progress[first].targets, &holders_of_gone = w.state.cable_progress[second].targets;
+  append(holders_of_gone.nodes, targets.nodes);
+  append(holders_of_gone.directions, targets.directions);
+
+  LengthDrive drive;
+  drive.place = LengthDrive::Place::inside;
+  drive.segment = shift - 1;
+  const double gap = kept.model.rest_lengths[drive.segment];
+  drive.left = -std::max(gap - approach * kept.model.segment_length, 0.0);
+  drive.speed = joining_speed;
+  drive.acceleration = joining_acceleration;
+  w.state.cable_progress[first].drive = drive;
+
+  w.follow_join(first, second);
+  w.state.cables.erase(w.state.cables.begin() + second);
+  w.state.cable_progress.erase(w.state.cable_progress.begin() + second);
+  const int joined = first > second ? first - 1 : first;
+  w.state.cable_progress[joined].level = 0;
+  if (drive.left == 0) {
+    w.close_joint(joined);
+  } else {
+    w.after_remeshing(joined);
+    SimulatedCable& cable = w.state.cables[joined];
+    project_velocities(cable.model, boundary_now(w.state.cable_progress[joined].targets).nodes, cable.state.positions,
+                       cable.state.velocities);
+  }
+  return {true, "", name};
+}
+
+/// The second cable has become a part of the first, and those after it count one less.
+void World::Implementation::follow_join(int first, int second) {
+  const auto follow = [&](int& cable) {
+    if (cable == second) cable = first;
+    if (cable > second) --cable;
+  };
+  for (Attachment& a : state.attachments) follow(a.cable);
+  for (Intrusion& intrusion : findings.intrusions) follow(intrusion.cable);
+  for (Break& broken : findings.breaks) {
+    follow(broken.cable);
+    follow(broken.new_cable);
+  }
+}
+
+void World::Implementation::reverse_cable(int index) {
+  reverse(state.cables[index]);
+  const int n = state.cables[index].model.segments();
+  for (Intrusion& intrusion : findings.intrusions)
+    if (intrusion.cable == index) intrusion.segment = n - 1 - intrusion.segment;
+  for (Attachment& a : state.attachments) {
+    if (a.cable != index) continue;
+    a.node = n - a.node;
+    a.pose.orientation = a.pose.orientation * turned;
+  }
+  for (KinematicTarget& h : state.cable_progress[index].targets.nodes) h.node = n - h.node;
+  for (DirectionTarget& h : state.cable_progress[index].targets.directions) {
+    h.node = n - h.node;
+    h.orientation = h.orientation * turned;
+  }
+}
+
+/// The two ends become one node; all segments keep the lengths that they have.
+void World::Implementation::close_joint(int index) {
+  CableProgress& s = state.cable_progress[index];
+  CableModel& model = state.cables[index].model;
+  CableState& cable = state.cables[index].state;
+  const int node = s.drive->segment, gone = node + 1;
+  s.drive.reset();
+  std::vector<double> lengths;
+  for (int i = 0; i < model.segments(); ++i)
+    if (i != node) lengths.push_back((cable.positions[i + 1] - cable.positions[i]).norm());
+
+  const double mass = model.masses[node] + model.masses[gone], part = model.masses[gone] / mass;
+  model.masses[node] = mass;
+  model.masses.erase(model.masses.begin() + gone);
+  for (auto* values : {&cable.positions, &cable.velocities, &cable.accelerations}) {
+    (*values)[node] += part * ((*values)[gone] - (*values)[node]);
+    values->erase(values->begin() + gone);
+  }
+  for (auto* values : {&model.rest_lengths, &cable.tension, &cable.axial_multiplier, &cable.twist})
+    values->erase(values->begin() + node);
+  if (!model.rest_curvature.empty()) {
+    for (const int axis : {0, 1})
+      model.rest_curvature[node][axis] = 0.5 * (model.rest_curvature[node][axis] + model.rest_curvature[gone][axis]);
+    model.rest_curvature.erase(model.rest_curvature.begin() + gone);
+  }
+  if (!model.flexible_fraction.empty()) {
+    model.flexible_fraction[node] = 0.5 * (model.flexible_fraction[node] + model.flexible_fraction[gone]);
+    model.flexible_fraction.erase(model.flexible_fraction.begin() + gone);
+  }
+  if (cable.reference_node >= gone) --cable.reference_node;
+  renumber(index, gone, -1);
+
+  std::vector<HeldNode> held;
+  for (const KinematicTarget& h : s.targets.nodes) held.push_back({h.node, h.position, h.velocity});
+  std::sort(held.begin(), held.end(), [](const HeldNode& a, const HeldNode& b) { return a.node < b.node; });
+  for (const HeldNode& h : held) cable.positions[h.node] = h.position;
+  project_lengths(model, held, lengths, cable.positions);
+  after_remeshing(index);
+  project_velocities(model, boundary_now(s.targets).nodes, cable.positions, cable.velocities);
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,159 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "verlet_cable/core/number_text.h"
+#include "verlet_cable/core/quoted_text.h"
+#include "verlet_cable/core/scene_fields.h"
+#include "verlet_cable/core/world.h"
+#include "world/implementation.h"
+
+namespace verlet_cable {
+
+namespace {
+
+Shape make_shape(const ObstacleDesc& desc) {
+  switch (desc.type) {
+    case ShapeType::plane:
+      return PlaneShape{};
+    case ShapeType::sphere:
+      return SphereShape{desc.radius};
+    case ShapeType::capsule:
+      return CapsuleShape{desc.radius, desc.length};
+    case ShapeType::cylinder:
+      return CylinderShape{desc.radius, desc.length};
+    case ShapeType::box:
+      return BoxShape{desc.size};
+    case ShapeType::mesh:
+      break;
+  }
+  return MeshShape{desc.mesh, desc.uri, desc.scale};
+}
+
+/// Indices of the links that are rigidly joined to one, itself included, ascending.
+std::vector<int> rigid_links(const std::vector<LinkDesc>& tree, int link) {
+  std::vector<int> roots(tree.size());
+  for (std::size_t i = 0; i < tree.size(); ++i) roots[i] = tree[i].fixed ? roots[tree[i].parent] : static_cast<int>(i);
+  std::vector<int> links;
+  for (std::size_t i = 0; i < tree.size(); ++i)
+    if (roots[i] == roots[link]) links.push_back(static_cast<int>(i));
+  return links;
+}
+
+std::string number_problem(const char* key, double value, const Range& range) {
+  return range.contains(value) ? "" : std::string(key) + ": " + number_text(value) + "; allowed: " + range.text("m");
+}
+
+std::string problem_of(const PlaneShape&) {
+  return "";
+}
+std::string problem_of(const SphereShape& sphere) {
+  return number_problem("radius", sphere.radius, positive);
+}
+template <typename RoundShape>
+std::string problem_of(const RoundShape& shape) {
+  const std::string radius = number_problem("radius", shape.radius, positive);
+  return radius.empty() ? number_problem("length", shape.length, positive) : radius;
+}
+std::string problem_of(const BoxShape& box) {
+  for (const double edge : box.size)
+    if (!positive.contains(edge)) return number_problem("size", edge, positive);
+  return "";
+}
+std::string problem_of(const MeshShape& shape) {
+  return shape.mesh ? "" : "mesh: missing";
+}
+
+std::string problem_of(const Obstacle& obstacle, std::size_t frames) {
+  if (obstacle.name.empty()) return "name: empty; allowed: any other";
+  if (obstacle.frame < 0 || obstacle.frame >= static_cast<int>(frames))
+    return "frame: " + std::to_string(obstacle.frame) + "; allowed: the id of a frame";
+  if (const std::string problem = pose_problem("pose", obstacle.pose); !problem.empty()) return problem;
+  if (obstacle.friction && !not_negative.contains(*obstacle.friction))
+    return "friction: " + number_text(*obstacle.friction) + "; allowed: " + not_negative.text();
+  if (!not_negative.contains(obstacle.padding)) return number_problem("padding", obstacle.padding, not_negative);
+  return std::visit([](const auto& shape) { return problem_of(shape); }, obstacle.shape);
+}
+
+auto find_obstacle(std::vector<Obstacle>& obstacles, const std::string& name) {
+  return std::find_if(obstacles.begin(), obstacles.end(), [&](const Obstacle& obstacle) { return obstacle.name == name; });
+}
+
+}  // namespace
+
+const std::vector<Obstacle>& World::obstacles() const {
+  return implementation_->state.obstacles;
+}
+
+EditResult World::set_obstacle(Obstacle obstacle) {
+  Implementation& w = *implementation_;
+  if (const std::string problem = problem_of(obstacle, w.state.frames.names.size()); !problem.empty())
+    return {false, "obstacle " + quoted(obstacle.name) + ": " + problem, {}};
+  obstacle.pose.orientation.normalize();
+  obstacle.present = w.state.frames.known[obstacle.frame];
+  const std::string name = obstacle.name;
+  const auto same = find_obstacle(w.state.obstacles, name);
+  obstacle.id = same == w.state.obstacles.end() ? w.state.next_obstacle_id++ : same->id;
+  if (same == w.state.obstacles.end()) {
+    w.state.obstacles.push_back(std::move(obstacle));
+  } else {
+    *same = std::move(obstacle);
+  }
+  w.find_obstacle_anchors();
+  return {true, "", name};
+}
+
+EditResult World::remove_obstacle(const std::string& name) {
+  Implementation& w = *implementation_;
+  const auto found = find_obstacle(w.state.obstacles, name);
+  if (found == w.state.obstacles.end()) return {false, "obstacle: " + quoted(name) + "; there is no such obstacle", {}};
+  const int index = static_cast<int>(found - w.state.obstacles.begin());
+  w.state.obstacles.erase(found);
+  const auto names_it = [&](const Intrusion& intrusion) { return intrusion.obstacle == index; };
+  w.findings.intrusions.erase(std::remove_if(w.findings.intrusions.begin(), w.findings.intrusions.end(), names_it),
+                              w.findings.intrusions.end());
+  for (Intrusion& intrusion : w.findings.intrusions)
+    if (intrusion.obstacle > index) --intrusion.obstacle;
+  w.findings.contacts.clear();
+  return {true, "", name};
+}
+
+void World::Implementation::add_scene_obstacles() {
+  for (const ObstacleDesc& desc : all_obstacles(*state.scene)) {
+    Obstacle obstacle;
+    obstacle.name = desc.name;
+    obstacle.frame = desc.frame.empty() ? 0 : state.frames.find(desc.frame);
+    obstacle.pose = pose_of(desc.pose);
+    obstacle.shape = make_shape(desc);
+    obstacle.friction = desc.friction;
+    obstacle.padding = desc.padding;
+    obstacle.present = state.frames.known[obstacle.frame];
+    obstacle.id = state.next_obstacle_id++;
+    state.obstacles.push_back(std::move(obstacle));
+  }
+  find_obstacle_anchors();
+}
+
+/// Which frames belong to an obstacle: its own, and those of links that no joint can move against it. The fixed frame holds too
+/// much to belong to anything.
+void World::Implementation::find_obstacle_anchors() {
+  static const std::vector<LinkDesc> no_links;
+  const std::vector<LinkDesc>& tree = state.scene->robot ? state.scene->robot->tree : no_links;
+  for (Obstacle& obstacle : state.obstacles) {
+    obstacle.holders.clear();
+    if (obstacle.frame == 0) continue;
+    obstacle.holders.push_back(obstacle.frame);
+    const auto link =
+        std::find_if(tree.begin(), tree.end(), [&](const LinkDesc& l) { return l.name == state.frames.names[obstacle.frame]; });
+    if (link == tree.end()) continue;
+    for (const int i : rigid_links(tree, static_cast<int>(link - tree.begin()))) {
+      const int frame = state.frames.find(tree[i].name);
+      if (frame > 0 && frame < static_cast<int>(state.frames.names.size()) && frame != obstacle.frame)
+        obstacle.holders.push_back(frame);
+    }
+    std::sort(obstacle.holders.begin(), obstacle.holders.end());
+  }
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,24 @@
+#include <memory>
+
+#include "verlet_cable/core/world.h"
+#include "world/implementation.h"
+
+namespace verlet_cable {
+
+void World::tune(const SceneDesc& scene) {
+  State& state = implementation_->state;
+  auto tuned = std::make_shared<SceneDesc>(*state.scene);
+  tuned->gravity = scene.gravity;
+  tuned->fluid = scene.fluid;
+  tuned->materials = scene.materials;
+  if (tuned->contact && scene.contact) tuned->contact->friction = scene.contact->friction;
+  state.scene = std::move(tuned);
+  for (int i = 0; i < static_cast<int>(state.cables.size()); ++i) {
+    CableModel& model = state.cables[i].model;
+    model.material = *scene.find_material(model.material_name);
+    // A clamp holds the direction where the cable is stiff, the neighbouring node where it is not.
+    implementation_->find_targets_of(i);
+  }
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,221 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "rod/length_projection.h"
+#include "verlet_cable/core/number_text.h"
+#include "world/implementation.h"
+
+namespace verlet_cable {
+
+namespace {
+
+/// [m/s^2] With which a winch speeds up and brakes: a tenth of gravity, so that a load feels little of it.
+constexpr double winch_acceleration = 1;
+/// Of a segment's length: the segment at a winch is split when longer, takes in its neighbour when shorter, and no segment gets
+/// shorter than the last.
+constexpr double longest_segment = 1.5, shortest_segment = 0.5, least_segment = 0.1;
+/// A joint closes when its ends are this close, of a segment's length.
+constexpr double closing_distance = 0.25;
+
+EditResult refused(const std::string& message) {
+  return {false, message, {}};
+}
+
+/// Whether a node carries more than its segments and what a cut left on an end weigh.
+bool carries_payload(const CableModel& model, int node) {
+  double share = 0;
+  if (node > 0) share += 0.5 * model.rest_lengths[node - 1];
+  if (node < model.segments()) share += 0.5 * model.rest_lengths[node];
+  const double residue = 0.5 * model.segment_length;
+  return model.masses[node] > model.material.linear_density * (share + 1.5 * residue);
+}
+
+/// At a winch the material moves through the end node. Adds (`side` 1) this motion to the node's velocity, or takes it away (-1).
+void add_material_motion(const LengthDrive& drive, double side, SimulatedCable& cable) {
+  if (!drive.is_winch()) return;
+  const int n = cable.model.segments(), node = drive.end_node(n), i = drive.segment;
+  const Vector3 along = (cable.state.positions[i + 1] - cable.state.positions[i]).normalized();
+  cable.state.velocities[node] += (node == 0 ? side : -side) * drive.growth() * along;
+}
+
+}  // namespace
+
+EditResult World::set_length(int index, bool at_end, double length, double speed) {
+  Implementation& w = *implementation_;
+  if (index < 0 || index >= static_cast<int>(w.state.cables.size()))
+    return refused("cable: " + std::to_string(index) + "; must be the index of a cable");
+  const CableModel& model = w.state.cables[index].model;
+  CableProgress& s = w.state.cable_progress[index];
+  const LengthDrive::Place place = at_end ? LengthDrive::Place::end : LengthDrive::Place::start;
+  if (s.drive && !s.drive->is_winch())
+    return refused("cable: " + model.name + " is still being drawn together with another by join; wait until they have met");
+  if (s.drive && s.drive->place != place)
+    return refused("at_end: the winch at the other end of cable " + model.name + " is still winding; wait until it is done");
+
+  // One segment a step can be taken in, and is to be left over.
+  const double fastest = shortest_segment * model.segment_length / w.state.scene->time_step;
+  if (!(speed > 0 && speed <= fastest))
+    return refused("speed: " + number_text(speed) + "; must be above 0, and at most " + rounded_bound_text(fastest, -1) + " m/s");
+  int others = 0;
+  for (int i = 0; i < static_cast<int>(w.state.cables.size()); ++i) others += i == index ? 0 : w.state.cables[i].model.segments();
+  const double longest = (w.state.scene->limits.segments - others) * model.segment_length;
+  if (!(length > 0 && length <= longest))
+    return refused("length: " + number_text(length) + "; must be above 0, and at most " + rounded_bound_text(longest, -1) +
+                   " m, as limits.segments allows");
+
+  LengthDrive drive = s.drive.value_or(LengthDrive{});
+  drive.place = place;
+  drive.segment = at_end ? model.segments() - 1 : 0;
+  drive.speed = speed;
+  drive.acceleration = winch_acceleration;
+  drive.left = length - (model.length() + drive.debt);
+  const std::optional<LengthDrive> before = std::exchange(s.drive, drive);
+  const double shortest = model.length() - w.available_length(index);
+  const double needed = model.length() - w.slack_at_winch(index);
+  if (length >= shortest && length >= needed) return {true, "", model.name};
+  s.drive = before;
+  return refused(
+      "length: " + number_text(length) + "; must be at least " + rounded_bound_text(std::max(shortest, needed), 1) + " m, " +
+      (needed > shortest ? "the distance of its attachments"
+                         : "so that a part of a segment is left between the winch and the next attachment, payload or end"));
+}
+
+/// [m] That can be taken in: up to the next node that is attached or carries a payload, or to the other end.
+double World::Implementation::available_length(int index) const {
+  const CableModel& model = state.cables[index].model;
+  const bool from_start = state.cable_progress[index].drive->place == LengthDrive::Place::start;
+  const int n = model.segments();
+  int stop = from_start ? n : 0;
+  for (const Attachment& a : state.attachments) {
+    if (a.cable != index || a.node == (from_start ? 0 : n)) continue;
+    stop = from_start ? std::min(stop, a.node) : std::max(stop, a.node);
+  }
+  const int step = from_start ? 1 : -1;
+  double length = 0;
+  for (int node = from_start ? 0 : n; node != stop; node += step) {
+    length += model.rest_lengths[from_start ? node : node - 1];
+    if (node + step != stop && carries_payload(model, node + step)) break;
+  }
+  return length - least_segment * model.segment_length;
+}
+
+/// [m] That the cable between the winch and the next attachment is longer than they are apart; infinite where there are no two.
+double World::Implementation::slack_at_winch(int index) const {
+  const CableModel& model = state.cables[index].model;
+  const bool from_start = state.cable_progress[index].drive->place == LengthDrive::Place::start;
+  const int end = from_start ? 0 : model.segments();
+  const Attachment *winch = nullptr, *next = nullptr;
+  for (const Attachment& a : state.attachments) {
+    if (a.cable != index) continue;
+    if (a.node == end) {
+      winch = &a;
+    } else if (!next || std::abs(a.node - end) < std::abs(next->node - end)) {
+      next = &a;
+    }
+  }
+  if (!winch || !next) return infinity;
+  const auto place = [&](const Attachment& a) { return (state.frames.poses[a.frame] * a.pose).position; };
+  return model.length(std::min(end, next->node), std::max(end, next->node)) - (place(*winch) - place(*next)).norm();
+}
+
+void World::Implementation::plan_drive_step(int index) {
+  CableProgress& s = state.cable_progress[index];
+  const CableModel& model = state.cables[index].model;
+  if (!s.drive->is_winch() && model.rest_lengths[s.drive->segment] <= closing_distance * model.segment_length) {
+    close_joint(index);
+    return;
+  }
+  plan_drive(s.drive->is_winch() ? available_length(index) : infinity, state.scene->time_step, *s.drive);
+  if (s.drive->is_winch()) remesh_winch(index);
+  LengthDrive& drive = *s.drive;
+  drive.start_length = model.rest_lengths[drive.segment];
+  for (const int side : {0, 1}) drive.start_masses[side] = model.masses[drive.segment + side];
+  wind(drive, 1, state.scene->time_step, state.cables[index].model);
+}
+
+/// Segments appear and vanish at the winch, so that the one there stays about as long as the others.
+void World::Implementation::remesh_winch(int index) {
+  const CableModel& model = state.cables[index].model;
+  const LengthDrive& drive = *state.cable_progress[index].drive;
+  while (model.rest_lengths[drive.segment] > longest_segment * model.segment_length) add_winch_node(index);
+  const auto too_short = [&] {
+    return model.rest_lengths[drive.segment] + std::min(drive.change, 0.0) < shortest_segment * model.segment_length;
+  };
+  const auto is_free = [&](int node) {
+    return node > 0 && node < model.segments() && !carries_payload(model, node) &&
+           std::none_of(state.attachments.begin(), state.attachments.end(),
+                        [&](const Attachment& a) { return a.cable == index && a.node == node; });
+  };
+  while (too_short() && is_free(drive.place == LengthDrive::Place::start ? 1 : model.segments() - 1)) take_in_winch_node(index);
+}
+
+void World::Implementation::add_winch_node(int index) {
+  SimulatedCable& cable = state.cables[index];
+  LengthDrive& drive = *state.cable_progress[index].drive;
+  const double whole = cable.model.rest_lengths[drive.segment], regular = cable.model.segment_length;
+  const int node = drive.segment + 1;
+  add_material_motion(drive, 1, cable);
+  insert_node(drive.segment, drive.place == LengthDrive::Place::start ? whole - regular : regular, cable);
+  if (drive.place == LengthDrive::Place::end) ++drive.segment;
+  add_material_motion(drive, -1, cable);
+  renumber(index, node, 1);
+  after_remeshing(index);
+}
+
+void World::Implementation::take_in_winch_node(int index) {
+  SimulatedCable& cable = state.cables[index];
+  CableProgress& s = state.cable_progress[index];
+  LengthDrive& drive = *s.drive;
+  const int node = drive.place == LengthDrive::Place::start ? 1 : cable.model.segments() - 1;
+  add_material_motion(drive, 1, cable);
+  drive.debt += remove_node(node, cable);
+  if (drive.place == LengthDrive::Place::end) --drive.segment;
+  auto& held = s.targets.nodes;
+  held.erase(std::remove_if(held.begin(), held.end(), [&](const KinematicTarget& h) { return h.node == node; }), held.end());
+  renumber(index, node, -1);
+  after_remeshing(index);
+  // Nothing but the rest length at the winch changes lengths now, either.
+  std::vector<HeldNode> nodes = boundary_now(s.targets).nodes;
+  for (HeldNode& h : nodes) {
+    if (h.node != drive.end_node(cable.model.segments())) continue;
+    cable.state.velocities[h.node] = h.velocity;
+    add_material_motion(drive, 1, cable);
+    h.velocity = cable.state.velocities[h.node];
+  }
+  project_velocities(cable.model, nodes, cable.state.positions, cable.state.velocities);
+  add_material_motion(drive, -1, cable);
+}
+
+/// The nodes of a cable from `first` on have moved by `shift`.
+void World::Implementation::renumber(int index, int first, int shift) {
+  const auto follow = [&](int& node) {
+    if (node >= first) node += shift;
+  };
+  for (Attachment& a : state.attachments)
+    if (a.cable == index) follow(a.node);
+  for (Intrusion& intrusion : findings.intrusions)
+    if (intrusion.cable == index) follow(intrusion.segment);
+  for (KinematicTarget& h : state.cable_progress[index].targets.nodes) follow(h.node);
+  for (DirectionTarget& h : state.cable_progress[index].targets.directions) follow(h.node);
+}
+
+void World::Implementation::after_remeshing(int index) {
+  find_targets_of(index);
+  forget_contacts(index);
+}
+
+/// What names segments of a cable names others now.
+void World::Implementation::forget_contacts(int index) {
+  const std::uint32_t id = state.cable_progress[index].id;
+  state.cable_progress[index].contacts.clear();
+  for (CableProgress& memory : state.cable_progress) {
+    ContactCache& cache = memory.contacts;
+    cache.erase(std::remove_if(cache.begin(), cache.end(), [&](const CachedContact& c) { return names_other_cable(c, id); }),
+                cache.end());
+  }
+  findings.contacts.clear();
+  islands.value.invalidate();
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "geometry/vector_array.h"
+
+namespace verlet_cable {
+
+/// Links that are alike: link `first + k * stride` joins the nodes `first_node + k * stride` and `second_node + k * stride`. No
+/// node is in two of them, so that they may be treated in any order, or at once.
+struct LinkRun {
+  int first = 0, first_node = 0, second_node = 0;
+  int stride = 1;
+  int count = 0;
+};
+
+/// The law of a link over a step of h: the impulse P on its nodes, pushing them apart, is that of a spring and damper where the
+/// link will be at the end of the step (backward Euler), or whatever else is needed to keep its length l' between two bounds:
+///   P = -h (stiffness (l' - l0) + damping (l' - l) / h)   or   l' = shortest   or   l' = longest
+struct LinkLaw {
+  double rest_length = 0;            ///< [m] l0
+  double shortest = 0, longest = 0;  ///< [m]
+  double stiffness = 0;              ///< [N/m]
+  double damping = 0;                ///< [N s/m]
+};
+
+/// The nodes and links that the rows work on. Directions are those at the start of the step, so that impulses keep angular
+/// momentum, too (as in SHAKE: Ryckaert, Ciccotti and Berendsen 1977).
+struct LinkArrays {
+  VectorArray position;                ///< nodes: at the start of the step [m]
+  VectorArray velocity;                ///< nodes: over the step [m/s]
+  std::vector<double> inverse_mass;    ///< nodes: [1/kg], 0 where held
+  std::vector<double> impulse;         ///< links: P [N s]
+  std::vector<double> inverse_length;  ///< links: 1 / l at the start of the step [1/m]
+};
+
+/// Sets the inverse lengths, and applies the impulses that the links have from the step before.
+void start_links(const LinkRun& run, LinkArrays& arrays);
+/// One sweep: each link's law is fulfilled in turn, with what its nodes do at present (projected Gauss-Seidel).
+void sweep_links(const LinkRun& run, const LinkLaw& law, double h, LinkArrays& arrays);
+
+/// Squares of the lengths at the end of the step, relative to the rest length.
+struct SquareRange {
+  double least = 0, largest = 0;
+};
+SquareRange measure_links(const LinkRun& run, double rest_length, double h, const LinkArrays& arrays);
+
+/// Brings one link's length to `length` [m]: the part of `sweep_links` that is left when nothing but bounds counts. By an impulse
+/// along its direction at the start of the step, or by one along that at the end, which finds a way where the former cannot (a
+/// net in a plane cannot be kept in shape along its links when it leaves the plane), but is no part of the link's impulse: then
+/// what the second node was given [N s] is returned, else nothing.
+Vector3 set_length(int link, int first_node, int second_node, double length, bool along_end, double h, LinkArrays& arrays);
+/// [m] of one link at the end of the step.
+double end_length(int first_node, int second_node, double h, const LinkArrays& arrays);
+
+}  // namespace verlet_cable

@@ -1,0 +1,77 @@
+#include "net/long_range_attachments.h"
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+#include <tuple>
+
+namespace verlet_cable {
+
+namespace {
+
+/// More would cost more than they help.
+constexpr std::size_t most_tethers = 3;
+
+struct Way {
+  double length = 0;  ///< [m]
+  int node = 0, held = 0, links = 0;
+  bool operator>(const Way& other) const { return std::tie(length, node, held) > std::tie(other.length, other.node, other.held); }
+};
+
+struct Neighbour {
+  int node;
+  double length;  ///< [m]
+};
+
+std::vector<std::vector<Neighbour>> find_neighbours(const NetModel& model) {
+  std::vector<std::vector<Neighbour>> neighbours(model.masses.size());
+  for (std::size_t link = 0; link < model.links.size(); ++link) {
+    const auto [i, j] = model.links[link];
+    neighbours[i].push_back({j, model.rest_lengths[link]});
+    neighbours[j].push_back({i, model.rest_lengths[link]});
+  }
+  return neighbours;
+}
+
+}  // namespace
+
+/// Dijkstra's algorithm from all held nodes at once: the shortest ways to each node from the nearest few.
+void LongRangeAttachments::resize(const NetModel& model, const std::vector<HeldNode>& held, double stretch) {
+  long_range_attachments_.clear();
+  impulses_.assign(held.size(), Vector3::Zero());
+  most_links_ = 0;
+  const std::vector<std::vector<Neighbour>> neighbours = find_neighbours(model);
+  std::vector<std::vector<int>> reached_from(model.masses.size());
+  std::priority_queue<Way, std::vector<Way>, std::greater<>> ways;
+  for (std::size_t k = 0; k < held.size(); ++k) ways.push({0, held[k].node, static_cast<int>(k), 0});
+  while (!ways.empty()) {
+    const Way way = ways.top();
+    ways.pop();
+    std::vector<int>& from = reached_from[way.node];
+    if (from.size() == most_tethers || std::find(from.begin(), from.end(), way.held) != from.end()) continue;
+    if (from.empty()) most_links_ = std::max(most_links_, way.links);
+    from.push_back(way.held);
+    if (way.links > 0) long_range_attachments_.push_back({way.node, way.held, stretch * way.length});
+    for (const Neighbour& next : neighbours[way.node]) ways.push({way.length + next.length, next.node, way.held, way.links + 1});
+  }
+  std::stable_sort(long_range_attachments_.begin(), long_range_attachments_.end(),
+                   [](const Tether& a, const Tether& b) { return a.node < b.node; });
+}
+
+void LongRangeAttachments::pull(const std::vector<HeldNode>& held, double h, LinkArrays& arrays) {
+  std::fill(impulses_.begin(), impulses_.end(), Vector3::Zero());
+  for (const Tether& tether : long_range_attachments_) {
+    const double inverse_mass = arrays.inverse_mass[tether.node];
+    if (inverse_mass == 0) continue;
+    const Vector3 velocity = get(arrays.velocity, tether.node);
+    const Vector3 away = get(arrays.position, tether.node) + h * velocity - held[tether.held].position;
+    const double square = away.squaredNorm();
+    if (square <= tether.length * tether.length) continue;
+    const double distance = std::sqrt(square);
+    const Vector3 change = (distance - tether.length) / (h * distance) * away;
+    set(arrays.velocity, tether.node, velocity - change);
+    impulses_[tether.held] += change / inverse_mass;
+  }
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,190 @@
+#include "rod/bending.h"
+
+#include <algorithm>
+
+#include "geometry/vector_array.h"
+#include "rod/material_frames.h"
+
+namespace verlet_cable {
+
+namespace {
+
+/// (psi(b) - psi(a)) / (b - a), from the series of psi.
+double mean_slope(double a, double b) {
+  const double sum = a + b, product = a * b;
+  return 1 + sum / 6 + 2.0 / 45 * (sum * sum - product) + 1.0 / 70 * sum * (sum * sum - 2 * product);
+}
+
+/// psi(u)
+double angle_energy(double u) {
+  return u + u * u / 6 + 2.0 / 45 * u * u * u + 1.0 / 70 * u * u * u * u;
+}
+
+}  // namespace
+
+void Bending::resize(const CableModel& model) {
+  segments_ = model.segments();
+  const std::size_t nodes = model.nodes();
+  for (std::vector<double>* a : {&inverse_length_, &stiffness_, &damping_, &start_square_, &end_square_, &slope_})
+    a->assign(nodes, 0.0);
+  for (VectorArray* a : {&start_, &natural_, &change_, &moment_}) a->assign(nodes, 0.0);
+  clamps_.reserve(2 * nodes);
+}
+
+void Bending::start(const CableModel& model, const VectorArray& segment, const std::vector<HeldDirection>& directions, double h,
+                    double part) {
+  const double stiffness = model.material.bending_stiffness, damping = model.material.bending_damping / h;
+  active_ = stiffness > 0 || model.material.bending_damping > 0;
+  if (!active_) return;
+  part_ = part;
+  for (int i = 0; i < segments_; ++i) inverse_length_[i] = 1 / model.rest_lengths[i];
+  for (int i = 1; i < segments_; ++i) {
+    const double joint = 1 / model.bending_length(i, 0.5 * (model.rest_lengths[i - 1] + model.rest_lengths[i]));
+    stiffness_[i] = stiffness * joint;
+    damping_[i] = damping * joint;
+    const Vector3 e = inverse_length_[i] * get(segment, i) - inverse_length_[i - 1] * get(segment, i - 1);
+    set(start_, i, e);
+    start_square_[i] = e.squaredNorm();
+  }
+  clamps_.clear();
+  for (std::size_t k = 0; k < directions.size(); ++k) {
+    const HeldDirection& target = directions[k];
+    stiffness_[target.node] = damping_[target.node] = 0;
+    const Vector3 start_axis = target.start * Vector3::UnitX(), end_axis = target.end * Vector3::UnitX();
+    for (const int i : {target.node - 1, target.node}) {
+      if (i < 0 || i >= segments_) continue;
+      ClampJoint clamp;
+      clamp.target = static_cast<int>(k);
+      clamp.segment = i;
+      clamp.side = i < target.node ? -1 : 1;
+      const double joint = 1 / model.bending_length(target.node, 0.5 * model.rest_lengths[i]);
+      clamp.stiffness = stiffness * joint;
+      clamp.damping = damping * joint;
+      // The axis is as long as the segment is stretched: a clamp does not resist stretch.
+      const double stretch = inverse_length_[i] * get(segment, i).norm();
+      clamp.start = inverse_length_[i] * get(segment, i) - stretch * start_axis;
+      clamp.start_square = clamp.start.squaredNorm();
+      clamp.axis_change = stretch * (end_axis - start_axis);
+      clamp.middle_axis = stretch * start_axis + part * clamp.axis_change;
+      clamps_.push_back(clamp);
+    }
+  }
+}
+
+void Bending::set_natural_shape(const CableModel& model, const VectorArray& middle, const VectorArray& director) {
+  if (model.rest_curvature.empty()) return;
+  for (int i = 1; i < segments_; ++i) {
+    const Vector3 along = get(middle, i - 1) + get(middle, i), normal = 0.5 * (get(director, i - 1) + get(director, i));
+    set(natural_, i,
+        natural_change(model.rest_curvature[i],
+                       model.bending_length(i, 0.5 * (model.rest_lengths[i - 1] + model.rest_lengths[i])), along, normal));
+  }
+  for (ClampJoint& clamp : clamps_) {
+    const int i = clamp.segment, node = clamp.side > 0 ? i : i + 1;
+    clamp.natural =
+        clamp.side * natural_change(model.rest_curvature[node], model.bending_length(node, 0.5 * model.rest_lengths[i]),
+                                    get(middle, i), get(director, i));
+  }
+}
+
+void Bending::add_segment_forces(const VectorArray& displacement, VectorArray& pull) {
+  std::fill(end_square_.begin(), end_square_.end(), 0.0);
+  for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) {
+    const double *u = (displacement.*component).data(), *w = inverse_length_.data(), *e = (start_.*component).data();
+    double *change = (change_.*component).data(), *square = end_square_.data();
+#pragma GCC ivdep
+    for (int i = 1; i < segments_; ++i) {
+      change[i] = w[i] * (u[i + 1] - u[i]) - w[i - 1] * (u[i] - u[i - 1]);
+      const double end = e[i] + change[i];
+      square[i] += end * end;
+    }
+  }
+  for (int i = 1; i < segments_; ++i) slope_[i] = stiffness_[i] * mean_slope(0.5 * start_square_[i], 0.5 * end_square_[i]);
+  for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) {
+    const double *w = inverse_length_.data(), *e = (start_.*component).data(), *change = (change_.*component).data();
+    const double *natural = (natural_.*component).data(), *slope = slope_.data(), *damping = damping_.data(),
+                 *stiffness = stiffness_.data();
+    double *moment = (moment_.*component).data(), *f = (pull.*component).data();
+#pragma GCC ivdep
+    for (int i = 1; i < segments_; ++i)
+      moment[i] = slope[i] * (e[i] + part_ * change[i]) + damping[i] * change[i] - stiffness[i] * natural[i];
+#pragma GCC ivdep
+    for (int i = 0; i < segments_; ++i) f[i] += w[i] * (moment[i] - moment[i + 1]);
+  }
+  bend_clamps(displacement);
+  for (const ClampJoint& clamp : clamps_) {
+    const int i = clamp.segment;
+    set(pull, i, get(pull, i) + inverse_length_[i] * clamp.moment);
+  }
+}
+
+void Bending::bend_clamps(const VectorArray& displacement) {
+  for (ClampJoint& clamp : clamps_) {
+    const int i = clamp.segment;
+    const Vector3 change = inverse_length_[i] * (get(displacement, i + 1) - get(displacement, i)) - clamp.axis_change;
+    const Vector3 middle = clamp.start + part_ * change;
+    clamp.slope = clamp.stiffness * mean_slope(0.5 * clamp.start_square, 0.5 * (clamp.start + change).squaredNorm());
+    clamp.moment = clamp.slope * middle + clamp.damping * change - clamp.stiffness * clamp.natural;
+  }
+}
+
+void Bending::add_stiffness(KktSystem& system) const {
+  const auto add = [&system](int i, double value) { system.diagonal[i] += value; };
+  for (int i = 1; i < segments_; ++i) {
+    const double slope = part_ * slope_[i] + damping_[i], before = inverse_length_[i - 1], after = inverse_length_[i];
+    add(i - 1, slope * before * before);
+    add(i, slope * (before + after) * (before + after));
+    add(i + 1, slope * after * after);
+    system.first[i - 1] -= slope * before * (before + after);
+    system.first[i] -= slope * after * (before + after);
+    system.second[i - 1] = slope * before * after;
+  }
+  for (const ClampJoint& clamp : clamps_) {
+    const int i = clamp.segment;
+    const double slope = (part_ * clamp.slope + clamp.damping) * inverse_length_[i] * inverse_length_[i];
+    add(i, slope);
+    add(i + 1, slope);
+    system.first[i] -= slope;
+  }
+}
+
+void Bending::react(const VectorArray& displacement, std::vector<HeldDirection>& directions) {
+  bend_clamps(displacement);
+  // The energy depends on the axis a through d / l - a: the torque on the axis is a x moment.
+  for (const ClampJoint& clamp : clamps_) directions[clamp.target].torque += clamp.middle_axis.cross(clamp.moment);
+}
+
+double bending_energy(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions) {
+  const int n = model.segments();
+  VectorArray segment, director;
+  segment.assign(n, 0.0);
+  director.assign(n, 0.0);
+  for (int i = 0; i < n; ++i) set(segment, i, state.positions[i + 1] - state.positions[i]);
+  if (!model.rest_curvature.empty()) carry_directors(model, state, segment, director);
+  const auto direction = [&](int i) -> Vector3 { return get(segment, i) / model.rest_lengths[i]; };
+  const auto joint = [](double length, const Vector3& change, const Vector3& natural) {
+    return (angle_energy(0.5 * change.squaredNorm()) - change.dot(natural) + 0.5 * natural.squaredNorm()) / length;
+  };
+  const auto natural = [&](int node, double length, int first, int last) -> Vector3 {
+    if (model.rest_curvature.empty()) return Vector3::Zero();
+    return natural_change(model.rest_curvature[node], length, get(segment, first) + get(segment, last),
+                          0.5 * (get(director, first) + get(director, last)));
+  };
+  double energy = 0;
+  for (int i = 1; i < n; ++i) {
+    const auto clamped = std::find_if(directions.begin(), directions.end(), [i](const HeldDirection& d) { return d.node == i; });
+    const double length = model.bending_length(i, 0.5 * (model.rest_lengths[i - 1] + model.rest_lengths[i]));
+    if (clamped == directions.end()) energy += joint(length, direction(i) - direction(i - 1), natural(i, length, i - 1, i));
+  }
+  for (const HeldDirection& clamp : directions) {
+    for (const int i : {clamp.node - 1, clamp.node}) {
+      if (i < 0 || i >= n) continue;
+      const double length = model.bending_length(clamp.node, 0.5 * model.rest_lengths[i]), side = i < clamp.node ? -1 : 1;
+      energy += joint(length, direction(i) - direction(i).norm() * (clamp.end * Vector3::UnitX()),
+                      side * natural(clamp.node, length, i, i));
+    }
+  }
+  return model.material.bending_stiffness * energy;
+}
+
+}  // namespace verlet_cable

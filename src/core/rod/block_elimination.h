@@ -1,0 +1,96 @@
+#pragma once
+
+#include <Eigen/LU>
+#include <vector>
+
+#include "geometry/vector_array.h"
+#include "rod/pair.h"
+
+namespace verlet_cable {
+
+/// The linear system of one Newton iteration of a cable: displacements of its N nodes together with the multipliers of its n = N
+/// - 1 segments. For node i and segment i (`p` is `direction`):
+///
+///   diagonal_i x_i + first_i x_(i+1) + first_(i-1) x_(i-1) + second_i x_(i+2) + second_(i-2) x_(i-2)
+///       - p_i m_i + p_(i-1) m_(i-1) = load_i,     or x_i = 0 where movable_i is 0
+///   p_i . (x_(i+1) - x_i) - compliance_i m_i = gap_i
+///
+/// and where something else resists the motion, symmetric blocks `added` to the diagonal and `added_next` to the coupling of node
+/// i and i + 1.
+struct KktSystem {
+  std::vector<double> diagonal;    ///< N
+  std::vector<double> movable;     ///< N, 1 or 0
+  std::vector<double> first;       ///< n
+  std::vector<double> second;      ///< N, the last two unused; all zero where nothing bends
+  VectorArray direction;           ///< n
+  std::vector<double> compliance;  ///< n, >= 0
+  VectorArray load;                ///< N
+  std::vector<double> gap;         ///< n
+  bool stiffened = false;          ///< whether there are added blocks
+  SymmetricArray added;            ///< N
+  SymmetricArray added_next;       ///< n
+
+  void resize(int segments);
+  void clear_stiffness();
+  /// Adds a symmetric stiffness that resists the motion of a point of a segment, `fraction` (0 to 1) along it.
+  void add_stiffness(int segment, double fraction, const Eigen::Matrix3d& stiffness);
+  /// What the added couplings to its neighbours make of a displacement, at a node.
+  Vector3 added_load(int node, const VectorArray& displacement) const;
+};
+
+/// Solves a KktSystem directly, in O(n): elimination of blocks of one node and the multiplier before it, from both ends at
+/// once (a twisted factorisation). Each multiplier comes after both its nodes or with the second, so that no pivot vanishes at a
+/// held end.
+class BlockElimination {
+ public:
+  void resize(int segments);
+  /// Factorises the matrix; `bending`: whether `second` is used.
+  void factor(const KktSystem& system, bool bending);
+  /// Solves for the right-hand sides `load` and `gap` with the last factorisation.
+  void solve(const KktSystem& system);
+
+  /// Replaces the solution by one of a larger system that this one is part of.
+  void set_solution(const VectorArray& displacement, const std::vector<double>& multiplier);
+
+  const VectorArray& displacement() const { return displacement_; }      ///< N
+  const std::vector<double>& multiplier() const { return multiplier_; }  ///< n
+
+ private:
+  /// The block of node k and of the multiplier between nodes k - 1 and k, [[K, q], [q^T, -c]], eliminated. Its inverse is
+  /// [[node, cross], [cross^T, -multiplier]].
+  struct Elimination {
+    PairSymmetric node;
+    PairVector cross;
+    Pair multiplier;
+    PairMatrix node_next;        ///< the inverse times the couplings to node k + 1: rows of the node,
+    PairVector multiplier_next;  ///< row of the multiplier
+    PairVector node_along;       ///< the inverse times the coupling to the next multiplier: rows of the node,
+    Pair multiplier_along;       ///< row of the multiplier
+    PairVector direction;
+    Pair first, second;
+    PairVector beyond;  ///< coupling of the block's multiplier to node k + 1
+  };
+  struct Forward {
+    PairVector node;
+    Pair multiplier;
+  };
+  /// What is left in the middle: nodes m, m + 1, multipliers m - 1, m + 1 and m.
+  using Middle = Eigen::Matrix<double, 9, 9>;
+  using MiddleVector = Eigen::Matrix<double, 9, 1>;
+
+  template <bool bending, bool stiffened>
+  void factor_lanes(const KktSystem& system);
+  template <bool bending>
+  void solve_lanes(const KktSystem& system);
+
+  int nodes_ = 0;                          ///< even: padded by a held one where necessary
+  int lane_ = 0;                           ///< eliminations from either end; two nodes are left in the middle
+  bool wide_ = false;                      ///< whether a node is coupled to more than a multiple of its neighbour
+  std::vector<Elimination> eliminations_;  ///< lane_
+  std::vector<Forward> forward_;           ///< lane_
+  Eigen::PartialPivLU<Middle> middle_;
+  VectorArray displacement_;
+  std::vector<double> multiplier_;
+};
+
+}  // namespace verlet_cable

@@ -1,0 +1,446 @@
+#include "rod/cable_stepper.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "rod/material_frames.h"
+#include "rod/tridiagonal.h"
+
+namespace verlet_cable {
+
+namespace {
+
+constexpr int maximum_iterations = 40;
+/// Error of a node's velocity at which an iteration ends, in segment lengths per second: far below what energy is asked for.
+constexpr double velocity_tolerance = 1e-5;
+/// Of a free cable: nothing but the solution keeps its angular momentum.
+constexpr double free_velocity_tolerance = 1e-6;
+/// Of what stands: errors times the stiffness are loads that would set it moving.
+constexpr double static_velocity_tolerance = 1e-8;
+/// A matrix that is kept does not make corrections shrink faster than this for long, however fast the first one shrank.
+constexpr double fastest_convergence = 0.03;
+/// A correction that shrinks less than this from one iteration to the next calls for a new factorisation.
+constexpr double slow_convergence = 0.1;
+/// Relative, for spans that are pulled straight.
+constexpr double pivot_regularisation = 1e-9;
+/// Between two holders a rigid chain that is pulled straight has no unique tension, and one that is pushed together has no
+/// motion. So much axial stiffness, relative to the cable's weight, gives it both: its own weight strains it by a part in ten
+/// million.
+constexpr double taut_stiffness = 1e7;
+constexpr double standard_gravity = 9.81;
+/// A holder's change of velocity that moves a node by less in a substep, in segment lengths, goes unnoticed.
+constexpr double noticed_jerk = 1e-9;
+
+}  // namespace
+
+void bring_to_rest(CableState& state) {
+  std::fill(state.velocities.begin(), state.velocities.end(), Vector3::Zero());
+  std::fill(state.accelerations.begin(), state.accelerations.end(), Vector3::Zero());
+}
+
+void CableStepper::resize(const CableModel& model) {
+  if (model.segments() == segments_) return;
+  segments_ = model.segments();
+  const std::size_t nodes = model.nodes();
+  for (VectorArray* a : {&position_, &velocity_, &acceleration_, &segment_, &displacement_, &middle_, &segment_force_,
+                         &end_velocity_, &base_load_, &director_})
+    a->assign(nodes, 0.0);
+  for (std::vector<double>* a : {&length_, &rest_growth_, &target_length_, &inverse_mass_, &tension_density_, &inertia_,
+                                 &end_square_, &pivot_, &off_, &impulse_})
+    a->assign(nodes, 0.0);
+  both_held_.reserve(nodes);
+  bending_.resize(model);
+  twist_.resize(model);
+  fluid_.resize(model);
+  system_.resize(segments_);
+  solver_.resize(segments_);
+}
+
+SubstepResult CableStepper::advance(const Substep& s, CableState& state) {
+  SubstepResult result;
+  begin(s, state, result);
+  result.converged = solve(s, state, result);
+  if (result.converged) finish(s, false, state, result);
+  return result;
+}
+
+void CableStepper::begin(const Substep& s, const CableState& state, SubstepResult& result) {
+  load(s, state);
+  hold(s.boundary.nodes);
+  result.overstretched_node = reachable_lengths(s.model, s.boundary.nodes, target_length_);
+  set_loads(s);
+  set_growth(s);
+  start_bending(s);
+  twist_.start(s.model, s.spans, s.damping_time(), s.part());
+  fluid_.start(s.environment.fluid, s.environment.gravity, s.damping_time());
+  predict(s.h);
+  set_natural_shape(s, state);
+}
+
+void CableStepper::finish(const Substep& s, bool struck, CableState& state, SubstepResult& result) {
+  if (s.statics)
+    for (int i = 0; i <= segments_; ++i) result.displacement = std::max(result.displacement, get(displacement_, i).norm());
+  react(s);
+  move(s);
+  if (!s.statics && (struck || !s.boundary.growing.empty() || holders_accelerate(s.h, s.boundary.nodes)))
+    project(s.model, s.boundary.growing);
+  result.max_strain = store(s, state);
+  if (twist_.active()) twist_.follow(s.boundary.directions, state.positions, s.spans);
+}
+
+void CableStepper::load(const Substep& s, const CableState& state) {
+  const bool elastic = s.model.material.axial_stiffness < infinity;
+  for (int i = 0; i <= segments_; ++i) {
+    set(position_, i, state.positions[i]);
+    set(velocity_, i, s.statics ? Vector3::Zero() : state.velocities[i]);
+    set(acceleration_, i, s.statics ? Vector3::Zero() : state.accelerations[i]);
+    system_.movable[i] = 1;
+  }
+  for (int i = 0; i < segments_; ++i) {
+    const Vector3 d = state.positions[i + 1] - state.positions[i];
+    set(segment_, i, d);
+    length_[i] = elastic ? d.norm() : s.model.rest_lengths[i];
+    tension_density_[i] = state.axial_multiplier[i] / length_[i];
+  }
+}
+
+/// Sets what is known of the held nodes.
+void CableStepper::hold(const std::vector<HeldNode>& held) {
+  for (const HeldNode& target : held) {
+    system_.movable[target.node] = 0;
+    set(displacement_, target.node, target.position - get(position_, target.node));
+  }
+}
+
+/// The parts of the equations of motion that no iteration changes.
+void CableStepper::set_loads(const Substep& s) {
+  const Vector3 wind = s.model.material.drag * s.environment.fluid.velocity;
+  const double drag = s.model.material.drag / s.damping_time();
+  for (int i = 0; i <= segments_; ++i) {
+    const double mass = s.model.masses[i], inertia = 2 * mass / s.h;
+    const double length = 0.5 * ((i > 0 ? s.model.rest_lengths[i - 1] : 0) + (i < segments_ ? s.model.rest_lengths[i] : 0));
+    inertia_[i] = inertia / s.h + drag * length;
+    // In the middle of the substep, where the other forces are; velocities are zero in statics.
+    const Vector3 gravity = s.environment.gravity.at(get(position_, i) + 0.5 * s.h * get(velocity_, i));
+    base_load_.x[i] = mass * gravity.x() + inertia * velocity_.x[i] + length * wind.x();
+    base_load_.y[i] = mass * gravity.y() + inertia * velocity_.y[i] + length * wind.y();
+    base_load_.z[i] = mass * gravity.z() + inertia * velocity_.z[i] + length * wind.z();
+  }
+  const std::vector<HeldNode>& held = s.boundary.nodes;
+  std::fill_n(system_.compliance.begin(), segments_, 0.0);
+  if (held.size() > 1) {
+    const double mass = std::accumulate(s.model.masses.begin(), s.model.masses.end(), 0.0);
+    const double length = s.model.length();
+    const double weight = std::max(s.environment.gravity.at(get(position_, 0)).norm(), standard_gravity) * mass;
+    const double stiffness = taut_stiffness * (weight + s.model.material.bending_stiffness / (length * length));
+    for (int i = held.front().node; i < held.back().node; ++i)
+      system_.compliance[i] = target_length_[i] * target_length_[i] * target_length_[i] / stiffness;
+  }
+  both_held_.clear();
+  for (int i = 0; i < segments_; ++i)
+    if (system_.movable[i] == 0 && system_.movable[i + 1] == 0) both_held_.push_back(i);
+}
+
+/// At a winch the material moves through the end node.
+void CableStepper::set_growth(const Substep& s) {
+  std::fill_n(rest_growth_.begin(), segments_, 0.0);
+  winch_node_ = -1;
+  for (const GrowingSegment& growing : s.boundary.growing) {
+    const int i = growing.segment;
+    rest_growth_[i] = s.h * growing.growth;
+    if (i != 0 && i + 1 != segments_) continue;
+    winch_node_ = i == 0 ? 0 : segments_;
+    material_way_ = (i == 0 ? rest_growth_[i] : -rest_growth_[i]) * get(segment_, i).normalized();
+  }
+}
+
+/// The material's segment at a winch is as long at the start as it is unstrained in the substep: growth is no bending.
+void CableStepper::start_bending(const Substep& s) {
+  const int i = std::clamp(winch_node_ - 1, 0, segments_ - 1);
+  const Vector3 segment = get(segment_, i);
+  const double part = s.model.material.axial_stiffness < infinity ? 0.5 : 1;
+  if (winch_node_ >= 0) set(segment_, i, segment + part * rest_growth_[i] * segment.normalized());
+  bending_.start(s.model, segment_, s.boundary.directions, s.damping_time(), s.part());
+  set(segment_, i, segment);
+}
+
+void CableStepper::add_bending_pulls() {
+  const int node = std::max(winch_node_, 0);
+  const Vector3 displacement = get(displacement_, node);
+  if (winch_node_ >= 0) set(displacement_, node, displacement + material_way_);
+  bending_.add_segment_forces(displacement_, segment_force_);
+  set(displacement_, node, displacement);
+}
+
+/// First guess: the motion goes on as in the last substep.
+void CableStepper::predict(double h) {
+  for (int i = 0; i <= segments_; ++i) {
+    if (system_.movable[i] == 0) continue;
+    displacement_.x[i] = h * (velocity_.x[i] + 0.5 * h * acceleration_.x[i]);
+    displacement_.y[i] = h * (velocity_.y[i] + 0.5 * h * acceleration_.y[i]);
+    displacement_.z[i] = h * (velocity_.z[i] + 0.5 * h * acceleration_.z[i]);
+  }
+}
+
+/// The unloaded shape, turned as the material is expected to be where forces are taken.
+void CableStepper::set_natural_shape(const Substep& s, const CableState& state) {
+  if (s.model.rest_curvature.empty() || !bending_.active()) return;
+  for (int i = 0; i < segments_; ++i)
+    set(middle_, i, get(segment_, i) + s.part() * (get(displacement_, i + 1) - get(displacement_, i)));
+  carry_directors(s.model, state, middle_, director_);
+  bending_.set_natural_shape(s.model, middle_, director_);
+}
+
+/// Newton's method on places and tensions together, its matrix kept as long as it converges fast.
+bool CableStepper::solve(const Substep& s, const CableState& state, SubstepResult& result) {
+  const bool free = s.boundary.nodes.empty();
+  const double error = s.statics ? static_velocity_tolerance : free ? free_velocity_tolerance : velocity_tolerance;
+  const double tolerance = error * std::min(s.h, longest_tolerated);
+  double last = 0;
+  bool stale = true;
+  for (int i = 0; i < maximum_iterations; ++i) {
+    if (s.statics && i > 0) set_natural_shape(s, state);
+    evaluate(s);
+    if (stale) {
+      assemble(s.part());
+      factor();
+    }
+    solver_.solve(system_);
+    ++result.iterations;
+    const double size = correct();
+    if (!(size < largest_correction)) return false;
+    // The next correction would be about the last one times the ratio of the last two.
+    const double ratio = i == 0 ? 1 : size / last;
+    if (size * std::clamp(ratio, fastest_convergence, 1.0) < tolerance) return true;
+    stale = i > 0 && ratio > slow_convergence;
+    last = size;
+  }
+  return false;
+}
+
+/// Residuals of the equations of motion and of the tension laws at the present iterate.
+void CableStepper::evaluate(const Substep& s) {
+  std::fill(end_square_.begin(), end_square_.end(), 0.0);
+  for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) evaluate_segments(s.part(), component);
+  if (bending_.active()) add_bending_pulls();
+  if (twist_.active()) twist_.add_segment_forces(middle_, displacement_, s.boundary, segment_force_);
+  if (s.model.material.axial_stiffness < infinity)
+    evaluate_elastic_lengths(s);
+  else
+    evaluate_rigid_lengths();
+  for (const int i : both_held_) {
+    system_.gap[i] = 0;
+    system_.compliance[i] = 1;
+  }
+  for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) evaluate_nodes(component);
+  if (fluid_.active()) fluid_.add_loads(s.model, middle_, position_, displacement_, system_.load);
+}
+
+void CableStepper::evaluate_segments(double part, Component component) {
+  const double *u = (displacement_.*component).data(), *d = (segment_.*component).data(), *density = tension_density_.data();
+  double *mid = (middle_.*component).data(), *f = (segment_force_.*component).data(), *square = end_square_.data();
+#pragma GCC ivdep
+  for (int i = 0; i < segments_; ++i) {
+    const double change = u[i + 1] - u[i];
+    const double end = d[i] + change;
+    mid[i] = d[i] + part * change;
+    f[i] = density[i] * mid[i];
+    square[i] += end * end;
+  }
+}
+
+void CableStepper::evaluate_nodes(Component component) {
+  const double *u = (displacement_.*component).data(), *b = (base_load_.*component).data(),
+               *f = (segment_force_.*component).data();
+  const double* inertia = inertia_.data();
+  double* r = (system_.load.*component).data();
+  r[0] = b[0] - inertia[0] * u[0] + f[0];
+#pragma GCC ivdep
+  for (int i = 1; i < segments_; ++i) r[i] = b[i] - inertia[i] * u[i] + (f[i] - f[i - 1]);
+  r[segments_] = b[segments_] - inertia[segments_] * u[segments_] - f[segments_ - 1];
+}
+
+void CableStepper::evaluate_rigid_lengths() {
+#pragma GCC ivdep
+  for (int i = 0; i < segments_; ++i)
+    system_.gap[i] = 0.5 * (target_length_[i] * target_length_[i] - end_square_[i]) + system_.compliance[i] * tension_density_[i];
+}
+
+void CableStepper::evaluate_elastic_lengths(const Substep& sub) {
+  const double stiffness = sub.model.material.axial_stiffness, part = sub.part();
+  for (int i = 0; i < segments_; ++i) {
+    const double rest = sub.model.rest_lengths[i], s = std::sqrt(end_square_[i]), mean = length_[i] + part * (s - length_[i]);
+    const double damping = sub.model.material.axial_damping / (sub.damping_time() * rest);
+    const double excess =
+        stiffness / rest * (mean - rest) + damping * (s - length_[i] - rest_growth_[i]) - tension_density_[i] * mean;
+    const double slope = part * (stiffness / rest - tension_density_[i]) + damping;
+    system_.gap[i] = -excess * s / slope;
+    system_.compliance[i] = s * mean / slope;
+  }
+}
+
+void CableStepper::assemble(double part) {
+  system_.clear_stiffness();
+  std::copy(inertia_.begin(), inertia_.end(), system_.diagonal.begin());
+  for (int i = 0; i < segments_; ++i) {
+    const double stiffness = part * tension_density_[i];
+    system_.diagonal[i] += stiffness;
+    system_.diagonal[i + 1] += stiffness;
+    system_.first[i] = -stiffness;
+    system_.direction.x[i] = middle_.x[i];
+    system_.direction.y[i] = middle_.y[i];
+    system_.direction.z[i] = middle_.z[i];
+  }
+  if (bending_.active()) bending_.add_stiffness(system_);
+  if (fluid_.active()) fluid_.add_stiffness(system_.diagonal);
+}
+
+/// Applies the solution; the largest correction, in segment lengths.
+double CableStepper::correct() {
+  double largest = 0;
+  const VectorArray& delta = solver_.displacement();
+  for (int i = 0; i <= segments_; ++i) {
+    displacement_.x[i] += delta.x[i];
+    displacement_.y[i] += delta.y[i];
+    displacement_.z[i] += delta.z[i];
+    const double square = delta.x[i] * delta.x[i] + delta.y[i] * delta.y[i] + delta.z[i] * delta.z[i];
+    largest = square <= largest ? largest : square;  // keeps a NaN
+  }
+  for (int i = 0; i < segments_; ++i) tension_density_[i] += solver_.multiplier()[i];
+  return std::sqrt(largest) / target_length_[0];
+}
+
+void CableStepper::take_back(double part) {
+  const VectorArray& delta = solver_.displacement();
+  for (int i = 0; i <= segments_; ++i) set(displacement_, i, get(displacement_, i) - part * get(delta, i));
+  for (int i = 0; i < segments_; ++i) tension_density_[i] -= part * solver_.multiplier()[i];
+}
+
+void CableStepper::move(const Substep& s) {
+  const double rate = s.statics ? 0 : 2 / s.h;
+  for (int i = 0; i <= segments_; ++i) {
+    end_velocity_.x[i] = rate * displacement_.x[i] - velocity_.x[i];
+    end_velocity_.y[i] = rate * displacement_.y[i] - velocity_.y[i];
+    end_velocity_.z[i] = rate * displacement_.z[i] - velocity_.z[i];
+    position_.x[i] += displacement_.x[i];
+    position_.y[i] += displacement_.y[i];
+    position_.z[i] += displacement_.z[i];
+  }
+  for (const HeldNode& target : s.boundary.nodes) {
+    set(position_, target.node, target.position);
+    set(end_velocity_, target.node, s.statics ? Vector3::Zero() : target.velocity);
+  }
+  for (int i = 0; i < segments_; ++i) {
+    segment_.x[i] = position_.x[i + 1] - position_.x[i];
+    segment_.y[i] = position_.y[i + 1] - position_.y[i];
+    segment_.z[i] = position_.z[i + 1] - position_.z[i];
+  }
+}
+
+/// Whether a holder's velocity has changed: only then do velocities along the segments appear that the equations do not damp.
+bool CableStepper::holders_accelerate(double h, const std::vector<HeldNode>& held) const {
+  const double noticed = noticed_jerk * target_length_[0] / h;
+  return std::any_of(held.begin(), held.end(), [&](const HeldNode& target) {
+    return (target.velocity - get(velocity_, target.node)).squaredNorm() > noticed * noticed;
+  });
+}
+
+/// Impulses along inextensible segments that end all change of length but that of rest lengths; without them such velocities
+/// would alternate from step to step.
+void CableStepper::project(const CableModel& model, const std::vector<GrowingSegment>& growing) {
+  if (model.material.axial_stiffness < infinity) return;
+  const int n = segments_;
+  for (int i = 0; i <= n; ++i) inverse_mass_[i] = system_.movable[i] / model.masses[i];
+  std::fill(pivot_.begin(), pivot_.end(), 0.0);
+  std::fill(off_.begin(), off_.end(), 0.0);
+  std::fill(impulse_.begin(), impulse_.end(), 0.0);
+  for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) {
+    const double *d = (segment_.*component).data(), *v = (end_velocity_.*component).data();
+    double *square = pivot_.data(), *product = off_.data(), *rate = impulse_.data();
+#pragma GCC ivdep
+    for (int i = 0; i < n; ++i) {
+      square[i] += d[i] * d[i];
+      product[i] += d[i] * d[i + 1];  // the last one is not used
+      rate[i] += d[i] * (v[i] - v[i + 1]);
+    }
+  }
+  for (int i = 0; i < n; ++i) {
+    const double mobility = inverse_mass_[i] + inverse_mass_[i + 1];
+    pivot_[i] *= mobility * (1 + pivot_regularisation);
+    off_[i] *= -inverse_mass_[i + 1];
+  }
+  for (const GrowingSegment& s : growing) impulse_[s.segment] += target_length_[s.segment] * s.growth;
+  for (const int i : both_held_) {
+    pivot_[i] = 1;
+    impulse_[i] = 0;
+  }
+  solve_tridiagonal(pivot_, off_, impulse_, n);
+  for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) {
+    const double *d = (segment_.*component).data(), *w = inverse_mass_.data(), *impulse = impulse_.data();
+    double* v = (end_velocity_.*component).data();
+    v[0] -= w[0] * impulse[0] * d[0];
+#pragma GCC ivdep
+    for (int i = 1; i < n; ++i) v[i] += w[i] * (impulse[i - 1] * d[i - 1] - impulse[i] * d[i]);
+    v[n] += w[n] * impulse[n - 1] * d[n - 1];
+  }
+}
+
+/// What the held nodes' equations of motion lack is what their holders supply.
+void CableStepper::react(const Substep& s) {
+  if (s.boundary.nodes.empty()) return;
+  for (HeldNode& target : s.boundary.nodes) {
+    const int i = target.node;
+    const double mass = s.model.masses[i];
+    target.force = corrected_load(i) + 2 * mass / s.h * (get(displacement_, i) / s.h - get(velocity_, i));
+    if (!s.statics) target.force -= mass * (target.velocity - get(velocity_, i)) / s.h;
+  }
+  for (HeldDirection& target : s.boundary.directions) target.torque.setZero();
+  if (bending_.active()) bending_.react(displacement_, s.boundary.directions);
+  if (twist_.active()) twist_.react(s.boundary);
+}
+
+/// The force of bending and twist along a segment [N].
+double CableStepper::force_along(int i) const {
+  const double density = tension_density_[i] - solver_.multiplier()[i];  // that of the pull, before the last correction
+  const Vector3 middle = get(middle_, i);
+  return (get(segment_force_, i) - density * middle).dot(middle) / target_length_[i];
+}
+
+/// The load on a node after the last correction, to first order: its row of the matrix times the solution is gone.
+Vector3 CableStepper::corrected_load(int i) const {
+  const VectorArray& delta = solver_.displacement();
+  const std::vector<double>& multiplier = solver_.multiplier();
+  Vector3 load = get(system_.load, i);
+  if (i > 0) load -= system_.first[i - 1] * get(delta, i - 1) + multiplier[i - 1] * get(system_.direction, i - 1);
+  if (i < segments_) load -= system_.first[i] * get(delta, i + 1) - multiplier[i] * get(system_.direction, i);
+  if (system_.stiffened) load -= system_.added_load(i, delta);
+  if (!bending_.active()) return load;
+  if (i > 1) load -= system_.second[i - 2] * get(delta, i - 2);
+  if (i + 1 < segments_) load -= system_.second[i] * get(delta, i + 2);
+  return load;
+}
+
+/// The largest strain.
+double CableStepper::store(const Substep& s, CableState& state) const {
+  const double inverse_h = s.statics ? 0 : 1 / s.h;
+  for (int i = 0; i <= segments_; ++i) {
+    state.positions[i] = get(position_, i);
+    state.velocities[i] = get(end_velocity_, i);
+    state.accelerations[i] = (state.velocities[i] - get(velocity_, i)) * inverse_h;
+  }
+  const bool elastic = s.model.material.axial_stiffness < infinity;
+  double longest = 1, shortest = 1;  // squares, relative
+  for (int i = 0; i < segments_; ++i) {
+    const double square = get(segment_, i).squaredNorm();
+    const double relative = square / (s.model.rest_lengths[i] * s.model.rest_lengths[i]);
+    longest = std::max(longest, relative);
+    shortest = std::min(shortest, relative);
+    const double length = elastic ? 0.5 * (length_[i] + std::sqrt(square)) : target_length_[i];
+    state.axial_multiplier[i] = state.tension[i] = tension_density_[i] * length;
+    if (bending_.active()) state.tension[i] += force_along(i);
+  }
+  return std::max(std::sqrt(longest) - 1, 1 - std::sqrt(shortest));
+}
+
+}  // namespace verlet_cable

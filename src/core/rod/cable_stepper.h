@@ -1,0 +1,134 @@
+#pragma once
+
+#include <vector>
+
+#include "rod/bending.h"
+#include "rod/block_elimination.h"
+#include "rod/fluid_forces.h"
+#include "rod/twist.h"
+#include "target/boundary.h"
+#include "verlet_cable/core/cable.h"
+
+namespace verlet_cable {
+
+/// What acts on a cable from outside, the same in all substeps of a step.
+struct Environment {
+  GravityDesc gravity;
+  FluidDesc fluid;
+};
+
+/// A tolerated error is one of velocity in substeps up to this long [s]; beyond, the error of the place counts.
+constexpr double longest_tolerated = 1e-3;
+/// A larger correction, in segment lengths, leads to solutions that have nothing to do with the motion: halve the step.
+constexpr double largest_correction = 2;
+
+/// No substep is shorter [s]; a cable that needs one has lost its way.
+constexpr double shortest_substep = 1e-6;
+
+/// What a substep is done with.
+struct Substep {
+  const CableModel& model;
+  const Environment& environment;
+  Boundary& boundary;             ///< forces and torques on the holders are written to it
+  std::vector<TwistSpan>& spans;  ///< their twist is kept up
+  double h;                       ///< [s]
+  bool statics = false;           ///< a step towards equilibrium: inertia only slows it, nothing moves or is damped
+
+  double part() const { return statics ? 1 : 0.5; }  ///< where in the substep forces are taken
+  double damping_time() const { return statics ? infinity : h; }
+};
+
+struct SubstepResult {
+  bool converged = false;
+  int overstretched_node = -1;  ///< first node of a span that was lengthened; -1: none
+  int iterations = 0;
+  double max_strain = 0;    ///< largest |l / l0 - 1| at the end
+  double displacement = 0;  ///< largest of a node [m]; in statics only
+};
+
+/// Takes a cable's motion away.
+void bring_to_rest(CableState& state);
+
+/// Advances one cable by one substep. Holds the buffers, all sized by `resize`; keeps nothing from one call to the next.
+///
+/// The scheme is Verlet's with the stiff forces averaged over the step (Simo and Tarnow 1992; Gonzalez 1996):
+///   x' = x + h (v + v') / 2,   m (v' - v) / h = gravity - drag (x' - x) / h + sum of T (d + d') / (s + s')
+/// with d a segment's vector and s its length, at the start and (') the end. For an inextensible segment T is the multiplier of
+/// s' = l; for an elastic one it is EA ((s + s') / (2 l) - 1) + axial damping. Both conserve momentum and energy exactly.
+class CableStepper {
+ public:
+  void resize(const CableModel& model);  ///< does nothing where the number of segments stays
+
+  /// If it has not converged, `state` is untouched.
+  SubstepResult advance(const Substep& substep, CableState& state);
+
+  // The stages of `advance`, for a solver of several cables at once: begin; evaluate, assemble, factor, solve and correct until
+  // that has converged; finish.
+  void begin(const Substep& substep, const CableState& state, SubstepResult& result);
+  void evaluate(const Substep& substep);
+  void assemble(double part);
+  void factor() { solver_.factor(system_, bending_.active()); }
+  double correct();
+  void take_back(double part);  ///< of the last correction
+  /// `struck`: forces from outside have changed velocities abruptly.
+  void finish(const Substep& substep, bool struck, CableState& state, SubstepResult& result);
+  const VectorArray& displacement() const { return displacement_; }  ///< nodes: x' - x of the present iterate [m]
+  KktSystem& system() { return system_; }
+  BlockElimination& solver() { return solver_; }
+
+ private:
+  using Component = std::vector<double> VectorArray::*;
+
+  void load(const Substep& substep, const CableState& state);
+  void hold(const std::vector<HeldNode>& held);
+  void set_loads(const Substep& substep);
+  void set_growth(const Substep& substep);
+  void start_bending(const Substep& substep);
+  void add_bending_pulls();
+  void predict(double h);
+  void set_natural_shape(const Substep& substep, const CableState& state);
+  bool solve(const Substep& substep, const CableState& state, SubstepResult& result);
+  void evaluate_segments(double part, Component component);
+  void evaluate_nodes(Component component);
+  void evaluate_rigid_lengths();
+  void evaluate_elastic_lengths(const Substep& substep);
+  void react(const Substep& substep);
+  Vector3 corrected_load(int node) const;
+  double force_along(int segment) const;
+  void move(const Substep& substep);
+  bool holders_accelerate(double h, const std::vector<HeldNode>& held) const;
+  void project(const CableModel& model, const std::vector<GrowingSegment>& growing);
+  double store(const Substep& substep, CableState& state) const;
+
+  int segments_ = 0;
+  // At the start of the substep
+  VectorArray position_, velocity_, acceleration_;  // nodes: [m], [m/s], [m/s^2]
+  VectorArray segment_;                             // segments: d [m]
+  std::vector<double> length_;                      // segments: s [m]
+  std::vector<double> rest_growth_;                 // segments: of the rest length, in the substep [m]
+  int winch_node_ = -1;                             // the end node at a winch that runs
+  Vector3 material_way_ = Vector3::Zero();          // of the material there, in the substep [m]
+  std::vector<double> target_length_;               // segments: l [m]; longer where held points are too far apart
+  std::vector<double> inverse_mass_;                // nodes: [1/kg], 0 where held
+  std::vector<double> inertia_;                     // nodes: 2 m / h^2 and drag / h [kg/s^2]
+  VectorArray base_load_;                           // nodes: gravity and inertia of the velocity [N]
+  std::vector<int> both_held_;                      // segments between two held nodes
+  // The unknowns
+  VectorArray displacement_;             // nodes: x' - x [m]
+  std::vector<double> tension_density_;  // segments: 2 T / (s + s') [N/m]
+  // Of the present iterate
+  VectorArray middle_;              // segments: (d + d') / 2 [m]
+  VectorArray segment_force_;       // segments: force on the first node [N]
+  std::vector<double> end_square_;  // segments: square of s' [m^2]
+  VectorArray end_velocity_;        // nodes: v' [m/s]
+  Bending bending_;
+  Twist twist_;
+  FluidForces fluid_;
+  VectorArray director_;  // segments: the material's y axis; only where the unloaded shape is curved
+  KktSystem system_;
+  BlockElimination solver_;
+  // Velocity projection: a tridiagonal system
+  std::vector<double> pivot_, off_, impulse_;  // segments
+};
+
+}  // namespace verlet_cable

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "geometry/vector_array.h"
+#include "verlet_cable/core/cable.h"
+
+namespace verlet_cable {
+
+/// Drag and buoyancy of the fluid around a cable, node by node. Drag is quadratic, with the diameter as width, for the flow
+/// across and along the cable (Morison et al. 1950; coefficients per unit of width): 1/2 density coefficient width length |v| v.
+class FluidForces {
+ public:
+  void resize(const CableModel& model);
+  /// `damping_time` [s]: displacement over it is velocity; infinite in statics.
+  void start(const FluidDesc& fluid, const GravityDesc& gravity, double damping_time);
+  bool active() const { return active_; }
+  /// Adds the forces [N] to `load`. `middle`: segments [m]; `position`: nodes at the start [m]; `displacement`: of the nodes [m].
+  void add_loads(const CableModel& model, const VectorArray& middle, const VectorArray& position, const VectorArray& displacement,
+                 VectorArray& load);
+  /// Adds to the diagonal what `add_loads` found last.
+  void add_stiffness(std::vector<double>& diagonal) const;
+  /// The force on a node that `add_loads` found last [N].
+  Vector3 force(int node) const { return get(force_, node); }
+
+ private:
+  bool active_ = false;
+  FluidDesc fluid_;
+  GravityDesc gravity_;
+  double damping_time_ = 0;
+  VectorArray force_;
+  std::vector<double> stiffness_;
+};
+
+}  // namespace verlet_cable

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "target/boundary.h"
+#include "verlet_cable/core/cable.h"
+
+namespace verlet_cable {
+
+/// Puts a cable into its initial shape and motion (`desc.initial`), its held nodes where their holders are (`held`, ascending),
+/// its lengths kept if it is inextensible; velocities are those given, not projected. `gravity` [m/s^2] says where cables hang.
+/// False if a shape that was given could not be brought to its lengths there, so that it hangs instead. `settles`: it is to be
+/// settled from there, and hangs without folds.
+bool set_initial_state(const InitialShapeDesc& initial, bool settles, const CableModel& model, const std::vector<HeldNode>& held,
+                       const Vector3& gravity, CableState& state);
+
+/// Carries a cable along with holders that have jumped: each node by the jump of its neighbouring holders, in proportion to the
+/// arc length between them. Where that leaves no shape of the right lengths nearby, the cable hangs from them anew: false.
+bool carry_along(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state);
+
+/// Whether a cable starts in static equilibrium: also if it is given no shape, and a clamp turns it away from its catenary.
+bool settles_at_start(const CableDesc& desc, const MaterialDesc& material);
+
+/// Gives the segments of an inextensible cable the lengths that its holders allow, after a holder that had lengthened it let go:
+/// from the first holder on, or the middle of a free cable, along the directions that they have.
+void restore_lengths(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state);
+
+}  // namespace verlet_cable

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "target/boundary.h"
+#include "verlet_cable/core/cable.h"
+
+namespace verlet_cable {
+
+/// Moves the free nodes as little as possible (by mass) until every segment of an inextensible cable has the length that its
+/// holders allow; held nodes are put where they are held. Elastic cables: only the held nodes move. False if no such shape was
+/// found from here; the positions are then finite, but of other lengths.
+bool project_positions(const CableModel& model, const std::vector<HeldNode>& held, std::vector<Vector3>& positions);
+
+/// Takes away the velocities along the segments of an inextensible cable by impulses of the segments; held nodes have the
+/// velocities of their holders.
+void project_velocities(const CableModel& model, const std::vector<HeldNode>& held, const std::vector<Vector3>& positions,
+                        std::vector<Vector3>& velocities);
+
+/// Moves the nodes that are not held, each the less the heavier it is, until the segments have the lengths [m], one a segment.
+/// False if that was not reached.
+bool project_lengths(const CableModel& model, const std::vector<HeldNode>& held, const std::vector<double>& lengths,
+                     std::vector<Vector3>& positions);
+
+}  // namespace verlet_cable

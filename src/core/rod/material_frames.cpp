@@ -1,0 +1,27 @@
+#include "rod/material_frames.h"
+
+#include <cmath>
+
+namespace verlet_cable {
+
+void carry_directors(const CableModel& model, const CableState& state, const VectorArray& segment, VectorArray& director) {
+  const auto half_turn = [&](int i) { return 0.5 * state.twist[i] * model.rest_lengths[i]; };
+  const auto carry = [&](int first, int step, int end) {
+    Vector3 direction = state.reference_orientation * Vector3::UnitX();
+    Vector3 normal = state.reference_orientation * Vector3::UnitY();
+    double turn = 0;
+    for (int i = first; i != end; i += step) {
+      const Vector3 next = get(segment, i).normalized();
+      normal = parallel_transport(normal, direction, next);
+      turn += step * half_turn(i);
+      if (turn != 0) normal = std::cos(turn) * normal + std::sin(turn) * next.cross(normal);
+      turn = step * half_turn(i);
+      direction = next;
+      set(director, i, normal);
+    }
+  };
+  carry(state.reference_node, 1, model.segments());
+  carry(state.reference_node - 1, -1, -1);
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <vector>
+
+#include "geometry/vector_array.h"
+#include "target/boundary.h"
+#include "verlet_cable/core/cable.h"
+
+namespace verlet_cable {
+
+/// A piece of cable between two clamps. Twist spreads along it at the speed of sound and is taken to be uniform.
+struct TwistSpan {
+  int first_holder = 0, last_holder = 0;  ///< indices into Boundary::directions
+  int first_node = 0, last_node = 0;
+  double angle = 0;   ///< [rad] by which the material is twisted, any number of turns
+  double origin = 0;  ///< [rad] roll of the last clamp against the first one's, carried along the cable, that would be no twist
+  int age = 0;        ///< substeps since the angle was measured; in between its changes are added up
+};
+
+/// Roll of one clamp's orientation against another's that is carried along segments without twist [rad]: `nodes`: positions of
+/// the nodes between them.
+double relative_roll(const Quaternion& first, const Quaternion& last, const Vector3* nodes, int count);
+
+/// Measures the angles of the spans from the rolls of their clamps, each the one nearest to the angle it had.
+void measure_twist(const std::vector<HeldDirection>& directions, const std::vector<Vector3>& positions,
+                   std::vector<TwistSpan>& spans);
+
+/// The spans between neighbouring held directions, as twisted as the cable is there now.
+std::vector<TwistSpan> find_spans(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions);
+
+/// Twist and its forces on the centre line over a substep. Energy GJ angle² / (2 length); the angle depends on the centre line
+/// through the holonomy of its directions (Bergou et al., Discrete Elastic Rods, 2008, eq. 9: curvature binormals).
+class Twist {
+ public:
+  void resize(const CableModel& model);
+  void start(const CableModel& model, const std::vector<TwistSpan>& spans, double h, double part);
+  bool active() const { return spans_ != nullptr; }
+  /// Adds the forces of the segments on their first nodes [N]. `middle`: the segments where forces are taken, `displacement` of
+  /// nodes [m].
+  void add_segment_forces(const VectorArray& middle, const VectorArray& displacement, const Boundary& boundary,
+                          VectorArray& pull);
+  /// Adds the substep's changes to the angles; measures them now and then.
+  void follow(const std::vector<HeldDirection>& directions, const std::vector<Vector3>& positions,
+              std::vector<TwistSpan>& spans) const;
+  /// Adds the torques on the holders [N m] to their `torque`.
+  void react(Boundary& boundary) const;
+
+ private:
+  struct SpanState {
+    double torque = 0;  ///< [N m]
+    double change = 0;  ///< [rad] of the angle over the substep
+    Vector3 first_axis, last_axis, first_binormal, last_binormal;
+  };
+
+  void set_tangents(const VectorArray& middle, const TwistSpan& span);
+  void set_binormals(const TwistSpan& span, const SpanState& state);
+  double add_slopes(const VectorArray& displacement, const TwistSpan& span, std::vector<double> VectorArray::*component);
+
+  const std::vector<TwistSpan>* spans_ = nullptr;
+  std::vector<SpanState> states_;
+  std::vector<double> stiffness_, damping_;  // spans: GJ / length [N m], damping / (length h) [N m]
+  double part_ = 0.5;
+  VectorArray tangent_;   // segments
+  VectorArray slope_;     // segments: derivative of the angle [rad/m]
+  VectorArray binormal_;  // nodes: curvature binormal
+  std::vector<double> inverse_length_;
+};
+
+}  // namespace verlet_cable

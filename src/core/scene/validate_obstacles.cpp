@@ -1,0 +1,60 @@
+#include "scene/validate_obstacles.h"
+
+#include <set>
+
+namespace verlet_cable {
+namespace {
+
+void check_vector_is_positive(const std::string& key, const Vector3& v, const char* unit, Errors& errors) {
+  check_numbers(key, std::array<double, 3>{v.x(), v.y(), v.z()}, positive, unit, errors);
+}
+
+void check_shape(const std::string& prefix, const ObstacleDesc& obstacle, Errors& errors) {
+  for (const Field<ObstacleDesc>& field : obstacle_fields) {
+    const double value = obstacle.*field.member;
+    if (has_dimension(obstacle.type, field.key) && !field.range.contains(value))
+      errors.add(prefix + field.key, number_text(value), field.range.text(field.unit));
+  }
+  if (obstacle.type == ShapeType::box) check_vector_is_positive(prefix + "size", obstacle.size, "m", errors);
+  if (obstacle.type != ShapeType::mesh) return;
+  check_vector_is_positive(prefix + "scale", obstacle.scale, "", errors);
+  if (!obstacle.mesh) errors.add(prefix + "uri", quoted(obstacle.uri), "a mesh file that could be read");
+}
+
+void check_obstacle(const std::string& key, const ObstacleDesc& obstacle, Errors& errors) {
+  const std::string prefix = key + ".";
+  if (!obstacle.frame.empty() && !is_frame_name(obstacle.frame))
+    errors.add(prefix + "frame", quoted(obstacle.frame), frame_words);
+  check_numbers(prefix + "pose", obstacle.pose, coordinate, "m, rad", errors);
+  if (obstacle.initial_pose) check_numbers(prefix + "initial_pose", *obstacle.initial_pose, coordinate, "m, rad", errors);
+  check_shape(prefix, obstacle, errors);
+  if (obstacle.friction && !not_negative.contains(*obstacle.friction))
+    errors.add(prefix + "friction", number_text(*obstacle.friction), not_negative.text());
+}
+
+}  // namespace
+
+void check_obstacles(const SceneDesc& scene, Errors& errors) {
+  UniqueNames names;
+  std::set<std::string> taken;
+  for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+    const std::string key = indexed("obstacles", i);
+    names.check(key + ".name", scene.obstacles[i].name, errors);
+    check_obstacle(key, scene.obstacles[i], errors);
+    taken.insert(scene.obstacles[i].name);
+  }
+  if (scene.contact) check_fields("contact.", contact_fields, *scene.contact, errors);
+  if (!scene.robot) return;
+  check_fields("robot.", robot_fields, *scene.robot, errors);
+  for (const LinkDesc& link : scene.robot->tree) {
+    check_numbers("robot." + escaped(link.name) + ".origin", link.origin, coordinate, "m, rad", errors);
+    for (const ObstacleDesc& obstacle : link.obstacles) {
+      // Links are named by the robot's makers: any name that is not another obstacle's.
+      const std::string key = "robot." + escaped(obstacle.name);
+      if (!taken.insert(obstacle.name).second) errors.add(key, "used twice", "a name that no other obstacle has");
+      check_obstacle(key, obstacle, errors);
+    }
+  }
+}
+
+}  // namespace verlet_cable

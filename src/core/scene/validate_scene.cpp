@@ -1,0 +1,300 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "scene/scene_errors.h"
+#include "scene/validate_nets.h"
+#include "scene/validate_obstacles.h"
+#include "verlet_cable/core/world.h"
+
+namespace verlet_cable {
+namespace {
+
+/// Rounding in offsets, rotations and lengths that were written with a few digits.
+constexpr double distance_tolerance = 1e-9;
+/// Of the length of a segment between two nodes that are held.
+constexpr double held_tolerance = 1e-4;
+constexpr double largest_length_error = 0.05;
+
+bool is_sound(const CableDesc& cable) {
+  return cable_fields[0].range.contains(cable.length) && cable_integer_fields[0].range.contains(cable.segments);
+}
+
+bool is_sound(const CableDesc& cable, const PlaceDesc& place) {
+  return place.at != PlaceDesc::At::arc_length || (place.arc_length >= 0 && place.arc_length <= cable.length);
+}
+
+bool check_place(const std::string& key, const CableDesc& cable, const PlaceDesc& place, Errors& errors) {
+  if (is_sound(cable, place) || !cable_fields[0].range.contains(cable.length)) return true;
+  errors.add(key, number_text(place.arc_length),
+             "start, end, or an arc length [m] from 0 to the cable's length " + number_text(cable.length));
+  return false;
+}
+
+void check_initial(const std::string& key, const CableDesc& cable, Errors& errors) {
+  const InitialShapeDesc& initial = cable.initial;
+  check_vector(key + ".from", initial.from, "m", errors);
+  check_vector(key + ".to", initial.to, "m", errors);
+  if (initial.type == InitialShapeDesc::Type::straight && initial.from == initial.to)
+    errors.add(key + ".to", list_text(initial.to), "a point other than `from`, it gives the direction");
+  if (initial.type == InitialShapeDesc::Type::settled && cable.attachments.empty())
+    errors.add(key + ".type", "settled without attachments", "settled for a cable with at least one attachment");
+  if (initial.type == InitialShapeDesc::Type::catenary && cable.attachments.size() < 2)
+    errors.add(key + ".type", "catenary with " + std::to_string(cable.attachments.size()) + " attachments",
+               "catenary for a cable with at least two attachments");
+  if (initial.type != InitialShapeDesc::Type::points) return;
+
+  for (std::size_t i = 0; i < initial.points.size(); ++i)
+    check_vector(indexed(key + ".points", i), initial.points[i], "m", errors);
+  for (std::size_t i = 0; i < initial.velocities.size(); ++i)
+    check_vector(indexed(key + ".velocities", i), initial.velocities[i], "m/s", errors);
+  if (!initial.velocities.empty() && initial.velocities.size() != initial.points.size())
+    errors.add(key + ".velocities", std::to_string(initial.velocities.size()) + " entries",
+               "none, or one for each point: " + std::to_string(initial.points.size()));
+  if (initial.points.size() < 2)
+    return errors.add(key + ".points", std::to_string(initial.points.size()) + " points", "at least two points");
+  double length = 0;
+  for (std::size_t i = 1; i < initial.points.size(); ++i) length += (initial.points[i] - initial.points[i - 1]).norm();
+  if (std::isfinite(length) && is_sound(cable) && std::abs(length - cable.length) > largest_length_error * cable.length)
+    errors.add(key + ".points", "a polyline of " + rounded_text(length) + " m",
+               "at most 5 % more or less than the cable's length " + number_text(cable.length) + " m");
+}
+
+void check_attachments(const std::string& prefix, const CableDesc& cable, UniqueNames& names, Errors& errors) {
+  std::map<int, std::string> targets;
+  for (std::size_t i = 0; i < cable.attachments.size(); ++i) {
+    const AttachmentDesc& attachment = cable.attachments[i];
+    const std::string key = indexed(prefix + "attachments", i);
+    names.check(key + ".name", attachment.name, errors);
+    if (!attachment.frame.empty() && !is_frame_name(attachment.frame))
+      errors.add(key + ".frame", quoted(attachment.frame), frame_words);
+    check_vector(key + ".offset", attachment.offset, "m", errors);
+    check_vector(key + ".rotation", attachment.rotation, "rad", errors);
+    if (attachment.initial_pose) check_numbers(key + ".initial_pose", *attachment.initial_pose, coordinate, "m, rad", errors);
+    if (!check_place(key + ".at", cable, attachment.place, errors) || !is_sound(cable)) continue;
+    const int node = node_at(cable, attachment.place);
+    const auto [target, is_new] = targets.emplace(node, key);
+    if (!is_new)
+      errors.add(key + ".at", "node " + std::to_string(node),
+                 "a node that no other attachment holds; " + target->second + " does");
+  }
+}
+
+/// Lines for dampings that leave nothing of a cable's motion. Steps are implicit and carry any damping; but where it outweighs
+/// the inertia of a segment so much, rounding does, too.
+void check_damping(const std::string& key, const SceneDesc& scene, const CableDesc& cable, const MaterialDesc& material,
+                   Errors& errors) {
+  if (!is_sound(cable) || !material_fields[0].range.contains(material.linear_density) ||
+      !scene_fields[0].range.contains(scene.time_step))
+    return;
+  constexpr double largest_ratio = 1e12;
+  const double length = cable.length / cable.segments;
+  const double axial = largest_ratio * material.linear_density * length * length / scene.time_step;
+  const double bending = axial * length * length;
+  struct Limit {
+    const char* key;
+    double value;
+    double most;
+    const char* unit;
+    const char* words;
+  };
+  for (const Limit& limit : {Limit{"axial_damping", material.axial_damping, axial, "N s", "segment length^2"},
+                             Limit{"bending_damping", material.bending_damping, bending, "N m^2 s", "segment length^4"},
+                             Limit{"torsional_damping", material.torsional_damping, bending, "N m^2 s", "segment length^4"}}) {
+    // What is out of its range is an error of the material already.
+    if (limit.value <= limit.most || !not_negative.contains(limit.value)) continue;
+    errors.add("materials." + escaped(cable.material) + "." + limit.key, number_text(limit.value),
+               "at most " + rounded_bound_text(limit.most, -1) + " [" + limit.unit + "] for " + key + ", " +
+                   number_text(largest_ratio) + " linear_density " + limit.words +
+                   " / time_step, the most that can be simulated at this time_step");
+  }
+}
+
+void check_rest_curvature(const std::string& key, const RestCurvatureDesc& desc, Errors& errors) {
+  check_numbers(key, desc.curvature, coordinate, "1/m", errors);
+  if (desc.type != RestCurvatureDesc::Type::profile) return;
+  if (desc.profile.size() < 2) errors.add(key, std::to_string(desc.profile.size()) + " places", "2 or more, from start to end");
+  for (std::size_t i = 0; i < desc.profile.size(); ++i)
+    check_numbers(indexed(key, i), desc.profile[i], coordinate, "1/m", errors);
+}
+
+void check_stiff_ends(const std::string& key, const CableDesc& cable, Errors& errors) {
+  check_numbers(key, cable.stiff_ends, not_negative, "m", errors);
+  if (is_sound(cable) && cable.stiff_ends[0] + cable.stiff_ends[1] >= cable.length)
+    errors.add(key, list_text(cable.stiff_ends), "together less than the cable's length, " + number_text(cable.length) + " m");
+}
+
+void check_cable(const std::string& key, const SceneDesc& scene, const CableDesc& cable, UniqueNames& attachments,
+                 Errors& errors) {
+  const std::string prefix = key + ".";
+  check_fields(prefix, cable_fields, cable, errors);
+  check_fields(prefix, cable_integer_fields, cable, errors);
+  if (const MaterialDesc* material = scene.find_material(cable.material)) {
+    check_damping(key, scene, cable, *material, errors);
+  } else {
+    errors.add(prefix + "material", quoted(cable.material), "a material of the scene (" + material_names(scene.materials) + ")");
+  }
+  check_numbers(prefix + "color", cable.color, unit_interval, "", errors);
+  check_initial(prefix + "initial", cable, errors);
+  check_rest_curvature(prefix + "rest_curvature", cable.rest_curvature, errors);
+  check_stiff_ends(prefix + "stiff_ends", cable, errors);
+  check_attachments(prefix, cable, attachments, errors);
+  for (std::size_t i = 0; i < cable.point_masses.size(); ++i) {
+    const std::string point_mass = indexed(prefix + "point_masses", i) + ".";
+    check_place(point_mass + "at", cable, cable.point_masses[i].place, errors);
+    check_fields(point_mass, point_mass_fields, cable.point_masses[i], errors);
+  }
+}
+
+void check_initial_poses(const SceneDesc& scene, Errors& errors) {
+  struct FirstUse {
+    InitialPose pose;
+    std::string key;
+  };
+  std::map<std::string, FirstUse> first_use{{scene.frame_id, {InitialPose{}, "the fixed frame"}}};
+  const auto check = [&](const std::string& user, const auto& desc) {
+    if (!desc.initial_pose) return;
+    const std::string key = user + ".initial_pose";
+    const std::string& frame = desc.frame.empty() ? scene.frame_id : desc.frame;
+    const auto [first, is_new] = first_use.emplace(frame, FirstUse{*desc.initial_pose, key});
+    if (!is_new && first->second.pose != *desc.initial_pose)
+      errors.add(key, list_text(*desc.initial_pose),
+                 "the same initial_pose wherever a frame is named; " + quoted(frame) + " has " + list_text(first->second.pose) +
+                     " by " + first->second.key);
+  };
+  for (std::size_t c = 0; c < scene.cables.size(); ++c) {
+    const std::vector<AttachmentDesc>& attachments = scene.cables[c].attachments;
+    for (std::size_t a = 0; a < attachments.size(); ++a) check(indexed(indexed("cables", c) + ".attachments", a), attachments[a]);
+  }
+  for (std::size_t n = 0; n < scene.nets.size(); ++n) {
+    const std::vector<NetAttachmentDesc>& attachments = scene.nets[n].attachments;
+    for (std::size_t a = 0; a < attachments.size(); ++a) check(indexed(indexed("nets", n) + ".attachments", a), attachments[a]);
+  }
+  for (std::size_t i = 0; i < scene.obstacles.size(); ++i) check(indexed("obstacles", i), scene.obstacles[i]);
+}
+
+/// Where an attachment's point is held with its frame at `frame`.
+Vector3 held_point(const AttachmentDesc& attachment, const Pose& frame) {
+  return frame.position + frame.orientation * attachment.offset;
+}
+
+/// Where two attachments leave no node between them free, the one segment that is not held along its clamp has the length that it
+/// has at rest only if they are in the right places. Clamps of a cable without bending stiffness hold the nodes beside theirs.
+void check_held_segment(const std::string& key, const CableDesc& cable, bool bends, const AttachmentDesc& first,
+                        const AttachmentDesc& second, const std::map<std::string, Pose>& frames, Errors& errors) {
+  const double length = cable.length / cable.segments;
+  int free = node_at(cable, second.place) - node_at(cable, first.place) - 1;
+  const auto end_of = [&](const AttachmentDesc& attachment, double way) -> Vector3 {
+    const Pose& frame = frames.at(attachment.frame);
+    const Vector3 point = held_point(attachment, frame);
+    if (bends || attachment.type != AttachmentType::clamp || free == 0) return point;
+    --free;
+    return point + frame.orientation * quaternion_from_rpy(attachment.rotation) * Vector3(way, 0, 0);
+  };
+  if (free < 0) return;
+  const Vector3 start = end_of(first, length), end = end_of(second, -length);
+  const double distance = (end - start).norm();
+  if (free > 0 || std::abs(distance - length) <= held_tolerance * length) return;
+  errors.add(key + ".segments",
+             std::to_string(cable.segments) + ", no node between " + quoted(first.name) + " and " + quoted(second.name) +
+                 " is free, and a segment of " + rounded_text(length) + " m would be " + rounded_text(distance) + " m long",
+             "so many that a node between them is free, as the cable is inextensible (axial_stiffness .inf)");
+}
+
+void check_distances(const std::string& key, const CableDesc& cable, bool bends, const std::map<std::string, Pose>& frames,
+                     Errors& errors) {
+  std::vector<std::size_t> order(cable.attachments.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto node = [&](std::size_t i) { return node_at(cable, cable.attachments[i].place); };
+  const auto is_unknown = [&](std::size_t i) {
+    return !frames.count(cable.attachments[i].frame) || !is_sound(cable, cable.attachments[i].place);
+  };
+  order.erase(std::remove_if(order.begin(), order.end(), is_unknown), order.end());
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return node(a) < node(b); });
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    const AttachmentDesc& first = cable.attachments[order[i - 1]];
+    const AttachmentDesc& second = cable.attachments[order[i]];
+    const double length = cable.length * (node(order[i]) - node(order[i - 1])) / cable.segments;
+    const double distance = (held_point(second, frames.at(second.frame)) - held_point(first, frames.at(first.frame))).norm();
+    if (length > 0 && distance > length * (1 + distance_tolerance)) {
+      errors.add(key + ".length",
+                 rounded_text(length) + " m of cable between " + quoted(first.name) + " and " + quoted(second.name),
+                 "at least the distance of these attachments, " + rounded_bound_text(distance, 1) +
+                     " m, as the cable is inextensible (axial_stiffness .inf)");
+      continue;
+    }
+    check_held_segment(key, cable, bends, first, second, frames, errors);
+  }
+}
+
+/// `limits.segments` counts segments of cables, nodes or links of nets, whichever are more, and particles.
+void check_size(const SceneDesc& scene, Errors& errors) {
+  double segments = 0;
+  for (const CableDesc& cable : scene.cables) segments += std::max(0, cable.segments);
+  const bool cables_only = scene.nets.empty() && scene.particles.empty();
+  for (const NetDesc& net : scene.nets) segments += static_cast<double>(std::max(net.node_count(), net.link_count()));
+  segments += static_cast<double>(scene.particles.size());
+  if (!limits_fields[0].range.contains(scene.limits.segments) || segments <= scene.limits.segments) return;
+  errors.add(cables_only ? "cables" : "cables, nets, particles",
+             number_text(segments) + (cables_only ? " segments in all" : " segments, links and particles in all"),
+             "at most limits.segments = " + std::to_string(scene.limits.segments));
+}
+
+}  // namespace
+
+std::vector<std::string> validate_distances(const SceneDesc& scene, const BoundaryInputs& frames) {
+  Errors errors;
+  const std::vector<std::string> names = frame_names(scene);
+  std::map<std::string, Pose> poses{{"", Pose{}}};
+  for (std::size_t i = 0; i < names.size() && i < frames.size(); ++i) {
+    if (frames[i].known) poses.emplace(names[i], frames[i].pose);
+  }
+  for (std::size_t i = 0; i < scene.cables.size(); ++i) {
+    const CableDesc& cable = scene.cables[i];
+    const MaterialDesc* material = scene.find_material(cable.material);
+    if (material && material->axial_stiffness == infinity && is_sound(cable))
+      check_distances(indexed("cables", i), cable, material->bending_stiffness > 0, poses, errors);
+  }
+  return errors.take();
+}
+
+std::vector<std::string> validate(const SceneDesc& scene) {
+  Errors errors;
+  if (!is_frame_name(scene.frame_id)) errors.add("frame_id", quoted(scene.frame_id), frame_words);
+  check_fields("", scene_fields, scene, errors);
+  check_fields("", scene_integer_fields, scene, errors);
+  check_fields("limits.", limits_fields, scene.limits, errors);
+  if (scene.gravity.type == GravityDesc::Type::uniform) {
+    check_vector("gravity", scene.gravity.acceleration, "m/s^2", errors);
+  } else {
+    check_fields("gravity.", gravity_fields, scene.gravity, errors);
+    check_vector("gravity.center", scene.gravity.center, "m", errors);
+  }
+  check_vector("fluid.velocity", scene.fluid.velocity, "m/s", errors);
+  check_fields("fluid.", fluid_fields, scene.fluid, errors);
+
+  UniqueNames materials;
+  for (const NamedMaterial& named : scene.materials) {
+    materials.check("materials." + escaped(named.name), named.name, errors);
+    check_fields("materials." + escaped(named.name) + ".", material_fields, named.material, errors);
+  }
+
+  UniqueNames bodies, attachments;
+  for (std::size_t i = 0; i < scene.cables.size(); ++i) {
+    bodies.check(indexed("cables", i) + ".name", scene.cables[i].name, errors);
+    check_cable(indexed("cables", i), scene, scene.cables[i], attachments, errors);
+  }
+  check_particles(scene, bodies, errors);
+  check_nets(scene, bodies, attachments, errors);
+  check_integrator(scene, errors);
+  check_size(scene, errors);
+
+  check_obstacles(scene, errors);
+  check_initial_poses(scene, errors);
+  std::vector<std::string> lines = errors.take();
+  for (std::string& line : validate_distances(scene, initial_frames(scene))) lines.push_back(std::move(line));
+  return lines;
+}
+
+}  // namespace verlet_cable

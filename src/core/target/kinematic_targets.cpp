@@ -1,0 +1,369 @@
+#include "target/kinematic_targets.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "verlet_cable/core/rotation.h"
+
+namespace verlet_cable {
+
+namespace {
+
+/// No hand or machine changes its velocity by more [m/s] within a step: a holder that does jumps, if that does not last longer
+/// [s].
+constexpr double greatest_change = 5;
+constexpr double longest_jump = 5e-3;
+/// A change of velocity that is not greater than the one before by this fraction goes on with an acceleration.
+constexpr double sudden = 0.5;
+/// In steps longer than a jump all changes are great: one that is so many times greater than those before is no motion.
+constexpr double out_of_proportion = 3;
+constexpr double fading = 0.5;  // of what went before, in a step
+/// Below this change [m/s] in a step a velocity is a motion's; above it may be noise, and the average over some time [s] is
+/// better.
+constexpr double steady_change = 1;
+constexpr double averaging_time = 0.02;
+/// A jump at one speed may begin and end inside steps: up to this fraction it is one speed.
+constexpr double one_speed = 0.1;
+/// Frames may be on vehicles: one that starts is believed to move as fast as this [m/s].
+constexpr double fastest_start = 50;
+constexpr double rounding = 1e-6;
+/// A node that is pinned elsewhere than it is goes there at about this speed [m/s], in no less than this time [s].
+constexpr double approach_speed = 2;
+constexpr double shortest_approach = 0.1;
+constexpr double approach_radius = 0.5;  // [m]; directions turn as long as a node takes for this
+
+/// How much of a gap is left: from 1 to 0, smoothly, in a time that grows with the distance [m] to go.
+double remaining(double caught, double distance, double time) {
+  const double duration = shortest_approach + distance / approach_speed;
+  const double part = std::clamp((time - caught) / duration, 0.0, 1.0);
+  return 1 - part * part * (3 - 2 * part);
+}
+
+bool holds_direction(const CableModel& model, const Attachment& attachment) {
+  return attachment.type == AttachmentType::clamp && model.material.bending_stiffness > 0;
+}
+
+/// Where an attachment at `pose` wants its own node or one next to it.
+Vector3 target_position(const CableModel& model, const Attachment& attachment, const Pose& pose, int node) {
+  if (node == attachment.node) return pose.position;
+  const double side = node < attachment.node ? -1 : 1;
+  return pose.position + side * model.rest_lengths[std::min(node, attachment.node)] * (pose.orientation * Vector3::UnitX());
+}
+
+/// The cable's direction at a node.
+Vector3 tangent(const CableState& state, int node) {
+  const int last = static_cast<int>(state.positions.size()) - 1;
+  return state.positions[std::min(node + 1, last)] - state.positions[std::max(node - 1, 0)];
+}
+
+void aim(const Vector3& wanted, double time, KinematicTarget& target) {
+  target.next_position = wanted + remaining(target.caught, target.gap.norm(), time) * target.gap;
+}
+
+bool is_greater_than_a_motion(const Vector3& change) {
+  return change.norm() > greatest_change;
+}
+
+void end_jump(KinematicTarget& target) {
+  target.jumping_steps = 0;
+  target.jumped_from = target.carried = Vector3::Zero();
+  target.first_excess = target.last_excess = target.least_excess = target.greatest_excess = 0;
+}
+
+/// Whether a jump may begin in a step with this mean velocity, and its velocity before. An acceleration that goes on is none, nor
+/// is what comes back from a change that was no jump.
+bool may_begin_jump(const Vector3& mean, double time_step, KinematicTarget& target) {
+  const Vector3 change = mean - target.mean_velocity;
+  if (!is_greater_than_a_motion(change)) return false;
+  const double jerk = (change - target.change).norm();
+  if (jerk <= greatest_change || jerk <= sudden * target.change.norm()) return false;
+  if (time_step > longest_jump * (1 + rounding) && change.norm() <= out_of_proportion * target.liveliness) return false;
+  const Vector3 before = target.change.norm() <= steady_change ? target.mean_velocity : target.average_velocity;
+  if (!is_greater_than_a_motion(mean - before)) return false;
+  target.mean_velocity = before;
+  return true;
+}
+
+/// Whether what has gone on for some steps, and goes on with this excess of velocity, may be a jump. Where it does not fit into
+/// the longest time with its whole first and last step, it does with parts of them if it has one speed.
+bool is_short(double excess, double time_step, const KinematicTarget& target) {
+  const int steps = target.jumping_steps + 1;
+  const double longest = longest_jump / time_step * (1 + rounding);
+  // Two steps may both be parts: how long it lasted in them cannot be told.
+  if (steps <= std::max(longest, 2.0)) return true;
+  const double least = target.jumping_steps > 2 ? std::min(target.least_excess, target.last_excess) : target.last_excess;
+  const double greatest = std::max(target.greatest_excess, target.last_excess);
+  return greatest - least <= one_speed * greatest && steps - 2 + (target.first_excess + excess) / greatest <= longest;
+}
+
+void begin_or_continue_jump(double excess, KinematicTarget& target) {
+  if (target.jumping_steps == 0) {
+    target.jumped_from = target.position;
+    target.first_excess = excess;
+  } else if (target.jumping_steps > 1) {
+    target.least_excess = target.jumping_steps == 2 ? target.last_excess : std::min(target.least_excess, target.last_excess);
+    target.greatest_excess = std::max(target.greatest_excess, target.last_excess);
+  }
+  target.last_excess = excess;
+  ++target.jumping_steps;
+}
+
+/// What a change of velocity turns out to be.
+enum class Change { none, undecided, jump, motion };
+
+/// The change in a step with this mean velocity. One that lasts is a motion, and to be followed; until that is known it may be a
+/// jump. What trembles goes as its mean does.
+Change judge(const Vector3& mean, double time_step, KinematicTarget& target) {
+  if (target.jumping_steps == 0 && !may_begin_jump(mean, time_step, target)) return Change::none;
+  const double excess = (mean - target.mean_velocity).norm();
+  if (excess <= greatest_change) return Change::jump;
+  if (is_short(excess, time_step, target)) {
+    begin_or_continue_jump(excess, target);
+    return Change::undecided;
+  }
+  const Vector3 lasting = (target.next_position - target.jumped_from) / ((target.jumping_steps + 1) * time_step);
+  if (is_greater_than_a_motion(lasting - target.mean_velocity)) return Change::motion;
+  end_jump(target);
+  target.mean_velocity = lasting;
+  if (!is_greater_than_a_motion(mean - lasting)) return Change::none;
+  begin_or_continue_jump((mean - lasting).norm(), target);
+  return Change::undecided;
+}
+
+/// Keeps in mind how a holder moves in a step.
+void note_motion(const Vector3& change, const Vector3& mean, double time_step, KinematicTarget& target) {
+  target.change = change;
+  target.liveliness = std::max(fading * target.liveliness, change.norm());
+  target.average_velocity += time_step / (averaging_time + time_step) * (mean - target.average_velocity);
+}
+
+/// Catches a node where it is.
+KinematicTarget caught(int attachment, const WantedNode& wanted, const Vector3& position, const Vector3& velocity, double time) {
+  KinematicTarget target;
+  target.attachment = attachment;
+  target.node = wanted.node;
+  target.position = position;
+  target.velocity = velocity;
+  target.mean_velocity = target.frame_velocity = target.average_velocity = velocity;
+  target.gap = position - wanted.position;
+  target.caught = time;
+  return target;
+}
+
+/// Adds the holder of a node: the one before, or one that catches it.
+void add_target(int attachment, const WantedNode& wanted, const std::vector<Vector3>& positions,
+                const std::vector<Vector3>& velocities, const KinematicTargets& before, double time, KinematicTargets& targets) {
+  const auto same_node = [&](const KinematicTarget& h) { return h.node == wanted.node; };
+  if (std::any_of(targets.nodes.begin(), targets.nodes.end(), same_node)) return;
+  const auto known = std::find_if(before.nodes.begin(), before.nodes.end(),
+                                  [&](const KinematicTarget& h) { return same_node(h) && h.attachment == attachment; });
+  targets.nodes.push_back(
+      known != before.nodes.end() ? *known : caught(attachment, wanted, positions[wanted.node], velocities[wanted.node], time));
+}
+
+}  // namespace
+
+std::vector<WantedNode> wanted_nodes(const CableModel& model, const Attachment& attachment, const Pose& frame) {
+  const Pose pose = frame * attachment.pose;
+  const int node = attachment.node;
+  std::vector<WantedNode> wanted{{node, pose.position}};
+  if (attachment.type == AttachmentType::hinge || model.material.bending_stiffness > 0) return wanted;
+  if (node > 0) wanted.push_back({node - 1, target_position(model, attachment, pose, node - 1)});
+  if (node < model.segments()) wanted.push_back({node + 1, target_position(model, attachment, pose, node + 1)});
+  return wanted;
+}
+
+std::vector<int> attachments_of(int index, bool net, const std::vector<Attachment>& attachments) {
+  std::vector<int> own;
+  for (int a = 0; a < static_cast<int>(attachments.size()); ++a)
+    if ((net ? attachments[a].net : attachments[a].cable) == index) own.push_back(a);
+  return own;
+}
+
+KinematicTargets find_targets(const CableModel& model, const CableState& state, const std::vector<Attachment>& attachments,
+                              const std::vector<int>& attached, const std::vector<Pose>& frames, const KinematicTargets& before,
+                              double time) {
+  KinematicTargets targets;
+  const auto add_node = [&](int attachment, const WantedNode& wanted) {
+    add_target(attachment, wanted, state.positions, state.velocities, before, time, targets);
+  };
+  const auto add_direction = [&](int attachment) {
+    const auto known = std::find_if(before.directions.begin(), before.directions.end(),
+                                    [&](const DirectionTarget& h) { return h.attachment == attachment; });
+    if (known != before.directions.end()) {
+      targets.directions.push_back(*known);
+      return;
+    }
+    DirectionTarget target;
+    target.attachment = attachment;
+    target.node = attachments[attachment].node;
+    const Quaternion wanted = (frames[attachments[attachment].frame] * attachments[attachment].pose).orientation;
+    // Its roll is followed from the start; a pinned node is not twisted by being pinned.
+    target.gap = smallest_rotation(wanted * Vector3::UnitX(), tangent(state, target.node));
+    target.orientation = target.gap * wanted;
+    target.caught = time;
+    targets.directions.push_back(target);
+  };
+  // The attachments' own nodes first, then the neighbours that clamps want.
+  for (const bool own : {true, false}) {
+    for (const int a : attached) {
+      const std::vector<WantedNode> wanted = wanted_nodes(model, attachments[a], frames[attachments[a].frame]);
+      for (const WantedNode& wanted : wanted)
+        if ((wanted.node == attachments[a].node) == own) add_node(a, wanted);
+      if (own && holds_direction(model, attachments[a])) add_direction(a);
+    }
+  }
+  const auto by_node = [](const auto& a, const auto& b) { return a.node < b.node; };
+  std::sort(targets.nodes.begin(), targets.nodes.end(), by_node);
+  std::sort(targets.directions.begin(), targets.directions.end(), by_node);
+  return targets;
+}
+
+void start_targets(const std::vector<Attachment>& attachments, const std::vector<Pose>& frames, const BoundaryInputs& inputs,
+                   KinematicTargets& targets) {
+  for (KinematicTarget& target : targets.nodes) {
+    const auto frame = static_cast<std::size_t>(attachments[target.attachment].frame);
+    if (frame == 0) continue;
+    target.starts = true;
+    target.liveliness = greatest_change;
+    if (frame >= inputs.size() || !inputs[frame].velocity) continue;
+    const FrameVelocity& of_frame = *inputs[frame].velocity;
+    const Vector3 velocity = of_frame.linear + of_frame.angular.cross(target.position - frames[frame].position);
+    if (!velocity.allFinite()) continue;
+    target.starts = false;
+    target.velocity = target.mean_velocity = target.next_velocity = velocity;
+    target.frame_velocity = target.average_velocity = velocity;
+  }
+}
+
+void aim_targets(const CableModel& model, const std::vector<Attachment>& attachments, const std::vector<Pose>& frames,
+                 double time, KinematicTargets& targets) {
+  for (KinematicTarget& target : targets.nodes) {
+    const Attachment& attachment = attachments[target.attachment];
+    const Pose pose = frames[attachment.frame] * attachment.pose;
+    aim(target_position(model, attachment, pose, target.node), time, target);
+  }
+  for (DirectionTarget& target : targets.directions) {
+    const Attachment& attachment = attachments[target.attachment];
+    const double left = remaining(target.caught, approach_radius, time);
+    target.next_orientation =
+        Quaternion::Identity().slerp(left, target.gap) * (frames[attachment.frame] * attachment.pose).orientation;
+  }
+}
+
+KinematicTargets find_net_targets(const std::vector<Vector3>& positions, const std::vector<Vector3>& velocities,
+                                  const std::vector<Attachment>& attachments, const std::vector<int>& attached,
+                                  const std::vector<Pose>& frames, const KinematicTargets& before, double time) {
+  KinematicTargets targets;
+  for (const int a : attached) {
+    const WantedNode wanted{attachments[a].node, (frames[attachments[a].frame] * attachments[a].pose).position};
+    add_target(a, wanted, positions, velocities, before, time, targets);
+  }
+  std::sort(targets.nodes.begin(), targets.nodes.end(),
+            [](const KinematicTarget& a, const KinematicTarget& b) { return a.node < b.node; });
+  return targets;
+}
+
+void aim_hinges(const std::vector<Attachment>& attachments, const std::vector<Pose>& frames, double time,
+                KinematicTargets& targets) {
+  for (KinematicTarget& target : targets.nodes) {
+    const Attachment& attachment = attachments[target.attachment];
+    aim((frames[attachment.frame] * attachment.pose).position, time, target);
+  }
+}
+
+void put_at_aim(KinematicTargets& targets) {
+  for (KinematicTarget& target : targets.nodes) {
+    target.position = target.next_position;
+    target.next_velocity = target.velocity;
+  }
+  for (DirectionTarget& target : targets.directions) target.orientation = target.next_orientation;
+}
+
+Following follow_aims(const std::vector<Attachment>& attachments, double time, double time_step, KinematicTargets& targets,
+                      std::vector<Jump>& over) {
+  Following following;
+  for (KinematicTarget& target : targets.nodes) {
+    const Vector3 mean = (target.next_position - target.position) / time_step;
+    if (target.starts) {
+      target.starts = false;
+      if (mean.norm() <= fastest_start) target.velocity = target.mean_velocity = target.average_velocity = mean;
+      following.started = true;
+    }
+    // What a node that has just been caught was doing is no motion of a frame.
+    const bool is_new = time - target.caught < 1.5 * time_step;
+    const Change change = is_new ? Change::none : judge(mean, time_step, target);
+    if (change == Change::undecided) {
+      const Vector3 way = target.next_position - target.position - time_step * target.mean_velocity;
+      target.position += way;
+      target.carried += way;
+      target.frame_velocity = mean;
+      target.next_velocity = target.mean_velocity;
+      if (following.jumping_node < 0) following.jumping_node = target.node;
+      for (DirectionTarget& direction : targets.directions)
+        if (direction.attachment == target.attachment) direction.orientation = direction.next_orientation;
+      continue;
+    }
+    if (change == Change::jump && target.node == attachments[target.attachment].node) {
+      const double duration = target.jumping_steps * time_step;
+      over.push_back({target.attachment, target.carried.norm(), time - time_step - duration, duration});
+    }
+    if (change == Change::motion) {
+      note_motion(mean - target.frame_velocity, mean, time_step, target);
+      target.average_velocity = target.mean_velocity = mean;
+    } else {
+      note_motion(mean - target.mean_velocity, mean, time_step, target);
+      if (is_new) target.average_velocity = mean;
+    }
+    end_jump(target);
+    target.frame_velocity = mean;
+    target.next_velocity = mean + 0.5 * (mean - target.mean_velocity);
+  }
+  return following;
+}
+
+void show_velocities(const KinematicTargets& targets, std::vector<Vector3>& velocities) {
+  for (const KinematicTarget& target : targets.nodes)
+    if (target.jumping_steps > 0 && target.frame_velocity.norm() < target.velocity.norm())
+      velocities[target.node] = target.frame_velocity;
+}
+
+void take_back_shown_velocities(const KinematicTargets& targets, std::vector<Vector3>& velocities) {
+  for (const KinematicTarget& target : targets.nodes)
+    if (target.jumping_steps > 0) velocities[target.node] = target.velocity;
+}
+
+void hold_at(double from, double to, const KinematicTargets& targets, Boundary& boundary) {
+  boundary.nodes.resize(targets.nodes.size());
+  for (std::size_t k = 0; k < targets.nodes.size(); ++k) {
+    const KinematicTarget& target = targets.nodes[k];
+    HeldNode& held = boundary.nodes[k];
+    held.node = target.node;
+    held.position = to == 1 ? target.next_position : target.position + to * (target.next_position - target.position);
+    held.velocity = target.velocity + to * (target.next_velocity - target.velocity);
+  }
+  boundary.directions.resize(targets.directions.size());
+  for (std::size_t k = 0; k < targets.directions.size(); ++k) {
+    const DirectionTarget& target = targets.directions[k];
+    boundary.directions[k].node = target.node;
+    boundary.directions[k].start = target.orientation.slerp(from, target.next_orientation);
+    boundary.directions[k].end = target.orientation.slerp(to, target.next_orientation);
+  }
+}
+
+Boundary boundary_now(const KinematicTargets& targets) {
+  Boundary boundary;
+  hold_at(0, 0, targets, boundary);
+  return boundary;
+}
+
+void complete_step(double time_step, KinematicTargets& targets) {
+  for (KinematicTarget& target : targets.nodes) {
+    target.mean_velocity = (target.next_position - target.position) / time_step;
+    target.position = target.next_position;
+    target.velocity = target.next_velocity;
+  }
+  for (DirectionTarget& target : targets.directions) target.orientation = target.next_orientation;
+}
+
+}  // namespace verlet_cable

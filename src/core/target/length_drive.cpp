@@ -1,0 +1,136 @@
+#include "target/length_drive.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace verlet_cable {
+
+namespace {
+
+/// [1/s] Of the critically damped motion that gives lost length back.
+constexpr double giving_back = 20;
+constexpr double smallest_debt = 1e-9;  // [m]
+
+template <typename Array>
+void duplicate(Array& array, int i) {
+  const auto value = array[i];
+  array.insert(array.begin() + i, value);
+}
+
+template <typename Array>
+void erase(Array& array, int i) {
+  array.erase(array.begin() + i);
+}
+
+template <typename Function>
+void for_node_arrays(CableState& state, const Function& function) {
+  for (auto* array : {&state.positions, &state.velocities, &state.accelerations}) function(*array);
+}
+
+template <typename Function>
+void for_segment_arrays(CableState& state, const Function& function) {
+  for (auto* array : {&state.tension, &state.axial_multiplier, &state.twist}) function(*array);
+}
+
+}  // namespace
+
+void plan_drive(double available, double time_step, LengthDrive& drive) {
+  const double goal = std::max(drive.left, -std::max(available, 0.0));
+  const double side = goal < 0 ? -1 : 1, distance = std::abs(goal), speed = side * drive.rate;
+  const double most = drive.acceleration * time_step;
+  drive.arrives = distance <= most * time_step && std::abs(speed) <= 2 * most;
+  double next = 0;
+  drive.wound = goal;
+  if (!drive.arrives) {
+    // The speed after the step from which it can just brake in what is left then.
+    const double left = std::max(distance - 0.5 * time_step * speed, 0.0);
+    const double braking =
+        drive.acceleration * (std::sqrt(0.25 * time_step * time_step + 2 * left / drive.acceleration) - 0.5 * time_step);
+    next = std::clamp(std::min(drive.speed, braking), speed - most, speed + most);
+    drive.wound = std::max(side * 0.5 * time_step * (speed + next), std::min(-available, 0.0));
+  }
+  drive.next_rate = side * next;
+
+  const double decay = std::exp(-giving_back * time_step), slope = drive.debt_rate + giving_back * drive.debt;
+  drive.next_debt = (drive.debt + slope * time_step) * decay;
+  drive.next_debt_rate = (drive.debt_rate - giving_back * slope * time_step) * decay;
+  if (std::abs(drive.next_debt) < smallest_debt) drive.next_debt = drive.next_debt_rate = 0;
+  drive.change = drive.wound + drive.debt - drive.next_debt;
+}
+
+void wind(const LengthDrive& drive, double part, double time_step, CableModel& model) {
+  const double uniform = drive.change - 0.5 * time_step * (drive.growth() + drive.next_growth());
+  const double accelerated = time_step * (drive.growth() + 0.5 * part * (drive.next_growth() - drive.growth()));
+  const double change = part == 1 ? drive.change : part * (uniform + accelerated);
+  model.rest_lengths[drive.segment] = drive.start_length + change;
+  if (!drive.is_winch()) return;
+  for (const int side : {0, 1})
+    model.masses[drive.segment + side] = drive.start_masses[side] + 0.5 * model.material.linear_density * part * drive.wound;
+}
+
+double growth_at(const LengthDrive& drive, double part) {
+  return drive.growth() + part * (drive.next_growth() - drive.growth());
+}
+
+bool complete_drive(LengthDrive& drive) {
+  drive.left = drive.arrives ? 0 : drive.left - drive.wound;
+  drive.rate = drive.next_rate;
+  drive.debt = drive.next_debt;
+  drive.debt_rate = drive.next_debt_rate;
+  return !drive.arrives || drive.debt != 0;
+}
+
+void insert_node(int segment, double first, SimulatedCable& cable) {
+  CableModel& model = cable.model;
+  const double whole = model.rest_lengths[segment], second = whole - first, part = first / whole;
+  const int node = segment + 1;
+  for_node_arrays(cable.state, [&](std::vector<Vector3>& values) {
+    const Vector3 value = values[segment] + part * (values[node] - values[segment]);
+    values.insert(values.begin() + node, value);
+  });
+  for_segment_arrays(cable.state, [&](std::vector<double>& values) { duplicate(values, segment); });
+  const double half_density = 0.5 * model.material.linear_density;
+  model.masses[segment] -= half_density * second;
+  model.masses[node] -= half_density * first;
+  model.masses.insert(model.masses.begin() + node, half_density * whole);
+  duplicate(model.rest_lengths, segment);
+  model.rest_lengths[segment] = first;
+  model.rest_lengths[node] = second;
+  if (!model.rest_curvature.empty()) duplicate(model.rest_curvature, segment == 0 ? node : segment);
+  // What a winch pays out bends.
+  if (!model.flexible_fraction.empty()) model.flexible_fraction.insert(model.flexible_fraction.begin() + node, 1.0);
+  if (cable.state.reference_node >= node) ++cable.state.reference_node;
+}
+
+double remove_node(int node, SimulatedCable& cable) {
+  CableModel& model = cable.model;
+  CableState& state = cable.state;
+  const int before = node - 1, after = node + 1;
+  const double first = model.rest_lengths[before], second = model.rest_lengths[node], whole = first + second;
+  const double stretch =
+      ((state.positions[node] - state.positions[before]).norm() + (state.positions[after] - state.positions[node]).norm()) /
+      whole;
+  const double length = (state.positions[after] - state.positions[before]).norm() / stretch;
+  const double mass = model.masses[node];
+  const auto give = [&](int neighbour, double share) {
+    const double moved = share * mass, sum = model.masses[neighbour] + moved;
+    state.velocities[neighbour] = (model.masses[neighbour] * state.velocities[neighbour] + moved * state.velocities[node]) / sum;
+    model.masses[neighbour] = sum;
+  };
+  give(before, second / whole);
+  give(after, first / whole);
+  for_segment_arrays(state, [&](std::vector<double>& values) {
+    values[before] = (first * values[before] + second * values[node]) / whole;
+    erase(values, node);
+  });
+  for_node_arrays(state, [&](std::vector<Vector3>& values) { erase(values, node); });
+  erase(model.masses, node);
+  erase(model.rest_lengths, node);
+  model.rest_lengths[before] = length;
+  if (!model.rest_curvature.empty()) erase(model.rest_curvature, node);
+  if (!model.flexible_fraction.empty()) erase(model.flexible_fraction, node);
+  if (state.reference_node >= node) --state.reference_node;
+  return whole - length;
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "verlet_cable/core/cable.h"
+
+namespace verlet_cable {
+
+/// A segment whose rest length changes while the cable moves: at a winch it pays cable out or takes it in; between two ends that
+/// are being joined it shrinks.
+struct LengthDrive {
+  enum class Place { start, end, inside };
+  Place place = Place::start;
+  int segment = 0;
+  double left = 0;          ///< [m] still to be paid out, < 0: to be taken in
+  double speed = 0;         ///< [m/s] to be reached, > 0
+  double acceleration = 0;  ///< [m/s^2] with which it is reached and left, > 0
+  double rate = 0;          ///< [m/s] at the world's time, < 0: taking in
+  /// [m] that a bent place lost in length when its node was taken in, [m/s] how that changes; it is given back smoothly
+  double debt = 0, debt_rate = 0;
+
+  // Of the present step
+  double start_length = 0;          ///< [m] the segment's rest length at its start
+  double start_masses[2] = {0, 0};  ///< [kg] of its nodes, then
+  double wound = 0;                 ///< [m] of `left` in this step
+  double change = 0;                ///< [m] of the rest length
+  double next_rate = 0;             ///< [m/s] at its end
+  double next_debt = 0, next_debt_rate = 0;
+  bool arrives = false;
+
+  double growth() const { return rate - debt_rate; }  ///< [m/s] of the rest length, at the world's time
+  double next_growth() const { return next_rate - next_debt_rate; }
+  bool is_winch() const { return place != Place::inside; }
+  int end_node(int segments) const { return place == Place::start ? 0 : segments; }  ///< of a winch
+};
+
+/// Plans the next step: speeds up, goes on or brakes so that it comes to rest at the end of `left`, or where no more than
+/// `available` [m] is taken in.
+void plan_drive(double available, double time_step, LengthDrive& drive);
+
+/// Gives the segment the rest length, and its nodes the masses, that it has at a part of the step, 0 to 1.
+void wind(const LengthDrive& drive, double part, double time_step, CableModel& model);
+/// [m/s] growth of the rest length at a part of the step.
+double growth_at(const LengthDrive& drive, double part);
+
+/// The step is done: what was next is now. False if the drive has nothing left to do.
+bool complete_drive(LengthDrive& drive);
+
+/// Splits a segment in two of the rest lengths `first` [m] and what is left, on a straight line; velocities change linearly along
+/// it. Mass and momentum stay as they are.
+void insert_node(int segment, double first, SimulatedCable& cable);
+
+/// Makes one segment of the two at an inner node, with the strain that they had. Its mass and momentum go to its neighbours.
+/// Returns by how much the rest length is shorter than that of the two [m]: a bent place has no straight segment of its length.
+double remove_node(int node, SimulatedCable& cable);
+
+}  // namespace verlet_cable

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <atomic>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "particle/particle_stepper.h"
+#include "world/island_stepper.h"
+#include "world/islands.h"
+#include "world/not_copied.h"
+#include "world/state.h"
+#include "world/workspace.h"
+
+namespace verlet_cable {
+
+/// What the last step, start or settling found, for who reads the world. Nothing of it decides the future.
+struct Findings {
+  std::vector<std::string> waiting;  ///< names of what waits
+  std::vector<std::string> unsettled;
+  std::vector<std::string> misfits;
+  std::vector<Break> breaks;
+  std::vector<Jump> jumps;
+  std::vector<Intrusion> intrusions;
+  std::vector<SimulatedContact> contacts;
+};
+
+struct World::Implementation {
+  State state;
+  Findings findings;
+  bool one_by_one = false;                       ///< as World::step_one_by_one asks
+  const std::atomic<bool>* cancelled = nullptr;  ///< during construction
+  // Scratch, and what follows from the state
+  NotCopied<Workspaces> workspaces;
+  NotCopied<Islands> islands;
+  NotCopied<std::vector<CableOutcome>> cable_outcomes;    ///< one a cable
+  NotCopied<std::vector<IslandOutcome>> island_outcomes;  ///< one an island
+  NotCopied<std::vector<NetSolver>> net_solvers;          ///< one a net
+  NotCopied<ParticleStepper> particle_stepper;
+  NotCopied<std::vector<MovingObstacle>> moving_obstacles;  ///< of nets, particles and cables that settle
+
+  // Stages of a step
+  void begin_step();
+  int update_frames(const BoundaryInputs& inputs);
+  void advance_winches();
+  void build_islands();
+  void advance_islands();
+  void collect_outcomes(StepResult& result);
+  void apply_breaks(StepResult& result);
+  void step_nets_and_particles(StepResult& result);
+
+  bool is_cancelled() const { return cancelled && *cancelled; }
+  void name_waiting();
+  void start_cable(const CableDesc& desc, const FrameIds& ids, const BoundaryInputs& inputs);
+  void start_net(const NetDesc& desc, const FrameIds& ids, const BoundaryInputs& inputs);
+  EditResult cut(int cable, int segment);
+  void update_net(int net);
+  void add_particle(const ParticleDesc& desc);
+  NetSolver& solver_of(int net);
+  void step_net(int net, StepResult& result);
+  void aim_net(int net, StepResult& result);
+  void step_particle(int particle, StepResult& result);
+  void add_net_energy(Energy& energy) const;
+  bool is_attachment(const std::string& name) const;
+  Vector3 gravity_near(int cable) const;
+  void add_scene_obstacles();
+  void find_obstacle_anchors();
+  void find_targets_of(int cable);
+  void plan_drive_step(int cable);
+  double available_length(int cable) const;
+  double slack_at_winch(int cable) const;
+  void remesh_winch(int cable);
+  void add_winch_node(int cable);
+  void take_in_winch_node(int cable);
+  void close_joint(int cable);
+  void reverse_cable(int cable);
+  void renumber(int cable, int first_node, int shift);
+  void follow_cut(int cable, int segment, int new_cable);
+  void follow_join(int first, int second);
+  void after_remeshing(int cable);
+  void forget_contacts(int cable);
+};
+
+/// What is wrong with a pose that is not sound, under the name of its field; empty if nothing is.
+std::string pose_problem(const std::string& field, const Pose& pose);
+
+}  // namespace verlet_cable

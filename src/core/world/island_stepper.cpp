@@ -1,0 +1,325 @@
+#include "world/island_stepper.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rod/initial_shape.h"
+#include "rod/length_projection.h"
+#include "verlet_cable/core/rotation.h"
+
+namespace verlet_cable {
+
+namespace {
+
+using Status = StepResult::Status;
+
+/// After so many substeps in one step a cable is not split further: whoever waits for it has waited long enough.
+constexpr int maximum_substeps = 4096;
+/// A substep that took no more iterations than this may be doubled; with contacts it always takes some more.
+constexpr int easy_iterations = 6;
+constexpr int easy_contact_iterations = 12;
+
+bool finite(const std::vector<Vector3>& vectors) {
+  return std::all_of(vectors.begin(), vectors.end(), [](const Vector3& v) { return v.allFinite(); });
+}
+
+/// Where a cable hangs to: gravity at its first node.
+Vector3 gravity_near(const State& state, int cable) {
+  return state.scene->gravity.at(state.cables[cable].state.positions.front());
+}
+
+/// The segment of a cable that breaks now, -1 if it holds. A piece keeps at least one segment, so that the outermost ones do not
+/// break.
+int find_breaking_segment(const SimulatedCable& cable, const StepResult& result) {
+  const double limit = cable.model.material.breaking_tension;
+  const std::vector<double>& tension = cable.state.tension;
+  if (!(limit < infinity) || tension.size() < 3) return -1;
+  const auto tightest = std::max_element(tension.begin() + 1, tension.end() - 1);
+  // What cannot stretch and is pulled beyond its length findings.breaks at any strength.
+  const bool torn = result.status == StepResult::Status::overstretched && cable.model.material.axial_stiffness == infinity;
+  const bool exceeded = *std::max_element(tension.begin(), tension.end()) > limit;
+  return torn || exceeded ? static_cast<int>(tightest - tension.begin()) : -1;
+}
+
+}  // namespace
+
+ContactRules contact_rules(const SceneDesc& scene, bool still) {
+  ContactRules rules;
+  rules.still = still;
+  rules.time_step = scene.time_step;
+  if (scene.contact) {
+    rules.pairs = {scene.contact->self, scene.contact->between_cables};
+    rules.cable_friction = scene.contact->friction;
+  }
+  return rules;
+}
+
+void note_status(Status status, int cable, int node, StepResult& result) {
+  if (status <= result.status) return;
+  result.status = status;
+  result.cable = cable;
+  result.node = node;
+}
+
+void add_forces(const Boundary& boundary, const KinematicTargets& targets, const std::vector<Pose>& frames, double weight,
+                std::vector<Attachment>& attachments) {
+  for (std::size_t k = 0; k < boundary.nodes.size(); ++k) {
+    Attachment& attachment = attachments[targets.nodes[k].attachment];
+    const Vector3 force = weight * boundary.nodes[k].force;
+    const Vector3 arm = boundary.nodes[k].position - (frames[attachment.frame] * attachment.pose).position;
+    attachment.force += force;
+    if (targets.nodes[k].node != attachment.node) attachment.torque += arm.cross(force);
+  }
+  for (std::size_t k = 0; k < boundary.directions.size(); ++k)
+    attachments[targets.directions[k].attachment].torque += weight * boundary.directions[k].torque;
+}
+
+void follow_material(const std::vector<HeldDirection>& directions, const std::vector<TwistSpan>& spans, SimulatedCable& cable) {
+  CableState& state = cable.state;
+  if (directions.empty()) {
+    const Vector3 before = state.reference_orientation * Vector3::UnitX(), now = state.positions[1] - state.positions[0];
+    state.reference_node = 0;
+    state.reference_orientation = (smallest_rotation(before, now) * state.reference_orientation).normalized();
+  } else {
+    state.reference_node = directions.front().node;
+    state.reference_orientation = directions.front().end;
+  }
+  std::fill(state.twist.begin(), state.twist.end(), 0.0);
+  for (const TwistSpan& span : spans) {
+    const double length = cable.model.length(span.first_node, span.last_node);
+    std::fill(state.twist.begin() + span.first_node, state.twist.begin() + span.last_node, span.angle / length);
+  }
+}
+
+void forget_forces(const KinematicTargets& targets, std::vector<Attachment>& attachments) {
+  for (const KinematicTarget& target : targets.nodes) {
+    Attachment& attachment = attachments[target.attachment];
+    attachment.force = attachment.torque = Vector3::Zero();
+  }
+}
+
+void update_targets(int index, State& state, CableOutcome& outcome) {
+  SimulatedCable& cable = state.cables[index];
+  KinematicTargets& targets = state.cable_progress[index].targets;
+  aim_targets(cable.model, state.attachments, state.frames.poses, state.time(), targets);
+  forget_forces(targets, state.attachments);
+  outcome.jumps.clear();
+  take_back_shown_velocities(targets, cable.state.velocities);
+  const Following following = follow_aims(state.attachments, state.time(), state.scene->time_step, targets, outcome.jumps);
+  const bool jumps = following.jumping_node >= 0;
+  if (!following.started && !jumps) return;
+  Boundary boundary;
+  hold_at(0, 0, targets, boundary);
+  if (jumps) {
+    carry_along(cable.model, boundary.nodes, gravity_near(state, index), cable.state);
+    note_status(Status::jumped, index, following.jumping_node, outcome.result);
+  }
+  project_velocities(cable.model, boundary.nodes, cable.state.positions, cable.state.velocities);
+}
+
+void complete_drive_step(int index, State& state) {
+  CableProgress& memory = state.cable_progress[index];
+  CableModel& model = state.cables[index].model;
+  LengthDrive& drive = *memory.drive;
+  wind(drive, 1, state.scene->time_step, model);
+  if (drive.is_winch()) {
+    // What goes through the winch is as twisted as the cable is.
+    const int end = drive.end_node(model.segments());
+    for (TwistSpan& span : memory.spans) {
+      if (span.first_node != end && span.last_node != end) continue;
+      const double length = model.length(span.first_node, span.last_node);
+      const double change = span.angle * drive.wound / (length - drive.wound);
+      span.angle += change;
+      span.origin -= change;
+    }
+  }
+  if (!complete_drive(drive)) memory.drive.reset();
+}
+
+void IslandStepper::step(Island& island, IslandOutcome& found) {
+  found.intrusions.clear();
+  found.contacts.clear();
+  begin(island);
+  int level = 0;
+  for (const int cable : island.cables) level = std::max(level, state_.cable_progress[cable].level);
+
+  const int finest = std::max(0, static_cast<int>(std::ceil(std::log2(state_.scene->time_step / shortest_substep))));
+  const std::int64_t whole = std::int64_t{1} << finest;
+  const double part = 1 / static_cast<double>(whole);
+  std::int64_t done = 0;
+  int substeps = 0;
+  bool stopped = false;
+  while (done < whole) {
+    const std::int64_t ticks = whole >> level;
+    const bool splits = level < finest && substeps < maximum_substeps;
+    const bool converged = advance(island, part * static_cast<double>(done), part * static_cast<double>(done + ticks), !splits);
+    if (!converged) {
+      if (splits) {
+        ++level;
+      } else if (!stopped) {
+        stop(island);
+        stopped = true;
+      } else {
+        for (std::size_t k = 0; k < island.cables.size(); ++k)
+          if (!workspace_.cables[k].result.converged) give_up(island.cables[k], workspace_.cables[k].boundary);
+        break;
+      }
+      continue;
+    }
+    done += ticks;
+    ++substeps;
+    note_intrusions(found.intrusions);
+    for (std::size_t k = 0; k < island.cables.size(); ++k)
+      note_substep(island.cables[k], workspace_.cables[k], static_cast<double>(ticks) * part);
+    if (level > 0 && was_easy() && done % (2 * ticks) == 0) --level;
+  }
+  for (const int cable : island.cables) state_.cable_progress[cable].level = level;
+  complete(island, substeps, found);
+}
+
+void IslandStepper::begin(const Island& island) {
+  if (workspace_.cables.size() < island.cables.size()) workspace_.cables.resize(island.cables.size());
+  workspace_.members.clear();
+  for (std::size_t k = 0; k < island.cables.size(); ++k) {
+    CableProgress& memory = state_.cable_progress[island.cables[k]];
+    workspace_.members.push_back({memory.id, &memory.targets, &memory.contacts});
+    workspace_.cables[k].stepper.resize(state_.cables[island.cables[k]].model);
+    workspace_.cables[k].boundary.growing.clear();
+  }
+}
+
+/// One substep, from one part of the step to another. False if it has not converged or cables have passed through each other
+/// (where that is not `tolerated`); the states are then as before.
+bool IslandStepper::advance(Island& island, double from, double to, bool tolerated) {
+  const Environment environment{state_.scene->gravity, state_.scene->fluid};
+  const double h = (to - from) * state_.scene->time_step;
+  find_contacts(island, from, to);
+  const bool touching = !workspace_.contacts.touches().empty(), keeps = touching || island.cables.size() > 1;
+  workspace_.participants.clear();
+  bool converged = true;
+  for (std::size_t k = 0; k < island.cables.size(); ++k) {
+    const int cable = island.cables[k];
+    SimulatedCable& c = state_.cables[cable];
+    CableProgress& memory = state_.cable_progress[cable];
+    CableWorkspace& work = workspace_.cables[k];
+    hold_at(from, to, memory.targets, work.boundary);
+    if (memory.drive) wind_drive(cable, from, to, work.boundary);
+    if (keeps) {
+      work.before = c.state;
+      work.spans_before = memory.spans;
+    }
+    const Substep substep{c.model, environment, work.boundary, memory.spans, h};
+    if (workspace_.contacts.touched(k)) {
+      work.result = {};
+      workspace_.participants.push_back({static_cast<int>(k), cable, &work.stepper, substep, &c.state, {}});
+    } else {
+      work.result = work.stepper.advance(substep, c.state);
+      converged = converged && work.result.converged;
+    }
+  }
+  if (converged && touching) {
+    converged = workspace_.contact_solver.advance(workspace_.participants, workspace_.contacts.touches());
+    for (const Participant& p : workspace_.participants) workspace_.cables[p.place].result = p.result;
+    if (converged && !tolerated) converged = !workspace_.contacts.crossed(state_.cables);
+  }
+  if (converged) {
+    workspace_.contacts.keep(workspace_.members);
+  } else if (keeps) {
+    take_back(island);
+  }
+  return converged;
+}
+
+void IslandStepper::find_contacts(Island& island, double from, double to) {
+  const double time_step = state_.scene->time_step;
+  move_obstacles(state_.obstacles, state_.frames.previous_poses, state_.frames.poses, time_step, from, to, workspace_.obstacles);
+  workspace_.contacts.find(state_.cables, island.cables, workspace_.members, workspace_.obstacles, state_.attachments,
+                           contact_rules(*state_.scene, false), (to - from) * time_step, island.pairs);
+}
+
+void IslandStepper::wind_drive(int index, double from, double to, Boundary& boundary) {
+  const LengthDrive& drive = *state_.cable_progress[index].drive;
+  CableModel& model = state_.cables[index].model;
+  // An inextensible segment has its length at the end of the substep, an elastic one strains about that in the middle.
+  const bool elastic = model.material.axial_stiffness < infinity;
+  wind(drive, elastic ? 0.5 * (from + to) : to, state_.scene->time_step, model);
+  boundary.growing.assign(1, {drive.segment, growth_at(drive, to)});
+}
+
+void IslandStepper::take_back(const Island& island) {
+  for (std::size_t k = 0; k < island.cables.size(); ++k) {
+    state_.cables[island.cables[k]].state = workspace_.cables[k].before;
+    state_.cable_progress[island.cables[k]].spans = workspace_.cables[k].spans_before;
+  }
+}
+
+/// What did not converge goes on from rest.
+void IslandStepper::stop(const Island& island) {
+  for (std::size_t k = 0; k < island.cables.size(); ++k) {
+    if (workspace_.cables[k].result.converged) continue;
+    CableState& state = state_.cables[island.cables[k]].state;
+    bring_to_rest(state);
+    std::fill(state.axial_multiplier.begin(), state.axial_multiplier.end(), 0.0);
+    note_status(Status::degraded, island.cables[k], 0, outcomes_[island.cables[k]].result);
+  }
+}
+
+/// Not even from rest: the cable is put where its holders will be, and goes on from there.
+void IslandStepper::give_up(int index, Boundary& boundary) {
+  SimulatedCable& cable = state_.cables[index];
+  hold_at(1, 1, state_.cable_progress[index].targets, boundary);
+  const std::vector<Vector3> before = cable.state.positions;
+  carry_along(cable.model, boundary.nodes, gravity_near(state_, index), cable.state);
+  if (finite(cable.state.positions)) return;
+  cable.state.positions = before;
+  note_status(Status::fault, index, 0, outcomes_[index].result);
+}
+
+/// Whether the last substep may be doubled.
+bool IslandStepper::was_easy() const {
+  const int most = workspace_.participants.empty() ? easy_iterations : easy_contact_iterations;
+  const auto end = workspace_.cables.begin() + static_cast<std::ptrdiff_t>(workspace_.members.size());
+  return std::all_of(workspace_.cables.begin(), end,
+                     [&](const CableWorkspace& of_cable) { return of_cable.result.iterations <= most; });
+}
+
+void IslandStepper::note_substep(int index, const CableWorkspace& work, double part) {
+  StepResult& result = outcomes_[index].result;
+  add_forces(work.boundary, state_.cable_progress[index].targets, state_.frames.poses, part, state_.attachments);
+  result.max_strain = std::max(result.max_strain, work.result.max_strain);
+  result.iterations += work.result.iterations;
+  if (work.result.overstretched_node >= 0) note_status(Status::overstretched, index, work.result.overstretched_node, result);
+}
+
+void IslandStepper::note_intrusions(std::vector<Intrusion>& noted) const {
+  for (const Intrusion& found : workspace_.contacts.intrusions()) {
+    const auto same = std::find_if(noted.begin(), noted.end(), [&](const Intrusion& other) {
+      return other.cable == found.cable && other.obstacle == found.obstacle;
+    });
+    if (same == noted.end()) {
+      noted.push_back(found);
+    } else if (same->depth < found.depth) {
+      *same = found;
+    }
+  }
+}
+
+void IslandStepper::complete(const Island& island, int substeps, IslandOutcome& found) {
+  for (std::size_t k = 0; k < island.cables.size(); ++k) {
+    const int index = island.cables[k];
+    CableProgress& memory = state_.cable_progress[index];
+    if (memory.drive) complete_drive_step(index, state_);
+    follow_material(workspace_.cables[k].boundary.directions, memory.spans, state_.cables[index]);
+    outcomes_[index].result.substeps = substeps;
+    outcomes_[index].breaking_segment = find_breaking_segment(state_.cables[index], outcomes_[index].result);
+    complete_step(state_.scene->time_step, memory.targets);
+    show_velocities(memory.targets, state_.cables[index].state.velocities);
+  }
+  for (const Touch& touch : workspace_.contacts.touches()) {
+    if (touch.mode == Touch::Mode::open) continue;
+    found.contacts.push_back({touch.point.cable, touch.point.segment, touch.position, touch.normal, touch.force, touch.obstacle,
+                              touch.other.cable, touch.other.segment});
+  }
+}
+
+}  // namespace verlet_cable

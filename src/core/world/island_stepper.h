@@ -1,0 +1,73 @@
+#pragma once
+
+#include <vector>
+
+#include "world/islands.h"
+#include "world/state.h"
+#include "world/workspace.h"
+
+namespace verlet_cable {
+
+/// What a step does to a cable, for who reads the world.
+struct CableOutcome {
+  StepResult result;
+  std::vector<Jump> jumps;    ///< that the step found to be over
+  int breaking_segment = -1;  ///< -1: none
+};
+
+/// What a step of an island finds.
+struct IslandOutcome {
+  std::vector<Intrusion> intrusions;  ///< the deepest of each cable and obstacle
+  std::vector<SimulatedContact> contacts;
+};
+
+/// How contacts of a world are found: `still`, where nothing moves but towards equilibrium.
+ContactRules contact_rules(const SceneDesc& scene, bool still);
+
+/// Keeps the worst status, and of equals the first cable's.
+void note_status(StepResult::Status status, int cable, int node, StepResult& result);
+
+/// Adds what a cable exerted on its holders, weighted, to its attachments.
+void add_forces(const Boundary& boundary, const KinematicTargets& targets, const std::vector<Pose>& frames, double weight,
+                std::vector<Attachment>& attachments);
+
+/// Before a step's forces are added.
+void forget_forces(const KinematicTargets& targets, std::vector<Attachment>& attachments);
+
+/// Twist and roll of the material: from the clamps where there are any, else the first segment's is carried along in time.
+void follow_material(const std::vector<HeldDirection>& directions, const std::vector<TwistSpan>& spans, SimulatedCable& cable);
+
+/// Aims a cable's holders at where they will be at the end of the step. Where they jump, the cable is carried along with them
+/// before it is stepped, and keeps its velocities.
+void update_targets(int cable, State& state, CableOutcome& outcome);
+
+/// Steps the cables of an island, whose holders aim at the end of the step, in as many substeps as they need: halved where the
+/// solver does not converge, doubled where it does easily. Changes nothing but these cables and the forces on their attachments.
+class IslandStepper {
+ public:
+  IslandStepper(State& state, Workspace& workspace, std::vector<CableOutcome>& outcomes)
+      : state_(state), workspace_(workspace), outcomes_(outcomes) {}
+  void step(Island& island, IslandOutcome& found);
+
+ private:
+  void begin(const Island& island);
+  bool advance(Island& island, double from, double to, bool tolerated);
+  void find_contacts(Island& island, double from, double to);
+  void wind_drive(int cable, double from, double to, Boundary& boundary);
+  void take_back(const Island& island);
+  void stop(const Island& island);
+  void give_up(int cable, Boundary& boundary);
+  bool was_easy() const;
+  void note_substep(int cable, const CableWorkspace& of_cable, double part);
+  void note_intrusions(std::vector<Intrusion>& noted) const;
+  void complete(const Island& island, int substeps, IslandOutcome& found);
+
+  State& state_;
+  Workspace& workspace_;
+  std::vector<CableOutcome>& outcomes_;
+};
+
+/// The step of a winch or joint is done.
+void complete_drive_step(int cable, State& state);
+
+}  // namespace verlet_cable

@@ -1,0 +1,108 @@
+#include "world/islands.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace verlet_cable {
+
+namespace {
+
+/// Contacts are looked for this far from a surface, in radii, besides what motion adds (see ContactSet::reach).
+constexpr double still_reach = 1.2;
+/// A cable's share, in steps at its speed, of the distance at which contacts are looked for, and of its own way.
+constexpr double steps_of_motion = 4;
+/// What a cable may be accelerated with besides its last acceleration [m/s^2].
+constexpr double spare_acceleration = 100;
+
+/// Where a cable may touch something in the next step.
+Aabb reach_of(const SimulatedCable& cable, const KinematicTargets& targets, double time_step) {
+  Aabb box;
+  double speed = 0, acceleration = 0;
+  for (std::size_t i = 0; i < cable.state.positions.size(); ++i) {
+    box.extend(cable.state.positions[i]);
+    speed = std::max(speed, cable.state.velocities[i].squaredNorm());
+    acceleration = std::max(acceleration, cable.state.accelerations[i].squaredNorm());
+  }
+  for (const KinematicTarget& target : targets.nodes) {
+    box.extend(target.next_position);
+    speed = std::max({speed, target.velocity.squaredNorm(), target.next_velocity.squaredNorm()});
+  }
+  const double motion = std::sqrt(speed) + time_step * (std::sqrt(acceleration) + spare_acceleration);
+  const double margin = (1 + still_reach) * cable.model.material.radius + steps_of_motion * time_step * motion;
+  return Aabb(box.min() - Vector3::Constant(margin), box.max() + Vector3::Constant(margin));
+}
+
+/// The axis along which boxes are spread furthest.
+int longest_axis(const std::vector<Aabb>& boxes) {
+  Aabb centers;
+  for (const Aabb& box : boxes) centers.extend(Vector3(box.center()));
+  int axis = 0;
+  centers.sizes().maxCoeff(&axis);
+  return axis;
+}
+
+}  // namespace
+
+void Islands::build(const State& state) {
+  labels_.resize(state.cables.size());
+  std::iota(labels_.begin(), labels_.end(), 0);
+  if (are_islands_of_many(*state.scene)) find_labels(state);
+  if (!islands_.empty() && labels_ == last_labels_) return;
+  std::vector<Island> before;
+  before.swap(islands_);
+  auto same = before.begin();
+  std::vector<int> place(labels_.size());
+  for (int cable = 0; cable < static_cast<int>(labels_.size()); ++cable) {
+    if (labels_[cable] == cable) {
+      place[cable] = static_cast<int>(islands_.size());
+      islands_.emplace_back();
+    }
+    islands_[place[labels_[cable]]].cables.push_back(cable);
+  }
+  for (Island& island : islands_) {
+    while (same != before.end() && same->cables.front() < island.cables.front()) ++same;
+    if (same != before.end() && same->cables == island.cables) island.pairs = std::move(same->pairs);
+  }
+  last_labels_ = labels_;
+  segments_ = 0;
+  for (const SimulatedCable& cable : state.cables) segments_ += cable.model.segments();
+}
+
+/// Joins cables whose reaches overlap: a sweep along the axis on which they are spread furthest.
+void Islands::find_labels(const State& state) {
+  const std::size_t count = state.cables.size();
+  reaches_.resize(count);
+  for (std::size_t i = 0; i < count; ++i)
+    reaches_[i] = reach_of(state.cables[i], state.cable_progress[i].targets, state.scene->time_step);
+  const int axis = longest_axis(reaches_);
+  order_.resize(count);
+  std::iota(order_.begin(), order_.end(), 0);
+  std::sort(order_.begin(), order_.end(), [&](int a, int b) {
+    const double first = reaches_[a].min()[axis], second = reaches_[b].min()[axis];
+    return first < second || (first == second && a < b);
+  });
+  open_.clear();
+  for (const int cable : order_) {
+    const double start = reaches_[cable].min()[axis];
+    open_.erase(std::remove_if(open_.begin(), open_.end(), [&](int other) { return reaches_[other].max()[axis] < start; }),
+                open_.end());
+    for (const int other : open_)
+      if (reaches_[cable].intersects(reaches_[other])) join(cable, other);
+    open_.push_back(cable);
+  }
+  for (int cable = 0; cable < static_cast<int>(count); ++cable) labels_[cable] = root(cable);
+}
+
+int Islands::root(int cable) {
+  while (labels_[cable] != cable) cable = labels_[cable] = labels_[labels_[cable]];
+  return cable;
+}
+
+/// The lower one names both.
+void Islands::join(int first, int second) {
+  first = root(first);
+  second = root(second);
+  labels_[std::max(first, second)] = std::min(first, second);
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <vector>
+
+#include "contact/segment_grid.h"
+#include "verlet_cable/core/surface_point.h"
+#include "world/state.h"
+
+namespace verlet_cable {
+
+/// Cables that may touch each other in a step: they are advanced in the same substeps.
+struct Island {
+  std::vector<int> cables;  ///< indices into State::cables, ascending
+  SegmentPairs pairs;       ///< of their segments
+};
+
+/// Whether islands may be of more than one cable.
+inline bool are_islands_of_many(const SceneDesc& scene) {
+  return scene.contact && scene.contact->between_cables;
+}
+
+/// What cables are stepped together with. Follows from the state; islands whose cables stay the same keep their pairs.
+class Islands {
+ public:
+  /// Every cable is in one island, and those that may come close enough to touch in the next step are in the same one.
+  /// KinematicTargets aim at the end of that step. Ascending by the first cable.
+  void build(const State& state);
+  /// Segments have been numbered anew.
+  void invalidate() { islands_.clear(); }
+  std::vector<Island>& all() { return islands_; }
+  std::size_t segments() const { return segments_; }  ///< of all cables
+
+ private:
+  void find_labels(const State& state);
+  int root(int cable);
+  void join(int first, int second);
+
+  std::vector<Island> islands_;
+  std::size_t segments_ = 0;
+  std::vector<int> labels_;       ///< by cable: the first one of its island
+  std::vector<int> last_labels_;  ///< those of `islands_`
+  // Scratch
+  std::vector<Aabb> reaches_;  ///< by cable: where it may touch something in the step
+  std::vector<int> order_, open_;
+};
+
+}  // namespace verlet_cable

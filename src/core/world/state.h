@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "contact/cache.h"
+#include "net/constraint_solver.h"
+#include "particle/integrator.h"
+#include "rod/twist.h"
+#include "target/kinematic_targets.h"
+#include "target/length_drive.h"
+#include "verlet_cable/core/world.h"
+
+namespace verlet_cable {
+
+/// What decides a cable's future besides the state that it shows.
+struct CableProgress {
+  std::uint32_t id = 0;  ///< ascending, never used again
+  KinematicTargets targets;
+  std::vector<TwistSpan> spans;
+  std::optional<LengthDrive> drive;  ///< of a winch that runs, or of a joint that closes
+  ContactCache contacts;
+  int level = 0;  ///< a step is tried in 2^level substeps
+};
+
+/// Likewise of a net.
+struct NetProgress {
+  KinematicTargets targets;
+  PointState points;  ///< of springs
+  LinkMemory links;   ///< of limited and rigid links
+};
+
+/// Of frames, by their names; no name is the fixed frame's.
+using FrameIds = std::map<std::string, int>;
+
+/// Where frames are; one entry a frame, by frame id.
+struct Frames {
+  std::vector<std::string> names;
+  std::vector<Pose> poses;           ///< at the world's time
+  std::vector<Pose> previous_poses;  ///< a step before; of a frame that is new to a step, its first
+  std::vector<char> known;           ///< whether it has been seen, or given a pose
+
+  /// The index of a name, their number if it is not there.
+  int find(const std::string& name) const;
+  FrameIds ids() const;
+};
+
+/// All that decides the future, and only that: its copy is a snapshot, its visit the world's hash.
+struct State {
+  std::shared_ptr<const SceneDesc> scene;  ///< as it was tuned; shared by copies
+  std::vector<int> waiting_cables;         ///< indices into scene->cables
+  std::vector<int> waiting_nets;           ///< indices into scene->nets
+  Frames frames;
+  std::int64_t steps = 0;
+  std::vector<SimulatedCable> cables;
+  std::vector<CableProgress> cable_progress;  ///< one a cable
+  std::uint32_t next_cable_id = 0;
+  std::vector<SimulatedNet> nets;
+  std::vector<NetProgress> net_progress;  ///< one a net
+  std::vector<SimulatedParticle> particles;
+  std::vector<PointState> particle_integrators;  ///< one a particle
+  std::vector<Attachment> attachments;
+  std::vector<Obstacle> obstacles;
+  std::uint32_t next_obstacle_id = 0;
+
+  double time() const { return static_cast<double>(steps) * scene->time_step; }
+};
+
+}  // namespace verlet_cable

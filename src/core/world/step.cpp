@@ -1,0 +1,111 @@
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "verlet_cable/core/world.h"
+#include "world/implementation.h"
+#include "world/island_stepper.h"
+
+namespace verlet_cable {
+
+namespace {
+
+/// Less [segments] is not worth another core.
+constexpr int least_share = 500;
+
+template <class T>
+void append(const std::vector<T>& more, std::vector<T>& all) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+StepResult World::step(const BoundaryInputs& inputs) {
+  Implementation& w = *implementation_;
+  StepResult result;
+  w.begin_step();
+  result.ignored_frame = w.update_frames(inputs);
+  w.advance_winches();
+  w.build_islands();
+  w.advance_islands();
+  w.collect_outcomes(result);
+  w.apply_breaks(result);
+  w.step_nets_and_particles(result);
+  return result;
+}
+
+void World::step_one_by_one(bool one_by_one) {
+  implementation_->one_by_one = one_by_one;
+}
+
+void World::Implementation::begin_step() {
+  ++state.steps;
+  findings.breaks.clear();
+  findings.jumps.clear();
+  findings.intrusions.clear();
+  findings.contacts.clear();
+  cable_outcomes.value.resize(state.cables.size());
+  for (CableOutcome& outcome : cable_outcomes.value) outcome.result = {};
+}
+
+/// Winches and joints that close number nodes and attachments anew: one after the other.
+void World::Implementation::advance_winches() {
+  for (std::size_t i = 0; i < state.cables.size(); ++i)
+    if (state.cable_progress[i].drive) plan_drive_step(static_cast<int>(i));
+}
+
+/// Where cables may touch each other, that depends on where their targets take them.
+void World::Implementation::build_islands() {
+  if (are_islands_of_many(*state.scene)) {
+    for (std::size_t i = 0; i < state.cables.size(); ++i) update_targets(static_cast<int>(i), state, cable_outcomes.value[i]);
+  }
+  islands.value.build(state);
+}
+
+/// Islands do not know of each other: the result is the same whether one after the other or all at once.
+void World::Implementation::advance_islands() {
+  std::vector<Island>& all = islands.value.all();
+  island_outcomes.value.resize(all.size());
+  const bool updates_targets = !are_islands_of_many(*state.scene);
+  const auto advance = [&](std::size_t i) {
+    if (updates_targets) update_targets(static_cast<int>(i), state, cable_outcomes.value[i]);
+    IslandStepper(state, workspaces.value.local(), cable_outcomes.value).step(all[i], island_outcomes.value[i]);
+  };
+  const std::size_t segments = islands.value.segments();
+  if (one_by_one || all.size() < 2 || segments < 2 * least_share) {
+    for (std::size_t i = 0; i < all.size(); ++i) advance(i);
+    return;
+  }
+  const std::size_t share = std::max<std::size_t>(1, least_share * all.size() / segments);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, all.size(), share), [&](const auto& some) {
+    for (std::size_t i = some.begin(); i < some.end(); ++i) advance(i);
+  });
+}
+
+void World::Implementation::collect_outcomes(StepResult& result) {
+  for (const CableOutcome& outcome : cable_outcomes.value) {
+    note_status(outcome.result.status, outcome.result.cable, outcome.result.node, result);
+    result.substeps = std::max(result.substeps, outcome.result.substeps);
+    result.iterations += outcome.result.iterations;
+    result.max_strain = std::max(result.max_strain, outcome.result.max_strain);
+    append(outcome.jumps, findings.jumps);
+  }
+  for (const IslandOutcome& outcome : island_outcomes.value) {
+    append(outcome.intrusions, findings.intrusions);
+    append(outcome.contacts, findings.contacts);
+  }
+}
+
+void World::Implementation::apply_breaks(StepResult& result) {
+  for (int cable = 0; cable < static_cast<int>(cable_outcomes.value.size()); ++cable) {
+    const int segment = cable_outcomes.value[cable].breaking_segment;
+    if (segment < 0 || !cut(cable, segment).ok) continue;
+    const int rest = static_cast<int>(state.cables.size()) - 1;
+    findings.breaks.push_back({cable, segment, rest});
+    if (result.cable != cable || result.node <= segment) continue;
+    result.cable = rest;
+    result.node -= segment + 1;
+  }
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <vector>
+
+#include "contact/contact_set.h"
+#include "contact/contact_solver.h"
+#include "net/constraint_solver.h"
+#include "net/spring_stepper.h"
+
+namespace verlet_cable {
+
+/// Of a cable while it is stepped.
+struct CableWorkspace {
+  CableStepper stepper;
+  Boundary boundary;
+  // At the start of the substep
+  CableState before;
+  std::vector<TwistSpan> spans_before;
+  SubstepResult result;
+};
+
+/// Of a step of cables that are stepped together. Holds nothing beyond it.
+struct Workspace {
+  std::vector<CableWorkspace> cables;  ///< one a cable of the island
+  std::vector<MovingObstacle> obstacles;
+  ContactSet contacts;
+  std::vector<ContactMember> members;     ///< likewise
+  std::vector<Participant> participants;  ///< the cables that touch something
+  ContactSolver contact_solver;
+};
+
+/// One a thread.
+using Workspaces = tbb::enumerable_thread_specific<Workspace>;
+
+/// What solves a net. Follows from its model and from which nodes are held.
+struct NetSolver {
+  Boundary boundary;
+  SpringStepper springs;
+  NetConstraintSolver links;
+  NetState before;  ///< the step
+};
+
+}  // namespace verlet_cable

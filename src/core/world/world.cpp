@@ -1,0 +1,245 @@
+#include "verlet_cable/core/world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <memory>
+#include <utility>
+
+#include "rod/initial_shape.h"
+#include "rod/length_projection.h"
+#include "rod/rest_curvature.h"
+#include "rod/stiff_ends.h"
+#include "verlet_cable/core/number_text.h"
+#include "verlet_cable/core/rotation.h"
+#include "verlet_cable/core/scene_fields.h"
+#include "world/implementation.h"
+#include "world/island_stepper.h"
+#include "world/settling.h"
+
+namespace verlet_cable {
+
+namespace {
+
+CableModel make_model(const SceneDesc& scene, const CableDesc& desc) {
+  CableModel model;
+  model.name = desc.name;
+  model.material = *scene.find_material(desc.material);
+  model.material_name = desc.material;
+  model.color = desc.color;
+  const double length = desc.length / desc.segments;
+  model.segment_length = length;
+  model.rest_lengths.assign(desc.segments, length);
+  model.masses.assign(desc.segments + 1, 0.0);
+  for (int i = 0; i < desc.segments; ++i) {
+    model.masses[i] += 0.5 * length * model.material.linear_density;
+    model.masses[i + 1] += 0.5 * length * model.material.linear_density;
+  }
+  for (const PointMassDesc& point : desc.point_masses) model.masses[node_at(desc, point.place)] += point.mass;
+  return model;
+}
+
+template <class Desc>
+bool frames_known(const Desc& desc, const FrameIds& ids, const BoundaryInputs& inputs) {
+  return std::all_of(desc.attachments.begin(), desc.attachments.end(), [&](const auto& attachment) {
+    const auto frame = static_cast<std::size_t>(ids.at(attachment.frame));
+    return frame == 0 || (frame < inputs.size() && inputs[frame].known && is_sound(inputs[frame].pose));
+  });
+}
+
+/// The indices for which `starts` is true; the others stay.
+template <class Starts>
+std::vector<int> take_out(std::vector<int>& waiting, const Starts& starts) {
+  std::vector<int> taken;
+  std::copy_if(waiting.begin(), waiting.end(), std::back_inserter(taken), starts);
+  waiting.erase(std::remove_if(waiting.begin(), waiting.end(), starts), waiting.end());
+  return taken;
+}
+
+}  // namespace
+
+int Frames::find(const std::string& name) const {
+  return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+FrameIds Frames::ids() const {
+  FrameIds ids{{"", 0}};
+  for (std::size_t i = 0; i < names.size(); ++i) ids.emplace(names[i], static_cast<int>(i));
+  return ids;
+}
+
+bool is_sound(const Pose& pose) {
+  const double length = pose.orientation.norm();
+  return (pose.position.cwiseAbs().array() <= coordinate.highest).all() && length >= 0.5 && length <= 2;
+}
+
+bool World::settle() {
+  Implementation& w = *implementation_;
+  w.findings.unsettled.clear();
+  for (Attachment& attachment : w.state.attachments) attachment.force = attachment.torque = Vector3::Zero();
+  for (int cable = 0; cable < static_cast<int>(w.state.cables.size()); ++cable) {
+    if (w.state.cable_progress[cable].targets.nodes.empty()) continue;
+    if (!Settling(cable, w.state, w.workspaces.value.local()).settle())
+      w.findings.unsettled.push_back(w.state.cables[cable].model.name);
+  }
+  return w.findings.unsettled.empty();
+}
+
+std::string pose_problem(const std::string& field, const Pose& pose) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (!coordinate.contains(pose.position[axis]))
+      return field + ".position." + "xyz"[axis] + ": " + number_text(pose.position[axis]) + "; allowed: " + coordinate.text("m");
+  if (is_sound(pose)) return "";
+  return field + ".orientation: of length " + number_text(pose.orientation.norm()) +
+         "; allowed: 1 (from 0.5 to 2 is brought to 1)";
+}
+
+World::World(const SceneDesc& scene, const BoundaryInputs& inputs, const std::atomic<bool>* cancelled) : World(scene) {
+  implementation_->cancelled = cancelled;
+  implementation_->update_frames(inputs);
+  start_waiting(inputs);
+  implementation_->cancelled = nullptr;
+}
+
+World::World(const SceneDesc& scene) : implementation_(std::make_unique<Implementation>()) {
+  std::vector<std::string> errors = validate(scene);
+  if (!errors.empty()) throw SceneError(std::move(errors));
+  Implementation& w = *implementation_;
+  w.state.scene = std::make_shared<const SceneDesc>(scene);
+  w.state.frames.names = frame_names(scene);
+  w.state.frames.poses.resize(w.state.frames.names.size());
+  w.state.frames.previous_poses.resize(w.state.frames.names.size());
+  w.state.frames.known.assign(w.state.frames.names.size(), false);
+  w.state.frames.known.front() = true;
+  w.add_scene_obstacles();
+  for (int i = 0; i < static_cast<int>(scene.cables.size()); ++i) w.state.waiting_cables.push_back(i);
+  for (int i = 0; i < static_cast<int>(scene.nets.size()); ++i) w.state.waiting_nets.push_back(i);
+  w.name_waiting();
+  for (const ParticleDesc& particle : scene.particles) w.add_particle(particle);
+  w.update_frames({});
+}
+
+World::~World() = default;
+World::World(const World& other) : implementation_(std::make_unique<Implementation>(*other.implementation_)) {}
+World& World::operator=(const World& other) {
+  *implementation_ = *other.implementation_;
+  return *this;
+}
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+
+int World::start_waiting(const BoundaryInputs& inputs) {
+  Implementation& w = *implementation_;
+  if (w.is_cancelled()) return 0;
+  const FrameIds ids = w.state.frames.ids();
+  const SceneDesc& scene = *w.state.scene;
+  const std::vector<int> cables =
+      take_out(w.state.waiting_cables, [&](int i) { return frames_known(scene.cables[i], ids, inputs); });
+  const std::vector<int> nets = take_out(w.state.waiting_nets, [&](int i) { return frames_known(scene.nets[i], ids, inputs); });
+  if (cables.empty() && nets.empty()) return 0;
+  w.update_frames(inputs);
+  for (const int i : cables)
+    if (!w.is_cancelled()) w.start_cable(scene.cables[i], ids, inputs);
+  for (const int i : nets)
+    if (!w.is_cancelled()) w.start_net(scene.nets[i], ids, inputs);
+  w.name_waiting();
+  return static_cast<int>(cables.size() + nets.size());
+}
+
+void World::Implementation::name_waiting() {
+  findings.waiting.clear();
+  for (const int i : state.waiting_cables) findings.waiting.push_back(state.scene->cables[i].name);
+  for (const int i : state.waiting_nets) findings.waiting.push_back(state.scene->nets[i].name);
+}
+
+/// A frame that is unknown, or whose pose is not sound, stays where it was; the first of the latter is returned, else -1. The
+/// fixed frame does not move.
+int World::Implementation::update_frames(const BoundaryInputs& inputs) {
+  int ignored = -1;
+  state.frames.previous_poses = state.frames.poses;
+  for (std::size_t i = 1; i < std::min(state.frames.poses.size(), inputs.size()); ++i) {
+    if (!inputs[i].known) continue;
+    if (!is_sound(inputs[i].pose)) {
+      if (ignored < 0) ignored = static_cast<int>(i);
+      continue;
+    }
+    state.frames.poses[i] = {inputs[i].pose.position, inputs[i].pose.orientation.normalized()};
+    if (!state.frames.known[i]) state.frames.previous_poses[i] = state.frames.poses[i];
+    state.frames.known[i] = true;
+  }
+  for (Obstacle& obstacle : state.obstacles) obstacle.present = state.frames.known[obstacle.frame];
+  return ignored;
+}
+
+void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& ids, const BoundaryInputs& inputs) {
+  const int index = static_cast<int>(state.cables.size());
+  SimulatedCable cable;
+  cable.model = make_model(*state.scene, desc);
+  std::vector<int> own;
+  for (const AttachmentDesc& a : desc.attachments) {
+    Attachment attachment;
+    attachment.name = a.name;
+    attachment.cable = index;
+    attachment.node = node_at(desc, a.place);
+    attachment.frame = ids.at(a.frame);
+    attachment.type = a.type;
+    attachment.pose = {a.offset, quaternion_from_rpy(a.rotation)};
+    own.push_back(static_cast<int>(state.attachments.size()));
+    state.attachments.push_back(attachment);
+  }
+  // The holders catch the nodes where they want them: there is no gap to close.
+  cable.state.positions.assign(cable.model.nodes(), Vector3::Zero());
+  cable.state.velocities.assign(cable.model.nodes(), Vector3::Zero());
+  CableProgress memory;
+  memory.id = state.next_cable_id++;
+  memory.targets = find_targets(cable.model, cable.state, state.attachments, own, state.frames.poses, {}, state.time());
+  for (KinematicTarget& target : memory.targets.nodes) {
+    target.gap.setZero();
+    target.caught = -infinity;
+  }
+  for (DirectionTarget& target : memory.targets.directions) target.gap.setIdentity();
+  aim_targets(cable.model, state.attachments, state.frames.poses, state.time(), memory.targets);
+  put_at_aim(memory.targets);
+  start_targets(state.attachments, state.frames.poses, inputs, memory.targets);
+  Boundary boundary;
+  hold_at(1, 1, memory.targets, boundary);
+  const Vector3 gravity =
+      state.scene->gravity.at(boundary.nodes.empty() ? Vector3(Vector3::Zero()) : boundary.nodes.front().position);
+  const bool settles = settles_at_start(desc, cable.model.material);
+  if (!set_initial_state(desc.initial, settles, cable.model, boundary.nodes, gravity, cable.state))
+    findings.misfits.push_back(desc.name);
+  // Where velocities of holders are not known yet, the first step finds them, and all go together.
+  const auto starts = [](const KinematicTarget& target) { return target.starts; };
+  if (std::none_of(memory.targets.nodes.begin(), memory.targets.nodes.end(), starts))
+    project_velocities(cable.model, boundary.nodes, cable.state.positions, cable.state.velocities);
+  cable.state.twist.assign(cable.model.segments(), 0.0);
+  cable.state.reference_orientation = smallest_rotation(Vector3::UnitX(), cable.state.positions[1] - cable.state.positions[0]);
+  memory.spans = find_spans(cable.model, cable.state, boundary.directions);
+  follow_material(boundary.directions, memory.spans, cable);
+  set_stiff_ends(desc.stiff_ends, cable.model);
+  set_rest_curvature(desc.rest_curvature, memory.targets.directions, cable);
+  const bool held = !memory.targets.nodes.empty();
+  state.cables.push_back(std::move(cable));
+  state.cable_progress.push_back(std::move(memory));
+  if (settles && held && !Settling(index, state, workspaces.value.local(), cancelled).settle_start())
+    findings.unsettled.push_back(desc.name);
+}
+
+/// After a change of what holds a cable, or of its nodes.
+void World::Implementation::find_targets_of(int index) {
+  SimulatedCable& cable = state.cables[index];
+  CableProgress& memory = state.cable_progress[index];
+  memory.targets = find_targets(cable.model, cable.state, state.attachments, attachments_of(index, false, state.attachments),
+                                state.frames.poses, memory.targets, state.time());
+  aim_targets(cable.model, state.attachments, state.frames.poses, state.time(), memory.targets);
+  const Boundary boundary = boundary_now(memory.targets);
+  restore_lengths(cable.model, boundary.nodes, gravity_near(index), cable.state);
+  memory.spans = find_spans(cable.model, cable.state, boundary.directions);
+}
+
+/// Where a cable hangs to: gravity at its first node.
+Vector3 World::Implementation::gravity_near(int cable) const {
+  return state.scene->gravity.at(state.cables[cable].state.positions.front());
+}
+
+}  // namespace verlet_cable
