@@ -37,7 +37,7 @@ const Pose* AttachmentMoves::target(const std::string& attachment) const {
 void AttachmentMoves::advance(double time_step, World& world) {
   for (auto entry = moves_.begin(); entry != moves_.end();) {
     auto& [name, move] = *entry;
-    const int index = world.find_attachment(name);
+    const int index = find(world.attachments(), name);
     if (index < 0) {
       entry = moves_.erase(entry);
       continue;
@@ -45,7 +45,7 @@ void AttachmentMoves::advance(double time_step, World& world) {
     move.guide = followed(move.guide, move.target, time_step);
     const Pose pose = followed(world.attachments()[index].pose, move.guide, time_step);
     const bool there = is_at(pose, move.target);
-    world.move_attachment(name, there ? move.target : pose);
+    world.apply(MoveAttachment{name, there ? move.target : pose});
     entry = there ? moves_.erase(entry) : std::next(entry);
   }
 }

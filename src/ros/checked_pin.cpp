@@ -71,7 +71,7 @@ CheckedPin check_pin(const Pin::Request& request, const World& world, const Find
   if (!request.name.empty() && !is_name(request.name)) {
     pin.errors.push_back("name: " + quoted(request.name) + "; allowed: " + name_words + "; or empty");
   }
-  if (world.find_attachment(request.name) >= 0) {
+  if (find(world.attachments(), request.name) >= 0) {
     pin.errors.push_back("name: " + quoted(request.name) + "; allowed: names that no attachment has");
   }
   if (const std::optional<Pose> pose = pin.frame[0] == '/' ? std::nullopt : find_frame(pin.frame)) {

@@ -47,7 +47,7 @@ bool is_finite(const SimulatedCable& cable) {
 }
 
 std::vector<SimulatedContact> contacts_of_both(const World& world) {
-  std::vector<SimulatedContact> contacts = world.contacts();
+  std::vector<SimulatedContact> contacts = world.findings().contacts;
   const auto radius = [&](int cable) { return world.cables()[cable].model.material.radius; };
   for (std::size_t i = 0, once = contacts.size(); i < once; ++i) {
     const SimulatedContact c = contacts[i];

@@ -65,9 +65,9 @@ void Diagnostics::report_simulation(Status& status) {
   status.add("jumped_steps", s.jumped);
   status.add("degraded_steps", s.degraded);
   status.add("faults", simulation_.faults());
-  status.add("waiting_cables", join(simulation_.world().waiting()));
+  status.add("waiting_cables", join(simulation_.world().findings().waiting));
   report_waiting(status);
-  status.add("unsettled_cables", join(simulation_.world().unsettled()));
+  status.add("unsettled_cables", join(simulation_.world().findings().unsettled));
   status.add("found_inside_obstacles", join({simulation_.intrusions().begin(), simulation_.intrusions().end()}));
 
   if (simulation_.faulted()) {
@@ -97,10 +97,10 @@ void Diagnostics::report_simulation(Status& status) {
   if (s.overstretched > 0)
     status.mergeSummary(DiagnosticStatus::WARN, "overstretched: what holds a cable or net is further apart than it is long");
   if (s.degraded > 0) status.mergeSummary(DiagnosticStatus::WARN, "steps without a solution: motion was taken away");
-  if (!simulation_.world().unsettled().empty())
+  if (!simulation_.world().findings().unsettled.empty())
     status.mergeSummary(DiagnosticStatus::WARN, "no static equilibrium was found to start from");
   if (!simulation_.intrusions().empty()) status.mergeSummary(DiagnosticStatus::WARN, "cables were found inside obstacles");
-  if (simulation_.started() && !simulation_.world().waiting().empty())
+  if (simulation_.started() && !simulation_.world().findings().waiting.empty())
     status.mergeSummary(DiagnosticStatus::WARN, "cables or nets wait for their tf frames and are not there yet");
 }
 

@@ -145,7 +145,7 @@ bool FrameWatch::react(const std::vector<FrameChange>& changes, Nanoseconds stam
 }
 
 void FrameWatch::report_jumps(Nanoseconds stamp, const World& world) {
-  for (const Jump& jump : world.jumps()) {
+  for (const Jump& jump : world.findings().jumps) {
     if (std::abs(jump.time - skipped_) < 0.5 * world.time_step()) continue;
     const Attachment& attachment = world.attachments()[jump.attachment];
     const auto [reported, is_new] = jumped_.emplace(attachment.frame, stamp);
@@ -183,7 +183,7 @@ void FrameWatch::report_unseen(const World& world, const TfInputs& frames) const
 
 void FrameWatch::warn_of_waiting(const SceneDesc& scene, const World& world, const TfInputs& frames) {
   const ros::WallTime now = ros::WallTime::now();
-  if (world.waiting().empty()) {
+  if (world.findings().waiting.empty()) {
     next_warning_ = ros::WallTime();
     return;
   }
@@ -196,7 +196,7 @@ void FrameWatch::warn_of_waiting(const SceneDesc& scene, const World& world, con
       "not shown yet: %s, because tf has no transform from %s to %s. If nothing else is to publish them, type for each: rosrun "
       "tf2_ros "
       "static_transform_publisher 0 0 1 0 0 0 %s %s",
-      list(world.waiting()).c_str(), quoted(scene.frame_id).c_str(), list(missing).c_str(), escaped(scene.frame_id).c_str(),
+      list(world.findings().waiting).c_str(), quoted(scene.frame_id).c_str(), list(missing).c_str(), escaped(scene.frame_id).c_str(),
       escaped(missing.front()).c_str());
 }
 
@@ -220,7 +220,7 @@ void FrameWatch::report_back(const FrameChange& change, Nanoseconds stamp, const
 void FrameWatch::release(int frame, Nanoseconds stamp, World& world) const {
   for (const Attachment& attachment : attachments_of(frame, world)) {
     const EventSubject subject = subject_of(world, attachment);
-    world.unpin(attachment.name);
+    world.apply(Unpin{attachment.name});
     events_.publish(CableEvent::UNPINNED, stamp, subject,
                     "attachment " + quoted(attachment.name) + " is released, as its frame is lost; reset restores it");
   }
@@ -231,7 +231,7 @@ std::vector<WaitingAttachment> waiting_attachments(const SceneDesc& scene, const
   for (std::size_t i = 0; i < std::min(inputs.size(), world.frames().size()); ++i) {
     if (!inputs[i].known) unknown.insert(world.frames()[i]);
   }
-  const std::set<std::string> waiting(world.waiting().begin(), world.waiting().end());
+  const std::set<std::string> waiting(world.findings().waiting.begin(), world.findings().waiting.end());
   std::vector<WaitingAttachment> attachments;
   const auto add_of = [&](const auto& held) {
     for (const auto& desc : held) {

@@ -95,7 +95,7 @@ EditResult Hands::drag(const Handle& handle, const Request& request) {
 
 EditResult Hands::drag_node(const Handle& handle, Pose place) {
   const auto grab = grabs_.find(handle.name);
-  if (grab != grabs_.end() && simulation_.world().find_attachment(grab->second.attachment) >= 0)
+  if (grab != grabs_.end() && find(simulation_.world().attachments(), grab->second.attachment) >= 0)
     return move(grab->second.attachment, place);
   const EditResult pinned = pin(handle);
   if (!pinned.ok) return pinned;
@@ -141,7 +141,7 @@ EditResult Hands::cut(const Handle& handle) {
 /// Sends an attachment to a place in the fixed frame, as near as the cable allows.
 EditResult Hands::move(const std::string& name, Pose place) {
   const World& world = simulation_.world();
-  const int index = world.find_attachment(name);
+  const int index = find(world.attachments(), name);
   if (index < 0) return refused({"attachment " + quoted(name) + " does not exist any more"});
   const Attachment& attachment = world.attachments()[index];
   if (attachment.cable >= 0) place.position = within_reach(world, attachment.cable, attachment.node, name, place.position);
@@ -152,7 +152,7 @@ void Hands::let_go(const std::string& handle) {
   const auto grab = grabs_.find(handle);
   if (grab == grabs_.end()) return;
   // A reset has let go of it already.
-  if (simulation_.world().find_attachment(grab->second.attachment) >= 0) simulation_.unpin(grab->second.attachment);
+  if (find(simulation_.world().attachments(), grab->second.attachment) >= 0) simulation_.unpin(grab->second.attachment);
   grabs_.erase(grab);
 }
 

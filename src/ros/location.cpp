@@ -28,9 +28,9 @@ std::string point_text(const geometry_msgs::Point& point) {
 
 void find_cable(const CableLocation& location, const World& world, PointOnCable& found) {
   if (location.cable.empty() && location.mode == CableLocation::NEAREST) return;
-  found.cable = world.find_cable(location.cable);
+  found.cable = find(world.cables(), location.cable);
   if (found.cable >= 0) return;
-  const std::vector<std::string>& waiting = world.waiting();
+  const std::vector<std::string>& waiting = world.findings().waiting;
   if (std::find(waiting.begin(), waiting.end(), location.cable) != waiting.end()) {
     found.errors.push_back("location.cable: " + quoted(location.cable) +
                            " waits for its tf frames; allowed: cables that are simulated already");
@@ -136,7 +136,7 @@ double distance(const SimulatedNet& net, const Vector3& point) {
 
 /// The net that a location means, -1 if it means a cable: by its name, or as what is nearest of all.
 int find_net(const CableLocation& location, const World& world, const FindFrame& find_frame) {
-  if (!location.cable.empty() || location.mode != CableLocation::NEAREST) return world.find_net(location.cable);
+  if (!location.cable.empty() || location.mode != CableLocation::NEAREST) return find(world.nets(), location.cable);
   std::vector<std::string> errors;
   const std::optional<Vector3> point = read_point(location, find_frame, errors);
   if (!point) return -1;

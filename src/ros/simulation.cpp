@@ -6,7 +6,7 @@
 
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
-#include "verlet_cable/core/step_subject.h"
+#include "verlet_cable/core/body_name.h"
 #include "verlet_cable/ros/ros_time.h"
 
 namespace verlet_cable {
@@ -175,8 +175,8 @@ bool Simulation::step_world(Nanoseconds time) {
   frame_watch_.report_jumps(stamp_, world_);
   report_breaks();
   report_intrusions();
-  if (!world_.waiting().empty() && !frames_.changes().empty()) {
-    const std::size_t unsettled = world_.unsettled().size(), misfits = world_.misfits().size();
+  if (!world_.findings().waiting.empty() && !frames_.changes().empty()) {
+    const std::size_t unsettled = world_.findings().unsettled.size(), misfits = world_.findings().misfits.size();
     world_.start_waiting(frames_.inputs());
     report_starts(unsettled, misfits);
   }
@@ -207,7 +207,7 @@ void Simulation::report_status(const StepResult& result) {
 }
 
 void Simulation::report_breaks() const {
-  for (const Break& broken : world_.breaks()) {
+  for (const Break& broken : world_.findings().breaks) {
     const CableModel& first = world_.cables()[broken.cable].model;
     const std::string& second = world_.cables()[broken.new_cable].model.name;
     announce(CableEvent::BROKE, {first.name, {}, broken.segment, second},
@@ -218,7 +218,7 @@ void Simulation::report_breaks() const {
 }
 
 void Simulation::report_intrusions() {
-  for (const Intrusion& intrusion : world_.intrusions()) {
+  for (const Intrusion& intrusion : world_.findings().intrusions) {
     const std::string& cable = world_.cables()[intrusion.cable].model.name;
     const std::string& obstacle = world_.obstacles()[intrusion.obstacle].name;
     if (!intrusions_.insert(cable + " in " + obstacle).second) continue;
@@ -237,12 +237,12 @@ void Simulation::report_overload() {
 }
 
 void Simulation::report_starts(std::size_t first_unsettled, std::size_t first_misfit) const {
-  for (std::size_t i = first_misfit; i < world_.misfits().size(); ++i)
+  for (std::size_t i = first_misfit; i < world_.findings().misfits.size(); ++i)
     ROS_WARN("the initial shape of cable %s does not fit between its attachments: it hangs between them instead",
-             quoted(world_.misfits()[i]).c_str());
-  for (std::size_t i = first_unsettled; i < world_.unsettled().size(); ++i)
+             quoted(world_.findings().misfits[i]).c_str());
+  for (std::size_t i = first_unsettled; i < world_.findings().unsettled.size(); ++i)
     ROS_WARN("cable %s: no static equilibrium was found to start from; it starts at rest near one, and may move at first",
-             quoted(world_.unsettled()[i]).c_str());
+             quoted(world_.findings().unsettled[i]).c_str());
 }
 
 void Simulation::skip_to(Nanoseconds time) {

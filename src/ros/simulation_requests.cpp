@@ -38,13 +38,13 @@ EditResult Simulation::pin(const std::string& name, int cable, int node, const s
   if (!started_) return refused_before_start();
   if (const auto reason = refused_frame(frame)) return *reason;
   World trial = world_;  // a frame cannot be taken back
-  const EditResult result = trial.pin(name, cable, node, trial.add_frame(frame, frame_pose), offset, type);
+  const EditResult result = trial.apply(Pin{name, cable_id(cable), node, trial.add_frame(frame, frame_pose), offset, type});
   if (!result.ok) return result;
   world_ = std::move(trial);
   frames_.add(frame, stamp_);
   const std::string message = "node " + std::to_string(node) + " of cable " + quoted(world_.cables()[cable].model.name) +
                               " is pinned to frame " + quoted(frame) + " as " + quoted(result.name);
-  announce(CableEvent::PINNED, subject_of(world_, world_.attachments()[world_.find_attachment(result.name)]), message);
+  announce(CableEvent::PINNED, subject_of(world_, world_.attachments()[find(world_.attachments(), result.name)]), message);
   return {true, message, result.name};
 }
 
@@ -53,13 +53,13 @@ EditResult Simulation::pin_net(const std::string& name, int net, int node, const
   if (!started_) return refused_before_start();
   if (const auto reason = refused_frame(frame)) return *reason;
   World trial = world_;  // a frame cannot be taken back
-  const EditResult result = trial.pin_net(name, net, node, trial.add_frame(frame, frame_pose), offset);
+  const EditResult result = trial.apply(Pin{name, net_id(net), node, trial.add_frame(frame, frame_pose), {offset, Quaternion::Identity()}});
   if (!result.ok) return result;
   world_ = std::move(trial);
   frames_.add(frame, stamp_);
   const std::string message = "node " + std::to_string(node) + " of net " + quoted(world_.nets()[net].model.name) +
                               " is pinned to frame " + quoted(frame) + " as " + quoted(result.name);
-  announce(CableEvent::PINNED, subject_of(world_, world_.attachments()[world_.find_attachment(result.name)]), message);
+  announce(CableEvent::PINNED, subject_of(world_, world_.attachments()[find(world_.attachments(), result.name)]), message);
   return {true, message, result.name};
 }
 
@@ -68,7 +68,7 @@ EditResult Simulation::cut_links(int net, const std::vector<int>& links) {
   const std::string name = world_.nets()[net].model.name;
   const int node = world_.nets()[net].model.links[links.front()][0];
   for (auto link = links.rbegin(); link != links.rend(); ++link) {
-    const EditResult result = world_.cut_link(net, *link);
+    const EditResult result = world_.apply(Cut{net_id(net), *link});
     if (!result.ok) return result;
   }
   const std::string message =
@@ -79,10 +79,10 @@ EditResult Simulation::cut_links(int net, const std::vector<int>& links) {
 
 EditResult Simulation::unpin(const std::string& name) {
   if (!started_) return refused_before_start();
-  const int index = world_.find_attachment(name);
+  const int index = find(world_.attachments(), name);
   if (index < 0) return refused_attachment(name);
   const EventSubject subject = subject_of(world_, world_.attachments()[index]);
-  const EditResult result = world_.unpin(name);
+  const EditResult result = world_.apply(Unpin{name});
   if (!result.ok) return result;
   moves_.forget(name);
   const std::string message = "attachment " + quoted(name) + " is released";
@@ -92,7 +92,7 @@ EditResult Simulation::unpin(const std::string& name) {
 
 EditResult Simulation::move_attachment(const std::string& name, const Pose& offset) {
   if (!started_) return refused_before_start();
-  const int index = world_.find_attachment(name);
+  const int index = find(world_.attachments(), name);
   if (index < 0) return refused_attachment(name);
   moves_.send(name, world_.attachments()[index].pose, offset);
   return done("attachment " + quoted(name) + " moves to its new place");
@@ -107,7 +107,7 @@ EditResult Simulation::refused_attachment(const std::string& name) const {
 
 EditResult Simulation::cut(int cable, int segment) {
   if (!started_) return refused_before_start();
-  const EditResult result = world_.cut(cable, segment);
+  const EditResult result = world_.apply(Cut{cable_id(cable), segment});
   if (!result.ok) return result;
   const std::string& name = world_.cables()[cable].model.name;
   const std::string message = "segment " + std::to_string(segment) + " of cable " + quoted(name) +
@@ -118,8 +118,8 @@ EditResult Simulation::cut(int cable, int segment) {
 
 /// Why there is no such cable; nothing if there is.
 std::optional<EditResult> Simulation::refused_cable(const std::string& field, const std::string& cable) const {
-  if (world_.find_cable(cable) >= 0) return std::nullopt;
-  const std::vector<std::string>& waiting = world_.waiting();
+  if (find(world_.cables(), cable) >= 0) return std::nullopt;
+  const std::vector<std::string>& waiting = world_.findings().waiting;
   if (std::find(waiting.begin(), waiting.end(), cable) != waiting.end())
     return refused(field + ": " + quoted(cable) + " waits for its tf frames; allowed: cables that are simulated already");
   std::string names;
@@ -130,9 +130,9 @@ std::optional<EditResult> Simulation::refused_cable(const std::string& field, co
 EditResult Simulation::set_length(const std::string& cable, bool at_end, double length, double speed) {
   if (!started_) return refused_before_start();
   if (const auto reason = refused_cable("cable", cable)) return *reason;
-  const int index = world_.find_cable(cable);
+  const int index = find(world_.cables(), cable);
   const double before = world_.cables()[index].model.length();
-  const EditResult result = world_.set_length(index, at_end, length, speed);
+  const EditResult result = world_.apply(SetLength{index, at_end, length, speed});
   if (!result.ok) return result;
   return done("cable " + quoted(cable) + (length < before ? " is taken in from " : " is paid out from ") + rounded_text(before) +
               " m to " + number_text(length) + " m, which takes at least " + rounded_text(std::abs(length - before) / speed, 3) +
@@ -143,8 +143,8 @@ EditResult Simulation::join(const std::string& first, bool first_at_end, const s
   if (!started_) return refused_before_start();
   if (const auto reason = refused_cable("first", first)) return *reason;
   if (const auto reason = refused_cable("second", second)) return *reason;
-  const int nodes = world_.cables()[world_.find_cable(first_at_end ? first : second)].model.nodes();
-  const EditResult result = world_.join(world_.find_cable(first), first_at_end, world_.find_cable(second), second_at_end);
+  const int nodes = world_.cables()[find(world_.cables(), first_at_end ? first : second)].model.nodes();
+  const EditResult result = world_.apply(Join{find(world_.cables(), first), first_at_end, find(world_.cables(), second), second_at_end});
   if (!result.ok) return result;
   const std::string message = "cable " + quoted(second) + " is joined to " + quoted(first);
   announce(CableEvent::JOINED, {result.name, {}, nodes - 1, second}, message);

@@ -12,23 +12,23 @@ namespace {
 void expect_valid(const World& world, const StepResult& result) {
   const int cables = static_cast<int>(world.cables().size());
   const auto segments = [&](int cable) { return world.cables()[cable].model.segments(); };
-  if (result.cable >= 0) {
-    ASSERT_LT(result.cable, cables);
-    EXPECT_LE(result.node, segments(result.cable));
+  if (result.body.is_cable()) {
+    ASSERT_LT(result.body.index, cables);
+    EXPECT_LE(result.node, segments(result.body.index));
   }
-  for (const Break& broken : world.breaks()) {
+  for (const Break& broken : world.findings().breaks) {
     ASSERT_LT(broken.cable, cables);
     ASSERT_LT(broken.new_cable, cables);
     EXPECT_NE(broken.cable, -1);
   }
-  for (const Intrusion& intrusion : world.intrusions()) {
+  for (const Intrusion& intrusion : world.findings().intrusions) {
     ASSERT_GE(intrusion.cable, 0);
     ASSERT_LT(intrusion.cable, cables);
     EXPECT_GE(intrusion.segment, 0);
     EXPECT_LT(intrusion.segment, segments(intrusion.cable));
     EXPECT_LT(intrusion.obstacle, static_cast<int>(world.obstacles().size()));
   }
-  for (const SimulatedContact& contact : world.contacts()) {
+  for (const SimulatedContact& contact : world.findings().contacts) {
     ASSERT_LT(contact.cable, cables);
     EXPECT_LT(contact.segment, segments(contact.cable));
     EXPECT_LT(contact.obstacle, static_cast<int>(world.obstacles().size()));
@@ -37,8 +37,9 @@ void expect_valid(const World& world, const StepResult& result) {
     EXPECT_LT(contact.other_segment, segments(contact.other_cable));
   }
   for (const Attachment& attachment : world.attachments()) {
-    ASSERT_LT(attachment.cable, cables);
-    EXPECT_LE(attachment.node, segments(attachment.cable));
+    ASSERT_TRUE(attachment.body.is_cable());
+    ASSERT_LT(attachment.body.index, cables);
+    EXPECT_LE(attachment.node, segments(attachment.body.index));
     EXPECT_LT(attachment.frame, static_cast<int>(world.frames().size()));
   }
 }
@@ -64,14 +65,14 @@ SceneDesc rope_in_a_block() {
 TEST(Indices, BreakAndIntrusionInOneStep) {
   const SceneDesc scene = rope_in_a_block();
   World world(scene, scenes::hand_at({1, 0, 0}));
-  ASSERT_EQ(world.find_cable("cable"), 0);
+  ASSERT_EQ(find(world.cables(), "cable"), 0);
   const StepResult result = world.step(scenes::hand_at({1.03, 0, 0}));
-  ASSERT_EQ(world.breaks().size(), 1u);
-  ASSERT_FALSE(world.intrusions().empty());
+  ASSERT_EQ(world.findings().breaks.size(), 1u);
+  ASSERT_FALSE(world.findings().intrusions.empty());
   expect_valid(world, result);
   // The block is around the second piece: that is where it is found.
-  EXPECT_EQ(world.intrusions()[0].obstacle, 1);
-  const Intrusion& intrusion = world.intrusions()[0];
+  EXPECT_EQ(world.findings().intrusions[0].obstacle, 1);
+  const Intrusion& intrusion = world.findings().intrusions[0];
   const Vector3 place = world.cables()[intrusion.cable].state.positions[intrusion.segment];
   EXPECT_GT(place.x(), 0.7);
 }
@@ -83,8 +84,8 @@ TEST(Indices, OverstretchedNodeOfTheSecondPiece) {
   scene.materials[0].material.breaking_tension = 50;
   World world(scene, scenes::hand_at({1, 0, 0}));
   StepResult result;
-  for (int i = 0; i < 20 && world.breaks().empty(); ++i) result = world.step(scenes::hand_at({1 + 0.002 * i, 0, 0}));
-  ASSERT_EQ(world.breaks().size(), 1u);
+  for (int i = 0; i < 20 && world.findings().breaks.empty(); ++i) result = world.step(scenes::hand_at({1 + 0.002 * i, 0, 0}));
+  ASSERT_EQ(world.findings().breaks.size(), 1u);
   expect_valid(world, result);
 }
 
@@ -105,20 +106,20 @@ TEST(Indices, EditsBetweenSteps) {
     const BoundaryInputs inputs = scenes::hand_at({1, 0, 0});
     const StepResult none;
     StepResult result = world.step(inputs);
-    ASSERT_GE(world.intrusions().size(), 2u);
+    ASSERT_GE(world.findings().intrusions.size(), 2u);
     expect_valid(world, result);
-    ASSERT_TRUE(world.cut(1, 27).ok);
+    ASSERT_TRUE(world.apply(Cut{cable_id(1), 27}).ok);
     expect_valid(world, none);
-    ASSERT_TRUE(world.cut(1, 20).ok);
+    ASSERT_TRUE(world.apply(Cut{cable_id(1), 20}).ok);
     expect_valid(world, none);
-    ASSERT_TRUE(world.join(2, reversed, 0, false).ok);
+    ASSERT_TRUE(world.apply(Join{2, reversed, 0, false}).ok);
     expect_valid(world, none);
-    for (const Intrusion& intrusion : world.intrusions()) EXPECT_EQ(world.obstacles()[intrusion.obstacle].name, "block");
-    ASSERT_TRUE(world.remove_obstacle("wall").ok);
+    for (const Intrusion& intrusion : world.findings().intrusions) EXPECT_EQ(world.obstacles()[intrusion.obstacle].name, "block");
+    ASSERT_TRUE(world.apply(RemoveObstacle{"wall"}).ok);
     expect_valid(world, none);
-    for (const Intrusion& intrusion : world.intrusions()) EXPECT_EQ(world.obstacles()[intrusion.obstacle].name, "block");
-    ASSERT_TRUE(world.remove_obstacle("block").ok);
-    EXPECT_TRUE(world.intrusions().empty());
+    for (const Intrusion& intrusion : world.findings().intrusions) EXPECT_EQ(world.obstacles()[intrusion.obstacle].name, "block");
+    ASSERT_TRUE(world.apply(RemoveObstacle{"block"}).ok);
+    EXPECT_TRUE(world.findings().intrusions.empty());
     for (int i = 0; i < 200; ++i) expect_valid(world, world.step(inputs));
   }
 }
@@ -128,10 +129,10 @@ TEST(Indices, WinchThatReelsInDuringSteps) {
   scene.materials[0].material.breaking_tension = 3;
   scene.contact = ContactDesc{};
   World world(scene, scenes::hand_at({0.8, 0, 0}));
-  ASSERT_TRUE(world.set_length(0, true, 0.85, 0.5).ok);
+  ASSERT_TRUE(world.apply(SetLength{0, true, 0.85, 0.5}).ok);
   for (int i = 0; i < 600; ++i) {
     expect_valid(world, world.step(scenes::hand_at({0.8 + 2e-4 * i, 0, 0.05 * std::sin(0.1 * i)})));
-    if (i % 100 == 50) world.cut(0, world.cables()[0].model.segments() / 2);
+    if (i % 100 == 50) world.apply(Cut{cable_id(0), world.cables()[0].model.segments() / 2});
   }
 }
 

@@ -172,7 +172,7 @@ class Hanging {
 
   StepResult step(double x) {
     const StepResult result = world_->step(scenes::hand_at({x, 0, 0}));
-    jumps_.insert(jumps_.end(), world_->jumps().begin(), world_->jumps().end());
+    jumps_.insert(jumps_.end(), world_->findings().jumps.begin(), world_->findings().jumps.end());
     EXPECT_EQ(world_->cables()[0].state.positions[0], Vector3(x, 0, 0));
     carried_ += result.status == Status::jumped;
     fastest_ = std::max(fastest_, fastest());
@@ -299,8 +299,8 @@ TEST(Jumps, AJumpInTheFirstStepIsOne) {
     World world(scene, inputs);
     EXPECT_EQ(world.step(scenes::hand_at({1, 0, 0})).status, Status::jumped);
     world.step(scenes::hand_at({1, 0, 0}));
-    ASSERT_EQ(world.jumps().size(), 1u);
-    EXPECT_EQ(jump_text(world, world.jumps()[0]), "frame \"hand\" jumped by 1 m within " +
+    ASSERT_EQ(world.findings().jumps.size(), 1u);
+    EXPECT_EQ(jump_text(world, world.findings().jumps[0]), "frame \"hand\" jumped by 1 m within " +
                                                       std::to_string(std::lround(1e3 * scene.time_step)) +
                                                       " ms: cable \"cable\" was carried along with it");
     EXPECT_EQ(jump_text(world, {0, 0.25, 0, 0.2}),
@@ -373,13 +373,13 @@ TEST(Jumps, SeveralHandsAtOnceAndTheClampTheyHold) {
       const double tension = largest_tension(world);
       const BoundaryInputs away = shifted(inputs, {0.5, 1, 0});
       EXPECT_EQ(world.step(away).status, Status::jumped);
-      EXPECT_TRUE(world.jumps().empty());
+      EXPECT_TRUE(world.findings().jumps.empty());
       World copy = world;
       EXPECT_EQ(copy.hash(), world.hash());
       for (int i = 0; i < 100; ++i) {
         ASSERT_EQ(world.step(away).status, Status::ok);
         copy.step(away);
-        EXPECT_EQ(world.jumps().size(), i == 0 ? 2u : 0u);
+        EXPECT_EQ(world.findings().jumps.size(), i == 0 ? 2u : 0u);
         EXPECT_LT(largest_tension(world), tension * 1.02);  // a blow is a hundred times as much
       }
       EXPECT_EQ(copy.hash(), world.hash());
@@ -397,7 +397,7 @@ TEST(Jumps, ANetIsCarriedAlongAndKeepsItsMotion) {
       const bool away = i >= 100;
       const StepResult result = jumping.step(shifted(inputs, away ? Vector3(0.5, 0, 0.2) : Vector3(0, 0, 0)));
       EXPECT_EQ(result.status == Status::jumped, i == 100) << i;
-      EXPECT_EQ(jumping.jumps().empty(), i != 101) << i;
+      EXPECT_EQ(jumping.findings().jumps.empty(), i != 101) << i;
     }
     for (int k = 0; k < 16; ++k) {
       const Vector3 way = jumping.nets()[0].state.positions[k] - still.nets()[0].state.positions[k];

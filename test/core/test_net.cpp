@@ -69,7 +69,7 @@ TEST(Net, SpringsHangAsHookeSays) {
     EXPECT_NEAR(world.nets()[0].state.tension[0], 9.81, 1e-5);
     // What holds it carries the held node, too.
     EXPECT_NEAR(world.attachments()[0].force.z(), -2 * 9.81, 1e-4);
-    EXPECT_EQ(world.attachments()[0].net, 0);
+    EXPECT_TRUE(world.attachments()[0].body == net_id(0));
   }
 }
 
@@ -83,9 +83,9 @@ TEST(Net, RigidAndLimitedLinksKeepMomentum) {
     scene.nets = {net};
     World world(scene, initial_frames(scene));
     // One node is pulled away and let go: links run into their limits on all sides.
-    ASSERT_TRUE(world.pin_net("hand", 0, 29, 0, {0.7, 0.2, -0.2}).ok);
+    ASSERT_TRUE(world.apply(Pin{"hand", net_id(0), 29, 0, {{0.7, 0.2, -0.2}, Quaternion::Identity()}}).ok);
     run(world, 200);
-    ASSERT_TRUE(world.unpin("hand").ok);
+    ASSERT_TRUE(world.apply(Unpin{"hand"}).ok);
     run(world, 1);
     const Vector3 before = momentum(world.nets()[0]), spin = angular_momentum(world.nets()[0]);
     ASSERT_GT(before.norm(), 0.01);
@@ -203,7 +203,7 @@ TEST(Net, WhatBlowsUpIsReportedAndStaysFinite) {
   bool degraded = false;
   for (int i = 0; i < 1000; ++i) {
     const StepResult result = world.step({FrameInput{}});
-    degraded = degraded || (result.status == StepResult::Status::degraded && result.net == 0 && result.cable == -1);
+    degraded = degraded || (result.status == StepResult::Status::degraded && result.body == net_id(0));
     for (const Vector3& x : world.nets()[0].state.positions) ASSERT_TRUE(x.allFinite());
   }
   EXPECT_TRUE(degraded);
@@ -269,7 +269,7 @@ TEST(Net, ThatIsTooStiffForItsStepIsSoftenedAndReported) {
   for (int i = 0; i < 1000; ++i) {
     const StepResult result = world.step({FrameInput{}});
     ASSERT_EQ(result.status, StepResult::Status::degraded);
-    ASSERT_EQ(result.net, 0);
+    ASSERT_TRUE(result.body == net_id(0));
     for (const Vector3& x : world.nets()[0].state.positions) ASSERT_LT(x.norm(), 2);
   }
 }
@@ -279,15 +279,15 @@ TEST(Net, CopyGoesOnAlikeAfterEdits) {
     SceneDesc scene = scenes::flag(6, 8, 0.05, type);
     World world(scene, initial_frames(scene));
     run(world, 100);
-    const EditResult pin = world.pin_net("", 0, 44, 0, {0.1, 0, -0.2});
+    const EditResult pin = world.apply(Pin{"", net_id(0), 44, 0, {{0.1, 0, -0.2}, Quaternion::Identity()}});
     ASSERT_TRUE(pin.ok) << pin.message;
-    EXPECT_FALSE(world.pin_net("", 0, 44, 0, {0, 0, 0}).ok);
-    EXPECT_FALSE(world.pin_net("", 0, 48, 0, {0, 0, 0}).ok);
-    EXPECT_FALSE(world.pin_net("", 1, 0, 0, {0, 0, 0}).ok);
+    EXPECT_FALSE(world.apply(Pin{"", net_id(0), 44, 0, {{0, 0, 0}, Quaternion::Identity()}}).ok);
+    EXPECT_FALSE(world.apply(Pin{"", net_id(0), 48, 0, {{0, 0, 0}, Quaternion::Identity()}}).ok);
+    EXPECT_FALSE(world.apply(Pin{"", net_id(1), 0, 0, {{0, 0, 0}, Quaternion::Identity()}}).ok);
     const std::size_t links = world.nets()[0].model.links.size();
-    ASSERT_TRUE(world.cut_link(0, 3).ok);
-    EXPECT_FALSE(world.cut_link(0, static_cast<int>(links) - 1).ok);
-    EXPECT_FALSE(world.cut_link(0, -1).ok);
+    ASSERT_TRUE(world.apply(Cut{net_id(0), 3}).ok);
+    EXPECT_FALSE(world.apply(Cut{net_id(0), static_cast<int>(links) - 1}).ok);
+    EXPECT_FALSE(world.apply(Cut{net_id(0), -1}).ok);
     EXPECT_EQ(world.nets()[0].model.links.size(), links - 1);
     run(world, 100);
     World copy = world;
@@ -297,7 +297,7 @@ TEST(Net, CopyGoesOnAlikeAfterEdits) {
     run(copy, 300);
     EXPECT_EQ(copy.hash(), world.hash());
     EXPECT_NEAR((world.nets()[0].state.positions[44] - Vector3(0.1, 0, -0.2)).norm(), 0, 1e-12);
-    ASSERT_TRUE(world.unpin(pin.name).ok);
+    ASSERT_TRUE(world.apply(Unpin{pin.name}).ok);
     run(world, 100);
   }
 }
@@ -309,7 +309,7 @@ TEST(Net, WaitsForItsFrames) {
   inputs[1].known = false;
   World world(scene, inputs);
   EXPECT_TRUE(world.nets().empty());
-  EXPECT_EQ(world.waiting(), std::vector<std::string>{"flag"});
+  EXPECT_EQ(world.findings().waiting, std::vector<std::string>{"flag"});
   inputs[1].known = true;
   EXPECT_EQ(world.start_waiting(inputs), 1);
   ASSERT_EQ(world.nets().size(), 1u);

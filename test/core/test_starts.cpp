@@ -103,7 +103,7 @@ TEST_P(Starts, StayAtRest) {
     for (const double axial : {infinity, 1e6}) {
       const SceneDesc scene = make_scene(GetParam(), bending, axial);
       World world(scene, initial_frames(scene));
-      EXPECT_TRUE(world.unsettled().empty());
+      EXPECT_TRUE(world.findings().unsettled.empty());
       // Equilibria that would not last are left in fractions of a second; on a floor friction may hold what creeps.
       EXPECT_LT(fastest(world, 300), GetParam().floor ? 5e-3 : 2e-4) << "bending stiffness " << bending << ", axial " << axial;
       for (const double twist : world.cables()[0].state.twist) EXPECT_LT(std::abs(twist), 1e-3);
@@ -150,7 +150,7 @@ TEST(Start, WhatDoesNotStayIsNamed) {
   for (unsigned seed = 0; seed < scenes; ++seed) {
     const SceneDesc scene = random_scene(seed);
     World world(scene, initial_frames(scene));
-    if (!world.unsettled().empty()) {
+    if (!world.findings().unsettled.empty()) {
       ++named;
       named_in_the_air += scene.obstacles.empty();
       continue;
@@ -203,10 +203,10 @@ TEST(Start, ShapeThatIsGivenIsKept) {
 TEST(Start, ShapeThatDoesNotFitIsNamed) {
   SceneDesc scene = scenes::between_two_points(20, 0.5);
   scene.cables[0].initial.type = InitialShapeDesc::Type::straight;
-  EXPECT_EQ(World(scene, initial_frames(scene)).misfits(), std::vector<std::string>{"cable"});
+  EXPECT_EQ(World(scene, initial_frames(scene)).findings().misfits, std::vector<std::string>{"cable"});
   scene = scenes::between_two_points(20, 1);
   scene.cables[0].initial.type = InitialShapeDesc::Type::straight;
-  EXPECT_TRUE(World(scene, initial_frames(scene)).misfits().empty());
+  EXPECT_TRUE(World(scene, initial_frames(scene)).findings().misfits.empty());
 }
 
 /// Takes seconds.
@@ -222,7 +222,7 @@ TEST(Starts, AWorldThatIsCancelledStartsNothing) {
   const SceneDesc scene = slow_scene();
   const World world(scene, initial_frames(scene), &cancelled);
   EXPECT_TRUE(world.cables().empty());
-  EXPECT_EQ(world.waiting(), std::vector<std::string>{"cable"});
+  EXPECT_EQ(world.findings().waiting, std::vector<std::string>{"cable"});
 }
 
 TEST(Starts, SettlingEndsWhenTheWorldIsCancelled) {
@@ -234,7 +234,7 @@ TEST(Starts, SettlingEndsWhenTheWorldIsCancelled) {
   });
   const World world(scene, initial_frames(scene), &cancelled);
   canceller.join();
-  EXPECT_TRUE(world.cables().empty() || !world.unsettled().empty());
+  EXPECT_TRUE(world.cables().empty() || !world.findings().unsettled.empty());
 }
 
 }  // namespace

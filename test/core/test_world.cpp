@@ -47,15 +47,15 @@ TEST(World, AMovedAttachmentTakesItsNodeAlong) {
   for (int i = 1; i <= 500; ++i) {
     Pose pose = start;
     pose.position.z() += 0.0004 * i;
-    ASSERT_TRUE(world.move_attachment(hand.name, pose).ok);
+    ASSERT_TRUE(world.apply(MoveAttachment{hand.name, pose}).ok);
     EXPECT_EQ(world.step(scenes::hand_at({0.6, 0, 0})).status, Status::ok);
     EXPECT_LT((world.cables()[0].state.positions.back() - Vector3(0.6, 0, 0.0004 * i)).norm(), 1e-12);
   }
   const std::uint64_t before = world.hash();
   Pose bad = start;
   bad.position.x() = std::nan("");
-  EXPECT_FALSE(world.move_attachment(hand.name, bad).ok);
-  EXPECT_FALSE(world.move_attachment("nobody", start).ok);
+  EXPECT_FALSE(world.apply(MoveAttachment{hand.name, bad}).ok);
+  EXPECT_FALSE(world.apply(MoveAttachment{"nobody", start}).ok);
   EXPECT_EQ(world.hash(), before);
 }
 
@@ -69,7 +69,7 @@ TEST(World, PulledTooFarItSaysSoAndRecovers) {
     ASSERT_NE(result.status, Status::fault);
     if (result.status == Status::overstretched) {
       overstretched = true;
-      EXPECT_EQ(result.cable, 0);
+      EXPECT_TRUE(result.body == cable_id(0));
       EXPECT_GT(result.max_strain, 0);
     }
     ASSERT_TRUE(finite(world));
@@ -107,13 +107,13 @@ TEST(World, CableWaitsForItsFrames) {
   inputs[1].known = false;
   World world(scene, inputs);
   EXPECT_TRUE(world.cables().empty());
-  EXPECT_EQ(world.waiting(), std::vector<std::string>{"cable"});
+  EXPECT_EQ(world.findings().waiting, std::vector<std::string>{"cable"});
   world.step(inputs);
   EXPECT_EQ(world.start_waiting(inputs), 0);
   inputs[1].known = true;
   inputs[1].pose.position = {0.5, 0, 0};
   EXPECT_EQ(world.start_waiting(inputs), 1);
-  EXPECT_TRUE(world.waiting().empty());
+  EXPECT_TRUE(world.findings().waiting.empty());
   EXPECT_EQ(world.cables()[0].state.positions.back(), Vector3(0.5, 0, 0));
 }
 
@@ -136,7 +136,7 @@ TEST(World, CutKeepsMassMomentumAndHolders) {
   World world(scene, scenes::hand_at({0.6, 0, 0}));
   for (int i = 0; i < 100; ++i) world.step(scenes::hand_at({0.6, 0.001 * i, 0}));
   const SimulatedCable before = world.cables()[0];
-  const EditResult cut = world.cut(0, 7);
+  const EditResult cut = world.apply(Cut{cable_id(0), 7});
   ASSERT_TRUE(cut.ok) << cut.message;
   ASSERT_EQ(world.cables().size(), 2u);
   const SimulatedCable &first = world.cables()[0], &second = world.cables()[1];
@@ -148,8 +148,8 @@ TEST(World, CutKeepsMassMomentumAndHolders) {
     EXPECT_EQ(second.state.positions[i], before.state.positions[i + 8]);
     EXPECT_EQ(second.model.masses[i], before.model.masses[i + 8]);
   }
-  EXPECT_EQ(world.attachments()[0].cable, 0);
-  EXPECT_EQ(world.attachments()[1].cable, 1);
+  EXPECT_TRUE(world.attachments()[0].body == cable_id(0));
+  EXPECT_TRUE(world.attachments()[1].body == cable_id(1));
   EXPECT_EQ(world.attachments()[1].node, 12);
   for (int i = 0; i < 1000; ++i) ASSERT_EQ(world.step(scenes::hand_at({0.6, 0.1, 0})).status, Status::ok);
   EXPECT_EQ(world.cables()[1].state.positions.back(), Vector3(0.6, 0.1, 0));
@@ -161,18 +161,18 @@ TEST(World, CutThatLeavesNothingIsRefused) {
   World world(scene, scenes::hand_at({0.6, 0, 0}));
   const std::uint64_t before = world.hash();
   for (const int segment : {-1, 0, 19, 20, 1000}) {
-    const EditResult cut = world.cut(0, segment);
+    const EditResult cut = world.apply(Cut{cable_id(0), segment});
     EXPECT_FALSE(cut.ok);
     EXPECT_NE(cut.message.find(std::to_string(segment)), std::string::npos) << cut.message;
   }
-  EXPECT_FALSE(world.cut(1, 5).ok);
+  EXPECT_FALSE(world.apply(Cut{cable_id(1), 5}).ok);
   EXPECT_EQ(world.hash(), before);
 }
 
 TEST(World, PinTakesTheNodeToItsPlaceAndUnpinLetsItGo) {
   SceneDesc scene = scenes::released(20, 0);
   World world(scene, initial_frames(scene));
-  const EditResult pin = world.pin("", 0, 20, 0, {{0.5, 0, -0.5}, Quaternion::Identity()}, AttachmentType::hinge);
+  const EditResult pin = world.apply(Pin{"", cable_id(0), 20, 0, {{0.5, 0, -0.5}, Quaternion::Identity()}, AttachmentType::hinge});
   ASSERT_TRUE(pin.ok) << pin.message;
   double fastest = 0;
   for (int i = 0; i < 1000; ++i) {
@@ -181,11 +181,11 @@ TEST(World, PinTakesTheNodeToItsPlaceAndUnpinLetsItGo) {
   }
   EXPECT_EQ(world.cables()[0].state.positions[20], Vector3(0.5, 0, -0.5));
   EXPECT_LT(fastest, 4);
-  EXPECT_FALSE(world.pin("again", 0, 20, 0, {}, AttachmentType::hinge).ok);
-  EXPECT_FALSE(world.pin(pin.name, 0, 10, 0, {}, AttachmentType::hinge).ok);
-  EXPECT_FALSE(world.pin("far", 0, 21, 0, {}, AttachmentType::hinge).ok);
-  ASSERT_TRUE(world.unpin(pin.name).ok);
-  EXPECT_FALSE(world.unpin(pin.name).ok);
+  EXPECT_FALSE(world.apply(Pin{"again", cable_id(0), 20, 0, {}, AttachmentType::hinge}).ok);
+  EXPECT_FALSE(world.apply(Pin{pin.name, cable_id(0), 10, 0, {}, AttachmentType::hinge}).ok);
+  EXPECT_FALSE(world.apply(Pin{"far", cable_id(0), 21, 0, {}, AttachmentType::hinge}).ok);
+  ASSERT_TRUE(world.apply(Unpin{pin.name}).ok);
+  EXPECT_FALSE(world.apply(Unpin{pin.name}).ok);
   for (int i = 0; i < 300; ++i) world.step({FrameInput{}});
   EXPECT_LT(world.cables()[0].state.positions[20].z(), -0.6);
 }

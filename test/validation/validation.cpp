@@ -44,11 +44,11 @@ void Simulation::run(double duration) {
 }
 
 const Vector3& Simulation::force(const std::string& attachment) const {
-  return world.attachments()[world.find_attachment(attachment)].force;
+  return world.attachments()[find(world.attachments(), attachment)].force;
 }
 
 const Vector3& Simulation::torque(const std::string& attachment) const {
-  return world.attachments()[world.find_attachment(attachment)].torque;
+  return world.attachments()[find(world.attachments(), attachment)].torque;
 }
 
 void report(const std::string& name, const std::vector<Sample>& samples, double tolerance, Order order) {

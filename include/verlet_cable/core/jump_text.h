@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <string>
 
+#include "verlet_cable/core/body_name.h"
 #include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/core/world.h"
 
@@ -11,16 +12,13 @@ namespace verlet_cable {
 /// What a jump did, in words.
 inline std::string jump_text(const World& world, const Jump& jump) {
   const Attachment& attachment = world.attachments()[static_cast<std::size_t>(jump.attachment)];
-  const bool is_net = attachment.net >= 0;
-  const std::string& name = is_net ? world.nets()[static_cast<std::size_t>(attachment.net)].model.name
-                                   : world.cables()[static_cast<std::size_t>(attachment.cable)].model.name;
   char measure[64];
   const double milliseconds = 1e3 * jump.duration;
   std::snprintf(measure, sizeof measure,
                 milliseconds < 10 ? " jumped by %.2g m within %.2g ms: " : " jumped by %.2g m within %.0f ms: ", jump.distance,
                 milliseconds);
-  return "frame " + quoted(world.frames()[static_cast<std::size_t>(attachment.frame)]) + measure + (is_net ? "net " : "cable ") +
-         quoted(name) + " was carried along with it";
+  return "frame " + quoted(world.frames()[static_cast<std::size_t>(attachment.frame)]) + measure + (attachment.body.is_net() ? "net " : "cable ") +
+         quoted(name_of(world, attachment.body)) + " was carried along with it";
 }
 
 }  // namespace verlet_cable

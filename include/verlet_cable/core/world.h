@@ -7,8 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "verlet_cable/core/body_id.h"
 #include "verlet_cable/core/cable.h"
 #include "verlet_cable/core/contact.h"
+#include "verlet_cable/core/edit.h"
 #include "verlet_cable/core/net.h"
 #include "verlet_cable/core/obstacle.h"
 #include "verlet_cable/core/scene_desc.h"
@@ -30,8 +32,7 @@ using BoundaryInputs = std::vector<FrameInput>;
 /// What holds a node of a cable or net to a frame.
 struct Attachment {
   std::string name;
-  int cable = 0;  ///< index into World::cables(), -1 if it holds a net
-  int net = -1;   ///< index into World::nets(), -1 if it holds a cable
+  BodyId body;    ///< a cable or a net
   int node = 0;
   int frame = 0;  ///< index into World::frames()
   AttachmentType type = AttachmentType::hinge;
@@ -49,9 +50,7 @@ struct StepResult {
     fault      ///< not even that: the cable stays as it was last, finite
   };
   Status status = Status::ok;
-  int cable = -1;          ///< the first cable that is not ok
-  int net = -1;            ///< or net
-  int particle = -1;       ///< or particle
+  BodyId body;             ///< the first one that is not ok
   int node = -1;           ///< its first node that is not ok
   int ignored_frame = -1;  ///< the first frame whose pose was not sound
   int substeps = 0;        ///< the most that any cable took
@@ -91,11 +90,18 @@ struct Intrusion {
   double depth = 0;  ///< [m] of the cable's surface
 };
 
-/// Outcome of an edit: nothing has changed where `ok` is false, and `message` says why, with names and values.
-struct EditResult {
-  bool ok = false;
-  std::string message;
-  std::string name;  ///< pin: of the pin; cut: of the new cable
+/// What the last step, start or settling found.
+struct Findings {
+  std::vector<std::string> waiting;  ///< names of cables and nets that wait for a frame
+  /// Names of cables that found no equilibrium when they were to be settled, at their start or by `settle`.
+  std::vector<std::string> unsettled;
+  /// Names of cables whose given initial shape could not be brought to their lengths between their attachments: they hang instead.
+  std::vector<std::string> misfits;
+  // In the last step
+  std::vector<Break> breaks;
+  std::vector<Jump> jumps;                 ///< that were found to be over, one an attachment
+  std::vector<Intrusion> intrusions;       ///< one a cable and obstacle
+  std::vector<SimulatedContact> contacts;  ///< where cables touched something in the last substep
 };
 
 /// The simulation: cables and nets whose attachments follow frames, and particles, in the fixed frame. A value: a copy is a
@@ -139,48 +145,13 @@ class World {
   const std::vector<SimulatedCable>& cables() const;  ///< those that have started, pieces of cuts included
   const std::vector<SimulatedNet>& nets() const;      ///< those that have started
   const std::vector<SimulatedParticle>& particles() const;
-  const std::vector<std::string>& waiting() const;     ///< names of cables and nets that wait for a frame
   const std::vector<Attachment>& attachments() const;  ///< of the started cables and nets
-  const std::vector<Break>& breaks() const;            ///< in the last step
-  const std::vector<Jump>& jumps() const;              ///< that the last step found to be over, one an attachment
-  const std::vector<Intrusion>& intrusions() const;    ///< that the last step found, one a cable and obstacle
-  /// Names of cables that found no equilibrium when they were to be settled, at their start or by `settle`.
-  const std::vector<std::string>& unsettled() const;
-  /// Names of cables whose given initial shape could not be brought to their lengths between their attachments: they hang
-  /// instead.
-  const std::vector<std::string>& misfits() const;
-  std::vector<SimulatedContact> contacts() const;      ///< where cables touched something in the last substep
-  int find_cable(const std::string& name) const;       ///< index, -1 if there is none
-  int find_net(const std::string& name) const;         ///< index, -1 if there is none
-  int find_attachment(const std::string& name) const;  ///< index, -1 if there is none
+  const std::vector<Obstacle>& obstacles() const;      ///< those of the scene, of its robot's links, then those that were set
+  const Findings& findings() const;
 
   /// Starts the waiting cables and nets whose frames are known now, at their default or given shapes. How many.
   int start_waiting(const BoundaryInputs& inputs);
-
-  /// Holds a node at a pose in a frame. The node goes there smoothly. `name` empty: one is made.
-  EditResult pin(const std::string& name, int cable, int node, int frame, const Pose& pose, AttachmentType type);
-  /// Holds a node of a net likewise, by a hinge.
-  EditResult pin_net(const std::string& name, int net, int node, int frame, const Vector3& offset);
-  EditResult unpin(const std::string& name);
-  /// Gives an attachment another pose in its frame: the next step takes the node there, so move it little by little.
-  EditResult move_attachment(const std::string& name, const Pose& pose);
-  /// Removes a link of a net; those after it count one less.
-  EditResult cut_link(int net, int link);
-  /// Removes a segment; its mass stays on its nodes. The first piece keeps the name.
-  EditResult cut(int cable, int segment);
-  /// Pays out or takes in cable at one end, at up to `speed` [m/s] and smoothly, until the cable is `length` [m] long; its nodes
-  /// count anew as segments appear and vanish there. Other attachments and payloads keep their material point.
-  EditResult set_length(int cable, bool at_end, double length, double speed);
-  /// Welds two ends of cables of one material. Ends that are apart are drawn together first. The first cable keeps its name and
-  /// direction.
-  EditResult join(int first, bool first_at_end, int second, bool second_at_end);
-
-  /// What cables bump into: those of the scene, of its robot's links, then those that were set.
-  const std::vector<Obstacle>& obstacles() const;
-  /// Adds an obstacle, or replaces the one of that name. `holders` and `present` are the world's to fill in.
-  EditResult set_obstacle(Obstacle obstacle);
-  EditResult remove_obstacle(const std::string& name);
-
+  EditResult apply(const Edit& edit);
   /// Takes over gravity, fluid, materials (those it has, by name) and the friction between cables from a sound scene.
   void tune(const SceneDesc& scene);
 
@@ -192,6 +163,11 @@ class World {
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
+
+/// Index of the cable, net or attachment of a name, -1 if there is none.
+int find(const std::vector<SimulatedCable>& cables, const std::string& name);
+int find(const std::vector<SimulatedNet>& nets, const std::string& name);
+int find(const std::vector<Attachment>& attachments, const std::string& name);
 
 /// Whether a pose can be worked with: coordinates within 1e9 m, and an orientation whose length is from 0.5 to 2, which is
 /// brought to 1.

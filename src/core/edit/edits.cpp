@@ -14,9 +14,9 @@ EditResult refused(const std::string& message) {
   return {false, message, {}};
 }
 
-bool holds_something(const std::vector<Attachment>& attachments, int cable, int node) {
+bool holds_something(const std::vector<Attachment>& attachments, const BodyId& body, int node) {
   return std::any_of(attachments.begin(), attachments.end(),
-                     [&](const Attachment& a) { return a.cable == cable && a.node == node; });
+                     [&](const Attachment& a) { return a.body == body && a.node == node; });
 }
 
 /// `base` followed by the lowest number for which `taken` is false.
@@ -75,96 +75,95 @@ bool World::Implementation::is_attachment(const std::string& name) const {
                      [&](int i) { return any(state.scene->nets[i].attachments); });
 }
 
-EditResult World::pin(const std::string& name, int cable, int node, int frame, const Pose& pose, AttachmentType type) {
-  Implementation& w = *implementation_;
-  if (cable < 0 || cable >= static_cast<int>(w.state.cables.size()))
-    return refused("cable: " + std::to_string(cable) + "; must be the index of a cable");
-  SimulatedCable& held = w.state.cables[cable];
-  if (node < 0 || node > held.model.segments())
-    return refused("node: " + std::to_string(node) + "; must be from 0 to " + std::to_string(held.model.segments()));
-  if (frame < 0 || frame >= static_cast<int>(w.state.frames.names.size()))
-    return refused("frame: " + std::to_string(frame) + "; must be the id of a frame");
-  if (const std::string problem = pose_problem("offset", pose); !problem.empty()) return refused(problem);
-  if (!name.empty() && w.is_attachment(name)) return refused("name: " + name + "; is taken by another attachment");
-  if (holds_something(w.state.attachments, cable, node))
-    return refused("node: " + std::to_string(node) + " of cable " + held.model.name + "; is already held by an attachment");
-  if (const std::optional<LengthDrive>& drive = w.state.cable_progress[cable].drive; drive && !drive->is_winch()) {
-    const int other = node == drive->segment ? node + 1 : node == drive->segment + 1 ? node - 1 : -1;
-    if (other >= 0 && holds_something(w.state.attachments, cable, other))
-      return refused("node: " + std::to_string(node) + " of cable " + held.model.name + "; is being joined to node " +
-                     std::to_string(other) + ", which is held by an attachment");
+EditResult World::apply(const Edit& edit) {
+  return std::visit([&](const auto& of_kind) { return implementation_->apply(of_kind); }, edit);
+}
+
+namespace {
+
+std::string out_of_range(const char* what, int index) {
+  return std::string(what) + ": " + std::to_string(index) + "; must be the index of a " + what;
+}
+
+/// Why a body has no such node to hold; empty if it has.
+std::string node_problem(const State& state, const BodyId& body, int node) {
+  const bool is_net = body.is_net();
+  const int bodies = static_cast<int>(is_net ? state.nets.size() : state.cables.size());
+  if (body.index < 0 || body.index >= bodies) return out_of_range(is_net ? "net" : "cable", body.index);
+  const int last = is_net ? state.nets[body.index].model.nodes() - 1 : state.cables[body.index].model.segments();
+  if (node < 0 || node > last) return "node: " + std::to_string(node) + "; must be from 0 to " + std::to_string(last);
+  return "";
+}
+
+/// The other node at a joint that is closing, -1 if there is none.
+int joining_node(const std::optional<LengthDrive>& drive, int node) {
+  if (!drive || drive->is_winch()) return -1;
+  return node == drive->segment ? node + 1 : node == drive->segment + 1 ? node - 1 : -1;
+}
+
+}  // namespace
+
+EditResult World::Implementation::apply(const Pin& pin) {
+  if (const std::string problem = node_problem(state, pin.body, pin.node); !problem.empty()) return refused(problem);
+  if (pin.frame < 0 || pin.frame >= static_cast<int>(state.frames.names.size()))
+    return refused("frame: " + std::to_string(pin.frame) + "; must be the id of a frame");
+  if (const std::string problem = pose_problem("offset", pin.pose); !problem.empty()) return refused(problem);
+  if (!pin.name.empty() && is_attachment(pin.name)) return refused("name: " + pin.name + "; is taken by another attachment");
+  const std::string node = "node: " + std::to_string(pin.node) + " of " +
+                           (pin.body.is_net() ? "net " + state.nets[pin.body.index].model.name
+                                              : "cable " + state.cables[pin.body.index].model.name);
+  if (holds_something(state.attachments, pin.body, pin.node)) return refused(node + "; is already held by an attachment");
+  if (pin.body.is_cable()) {
+    const int other = joining_node(state.cable_progress[pin.body.index].drive, pin.node);
+    if (other >= 0 && holds_something(state.attachments, pin.body, other))
+      return refused(node + "; is being joined to node " + std::to_string(other) + ", which is held by an attachment");
   }
-
   Attachment attachment;
-  attachment.name = name.empty() ? numbered("pin", 1, [&](const std::string& n) { return w.is_attachment(n); }) : name;
-  attachment.cable = cable;
-  attachment.node = node;
-  attachment.frame = frame;
-  attachment.type = type;
-  attachment.pose = {pose.position, pose.orientation.normalized()};
-  w.state.attachments.push_back(attachment);
-  w.find_targets_of(cable);
+  attachment.name = pin.name.empty() ? numbered("pin", 1, [&](const std::string& n) { return is_attachment(n); }) : pin.name;
+  attachment.body = pin.body;
+  attachment.node = pin.node;
+  attachment.frame = pin.frame;
+  if (pin.body.is_cable()) attachment.type = pin.type;
+  attachment.pose.position = pin.pose.position;
+  if (pin.body.is_cable()) attachment.pose.orientation = pin.pose.orientation.normalized();
+  state.attachments.push_back(attachment);
+  if (pin.body.is_net())
+    update_net(pin.body.index);
+  else
+    find_targets_of(pin.body.index);
   return {true, "", attachment.name};
 }
 
-EditResult World::pin_net(const std::string& name, int net, int node, int frame, const Vector3& offset) {
-  Implementation& w = *implementation_;
-  if (net < 0 || net >= static_cast<int>(w.state.nets.size()))
-    return refused("net: " + std::to_string(net) + "; must be the index of a net");
-  const NetModel& model = w.state.nets[net].model;
-  if (node < 0 || node >= model.nodes())
-    return refused("node: " + std::to_string(node) + "; must be from 0 to " + std::to_string(model.nodes() - 1));
-  if (frame < 0 || frame >= static_cast<int>(w.state.frames.names.size()))
-    return refused("frame: " + std::to_string(frame) + "; must be the id of a frame");
-  if (const std::string problem = pose_problem("offset", Pose{offset, Quaternion::Identity()}); !problem.empty())
-    return refused(problem);
-  if (!name.empty() && w.is_attachment(name)) return refused("name: " + name + "; is taken by another attachment");
-  for (const Attachment& a : w.state.attachments)
-    if (a.net == net && a.node == node)
-      return refused("node: " + std::to_string(node) + " of net " + model.name + "; is already held by an attachment");
-  Attachment attachment;
-  attachment.name = name.empty() ? numbered("pin", 1, [&](const std::string& n) { return w.is_attachment(n); }) : name;
-  attachment.cable = -1;
-  attachment.net = net;
-  attachment.node = node;
-  attachment.frame = frame;
-  attachment.pose.position = offset;
-  w.state.attachments.push_back(attachment);
-  w.update_net(net);
-  return {true, "", attachment.name};
-}
-
-EditResult World::unpin(const std::string& name) {
-  Implementation& w = *implementation_;
-  const int index = find_attachment(name);
-  if (index < 0) return refused("name: " + name + "; there is no such attachment");
-  const int cable = w.state.attachments[index].cable, net = w.state.attachments[index].net;
-  w.state.attachments.erase(w.state.attachments.begin() + index);
-  for (CableProgress& s : w.state.cable_progress) {
+EditResult World::Implementation::apply(const Unpin& unpin) {
+  const int index = find(state.attachments, unpin.name);
+  if (index < 0) return refused("name: " + unpin.name + "; there is no such attachment");
+  const BodyId body = state.attachments[index].body;
+  state.attachments.erase(state.attachments.begin() + index);
+  for (CableProgress& s : state.cable_progress) {
     forget_attachment(index, s.targets.nodes);
     forget_attachment(index, s.targets.directions);
   }
-  for (NetProgress& s : w.state.net_progress) forget_attachment(index, s.targets.nodes);
-  if (net < 0)
-    w.find_targets_of(cable);
+  for (NetProgress& s : state.net_progress) forget_attachment(index, s.targets.nodes);
+  if (body.is_net())
+    update_net(body.index);
   else
-    w.update_net(net);
-  return {true, "", name};
+    find_targets_of(body.index);
+  return {true, "", unpin.name};
 }
 
-EditResult World::move_attachment(const std::string& name, const Pose& pose) {
-  const int index = find_attachment(name);
-  if (index < 0) return refused("name: " + name + "; there is no such attachment");
-  if (const std::string problem = pose_problem("offset", pose); !problem.empty()) return refused(problem);
-  implementation_->state.attachments[index].pose = {pose.position, pose.orientation.normalized()};
-  return {true, "", name};
+EditResult World::Implementation::apply(const MoveAttachment& move) {
+  const int index = find(state.attachments, move.name);
+  if (index < 0) return refused("name: " + move.name + "; there is no such attachment");
+  if (const std::string problem = pose_problem("offset", move.pose); !problem.empty()) return refused(problem);
+  state.attachments[index].pose = {move.pose.position, move.pose.orientation.normalized()};
+  return {true, "", move.name};
 }
 
-EditResult World::cut(int cable, int segment) {
-  return implementation_->cut(cable, segment);
+EditResult World::Implementation::apply(const Cut& cut) {
+  return cut.body.is_net() ? cut_link(cut.body.index, cut.element) : cut_cable(cut.body.index, cut.element);
 }
 
-EditResult World::Implementation::cut(int cable, int segment) {
+EditResult World::Implementation::cut_cable(int cable, int segment) {
   if (cable < 0 || cable >= static_cast<int>(state.cables.size()))
     return refused("cable: " + std::to_string(cable) + "; must be the index of a cable");
   const int segments = state.cables[cable].model.segments();
@@ -214,8 +213,8 @@ EditResult World::Implementation::cut(int cable, int segment) {
 /// What names places of a cable names those of its pieces.
 void World::Implementation::follow_cut(int cable, int segment, int new_cable) {
   for (Attachment& a : state.attachments) {
-    if (a.cable != cable || a.node <= segment) continue;
-    a.cable = new_cable;
+    if (a.body != cable_id(cable) || a.node <= segment) continue;
+    a.body = cable_id(new_cable);
     a.node -= segment + 1;
   }
   for (Intrusion& intrusion : findings.intrusions) {

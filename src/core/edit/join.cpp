@@ -102,7 +102,7 @@ JointEnd find_end(const CableModel& model, int cable, bool at_end, const std::ve
   JointEnd end;
   end.node = at_end ? model.segments() : 0;
   for (const Attachment& a : attachments) {
-    if (a.cable != cable) continue;
+    if (a.body != cable_id(cable)) continue;
     const double length = model.length(std::min(a.node, end.node), std::max(a.node, end.node));
     if (end.next && length >= end.length) continue;
     end.next = &a;
@@ -113,24 +113,24 @@ JointEnd find_end(const CableModel& model, int cable, bool at_end, const std::ve
 
 }  // namespace
 
-EditResult World::join(int first, bool first_at_end, int second, bool second_at_end) {
-  Implementation& w = *implementation_;
-  const int count = static_cast<int>(w.state.cables.size());
+EditResult World::Implementation::apply(const Join& join) {
+  const auto [first, first_at_end, second, second_at_end] = join;
+  const int count = static_cast<int>(state.cables.size());
   for (const int index : {first, second})
     if (index < 0 || index >= count) return refused("cable: " + std::to_string(index) + "; must be the index of a cable");
-  const CableModel &model = w.state.cables[first].model, &other = w.state.cables[second].model;
+  const CableModel &model = state.cables[first].model, &other = state.cables[second].model;
   if (first == second) return refused("second: " + other.name + "; must be another cable than first");
   for (const int index : {first, second})
-    if (w.state.cable_progress[index].drive)
-      return refused("cable: " + w.state.cables[index].model.name +
+    if (state.cable_progress[index].drive)
+      return refused("cable: " + state.cables[index].model.name +
                      "; it is still being wound by its winch or drawn together by an earlier join; wait until that is done");
   if (const auto differing = difference(model.material, other.material))
     return refused("second: " + other.name + "; must be of the same material as " + model.name + ", but they differ in " +
                    *differing);
-  const JointEnd end = find_end(model, first, first_at_end, w.state.attachments);
-  const JointEnd other_end = find_end(other, second, second_at_end, w.state.attachments);
+  const JointEnd end = find_end(model, first, first_at_end, state.attachments);
+  const JointEnd other_end = find_end(other, second, second_at_end, state.attachments);
   if (end.next && other_end.next) {
-    const auto place = [&](const Attachment& a) { return (w.state.frames.poses[a.frame] * a.pose).position; };
+    const auto place = [&](const Attachment& a) { return (state.frames.poses[a.frame] * a.pose).position; };
     if (end.next->node == end.node && other_end.next->node == other_end.node)
       return refused("first, second: both ends are held, by " + end.next->name + " and " + other_end.next->name +
                      "; one of them must be unpinned");
@@ -141,8 +141,8 @@ EditResult World::join(int first, bool first_at_end, int second, bool second_at_
   }
 
   // The second cable in the direction of the first.
-  if (first_at_end == second_at_end) w.reverse_cable(second);
-  SimulatedCable &kept = w.state.cables[first], &gone = w.state.cables[second];
+  if (first_at_end == second_at_end) reverse_cable(second);
+  SimulatedCable &kept = state.cables[first], &gone = state.cables[second];
   const int shift = first_at_end ? kept.model.nodes() : gone.model.nodes();
   const std::string name = kept.model.name;
   if (!gone.model.rest_curvature.empty()) {
@@ -161,8 +161,8 @@ EditResult World::join(int first, bool first_at_end, int second, bool second_at_
     joined.state.reference_orientation = kept.state.reference_orientation;
     kept = std::move(joined);
   }
-  w.renumber(first_at_end ? second : first, 0, shift);
-  KinematicTargets &targets = w.state.cable_progress[first].targets, &holders_of_gone = w.state.cable_progress[second].targets;
+  renumber(first_at_end ? second : first, 0, shift);
+  KinematicTargets &targets = state.cable_progress[first].targets, &holders_of_gone = state.cable_progress[second].targets;
   append(holders_of_gone.nodes, targets.nodes);
   append(holders_of_gone.directions, targets.directions);
 
@@ -173,19 +173,19 @@ EditResult World::join(int first, bool first_at_end, int second, bool second_at_
   drive.left = -std::max(gap - approach * kept.model.segment_length, 0.0);
   drive.speed = joining_speed;
   drive.acceleration = joining_acceleration;
-  w.state.cable_progress[first].drive = drive;
+  state.cable_progress[first].drive = drive;
 
-  w.follow_join(first, second);
-  w.state.cables.erase(w.state.cables.begin() + second);
-  w.state.cable_progress.erase(w.state.cable_progress.begin() + second);
+  follow_join(first, second);
+  state.cables.erase(state.cables.begin() + second);
+  state.cable_progress.erase(state.cable_progress.begin() + second);
   const int joined = first > second ? first - 1 : first;
-  w.state.cable_progress[joined].level = 0;
+  state.cable_progress[joined].level = 0;
   if (drive.left == 0) {
-    w.close_joint(joined);
+    close_joint(joined);
   } else {
-    w.after_remeshing(joined);
-    SimulatedCable& cable = w.state.cables[joined];
-    project_velocities(cable.model, boundary_now(w.state.cable_progress[joined].targets).nodes, cable.state.positions,
+    after_remeshing(joined);
+    SimulatedCable& cable = state.cables[joined];
+    project_velocities(cable.model, boundary_now(state.cable_progress[joined].targets).nodes, cable.state.positions,
                        cable.state.velocities);
   }
   return {true, "", name};
@@ -197,7 +197,8 @@ void World::Implementation::follow_join(int first, int second) {
     if (cable == second) cable = first;
     if (cable > second) --cable;
   };
-  for (Attachment& a : state.attachments) follow(a.cable);
+  for (Attachment& a : state.attachments)
+    if (a.body.is_cable()) follow(a.body.index);
   for (Intrusion& intrusion : findings.intrusions) follow(intrusion.cable);
   for (Break& broken : findings.breaks) {
     follow(broken.cable);
@@ -211,7 +212,7 @@ void World::Implementation::reverse_cable(int index) {
   for (Intrusion& intrusion : findings.intrusions)
     if (intrusion.cable == index) intrusion.segment = n - 1 - intrusion.segment;
   for (Attachment& a : state.attachments) {
-    if (a.cable != index) continue;
+    if (a.body != cable_id(index)) continue;
     a.node = n - a.node;
     a.pose.orientation = a.pose.orientation * turned;
   }

@@ -82,40 +82,36 @@ auto find_obstacle(std::vector<Obstacle>& obstacles, const std::string& name) {
 
 }  // namespace
 
-const std::vector<Obstacle>& World::obstacles() const {
-  return implementation_->state.obstacles;
-}
-
-EditResult World::set_obstacle(Obstacle obstacle) {
-  Implementation& w = *implementation_;
-  if (const std::string problem = problem_of(obstacle, w.state.frames.names.size()); !problem.empty())
+EditResult World::Implementation::apply(const SetObstacle& set) {
+  Obstacle obstacle = set.obstacle;
+  if (const std::string problem = problem_of(obstacle, state.frames.names.size()); !problem.empty())
     return {false, "obstacle " + quoted(obstacle.name) + ": " + problem, {}};
   obstacle.pose.orientation.normalize();
-  obstacle.present = w.state.frames.known[obstacle.frame];
+  obstacle.present = state.frames.known[obstacle.frame];
   const std::string name = obstacle.name;
-  const auto same = find_obstacle(w.state.obstacles, name);
-  obstacle.id = same == w.state.obstacles.end() ? w.state.next_obstacle_id++ : same->id;
-  if (same == w.state.obstacles.end()) {
-    w.state.obstacles.push_back(std::move(obstacle));
+  const auto same = find_obstacle(state.obstacles, name);
+  obstacle.id = same == state.obstacles.end() ? state.next_obstacle_id++ : same->id;
+  if (same == state.obstacles.end()) {
+    state.obstacles.push_back(std::move(obstacle));
   } else {
     *same = std::move(obstacle);
   }
-  w.find_obstacle_anchors();
+  find_obstacle_anchors();
   return {true, "", name};
 }
 
-EditResult World::remove_obstacle(const std::string& name) {
-  Implementation& w = *implementation_;
-  const auto found = find_obstacle(w.state.obstacles, name);
-  if (found == w.state.obstacles.end()) return {false, "obstacle: " + quoted(name) + "; there is no such obstacle", {}};
-  const int index = static_cast<int>(found - w.state.obstacles.begin());
-  w.state.obstacles.erase(found);
+EditResult World::Implementation::apply(const RemoveObstacle& remove) {
+  const std::string& name = remove.name;
+  const auto found = find_obstacle(state.obstacles, name);
+  if (found == state.obstacles.end()) return {false, "obstacle: " + quoted(name) + "; there is no such obstacle", {}};
+  const int index = static_cast<int>(found - state.obstacles.begin());
+  state.obstacles.erase(found);
   const auto names_it = [&](const Intrusion& intrusion) { return intrusion.obstacle == index; };
-  w.findings.intrusions.erase(std::remove_if(w.findings.intrusions.begin(), w.findings.intrusions.end(), names_it),
-                              w.findings.intrusions.end());
-  for (Intrusion& intrusion : w.findings.intrusions)
+  findings.intrusions.erase(std::remove_if(findings.intrusions.begin(), findings.intrusions.end(), names_it),
+                              findings.intrusions.end());
+  for (Intrusion& intrusion : findings.intrusions)
     if (intrusion.obstacle > index) --intrusion.obstacle;
-  w.findings.contacts.clear();
+  findings.contacts.clear();
   return {true, "", name};
 }
 

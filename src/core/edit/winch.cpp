@@ -41,12 +41,12 @@ void add_material_motion(const LengthDrive& drive, double side, SimulatedCable& 
 
 }  // namespace
 
-EditResult World::set_length(int index, bool at_end, double length, double speed) {
-  Implementation& w = *implementation_;
-  if (index < 0 || index >= static_cast<int>(w.state.cables.size()))
+EditResult World::Implementation::apply(const SetLength& change) {
+  const auto [index, at_end, length, speed] = change;
+  if (index < 0 || index >= static_cast<int>(state.cables.size()))
     return refused("cable: " + std::to_string(index) + "; must be the index of a cable");
-  const CableModel& model = w.state.cables[index].model;
-  CableProgress& s = w.state.cable_progress[index];
+  const CableModel& model = state.cables[index].model;
+  CableProgress& s = state.cable_progress[index];
   const LengthDrive::Place place = at_end ? LengthDrive::Place::end : LengthDrive::Place::start;
   if (s.drive && !s.drive->is_winch())
     return refused("cable: " + model.name + " is still being drawn together with another by join; wait until they have met");
@@ -54,12 +54,12 @@ EditResult World::set_length(int index, bool at_end, double length, double speed
     return refused("at_end: the winch at the other end of cable " + model.name + " is still winding; wait until it is done");
 
   // One segment a step can be taken in, and is to be left over.
-  const double fastest = shortest_segment * model.segment_length / w.state.scene->time_step;
+  const double fastest = shortest_segment * model.segment_length / state.scene->time_step;
   if (!(speed > 0 && speed <= fastest))
     return refused("speed: " + number_text(speed) + "; must be above 0, and at most " + rounded_bound_text(fastest, -1) + " m/s");
   int others = 0;
-  for (int i = 0; i < static_cast<int>(w.state.cables.size()); ++i) others += i == index ? 0 : w.state.cables[i].model.segments();
-  const double longest = (w.state.scene->limits.segments - others) * model.segment_length;
+  for (int i = 0; i < static_cast<int>(state.cables.size()); ++i) others += i == index ? 0 : state.cables[i].model.segments();
+  const double longest = (state.scene->limits.segments - others) * model.segment_length;
   if (!(length > 0 && length <= longest))
     return refused("length: " + number_text(length) + "; must be above 0, and at most " + rounded_bound_text(longest, -1) +
                    " m, as limits.segments allows");
@@ -71,8 +71,8 @@ EditResult World::set_length(int index, bool at_end, double length, double speed
   drive.acceleration = winch_acceleration;
   drive.left = length - (model.length() + drive.debt);
   const std::optional<LengthDrive> before = std::exchange(s.drive, drive);
-  const double shortest = model.length() - w.available_length(index);
-  const double needed = model.length() - w.slack_at_winch(index);
+  const double shortest = model.length() - available_length(index);
+  const double needed = model.length() - slack_at_winch(index);
   if (length >= shortest && length >= needed) return {true, "", model.name};
   s.drive = before;
   return refused(
@@ -88,7 +88,7 @@ double World::Implementation::available_length(int index) const {
   const int n = model.segments();
   int stop = from_start ? n : 0;
   for (const Attachment& a : state.attachments) {
-    if (a.cable != index || a.node == (from_start ? 0 : n)) continue;
+    if (a.body != cable_id(index) || a.node == (from_start ? 0 : n)) continue;
     stop = from_start ? std::min(stop, a.node) : std::max(stop, a.node);
   }
   const int step = from_start ? 1 : -1;
@@ -107,7 +107,7 @@ double World::Implementation::slack_at_winch(int index) const {
   const int end = from_start ? 0 : model.segments();
   const Attachment *winch = nullptr, *next = nullptr;
   for (const Attachment& a : state.attachments) {
-    if (a.cable != index) continue;
+    if (a.body != cable_id(index)) continue;
     if (a.node == end) {
       winch = &a;
     } else if (!next || std::abs(a.node - end) < std::abs(next->node - end)) {
@@ -145,7 +145,7 @@ void World::Implementation::remesh_winch(int index) {
   const auto is_free = [&](int node) {
     return node > 0 && node < model.segments() && !carries_payload(model, node) &&
            std::none_of(state.attachments.begin(), state.attachments.end(),
-                        [&](const Attachment& a) { return a.cable == index && a.node == node; });
+                        [&](const Attachment& a) { return a.body == cable_id(index) && a.node == node; });
   };
   while (too_short() && is_free(drive.place == LengthDrive::Place::start ? 1 : model.segments() - 1)) take_in_winch_node(index);
 }
@@ -193,7 +193,7 @@ void World::Implementation::renumber(int index, int first, int shift) {
     if (node >= first) node += shift;
   };
   for (Attachment& a : state.attachments)
-    if (a.cable == index) follow(a.node);
+    if (a.body == cable_id(index)) follow(a.node);
   for (Intrusion& intrusion : findings.intrusions)
     if (intrusion.cable == index) follow(intrusion.segment);
   for (KinematicTarget& h : state.cable_progress[index].targets.nodes) follow(h.node);

@@ -16,8 +16,7 @@ constexpr double nearest = 1e-6;
 
 void note_net(Status status, int net, int node, StepResult& result) {
   if (status <= result.status) return;
-  note_status(status, -1, node, result);
-  result.net = net;
+  note_status(status, net_id(net), node, result);
 }
 
 void forget_motion(const NetModel& model, NetProgress& memory) {
@@ -59,8 +58,7 @@ void World::Implementation::start_net(const NetDesc& desc, const FrameIds& ids, 
   for (const NetAttachmentDesc& a : desc.attachments) {
     Attachment attachment;
     attachment.name = a.name;
-    attachment.cable = -1;
-    attachment.net = index;
+    attachment.body = net_id(index);
     attachment.node = a.node;
     attachment.frame = ids.at(a.frame);
     attachment.pose.position = a.offset;
@@ -83,7 +81,7 @@ void World::Implementation::update_net(int index) {
   NetProgress& memory = state.net_progress[index];
   memory.targets =
       find_net_targets(net.state.positions, net.state.velocities, state.attachments,
-                       attachments_of(index, true, state.attachments), state.frames.poses, memory.targets, state.time());
+                       attachments_of(net_id(index), state.attachments), state.frames.poses, memory.targets, state.time());
   aim_hinges(state.attachments, state.frames.poses, state.time(), memory.targets);
   if (net.model.link_type == LinkType::spring) memory.points.restart();
   if (static_cast<int>(net_solvers.value.size()) > index) net_solvers.value.resize(index);
@@ -168,8 +166,7 @@ void World::Implementation::step_particle(int index, StepResult& result) {
   particle.velocity.setZero();
   state.particle_integrators[index].restart();
   if (result.status >= Status::degraded) return;
-  note_status(Status::degraded, -1, 0, result);
-  result.particle = index;
+  note_status(Status::degraded, particle_id(index), 0, result);
 }
 
 void World::Implementation::add_net_energy(Energy& energy) const {
@@ -187,25 +184,10 @@ void World::Implementation::add_net_energy(Energy& energy) const {
   for (const SimulatedParticle& particle : state.particles) add_point(particle.desc.mass, particle.position, particle.velocity);
 }
 
-const std::vector<SimulatedNet>& World::nets() const {
-  return implementation_->state.nets;
-}
-
-const std::vector<SimulatedParticle>& World::particles() const {
-  return implementation_->state.particles;
-}
-
-int World::find_net(const std::string& name) const {
-  for (std::size_t i = 0; i < nets().size(); ++i)
-    if (nets()[i].model.name == name) return static_cast<int>(i);
-  return -1;
-}
-
-EditResult World::cut_link(int index, int link) {
-  Implementation& w = *implementation_;
-  if (index < 0 || index >= static_cast<int>(w.state.nets.size()))
+EditResult World::Implementation::cut_link(int index, int link) {
+  if (index < 0 || index >= static_cast<int>(state.nets.size()))
     return {false, "net: " + std::to_string(index) + "; must be the index of a net", {}};
-  SimulatedNet& net = w.state.nets[index];
+  SimulatedNet& net = state.nets[index];
   const int links = static_cast<int>(net.model.links.size());
   if (link < 0 || link >= links)
     return {false,
@@ -215,9 +197,9 @@ EditResult World::cut_link(int index, int link) {
   net.model.links.erase(net.model.links.begin() + link);
   net.model.rest_lengths.erase(net.model.rest_lengths.begin() + link);
   net.state.tension.erase(net.state.tension.begin() + link);
-  std::vector<double>& impulses = w.state.net_progress[index].links.impulses;
+  std::vector<double>& impulses = state.net_progress[index].links.impulses;
   impulses.erase(impulses.begin() + link);
-  w.update_net(index);
+  update_net(index);
   return {true, "", net.model.name};
 }
 

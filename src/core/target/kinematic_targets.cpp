@@ -173,10 +173,10 @@ std::vector<WantedNode> wanted_nodes(const CableModel& model, const Attachment& 
   return wanted;
 }
 
-std::vector<int> attachments_of(int index, bool net, const std::vector<Attachment>& attachments) {
+std::vector<int> attachments_of(const BodyId& body, const std::vector<Attachment>& attachments) {
   std::vector<int> own;
   for (int a = 0; a < static_cast<int>(attachments.size()); ++a)
-    if ((net ? attachments[a].net : attachments[a].cable) == index) own.push_back(a);
+    if (attachments[a].body == body) own.push_back(a);
   return own;
 }
 

@@ -59,8 +59,8 @@ struct WantedNode {
 };
 std::vector<WantedNode> wanted_nodes(const CableModel& model, const Attachment& attachment, const Pose& frame);
 
-/// Indices of the attachments of a cable or, `net`, a net; ascending.
-std::vector<int> attachments_of(int index, bool net, const std::vector<Attachment>& attachments);
+/// Indices of the attachments of a body, ascending.
+std::vector<int> attachments_of(const BodyId& body, const std::vector<Attachment>& attachments);
 
 /// The holders of a cable whose attachments are `own`, ascending by node; a node that two attachments want belongs to the one
 /// that is attached to it. Those that `before` has keep their motion; others catch their node where it is at `time`.

@@ -14,17 +14,6 @@
 
 namespace verlet_cable {
 
-/// What the last step, start or settling found, for who reads the world. Nothing of it decides the future.
-struct Findings {
-  std::vector<std::string> waiting;  ///< names of what waits
-  std::vector<std::string> unsettled;
-  std::vector<std::string> misfits;
-  std::vector<Break> breaks;
-  std::vector<Jump> jumps;
-  std::vector<Intrusion> intrusions;
-  std::vector<SimulatedContact> contacts;
-};
-
 struct World::Implementation {
   State state;
   Findings findings;
@@ -53,7 +42,18 @@ struct World::Implementation {
   void name_waiting();
   void start_cable(const CableDesc& desc, const FrameIds& ids, const BoundaryInputs& inputs);
   void start_net(const NetDesc& desc, const FrameIds& ids, const BoundaryInputs& inputs);
-  EditResult cut(int cable, int segment);
+
+  // Edits
+  EditResult apply(const Pin& pin);
+  EditResult apply(const Unpin& unpin);
+  EditResult apply(const MoveAttachment& move);
+  EditResult apply(const Cut& cut);
+  EditResult apply(const SetLength& change);
+  EditResult apply(const Join& join);
+  EditResult apply(const SetObstacle& set);
+  EditResult apply(const RemoveObstacle& remove);
+  EditResult cut_cable(int cable, int segment);
+  EditResult cut_link(int net, int link);
   void update_net(int net);
   void add_particle(const ParticleDesc& desc);
   NetSolver& solver_of(int net);

@@ -54,10 +54,10 @@ ContactRules contact_rules(const SceneDesc& scene, bool still) {
   return rules;
 }
 
-void note_status(Status status, int cable, int node, StepResult& result) {
+void note_status(Status status, const BodyId& body, int node, StepResult& result) {
   if (status <= result.status) return;
   result.status = status;
-  result.cable = cable;
+  result.body = body;
   result.node = node;
 }
 
@@ -112,7 +112,7 @@ void update_targets(int index, State& state, CableOutcome& outcome) {
   hold_at(0, 0, targets, boundary);
   if (jumps) {
     carry_along(cable.model, boundary.nodes, gravity_near(state, index), cable.state);
-    note_status(Status::jumped, index, following.jumping_node, outcome.result);
+    note_status(Status::jumped, cable_id(index), following.jumping_node, outcome.result);
   }
   project_velocities(cable.model, boundary.nodes, cable.state.positions, cable.state.velocities);
 }
@@ -260,7 +260,7 @@ void IslandStepper::stop(const Island& island) {
     CableState& state = state_.cables[island.cables[k]].state;
     bring_to_rest(state);
     std::fill(state.axial_multiplier.begin(), state.axial_multiplier.end(), 0.0);
-    note_status(Status::degraded, island.cables[k], 0, outcomes_[island.cables[k]].result);
+    note_status(Status::degraded, cable_id(island.cables[k]), 0, outcomes_[island.cables[k]].result);
   }
 }
 
@@ -272,7 +272,7 @@ void IslandStepper::give_up(int index, Boundary& boundary) {
   carry_along(cable.model, boundary.nodes, gravity_near(state_, index), cable.state);
   if (finite(cable.state.positions)) return;
   cable.state.positions = before;
-  note_status(Status::fault, index, 0, outcomes_[index].result);
+  note_status(Status::fault, cable_id(index), 0, outcomes_[index].result);
 }
 
 /// Whether the last substep may be doubled.
@@ -288,7 +288,7 @@ void IslandStepper::note_substep(int index, const CableWorkspace& work, double p
   add_forces(work.boundary, state_.cable_progress[index].targets, state_.frames.poses, part, state_.attachments);
   result.max_strain = std::max(result.max_strain, work.result.max_strain);
   result.iterations += work.result.iterations;
-  if (work.result.overstretched_node >= 0) note_status(Status::overstretched, index, work.result.overstretched_node, result);
+  if (work.result.overstretched_node >= 0) note_status(Status::overstretched, cable_id(index), work.result.overstretched_node, result);
 }
 
 void IslandStepper::note_intrusions(std::vector<Intrusion>& noted) const {

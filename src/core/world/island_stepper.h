@@ -24,8 +24,8 @@ struct IslandOutcome {
 /// How contacts of a world are found: `still`, where nothing moves but towards equilibrium.
 ContactRules contact_rules(const SceneDesc& scene, bool still);
 
-/// Keeps the worst status, and of equals the first cable's.
-void note_status(StepResult::Status status, int cable, int node, StepResult& result);
+/// Keeps the worst status, and of equals the first body's.
+void note_status(StepResult::Status status, const BodyId& body, int node, StepResult& result);
 
 /// Adds what a cable exerted on its holders, weighted, to its attachments.
 void add_forces(const Boundary& boundary, const KinematicTargets& targets, const std::vector<Pose>& frames, double weight,

@@ -196,8 +196,12 @@ auto fields(T& x, const SimulatedParticle*) {
 
 // What holds and what is bumped into
 template <class T>
+auto fields(T& x, const BodyId*) {
+  return std::tie(x.kind, x.index);
+}
+template <class T>
 auto fields(T& x, const Attachment*) {
-  return std::tie(x.name, x.cable, x.net, x.node, x.frame, x.type, x.pose, x.force, x.torque);
+  return std::tie(x.name, x.body, x.node, x.frame, x.type, x.pose, x.force, x.torque);
 }
 template <class T>
 auto fields(T&, const PlaneShape*) {

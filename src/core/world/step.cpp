@@ -84,7 +84,7 @@ void World::Implementation::advance_islands() {
 
 void World::Implementation::collect_outcomes(StepResult& result) {
   for (const CableOutcome& outcome : cable_outcomes.value) {
-    note_status(outcome.result.status, outcome.result.cable, outcome.result.node, result);
+    note_status(outcome.result.status, outcome.result.body, outcome.result.node, result);
     result.substeps = std::max(result.substeps, outcome.result.substeps);
     result.iterations += outcome.result.iterations;
     result.max_strain = std::max(result.max_strain, outcome.result.max_strain);
@@ -99,11 +99,11 @@ void World::Implementation::collect_outcomes(StepResult& result) {
 void World::Implementation::apply_breaks(StepResult& result) {
   for (int cable = 0; cable < static_cast<int>(cable_outcomes.value.size()); ++cable) {
     const int segment = cable_outcomes.value[cable].breaking_segment;
-    if (segment < 0 || !cut(cable, segment).ok) continue;
+    if (segment < 0 || !cut_cable(cable, segment).ok) continue;
     const int rest = static_cast<int>(state.cables.size()) - 1;
     findings.breaks.push_back({cable, segment, rest});
-    if (result.cable != cable || result.node <= segment) continue;
-    result.cable = rest;
+    if (result.body != cable_id(cable) || result.node <= segment) continue;
+    result.body = cable_id(rest);
     result.node -= segment + 1;
   }
 }

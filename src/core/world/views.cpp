@@ -1,8 +1,20 @@
+#include <algorithm>
+
 #include "verlet_cable/core/world.h"
 #include "world/implementation.h"
 #include "world/state_fields.h"
 
 namespace verlet_cable {
+
+namespace {
+
+template <class T, class Is>
+int index_of(const std::vector<T>& list, const Is& is) {
+  const auto found = std::find_if(list.begin(), list.end(), is);
+  return found == list.end() ? -1 : static_cast<int>(found - list.begin());
+}
+
+}  // namespace
 
 double World::time() const {
   return implementation_->state.time();
@@ -25,47 +37,34 @@ bool World::frame_known(int frame) const {
 const std::vector<SimulatedCable>& World::cables() const {
   return implementation_->state.cables;
 }
-const std::vector<std::string>& World::waiting() const {
-  return implementation_->findings.waiting;
+const std::vector<SimulatedNet>& World::nets() const {
+  return implementation_->state.nets;
 }
+
+const std::vector<SimulatedParticle>& World::particles() const {
+  return implementation_->state.particles;
+}
+
 const std::vector<Attachment>& World::attachments() const {
   return implementation_->state.attachments;
 }
-
-const std::vector<std::string>& World::unsettled() const {
-  return implementation_->findings.unsettled;
+const std::vector<Obstacle>& World::obstacles() const {
+  return implementation_->state.obstacles;
+}
+const Findings& World::findings() const {
+  return implementation_->findings;
 }
 
-const std::vector<std::string>& World::misfits() const {
-  return implementation_->findings.misfits;
+int find(const std::vector<SimulatedCable>& cables, const std::string& name) {
+  return index_of(cables, [&](const SimulatedCable& cable) { return cable.model.name == name; });
 }
 
-const std::vector<Break>& World::breaks() const {
-  return implementation_->findings.breaks;
+int find(const std::vector<SimulatedNet>& nets, const std::string& name) {
+  return index_of(nets, [&](const SimulatedNet& net) { return net.model.name == name; });
 }
 
-const std::vector<Jump>& World::jumps() const {
-  return implementation_->findings.jumps;
-}
-
-std::vector<SimulatedContact> World::contacts() const {
-  return implementation_->findings.contacts;
-}
-
-const std::vector<Intrusion>& World::intrusions() const {
-  return implementation_->findings.intrusions;
-}
-
-int World::find_cable(const std::string& name) const {
-  for (std::size_t i = 0; i < cables().size(); ++i)
-    if (cables()[i].model.name == name) return static_cast<int>(i);
-  return -1;
-}
-
-int World::find_attachment(const std::string& name) const {
-  for (std::size_t i = 0; i < attachments().size(); ++i)
-    if (attachments()[i].name == name) return static_cast<int>(i);
-  return -1;
+int find(const std::vector<Attachment>& attachments, const std::string& name) {
+  return index_of(attachments, [&](const Attachment& attachment) { return attachment.name == name; });
 }
 
 Energy World::energy() const {

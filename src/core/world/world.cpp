@@ -179,7 +179,7 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   for (const AttachmentDesc& a : desc.attachments) {
     Attachment attachment;
     attachment.name = a.name;
-    attachment.cable = index;
+    attachment.body = cable_id(index);
     attachment.node = node_at(desc, a.place);
     attachment.frame = ids.at(a.frame);
     attachment.type = a.type;
@@ -229,7 +229,7 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
 void World::Implementation::find_targets_of(int index) {
   SimulatedCable& cable = state.cables[index];
   CableProgress& memory = state.cable_progress[index];
-  memory.targets = find_targets(cable.model, cable.state, state.attachments, attachments_of(index, false, state.attachments),
+  memory.targets = find_targets(cable.model, cable.state, state.attachments, attachments_of(cable_id(index), state.attachments),
                                 state.frames.poses, memory.targets, state.time());
   aim_targets(cable.model, state.attachments, state.frames.poses, state.time(), memory.targets);
   const Boundary boundary = boundary_now(memory.targets);

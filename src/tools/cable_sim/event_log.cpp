@@ -5,7 +5,7 @@
 
 #include "verlet_cable/core/jump_text.h"
 #include "verlet_cable/core/number_text.h"
-#include "verlet_cable/core/step_subject.h"
+#include "verlet_cable/core/body_name.h"
 
 namespace verlet_cable::cable_sim {
 namespace {
@@ -67,10 +67,10 @@ void EventLog::observe(const World& world, const StepResult& result, const std::
 }
 
 void EventLog::add_starts(const World& world) {
-  for (const std::string& cable : world.misfits())
+  for (const std::string& cable : world.findings().misfits)
     add({world.time(), "not_fitted", cable, -1, "",
          "the initial shape does not fit between the cable's attachments; it hangs between them instead", ""});
-  for (const std::string& cable : world.unsettled())
+  for (const std::string& cable : world.findings().unsettled)
     add({world.time(), "not_settled", cable, -1, "",
          "no static equilibrium was found; the cable starts at rest near one, and may move at first", ""});
 }
@@ -83,7 +83,7 @@ std::vector<Event> EventLog::events() const {
 }
 
 void EventLog::add_breaks(const World& world) {
-  for (const Break& broken : world.breaks()) {
+  for (const Break& broken : world.findings().breaks) {
     const CableModel& first = world.cables()[static_cast<std::size_t>(broken.cable)].model;
     const std::string& second = world.cables()[static_cast<std::size_t>(broken.new_cable)].model.name;
     add({world.time(), "BROKE", first.name, broken.segment, "",
@@ -94,7 +94,7 @@ void EventLog::add_breaks(const World& world) {
 }
 
 void EventLog::add_jumps(const World& world) {
-  for (const Jump& jump : world.jumps()) {
+  for (const Jump& jump : world.findings().jumps) {
     const Attachment& attachment = world.attachments()[static_cast<std::size_t>(jump.attachment)];
     const std::string& frame = world.frames()[static_cast<std::size_t>(attachment.frame)];
     const auto [told, is_new] = jumps_.emplace(frame, jump.time);
@@ -108,7 +108,7 @@ void EventLog::add_jumps(const World& world) {
 }
 
 void EventLog::add_intrusions(const World& world) {
-  for (const Intrusion& intrusion : world.intrusions()) {
+  for (const Intrusion& intrusion : world.findings().intrusions) {
     const std::string& cable = world.cables()[static_cast<std::size_t>(intrusion.cable)].model.name;
     const std::string& obstacle = world.obstacles()[static_cast<std::size_t>(intrusion.obstacle)].name;
     if (!intrusions_.emplace(cable, obstacle).second) continue;
