@@ -142,7 +142,7 @@ void print_nets() {
     scene.nets[0].damping = 0.5;
     if (type == LinkType::rigid) scene.nets[0].stiffness = scene.nets[0].damping = 0;
     print("flag " + std::to_string(static_cast<int>(type)), scene, 300, false, [](World& world, BoundaryInputs&, int i) {
-      if (i == 100) world.apply(Cut{net_id(0), 7});
+      if (i == 100) world.apply(edit::Cut{net_id(0), 7});
     });
   }
   print("figure on stairs", scenes::figure_on_stairs(), 600);
@@ -153,20 +153,21 @@ void print_nets() {
 
 /// Two cables that hang side by side are pinned, wound, cut, joined, tuned and broken.
 void edit(World& world, BoundaryInputs&, int i) {
-  if (i == 20) world.apply(Pin{"pin", cable_id(0), 17, 0, {{0.3, 0.05, -0.2}, Quaternion::Identity()}, AttachmentType::clamp});
-  if (i == 60) world.apply(SetLength{1, true, 0.7, 0.5});
-  if (i == 150) world.apply(Unpin{"pin"});
-  if (i == 170) world.apply(Cut{cable_id(0), 12});
-  if (i == 260) world.apply(SetLength{1, true, 1.1, 1.0});
-  if (i == 330) world.apply(Join{0, true, 2, false});
+  if (i == 20)
+    world.apply(edit::Pin{"pin", cable_id(0), 17, 0, {{0.3, 0.05, -0.2}, Quaternion::Identity()}, AttachmentType::clamp});
+  if (i == 60) world.apply(edit::SetLength{1, true, 0.7, 0.5});
+  if (i == 150) world.apply(edit::Unpin{"pin"});
+  if (i == 170) world.apply(edit::Cut{cable_id(0), 12});
+  if (i == 260) world.apply(edit::SetLength{1, true, 1.1, 1.0});
+  if (i == 330) world.apply(edit::Join{0, true, 2, false});
   if (i == 450) {
     Obstacle ball;
     ball.name = "ball";
     ball.shape = SphereShape{0.1};
     ball.pose.position = {0.3, 0, -0.5};
-    world.apply(SetObstacle{ball});
+    world.apply(edit::SetObstacle{ball});
   }
-  if (i == 600) world.apply(RemoveObstacle{"ball"});
+  if (i == 600) world.apply(edit::RemoveObstacle{"ball"});
   if (i == 620) {
     SceneDesc scene = scenes::one_cable(10);
     scene.materials[0].material.bending_stiffness = 2e-3;
@@ -195,7 +196,7 @@ void print_edits() {
     print(std::string("edits") + (touching ? " touching" : ""), scene, 800, false, edit);
     scene.materials[0].material.breaking_tension = 3;
     print(std::string("breaks") + (touching ? " touching" : ""), scene, 400, false, [](World& world, BoundaryInputs&, int i) {
-      if (i < 300) world.apply(MoveAttachment{"right", {{0.6 + 0.002 * i, 0, 0}, Quaternion::Identity()}});
+      if (i < 300) world.apply(edit::MoveAttachment{"right", {{0.6 + 0.002 * i, 0, 0}, Quaternion::Identity()}});
     });
   }
 }

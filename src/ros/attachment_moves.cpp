@@ -45,7 +45,7 @@ void AttachmentMoves::advance(double time_step, World& world) {
     move.guide = followed(move.guide, move.target, time_step);
     const Pose pose = followed(world.attachments()[index].pose, move.guide, time_step);
     const bool there = is_at(pose, move.target);
-    world.apply(MoveAttachment{name, there ? move.target : pose});
+    world.apply(edit::MoveAttachment{name, there ? move.target : pose});
     entry = there ? moves_.erase(entry) : std::next(entry);
   }
 }

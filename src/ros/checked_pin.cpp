@@ -31,7 +31,7 @@ void check_reach(const CheckedPin& pin, const World& world, std::vector<std::str
   const std::vector<double> arc_length = model.arc_length();
   const Vector3 place = (pin.frame_pose * pin.offset).position;
   for (const Attachment& other : world.attachments()) {
-    if (other.cable != pin.cable) continue;
+    if (other.body != cable_id(pin.cable)) continue;
     const double distance = (place - (world.frame_pose(other.frame) * other.pose).position).norm();
     const double length = std::abs(arc_length[pin.node] - arc_length[other.node]);
     if (distance <= length * (1 + rounding)) continue;
@@ -85,7 +85,7 @@ CheckedPin check_pin(const Pin::Request& request, const World& world, const Find
   const std::string holder =
       pin.net >= 0 ? "net " + quoted(world.nets()[pin.net].model.name) : "cable " + quoted(world.cables()[pin.cable].model.name);
   for (const Attachment& other : world.attachments()) {
-    if (other.cable != pin.cable || other.net != pin.net || other.node != pin.node) continue;
+    if (other.body != (pin.net >= 0 ? net_id(pin.net) : cable_id(pin.cable)) || other.node != pin.node) continue;
     pin.errors.push_back("location: node " + std::to_string(pin.node) + " of " + holder + " is held by " + quoted(other.name) +
                          "; allowed: nodes that nothing holds");
   }

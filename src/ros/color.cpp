@@ -94,7 +94,9 @@ double ColorScale::load(const SimulatedCable& cable, int segment, const std::vec
 Legend ColorScale::legend() const {
   Legend legend;
   if (color_by_ == ColorBy::cable || !has_cables_) return legend;
-  legend.quantity = color_by_ == ColorBy::contact ? "contact force, cube-root scale" : color_by_ == ColorBy::strain ? "strain" : "tension";
+  legend.quantity = color_by_ == ColorBy::contact  ? "contact force, cube-root scale"
+                    : color_by_ == ColorBy::strain ? "strain"
+                                                   : "tension";
   legend.unit = color_by_ == ColorBy::strain ? "%" : "N";
   for (std::size_t i = 0; i < stops.size(); ++i) {
     const double load = static_cast<double>(i) / (stops.size() - 1);

@@ -78,7 +78,7 @@ Cable to_message(const World& world, int index, const std::vector<SimulatedConta
   Cable message;
   message.name = cable.model.name;
   for (const Attachment& attachment : world.attachments()) {
-    if (attachment.cable != index) continue;
+    if (attachment.body != cable_id(index)) continue;
     message.attachments.push_back(attachment.name);
     message.attachment_nodes.push_back(attachment.node);
   }

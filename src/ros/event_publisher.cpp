@@ -2,15 +2,14 @@
 
 #include <utility>
 
+#include "verlet_cable/core/body_name.h"
 #include "verlet_cable/ros/queue_size.h"
 #include "verlet_cable/ros/ros_time.h"
 
 namespace verlet_cable {
 
 EventSubject subject_of(const World& world, const Attachment& attachment) {
-  const std::string& holds =
-      attachment.net >= 0 ? world.nets()[attachment.net].model.name : world.cables()[attachment.cable].model.name;
-  return {holds, attachment.name, attachment.node, world.frames()[attachment.frame]};
+  return {name_of(world, attachment.body), attachment.name, attachment.node, world.frames()[attachment.frame]};
 }
 
 EventPublisher::EventPublisher(ros::NodeHandle& private_node, std::string frame_id)

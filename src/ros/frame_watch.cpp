@@ -196,8 +196,8 @@ void FrameWatch::warn_of_waiting(const SceneDesc& scene, const World& world, con
       "not shown yet: %s, because tf has no transform from %s to %s. If nothing else is to publish them, type for each: rosrun "
       "tf2_ros "
       "static_transform_publisher 0 0 1 0 0 0 %s %s",
-      list(world.findings().waiting).c_str(), quoted(scene.frame_id).c_str(), list(missing).c_str(), escaped(scene.frame_id).c_str(),
-      escaped(missing.front()).c_str());
+      list(world.findings().waiting).c_str(), quoted(scene.frame_id).c_str(), list(missing).c_str(),
+      escaped(scene.frame_id).c_str(), escaped(missing.front()).c_str());
 }
 
 void FrameWatch::report_lost(int frame, Nanoseconds stamp, const World& world) {
@@ -220,7 +220,7 @@ void FrameWatch::report_back(const FrameChange& change, Nanoseconds stamp, const
 void FrameWatch::release(int frame, Nanoseconds stamp, World& world) const {
   for (const Attachment& attachment : attachments_of(frame, world)) {
     const EventSubject subject = subject_of(world, attachment);
-    world.apply(Unpin{attachment.name});
+    world.apply(edit::Unpin{attachment.name});
     events_.publish(CableEvent::UNPINNED, stamp, subject,
                     "attachment " + quoted(attachment.name) + " is released, as its frame is lost; reset restores it");
   }

@@ -104,7 +104,8 @@ void add_attachments(const Simulation& simulation, const std::set<std::string>& 
   const World& world = simulation.world();
   for (const Attachment& attachment : world.attachments()) {
     if (grabs.count(attachment.name) > 0) continue;
-    Handle handle = attachment.net >= 0 ? handle_of(world.nets()[attachment.net]) : handle_of(world.cables()[attachment.cable]);
+    Handle handle = attachment.body.is_net() ? handle_of(world.nets()[attachment.body.index])
+                                             : handle_of(world.cables()[attachment.body.index]);
     handle.name = "attachment/" + attachment.name;
     handle.attachment = attachment.name;
     handle.node = attachment.node;
@@ -120,7 +121,7 @@ void add_nodes(const World& world, const std::set<std::string>& grabs, std::vect
   const int stride = static_cast<int>((nodes + most_nodes - 1) / most_nodes);
   std::set<std::pair<int, int>> held;
   for (const Attachment& attachment : world.attachments())
-    if (grabs.count(attachment.name) == 0) held.emplace(attachment.cable, attachment.node);
+    if (attachment.body.is_cable() && grabs.count(attachment.name) == 0) held.emplace(attachment.body.index, attachment.node);
   for (int i = 0; i < static_cast<int>(world.cables().size()); ++i) {
     const SimulatedCable& cable = world.cables()[i];
     if (!is_finite(cable)) continue;

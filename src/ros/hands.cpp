@@ -144,7 +144,8 @@ EditResult Hands::move(const std::string& name, Pose place) {
   const int index = find(world.attachments(), name);
   if (index < 0) return refused({"attachment " + quoted(name) + " does not exist any more"});
   const Attachment& attachment = world.attachments()[index];
-  if (attachment.cable >= 0) place.position = within_reach(world, attachment.cable, attachment.node, name, place.position);
+  if (attachment.body.is_cable())
+    place.position = within_reach(world, attachment.body.index, attachment.node, name, place.position);
   return simulation_.move_attachment(name, world.frame_pose(attachment.frame).inverse() * place);
 }
 

@@ -17,8 +17,8 @@ using visualization_msgs::MarkerArray;
 constexpr double aluminium_density = 2700;  // [kg/m^3]
 constexpr double pin_size = 2.2;            // of a pin to the cable it holds, radius to radius
 constexpr int most_tube_corners = 60000;    // of all cables: what a network and rviz take 50 times a second
-constexpr int cable_id = 0;
-constexpr int net_lines_id = 0, net_triangles_id = 1, particle_id = 0;
+constexpr int cable_marker_id = 0;
+constexpr int net_lines_id = 0, net_triangles_id = 1, particle_marker_id = 0;
 constexpr double net_line_width = 0.04;  // of the first link's length
 constexpr double net_pin_size = 0.4;     // likewise
 
@@ -113,7 +113,7 @@ void MarkerPublisher::add_cable(const SimulatedCable& cable, const std::vector<d
   const double radius = cable.model.material.radius;
   std::vector<std_msgs::ColorRGBA> colors = colors_.node_colors(cable, contact_forces);
   const bool tube = style_ == MarkerStyle::tube;
-  Marker marker = make_marker(cable.model.name, cable_id, tube ? Marker::TRIANGLE_LIST : Marker::LINE_STRIP);
+  Marker marker = make_marker(cable.model.name, cable_marker_id, tube ? Marker::TRIANGLE_LIST : Marker::LINE_STRIP);
   marker.color = colors.front();
   if (tube) {
     set_scale(marker, 1, 1, 1);
@@ -160,7 +160,7 @@ void MarkerPublisher::add_net(const SimulatedNet& net, MarkerArray& markers) con
 }
 
 void MarkerPublisher::add_particle(const SimulatedParticle& particle, MarkerArray& markers) const {
-  Marker marker = make_marker(particle.desc.name, particle_id, Marker::SPHERE);
+  Marker marker = make_marker(particle.desc.name, particle_marker_id, Marker::SPHERE);
   marker.pose.position = to_point(particle.position);
   const double diameter = 2 * particle.desc.radius;
   set_scale(marker, diameter, diameter, diameter);
@@ -171,8 +171,8 @@ void MarkerPublisher::add_particle(const SimulatedParticle& particle, MarkerArra
 void MarkerPublisher::add_pin(const World& world, const Attachment& attachment, MarkerArray& markers) {
   const Pose pose = world.frame_pose(attachment.frame) * attachment.pose;
   if (!pose.position.allFinite() || !pose.orientation.coeffs().allFinite()) return;
-  const double size = attachment.net >= 0 ? net_pin_size * link_length(world.nets()[attachment.net].model)
-                                          : 2 * pin_size * world.cables()[attachment.cable].model.material.radius;
+  const double size = attachment.body.is_net() ? net_pin_size * link_length(world.nets()[attachment.body.index].model)
+                                               : 2 * pin_size * world.cables()[attachment.body.index].model.material.radius;
   const bool clamp = attachment.type == AttachmentType::clamp;
   Marker marker = make_marker("pins", id_of(attachment.name), clamp ? Marker::CUBE : Marker::SPHERE);
   marker.pose = to_pose(pose);

@@ -21,7 +21,7 @@ Vector3 within_reach(const World& world, int cable, int node, const std::string&
   for (int i = 0; i < projections; ++i) {
     bool inside = true;
     for (const Attachment& other : world.attachments()) {
-      if (other.cable != cable || other.name == except) continue;
+      if (other.body != cable_id(cable) || other.name == except) continue;
       const Vector3 center = (world.frame_pose(other.frame) * other.pose).position;
       const double length = usable * std::abs(arc_length[node] - arc_length[other.node]);
       const double distance = (reached - center).norm();

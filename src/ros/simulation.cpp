@@ -4,9 +4,9 @@
 #include <chrono>
 #include <utility>
 
+#include "verlet_cable/core/body_name.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
-#include "verlet_cable/core/body_name.h"
 #include "verlet_cable/ros/ros_time.h"
 
 namespace verlet_cable {
@@ -185,7 +185,7 @@ bool Simulation::step_world(Nanoseconds time) {
 }
 
 void Simulation::report_status(const StepResult& result) {
-  const std::string subject = subject_of(world_, result);
+  const std::string subject = name_of(world_, result.body);
   if (result.status == StepResult::Status::fault) {
     faulted_ = true;
     ++faults_;
@@ -199,7 +199,7 @@ void Simulation::report_status(const StepResult& result) {
         "%s is overstretched at node %d: the points that hold it are further apart than the material between them is long",
         quoted(subject).c_str(), result.node);
   }
-  if (result.status == StepResult::Status::degraded && result.cable < 0) {
+  if (result.status == StepResult::Status::degraded && !result.body.is_cable()) {
     ROS_WARN_THROTTLE(log_period,
                       "%s is unstable and was softened or stopped: stiff springs between light nodes need a shorter time_step",
                       quoted(subject).c_str());

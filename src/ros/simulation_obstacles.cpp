@@ -33,7 +33,7 @@ std::optional<EditResult> Simulation::refused_frame(const std::string& frame) co
 }
 
 void Simulation::remove_obstacle(const std::string& name) {
-  if (added_obstacles_.erase(name) > 0) world_.apply(RemoveObstacle{name});
+  if (added_obstacles_.erase(name) > 0) world_.apply(edit::RemoveObstacle{name});
 }
 
 EditResult Simulation::place(const AddedObstacle& added) {
@@ -41,7 +41,7 @@ EditResult Simulation::place(const AddedObstacle& added) {
   const std::optional<Pose> pose = started_ ? find_frame(added.frame) : std::nullopt;
   obstacle.frame = world_.add_frame(added.frame, pose);
   frames_.add(added.frame, stamp_);
-  return world_.apply(SetObstacle{std::move(obstacle)});
+  return world_.apply(edit::SetObstacle{std::move(obstacle)});
 }
 
 void Simulation::place_added_obstacles() {

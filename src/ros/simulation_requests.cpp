@@ -38,7 +38,7 @@ EditResult Simulation::pin(const std::string& name, int cable, int node, const s
   if (!started_) return refused_before_start();
   if (const auto reason = refused_frame(frame)) return *reason;
   World trial = world_;  // a frame cannot be taken back
-  const EditResult result = trial.apply(Pin{name, cable_id(cable), node, trial.add_frame(frame, frame_pose), offset, type});
+  const EditResult result = trial.apply(edit::Pin{name, cable_id(cable), node, trial.add_frame(frame, frame_pose), offset, type});
   if (!result.ok) return result;
   world_ = std::move(trial);
   frames_.add(frame, stamp_);
@@ -53,7 +53,8 @@ EditResult Simulation::pin_net(const std::string& name, int net, int node, const
   if (!started_) return refused_before_start();
   if (const auto reason = refused_frame(frame)) return *reason;
   World trial = world_;  // a frame cannot be taken back
-  const EditResult result = trial.apply(Pin{name, net_id(net), node, trial.add_frame(frame, frame_pose), {offset, Quaternion::Identity()}});
+  const EditResult result =
+      trial.apply(edit::Pin{name, net_id(net), node, trial.add_frame(frame, frame_pose), {offset, Quaternion::Identity()}});
   if (!result.ok) return result;
   world_ = std::move(trial);
   frames_.add(frame, stamp_);
@@ -68,7 +69,7 @@ EditResult Simulation::cut_links(int net, const std::vector<int>& links) {
   const std::string name = world_.nets()[net].model.name;
   const int node = world_.nets()[net].model.links[links.front()][0];
   for (auto link = links.rbegin(); link != links.rend(); ++link) {
-    const EditResult result = world_.apply(Cut{net_id(net), *link});
+    const EditResult result = world_.apply(edit::Cut{net_id(net), *link});
     if (!result.ok) return result;
   }
   const std::string message =
@@ -82,7 +83,7 @@ EditResult Simulation::unpin(const std::string& name) {
   const int index = find(world_.attachments(), name);
   if (index < 0) return refused_attachment(name);
   const EventSubject subject = subject_of(world_, world_.attachments()[index]);
-  const EditResult result = world_.apply(Unpin{name});
+  const EditResult result = world_.apply(edit::Unpin{name});
   if (!result.ok) return result;
   moves_.forget(name);
   const std::string message = "attachment " + quoted(name) + " is released";
@@ -107,7 +108,7 @@ EditResult Simulation::refused_attachment(const std::string& name) const {
 
 EditResult Simulation::cut(int cable, int segment) {
   if (!started_) return refused_before_start();
-  const EditResult result = world_.apply(Cut{cable_id(cable), segment});
+  const EditResult result = world_.apply(edit::Cut{cable_id(cable), segment});
   if (!result.ok) return result;
   const std::string& name = world_.cables()[cable].model.name;
   const std::string message = "segment " + std::to_string(segment) + " of cable " + quoted(name) +
@@ -132,7 +133,7 @@ EditResult Simulation::set_length(const std::string& cable, bool at_end, double 
   if (const auto reason = refused_cable("cable", cable)) return *reason;
   const int index = find(world_.cables(), cable);
   const double before = world_.cables()[index].model.length();
-  const EditResult result = world_.apply(SetLength{index, at_end, length, speed});
+  const EditResult result = world_.apply(edit::SetLength{index, at_end, length, speed});
   if (!result.ok) return result;
   return done("cable " + quoted(cable) + (length < before ? " is taken in from " : " is paid out from ") + rounded_text(before) +
               " m to " + number_text(length) + " m, which takes at least " + rounded_text(std::abs(length - before) / speed, 3) +
@@ -144,7 +145,8 @@ EditResult Simulation::join(const std::string& first, bool first_at_end, const s
   if (const auto reason = refused_cable("first", first)) return *reason;
   if (const auto reason = refused_cable("second", second)) return *reason;
   const int nodes = world_.cables()[find(world_.cables(), first_at_end ? first : second)].model.nodes();
-  const EditResult result = world_.apply(Join{find(world_.cables(), first), first_at_end, find(world_.cables(), second), second_at_end});
+  const EditResult result =
+      world_.apply(edit::Join{find(world_.cables(), first), first_at_end, find(world_.cables(), second), second_at_end});
   if (!result.ok) return result;
   const std::string message = "cable " + quoted(second) + " is joined to " + quoted(first);
   announce(CableEvent::JOINED, {result.name, {}, nodes - 1, second}, message);

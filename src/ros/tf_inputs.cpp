@@ -121,7 +121,8 @@ const TfInputs::Track* TfInputs::find_track(const std::string& frame) const {
 
 std::vector<SavedFrame> TfInputs::save() const {
   std::vector<SavedFrame> frames;
-  for (std::size_t i = 0; i < tracks_.size(); ++i) frames.push_back({tracks_[i].name, inputs_[i], tracks_[i].gap, tracks_[i].status});
+  for (std::size_t i = 0; i < tracks_.size(); ++i)
+    frames.push_back({tracks_[i].name, inputs_[i], tracks_[i].gap, tracks_[i].status});
   return frames;
 }
 

@@ -150,25 +150,25 @@ TEST(BadPoses, EditsRefuseThemByName) {
   for (const BadPose& bad : bad_poses) {
     const bool placed = is_sound(Pose{bad.pose.position, Quaternion::Identity()});
     const char* part = placed ? ".orientation: of length " : ".position.";
-    const EditResult pin = world.apply(Pin{"", cable_id(0), 5, 0, bad.pose, AttachmentType::clamp});
+    const EditResult pin = world.apply(edit::Pin{"", cable_id(0), 5, 0, bad.pose, AttachmentType::clamp});
     EXPECT_FALSE(pin.ok) << bad.name;
     EXPECT_EQ(pin.message.find(std::string("offset") + part), 0u) << pin.message;
     EXPECT_NE(pin.message.find("allowed: "), std::string::npos) << pin.message;
-    const EditResult move = world.apply(MoveAttachment{"base_rope_hinged", bad.pose});
+    const EditResult move = world.apply(edit::MoveAttachment{"base_rope_hinged", bad.pose});
     EXPECT_FALSE(move.ok) << bad.name;
     EXPECT_EQ(move.message, pin.message);
     if (!placed) {
-      const EditResult pin_net = world.apply(Pin{"", net_id(0), 5, 0, {bad.pose.position, Quaternion::Identity()}});
+      const EditResult pin_net = world.apply(edit::Pin{"", net_id(0), 5, 0, {bad.pose.position, Quaternion::Identity()}});
       EXPECT_FALSE(pin_net.ok) << bad.name;
       EXPECT_EQ(pin_net.message, pin.message);
     }
     Obstacle obstacle = world.obstacles()[0];
     obstacle.pose = bad.pose;
-    const EditResult set = world.apply(SetObstacle{obstacle});
+    const EditResult set = world.apply(edit::SetObstacle{obstacle});
     EXPECT_FALSE(set.ok) << bad.name;
     EXPECT_NE(set.message.find(std::string("pose") + part), std::string::npos) << set.message;
-    EXPECT_FALSE(world.apply(SetLength{0, true, bad.pose.position.x() < 1e9 ? nan : bad.pose.position.x(), 0.1}).ok);
-    EXPECT_FALSE(world.apply(SetLength{0, true, 1, nan}).ok);
+    EXPECT_FALSE(world.apply(edit::SetLength{0, true, bad.pose.position.x() < 1e9 ? nan : bad.pose.position.x(), 0.1}).ok);
+    EXPECT_FALSE(world.apply(edit::SetLength{0, true, 1, nan}).ok);
   }
   EXPECT_EQ(world.hash(), before);
   World other = world;
@@ -183,13 +183,14 @@ TEST(BadPoses, LargestPosesKeepEverythingFinite) {
     const SceneDesc scene = everything();
     World world(scene, scenes::hand_at({0.6, 0, 0}));
     if (winch) {
-      ASSERT_TRUE(world.apply(SetLength{0, true, 2, 0.5}).ok);
-      ASSERT_TRUE(world.apply(Pin{"", cable_id(1), 5, 0, Pose{{1e9, 1e9, 1e9}, Quaternion(0, 1, 0, 0)}, AttachmentType::clamp}).ok);
-      ASSERT_TRUE(world.apply(Pin{"", net_id(1), 5, 0, {{-1e9, 1e9, 1e9}, Quaternion::Identity()}}).ok);
+      ASSERT_TRUE(world.apply(edit::SetLength{0, true, 2, 0.5}).ok);
+      ASSERT_TRUE(
+          world.apply(edit::Pin{"", cable_id(1), 5, 0, Pose{{1e9, 1e9, 1e9}, Quaternion(0, 1, 0, 0)}, AttachmentType::clamp}).ok);
+      ASSERT_TRUE(world.apply(edit::Pin{"", net_id(1), 5, 0, {{-1e9, 1e9, 1e9}, Quaternion::Identity()}}).ok);
       Obstacle obstacle = world.obstacles()[0];
       obstacle.name = "far";
       obstacle.pose.position = {1e9, 1e9, 1e9};
-      ASSERT_TRUE(world.apply(SetObstacle{obstacle}).ok);
+      ASSERT_TRUE(world.apply(edit::SetObstacle{obstacle}).ok);
     }
     for (const Pose& pose : far)
       for (int i = 0; i < 6; ++i) {

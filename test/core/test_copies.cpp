@@ -92,7 +92,8 @@ TEST(Copies, PinOnACableLeavesANetOnItsFloor) {
     scenes::run(live, 500);
     // As the node does: edits are tried on a copy, which then takes the world's place.
     World tried = live;
-    ASSERT_TRUE(tried.apply(Pin{"", cable_id(0), 10, 0, Pose{{0.2, 0, 1.8}, Quaternion::Identity()}, AttachmentType::hinge}).ok);
+    ASSERT_TRUE(
+        tried.apply(edit::Pin{"", cable_id(0), 10, 0, Pose{{0.2, 0, 1.8}, Quaternion::Identity()}, AttachmentType::hinge}).ok);
     live = std::move(tried);
     scenes::run(live, 1000);
     EXPECT_GT(lowest(live), -1e-3);

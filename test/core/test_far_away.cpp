@@ -150,25 +150,25 @@ std::vector<Case> cases() {
   all.push_back({"planet", scenes::planet(1e-3, IntegratorDesc::Type::verlet)});
   all.push_back({"winch", scenes::released(50, 0.3), 2, [](int step, const Vector3&, World& world, BoundaryInputs&) {
                    if (step == 100) {
-                     EXPECT_TRUE(world.apply(SetLength{0, false, 1.3, 0.5}).ok);
+                     EXPECT_TRUE(world.apply(edit::SetLength{0, false, 1.3, 0.5}).ok);
                    }
                    if (step == 1000) {
-                     EXPECT_TRUE(world.apply(SetLength{0, false, 0.9, 0.5}).ok);
+                     EXPECT_TRUE(world.apply(edit::SetLength{0, false, 0.9, 0.5}).ok);
                    }
                  }});
   all.push_back({"cut_pin_and_join", stiff(level, 1e-3), 2, [](int step, const Vector3& by, World& world, BoundaryInputs&) {
                    const Pose pose{by + Vector3(0.3, 0.2, 0.1), Quaternion::Identity()};
                    if (step == 100) {
-                     EXPECT_TRUE(world.apply(Pin{"mine", cable_id(0), 25, 0, pose, AttachmentType::clamp}).ok);
+                     EXPECT_TRUE(world.apply(edit::Pin{"mine", cable_id(0), 25, 0, pose, AttachmentType::clamp}).ok);
                    }
                    if (step == 800) {
-                     EXPECT_TRUE(world.apply(Cut{cable_id(0), 35}).ok);
+                     EXPECT_TRUE(world.apply(edit::Cut{cable_id(0), 35}).ok);
                    }
                    if (step == 1000) {
-                     EXPECT_TRUE(world.apply(Unpin{"mine"}).ok);
+                     EXPECT_TRUE(world.apply(edit::Unpin{"mine"}).ok);
                    }
                    if (step == 1100) {
-                     EXPECT_TRUE(world.apply(Join{0, true, 1, false}).ok);
+                     EXPECT_TRUE(world.apply(edit::Join{0, true, 1, false}).ok);
                    }
                  }});
   return all;

@@ -108,17 +108,17 @@ TEST(Indices, EditsBetweenSteps) {
     StepResult result = world.step(inputs);
     ASSERT_GE(world.findings().intrusions.size(), 2u);
     expect_valid(world, result);
-    ASSERT_TRUE(world.apply(Cut{cable_id(1), 27}).ok);
+    ASSERT_TRUE(world.apply(edit::Cut{cable_id(1), 27}).ok);
     expect_valid(world, none);
-    ASSERT_TRUE(world.apply(Cut{cable_id(1), 20}).ok);
+    ASSERT_TRUE(world.apply(edit::Cut{cable_id(1), 20}).ok);
     expect_valid(world, none);
-    ASSERT_TRUE(world.apply(Join{2, reversed, 0, false}).ok);
-    expect_valid(world, none);
-    for (const Intrusion& intrusion : world.findings().intrusions) EXPECT_EQ(world.obstacles()[intrusion.obstacle].name, "block");
-    ASSERT_TRUE(world.apply(RemoveObstacle{"wall"}).ok);
+    ASSERT_TRUE(world.apply(edit::Join{2, reversed, 0, false}).ok);
     expect_valid(world, none);
     for (const Intrusion& intrusion : world.findings().intrusions) EXPECT_EQ(world.obstacles()[intrusion.obstacle].name, "block");
-    ASSERT_TRUE(world.apply(RemoveObstacle{"block"}).ok);
+    ASSERT_TRUE(world.apply(edit::RemoveObstacle{"wall"}).ok);
+    expect_valid(world, none);
+    for (const Intrusion& intrusion : world.findings().intrusions) EXPECT_EQ(world.obstacles()[intrusion.obstacle].name, "block");
+    ASSERT_TRUE(world.apply(edit::RemoveObstacle{"block"}).ok);
     EXPECT_TRUE(world.findings().intrusions.empty());
     for (int i = 0; i < 200; ++i) expect_valid(world, world.step(inputs));
   }
@@ -129,10 +129,10 @@ TEST(Indices, WinchThatReelsInDuringSteps) {
   scene.materials[0].material.breaking_tension = 3;
   scene.contact = ContactDesc{};
   World world(scene, scenes::hand_at({0.8, 0, 0}));
-  ASSERT_TRUE(world.apply(SetLength{0, true, 0.85, 0.5}).ok);
+  ASSERT_TRUE(world.apply(edit::SetLength{0, true, 0.85, 0.5}).ok);
   for (int i = 0; i < 600; ++i) {
     expect_valid(world, world.step(scenes::hand_at({0.8 + 2e-4 * i, 0, 0.05 * std::sin(0.1 * i)})));
-    if (i % 100 == 50) world.apply(Cut{cable_id(0), world.cables()[0].model.segments() / 2});
+    if (i % 100 == 50) world.apply(edit::Cut{cable_id(0), world.cables()[0].model.segments() / 2});
   }
 }
 

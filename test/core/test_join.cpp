@@ -36,7 +36,7 @@ TEST(Join, EndsThatAreApartAreDrawnTogetherAndWelded) {
     const SceneDesc scene = two_ropes(0.3, bending);
     World world(scene, initial_frames(scene));
     const double mass = total_mass(world);
-    const EditResult joined = world.apply(Join{0, true, 1, true});
+    const EditResult joined = world.apply(edit::Join{0, true, 1, true});
     ASSERT_TRUE(joined.ok) << joined.message;
     EXPECT_EQ(joined.name, "left");
     ASSERT_EQ(world.cables().size(), 1u);
@@ -55,9 +55,9 @@ TEST(Join, EndsThatAreApartAreDrawnTogetherAndWelded) {
 TEST(Join, UndoesACut) {
   const SceneDesc scene = scenes::between_two_points(50, 0.6);
   World world(scene, initial_frames(scene));
-  ASSERT_TRUE(world.apply(Cut{cable_id(0), 20}).ok);
+  ASSERT_TRUE(world.apply(edit::Cut{cable_id(0), 20}).ok);
   for (int i = 0; i < 200; ++i) world.step({FrameInput{}});
-  const EditResult joined = world.apply(Join{1, false, 0, true});
+  const EditResult joined = world.apply(edit::Join{1, false, 0, true});
   ASSERT_TRUE(joined.ok) << joined.message;
   EXPECT_EQ(joined.name, "cable_2");
   for (int i = 0; i < 3000; ++i) ASSERT_EQ(world.step({FrameInput{}}).status, Status::ok) << i;
@@ -87,7 +87,7 @@ TEST(Join, KeepsMomentumOfFreeCables) {
     return sum;
   };
   const Vector3 before = momentum();
-  ASSERT_TRUE(world.apply(Join{0, true, 1, false}).ok);
+  ASSERT_TRUE(world.apply(edit::Join{0, true, 1, false}).ok);
   EXPECT_LT((momentum() - before).norm(), 1e-12);
   for (int i = 0; i < 1000; ++i) ASSERT_EQ(world.step({}).status, Status::ok) << i;
   EXPECT_EQ(world.cables()[0].model.segments(), 50);
@@ -103,7 +103,7 @@ TEST(Join, KeepsStretchedCablesAtTheirTension) {
   scene.cables[1].initial.from = {0.99, 0, 0};
   scene.cables[1].initial.to = {0, 0, 0};
   World world(scene, {FrameInput{}});
-  ASSERT_TRUE(world.apply(Join{0, true, 1, true}).ok);
+  ASSERT_TRUE(world.apply(edit::Join{0, true, 1, true}).ok);
   double highest = 0;
   for (int i = 0; i < 1000; ++i) {
     ASSERT_EQ(world.step({FrameInput{}}).status, Status::ok) << i;
@@ -136,14 +136,14 @@ TEST(Join, StiffEndsStayWithTheirMaterial) {
   EXPECT_TRUE(shares(1).empty());
   run(100);
 
-  ASSERT_TRUE(world.apply(Cut{cable_id(0), 12}).ok);  // the second piece is the last cable
+  ASSERT_TRUE(world.apply(edit::Cut{cable_id(0), 12}).ok);  // the second piece is the last cable
   EXPECT_LT(softest_before(0, 2), 0.01);
   EXPECT_EQ(shares(0).back(), 1);
   EXPECT_EQ(shares(2).front(), 1);
   EXPECT_LT(shares(2).back(), 0.01);
   run(100);
 
-  ASSERT_TRUE(world.apply(Join{1, true, 0, true}).ok);  // turned round: its stiff end comes last
+  ASSERT_TRUE(world.apply(edit::Join{1, true, 0, true}).ok);  // turned round: its stiff end comes last
   run(1000);
   const int joined = find(world.cables(), "right");
   EXPECT_EQ(shares(joined)[5], 1);
@@ -151,7 +151,7 @@ TEST(Join, StiffEndsStayWithTheirMaterial) {
   EXPECT_LT(*(shares(joined).end() - 2), 0.01);
 
   // What is paid out at the stiff end bends.
-  ASSERT_TRUE(world.apply(SetLength{joined, true, 1, 0.5}).ok);
+  ASSERT_TRUE(world.apply(edit::SetLength{joined, true, 1, 0.5}).ok);
   run(1000);
   const int nodes = world.cables()[joined].model.nodes();
   EXPECT_EQ(shares(joined)[nodes - 2], 1);
@@ -160,10 +160,10 @@ TEST(Join, StiffEndsStayWithTheirMaterial) {
 TEST(Join, CutsLeaveMoreThanTheGapThatCloses) {
   const SceneDesc scene = two_ropes(0.3);
   World world(scene, initial_frames(scene));
-  ASSERT_TRUE(world.apply(Join{0, true, 1, true}).ok);
-  ASSERT_TRUE(world.apply(Cut{cable_id(0), 26}).ok);
+  ASSERT_TRUE(world.apply(edit::Join{0, true, 1, true}).ok);
+  ASSERT_TRUE(world.apply(edit::Cut{cable_id(0), 26}).ok);
   const std::uint64_t before = world.hash();
-  const EditResult second = world.apply(Cut{cable_id(0), 24});
+  const EditResult second = world.apply(edit::Cut{cable_id(0), 24});
   EXPECT_FALSE(second.ok);
   EXPECT_NE(second.message.find("still being drawn in"), std::string::npos) << second.message;
   EXPECT_EQ(world.hash(), before);
@@ -175,12 +175,18 @@ TEST(Join, CutsLeaveMoreThanTheGapThatCloses) {
 TEST(Join, EndsThatAreBeingJoinedAreNotBothHeld) {
   const SceneDesc scene = two_ropes(0.3, 0.005);
   World world(scene, initial_frames(scene));
-  ASSERT_TRUE(world.apply(Join{0, true, 1, true}).ok);
-  ASSERT_TRUE(
-      world.apply(Pin{"first", cable_id(0), 25, 0, {world.cables()[0].state.positions[25], Quaternion::Identity()}, AttachmentType::clamp}).ok);
+  ASSERT_TRUE(world.apply(edit::Join{0, true, 1, true}).ok);
+  ASSERT_TRUE(world
+                  .apply(edit::Pin{"first",
+                                   cable_id(0),
+                                   25,
+                                   0,
+                                   {world.cables()[0].state.positions[25], Quaternion::Identity()},
+                                   AttachmentType::clamp})
+                  .ok);
   const std::uint64_t before = world.hash();
-  const EditResult second =
-      world.apply(Pin{"second", cable_id(0), 26, 0, {world.cables()[0].state.positions[26], Quaternion::Identity()}, AttachmentType::clamp});
+  const EditResult second = world.apply(edit::Pin{
+      "second", cable_id(0), 26, 0, {world.cables()[0].state.positions[26], Quaternion::Identity()}, AttachmentType::clamp});
   EXPECT_FALSE(second.ok);
   EXPECT_NE(second.message.find("being joined to node 25"), std::string::npos) << second.message;
   EXPECT_EQ(world.hash(), before);
@@ -198,7 +204,7 @@ TEST(Join, BadRequestsChangeNothing) {
   World world(scene, initial_frames(scene));
   const std::uint64_t before = world.hash();
   const auto refused = [&](int first, bool first_at_end, int second, bool second_at_end, const char* part) {
-    const EditResult result = world.apply(Join{first, first_at_end, second, second_at_end});
+    const EditResult result = world.apply(edit::Join{first, first_at_end, second, second_at_end});
     EXPECT_FALSE(result.ok);
     EXPECT_NE(result.message.find(part), std::string::npos) << result.message;
   };

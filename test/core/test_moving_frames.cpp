@@ -301,8 +301,8 @@ TEST(Jumps, AJumpInTheFirstStepIsOne) {
     world.step(scenes::hand_at({1, 0, 0}));
     ASSERT_EQ(world.findings().jumps.size(), 1u);
     EXPECT_EQ(jump_text(world, world.findings().jumps[0]), "frame \"hand\" jumped by 1 m within " +
-                                                      std::to_string(std::lround(1e3 * scene.time_step)) +
-                                                      " ms: cable \"cable\" was carried along with it");
+                                                               std::to_string(std::lround(1e3 * scene.time_step)) +
+                                                               " ms: cable \"cable\" was carried along with it");
     EXPECT_EQ(jump_text(world, {0, 0.25, 0, 0.2}),
               "frame \"hand\" jumped by 0.25 m within 200 ms: cable \"cable\" was carried "
               "along with it");

@@ -83,9 +83,9 @@ TEST(Net, RigidAndLimitedLinksKeepMomentum) {
     scene.nets = {net};
     World world(scene, initial_frames(scene));
     // One node is pulled away and let go: links run into their limits on all sides.
-    ASSERT_TRUE(world.apply(Pin{"hand", net_id(0), 29, 0, {{0.7, 0.2, -0.2}, Quaternion::Identity()}}).ok);
+    ASSERT_TRUE(world.apply(edit::Pin{"hand", net_id(0), 29, 0, {{0.7, 0.2, -0.2}, Quaternion::Identity()}}).ok);
     run(world, 200);
-    ASSERT_TRUE(world.apply(Unpin{"hand"}).ok);
+    ASSERT_TRUE(world.apply(edit::Unpin{"hand"}).ok);
     run(world, 1);
     const Vector3 before = momentum(world.nets()[0]), spin = angular_momentum(world.nets()[0]);
     ASSERT_GT(before.norm(), 0.01);
@@ -279,15 +279,15 @@ TEST(Net, CopyGoesOnAlikeAfterEdits) {
     SceneDesc scene = scenes::flag(6, 8, 0.05, type);
     World world(scene, initial_frames(scene));
     run(world, 100);
-    const EditResult pin = world.apply(Pin{"", net_id(0), 44, 0, {{0.1, 0, -0.2}, Quaternion::Identity()}});
+    const EditResult pin = world.apply(edit::Pin{"", net_id(0), 44, 0, {{0.1, 0, -0.2}, Quaternion::Identity()}});
     ASSERT_TRUE(pin.ok) << pin.message;
-    EXPECT_FALSE(world.apply(Pin{"", net_id(0), 44, 0, {{0, 0, 0}, Quaternion::Identity()}}).ok);
-    EXPECT_FALSE(world.apply(Pin{"", net_id(0), 48, 0, {{0, 0, 0}, Quaternion::Identity()}}).ok);
-    EXPECT_FALSE(world.apply(Pin{"", net_id(1), 0, 0, {{0, 0, 0}, Quaternion::Identity()}}).ok);
+    EXPECT_FALSE(world.apply(edit::Pin{"", net_id(0), 44, 0, {{0, 0, 0}, Quaternion::Identity()}}).ok);
+    EXPECT_FALSE(world.apply(edit::Pin{"", net_id(0), 48, 0, {{0, 0, 0}, Quaternion::Identity()}}).ok);
+    EXPECT_FALSE(world.apply(edit::Pin{"", net_id(1), 0, 0, {{0, 0, 0}, Quaternion::Identity()}}).ok);
     const std::size_t links = world.nets()[0].model.links.size();
-    ASSERT_TRUE(world.apply(Cut{net_id(0), 3}).ok);
-    EXPECT_FALSE(world.apply(Cut{net_id(0), static_cast<int>(links) - 1}).ok);
-    EXPECT_FALSE(world.apply(Cut{net_id(0), -1}).ok);
+    ASSERT_TRUE(world.apply(edit::Cut{net_id(0), 3}).ok);
+    EXPECT_FALSE(world.apply(edit::Cut{net_id(0), static_cast<int>(links) - 1}).ok);
+    EXPECT_FALSE(world.apply(edit::Cut{net_id(0), -1}).ok);
     EXPECT_EQ(world.nets()[0].model.links.size(), links - 1);
     run(world, 100);
     World copy = world;
@@ -297,7 +297,7 @@ TEST(Net, CopyGoesOnAlikeAfterEdits) {
     run(copy, 300);
     EXPECT_EQ(copy.hash(), world.hash());
     EXPECT_NEAR((world.nets()[0].state.positions[44] - Vector3(0.1, 0, -0.2)).norm(), 0, 1e-12);
-    ASSERT_TRUE(world.apply(Unpin{pin.name}).ok);
+    ASSERT_TRUE(world.apply(edit::Unpin{pin.name}).ok);
     run(world, 100);
   }
 }

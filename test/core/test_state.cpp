@@ -88,7 +88,7 @@ World rich_world() {
     inputs[1].pose.position.z() = 1e-3 * i;
     world.step(inputs);
   }
-  EXPECT_TRUE(world.apply(SetLength{0, true, 1.2, 0.5}).ok);
+  EXPECT_TRUE(world.apply(edit::SetLength{0, true, 1.2, 0.5}).ok);
   for (int i = 0; i < 20; ++i) world.step(inputs);
   return world;
 }
@@ -231,13 +231,18 @@ void expect_same_cable(const World& a, const World& b, int cable) {
 TEST(State, AnEditOfOneCableLeavesTheBytesOfOthers) {
   using Edit = std::function<EditResult(World&)>;
   const std::vector<Edit> edits{
-      [](World& w) { return w.apply(Cut{cable_id(0), 9}); },
       [](World& w) {
-        return w.apply(Pin{"pin", cable_id(0), 10, 0, Pose{{0.3, 0, -0.2}, Quaternion::Identity()}, AttachmentType::hinge});
+        return w.apply(edit::Cut{cable_id(0), 9});
       },
-      [](World& w) { return w.apply(SetLength{0, true, 1.1, 1}); }, [](World& w) { return w.apply(Unpin{"left"}); },
       [](World& w) {
-        return w.apply(MoveAttachment{"left", Pose{{0.05, 0, 0}, Quaternion::Identity()}});
+        return w.apply(edit::Pin{"pin", cable_id(0), 10, 0, Pose{{0.3, 0, -0.2}, Quaternion::Identity()}, AttachmentType::hinge});
+      },
+      [](World& w) {
+        return w.apply(edit::SetLength{0, true, 1.1, 1});
+      },
+      [](World& w) { return w.apply(edit::Unpin{"left"}); },
+      [](World& w) {
+        return w.apply(edit::MoveAttachment{"left", Pose{{0.05, 0, 0}, Quaternion::Identity()}});
       }};
   for (const bool contact : {false, true})
     for (const Edit& edit : edits) {

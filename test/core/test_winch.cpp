@@ -65,7 +65,7 @@ TEST_P(Winch, LiftsAndLowersALoad) {
   const SceneDesc scene = crane(winch.at_end, winch.material, winch.type);
   World world(scene, initial_frames(scene));
   for (const double goal : {0.5, 2.0}) {
-    const EditResult started = world.apply(SetLength{0, winch.at_end, goal, 0.5});
+    const EditResult started = world.apply(edit::SetLength{0, winch.at_end, goal, 0.5});
     ASSERT_TRUE(started.ok) << started.message;
     // 1.5 m at 0.5 m/s, half a second to speed up and another to brake; then a second to come to rest
     for (int i = 0; i < 4600; ++i) {
@@ -102,7 +102,7 @@ TEST(WinchEdits, ASwingingLoadIsTakenInWithoutJerks) {
   scene.cables[0].initial.type = InitialShapeDesc::Type::straight;
   scene.cables[0].initial.to = {std::sin(0.2), 0, -std::cos(0.2)};
   World world(scene, initial_frames(scene));
-  ASSERT_TRUE(world.apply(SetLength{0, false, 0.5, 0.5}).ok);
+  ASSERT_TRUE(world.apply(edit::SetLength{0, false, 0.5, 0.5}).ok);
   double before = world.attachments()[0].force.norm();
   for (int i = 0; i < 4000; ++i) {
     ASSERT_EQ(world.step({FrameInput{}}).status, Status::ok) << i;
@@ -123,7 +123,7 @@ TEST(WinchEdits, OtherAttachmentsKeepTheirMaterialPoint) {
   middle.place.arc_length = 0.5;
   scene.cables[0].attachments.push_back(middle);
   World world(scene, initial_frames(scene));
-  ASSERT_TRUE(world.apply(SetLength{0, false, 1.3, 1}).ok);
+  ASSERT_TRUE(world.apply(edit::SetLength{0, false, 1.3, 1}).ok);
   for (int i = 0; i < 3000; ++i) ASSERT_EQ(world.step({FrameInput{}}).status, Status::ok) << i;
   const SimulatedCable& cable = world.cables()[0];
   const int node = world.attachments()[2].node;
@@ -146,7 +146,7 @@ TEST(WinchEdits, TwistPerLengthStaysAsItIs) {
     hand[1].pose.orientation = quaternion_from_rpy({0.004 * i, 0, 0});
     world.step(hand);
   }
-  ASSERT_TRUE(world.apply(SetLength{0, false, 1.4, 0.5}).ok);
+  ASSERT_TRUE(world.apply(edit::SetLength{0, false, 1.4, 0.5}).ok);
   for (int i = 0; i < 1500; ++i) {
     hand[1].pose.position.x() = 0.999 * length(world);
     ASSERT_EQ(world.step(hand).status, Status::ok) << i;
@@ -158,7 +158,7 @@ TEST(WinchEdits, TwistPerLengthStaysAsItIs) {
 TEST(WinchEdits, ACopyGoesOnAlikeAndACutCableIsWoundOn) {
   const SceneDesc scene = crane(false, bending_rope(), AttachmentType::clamp);
   World world(scene, initial_frames(scene));
-  ASSERT_TRUE(world.apply(SetLength{0, false, 1, 0.5}).ok);
+  ASSERT_TRUE(world.apply(edit::SetLength{0, false, 1, 0.5}).ok);
   for (int i = 0; i < 700; ++i) world.step({FrameInput{}});
   World copy = world;
   for (int i = 0; i < 1000; ++i) {
@@ -167,7 +167,7 @@ TEST(WinchEdits, ACopyGoesOnAlikeAndACutCableIsWoundOn) {
   }
   EXPECT_EQ(world.hash(), copy.hash());
   const double before = length(world);
-  ASSERT_TRUE(world.apply(Cut{cable_id(0), 30}).ok);
+  ASSERT_TRUE(world.apply(edit::Cut{cable_id(0), 30}).ok);
   const double lost = before - length(world);
   for (int i = 0; i < 3000; ++i) ASSERT_EQ(world.step({FrameInput{}}).status, Status::ok) << i;
   EXPECT_NEAR(length(world), 1 - lost, 1e-6);
@@ -179,7 +179,7 @@ TEST(WinchEdits, BadRequestsChangeNothing) {
   World world(scene, initial_frames(scene));
   const std::uint64_t before = world.hash();
   const auto refused = [&](int cable, double length, double speed, const char* part) {
-    const EditResult result = world.apply(SetLength{cable, true, length, speed});
+    const EditResult result = world.apply(edit::SetLength{cable, true, length, speed});
     EXPECT_FALSE(result.ok);
     EXPECT_NE(result.message.find(part), std::string::npos) << result.message;
   };
@@ -192,9 +192,9 @@ TEST(WinchEdits, BadRequestsChangeNothing) {
   refused(0, 1.21, 0.5, "limits.segments");
   refused(0, 1.1, 11, "at most 10 m/s");  // half a segment of 2 cm a step
   EXPECT_EQ(world.hash(), before);
-  ASSERT_TRUE(world.apply(SetLength{0, true, 1.1, 0.5}).ok);
+  ASSERT_TRUE(world.apply(edit::SetLength{0, true, 1.1, 0.5}).ok);
   world.step({FrameInput{}});
-  const EditResult other_end = world.apply(SetLength{0, false, 1, 0.5});
+  const EditResult other_end = world.apply(edit::SetLength{0, false, 1, 0.5});
   EXPECT_FALSE(other_end.ok);
   EXPECT_NE(other_end.message.find("other end"), std::string::npos) << other_end.message;
 }

@@ -47,15 +47,15 @@ TEST(World, AMovedAttachmentTakesItsNodeAlong) {
   for (int i = 1; i <= 500; ++i) {
     Pose pose = start;
     pose.position.z() += 0.0004 * i;
-    ASSERT_TRUE(world.apply(MoveAttachment{hand.name, pose}).ok);
+    ASSERT_TRUE(world.apply(edit::MoveAttachment{hand.name, pose}).ok);
     EXPECT_EQ(world.step(scenes::hand_at({0.6, 0, 0})).status, Status::ok);
     EXPECT_LT((world.cables()[0].state.positions.back() - Vector3(0.6, 0, 0.0004 * i)).norm(), 1e-12);
   }
   const std::uint64_t before = world.hash();
   Pose bad = start;
   bad.position.x() = std::nan("");
-  EXPECT_FALSE(world.apply(MoveAttachment{hand.name, bad}).ok);
-  EXPECT_FALSE(world.apply(MoveAttachment{"nobody", start}).ok);
+  EXPECT_FALSE(world.apply(edit::MoveAttachment{hand.name, bad}).ok);
+  EXPECT_FALSE(world.apply(edit::MoveAttachment{"nobody", start}).ok);
   EXPECT_EQ(world.hash(), before);
 }
 
@@ -136,7 +136,7 @@ TEST(World, CutKeepsMassMomentumAndHolders) {
   World world(scene, scenes::hand_at({0.6, 0, 0}));
   for (int i = 0; i < 100; ++i) world.step(scenes::hand_at({0.6, 0.001 * i, 0}));
   const SimulatedCable before = world.cables()[0];
-  const EditResult cut = world.apply(Cut{cable_id(0), 7});
+  const EditResult cut = world.apply(edit::Cut{cable_id(0), 7});
   ASSERT_TRUE(cut.ok) << cut.message;
   ASSERT_EQ(world.cables().size(), 2u);
   const SimulatedCable &first = world.cables()[0], &second = world.cables()[1];
@@ -161,18 +161,19 @@ TEST(World, CutThatLeavesNothingIsRefused) {
   World world(scene, scenes::hand_at({0.6, 0, 0}));
   const std::uint64_t before = world.hash();
   for (const int segment : {-1, 0, 19, 20, 1000}) {
-    const EditResult cut = world.apply(Cut{cable_id(0), segment});
+    const EditResult cut = world.apply(edit::Cut{cable_id(0), segment});
     EXPECT_FALSE(cut.ok);
     EXPECT_NE(cut.message.find(std::to_string(segment)), std::string::npos) << cut.message;
   }
-  EXPECT_FALSE(world.apply(Cut{cable_id(1), 5}).ok);
+  EXPECT_FALSE(world.apply(edit::Cut{cable_id(1), 5}).ok);
   EXPECT_EQ(world.hash(), before);
 }
 
 TEST(World, PinTakesTheNodeToItsPlaceAndUnpinLetsItGo) {
   SceneDesc scene = scenes::released(20, 0);
   World world(scene, initial_frames(scene));
-  const EditResult pin = world.apply(Pin{"", cable_id(0), 20, 0, {{0.5, 0, -0.5}, Quaternion::Identity()}, AttachmentType::hinge});
+  const EditResult pin =
+      world.apply(edit::Pin{"", cable_id(0), 20, 0, {{0.5, 0, -0.5}, Quaternion::Identity()}, AttachmentType::hinge});
   ASSERT_TRUE(pin.ok) << pin.message;
   double fastest = 0;
   for (int i = 0; i < 1000; ++i) {
@@ -181,11 +182,11 @@ TEST(World, PinTakesTheNodeToItsPlaceAndUnpinLetsItGo) {
   }
   EXPECT_EQ(world.cables()[0].state.positions[20], Vector3(0.5, 0, -0.5));
   EXPECT_LT(fastest, 4);
-  EXPECT_FALSE(world.apply(Pin{"again", cable_id(0), 20, 0, {}, AttachmentType::hinge}).ok);
-  EXPECT_FALSE(world.apply(Pin{pin.name, cable_id(0), 10, 0, {}, AttachmentType::hinge}).ok);
-  EXPECT_FALSE(world.apply(Pin{"far", cable_id(0), 21, 0, {}, AttachmentType::hinge}).ok);
-  ASSERT_TRUE(world.apply(Unpin{pin.name}).ok);
-  EXPECT_FALSE(world.apply(Unpin{pin.name}).ok);
+  EXPECT_FALSE(world.apply(edit::Pin{"again", cable_id(0), 20, 0, {}, AttachmentType::hinge}).ok);
+  EXPECT_FALSE(world.apply(edit::Pin{pin.name, cable_id(0), 10, 0, {}, AttachmentType::hinge}).ok);
+  EXPECT_FALSE(world.apply(edit::Pin{"far", cable_id(0), 21, 0, {}, AttachmentType::hinge}).ok);
+  ASSERT_TRUE(world.apply(edit::Unpin{pin.name}).ok);
+  EXPECT_FALSE(world.apply(edit::Unpin{pin.name}).ok);
   for (int i = 0; i < 300; ++i) world.step({FrameInput{}});
   EXPECT_LT(world.cables()[0].state.positions[20].z(), -0.6);
 }

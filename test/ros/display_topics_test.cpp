@@ -174,8 +174,8 @@ TEST_F(Topics, MarkersAsLines) {
 TEST_F(Topics, MarkersOfWhatIsGoneAreDeletedOnceAndIdsStay) {
   Listener<MarkerArray> listener(node_, "markers");
   const auto before = keys(next(listener), Marker::ADD);
-  ASSERT_TRUE(world_.apply(Unpin{"left"}).ok);
-  const EditResult cut = world_.apply(Cut{cable_id(find(world_.cables(), "cord")), 4});
+  ASSERT_TRUE(world_.apply(edit::Unpin{"left"}).ok);
+  const EditResult cut = world_.apply(edit::Cut{cable_id(find(world_.cables(), "cord")), 4});
   ASSERT_TRUE(cut.ok);
 
   const MarkerArray& after_cut = next(listener);
@@ -290,10 +290,10 @@ TEST_F(Topics, WrenchesComeAndGoWithTheAttachments) {
   publishers_.publish(world_, stamp);
   EXPECT_FALSE(pinned.connected());
   const Pose where{world_.cables()[0].state.positions[5], Quaternion::Identity()};
-  ASSERT_TRUE(world_.apply(Pin{"extra", cable_id(0), 5, 0, where, AttachmentType::hinge}).ok);
+  ASSERT_TRUE(world_.apply(edit::Pin{"extra", cable_id(0), 5, 0, where, AttachmentType::hinge}).ok);
   world_.step(inputs_);
   EXPECT_EQ(next(pinned).header.frame_id, "base");
-  ASSERT_TRUE(world_.apply(Unpin{"extra"}).ok);
+  ASSERT_TRUE(world_.apply(edit::Unpin{"extra"}).ok);
   const ros::WallTime end = ros::WallTime::now() + patience;
   while (pinned.connected() && ros::WallTime::now() < end) {
     publishers_.publish(world_, stamp);

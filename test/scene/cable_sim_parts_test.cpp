@@ -149,7 +149,7 @@ TEST(EventLog, anEpisodeIsTwoEventsHoweverManySteps) {
   EventLog log(progress);
   StepResult bad;
   bad.status = StepResult::Status::degraded;
-  bad.cable = 0;
+  bad.body = cable_id(0);
   bad.node = 3;
   bad.max_strain = 0.25;
   testing::internal::CaptureStderr();

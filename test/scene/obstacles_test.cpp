@@ -149,34 +149,34 @@ TEST(Obstacles, areAddedReplacedAndRemoved) {
   World world(scene, initial_frames(scene));
   const std::uint64_t before = world.hash();
   Obstacle ball{"ball", 0, {{1, 0, 0}, Quaternion::Identity()}, SphereShape{0.1}, std::nullopt, 0, {}, false};
-  EXPECT_TRUE(world.apply(SetObstacle{ball}).ok);
+  EXPECT_TRUE(world.apply(edit::SetObstacle{ball}).ok);
   EXPECT_NE(world.hash(), before);
   ball.shape = BoxShape{{1, 1, 1}};
-  EXPECT_TRUE(world.apply(SetObstacle{ball}).ok);
+  EXPECT_TRUE(world.apply(edit::SetObstacle{ball}).ok);
   ASSERT_EQ(world.obstacles().size(), 1u);
   EXPECT_TRUE(std::holds_alternative<BoxShape>(world.obstacles()[0].shape));
 
   Obstacle bad = ball;
   bad.shape = SphereShape{-1};
-  EXPECT_EQ(world.apply(SetObstacle{bad}).message.find("obstacle \"ball\": radius: -1; allowed: any number above 0"), 0u);
+  EXPECT_EQ(world.apply(edit::SetObstacle{bad}).message.find("obstacle \"ball\": radius: -1; allowed: any number above 0"), 0u);
   bad = ball;
   bad.pose.position.y() = infinity;
-  EXPECT_FALSE(world.apply(SetObstacle{bad}).ok);
+  EXPECT_FALSE(world.apply(edit::SetObstacle{bad}).ok);
   bad = ball;
   bad.frame = 7;
-  EXPECT_FALSE(world.apply(SetObstacle{bad}).ok);
+  EXPECT_FALSE(world.apply(edit::SetObstacle{bad}).ok);
   bad = ball;
   bad.shape = MeshShape{};
-  EXPECT_FALSE(world.apply(SetObstacle{bad}).ok);
+  EXPECT_FALSE(world.apply(edit::SetObstacle{bad}).ok);
   EXPECT_TRUE(std::holds_alternative<BoxShape>(world.obstacles()[0].shape));
 
-  EXPECT_FALSE(world.apply(RemoveObstacle{"box"}).ok);
-  EXPECT_TRUE(world.apply(RemoveObstacle{"ball"}).ok);
+  EXPECT_FALSE(world.apply(edit::RemoveObstacle{"box"}).ok);
+  EXPECT_TRUE(world.apply(edit::RemoveObstacle{"ball"}).ok);
   EXPECT_EQ(world.hash(), before);
 
   // A frame that nothing has said anything about yet.
   ball.frame = world.add_frame("camera", std::nullopt);
-  EXPECT_TRUE(world.apply(SetObstacle{ball}).ok);
+  EXPECT_TRUE(world.apply(edit::SetObstacle{ball}).ok);
   EXPECT_FALSE(world.obstacles()[0].present);
   EXPECT_FALSE(world.frame_known(ball.frame));
 }

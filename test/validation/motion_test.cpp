@@ -68,7 +68,7 @@ TEST(FoldedChain, TipFallsFasterThanFreely) {
   SceneDesc scene = scenes::between_two_points(100, 0.04);
   Simulation run(scene);
   const double height = run.positions().back().z();
-  EXPECT_TRUE(run.world.apply(Unpin{"right"}).ok);
+  EXPECT_TRUE(run.world.apply(edit::Unpin{"right"}).ok);
   const double energy = run.world.energy().total(), weight = 0.1 * gravity;
   double fallen = 0, time_to_fall = 0;
   while (fallen < 0.95 && run.world.time() < 0.5) {

@@ -11,6 +11,9 @@
 
 namespace verlet_cable {
 
+/// What can be done to a world between its steps.
+namespace edit {
+
 /// Holds a node of a cable or, by a hinge, of a net at a pose in a frame. The node goes there smoothly.
 struct Pin {
   std::string name;  ///< of the attachment; empty: one is made
@@ -31,15 +34,15 @@ struct MoveAttachment {
   Pose pose;
 };
 
-/// Removes a segment of a cable or a link of a net; those after it count one less. A segment's mass stays on its nodes, and the first
-/// piece keeps the name.
+/// Removes a segment of a cable or a link of a net; those after it count one less. A segment's mass stays on its nodes, and the
+/// first piece keeps the name.
 struct Cut {
   BodyId body;
   int element = 0;  ///< segment or link
 };
 
-/// Pays out or takes in cable at one end, at up to `speed` and smoothly, until the cable is so long; its nodes count anew as segments
-/// appear and vanish there. Other attachments and payloads keep their material point.
+/// Pays out or takes in cable at one end, at up to `speed` and smoothly, until the cable is so long; its nodes count anew as
+/// segments appear and vanish there. Other attachments and payloads keep their material point.
 struct SetLength {
   int cable = 0;
   bool at_end = false;
@@ -65,7 +68,10 @@ struct RemoveObstacle {
   std::string name;
 };
 
-using Edit = std::variant<Pin, Unpin, MoveAttachment, Cut, SetLength, Join, SetObstacle, RemoveObstacle>;
+}  // namespace edit
+
+using Edit = std::variant<edit::Pin, edit::Unpin, edit::MoveAttachment, edit::Cut, edit::SetLength, edit::Join, edit::SetObstacle,
+                          edit::RemoveObstacle>;
 
 /// Outcome of an edit: nothing has changed where `ok` is false, and `message` says why, with names and values.
 struct EditResult {

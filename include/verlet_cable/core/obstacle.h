@@ -21,7 +21,7 @@ struct Obstacle {
   /// to one of these. Ascending; empty for an obstacle at rest in the fixed frame.
   std::vector<int> holders;
   bool present = false;  ///< its frame has been seen; there is nothing to bump into until then
-  std::uint32_t id = 0;  ///< never used again in its world: what touches the obstacle remembers it by that
+  std::uint32_t id = 0;  ///< what touches the obstacle remembers it by that
 };
 
 }  // namespace verlet_cable

@@ -32,7 +32,7 @@ using BoundaryInputs = std::vector<FrameInput>;
 /// What holds a node of a cable or net to a frame.
 struct Attachment {
   std::string name;
-  BodyId body;    ///< a cable or a net
+  BodyId body;  ///< a cable or a net
   int node = 0;
   int frame = 0;  ///< index into World::frames()
   AttachmentType type = AttachmentType::hinge;
@@ -95,7 +95,8 @@ struct Findings {
   std::vector<std::string> waiting;  ///< names of cables and nets that wait for a frame
   /// Names of cables that found no equilibrium when they were to be settled, at their start or by `settle`.
   std::vector<std::string> unsettled;
-  /// Names of cables whose given initial shape could not be brought to their lengths between their attachments: they hang instead.
+  /// Names of cables whose given initial shape could not be brought to their lengths between their attachments: they hang
+  /// instead.
   std::vector<std::string> misfits;
   // In the last step
   std::vector<Break> breaks;

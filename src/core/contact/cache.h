@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -23,8 +24,14 @@ constexpr std::uint64_t pair_key = std::uint64_t{1} << 63;  // pairs come after 
 inline std::uint64_t key_of(std::uint32_t high, std::uint32_t low) {
   return static_cast<std::uint64_t>(high) << 32 | low;
 }
-inline bool names_other_cable(const CachedContact& contact, std::uint32_t id) {
-  return (contact.key & pair_key) != 0 && contact.other_key >> 32 == id;
+/// Forgets contacts with a cable whose segments count anew, or that is gone.
+inline void forget_cable(std::uint32_t id, ContactCache& cache) {
+  const auto names_it = [&](const CachedContact& c) { return (c.key & pair_key) != 0 && c.other_key >> 32 == id; };
+  cache.erase(std::remove_if(cache.begin(), cache.end(), names_it), cache.end());
+}
+/// Forgets contacts with an obstacle that is gone.
+inline void forget_obstacle(std::uint32_t id, ContactCache& cache) {
+  cache.erase(std::remove_if(cache.begin(), cache.end(), [&](const CachedContact& c) { return c.key == id; }), cache.end());
 }
 
 }  // namespace verlet_cable

@@ -103,15 +103,15 @@ int joining_node(const std::optional<LengthDrive>& drive, int node) {
 
 }  // namespace
 
-EditResult World::Implementation::apply(const Pin& pin) {
+EditResult World::Implementation::apply(const edit::Pin& pin) {
   if (const std::string problem = node_problem(state, pin.body, pin.node); !problem.empty()) return refused(problem);
   if (pin.frame < 0 || pin.frame >= static_cast<int>(state.frames.names.size()))
     return refused("frame: " + std::to_string(pin.frame) + "; must be the id of a frame");
   if (const std::string problem = pose_problem("offset", pin.pose); !problem.empty()) return refused(problem);
   if (!pin.name.empty() && is_attachment(pin.name)) return refused("name: " + pin.name + "; is taken by another attachment");
-  const std::string node = "node: " + std::to_string(pin.node) + " of " +
-                           (pin.body.is_net() ? "net " + state.nets[pin.body.index].model.name
-                                              : "cable " + state.cables[pin.body.index].model.name);
+  const std::string node =
+      "node: " + std::to_string(pin.node) + " of " +
+      (pin.body.is_net() ? "net " + state.nets[pin.body.index].model.name : "cable " + state.cables[pin.body.index].model.name);
   if (holds_something(state.attachments, pin.body, pin.node)) return refused(node + "; is already held by an attachment");
   if (pin.body.is_cable()) {
     const int other = joining_node(state.cable_progress[pin.body.index].drive, pin.node);
@@ -134,7 +134,7 @@ EditResult World::Implementation::apply(const Pin& pin) {
   return {true, "", attachment.name};
 }
 
-EditResult World::Implementation::apply(const Unpin& unpin) {
+EditResult World::Implementation::apply(const edit::Unpin& unpin) {
   const int index = find(state.attachments, unpin.name);
   if (index < 0) return refused("name: " + unpin.name + "; there is no such attachment");
   const BodyId body = state.attachments[index].body;
@@ -151,7 +151,7 @@ EditResult World::Implementation::apply(const Unpin& unpin) {
   return {true, "", unpin.name};
 }
 
-EditResult World::Implementation::apply(const MoveAttachment& move) {
+EditResult World::Implementation::apply(const edit::MoveAttachment& move) {
   const int index = find(state.attachments, move.name);
   if (index < 0) return refused("name: " + move.name + "; there is no such attachment");
   if (const std::string problem = pose_problem("offset", move.pose); !problem.empty()) return refused(problem);
@@ -159,7 +159,7 @@ EditResult World::Implementation::apply(const MoveAttachment& move) {
   return {true, "", move.name};
 }
 
-EditResult World::Implementation::apply(const Cut& cut) {
+EditResult World::Implementation::apply(const edit::Cut& cut) {
   return cut.body.is_net() ? cut_link(cut.body.index, cut.element) : cut_cable(cut.body.index, cut.element);
 }
 
@@ -194,8 +194,8 @@ EditResult World::Implementation::cut_cable(int cable, int segment) {
   state.cables[cable] = std::move(first);
   state.cables.push_back(std::move(second));
   follow_cut(cable, segment, new_cable);
-  state.cable_progress.emplace_back();
-  state.cable_progress.back().id = state.next_cable_id++;
+  const std::uint32_t id = state.new_cable_id();
+  state.cable_progress.emplace_back().id = id;
   state.cable_progress[cable].level = 0;
   KinematicTargets &of_first = state.cable_progress[cable].targets, &of_second = state.cable_progress[new_cable].targets;
   split_targets(segment + 1, of_first.nodes, of_second.nodes);

@@ -113,7 +113,7 @@ JointEnd find_end(const CableModel& model, int cable, bool at_end, const std::ve
 
 }  // namespace
 
-EditResult World::Implementation::apply(const Join& join) {
+EditResult World::Implementation::apply(const edit::Join& join) {
   const auto [first, first_at_end, second, second_at_end] = join;
   const int count = static_cast<int>(state.cables.size());
   for (const int index : {first, second})
@@ -175,6 +175,7 @@ EditResult World::Implementation::apply(const Join& join) {
   drive.acceleration = joining_acceleration;
   state.cable_progress[first].drive = drive;
 
+  forget_contacts(second);
   follow_join(first, second);
   state.cables.erase(state.cables.begin() + second);
   state.cable_progress.erase(state.cable_progress.begin() + second);

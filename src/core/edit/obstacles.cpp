@@ -82,7 +82,7 @@ auto find_obstacle(std::vector<Obstacle>& obstacles, const std::string& name) {
 
 }  // namespace
 
-EditResult World::Implementation::apply(const SetObstacle& set) {
+EditResult World::Implementation::apply(const edit::SetObstacle& set) {
   Obstacle obstacle = set.obstacle;
   if (const std::string problem = problem_of(obstacle, state.frames.names.size()); !problem.empty())
     return {false, "obstacle " + quoted(obstacle.name) + ": " + problem, {}};
@@ -90,7 +90,7 @@ EditResult World::Implementation::apply(const SetObstacle& set) {
   obstacle.present = state.frames.known[obstacle.frame];
   const std::string name = obstacle.name;
   const auto same = find_obstacle(state.obstacles, name);
-  obstacle.id = same == state.obstacles.end() ? state.next_obstacle_id++ : same->id;
+  obstacle.id = same == state.obstacles.end() ? state.new_obstacle_id() : same->id;
   if (same == state.obstacles.end()) {
     state.obstacles.push_back(std::move(obstacle));
   } else {
@@ -100,15 +100,16 @@ EditResult World::Implementation::apply(const SetObstacle& set) {
   return {true, "", name};
 }
 
-EditResult World::Implementation::apply(const RemoveObstacle& remove) {
+EditResult World::Implementation::apply(const edit::RemoveObstacle& remove) {
   const std::string& name = remove.name;
   const auto found = find_obstacle(state.obstacles, name);
   if (found == state.obstacles.end()) return {false, "obstacle: " + quoted(name) + "; there is no such obstacle", {}};
   const int index = static_cast<int>(found - state.obstacles.begin());
+  for (CableProgress& progress : state.cable_progress) forget_obstacle(found->id, progress.contacts);
   state.obstacles.erase(found);
   const auto names_it = [&](const Intrusion& intrusion) { return intrusion.obstacle == index; };
   findings.intrusions.erase(std::remove_if(findings.intrusions.begin(), findings.intrusions.end(), names_it),
-                              findings.intrusions.end());
+                            findings.intrusions.end());
   for (Intrusion& intrusion : findings.intrusions)
     if (intrusion.obstacle > index) --intrusion.obstacle;
   findings.contacts.clear();
@@ -125,7 +126,7 @@ void World::Implementation::add_scene_obstacles() {
     obstacle.friction = desc.friction;
     obstacle.padding = desc.padding;
     obstacle.present = state.frames.known[obstacle.frame];
-    obstacle.id = state.next_obstacle_id++;
+    obstacle.id = state.new_obstacle_id();
     state.obstacles.push_back(std::move(obstacle));
   }
   find_obstacle_anchors();

@@ -41,7 +41,7 @@ void add_material_motion(const LengthDrive& drive, double side, SimulatedCable& 
 
 }  // namespace
 
-EditResult World::Implementation::apply(const SetLength& change) {
+EditResult World::Implementation::apply(const edit::SetLength& change) {
   const auto [index, at_end, length, speed] = change;
   if (index < 0 || index >= static_cast<int>(state.cables.size()))
     return refused("cable: " + std::to_string(index) + "; must be the index of a cable");
@@ -209,11 +209,7 @@ void World::Implementation::after_remeshing(int index) {
 void World::Implementation::forget_contacts(int index) {
   const std::uint32_t id = state.cable_progress[index].id;
   state.cable_progress[index].contacts.clear();
-  for (CableProgress& memory : state.cable_progress) {
-    ContactCache& cache = memory.contacts;
-    cache.erase(std::remove_if(cache.begin(), cache.end(), [&](const CachedContact& c) { return names_other_cable(c, id); }),
-                cache.end());
-  }
+  for (CableProgress& progress : state.cable_progress) forget_cable(id, progress.contacts);
   findings.contacts.clear();
   islands.value.invalidate();
 }

@@ -44,14 +44,14 @@ struct World::Implementation {
   void start_net(const NetDesc& desc, const FrameIds& ids, const BoundaryInputs& inputs);
 
   // Edits
-  EditResult apply(const Pin& pin);
-  EditResult apply(const Unpin& unpin);
-  EditResult apply(const MoveAttachment& move);
-  EditResult apply(const Cut& cut);
-  EditResult apply(const SetLength& change);
-  EditResult apply(const Join& join);
-  EditResult apply(const SetObstacle& set);
-  EditResult apply(const RemoveObstacle& remove);
+  EditResult apply(const edit::Pin& pin);
+  EditResult apply(const edit::Unpin& unpin);
+  EditResult apply(const edit::MoveAttachment& move);
+  EditResult apply(const edit::Cut& cut);
+  EditResult apply(const edit::SetLength& change);
+  EditResult apply(const edit::Join& join);
+  EditResult apply(const edit::SetObstacle& set);
+  EditResult apply(const edit::RemoveObstacle& remove);
   EditResult cut_cable(int cable, int segment);
   EditResult cut_link(int net, int link);
   void update_net(int net);

@@ -288,7 +288,8 @@ void IslandStepper::note_substep(int index, const CableWorkspace& work, double p
   add_forces(work.boundary, state_.cable_progress[index].targets, state_.frames.poses, part, state_.attachments);
   result.max_strain = std::max(result.max_strain, work.result.max_strain);
   result.iterations += work.result.iterations;
-  if (work.result.overstretched_node >= 0) note_status(Status::overstretched, cable_id(index), work.result.overstretched_node, result);
+  if (work.result.overstretched_node >= 0)
+    note_status(Status::overstretched, cable_id(index), work.result.overstretched_node, result);
 }
 
 void IslandStepper::note_intrusions(std::vector<Intrusion>& noted) const {

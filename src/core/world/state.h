@@ -19,7 +19,7 @@ namespace verlet_cable {
 
 /// What decides a cable's future besides the state that it shows.
 struct CableProgress {
-  std::uint32_t id = 0;  ///< ascending, never used again
+  std::uint32_t id = 0;  ///< ascending: contacts name cables by it
   KinematicTargets targets;
   std::vector<TwistSpan> spans;
   std::optional<LengthDrive> drive;  ///< of a winch that runs, or of a joint that closes
@@ -58,15 +58,15 @@ struct State {
   std::int64_t steps = 0;
   std::vector<SimulatedCable> cables;
   std::vector<CableProgress> cable_progress;  ///< one a cable
-  std::uint32_t next_cable_id = 0;
   std::vector<SimulatedNet> nets;
   std::vector<NetProgress> net_progress;  ///< one a net
   std::vector<SimulatedParticle> particles;
   std::vector<PointState> particle_integrators;  ///< one a particle
   std::vector<Attachment> attachments;
   std::vector<Obstacle> obstacles;
-  std::uint32_t next_obstacle_id = 0;
 
+  std::uint32_t new_cable_id() const { return cable_progress.empty() ? 0 : cable_progress.back().id + 1; }
+  std::uint32_t new_obstacle_id() const { return obstacles.empty() ? 0 : obstacles.back().id + 1; }
   double time() const { return static_cast<double>(steps) * scene->time_step; }
 };
 

@@ -239,8 +239,8 @@ auto fields(T& x, const Frames*) {
 }
 template <class T>
 auto fields(T& x, const State*) {
-  return std::tie(x.scene, x.waiting_cables, x.waiting_nets, x.frames, x.steps, x.cables, x.cable_progress, x.next_cable_id,
-                  x.nets, x.net_progress, x.particles, x.particle_integrators, x.attachments, x.obstacles, x.next_obstacle_id);
+  return std::tie(x.scene, x.waiting_cables, x.waiting_nets, x.frames, x.steps, x.cables, x.cable_progress, x.nets,
+                  x.net_progress, x.particles, x.particle_integrators, x.attachments, x.obstacles);
 }
 /// @}
 

@@ -191,7 +191,7 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   cable.state.positions.assign(cable.model.nodes(), Vector3::Zero());
   cable.state.velocities.assign(cable.model.nodes(), Vector3::Zero());
   CableProgress memory;
-  memory.id = state.next_cable_id++;
+  memory.id = state.new_cable_id();
   memory.targets = find_targets(cable.model, cable.state, state.attachments, own, state.frames.poses, {}, state.time());
   for (KinematicTarget& target : memory.targets.nodes) {
     target.gap.setZero();

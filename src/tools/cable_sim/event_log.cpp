@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "verlet_cable/core/body_name.h"
 #include "verlet_cable/core/jump_text.h"
 #include "verlet_cable/core/number_text.h"
-#include "verlet_cable/core/body_name.h"
 
 namespace verlet_cable::cable_sim {
 namespace {
@@ -47,7 +47,7 @@ void EventLog::observe(const World& world, const StepResult& result, const std::
   // A jump is told when it is over, by the frame's name.
   if (result.status != StepResult::Status::ok && result.status != StepResult::Status::jumped) {
     const StatusText text = text_of(result.status);
-    const std::string cable = subject_of(world, result);
+    const std::string cable = name_of(world, result.body);
     report({world.time(), text.type, cable, result.node, "", text.message, ""}, result.max_strain);
   }
   add_breaks(world);
@@ -100,10 +100,7 @@ void EventLog::add_jumps(const World& world) {
     const auto [told, is_new] = jumps_.emplace(frame, jump.time);
     if (!is_new && jump.time > told->second && jump.time - told->second < jump_quiet_time) continue;
     told->second = jump.time;
-    const bool is_net = attachment.net >= 0;
-    const std::string& held = is_net ? world.nets()[static_cast<std::size_t>(attachment.net)].model.name
-                                     : world.cables()[static_cast<std::size_t>(attachment.cable)].model.name;
-    add({jump.time, "JUMPED", held, attachment.node, frame, jump_text(world, jump), ""});
+    add({jump.time, "JUMPED", name_of(world, attachment.body), attachment.node, frame, jump_text(world, jump), ""});
   }
 }
 
