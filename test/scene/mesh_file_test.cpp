@@ -247,7 +247,7 @@ TEST_F(MeshFile, patienceEnds) {
     cancelled = true;
   });
   EXPECT_EQ(problem_of(slow, {begin + std::chrono::minutes(1), &cancelled}), "reading it was cancelled");
-  other.apply(edit::Join{});
+  other.join();
   // Nothing is left of the processes.
   EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);
 }
