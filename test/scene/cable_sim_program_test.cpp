@@ -127,7 +127,9 @@ TEST_F(CableSim, framesThatNothingPlacesAreNamed) {
       << err;
   // As before, it is at the origin.
   for (const Row& row : rows("o.csv")) {
-    if (row.node == 20) EXPECT_EQ(row.position, Vector3::Zero());
+    if (row.node == 20) {
+      EXPECT_EQ(row.position, Vector3::Zero());
+    }
   }
 
   const std::string motion = write("m.csv", "t,frame,x,y,z,qx,qy,qz,qw\n0,hand,0.7,0,0,0,0,0,1\n");
