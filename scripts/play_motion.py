@@ -169,19 +169,17 @@ class Player:
         seen = threading.Event()
         subscriber = rospy.Subscriber('cable/state', CableArray, lambda state: seen.set() if state.header.stamp > arrived else None)
         while not seen.is_set() and not rospy.is_shutdown():
-            self._send(0)
+            self._send(0, rospy.Time.now())
         subscriber.unregister()
 
     def _go(self, time_at, seconds):
-        started = rospy.Time.now()
-        elapsed = 0
-        while elapsed < seconds and not rospy.is_shutdown():
-            self._send(time_at(elapsed))
-            elapsed = (rospy.Time.now() - started).to_sec()
+        started = now = rospy.Time.now()
+        while (now - started).to_sec() < seconds and not rospy.is_shutdown():
+            self._send(time_at((now - started).to_sec()), now)
+            now = rospy.Time.now()
 
-    def _send(self, time):
-        now = rospy.Time.now()
-        self._broadcaster.sendTransform([transform(frame, track.at(time), now) for frame, track in self._tracks.items()])
+    def _send(self, time, stamp):
+        self._broadcaster.sendTransform([transform(frame, track.at(time), stamp) for frame, track in self._tracks.items()])
         self._rate.sleep()
 
 
