@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <string>
-#include <type_traits>
 #include <utility>
 
+#include "chain/node_arrays.h"
 #include "verlet_cable/core/world.h"
 #include "world/implementation.h"
 
@@ -30,16 +30,10 @@ std::string numbered(const std::string& base, int first, const Taken& taken) {
 
 /// The nodes `first` to `last` of a cable as a cable of their own.
 SimulatedCable piece(const SimulatedCable& whole, int first, int last) {
-  const auto part = [&](auto& v, int end) { v = std::decay_t<decltype(v)>(v.begin() + first, v.begin() + end); };
   SimulatedCable cable = whole;
+  slice(first, last, cable);
   cable.state.reference_node = 0;
   cable.state.reference_orientation = segment_orientations(whole)[first];
-  for (auto* of_segments : {&cable.model.rest_lengths, &cable.state.tension, &cable.state.axial_multiplier, &cable.state.twist})
-    part(*of_segments, last);
-  part(cable.model.masses, last + 1);
-  if (!cable.model.rest_curvature.empty()) part(cable.model.rest_curvature, last + 1);
-  if (!cable.model.flexible_fraction.empty()) part(cable.model.flexible_fraction, last + 1);
-  for (auto* of_nodes : {&cable.state.positions, &cable.state.velocities, &cable.state.accelerations}) part(*of_nodes, last + 1);
   return cable;
 }
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "chain/node_arrays.h"
 #include "rod/length_projection.h"
 #include "rod/material_frames.h"
 #include "verlet_cable/core/number_text.h"
@@ -37,16 +38,10 @@ const Quaternion turned(0, 0, 1, 0);
 
 /// The same cable from its end to its start.
 void reverse(SimulatedCable& cable) {
-  CableModel& model = cable.model;
-  CableState& state = cable.state;
-  for (auto* values : {&model.rest_lengths, &model.masses, &state.tension, &state.axial_multiplier, &state.twist})
-    std::reverse(values->begin(), values->end());
-  for (auto* values : {&state.positions, &state.velocities, &state.accelerations}) std::reverse(values->begin(), values->end());
-  std::reverse(model.rest_curvature.begin(), model.rest_curvature.end());
-  std::reverse(model.flexible_fraction.begin(), model.flexible_fraction.end());
-  for (auto& curvature : model.rest_curvature) curvature[0] = -curvature[0];
-  state.reference_node = model.segments() - state.reference_node;
-  state.reference_orientation = state.reference_orientation * turned;
+  reverse_arrays(cable);
+  for (auto& curvature : cable.model.rest_curvature) curvature[0] = -curvature[0];
+  cable.state.reference_node = cable.model.segments() - cable.state.reference_node;
+  cable.state.reference_orientation = cable.state.reference_orientation * turned;
 }
 
 /// The unloaded curvature of `cable` about the axes of a cable that is welded to it, and whose material is carried on into it.
@@ -59,36 +54,17 @@ void turn_rest_curvature(const Quaternion& welded, const Quaternion& own, Simula
   }
 }
 
-template <typename Array>
-void append(const Array& tail, Array& array) {
-  array.insert(array.end(), tail.begin(), tail.end());
-}
-
 /// `first` followed by `second`, with a weightless segment between them that is as long as they are apart.
 void append_cable(const SimulatedCable& second, SimulatedCable& first) {
+  const int between = first.model.segments();
   const double gap = (second.state.positions.front() - first.state.positions.back()).norm();
-  CableModel& model = first.model;
-  CableState& state = first.state;
-  if (!model.rest_curvature.empty() || !second.model.rest_curvature.empty()) {
-    model.rest_curvature.resize(model.nodes());
-    append(second.model.rest_curvature, model.rest_curvature);
-    model.rest_curvature.resize(model.nodes() + second.model.nodes());
-  }
-  if (!model.flexible_fraction.empty() || !second.model.flexible_fraction.empty()) {
-    model.flexible_fraction.resize(model.nodes(), 1.0);
-    append(second.model.flexible_fraction, model.flexible_fraction);
-    model.flexible_fraction.resize(model.nodes() + second.model.nodes(), 1.0);
-  }
-  model.rest_lengths.push_back(gap);
-  for (auto* values : {&state.tension, &state.axial_multiplier, &state.twist}) values->push_back(0);
-  append(second.model.rest_lengths, model.rest_lengths);
-  append(second.model.masses, model.masses);
-  append(second.state.positions, state.positions);
-  append(second.state.velocities, state.velocities);
-  append(second.state.accelerations, state.accelerations);
-  append(second.state.tension, state.tension);
-  append(second.state.axial_multiplier, state.axial_multiplier);
-  append(second.state.twist, state.twist);
+  append(second, first);
+  first.model.rest_lengths[between] = gap;
+}
+
+template <typename T>
+void append(const std::vector<T>& tail, std::vector<T>& array) {
+  array.insert(array.end(), tail.begin(), tail.end());
 }
 
 /// An end that is to be joined: the next attachment from there on, and how much cable is between.
@@ -237,22 +213,16 @@ void World::Implementation::close_joint(int index) {
 
   const double mass = model.masses[node] + model.masses[gone], part = model.masses[gone] / mass;
   model.masses[node] = mass;
-  model.masses.erase(model.masses.begin() + gone);
-  for (auto* values : {&cable.positions, &cable.velocities, &cable.accelerations}) {
+  for (auto* values : {&cable.positions, &cable.velocities, &cable.accelerations})
     (*values)[node] += part * ((*values)[gone] - (*values)[node]);
-    values->erase(values->begin() + gone);
-  }
-  for (auto* values : {&model.rest_lengths, &cable.tension, &cable.axial_multiplier, &cable.twist})
-    values->erase(values->begin() + node);
   if (!model.rest_curvature.empty()) {
     for (const int axis : {0, 1})
       model.rest_curvature[node][axis] = 0.5 * (model.rest_curvature[node][axis] + model.rest_curvature[gone][axis]);
-    model.rest_curvature.erase(model.rest_curvature.begin() + gone);
   }
-  if (!model.flexible_fraction.empty()) {
+  if (!model.flexible_fraction.empty())
     model.flexible_fraction[node] = 0.5 * (model.flexible_fraction[node] + model.flexible_fraction[gone]);
-    model.flexible_fraction.erase(model.flexible_fraction.begin() + gone);
-  }
+  erase_node(gone, state.cables[index]);
+  erase_segment(node, state.cables[index]);
   if (cable.reference_node >= gone) --cable.reference_node;
   renumber(index, gone, -1);
 

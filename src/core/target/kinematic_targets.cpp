@@ -3,30 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "target/jump.h"
 #include "verlet_cable/core/rotation.h"
 
 namespace verlet_cable {
 
 namespace {
 
-/// No hand or machine changes its velocity by more [m/s] within a step: a holder that does jumps, if that does not last longer
-/// [s].
-constexpr double greatest_change = 5;
-constexpr double longest_jump = 5e-3;
-/// A change of velocity that is not greater than the one before by this fraction goes on with an acceleration.
-constexpr double sudden = 0.5;
-/// In steps longer than a jump all changes are great: one that is so many times greater than those before is no motion.
-constexpr double out_of_proportion = 3;
-constexpr double fading = 0.5;  // of what went before, in a step
-/// Below this change [m/s] in a step a velocity is a motion's; above it may be noise, and the average over some time [s] is
-/// better.
-constexpr double steady_change = 1;
-constexpr double averaging_time = 0.02;
-/// A jump at one speed may begin and end inside steps: up to this fraction it is one speed.
-constexpr double one_speed = 0.1;
 /// Frames may be on vehicles: one that starts is believed to move as fast as this [m/s].
 constexpr double fastest_start = 50;
-constexpr double rounding = 1e-6;
 /// A node that is pinned elsewhere than it is goes there at about this speed [m/s], in no less than this time [s].
 constexpr double approach_speed = 2;
 constexpr double shortest_approach = 0.1;
@@ -58,83 +43,6 @@ Vector3 tangent(const CableState& state, int node) {
 
 void aim(const Vector3& wanted, double time, KinematicTarget& target) {
   target.next_position = wanted + remaining(target.caught, target.gap.norm(), time) * target.gap;
-}
-
-bool is_greater_than_a_motion(const Vector3& change) {
-  return change.norm() > greatest_change;
-}
-
-void end_jump(KinematicTarget& target) {
-  target.jumping_steps = 0;
-  target.jumped_from = target.carried = Vector3::Zero();
-  target.first_excess = target.last_excess = target.least_excess = target.greatest_excess = 0;
-}
-
-/// Whether a jump may begin in a step with this mean velocity, and its velocity before. An acceleration that goes on is none, nor
-/// is what comes back from a change that was no jump.
-bool may_begin_jump(const Vector3& mean, double time_step, KinematicTarget& target) {
-  const Vector3 change = mean - target.mean_velocity;
-  if (!is_greater_than_a_motion(change)) return false;
-  const double jerk = (change - target.change).norm();
-  if (jerk <= greatest_change || jerk <= sudden * target.change.norm()) return false;
-  if (time_step > longest_jump * (1 + rounding) && change.norm() <= out_of_proportion * target.liveliness) return false;
-  const Vector3 before = target.change.norm() <= steady_change ? target.mean_velocity : target.average_velocity;
-  if (!is_greater_than_a_motion(mean - before)) return false;
-  target.mean_velocity = before;
-  return true;
-}
-
-/// Whether what has gone on for some steps, and goes on with this excess of velocity, may be a jump. Where it does not fit into
-/// the longest time with its whole first and last step, it does with parts of them if it has one speed.
-bool is_short(double excess, double time_step, const KinematicTarget& target) {
-  const int steps = target.jumping_steps + 1;
-  const double longest = longest_jump / time_step * (1 + rounding);
-  // Two steps may both be parts: how long it lasted in them cannot be told.
-  if (steps <= std::max(longest, 2.0)) return true;
-  const double least = target.jumping_steps > 2 ? std::min(target.least_excess, target.last_excess) : target.last_excess;
-  const double greatest = std::max(target.greatest_excess, target.last_excess);
-  return greatest - least <= one_speed * greatest && steps - 2 + (target.first_excess + excess) / greatest <= longest;
-}
-
-void begin_or_continue_jump(double excess, KinematicTarget& target) {
-  if (target.jumping_steps == 0) {
-    target.jumped_from = target.position;
-    target.first_excess = excess;
-  } else if (target.jumping_steps > 1) {
-    target.least_excess = target.jumping_steps == 2 ? target.last_excess : std::min(target.least_excess, target.last_excess);
-    target.greatest_excess = std::max(target.greatest_excess, target.last_excess);
-  }
-  target.last_excess = excess;
-  ++target.jumping_steps;
-}
-
-/// What a change of velocity turns out to be.
-enum class Change { none, undecided, jump, motion };
-
-/// The change in a step with this mean velocity. One that lasts is a motion, and to be followed; until that is known it may be a
-/// jump. What trembles goes as its mean does.
-Change judge(const Vector3& mean, double time_step, KinematicTarget& target) {
-  if (target.jumping_steps == 0 && !may_begin_jump(mean, time_step, target)) return Change::none;
-  const double excess = (mean - target.mean_velocity).norm();
-  if (excess <= greatest_change) return Change::jump;
-  if (is_short(excess, time_step, target)) {
-    begin_or_continue_jump(excess, target);
-    return Change::undecided;
-  }
-  const Vector3 lasting = (target.next_position - target.jumped_from) / ((target.jumping_steps + 1) * time_step);
-  if (is_greater_than_a_motion(lasting - target.mean_velocity)) return Change::motion;
-  end_jump(target);
-  target.mean_velocity = lasting;
-  if (!is_greater_than_a_motion(mean - lasting)) return Change::none;
-  begin_or_continue_jump((mean - lasting).norm(), target);
-  return Change::undecided;
-}
-
-/// Keeps in mind how a holder moves in a step.
-void note_motion(const Vector3& change, const Vector3& mean, double time_step, KinematicTarget& target) {
-  target.change = change;
-  target.liveliness = std::max(fading * target.liveliness, change.norm());
-  target.average_velocity += time_step / (averaging_time + time_step) * (mean - target.average_velocity);
 }
 
 /// Catches a node where it is.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "chain/node_arrays.h"
+
 namespace verlet_cable {
 
 namespace {
@@ -10,27 +12,6 @@ namespace {
 /// [1/s] Of the critically damped motion that gives lost length back.
 constexpr double giving_back = 20;
 constexpr double smallest_debt = 1e-9;  // [m]
-
-template <typename Array>
-void duplicate(Array& array, int i) {
-  const auto value = array[i];
-  array.insert(array.begin() + i, value);
-}
-
-template <typename Array>
-void erase(Array& array, int i) {
-  array.erase(array.begin() + i);
-}
-
-template <typename Function>
-void for_node_arrays(CableState& state, const Function& function) {
-  for (auto* array : {&state.positions, &state.velocities, &state.accelerations}) function(*array);
-}
-
-template <typename Function>
-void for_segment_arrays(CableState& state, const Function& function) {
-  for (auto* array : {&state.tension, &state.axial_multiplier, &state.twist}) function(*array);
-}
 
 }  // namespace
 
@@ -83,22 +64,20 @@ bool complete_drive(LengthDrive& drive) {
 void insert_node(int segment, double first, SimulatedCable& cable) {
   CableModel& model = cable.model;
   const double whole = model.rest_lengths[segment], second = whole - first, part = first / whole;
-  const int node = segment + 1;
-  for_node_arrays(cable.state, [&](std::vector<Vector3>& values) {
-    const Vector3 value = values[segment] + part * (values[node] - values[segment]);
-    values.insert(values.begin() + node, value);
-  });
-  for_segment_arrays(cable.state, [&](std::vector<double>& values) { duplicate(values, segment); });
+  const int node = segment + 1, neighbour = segment == 0 ? node : segment;
+  duplicate_node(node, cable);
+  for (auto* values : {&cable.state.positions, &cable.state.velocities, &cable.state.accelerations})
+    (*values)[node] = (*values)[segment] + part * ((*values)[node + 1] - (*values)[segment]);
+  if (!model.rest_curvature.empty()) model.rest_curvature[node] = model.rest_curvature[neighbour];
+  // What a winch pays out bends.
+  if (!model.flexible_fraction.empty()) model.flexible_fraction[node] = 1;
   const double half_density = 0.5 * model.material.linear_density;
   model.masses[segment] -= half_density * second;
-  model.masses[node] -= half_density * first;
-  model.masses.insert(model.masses.begin() + node, half_density * whole);
-  duplicate(model.rest_lengths, segment);
+  model.masses[node + 1] -= half_density * first;
+  model.masses[node] = half_density * whole;
+  duplicate_segment(segment, cable);
   model.rest_lengths[segment] = first;
   model.rest_lengths[node] = second;
-  if (!model.rest_curvature.empty()) duplicate(model.rest_curvature, segment == 0 ? node : segment);
-  // What a winch pays out bends.
-  if (!model.flexible_fraction.empty()) model.flexible_fraction.insert(model.flexible_fraction.begin() + node, 1.0);
   if (cable.state.reference_node >= node) ++cable.state.reference_node;
 }
 
@@ -119,16 +98,12 @@ double remove_node(int node, SimulatedCable& cable) {
   };
   give(before, second / whole);
   give(after, first / whole);
-  for_segment_arrays(state, [&](std::vector<double>& values) {
+  visit_segment_arrays(cable, [&](std::vector<double>& values) {
     values[before] = (first * values[before] + second * values[node]) / whole;
-    erase(values, node);
   });
-  for_node_arrays(state, [&](std::vector<Vector3>& values) { erase(values, node); });
-  erase(model.masses, node);
-  erase(model.rest_lengths, node);
   model.rest_lengths[before] = length;
-  if (!model.rest_curvature.empty()) erase(model.rest_curvature, node);
-  if (!model.flexible_fraction.empty()) erase(model.flexible_fraction, node);
+  erase_segment(node, cable);
+  erase_node(node, cable);
   if (state.reference_node >= node) --state.reference_node;
   return whole - length;
 }
