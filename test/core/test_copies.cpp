@@ -81,6 +81,34 @@ TEST(Copies, NetStaysOutOfEveryObstacleInAnyOrder) {
   }
 }
 
+TEST(Copies, AreAssignedToWorldsThatHaveBeenMovedFrom) {
+  const SceneDesc scene = scenes::between_two_points(10, 0.6);
+  World world(scene, initial_frames(scene));
+  World moved_from = world;
+  const World other = std::move(moved_from);
+  moved_from = world;
+  EXPECT_EQ(moved_from.hash(), other.hash());
+  EXPECT_EQ(moved_from.step({FrameInput{}}).status, StepResult::Status::ok);
+}
+
+TEST(Copies, GoOnAsTheirOriginalWhenRadiiAreTuned) {
+  SceneDesc scene = scenes::one_cable(50);
+  scene.contact = ContactDesc{};
+  scene.gravity.acceleration.setZero();
+  scene.cables[0].initial.type = InitialShapeDesc::Type::straight;
+  World world(scene, initial_frames(scene));
+  scenes::run(world, 5);
+  scene.materials[0].material.radius = 0.025;
+  world.tune(scene);
+  World copy = world;
+  for (int i = 0; i < 5; ++i) {
+    scenes::run(world, 1);
+    scenes::run(copy, 1);
+    ASSERT_EQ(world.hash(), copy.hash()) << i;
+    ASSERT_EQ(world.findings().contacts.size(), copy.findings().contacts.size()) << i;
+  }
+}
+
 TEST(Copies, PinOnACableLeavesANetOnItsFloor) {
   for (const LinkType type : {LinkType::limited, LinkType::rigid}) {
     SceneDesc scene = falling_sheet(type);

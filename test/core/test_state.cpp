@@ -271,6 +271,71 @@ TEST(State, ACableMovesAsItDoesAlone) {
   }
 }
 
+/// Cables of as many segments, but of different kinds: straight and curved, elastic and not, clamped, twisted, in a fluid's drag,
+/// lying on the floor, thick and thin, held in the middle.
+std::vector<SceneDesc> kinds() {
+  std::vector<SceneDesc> all;
+  for (int i = 0; i < 12; ++i) {
+    SceneDesc scene = scenes::between_two_points(20, 0.6);
+    scene.materials[0].name = "material_" + std::to_string(i);
+    MaterialDesc& material = scene.materials[0].material;
+    CableDesc& cable = scene.cables[0];
+    cable.name = "kind_" + std::to_string(i);
+    cable.material = scene.materials[0].name;
+    if (i % 2 == 1) material.bending_stiffness = 1e-3;
+    if (i % 3 == 1) material.axial_stiffness = 500;
+    if (i % 4 == 1) material.torsional_stiffness = 1e-3;
+    material.radius = 0.003 + 0.001 * (i % 3);
+    if (i == 3 || i == 5 || i == 9) {
+      cable.rest_curvature.type = RestCurvatureDesc::Type::constant;
+      cable.rest_curvature.curvature = {3, -2};
+    }
+    if (i == 5 || i == 7) {
+      for (AttachmentDesc& attachment : cable.attachments) attachment.type = AttachmentType::clamp;
+    }
+    if (i == 7) cable.stiff_ends = {0.1, 0};
+    if (i == 8 || i == 11) {
+      AttachmentDesc middle = cable.attachments[0];
+      middle.name = "middle";
+      middle.place.at = PlaceDesc::At::arc_length;
+      middle.place.arc_length = 0.5;
+      middle.offset = {0.3, 0, -0.1};
+      cable.attachments.push_back(middle);
+    }
+    if (i == 10) cable.attachments.pop_back();
+    for (AttachmentDesc& attachment : cable.attachments) {
+      attachment.name += "_" + std::to_string(i);
+      attachment.offset.y() = 3 * i;
+    }
+    scene.fluid.velocity = {0, 1, 0};
+    scene.fluid.density = 1;
+    ObstacleDesc floor;
+    floor.name = "floor";
+    floor.pose = {0, 0, -0.25, 0, 0, 0};
+    scene.obstacles = {floor};
+    scene.contact = ContactDesc{};
+    all.push_back(scene);
+  }
+  return all;
+}
+
+/// Nothing of one cable is left in what the next one is solved with.
+TEST(State, CablesOfAllKindsMoveAsTheyDoAlone) {
+  const std::vector<SceneDesc> all = kinds();
+  for (const SceneDesc& first : all)
+    for (const SceneDesc& second : all) {
+      if (first.cables[0].name == second.cables[0].name) continue;
+      SceneDesc scene = first;
+      scene.materials.push_back(second.materials[0]);
+      scene.cables.push_back(second.cables[0]);
+      World both(scene, initial_frames(scene)), alone(second, initial_frames(second));
+      scenes::run(both, 60);
+      scenes::run(alone, 60);
+      ASSERT_TRUE(same(both.cables()[1].state.positions, alone.cables()[0].state.positions))
+          << second.cables[0].name << " after " << first.cables[0].name;
+    }
+}
+
 /// Cables that come at each other at any speed, and with any time step, are found before they meet.
 TEST(State, CablesThatComeAtEachOtherMeet) {
   for (const double time_step : {1e-3, 5e-3})

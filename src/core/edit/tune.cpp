@@ -19,6 +19,7 @@ void World::tune(const SceneDesc& scene) {
     // A clamp holds the direction where the cable is stiff, the neighbouring node where it is not.
     implementation_->find_targets_of(i);
   }
+  implementation_->islands.value.invalidate();  // their pairs are those of the radii before
 }
 
 }  // namespace verlet_cable

@@ -37,6 +37,8 @@ void Bending::start(const CableModel& model, const VectorArray& segment, const s
   active_ = stiffness > 0 || model.material.bending_damping > 0;
   if (!active_) return;
   part_ = part;
+  if (is_curved_ && model.rest_curvature.empty()) natural_.assign(model.nodes(), 0.0);
+  is_curved_ = !model.rest_curvature.empty();
   for (int i = 0; i < segments_; ++i) inverse_length_[i] = 1 / model.rest_lengths[i];
   for (int i = 1; i < segments_; ++i) {
     const double joint = 1 / model.bending_length(i, 0.5 * (model.rest_lengths[i - 1] + model.rest_lengths[i]));

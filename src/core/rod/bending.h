@@ -51,6 +51,7 @@ class Bending {
   void bend_clamps(const VectorArray& displacement);
 
   bool active_ = false;
+  bool is_curved_ = false;  ///< `natural_` is set
   int segments_ = 0;
   double part_ = 0.5;
   std::vector<double> inverse_length_;       // segments [1/m]

@@ -163,6 +163,8 @@ void CableStepper::start_bending(const Substep& s) {
   if (winch_node_ >= 0) set(segment_, i, segment + part * rest_growth_[i] * segment.normalized());
   bending_.start(s.model, segment_, s.boundary.directions, s.damping_time(), s.part());
   set(segment_, i, segment);
+  if (!bending_.active() && couples_second_) std::fill(system_.second.begin(), system_.second.end(), 0.0);
+  couples_second_ = bending_.active();
 }
 
 void CableStepper::add_bending_pulls() {

@@ -126,6 +126,7 @@ class CableStepper {
   FluidForces fluid_;
   VectorArray director_;  // segments: the material's y axis; only where the unloaded shape is curved
   KktSystem system_;
+  bool couples_second_ = false;  // the system's couplings to second neighbours are set
   BlockElimination solver_;
   // Velocity projection: a tridiagonal system
   std::vector<double> pivot_, off_, impulse_;  // segments

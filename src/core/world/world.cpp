@@ -122,6 +122,7 @@ World::World(const SceneDesc& scene) : implementation_(std::make_unique<Implemen
 World::~World() = default;
 World::World(const World& other) : implementation_(std::make_unique<Implementation>(*other.implementation_)) {}
 World& World::operator=(const World& other) {
+  if (!implementation_) return *this = World(other);  // it had been moved from
   *implementation_ = *other.implementation_;
   return *this;
 }
