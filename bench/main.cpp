@@ -1,10 +1,13 @@
-#include <cstring>
+#include <algorithm>
 #include <functional>
 #include <iostream>
 #include <string>
 #include <vector>
 
+#include "common/command_line.h"
+#include "common/program.h"
 #include "rows.h"
+#include "verlet_cable/core/quoted_text.h"
 
 namespace {
 
@@ -27,27 +30,21 @@ int main(int argc, char** argv) {
                                    {"bullet", released_against_bullet},
                                    {"simbody", released_against_simbody}};
   bool quick = false;
-  std::vector<std::string> wanted;
-  for (int i = 1; i < argc; ++i) {
-    if (std::strcmp(argv[i], "--quick") == 0)
-      quick = true;
-    else
-      wanted.emplace_back(argv[i]);
-  }
+  verlet_cable::tools::CommandLine line("usage: verlet_cable_bench [TABLE...] [--quick]", "");
+  line.add_flag("--quick", "fewer and shorter runs", quick);
+  std::vector<std::string> errors;
+  const std::vector<std::string> wanted = line.parse({argv + 1, argv + argc}, errors);
+  std::cout << line.help();
+  if (!line.help().empty()) return verlet_cable::tools::exit_done;
+  std::string names;
+  for (const NamedRow& row : rows) names += std::string(names.empty() ? "" : ", ") + row.name;
+  for (const std::string& name : wanted)
+    if (std::none_of(rows.begin(), rows.end(), [&](const NamedRow& row) { return name == row.name; }))
+      errors.push_back(verlet_cable::quoted(name) + ": no such table; allowed: " + names);
+  if (!errors.empty()) return verlet_cable::tools::refuse("verlet_cable_bench", errors, "nothing was measured");
   Report report;
-  for (const std::string& name : wanted) {
-    bool known = false;
-    for (const NamedRow& row : rows) known = known || name == row.name;
-    if (known) continue;
-    std::cerr << "unknown table '" << name << "'; allowed:";
-    for (const NamedRow& row : rows) std::cerr << ' ' << row.name;
-    std::cerr << " and --quick\n";
-    return 2;
-  }
   for (const NamedRow& row : rows) {
-    bool run = wanted.empty();
-    for (const std::string& name : wanted) run = run || name == row.name;
-    if (run) row.run(report, quick);
+    if (wanted.empty() || std::count(wanted.begin(), wanted.end(), row.name) > 0) row.run(report, quick);
   }
   report.summary();
   return 0;

@@ -32,8 +32,8 @@ source_setup() {
 
 # The only list of system packages: to build, to run and to test; and, with a display only, to look at it.
 packages=(
-  build-essential cmake iproute2 libassimp-dev libceres-dev libconsole-bridge-dev libeigen3-dev libgtest-dev libtbb-dev liburdfdom-dev
-  libyaml-cpp-dev python3-numpy python3-yaml
+  build-essential cmake iproute2 libassimp-dev libceres-dev libcli11-dev libconsole-bridge-dev libeigen3-dev libgtest-dev libtbb-dev
+  liburdfdom-dev libyaml-cpp-dev nlohmann-json3-dev python3-numpy python3-yaml
 )
 if [[ -f /opt/ros/noetic/setup.bash ]]; then
   source_setup /opt/ros/noetic/setup.bash

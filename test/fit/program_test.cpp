@@ -176,8 +176,11 @@ TEST_F(CableFit, TellsWhatWasWrittenAndHowToSeeIt) {
                            "; see it with: roslaunch verlet_cable replay.launch data:=" + take + " scene:='" + scene + "'\n";
   EXPECT_EQ(out.substr(out.size() - std::min(out.size(), last.size())), last) << out;
   // What standard output takes is no file.
-  ASSERT_EQ(fit(take + " --name lead --segments 8 --output /dev/stdout --report " + report), 0) << err;
+  const std::string renamed = write("take\xff.csv", content(take));
+  ASSERT_EQ(fit(renamed + " --name lead --segments 8 --output /dev/stdout --report " + report), 0) << err;
   EXPECT_NE(err.find("\nwritten: " + report + "\n"), std::string::npos) << err;
+  // A report is UTF-8, whatever names of files are.
+  EXPECT_NE(content(report).find("take\xef\xbf\xbd.csv\""), std::string::npos) << content(report);
 }
 
 TEST_F(CableFit, WhatCannotBeWrittenIsRefusedBeforeTheFit) {

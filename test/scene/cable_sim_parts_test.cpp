@@ -1,12 +1,9 @@
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "cable_sim/event_log.h"
 #include "cable_sim/frame_source.h"
 #include "cable_sim/job.h"
 #include "cable_sim/options.h"
-#include "common/json_writer.h"
 #include "scene_text.h"
 
 namespace verlet_cable::cable_sim {
@@ -55,6 +52,23 @@ TEST(Options, everyMistakeIsNamedAtOnce) {
     EXPECT_TRUE(has_line(errors, start)) << start << "\n" << joined(errors);
   parse({}, &errors);
   EXPECT_TRUE(has_line(errors, "no scene"));
+  // A value that is empty, or missing, takes nothing of what follows.
+  EXPECT_EQ(parse({"--output=", "a.yaml", "--settle=x", "--settle", "---", "-5", "--", "--summary"}, &errors).scene, "a.yaml");
+  for (const char* start : {"--output: \"\"", "--settle: \"x\"; allowed: no value", "--settle: given twice", "---: no such option",
+                            "-5: no such option", "--: no such option"})
+    EXPECT_TRUE(has_line(errors, start)) << start << "\n" << joined(errors);
+}
+
+TEST(Options, helpTellsOfAllOptions) {
+  std::vector<std::string> errors;
+  for (const char* flag : {"--help", "-h"}) {
+    const std::string help = parse({flag}, &errors).help;
+    EXPECT_EQ(joined(errors), "");
+    for (const char* text : {"usage: cable_sim SCENE.yaml [options]\nRuns a scene offline.\n", "  --duration S   ",
+                             "  --settle   ", "put the cables into static equilibrium before t = 0\n", "exit status: 0 done"})
+      EXPECT_NE(help.find(text), std::string::npos) << text << "\n" << help;
+  }
+  EXPECT_EQ(parse({"a.yaml"}, &errors).help, "");
 }
 
 TEST(RowSchedule, rowsAreTheFirstStepsAtOrAfterTheirTimes) {
@@ -75,30 +89,6 @@ TEST(Steps, reachTheDurationAndNoFurther) {
   EXPECT_EQ(steps_for(0.3, 0.1), 3);
   EXPECT_EQ(steps_for(1, 0.003), 334);
   EXPECT_EQ(steps_for(0, 0.001), 0);
-}
-
-TEST(JsonWriter, writesJson) {
-  tools::JsonWriter json;
-  json.begin_object();
-  json.entry("number", 0.1);
-  json.entry("none", std::numeric_limits<double>::infinity());
-  json.entry("count", std::int64_t{3});
-  json.entry("text", std::string("a\"b\\c\n"));
-  json.entry("vector", Vector3(1, 2.5, -3));
-  json.key("empty");
-  json.begin_array();
-  json.end_array();
-  json.key("list");
-  json.begin_array();
-  json.value(1.0);
-  json.begin_object();
-  json.end_object();
-  json.end_array();
-  json.end_object();
-  EXPECT_EQ(json.text(),
-            "{\n  \"number\": 0.1,\n  \"none\": null,\n  \"count\": 3,\n  \"text\": \"a\\\"b\\\\c\\u000a\",\n  \"vector\": [1, "
-            "2.5, -3],\n"
-            "  \"empty\": [],\n  \"list\": [\n    1,\n    {}\n  ]\n}");
 }
 
 TEST(FrameSource, framesMoveRestAtTheirPoseOrTheOrigin) {

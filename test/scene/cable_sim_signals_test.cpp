@@ -8,6 +8,7 @@
 
 #include "cable_sim_fixture.h"
 #include "scene_text.h"
+#include "verlet_cable/core/number_text.h"
 
 namespace verlet_cable {
 namespace {
@@ -104,7 +105,7 @@ TEST_F(CableSimSignals, whatWasSimulatedIsWrittenWhole) {
     send(signal);
     EXPECT_EQ(exit_status(), 3);
     const YAML::Node json = summary("s.json");
-    EXPECT_NE(err.find("stopped at " + json["sim_time"].Scalar() + " s: ended by " + name), std::string::npos) << err;
+    EXPECT_NE(err.find("stopped at " + number_text(json["sim_time"].as<double>()) + " s: ended by " + name), std::string::npos) << err;
     EXPECT_EQ(parts(), std::vector<std::string>());
 
     // All rows of all times, one a step: the cable has 21 nodes, the scene steps of 2 ms.

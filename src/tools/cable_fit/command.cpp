@@ -170,8 +170,8 @@ std::string written_text(const Options& options) {
 int run(const std::vector<std::string>& arguments) {
   std::vector<std::string> errors;
   const Options options = parse_options(arguments, errors);
-  if (options.help) {
-    std::cout << usage;
+  if (!options.help.empty()) {
+    std::cout << options.help;
     return tools::exit_done;
   }
   std::vector<std::string> others = options.recordings;

@@ -1,9 +1,10 @@
 #include "cross_validation.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 
 #include "least_squares.h"
-#include "parallel.h"
 
 namespace verlet_cable::cable_fit {
 namespace {
@@ -15,7 +16,7 @@ constexpr int fewest_for_pairs = 6;
 
 std::vector<Prediction> predictions(const std::vector<FittedCable>& cables, const std::vector<Recording>& recordings) {
   std::vector<Prediction> predictions(recordings.size());
-  for_each_index(static_cast<int>(predictions.size()), [&](int i) {
+  tbb::parallel_for(0, static_cast<int>(predictions.size()), [&](int i) {
     const auto& [settings, values] = cables[i];
     predictions[i] = predict(cable_scene(settings, values), markers_of(settings, values), recordings[i]);
   });

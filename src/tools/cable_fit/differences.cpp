@@ -1,9 +1,10 @@
 #include "differences.h"
 
+#include <tbb/parallel_for.h>
+
 #include <cmath>
 #include <mutex>
 
-#include "parallel.h"
 #include "prediction_error.h"
 
 namespace verlet_cable::cable_fit {
@@ -50,7 +51,7 @@ Linearization linearize(const Problem& problem, const std::vector<int>& recordin
     steps[k] = values[k] + parameter.step <= parameter.highest ? parameter.step : -parameter.step;
   }
   std::mutex mutex;
-  for_each_index(count * (changes + 1), [&](int i) {
+  tbb::parallel_for(0, count * (changes + 1), [&](int i) {
     const int change = i / count, recording = i % count, which = recordings[recording];
     std::vector<double> changed = values;
     if (change > 0) changed[change - 1] += steps[change - 1];

@@ -1,12 +1,12 @@
 #include "least_squares.h"
 
 #include <ceres/ceres.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <mutex>
 
-#include "parallel.h"
 #include "prediction_error.h"
 
 namespace verlet_cable::cable_fit {
@@ -97,7 +97,7 @@ std::vector<double> coarse_search(const Problem& problem, const std::vector<int>
   const int recordings = static_cast<int>(training.size());
   std::vector<double> errors(guesses.size() * training.size());
   std::mutex mutex;
-  for_each_index(static_cast<int>(errors.size()), [&](int i) {
+  tbb::parallel_for(0, static_cast<int>(errors.size()), [&](int i) {
     const int recording = training[i % recordings];
     const std::vector<double>& guess = guesses[i / recordings];
     const Prediction prediction =

@@ -18,14 +18,10 @@ struct Options {
   int segments = 40;
   double linear_density = 0.1;  ///< [kg/m]
   double radius = 0.005;        ///< [m]
-  bool help = false;
+  std::string help;             ///< what --help prints, empty: not asked for
 };
 
-/// What --help prints.
-extern const char* const usage;
-
-/// Reads the arguments after the program's name; `--option value` and `--option=value`. Adds a line to `errors` for each that is
-/// wrong. Arguments that roslaunch appends (`__name:=...`) are skipped.
+/// Reads the arguments after the program's name. Adds a line to `errors` for each that is wrong.
 Options parse_options(const std::vector<std::string>& arguments, std::vector<std::string>& errors);
 
 }  // namespace verlet_cable::cable_fit

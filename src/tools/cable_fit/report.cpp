@@ -4,13 +4,13 @@
 #include <cstdarg>
 #include <cstdio>
 
-#include "common/json_writer.h"
+#include "common/json.h"
 #include "verlet_cable/core/number_text.h"
 
 namespace verlet_cable::cable_fit {
 namespace {
 
-using tools::JsonWriter;
+using tools::Json;
 
 /// The interval of a parameter, as values of the scene's key.
 struct Interval {
@@ -21,34 +21,24 @@ Interval interval(const Parameter& parameter, double value, const Confidence& co
   return {scene_value(parameter, value - confidence.half_width), scene_value(parameter, value + confidence.half_width)};
 }
 
-void write_boolean(const char* key, bool value, JsonWriter& json) {
-  json.entry(key, std::string(value ? "yes" : "no"));
+Json error_json(const PredictionError& error) {
+  return {{"mean", error.mean}, {"largest", error.largest}, {"last", error.last}};
 }
 
-void write_error(const PredictionError& error, JsonWriter& json) {
-  json.begin_object();
-  json.entry("mean", error.mean);
-  json.entry("largest", error.largest);
-  json.entry("last", error.last);
-  json.end_object();
-}
-
-void write_parameters(const Fit& fit, JsonWriter& json) {
+Json parameters_json(const Fit& fit) {
   const auto& [problem, result] = fit;
-  json.begin_array();
+  Json json = Json::array();
   for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
     const Parameter& parameter = problem.parameters[i];
     const Interval range = interval(parameter, result.values[i], result.confidence[i]);
-    json.begin_object();
-    json.entry("key", parameter.key);
-    json.entry("unit", parameter.unit);
-    json.entry("value", scene_value(parameter, result.values[i]));
-    json.entry("low", range.low);
-    json.entry("high", range.high);
-    write_boolean("told_by_the_data", result.confidence[i].told, json);
-    json.end_object();
+    json.push_back({{"key", parameter.key},
+                    {"unit", parameter.unit},
+                    {"value", scene_value(parameter, result.values[i])},
+                    {"low", range.low},
+                    {"high", range.high},
+                    {"told_by_the_data", result.confidence[i].told ? "yes" : "no"}});
   }
-  json.end_array();
+  return json;
 }
 
 bool any_swapped(const std::vector<SwappedEnds>& swapped) {
@@ -65,56 +55,39 @@ std::string line(const char* format, ...) {
   return buffer;
 }
 
-/// Entries of an object.
-void write_fit(const std::vector<SwappedEnds>& swapped, const Fit& fit, JsonWriter& json) {
+Json recordings_json(const std::vector<SwappedEnds>& swapped, const Fit& fit) {
+  const auto& [problem, result] = fit;
+  Json json = Json::array();
+  for (std::size_t i = 0; i < problem.recordings.size(); ++i) {
+    Json recording{
+        {"path", problem.recordings[i].path}, {"noise", problem.inputs[i].noise}, {"swapped_markers", swapped_text(swapped[i])}};
+    const auto add_errors = [&](const std::string& key, const Errors& errors) {
+      if (errors.as_numbered.empty()) return;
+      recording[key] = error_json(errors.as_numbered[i]);
+      if (swapped[i].any()) recording[key + "_in_order"] = error_json(errors.in_order[i]);
+    };
+    add_errors("fitted", result.fitted);
+    add_errors("left_out", result.left_out);
+    json.push_back(std::move(recording));
+  }
+  return json;
+}
+
+/// Adds what a fit found to an object.
+void add_fit(const std::vector<SwappedEnds>& swapped, const Fit& fit, Json& json) {
   const auto& [problem, result] = fit;
   const bool cross_validated = !result.left_out.as_numbered.empty();
-  json.entry("mean_error", mean_error(result.fitted.as_numbered));
-  if (cross_validated) json.entry("cross_validated_error", mean_error(result.left_out.as_numbered));
-  if (cross_validated && any_swapped(swapped)) json.entry("cross_validated_error_in_order", mean_error(result.left_out.in_order));
-  json.key("resegmented");
-  json.begin_array();
-  for (const Resegmented& other : result.resegmented) {
-    json.begin_object();
-    json.entry("segments", static_cast<std::int64_t>(other.segments));
-    json.entry("mean_error", other.error);
-    json.end_object();
-  }
-  json.end_array();
-  json.key("parameters");
-  write_parameters(fit, json);
+  json["mean_error"] = mean_error(result.fitted.as_numbered);
+  if (cross_validated) json["cross_validated_error"] = mean_error(result.left_out.as_numbered);
+  if (cross_validated && any_swapped(swapped)) json["cross_validated_error_in_order"] = mean_error(result.left_out.in_order);
+  json["resegmented"] = Json::array();
+  for (const Resegmented& other : result.resegmented)
+    json["resegmented"].push_back({{"segments", other.segments}, {"mean_error", other.error}});
+  json["parameters"] = parameters_json(fit);
   const Markers markers = markers_of(problem.settings, result.values);
-  json.key("marker_places");
-  json.begin_array();
-  for (const double place : markers.places) json.value(place);
-  json.end_array();
-  json.key("marker_offsets");
-  json.begin_array();
-  for (const auto& offset : markers.offsets) {
-    json.begin_array();
-    for (const double value : offset) json.value(value);
-    json.end_array();
-  }
-  json.end_array();
-  json.key("recordings");
-  json.begin_array();
-  for (std::size_t i = 0; i < problem.recordings.size(); ++i) {
-    const auto write_errors = [&](const std::string& key, const Errors& errors) {
-      json.key(key);
-      write_error(errors.as_numbered[i], json);
-      if (!swapped[i].any()) return;
-      json.key(key + "_in_order");
-      write_error(errors.in_order[i], json);
-    };
-    json.begin_object();
-    json.entry("path", problem.recordings[i].path);
-    json.entry("noise", problem.inputs[i].noise);
-    json.entry("swapped_markers", std::string(swapped_text(swapped[i])));
-    write_errors("fitted", result.fitted);
-    if (cross_validated) write_errors("left_out", result.left_out);
-    json.end_object();
-  }
-  json.end_array();
+  json["marker_places"] = markers.places;
+  json["marker_offsets"] = markers.offsets;
+  json["recordings"] = recordings_json(swapped, fit);
 }
 
 bool is_curvature(const Parameter& parameter) {
@@ -169,19 +142,10 @@ double mean_error(const std::vector<PredictionError>& errors) {
 }
 
 std::string report_json(const std::vector<SwappedEnds>& swapped, const Fit& fit, const Fit* centre_line) {
-  JsonWriter json;
-  json.begin_object();
-  json.entry("name", fit.problem.settings.name);
-  json.entry("segments", static_cast<std::int64_t>(fit.problem.settings.segments));
-  write_fit(swapped, fit, json);
-  if (centre_line) {
-    json.key("centre_line");
-    json.begin_object();
-    write_fit(swapped, *centre_line, json);
-    json.end_object();
-  }
-  json.end_object();
-  return json.text() + "\n";
+  Json json{{"name", fit.problem.settings.name}, {"segments", fit.problem.settings.segments}};
+  add_fit(swapped, fit, json);
+  if (centre_line) add_fit(swapped, *centre_line, json["centre_line"]);
+  return tools::file_text(json);
 }
 
 std::string summary_text(const std::vector<SwappedEnds>& swapped, const Fit& fit, const Fit* centre_line) {

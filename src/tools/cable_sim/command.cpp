@@ -120,8 +120,8 @@ int simulate_job(const Options& options, const Job& job) {
 int run(const std::vector<std::string>& arguments) {
   std::vector<std::string> errors;
   const Options options = parse_options(arguments, errors);
-  if (options.help) {
-    std::cout << usage;
+  if (!options.help.empty()) {
+    std::cout << options.help;
     return tools::exit_done;
   }
   const Job job = prepare(options, errors);

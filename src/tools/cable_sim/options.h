@@ -14,14 +14,10 @@ struct Options {
   std::string output;    ///< path, empty: none
   std::string summary;   ///< path, empty: none
   bool settle = false;   ///< into equilibrium before t = 0
-  bool help = false;
+  std::string help;      ///< what --help prints, empty: not asked for
 };
 
-/// What --help prints.
-extern const char* const usage;
-
-/// Reads the arguments after the program's name; `--option value` and `--option=value`. Adds a line to `errors` for each that is
-/// wrong. Arguments that roslaunch appends (`__name:=...`) are skipped.
+/// Reads the arguments after the program's name. Adds a line to `errors` for each that is wrong.
 Options parse_options(const std::vector<std::string>& arguments, std::vector<std::string>& errors);
 
 }  // namespace verlet_cable::cable_sim

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cinttypes>
 #include <cstdio>
+#include <utility>
 
-#include "common/json_writer.h"
+#include "common/json.h"
 
 namespace verlet_cable::cable_sim {
 namespace {
+
+using tools::Json;
 
 constexpr double nanoseconds = 1e9;
 
@@ -17,28 +20,23 @@ std::string hash_text(std::uint64_t hash) {
   return text;
 }
 
-void write_event(tools::JsonWriter& json, const Event& event) {
-  json.begin_object();
-  json.entry("time", event.time);
-  json.entry("type", event.type);
-  if (!event.cable.empty()) json.entry("cable", event.cable);
-  if (event.node >= 0) json.entry("node", std::int64_t{event.node});
-  if (!event.frame.empty()) json.entry("frame", event.frame);
-  if (!event.other.empty()) json.entry("other", event.other);
-  json.entry("message", event.message);
-  json.end_object();
+Json array(const Vector3& vector) {
+  return {vector.x(), vector.y(), vector.z()};
 }
 
-void write_energy(tools::JsonWriter& json, const Energy& energy, double initial_total) {
-  json.begin_object();
-  json.entry("kinetic", energy.kinetic);
-  json.entry("gravity", energy.gravity);
-  json.entry("stretch", energy.stretch);
-  json.entry("bend", energy.bend);
-  json.entry("twist", energy.twist);
-  json.entry("total", energy.total());
-  json.entry("initial_total", initial_total);
-  json.end_object();
+Json event_json(const Event& event) {
+  Json json{{"time", event.time}, {"type", event.type}};
+  if (!event.cable.empty()) json["cable"] = event.cable;
+  if (event.node >= 0) json["node"] = event.node;
+  if (!event.frame.empty()) json["frame"] = event.frame;
+  if (!event.other.empty()) json["other"] = event.other;
+  json["message"] = event.message;
+  return json;
+}
+
+Json energy_json(const Energy& energy, double initial_total) {
+  return {{"kinetic", energy.kinetic}, {"gravity", energy.gravity}, {"stretch", energy.stretch},     {"bend", energy.bend},
+          {"twist", energy.twist},     {"total", energy.total()},   {"initial_total", initial_total}};
 }
 
 }  // namespace
@@ -78,38 +76,32 @@ Summary::Wrench Summary::mean_wrench(const Attachment& attachment) const {
 }
 
 std::string Summary::json(const World& world, const std::vector<Event>& events) const {
-  tools::JsonWriter json;
-  json.begin_object();
-  json.entry("sim_time", world.time());
-  json.entry("wall_time", wall_seconds());
-  json.entry("real_time_factor", world.time() / wall_seconds());
-  json.entry("steps", world.steps());
-  json.entry("substeps", substeps_);
-  json.entry("segments", segments_);
-  json.entry("ns_per_segment_substep", nanoseconds * wall_seconds() / static_cast<double>(segments_ * substeps_));
-  json.entry("max_strain", max_strain_);
-  json.key("energy");
-  write_energy(json, world.energy(), initial_energy_);
-  json.key("attachments");
-  json.begin_object();
+  // By names, which are not looked up: there may be tens of thousands.
+  std::vector<std::pair<std::string, Json>> attachments;
   for (const Attachment& attachment : world.attachments()) {
     const Wrench mean = mean_wrench(attachment);
-    json.key(attachment.name);
-    json.begin_object();
-    json.entry("force", mean.force);
-    json.entry("torque", mean.torque);
-    json.entry("force_now", attachment.force);
-    json.entry("torque_now", attachment.torque);
-    json.end_object();
+    attachments.emplace_back(attachment.name, Json{{"force", array(mean.force)},
+                                                   {"torque", array(mean.torque)},
+                                                   {"force_now", array(attachment.force)},
+                                                   {"torque_now", array(attachment.torque)}});
   }
-  json.end_object();
-  json.entry("state_hash", hash_text(world.hash()));
-  json.key("events");
-  json.begin_array();
-  for (const Event& event : events) write_event(json, event);
-  json.end_array();
-  json.end_object();
-  return json.text() + "\n";
+  Json listed_events = Json::array();
+  for (const Event& event : events) listed_events.push_back(event_json(event));
+  const Json json{
+      {"sim_time", world.time()},
+      {"wall_time", wall_seconds()},
+      {"real_time_factor", world.time() / wall_seconds()},
+      {"steps", world.steps()},
+      {"substeps", substeps_},
+      {"segments", segments_},
+      {"ns_per_segment_substep", nanoseconds * wall_seconds() / static_cast<double>(segments_ * substeps_)},
+      {"max_strain", max_strain_},
+      {"energy", energy_json(world.energy(), initial_energy_)},
+      {"attachments", Json::object_t(attachments.begin(), attachments.end())},
+      {"state_hash", hash_text(world.hash())},
+      {"events", std::move(listed_events)},
+  };
+  return tools::file_text(json);
 }
 
 std::string Summary::line(const World& world) const {
