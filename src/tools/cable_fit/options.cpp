@@ -4,8 +4,8 @@
 #include <iterator>
 #include <set>
 
+#include "scene/text.h"
 #include "verlet_cable/core/scene_fields.h"
-#include "verlet_cable/scene/text.h"
 
 namespace verlet_cable::cable_fit {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include "scene/text.h"
 #include "verlet_cable/core/scene_fields.h"
-#include "verlet_cable/scene/text.h"
 
 namespace verlet_cable::cable_sim {
 namespace {
