@@ -37,6 +37,26 @@ std::string join(const std::vector<std::string>& names) {
   return joined;
 }
 
+void summarize(SimulationReport::Phase phase, diagnostic_updater::DiagnosticStatusWrapper& status) {
+  using Phase = SimulationReport::Phase;
+  switch (phase) {
+    case Phase::faulted:
+      return status.summary(DiagnosticStatus::ERROR, "fault: the simulation has stopped; call reset or restore_state to go on");
+    case Phase::building:
+      return status.summary(DiagnosticStatus::WARN, "the scene is being built");
+    case Phase::no_time:
+      return status.summary(DiagnosticStatus::WARN, "no ROS time yet: use_sim_time is true, and nothing publishes /clock");
+    case Phase::awaits_first_frames:
+      return status.summary(DiagnosticStatus::WARN, "waits for its tf frames to start");
+    case Phase::paused:
+      return status.summary(DiagnosticStatus::OK, "paused");
+    case Phase::awaits_lost_frame:
+      return status.summary(DiagnosticStatus::WARN, "waits for a lost frame to come back");
+    case Phase::running:
+      return status.summary(DiagnosticStatus::OK, "running");
+  }
+}
+
 }  // namespace
 
 Diagnostics::Diagnostics(ros::NodeHandle& private_node, Simulation& simulation, const ObstacleListener& obstacles)
@@ -52,39 +72,27 @@ Diagnostics::Diagnostics(ros::NodeHandle& private_node, Simulation& simulation, 
 }
 
 void Diagnostics::report_simulation(Status& status) {
-  const Statistics s = simulation_.take_statistics();
+  const SimulationReport report = simulation_.take_report();
+  const Statistics& s = report.statistics;
   const double time_step = simulation_.world().time_step();
   const double step_time = s.steps > 0 ? s.wall_time / static_cast<double>(s.steps) : 0;
   status.add("real_time_factor", step_time > 0 ? time_step / step_time : 0);
   status.add("step_time_mean_s", step_time);
   status.add("step_time_max_s", s.longest_step);
   status.add("steps", s.steps);
-  status.add("dropped_time_s", seconds(simulation_.dropped()));
+  status.add("dropped_time_s", seconds(report.dropped));
   status.add("max_strain", s.max_strain);
   status.add("overstretched_steps", s.overstretched);
   status.add("jumped_steps", s.jumped);
   status.add("degraded_steps", s.degraded);
-  status.add("faults", simulation_.faults());
+  status.add("faults", report.faults);
   status.add("waiting_cables", join(simulation_.world().waiting()));
   report_waiting(status);
   status.add("unsettled_cables", join(simulation_.world().unsettled()));
-  status.add("found_inside_obstacles", join({simulation_.intrusions().begin(), simulation_.intrusions().end()}));
+  status.add("found_inside_obstacles", join({report.intrusions.begin(), report.intrusions.end()}));
 
-  if (simulation_.faulted()) {
-    status.summary(DiagnosticStatus::ERROR, "fault: the simulation has stopped; call reset or restore_state to go on");
-  } else if (!simulation_.started()) {
-    status.summary(DiagnosticStatus::WARN, simulation_.starting() ? "the scene is being built"
-                                           : simulation_.now() == 0
-                                               ? "no ROS time yet: use_sim_time is true, and nothing publishes /clock"
-                                               : "waits for its tf frames to start");
-  } else if (simulation_.paused()) {
-    status.summary(DiagnosticStatus::OK, "paused");
-  } else if (simulation_.waits_for_frames()) {
-    status.summary(DiagnosticStatus::WARN, "waits for a lost frame to come back");
-  } else {
-    status.summary(DiagnosticStatus::OK, "running");
-  }
-  const Nanoseconds dropped = simulation_.dropped() - std::exchange(dropped_, simulation_.dropped());
+  summarize(report.phase, status);
+  const Nanoseconds dropped = report.dropped - std::exchange(dropped_, report.dropped);
   status.add("dropped_since_last_s", seconds(dropped));
   if (dropped > 0 && s.steps > 0) {
     const double simulated = static_cast<double>(s.steps) * time_step;
@@ -99,7 +107,7 @@ void Diagnostics::report_simulation(Status& status) {
   if (s.degraded > 0) status.mergeSummary(DiagnosticStatus::WARN, "steps without a solution: motion was taken away");
   if (!simulation_.world().unsettled().empty())
     status.mergeSummary(DiagnosticStatus::WARN, "no static equilibrium was found to start from");
-  if (!simulation_.intrusions().empty()) status.mergeSummary(DiagnosticStatus::WARN, "cables were found inside obstacles");
+  if (!report.intrusions.empty()) status.mergeSummary(DiagnosticStatus::WARN, "cables were found inside obstacles");
   if (simulation_.started() && !simulation_.world().waiting().empty())
     status.mergeSummary(DiagnosticStatus::WARN, "cables or nets wait for their tf frames and are not there yet");
 }

@@ -5,9 +5,6 @@
 #include <utility>
 
 #include "time/ros_time.h"
-#include "verlet_cable/core/number_text.h"
-#include "verlet_cable/core/quoted_text.h"
-#include "verlet_cable/core/step_subject.h"
 
 namespace verlet_cable {
 namespace {
@@ -16,8 +13,6 @@ namespace {
 constexpr double hiccup = 0.5;
 /// Longer waits than this [s] cannot be caught up: tf would have forgotten the frames.
 constexpr double longest_wait = 50;
-/// Between warnings about what may last [s].
-constexpr double log_period = 5;
 /// Between messages while the clock stands: whoever subscribes then sees something.
 const ros::WallDuration standing_period(0.5);
 
@@ -37,7 +32,8 @@ Simulation::Simulation(ros::NodeHandle& private_node, const SceneDesc& scene)
       frames_(private_node, scene),
       publishers_(private_node, scene),
       events_(private_node, scene.frame_id),
-      frame_watch_(scene_, events_) {}
+      frame_watch_(scene_, events_),
+      cable_watch_(events_) {}
 
 void Simulation::update(ros::WallDuration longest) {
   if (clock_.update() == ClockWatch::Motion::back) jump_back();
@@ -112,8 +108,7 @@ void Simulation::start(Nanoseconds time) {
     place_added_obstacles();
     frame_watch_.forget_from(0);
     faulted_ = false;
-    intrusions_.clear();
-    report_starts(0, 0);
+    cable_watch_.restart(world_);
   }
   waits_for_frames_ = frame_watch_.react(frames_.changes(), stamp_, world_);
   frame_watch_.report_unseen(world_, frames_);
@@ -168,63 +163,21 @@ bool Simulation::step_world(Nanoseconds time) {
   const StepResult result = world_.step(frames_.inputs());
   statistics_.add(result, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   if (result.ignored_frame >= 0) frame_watch_.warn_of_ignored(world_, frames_.inputs());
-  report_status(result);
+  cable_watch_.report_status(result, stamp_, world_);
+  faulted_ = result.status == StepResult::Status::fault;
   if (faulted_) return false;
   const Nanoseconds before = std::exchange(stamp_, time);
   stepped_to_ = stamp_;
   frame_watch_.report_jumps(stamp_, world_);
-  report_breaks();
-  report_intrusions();
+  cable_watch_.report_breaks(stamp_, world_);
+  cable_watch_.report_intrusions(world_);
   if (!world_.waiting().empty() && !frames_.changes().empty()) {
     const std::size_t unsettled = world_.unsettled().size(), misfits = world_.misfits().size();
     world_.start_waiting(frames_.inputs());
-    report_starts(unsettled, misfits);
+    cable_watch_.report_starts(unsettled, misfits, world_);
   }
   if (grid_.passes_tick(before, stamp_)) publish();
   return true;
-}
-
-void Simulation::report_status(const StepResult& result) {
-  const std::string subject = subject_of(world_, result);
-  if (result.status == StepResult::Status::fault) {
-    faulted_ = true;
-    ++faults_;
-    announce(CableEvent::FAULT, {subject, {}, result.node, {}},
-             "the simulation of " + quoted(subject) + " failed at node " + std::to_string(result.node) +
-                 " and has stopped; call reset or restore_state to go on");
-  }
-  if (result.status == StepResult::Status::overstretched) {
-    ROS_WARN_THROTTLE(
-        log_period,
-        "%s is overstretched at node %d: the points that hold it are further apart than the material between them is long",
-        quoted(subject).c_str(), result.node);
-  }
-  if (result.status == StepResult::Status::degraded && result.cable < 0) {
-    ROS_WARN_THROTTLE(log_period,
-                      "%s is unstable and was softened or stopped: stiff springs between light nodes need a shorter time_step",
-                      quoted(subject).c_str());
-  }
-}
-
-void Simulation::report_breaks() const {
-  for (const Break& broken : world_.breaks()) {
-    const CableModel& first = world_.cables()[broken.cable].model;
-    const std::string& second = world_.cables()[broken.new_cable].model.name;
-    announce(CableEvent::BROKE, {first.name, {}, broken.segment, second},
-             "cable " + quoted(first.name) + " broke at segment " + std::to_string(broken.segment) +
-                 ", where its tension was above breaking_tension, " + number_text(first.material.breaking_tension) +
-                 " N; the part behind it is now cable " + quoted(second));
-  }
-}
-
-void Simulation::report_intrusions() {
-  for (const Intrusion& intrusion : world_.intrusions()) {
-    const std::string& cable = world_.cables()[intrusion.cable].model.name;
-    const std::string& obstacle = world_.obstacles()[intrusion.obstacle].name;
-    if (!intrusions_.insert(cable + " in " + obstacle).second) continue;
-    ROS_WARN("cable %s is %s m deep inside obstacle %s at segment %d and is pushed out of it", quoted(cable).c_str(),
-             rounded_text(intrusion.depth).c_str(), quoted(obstacle).c_str(), intrusion.segment);
-  }
 }
 
 void Simulation::report_overload() {
@@ -234,15 +187,6 @@ void Simulation::report_overload() {
       "cannot keep up: the cables move at %.2g of real time (%.2g s dropped); a larger time_step, fewer segments or less contact "
       "would help",
       overload->real_time_factor, overload->left_out);
-}
-
-void Simulation::report_starts(std::size_t first_unsettled, std::size_t first_misfit) const {
-  for (std::size_t i = first_misfit; i < world_.misfits().size(); ++i)
-    ROS_WARN("the initial shape of cable %s does not fit between its attachments: it hangs between them instead",
-             quoted(world_.misfits()[i]).c_str());
-  for (std::size_t i = first_unsettled; i < world_.unsettled().size(); ++i)
-    ROS_WARN("cable %s: no static equilibrium was found to start from; it starts at rest near one, and may move at first",
-             quoted(world_.unsettled()[i]).c_str());
 }
 
 void Simulation::skip_to(Nanoseconds time) {
@@ -273,8 +217,16 @@ Pose Simulation::attachment_pose(const Attachment& attachment) const {
   return world_.frame_pose(attachment.frame) * (target ? *target : attachment.pose);
 }
 
-Statistics Simulation::take_statistics() {
-  return std::exchange(statistics_, {});
+SimulationReport::Phase Simulation::phase() const {
+  using Phase = SimulationReport::Phase;
+  if (faulted_) return Phase::faulted;
+  if (!started_) return start_ ? Phase::building : clock_.now() == 0 ? Phase::no_time : Phase::awaits_first_frames;
+  if (paused_) return Phase::paused;
+  return waits_for_frames_ ? Phase::awaits_lost_frame : Phase::running;
+}
+
+SimulationReport Simulation::take_report() {
+  return {phase(), std::exchange(statistics_, {}), pacer_.dropped(), cable_watch_.faults(), cable_watch_.intrusions()};
 }
 
 }  // namespace verlet_cable

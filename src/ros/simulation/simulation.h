@@ -15,7 +15,8 @@
 #include "publish/event_publisher.h"
 #include "publish/publishers.h"
 #include "simulation/attachment_moves.h"
-#include "simulation/statistics.h"
+#include "simulation/cable_watch.h"
+#include "simulation/simulation_report.h"
 #include "simulation/world_build.h"
 #include "threads/background_tasks.h"
 #include "threads/owner_calls.h"
@@ -101,19 +102,11 @@ class Simulation {
   const std::map<std::string, AddedObstacle>& added_obstacles() const { return added_obstacles_; }  ///< by name
   Nanoseconds now() const { return clock_.now(); }  ///< ROS time at the last update
   Nanoseconds stamp() const { return stamp_; }      ///< the simulated time, as ROS time
-  Nanoseconds dropped() const { return pacer_.dropped(); }
-  int faults() const { return faults_; }
   bool started() const { return started_; }
-  EditResult refused_before_start() const;              ///< what it waits for, as the refusal of a request
-  bool starting() const { return start_.has_value(); }  ///< the frames are there, and the scene is being built
-  bool busy() const { return tasks_.busy(); }           ///< aside; the end of the simulation waits for what it can cancel
-  bool paused() const { return paused_; }
-  bool faulted() const { return faulted_; }
-  bool waits_for_frames() const { return waits_for_frames_; }
-  /// Since the last call.
-  Statistics take_statistics();
-  /// "CABLE in OBSTACLE" of all that were found inside since the scene started.
-  const std::set<std::string>& intrusions() const { return intrusions_; }
+  EditResult refused_before_start() const;     ///< what it waits for, as the refusal of a request
+  bool busy() const { return tasks_.busy(); }  ///< aside; the end of the simulation waits for what it can cancel
+  /// Statistics are those since the last call.
+  SimulationReport take_report();
 
  private:
   /// What replaces the world when it is built.
@@ -163,12 +156,8 @@ class Simulation {
   void continue_if_frames_are_back();
   void stand();
   bool step_world(Nanoseconds time);
-  void report_status(const StepResult& result);
-  void report_breaks() const;
-  void report_intrusions();
   void report_overload();
-  /// From these of World::unsettled() and World::misfits() on.
-  void report_starts(std::size_t first_unsettled, std::size_t first_misfit) const;
+  SimulationReport::Phase phase() const;
   void skip_to(Nanoseconds time);
   void publish();
   void announce(std::uint8_t type, const EventSubject& subject, const std::string& message) const;
@@ -190,6 +179,7 @@ class Simulation {
   Publishers publishers_;
   EventPublisher events_;
   FrameWatch frame_watch_;
+  CableWatch cable_watch_;
   AttachmentMoves moves_;
 
   std::map<std::string, Snapshot> snapshots_;
@@ -202,12 +192,10 @@ class Simulation {
   bool paused_ = false;
   bool faulted_ = false;
   bool waits_for_frames_ = false;
-  int faults_ = 0;
   int scene_version_ = 0;
   ros::WallTime last_published_;
   OverloadWatch overload_watch_;
   Statistics statistics_;
-  std::set<std::string> intrusions_;
   std::deque<AwaitedSteps> awaited_steps_;
   std::optional<Start> start_;
   std::list<Rebuild> rebuilds_;  ///< in the order they were asked for

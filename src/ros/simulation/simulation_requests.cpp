@@ -20,7 +20,7 @@ EditResult refused(const std::string& message) {
 
 EditResult Simulation::refused_before_start() const {
   const std::string what = "the simulation has not started: ";
-  if (starting()) return refused(what + "its scene is being built");
+  if (start_) return refused(what + "its scene is being built");
   return refused(what + (now() == 0 ? "there is no ROS time yet (use_sim_time without /clock?)"
                                     : "it waits for its tf frames, but no longer than tf_timeout"));
 }

@@ -135,9 +135,8 @@ EditResult Simulation::start_anew(World world) {
   moves_.clear();
   place_added_obstacles();
   faulted_ = false;
-  intrusions_.clear();
   frame_watch_.forget_from(static_cast<int>(world_.frames().size()));
-  report_starts(0, 0);
+  cable_watch_.restart(world_);
   const std::string message = "reset to the initial state of the scene";
   announce(CableEvent::RESET, {}, message);
   if (paused_) publish();
