@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "file_descriptor.h"
-#include "verlet_cable/scene/mesh_file.h"
+#include "mesh_file.h"
 
 namespace verlet_cable {
 

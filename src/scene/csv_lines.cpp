@@ -1,4 +1,4 @@
-#include "verlet_cable/scene/csv_lines.h"
+#include "csv_lines.h"
 
 namespace verlet_cable {
 namespace {

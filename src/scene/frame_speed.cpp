@@ -1,4 +1,4 @@
-#include "verlet_cable/scene/frame_speed.h"
+#include "frame_speed.h"
 
 #include <algorithm>
 

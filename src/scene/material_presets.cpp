@@ -1,4 +1,4 @@
-#include "verlet_cable/scene/material_presets.h"
+#include "material_presets.h"
 
 #include "material_keys.h"
 #include "material_presets_text.h"

@@ -1,4 +1,4 @@
-#include "verlet_cable/scene/mesh_cache.h"
+#include "mesh_cache.h"
 
 #include <sys/stat.h>
 

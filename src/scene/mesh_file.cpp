@@ -1,4 +1,4 @@
-#include "verlet_cable/scene/mesh_file.h"
+#include "mesh_file.h"
 
 #include <dlfcn.h>
 #include <sys/wait.h>

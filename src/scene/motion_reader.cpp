@@ -4,11 +4,11 @@
 #include <optional>
 #include <system_error>
 
+#include "csv_lines.h"
+#include "text.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/scene_fields.h"
-#include "verlet_cable/scene/csv_lines.h"
 #include "verlet_cable/scene/motion.h"
-#include "verlet_cable/scene/text.h"
 
 namespace verlet_cable {
 namespace {

@@ -5,8 +5,8 @@
 #include <map>
 #include <tuple>
 
+#include "mesh_file.h"
 #include "robot_model.h"
-#include "verlet_cable/scene/mesh_file.h"
 
 namespace verlet_cable {
 namespace {

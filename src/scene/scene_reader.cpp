@@ -5,10 +5,10 @@
 #include "cable_keys.h"
 #include "keys.h"
 #include "material_keys.h"
+#include "material_presets.h"
 #include "net_keys.h"
 #include "obstacle_keys.h"
 #include "scene_files.h"
-#include "verlet_cable/scene/material_presets.h"
 #include "within_memory.h"
 
 namespace verlet_cable {

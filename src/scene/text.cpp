@@ -1,4 +1,4 @@
-#include "verlet_cable/scene/text.h"
+#include "text.h"
 
 #include <algorithm>
 #include <cctype>

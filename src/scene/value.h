@@ -9,8 +9,8 @@
 #include <string>
 
 #include "error_list.h"
+#include "text.h"
 #include "verlet_cable/core/scene_fields.h"
-#include "verlet_cable/scene/text.h"
 
 namespace verlet_cable {
 

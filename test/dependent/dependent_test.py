@@ -5,6 +5,7 @@ Noetic's does: against the devel space, and against an install space.
 Usage: dependent_test.py BUILD DEVEL    (the package's build directory, its devel space)
 """
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -51,6 +52,10 @@ class DependentTest(unittest.TestCase):
         prefix = self.directory / 'install'
         self.run_checked('cmake', f'-DCMAKE_INSTALL_PREFIX={prefix}', '-P', str(BUILD / 'cmake_install.cmake'))
         self.use(prefix)
+        headers = prefix / 'include'
+        for header in headers.rglob('*.h'):
+            for included in re.findall(r'#include "(.*)"', header.read_text()):
+                self.assertTrue((headers / included).is_file(), f'{header} includes {included}, which is not installed')
 
 
 if __name__ == '__main__':

@@ -11,9 +11,9 @@
 #include <tuple>
 #include <vector>
 
-#include "verlet_cable/ros/color.h"
-#include "verlet_cable/ros/conversions.h"
-#include "verlet_cable/ros/tube.h"
+#include "publish/color.h"
+#include "publish/conversions.h"
+#include "publish/tube.h"
 
 namespace verlet_cable {
 namespace {

@@ -12,9 +12,9 @@
 #include <set>
 #include <string>
 
+#include "publish/color.h"
+#include "publish/publishers.h"
 #include "verlet_cable/core/world.h"
-#include "verlet_cable/ros/color.h"
-#include "verlet_cable/ros/publishers.h"
 
 namespace verlet_cable {
 namespace {

@@ -1,4 +1,4 @@
-#include "verlet_cable/ros/frame_buffer.h"
+#include "frames/frame_buffer.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "verlet_cable/ros/ros_time.h"
+#include "time/ros_time.h"
 
 namespace verlet_cable {
 namespace {

@@ -1,8 +1,8 @@
+#include "frames/frame_gap.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
-
-#include "verlet_cable/ros/frame_gap.h"
 
 namespace verlet_cable {
 namespace {

@@ -1,4 +1,4 @@
-#include "verlet_cable/ros/frame_history.h"
+#include "frames/frame_history.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,11 @@
-#include "verlet_cable/ros/location.h"
+#include "requests/location.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "verlet_cable/ros/checked_pin.h"
+#include "requests/checked_pin.h"
+#include "simulation/error_text.h"
 
 namespace verlet_cable {
 namespace {

@@ -1,4 +1,4 @@
-#include "verlet_cable/ros/pacer.h"
+#include "time/pacer.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "verlet_cable/ros/overload_watch.h"
+#include "time/overload_watch.h"
 
 namespace verlet_cable {
 namespace {

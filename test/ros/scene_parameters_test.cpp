@@ -1,4 +1,4 @@
-#include "verlet_cable/ros/scene_parameters.h"
+#include "scene_sources/scene_parameters.h"
 
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>

@@ -1,4 +1,4 @@
-#include "verlet_cable/ros/time_grid.h"
+#include "time/time_grid.h"
 
 #include <gtest/gtest.h>
 

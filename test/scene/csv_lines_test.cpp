@@ -1,4 +1,4 @@
-#include "verlet_cable/scene/csv_lines.h"
+#include "scene/csv_lines.h"
 
 #include <gtest/gtest.h>
 

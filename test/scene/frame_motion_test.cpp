@@ -4,8 +4,8 @@
 #include <fstream>
 #include <random>
 
+#include "scene/frame_speed.h"
 #include "scene_text.h"
-#include "verlet_cable/scene/frame_speed.h"
 #include "verlet_cable/scene/motion.h"
 
 namespace verlet_cable {

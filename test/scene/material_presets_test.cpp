@@ -1,4 +1,4 @@
-#include "verlet_cable/scene/material_presets.h"
+#include "scene/material_presets.h"
 
 #include <gtest/gtest.h>
 

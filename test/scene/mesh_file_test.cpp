@@ -1,4 +1,4 @@
-#include "verlet_cable/scene/mesh_file.h"
+#include "scene/mesh_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -12,8 +12,8 @@
 #include <thread>
 
 #include "../support/meshes.h"
+#include "scene/mesh_cache.h"
 #include "scene_text.h"
-#include "verlet_cable/scene/mesh_cache.h"
 
 namespace verlet_cable {
 namespace {

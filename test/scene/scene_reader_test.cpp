@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "scene/text.h"
 #include "scene_text.h"
-#include "verlet_cable/scene/text.h"
 
 namespace verlet_cable {
 namespace {

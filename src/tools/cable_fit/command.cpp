@@ -14,8 +14,8 @@
 #include "least_squares.h"
 #include "options.h"
 #include "report.h"
+#include "scene/text.h"
 #include "smoothing.h"
-#include "verlet_cable/scene/text.h"
 
 namespace verlet_cable::cable_fit {
 namespace {

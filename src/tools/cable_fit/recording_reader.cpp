@@ -5,10 +5,10 @@
 
 #include "common/output_file.h"
 #include "recording.h"
+#include "scene/csv_lines.h"
+#include "scene/text.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/scene_fields.h"
-#include "verlet_cable/scene/csv_lines.h"
-#include "verlet_cable/scene/text.h"
 
 namespace verlet_cable::cable_fit {
 namespace {

@@ -5,10 +5,10 @@
 
 #include "common/messages.h"
 #include "common/program.h"
+#include "scene/frame_speed.h"
+#include "scene/text.h"
 #include "simulation.h"
 #include "verlet_cable/core/number_text.h"
-#include "verlet_cable/scene/frame_speed.h"
-#include "verlet_cable/scene/text.h"
 
 namespace verlet_cable::cable_sim {
 namespace {

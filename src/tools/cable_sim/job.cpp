@@ -5,9 +5,9 @@
 #include "common/messages.h"
 #include "common/output_file.h"
 #include "frame_source.h"
+#include "scene/text.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/scene/scene_reader.h"
-#include "verlet_cable/scene/text.h"
 
 namespace verlet_cable::cable_sim {
 namespace {

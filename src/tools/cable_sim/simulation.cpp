@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "verlet_cable/scene/frame_speed.h"
+#include "scene/frame_speed.h"
 
 namespace verlet_cable::cable_sim {
 namespace {

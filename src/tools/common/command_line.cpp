@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "verlet_cable/scene/text.h"
+#include "scene/text.h"
 
 namespace verlet_cable::tools {
 namespace {

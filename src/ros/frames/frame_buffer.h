@@ -1,0 +1,68 @@
+#pragma once
+
+#include <tf2/buffer_core.h>
+
+#include <deque>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "frames/tf_listener.h"
+#include "time/time_grid.h"
+#include "verlet_cable/core/types.h"
+
+namespace verlet_cable {
+
+/// Why a transform cannot be used; empty if it can. Refused are values that are not finite, quaternions that are not of length
+/// one, missing, endless or equal frame names, and a transform over time without a stamp, or with one that is further ahead of
+/// ROS time `now` than transforms are kept: tf2 would take everything else for too old. `now` is 0 where there is no time.
+std::string transform_problem(const ReceivedTransform& received, Nanoseconds now = 0);
+
+/// The tree of frames over the last 60 s, seen from the fixed frame. The one place that talks to tf2 and catches what it throws.
+class FrameBuffer {
+ public:
+  static constexpr Nanoseconds memory = 60'000'000'000;  ///< how long transforms are kept
+
+  explicit FrameBuffer(std::string fixed_frame);
+
+  /// Whether the transform is in the tree now. What is wrong with it is logged now and then, and counted.
+  bool insert(const ReceivedTransform& received, Nanoseconds now = 0);
+  void see_from(const std::string& fixed_frame) { fixed_frame_ = fixed_frame; }
+  /// Forgets everything but static transforms.
+  void clear();
+
+  /// Of a frame in the fixed frame at a time; none where the tree does not know it.
+  std::optional<Pose> pose(const std::string& frame, Nanoseconds time) const;
+  /// The newest time at which the frame is known; 0 for one that does not depend on time; none where it is not connected.
+  std::optional<Nanoseconds> newest(const std::string& frame) const;
+
+  const std::map<std::string, std::string>& refused() const {
+    return refused_;
+  }  ///< by child frame, whose last transform was bad; of so many that people can read them
+  /// The nodes that send a frame which more than one has sent in the last second, by child frame: they may disagree.
+  std::map<std::string, std::vector<std::string>> disputed() const;
+  /// Child frames that came on /tf and on /tf_static: tf2 cannot follow them well.
+  const std::set<std::string>& mixed() const { return mixed_; }
+  int refused_count() const { return refused_count_; }  ///< since the start
+
+ private:
+  void refuse(const std::string& child, const std::string& problem);
+  bool know(const std::string& frame);
+  void note_kind(const std::string& child, bool is_static);
+  void note_source(const std::string& child, const std::string& source);
+
+  std::string fixed_frame_;
+  tf2::BufferCore buffer_;
+  std::set<std::string> frames_;        ///< names that tf2 has, which it never forgets
+  std::map<std::string, bool> static_;  ///< by child frame: whether it came as a static one first
+  std::set<std::string> mixed_;
+  std::map<std::string, Nanoseconds> newest_;                            ///< by child frame, dynamic transforms
+  std::map<std::string, std::map<std::string, ros::WallTime>> sources_;  ///< by child frame and node: when it last came
+  std::map<std::string, std::string> refused_;
+  std::map<std::string, ros::WallTime> logged_;  ///< by child frame, when a refusal was last logged
+  int refused_count_ = 0;
+};
+
+}  // namespace verlet_cable

@@ -1,0 +1,292 @@
+#include "frames/tf_inputs.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "time/ros_time.h"
+
+namespace verlet_cable {
+namespace {
+
+using Coverage = FrameHistory::Coverage;
+
+// tf and the clock are two connections: how much earlier than the clock's jump back the first transforms after it may arrive, and
+// how much later than the clock their stamps may be.
+const ros::WallDuration longest_overtaking(1.0);
+const ros::WallDuration longest_receiving(0.005);
+constexpr Nanoseconds longest_ahead = 500'000'000;
+
+}  // namespace
+
+TfInputs::TfInputs(const ros::NodeHandle& node, const SceneDesc& scene) : listener_(node), buffer_(scene.frame_id) {
+  follow_scene(scene, 0);
+}
+
+void TfInputs::follow_scene(const SceneDesc& scene, Nanoseconds time) {
+  buffer_.see_from(scene.frame_id);
+  timeout_ = nanoseconds(scene.tf_timeout);
+  max_frame_speed_ = scene.max_frame_speed;
+  approaches_ = scene.on_lost_frame != LostFramePolicy::release;
+  inputs_ = initial_frames(scene);
+  const std::vector<std::string> names = frame_names(scene);
+  scene_frames_ = static_cast<int>(names.size());
+  tracks_.clear();
+  for (int i = 0; i < scene_frames_; ++i) tracks_.push_back(track_from(names[i], inputs_[i], time));
+  tracks_.front().status = FrameStatus::ok;
+  changes_.clear();
+}
+
+/// As far back as `time`, if tf knows the frame then.
+TfInputs::Track TfInputs::track_from(const std::string& frame, const FrameInput& at, Nanoseconds time) const {
+  Track track(frame, at, timeout_);
+  if (time > 0 && buffer_.pose(frame, time)) track.history.extend(time);
+  update_history(track);
+  return track;
+}
+
+void TfInputs::receive(Nanoseconds ros_now) {
+  const ros::WallTime now = ros::WallTime::now();
+  while (!recent_.empty() && recent_.front().first + longest_overtaking < now) recent_.pop_front();
+  for (ReceivedTransform& received : listener_.take()) received_.push_back(std::move(received));
+  // The rest waits for the next call: however much somebody sends, others do not wait.
+  for (; !received_.empty() && ros::WallTime::now() - now < longest_receiving; received_.pop_front()) {
+    insert(received_.front(), ros_now);
+    recent_.emplace_back(now, std::move(received_.front()));
+  }
+}
+
+void TfInputs::insert(const ReceivedTransform& received, Nanoseconds now) {
+  if (!buffer_.insert(received, now)) return;
+  for (Track& track : tracks_) update_history(track);
+}
+
+void TfInputs::update_history(Track& track) const {
+  const std::optional<Nanoseconds> newest = buffer_.newest(track.name);
+  if (!newest) return;
+  if (*newest == 0) {
+    track.history.set_static();
+  } else {
+    track.history.extend(*newest);
+    track.history.forget_before(*newest - FrameBuffer::memory);
+  }
+}
+
+void TfInputs::restart(Nanoseconds now, bool forget) {
+  buffer_.clear();
+  if (forget) drop_pinned_frames();
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    Track& track = tracks_[i];
+    track.history.clear();
+    if (forget) {
+      track.status = i == 0 ? FrameStatus::ok : FrameStatus::never_seen;
+      track.too_fast = false;
+      track.gap = {};
+      inputs_[i] = track.initial;
+    }
+    update_history(track);
+  }
+  for (const auto& [arrival, received] : recent_) {
+    if (from_ros_time(received.transform.header.stamp) <= now + longest_ahead) insert(received, now);
+  }
+}
+
+void TfInputs::reset(Nanoseconds time) {
+  drop_pinned_frames();
+  for (int i = 0; i < scene_frames_; ++i) {
+    if (const auto pose = buffer_.pose(tracks_[i].name, time)) {
+      if (tracks_[i].history.at(time) == Coverage::covered) place(i, *pose);
+    }
+  }
+}
+
+void TfInputs::drop_pinned_frames() {
+  tracks_.erase(tracks_.begin() + scene_frames_, tracks_.end());
+  inputs_.resize(scene_frames_);
+}
+
+int TfInputs::add(const std::string& frame, Nanoseconds time) {
+  if (const Track* track = find_track(frame)) return static_cast<int>(track - tracks_.data());
+  const std::optional<Pose> pose = find(frame, time);
+  const FrameInput at{pose.value_or(Pose{}), pose.has_value()};
+  tracks_.push_back(track_from(frame, at, time));
+  if (pose) tracks_.back().status = FrameStatus::ok;
+  inputs_.push_back(at);
+  return static_cast<int>(tracks_.size()) - 1;
+}
+
+const TfInputs::Track* TfInputs::find_track(const std::string& frame) const {
+  const auto found = std::find_if(tracks_.begin(), tracks_.end(), [&](const Track& track) { return track.name == frame; });
+  return found == tracks_.end() ? nullptr : &*found;
+}
+
+std::vector<SavedFrame> TfInputs::save() const {
+  std::vector<SavedFrame> frames;
+  for (std::size_t i = 0; i < tracks_.size(); ++i)
+    frames.push_back({tracks_[i].name, inputs_[i], tracks_[i].gap, tracks_[i].status});
+  return frames;
+}
+
+void TfInputs::restore(const std::vector<SavedFrame>& saved, Nanoseconds time) {
+  std::vector<Track> tracks;
+  BoundaryInputs inputs;
+  for (const SavedFrame& frame : saved) {
+    const Track* followed = find_track(frame.name);
+    Track& track = tracks.emplace_back(followed ? *followed : track_from(frame.name, frame.input, time));
+    FrameInput input = followed ? inputs_[followed - tracks_.data()] : frame.input;
+    if (!input.known) {
+      input = frame.input;
+      track.status = frame.status;
+      track.gap = frame.gap;
+    }
+    if (!followed) track.status = track.history.at(time) == Coverage::covered ? FrameStatus::ok : FrameStatus::lost;
+    inputs.push_back(input);
+  }
+  tracks_ = std::move(tracks);
+  inputs_ = std::move(inputs);
+}
+
+void TfInputs::rewind(const std::vector<SavedFrame>& saved, Nanoseconds time) {
+  restore(saved, time);
+  for (std::size_t i = 0; i < saved.size(); ++i) {
+    inputs_[i] = saved[i].input;
+    tracks_[i].too_fast = false;
+    tracks_[i].gap = saved[i].gap;
+    const bool covered = tracks_[i].history.at(time) == Coverage::covered;
+    const bool unseen = saved[i].status == FrameStatus::never_seen;
+    // A frame that is not known then is not lost anew: it stays where it was saved until tf knows it.
+    tracks_[i].status = unseen ? FrameStatus::never_seen : covered ? FrameStatus::ok : FrameStatus::lost;
+  }
+}
+
+bool TfInputs::all_seen() const {
+  return std::all_of(tracks_.begin(), tracks_.end(), [](const Track& track) { return track.history.seen(); });
+}
+
+Nanoseconds TfInputs::first_common_time() const {
+  Nanoseconds first = 0;
+  for (const Track& track : tracks_) first = std::max(first, track.history.first());
+  return first;
+}
+
+bool TfInputs::sample(Nanoseconds time, Nanoseconds elapsed, Nanoseconds target, const std::vector<bool>& needed) {
+  changes_.clear();
+  bool wait = false;
+  for (std::size_t i = 0; i < tracks_.size(); ++i) wait |= needed[i] && must_wait(tracks_[i], time, target);
+  if (wait) return false;
+  sample_frames(time, target, seconds(elapsed));
+  return true;
+}
+
+void TfInputs::sample_without_waiting(Nanoseconds time, Nanoseconds elapsed) {
+  changes_.clear();
+  sample_frames(time, 0, seconds(elapsed));
+}
+
+void TfInputs::sample_at_once(Nanoseconds time) {
+  changes_.clear();
+  sample_frames(time, 0, 0);
+}
+
+void TfInputs::sample_frames(Nanoseconds time, Nanoseconds target, double elapsed) {
+  for (std::size_t i = 0; i < tracks_.size(); ++i) sample_frame(static_cast<int>(i), time, target, elapsed);
+}
+
+bool TfInputs::must_wait(Track& track, Nanoseconds time, Nanoseconds target) const {
+  const bool late = track.status != FrameStatus::lost && track.history.at(time) == Coverage::ahead &&
+                    target - track.history.newest() <= timeout_;
+  if (late && track.status == FrameStatus::ok) track.status = FrameStatus::late;
+  return late;
+}
+
+void TfInputs::sample_frame(int frame, Nanoseconds time, Nanoseconds target, double elapsed) {
+  Track& track = tracks_[frame];
+  const Coverage coverage = track.history.at(time);
+  if (coverage == Coverage::covered) {
+    if (const auto pose = buffer_.pose(track.name, time)) {
+      if (track.status == FrameStatus::never_seen) change(FrameChange::Kind::seen, frame);
+      if (track.status == FrameStatus::lost) come_back(frame, *pose);
+      track.status = FrameStatus::ok;
+      follow(frame, *pose, elapsed);
+      return;
+    }
+  }
+  if (track.status == FrameStatus::never_seen) {
+    if (coverage == Coverage::unseen) return;
+    change(FrameChange::Kind::seen, frame);
+    track.status = FrameStatus::ok;
+  }
+  if (track.status == FrameStatus::lost) return;
+  if (const Nanoseconds last = track.history.last_before(time); last > 0) {
+    if (const auto pose = buffer_.pose(track.name, last)) follow(frame, *pose, elapsed);
+  }
+  const bool late = coverage == Coverage::ahead && target - track.history.newest() <= timeout_;
+  track.status = late ? FrameStatus::late : FrameStatus::lost;
+  if (!late) change(FrameChange::Kind::lost, frame);
+}
+
+/// Without a way to get there.
+void TfInputs::place(int frame, const Pose& pose) {
+  inputs_[frame] = {pose, true};
+  tracks_[frame].gap = {};
+  tracks_[frame].too_fast = false;
+}
+
+/// What the frame holds goes on from where it was held meanwhile.
+void TfInputs::come_back(int frame, const Pose& pose) {
+  const FrameGap gap = FrameGap::between(pose, inputs_[frame].pose);
+  changes_.push_back({FrameChange::Kind::back, frame, gap.distance(), gap.angle()});
+  tracks_[frame].gap = gap;
+  if (!approaches_) place(frame, pose);
+}
+
+/// `elapsed` 0: as far as the frame went, at once.
+void TfInputs::follow(int frame, const Pose& pose, double elapsed) {
+  if (!inputs_[frame].known) return place(frame, pose);
+  FrameInput& input = inputs_[frame];
+  Track& track = tracks_[frame];
+  Pose followed = track.gap.frame(input.pose);
+  const double way = (pose.position - followed.position).norm();
+  const double longest_way = elapsed > 0 ? max_frame_speed_ * elapsed : infinity;
+  if (way <= longest_way) {
+    followed = pose;
+    track.too_fast = false;
+  } else {
+    const double part = longest_way / way;
+    followed.position += part * (pose.position - followed.position);
+    followed.orientation = followed.orientation.slerp(part, pose.orientation).normalized();
+    if (!track.too_fast) change(FrameChange::Kind::too_fast, frame);
+    track.too_fast = true;
+  }
+  if (!track.gap.is_closed())
+    track.gap.close_by(std::min(FrameGap::speed, max_frame_speed_) * elapsed, FrameGap::turn_speed * elapsed);
+  input = {track.gap.followed(followed), true};
+}
+
+std::optional<Nanoseconds> TfInputs::back_after(Nanoseconds time, const std::vector<bool>& needed) const {
+  Nanoseconds back = 0;
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    const FrameHistory& history = tracks_[i].history;
+    if (!needed[i] || tracks_[i].status != FrameStatus::lost) continue;
+    if (history.is_static()) continue;
+    const Nanoseconds known = history.at(time) == Coverage::covered ? time : history.first_after(time);
+    if (known == 0) return std::nullopt;
+    back = std::max(back, known);
+  }
+  return back;
+}
+
+std::optional<Pose> TfInputs::find(const std::string& frame, Nanoseconds time) const {
+  if (const auto pose = buffer_.pose(frame, time)) return pose;
+  const auto newest = buffer_.newest(frame);
+  return newest ? buffer_.pose(frame, *newest) : std::nullopt;
+}
+
+std::vector<FrameReport> TfInputs::report() const {
+  std::vector<FrameReport> reports;
+  for (const Track& track : tracks_) {
+    reports.push_back({track.name, track.status, track.history.is_static(), track.history.newest(), track.too_fast});
+  }
+  return reports;
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,175 @@
+#include "node/diagnostics.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <utility>
+
+#include "frames/frame_watch.h"
+#include "threads/guarded_queue.h"
+#include "verlet_cable/core/number_text.h"
+#include "verlet_cable/core/quoted_text.h"
+
+namespace verlet_cable {
+namespace {
+
+using diagnostic_msgs::DiagnosticStatus;
+
+/// More would only make the message long.
+constexpr std::size_t most_waiting = 100;
+
+std::string text(FrameStatus status) {
+  switch (status) {
+    case FrameStatus::never_seen:
+      return "never seen";
+    case FrameStatus::late:
+      return "late";
+    case FrameStatus::lost:
+      return "lost";
+    default:
+      return "ok";
+  }
+}
+
+std::string join(const std::vector<std::string>& names) {
+  std::string joined;
+  for (const std::string& name : names) joined += (joined.empty() ? "" : ", ") + name;
+  return joined;
+}
+
+void summarize(SimulationReport::Phase phase, diagnostic_updater::DiagnosticStatusWrapper& status) {
+  using Phase = SimulationReport::Phase;
+  switch (phase) {
+    case Phase::faulted:
+      return status.summary(DiagnosticStatus::ERROR, "fault: the simulation has stopped; call reset or restore_state to go on");
+    case Phase::building:
+      return status.summary(DiagnosticStatus::WARN, "the scene is being built");
+    case Phase::no_time:
+      return status.summary(DiagnosticStatus::WARN, "no ROS time yet: use_sim_time is true, and nothing publishes /clock");
+    case Phase::awaits_first_frames:
+      return status.summary(DiagnosticStatus::WARN, "waits for its tf frames to start");
+    case Phase::paused:
+      return status.summary(DiagnosticStatus::OK, "paused");
+    case Phase::awaits_lost_frame:
+      return status.summary(DiagnosticStatus::WARN, "waits for a lost frame to come back");
+    case Phase::running:
+      return status.summary(DiagnosticStatus::OK, "running");
+  }
+}
+
+}  // namespace
+
+Diagnostics::Diagnostics(ros::NodeHandle& private_node, Simulation& simulation, const ObstacleListener& obstacles)
+    : simulation_(simulation), obstacles_(obstacles), updater_(private_node, private_node, private_node.getNamespace()) {
+  updater_.setHardwareID("none");
+  updater_.add("simulation", [this](Status& status) { report_simulation(status); });
+  updater_.add("frames", [this](Status& status) { report_frames(status); });
+  updater_.add("obstacles", [this](Status& status) { report_obstacles(status); });
+  // Not the updater's own pace, which is in ROS time and stands with it.
+  timer_ = private_node.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) {
+    run_guarded("a report", [this] { updater_.force_update(); });
+  });
+}
+
+void Diagnostics::report_simulation(Status& status) {
+  const SimulationReport report = simulation_.take_report();
+  const Statistics& s = report.statistics;
+  const double time_step = simulation_.world().time_step();
+  const double step_time = s.steps > 0 ? s.wall_time / static_cast<double>(s.steps) : 0;
+  status.add("real_time_factor", step_time > 0 ? time_step / step_time : 0);
+  status.add("step_time_mean_s", step_time);
+  status.add("step_time_max_s", s.longest_step);
+  status.add("steps", s.steps);
+  status.add("dropped_time_s", seconds(report.dropped));
+  status.add("max_strain", s.max_strain);
+  status.add("overstretched_steps", s.overstretched);
+  status.add("jumped_steps", s.jumped);
+  status.add("degraded_steps", s.degraded);
+  status.add("faults", report.faults);
+  status.add("waiting_cables", join(simulation_.world().findings().waiting));
+  report_waiting(status);
+  status.add("unsettled_cables", join(simulation_.world().findings().unsettled));
+  status.add("found_inside_obstacles", join({report.intrusions.begin(), report.intrusions.end()}));
+
+  summarize(report.phase, status);
+  const Nanoseconds dropped = report.dropped - std::exchange(dropped_, report.dropped);
+  status.add("dropped_since_last_s", seconds(dropped));
+  if (dropped > 0 && s.steps > 0) {
+    const double simulated = static_cast<double>(s.steps) * time_step;
+    char share[32];
+    std::snprintf(share, sizeof share, "%.2f", simulated / (simulated + seconds(dropped)));
+    status.mergeSummary(DiagnosticStatus::WARN,
+                        std::string("overloaded, or time jumped: the cables moved at ") + share + " of real time");
+  }
+  if (step_time > time_step) status.mergeSummary(DiagnosticStatus::WARN, "slower than real time");
+  if (s.overstretched > 0)
+    status.mergeSummary(DiagnosticStatus::WARN, "overstretched: what holds a cable or net is further apart than it is long");
+  if (s.degraded > 0) status.mergeSummary(DiagnosticStatus::WARN, "steps without a solution: motion was taken away");
+  if (!simulation_.world().findings().unsettled.empty())
+    status.mergeSummary(DiagnosticStatus::WARN, "no static equilibrium was found to start from");
+  if (!report.intrusions.empty()) status.mergeSummary(DiagnosticStatus::WARN, "cables were found inside obstacles");
+  if (simulation_.started() && !simulation_.world().findings().waiting.empty())
+    status.mergeSummary(DiagnosticStatus::WARN, "cables or nets wait for their tf frames and are not there yet");
+}
+
+void Diagnostics::report_waiting(Status& status) const {
+  const std::vector<WaitingAttachment> waiting =
+      waiting_attachments(simulation_.scene(), simulation_.world(), simulation_.frames().inputs());
+  for (std::size_t i = 0; i < std::min(waiting.size(), most_waiting); ++i)
+    status.add("waiting_attachment " + waiting[i].holds + "/" + waiting[i].name, waiting[i].frame);
+}
+
+void Diagnostics::report_frames(Status& status) const {
+  status.summary(DiagnosticStatus::OK, "all frames are there");
+  std::vector<FrameReport> frames = simulation_.frames().report();
+  frames.erase(frames.begin());  // the fixed frame
+  for (const FrameReport& frame : frames) {
+    std::string value = text(frame.status);
+    if (frame.is_static) {
+      value += ", static";
+    } else if (frame.newest > 0) {
+      value += ", age " + rounded_text(seconds(simulation_.now() - frame.newest), 3) + " s";
+    }
+    if (frame.too_fast) value += ", faster than max_frame_speed";
+    status.add("frame " + frame.name, value);
+    if (frame.status == FrameStatus::never_seen)
+      status.mergeSummary(DiagnosticStatus::WARN, "frame " + quoted(frame.name) + " never seen");
+    if (frame.status == FrameStatus::lost) status.mergeSummary(DiagnosticStatus::WARN, "frame " + quoted(frame.name) + " lost");
+    if (frame.too_fast) status.mergeSummary(DiagnosticStatus::WARN, "frame " + quoted(frame.name) + " too fast");
+  }
+  status.add("refused_transforms", simulation_.frames().buffer().refused_count());
+  for (const auto& [frame, sources] : simulation_.frames().buffer().disputed()) {
+    status.add("sources of " + frame, join(sources));
+    status.mergeSummary(DiagnosticStatus::WARN,
+                        "frame " + quoted(frame) + " comes from " + std::to_string(sources.size()) + " nodes");
+  }
+  for (const std::string& frame : simulation_.frames().buffer().mixed())
+    status.mergeSummary(DiagnosticStatus::WARN,
+                        "frame " + quoted(frame) + " came on /tf and on /tf_static: start the node again");
+  for (const auto& [frame, problem] : simulation_.frames().buffer().refused()) {
+    status.add("refused " + frame, problem);
+    status.mergeSummary(DiagnosticStatus::WARN, "tf of frame " + quoted(frame) + " refused");
+  }
+}
+
+void Diagnostics::report_obstacles(Status& status) const {
+  status.summary(DiagnosticStatus::OK, "all obstacles are there");
+  const World& world = simulation_.world();
+  const std::vector<FrameReport> frames = simulation_.frames().report();
+  for (const Obstacle& obstacle : world.obstacles()) {
+    const bool lost = frames[obstacle.frame].status == FrameStatus::lost;
+    if (obstacle.present && !lost) continue;
+    const std::string& frame = world.frames()[obstacle.frame];
+    status.add("obstacle " + obstacle.name,
+               (lost ? "stays where it was, as its frame is lost: " : "is not there yet, as its frame is not on tf: ") + frame);
+    status.mergeSummary(DiagnosticStatus::WARN,
+                        "obstacle " + quoted(obstacle.name) + (lost ? " has lost its frame" : " waits for its frame"));
+  }
+  status.add("added", simulation_.added_obstacles().size());
+  status.add("refused_markers", obstacles_.refused_count());
+  if (obstacles_.refused_count() == 0) return;
+  status.add("last_refused", obstacles_.last_problem());
+  status.mergeSummary(DiagnosticStatus::WARN, "markers were refused");
+}
+
+}  // namespace verlet_cable

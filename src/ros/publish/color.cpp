@@ -1,0 +1,138 @@
+#include "publish/color.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include "publish/conversions.h"
+
+namespace verlet_cable {
+namespace {
+
+constexpr double standard_gravity = 9.81;             // [m/s^2] where the scene has none to weigh its cables with
+constexpr double full_strain_if_inextensible = 1e-3;  // nothing to see as long as the solver keeps its lengths
+/// ColorBrewer's RdYlBu (Harrower and Brewer 2003), nine classes, without its two darkest ends.
+constexpr std::array<std::array<float, 3>, 9> stops{{{0.27f, 0.46f, 0.71f},
+                                                     {0.45f, 0.68f, 0.82f},
+                                                     {0.67f, 0.85f, 0.91f},
+                                                     {0.88f, 0.95f, 0.97f},
+                                                     {1.00f, 1.00f, 0.75f},
+                                                     {1.00f, 0.88f, 0.56f},
+                                                     {0.99f, 0.68f, 0.38f},
+                                                     {0.96f, 0.43f, 0.26f},
+                                                     {0.84f, 0.19f, 0.15f}}};
+
+double mass(const SceneDesc& scene, const CableDesc& cable) {
+  const MaterialDesc* material = scene.find_material(cable.material);
+  double mass = material ? material->linear_density * cable.length : 0;
+  for (const PointMassDesc& payload : cable.point_masses) mass += payload.mass;
+  return mass;
+}
+
+double largest_weight(const SceneDesc& scene) {
+  double largest = 0;
+  for (const CableDesc& cable : scene.cables) largest = std::max(largest, mass(scene, cable));
+  const double gravity = scene.gravity.type == GravityDesc::Type::uniform ? scene.gravity.acceleration.norm() : 0;
+  return largest * (gravity > 0 ? gravity : standard_gravity);
+}
+
+double largest_strain(const SceneDesc& scene, double tension) {
+  double largest = 0;
+  for (const CableDesc& cable : scene.cables) {
+    if (const MaterialDesc* material = scene.find_material(cable.material)) {
+      largest = std::max(largest, tension / material->axial_stiffness);
+    }
+  }
+  return largest > 0 ? largest : full_strain_if_inextensible;
+}
+
+}  // namespace
+
+std_msgs::ColorRGBA color_of_load(double load) {
+  const double place = std::clamp(load, 0.0, 1.0) * (stops.size() - 1);
+  const std::size_t below = std::min(static_cast<std::size_t>(place), stops.size() - 2);
+  const float fraction = static_cast<float>(place - static_cast<double>(below));
+  const auto channel = [&](int i) { return stops[below][i] + fraction * (stops[below + 1][i] - stops[below][i]); };
+  std_msgs::ColorRGBA color;
+  color.r = channel(0);
+  color.g = channel(1);
+  color.b = channel(2);
+  color.a = 1;
+  return color;
+}
+
+float packed_rgb(const std_msgs::ColorRGBA& color) {
+  const auto byte = [](float channel) { return static_cast<std::uint32_t>(std::lround(255 * std::clamp(channel, 0.0f, 1.0f))); };
+  const std::uint32_t bits = byte(color.r) << 16 | byte(color.g) << 8 | byte(color.b);
+  float packed;
+  std::memcpy(&packed, &bits, sizeof(packed));
+  return packed;
+}
+
+std_msgs::ColorRGBA to_color(const std::array<double, 4>& rgba) {
+  std_msgs::ColorRGBA color;
+  color.r = static_cast<float>(rgba[0]);
+  color.g = static_cast<float>(rgba[1]);
+  color.b = static_cast<float>(rgba[2]);
+  color.a = static_cast<float>(rgba[3]);
+  return color;
+}
+
+ColorScale::ColorScale(const SceneDesc& scene)
+    : color_by_(scene.color_by),
+      has_cables_(!scene.cables.empty()),
+      full_tension_(scene.cables.empty() ? 1 : largest_weight(scene)),
+      full_strain_(largest_strain(scene, full_tension_)) {}
+
+double ColorScale::load(const SimulatedCable& cable, int segment, const std::vector<double>& contact_forces) const {
+  if (color_by_ == ColorBy::contact) return contact_forces.empty() ? 0 : std::cbrt(contact_forces[segment] / full_tension_);
+  return color_by_ == ColorBy::strain ? strain(cable, segment) / full_strain_ : cable.state.tension[segment] / full_tension_;
+}
+
+Legend ColorScale::legend() const {
+  Legend legend;
+  if (color_by_ == ColorBy::cable || !has_cables_) return legend;
+  legend.quantity = color_by_ == ColorBy::contact  ? "contact force, cube-root scale"
+                    : color_by_ == ColorBy::strain ? "strain"
+                                                   : "tension";
+  legend.unit = color_by_ == ColorBy::strain ? "%" : "N";
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    const double load = static_cast<double>(i) / (stops.size() - 1);
+    legend.colors.push_back(color_of_load(load));
+    legend.values.push_back(color_by_ == ColorBy::contact  ? load * load * load * full_tension_
+                            : color_by_ == ColorBy::strain ? 100 * load * full_strain_
+                                                           : load * full_tension_);
+  }
+  return legend;
+}
+
+std::vector<std::vector<double>> ColorScale::contact_forces(const World& world) const {
+  std::vector<std::vector<double>> forces(world.cables().size());
+  if (color_by_ != ColorBy::contact) return forces;
+  for (const SimulatedContact& contact : contacts_of_both(world)) {
+    std::vector<double>& of_cable = forces[contact.cable];
+    of_cable.resize(world.cables()[contact.cable].model.segments());
+    of_cable[contact.segment] += contact.force.norm();
+  }
+  return forces;
+}
+
+std::vector<std_msgs::ColorRGBA> ColorScale::node_colors(const SimulatedCable& cable,
+                                                         const std::vector<double>& contact_forces) const {
+  const int segments = cable.model.segments();
+  std::vector<std_msgs::ColorRGBA> colors(cable.model.nodes());
+  if (color_by_ != ColorBy::cable) {
+    for (int node = 0; node <= segments; ++node) {
+      const double before = load(cable, std::max(node - 1, 0), contact_forces);
+      const double after = load(cable, std::min(node, segments - 1), contact_forces);
+      colors[node] = color_of_load((before + after) / 2);
+    }
+  } else {
+    std::fill(colors.begin(), colors.end(), to_color(cable.model.color));
+  }
+  return colors;
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,155 @@
+#include "publish/conversions.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace verlet_cable {
+
+geometry_msgs::Point to_point(const Vector3& vector) {
+  geometry_msgs::Point message;
+  message.x = vector.x();
+  message.y = vector.y();
+  message.z = vector.z();
+  return message;
+}
+
+geometry_msgs::Vector3 to_vector(const Vector3& vector) {
+  geometry_msgs::Vector3 message;
+  message.x = vector.x();
+  message.y = vector.y();
+  message.z = vector.z();
+  return message;
+}
+
+geometry_msgs::Quaternion to_quaternion(const Quaternion& quaternion) {
+  geometry_msgs::Quaternion message;
+  message.x = quaternion.x();
+  message.y = quaternion.y();
+  message.z = quaternion.z();
+  message.w = quaternion.w();
+  return message;
+}
+
+geometry_msgs::Pose to_pose(const Pose& pose) {
+  geometry_msgs::Pose message;
+  message.position = to_point(pose.position);
+  message.orientation = to_quaternion(pose.orientation);
+  return message;
+}
+
+bool is_finite(const SimulatedCable& cable) {
+  const auto finite_vector = [](const Vector3& vector) { return vector.allFinite(); };
+  const auto finite_number = [](double number) { return std::isfinite(number); };
+  const CableState& state = cable.state;
+  return std::all_of(state.positions.begin(), state.positions.end(), finite_vector) &&
+         std::all_of(state.velocities.begin(), state.velocities.end(), finite_vector) &&
+         std::all_of(state.tension.begin(), state.tension.end(), finite_number);
+}
+
+std::vector<SimulatedContact> contacts_of_both(const World& world) {
+  std::vector<SimulatedContact> contacts = world.findings().contacts;
+  const auto radius = [&](int cable) { return world.cables()[cable].model.material.radius; };
+  for (std::size_t i = 0, once = contacts.size(); i < once; ++i) {
+    const SimulatedContact c = contacts[i];
+    if (c.other_cable < 0) continue;
+    const Vector3 across = (radius(c.cable) + radius(c.other_cable)) * c.normal;
+    contacts.push_back({c.other_cable, c.other_segment, c.position - across, -c.normal, -c.force, -1, c.cable, c.segment});
+  }
+  return contacts;
+}
+
+namespace {
+
+Contact to_message(const World& world, const SimulatedContact& contact) {
+  Contact message;
+  message.segment = contact.segment;
+  message.position = to_point(contact.position);
+  message.normal = to_vector(contact.normal);
+  message.force = to_vector(contact.force);
+  message.other =
+      contact.obstacle >= 0 ? world.obstacles()[contact.obstacle].name : world.cables()[contact.other_cable].model.name;
+  return message;
+}
+
+}  // namespace
+
+Cable to_message(const World& world, int index, const std::vector<SimulatedContact>& contacts) {
+  const SimulatedCable& cable = world.cables()[index];
+  Cable message;
+  message.name = cable.model.name;
+  for (const Attachment& attachment : world.attachments()) {
+    if (attachment.body != cable_id(index)) continue;
+    message.attachments.push_back(attachment.name);
+    message.attachment_nodes.push_back(attachment.node);
+  }
+  message.positions.reserve(cable.model.nodes());
+  for (const Vector3& position : cable.state.positions) message.positions.push_back(to_point(position));
+  message.velocities.reserve(cable.model.nodes());
+  for (const Vector3& velocity : cable.state.velocities) message.velocities.push_back(to_vector(velocity));
+  message.orientations.reserve(cable.model.segments());
+  for (const Quaternion& orientation : segment_orientations(cable)) message.orientations.push_back(to_quaternion(orientation));
+  message.arc_length = cable.model.arc_length();
+  message.tension = cable.state.tension;
+  message.curvature = node_curvature(cable);
+  message.twist = node_twist(cable);
+  message.rest_length = cable.model.length();
+  message.radius = cable.model.material.radius;
+  for (const SimulatedContact& contact : contacts)
+    if (contact.cable == index) message.contacts.push_back(to_message(world, contact));
+  return message;
+}
+
+bool is_finite(const SimulatedNet& net) {
+  const auto all_finite = [](const Vector3& v) { return v.allFinite(); };
+  return std::all_of(net.state.positions.begin(), net.state.positions.end(), all_finite) &&
+         std::all_of(net.state.velocities.begin(), net.state.velocities.end(), all_finite) &&
+         std::all_of(net.state.tension.begin(), net.state.tension.end(), [](double t) { return std::isfinite(t); });
+}
+
+bool is_finite(const SimulatedParticle& particle) {
+  return particle.position.allFinite() && particle.velocity.allFinite();
+}
+
+Net to_message(const SimulatedNet& net) {
+  Net message;
+  message.name = net.model.name;
+  for (const Vector3& position : net.state.positions) message.positions.push_back(to_point(position));
+  for (const Vector3& velocity : net.state.velocities) message.velocities.push_back(to_vector(velocity));
+  for (const std::array<int, 2>& link : net.model.links)
+    for (const int node : link) message.links.push_back(static_cast<std::uint32_t>(node));
+  message.tension = net.state.tension;
+  return message;
+}
+
+Particle to_message(const SimulatedParticle& particle) {
+  Particle message;
+  message.name = particle.desc.name;
+  message.position = to_point(particle.position);
+  message.velocity = to_vector(particle.velocity);
+  return message;
+}
+
+CableArray to_message(const World& world) {
+  CableArray message;
+  const std::vector<SimulatedContact> contacts = contacts_of_both(world);
+  for (int index = 0; index < static_cast<int>(world.cables().size()); ++index) {
+    if (is_finite(world.cables()[index])) message.cables.push_back(to_message(world, index, contacts));
+  }
+  for (const SimulatedNet& net : world.nets())
+    if (is_finite(net)) message.nets.push_back(to_message(net));
+  for (const SimulatedParticle& particle : world.particles())
+    if (is_finite(particle)) message.particles.push_back(to_message(particle));
+  return message;
+}
+
+geometry_msgs::Wrench wrench_on_frame(const Attachment& attachment, const Pose& frame) {
+  const Quaternion into_frame = frame.orientation.conjugate();
+  const Vector3 force = into_frame * attachment.force;
+  const Vector3 torque = into_frame * attachment.torque + attachment.pose.position.cross(force);
+  geometry_msgs::Wrench message;
+  message.force = to_vector(force);
+  message.torque = to_vector(torque);
+  return message;
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,218 @@
+#include "publish/marker_publisher.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "publish/conversions.h"
+#include "publish/obstacle_markers.h"
+#include "publish/queue_size.h"
+#include "publish/tube.h"
+
+namespace verlet_cable {
+namespace {
+
+using visualization_msgs::Marker;
+using visualization_msgs::MarkerArray;
+
+constexpr double aluminium_density = 2700;  // [kg/m^3]
+constexpr double pin_size = 2.2;            // of a pin to the cable it holds, radius to radius
+constexpr int most_tube_corners = 60000;    // of all cables: what a network and rviz take 50 times a second
+constexpr int cable_marker_id = 0;
+constexpr int net_lines_id = 0, net_triangles_id = 1, particle_marker_id = 0;
+constexpr double net_line_width = 0.04;  // of the first link's length
+constexpr double net_pin_size = 0.4;     // likewise
+
+std_msgs::ColorRGBA grey(float level) {
+  std_msgs::ColorRGBA color;
+  color.r = color.g = color.b = level;
+  color.a = 1;
+  return color;
+}
+
+void set_scale(Marker& marker, double x, double y, double z) {
+  marker.scale.x = x;
+  marker.scale.y = y;
+  marker.scale.z = z;
+}
+
+/// [kg] What a node weighs beyond the segments that meet there. The half segments that cuts leave on the ends do not count.
+double payload(const CableModel& model, int node) {
+  double share = 0, largest_half = 0;
+  for (int segment = std::max(node - 1, 0); segment <= std::min(node, model.segments() - 1); ++segment) {
+    const double half = model.material.linear_density * model.rest_lengths[segment] / 2;
+    share += half;
+    largest_half = std::max(largest_half, half);
+  }
+  const double excess = model.masses[node] - share;
+  return excess > 1.5 * largest_half ? excess : 0;
+}
+
+/// [m] How long a net's links are, for the sizes of what shows it.
+double link_length(const NetModel& model) {
+  return model.rest_lengths.empty() ? 0.1 : model.rest_lengths.front();
+}
+
+/// Both sides of the two triangles of each cell.
+void add_triangles(const SimulatedNet& net, Marker& marker) {
+  const int columns = net.model.columns;
+  for (int row = 0; row + 1 < net.model.rows; ++row)
+    for (int column = 0; column + 1 < columns; ++column) {
+      const int a = row * columns + column, b = a + 1, c = a + columns, d = c + 1;
+      for (const int node : {a, c, b, b, c, a, d, b, c, c, b, d}) marker.points.push_back(to_point(net.state.positions[node]));
+    }
+}
+
+}  // namespace
+
+MarkerPublisher::MarkerPublisher(ros::NodeHandle& private_node, const SceneDesc& scene)
+    : publisher_(private_node.advertise<MarkerArray>("markers", publisher_queue_size)),
+      frame_id_(scene.frame_id),
+      style_(scene.marker_style),
+      colors_(scene) {}
+
+void MarkerPublisher::show(const SceneDesc& scene) {
+  frame_id_ = scene.frame_id;
+  style_ = scene.marker_style;
+  colors_ = ColorScale(scene);
+}
+
+void MarkerPublisher::publish(const World& world, const ros::Time& stamp) {
+  if (publisher_.getNumSubscribers() == 0) return;
+  const auto markers = boost::make_shared<MarkerArray>();
+  const std::vector<std::vector<double>> contact_forces = colors_.contact_forces(world);
+  const int cables = static_cast<int>(world.cables().size());
+  for (int i = 0; i < cables; ++i) {
+    const SimulatedCable& cable = world.cables()[i];
+    if (!is_finite(cable)) continue;
+    add_cable(cable, contact_forces[i], most_tube_corners / cables, *markers);
+    add_payloads(cable, *markers);
+  }
+  for (const SimulatedNet& net : world.nets())
+    if (is_finite(net)) add_net(net, *markers);
+  for (const SimulatedParticle& particle : world.particles())
+    if (is_finite(particle)) add_particle(particle, *markers);
+  for (const Attachment& attachment : world.attachments()) add_pin(world, attachment, *markers);
+  for (const Obstacle& obstacle : world.obstacles()) add_obstacle(world, obstacle, *markers);
+  delete_what_is_gone(*markers);
+  for (Marker& marker : markers->markers) marker.header.stamp = stamp;
+  publisher_.publish(markers);
+}
+
+Marker MarkerPublisher::make_marker(const std::string& ns, int id, int type) const {
+  Marker marker;
+  marker.header.frame_id = frame_id_;
+  marker.ns = ns;
+  marker.id = id;
+  marker.type = type;
+  marker.pose.orientation.w = 1;
+  return marker;
+}
+
+void MarkerPublisher::add_cable(const SimulatedCable& cable, const std::vector<double>& contact_forces, int most_corners,
+                                MarkerArray& markers) const {
+  const double radius = cable.model.material.radius;
+  std::vector<std_msgs::ColorRGBA> colors = colors_.node_colors(cable, contact_forces);
+  const bool tube = style_ == MarkerStyle::tube;
+  Marker marker = make_marker(cable.model.name, cable_marker_id, tube ? Marker::TRIANGLE_LIST : Marker::LINE_STRIP);
+  marker.color = colors.front();
+  if (tube) {
+    set_scale(marker, 1, 1, 1);
+    fill_tube(cable.state.positions, colors, radius, most_corners, marker);
+  } else {
+    marker.scale.x = 2 * radius;
+    for (const Vector3& position : cable.state.positions) marker.points.push_back(to_point(position));
+    marker.colors = std::move(colors);
+  }
+  markers.markers.push_back(std::move(marker));
+}
+
+void MarkerPublisher::add_payloads(const SimulatedCable& cable, MarkerArray& markers) {
+  int payloads = 0;
+  for (int node = 0; node < cable.model.nodes(); ++node) {
+    const double mass = payload(cable.model, node);
+    if (mass <= 0) continue;
+    // Counted, since a winch changes the numbers of the nodes.
+    Marker marker = make_marker("payloads", id_of(cable.model.name + "/" + std::to_string(payloads++)), Marker::SPHERE);
+    marker.pose.position = to_point(cable.state.positions[node]);
+    const double ball = 2 * std::cbrt(3 * mass / (4 * M_PI * aluminium_density));
+    const double diameter = std::max(ball, 2 * pin_size * cable.model.material.radius);
+    set_scale(marker, diameter, diameter, diameter);
+    marker.color = grey(0.55f);
+    markers.markers.push_back(std::move(marker));
+  }
+}
+
+void MarkerPublisher::add_net(const SimulatedNet& net, MarkerArray& markers) const {
+  if (!net.model.links.empty()) {
+    Marker lines = make_marker(net.model.name, net_lines_id, Marker::LINE_LIST);
+    lines.scale.x = net_line_width * link_length(net.model);
+    lines.color = to_color(net.model.color);
+    for (const std::array<int, 2>& link : net.model.links)
+      for (const int node : link) lines.points.push_back(to_point(net.state.positions[node]));
+    markers.markers.push_back(std::move(lines));
+  }
+  if (!net.model.is_grid() || style_ == MarkerStyle::line) return;
+  Marker triangles = make_marker(net.model.name, net_triangles_id, Marker::TRIANGLE_LIST);
+  set_scale(triangles, 1, 1, 1);
+  triangles.color = to_color(net.model.color);
+  add_triangles(net, triangles);
+  markers.markers.push_back(std::move(triangles));
+}
+
+void MarkerPublisher::add_particle(const SimulatedParticle& particle, MarkerArray& markers) const {
+  Marker marker = make_marker(particle.desc.name, particle_marker_id, Marker::SPHERE);
+  marker.pose.position = to_point(particle.position);
+  const double diameter = 2 * particle.desc.radius;
+  set_scale(marker, diameter, diameter, diameter);
+  marker.color = to_color(particle.desc.color);
+  markers.markers.push_back(std::move(marker));
+}
+
+void MarkerPublisher::add_pin(const World& world, const Attachment& attachment, MarkerArray& markers) {
+  const Pose pose = world.frame_pose(attachment.frame) * attachment.pose;
+  if (!pose.position.allFinite() || !pose.orientation.coeffs().allFinite()) return;
+  const double size = attachment.body.is_net() ? net_pin_size * link_length(world.nets()[attachment.body.index].model)
+                                               : 2 * pin_size * world.cables()[attachment.body.index].model.material.radius;
+  const bool clamp = attachment.type == AttachmentType::clamp;
+  Marker marker = make_marker("pins", id_of(attachment.name), clamp ? Marker::CUBE : Marker::SPHERE);
+  marker.pose = to_pose(pose);
+  marker.color = grey(0.8f);
+  if (clamp) {
+    set_scale(marker, 2 * size, size, 0.7 * size);  // three unequal edges show direction and roll
+  } else {
+    set_scale(marker, size, size, size);
+  }
+  markers.markers.push_back(std::move(marker));
+}
+
+void MarkerPublisher::add_obstacle(const World& world, const Obstacle& obstacle, MarkerArray& markers) {
+  if (!obstacle.present) return;
+  int part = 0;
+  for (const Marker& look : obstacle_markers(obstacle, world.frame_pose(obstacle.frame))) {
+    // No other name has a colon and a number behind it.
+    Marker marker = make_marker("obstacles", id_of(obstacle.name + ":" + std::to_string(part++)), look.type);
+    marker.pose = look.pose;
+    marker.scale = look.scale;
+    marker.color = look.color;
+    marker.mesh_resource = look.mesh_resource;
+    markers.markers.push_back(std::move(marker));
+  }
+}
+
+void MarkerPublisher::delete_what_is_gone(MarkerArray& markers) {
+  std::set<Key> showing;
+  for (const Marker& marker : markers.markers) showing.emplace(marker.ns, marker.id);
+  for (const auto& [ns, id] : shown_) {
+    if (showing.count({ns, id}) > 0) continue;
+    Marker gone = make_marker(ns, id, Marker::SPHERE);
+    gone.action = Marker::DELETE;
+    markers.markers.push_back(std::move(gone));
+  }
+  shown_ = std::move(showing);
+}
+
+int MarkerPublisher::id_of(const std::string& name) {
+  return ids_.emplace(name, static_cast<int>(ids_.size()) + 1).first->second;
+}
+
+}  // namespace verlet_cable

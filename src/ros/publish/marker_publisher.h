@@ -1,0 +1,52 @@
+#pragma once
+
+#include <ros/ros.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "publish/color.h"
+#include "verlet_cable/core/world.h"
+
+namespace verlet_cable {
+
+/// Topic `markers`. Complete at every tick, so that a viewer that starts late lacks nothing; what is gone is deleted once.
+///  * namespace = name of a cable, id 0: the cable, a tube or a line;
+///  * namespace = name of a net, id 0: its links, as lines; id 1, of a grid with marker_style tube: its triangles, both sides;
+///  * namespace = name of a particle, id 0: a sphere;
+///  * namespace "pins", ids from 1: what holds cables and nets: hinges are spheres, clamps are boxes, long along the cable;
+///  cable's +x;
+///  * namespace "obstacles", ids from 1: those that are there; a capsule is three markers;
+///  * namespace "payloads", ids from 1: point masses, as balls of aluminium would be.
+class MarkerPublisher {
+ public:
+  MarkerPublisher(ros::NodeHandle& private_node, const SceneDesc& scene);
+  void show(const SceneDesc& scene);  ///< from now on
+  void publish(const World& world, const ros::Time& stamp);
+
+ private:
+  using Key = std::pair<std::string, int>;  // namespace and id
+
+  visualization_msgs::Marker make_marker(const std::string& ns, int id, int type) const;
+  void add_cable(const SimulatedCable& cable, const std::vector<double>& contact_forces, int most_corners,
+                 visualization_msgs::MarkerArray& markers) const;
+  void add_payloads(const SimulatedCable& cable, visualization_msgs::MarkerArray& markers);
+  void add_net(const SimulatedNet& net, visualization_msgs::MarkerArray& markers) const;
+  void add_particle(const SimulatedParticle& particle, visualization_msgs::MarkerArray& markers) const;
+  void add_pin(const World& world, const Attachment& attachment, visualization_msgs::MarkerArray& markers);
+  void add_obstacle(const World& world, const Obstacle& obstacle, visualization_msgs::MarkerArray& markers);
+  void delete_what_is_gone(visualization_msgs::MarkerArray& markers);
+  int id_of(const std::string& name);
+
+  ros::Publisher publisher_;
+  std::string frame_id_;
+  MarkerStyle style_;
+  ColorScale colors_;
+  std::map<std::string, int> ids_;  // of pins, payloads and obstacles, by name; never given twice
+  std::set<Key> shown_;             // at the last tick with subscribers
+};
+
+}  // namespace verlet_cable

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <ros/ros.h>
+
+#include <memory>
+
+#include "verlet_cable/core/scene_desc.h"
+#include "verlet_cable/core/world.h"
+
+namespace verlet_cable {
+
+/// What the node shows of a world: `markers`, `points`, `surface`, `state` and `wrench/<attachment>`, in the scene's fixed frame
+/// (a wrench in its attachment's frame), and `legend`. Nothing is computed for a topic without subscribers, and no cable with a
+/// value that is not finite is published.
+class Publishers {
+ public:
+  /// Advertises under `private_node`. Of the scene: `frame_id`, `marker_style`, `color_by`, and what the color scale is made
+  /// from.
+  Publishers(ros::NodeHandle& private_node, const SceneDesc& scene);
+  ~Publishers();
+
+  /// Shows another scene from now on; what is gone is deleted at the next tick.
+  void show(const SceneDesc& scene);
+
+  /// Publishes one tick: every message carries `stamp`, the simulated time. Wrench topics come and go with the attachments.
+  void publish(const World& world, const ros::Time& stamp);
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace verlet_cable

@@ -1,0 +1,84 @@
+#include "publish/surface_publisher.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "publish/conversions.h"
+#include "publish/point_cloud.h"
+#include "publish/queue_size.h"
+
+namespace verlet_cable {
+namespace {
+
+constexpr int sides = 12;  // points around a cable
+constexpr double most_points = 100000;
+
+/// One point as it lies in the cloud's data: the fields below, in this order.
+struct PointRecord {
+  float x, y, z, rgb;
+  std::uint32_t cable_id;
+};
+
+/// Of the rings of a segment, if they are as far apart as the points of a ring, times `coarseness`.
+int rings(const CableModel& model, int segment, double coarseness) {
+  const double spacing = coarseness * 2 * M_PI * model.material.radius / sides;
+  return static_cast<int>(std::clamp(std::round(model.rest_lengths[segment] / spacing), 1.0, most_points));
+}
+
+/// By how much rings must be further apart than the points of a ring.
+double find_coarseness(const World& world) {
+  double points = 0;
+  for (const SimulatedCable& cable : world.cables())
+    points += cable.model.length() / (2 * M_PI * cable.model.material.radius / sides) * sides;
+  return std::max(1.0, points / most_points);
+}
+
+void append_points(const SimulatedCable& cable, std::uint32_t cable_id, double coarseness,
+                   const std::vector<std_msgs::ColorRGBA>& colors, std::vector<PointRecord>& points) {
+  const std::vector<Quaternion> orientations = segment_orientations(cable);
+  for (int i = 0; i < cable.model.segments(); ++i) {
+    const int count = rings(cable.model, i, coarseness);
+    for (int ring = 0; ring < count; ++ring) {
+      const double part = (ring + 0.5) / count;
+      const Vector3 center = cable.state.positions[i] + part * (cable.state.positions[i + 1] - cable.state.positions[i]);
+      const float rgb = packed_rgb(colors[part < 0.5 ? i : i + 1]);
+      for (int side = 0; side < sides; ++side) {
+        const double angle = 2 * M_PI * side / sides;
+        const Vector3 spoke = cable.model.material.radius * Vector3(0, std::cos(angle), std::sin(angle));
+        const Eigen::Vector3f point = (center + orientations[i] * spoke).cast<float>();
+        points.push_back({point.x(), point.y(), point.z(), rgb, cable_id});
+      }
+    }
+  }
+}
+
+}  // namespace
+
+SurfacePublisher::SurfacePublisher(ros::NodeHandle& private_node, const SceneDesc& scene)
+    : publisher_(private_node.advertise<sensor_msgs::PointCloud2>("surface", publisher_queue_size)), colors_(scene) {
+  show(scene);
+}
+
+void SurfacePublisher::show(const SceneDesc& scene) {
+  frame_id_ = scene.frame_id;
+  colors_ = ColorScale(scene);
+}
+
+void SurfacePublisher::publish(const World& world, const ros::Time& stamp) {
+  if (publisher_.getNumSubscribers() == 0) return;
+  const double coarseness = find_coarseness(world);
+  std::vector<PointRecord> points;
+  const std::vector<std::vector<double>> contact_forces = colors_.contact_forces(world);
+  for (std::size_t id = 0; id < world.cables().size(); ++id) {
+    const SimulatedCable& cable = world.cables()[id];
+    if (!is_finite(cable)) continue;
+    append_points(cable, static_cast<std::uint32_t>(id), coarseness, colors_.node_colors(cable, contact_forces[id]), points);
+  }
+  using sensor_msgs::PointField;
+  publisher_.publish(make_point_cloud(frame_id_, stamp, points, "x", 1, PointField::FLOAT32, "y", 1, PointField::FLOAT32, "z", 1,
+                                      PointField::FLOAT32, "rgb", 1, PointField::FLOAT32, "cable_id", 1, PointField::UINT32));
+}
+
+}  // namespace verlet_cable

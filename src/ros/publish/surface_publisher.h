@@ -1,0 +1,26 @@
+#pragma once
+
+#include <ros/ros.h>
+
+#include <string>
+
+#include "publish/color.h"
+#include "verlet_cable/core/world.h"
+
+namespace verlet_cable {
+
+/// Topic `surface`: points on the cables' surface, about evenly spread, as a PointCloud2 of height 1 with the fields x, y, z [m],
+/// rgb and cable_id. At most 100000 points: many or long cables get fewer each.
+class SurfacePublisher {
+ public:
+  SurfacePublisher(ros::NodeHandle& private_node, const SceneDesc& scene);
+  void show(const SceneDesc& scene);  ///< from now on
+  void publish(const World& world, const ros::Time& stamp);
+
+ private:
+  ros::Publisher publisher_;
+  std::string frame_id_;
+  ColorScale colors_;
+};
+
+}  // namespace verlet_cable

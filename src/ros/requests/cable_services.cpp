@@ -1,0 +1,171 @@
+#include "requests/cable_services.h"
+
+#include <std_srvs/SetBool.h>
+#include <std_srvs/Trigger.h>
+#include <verlet_cable/Cut.h>
+#include <verlet_cable/Join.h>
+#include <verlet_cable/LoadScene.h>
+#include <verlet_cable/Pin.h>
+#include <verlet_cable/RestoreState.h>
+#include <verlet_cable/SaveState.h>
+#include <verlet_cable/SetLength.h>
+#include <verlet_cable/Step.h>
+#include <verlet_cable/Unpin.h>
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "requests/checked_pin.h"
+#include "requests/location.h"
+#include "scene_sources/scene_files.h"
+#include "simulation/error_text.h"
+#include "verlet_cable/core/number_text.h"
+
+namespace verlet_cable {
+namespace {
+
+/// So many may be read and built at once; more wait.
+constexpr std::uint32_t most_loads = 4;
+
+template <typename Response>
+bool answer(const EditResult& result, Response& response) {
+  response.success = result.ok;
+  response.message = result.message;
+  // Not a failure of the call: the caller gets the message.
+  return true;
+}
+
+FindFrame find_frame_in(const Simulation& simulation) {
+  return [&simulation](const std::string& frame) { return simulation.find_frame(frame); };
+}
+
+/// Says how far the place that was found is from the point that was given.
+EditResult with_distance(EditResult result, const CableLocation& location, double distance) {
+  if (result.ok && location.mode == CableLocation::NEAREST)
+    result.message += "; the nearest point, " + rounded_text(distance, 3) + " m away";
+  return result;
+}
+
+bool pin(Simulation& simulation, const Pin::Request& request, Pin::Response& response) {
+  if (!simulation.started()) return answer(simulation.refused_before_start(), response);
+  const CheckedPin pin = check_pin(request, simulation.world(), find_frame_in(simulation));
+  if (!pin.errors.empty()) return answer(refused(pin.errors), response);
+  const AttachmentType type = request.clamp ? AttachmentType::clamp : AttachmentType::hinge;
+  const EditResult result =
+      pin.net >= 0 ? simulation.pin_net(request.name, pin.net, pin.node, pin.frame, pin.frame_pose, pin.offset.position)
+                   : simulation.pin(request.name, pin.cable, pin.node, pin.frame, pin.frame_pose, pin.offset, type);
+  response.name = result.name;
+  response.node = static_cast<std::uint32_t>(pin.node);
+  return answer(result, response);
+}
+
+bool cut(Simulation& simulation, const Cut::Request& request, Cut::Response& response) {
+  if (!simulation.started()) return answer(simulation.refused_before_start(), response);
+  const Location location = locate_cut(request.location, simulation.world(), find_frame_in(simulation));
+  if (!location.errors.empty()) return answer(refused(location.errors), response);
+  if (location.net >= 0) {
+    response.first = simulation.world().nets()[location.net].model.name;
+    return answer(with_distance(simulation.cut_links(location.net, location.links), request.location, location.distance),
+                  response);
+  }
+  const EditResult result = simulation.cut(location.cable, location.index);
+  if (result.ok) response.first = simulation.world().cables()[location.cable].model.name;
+  response.second = result.name;
+  return answer(with_distance(result, request.location, location.distance), response);
+}
+
+/// What a thread of the service does: reads and checks, which may take long, and waits for the scene. `reads`: one reads at a
+/// time, so that scenes are asked for in the order they came.
+EditResult load_scene(Simulation& simulation, OwnerCalls& owner, std::mutex& reads, const SceneDesc& current,
+                      const LoadScene::Request& request) {
+  std::future<EditResult> asked;
+  try {
+    const std::lock_guard<std::mutex> lock(reads);
+    const SceneDesc scene = read_requested_scene(request, current);
+    asked = owner.begin([&simulation, scene](const Answer& answer) { simulation.load_scene(scene, answer); });
+  } catch (const SceneError& error) {
+    return refused(error.errors());
+  }
+  return owner.wait(std::move(asked));
+}
+
+bool step(Simulation& simulation, OwnerCalls& owner, const Step::Request& request, Step::Response& response) {
+  // Atomic, as the answer may come when nobody waits any longer, because the node ends.
+  const auto time = std::make_shared<std::atomic<double>>(0);
+  const EditResult result = owner.ask([&simulation, time, steps = request.steps](const Answer& answer) {
+    simulation.step(steps, [&simulation, time, answer](const EditResult& done) {
+      *time = seconds(simulation.stamp());
+      answer(done);
+    });
+  });
+  response.time = *time;
+  return answer(result, response);
+}
+
+/// A service whose handler is a function of the simulation and the message types of `Service`.
+template <typename Service>
+ros::ServiceServer serve(ros::NodeHandle& node, const std::string& name,
+                         std::function<bool(const typename Service::Request&, typename Service::Response&)> handler) {
+  return node.advertiseService<typename Service::Request, typename Service::Response>(
+      name,
+      [handler](typename Service::Request& request, typename Service::Response& response) { return handler(request, response); });
+}
+
+}  // namespace
+
+CableServices::CableServices(ros::NodeHandle& node, Simulation& simulation) : owner_(*node.getCallbackQueue()) {
+  using std_srvs::SetBool;
+  using std_srvs::Trigger;
+  Simulation* const s = &simulation;
+  servers_ = {
+      serve<SetBool>(node, "pause",
+                     [s](const auto& request, auto& response) { return answer(s->set_paused(request.data), response); }),
+      serve<Unpin>(node, "unpin", [s](const auto& request, auto& response) { return answer(s->unpin(request.name), response); }),
+      serve<Pin>(node, "pin", [s](const auto& request, auto& response) { return pin(*s, request, response); }),
+      serve<Cut>(node, "cut", [s](const auto& request, auto& response) { return cut(*s, request, response); }),
+      serve<SetLength>(
+          node, "set_length",
+          [s](const auto& r, auto& response) { return answer(s->set_length(r.cable, r.at_end, r.length, r.speed), response); }),
+      serve<Join>(node, "join",
+                  [s](const auto& r, auto& response) {
+                    const EditResult result = s->join(r.first, r.first_at_end, r.second, r.second_at_end);
+                    response.cable = result.name;
+                    return answer(result, response);
+                  }),
+      serve<SaveState>(node, "save_state",
+                       [s](const auto& request, auto& response) { return answer(s->save_state(request.name), response); }),
+      serve<RestoreState>(node, "restore_state",
+                          [s](const auto& request, auto& response) { return answer(s->restore_state(request.name), response); }),
+  };
+  SceneDesc lasting;  // what no request changes
+  lasting.scene_directory = s->scene().scene_directory;
+  lasting.limits = s->scene().limits;
+  serve_aside<Trigger>(node, "reset", [this, s](const auto&, auto& response) {
+    return answer(owner_.ask([s](const Answer& done) { s->reset(done); }), response);
+  });
+  serve_aside<Step>(node, "step", [this, s](const auto& request, auto& response) { return step(*s, owner_, request, response); });
+  serve_aside<LoadScene>(
+      node, "load_scene",
+      [this, s, lasting](const auto& request, auto& response) {
+        return answer(load_scene(*s, owner_, reads_scene_, lasting, request), response);
+      },
+      most_loads);
+}
+
+CableServices::~CableServices() {
+  // First, as a service that is shut down waits for its callbacks.
+  owner_.end();
+}
+
+template <typename Service, typename Handler>
+void CableServices::serve_aside(const ros::NodeHandle& node, const std::string& name, Handler handler, std::uint32_t threads) {
+  Aside& aside = *asides_.emplace_back(std::make_unique<Aside>(threads));
+  ros::NodeHandle own(node);
+  own.setCallbackQueue(&aside.guard);
+  aside.server = serve<Service>(own, name, handler);
+  aside.spinner.start();
+}
+
+}  // namespace verlet_cable

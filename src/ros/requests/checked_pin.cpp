@@ -1,0 +1,104 @@
+#include "requests/checked_pin.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "verlet_cable/core/number_text.h"
+#include "verlet_cable/core/quoted_text.h"
+#include "verlet_cable/core/scene_fields.h"
+
+namespace verlet_cable {
+namespace {
+
+std::string text(const Vector3& v) {
+  return "(" + number_text(v.x()) + ", " + number_text(v.y()) + ", " + number_text(v.z()) + ")";
+}
+
+/// The node's place and the cable's direction there, between the directions of its segments.
+Pose node_pose(const SimulatedCable& cable, int node) {
+  const std::vector<Quaternion> orientations = segment_orientations(cable);
+  const int last = cable.model.segments() - 1;
+  const Quaternion& before = orientations[std::max(node - 1, 0)];
+  const Quaternion& after = orientations[std::min(node, last)];
+  return {cable.state.positions[node], before.slerp(0.5, after).normalized()};
+}
+
+/// What an inextensible cable between the pin and its neighbours cannot do.
+void check_reach(const CheckedPin& pin, const World& world, std::vector<std::string>& errors) {
+  const CableModel& model = world.cables()[pin.cable].model;
+  if (std::isfinite(model.material.axial_stiffness)) return;
+  constexpr double rounding = 1e-6;
+  const std::vector<double> arc_length = model.arc_length();
+  const Vector3 place = (pin.frame_pose * pin.offset).position;
+  for (const Attachment& other : world.attachments()) {
+    if (other.body != cable_id(pin.cable)) continue;
+    const double distance = (place - (world.frame_pose(other.frame) * other.pose).position).norm();
+    const double length = std::abs(arc_length[pin.node] - arc_length[other.node]);
+    if (distance <= length * (1 + rounding)) continue;
+    errors.push_back("offset.position: " + text(pin.offset.position) + " in frame " + verlet_cable::quoted(pin.frame) + " is " +
+                     rounded_text(distance) + " m from " + quoted(other.name) + "; allowed: at most the " + rounded_text(length) +
+                     " m of cable between them");
+  }
+}
+
+}  // namespace
+
+/// Identity for all zeros; otherwise nearly of length one.
+Pose read_pose(const std::string& field, const geometry_msgs::Pose& pose, std::vector<std::string>& errors) {
+  constexpr double tolerance = 0.01;
+  const Vector3 position(pose.position.x, pose.position.y, pose.position.z);
+  if (!(position.cwiseAbs().array() <= coordinate.highest).all())
+    errors.push_back(field + ".position: " + text(position) + "; allowed: " + coordinate.text("m"));
+  const Quaternion q(pose.orientation.w, pose.orientation.x, pose.orientation.y, pose.orientation.z);
+  if ((q.coeffs().array() == 0).all()) return {position, Quaternion::Identity()};
+  if (!(std::abs(q.norm() - 1) <= tolerance)) {
+    errors.push_back(field + ".orientation: (" + number_text(q.x()) + ", " + number_text(q.y()) + ", " + number_text(q.z()) +
+                     ", " + number_text(q.w()) + "); allowed: quaternions of length 1, or all zero for no rotation");
+    return {position, Quaternion::Identity()};
+  }
+  return {position, q.normalized()};
+}
+
+CheckedPin check_pin(const Pin::Request& request, const World& world, const FindFrame& find_frame) {
+  CheckedPin pin;
+  const Location location = locate_node(request.location, world, find_frame);
+  pin.errors = location.errors;
+  pin.cable = location.cable;
+  pin.net = location.net;
+  pin.node = location.index;
+  pin.frame = request.frame_id.empty() ? world.frames().front() : request.frame_id;
+  pin.offset = read_pose("offset", request.offset, pin.errors);
+  if (!request.name.empty() && !is_name(request.name)) {
+    pin.errors.push_back("name: " + quoted(request.name) + "; allowed: " + name_words + "; or empty");
+  }
+  if (find(world.attachments(), request.name) >= 0) {
+    pin.errors.push_back("name: " + quoted(request.name) + "; allowed: names that no attachment has");
+  }
+  if (const std::optional<Pose> pose = pin.frame[0] == '/' ? std::nullopt : find_frame(pin.frame)) {
+    pin.frame_pose = *pose;
+  } else {
+    pin.errors.push_back("frame_id: " + verlet_cable::quoted(pin.frame) +
+                         "; allowed: frames that tf knows, without a leading /; or empty");
+  }
+  if (!location.errors.empty()) return pin;
+  if (pin.net >= 0 && request.clamp) pin.errors.push_back("clamp: true; allowed: false, nets are held by hinges");
+  const std::string holder =
+      pin.net >= 0 ? "net " + quoted(world.nets()[pin.net].model.name) : "cable " + quoted(world.cables()[pin.cable].model.name);
+  for (const Attachment& other : world.attachments()) {
+    if (other.body != (pin.net >= 0 ? net_id(pin.net) : cable_id(pin.cable)) || other.node != pin.node) continue;
+    pin.errors.push_back("location: node " + std::to_string(pin.node) + " of " + holder + " is held by " + quoted(other.name) +
+                         "; allowed: nodes that nothing holds");
+  }
+  if (!pin.errors.empty()) return pin;
+  if (request.keep_offset) {
+    const Pose node = pin.net >= 0 ? Pose{world.nets()[pin.net].state.positions[pin.node], Quaternion::Identity()}
+                                   : node_pose(world.cables()[pin.cable], pin.node);
+    pin.offset = pin.frame_pose.inverse() * node;
+  } else if (pin.net < 0) {
+    check_reach(pin, world, pin.errors);
+    if (!pin.errors.empty()) pin.errors.back() += "; to hold it where it is: keep_offset: true";
+  }
+  return pin;
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <verlet_cable/CableLocation.h>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "verlet_cable/core/world.h"
+
+namespace verlet_cable {
+
+/// Where a frame is in the fixed frame; none if it is not known.
+using FindFrame = std::function<std::optional<Pose>(const std::string&)>;
+
+/// A place on a cable or net of a world, or everything that is wrong with the request for it.
+struct Location {
+  int cable = 0;  ///< index into World::cables(), -1 on a net
+  int index = 0;  ///< of the node or segment
+  std::vector<std::string> errors;
+  int net = -1;            ///< index into World::nets(), -1 on a cable
+  std::vector<int> links;  ///< of a net, to be cut; ascending
+  double distance = 0;     ///< [m] NEAREST: from the given point
+};
+
+/// The node that is meant: the given one, or the one nearest to the arc length or to the point.
+Location locate_node(const CableLocation& location, const World& world, const FindFrame& find_frame);
+
+/// The segment that is meant: the one that starts at the node, or contains the arc length or the point of the cable that is
+/// nearest to the given one. Only segments that a cut can remove: each piece keeps at least one. Of a net the links at the node,
+/// or the link that is nearest to the point.
+Location locate_cut(const CableLocation& location, const World& world, const FindFrame& find_frame);
+
+}  // namespace verlet_cable

@@ -1,0 +1,121 @@
+#include "requests/rollouts.h"
+
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "simulation/error_text.h"
+#include "threads/guarded_queue.h"
+#include "verlet_cable/core/quoted_text.h"
+
+namespace verlet_cable {
+namespace {
+
+/// Of the threads: the live simulation goes first.
+constexpr int niceness = 10;
+const ros::WallDuration feedback_period(0.1);
+
+RolloutResult failure(const std::string& message) {
+  RolloutResult result;
+  result.message = message;
+  return result;
+}
+
+}  // namespace
+
+Rollouts::Rollouts(ros::NodeHandle& node, const Simulation& simulation)
+    : simulation_(simulation),
+      server_(
+          node, "rollout", [this](Server::GoalHandle goal) { accept(std::move(goal)); },
+          [this](Server::GoalHandle goal) { cancel(std::move(goal)); }) {
+  const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
+  for (unsigned i = 0; i < cores; ++i) threads_.emplace_back([this] { work(); });
+  server_.start();
+}
+
+Rollouts::~Rollouts() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ending_ = true;
+  }
+  new_job_.notify_all();
+  for (std::thread& thread : threads_) thread.join();
+  // Goals must not outlive the server, and may still come: who unloads a nodelet is not the thread that serves it.
+  const std::lock_guard<std::mutex> lock(mutex_);
+  waiting_.clear();
+  jobs_.clear();
+}
+
+void Rollouts::accept(Server::GoalHandle goal) {
+  const RolloutGoal& request = *goal.getGoal();
+  const auto reject = [&](const std::string& message) { goal.setRejected(failure(message), message); };
+  if (!simulation_.started()) return reject("the simulation has not started");
+  const std::optional<Snapshot> snapshot = simulation_.snapshot(request.snapshot);
+  if (!snapshot)
+    return reject("snapshot: " + verlet_cable::quoted(request.snapshot) +
+                  "; allowed: a saved one, or empty for the present state");
+  RolloutStart start{snapshot->world, {}};
+  for (const SavedFrame& frame : snapshot->frames) start.frames.push_back(frame.input);
+  try {
+    auto job = std::make_shared<Job>(goal, Rollout(request, std::move(start)));
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (ending_) return reject("the node ends");
+    const auto most = static_cast<std::size_t>(simulation_.scene().limits.rollouts);
+    if (jobs_.size() >= most) return reject("limits.rollouts: " + std::to_string(most) + " run or wait already");
+    goal.setAccepted();
+    jobs_.push_back(job);
+    waiting_.push_back(std::move(job));
+  } catch (const SceneError& error) {
+    return reject(join(error.errors()));
+  }
+  new_job_.notify_one();
+}
+
+void Rollouts::cancel(Server::GoalHandle goal) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  for (const auto& job : jobs_)
+    if (job->goal == goal) job->cancelled = true;
+}
+
+void Rollouts::work() {
+  setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), niceness);
+  while (true) {
+    std::shared_ptr<Job> job;
+    {
+      std::unique_lock<std::mutex> lock(mutex_);
+      new_job_.wait(lock, [this] { return ending_ || !waiting_.empty(); });
+      if (ending_) return;
+      job = std::move(waiting_.front());
+      waiting_.pop_front();
+    }
+    run_guarded("a rollout", [&] { run(*job); });
+    const std::lock_guard<std::mutex> lock(mutex_);
+    jobs_.remove(job);
+  }
+}
+
+void Rollouts::run(Job& job) const {
+  RolloutResult result;
+  ros::WallTime reported = ros::WallTime::now();
+  const auto goes_on = [&](double progress) {
+    if (ros::WallTime::now() - reported >= feedback_period || progress == 1) {
+      reported = ros::WallTime::now();
+      RolloutFeedback feedback;
+      feedback.progress = progress;
+      job.goal.publishFeedback(feedback);
+    }
+    return !job.cancelled && !ending_;
+  };
+  if (job.rollout.run(goes_on, result)) {
+    job.goal.setSucceeded(result, result.message);
+  } else if (job.cancelled) {
+    job.goal.setCanceled(result, result.message);
+  } else {
+    job.goal.setAborted(result, result.message);
+  }
+}
+
+}  // namespace verlet_cable

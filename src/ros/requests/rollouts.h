@@ -1,0 +1,52 @@
+#pragma once
+
+#include <ros/ros.h>
+#include <verlet_cable/RolloutAction.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "requests/rollout.h"
+#include "requests/rollout_server.h"
+#include "simulation/simulation.h"
+
+namespace verlet_cable {
+
+/// The action `rollout`: copies of the world that are run on as fast as it goes, many at once, by threads that give way to the
+/// live simulation. Goals are checked and cancelled by the node's own thread.
+class Rollouts {
+ public:
+  Rollouts(ros::NodeHandle& private_node, const Simulation& simulation);
+  ~Rollouts();
+
+ private:
+  using Server = RolloutServer;
+  struct Job {
+    Job(const Server::GoalHandle& handle, Rollout run) : goal(handle), rollout(std::move(run)) {}
+    Server::GoalHandle goal;
+    Rollout rollout;
+    std::atomic<bool> cancelled{false};
+  };
+
+  void accept(Server::GoalHandle goal);
+  void cancel(Server::GoalHandle goal);
+  void work();
+  void run(Job& job) const;
+
+  const Simulation& simulation_;
+  std::mutex mutex_;
+  std::condition_variable new_job_;
+  std::deque<std::shared_ptr<Job>> waiting_;  ///< guarded by mutex_
+  std::list<std::shared_ptr<Job>> jobs_;      ///< waiting and running ones; guarded by mutex_
+  std::atomic<bool> ending_{false};
+  Server server_;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace verlet_cable

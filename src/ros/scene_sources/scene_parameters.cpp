@@ -1,0 +1,85 @@
+#include "scene_sources/scene_parameters.h"
+
+#include <ros/names.h>
+#include <ros/param.h>
+#include <yaml-cpp/yaml.h>
+
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "verlet_cable/core/number_text.h"
+
+namespace verlet_cable {
+namespace {
+
+using XmlRpc::XmlRpcValue;
+
+YAML::Node struct_to_yaml(XmlRpcValue value, const std::string& key) {
+  YAML::Node map(YAML::NodeType::Map);
+  for (auto& [name, member] : value) map.force_insert(name, to_yaml(member, key.empty() ? name : key + "." + name));
+  return map;
+}
+
+YAML::Node array_to_yaml(XmlRpcValue value, const std::string& key) {
+  YAML::Node sequence(YAML::NodeType::Sequence);
+  for (int i = 0; i < value.size(); ++i) sequence.push_back(to_yaml(value[i], key + "[" + std::to_string(i) + "]"));
+  return sequence;
+}
+
+std::string yaml_number(double value) {
+  if (std::isnan(value)) return ".nan";
+  if (std::isinf(value)) return value > 0 ? ".inf" : "-.inf";
+  return number_text(value);
+}
+
+}  // namespace
+
+YAML::Node to_yaml(const XmlRpcValue& value, const std::string& key) {
+  // XmlRpcValue converts by non-const reference only; copies share nothing.
+  XmlRpcValue copy = value;
+  switch (copy.getType()) {
+    case XmlRpcValue::TypeBoolean:
+      return YAML::Node(static_cast<bool>(copy) ? "true" : "false");
+    case XmlRpcValue::TypeInt:
+      return YAML::Node(std::to_string(static_cast<int>(copy)));
+    case XmlRpcValue::TypeDouble:
+      return YAML::Node(yaml_number(static_cast<double>(copy)));
+    case XmlRpcValue::TypeString:
+      return YAML::Node(static_cast<std::string>(copy));
+    case XmlRpcValue::TypeArray:
+      return array_to_yaml(copy, key);
+    case XmlRpcValue::TypeStruct:
+      return struct_to_yaml(copy, key);
+    case XmlRpcValue::TypeInvalid:
+      return YAML::Node(YAML::NodeType::Null);
+    default:
+      throw SceneError({key + ": binary data or a date; allowed: numbers, text, true, false, lists and maps"});
+  }
+}
+
+SceneSources node_sources(const std::string& scene_directory, const std::string& where) {
+  SceneSources sources;
+  sources.files = {false, scene_directory};
+  sources.parameter = [where](const std::string& name) -> std::optional<std::string> {
+    std::string full_name, text;
+    const bool found = ros::names::validate(name, full_name) && ros::param::search(where, name, full_name);
+    return found && ros::param::get(full_name, text) ? std::optional(text) : std::nullopt;
+  };
+  return sources;
+}
+
+SceneDesc read_scene_parameters(const ros::NodeHandle& private_node) {
+  XmlRpcValue parameters;
+  private_node.getParam(private_node.getNamespace(), parameters);
+  if (parameters.getType() != XmlRpcValue::TypeStruct) {
+    throw SceneError({"no scene: the parameters under " + private_node.getNamespace() +
+                      " are empty. To start the node with a scene: roslaunch verlet_cable cable.launch scene:=FILE.yaml; in a "
+                      "launch file of your own, inside <node>: <rosparam command=\"load\" file=\"FILE.yaml\"/>"});
+  }
+  std::string scene_directory;
+  private_node.getParam("scene_directory", scene_directory);
+  return read_scene(to_yaml(parameters), {"tuning"}, node_sources(scene_directory, private_node.getNamespace()));
+}
+
+}  // namespace verlet_cable

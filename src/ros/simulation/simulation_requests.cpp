@@ -1,0 +1,156 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "simulation/simulation.h"
+#include "verlet_cable/core/number_text.h"
+#include "verlet_cable/core/quoted_text.h"
+
+namespace verlet_cable {
+namespace {
+
+EditResult done(const std::string& message) {
+  return {true, message, {}};
+}
+EditResult refused(const std::string& message) {
+  return {false, message, {}};
+}
+
+}  // namespace
+
+EditResult Simulation::refused_before_start() const {
+  const std::string what = "the simulation has not started: ";
+  if (start_) return refused(what + "its scene is being built");
+  return refused(what + (now() == 0 ? "there is no ROS time yet (use_sim_time without /clock?)"
+                                    : "it waits for its tf frames, but no longer than tf_timeout"));
+}
+
+EditResult Simulation::set_paused(bool paused) {
+  if (paused == paused_) return done(paused ? "it is paused already" : "it is running already");
+  paused_ = paused;
+  if (!paused) interrupt_steps("the pause has ended");
+  if (started_ && !paused) skip_to(grid_.step_at_or_before(target()));
+  return done(paused ? "paused" : "running");
+}
+
+EditResult Simulation::pin(const std::string& name, int cable, int node, const std::string& frame, const Pose& frame_pose,
+                           const Pose& offset, AttachmentType type) {
+  if (!started_) return refused_before_start();
+  if (const auto reason = refused_frame(frame)) return *reason;
+  World trial = world_;  // a frame cannot be taken back
+  const EditResult result = trial.apply(edit::Pin{name, cable_id(cable), node, trial.add_frame(frame, frame_pose), offset, type});
+  if (!result.ok) return result;
+  world_ = std::move(trial);
+  frames_.add(frame, stamp_);
+  const std::string message = "node " + std::to_string(node) + " of cable " + quoted(world_.cables()[cable].model.name) +
+                              " is pinned to frame " + quoted(frame) + " as " + quoted(result.name);
+  announce(CableEvent::PINNED, subject_of(world_, world_.attachments()[find(world_.attachments(), result.name)]), message);
+  return {true, message, result.name};
+}
+
+EditResult Simulation::pin_net(const std::string& name, int net, int node, const std::string& frame, const Pose& frame_pose,
+                               const Vector3& offset) {
+  if (!started_) return refused_before_start();
+  if (const auto reason = refused_frame(frame)) return *reason;
+  World trial = world_;  // a frame cannot be taken back
+  const EditResult result =
+      trial.apply(edit::Pin{name, net_id(net), node, trial.add_frame(frame, frame_pose), {offset, Quaternion::Identity()}});
+  if (!result.ok) return result;
+  world_ = std::move(trial);
+  frames_.add(frame, stamp_);
+  const std::string message = "node " + std::to_string(node) + " of net " + quoted(world_.nets()[net].model.name) +
+                              " is pinned to frame " + quoted(frame) + " as " + quoted(result.name);
+  announce(CableEvent::PINNED, subject_of(world_, world_.attachments()[find(world_.attachments(), result.name)]), message);
+  return {true, message, result.name};
+}
+
+EditResult Simulation::cut_links(int net, const std::vector<int>& links) {
+  if (!started_) return refused_before_start();
+  const std::string name = world_.nets()[net].model.name;
+  const int node = world_.nets()[net].model.links[links.front()][0];
+  for (auto link = links.rbegin(); link != links.rend(); ++link) {
+    const EditResult result = world_.apply(edit::Cut{net_id(net), *link});
+    if (!result.ok) return result;
+  }
+  const std::string message =
+      std::to_string(links.size()) + (links.size() == 1 ? " link" : " links") + " of net " + quoted(name) + " cut";
+  announce(CableEvent::CUT, {name, {}, node, {}}, message);
+  return done(message);
+}
+
+EditResult Simulation::unpin(const std::string& name) {
+  if (!started_) return refused_before_start();
+  const int index = find(world_.attachments(), name);
+  if (index < 0) return refused_attachment(name);
+  const EventSubject subject = subject_of(world_, world_.attachments()[index]);
+  const EditResult result = world_.apply(edit::Unpin{name});
+  if (!result.ok) return result;
+  moves_.forget(name);
+  const std::string message = "attachment " + quoted(name) + " is released";
+  announce(CableEvent::UNPINNED, subject, message);
+  return done(message);
+}
+
+EditResult Simulation::move_attachment(const std::string& name, const Pose& offset) {
+  if (!started_) return refused_before_start();
+  const int index = find(world_.attachments(), name);
+  if (index < 0) return refused_attachment(name);
+  moves_.send(name, world_.attachments()[index].pose, offset);
+  return done("attachment " + quoted(name) + " moves to its new place");
+}
+
+EditResult Simulation::refused_attachment(const std::string& name) const {
+  std::string names;
+  for (const Attachment& attachment : world_.attachments()) names += (names.empty() ? "" : ", ") + attachment.name;
+  return refused("name: " + quoted(name) +
+                 " is no attachment; allowed: " + (names.empty() ? "none, nothing is attached" : names));
+}
+
+EditResult Simulation::cut(int cable, int segment) {
+  if (!started_) return refused_before_start();
+  const EditResult result = world_.apply(edit::Cut{cable_id(cable), segment});
+  if (!result.ok) return result;
+  const std::string& name = world_.cables()[cable].model.name;
+  const std::string message = "segment " + std::to_string(segment) + " of cable " + quoted(name) +
+                              " is cut out: the part from there to its end is now cable " + quoted(result.name);
+  announce(CableEvent::CUT, {name, {}, segment, result.name}, message);
+  return {true, message, result.name};
+}
+
+/// Why there is no such cable; nothing if there is.
+std::optional<EditResult> Simulation::refused_cable(const std::string& field, const std::string& cable) const {
+  if (find(world_.cables(), cable) >= 0) return std::nullopt;
+  const std::vector<std::string>& waiting = world_.findings().waiting;
+  if (std::find(waiting.begin(), waiting.end(), cable) != waiting.end())
+    return refused(field + ": " + quoted(cable) + " waits for its tf frames; allowed: cables that are simulated already");
+  std::string names;
+  for (const SimulatedCable& other : world_.cables()) names += (names.empty() ? "" : ", ") + other.model.name;
+  return refused(field + ": " + quoted(cable) + "; allowed: " + (names.empty() ? "none, there are no cables" : names));
+}
+
+EditResult Simulation::set_length(const std::string& cable, bool at_end, double length, double speed) {
+  if (!started_) return refused_before_start();
+  if (const auto reason = refused_cable("cable", cable)) return *reason;
+  const int index = find(world_.cables(), cable);
+  const double before = world_.cables()[index].model.length();
+  const EditResult result = world_.apply(edit::SetLength{index, at_end, length, speed});
+  if (!result.ok) return result;
+  return done("cable " + quoted(cable) + (length < before ? " is taken in from " : " is paid out from ") + rounded_text(before) +
+              " m to " + number_text(length) + " m, which takes at least " + rounded_text(std::abs(length - before) / speed, 3) +
+              " s");
+}
+
+EditResult Simulation::join(const std::string& first, bool first_at_end, const std::string& second, bool second_at_end) {
+  if (!started_) return refused_before_start();
+  if (const auto reason = refused_cable("first", first)) return *reason;
+  if (const auto reason = refused_cable("second", second)) return *reason;
+  const int nodes = world_.cables()[find(world_.cables(), first_at_end ? first : second)].model.nodes();
+  const EditResult result =
+      world_.apply(edit::Join{find(world_.cables(), first), first_at_end, find(world_.cables(), second), second_at_end});
+  if (!result.ok) return result;
+  const std::string message = "cable " + quoted(second) + " is joined to " + quoted(first);
+  announce(CableEvent::JOINED, {result.name, {}, nodes - 1, second}, message);
+  return {true, message, result.name};
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,83 @@
+#include "time/pacer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace verlet_cable {
+namespace {
+
+/// A target that is further ahead [s] than can be caught up has leapt.
+constexpr double leap = 0.2;
+/// Further behind [s], beyond the longest backlog, no pace leads anywhere.
+constexpr double most_beyond = 5;
+/// Beyond the backlog that is caught up the pace grows by a factor of e each time the backlog grows by this [s]: whatever the
+/// load, there is a pace that keeps up. The smaller one is for a lasting overload, with steps that take no time.
+constexpr double longest_scale = 0.5, shortest_scale = 0.1;
+/// A machine that has not caught up for so long [s] will not: from then on less and less is left to catch up, by a factor of e in
+/// each `surrender` [s], down to `shortest_backlog` [s].
+constexpr double patience = 2, surrender = 0.5, shortest_backlog = 0.05;
+/// Over which the mean way of a step is taken [s].
+constexpr double way_memory = 2;
+/// In mean ways of a step: what a lasting overload leaves of both, so that a step that takes longer than others changes the pace
+/// little.
+constexpr double steps_of_scale = 8, steps_of_backlog = 6;
+/// In which the pace follows the backlog [s].
+constexpr double pace_lag = 0.1;
+/// From here on down nothing is left out.
+constexpr double least_pace = 1.001;
+
+}  // namespace
+
+Pacer::Pacer(const TimeGrid& grid, Nanoseconds longest_backlog) : grid_(grid), longest_backlog_(longest_backlog) {}
+
+void Pacer::use(const TimeGrid& grid, Nanoseconds longest_backlog) {
+  grid_ = grid;
+  longest_backlog_ = longest_backlog;
+}
+
+Nanoseconds Pacer::resume(Nanoseconds simulated, Nanoseconds target) {
+  const Nanoseconds beyond = target - simulated - longest_backlog_, leapt = std::min(beyond, target - last_target_);
+  if (beyond + longest_backlog_ > grid_.step()) busy_ += std::clamp(seconds(target - last_target_), 0.0, leap);
+  last_target_ = target;
+  Nanoseconds skipped = leapt > nanoseconds(leap) ? leapt : 0;
+  if (beyond - skipped > nanoseconds(most_beyond)) skipped = beyond;
+  if (skipped == 0) return simulated;
+  const Nanoseconds time = grid_.step_at_or_after(simulated + skipped);
+  if (busy_ > patience) left_out_ += time - simulated;
+  drop(time - simulated);
+  return time;
+}
+
+std::optional<Nanoseconds> Pacer::next(Nanoseconds simulated, Nanoseconds target) const {
+  const Nanoseconds step = grid_.step();
+  // After a pause the pace may still be that of before: a step does not wait for what is not there to be left out.
+  const Nanoseconds longest = step + (target - simulated) / 4;
+  const Nanoseconds way = std::min<Nanoseconds>(std::llround(pace_ * static_cast<double>(step)), longest);
+  const Nanoseconds time = pace_ > 1 ? simulated + way : grid_.step_at_or_after(simulated + step);
+  return time <= target ? std::optional(time) : std::nullopt;
+}
+
+void Pacer::done(Nanoseconds simulated, Nanoseconds time, Nanoseconds target) {
+  drop(time - simulated - grid_.step());
+  left_out_ += std::max<Nanoseconds>(time - simulated - grid_.step(), 0);
+  const double way = seconds(time - simulated), longest = seconds(longest_backlog_);
+  usual_way_ += std::min(way / way_memory, 1.0) * (way - usual_way_);
+  const double given_up = std::exp(-std::max(busy_ - patience, 0.0) / surrender);
+  const double backlog =
+      std::max(given_up * longest, std::min(std::max(shortest_backlog, steps_of_backlog * usual_way_), longest));
+  const double scale = std::max(given_up * longest_scale, std::clamp(steps_of_scale * usual_way_, shortest_scale, longest_scale));
+  const double beyond = std::max(seconds(target - time) - backlog, 0.0);
+  pace_ += std::min(way / pace_lag, 1.0) * (std::exp(beyond / scale) - pace_);
+  if (beyond == 0 && pace_ < least_pace) pace_ = 1;
+  if (target - time < grid_.step()) rest();
+}
+
+void Pacer::rest() {
+  busy_ = 0;
+}
+
+void Pacer::drop(Nanoseconds skipped) {
+  dropped_ += std::max<Nanoseconds>(skipped, 0);
+}
+
+}  // namespace verlet_cable
