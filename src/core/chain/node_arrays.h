@@ -4,8 +4,8 @@
 
 namespace verlet_cable {
 
-/// All arrays of a cable that have an entry a node or a segment, named here once: who cuts, joins, reverses and renumbers cables does
-/// it by these functions. A new array is added to the two visits, and to `append` if it may be empty.
+/// All arrays of a cable that have an entry a node or a segment, named here once: who cuts, joins, reverses and renumbers cables
+/// does it by these functions. A new array is added to the two visits, and to `append` if it may be empty.
 /// @{
 template <class Visitor>
 void visit_node_arrays(SimulatedCable& cable, const Visitor& visitor) {

@@ -10,10 +10,6 @@ namespace verlet_cable {
 
 namespace {
 
-EditResult refused(const std::string& message) {
-  return {false, message, {}};
-}
-
 bool holds_something(const std::vector<Attachment>& attachments, const BodyId& body, int node) {
   return std::any_of(attachments.begin(), attachments.end(),
                      [&](const Attachment& a) { return a.body == body && a.node == node; });
@@ -175,9 +171,7 @@ EditResult World::Implementation::cut_cable(int cable, int segment) {
   const auto taken = [&](const std::string& n) {
     const auto has_name = [&](const auto& desc) { return desc.name == n; };
     const auto any = [&](const auto& descs) { return std::any_of(descs.begin(), descs.end(), has_name); };
-    const bool in_use =
-        std::any_of(state.cables.begin(), state.cables.end(), [&](const SimulatedCable& c) { return c.model.name == n; });
-    return in_use || any(state.scene->cables) || any(state.scene->nets) || any(state.scene->particles);
+    return find(state.cables, n) >= 0 || any(state.scene->cables) || any(state.scene->nets) || any(state.scene->particles);
   };
   const SimulatedCable& whole = state.cables[cable];
   SimulatedCable first = piece(whole, 0, segment), second = piece(whole, segment + 1, segments);

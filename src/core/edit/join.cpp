@@ -20,10 +20,6 @@ constexpr double approach = 0.2;
 /// Relative, of what a cable between two holders must span.
 constexpr double rounding = 1e-9;
 
-EditResult refused(const std::string& message) {
-  return {false, message, {}};
-}
-
 /// The first property in which two materials differ; none if they are the same.
 std::optional<std::string> difference(const MaterialDesc& first, const MaterialDesc& second) {
   for (const auto& field : material_fields) {

@@ -85,7 +85,7 @@ auto find_obstacle(std::vector<Obstacle>& obstacles, const std::string& name) {
 EditResult World::Implementation::apply(const edit::SetObstacle& set) {
   Obstacle obstacle = set.obstacle;
   if (const std::string problem = problem_of(obstacle, state.frames.names.size()); !problem.empty())
-    return {false, "obstacle " + quoted(obstacle.name) + ": " + problem, {}};
+    return refused("obstacle " + quoted(obstacle.name) + ": " + problem);
   obstacle.pose.orientation.normalize();
   obstacle.present = state.frames.known[obstacle.frame];
   const std::string name = obstacle.name;
@@ -103,7 +103,7 @@ EditResult World::Implementation::apply(const edit::SetObstacle& set) {
 EditResult World::Implementation::apply(const edit::RemoveObstacle& remove) {
   const std::string& name = remove.name;
   const auto found = find_obstacle(state.obstacles, name);
-  if (found == state.obstacles.end()) return {false, "obstacle: " + quoted(name) + "; there is no such obstacle", {}};
+  if (found == state.obstacles.end()) return refused("obstacle: " + quoted(name) + "; there is no such obstacle");
   const int index = static_cast<int>(found - state.obstacles.begin());
   for (CableProgress& progress : state.cable_progress) forget_obstacle(found->id, progress.contacts);
   state.obstacles.erase(found);

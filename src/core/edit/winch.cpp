@@ -18,10 +18,6 @@ constexpr double longest_segment = 1.5, shortest_segment = 0.5, least_segment = 
 /// A joint closes when its ends are this close, of a segment's length.
 constexpr double closing_distance = 0.25;
 
-EditResult refused(const std::string& message) {
-  return {false, message, {}};
-}
-
 /// Whether a node carries more than its segments and what a cut left on an end weigh.
 bool carries_payload(const CableModel& model, int node) {
   double share = 0;

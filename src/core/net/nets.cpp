@@ -109,8 +109,7 @@ void World::Implementation::add_particle(const ParticleDesc& desc) {
 
 void World::Implementation::step_nets_and_particles(StepResult& result) {
   if (state.nets.empty() && state.particles.empty()) return;
-  move_obstacles(state.obstacles, state.frames.previous_poses, state.frames.poses, state.scene->time_step, 0, 1,
-                 moving_obstacles.value);
+  move_obstacles(state, 0, 1, moving_obstacles.value);
   for (int net = 0; net < static_cast<int>(state.nets.size()); ++net) step_net(net, result);
   for (int particle = 0; particle < static_cast<int>(state.particles.size()); ++particle) step_particle(particle, result);
   result.substeps = std::max(result.substeps, 1);
@@ -186,14 +185,12 @@ void World::Implementation::add_net_energy(Energy& energy) const {
 
 EditResult World::Implementation::cut_link(int index, int link) {
   if (index < 0 || index >= static_cast<int>(state.nets.size()))
-    return {false, "net: " + std::to_string(index) + "; must be the index of a net", {}};
+    return refused("net: " + std::to_string(index) + "; must be the index of a net");
   SimulatedNet& net = state.nets[index];
   const int links = static_cast<int>(net.model.links.size());
   if (link < 0 || link >= links)
-    return {false,
-            "link: " + std::to_string(link) + " of net " + net.model.name +
-                (links == 0 ? "; it has none" : "; must be from 0 to " + std::to_string(links - 1)),
-            {}};
+    return refused("link: " + std::to_string(link) + " of net " + net.model.name +
+                   (links == 0 ? "; it has none" : "; must be from 0 to " + std::to_string(links - 1)));
   net.model.links.erase(net.model.links.begin() + link);
   net.model.rest_lengths.erase(net.model.rest_lengths.begin() + link);
   net.state.tension.erase(net.state.tension.begin() + link);

@@ -98,9 +98,8 @@ double remove_node(int node, SimulatedCable& cable) {
   };
   give(before, second / whole);
   give(after, first / whole);
-  visit_segment_arrays(cable, [&](std::vector<double>& values) {
-    values[before] = (first * values[before] + second * values[node]) / whole;
-  });
+  visit_segment_arrays(
+      cable, [&](std::vector<double>& values) { values[before] = (first * values[before] + second * values[node]) / whole; });
   model.rest_lengths[before] = length;
   erase_segment(node, cable);
   erase_node(node, cable);

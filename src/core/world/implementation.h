@@ -62,7 +62,6 @@ struct World::Implementation {
   void step_particle(int particle, StepResult& result);
   void add_net_energy(Energy& energy) const;
   bool is_attachment(const std::string& name) const;
-  Vector3 gravity_near(int cable) const;
   void add_scene_obstacles();
   void find_obstacle_anchors();
   void find_targets_of(int cable);
@@ -80,6 +79,11 @@ struct World::Implementation {
   void after_remeshing(int cable);
   void forget_contacts(int cable);
 };
+
+/// Of an edit that changes nothing; the message says why.
+inline EditResult refused(const std::string& message) {
+  return {false, message, {}};
+}
 
 /// What is wrong with a pose that is not sound, under the name of its field; empty if nothing is.
 std::string pose_problem(const std::string& field, const Pose& pose);

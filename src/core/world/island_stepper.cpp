@@ -23,11 +23,6 @@ bool finite(const std::vector<Vector3>& vectors) {
   return std::all_of(vectors.begin(), vectors.end(), [](const Vector3& v) { return v.allFinite(); });
 }
 
-/// Where a cable hangs to: gravity at its first node.
-Vector3 gravity_near(const State& state, int cable) {
-  return state.scene->gravity.at(state.cables[cable].state.positions.front());
-}
-
 /// The segment of a cable that breaks now, -1 if it holds. A piece keeps at least one segment, so that the outermost ones do not
 /// break.
 int find_breaking_segment(const SimulatedCable& cable, const StepResult& result) {
@@ -42,6 +37,14 @@ int find_breaking_segment(const SimulatedCable& cable, const StepResult& result)
 }
 
 }  // namespace
+
+Vector3 gravity_near(const State& state, int cable) {
+  return state.scene->gravity.at(state.cables[cable].state.positions.front());
+}
+
+void move_obstacles(const State& state, double from, double to, std::vector<MovingObstacle>& moving) {
+  move_obstacles(state.obstacles, state.frames.previous_poses, state.frames.poses, state.scene->time_step, from, to, moving);
+}
 
 ContactRules contact_rules(const SceneDesc& scene, bool still) {
   ContactRules rules;
@@ -231,10 +234,9 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
 }
 
 void IslandStepper::find_contacts(Island& island, double from, double to) {
-  const double time_step = state_.scene->time_step;
-  move_obstacles(state_.obstacles, state_.frames.previous_poses, state_.frames.poses, time_step, from, to, workspace_.obstacles);
+  move_obstacles(state_, from, to, workspace_.obstacles);
   workspace_.contacts.find(state_.cables, island.cables, workspace_.members, workspace_.obstacles, state_.attachments,
-                           contact_rules(*state_.scene, false), (to - from) * time_step, island.pairs);
+                           contact_rules(*state_.scene, false), (to - from) * state_.scene->time_step, island.pairs);
 }
 
 void IslandStepper::wind_drive(int index, double from, double to, Boundary& boundary) {

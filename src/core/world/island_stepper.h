@@ -21,6 +21,12 @@ struct IslandOutcome {
   std::vector<SimulatedContact> contacts;
 };
 
+/// Where a cable hangs to: gravity at its first node.
+Vector3 gravity_near(const State& state, int cable);
+
+/// The obstacles that are there, as they move over a part of the step, 0 to 1.
+void move_obstacles(const State& state, double from, double to, std::vector<MovingObstacle>& moving);
+
 /// How contacts of a world are found: `still`, where nothing moves but towards equilibrium.
 ContactRules contact_rules(const SceneDesc& scene, bool still);
 

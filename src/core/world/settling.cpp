@@ -111,8 +111,7 @@ Settling::Settling(int cable, State& state, Workspace& workspace, const std::ato
 }
 
 void Settling::find_obstacles() {
-  move_obstacles(state_.obstacles, state_.frames.previous_poses, state_.frames.poses, state_.scene->time_step, 1, 1,
-                 workspace_.obstacles);
+  move_obstacles(state_, 1, 1, workspace_.obstacles);
 }
 
 bool Settling::settle() {

@@ -234,13 +234,8 @@ void World::Implementation::find_targets_of(int index) {
                                 state.frames.poses, memory.targets, state.time());
   aim_targets(cable.model, state.attachments, state.frames.poses, state.time(), memory.targets);
   const Boundary boundary = boundary_now(memory.targets);
-  restore_lengths(cable.model, boundary.nodes, gravity_near(index), cable.state);
+  restore_lengths(cable.model, boundary.nodes, gravity_near(state, index), cable.state);
   memory.spans = find_spans(cable.model, cable.state, boundary.directions);
-}
-
-/// Where a cable hangs to: gravity at its first node.
-Vector3 World::Implementation::gravity_near(int cable) const {
-  return state.scene->gravity.at(state.cables[cable].state.positions.front());
 }
 
 }  // namespace verlet_cable
