@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "rod/rod_frames.h"
 #include "verlet_cable/core/world.h"
 #include "world/implementation.h"
 #include "world/state_fields.h"
@@ -72,8 +73,14 @@ Energy World::energy() const {
   const GravityDesc& gravity = implementation_->state.scene->gravity;
   for (std::size_t k = 0; k < cables().size(); ++k) {
     const SimulatedCable& cable = cables()[k];
-    energy.bend +=
-        bending_energy(cable.model, cable.state, boundary_now(implementation_->state.cable_progress[k].targets).directions);
+    const KinematicTargets& targets = implementation_->state.cable_progress[k].targets;
+    if (cable.model.is_whole_rod()) {
+      const JointEnergy joints = rod_energy(cable, targets.directions);
+      energy.bend += joints.bend;
+      energy.twist += joints.twist;
+    } else {
+      energy.bend += bending_energy(cable.model, cable.state, boundary_now(targets).directions);
+    }
     for (int i = 0; i < cable.model.nodes(); ++i) {
       energy.kinetic += 0.5 * cable.model.masses[i] * cable.state.velocities[i].squaredNorm();
       energy.gravity += cable.model.masses[i] * gravity.potential_at(cable.state.positions[i]);
