@@ -56,7 +56,8 @@ void join_rest_shapes(int node, SimulatedCable& cable) {
   if (!cable.state.joint_twist.empty()) {
     const double rest =
         rest_angles(model, node, joint_length(model, node)).twist + rest_angles(model, gone, joint_length(model, gone)).twist;
-    model.rest_twist[node] = 2 * rest / (model.rest_lengths[node - 1] + model.rest_lengths[gone]);
+    const double length = 0.5 * (model.rest_lengths[node - 1] + model.rest_lengths[gone]);
+    model.rest_twist[node] = rest / model.bending_length(node, length);
     twist = cable.state.joint_twist[node] += cable.state.joint_twist[gone];
   }
   if (model.rest_curvature.empty()) return;

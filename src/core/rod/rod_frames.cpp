@@ -99,10 +99,11 @@ double joint_length(const CableModel& model, int node) {
 
 JointAngles rest_angles(const CableModel& model, int node, double length) {
   JointAngles angles;
-  if (!model.rest_twist.empty()) angles.twist = model.rest_twist[node] * length;
+  const double flexible = model.bending_length(node, length);
+  if (!model.rest_twist.empty()) angles.twist = model.rest_twist[node] * flexible;
   if (model.rest_curvature.empty()) return angles;
-  angles.y = model.rest_curvature[node][0] * model.bending_length(node, length);
-  angles.z = model.rest_curvature[node][1] * model.bending_length(node, length);
+  angles.y = model.rest_curvature[node][0] * flexible;
+  angles.z = model.rest_curvature[node][1] * flexible;
   return angles;
 }
 
@@ -198,7 +199,8 @@ void weld_frames(int segment, SimulatedCable& cable) {
   state.joint_twist[segment] = 0;
   state.joint_twist[after] = joint_angles(between, segment_frame(state, after), 0).twist;
   cable.model.rest_twist.resize(cable.model.nodes(), 0.0);
-  cable.model.rest_twist[after] += state.joint_twist[after] / joint_length(cable.model, after);
+  const double flexible = cable.model.bending_length(after, joint_length(cable.model, after));
+  cable.model.rest_twist[after] += state.joint_twist[after] / flexible;
 }
 
 Vector3 carried_director(const CableState& state, int segment, const Vector3& along, double angle) {
@@ -238,8 +240,7 @@ void measure_joint_twists(SimulatedCable& cable, std::vector<DirectionTarget>& c
   for (DirectionTarget& clamp : clamps) {
     double& at_node = state.joint_twist[clamp.node];
     if (clamp.node == 0 || clamp.node == n) {
-      at_node += clamp.node == 0 ? clamp.twist_after : clamp.twist_before;
-      clamp.twist_before = clamp.twist_after = 0;
+      if (at_node == 0) at_node = clamp.node == 0 ? clamp.twist_after : clamp.twist_before;
     } else {
       clamp.twist_before += 0.5 * at_node;
       clamp.twist_after += 0.5 * at_node;
@@ -270,38 +271,6 @@ void take_end_twists(CableState& state, std::vector<DirectionTarget>& clamps) {
     if (clamp.node + 1 == static_cast<int>(state.joint_twist.size()))
       clamp.twist_before = std::exchange(state.joint_twist.back(), 0);
   }
-}
-
-JointEnergy rod_energy(const SimulatedCable& cable, const std::vector<DirectionTarget>& clamps) {
-  const CableModel& model = cable.model;
-  const CableState& state = cable.state;
-  const int n = model.segments();
-  JointEnergy sum;
-  const auto add = [&](int node, double length, const JointAngles& angles) {
-    JointStiffness stiffness;
-    stiffness.twist = model.material.torsional_stiffness / length;
-    stiffness.bend_y = model.material.bending_stiffness.front() / model.bending_length(node, length);
-    stiffness.bend_z = model.material.bending_stiffness.back() / model.bending_length(node, length);
-    stiffness.rest = rest_angles(model, node, length);
-    const JointEnergy energy = joint_energy(stiffness, angles);
-    sum.bend += energy.bend;
-    sum.twist += energy.twist;
-  };
-  auto clamp = clamps.begin();
-  for (int i = 0; i <= n; ++i) {
-    if (clamp == clamps.end() || clamp->node != i) {
-      if (i > 0 && i < n) add(i, joint_length(model, i), joint_angles_at(state, i));
-      continue;
-    }
-    const Eigen::Matrix3d held = clamp->orientation.toRotationMatrix();
-    if (i > 0)
-      add(i, half_length(model, i - 1),
-          joint_angles(segment_frame(state, i - 1), held, i < n ? clamp->twist_before : state.joint_twist[n]));
-    if (i < n)
-      add(i, half_length(model, i), joint_angles(held, segment_frame(state, i), i > 0 ? clamp->twist_after : state.joint_twist[0]));
-    ++clamp;
-  }
-  return sum;
 }
 
 }  // namespace verlet_cable

@@ -68,7 +68,4 @@ void take_end_twists(CableState& state, std::vector<DirectionTarget>& clamps);
 /// The angles of the joint at a node between two segments.
 JointAngles joint_angles_at(const CableState& state, int node);
 
-/// [J] of bending and twist.
-JointEnergy rod_energy(const SimulatedCable& cable, const std::vector<DirectionTarget>& clamps);
-
 }  // namespace verlet_cable

@@ -117,6 +117,7 @@ void update_targets(int index, State& state, CableOutcome& outcome) {
   hold_at(0, 0, targets, boundary);
   if (jumps) {
     carry_along(cable.model, boundary.nodes, gravity_near(state, index), cable.state);
+    measure_joint_twists(cable, targets.directions);
     note_status(Status::jumped, cable_id(index), following.jumping_node, outcome.result);
   }
   project_velocities(cable.model, boundary.nodes, cable.state.positions, cable.state.velocities);
@@ -252,6 +253,8 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     if (converged && !tolerated) converged = !workspace_.contacts.crossed(state_.cables);
   }
   if (converged) {
+    for (std::size_t k = 0; k < island.cables.size(); ++k)
+      keep_twist(workspace_.cables[k].boundary, state_.cable_progress[island.cables[k]].targets);
     workspace_.contacts.keep(workspace_.members);
   } else if (keeps) {
     take_back(island);

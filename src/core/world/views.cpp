@@ -1,6 +1,7 @@
 #include <algorithm>
 
-#include "rod/rod_frames.h"
+#include "rod/bending.h"
+#include "rod/kirchhoff_rod.h"
 #include "verlet_cable/core/world.h"
 #include "world/implementation.h"
 #include "world/state_fields.h"
@@ -73,13 +74,14 @@ Energy World::energy() const {
   const GravityDesc& gravity = implementation_->state.scene->gravity;
   for (std::size_t k = 0; k < cables().size(); ++k) {
     const SimulatedCable& cable = cables()[k];
-    const KinematicTargets& targets = implementation_->state.cable_progress[k].targets;
+    const std::vector<HeldDirection> directions = boundary_now(implementation_->state.cable_progress[k].targets).directions;
     if (cable.model.is_whole_rod()) {
-      const JointEnergy joints = rod_energy(cable, targets.directions);
-      energy.bend += joints.bend;
-      energy.twist += joints.twist;
+      const RodEnergy rod = rod_energy(cable.model, cable.state, directions);
+      energy.bend += rod.bend;
+      energy.twist += rod.twist;
+      energy.kinetic += rod.spin;
     } else {
-      energy.bend += bending_energy(cable.model, cable.state, boundary_now(targets).directions);
+      energy.bend += bending_energy(cable.model, cable.state, directions);
     }
     for (int i = 0; i < cable.model.nodes(); ++i) {
       energy.kinetic += 0.5 * cable.model.masses[i] * cable.state.velocities[i].squaredNorm();
