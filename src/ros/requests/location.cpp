@@ -155,17 +155,16 @@ int find_net(const CableLocation& location, const World& world, const FindFrame&
 Location locate_net_node(const CableLocation& location, const World& world, int index, const FindFrame& find_frame) {
   const SimulatedNet& net = world.nets()[index];
   Location found;
-  found.cable = -1;
-  found.net = index;
+  found.body = net_id(index);
   if (location.mode == CableLocation::NODE) {
-    found.index = static_cast<int>(std::min<std::uint32_t>(location.node, net.model.nodes()));
-    if (found.index == net.model.nodes())
+    found.node = static_cast<int>(std::min<std::uint32_t>(location.node, net.model.nodes()));
+    if (found.node == net.model.nodes())
       found.errors.push_back("location.node: " + std::to_string(location.node) + "; allowed: 0 to " +
                              std::to_string(net.model.nodes() - 1));
   } else if (location.mode == CableLocation::NEAREST) {
     const std::optional<Vector3> point = read_point(location, find_frame, found.errors);
     if (point) {
-      found.index = nearest_node(net, *point);
+      found.node = nearest_node(net, *point);
       found.distance = distance(net, *point);
     }
   } else {
@@ -181,13 +180,13 @@ Location locate_links(const CableLocation& location, const World& world, int ind
   if (!found.errors.empty()) return found;
   if (location.mode == CableLocation::NEAREST) {
     const NearestPoint nearest = nearest_link(net, *read_point(location, find_frame, found.errors));
-    if (nearest.segment >= 0) found.links.push_back(nearest.segment);
+    if (nearest.segment >= 0) found.elements.push_back(nearest.segment);
     found.distance = nearest.distance;
   } else {
     for (int link = 0; link < static_cast<int>(net.model.links.size()); ++link)
-      if (net.model.links[link][0] == found.index || net.model.links[link][1] == found.index) found.links.push_back(link);
+      if (net.model.links[link][0] == found.node || net.model.links[link][1] == found.node) found.elements.push_back(link);
   }
-  if (found.links.empty())
+  if (found.elements.empty())
     found.errors.push_back("location: net " + quoted(net.model.name) + " has no link there; allowed: nodes that links join");
   return found;
 }
@@ -197,7 +196,7 @@ Location locate_links(const CableLocation& location, const World& world, int ind
 Location locate_node(const CableLocation& location, const World& world, const FindFrame& find_frame) {
   if (const int net = find_net(location, world, find_frame); net >= 0) return locate_net_node(location, world, net, find_frame);
   const PointOnCable found = find_point(location, world, find_frame);
-  return {found.cable, found.segment + (found.fraction > 0.5 ? 1 : 0), found.errors, -1, {}, found.distance};
+  return {cable_id(found.cable), found.segment + (found.fraction > 0.5 ? 1 : 0), {}, found.distance, found.errors};
 }
 
 Location locate_cut(const CableLocation& location, const World& world, const FindFrame& find_frame) {
@@ -216,7 +215,7 @@ Location locate_cut(const CableLocation& location, const World& world, const Fin
           quoted(cable.model.name) + "; allowed: segments 1 to " + std::to_string(last) + ", so that each piece keeps one");
     }
   }
-  return {found.cable, found.segment, found.errors, -1, {}, found.distance};
+  return {cable_id(found.cable), found.segment, {found.segment}, found.distance, found.errors};
 }
 
 }  // namespace verlet_cable
