@@ -71,7 +71,7 @@ bool cut(Simulation& simulation, const Cut::Request& request, Cut::Response& res
                   response);
   }
   const EditResult result = simulation.cut(location.cable, location.index);
-  if (result.ok) response.first = simulation.world().cables()[location.cable].model.name;
+  if (result.ok) response.first = simulation.world().cables()[location.cable].model->name;
   response.second = result.name;
   return answer(with_distance(result, request.location, location.distance), response);
 }

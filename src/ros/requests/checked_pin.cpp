@@ -16,8 +16,8 @@ std::string text(const Vector3& v) {
 
 /// The node's place and the cable's direction there, between the directions of its segments.
 Pose node_pose(const SimulatedCable& cable, int node) {
-  const std::vector<Quaternion> orientations = segment_orientations(cable);
-  const int last = cable.model.segments() - 1;
+  const std::vector<Quaternion> orientations = segment_orientations(cable.state);
+  const int last = cable.state.segments() - 1;
   const Quaternion& before = orientations[std::max(node - 1, 0)];
   const Quaternion& after = orientations[std::min(node, last)];
   return {cable.state.positions[node], before.slerp(0.5, after).normalized()};
@@ -25,10 +25,9 @@ Pose node_pose(const SimulatedCable& cable, int node) {
 
 /// What an inextensible cable between the pin and its neighbours cannot do.
 void check_reach(const CheckedPin& pin, const World& world, std::vector<std::string>& errors) {
-  const CableModel& model = world.cables()[pin.cable].model;
-  if (std::isfinite(model.material.axial_stiffness)) return;
+  if (std::isfinite(world.cables()[pin.cable].model->material.axial_stiffness)) return;
   constexpr double rounding = 1e-6;
-  const std::vector<double> arc_length = model.arc_length();
+  const std::vector<double> arc_length = world.cables()[pin.cable].state.arc_length();
   const Vector3 place = (pin.frame_pose * pin.offset).position;
   for (const Attachment& other : world.attachments()) {
     if (other.body != cable_id(pin.cable)) continue;
@@ -83,7 +82,7 @@ CheckedPin check_pin(const Pin::Request& request, const World& world, const Find
   if (!location.errors.empty()) return pin;
   if (pin.net >= 0 && request.clamp) pin.errors.push_back("clamp: true; allowed: false, nets are held by hinges");
   const std::string holder =
-      pin.net >= 0 ? "net " + quoted(world.nets()[pin.net].model.name) : "cable " + quoted(world.cables()[pin.cable].model.name);
+      pin.net >= 0 ? "net " + quoted(world.nets()[pin.net].model.name) : "cable " + quoted(world.cables()[pin.cable].model->name);
   for (const Attachment& other : world.attachments()) {
     if (other.body != (pin.net >= 0 ? net_id(pin.net) : cable_id(pin.cable)) || other.node != pin.node) continue;
     pin.errors.push_back("location: node " + std::to_string(pin.node) + " of " + holder + " is held by " + quoted(other.name) +
