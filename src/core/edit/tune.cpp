@@ -1,4 +1,5 @@
 #include <memory>
+#include <utility>
 
 #include "verlet_cable/core/world.h"
 #include "world/implementation.h"
@@ -14,8 +15,9 @@ void World::tune(const SceneDesc& scene) {
   if (tuned->contact && scene.contact) tuned->contact->friction = scene.contact->friction;
   state.scene = std::move(tuned);
   for (int i = 0; i < static_cast<int>(state.cables.size()); ++i) {
-    CableModel& model = state.cables[i].model;
+    CableModel model = *state.cables[i].model;
     model.material = *scene.find_material(model.material_name);
+    state.cables[i].model = std::make_shared<const CableModel>(std::move(model));
     // A clamp holds the direction where the cable is stiff, the neighbouring node where it is not.
     implementation_->find_targets_of(i);
   }

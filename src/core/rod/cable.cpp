@@ -8,27 +8,27 @@
 
 namespace verlet_cable {
 
-double CableModel::length() const {
+double CableState::length() const {
   return length(0, segments());
 }
 
-double CableModel::length(int first, int last) const {
+double CableState::length(int first, int last) const {
   return std::accumulate(rest_lengths.begin() + first, rest_lengths.begin() + last, 0.0);
 }
 
-std::vector<double> CableModel::arc_length() const {
+std::vector<double> CableState::arc_length() const {
   std::vector<double> arc{0};
   for (const double l : rest_lengths) arc.push_back(arc.back() + l);
   return arc;
 }
 
-std::vector<Quaternion> segment_orientations(const SimulatedCable& cable) {
-  const int n = cable.model.segments();
+std::vector<Quaternion> segment_orientations(const CableState& state) {
+  const int n = state.segments();
   VectorArray segment, director;
   segment.assign(n, 0.0);
   director.assign(n, 0.0);
-  for (int i = 0; i < n; ++i) set(segment, i, cable.state.positions[i + 1] - cable.state.positions[i]);
-  carry_directors(cable.model, cable.state, segment, director);
+  for (int i = 0; i < n; ++i) set(segment, i, state.positions[i + 1] - state.positions[i]);
+  carry_directors(state, segment, director);
   std::vector<Quaternion> orientations;
   for (int i = 0; i < n; ++i) {
     Eigen::Matrix3d axes;
@@ -40,32 +40,32 @@ std::vector<Quaternion> segment_orientations(const SimulatedCable& cable) {
   return orientations;
 }
 
-std::vector<double> node_curvature(const SimulatedCable& cable) {
+std::vector<double> node_curvature(const CableState& state) {
   std::vector<double> curvature;
-  for (int i = 1; i < cable.model.segments(); ++i) {
-    const Vector3 before = cable.state.positions[i] - cable.state.positions[i - 1];
-    const Vector3 after = cable.state.positions[i + 1] - cable.state.positions[i];
+  for (int i = 1; i < state.segments(); ++i) {
+    const Vector3 before = state.positions[i] - state.positions[i - 1];
+    const Vector3 after = state.positions[i + 1] - state.positions[i];
     const double angle = std::atan2(before.cross(after).norm(), before.dot(after));
-    curvature.push_back(angle / (0.5 * (cable.model.rest_lengths[i - 1] + cable.model.rest_lengths[i])));
+    curvature.push_back(angle / (0.5 * (state.rest_lengths[i - 1] + state.rest_lengths[i])));
   }
   return curvature;
 }
 
-std::vector<double> node_twist(const SimulatedCable& cable) {
+std::vector<double> node_twist(const CableState& state) {
   std::vector<double> twist;
-  for (int i = 1; i < cable.model.segments(); ++i) twist.push_back(0.5 * (cable.state.twist[i - 1] + cable.state.twist[i]));
+  for (int i = 1; i < state.segments(); ++i) twist.push_back(0.5 * (state.twist[i - 1] + state.twist[i]));
   return twist;
 }
 
-double strain(const SimulatedCable& cable, int segment) {
-  return (cable.state.positions[segment + 1] - cable.state.positions[segment]).norm() / cable.model.rest_lengths[segment] - 1;
+double strain(const CableState& state, int segment) {
+  return (state.positions[segment + 1] - state.positions[segment]).norm() / state.rest_lengths[segment] - 1;
 }
 
-NearestPoint nearest_point(const SimulatedCable& cable, const Vector3& point) {
+NearestPoint nearest_point(const CableState& state, const Vector3& point) {
   NearestPoint nearest;
   nearest.distance = infinity;
-  for (int i = 0; i < cable.model.segments(); ++i) {
-    const Vector3 start = cable.state.positions[i], along = cable.state.positions[i + 1] - start;
+  for (int i = 0; i < state.segments(); ++i) {
+    const Vector3 start = state.positions[i], along = state.positions[i + 1] - start;
     const double square = along.squaredNorm();
     const double fraction = square > 0 ? std::clamp((point - start).dot(along) / square, 0.0, 1.0) : 0;
     const double distance = (start + fraction * along - point).norm();

@@ -7,8 +7,8 @@
 
 namespace verlet_cable {
 
-/// Sets the model's unloaded curvature; where it is taken from the initial shape, from the present one, `clamps` holding its
+/// Sets the cable's unloaded curvature; where it is taken from the initial shape, from the present one, `clamps` holding its
 /// ends.
-void set_rest_curvature(const RestCurvatureDesc& desc, const std::vector<DirectionTarget>& clamps, SimulatedCable& cable);
+void set_rest_curvature(const RestCurvatureDesc& desc, const std::vector<DirectionTarget>& clamps, CableState& state);
 
 }  // namespace verlet_cable

@@ -39,14 +39,14 @@ void plan_drive(double available, double time_step, LengthDrive& drive) {
   drive.change = drive.wound + drive.debt - drive.next_debt;
 }
 
-void wind(const LengthDrive& drive, double part, double time_step, CableModel& model) {
+void wind(const LengthDrive& drive, double part, double time_step, const CableModel& model, CableState& state) {
   const double uniform = drive.change - 0.5 * time_step * (drive.growth() + drive.next_growth());
   const double accelerated = time_step * (drive.growth() + 0.5 * part * (drive.next_growth() - drive.growth()));
   const double change = part == 1 ? drive.change : part * (uniform + accelerated);
-  model.rest_lengths[drive.segment] = drive.start_length + change;
+  state.rest_lengths[drive.segment] = drive.start_length + change;
   if (!drive.is_winch()) return;
   for (const int side : {0, 1})
-    model.masses[drive.segment + side] = drive.start_masses[side] + 0.5 * model.material.linear_density * part * drive.wound;
+    state.masses[drive.segment + side] = drive.start_masses[side] + 0.5 * model.material.linear_density * part * drive.wound;
 }
 
 double growth_at(const LengthDrive& drive, double part) {
@@ -61,48 +61,45 @@ bool complete_drive(LengthDrive& drive) {
   return !drive.arrives || drive.debt != 0;
 }
 
-void insert_node(int segment, double first, SimulatedCable& cable) {
-  CableModel& model = cable.model;
-  const double whole = model.rest_lengths[segment], second = whole - first, part = first / whole;
+void insert_node(int segment, double first, const CableModel& model, CableState& state) {
+  const double whole = state.rest_lengths[segment], second = whole - first, part = first / whole;
   const int node = segment + 1, neighbour = segment == 0 ? node : segment;
-  duplicate_node(node, cable);
-  for (auto* values : {&cable.state.positions, &cable.state.velocities, &cable.state.accelerations})
+  duplicate_node(node, state);
+  for (auto* values : {&state.positions, &state.velocities, &state.accelerations})
     (*values)[node] = (*values)[segment] + part * ((*values)[node + 1] - (*values)[segment]);
-  if (!model.rest_curvature.empty()) model.rest_curvature[node] = model.rest_curvature[neighbour];
+  if (!state.rest_curvature.empty()) state.rest_curvature[node] = state.rest_curvature[neighbour];
   // What a winch pays out bends.
-  if (!model.flexible_fraction.empty()) model.flexible_fraction[node] = 1;
+  if (!state.flexible_fraction.empty()) state.flexible_fraction[node] = 1;
   const double half_density = 0.5 * model.material.linear_density;
-  model.masses[segment] -= half_density * second;
-  model.masses[node + 1] -= half_density * first;
-  model.masses[node] = half_density * whole;
-  duplicate_segment(segment, cable);
-  model.rest_lengths[segment] = first;
-  model.rest_lengths[node] = second;
-  if (cable.state.reference_node >= node) ++cable.state.reference_node;
+  state.masses[segment] -= half_density * second;
+  state.masses[node + 1] -= half_density * first;
+  state.masses[node] = half_density * whole;
+  duplicate_segment(segment, state);
+  state.rest_lengths[segment] = first;
+  state.rest_lengths[node] = second;
+  if (state.reference_node >= node) ++state.reference_node;
 }
 
-double remove_node(int node, SimulatedCable& cable) {
-  CableModel& model = cable.model;
-  CableState& state = cable.state;
+double remove_node(int node, CableState& state) {
   const int before = node - 1, after = node + 1;
-  const double first = model.rest_lengths[before], second = model.rest_lengths[node], whole = first + second;
+  const double first = state.rest_lengths[before], second = state.rest_lengths[node], whole = first + second;
   const double stretch =
       ((state.positions[node] - state.positions[before]).norm() + (state.positions[after] - state.positions[node]).norm()) /
       whole;
   const double length = (state.positions[after] - state.positions[before]).norm() / stretch;
-  const double mass = model.masses[node];
+  const double mass = state.masses[node];
   const auto give = [&](int neighbour, double share) {
-    const double moved = share * mass, sum = model.masses[neighbour] + moved;
-    state.velocities[neighbour] = (model.masses[neighbour] * state.velocities[neighbour] + moved * state.velocities[node]) / sum;
-    model.masses[neighbour] = sum;
+    const double moved = share * mass, sum = state.masses[neighbour] + moved;
+    state.velocities[neighbour] = (state.masses[neighbour] * state.velocities[neighbour] + moved * state.velocities[node]) / sum;
+    state.masses[neighbour] = sum;
   };
   give(before, second / whole);
   give(after, first / whole);
   visit_segment_arrays(
-      cable, [&](std::vector<double>& values) { values[before] = (first * values[before] + second * values[node]) / whole; });
-  model.rest_lengths[before] = length;
-  erase_segment(node, cable);
-  erase_node(node, cable);
+      state, [&](std::vector<double>& values) { values[before] = (first * values[before] + second * values[node]) / whole; });
+  state.rest_lengths[before] = length;
+  erase_segment(node, state);
+  erase_node(node, state);
   if (state.reference_node >= node) --state.reference_node;
   return whole - length;
 }

@@ -56,7 +56,7 @@ const Findings& World::findings() const {
 }
 
 int find(const std::vector<SimulatedCable>& cables, const std::string& name) {
-  return index_of(cables, [&](const SimulatedCable& cable) { return cable.model.name == name; });
+  return index_of(cables, [&](const SimulatedCable& cable) { return cable.model->name == name; });
 }
 
 int find(const std::vector<SimulatedNet>& nets, const std::string& name) {
@@ -73,18 +73,18 @@ Energy World::energy() const {
   for (std::size_t k = 0; k < cables().size(); ++k) {
     const SimulatedCable& cable = cables()[k];
     energy.bend +=
-        bending_energy(cable.model, cable.state, boundary_now(implementation_->state.cable_progress[k].targets).directions);
-    for (int i = 0; i < cable.model.nodes(); ++i) {
-      energy.kinetic += 0.5 * cable.model.masses[i] * cable.state.velocities[i].squaredNorm();
-      energy.gravity += cable.model.masses[i] * gravity.potential_at(cable.state.positions[i]);
+        bending_energy(*cable.model, cable.state, boundary_now(implementation_->state.cable_progress[k].targets).directions);
+    for (int i = 0; i < cable.state.nodes(); ++i) {
+      energy.kinetic += 0.5 * cable.state.masses[i] * cable.state.velocities[i].squaredNorm();
+      energy.gravity += cable.state.masses[i] * gravity.potential_at(cable.state.positions[i]);
     }
-    for (int i = 0; i < cable.model.segments(); ++i)
-      energy.twist += 0.5 * cable.model.material.torsional_stiffness * cable.model.rest_lengths[i] * cable.state.twist[i] *
+    for (int i = 0; i < cable.state.segments(); ++i)
+      energy.twist += 0.5 * cable.model->material.torsional_stiffness * cable.state.rest_lengths[i] * cable.state.twist[i] *
                       cable.state.twist[i];
-    if (cable.model.material.axial_stiffness == infinity) continue;
-    for (int i = 0; i < cable.model.segments(); ++i) {
-      const double e = strain(cable, i);
-      energy.stretch += 0.5 * cable.model.material.axial_stiffness * cable.model.rest_lengths[i] * e * e;
+    if (cable.model->material.axial_stiffness == infinity) continue;
+    for (int i = 0; i < cable.state.segments(); ++i) {
+      const double e = strain(cable.state, i);
+      energy.stretch += 0.5 * cable.model->material.axial_stiffness * cable.state.rest_lengths[i] * e * e;
     }
   }
   implementation_->add_net_energy(energy);
