@@ -1,4 +1,5 @@
 #include <memory>
+#include <utility>
 
 #include "rod/rod_frames.h"
 #include "verlet_cable/core/world.h"
@@ -15,13 +16,15 @@ void World::tune(const SceneDesc& scene) {
   if (tuned->contact && scene.contact) tuned->contact->friction = scene.contact->friction;
   state.scene = std::move(tuned);
   for (int i = 0; i < static_cast<int>(state.cables.size()); ++i) {
-    CableModel& model = state.cables[i].model;
+    CableModel model = *state.cables[i].model;
     model.material = *scene.find_material(model.material_name);
+    state.cables[i].model = std::make_shared<const CableModel>(std::move(model));
+    SimulatedCable& cable = state.cables[i];
     std::vector<DirectionTarget>& clamps = state.cable_progress[i].targets.directions;
-    if (model.is_whole_rod())
-      give_frames(state.cables[i], clamps);
+    if (is_whole_rod(*cable.model, cable.state))
+      give_frames(cable.state, clamps);
     else
-      drop_frames(state.cables[i], clamps);
+      drop_frames(cable.state, clamps);
     // A clamp holds the direction where the cable is stiff, the neighbouring node where it is not.
     implementation_->find_targets_of(i);
   }

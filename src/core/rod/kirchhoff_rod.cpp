@@ -47,25 +47,25 @@ Eigen::Matrix3d rolled(const Quaternion& orientation, double roll) {
 }
 
 /// `around` [m]: the cable that the joint stands for.
-JointStiffness joint_stiffness(const CableModel& model, int node, double around, double damping_time) {
-  const double length = model.bending_length(node, around), per_length = 1 / length;
+JointStiffness joint_stiffness(const CableModel& model, const CableState& state, int node, double around, double damping_time) {
+  const double length = state.bending_length(node, around), per_length = 1 / length;
   JointStiffness stiffness;
   stiffness.twist = model.material.torsional_stiffness * per_length;
   stiffness.bend_y = model.material.bending_stiffness[0] * per_length;
   stiffness.bend_z = model.material.bending_stiffness[1] * per_length;
   stiffness.twist_damping = model.material.torsional_damping / damping_time * per_length;
   stiffness.bend_damping = model.material.bending_damping / damping_time * per_length;
-  if (!model.rest_twist.empty()) stiffness.rest.twist = model.rest_twist[node] * length;
-  if (model.rest_curvature.empty()) return stiffness;
-  stiffness.rest.y = model.rest_curvature[node][0] * length;
-  stiffness.rest.z = model.rest_curvature[node][1] * length;
+  if (!state.rest_twist.empty()) stiffness.rest.twist = state.rest_twist[node] * length;
+  if (state.rest_curvature.empty()) return stiffness;
+  stiffness.rest.y = state.rest_curvature[node][0] * length;
+  stiffness.rest.z = state.rest_curvature[node][1] * length;
   return stiffness;
 }
 
 }  // namespace
 
-void KirchhoffRod::resize(const CableModel& model) {
-  segments_ = model.segments();
+void KirchhoffRod::resize(int segments) {
+  segments_ = segments;
   const std::size_t nodes = segments_ + 2;
   for (std::vector<double>* a : {&inertia_, &spin_, &tau_}) a->assign(nodes, 0.0);
   frames_.resize(nodes);
@@ -94,10 +94,10 @@ void KirchhoffRod::start_segments(const CableModel& model, const CableState& sta
   for (int i = 0; i < segments_; ++i) {
     const Vector3& director = state.directors[i];
     set(frames_.start.y, i, director);
-    inertia_[i] = moment * model.rest_lengths[i];
+    inertia_[i] = moment * state.rest_lengths[i];
     if (is_static)
       inertia_[i] = std::max(inertia_[i], 0.5 * h_ * h_ * least_static_resistance * model.material.torsional_stiffness /
-                                              model.rest_lengths[i]);
+                                              state.rest_lengths[i]);
     spin_[i] = is_static ? 0 : state.spin[i];
     tau_[i] = h_ * spin_[i];
   }
@@ -117,7 +117,7 @@ void KirchhoffRod::start_joints(const CableModel& model, const CableState& state
                                 double damping_time) {
   const int n = segments_;
   for (int i = 1; i < n; ++i)
-    joints_.set(i, joint_stiffness(model, i, 0.5 * (model.rest_lengths[i - 1] + model.rest_lengths[i]), damping_time),
+    joints_.set(i, joint_stiffness(model, state, i, 0.5 * (state.rest_lengths[i - 1] + state.rest_lengths[i]), damping_time),
                 state.joint_twist[i]);
   for (const HeldDirection& direction : directions)
     if (direction.node > 0 && direction.node < n) joints_.set(direction.node, {}, 0);
@@ -148,7 +148,7 @@ void KirchhoffRod::start_clamps(const CableModel& model, const CableState& state
     set(of_clamp.end, joint, end);
     set(of_clamp.middle, joint, start + part_ * (end - start));
     set(of_segment.start, joint, beside);
-    clamp_joints_.set(joint, joint_stiffness(model, held.node, 0.5 * model.rest_lengths[segment], damping_time), twist);
+    clamp_joints_.set(joint, joint_stiffness(model, state, held.node, 0.5 * state.rest_lengths[segment], damping_time), twist);
   });
   clamp_joints_.start(clamp_before_.start, 0, clamp_after_.start, 0, 0, static_cast<int>(count));
 }
@@ -302,7 +302,7 @@ void KirchhoffRod::set_stiffness(const VectorArray& direction, bool simple) {
 }
 
 RodEnergy rod_energy(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions) {
-  const int n = model.segments();
+  const int n = state.segments();
   RodEnergy sum;
   const auto add = [&](const JointStiffness& stiffness, const JointAngles& angles) {
     const JointEnergy energy = joint_energy(stiffness, angles);
@@ -312,7 +312,7 @@ RodEnergy rod_energy(const CableModel& model, const CableState& state, const std
   const auto frame = [&](int i) { return segment_frame(state.positions[i + 1] - state.positions[i], state.directors[i]); };
   for (int i = 1; i < n; ++i) {
     if (std::any_of(directions.begin(), directions.end(), [i](const HeldDirection& d) { return d.node == i; })) continue;
-    add(joint_stiffness(model, i, 0.5 * (model.rest_lengths[i - 1] + model.rest_lengths[i]), infinity),
+    add(joint_stiffness(model, state, i, 0.5 * (state.rest_lengths[i - 1] + state.rest_lengths[i]), infinity),
         joint_angles(frame(i - 1), frame(i), state.joint_twist[i]));
   }
   visit_clamp_joints(directions, n, [&](std::size_t target, int segment, bool after) {
@@ -320,10 +320,10 @@ RodEnergy rod_energy(const CableModel& model, const CableState& state, const std
     const double twist = clamp_twist(state, held, n, after);
     const Eigen::Matrix3d beside = frame(segment);
     const Eigen::Matrix3d clamp = rolled(held.end, clamp_roll(held.end.toRotationMatrix(), beside, after, twist));
-    add(joint_stiffness(model, held.node, 0.5 * model.rest_lengths[segment], infinity),
+    add(joint_stiffness(model, state, held.node, 0.5 * state.rest_lengths[segment], infinity),
         after ? joint_angles(clamp, beside, twist) : joint_angles(beside, clamp, twist));
   });
-  for (int i = 0; i < n; ++i) sum.spin += 0.5 * section_inertia(model.material) * model.rest_lengths[i] * state.spin[i] * state.spin[i];
+  for (int i = 0; i < n; ++i) sum.spin += 0.5 * section_inertia(model.material) * state.rest_lengths[i] * state.spin[i] * state.spin[i];
   return sum;
 }
 
