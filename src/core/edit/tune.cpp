@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "rod/rod_frames.h"
+#include "scene/validate_materials.h"
 #include "verlet_cable/core/world.h"
 #include "world/implementation.h"
 
@@ -9,6 +10,10 @@ namespace verlet_cable {
 
 void World::tune(const SceneDesc& scene) {
   State& state = implementation_->state;
+  Errors errors;
+  for (const SimulatedCable& cable : state.cables)
+    check_torsional_stiffness(cable, *scene.find_material(cable.model->material_name), errors);
+  if (std::vector<std::string> lines = errors.take(); !lines.empty()) throw SceneError(std::move(lines));
   auto tuned = std::make_shared<SceneDesc>(*state.scene);
   tuned->gravity = scene.gravity;
   tuned->fluid = scene.fluid;

@@ -130,10 +130,11 @@ void pass_twist_through_winch(const LengthDrive& drive, CableState& state, Kinem
   for (DirectionTarget& clamp : targets.directions) {
     if (clamp.node != end) continue;
     const int next = end == 0 ? 1 : end - 1;
-    double twist = state.joint_twist[end], length = joint_length(state, end);
+    // Over the lengths that were so twisted: those before this step.
+    double twist = state.joint_twist[end], length = joint_length(state, end) - 0.5 * drive.wound;
     if (next > 0 && next < state.segments()) {
       twist += state.joint_twist[next];
-      length += joint_length(state, next);
+      length += joint_length(state, next) - 0.5 * drive.wound;
     }
     const double turn = drive.wound * twist / length;
     state.joint_twist[end] += turn;
