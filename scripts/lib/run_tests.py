@@ -124,8 +124,10 @@ def read_results(program, results):
         for case in cases:
             problem = next((case.find(tag) for tag in ('failure', 'error') if case.find(tag) is not None), None)
             if problem is not None:
-                message = ' '.join((problem.get('message') or problem.text or '').split())
-                program.failures.append(f'{case.get("classname")}.{case.get("name")}: {message[:200]}')
+                message = ' '.join((problem.get('message') or '').split())[:200]
+                # Of a Python traceback the end says what was wrong.
+                message = message or ' '.join((problem.text or '').split())[-300:]
+                program.failures.append(f'{case.get("classname")}.{case.get("name")}: {message}')
             elif not (path.name.startswith('rostest-') or case.get('status') == 'notrun' or case.find('skipped') is not None):
                 program.passed += 1
 
@@ -150,11 +152,11 @@ def run(program, results, log_directory):
     verdict = 'FAIL' if program.failures else 'ok  '
     print(f'{verdict}  {program.name}: {program.passed} passed, {len(program.failures)} failed '
           f'({time.monotonic() - start:.1f} s)')
-    if program.failures:
-        for line in log_path.read_text(errors='replace').splitlines()[-60:] if log_path.exists() else []:
+    for failure in program.failures:
+        print(f'FAIL  {program.name}: {failure}')
+    if program.failures and log_path.exists():
+        for line in log_path.read_text(errors='replace').splitlines()[-60:]:
             print('    | ' + line)
-        for failure in program.failures:
-            print(f'FAIL  {program.name}: {failure}')
     sys.stdout.flush()
 
 

@@ -24,6 +24,8 @@ namespace {
 using namespace verlet_cable;
 using mesh_reader::Refused;
 
+constexpr int lowest_priority = 19;
+
 void write_all(const void* data, std::size_t size) {
   const char* at = static_cast<const char*>(data);
   while (size > 0) {
@@ -66,6 +68,7 @@ void set_limit(int resource, rlim_t limit) {
 void give_up_rights() {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
+  setpriority(PRIO_PROCESS, 0, lowest_priority);  // a node's own work comes first
   close_other_files();
   set_limit(RLIMIT_NOFILE, STDERR_FILENO + 1);  // none is opened any more
   set_limit(RLIMIT_CORE, 0);

@@ -71,12 +71,12 @@ CableLocation nearest(const std::string& cable, const std::string& frame, double
 
 int node(const CableLocation& location) {
   const Location found = locate_node(location, two_cables(), find_frame);
-  return found.errors.empty() ? found.index : -1;
+  return found.errors.empty() ? found.node : -1;
 }
 
 int segment(const CableLocation& location) {
   const Location found = locate_cut(location, two_cables(), find_frame);
-  return found.errors.empty() ? found.index : -1;
+  return found.errors.empty() ? found.node : -1;
 }
 
 std::string node_errors(const CableLocation& location) {
@@ -103,8 +103,8 @@ TEST(Location, NearestPointInAnyFrameOnAnyCable) {
   EXPECT_EQ(node(nearest("lower", "hand", -1.24, 0.3, 0.2)), 8);
   EXPECT_EQ(segment(nearest("lower", "hand", -1.24, 0.3, 0.2)), 7);
   const World world = two_cables();
-  EXPECT_EQ(world.cables()[locate_node(nearest("", "world", 0.5, 0, 0.4), world, find_frame).cable].model.name, "lower");
-  EXPECT_EQ(world.cables()[locate_node(nearest("", "world", 0.5, 0, 0.6), world, find_frame).cable].model.name, "upper");
+  EXPECT_EQ(world.cables()[locate_node(nearest("", "world", 0.5, 0, 0.4), world, find_frame).body.index].model->name, "lower");
+  EXPECT_EQ(world.cables()[locate_node(nearest("", "world", 0.5, 0, 0.6), world, find_frame).body.index].model->name, "upper");
 }
 
 TEST(Location, PointsThatAreTooFarAwayAreRefused) {
@@ -117,7 +117,7 @@ TEST(Location, FramesThatAreTooFarAwayHaveANearestCableAllTheSame) {
   const FindFrame far_away = [](const std::string&) { return Pose{Vector3(1e200, 0, 0), Quaternion::Identity()}; };
   const World world = two_cables();
   const Location found = locate_cut(nearest("", "far", 0.5, 0, 0), world, far_away);
-  EXPECT_GE(found.cable, 0);
+  EXPECT_GE(found.body.index, 0);
   EXPECT_NE(join(found.errors), "") << "its segment 0 cannot be cut";
 }
 

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/core/world.h"
 
 namespace verlet_cable {
@@ -11,7 +12,7 @@ inline std::string name_of(const World& world, const BodyId& body) {
   const auto index = static_cast<std::size_t>(body.index);
   switch (body.kind) {
     case BodyId::Kind::cable:
-      return world.cables()[index].model.name;
+      return world.cables()[index].model->name;
     case BodyId::Kind::net:
       return world.nets()[index].model.name;
     case BodyId::Kind::particle:
@@ -20,6 +21,12 @@ inline std::string name_of(const World& world, const BodyId& body) {
       break;
   }
   return "";
+}
+
+/// As in messages: cable "hose".
+inline std::string kind_and_name(const World& world, const BodyId& body) {
+  const char* kind = body.is_cable() ? "cable" : body.is_net() ? "net" : "particle";
+  return std::string(kind) + " " + quoted(name_of(world, body));
 }
 
 }  // namespace verlet_cable

@@ -125,14 +125,14 @@ EditResult Hands::pin(const Handle& handle) {
   const CheckedPin pin =
       check_pin(request, simulation_.world(), [this](const std::string& frame) { return simulation_.find_frame(frame); });
   if (!pin.errors.empty()) return refused(pin.errors);
-  return simulation_.pin("", pin.cable, pin.node, pin.frame, pin.frame_pose, pin.offset, AttachmentType::hinge);
+  return simulation_.pin("", pin, AttachmentType::hinge);
 }
 
 EditResult Hands::cut(const Handle& handle) {
   if (handle.cable.empty()) return refused({"menu_entry_id: 3; what holds a net has 2 and 4 only"});
   const Location location = locate_cut(location_of(handle), simulation_.world(), {});
   if (!location.errors.empty()) return refused(location.errors);
-  return simulation_.cut(location.cable, location.index);
+  return simulation_.cut(location.body, location.elements);
 }
 
 /// Sends an attachment to a place in the fixed frame, as near as the cable allows.

@@ -46,9 +46,20 @@ bool is_finite(const SimulatedCable& cable) {
          std::all_of(state.tension.begin(), state.tension.end(), finite_number);
 }
 
+bool is_finite(const SimulatedNet& net) {
+  const auto all_finite = [](const Vector3& v) { return v.allFinite(); };
+  return std::all_of(net.state.positions.begin(), net.state.positions.end(), all_finite) &&
+         std::all_of(net.state.velocities.begin(), net.state.velocities.end(), all_finite) &&
+         std::all_of(net.state.tension.begin(), net.state.tension.end(), [](double t) { return std::isfinite(t); });
+}
+
+bool is_finite(const SimulatedParticle& particle) {
+  return particle.position.allFinite() && particle.velocity.allFinite();
+}
+
 std::vector<SimulatedContact> contacts_of_both(const World& world) {
   std::vector<SimulatedContact> contacts = world.findings().contacts;
-  const auto radius = [&](int cable) { return world.cables()[cable].model.material.radius; };
+  const auto radius = [&](int cable) { return world.cables()[cable].model->material.radius; };
   for (std::size_t i = 0, once = contacts.size(); i < once; ++i) {
     const SimulatedContact c = contacts[i];
     if (c.other_cable < 0) continue;
@@ -67,47 +78,44 @@ Contact to_message(const World& world, const SimulatedContact& contact) {
   message.normal = to_vector(contact.normal);
   message.force = to_vector(contact.force);
   message.other =
-      contact.obstacle >= 0 ? world.obstacles()[contact.obstacle].name : world.cables()[contact.other_cable].model.name;
+      contact.obstacle >= 0 ? world.obstacles()[contact.obstacle].name : world.cables()[contact.other_cable].model->name;
   return message;
 }
 
-}  // namespace
-
-Cable to_message(const World& world, int index, const std::vector<SimulatedContact>& contacts) {
-  const SimulatedCable& cable = world.cables()[index];
+/// All but attachments and contacts.
+Cable to_message(const SimulatedCable& cable) {
   Cable message;
-  message.name = cable.model.name;
-  for (const Attachment& attachment : world.attachments()) {
-    if (attachment.body != cable_id(index)) continue;
-    message.attachments.push_back(attachment.name);
-    message.attachment_nodes.push_back(attachment.node);
-  }
-  message.positions.reserve(cable.model.nodes());
+  message.name = cable.model->name;
+  message.positions.reserve(cable.state.nodes());
   for (const Vector3& position : cable.state.positions) message.positions.push_back(to_point(position));
-  message.velocities.reserve(cable.model.nodes());
+  message.velocities.reserve(cable.state.nodes());
   for (const Vector3& velocity : cable.state.velocities) message.velocities.push_back(to_vector(velocity));
-  message.orientations.reserve(cable.model.segments());
-  for (const Quaternion& orientation : segment_orientations(cable)) message.orientations.push_back(to_quaternion(orientation));
-  message.arc_length = cable.model.arc_length();
+  message.orientations.reserve(cable.state.segments());
+  for (const Quaternion& orientation : segment_orientations(cable.state))
+    message.orientations.push_back(to_quaternion(orientation));
+  message.arc_length = cable.state.arc_length();
   message.tension = cable.state.tension;
-  message.curvature = node_curvature(cable);
-  message.twist = node_twist(cable);
-  message.rest_length = cable.model.length();
-  message.radius = cable.model.material.radius;
-  for (const SimulatedContact& contact : contacts)
-    if (contact.cable == index) message.contacts.push_back(to_message(world, contact));
+  message.curvature = node_curvature(cable.state);
+  message.twist = node_twist(cable.state);
+  message.rest_length = cable.state.length();
+  message.radius = cable.model->material.radius;
   return message;
 }
 
-bool is_finite(const SimulatedNet& net) {
-  const auto all_finite = [](const Vector3& v) { return v.allFinite(); };
-  return std::all_of(net.state.positions.begin(), net.state.positions.end(), all_finite) &&
-         std::all_of(net.state.velocities.begin(), net.state.velocities.end(), all_finite) &&
-         std::all_of(net.state.tension.begin(), net.state.tension.end(), [](double t) { return std::isfinite(t); });
-}
-
-bool is_finite(const SimulatedParticle& particle) {
-  return particle.position.allFinite() && particle.velocity.allFinite();
+void add_cables(const World& world, CableArray& message) {
+  std::vector<int> places;  // in the message, of each cable; -1: it is left out
+  for (const SimulatedCable& cable : world.cables()) {
+    places.push_back(is_finite(cable) ? static_cast<int>(message.cables.size()) : -1);
+    if (places.back() >= 0) message.cables.push_back(to_message(cable));
+  }
+  for (const Attachment& attachment : world.attachments()) {
+    if (!attachment.body.is_cable() || places[attachment.body.index] < 0) continue;
+    Cable& cable = message.cables[places[attachment.body.index]];
+    cable.attachments.push_back(attachment.name);
+    cable.attachment_nodes.push_back(attachment.node);
+  }
+  for (const SimulatedContact& contact : contacts_of_both(world))
+    if (places[contact.cable] >= 0) message.cables[places[contact.cable]].contacts.push_back(to_message(world, contact));
 }
 
 Net to_message(const SimulatedNet& net) {
@@ -129,12 +137,11 @@ Particle to_message(const SimulatedParticle& particle) {
   return message;
 }
 
+}  // namespace
+
 CableArray to_message(const World& world) {
   CableArray message;
-  const std::vector<SimulatedContact> contacts = contacts_of_both(world);
-  for (int index = 0; index < static_cast<int>(world.cables().size()); ++index) {
-    if (is_finite(world.cables()[index])) message.cables.push_back(to_message(world, index, contacts));
-  }
+  add_cables(world, message);
   for (const SimulatedNet& net : world.nets())
     if (is_finite(net)) message.nets.push_back(to_message(net));
   for (const SimulatedParticle& particle : world.particles())

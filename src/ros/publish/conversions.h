@@ -22,12 +22,6 @@ bool is_finite(const SimulatedCable& cable);
 bool is_finite(const SimulatedNet& net);
 bool is_finite(const SimulatedParticle& particle);
 
-Net to_message(const SimulatedNet& net);
-Particle to_message(const SimulatedParticle& particle);
-
-/// Everything the message knows about cable `index` of `world.cables()`, whose contacts are among `contacts`.
-Cable to_message(const World& world, int index, const std::vector<SimulatedContact>& contacts);
-
 /// Contacts of cables with cables as both of them feel it: each appears twice.
 std::vector<SimulatedContact> contacts_of_both(const World& world);
 

@@ -21,6 +21,7 @@
 #include "requests/location.h"
 #include "scene_sources/scene_files.h"
 #include "simulation/error_text.h"
+#include "verlet_cable/core/body_name.h"
 #include "verlet_cable/core/number_text.h"
 
 namespace verlet_cable {
@@ -53,9 +54,7 @@ bool pin(Simulation& simulation, const Pin::Request& request, Pin::Response& res
   const CheckedPin pin = check_pin(request, simulation.world(), find_frame_in(simulation));
   if (!pin.errors.empty()) return answer(refused(pin.errors), response);
   const AttachmentType type = request.clamp ? AttachmentType::clamp : AttachmentType::hinge;
-  const EditResult result =
-      pin.net >= 0 ? simulation.pin_net(request.name, pin.net, pin.node, pin.frame, pin.frame_pose, pin.offset.position)
-                   : simulation.pin(request.name, pin.cable, pin.node, pin.frame, pin.frame_pose, pin.offset, type);
+  const EditResult result = simulation.pin(request.name, pin, type);
   response.name = result.name;
   response.node = static_cast<std::uint32_t>(pin.node);
   return answer(result, response);
@@ -65,13 +64,8 @@ bool cut(Simulation& simulation, const Cut::Request& request, Cut::Response& res
   if (!simulation.started()) return answer(simulation.refused_before_start(), response);
   const Location location = locate_cut(request.location, simulation.world(), find_frame_in(simulation));
   if (!location.errors.empty()) return answer(refused(location.errors), response);
-  if (location.net >= 0) {
-    response.first = simulation.world().nets()[location.net].model.name;
-    return answer(with_distance(simulation.cut_links(location.net, location.links), request.location, location.distance),
-                  response);
-  }
-  const EditResult result = simulation.cut(location.cable, location.index);
-  if (result.ok) response.first = simulation.world().cables()[location.cable].model.name;
+  const EditResult result = simulation.cut(location.body, location.elements);
+  if (result.ok) response.first = name_of(simulation.world(), location.body);
   response.second = result.name;
   return answer(with_distance(result, request.location, location.distance), response);
 }

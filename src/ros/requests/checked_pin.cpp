@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "verlet_cable/core/body_name.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/core/scene_fields.h"
@@ -16,8 +17,8 @@ std::string text(const Vector3& v) {
 
 /// The node's place and the cable's direction there, between the directions of its segments.
 Pose node_pose(const SimulatedCable& cable, int node) {
-  const std::vector<Quaternion> orientations = segment_orientations(cable);
-  const int last = cable.model.segments() - 1;
+  const std::vector<Quaternion> orientations = segment_orientations(cable.state);
+  const int last = cable.state.segments() - 1;
   const Quaternion& before = orientations[std::max(node - 1, 0)];
   const Quaternion& after = orientations[std::min(node, last)];
   return {cable.state.positions[node], before.slerp(0.5, after).normalized()};
@@ -25,13 +26,13 @@ Pose node_pose(const SimulatedCable& cable, int node) {
 
 /// What an inextensible cable between the pin and its neighbours cannot do.
 void check_reach(const CheckedPin& pin, const World& world, std::vector<std::string>& errors) {
-  const CableModel& model = world.cables()[pin.cable].model;
-  if (std::isfinite(model.material.axial_stiffness)) return;
+  const SimulatedCable& cable = world.cables()[pin.body.index];
+  if (std::isfinite(cable.model->material.axial_stiffness)) return;
   constexpr double rounding = 1e-6;
-  const std::vector<double> arc_length = model.arc_length();
+  const std::vector<double> arc_length = cable.state.arc_length();
   const Vector3 place = (pin.frame_pose * pin.offset).position;
   for (const Attachment& other : world.attachments()) {
-    if (other.body != cable_id(pin.cable)) continue;
+    if (other.body != pin.body) continue;
     const double distance = (place - (world.frame_pose(other.frame) * other.pose).position).norm();
     const double length = std::abs(arc_length[pin.node] - arc_length[other.node]);
     if (distance <= length * (1 + rounding)) continue;
@@ -63,9 +64,8 @@ CheckedPin check_pin(const Pin::Request& request, const World& world, const Find
   CheckedPin pin;
   const Location location = locate_node(request.location, world, find_frame);
   pin.errors = location.errors;
-  pin.cable = location.cable;
-  pin.net = location.net;
-  pin.node = location.index;
+  pin.body = location.body;
+  pin.node = location.node;
   pin.frame = request.frame_id.empty() ? world.frames().front() : request.frame_id;
   pin.offset = read_pose("offset", request.offset, pin.errors);
   if (!request.name.empty() && !is_name(request.name)) {
@@ -81,20 +81,18 @@ CheckedPin check_pin(const Pin::Request& request, const World& world, const Find
                          "; allowed: frames that tf knows, without a leading /; or empty");
   }
   if (!location.errors.empty()) return pin;
-  if (pin.net >= 0 && request.clamp) pin.errors.push_back("clamp: true; allowed: false, nets are held by hinges");
-  const std::string holder =
-      pin.net >= 0 ? "net " + quoted(world.nets()[pin.net].model.name) : "cable " + quoted(world.cables()[pin.cable].model.name);
+  if (pin.body.is_net() && request.clamp) pin.errors.push_back("clamp: true; allowed: false, nets are held by hinges");
   for (const Attachment& other : world.attachments()) {
-    if (other.body != (pin.net >= 0 ? net_id(pin.net) : cable_id(pin.cable)) || other.node != pin.node) continue;
-    pin.errors.push_back("location: node " + std::to_string(pin.node) + " of " + holder + " is held by " + quoted(other.name) +
-                         "; allowed: nodes that nothing holds");
+    if (other.body != pin.body || other.node != pin.node) continue;
+    pin.errors.push_back("location: node " + std::to_string(pin.node) + " of " + kind_and_name(world, pin.body) + " is held by " +
+                         quoted(other.name) + "; allowed: nodes that nothing holds");
   }
   if (!pin.errors.empty()) return pin;
   if (request.keep_offset) {
-    const Pose node = pin.net >= 0 ? Pose{world.nets()[pin.net].state.positions[pin.node], Quaternion::Identity()}
-                                   : node_pose(world.cables()[pin.cable], pin.node);
+    const Pose node = pin.body.is_net() ? Pose{world.nets()[pin.body.index].state.positions[pin.node], Quaternion::Identity()}
+                                        : node_pose(world.cables()[pin.body.index], pin.node);
     pin.offset = pin.frame_pose.inverse() * node;
-  } else if (pin.net < 0) {
+  } else if (pin.body.is_cable()) {
     check_reach(pin, world, pin.errors);
     if (!pin.errors.empty()) pin.errors.back() += "; to hold it where it is: keep_offset: true";
   }

@@ -12,8 +12,7 @@ namespace verlet_cable {
 
 /// A request to pin in terms of the world, or everything that is wrong with it.
 struct CheckedPin {
-  int cable = 0;  ///< -1 on a net
-  int net = -1;   ///< -1 on a cable
+  BodyId body;  ///< a cable or a net
   int node = 0;
   std::string frame;
   Pose frame_pose;  ///< in the fixed frame

@@ -16,12 +16,11 @@ using FindFrame = std::function<std::optional<Pose>(const std::string&)>;
 
 /// A place on a cable or net of a world, or everything that is wrong with the request for it.
 struct Location {
-  int cable = 0;  ///< index into World::cables(), -1 on a net
-  int index = 0;  ///< of the node or segment
+  BodyId body;                ///< the cable or net
+  int node = 0;               ///< that was asked for
+  std::vector<int> elements;  ///< to be cut: a segment, or links of a net; ascending
+  double distance = 0;        ///< [m] NEAREST: from the given point
   std::vector<std::string> errors;
-  int net = -1;            ///< index into World::nets(), -1 on a cable
-  std::vector<int> links;  ///< of a net, to be cut; ascending
-  double distance = 0;     ///< [m] NEAREST: from the given point
 };
 
 /// The node that is meant: the given one, or the one nearest to the arc length or to the point.

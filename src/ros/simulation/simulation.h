@@ -14,6 +14,7 @@
 #include "frames/tf_inputs.h"
 #include "publish/event_publisher.h"
 #include "publish/publishers.h"
+#include "requests/checked_pin.h"
 #include "simulation/attachment_moves.h"
 #include "simulation/cable_watch.h"
 #include "simulation/simulation_report.h"
@@ -64,16 +65,13 @@ class Simulation {
   EditResult set_paused(bool paused);
   /// Does steps while paused, and publishes the last. Resets, other scenes and the end of the pause interrupt them.
   void step(std::int64_t steps, const Answer& answer);
-  /// Holds a node of a cable at `offset` in a frame, which is at `frame_pose` if the world does not know it yet.
-  EditResult pin(const std::string& name, int cable, int node, const std::string& frame, const Pose& frame_pose,
-                 const Pose& offset, AttachmentType type);
+  /// Holds a node in a frame, which is at `frame_pose` if the world does not know it yet. No name: one is made.
+  EditResult pin(const std::string& name, const CheckedPin& pin, AttachmentType type);
   EditResult unpin(const std::string& name);
   /// Sends an attachment to another pose in its frame; it gets there smoothly.
   EditResult move_attachment(const std::string& name, const Pose& offset);
-  EditResult cut(int cable, int segment);
-  EditResult pin_net(const std::string& name, int net, int node, const std::string& frame, const Pose& frame_pose,
-                     const Vector3& offset);
-  EditResult cut_links(int net, const std::vector<int>& links);  ///< of a net, ascending
+  /// Removes a segment of a cable, or links of a net: `elements`, ascending.
+  EditResult cut(const BodyId& body, const std::vector<int>& elements);
   EditResult set_length(const std::string& cable, bool at_end, double length, double speed);
   EditResult join(const std::string& first, bool first_at_end, const std::string& second, bool second_at_end);
   /// Adds an obstacle to those of the scene, or replaces one that was added; it follows `frame` from when that is known on. It

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "simulation/simulation.h"
+#include "verlet_cable/core/body_name.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 
@@ -33,49 +34,19 @@ EditResult Simulation::set_paused(bool paused) {
   return done(paused ? "paused" : "running");
 }
 
-EditResult Simulation::pin(const std::string& name, int cable, int node, const std::string& frame, const Pose& frame_pose,
-                           const Pose& offset, AttachmentType type) {
+EditResult Simulation::pin(const std::string& name, const CheckedPin& pin, AttachmentType type) {
   if (!started_) return refused_before_start();
-  if (const auto reason = refused_frame(frame)) return *reason;
-  World trial = world_;  // a frame cannot be taken back
-  const EditResult result = trial.apply(edit::Pin{name, cable_id(cable), node, trial.add_frame(frame, frame_pose), offset, type});
-  if (!result.ok) return result;
-  world_ = std::move(trial);
-  frames_.add(frame, stamp_);
-  const std::string message = "node " + std::to_string(node) + " of cable " + quoted(world_.cables()[cable].model.name) +
-                              " is pinned to frame " + quoted(frame) + " as " + quoted(result.name);
-  announce(CableEvent::PINNED, subject_of(world_, world_.attachments()[find(world_.attachments(), result.name)]), message);
-  return {true, message, result.name};
-}
-
-EditResult Simulation::pin_net(const std::string& name, int net, int node, const std::string& frame, const Pose& frame_pose,
-                               const Vector3& offset) {
-  if (!started_) return refused_before_start();
-  if (const auto reason = refused_frame(frame)) return *reason;
+  if (const auto reason = refused_frame(pin.frame)) return *reason;
   World trial = world_;  // a frame cannot be taken back
   const EditResult result =
-      trial.apply(edit::Pin{name, net_id(net), node, trial.add_frame(frame, frame_pose), {offset, Quaternion::Identity()}});
+      trial.apply(edit::Pin{name, pin.body, pin.node, trial.add_frame(pin.frame, pin.frame_pose), pin.offset, type});
   if (!result.ok) return result;
   world_ = std::move(trial);
-  frames_.add(frame, stamp_);
-  const std::string message = "node " + std::to_string(node) + " of net " + quoted(world_.nets()[net].model.name) +
-                              " is pinned to frame " + quoted(frame) + " as " + quoted(result.name);
+  frames_.add(pin.frame, stamp_);
+  const std::string message = "node " + std::to_string(pin.node) + " of " + kind_and_name(world_, pin.body) +
+                              " is pinned to frame " + quoted(pin.frame) + " as " + quoted(result.name);
   announce(CableEvent::PINNED, subject_of(world_, world_.attachments()[find(world_.attachments(), result.name)]), message);
   return {true, message, result.name};
-}
-
-EditResult Simulation::cut_links(int net, const std::vector<int>& links) {
-  if (!started_) return refused_before_start();
-  const std::string name = world_.nets()[net].model.name;
-  const int node = world_.nets()[net].model.links[links.front()][0];
-  for (auto link = links.rbegin(); link != links.rend(); ++link) {
-    const EditResult result = world_.apply(edit::Cut{net_id(net), *link});
-    if (!result.ok) return result;
-  }
-  const std::string message =
-      std::to_string(links.size()) + (links.size() == 1 ? " link" : " links") + " of net " + quoted(name) + " cut";
-  announce(CableEvent::CUT, {name, {}, node, {}}, message);
-  return done(message);
 }
 
 EditResult Simulation::unpin(const std::string& name) {
@@ -106,15 +77,21 @@ EditResult Simulation::refused_attachment(const std::string& name) const {
                  " is no attachment; allowed: " + (names.empty() ? "none, nothing is attached" : names));
 }
 
-EditResult Simulation::cut(int cable, int segment) {
+EditResult Simulation::cut(const BodyId& body, const std::vector<int>& elements) {
   if (!started_) return refused_before_start();
-  const EditResult result = world_.apply(edit::Cut{cable_id(cable), segment});
-  if (!result.ok) return result;
-  const std::string& name = world_.cables()[cable].model.name;
-  const std::string message = "segment " + std::to_string(segment) + " of cable " + quoted(name) +
-                              " is cut out: the part from there to its end is now cable " + quoted(result.name);
-  announce(CableEvent::CUT, {name, {}, segment, result.name}, message);
-  return {true, message, result.name};
+  const std::string what = kind_and_name(world_, body);
+  const int node = body.is_net() ? world_.nets()[body.index].model.links[elements.front()][0] : elements.front();
+  EditResult result;
+  for (auto element = elements.rbegin(); element != elements.rend(); ++element) {
+    result = world_.apply(edit::Cut{body, *element});
+    if (!result.ok) return result;
+  }
+  result.message = body.is_net()
+                       ? std::to_string(elements.size()) + (elements.size() == 1 ? " link" : " links") + " of " + what + " cut"
+                       : "segment " + std::to_string(node) + " of " + what +
+                             " is cut out: the part from there to its end is now cable " + verlet_cable::quoted(result.name);
+  announce(CableEvent::CUT, {name_of(world_, body), {}, node, result.name}, result.message);
+  return result;
 }
 
 /// Why there is no such cable; nothing if there is.
@@ -124,7 +101,7 @@ std::optional<EditResult> Simulation::refused_cable(const std::string& field, co
   if (std::find(waiting.begin(), waiting.end(), cable) != waiting.end())
     return refused(field + ": " + quoted(cable) + " waits for its tf frames; allowed: cables that are simulated already");
   std::string names;
-  for (const SimulatedCable& other : world_.cables()) names += (names.empty() ? "" : ", ") + other.model.name;
+  for (const SimulatedCable& other : world_.cables()) names += (names.empty() ? "" : ", ") + other.model->name;
   return refused(field + ": " + quoted(cable) + "; allowed: " + (names.empty() ? "none, there are no cables" : names));
 }
 
@@ -132,7 +109,7 @@ EditResult Simulation::set_length(const std::string& cable, bool at_end, double 
   if (!started_) return refused_before_start();
   if (const auto reason = refused_cable("cable", cable)) return *reason;
   const int index = find(world_.cables(), cable);
-  const double before = world_.cables()[index].model.length();
+  const double before = world_.cables()[index].state.length();
   const EditResult result = world_.apply(edit::SetLength{index, at_end, length, speed});
   if (!result.ok) return result;
   return done("cable " + quoted(cable) + (length < before ? " is taken in from " : " is paid out from ") + rounded_text(before) +
@@ -144,7 +121,7 @@ EditResult Simulation::join(const std::string& first, bool first_at_end, const s
   if (!started_) return refused_before_start();
   if (const auto reason = refused_cable("first", first)) return *reason;
   if (const auto reason = refused_cable("second", second)) return *reason;
-  const int nodes = world_.cables()[find(world_.cables(), first_at_end ? first : second)].model.nodes();
+  const int nodes = world_.cables()[find(world_.cables(), first_at_end ? first : second)].state.nodes();
   const EditResult result =
       world_.apply(edit::Join{find(world_.cables(), first), first_at_end, find(world_.cables(), second), second_at_end});
   if (!result.ok) return result;
