@@ -35,13 +35,25 @@ struct CableModel {
   }
 };
 
+/// Signs of motion that substeps do not resolve: it turns round from each to the next.
+struct UnresolvedMotion {
+  std::vector<Vector3> acceleration_changes;  ///< [m/s^2] a node, n + 1, from the substep before the last to the last
+  double changed = 0;  ///< [N^2/kg] sum over nodes and recent substeps: mass times the square of the change
+  double turned = 0;   ///< [N^2/kg] likewise, mass times the change times the one before
+  int known = 0;       ///< substeps since the motion began anew, up to 2: then changes are known
+  int damped = 0;      ///< substeps that are still to damp
+};
+
 /// What a step changes. Written by World only.
 struct CableState {
   std::vector<Vector3> positions;   ///< [m] a node, n + 1
   std::vector<Vector3> velocities;  ///< [m/s] a node, n + 1, at the time of the positions
   /// [m/s^2] a node, n + 1, mean over the last substep: where the next one's solution starts
   std::vector<Vector3> accelerations;
-  std::vector<double> tension;  ///< [N] a segment, n, > 0 is tension; mean over the last substep
+  UnresolvedMotion unresolved;
+  /// [N] a segment, n, > 0 is tension; mean over the last two substeps, or over the last one without numerical damping
+  std::vector<double> tension;
+  std::vector<double> last_tension;  ///< [N] a segment, n; mean over the last substep
   /// [N] a segment, n: the tension without the part that bending and twist have in it; where the next substep's solution starts
   std::vector<double> axial_multiplier;
   std::vector<double> twist;  ///< [rad/m] a segment, n

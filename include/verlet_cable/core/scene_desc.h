@@ -244,6 +244,8 @@ struct NamedMaterial {
 struct SceneDesc {
   std::string frame_id = "world";
   double time_step = 0.001;  ///< [s], > 0
+  /// Motion that a step cannot resolve dies out within some steps; without, energy is conserved and such motion goes on.
+  bool numerical_damping = true;
   GravityDesc gravity;
   FluidDesc fluid;
   double publish_rate = 50;  ///< [Hz], > 0

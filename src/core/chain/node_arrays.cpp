@@ -48,9 +48,11 @@ void append(const SimulatedCable& tail, SimulatedCable& cable) {
   extend(tail.state.positions, cable.state.positions);
   extend(tail.state.velocities, cable.state.velocities);
   extend(tail.state.accelerations, cable.state.accelerations);
+  extend(tail.state.unresolved.acceleration_changes, cable.state.unresolved.acceleration_changes);
   visit_segment_arrays(cable, [](std::vector<double>& array) { array.push_back(0); });
   extend(tail.model.rest_lengths, cable.model.rest_lengths);
   extend(tail.state.tension, cable.state.tension);
+  extend(tail.state.last_tension, cable.state.last_tension);
   extend(tail.state.axial_multiplier, cable.state.axial_multiplier);
   extend(tail.state.twist, cable.state.twist);
 }

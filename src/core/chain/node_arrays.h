@@ -12,6 +12,7 @@ void visit_node_arrays(SimulatedCable& cable, const Visitor& visitor) {
   visitor(cable.state.positions);
   visitor(cable.state.velocities);
   visitor(cable.state.accelerations);
+  visitor(cable.state.unresolved.acceleration_changes);
   visitor(cable.model.masses);
   if (!cable.model.rest_curvature.empty()) visitor(cable.model.rest_curvature);
   if (!cable.model.flexible_fraction.empty()) visitor(cable.model.flexible_fraction);
@@ -20,6 +21,7 @@ template <class Visitor>
 void visit_segment_arrays(SimulatedCable& cable, const Visitor& visitor) {
   visitor(cable.model.rest_lengths);
   visitor(cable.state.tension);
+  visitor(cable.state.last_tension);
   visitor(cable.state.axial_multiplier);
   visitor(cable.state.twist);
 }

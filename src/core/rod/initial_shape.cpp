@@ -78,7 +78,9 @@ bool set_initial_state(const InitialShapeDesc& initial, bool settles, const Cabl
   using Type = InitialShapeDesc::Type;
   state.velocities.assign(model.nodes(), Vector3::Zero());
   state.accelerations.assign(model.nodes(), Vector3::Zero());
+  state.unresolved.acceleration_changes.assign(model.nodes(), Vector3::Zero());
   state.tension.assign(model.segments(), 0.0);
+  state.last_tension.assign(model.segments(), 0.0);
   state.axial_multiplier.assign(model.segments(), 0.0);
   bool fits = true;
   switch (initial.type) {

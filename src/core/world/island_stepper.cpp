@@ -211,8 +211,13 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
       work.before = c.state;
       work.spans_before = memory.spans;
     }
-    const Substep substep{c.model, environment, work.boundary, memory.spans, h};
-    if (workspace_.contacts.touched(k)) {
+    Substep substep{c.model, environment, work.boundary, memory.spans, h};
+    const bool touches = workspace_.contacts.touched(k);
+    if (state_.scene->numerical_damping) {
+      substep.scheme = next_scheme(c.model, c.state.unresolved);
+      substep.treatment = touches || to - from < 1 ? Treatment::damping : Treatment::cleaning;
+    }
+    if (touches) {
       work.result = {};
       workspace_.participants.push_back({static_cast<int>(k), cable, &work.stepper, substep, &c.state, {}});
     } else {
@@ -242,9 +247,10 @@ void IslandStepper::find_contacts(Island& island, double from, double to) {
 void IslandStepper::wind_drive(int index, double from, double to, Boundary& boundary) {
   const LengthDrive& drive = *state_.cable_progress[index].drive;
   CableModel& model = state_.cables[index].model;
-  // An inextensible segment has its length at the end of the substep, an elastic one strains about that in the middle.
+  // An inextensible segment has its length at the end of the substep, an elastic one strains about that where its forces are taken.
   const bool elastic = model.material.axial_stiffness < infinity;
-  wind(drive, elastic ? 0.5 * (from + to) : to, state_.scene->time_step, model);
+  const Scheme scheme = next_scheme(model, state_.cables[index].state.unresolved);
+  wind(drive, elastic && scheme == Scheme::conserving ? 0.5 * (from + to) : to, state_.scene->time_step, model);
   boundary.growing.assign(1, {drive.segment, growth_at(drive, to)});
 }
 

@@ -119,9 +119,13 @@ auto fields(T& x, const CableModel*) {
                   x.flexible_fraction);
 }
 template <class T>
+auto fields(T& x, const UnresolvedMotion*) {
+  return std::tie(x.acceleration_changes, x.changed, x.turned, x.known, x.damped);
+}
+template <class T>
 auto fields(T& x, const CableState*) {
-  return std::tie(x.positions, x.velocities, x.accelerations, x.tension, x.axial_multiplier, x.twist, x.reference_node,
-                  x.reference_orientation);
+  return std::tie(x.positions, x.velocities, x.accelerations, x.unresolved, x.tension, x.last_tension, x.axial_multiplier,
+                  x.twist, x.reference_node, x.reference_orientation);
 }
 template <class T>
 auto fields(T& x, const SimulatedCable*) {
