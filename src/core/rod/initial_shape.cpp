@@ -135,6 +135,17 @@ bool carry_along(const CableModel& model, const std::vector<HeldNode>& held, con
   return false;
 }
 
+void carry_with_targets(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {
+  if (model.material.axial_stiffness == infinity) {
+    carry_along(model, held, gravity, state);
+    return;
+  }
+  std::vector<double> lengths(model.segments());
+  for (int i = 0; i < model.segments(); ++i) lengths[i] = (state.positions[i + 1] - state.positions[i]).norm();
+  carry_along(model, held, gravity, state);
+  if (!project_lengths(model, held, lengths, state.positions)) state.positions = hanging(model, held, gravity, false);
+}
+
 void restore_lengths(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {
   if (model.material.axial_stiffness < infinity) return;
   const int n = model.segments();

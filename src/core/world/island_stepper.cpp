@@ -114,7 +114,7 @@ void update_targets(int index, State& state, CableOutcome& outcome) {
   Boundary boundary;
   hold_at(0, 0, targets, boundary);
   if (jumps) {
-    carry_along(cable.model, boundary.nodes, gravity_near(state, index), cable.state);
+    carry_with_targets(cable.model, boundary.nodes, gravity_near(state, index), cable.state);
     note_status(Status::jumped, cable_id(index), following.jumping_node, outcome.result);
   }
   project_velocities(cable.model, boundary.nodes, cable.state.positions, cable.state.velocities);
