@@ -13,6 +13,7 @@ TEST(SceneReader, readsEveryKey) {
   const SceneDesc scene = read_scene_text(R"(
 frame_id: map
 time_step: 0.005
+numerical_damping: false
 gravity: [1, 2, 3]
 publish_rate: 25
 tf_latency: 0.1
@@ -38,6 +39,7 @@ cables:
     material: rope
     color: [0, 0.25, 0.5, 1]
     rest_curvature: [0.5, -0.25]
+    rest_twist: -0.75
     initial: {type: points, points: [[0, 0, 0], [1, 0, 0], [1, 1, 0]], velocities: [[0, 0, 1], [0, 0, 2], [0, 0, 3]]}
     attachments:
       - {name: a1, at: 0.5, frame: hand, offset: [1, 2, 3], rotation: [0.1, 0.2, 0.3], type: clamp, initial_pose: [1, 2, 3, 4, 5, 6]}
@@ -52,6 +54,7 @@ cables:
 )");
   EXPECT_EQ(scene.frame_id, "map");
   EXPECT_EQ(scene.time_step, 0.005);
+  EXPECT_FALSE(scene.numerical_damping);
   EXPECT_EQ(scene.gravity.acceleration, Vector3(1, 2, 3));
   EXPECT_EQ(scene.publish_rate, 25);
   EXPECT_EQ(scene.tf_latency, 0.1);
@@ -76,7 +79,7 @@ cables:
   EXPECT_EQ(scene.find_material("rope")->radius, 0.01);
   EXPECT_EQ(scene.find_material("rope")->drag, 0.3);
   EXPECT_EQ(scene.find_material("rope")->axial_stiffness, 1e4);
-  EXPECT_EQ(scene.find_material("rope")->bending_stiffness, 0.02);
+  EXPECT_EQ(scene.find_material("rope")->bending_stiffness, BendingStiffness(0.02));
   EXPECT_EQ(scene.find_material("rope")->torsional_stiffness, 0.015);
   EXPECT_EQ(scene.find_material("rope")->axial_damping, 3);
   EXPECT_EQ(scene.find_material("rope")->bending_damping, 0.001);
@@ -110,6 +113,8 @@ cables:
   EXPECT_EQ(a.point_masses[0].mass, 0.5);
   EXPECT_EQ(a.rest_curvature.type, RestCurvatureDesc::Type::constant);
   EXPECT_EQ(a.rest_curvature.curvature, (std::array<double, 2>{0.5, -0.25}));
+  EXPECT_EQ(a.rest_twist, -0.75);
+  EXPECT_EQ(scene.cables[1].rest_twist, 0);
   EXPECT_EQ(scene.cables[1].rest_curvature.type, RestCurvatureDesc::Type::initial);
   EXPECT_EQ(scene.cables[2].rest_curvature.type, RestCurvatureDesc::Type::straight);
   EXPECT_EQ(scene.cables[2].initial.type, InitialShapeDesc::Type::settled);
@@ -129,6 +134,12 @@ TEST(SceneReader, endsOfACableMayBeStiff) {
   EXPECT_EQ(scene.cables[0].stiff_ends, (std::array<double, 2>{0.02, 0.03}));
 }
 
+TEST(SceneReader, bendingStiffnessMayDifferAboutTwoAxes) {
+  const SceneDesc scene = read_scene_text(
+      replaced(sound_scene, "radius: 0.005", "radius: 0.005, bending_stiffness: [2e-2, 5e-5], torsional_stiffness: 7e-5"));
+  EXPECT_EQ(scene.find_material("m")->bending_stiffness, BendingStiffness(2e-2, 5e-5));
+}
+
 TEST(SceneReader, elasticModuliMeanASolidRoundSection) {
   const SceneDesc scene =
       read_scene_text(replaced(sound_scene, "{linear_density: 0.1, radius: 0.005}",
@@ -137,7 +148,7 @@ TEST(SceneReader, elasticModuliMeanASolidRoundSection) {
   // A = pi r^2, I = pi r^4 / 4, J = pi r^4 / 2, G = E / (2 (1 + nu)) = 0.4 E; 1e-12 is rounding.
   EXPECT_NEAR(material.linear_density / (1200 * M_PI * 1e-4), 1, 1e-12);
   EXPECT_NEAR(material.axial_stiffness / (1e7 * M_PI * 1e-4), 1, 1e-12);
-  EXPECT_NEAR(material.bending_stiffness / (1e7 * M_PI * 1e-8 / 4), 1, 1e-12);
+  EXPECT_NEAR(material.bending_stiffness.front() / (1e7 * M_PI * 1e-8 / 4), 1, 1e-12);
   EXPECT_NEAR(material.torsional_stiffness / (0.4e7 * M_PI * 1e-8 / 2), 1, 1e-12);
   EXPECT_EQ(material.drag, 0.3);
 }

@@ -3,24 +3,10 @@
 #include <algorithm>
 
 #include "geometry/vector_array.h"
+#include "rod/angle_energy.h"
 #include "rod/material_frames.h"
 
 namespace verlet_cable {
-
-namespace {
-
-/// (psi(b) - psi(a)) / (b - a), from the series of psi.
-double mean_slope(double a, double b) {
-  const double sum = a + b, product = a * b;
-  return 1 + sum / 6 + 2.0 / 45 * (sum * sum - product) + 1.0 / 70 * sum * (sum * sum - 2 * product);
-}
-
-/// psi(u)
-double angle_energy(double u) {
-  return u + u * u / 6 + 2.0 / 45 * u * u * u + 1.0 / 70 * u * u * u * u;
-}
-
-}  // namespace
 
 void Bending::resize(const CableModel& model) {
   segments_ = model.segments();
@@ -33,7 +19,7 @@ void Bending::resize(const CableModel& model) {
 
 void Bending::start(const CableModel& model, const VectorArray& segment, const std::vector<HeldDirection>& directions, double h,
                     double part) {
-  const double stiffness = model.material.bending_stiffness, damping = model.material.bending_damping / h;
+  const double stiffness = model.material.bending_stiffness.largest(), damping = model.material.bending_damping / h;
   active_ = stiffness > 0 || model.material.bending_damping > 0;
   if (!active_) return;
   part_ = part;
@@ -186,7 +172,7 @@ double bending_energy(const CableModel& model, const CableState& state, const st
                       side * natural(clamp.node, length, i, i));
     }
   }
-  return model.material.bending_stiffness * energy;
+  return model.material.bending_stiffness.largest() * energy;
 }
 
 }  // namespace verlet_cable
