@@ -20,7 +20,7 @@ void Bending::resize(const CableModel& model) {
 void Bending::start(const CableModel& model, const VectorArray& segment, const std::vector<HeldDirection>& directions, double h,
                     double part) {
   const double stiffness = model.material.bending_stiffness.largest(), damping = model.material.bending_damping / h;
-  active_ = stiffness > 0 || model.material.bending_damping > 0;
+  active_ = !model.is_whole_rod() && (stiffness > 0 || model.material.bending_damping > 0);
   if (!active_) return;
   part_ = part;
   is_elastic_ = model.material.axial_stiffness < infinity;

@@ -5,6 +5,7 @@
 
 #include "rod/catenary.h"
 #include "rod/length_projection.h"
+#include "rod/rod_frames.h"
 
 namespace verlet_cable {
 
@@ -110,7 +111,9 @@ bool settles_at_start(const CableDesc& desc, const MaterialDesc& material) {
                      [](const AttachmentDesc& a) { return a.type == AttachmentType::clamp; });
 }
 
-bool carry_along(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {
+namespace {
+
+bool carry_nodes_along(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {
   if (!held.empty()) {
     const std::vector<double> arc_length = model.arc_length();
     std::vector<Vector3> jumps;
@@ -135,15 +138,24 @@ bool carry_along(const CableModel& model, const std::vector<HeldNode>& held, con
   return false;
 }
 
+}  // namespace
+
+bool carry_along(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {
+  const std::vector<Vector3> before = state.positions;
+  const bool fits = carry_nodes_along(model, held, gravity, state);
+  carry_frames(before, state);
+  return fits;
+}
+
 void carry_with_targets(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {
-  if (model.material.axial_stiffness == infinity) {
-    carry_along(model, held, gravity, state);
-    return;
-  }
+  const std::vector<Vector3> before = state.positions;
   std::vector<double> lengths(model.segments());
-  for (int i = 0; i < model.segments(); ++i) lengths[i] = (state.positions[i + 1] - state.positions[i]).norm();
-  carry_along(model, held, gravity, state);
-  if (!project_lengths(model, held, lengths, state.positions)) state.positions = hanging(model, held, gravity, false);
+  for (int i = 0; i < model.segments(); ++i) lengths[i] = (before[i + 1] - before[i]).norm();
+  carry_nodes_along(model, held, gravity, state);
+  const bool elastic = model.material.axial_stiffness < infinity;
+  if (elastic && !project_lengths(model, held, lengths, state.positions))
+    state.positions = hanging(model, held, gravity, false);
+  carry_frames(before, state);
 }
 
 void restore_lengths(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {
@@ -165,7 +177,8 @@ void restore_lengths(const CableModel& model, const std::vector<HeldNode>& held,
   const int anchor = held.empty() ? n / 2 : held.front().node;
   for (int i = anchor; i < n; ++i) state.positions[i + 1] = state.positions[i] + lengths[i] * direction(i);
   for (int i = anchor; i-- > 0;) state.positions[i] = state.positions[i + 1] - lengths[i] * direction(i);
-  carry_along(model, held, gravity, state);
+  carry_nodes_along(model, held, gravity, state);
+  carry_frames(before, state);
   project_velocities(model, held, state.positions, state.velocities);
   std::fill(state.accelerations.begin(), state.accelerations.end(), Vector3::Zero());
 }

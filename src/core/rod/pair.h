@@ -122,6 +122,31 @@ inline PairSymmetric pair(const SymmetricArray& m, int i, int j) {
           Pair{m.yy[i], m.yy[j]}, Pair{m.yz[i], m.yz[j]}, Pair{m.zz[i], m.zz[j]}};
 }
 
+/// The elements of an index and the next.
+inline Pair neighbours(const std::vector<double>& a, int i) {
+  return Pair{a[i], a[i + 1]};
+}
+inline PairVector neighbours(const VectorArray& v, int i) {
+  return pair(v, i, i + 1);
+}
+inline void put(Pair value, std::vector<double>& a, int i) {
+  a[i] = value[0];
+  a[i + 1] = value[1];
+}
+inline void put(const PairVector& v, VectorArray& array, int i) {
+  put(v.x, array.x, i);
+  put(v.y, array.y, i);
+  put(v.z, array.z, i);
+}
+inline void put(const PairSymmetric& m, SymmetricArray& array, int i) {
+  put(m.xx, array.xx, i);
+  put(m.xy, array.xy, i);
+  put(m.xz, array.xz, i);
+  put(m.yy, array.yy, i);
+  put(m.yz, array.yz, i);
+  put(m.zz, array.zz, i);
+}
+
 inline Eigen::Vector3d lane(const PairVector& v, int i) {
   return {v.x[i], v.y[i], v.z[i]};
 }

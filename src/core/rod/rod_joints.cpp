@@ -15,35 +15,10 @@ constexpr double smallest_turn = 1e-6;
 constexpr double small_turn = 0.05;
 constexpr double small_half_twist = 0.25;
 
-/// One frame a lane.
-struct PairFrame {
-  PairVector x, y, z;
-};
-
 /// Products of the axes of neighbouring frames.
 struct Products {
   Pair u, y, z, sine, cosine;
 };
-
-PairVector neighbours(const VectorArray& v, int i) {
-  return pair(v, i, i + 1);
-}
-Pair neighbours(const std::vector<double>& a, int i) {
-  return pair(a, i, i + 1);
-}
-PairFrame neighbours(const FrameArrays& frames, int i) {
-  return {neighbours(frames.x, i), neighbours(frames.y, i), neighbours(frames.z, i)};
-}
-
-void put(Pair value, std::vector<double>& a, int i) {
-  a[i] = value[0];
-  a[i + 1] = value[1];
-}
-void put(const PairVector& value, VectorArray& a, int i) {
-  put(value.x, a.x, i);
-  put(value.y, a.y, i);
-  put(value.z, a.z, i);
-}
 
 Products products(const PairFrame& a, const PairFrame& b) {
   return {1.0 - dot(a.x, b.x), -dot(a.z, b.x), dot(a.y, b.x), dot(a.z, b.y) - dot(a.y, b.z), dot(a.y, b.y) + dot(a.z, b.z)};
@@ -184,6 +159,16 @@ void RodJoints::start(const FrameArrays& frames_before, int before, const FrameA
   }
 }
 
+void RodJoints::follow(const FrameArrays& frames_before, int before, const FrameArrays& frames_after, int after, int first,
+                       int last) {
+  for (int i = first, k = 0; i < last; i += 2, k += 2) {
+    const Products end = products(neighbours(frames_before, before + k), neighbours(frames_after, after + k));
+    const Pair sine = neighbours(sine_, i), cosine = neighbours(cosine_, i);
+    const Turn change = turn(end.sine * cosine - sine * end.cosine, end.cosine * cosine + end.sine * sine);
+    put(neighbours(twist_, i) + change.angle, end_twist_, i);
+  }
+}
+
 void RodJoints::evaluate(double part, const FrameMotion& frames_before, int before, const FrameMotion& frames_after, int after,
                          int first, int last) {
   for (int i = first, k = 0; i < last; i += 2, k += 2) {
@@ -259,12 +244,7 @@ void RodJoints::evaluate(double part, const FrameMotion& frames_before, int befo
     stiff = plus_outer(stiff, part * twist_stiffness + twist_damping, twist_gradient);
     stiff = plus_outer(stiff, part * y_stiffness + bend_damping, y_gradient);
     stiff = plus_outer(stiff, part * z_stiffness + bend_damping, z_gradient);
-    put(stiff.xx, stiffness.xx, i);
-    put(stiff.xy, stiffness.xy, i);
-    put(stiff.xz, stiffness.xz, i);
-    put(stiff.yy, stiffness.yy, i);
-    put(stiff.yz, stiffness.yz, i);
-    put(stiff.zz, stiffness.zz, i);
+    put(stiff, stiffness, i);
   }
 }
 

@@ -15,6 +15,29 @@ struct FrameArrays {
   void resize(std::size_t count);
 };
 
+/// One frame a lane.
+struct PairFrame {
+  PairVector x, y, z;
+};
+inline PairFrame neighbours(const FrameArrays& frames, int i) {
+  return {neighbours(frames.x, i), neighbours(frames.y, i), neighbours(frames.z, i)};
+}
+inline void put(const PairFrame& frame, FrameArrays& frames, int i) {
+  put(frame.x, frames.x, i);
+  put(frame.y, frames.y, i);
+  put(frame.z, frames.z, i);
+}
+inline Eigen::Matrix3d get(const FrameArrays& frames, int i) {
+  Eigen::Matrix3d axes;
+  axes << get(frames.x, i), get(frames.y, i), get(frames.z, i);
+  return axes;
+}
+inline void set(FrameArrays& frames, int i, const Eigen::Matrix3d& axes) {
+  set(frames.x, i, axes.col(0));
+  set(frames.y, i, axes.col(1));
+  set(frames.z, i, axes.col(2));
+}
+
 /// The frames over a substep.
 struct FrameMotion {
   FrameArrays start, end;
@@ -65,14 +88,14 @@ class RodJoints {
   /// Finds moments and stiffnesses. `part`: where in the substep forces are taken.
   void evaluate(double part, const FrameMotion& frames_before, int before, const FrameMotion& frames_after, int after, int first,
                 int last);
+  /// Finds the twist at the end alone.
+  void follow(const FrameArrays& frames_before, int before, const FrameArrays& frames_after, int after, int first, int last);
   double end_twist(int joint) const { return end_twist_[joint]; }  ///< [rad]
 
   VectorArray moment;        ///< [N m] on the frame before
   SymmetricArray stiffness;  ///< [N m] of the moment against rotations, without what turns with the frames
 
  private:
-  struct Angles;
-
   // Over the substep; [N m]
   std::vector<double> twist_stiffness_, y_stiffness_, z_stiffness_, twist_damping_, bend_damping_;
   std::vector<double> rest_twist_, rest_y_, rest_z_;  // [rad]

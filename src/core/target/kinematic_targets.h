@@ -43,6 +43,8 @@ struct DirectionTarget {
   Quaternion gap = Quaternion::Identity();               ///< from its place to where it was when it was caught; closed smoothly
   double caught = -infinity;                             ///< [s] when that was
   Quaternion next_orientation = Quaternion::Identity();  ///< at the end of the step
+  /// [rad] of a whole rod, about the clamp's direction: how the material is turned against the attachment
+  double roll = 0;
   /// [rad] of a whole rod that is clamped inside, any number of turns: between the segment before and the clamp, and between the
   /// clamp and the segment after it
   double twist_before = 0, twist_after = 0;
@@ -105,6 +107,9 @@ Following follow_aims(const std::vector<Attachment>& attachments, double time, d
 
 /// What is held at the end of a substep that goes from one part of the step to another, 0 to 1.
 void hold_at(double from, double to, const KinematicTargets& targets, Boundary& boundary);
+
+/// Takes over how whole rods are twisted at their clamps after a substep.
+void keep_twist(const Boundary& boundary, KinematicTargets& targets);
 
 /// What is held at the world's time.
 Boundary boundary_now(const KinematicTargets& targets);

@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <cmath>
 
+#include "rod/bending.h"
+#include "rod/kirchhoff_rod.h"
 #include "verlet_cable/core/world.h"
 #include "world/implementation.h"
 #include "world/state_fields.h"
@@ -72,8 +75,15 @@ Energy World::energy() const {
   const GravityDesc& gravity = implementation_->state.scene->gravity;
   for (std::size_t k = 0; k < cables().size(); ++k) {
     const SimulatedCable& cable = cables()[k];
-    energy.bend +=
-        bending_energy(cable.model, cable.state, boundary_now(implementation_->state.cable_progress[k].targets).directions);
+    const std::vector<HeldDirection> directions = boundary_now(implementation_->state.cable_progress[k].targets).directions;
+    if (cable.model.is_whole_rod()) {
+      const RodEnergy rod = rod_energy(cable.model, cable.state, directions);
+      energy.bend += rod.bend;
+      energy.twist += rod.twist;
+      energy.kinetic += rod.spin;
+    } else {
+      energy.bend += bending_energy(cable.model, cable.state, directions);
+    }
     for (int i = 0; i < cable.model.nodes(); ++i) {
       energy.kinetic += 0.5 * cable.model.masses[i] * cable.state.velocities[i].squaredNorm();
       energy.gravity += cable.model.masses[i] * gravity.potential_at(cable.state.positions[i]);
@@ -89,6 +99,42 @@ Energy World::energy() const {
   }
   implementation_->add_net_energy(energy);
   return energy;
+}
+
+void World::view_joints(int index, std::vector<JointView>& joints) const {
+  const CableModel& model = cables()[index].model;
+  const CableState& state = cables()[index].state;
+  const std::vector<DirectionTarget>& clamps = implementation_->state.cable_progress[index].targets.directions;
+  const int n = model.segments();
+  joints.clear();
+  const auto direction = [&](int i) -> Vector3 { return state.positions[i + 1] - state.positions[i]; };
+  const auto add = [&](double place, double length, const Vector3& before, const Vector3& after, double twist) {
+    joints.push_back({place, std::atan2(before.cross(after).norm(), before.dot(after)) / length, twist});
+  };
+  auto clamp = clamps.begin();
+  double place = 0;
+  for (int i = 0; i <= n; ++i) {
+    const double before = i > 0 ? 0.5 * model.rest_lengths[i - 1] : 0, after = i < n ? 0.5 * model.rest_lengths[i] : 0;
+    place += before;
+    const bool whole = !state.directors.empty(), inside = i > 0 && i < n;
+    if (clamp != clamps.end() && clamp->node == i) {
+      const Vector3 held = clamp->orientation * Vector3::UnitX();
+      if (i > 0) {
+        const double twist = inside ? clamp->twist_before : whole ? state.joint_twist[i] : 0;
+        add(place, before, direction(i - 1), held, whole ? twist / before : state.twist[i - 1]);
+      }
+      if (i < n) {
+        const double twist = inside ? clamp->twist_after : whole ? state.joint_twist[i] : 0;
+        add(place, after, held, direction(i), whole ? twist / after : state.twist[i]);
+      }
+      ++clamp;
+    } else if (inside) {
+      const double length = before + after;
+      add(place, length, direction(i - 1), direction(i),
+          whole ? state.joint_twist[i] / length : 0.5 * (state.twist[i - 1] + state.twist[i]));
+    }
+    place += after;
+  }
 }
 
 std::uint64_t World::hash() const {

@@ -9,6 +9,7 @@
 #include "rod/initial_shape.h"
 #include "rod/length_projection.h"
 #include "rod/rest_curvature.h"
+#include "rod/rod_frames.h"
 #include "rod/stiff_ends.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/rotation.h"
@@ -218,7 +219,10 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   memory.spans = find_spans(cable.model, cable.state, boundary.directions);
   follow_material(boundary.directions, memory.spans, cable);
   set_stiff_ends(desc.stiff_ends, cable.model);
-  set_rest_curvature(desc.rest_curvature, memory.targets.directions, cable);
+  set_rest_shape(desc, cable.model);
+  start_frames(cable, memory.targets.directions);
+  if (desc.rest_curvature.type == RestCurvatureDesc::Type::initial && !cable.model.rest_curvature.empty())
+    take_rest_curvature(memory.targets.directions, cable);
   const bool held = !memory.targets.nodes.empty();
   state.cables.push_back(std::move(cable));
   state.cable_progress.push_back(std::move(memory));
@@ -236,6 +240,7 @@ void World::Implementation::find_targets_of(int index) {
   const Boundary boundary = boundary_now(memory.targets);
   restore_lengths(cable.model, boundary.nodes, gravity_near(state, index), cable.state);
   memory.spans = find_spans(cable.model, cable.state, boundary.directions);
+  measure_joint_twists(cable, memory.targets.directions);
 }
 
 }  // namespace verlet_cable
