@@ -136,12 +136,13 @@ void Bending::bend_elastic_clamp(const Vector3& change, ClampJoint& clamp) const
   const auto at_part = [this](double from, double to) { return from + part_ * (to - from); };
   const double stretch = at_part(start.norm(), end.norm());
   const double along = at_part(start.dot(clamp.start_axis), end.dot(clamp.end_axis));
-  clamp.slope =
+  const double slope =
       clamp.stiffness * mean_slope(0.5 * clamp.start_square, 0.5 * (end - end.norm() * clamp.end_axis).squaredNorm());
+  clamp.slope = slope * (2 - along / stretch);
   const Vector3 bending = change - stretch * axis_change;
   const Vector3 damping = clamp.damping * (bending - axis * (axis.dot(bending) / axis.squaredNorm()));
-  clamp.moment = clamp.slope * ((2 - along / stretch) * direction - stretch * axis) + damping - clamp.stiffness * clamp.natural;
-  clamp.torque = axis.cross(clamp.slope * stretch * direction + damping - clamp.stiffness * clamp.natural);
+  clamp.moment = clamp.slope * direction - slope * stretch * axis + damping - clamp.stiffness * clamp.natural;
+  clamp.torque = axis.cross(slope * stretch * direction + damping - clamp.stiffness * clamp.natural);
 }
 
 void Bending::add_stiffness(KktSystem& system) const {

@@ -172,7 +172,7 @@ void CableStepper::set_growth(const Substep& s) {
 void CableStepper::start_bending(const Substep& s) {
   const int i = std::clamp(winch_node_ - 1, 0, segments_ - 1);
   const Vector3 segment = get(segment_, i);
-  const double part = s.model.material.axial_stiffness < infinity ? s.part() : 1;
+  const double part = s.model.material.axial_stiffness < infinity && s.scheme == Scheme::conserving ? 0.5 : 1;
   if (winch_node_ >= 0) set(segment_, i, segment + part * rest_growth_[i] * segment.normalized());
   bending_.start(s.model, segment_, s.boundary.directions, s.damping_time(), s.part());
   set(segment_, i, segment);
@@ -548,6 +548,7 @@ double CableStepper::store(const Substep& s, CableState& state) const {
     if (s.scheme == Scheme::damped)
       state.accelerations[i] = (get(displacement_, i) * inverse_h - get(velocity_, i)) * inverse_h + 0.5 * get(acceleration_, i);
   }
+  const double part = s.scheme == Scheme::conserving ? 0.5 : 1;
   const bool alternates = s.treatment != Treatment::none && state.unresolved.known > 0;
   const bool elastic = s.model.material.axial_stiffness < infinity;
   double longest = 1, shortest = 1;  // squares, relative
@@ -556,7 +557,7 @@ double CableStepper::store(const Substep& s, CableState& state) const {
     const double relative = square / (s.model.rest_lengths[i] * s.model.rest_lengths[i]);
     longest = std::max(longest, relative);
     shortest = std::min(shortest, relative);
-    const double length = elastic ? length_[i] + s.part() * (std::sqrt(square) - length_[i]) : target_length_[i];
+    const double length = elastic ? length_[i] + part * (std::sqrt(square) - length_[i]) : target_length_[i];
     state.axial_multiplier[i] = tension_density_[i] * length;
     const double tension = bending_.active() || rod_.active() ? state.axial_multiplier[i] + force_along(i) : state.axial_multiplier[i];
     state.tension[i] = alternates ? 0.5 * (state.last_tension[i] + tension) : tension;
