@@ -158,7 +158,9 @@ TEST(ClosedForms, GentleSwingKeepsEnergyAndLength) {
 class Whip : public testing::TestWithParam<int> {};
 
 TEST_P(Whip, StaysFiniteAndKeepsEnergyAndLength) {
-  Simulation run(scenes::released(GetParam(), M_PI / 2));
+  SceneDesc scene = scenes::released(GetParam(), M_PI / 2);
+  scene.numerical_damping = false;  // what cracks is not resolved
+  Simulation run(scene);
   const double energy0 = run.world.energy().total();
   double energy_error = 0, strain = 0;
   while (run.world.time() < 3) {

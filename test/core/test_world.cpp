@@ -212,6 +212,7 @@ TEST(World, ManyCablesAndEverySmallSizeRun) {
 
 TEST(World, LargeStepsAreSplit) {
   SceneDesc scene = scenes::released(100, M_PI / 2);
+  scene.numerical_damping = false;  // what cracks is not resolved
   scene.time_step = 0.1;
   World world(scene, initial_frames(scene));
   const double energy = world.energy().total();

@@ -19,6 +19,15 @@ struct CableModel {
   double segment_length = 0;  ///< [m] of the scene's segments: winches pay out and take in such
 };
 
+/// Signs of motion that substeps do not resolve: it turns round from each to the next.
+struct UnresolvedMotion {
+  std::vector<Vector3> acceleration_changes;  ///< [m/s^2] a node, n + 1, from the substep before the last to the last
+  double changed = 0;  ///< [N^2/kg] sum over nodes and recent substeps: mass times the square of the change
+  double turned = 0;   ///< [N^2/kg] likewise, mass times the change times the one before
+  int known = 0;       ///< substeps since the motion began anew, up to 2: then changes are known
+  int damped = 0;      ///< substeps that are still to damp
+};
+
 /// What a step changes. Written by World only. A cable of n segments has n + 1 nodes; segment i joins nodes i and i + 1. Winches
 /// that run change n, too.
 struct CableState {
@@ -34,7 +43,10 @@ struct CableState {
   std::vector<Vector3> velocities;  ///< [m/s] a node, n + 1, at the time of the positions
   /// [m/s^2] a node, n + 1, mean over the last substep: where the next one's solution starts
   std::vector<Vector3> accelerations;
-  std::vector<double> tension;  ///< [N] a segment, n, > 0 is tension; mean over the last substep
+  UnresolvedMotion unresolved;
+  /// [N] a segment, n, > 0 is tension; mean over the last two substeps, or over the last one without numerical damping
+  std::vector<double> tension;
+  std::vector<double> last_tension;  ///< [N] a segment, n; mean over the last substep
   /// [N] a segment, n: the tension without the part that bending and twist have in it; where the next substep's solution starts
   std::vector<double> axial_multiplier;
   std::vector<double> twist;  ///< [rad/m] a segment, n; of a whole rod 0
@@ -44,7 +56,7 @@ struct CableState {
   /// [rad] a node, n + 1, any number of turns: between the segments before and after it; at a clamped end between clamp and
   /// segment; 0 at other ends, and at clamps inside, whose targets have it
   std::vector<double> joint_twist;
-  int reference_node = 0;     ///< where the material's orientation is known: the first clamp's node
+  int reference_node = 0;  ///< where the material's orientation is known: the first clamp's node
   Quaternion reference_orientation = Quaternion::Identity();  ///< there: x along the cable, roll of the material
 
   int segments() const { return static_cast<int>(rest_lengths.size()); }
@@ -63,8 +75,8 @@ struct SimulatedCable {
   CableState state;
 };
 
-/// Whether bending and twist depend on each other through the material's axes: such a cable has a frame a segment, in `directors`,
-/// `spin` and `joint_twist` of its state. One that is straight at rest and alike about y and z does without.
+/// Whether bending and twist depend on each other through the material's axes: such a cable has a frame a segment, in
+/// `directors`, `spin` and `joint_twist` of its state. One that is straight at rest and alike about y and z does without.
 bool is_whole_rod(const CableModel& model, const CableState& state);
 
 /// Shapes derived from positions, for display and messages. n segments.

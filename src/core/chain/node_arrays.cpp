@@ -56,9 +56,11 @@ void append(const CableState& tail, CableState& cable) {
   extend(tail.positions, cable.positions);
   extend(tail.velocities, cable.velocities);
   extend(tail.accelerations, cable.accelerations);
+  extend(tail.unresolved.acceleration_changes, cable.unresolved.acceleration_changes);
   visit_segment_arrays(cable, [](auto& array) { array.push_back(zero_like(array.back())); });
   extend(tail.rest_lengths, cable.rest_lengths);
   extend(tail.tension, cable.tension);
+  extend(tail.last_tension, cable.last_tension);
   extend(tail.axial_multiplier, cable.axial_multiplier);
   extend(tail.twist, cable.twist);
   extend(tail.spin, cable.spin);

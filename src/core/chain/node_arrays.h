@@ -12,6 +12,7 @@ void visit_node_arrays(CableState& cable, const Visitor& visitor) {
   visitor(cable.positions);
   visitor(cable.velocities);
   visitor(cable.accelerations);
+  visitor(cable.unresolved.acceleration_changes);
   visitor(cable.masses);
   if (!cable.rest_curvature.empty()) visitor(cable.rest_curvature);
   if (!cable.rest_twist.empty()) visitor(cable.rest_twist);
@@ -22,6 +23,7 @@ template <class Visitor>
 void visit_segment_arrays(CableState& cable, const Visitor& visitor) {
   visitor(cable.rest_lengths);
   visitor(cable.tension);
+  visitor(cable.last_tension);
   visitor(cable.axial_multiplier);
   visitor(cable.twist);
   if (!cable.spin.empty()) visitor(cable.spin);

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "rod/length_projection.h"
+#include "rod/unresolved_motion.h"
 #include "verlet_cable/core/number_text.h"
 #include "world/implementation.h"
 
@@ -199,6 +200,7 @@ void World::Implementation::renumber(int index, int first, int shift) {
 }
 
 void World::Implementation::after_remeshing(int index) {
+  begin_anew(state.cables[index].state.unresolved);
   find_targets_of(index);
   forget_contacts(index);
 }

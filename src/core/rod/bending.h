@@ -17,7 +17,7 @@ namespace verlet_cable {
 ///   EI / l psi(u),   psi = angle² / 2 = u + u² / 6 + 2 u³ / 45 + u⁴ / 70 + ...
 /// To first order in u it is quadratic (Bergou et al., A Quadratic Bending Model for Inextensible Surfaces, 2006); the higher
 /// ones make the moment proportional to the angle. At a clamp the frame's axis stands for one of the two directions, half a
-/// segment away.
+/// segment away; it is as long as the segment is stretched, so that a clamp does not resist stretch.
 class Bending {
  public:
   void resize(int segments);
@@ -45,12 +45,17 @@ class Bending {
     double start_square = 0;
     Vector3 natural = Vector3::Zero();
     Vector3 moment = Vector3::Zero();  ///< force times length, on the side's direction
+    Vector3 torque = Vector3::Zero();  ///< on the axis [N m]
+    // Of elastic cables: d / l and the unit axis
+    Vector3 start_direction = Vector3::Zero(), start_axis = Vector3::Zero(), end_axis = Vector3::Zero();
     double slope = 0;
   };
 
   void bend_clamps(const VectorArray& displacement);
+  void bend_elastic_clamp(const Vector3& change, ClampJoint& clamp) const;
 
   bool active_ = false;
+  bool is_elastic_ = false;
   bool is_curved_ = false;  ///< `natural_` is set
   int segments_ = 0;
   double part_ = 0.5;

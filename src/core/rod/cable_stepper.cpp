@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "rod/material_frames.h"
+#include "rod/rigid_motion.h"
 #include "rod/tridiagonal.h"
 
 namespace verlet_cable {
@@ -37,6 +38,7 @@ constexpr double noticed_jerk = 1e-9;
 void bring_to_rest(CableState& state) {
   std::fill(state.velocities.begin(), state.velocities.end(), Vector3::Zero());
   std::fill(state.accelerations.begin(), state.accelerations.end(), Vector3::Zero());
+  begin_anew(state.unresolved);
   std::fill(state.spin.begin(), state.spin.end(), 0.0);
 }
 
@@ -48,13 +50,14 @@ void CableStepper::resize(int segments) {
                          &end_velocity_, &base_load_, &director_})
     a->assign(nodes, 0.0);
   for (std::vector<double>* a : {&length_, &rest_growth_, &target_length_, &inverse_mass_, &tension_density_, &inertia_,
-                                 &end_square_, &pivot_, &off_, &impulse_})
+                                 &end_square_, &start_density_, &pivot_, &off_, &impulse_, &growth_})
     a->assign(nodes, 0.0);
   both_held_.reserve(nodes);
   bending_.resize(segments);
   twist_.resize(segments);
   rod_.resize(segments);
   fluid_.resize(segments + 1);
+  cleaner_.resize(segments + 1);
   system_.resize(segments_);
   solver_.resize(segments_);
 }
@@ -89,10 +92,13 @@ void CableStepper::finish(const Substep& s, bool struck, CableState& state, Subs
     for (int i = 0; i <= segments_; ++i) result.displacement = std::max(result.displacement, get(displacement_, i).norm());
   react(s, state.masses);
   move(s);
-  if (!s.statics && (struck || !s.boundary.growing.empty() || holders_accelerate(s.h, s.boundary.nodes)))
+  const bool damped = !s.statics && s.scheme != Scheme::conserving;
+  if (damped && s.boundary.nodes.empty()) restore_momenta(s, state.masses);
+  if (!s.statics && (struck || damped || !s.boundary.growing.empty() || holders_accelerate(s.h, s.boundary.nodes)))
     project(s, state.masses);
   result.max_strain = store(s, state);
   if (rod_.active()) rod_.store(s.boundary, state);
+  if (s.treatment != Treatment::none) quieten(s, state);
   if (twist_.active()) twist_.follow(s.boundary.directions, state.positions, s.spans);
 }
 
@@ -108,7 +114,7 @@ void CableStepper::load(const Substep& s, const CableState& state) {
     const Vector3 d = state.positions[i + 1] - state.positions[i];
     set(segment_, i, d);
     length_[i] = elastic ? d.norm() : state.rest_lengths[i];
-    tension_density_[i] = state.axial_multiplier[i] / length_[i];
+    tension_density_[i] = start_density_[i] = state.axial_multiplier[i] / length_[i];
   }
 }
 
@@ -125,7 +131,7 @@ void CableStepper::set_loads(const Substep& s, const CableState& state) {
   const Vector3 wind = s.model.material.drag * s.environment.fluid.velocity;
   const double drag = s.model.material.drag / s.damping_time();
   for (int i = 0; i <= segments_; ++i) {
-    const double mass = state.masses[i], inertia = 2 * mass / s.h;
+    const double mass = state.masses[i], inertia = s.inertia() * mass / s.h;
     const double length = 0.5 * ((i > 0 ? state.rest_lengths[i - 1] : 0) + (i < segments_ ? state.rest_lengths[i] : 0));
     inertia_[i] = inertia / s.h + drag * length;
     // In the middle of the substep, where the other forces are; velocities are zero in statics.
@@ -166,7 +172,7 @@ void CableStepper::set_growth(const Substep& s) {
 void CableStepper::start_bending(const Substep& s, const CableState& state) {
   const int i = std::clamp(winch_node_ - 1, 0, segments_ - 1);
   const Vector3 segment = get(segment_, i);
-  const double part = s.model.material.axial_stiffness < infinity ? 0.5 : 1;
+  const double part = s.model.material.axial_stiffness < infinity && s.scheme == Scheme::conserving ? 0.5 : 1;
   if (winch_node_ >= 0) set(segment_, i, segment + part * rest_growth_[i] * segment.normalized());
   bending_.start(s.model, state, segment_, s.boundary.directions, s.damping_time(), s.part());
   set(segment_, i, segment);
@@ -291,21 +297,26 @@ void CableStepper::evaluate_elastic_lengths(const Substep& sub, const std::vecto
 }
 
 void CableStepper::assemble(double part) {
+  assemble_segments(part, tension_density_, middle_);
+  if (bending_.active()) bending_.add_stiffness(system_);
+  if (rod_.active()) rod_.assemble(middle_, tension_density_);
+  if (fluid_.active()) fluid_.add_stiffness(system_.diagonal);
+}
+
+/// Inertia, and tension in segments of these directions [m].
+void CableStepper::assemble_segments(double part, const std::vector<double>& density, const VectorArray& direction) {
   system_.clear_stiffness();
   std::copy_n(inertia_.begin(), segments_ + 1, system_.diagonal.begin());
   for (int i = 0; i < segments_; ++i) {
     // A rod's tension resists the rotation of its segments.
-    const double stiffness = rod_.active() ? 0 : part * tension_density_[i];
+    const double stiffness = rod_.active() ? 0 : part * density[i];
     system_.diagonal[i] += stiffness;
     system_.diagonal[i + 1] += stiffness;
     system_.first[i] = -stiffness;
-    system_.direction.x[i] = middle_.x[i];
-    system_.direction.y[i] = middle_.y[i];
-    system_.direction.z[i] = middle_.z[i];
+    system_.direction.x[i] = direction.x[i];
+    system_.direction.y[i] = direction.y[i];
+    system_.direction.z[i] = direction.z[i];
   }
-  if (bending_.active()) bending_.add_stiffness(system_);
-  if (rod_.active()) rod_.assemble(middle_, tension_density_);
-  if (fluid_.active()) fluid_.add_stiffness(system_.diagonal);
 }
 
 void CableStepper::factor() {
@@ -364,11 +375,21 @@ void CableStepper::take_back(double part) {
 }
 
 void CableStepper::move(const Substep& s) {
-  const double rate = s.statics ? 0 : 2 / s.h;
+  const VelocityWeights weights = velocity_weights(s.scheme);
+  const double rate = s.statics ? 0 : weights.displacement / s.h;
+  if (s.scheme == Scheme::conserving) {
+    for (int i = 0; i <= segments_; ++i) {
+      end_velocity_.x[i] = rate * displacement_.x[i] - velocity_.x[i];
+      end_velocity_.y[i] = rate * displacement_.y[i] - velocity_.y[i];
+      end_velocity_.z[i] = rate * displacement_.z[i] - velocity_.z[i];
+    }
+  } else {
+    for (int i = 0; i <= segments_; ++i)
+      set(end_velocity_, i,
+          rate * get(displacement_, i) + weights.velocity * get(velocity_, i) +
+              weights.acceleration * s.h * get(acceleration_, i));
+  }
   for (int i = 0; i <= segments_; ++i) {
-    end_velocity_.x[i] = rate * displacement_.x[i] - velocity_.x[i];
-    end_velocity_.y[i] = rate * displacement_.y[i] - velocity_.y[i];
-    end_velocity_.z[i] = rate * displacement_.z[i] - velocity_.z[i];
     position_.x[i] += displacement_.x[i];
     position_.y[i] += displacement_.y[i];
     position_.z[i] += displacement_.z[i];
@@ -433,6 +454,48 @@ void CableStepper::project(const Substep& s, const std::vector<double>& masses) 
   }
 }
 
+/// Substeps that damp keep momenta to second order. Those of a free cable are kept exactly: what is missing is given back as a
+/// rigid body's motion.
+void CableStepper::restore_momenta(const Substep& s, const std::vector<double>& masses) {
+  const Vector3 center = center_of_mass(masses, position_), way = center_of_mass(masses, displacement_);
+  Vector3 momentum = Vector3::Zero(), angular_momentum = Vector3::Zero();
+  for (int i = 0; i <= segments_; ++i) {
+    const Vector3 u = get(displacement_, i), v = get(velocity_, i), end = get(end_velocity_, i);
+    const Vector3 arm = get(position_, i) - center, start_arm = arm - (u - way);
+    const Vector3 gain = s.inertia() * (u / s.h - v);  // what the forces have done
+    momentum += masses[i] * (v + gain - end);
+    angular_momentum += masses[i] * (start_arm.cross(v) + arm.cross(gain - end));
+  }
+  const RigidMotion missing = rigid_motion(masses, position_, momentum, angular_momentum);
+  for (int i = 0; i <= segments_; ++i) set(end_velocity_, i, get(end_velocity_, i) + missing.at(get(position_, i)));
+}
+
+/// Finds motion that the substep has not resolved: it is taken out of the velocities, or the next substeps damp it.
+void CableStepper::quieten(const Substep& s, CableState& state) {
+  if (!cleaner_.finds_unresolved(s.h, system_.movable, acceleration_, state)) return;
+  if (s.treatment == Treatment::damping || s.scheme != Scheme::conserving) {
+    state.unresolved.damped = s.scheme == Scheme::conserving ? damped_substeps : damped_substeps - 1;
+    return;
+  }
+  assemble_for_velocities();
+  factor();
+  std::fill(growth_.begin(), growth_.end(), 0.0);
+  for (const GrowingSegment& growing : s.boundary.growing)
+    growth_[growing.segment] = target_length_[growing.segment] * growing.growth;
+  cleaner_.load(s.model, state, inertia_, segment_, end_velocity_, growth_, system_);
+  for (const int i : both_held_) system_.gap[i] = 0;
+  solver_.solve(system_);
+  cleaner_.take_out(s.h, s.boundary.nodes, solver_.displacement(), position_, state);
+}
+
+/// The matrix at the end of the substep, of motion about it: without contacts and fluid, tension being the mean of two substeps,
+/// as it alternates, too, and compression no stiffness.
+void CableStepper::assemble_for_velocities() {
+  for (int i = 0; i < segments_; ++i) start_density_[i] = std::max(0.0, 0.5 * (start_density_[i] + tension_density_[i]));
+  assemble_segments(0.5, start_density_, segment_);
+  if (bending_.active()) bending_.add_stiffness(system_);
+}
+
 /// What the held nodes' equations of motion lack is what their holders supply.
 void CableStepper::react(const Substep& s, const std::vector<double>& masses) {
   for (HeldDirection& target : s.boundary.directions) target.torque.setZero();
@@ -441,7 +504,7 @@ void CableStepper::react(const Substep& s, const std::vector<double>& masses) {
   for (HeldNode& target : s.boundary.nodes) {
     const int i = target.node;
     const double mass = masses[i];
-    target.force = corrected_load(i) + 2 * mass / s.h * (get(displacement_, i) / s.h - get(velocity_, i));
+    target.force = corrected_load(i) + s.inertia() * mass / s.h * (get(displacement_, i) / s.h - get(velocity_, i));
     if (!s.statics) target.force -= mass * (target.velocity - get(velocity_, i)) / s.h;
   }
   if (bending_.active()) bending_.react(displacement_, s.boundary.directions);
@@ -483,7 +546,11 @@ double CableStepper::store(const Substep& s, CableState& state) const {
     state.positions[i] = get(position_, i);
     state.velocities[i] = get(end_velocity_, i);
     state.accelerations[i] = (state.velocities[i] - get(velocity_, i)) * inverse_h;
+    if (s.scheme == Scheme::damped)
+      state.accelerations[i] = (get(displacement_, i) * inverse_h - get(velocity_, i)) * inverse_h + 0.5 * get(acceleration_, i);
   }
+  const double part = s.scheme == Scheme::conserving ? 0.5 : 1;
+  const bool alternates = s.treatment != Treatment::none && state.unresolved.known > 0;
   const bool elastic = s.model.material.axial_stiffness < infinity;
   double longest = 1, shortest = 1;  // squares, relative
   for (int i = 0; i < segments_; ++i) {
@@ -491,9 +558,12 @@ double CableStepper::store(const Substep& s, CableState& state) const {
     const double relative = square / (state.rest_lengths[i] * state.rest_lengths[i]);
     longest = std::max(longest, relative);
     shortest = std::min(shortest, relative);
-    const double length = elastic ? 0.5 * (length_[i] + std::sqrt(square)) : target_length_[i];
-    state.axial_multiplier[i] = state.tension[i] = tension_density_[i] * length;
-    if (bending_.active() || rod_.active()) state.tension[i] += force_along(i);
+    const double length = elastic ? length_[i] + part * (std::sqrt(square) - length_[i]) : target_length_[i];
+    state.axial_multiplier[i] = tension_density_[i] * length;
+    const double tension =
+        bending_.active() || rod_.active() ? state.axial_multiplier[i] + force_along(i) : state.axial_multiplier[i];
+    state.tension[i] = alternates ? 0.5 * (state.last_tension[i] + tension) : tension;
+    state.last_tension[i] = tension;
   }
   return std::max(std::sqrt(longest) - 1, 1 - std::sqrt(shortest));
 }

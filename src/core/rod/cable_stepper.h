@@ -6,7 +6,9 @@
 #include "rod/block_elimination.h"
 #include "rod/fluid_forces.h"
 #include "rod/kirchhoff_rod.h"
+#include "rod/scheme.h"
 #include "rod/twist.h"
+#include "rod/unresolved_motion.h"
 #include "target/boundary.h"
 #include "verlet_cable/core/cable.h"
 
@@ -34,8 +36,13 @@ struct Substep {
   std::vector<TwistSpan>& spans;  ///< their twist is kept up
   double h;                       ///< [s]
   bool statics = false;           ///< a step towards equilibrium: inertia only slows it, nothing moves or is damped
+  Scheme scheme = Scheme::conserving;
+  Treatment treatment = Treatment::none;  ///< of motion that is found not to be resolved
 
-  double part() const { return statics ? 1 : 0.5; }  ///< where in the substep forces are taken
+  /// Where in the substep forces are taken.
+  double part() const { return statics || scheme != Scheme::conserving ? 1 : 0.5; }
+  /// [mass] Of (u / h - v) / h in the equations of motion, u being the displacement.
+  double inertia() const { return scheme == Scheme::first_order ? 1 : 2; }
   double damping_time() const { return statics ? infinity : h; }
 };
 
@@ -102,10 +109,14 @@ class CableStepper {
   void evaluate_nodes(Component component);
   void evaluate_rigid_lengths();
   void evaluate_elastic_lengths(const Substep& substep, const std::vector<double>& rest_lengths);
+  void assemble_segments(double part, const std::vector<double>& density, const VectorArray& direction);
   void react(const Substep& substep, const std::vector<double>& masses);
   Vector3 corrected_load(int node) const;
   double force_along(int segment) const;
   void move(const Substep& substep);
+  void restore_momenta(const Substep& substep, const std::vector<double>& masses);
+  void quieten(const Substep& substep, CableState& state);
+  void assemble_for_velocities();
   bool holders_accelerate(double h, const std::vector<HeldNode>& held) const;
   void project(const Substep& substep, const std::vector<double>& masses);
   double store(const Substep& substep, CableState& state) const;
@@ -115,6 +126,7 @@ class CableStepper {
   VectorArray position_, velocity_, acceleration_;  // nodes: [m], [m/s], [m/s^2]
   VectorArray segment_;                             // segments: d [m]
   std::vector<double> length_;                      // segments: s [m]
+  std::vector<double> start_density_;               // segments: 2 T / (s + s') of the substep before [N/m]
   std::vector<double> rest_growth_;                 // segments: of the rest length, in the substep [m]
   int winch_node_ = -1;                             // the end node at a winch that runs
   Vector3 material_way_ = Vector3::Zero();          // of the material there, in the substep [m]
@@ -135,12 +147,14 @@ class CableStepper {
   Twist twist_;
   KirchhoffRod rod_;
   FluidForces fluid_;
+  MotionCleaner cleaner_;
   VectorArray director_;  // segments: the material's y axis; only where the unloaded shape is curved
   KktSystem system_;
   bool couples_second_ = false;  // the system's couplings to second neighbours are set
   BlockElimination solver_;
   // Velocity projection: a tridiagonal system
   std::vector<double> pivot_, off_, impulse_;  // segments
+  std::vector<double> growth_;                 // segments: rate of half the square of the length [m^2/s]
 };
 
 }  // namespace verlet_cable

@@ -80,7 +80,9 @@ bool set_initial_state(const InitialShapeDesc& initial, bool settles, const Cabl
   using Type = InitialShapeDesc::Type;
   state.velocities.assign(state.nodes(), Vector3::Zero());
   state.accelerations.assign(state.nodes(), Vector3::Zero());
+  state.unresolved.acceleration_changes.assign(state.nodes(), Vector3::Zero());
   state.tension.assign(state.segments(), 0.0);
+  state.last_tension.assign(state.segments(), 0.0);
   state.axial_multiplier.assign(state.segments(), 0.0);
   bool fits = true;
   switch (initial.type) {
@@ -144,6 +146,16 @@ bool carry_along(const CableModel& model, const std::vector<HeldNode>& held, con
   const bool fits = carry_nodes_along(model, held, gravity, state);
   carry_frames(before, state);
   return fits;
+}
+
+void carry_with_targets(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {
+  const std::vector<Vector3> before = state.positions;
+  std::vector<double> lengths(state.segments());
+  for (int i = 0; i < state.segments(); ++i) lengths[i] = (before[i + 1] - before[i]).norm();
+  carry_nodes_along(model, held, gravity, state);
+  const bool elastic = model.material.axial_stiffness < infinity;
+  if (elastic && !project_lengths(held, lengths, state)) state.positions = hanging(model, state, held, gravity, false);
+  carry_frames(before, state);
 }
 
 void restore_lengths(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {

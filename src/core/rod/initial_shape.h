@@ -18,6 +18,9 @@ bool set_initial_state(const InitialShapeDesc& initial, bool settles, const Cabl
 /// arc length between them. Where that leaves no shape of the right lengths nearby, the cable hangs from them anew: false.
 bool carry_along(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state);
 
+/// The same after a jump of holders: elastic cables are as long as before, too, where that is possible.
+void carry_with_targets(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state);
+
 /// Whether a cable starts in static equilibrium: also if it is given no shape, and a clamp turns it away from its catenary.
 bool settles_at_start(const CableDesc& desc, const MaterialDesc& material);
 

@@ -115,7 +115,7 @@ void update_targets(int index, State& state, CableOutcome& outcome) {
   Boundary boundary;
   hold_at(0, 0, targets, boundary);
   if (jumps) {
-    carry_along(*cable.model, boundary.nodes, gravity_near(state, index), cable.state);
+    carry_with_targets(*cable.model, boundary.nodes, gravity_near(state, index), cable.state);
     measure_joint_twists(targets.directions, cable.state);
     note_status(Status::jumped, cable_id(index), following.jumping_node, outcome.result);
   }
@@ -236,8 +236,13 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
       work.before = c.state;
       work.spans_before = memory.spans;
     }
-    const Substep substep{*c.model, environment, work.boundary, memory.spans, h};
-    if (workspace_.contacts.touched(k)) {
+    Substep substep{*c.model, environment, work.boundary, memory.spans, h};
+    const bool touches = workspace_.contacts.touched(k);
+    if (state_.scene->numerical_damping && c.state.directors.empty()) {
+      substep.scheme = next_scheme(*c.model, c.state.unresolved);
+      substep.treatment = touches || to - from < 1 ? Treatment::damping : Treatment::cleaning;
+    }
+    if (touches) {
       work.result = {};
       workspace_.participants.push_back({static_cast<int>(k), cable, &work.stepper, substep, &c.state, {}});
     } else {
@@ -269,9 +274,11 @@ void IslandStepper::find_contacts(Island& island, double from, double to) {
 void IslandStepper::wind_drive(int index, double from, double to, Boundary& boundary) {
   const LengthDrive& drive = *state_.cable_progress[index].drive;
   SimulatedCable& cable = state_.cables[index];
-  // An inextensible segment has its length at the end of the substep, an elastic one strains about that in the middle.
+  // An inextensible segment has its length at the end of the substep, an elastic one strains about that where its forces are
+  // taken.
   const bool elastic = cable.model->material.axial_stiffness < infinity;
-  wind(drive, elastic ? 0.5 * (from + to) : to, state_.scene->time_step, *cable.model, cable.state);
+  const bool in_the_middle = elastic && next_scheme(*cable.model, cable.state.unresolved) == Scheme::conserving;
+  wind(drive, in_the_middle ? 0.5 * (from + to) : to, state_.scene->time_step, *cable.model, cable.state);
   boundary.growing.assign(1, {drive.segment, growth_at(drive, to)});
 }
 

@@ -118,10 +118,14 @@ auto fields(T& x, const CableModel*) {
   return std::tie(x.name, x.material, x.material_name, x.color, x.segment_length);
 }
 template <class T>
+auto fields(T& x, const UnresolvedMotion*) {
+  return std::tie(x.acceleration_changes, x.changed, x.turned, x.known, x.damped);
+}
+template <class T>
 auto fields(T& x, const CableState*) {
   return std::tie(x.rest_lengths, x.masses, x.rest_curvature, x.rest_twist, x.flexible_fraction, x.positions, x.velocities,
-                  x.accelerations, x.tension, x.axial_multiplier, x.twist, x.directors, x.spin, x.joint_twist, x.reference_node,
-                  x.reference_orientation);
+                  x.accelerations, x.unresolved, x.tension, x.last_tension, x.axial_multiplier, x.twist, x.directors, x.spin,
+                  x.joint_twist, x.reference_node, x.reference_orientation);
 }
 template <class T>
 auto fields(T& x, const SimulatedCable*) {

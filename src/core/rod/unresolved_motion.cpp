@@ -1,0 +1,120 @@
+#include "rod/unresolved_motion.h"
+
+#include <algorithm>
+
+#include "rod/rigid_motion.h"
+
+namespace verlet_cable {
+
+namespace {
+
+/// Cosine of the phase a substep below which motion is not resolved: of a frequency times the substep of 2.
+constexpr double least_cosine = 0;
+/// How much of what was seen is remembered from one substep to the next: longer than a motion's turning point lasts.
+constexpr double memory = 0.8;
+/// [m/s^2] Changes of less from one substep to the next go unnoticed: of the tension by a thousandth of the weight.
+constexpr double noticed_change = 0.01;
+
+/// [m/s] Of what holds a cable, at a node: linear between the held ones. `k`: the held node before, 0 for the first node.
+Vector3 velocity_between(const std::vector<HeldNode>& held, int node, std::size_t& k) {
+  if (held.empty()) return Vector3::Zero();
+  while (k + 1 < held.size() && held[k + 1].node <= node) ++k;
+  const HeldNode& before = held[k];
+  if (node <= before.node || k + 1 == held.size()) return before.velocity;
+  const HeldNode& after = held[k + 1];
+  const double part = static_cast<double>(node - before.node) / (after.node - before.node);
+  return before.velocity + part * (after.velocity - before.velocity);
+}
+
+}  // namespace
+
+Scheme next_scheme(const CableModel& model, const UnresolvedMotion& motion) {
+  if (motion.damped == 0) return Scheme::conserving;
+  // The generalised-alpha method overshoots where an elastic cable is suddenly let go.
+  return motion.damped == damped_substeps || model.material.axial_stiffness < infinity ? Scheme::first_order : Scheme::damped;
+}
+
+void begin_anew(UnresolvedMotion& motion) {
+  std::fill(motion.acceleration_changes.begin(), motion.acceleration_changes.end(), Vector3::Zero());
+  motion.changed = motion.turned = 0;
+  motion.known = motion.damped = 0;
+}
+
+void MotionCleaner::resize(int nodes) {
+  alternating_.assign(nodes, 0.0);
+}
+
+bool MotionCleaner::finds_unresolved(double h, const std::vector<double>& movable, const VectorArray& before, CableState& state) {
+  UnresolvedMotion& motion = state.unresolved;
+  double product = 0, square = 0, mass = 0;
+  for (int i = 0; i < state.nodes(); ++i) {
+    const Vector3 change = state.accelerations[i] - get(before, i);
+    Vector3& last = motion.acceleration_changes[i];
+    if (movable[i] != 0) {
+      product += state.masses[i] * change.dot(last);
+      square += 0.5 * state.masses[i] * (change.squaredNorm() + last.squaredNorm());
+      mass += state.masses[i];
+    }
+    set(alternating_, i, movable[i] * 0.125 * h * (change - last));
+    last = change;
+  }
+  if (motion.damped > 0) --motion.damped;
+  if (motion.known < 2) {
+    ++motion.known;
+    return false;
+  }
+  motion.changed = memory * motion.changed + square;
+  motion.turned = memory * motion.turned + product;
+  const bool unresolved =
+      motion.turned < least_cosine * motion.changed && motion.changed > noticed_change * noticed_change * mass;
+  if (unresolved) motion.changed = motion.turned = 0;
+  return unresolved;
+}
+
+void MotionCleaner::load(const CableModel& model, const CableState& state, const std::vector<double>& inertia,
+                         const VectorArray& segment, const VectorArray& end_velocity, const std::vector<double>& growth,
+                         KktSystem& system) const {
+  for (int i = 0; i < state.nodes(); ++i) set(system.load, i, inertia[i] * get(alternating_, i));
+  const bool elastic = model.material.axial_stiffness < infinity;
+  for (int i = 0; i < state.segments(); ++i) {
+    const Vector3 kept = get(end_velocity, i + 1) - get(end_velocity, i) - get(alternating_, i + 1) + get(alternating_, i);
+    system.gap[i] = elastic ? 0 : growth[i] - get(segment, i).dot(kept);
+  }
+}
+
+void MotionCleaner::take_out(double h, const std::vector<HeldNode>& held, const VectorArray& solution, const VectorArray& place,
+                             CableState& state) {
+  const int nodes = state.nodes();
+  for (int i = 0; i < nodes; ++i) set(alternating_, i, get(alternating_, i) - get(solution, i));
+  if (held.empty()) keep_momenta(state.masses, place);
+  double along = 0, square = 0;
+  std::size_t k = 0;
+  for (int i = 0; i < nodes; ++i) {
+    const Vector3 w = get(alternating_, i);
+    along += state.masses[i] * w.dot(state.velocities[i] - velocity_between(held, i, k));
+    square += state.masses[i] * w.squaredNorm();
+  }
+  const double share = along > 0 ? std::min(1.0, 2 * along / square) : 0;
+  for (int i = 0; i < nodes; ++i) {
+    const Vector3 w = share * get(alternating_, i);
+    state.velocities[i] -= w;
+    state.accelerations[i] -= 2 / h * w;
+    state.unresolved.acceleration_changes[i] -= 4 / h * w;
+  }
+}
+
+/// Takes what a rigid body's motion would be out of w.
+void MotionCleaner::keep_momenta(const std::vector<double>& masses, const VectorArray& place) {
+  const Vector3 center = center_of_mass(masses, place);
+  Vector3 momentum = Vector3::Zero(), angular_momentum = Vector3::Zero();
+  const int nodes = static_cast<int>(masses.size());
+  for (int i = 0; i < nodes; ++i) {
+    const Vector3 p = masses[i] * get(alternating_, i);
+    momentum += p;
+    angular_momentum += (get(place, i) - center).cross(p);
+  }
+  const RigidMotion rigid = rigid_motion(masses, place, momentum, angular_momentum);
+  for (int i = 0; i < nodes; ++i) set(alternating_, i, get(alternating_, i) - rigid.at(get(place, i)));
+}
+
+}  // namespace verlet_cable

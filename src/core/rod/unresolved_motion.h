@@ -1,0 +1,58 @@
+#pragma once
+
+#include <vector>
+
+#include "geometry/vector_array.h"
+#include "rod/block_elimination.h"
+#include "rod/scheme.h"
+#include "target/boundary.h"
+#include "verlet_cable/core/cable.h"
+
+namespace verlet_cable {
+
+/// What is done about motion that substeps do not resolve, once it is found: nothing; it is taken out of the velocities; or the
+/// next substeps damp it, where it keeps substeps short or contacts busy.
+enum class Treatment { none, cleaning, damping };
+
+/// Substeps that damp after motion was found that they do not resolve; the first one of first order.
+constexpr int damped_substeps = 3;
+
+/// How the next substep of a cable goes.
+Scheme next_scheme(const CableModel& model, const UnresolvedMotion& motion);
+
+/// Motion begins anew, as after an edit: the next two substeps are not judged.
+void begin_anew(UnresolvedMotion& motion);
+
+/// Finds motion of a cable that substeps do not resolve, and takes it out of the velocities. Where it is resolved, with phase p a
+/// substep (p = 2 atan(omega h / 2) for a frequency omega), successive changes of the accelerations have products that are cos(p)
+/// of their squares; what is much faster turns round from each substep to the next, for ever: -1.
+class MotionCleaner {
+ public:
+  void resize(int nodes);
+
+  /// After a substep of h [s]: adds what it has changed to what is known of the cable's motion. True if motion was found that is
+  /// not resolved; what is known is then forgotten. `movable`: a node, 1 or 0; `before`: a node, accelerations at the substep's
+  /// start [m/s^2].
+  bool finds_unresolved(double h, const std::vector<double>& movable, const VectorArray& before, CableState& state);
+
+  /// Sets the right-hand side of
+  ///   (A + K) y = A (v_3 - 3 v_2 + 3 v_1 - v_0) / 8,
+  /// of the last four velocities, with A the inertia (`inertia`, a node [kg/s^2]) and A + K the matrix of the system. The part
+  /// that alternates is then w = (...) / 8 - y: of motion of frequency omega it is s^5 e^(3/2 i (pi - p)) where s = sin(p / 2):
+  /// all of it where omega h is large, O((omega h)^5) where it is resolved. Without w the velocities `end_velocity` [m/s] change
+  /// the lengths of inextensible `segment`s [m] by `growth` [m^2/s] alone, half of their squares'.
+  void load(const CableModel& model, const CableState& state, const std::vector<double>& inertia, const VectorArray& segment,
+            const VectorArray& end_velocity, const std::vector<double>& growth, KktSystem& system) const;
+
+  /// Takes w out of the velocities, or as much of it as lowers the kinetic energy, seen from what holds the cable: it would grow
+  /// where p is less than 2/3 pi. Free cables keep their momenta. `solution`: y; `place` [m].
+  void take_out(double h, const std::vector<HeldNode>& held, const VectorArray& solution, const VectorArray& place,
+                CableState& state);
+
+ private:
+  void keep_momenta(const std::vector<double>& masses, const VectorArray& place);
+
+  VectorArray alternating_;  // nodes: third difference of the velocities, then w [m/s]
+};
+
+}  // namespace verlet_cable
