@@ -124,13 +124,11 @@ TEST_P(Quiet, AfterACut) {
   EXPECT_LT(noise.velocity, 0.01);
 }
 
-INSTANTIATE_TEST_SUITE_P(Materials, Quiet,
-                         testing::Values(Material{AttachmentType::hinge, 1e-3, 5e-4, infinity},
-                                         Material{AttachmentType::hinge, 0.01, 5e-4, infinity},
-                                         Material{AttachmentType::clamp, 0.01, 5e-4, infinity},
-                                         Material{AttachmentType::clamp, 0.05, 2e-3, infinity},
-                                         Material{AttachmentType::clamp, 0.1, 5e-4, infinity},
-                                         Material{AttachmentType::clamp, 0.01, 5e-4, 1e4}));
+INSTANTIATE_TEST_SUITE_P(
+    Materials, Quiet,
+    testing::Values(Material{AttachmentType::hinge, 1e-3, 5e-4, infinity}, Material{AttachmentType::hinge, 0.01, 5e-4, infinity},
+                    Material{AttachmentType::clamp, 0.01, 5e-4, infinity}, Material{AttachmentType::clamp, 0.05, 2e-3, infinity},
+                    Material{AttachmentType::clamp, 0.1, 5e-4, infinity}, Material{AttachmentType::clamp, 0.01, 5e-4, 1e4}));
 
 TEST(Quiet, AfterAClampHasTurnedItsForcesAreThoseOfEquilibrium) {
   for (const double bending : {1e-2, 0.05}) {
@@ -227,8 +225,7 @@ TEST(Quiet, AClampKeepsTheEnergyOfAnElasticCable) {
     scene.numerical_damping = false;
     scene.materials[0].material.axial_stiffness = stiffness;
     scene.materials[0].material.bending_stiffness = 0.02;
-    scene.cables[0].attachments = {
-        scenes::attachment("a", PlaceDesc::At::start, {0, 0, 0}, "", AttachmentType::clamp)};
+    scene.cables[0].attachments = {scenes::attachment("a", PlaceDesc::At::start, {0, 0, 0}, "", AttachmentType::clamp)};
     scene.cables[0].initial.type = InitialShapeDesc::Type::straight;
     scene.cables[0].initial.to = {1, 0, 0};
     World world(scene, initial_frames(scene));

@@ -71,7 +71,7 @@ struct CableState {
   /// [rad] a node, n + 1, any number of turns: between the segments before and after it; at a clamped end between clamp and
   /// segment; 0 at other ends, and at clamps inside, whose targets have it
   std::vector<double> joint_twist;
-  int reference_node = 0;     ///< where the material's orientation is known: the first clamp's node
+  int reference_node = 0;  ///< where the material's orientation is known: the first clamp's node
   Quaternion reference_orientation = Quaternion::Identity();  ///< there: x along the cable, roll of the material
 };
 

@@ -385,8 +385,9 @@ void CableStepper::move(const Substep& s) {
     }
   } else {
     for (int i = 0; i <= segments_; ++i)
-      set(end_velocity_, i, rate * get(displacement_, i) + weights.velocity * get(velocity_, i) +
-                                weights.acceleration * s.h * get(acceleration_, i));
+      set(end_velocity_, i,
+          rate * get(displacement_, i) + weights.velocity * get(velocity_, i) +
+              weights.acceleration * s.h * get(acceleration_, i));
   }
   for (int i = 0; i <= segments_; ++i) {
     position_.x[i] += displacement_.x[i];
@@ -487,8 +488,8 @@ void CableStepper::quieten(const Substep& s, CableState& state) {
   cleaner_.take_out(s.model, s.h, s.boundary.nodes, solver_.displacement(), position_, state);
 }
 
-/// The matrix at the end of the substep, of motion about it: without contacts and fluid, tension being the mean of two substeps, as
-/// it alternates, too, and compression no stiffness.
+/// The matrix at the end of the substep, of motion about it: without contacts and fluid, tension being the mean of two substeps,
+/// as it alternates, too, and compression no stiffness.
 void CableStepper::assemble_for_velocities() {
   for (int i = 0; i < segments_; ++i) start_density_[i] = std::max(0.0, 0.5 * (start_density_[i] + tension_density_[i]));
   assemble_segments(0.5, start_density_, segment_);
@@ -559,7 +560,8 @@ double CableStepper::store(const Substep& s, CableState& state) const {
     shortest = std::min(shortest, relative);
     const double length = elastic ? length_[i] + part * (std::sqrt(square) - length_[i]) : target_length_[i];
     state.axial_multiplier[i] = tension_density_[i] * length;
-    const double tension = bending_.active() || rod_.active() ? state.axial_multiplier[i] + force_along(i) : state.axial_multiplier[i];
+    const double tension =
+        bending_.active() || rod_.active() ? state.axial_multiplier[i] + force_along(i) : state.axial_multiplier[i];
     state.tension[i] = alternates ? 0.5 * (state.last_tension[i] + tension) : tension;
     state.last_tension[i] = tension;
   }

@@ -153,8 +153,7 @@ void carry_with_targets(const CableModel& model, const std::vector<HeldNode>& he
   for (int i = 0; i < model.segments(); ++i) lengths[i] = (before[i + 1] - before[i]).norm();
   carry_nodes_along(model, held, gravity, state);
   const bool elastic = model.material.axial_stiffness < infinity;
-  if (elastic && !project_lengths(model, held, lengths, state.positions))
-    state.positions = hanging(model, held, gravity, false);
+  if (elastic && !project_lengths(model, held, lengths, state.positions)) state.positions = hanging(model, held, gravity, false);
   carry_frames(before, state);
 }
 
