@@ -44,6 +44,12 @@ void anticipate(double h, double contact_time, const Vector3& velocity, Touch& t
   touch.offset = (1 + contact_time / h) * touch.other_displacement + contact_time * velocity;
 }
 
+void anticipate(const VelocityWeights& weights, double h, double contact_time, Touch& touch) {
+  const Vector3 carried = (1 + contact_time / h) * touch.other_displacement, drift = touch.offset - carried;
+  touch.rate = 1 + weights.displacement * contact_time / h;
+  touch.offset = carried - weights.velocity * drift;
+}
+
 double gentle_gap(double radius, double contact_time) {
   return -std::clamp(gentle_velocity * contact_time, 0.05 * radius, 0.15 * radius);
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "rod/scheme.h"
 #include "verlet_cable/core/types.h"
 
 namespace verlet_cable {
@@ -52,6 +53,9 @@ double contact_time(double time_step);
 /// the substep if it moves on with the velocity that it then has. `velocity` [m/s]: of the point at the start of the substep,
 /// relative to another cable's where that is touched.
 void anticipate(double h, double contact_time, const Vector3& velocity, Touch& touch);
+
+/// The same for a substep that goes by another scheme than the conserving one, which is what `touch` was found for.
+void anticipate(const VelocityWeights& weights, double h, double contact_time, Touch& touch);
 
 /// The gap [m] of what is pushed out at a gentle velocity: nothing deeper is taken for deeper where a cable starts inside.
 double gentle_gap(double radius, double contact_time);

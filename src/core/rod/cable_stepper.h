@@ -63,6 +63,7 @@ void bring_to_rest(CableState& state);
 ///   x' = x + h (v + v') / 2,   m (v' - v) / h = gravity - drag (x' - x) / h + sum of T (d + d') / (s + s')
 /// with d a segment's vector and s its length, at the start and (') the end. For an inextensible segment T is the multiplier of
 /// s' = l; for an elastic one it is EA ((s + s') / (2 l) - 1) + axial damping. Both conserve momentum and energy exactly.
+/// What substeps do not resolve would alternate in it for ever: see Scheme and MotionCleaner.
 class CableStepper {
  public:
   void resize(int segments);  ///< does nothing where their number stays

@@ -8,8 +8,9 @@ namespace verlet_cable {
 
 namespace {
 
-/// Cosine of the phase a substep below which motion is not resolved: of a frequency times the substep of 2.
-constexpr double least_cosine = 0;
+/// Cosine of the phase a substep below which motion is not resolved: of a frequency times the substep of 2. A little less, as a
+/// first blow has no phase, but what rounding makes of it.
+constexpr double least_cosine = -0.02;
 /// How much of what was seen is remembered from one substep to the next: longer than a motion's turning point lasts.
 constexpr double memory = 0.8;
 /// [m/s^2] Changes of less from one substep to the next go unnoticed: of the tension by a thousandth of the weight.

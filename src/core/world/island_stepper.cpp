@@ -224,6 +224,7 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
   find_contacts(island, from, to);
   const bool touching = !workspace_.contacts.touches().empty(), keeps = touching || island.cables.size() > 1;
   workspace_.participants.clear();
+  const Scheme touching_scheme = find_touching_scheme(island, h);
   bool converged = true;
   for (std::size_t k = 0; k < island.cables.size(); ++k) {
     const int cable = island.cables[k];
@@ -231,17 +232,16 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     CableProgress& memory = state_.cable_progress[cable];
     CableWorkspace& work = workspace_.cables[k];
     hold_at(from, to, memory.targets, work.boundary);
-    if (memory.drive) wind_drive(cable, from, to, work.boundary);
+    const bool touches = workspace_.contacts.touched(k);
+    const Scheme scheme = touches ? touching_scheme : scheme_of(cable);
+    if (memory.drive) wind_drive(cable, scheme, from, to, work.boundary);
     if (keeps) {
       work.before = c.state;
       work.spans_before = memory.spans;
     }
     Substep substep{*c.model, environment, work.boundary, memory.spans, h};
-    const bool touches = workspace_.contacts.touched(k);
-    if (state_.scene->numerical_damping && c.state.directors.empty()) {
-      substep.scheme = next_scheme(*c.model, c.state.unresolved);
-      substep.treatment = touches || to - from < 1 ? Treatment::damping : Treatment::cleaning;
-    }
+    substep.scheme = scheme;
+    if (is_quietened(c.state)) substep.treatment = touches || to - from < 1 ? Treatment::damping : Treatment::cleaning;
     if (touches) {
       work.result = {};
       workspace_.participants.push_back({static_cast<int>(k), cable, &work.stepper, substep, &c.state, {}});
@@ -271,13 +271,37 @@ void IslandStepper::find_contacts(Island& island, double from, double to) {
                            contact_rules(*state_.scene, false), (to - from) * state_.scene->time_step, island.pairs);
 }
 
-void IslandStepper::wind_drive(int index, double from, double to, Boundary& boundary) {
+bool IslandStepper::is_quietened(const CableState& cable) const {
+  return state_.scene->numerical_damping && cable.directors.empty();
+}
+
+Scheme IslandStepper::scheme_of(int cable) const {
+  const SimulatedCable& c = state_.cables[cable];
+  return is_quietened(c.state) ? next_scheme(*c.model, c.state.unresolved) : Scheme::conserving;
+}
+
+/// Cables that touch something go by one scheme, which their contacts heed: where one is to damp, all do.
+Scheme IslandStepper::find_touching_scheme(const Island& island, double h) {
+  Scheme scheme = Scheme::conserving;
+  for (std::size_t k = 0; k < island.cables.size(); ++k) {
+    if (!workspace_.contacts.touched(k)) continue;
+    if (!is_quietened(state_.cables[island.cables[k]].state)) return Scheme::conserving;
+    const Scheme own = scheme_of(island.cables[k]);
+    if (own == Scheme::first_order || scheme == Scheme::conserving) scheme = own;
+  }
+  if (scheme != Scheme::conserving)
+    for (Touch& touch : workspace_.contacts.touches())
+      anticipate(velocity_weights(scheme), h, contact_time(state_.scene->time_step), touch);
+  return scheme;
+}
+
+void IslandStepper::wind_drive(int index, Scheme scheme, double from, double to, Boundary& boundary) {
   const LengthDrive& drive = *state_.cable_progress[index].drive;
   SimulatedCable& cable = state_.cables[index];
   // An inextensible segment has its length at the end of the substep, an elastic one strains about that where its forces are
   // taken.
   const bool elastic = cable.model->material.axial_stiffness < infinity;
-  const bool in_the_middle = elastic && next_scheme(*cable.model, cable.state.unresolved) == Scheme::conserving;
+  const bool in_the_middle = elastic && scheme == Scheme::conserving;
   wind(drive, in_the_middle ? 0.5 * (from + to) : to, state_.scene->time_step, *cable.model, cable.state);
   boundary.growing.assign(1, {drive.segment, growth_at(drive, to)});
 }
