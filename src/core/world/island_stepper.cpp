@@ -124,22 +124,21 @@ void update_targets(int index, State& state, CableOutcome& outcome) {
 
 namespace {
 
-/// The same of a whole rod: the material that is in the clamp at the winch is turned against what was there before.
+/// The same of a whole rod: joints grow with the cable that they stand for, and the material that is in the clamp is turned
+/// against what was there before.
 void pass_twist_through_winch(const LengthDrive& drive, CableState& state, KinematicTargets& targets) {
-  const int end = drive.end_node(state.segments());
-  for (DirectionTarget& clamp : targets.directions) {
-    if (clamp.node != end) continue;
-    const int next = end == 0 ? 1 : end - 1;
-    // Over the lengths that were so twisted: those before this step.
-    double twist = state.joint_twist[end], length = joint_length(state, end) - 0.5 * drive.wound;
-    if (next > 0 && next < state.segments()) {
-      twist += state.joint_twist[next];
-      length += joint_length(state, next) - 0.5 * drive.wound;
-    }
-    const double turn = drive.wound * twist / length;
-    state.joint_twist[end] += turn;
-    turn_in_clamp(end == 0 ? -turn : turn, clamp);
-  }
+  const int n = state.segments(), end = drive.end_node(n), next = end == 0 ? 1 : n - 1;
+  const double side = end == 0 ? -1 : 1;
+  const auto grow = [&](int node) {
+    const double length = joint_length(state, node), before = length - 0.5 * drive.wound;
+    const double turn = state.joint_twist[node] * (length / before - 1);
+    state.joint_twist[node] += turn;
+    return side * turn;
+  };
+  const double turn = next > 0 && next < n ? grow(next) : 0;
+  turn_segment(drive.segment, turn, state);
+  for (DirectionTarget& clamp : targets.directions)
+    if (clamp.node == end) turn_in_clamp(turn + grow(end), clamp);
 }
 
 }  // namespace
