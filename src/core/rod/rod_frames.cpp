@@ -196,7 +196,8 @@ void weld_frames(int segment, CableState& state) {
   state.joint_twist[segment] = 0;
   state.joint_twist[after] = joint_angles(between, segment_frame(state, after), 0).twist;
   state.rest_twist.resize(state.nodes(), 0.0);
-  state.rest_twist[after] += state.joint_twist[after] / state.bending_length(after, joint_length(state, after));
+  state.rest_twist[segment] = 0;
+  state.rest_twist[after] = state.joint_twist[after] / state.bending_length(after, joint_length(state, after));
 }
 
 Vector3 carried_director(const CableState& state, int segment, const Vector3& along, double angle) {
