@@ -296,10 +296,10 @@ void IslandStepper::stop(const Island& island) {
 void IslandStepper::give_up(int index, Boundary& boundary) {
   SimulatedCable& cable = state_.cables[index];
   hold_at(1, 1, state_.cable_progress[index].targets, boundary);
-  const std::vector<Vector3> before = cable.state.positions;
+  const CableState before = cable.state;
   carry_along(*cable.model, boundary.nodes, gravity_near(state_, index), cable.state);
   if (finite(cable.state.positions)) return;
-  cable.state.positions = before;
+  cable.state = before;
   note_status(Status::fault, cable_id(index), 0, outcomes_[index].result);
 }
 
