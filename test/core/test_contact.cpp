@@ -5,7 +5,7 @@
 
 #include "../support/scenes.h"
 #include "contact/law.h"
-#include "geometry/segment_distance.h"
+#include "geometry/segment_geometry.h"
 #include "verlet_cable/core/world.h"
 
 namespace verlet_cable {

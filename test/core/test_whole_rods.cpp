@@ -219,8 +219,8 @@ TEST(WholeRod, PiecesThatAreJoinedAreWhatTheyWere) {
       ASSERT_EQ(cable.state.segments(), 30);
       expect_sound_frames(cable);
       for (int i = 0; i < 15; ++i) EXPECT_LT((cable.state.directors[first_reversed ? 15 + i : i] - directors[i]).norm(), 1e-9);
-      // The weld alone is not measured, but as curved as its neighbours.
-      expect_at_rest(world, 1e-4, "joined");
+      // The weld alone is not measured, but as curved as its neighbours, to 0.2 %.
+      expect_at_rest(world, 4e-4, "joined");
     }
 }
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -35,6 +36,42 @@ TEST_F(CableSim, settledCablesStandStillFromTheStart) {
   EXPECT_NEAR(json["energy"]["initial_total"].as<double>(), json["energy"]["total"].as<double>(), 1e-8);
   EXPECT_GT(json["energy"]["bend"].as<double>(), 0.01);
   EXPECT_EQ(json["events"].size(), 0u);
+}
+
+TEST_F(CableSim, extremesAreOfEachCableWithTimeAndPlace) {
+  const std::string scene = write("scene.yaml", cantilever);
+  ASSERT_EQ(run(scene + " --settle --duration 0.1 --output " + path("o.csv") + " --summary " + path("s.json")), 0) << err;
+  const YAML::Node json = summary("s.json"), extremes = json["extremes"]["c"];
+  // The tightest bend is at the clamp, half a segment from its joint's other side: EI / moment.
+  const std::vector<double> torque = json["attachments"]["wall"]["torque"].as<std::vector<double>>();
+  EXPECT_NEAR(extremes["min_bend_radius"]["value"].as<double>() * std::abs(torque[1]) / 0.01, 1, 1e-4);
+  EXPECT_EQ(extremes["min_bend_radius"]["arc_length"].as<double>(), 0);
+  double largest = -1e9, smallest = 1e9;
+  for (const Row& row : rows("o.csv")) {
+    largest = std::max(largest, row.tension);
+    smallest = std::min(smallest, row.tension);
+  }
+  EXPECT_NEAR(extremes["max_tension"]["value"].as<double>(), largest, 1e-5);
+  EXPECT_NEAR(extremes["min_tension"]["value"].as<double>(), smallest, 1e-5);
+  const double place = extremes["max_tension"]["arc_length"].as<double>() / 0.02 - 0.5;
+  EXPECT_NEAR(place, std::round(place), 1e-9) << "the middle of a segment";
+  EXPECT_TRUE(extremes["max_twist"]["value"].IsNull());
+}
+
+TEST_F(CableSim, extremesOfTwistAreThoseOfTheMaterial) {
+  const std::string scene = write("scene.yaml", R"(
+gravity: [0, 0, 0]
+materials: {m: {linear_density: 0.1, radius: 0.005, bending_stiffness: [0.01, 0.001], torsional_stiffness: 0.002}}
+cables:
+  - {name: c, length: 1, segments: 20, material: m, rest_twist: -1.5, initial: {type: straight, to: [1, 0, 0]},
+     attachments: [{name: wall, at: start, type: clamp}]}
+)");
+  ASSERT_EQ(run(scene + " --duration 0.1 --summary " + path("s.json")), 0) << err;
+  const YAML::Node json = summary("s.json"), extremes = json["extremes"]["c"];
+  EXPECT_NEAR(extremes["max_twist"]["value"].as<double>(), -1.5, 1e-9);
+  EXPECT_TRUE(extremes["min_bend_radius"]["value"].IsNull());
+  EXPECT_NEAR(json["energy"]["twist"].as<double>(), 0, 1e-12);
+  EXPECT_NEAR(json["energy"]["bend"].as<double>(), 0, 1e-12);
 }
 
 TEST_F(CableSim, aSceneMaySettleByItself) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "geometry/segment_distance.h"
+#include "geometry/segment_geometry.h"
 
 namespace verlet_cable {
 

@@ -48,23 +48,22 @@ void reverse(CableState& cable) {
   cable.reference_orientation = cable.reference_orientation * turned;
 }
 
-/// At the node of two that are to be one: unloaded both in their places, and bent half as the one and half as the other.
-void join_rest_shapes(int node, CableState& cable) {
+/// At the node of two that are to be one: bent, unloaded, half as the one and half as the other. Returns the twist [rad] that the
+/// two joints have beyond what they have unloaded.
+double join_rest_shapes(int node, CableState& cable) {
   const int gone = node + 1;
-  double twist = 0;
+  double twist = 0, excess = 0;
   if (!cable.joint_twist.empty()) {
-    const double rest =
-        rest_angles(cable, node, joint_length(cable, node)).twist + rest_angles(cable, gone, joint_length(cable, gone)).twist;
-    const double length = 0.5 * (cable.rest_lengths[node - 1] + cable.rest_lengths[gone]);
-    cable.rest_twist[node] = rest / cable.bending_length(node, length);
+    for (const int i : {node, gone}) excess += cable.joint_twist[i] - rest_angles(cable, i, joint_length(cable, i)).twist;
     twist = cable.joint_twist[node] += cable.joint_twist[gone];
   }
-  if (cable.rest_curvature.empty()) return;
+  if (cable.rest_curvature.empty()) return excess;
   const double cosine = std::cos(0.5 * twist), sine = std::sin(0.5 * twist);
   const auto [before_y, before_z] = cable.rest_curvature[node];
   const auto [after_y, after_z] = cable.rest_curvature[gone];
   cable.rest_curvature[node] = {0.5 * (cosine * (before_y + after_y) + sine * (before_z - after_z)),
                                 0.5 * (cosine * (before_z + after_z) - sine * (before_y - after_y))};
+  return excess;
 }
 
 /// `first` followed by `second`, with a weightless segment between them that is as long as they are apart.
@@ -231,7 +230,7 @@ void World::Implementation::close_joint(int index) {
   for (auto* values : {&cable.positions, &cable.velocities, &cable.accelerations})
     (*values)[gone] = (*values)[node] += part * ((*values)[gone] - (*values)[node]);
   carry_frames(apart, cable);
-  join_rest_shapes(node, cable);
+  const double excess = join_rest_shapes(node, cable);
   if (!cable.flexible_fraction.empty())
     cable.flexible_fraction[node] = 0.5 * (cable.flexible_fraction[node] + cable.flexible_fraction[gone]);
   erase_node(gone, cable);
@@ -247,6 +246,10 @@ void World::Implementation::close_joint(int index) {
   project_lengths(held, lengths, cable);
   carry_frames(together, cable);
   after_remeshing(index);
+  // Welded as they have come to each other.
+  if (!cable.joint_twist.empty())
+    cable.rest_twist[node] =
+        (joint_angles_at(cable, node).twist - excess) / cable.bending_length(node, joint_length(cable, node));
   project_velocities(*state.cables[index].model, boundary_now(s.targets).nodes, cable);
 }
 

@@ -168,7 +168,10 @@ void World::Implementation::take_in_winch_node(int index) {
   LengthDrive& drive = *s.drive;
   const int node = drive.place == LengthDrive::Place::start ? 1 : cable.state.segments() - 1;
   add_material_motion(drive, 1, cable.state);
-  drive.debt += remove_node(node, cable.state);
+  // The step is planned already.
+  const double lost = remove_node(node, cable.state);
+  drive.debt += lost;
+  drive.next_debt += lost;
   if (drive.place == LengthDrive::Place::end) --drive.segment;
   auto& held = s.targets.nodes;
   held.erase(std::remove_if(held.begin(), held.end(), [&](const KinematicTarget& h) { return h.node == node; }), held.end());

@@ -1,9 +1,9 @@
 #include "verlet_cable/core/cable.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "geometry/segment_geometry.h"
 #include "rod/material_frames.h"
 #include "rod/rod_frames.h"
 
@@ -82,10 +82,9 @@ NearestPoint nearest_point(const CableState& state, const Vector3& point) {
   NearestPoint nearest;
   nearest.distance = infinity;
   for (int i = 0; i < state.segments(); ++i) {
-    const Vector3 start = state.positions[i], along = state.positions[i + 1] - start;
-    const double square = along.squaredNorm();
-    const double fraction = square > 0 ? std::clamp((point - start).dot(along) / square, 0.0, 1.0) : 0;
-    const double distance = (start + fraction * along - point).norm();
+    const Vector3 &start = state.positions[i], &end = state.positions[i + 1];
+    const double fraction = closest_fraction(start, end, point);
+    const double distance = (start + fraction * (end - start) - point).norm();
     if (distance < nearest.distance) nearest = {i, fraction, distance};
   }
   return nearest;

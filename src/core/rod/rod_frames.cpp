@@ -11,6 +11,9 @@ namespace verlet_cable {
 
 namespace {
 
+/// Of what a joint stands for.
+constexpr double touching = 0.2;
+
 Eigen::Matrix3d about_x(double angle) {
   return Eigen::AngleAxisd(angle, Vector3::UnitX()).toRotationMatrix();
 }
@@ -184,15 +187,17 @@ void drop_frames(CableState& state, std::vector<DirectionTarget>& clamps) {
 void weld_frames(int segment, CableState& state) {
   if (state.directors.empty()) return;
   const int after = segment + 1;
-  const Vector3 way = direction(state, segment);
+  // Ends that are close to each other have no direction between them.
+  const Vector3 way = state.positions[after] - state.positions[segment];
   const Eigen::Matrix3d before = segment_frame(state, segment - 1);
-  const Eigen::Matrix3d between = carried(before, way.norm() > 0 ? way : Vector3(before.col(0)), 0);
+  const bool apart = way.norm() > touching * joint_length(state, after);
+  const Eigen::Matrix3d between = carried(before, apart ? Vector3(way.normalized()) : Vector3(before.col(0)), 0);
   state.directors[segment] = between.col(1);
   state.joint_twist[segment] = 0;
   state.joint_twist[after] = joint_angles(between, segment_frame(state, after), 0).twist;
   state.rest_twist.resize(state.nodes(), 0.0);
-  const double flexible = state.bending_length(after, joint_length(state, after));
-  state.rest_twist[after] += state.joint_twist[after] / flexible;
+  state.rest_twist[segment] = 0;
+  state.rest_twist[after] = state.joint_twist[after] / state.bending_length(after, joint_length(state, after));
 }
 
 Vector3 carried_director(const CableState& state, int segment, const Vector3& along, double angle) {

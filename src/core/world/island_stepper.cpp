@@ -124,22 +124,21 @@ void update_targets(int index, State& state, CableOutcome& outcome) {
 
 namespace {
 
-/// The same of a whole rod: the material that is in the clamp at the winch is turned against what was there before.
+/// The same of a whole rod: joints grow with the cable that they stand for, and the material that is in the clamp is turned
+/// against what was there before.
 void pass_twist_through_winch(const LengthDrive& drive, CableState& state, KinematicTargets& targets) {
-  const int end = drive.end_node(state.segments());
-  for (DirectionTarget& clamp : targets.directions) {
-    if (clamp.node != end) continue;
-    const int next = end == 0 ? 1 : end - 1;
-    // Over the lengths that were so twisted: those before this step.
-    double twist = state.joint_twist[end], length = joint_length(state, end) - 0.5 * drive.wound;
-    if (next > 0 && next < state.segments()) {
-      twist += state.joint_twist[next];
-      length += joint_length(state, next) - 0.5 * drive.wound;
-    }
-    const double turn = drive.wound * twist / length;
-    state.joint_twist[end] += turn;
-    turn_in_clamp(end == 0 ? -turn : turn, clamp);
-  }
+  const int n = state.segments(), end = drive.end_node(n), next = end == 0 ? 1 : n - 1;
+  const double side = end == 0 ? -1 : 1;
+  const auto grow = [&](int node) {
+    const double length = joint_length(state, node), before = length - 0.5 * drive.wound;
+    const double turn = state.joint_twist[node] * (length / before - 1);
+    state.joint_twist[node] += turn;
+    return side * turn;
+  };
+  const double turn = next > 0 && next < n ? grow(next) : 0;
+  turn_segment(drive.segment, turn, state);
+  for (DirectionTarget& clamp : targets.directions)
+    if (clamp.node == end) turn_in_clamp(turn + grow(end), clamp);
 }
 
 }  // namespace
@@ -328,10 +327,10 @@ void IslandStepper::stop(const Island& island) {
 void IslandStepper::give_up(int index, Boundary& boundary) {
   SimulatedCable& cable = state_.cables[index];
   hold_at(1, 1, state_.cable_progress[index].targets, boundary);
-  const std::vector<Vector3> before = cable.state.positions;
+  const CableState before = cable.state;
   carry_along(*cable.model, boundary.nodes, gravity_near(state_, index), cable.state);
   if (finite(cable.state.positions)) return;
-  cable.state.positions = before;
+  cable.state = before;
   note_status(Status::fault, cable_id(index), 0, outcomes_[index].result);
 }
 

@@ -1,4 +1,4 @@
-#include "geometry/segment_distance.h"
+#include "geometry/segment_geometry.h"
 
 #include <algorithm>
 
