@@ -29,6 +29,18 @@ struct MaterialKeys {
   ElasticModuli moduli;
 };
 
+constexpr const char* bending_stiffness_words = "one number, or two: about the material's y and z axes [N m^2]";
+
+void read_bending_stiffness(const Value& value, MaterialKeys& keys) {
+  BendingStiffness& stiffness = keys.material.bending_stiffness;
+  if (value.node.IsSequence()) {
+    const auto [y, z] = read_numbers<2>(value, bending_stiffness_words);
+    stiffness = {y, z};
+  } else {
+    stiffness = read_number(value, bending_stiffness_field.range.text(bending_stiffness_field.unit) + ", or two");
+  }
+}
+
 Keys<MaterialKeys> material_keys() {
   Keys<MaterialKeys> keys;
   const auto append = [&keys](const auto& fields, auto owner) {
@@ -41,6 +53,7 @@ Keys<MaterialKeys> material_keys() {
     }
   };
   append(material_fields, &MaterialKeys::material);
+  keys.push_back({bending_stiffness_field.key, bending_stiffness_words, false, read_bending_stiffness});
   append(moduli_fields, &MaterialKeys::moduli);
   return keys;
 }

@@ -124,7 +124,7 @@ SceneDesc random_scene(unsigned seed) {
   SceneDesc scene = scenes::one_cable(static_cast<int>(between(8, 70)));
   MaterialDesc& material = scene.materials[0].material;
   material.bending_stiffness = std::pow(10, between(-5, 1));
-  material.torsional_stiffness = between(0, 1) < 0.5 ? 0 : 0.8 * material.bending_stiffness;
+  material.torsional_stiffness = between(0, 1) < 0.5 ? 0 : 0.8 * material.bending_stiffness.front();
   if (between(0, 1) < 0.5) material.axial_stiffness = std::pow(10, between(3, 7));
   material.linear_density = std::pow(10, between(-2, 0.3));
   const Vector3 end = between(0.02, 1) * direction().normalized();

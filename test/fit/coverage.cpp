@@ -17,14 +17,14 @@ constexpr double duration = 4, noise = 0.002;  // [s], [m]
 
 struct Known {
   const char* name;
-  double MaterialDesc::*member;
+  double (*value)(const MaterialDesc& material);
 };
 constexpr Known known_values[] = {
     // in the order of the parameters
-    {"bending_stiffness", &MaterialDesc::bending_stiffness},
-    {"bending_damping", &MaterialDesc::bending_damping},
-    {"drag", &MaterialDesc::drag},
-    {"torsional_stiffness", &MaterialDesc::torsional_stiffness},
+    {"bending_stiffness", [](const MaterialDesc& m) { return m.bending_stiffness.front(); }},
+    {"bending_damping", [](const MaterialDesc& m) { return m.bending_damping; }},
+    {"drag", [](const MaterialDesc& m) { return m.drag; }},
+    {"torsional_stiffness", [](const MaterialDesc& m) { return m.torsional_stiffness; }},
 };
 
 struct Found {
@@ -36,7 +36,7 @@ Found found_by(const Problem& problem, const std::vector<double>& values, const 
   const std::vector<Confidence> intervals = confidence(problem, values);
   Found found;
   for (std::size_t i = 0; i < std::size(known_values); ++i) {
-    const double difference = values[i] - std::log10(truth.*known_values[i].member);
+    const double difference = values[i] - std::log10(known_values[i].value(truth));
     found.ratio[i] = std::pow(10, difference);
     found.covered[i] = std::abs(difference) <= intervals[i].half_width;
   }

@@ -76,7 +76,7 @@ cables:
   EXPECT_EQ(scene.find_material("rope")->radius, 0.01);
   EXPECT_EQ(scene.find_material("rope")->drag, 0.3);
   EXPECT_EQ(scene.find_material("rope")->axial_stiffness, 1e4);
-  EXPECT_EQ(scene.find_material("rope")->bending_stiffness, 0.02);
+  EXPECT_EQ(scene.find_material("rope")->bending_stiffness, BendingStiffness(0.02));
   EXPECT_EQ(scene.find_material("rope")->torsional_stiffness, 0.015);
   EXPECT_EQ(scene.find_material("rope")->axial_damping, 3);
   EXPECT_EQ(scene.find_material("rope")->bending_damping, 0.001);
@@ -137,7 +137,7 @@ TEST(SceneReader, elasticModuliMeanASolidRoundSection) {
   // A = pi r^2, I = pi r^4 / 4, J = pi r^4 / 2, G = E / (2 (1 + nu)) = 0.4 E; 1e-12 is rounding.
   EXPECT_NEAR(material.linear_density / (1200 * M_PI * 1e-4), 1, 1e-12);
   EXPECT_NEAR(material.axial_stiffness / (1e7 * M_PI * 1e-4), 1, 1e-12);
-  EXPECT_NEAR(material.bending_stiffness / (1e7 * M_PI * 1e-8 / 4), 1, 1e-12);
+  EXPECT_NEAR(material.bending_stiffness.front() / (1e7 * M_PI * 1e-8 / 4), 1, 1e-12);
   EXPECT_NEAR(material.torsional_stiffness / (0.4e7 * M_PI * 1e-8 / 2), 1, 1e-12);
   EXPECT_EQ(material.drag, 0.3);
 }

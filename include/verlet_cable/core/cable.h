@@ -21,6 +21,7 @@ struct CableModel {
   /// [1/m] a node, n + 1: curvature about the material's y and z axes that carries no moment; empty where the cable is straight
   /// unloaded
   std::vector<std::array<double, 2>> rest_curvature;
+  std::vector<double> rest_twist;  ///< [rad/m] a node, n + 1: twist that carries no moment; empty where there is none
   /// a node, n + 1: how much of the cable half a segment around it bends, above 0 to 1; empty where all of it does
   std::vector<double> flexible_fraction;
 
@@ -29,6 +30,13 @@ struct CableModel {
   double length() const;                     ///< [m] at rest
   double length(int first, int last) const;  ///< [m] at rest, between two nodes
   std::vector<double> arc_length() const;    ///< [m] a node, n + 1, from the start, at rest
+  /// Whether bending and twist depend on each other through the material's axes: such a cable has a frame a segment, in
+  /// `directors`, `spin` and `joint_twist` of its state. One that is straight at rest and alike about y and z does without.
+  bool is_whole_rod() const {
+    const BendingStiffness& stiffness = material.bending_stiffness;
+    return !stiffness.is_isotropic() || (stiffness.largest() > 0 && !rest_curvature.empty()) ||
+           (material.torsional_stiffness > 0 && !rest_twist.empty());
+  }
   /// [m] of so much cable around a node, what bends
   double bending_length(int node, double around) const {
     return flexible_fraction.empty() ? around : flexible_fraction[node] * around;
@@ -44,7 +52,13 @@ struct CableState {
   std::vector<double> tension;  ///< [N] a segment, n, > 0 is tension; mean over the last substep
   /// [N] a segment, n: the tension without the part that bending and twist have in it; where the next substep's solution starts
   std::vector<double> axial_multiplier;
-  std::vector<double> twist;  ///< [rad/m] a segment, n
+  std::vector<double> twist;  ///< [rad/m] a segment, n; of a whole rod 0
+  // Of a whole rod, empty otherwise
+  std::vector<Vector3> directors;  ///< a segment, n: the material's y axis, a unit vector normal to the segment
+  std::vector<double> spin;        ///< [rad/s] a segment, n, about its direction
+  /// [rad] a node, n + 1, any number of turns: between the segments before and after it; at a clamped end between clamp and
+  /// segment; 0 at other ends, and at clamps inside, whose targets have it
+  std::vector<double> joint_twist;
   int reference_node = 0;     ///< where the material's orientation is known: the first clamp's node
   Quaternion reference_orientation = Quaternion::Identity();  ///< there: x along the cable, roll of the material
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <optional>
@@ -13,12 +14,22 @@ namespace verlet_cable {
 
 class TriangleMesh;
 
+/// EI [N m^2] about the material's y and z axes; one number means both.
+struct BendingStiffness : std::array<double, 2> {
+  BendingStiffness(double about_both = 0) : array{about_both, about_both} {}
+  BendingStiffness(double about_y, double about_z) : array{about_y, about_z} {}
+
+  bool is_isotropic() const { return front() == back(); }
+  double smallest() const { return std::min(front(), back()); }
+  double largest() const { return std::max(front(), back()); }
+};
+
 /// What a cable is made of. Ranges: see `validate`.
 struct MaterialDesc {
   double linear_density = 0;           ///< [kg/m] of rest length, > 0
   double radius = 0;                   ///< [m], > 0
   double axial_stiffness = infinity;   ///< EA [N], > 0; infinite: inextensible
-  double bending_stiffness = 0;        ///< EI [N m^2], >= 0
+  BendingStiffness bending_stiffness;  ///< EI [N m^2], >= 0
   double torsional_stiffness = 0;      ///< GJ [N m^2], >= 0
   double axial_damping = 0;            ///< [N s] force per strain rate, >= 0
   double bending_damping = 0;          ///< [N m^2 s] moment per curvature rate, >= 0
@@ -81,6 +92,7 @@ struct CableDesc {
   std::array<double, 4> color{0.1, 0.1, 0.1, 1.0};  ///< red, green, blue, alpha; 0 to 1
   InitialShapeDesc initial;
   RestCurvatureDesc rest_curvature;
+  double rest_twist = 0;                   ///< [rad/m] twist that carries no moment
   std::array<double, 2> stiff_ends{0, 0};  ///< [m] at start and end, in plugs, sleeves or grips, that do not bend; >= 0
   std::vector<AttachmentDesc> attachments;
   std::vector<PointMassDesc> point_masses;
@@ -244,6 +256,8 @@ struct NamedMaterial {
 struct SceneDesc {
   std::string frame_id = "world";
   double time_step = 0.001;  ///< [s], > 0
+  /// Motion that a step cannot resolve dies out within some steps; without, energy is conserved and such motion goes on.
+  bool numerical_damping = true;
   GravityDesc gravity;
   FluidDesc fluid;
   double publish_rate = 50;  ///< [Hz], > 0

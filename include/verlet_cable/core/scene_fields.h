@@ -66,11 +66,10 @@ constexpr std::array<Field<FluidDesc>, 4> fluid_fields{{
     {"tangential_drag", &FluidDesc::tangential_drag, "", not_negative},
 }};
 
-constexpr std::array<Field<MaterialDesc>, 11> material_fields{{
+constexpr std::array<Field<MaterialDesc>, 10> material_fields{{
     {"linear_density", &MaterialDesc::linear_density, "kg/m", positive, true},
     {"radius", &MaterialDesc::radius, "m", positive, true},
     {"axial_stiffness", &MaterialDesc::axial_stiffness, "N", positive_or_infinite},
-    {"bending_stiffness", &MaterialDesc::bending_stiffness, "N m^2", not_negative},
     {"torsional_stiffness", &MaterialDesc::torsional_stiffness, "N m^2", not_negative},
     {"axial_damping", &MaterialDesc::axial_damping, "N s", not_negative},
     {"bending_damping", &MaterialDesc::bending_damping, "N m^2 s", not_negative},
@@ -79,6 +78,9 @@ constexpr std::array<Field<MaterialDesc>, 11> material_fields{{
     {"friction", &MaterialDesc::friction, "", not_negative},
     {"breaking_tension", &MaterialDesc::breaking_tension, "N", positive_or_infinite},
 }};
+
+constexpr Field<MaterialDesc, BendingStiffness> bending_stiffness_field{"bending_stiffness", &MaterialDesc::bending_stiffness,
+                                                                        "N m^2", not_negative};
 
 constexpr std::array<Field<CableDesc>, 1> cable_fields{{
     {"length", &CableDesc::length, "m", {1e-9, 1e9, "any number above 0"}, true},

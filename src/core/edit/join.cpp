@@ -5,6 +5,7 @@
 #include "chain/node_arrays.h"
 #include "rod/length_projection.h"
 #include "rod/material_frames.h"
+#include "scene/scene_errors.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/scene_fields.h"
 #include "world/implementation.h"
@@ -20,12 +21,18 @@ constexpr double approach = 0.2;
 /// Relative, of what a cable between two holders must span.
 constexpr double rounding = 1e-9;
 
+std::string text(const BendingStiffness& stiffness) {
+  return stiffness.is_isotropic() ? number_text(stiffness.front()) : list_text(stiffness);
+}
+
 /// The first property in which two materials differ; none if they are the same.
 std::optional<std::string> difference(const MaterialDesc& first, const MaterialDesc& second) {
   for (const auto& field : material_fields) {
     if (first.*field.member != second.*field.member)
       return std::string(field.key) + " " + number_text(first.*field.member) + " and " + number_text(second.*field.member);
   }
+  if (first.bending_stiffness != second.bending_stiffness)
+    return bending_stiffness_field.key + (" " + text(first.bending_stiffness)) + " and " + text(second.bending_stiffness);
   return std::nullopt;
 }
 

@@ -33,7 +33,7 @@ void Bending::resize(const CableModel& model) {
 
 void Bending::start(const CableModel& model, const VectorArray& segment, const std::vector<HeldDirection>& directions, double h,
                     double part) {
-  const double stiffness = model.material.bending_stiffness, damping = model.material.bending_damping / h;
+  const double stiffness = model.material.bending_stiffness.largest(), damping = model.material.bending_damping / h;
   active_ = stiffness > 0 || model.material.bending_damping > 0;
   if (!active_) return;
   part_ = part;
@@ -186,7 +186,7 @@ double bending_energy(const CableModel& model, const CableState& state, const st
                       side * natural(clamp.node, length, i, i));
     }
   }
-  return model.material.bending_stiffness * energy;
+  return model.material.bending_stiffness.largest() * energy;
 }
 
 }  // namespace verlet_cable

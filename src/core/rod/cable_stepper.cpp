@@ -133,7 +133,7 @@ void CableStepper::set_loads(const Substep& s) {
     const double mass = std::accumulate(s.model.masses.begin(), s.model.masses.end(), 0.0);
     const double length = s.model.length();
     const double weight = std::max(s.environment.gravity.at(get(position_, 0)).norm(), standard_gravity) * mass;
-    const double stiffness = taut_stiffness * (weight + s.model.material.bending_stiffness / (length * length));
+    const double stiffness = taut_stiffness * (weight + s.model.material.bending_stiffness.largest() / (length * length));
     for (int i = held.front().node; i < held.back().node; ++i)
       system_.compliance[i] = target_length_[i] * target_length_[i] * target_length_[i] / stiffness;
   }

@@ -103,7 +103,7 @@ bool set_initial_state(const InitialShapeDesc& initial, bool settles, const Cabl
 
 bool settles_at_start(const CableDesc& desc, const MaterialDesc& material) {
   if (desc.initial.type == InitialShapeDesc::Type::settled) return true;
-  return desc.initial.type == InitialShapeDesc::Type::automatic && material.bending_stiffness > 0 &&
+  return desc.initial.type == InitialShapeDesc::Type::automatic && material.bending_stiffness.largest() > 0 &&
          std::any_of(desc.attachments.begin(), desc.attachments.end(),
                      [](const AttachmentDesc& a) { return a.type == AttachmentType::clamp; });
 }

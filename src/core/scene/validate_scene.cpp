@@ -81,6 +81,13 @@ void check_attachments(const std::string& prefix, const CableDesc& cable, Unique
   }
 }
 
+void check_bending_stiffness(const std::string& prefix, const MaterialDesc& material, Errors& errors) {
+  const auto& [key, member, unit, range, required] = bending_stiffness_field;
+  const BendingStiffness& stiffness = material.bending_stiffness;
+  if (!stiffness.is_isotropic()) return check_numbers(prefix + key, stiffness, range, unit, errors);
+  if (!range.contains(stiffness.front())) errors.add(prefix + key, number_text(stiffness.front()), range.text(unit));
+}
+
 /// Lines for dampings that leave nothing of a cable's motion. Steps are implicit and carry any damping; but where it outweighs
 /// the inertia of a segment so much, rounding does, too.
 void check_damping(const std::string& key, const SceneDesc& scene, const CableDesc& cable, const MaterialDesc& material,
@@ -254,7 +261,7 @@ std::vector<std::string> validate_distances(const SceneDesc& scene, const Bounda
     const CableDesc& cable = scene.cables[i];
     const MaterialDesc* material = scene.find_material(cable.material);
     if (material && material->axial_stiffness == infinity && is_sound(cable))
-      check_distances(indexed("cables", i), cable, material->bending_stiffness > 0, poses, errors);
+      check_distances(indexed("cables", i), cable, material->bending_stiffness.largest() > 0, poses, errors);
   }
   return errors.take();
 }
@@ -278,6 +285,7 @@ std::vector<std::string> validate(const SceneDesc& scene) {
   for (const NamedMaterial& named : scene.materials) {
     materials.check("materials." + escaped(named.name), named.name, errors);
     check_fields("materials." + escaped(named.name) + ".", material_fields, named.material, errors);
+    check_bending_stiffness("materials." + escaped(named.name) + ".", named.material, errors);
   }
 
   UniqueNames bodies, attachments;

@@ -25,7 +25,7 @@ double remaining(double caught, double distance, double time) {
 }
 
 bool holds_direction(const CableModel& model, const Attachment& attachment) {
-  return attachment.type == AttachmentType::clamp && model.material.bending_stiffness > 0;
+  return attachment.type == AttachmentType::clamp && model.material.bending_stiffness.largest() > 0;
 }
 
 /// Where an attachment at `pose` wants its own node or one next to it.
@@ -75,7 +75,7 @@ std::vector<WantedNode> wanted_nodes(const CableModel& model, const Attachment& 
   const Pose pose = frame * attachment.pose;
   const int node = attachment.node;
   std::vector<WantedNode> wanted{{node, pose.position}};
-  if (attachment.type == AttachmentType::hinge || model.material.bending_stiffness > 0) return wanted;
+  if (attachment.type == AttachmentType::hinge || model.material.bending_stiffness.largest() > 0) return wanted;
   if (node > 0) wanted.push_back({node - 1, target_position(model, attachment, pose, node - 1)});
   if (node < model.segments()) wanted.push_back({node + 1, target_position(model, attachment, pose, node + 1)});
   return wanted;

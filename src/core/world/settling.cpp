@@ -53,7 +53,7 @@ constexpr int short_start_iterations = 2500000;  // times segments
 
 /// A step [s] in which a fold of a single joint opens, where a longer one would hold on to it.
 double shortest_step(const CableModel& model) {
-  const double stiffness = model.material.bending_stiffness, length = model.segment_length;
+  const double stiffness = model.material.bending_stiffness.largest(), length = model.segment_length;
   if (!(stiffness > 0)) return first_settling_step;
   const double period = length * length * std::sqrt(model.material.linear_density / stiffness);
   return std::clamp(0.05 * period, shortest_substep, first_settling_step);

@@ -56,8 +56,8 @@ auto fields(T& x, const RestCurvatureDesc*) {
 }
 template <class T>
 auto fields(T& x, const CableDesc*) {
-  return std::tie(x.name, x.length, x.segments, x.material, x.color, x.initial, x.rest_curvature, x.stiff_ends, x.attachments,
-                  x.point_masses);
+  return std::tie(x.name, x.length, x.segments, x.material, x.color, x.initial, x.rest_curvature, x.rest_twist, x.stiff_ends,
+                  x.attachments, x.point_masses);
 }
 template <class T>
 auto fields(T& x, const GridDesc*) {
@@ -108,20 +108,20 @@ auto fields(T& x, const RobotDesc*) {
 /// What the world itself reads: not what only programs do, nor what is made into particles and obstacles at once.
 template <class T>
 auto fields(T& x, const SceneDesc*) {
-  return std::tie(x.time_step, x.gravity, x.fluid, x.limits.segments, x.materials, x.cables, x.nets, x.integrator, x.robot,
-                  x.contact);
+  return std::tie(x.time_step, x.numerical_damping, x.gravity, x.fluid, x.limits.segments, x.materials, x.cables, x.nets,
+                  x.integrator, x.robot, x.contact);
 }
 
 // Cables
 template <class T>
 auto fields(T& x, const CableModel*) {
   return std::tie(x.name, x.material, x.material_name, x.color, x.segment_length, x.rest_lengths, x.masses, x.rest_curvature,
-                  x.flexible_fraction);
+                  x.rest_twist, x.flexible_fraction);
 }
 template <class T>
 auto fields(T& x, const CableState*) {
-  return std::tie(x.positions, x.velocities, x.accelerations, x.tension, x.axial_multiplier, x.twist, x.reference_node,
-                  x.reference_orientation);
+  return std::tie(x.positions, x.velocities, x.accelerations, x.tension, x.axial_multiplier, x.twist, x.directors, x.spin,
+                  x.joint_twist, x.reference_node, x.reference_orientation);
 }
 template <class T>
 auto fields(T& x, const SimulatedCable*) {
@@ -135,7 +135,7 @@ auto fields(T& x, const KinematicTarget*) {
 }
 template <class T>
 auto fields(T& x, const DirectionTarget*) {
-  return std::tie(x.attachment, x.node, x.orientation, x.gap, x.caught, x.next_orientation);
+  return std::tie(x.attachment, x.node, x.orientation, x.gap, x.caught, x.next_orientation, x.twist_before, x.twist_after);
 }
 template <class T>
 auto fields(T& x, const KinematicTargets*) {
@@ -252,6 +252,8 @@ template <class T, std::size_t count>
 struct IsList<std::array<T, count>> : std::true_type {};
 template <class T, std::size_t count>
 struct IsList<T[count]> : std::true_type {};
+template <>
+struct IsList<BendingStiffness> : std::true_type {};
 template <>
 struct IsList<std::string> : std::true_type {};
 template <class T>

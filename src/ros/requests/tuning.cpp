@@ -14,21 +14,36 @@ namespace {
 using dynamic_reconfigure::Config;
 
 /// Dampings, stiffnesses and friction: what does not change masses or shapes.
-constexpr double MaterialDesc::*tunable_of_material[] = {&MaterialDesc::axial_stiffness,
-                                                         &MaterialDesc::bending_stiffness,
-                                                         &MaterialDesc::torsional_stiffness,
-                                                         &MaterialDesc::axial_damping,
-                                                         &MaterialDesc::bending_damping,
-                                                         &MaterialDesc::torsional_damping,
-                                                         &MaterialDesc::drag,
+constexpr double MaterialDesc::*tunable_of_material[] = {&MaterialDesc::axial_stiffness,   &MaterialDesc::torsional_stiffness,
+                                                         &MaterialDesc::axial_damping,     &MaterialDesc::bending_damping,
+                                                         &MaterialDesc::torsional_damping, &MaterialDesc::drag,
                                                          &MaterialDesc::friction};
 
-void add_vector(const std::string& name, const std::string& description, const std::function<Vector3&(SceneDesc&)>& vector,
+template <class Part>
+void add_vector(const std::string& name, const std::string& description, Part SceneDesc::*part, Vector3 Part::*vector,
                 std::vector<TunableNumber>& numbers) {
   const char* axes[] = {"_x", "_y", "_z"};
   for (int axis = 0; axis < 3; ++axis)
     numbers.push_back({name + axes[axis], description, coordinate,
-                       [vector, axis](SceneDesc& scene) -> double& { return vector(scene)[axis]; }});
+                       [=](const SceneDesc& scene) { return (scene.*part.*vector)[axis]; },
+                       [=](SceneDesc& scene, double value) { (scene.*part.*vector)[axis] = value; }});
+}
+
+/// Of a material that bends alike about all axes one number, which stays so; else one an axis.
+void add_bending_stiffness(const SceneDesc& scene, std::size_t material, std::vector<TunableNumber>& numbers) {
+  const auto& [key, member, unit, range, required] = bending_stiffness_field;
+  const std::string name = scene.materials[material].name + "_" + key, description = std::string("[") + unit + "]";
+  const auto add = [&, range = range](const std::string& suffix, std::size_t first, std::size_t last) {
+    numbers.push_back({name + suffix, description, range,
+                       [=](const SceneDesc& s) { return s.materials[material].material.bending_stiffness[first]; },
+                       [=](SceneDesc& s, double value) {
+                         BendingStiffness& stiffness = s.materials[material].material.bending_stiffness;
+                         stiffness[first] = stiffness[last] = value;
+                       }});
+  };
+  if (scene.materials[material].material.bending_stiffness.is_isotropic()) return add("", 0, 1);
+  add("_y", 0, 0);
+  add("_z", 1, 1);
 }
 
 void add_group_state(Config& config) {
@@ -62,7 +77,7 @@ SceneDesc changed_scene(SceneDesc scene, const std::vector<TunableNumber>& numbe
     } else if (!number->range.contains(change.value)) {
       errors.push_back("tuning." + number->name + ": " + number_text(change.value) + "; allowed: " + number->range.text());
     } else {
-      number->value(scene) = change.value;
+      number->set(scene, change.value);
     }
   }
   if (!changes.bools.empty() || !changes.ints.empty() || !changes.strs.empty())
@@ -76,10 +91,8 @@ SceneDesc changed_scene(SceneDesc scene, const std::vector<TunableNumber>& numbe
 
 std::vector<TunableNumber> tunable_numbers(const SceneDesc& scene) {
   std::vector<TunableNumber> numbers;
-  add_vector(
-      "gravity", "[m/s^2]", [](SceneDesc& s) -> Vector3& { return s.gravity.acceleration; }, numbers);
-  add_vector(
-      "wind", "[m/s] velocity of the fluid", [](SceneDesc& s) -> Vector3& { return s.fluid.velocity; }, numbers);
+  add_vector("gravity", "[m/s^2]", &SceneDesc::gravity, &GravityDesc::acceleration, numbers);
+  add_vector("wind", "[m/s] velocity of the fluid", &SceneDesc::fluid, &FluidDesc::velocity, numbers);
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     for (const auto& field : material_fields) {
       const auto member = field.member;
@@ -90,12 +103,15 @@ std::vector<TunableNumber> tunable_numbers(const SceneDesc& scene) {
       Range range = field.range;
       range.infinite = false;
       numbers.push_back({scene.materials[i].name + "_" + field.key, std::string("[") + field.unit + "]", range,
-                         [i, member](SceneDesc& s) -> double& { return s.materials[i].material.*member; }});
+                         [i, member](const SceneDesc& s) { return s.materials[i].material.*member; },
+                         [i, member](SceneDesc& s, double value) { s.materials[i].material.*member = value; }});
     }
+    add_bending_stiffness(scene, i, numbers);
   }
   if (scene.contact)
     numbers.push_back({"contact_friction", "[] cable against cable", not_negative,
-                       [](SceneDesc& s) -> double& { return s.contact->friction; }});
+                       [](const SceneDesc& s) { return s.contact->friction; },
+                       [](SceneDesc& s, double value) { s.contact->friction = value; }});
   return numbers;
 }
 
@@ -135,7 +151,7 @@ void Tuning::follow_scene() {
 }
 
 Config Tuning::present() const {
-  SceneDesc scene = simulation_.scene();
+  const SceneDesc& scene = simulation_.scene();
   return make_config(numbers_, [&](const TunableNumber& number) { return number.value(scene); });
 }
 

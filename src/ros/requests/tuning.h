@@ -15,10 +15,11 @@ namespace verlet_cable {
 
 /// A number of a scene that can be changed while it runs.
 struct TunableNumber {
-  std::string name;  ///< `gravity_z`, `wind_x`, `<material>_bending_stiffness`
+  std::string name;  ///< `gravity_z`, `wind_x`, `<material>_bending_stiffness`; of one that bends unequally `..._y` and `..._z`
   std::string description;
   Range range;
-  std::function<double&(SceneDesc&)> value;
+  std::function<double(const SceneDesc&)> value;
+  std::function<void(SceneDesc&, double)> set;
 };
 
 /// What can be tuned of a scene: gravity, wind (the fluid's velocity), and of each material the dampings, finite stiffnesses and

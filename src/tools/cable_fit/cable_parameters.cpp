@@ -19,14 +19,14 @@ constexpr double time_step = 0.01;  // [s]
 struct MaterialParameter {
   const char* key;
   const char* unit;
-  double MaterialDesc::*member;
+  void (*set)(MaterialDesc& material, double value);
   double lowest, highest;  ///< decimal logarithms of the value over the linear density
 };
 constexpr MaterialParameter material_parameters[] = {
-    {"bending_stiffness", "N m^2", &MaterialDesc::bending_stiffness, -5, 2},
-    {"bending_damping", "N m^2 s", &MaterialDesc::bending_damping, -7, 0},
-    {"drag", "kg/(m s)", &MaterialDesc::drag, -4, 2},
-    {"torsional_stiffness", "N m^2", &MaterialDesc::torsional_stiffness, -5, 2},
+    {"bending_stiffness", "N m^2", [](MaterialDesc& m, double value) { m.bending_stiffness = value; }, -5, 2},
+    {"bending_damping", "N m^2 s", [](MaterialDesc& m, double value) { m.bending_damping = value; }, -7, 0},
+    {"drag", "kg/(m s)", [](MaterialDesc& m, double value) { m.drag = value; }, -4, 2},
+    {"torsional_stiffness", "N m^2", [](MaterialDesc& m, double value) { m.torsional_stiffness = value; }, -5, 2},
 };
 constexpr std::size_t bending_index = 0, drag_index = 2, torsion_index = 3;
 constexpr std::size_t length_index = std::size(material_parameters);
@@ -216,7 +216,7 @@ SceneDesc cable_scene(const CableSettings& settings, const std::vector<double>& 
   material.name = settings.name;
   material.material.linear_density = settings.linear_density;
   material.material.radius = settings.radius;
-  for (std::size_t i = 0; i < length_index; ++i) material.material.*material_parameters[i].member = std::pow(10, values[i]);
+  for (std::size_t i = 0; i < length_index; ++i) material_parameters[i].set(material.material, std::pow(10, values[i]));
   CableDesc& cable = scene.cables.emplace_back();
   cable.name = settings.name;
   cable.material = settings.name;

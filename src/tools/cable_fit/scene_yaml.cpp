@@ -38,6 +38,8 @@ std::string scene_yaml(const Fit& fit) {
   for (const Field<MaterialDesc>& field : material_fields)
     if (material.material.*field.member != plain.*field.member)
       append("    ", field.key, number_text(material.material.*field.member), yaml);
+  // Cables are fitted that bend alike about all axes.
+  append("    ", bending_stiffness_field.key, number_text(material.material.bending_stiffness.front()), yaml);
   yaml += "cables:\n";
   append("  - ", "name", cable.name, yaml);
   append("    ", "length", number_text(cable.length), yaml);
