@@ -46,6 +46,12 @@ void each_component(const Operation& operation) {
   for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) operation(component);
 }
 
+double dot(const std::vector<double>& a, const std::vector<double>& b, int count) {
+  double sum = 0;
+  for (int i = 0; i < count; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
 double dot(const VectorArray& a, const VectorArray& b, int count) {
   double sum = 0;
   each_component([&](auto component) {
@@ -88,7 +94,8 @@ bool joins_cables(const Touch& touch) {
 
 void ContactSolver::Work::resize(std::size_t nodes) {
   for (VectorArray* a : {&load, &correction, &direction, &own_image, &image}) a->assign(nodes, 0.0);
-  for (std::vector<double>* a : {&gap, &correction_multiplier, &direction_multiplier}) a->assign(nodes, 0.0);
+  for (std::vector<double>* a : {&gap, &correction_multiplier, &direction_multiplier, &torque, &correction_twist, &direction_twist})
+    a->assign(nodes, 0.0);
 }
 
 bool ContactSolver::advance(std::vector<Participant>& participants, std::vector<Touch>& touches) {
@@ -124,7 +131,7 @@ bool ContactSolver::solve(std::vector<Participant>& participants, std::vector<To
   for (int i = 0; i < maximum_iterations; ++i) {
     const bool changed = i == 0 ? press(participants, touches) : shorten(participants, touches);
     if (stale || changed) factor(participants, touches);
-    for (Participant& p : participants) p.stepper->solver().solve(p.stepper->system());
+    for (Participant& p : participants) p.stepper->solve_linear();
     couple(participants);
     work_along_ = work_along(participants);
     double largest = 0;
@@ -175,7 +182,10 @@ bool ContactSolver::shorten(std::vector<Participant>& participants, std::vector<
 /// Of the forces along the last correction [J].
 double ContactSolver::work_along(std::vector<Participant>& participants) const {
   double work = 0;
-  for (Participant& p : participants) work += dot(p.stepper->system().load, p.stepper->solver().displacement(), nodes(p));
+  for (Participant& p : participants) {
+    work += dot(p.stepper->system().load, p.stepper->correction(), nodes(p));
+    if (p.stepper->is_whole_rod()) work += dot(p.stepper->torque(), p.stepper->twist_correction(), segments(p));
+  }
   return work;
 }
 
@@ -220,13 +230,16 @@ void ContactSolver::couple(std::vector<Participant>& participants) {
   for (std::size_t k = 0; k < count; ++k) {
     Participant& p = participants[k];
     Work& w = work_[k];
-    w.correction = p.stepper->solver().displacement();
-    w.correction_multiplier = p.stepper->solver().multiplier();
+    w.correction = p.stepper->correction();
+    w.correction_multiplier = p.stepper->multiplier_correction();
+    w.correction_twist = p.stepper->twist_correction();
     whole += std::abs(dot(residual(k), w.correction, nodes(p)));
     std::swap(w.load, residual(k));
     std::swap(w.gap, p.stepper->system().gap);
+    std::swap(w.torque, p.stepper->torque());
     residual(k).assign(w.load.x.size(), 0.0);
     p.stepper->system().gap.assign(w.gap.size(), 0.0);
+    p.stepper->torque().assign(w.torque.size(), 0.0);
   }
   add_coupling(
       -1, [&](int k) -> const VectorArray& { return work_[k].correction; }, residual);
@@ -238,8 +251,8 @@ void ContactSolver::couple(std::vector<Participant>& participants) {
     double next_energy = 0;
     for (std::size_t k = 0; k < count; ++k) {
       CableStepper& stepper = *participants[k].stepper;
-      stepper.solver().solve(stepper.system());
-      next_energy += dot(residual(k), stepper.solver().displacement(), nodes(participants[k]));
+      stepper.solve_linear();
+      next_energy += dot(residual(k), stepper.correction(), nodes(participants[k]));
     }
     if (!(next_energy > enough)) break;
     const double ratio = i == 0 ? 0 : next_energy / energy;
@@ -247,8 +260,9 @@ void ContactSolver::couple(std::vector<Participant>& participants) {
     for (std::size_t k = 0; k < count; ++k) {
       const Participant& p = participants[k];
       Work& w = work_[k];
-      scale_and_add(ratio, p.stepper->solver().displacement(), w.direction, nodes(p));
-      scale_and_add(ratio, p.stepper->solver().multiplier(), w.direction_multiplier, segments(p));
+      scale_and_add(ratio, p.stepper->correction(), w.direction, nodes(p));
+      scale_and_add(ratio, p.stepper->multiplier_correction(), w.direction_multiplier, segments(p));
+      if (p.stepper->is_whole_rod()) scale_and_add(ratio, p.stepper->twist_correction(), w.direction_twist, segments(p));
       scale_and_add(ratio, residual(k), w.own_image, nodes(p));
       w.image = w.own_image;
     }
@@ -264,6 +278,7 @@ void ContactSolver::couple(std::vector<Participant>& participants) {
       Work& w = work_[k];
       add_scaled(step, w.direction, w.correction, nodes(p));
       add_scaled(step, w.direction_multiplier, w.correction_multiplier, segments(p));
+      if (p.stepper->is_whole_rod()) add_scaled(step, w.direction_twist, w.correction_twist, segments(p));
       add_scaled(-step, w.image, residual(k), nodes(p));
     }
   }
@@ -271,7 +286,8 @@ void ContactSolver::couple(std::vector<Participant>& participants) {
     CableStepper& stepper = *participants[k].stepper;
     std::swap(work_[k].load, stepper.system().load);
     std::swap(work_[k].gap, stepper.system().gap);
-    stepper.solver().set_solution(work_[k].correction, work_[k].correction_multiplier);
+    std::swap(work_[k].torque, stepper.torque());
+    stepper.set_correction(work_[k].correction, work_[k].correction_multiplier, work_[k].correction_twist);
   }
 }
 

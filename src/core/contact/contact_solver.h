@@ -35,6 +35,7 @@ class ContactSolver {
     VectorArray correction, direction;  // nodes
     VectorArray own_image, image;       // nodes: the matrix times the direction, `own` without couplings
     std::vector<double> correction_multiplier, direction_multiplier;  // segments
+    std::vector<double> torque, correction_twist, direction_twist;    // of a whole rod: segments
 
     void resize(std::size_t nodes);
   };

@@ -3,24 +3,10 @@
 #include <algorithm>
 
 #include "geometry/vector_array.h"
+#include "rod/angle_energy.h"
 #include "rod/material_frames.h"
 
 namespace verlet_cable {
-
-namespace {
-
-/// (psi(b) - psi(a)) / (b - a), from the series of psi.
-double mean_slope(double a, double b) {
-  const double sum = a + b, product = a * b;
-  return 1 + sum / 6 + 2.0 / 45 * (sum * sum - product) + 1.0 / 70 * sum * (sum * sum - 2 * product);
-}
-
-/// psi(u)
-double angle_energy(double u) {
-  return u + u * u / 6 + 2.0 / 45 * u * u * u + 1.0 / 70 * u * u * u * u;
-}
-
-}  // namespace
 
 void Bending::resize(const CableModel& model) {
   segments_ = model.segments();
@@ -34,7 +20,7 @@ void Bending::resize(const CableModel& model) {
 void Bending::start(const CableModel& model, const VectorArray& segment, const std::vector<HeldDirection>& directions, double h,
                     double part) {
   const double stiffness = model.material.bending_stiffness.largest(), damping = model.material.bending_damping / h;
-  active_ = stiffness > 0 || model.material.bending_damping > 0;
+  active_ = !model.is_whole_rod() && (stiffness > 0 || model.material.bending_damping > 0);
   if (!active_) return;
   part_ = part;
   if (is_curved_ && model.rest_curvature.empty()) natural_.assign(model.nodes(), 0.0);

@@ -6,16 +6,6 @@ namespace verlet_cable {
 
 namespace {
 
-/// a - b^T c for b^T c symmetric
-PairSymmetric minus_product(const PairSymmetric& a, const PairMatrix& b, const PairMatrix& c) {
-  return {a.xx - (b.row_x.x * c.row_x.x + (b.row_y.x * c.row_y.x + b.row_z.x * c.row_z.x)),
-          a.xy - (b.row_x.x * c.row_x.y + (b.row_y.x * c.row_y.y + b.row_z.x * c.row_z.y)),
-          a.xz - (b.row_x.x * c.row_x.z + (b.row_y.x * c.row_y.z + b.row_z.x * c.row_z.z)),
-          a.yy - (b.row_x.y * c.row_x.y + (b.row_y.y * c.row_y.y + b.row_z.y * c.row_z.y)),
-          a.yz - (b.row_x.y * c.row_x.z + (b.row_y.y * c.row_y.z + b.row_z.y * c.row_z.z)),
-          a.zz - (b.row_x.z * c.row_x.z + (b.row_y.z * c.row_y.z + b.row_z.z * c.row_z.z))};
-}
-
 PairMatrix minus_scaled_transposed(Pair s, const PairMatrix& m) {
   return {{-s * m.row_x.x, -s * m.row_y.x, -s * m.row_z.x},
           {-s * m.row_x.y, -s * m.row_y.y, -s * m.row_z.y},
@@ -36,40 +26,10 @@ PairSymmetric minus_outer(const PairSymmetric& m, const PairVector& a, const Pai
   return {m.xx - a.x * b.x, m.xy - a.x * b.y, m.xz - a.x * b.z, m.yy - a.y * b.y, m.yz - a.y * b.z, m.zz - a.z * b.z};
 }
 
-PairSymmetric times(Pair s, const PairSymmetric& m) {
-  return {s * m.xx, s * m.xy, s * m.xz, s * m.yy, s * m.yz, s * m.zz};
-}
-
-PairSymmetric operator+(const PairSymmetric& a, const PairSymmetric& b) {
-  return {a.xx + b.xx, a.xy + b.xy, a.xz + b.xz, a.yy + b.yy, a.yz + b.yz, a.zz + b.zz};
-}
-
 PairMatrix operator+(const PairMatrix& a, const PairSymmetric& b) {
   return {{a.row_x.x + b.xx, a.row_x.y + b.xy, a.row_x.z + b.xz},
           {a.row_y.x + b.xy, a.row_y.y + b.yy, a.row_y.z + b.yz},
           {a.row_z.x + b.xz, a.row_z.y + b.yz, a.row_z.z + b.zz}};
-}
-
-/// The elements of one index for the first lane, of another for the second.
-PairSymmetric pair(const SymmetricArray& m, int i, int j) {
-  return {Pair{m.xx[i], m.xx[j]}, Pair{m.xy[i], m.xy[j]}, Pair{m.xz[i], m.xz[j]},
-          Pair{m.yy[i], m.yy[j]}, Pair{m.yz[i], m.yz[j]}, Pair{m.zz[i], m.zz[j]}};
-}
-
-Eigen::Vector3d lane(const PairVector& v, int i) {
-  return {v.x[i], v.y[i], v.z[i]};
-}
-
-Eigen::Matrix3d lane(const PairSymmetric& m, int i) {
-  Eigen::Matrix3d out;
-  out << m.xx[i], m.xy[i], m.xz[i], m.xy[i], m.yy[i], m.yz[i], m.xz[i], m.yz[i], m.zz[i];
-  return out;
-}
-
-Eigen::Matrix3d lane(const PairMatrix& m, int i) {
-  Eigen::Matrix3d out;
-  out << lane(m.row_x, i).transpose(), lane(m.row_y, i).transpose(), lane(m.row_z, i).transpose();
-  return out;
 }
 
 /// What the eliminated blocks left to the next node, to the one after, and to the multiplier before the next node.

@@ -42,7 +42,7 @@ void bring_to_rest(CableState& state) {
 void CableStepper::resize(const CableModel& model) {
   if (model.segments() == segments_) return;
   segments_ = model.segments();
-  const std::size_t nodes = model.nodes();
+  const std::size_t nodes = model.nodes() + 1;  // one more, where two are computed with together
   for (VectorArray* a : {&position_, &velocity_, &acceleration_, &segment_, &displacement_, &middle_, &segment_force_,
                          &end_velocity_, &base_load_, &director_})
     a->assign(nodes, 0.0);
@@ -52,6 +52,7 @@ void CableStepper::resize(const CableModel& model) {
   both_held_.reserve(nodes);
   bending_.resize(model);
   twist_.resize(model);
+  rod_.resize(model);
   fluid_.resize(model);
   system_.resize(segments_);
   solver_.resize(segments_);
@@ -72,6 +73,10 @@ void CableStepper::begin(const Substep& s, const CableState& state, SubstepResul
   set_loads(s);
   set_growth(s);
   start_bending(s);
+  if (s.model.is_whole_rod())
+    rod_.start(s.model, state, segment_, s.boundary, s.h, s.damping_time(), s.part());
+  else
+    rod_.leave_out();
   twist_.start(s.model, s.spans, s.damping_time(), s.part());
   fluid_.start(s.environment.fluid, s.environment.gravity, s.damping_time());
   predict(s.h);
@@ -86,6 +91,7 @@ void CableStepper::finish(const Substep& s, bool struck, CableState& state, Subs
   if (!s.statics && (struck || !s.boundary.growing.empty() || holders_accelerate(s.h, s.boundary.nodes)))
     project(s.model, s.boundary.growing);
   result.max_strain = store(s, state);
+  if (rod_.active()) rod_.store(s.boundary, state);
   if (twist_.active()) twist_.follow(s.boundary.directions, state.positions, s.spans);
 }
 
@@ -208,7 +214,7 @@ bool CableStepper::solve(const Substep& s, const CableState& state, SubstepResul
       assemble(s.part());
       factor();
     }
-    solver_.solve(system_);
+    solve_linear();
     ++result.iterations;
     const double size = correct();
     if (!(size < largest_correction)) return false;
@@ -226,6 +232,7 @@ void CableStepper::evaluate(const Substep& s) {
   std::fill(end_square_.begin(), end_square_.end(), 0.0);
   for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) evaluate_segments(s.part(), component);
   if (bending_.active()) add_bending_pulls();
+  if (rod_.active()) rod_.add_segment_forces(displacement_, segment_, middle_, segment_force_);
   if (twist_.active()) twist_.add_segment_forces(middle_, displacement_, s.boundary, segment_force_);
   if (s.model.material.axial_stiffness < infinity)
     evaluate_elastic_lengths(s);
@@ -284,9 +291,10 @@ void CableStepper::evaluate_elastic_lengths(const Substep& sub) {
 
 void CableStepper::assemble(double part) {
   system_.clear_stiffness();
-  std::copy(inertia_.begin(), inertia_.end(), system_.diagonal.begin());
+  std::copy_n(inertia_.begin(), segments_ + 1, system_.diagonal.begin());
   for (int i = 0; i < segments_; ++i) {
-    const double stiffness = part * tension_density_[i];
+    // A rod's tension resists the rotation of its segments.
+    const double stiffness = rod_.active() ? 0 : part * tension_density_[i];
     system_.diagonal[i] += stiffness;
     system_.diagonal[i + 1] += stiffness;
     system_.first[i] = -stiffness;
@@ -295,13 +303,44 @@ void CableStepper::assemble(double part) {
     system_.direction.z[i] = middle_.z[i];
   }
   if (bending_.active()) bending_.add_stiffness(system_);
+  if (rod_.active()) rod_.assemble(middle_, tension_density_);
   if (fluid_.active()) fluid_.add_stiffness(system_.diagonal);
 }
 
-/// Applies the solution; the largest correction, in segment lengths.
+void CableStepper::factor() {
+  if (rod_.active())
+    rod_.factor(system_);
+  else
+    solver_.factor(system_, bending_.active());
+}
+
+void CableStepper::solve_linear() {
+  if (rod_.active())
+    rod_.solve(system_);
+  else
+    solver_.solve(system_);
+}
+
+const VectorArray& CableStepper::correction() const {
+  return rod_.active() ? rod_.elimination().displacement() : solver_.displacement();
+}
+
+const std::vector<double>& CableStepper::multiplier_correction() const {
+  return rod_.active() ? rod_.elimination().multiplier() : solver_.multiplier();
+}
+
+void CableStepper::set_correction(const VectorArray& displacement, const std::vector<double>& multiplier,
+                                  const std::vector<double>& twist) {
+  if (rod_.active())
+    rod_.elimination().set_solution(displacement, multiplier, twist);
+  else
+    solver_.set_solution(displacement, multiplier);
+}
+
+/// Applies the solution; the largest correction, in segment lengths or angles.
 double CableStepper::correct() {
   double largest = 0;
-  const VectorArray& delta = solver_.displacement();
+  const VectorArray& delta = correction();
   for (int i = 0; i <= segments_; ++i) {
     displacement_.x[i] += delta.x[i];
     displacement_.y[i] += delta.y[i];
@@ -309,14 +348,18 @@ double CableStepper::correct() {
     const double square = delta.x[i] * delta.x[i] + delta.y[i] * delta.y[i] + delta.z[i] * delta.z[i];
     largest = square <= largest ? largest : square;  // keeps a NaN
   }
-  for (int i = 0; i < segments_; ++i) tension_density_[i] += solver_.multiplier()[i];
-  return std::sqrt(largest) / target_length_[0];
+  for (int i = 0; i < segments_; ++i) tension_density_[i] += multiplier_correction()[i];
+  const double size = std::sqrt(largest) / target_length_[0];
+  if (!rod_.active()) return size;
+  const double turn = rod_.correct(1);
+  return turn <= size ? size : turn;  // keeps a NaN
 }
 
 void CableStepper::take_back(double part) {
-  const VectorArray& delta = solver_.displacement();
+  const VectorArray& delta = correction();
   for (int i = 0; i <= segments_; ++i) set(displacement_, i, get(displacement_, i) - part * get(delta, i));
-  for (int i = 0; i < segments_; ++i) tension_density_[i] -= part * solver_.multiplier()[i];
+  for (int i = 0; i < segments_; ++i) tension_density_[i] -= part * multiplier_correction()[i];
+  if (rod_.active()) rod_.correct(-part);
 }
 
 void CableStepper::move(const Substep& s) {
@@ -390,6 +433,8 @@ void CableStepper::project(const CableModel& model, const std::vector<GrowingSeg
 
 /// What the held nodes' equations of motion lack is what their holders supply.
 void CableStepper::react(const Substep& s) {
+  for (HeldDirection& target : s.boundary.directions) target.torque.setZero();
+  if (rod_.active()) rod_.finish(displacement_, segment_, s.boundary);
   if (s.boundary.nodes.empty()) return;
   for (HeldNode& target : s.boundary.nodes) {
     const int i = target.node;
@@ -397,20 +442,26 @@ void CableStepper::react(const Substep& s) {
     target.force = corrected_load(i) + 2 * mass / s.h * (get(displacement_, i) / s.h - get(velocity_, i));
     if (!s.statics) target.force -= mass * (target.velocity - get(velocity_, i)) / s.h;
   }
-  for (HeldDirection& target : s.boundary.directions) target.torque.setZero();
   if (bending_.active()) bending_.react(displacement_, s.boundary.directions);
   if (twist_.active()) twist_.react(s.boundary);
 }
 
 /// The force of bending and twist along a segment [N].
 double CableStepper::force_along(int i) const {
-  const double density = tension_density_[i] - solver_.multiplier()[i];  // that of the pull, before the last correction
+  const double density = tension_density_[i] - multiplier_correction()[i];  // that of the pull, before the last correction
   const Vector3 middle = get(middle_, i);
   return (get(segment_force_, i) - density * middle).dot(middle) / target_length_[i];
 }
 
 /// The load on a node after the last correction, to first order: its row of the matrix times the solution is gone.
 Vector3 CableStepper::corrected_load(int i) const {
+  if (rod_.active()) {
+    const VectorArray& force = rod_.elimination().force();
+    Vector3 load = get(system_.load, i);
+    if (i > 0) load -= get(force, i - 1);
+    if (i < segments_) load += get(force, i);
+    return load;
+  }
   const VectorArray& delta = solver_.displacement();
   const std::vector<double>& multiplier = solver_.multiplier();
   Vector3 load = get(system_.load, i);
@@ -440,7 +491,7 @@ double CableStepper::store(const Substep& s, CableState& state) const {
     shortest = std::min(shortest, relative);
     const double length = elastic ? 0.5 * (length_[i] + std::sqrt(square)) : target_length_[i];
     state.axial_multiplier[i] = state.tension[i] = tension_density_[i] * length;
-    if (bending_.active()) state.tension[i] += force_along(i);
+    if (bending_.active() || rod_.active()) state.tension[i] += force_along(i);
   }
   return std::max(std::sqrt(longest) - 1, 1 - std::sqrt(shortest));
 }

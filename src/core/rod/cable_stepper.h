@@ -5,6 +5,7 @@
 #include "rod/bending.h"
 #include "rod/block_elimination.h"
 #include "rod/fluid_forces.h"
+#include "rod/kirchhoff_rod.h"
 #include "rod/twist.h"
 #include "target/boundary.h"
 #include "verlet_cable/core/cable.h"
@@ -67,14 +68,23 @@ class CableStepper {
   void begin(const Substep& substep, const CableState& state, SubstepResult& result);
   void evaluate(const Substep& substep);
   void assemble(double part);
-  void factor() { solver_.factor(system_, bending_.active()); }
+  void factor();
+  void solve_linear();  ///< for the loads that `evaluate` found
   double correct();
   void take_back(double part);  ///< of the last correction
   /// `struck`: forces from outside have changed velocities abruptly.
   void finish(const Substep& substep, bool struck, CableState& state, SubstepResult& result);
   const VectorArray& displacement() const { return displacement_; }  ///< nodes: x' - x of the present iterate [m]
   KktSystem& system() { return system_; }
-  BlockElimination& solver() { return solver_; }
+  // The solution of the linear system: of nodes [m], of segments [N/m], and of a whole rod's segments [rad]
+  const VectorArray& correction() const;
+  const std::vector<double>& multiplier_correction() const;
+  const std::vector<double>& twist_correction() const { return rod_.elimination().twist(); }
+  /// Replaces it by one of a larger system that this one is part of.
+  void set_correction(const VectorArray& displacement, const std::vector<double>& multiplier, const std::vector<double>& twist);
+  /// Of a whole rod, what is out of balance about the segments' directions [N m]
+  std::vector<double>& torque() { return rod_.torque(); }
+  bool is_whole_rod() const { return rod_.active(); }
 
  private:
   using Component = std::vector<double> VectorArray::*;
@@ -123,6 +133,7 @@ class CableStepper {
   VectorArray end_velocity_;        // nodes: v' [m/s]
   Bending bending_;
   Twist twist_;
+  KirchhoffRod rod_;
   FluidForces fluid_;
   VectorArray director_;  // segments: the material's y axis; only where the unloaded shape is curved
   KktSystem system_;

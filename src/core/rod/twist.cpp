@@ -172,6 +172,7 @@ void Twist::follow(const std::vector<HeldDirection>& directions, const std::vect
 std::vector<TwistSpan> find_spans(const CableModel& model, const CableState& state,
                                   const std::vector<HeldDirection>& directions) {
   std::vector<TwistSpan> spans;
+  if (model.is_whole_rod()) return spans;
   for (std::size_t k = 0; k + 1 < directions.size(); ++k) {
     TwistSpan span;
     span.first_holder = static_cast<int>(k);

@@ -25,7 +25,7 @@ double relative_roll(const Quaternion& first, const Quaternion& last, const Vect
 void measure_twist(const std::vector<HeldDirection>& directions, const std::vector<Vector3>& positions,
                    std::vector<TwistSpan>& spans);
 
-/// The spans between neighbouring held directions, as twisted as the cable is there now.
+/// The spans between neighbouring held directions, as twisted as the cable is there now; none of a whole rod.
 std::vector<TwistSpan> find_spans(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions);
 
 /// Twist and its forces on the centre line over a substep. Energy GJ angle² / (2 length); the angle depends on the centre line

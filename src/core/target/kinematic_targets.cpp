@@ -254,8 +254,17 @@ void hold_at(double from, double to, const KinematicTargets& targets, Boundary& 
   for (std::size_t k = 0; k < targets.directions.size(); ++k) {
     const DirectionTarget& target = targets.directions[k];
     boundary.directions[k].node = target.node;
+    boundary.directions[k].twist_before = target.twist_before;
+    boundary.directions[k].twist_after = target.twist_after;
     boundary.directions[k].start = target.orientation.slerp(from, target.next_orientation);
     boundary.directions[k].end = target.orientation.slerp(to, target.next_orientation);
+  }
+}
+
+void keep_twist(const Boundary& boundary, KinematicTargets& targets) {
+  for (std::size_t k = 0; k < targets.directions.size(); ++k) {
+    targets.directions[k].twist_before = boundary.directions[k].twist_before;
+    targets.directions[k].twist_after = boundary.directions[k].twist_after;
   }
 }
 

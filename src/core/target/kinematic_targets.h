@@ -106,6 +106,9 @@ Following follow_aims(const std::vector<Attachment>& attachments, double time, d
 /// What is held at the end of a substep that goes from one part of the step to another, 0 to 1.
 void hold_at(double from, double to, const KinematicTargets& targets, Boundary& boundary);
 
+/// Takes over how whole rods are twisted at their clamps after a substep.
+void keep_twist(const Boundary& boundary, KinematicTargets& targets);
+
 /// What is held at the world's time.
 Boundary boundary_now(const KinematicTargets& targets);
 

@@ -226,6 +226,8 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     if (converged && !tolerated) converged = !workspace_.contacts.crossed(state_.cables);
   }
   if (converged) {
+    for (std::size_t k = 0; k < island.cables.size(); ++k)
+      keep_twist(workspace_.cables[k].boundary, state_.cable_progress[island.cables[k]].targets);
     workspace_.contacts.keep(workspace_.members);
   } else if (keeps) {
     take_back(island);

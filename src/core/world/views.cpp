@@ -2,6 +2,8 @@
 
 #include "verlet_cable/core/world.h"
 #include "world/implementation.h"
+#include "rod/bending.h"
+#include "rod/kirchhoff_rod.h"
 #include "world/state_fields.h"
 
 namespace verlet_cable {
@@ -72,8 +74,15 @@ Energy World::energy() const {
   const GravityDesc& gravity = implementation_->state.scene->gravity;
   for (std::size_t k = 0; k < cables().size(); ++k) {
     const SimulatedCable& cable = cables()[k];
-    energy.bend +=
-        bending_energy(cable.model, cable.state, boundary_now(implementation_->state.cable_progress[k].targets).directions);
+    const std::vector<HeldDirection> directions = boundary_now(implementation_->state.cable_progress[k].targets).directions;
+    if (cable.model.is_whole_rod()) {
+      const RodEnergy rod = rod_energy(cable.model, cable.state, directions);
+      energy.bend += rod.bend;
+      energy.twist += rod.twist;
+      energy.kinetic += rod.spin;
+    } else {
+      energy.bend += bending_energy(cable.model, cable.state, directions);
+    }
     for (int i = 0; i < cable.model.nodes(); ++i) {
       energy.kinetic += 0.5 * cable.model.masses[i] * cable.state.velocities[i].squaredNorm();
       energy.gravity += cable.model.masses[i] * gravity.potential_at(cable.state.positions[i]);

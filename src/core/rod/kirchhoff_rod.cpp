@@ -1,0 +1,330 @@
+#include "rod/kirchhoff_rod.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace verlet_cable {
+
+namespace {
+
+/// In statics a twist increment meets at least this part of a joint's resistance: a rod between hinges may be free to spin.
+constexpr double least_static_resistance = 1e-9;
+
+/// About the tangent, of a round section [kg m]
+double section_inertia(const MaterialDesc& material) {
+  return 0.5 * material.linear_density * material.radius * material.radius;
+}
+
+Eigen::Matrix3d segment_frame(const Vector3& segment, const Vector3& director) {
+  Eigen::Matrix3d axes;
+  axes.col(0) = segment.normalized();
+  axes.col(1) = (director - director.dot(axes.col(0)) * axes.col(0)).normalized();
+  axes.col(2) = axes.col(0).cross(axes.col(1));
+  return axes;
+}
+
+/// Calls visitor(direction, segment, whether the segment comes after the clamp) for every joint of a clamp.
+template <class Visitor>
+void visit_clamp_joints(const std::vector<HeldDirection>& directions, int segments, const Visitor& visitor) {
+  for (std::size_t k = 0; k < directions.size(); ++k) {
+    if (directions[k].node > 0) visitor(k, directions[k].node - 1, false);
+    if (directions[k].node < segments) visitor(k, directions[k].node, true);
+  }
+}
+
+double clamp_twist(const CableState& state, const HeldDirection& direction, int segments, bool after) {
+  if (direction.node == 0 || direction.node == segments) return state.joint_twist[direction.node];
+  return after ? direction.twist_after : direction.twist_before;
+}
+
+/// How a clamp is rolled against the material's frame that it holds, so that the joint is as twisted as it is known to be [rad].
+double clamp_roll(const Eigen::Matrix3d& clamp, const Eigen::Matrix3d& segment, bool after, double twist) {
+  return after ? joint_angles(clamp, segment, twist).twist - twist : twist - joint_angles(segment, clamp, twist).twist;
+}
+
+Eigen::Matrix3d rolled(const Quaternion& orientation, double roll) {
+  return (orientation * Eigen::AngleAxisd(roll, Vector3::UnitX())).toRotationMatrix();
+}
+
+/// `around` [m]: the cable that the joint stands for.
+JointStiffness joint_stiffness(const CableModel& model, int node, double around, double damping_time) {
+  const double length = model.bending_length(node, around), per_length = 1 / length;
+  JointStiffness stiffness;
+  stiffness.twist = model.material.torsional_stiffness * per_length;
+  stiffness.bend_y = model.material.bending_stiffness[0] * per_length;
+  stiffness.bend_z = model.material.bending_stiffness[1] * per_length;
+  stiffness.twist_damping = model.material.torsional_damping / damping_time * per_length;
+  stiffness.bend_damping = model.material.bending_damping / damping_time * per_length;
+  if (!model.rest_twist.empty()) stiffness.rest.twist = model.rest_twist[node] * length;
+  if (model.rest_curvature.empty()) return stiffness;
+  stiffness.rest.y = model.rest_curvature[node][0] * length;
+  stiffness.rest.z = model.rest_curvature[node][1] * length;
+  return stiffness;
+}
+
+}  // namespace
+
+void KirchhoffRod::resize(const CableModel& model) {
+  segments_ = model.segments();
+  const std::size_t nodes = segments_ + 2;
+  for (std::vector<double>* a : {&inertia_, &spin_, &tau_}) a->assign(nodes, 0.0);
+  frames_.resize(nodes);
+  net_moment_.assign(nodes, 0.0);
+  joints_.resize(segments_ + 1);
+  clamps_.clear();
+  stiffness_.resize(segments_);
+  elimination_.resize(segments_);
+}
+
+void KirchhoffRod::start(const CableModel& model, const CableState& state, const VectorArray& segment, const Boundary& boundary,
+                         double h, double damping_time, double part) {
+  active_ = true;
+  elastic_ = model.material.axial_stiffness < infinity;
+  simplified_ = false;
+  h_ = h;
+  part_ = part;
+  start_segments(model, state, segment);
+  start_joints(model, state, boundary.directions, damping_time);
+  start_clamps(model, state, boundary.directions, damping_time);
+}
+
+void KirchhoffRod::start_segments(const CableModel& model, const CableState& state, const VectorArray& segment) {
+  const double moment = section_inertia(model.material);
+  const bool is_static = part_ == 1;
+  for (int i = 0; i < segments_; ++i) {
+    const Vector3& director = state.directors[i];
+    set(frames_.start.y, i, director);
+    inertia_[i] = moment * model.rest_lengths[i];
+    if (is_static)
+      inertia_[i] = std::max(inertia_[i], 0.5 * h_ * h_ * least_static_resistance * model.material.torsional_stiffness /
+                                              model.rest_lengths[i]);
+    spin_[i] = is_static ? 0 : state.spin[i];
+    tau_[i] = h_ * spin_[i];
+  }
+  for (int i = 0; i < segments_; i += 2) {
+    const PairVector d = neighbours(segment, i), y = neighbours(frames_.start.y, i);
+    PairFrame frame;
+    frame.x = (1.0 / square_root(dot(d, d))) * d;
+    frame.y = y - dot(y, frame.x) * frame.x;
+    frame.y = (1.0 / square_root(dot(frame.y, frame.y))) * frame.y;
+    frame.z = cross(frame.x, frame.y);
+    put(frame, frames_.start, i);
+  }
+  set(frames_.start, segments_, get(frames_.start, segments_ - 1));
+}
+
+void KirchhoffRod::start_joints(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions,
+                                double damping_time) {
+  const int n = segments_;
+  for (int i = 1; i < n; ++i)
+    joints_.set(i, joint_stiffness(model, i, 0.5 * (model.rest_lengths[i - 1] + model.rest_lengths[i]), damping_time),
+                state.joint_twist[i]);
+  for (const HeldDirection& direction : directions)
+    if (direction.node > 0 && direction.node < n) joints_.set(direction.node, {}, 0);
+  joints_.start(frames_.start, 0, frames_.start, 1, 1, n);
+}
+
+void KirchhoffRod::start_clamps(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions,
+                                double damping_time) {
+  std::size_t count = 0;
+  visit_clamp_joints(directions, segments_, [&](std::size_t, int, bool) { ++count; });
+  if (clamp_before_.start.x.x.size() < count + 2) {
+    clamp_before_.resize(count + 2);
+    clamp_after_.resize(count + 2);
+    clamp_joints_.resize(static_cast<int>(count) + 1);
+  }
+  clamps_.clear();
+  visit_clamp_joints(directions, segments_, [&](std::size_t target, int segment, bool after) {
+    const HeldDirection& held = directions[target];
+    const int joint = static_cast<int>(clamps_.size());
+    clamps_.push_back({static_cast<int>(target), segment, after});
+    const double twist = clamp_twist(state, held, segments_, after);
+    const Eigen::Matrix3d beside = get(frames_.start, segment);
+    const double roll = clamp_roll(held.start.toRotationMatrix(), beside, after, twist);
+    FrameMotion& of_clamp = after ? clamp_before_ : clamp_after_;
+    FrameMotion& of_segment = after ? clamp_after_ : clamp_before_;
+    const Eigen::Matrix3d start = rolled(held.start, roll), end = rolled(held.end, roll);
+    set(of_clamp.start, joint, start);
+    set(of_clamp.end, joint, end);
+    set(of_clamp.middle, joint, start + part_ * (end - start));
+    set(of_segment.start, joint, beside);
+    clamp_joints_.set(joint, joint_stiffness(model, held.node, 0.5 * model.rest_lengths[segment], damping_time), twist);
+  });
+  clamp_joints_.start(clamp_before_.start, 0, clamp_after_.start, 0, 0, static_cast<int>(count));
+}
+
+/// The frames at the end of the present iterate.
+void KirchhoffRod::turn_frames(const VectorArray& displacement, const VectorArray& segment) {
+  for (int i = 0; i < segments_; i += 2) {
+    const PairFrame start = neighbours(frames_.start, i);
+    const PairVector d = neighbours(segment, i) + (neighbours(displacement, i + 1) - neighbours(displacement, i));
+    PairFrame end;
+    end.x = (1.0 / square_root(dot(d, d))) * d;
+    const PairVector mean = both(0.5) * (start.x + end.x);
+    const PairVector turn = (1.0 / dot(mean, mean)) * cross(start.x, end.x) + neighbours(tau_, i) * mean;
+    const PairVector once = cross(turn, start.y);
+    end.y = start.y + (1.0 / (1.0 + 0.25 * dot(turn, turn))) * (once + both(0.5) * cross(turn, once));
+    end.z = cross(end.x, end.y);
+    put(end, frames_.end, i);
+    PairFrame middle = end;
+    if (part_ != 1)
+      middle = {mean, both(0.5) * (start.y + end.y), both(0.5) * (start.z + end.z)};
+    put(middle, frames_.middle, i);
+  }
+  set(frames_.end, segments_, get(frames_.end, segments_ - 1));
+  set(frames_.middle, segments_, get(frames_.middle, segments_ - 1));
+}
+
+/// Copies the frames of segments to where their clamps' joints are.
+void KirchhoffRod::set_clamp_frames() {
+  for (std::size_t k = 0; k < clamps_.size(); ++k) {
+    FrameMotion& beside = clamps_[k].after ? clamp_after_ : clamp_before_;
+    set(beside.end, static_cast<int>(k), get(frames_.end, clamps_[k].segment));
+    set(beside.middle, static_cast<int>(k), get(frames_.middle, clamps_[k].segment));
+  }
+}
+
+void KirchhoffRod::add_segment_forces(const VectorArray& displacement, const VectorArray& segment, const VectorArray& middle,
+                                      VectorArray& segment_force) {
+  turn_frames(displacement, segment);
+  joints_.evaluate(part_, frames_, 0, frames_, 1, 1, segments_);
+  set_clamp_frames();
+  clamp_joints_.evaluate(part_, clamp_before_, 0, clamp_after_, 0, 0, static_cast<int>(clamps_.size()));
+
+  for (int i = 0; i < segments_; i += 2) put(neighbours(joints_.moment, i + 1) - neighbours(joints_.moment, i), net_moment_, i);
+  for (std::size_t k = 0; k < clamps_.size(); ++k) {
+    const ClampJoint& clamp = clamps_[k];
+    const Vector3 moment = get(clamp_joints_.moment, static_cast<int>(k));
+    set(net_moment_, clamp.segment, get(net_moment_, clamp.segment) + (clamp.after ? -moment : moment));
+  }
+  const Pair inverse_h = both(1 / h_);
+  for (int i = 0; i < segments_; i += 2) {
+    const PairVector start = neighbours(frames_.start.x, i), end = neighbours(frames_.end.x, i), d = neighbours(middle, i);
+    const PairVector moment = neighbours(net_moment_, i);
+    const Pair spin = neighbours(spin_, i), tau = neighbours(tau_, i);
+    const Pair mean_square = 0.5 * (1.0 + dot(start, end)), end_spin = 2.0 * inverse_h * tau * mean_square - spin;
+    const PairVector unbalanced = moment - (inverse_h * neighbours(inertia_, i)) * (end_spin * end - spin * start);
+    const Pair inverse_square = 1.0 / dot(d, d);
+    put(square_root(inverse_square) * dot(unbalanced, d), stiffness_.torque, i);
+    PairVector force = inverse_square * cross(d, unbalanced);
+    if (elastic_ && part_ != 1) {
+      // Keeps the energy where the segment's length changes.
+      const PairVector change = neighbours(displacement, i + 1) - neighbours(displacement, i), before = neighbours(segment, i);
+      const PairVector after = before + change;
+      const Pair length = square_root(dot(before, before)), end_length = square_root(dot(after, after));
+      const Pair work = dot(moment, cross(start, end)) * (end_length - length) * inverse_square / (4.0 * mean_square) -
+                        tau * dot(moment, change) / (4.0 * length * end_length);
+      force = force - (2.0 / (length + end_length) * work) * d;
+    }
+    for (int lane = 0; lane < 2 && i + lane < segments_; ++lane) {
+      segment_force.x[i + lane] += force.x[lane];
+      segment_force.y[i + lane] += force.y[lane];
+      segment_force.z[i + lane] += force.z[lane];
+    }
+  }
+  stiffness_.torque[segments_] = 0;
+}
+
+void KirchhoffRod::assemble(const VectorArray& middle, const std::vector<double>& density) {
+  for (int i = 0; i < segments_; ++i) stiffness_.force_density[i] = part_ * density[i];
+  set_stiffness(middle, simplified_);
+}
+
+void KirchhoffRod::factor(const KktSystem& system) {
+  if (elimination_.factor(system, stiffness_, joints_) || simplified_) return;
+  set_stiffness(system.direction, true);
+  elimination_.factor(system, stiffness_, joints_);
+}
+
+double KirchhoffRod::correct(double part) {
+  double largest = 0;
+  for (int i = 0; i < segments_; ++i) {
+    const double change = part * elimination_.twist()[i];
+    tau_[i] += change;
+    largest = std::abs(change) <= largest ? largest : std::abs(change);  // keeps a NaN
+  }
+  return largest;
+}
+
+void KirchhoffRod::finish(const VectorArray& displacement, const VectorArray& segment, Boundary& boundary) {
+  turn_frames(displacement, segment);
+  set_clamp_frames();
+  joints_.follow(frames_.end, 0, frames_.end, 1, 1, segments_);
+  clamp_joints_.evaluate(part_, clamp_before_, 0, clamp_after_, 0, 0, static_cast<int>(clamps_.size()));
+  for (std::size_t k = 0; k < clamps_.size(); ++k) {
+    const ClampJoint& clamp = clamps_[k];
+    HeldDirection& target = boundary.directions[clamp.target];
+    const Vector3 moment = get(clamp_joints_.moment, static_cast<int>(k));
+    target.torque += clamp.after ? moment : Vector3(-moment);
+    (clamp.after ? target.twist_after : target.twist_before) = clamp_joints_.end_twist(static_cast<int>(k));
+  }
+}
+
+void KirchhoffRod::store(const Boundary& boundary, CableState& state) const {
+  for (int i = 0; i < segments_; ++i) {
+    state.directors[i] = get(frames_.end.y, i);
+    const double mean_square = 0.5 * (1 + get(frames_.start.x, i).dot(get(frames_.end.x, i)));
+    state.spin[i] = part_ == 1 ? 0 : 2 * tau_[i] * mean_square / h_ - spin_[i];
+    if (i > 0) state.joint_twist[i] = joints_.end_twist(i);
+  }
+  for (const HeldDirection& direction : boundary.directions) {
+    const bool at_end = direction.node == segments_;
+    state.joint_twist[direction.node] = at_end ? direction.twist_before : direction.node == 0 ? direction.twist_after : 0;
+  }
+}
+
+/// `simple`: without what may be negative (Gauss and Newton's).
+void KirchhoffRod::set_stiffness(const VectorArray& direction, bool simple) {
+  stiffness_.turning_part = simple ? 0 : 0.5 * part_;
+  const Pair turns = both(stiffness_.turning_part), spins = both(2 / (h_ * h_));
+  for (int i = 0; i < segments_; i += 2) {
+    const PairVector d = neighbours(direction, i);
+    const Pair square = dot(d, d);
+    const PairVector axis = square_root(1.0 / square) * d;
+    Pair pull = neighbours(stiffness_.force_density, i);
+    if (simple) pull = Pair{std::max(pull[0], 0.0), std::max(pull[1], 0.0)};
+    pull *= square;
+    const PairVector across = turns * cross(axis, neighbours(net_moment_, i));
+    // pull (1 - axis axis^T) + spins J axis axis^T - across axis^T - axis across^T
+    const PairVector along = (spins * neighbours(inertia_, i) - pull) * axis - across;
+    put({pull + along.x * axis.x - axis.x * across.x, along.x * axis.y - axis.x * across.y, along.x * axis.z - axis.x * across.z,
+         pull + along.y * axis.y - axis.y * across.y, along.y * axis.z - axis.y * across.z,
+         pull + along.z * axis.z - axis.z * across.z},
+        stiffness_.segment, i);
+  }
+  for (std::size_t k = 0; k < clamps_.size(); ++k)
+    add(stiffness_.segment, clamps_[k].segment, 1, get(clamp_joints_.stiffness, static_cast<int>(k)));
+  if (segments_ % 2 == 1) {
+    // Of the segment that makes them even
+    for (auto* diagonal : {&stiffness_.segment.xx, &stiffness_.segment.yy, &stiffness_.segment.zz}) (*diagonal)[segments_] = 1;
+    for (auto* other : {&stiffness_.segment.xy, &stiffness_.segment.xz, &stiffness_.segment.yz}) (*other)[segments_] = 0;
+  }
+}
+
+RodEnergy rod_energy(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions) {
+  const int n = model.segments();
+  RodEnergy sum;
+  const auto add = [&](const JointStiffness& stiffness, const JointAngles& angles) {
+    const JointEnergy energy = joint_energy(stiffness, angles);
+    sum.bend += energy.bend;
+    sum.twist += energy.twist;
+  };
+  const auto frame = [&](int i) { return segment_frame(state.positions[i + 1] - state.positions[i], state.directors[i]); };
+  for (int i = 1; i < n; ++i) {
+    if (std::any_of(directions.begin(), directions.end(), [i](const HeldDirection& d) { return d.node == i; })) continue;
+    add(joint_stiffness(model, i, 0.5 * (model.rest_lengths[i - 1] + model.rest_lengths[i]), infinity),
+        joint_angles(frame(i - 1), frame(i), state.joint_twist[i]));
+  }
+  visit_clamp_joints(directions, n, [&](std::size_t target, int segment, bool after) {
+    const HeldDirection& held = directions[target];
+    const double twist = clamp_twist(state, held, n, after);
+    const Eigen::Matrix3d beside = frame(segment);
+    const Eigen::Matrix3d clamp = rolled(held.end, clamp_roll(held.end.toRotationMatrix(), beside, after, twist));
+    add(joint_stiffness(model, held.node, 0.5 * model.rest_lengths[segment], infinity),
+        after ? joint_angles(clamp, beside, twist) : joint_angles(beside, clamp, twist));
+  });
+  for (int i = 0; i < n; ++i) sum.spin += 0.5 * section_inertia(model.material) * model.rest_lengths[i] * state.spin[i] * state.spin[i];
+  return sum;
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <vector>
+
+#include "rod/rod_elimination.h"
+#include "rod/rod_joints.h"
+#include "target/boundary.h"
+#include "verlet_cable/core/cable.h"
+
+namespace verlet_cable {
+
+/// Bending and twist of a cable that has a frame of its material on every segment, over a substep: Kirchhoff's rod, with two
+/// bending stiffnesses, curvature and twist at rest, twist that varies along it, and the inertia of its section about the tangent.
+///
+/// In a substep a frame turns by the Cayley rotation (1 + [w]x / 2 / ...) of
+///   w = t x t' / |m|² + tau m,   m = (t + t') / 2,
+/// with t and t' the segment's directions at start and end, which `tau` adds its twist to. Moments of joints (see RodJoints) turn
+/// segments: what of them is normal to a segment acts as a pair of forces on its nodes, the rest is the equation for tau,
+///   N . t = 0,   N = M_after - M_before - J (spin' t' - spin t) / h,   spin' = 2 tau |m|² / h - spin.
+class KirchhoffRod {
+ public:
+  void resize(const CableModel& model);
+  /// `segment` [m]: at the start; `part`: where in the substep forces are taken; `damping_time` [s]: infinite in statics, which
+  /// begin without spin.
+  void start(const CableModel& model, const CableState& state, const VectorArray& segment, const Boundary& boundary, double h,
+             double damping_time, double part);
+  /// For a cable that is none.
+  void leave_out() { active_ = false; }
+  bool active() const { return active_; }
+
+  /// Adds the forces of the segments on their first nodes [N]. `segment`: at the start, `middle`: where forces are taken [m].
+  void add_segment_forces(const VectorArray& displacement, const VectorArray& segment, const VectorArray& middle,
+                          VectorArray& segment_force);
+  /// Sets the matrix for what `add_segment_forces` found last. `density`: tension over length [N/m].
+  void assemble(const VectorArray& middle, const std::vector<double>& density);
+  void factor(const KktSystem& system);
+  void solve(const KktSystem& system) { elimination_.solve(system, stiffness_.torque); }
+  /// Adds a part of the solution to the twist increments; the largest change [rad].
+  double correct(double part);
+  /// From here on only with the part of the tangent that is always positive.
+  void simplify() { simplified_ = true; }
+
+  /// Writes the moments on clamps [N m] and their joints' twist, and turns the frames for the last time.
+  void finish(const VectorArray& displacement, const VectorArray& segment, Boundary& boundary);
+  void store(const Boundary& boundary, CableState& state) const;
+
+  RodElimination& elimination() { return elimination_; }
+  const RodElimination& elimination() const { return elimination_; }
+  std::vector<double>& torque() { return stiffness_.torque; }  ///< segments: out of balance, about the tangent [N m]
+
+ private:
+  struct ClampJoint {
+    int target = 0;    ///< index of the held direction
+    int segment = 0;   ///< the segment next to the clamp
+    bool after = true;  ///< the segment comes after the clamp
+  };
+
+  void start_segments(const CableModel& model, const CableState& state, const VectorArray& segment);
+  void start_joints(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions,
+                    double damping_time);
+  void start_clamps(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions,
+                    double damping_time);
+  void turn_frames(const VectorArray& displacement, const VectorArray& segment);
+  void set_clamp_frames();
+  void set_stiffness(const VectorArray& direction, bool simple);
+
+  bool active_ = false;
+  bool elastic_ = false;
+  bool simplified_ = false;
+  int segments_ = 0;
+  double h_ = 0, part_ = 0.5;
+  // Segments
+  std::vector<double> inertia_;  // about the tangent [kg m^2]
+  std::vector<double> spin_;     // at the start [rad/s]
+  std::vector<double> tau_;      // the unknowns: twist increments [rad]
+  FrameMotion frames_;
+  VectorArray net_moment_;  // of its joints [N m]
+  RodJoints joints_;        // nodes: that between segments i - 1 and i
+  // Joints of clamps with segments
+  std::vector<ClampJoint> clamps_;
+  FrameMotion clamp_before_, clamp_after_;
+  RodJoints clamp_joints_;
+  RodStiffness stiffness_;
+  RodElimination elimination_;
+};
+
+/// [J]
+struct RodEnergy {
+  double bend = 0, twist = 0;  ///< elastic
+  double spin = 0;             ///< of the section about the tangent
+};
+/// Of a whole rod, whose clamps hold `directions` at their ends.
+RodEnergy rod_energy(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions);
+
+}  // namespace verlet_cable

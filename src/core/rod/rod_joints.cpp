@@ -1,0 +1,251 @@
+#include "rod/rod_joints.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rod/angle_energy.h"
+
+namespace verlet_cable {
+
+namespace {
+
+/// Of 1 - u / 2: a cable that is folded back on itself bends about no axis.
+constexpr double smallest_turn = 1e-6;
+/// Up to here [rad] series are exact.
+constexpr double small_turn = 0.05;
+constexpr double small_half_twist = 0.25;
+
+/// Products of the axes of neighbouring frames.
+struct Products {
+  Pair u, y, z, sine, cosine;
+};
+
+Products products(const PairFrame& a, const PairFrame& b) {
+  return {1.0 - dot(a.x, b.x), -dot(a.z, b.x), dot(a.y, b.x), dot(a.z, b.y) - dot(a.y, b.z), dot(a.y, b.y) + dot(a.z, b.z)};
+}
+
+Pair half_turn_left(Pair u) {
+  const Pair left = 1.0 - 0.5 * u;
+  return Pair{std::max(left[0], smallest_turn), std::max(left[1], smallest_turn)};
+}
+
+/// angle / sin(angle)
+Pair chi(Pair u) {
+  return square_root(relative_angle_energy(u) / half_turn_left(u));
+}
+
+/// (chi(b) - chi(a)) / (b - a)
+Pair mean_chi_slope(Pair a, Pair chi_a, Pair b, Pair chi_b) {
+  const Pair left_a = half_turn_left(a), left_b = half_turn_left(b);
+  const Pair energy_slope = 1.0 / 6 + 2.0 / 45 * (a + b) + 1.0 / 70 * (a * a + a * b + b * b);
+  const Pair energies = relative_angle_energy(a) + relative_angle_energy(b);
+  return (0.5 * (left_a + left_b) * energy_slope + 0.25 * energies) / (left_a * left_b * (chi_a + chi_b));
+}
+
+struct Turn {
+  Pair angle;     ///< atan2(sine, cosine)
+  Pair quotient;  ///< angle / sine
+};
+
+Turn turn(Pair sine, Pair cosine) {
+  const Pair r = sine / cosine, r2 = r * r;
+  const Pair series = 1.0 - r2 * (1.0 / 3 - r2 * (1.0 / 5 - r2 * (1.0 / 7 - r2 * (1.0 / 9 - r2 * (1.0 / 11)))));
+  Turn result{r * series, series / cosine};
+  for (int lane = 0; lane < 2; ++lane) {
+    if (r2[lane] < small_turn * small_turn && cosine[lane] > 0) continue;
+    const double angle = std::atan2(sine[lane], cosine[lane]);
+    result.angle[lane] = angle;
+    result.quotient[lane] = sine[lane] != 0 ? angle / sine[lane] : 1 / cosine[lane];
+  }
+  return result;
+}
+
+/// tan(x) / x
+Pair relative_tangent(Pair x) {
+  const Pair x2 = x * x;
+  Pair result = 1.0 + x2 * (1.0 / 3 + x2 * (2.0 / 15 + x2 * (17.0 / 315 + x2 * (62.0 / 2835))));
+  for (int lane = 0; lane < 2; ++lane)
+    if (!(x2[lane] < small_turn * small_turn)) result[lane] = std::tan(x[lane]) / x[lane];
+  return result;
+}
+
+struct SineCosine {
+  Pair sine, cosine;
+};
+
+SineCosine half_angle(Pair twist) {
+  const Pair x = 0.5 * twist, x2 = x * x;
+  SineCosine result;
+  result.sine = x * (1.0 - x2 / 6.0 * (1.0 - x2 / 20.0 * (1.0 - x2 / 42.0 * (1.0 - x2 / 72.0 * (1.0 - x2 / 110.0)))));
+  result.cosine = 1.0 - x2 / 2.0 * (1.0 - x2 / 12.0 * (1.0 - x2 / 30.0 * (1.0 - x2 / 56.0 * (1.0 - x2 / 90.0 * (1.0 - x2 / 132.0)))));
+  for (int lane = 0; lane < 2; ++lane) {
+    if (x2[lane] < small_half_twist * small_half_twist) continue;
+    result.sine[lane] = std::sin(x[lane]);
+    result.cosine[lane] = std::cos(x[lane]);
+  }
+  return result;
+}
+
+}  // namespace
+
+void FrameArrays::resize(std::size_t count) {
+  for (VectorArray* axis : {&x, &y, &z}) axis->assign(count, 0.0);
+  std::fill(x.x.begin(), x.x.end(), 1.0);
+  std::fill(y.y.begin(), y.y.end(), 1.0);
+  std::fill(z.z.begin(), z.z.end(), 1.0);
+}
+
+void FrameMotion::resize(std::size_t count) {
+  for (FrameArrays* frames : {&start, &end, &middle}) frames->resize(count);
+}
+
+JointAngles joint_angles(const Eigen::Matrix3d& before, const Eigen::Matrix3d& after, double twist) {
+  const Eigen::Matrix3d q = before.transpose() * after;
+  const double measured = std::atan2(q(2, 1) - q(1, 2), q(1, 1) + q(2, 2));
+  JointAngles angles;
+  angles.twist = twist + std::remainder(measured - twist, 2 * M_PI);
+  const double scale = chi(both(1 - q(0, 0)))[0], y = -q(2, 0), z = q(1, 0);
+  const double cosine = std::cos(0.5 * angles.twist), sine = std::sin(0.5 * angles.twist);
+  angles.y = scale * (cosine * y + sine * z);
+  angles.z = scale * (cosine * z - sine * y);
+  return angles;
+}
+
+JointEnergy joint_energy(const JointStiffness& stiffness, const JointAngles& angles) {
+  const double twist = angles.twist - stiffness.rest.twist, y = angles.y - stiffness.rest.y, z = angles.z - stiffness.rest.z;
+  return {0.5 * (stiffness.bend_y * y * y + stiffness.bend_z * z * z), 0.5 * stiffness.twist * twist * twist};
+}
+
+void RodJoints::resize(int count) {
+  const std::size_t size = count + 1;
+  for (std::vector<double>* a :
+       {&twist_stiffness_, &y_stiffness_, &z_stiffness_, &twist_damping_, &bend_damping_, &rest_twist_, &rest_y_, &rest_z_, &twist_,
+        &u_, &y_, &z_, &sine_, &cosine_, &chi_, &half_sine_, &half_cosine_, &end_twist_})
+    a->assign(size, 0.0);
+  moment.assign(size, 0.0);
+  stiffness.assign(size, 0.0);
+}
+
+void RodJoints::set(int joint, const JointStiffness& stiffness, double twist) {
+  twist_stiffness_[joint] = stiffness.twist;
+  y_stiffness_[joint] = stiffness.bend_y;
+  z_stiffness_[joint] = stiffness.bend_z;
+  twist_damping_[joint] = stiffness.twist_damping;
+  bend_damping_[joint] = stiffness.bend_damping;
+  rest_twist_[joint] = stiffness.rest.twist;
+  rest_y_[joint] = stiffness.rest.y;
+  rest_z_[joint] = stiffness.rest.z;
+  twist_[joint] = twist;
+}
+
+void RodJoints::start(const FrameArrays& frames_before, int before, const FrameArrays& frames_after, int after, int first,
+                      int last) {
+  for (int i = first, k = 0; i < last; i += 2, k += 2) {
+    const Products q = products(neighbours(frames_before, before + k), neighbours(frames_after, after + k));
+    Pair twist = neighbours(twist_, i);
+    SineCosine half = half_angle(twist);
+    const Pair cosine = half.cosine * half.cosine - half.sine * half.sine, sine = 2.0 * half.sine * half.cosine;
+    twist += turn(q.sine * cosine - q.cosine * sine, q.cosine * cosine + q.sine * sine).angle;
+    half = half_angle(twist);
+    put(twist, twist_, i);
+    put(q.u, u_, i);
+    put(q.y, y_, i);
+    put(q.z, z_, i);
+    put(q.sine, sine_, i);
+    put(q.cosine, cosine_, i);
+    put(chi(q.u), chi_, i);
+    put(half.sine, half_sine_, i);
+    put(half.cosine, half_cosine_, i);
+  }
+}
+
+void RodJoints::follow(const FrameArrays& frames_before, int before, const FrameArrays& frames_after, int after, int first,
+                       int last) {
+  for (int i = first, k = 0; i < last; i += 2, k += 2) {
+    const Products end = products(neighbours(frames_before, before + k), neighbours(frames_after, after + k));
+    const Pair sine = neighbours(sine_, i), cosine = neighbours(cosine_, i);
+    const Turn change = turn(end.sine * cosine - sine * end.cosine, end.cosine * cosine + end.sine * sine);
+    put(neighbours(twist_, i) + change.angle, end_twist_, i);
+  }
+}
+
+void RodJoints::evaluate(double part, const FrameMotion& frames_before, int before, const FrameMotion& frames_after, int after,
+                         int first, int last) {
+  for (int i = first, k = 0; i < last; i += 2, k += 2) {
+    const Products end = products(neighbours(frames_before.end, before + k), neighbours(frames_after.end, after + k));
+    Products start{neighbours(u_, i), neighbours(y_, i), neighbours(z_, i), neighbours(sine_, i), neighbours(cosine_, i)};
+    Pair start_chi = neighbours(chi_, i), half_sine = neighbours(half_sine_, i), half_cosine = neighbours(half_cosine_, i);
+    const Pair end_chi = chi(end.u), start_twist = neighbours(twist_, i);
+
+    // The change of twist, and the halves of the twist at the end.
+    Turn change = turn(end.sine * start.cosine - start.sine * end.cosine, end.cosine * start.cosine + end.sine * start.sine);
+    const Pair end_twist = start_twist + change.angle;
+    put(end_twist, end_twist_, i);
+    Pair tangent_quotient = relative_tangent(0.25 * change.angle);
+    const Pair tangent = 0.25 * change.angle * tangent_quotient, scale = 1.0 / (1.0 + tangent * tangent);
+    const Pair turned_cosine = (1.0 - tangent * tangent) * scale, turned_sine = 2.0 * tangent * scale;
+    const Pair end_half_cosine = half_cosine * turned_cosine - half_sine * turned_sine;
+    const Pair end_half_sine = half_sine * turned_cosine + half_cosine * turned_sine;
+
+    const Pair angle_change_y = end_chi * (end_half_cosine * end.y + end_half_sine * end.z) -
+                                start_chi * (half_cosine * start.y + half_sine * start.z);
+    const Pair angle_change_z = end_chi * (end_half_cosine * end.z - end_half_sine * end.y) -
+                                start_chi * (half_cosine * start.z - half_sine * start.y);
+    if (part == 1) {
+      // Forces are those of the end: quotients of differences become derivatives.
+      start = end;
+      start_chi = end_chi;
+      half_sine = end_half_sine;
+      half_cosine = end_half_cosine;
+      change.quotient = 1.0 / (end.cosine * end.cosine + end.sine * end.sine);
+      tangent_quotient = both(1);
+    }
+
+    const Pair start_y = half_cosine * start.y + half_sine * start.z, start_z = half_cosine * start.z - half_sine * start.y;
+    const Pair end_y = end_half_cosine * end.y + end_half_sine * end.z, end_z = end_half_cosine * end.z - end_half_sine * end.y;
+
+    // Means
+    const Pair mean_chi = 0.5 * (start_chi + end_chi), chi_slope = mean_chi_slope(start.u, start_chi, end.u, end_chi);
+    const Pair y = 0.5 * (start.y + end.y), z = 0.5 * (start.z + end.z);
+    const Pair sine = 0.5 * (start.sine + end.sine), cosine = 0.5 * (start.cosine + end.cosine);
+    const Pair c = 0.5 * (half_cosine + end_half_cosine), s = 0.5 * (half_sine + end_half_sine);
+    const Pair along_y = 0.5 * (start_y + end_y), along_z = 0.5 * (start_z + end_z);
+
+    // What the axes add to the gradients.
+    const PairFrame a = neighbours(frames_before.middle, before + k), b = neighbours(frames_after.middle, after + k);
+    const PairVector about_x = cross(b.x, a.x), about_y = cross(b.x, a.y), about_z = cross(b.x, a.z);
+    const PairVector of_sine = cross(b.y, a.z) - cross(b.z, a.y), of_cosine = cross(b.y, a.y) + cross(b.z, a.z);
+
+    // Gradients of the three angles
+    const PairVector twist_gradient =
+        (change.quotient * cosine) * of_sine - (change.quotient * sine) * of_cosine;
+    const Pair half_chi = 0.5 * mean_chi * tangent_quotient;
+    const PairVector y_gradient = (mean_chi * s) * about_y - (mean_chi * c) * about_z - (chi_slope * along_y) * about_x +
+                                  (half_chi * (z * c - y * s)) * twist_gradient;
+    const PairVector z_gradient = (mean_chi * c) * about_y + (mean_chi * s) * about_z - (chi_slope * along_z) * about_x -
+                                  (half_chi * (y * c + z * s)) * twist_gradient;
+
+    // The part of bending that is alike about y and z depends on the whole angle alone.
+    const Pair y_stiffness = neighbours(y_stiffness_, i), z_stiffness = neighbours(z_stiffness_, i);
+    const Pair isotropic{std::min(y_stiffness[0], z_stiffness[0]), std::min(y_stiffness[1], z_stiffness[1])};
+    const Pair twist_stiffness = neighbours(twist_stiffness_, i);
+    const Pair twist_damping = neighbours(twist_damping_, i), bend_damping = neighbours(bend_damping_, i);
+    const Pair twist_moment =
+        twist_stiffness * (start_twist + part * change.angle - neighbours(rest_twist_, i)) + twist_damping * change.angle;
+    const Pair y_moment = (y_stiffness - isotropic) * 0.5 * (start_chi * start_y + end_chi * end_y) -
+                          y_stiffness * neighbours(rest_y_, i) + bend_damping * angle_change_y;
+    const Pair z_moment = (z_stiffness - isotropic) * 0.5 * (start_chi * start_z + end_chi * end_z) -
+                          z_stiffness * neighbours(rest_z_, i) + bend_damping * angle_change_z;
+    put(twist_moment * twist_gradient + (y_moment * y_gradient + z_moment * z_gradient) -
+            (isotropic * mean_slope(start.u, end.u)) * about_x,
+        moment, i);
+
+    PairSymmetric stiff{};
+    stiff = plus_outer(stiff, part * twist_stiffness + twist_damping, twist_gradient);
+    stiff = plus_outer(stiff, part * y_stiffness + bend_damping, y_gradient);
+    stiff = plus_outer(stiff, part * z_stiffness + bend_damping, z_gradient);
+    put(stiff, stiffness, i);
+  }
+}
+
+}  // namespace verlet_cable
