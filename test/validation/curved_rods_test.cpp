@@ -87,7 +87,7 @@ TEST_P(Bow, BendsAndTwistsAcrossItsPlane) {
     angles.push_back(quarter * i / 100);
     deflections.push_back(bow_deflection(torsional_stiffness, angles.back()) / tip);
   }
-  record_curve(name, "Timoshenko", angles, deflections);
+  record_curve(name, "reference", angles, deflections);
   report(name + ": tip", samples, 1e-3, Order::second);
   report(name + ": moments at the root", moments, 2e-3, Order::none);
 }
@@ -161,7 +161,7 @@ TEST_P(Clamped, TakesTheShapeOfKirchhoffsRod) {
     x.push_back(point[0]);
     y.push_back(point[1]);
   }
-  record_curve(name, "Kirchhoff", x, y);
+  record_curve(name, "reference", x, y);
   report(name + ": shape", samples, 1e-3, Order::second);
   report(name + ": forces", forces, 2e-3, Order::second);
   report(name + ": moments", moments, 2e-3, Order::second);
@@ -227,27 +227,49 @@ class Spring : public testing::TestWithParam<SpringCase> {};
 /// Kirchhoff; Love, A Treatise on the Mathematical Theory of Elasticity, 1927, section 271: drawn out by a force and a moment on
 /// its axis, a helix stays one.
 TEST_P(Spring, DrawnOutStaysAHelixUnderKirchhoffsForce) {
-  const auto& [name, rest, pitch, turns_freely] = GetParam();
-  const double along = std::cos(pitch), up = std::sin(pitch);
-  Helix drawn{pitch, rest.turning};
-  if (turns_freely)  // no moment about the axis: GJ (torsion - at rest) up + EI (curvature - at rest) along = 0
-    drawn.turning = (spring_torsion * rest.torsion() * up + rest.curvature() * along) / (spring_torsion * up * up + along * along);
-  const double twisting = spring_torsion * (drawn.torsion() - rest.torsion()), bending = drawn.curvature() - rest.curvature();
-  const double force = (twisting * along - bending * up) / drawn.radius();
+  const SpringCase& spring_case = GetParam();
+  const Helix& rest = spring_case.rest;
+  const std::string name = std::string("spring, ") + spring_case.name;
+  const auto drawn = [&](double way) {
+    const double pitch = rest.pitch + way * (spring_case.pitch - rest.pitch), along = std::cos(pitch), up = std::sin(pitch);
+    if (!spring_case.turns_freely) return Helix{pitch, rest.turning};
+    // No moment about the axis: GJ (torsion - at rest) up + EI (curvature - at rest) along = 0.
+    const double at_rest = spring_torsion * rest.torsion() * up + rest.curvature() * along;
+    return Helix{pitch, at_rest / (spring_torsion * up * up + along * along)};
+  };
+  /// About the rod and about its binormal, at its start.
+  const auto moment = [&](const Helix& helix) {
+    return Vector3(spring_torsion * (helix.torsion() - rest.torsion()), 0, helix.curvature() - rest.curvature());
+  };
+  const auto force = [&](const Helix& helix) -> Vector3 {
+    const Vector3 m = moment(helix);
+    return (m.x() * std::cos(helix.pitch) - m.z() * std::sin(helix.pitch)) / helix.radius() * helix.axis();
+  };
+  constexpr int steps = 10;
+  std::vector<double> lengths, exact_forces;
+  for (int i = 0; i <= steps; ++i) {
+    const Helix helix = drawn(static_cast<double>(i) / steps);
+    lengths.push_back(std::sin(helix.pitch) / std::sin(rest.pitch));
+    exact_forces.push_back(force(helix).dot(helix.axis()));
+  }
+  record_curve(name, "reference", lengths, exact_forces);
   std::vector<Sample> moments;
-  std::vector<double> lengths, forces;
-  const auto samples = sample({40, 80, 160}, [&, &rest = rest, &name = name](int n) {
+  const auto samples = sample({40, 80, 160}, [&](int n) {
     Simulation run = start_spring(rest, n);
     EXPECT_TRUE(run.world.settle());
-    lead(run, 10, [&](double way) {
-      return Helix{rest.pitch + way * (drawn.pitch - rest.pitch), rest.turning + way * (drawn.turning - rest.turning)}.at(1);
-    });
-    moments.push_back({static_cast<double>(n), (run.torque("start") - Vector3(twisting, 0, bending)).norm() /
-                                                   std::hypot(twisting, bending)});
-    return (run.force("start") - force * drawn.axis()).norm() / force;
+    std::vector<double> forces{run.force("start").dot(rest.axis())};
+    for (int i = 1; i <= steps; ++i) {
+      const Helix helix = drawn(static_cast<double>(i) / steps);
+      lead(run, 1, [&](double) { return helix.at(1); });
+      forces.push_back(run.force("start").dot(helix.axis()));
+    }
+    record_curve(name, "n = " + std::to_string(n), lengths, forces);
+    const Helix helix = drawn(1);
+    moments.push_back({static_cast<double>(n), (run.torque("start") - moment(helix)).norm() / moment(helix).norm()});
+    return (run.force("start") - force(helix)).norm() / force(helix).norm();
   });
-  report(std::string("spring, ") + name + ": force", samples, 5e-3, Order::second);
-  report(std::string("spring, ") + name + ": moment", moments, 5e-3, Order::second);
+  report(name + ": force", samples, 5e-3, Order::second);
+  report(name + ": moment", moments, 5e-3, Order::second);
 }
 
 INSTANTIATE_TEST_SUITE_P(Springs, Spring,
@@ -304,7 +326,7 @@ TEST(NaturalHelix, RollsUpFromAStraightRod) {
     x.push_back(p.x());
     z.push_back(p.z());
   }
-  record_curve("natural helix", "helix", x, z);
+  record_curve("natural helix", "reference", x, z);
   report("natural helix: end", samples, 1e-3, Order::second);
 }
 
