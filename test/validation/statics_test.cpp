@@ -87,7 +87,7 @@ class TipLoad : public testing::TestWithParam<Elastica> {};
 TEST_P(TipLoad, BendsToTheElastica) {
   const Elastica& elastica = GetParam();
   const std::string name = "elastica P = " + std::to_string(static_cast<int>(elastica.load));
-  const std::vector<Eigen::Vector2d> curve = analytic::elastica(elastica.load, 1);
+  const std::vector<Eigen::Vector2d> curve = analytic::elastica(elastica.load, 20);
   const Eigen::Vector2d& tip = curve.back();
   std::vector<double> x, z;
   for (const Eigen::Vector2d& at : curve) {
