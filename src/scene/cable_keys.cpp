@@ -100,6 +100,7 @@ const Keys<CableDesc>& cable_keys() {
   static const Keys<CableDesc> keys{
       text_key("name", &CableDesc::name, name_words, true),
       field_key(cable_fields[0]),
+      field_key(cable_fields[1]),
       field_key(cable_integer_fields[0]),
       text_key("material", &CableDesc::material, "the name of a material", true),
       {"color", "four numbers", false,

@@ -69,6 +69,15 @@ Key<Owner> choice_key(const std::string& name, Enumeration Owner::*member,
 }
 
 template <class Owner>
+Key<Owner> switch_key(const std::string& name, bool Owner::*member) {
+  return {name, "true | false", false, [=](const Value& value, Owner& owner) {
+            const std::string text = value.node.IsScalar() ? value.node.Scalar() : "";
+            if (text != "true" && text != "false") return value.reject("true | false");
+            owner.*member = text == "true";
+          }};
+}
+
+template <class Owner>
 Key<Owner> text_key(const std::string& name, std::string Owner::*member, const std::string& allowed, bool required = false) {
   return {name, allowed, required, [=](const Value& value, Owner& owner) { owner.*member = read_text(value, allowed); }};
 }

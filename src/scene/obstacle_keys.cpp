@@ -82,14 +82,6 @@ const Keys<RobotDesc>& robot_keys() {
   return keys;
 }
 
-Key<ContactDesc> switch_key(const char* name, bool ContactDesc::*member) {
-  return {name, "true | false", false, [=](const Value& value, ContactDesc& contact) {
-            const std::string text = value.node.IsScalar() ? value.node.Scalar() : "";
-            if (text != "true" && text != "false") return value.reject("true | false");
-            contact.*member = text == "true";
-          }};
-}
-
 const Keys<ContactDesc>& contact_keys() {
   static const Keys<ContactDesc> keys{switch_key("self", &ContactDesc::self),
                                       switch_key("between_cables", &ContactDesc::between_cables), field_key(contact_fields[0])};

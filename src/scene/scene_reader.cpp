@@ -49,6 +49,7 @@ void read_fluid(const Value& value, SceneDesc& scene) {
 Keys<SceneDesc> scene_keys(const std::vector<std::string>& ignored) {
   Keys<SceneDesc> keys{
       text_key("frame_id", &SceneDesc::frame_id, frame_words),
+      switch_key("numerical_damping", &SceneDesc::numerical_damping),
       {"gravity", "three numbers [m/s^2]", false, read_gravity},
       {"fluid", "a map", false, read_fluid},
       choice_key("on_lost_frame", &SceneDesc::on_lost_frame,

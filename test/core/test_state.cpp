@@ -284,7 +284,7 @@ std::vector<SceneDesc> kinds() {
     cable.material = scene.materials[0].name;
     if (i % 2 == 1) material.bending_stiffness = 1e-3;
     if (i % 3 == 1) material.axial_stiffness = 500;
-    if (i % 4 == 1) material.torsional_stiffness = 1e-3;
+    if (i % 4 == 1 || i == 3) material.torsional_stiffness = 1e-3;
     material.radius = 0.003 + 0.001 * (i % 3);
     if (i == 3 || i == 5 || i == 9) {
       cable.rest_curvature.type = RestCurvatureDesc::Type::constant;

@@ -39,7 +39,10 @@ TEST(SceneFiles, templateHoldsTheDefaults) {
     if (field.required) continue;
     EXPECT_EQ(scene.materials[0].material.*field.member, MaterialDesc{}.*field.member) << field.key;
   }
+  EXPECT_EQ(scene.materials[0].material.bending_stiffness, MaterialDesc{}.bending_stiffness);
+  EXPECT_EQ(scene.numerical_damping, defaults.numerical_damping);
   ASSERT_EQ(scene.cables.size(), 1u);
+  EXPECT_EQ(scene.cables[0].rest_twist, CableDesc{}.rest_twist);
   EXPECT_EQ(scene.cables[0].color, CableDesc{}.color);
   EXPECT_EQ(scene.cables[0].rest_curvature.type, CableDesc{}.rest_curvature.type);
   ASSERT_FALSE(scene.cables[0].attachments.empty());
@@ -103,6 +106,7 @@ TEST(SceneFiles, templateDocumentsEveryKey) {
   expect_documented(lines, scene_fields);
   expect_documented(lines, scene_integer_fields);
   expect_documented(lines, material_fields);
+  expect_documented(lines, std::array{bending_stiffness_field});
   expect_documented(lines, fluid_fields);
   expect_documented(lines, cable_fields);
   expect_documented(lines, cable_integer_fields);
@@ -113,6 +117,7 @@ TEST(SceneFiles, templateDocumentsEveryKey) {
   expect_documented(lines, grid_fields);
   expect_documented(lines, grid_integer_fields);
   for (const char* key : {"frame_id",
+                          "numerical_damping",
                           "gravity",
                           "on_lost_frame",
                           "on_time_jump",

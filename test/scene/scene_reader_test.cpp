@@ -13,6 +13,7 @@ TEST(SceneReader, readsEveryKey) {
   const SceneDesc scene = read_scene_text(R"(
 frame_id: map
 time_step: 0.005
+numerical_damping: false
 gravity: [1, 2, 3]
 publish_rate: 25
 tf_latency: 0.1
@@ -38,6 +39,7 @@ cables:
     material: rope
     color: [0, 0.25, 0.5, 1]
     rest_curvature: [0.5, -0.25]
+    rest_twist: -0.75
     initial: {type: points, points: [[0, 0, 0], [1, 0, 0], [1, 1, 0]], velocities: [[0, 0, 1], [0, 0, 2], [0, 0, 3]]}
     attachments:
       - {name: a1, at: 0.5, frame: hand, offset: [1, 2, 3], rotation: [0.1, 0.2, 0.3], type: clamp, initial_pose: [1, 2, 3, 4, 5, 6]}
@@ -52,6 +54,7 @@ cables:
 )");
   EXPECT_EQ(scene.frame_id, "map");
   EXPECT_EQ(scene.time_step, 0.005);
+  EXPECT_FALSE(scene.numerical_damping);
   EXPECT_EQ(scene.gravity.acceleration, Vector3(1, 2, 3));
   EXPECT_EQ(scene.publish_rate, 25);
   EXPECT_EQ(scene.tf_latency, 0.1);
@@ -110,6 +113,8 @@ cables:
   EXPECT_EQ(a.point_masses[0].mass, 0.5);
   EXPECT_EQ(a.rest_curvature.type, RestCurvatureDesc::Type::constant);
   EXPECT_EQ(a.rest_curvature.curvature, (std::array<double, 2>{0.5, -0.25}));
+  EXPECT_EQ(a.rest_twist, -0.75);
+  EXPECT_EQ(scene.cables[1].rest_twist, 0);
   EXPECT_EQ(scene.cables[1].rest_curvature.type, RestCurvatureDesc::Type::initial);
   EXPECT_EQ(scene.cables[2].rest_curvature.type, RestCurvatureDesc::Type::straight);
   EXPECT_EQ(scene.cables[2].initial.type, InitialShapeDesc::Type::settled);
@@ -127,6 +132,12 @@ TEST(SceneReader, restCurvatureMayChangeAlongTheCable) {
 TEST(SceneReader, endsOfACableMayBeStiff) {
   const SceneDesc scene = read_scene_text(replaced(sound_scene, "segments: 20", "segments: 20\n    stiff_ends: [0.02, 0.03]"));
   EXPECT_EQ(scene.cables[0].stiff_ends, (std::array<double, 2>{0.02, 0.03}));
+}
+
+TEST(SceneReader, bendingStiffnessMayDifferAboutTwoAxes) {
+  const SceneDesc scene = read_scene_text(
+      replaced(sound_scene, "radius: 0.005", "radius: 0.005, bending_stiffness: [2e-2, 5e-5], torsional_stiffness: 7e-5"));
+  EXPECT_EQ(scene.find_material("m")->bending_stiffness, BendingStiffness(2e-2, 5e-5));
 }
 
 TEST(SceneReader, elasticModuliMeanASolidRoundSection) {

@@ -88,6 +88,41 @@ TEST(ValidateScene, everyRangeIsChecked) {
   expect_ranges_checked(scene, scene.cables[0].point_masses[0], point_mass_fields, "cables[0].point_masses[0].");
 }
 
+TEST(ValidateScene, restShapesAndRibbonsNeedTorsionalStiffness) {
+  SceneDesc scene = held_scene(0.5);
+  MaterialDesc& material = scene.materials[0].material;
+  RestCurvatureDesc& curvature = scene.cables[0].rest_curvature;
+  const auto is_named = [&] {
+    return has_line(validate(scene), "materials.m.torsional_stiffness: 0; allowed: any number above 0");
+  };
+  curvature = {RestCurvatureDesc::Type::constant, {0, 1}, {}};
+  EXPECT_FALSE(is_named());  // what does not resist bending has no shape
+  material.bending_stiffness = 0.02;
+  EXPECT_TRUE(is_named());
+  EXPECT_TRUE(has_line(validate(scene),
+                       "materials.m.torsional_stiffness: 0; allowed: any number above 0 [N m^2] with bending_stiffness, as "
+                       "cables[0] has rest_curvature (a round section has about 0.75 times its bending_stiffness, 0.015)"));
+  for (const auto& [type, is_curved] : {std::pair(RestCurvatureDesc::Type::straight, false),
+                                        {RestCurvatureDesc::Type::initial, true},
+                                        {RestCurvatureDesc::Type::profile, true}}) {
+    curvature = {type, {0, 0}, {{0, 0}, {0, 1}}};
+    EXPECT_EQ(is_named(), is_curved);
+  }
+  curvature = {RestCurvatureDesc::Type::profile, {0, 0}, {{0, 0}, {0, 0}}};
+  EXPECT_FALSE(is_named());
+  curvature = {RestCurvatureDesc::Type::constant, {0, 0}, {}};
+  EXPECT_FALSE(is_named());
+  scene.cables[0].rest_twist = 1;
+  EXPECT_TRUE(is_named());
+  scene.cables[0].rest_twist = 0;
+  material.bending_stiffness = {0, 0.02};
+  EXPECT_TRUE(is_named());
+  curvature = {RestCurvatureDesc::Type::constant, {0, 1}, {}};
+  scene.cables[0].rest_twist = 1;
+  material.torsional_stiffness = 1e-3;
+  EXPECT_EQ(joined(validate(scene)), "");
+}
+
 TEST(ValidateScene, defaultsAreInTheirRanges) {
   const SceneDesc scene;
   for (const auto& field : scene_fields) EXPECT_TRUE(field.range.contains(scene.*field.member)) << field.key;

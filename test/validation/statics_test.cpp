@@ -161,6 +161,7 @@ TEST(EndMoment, RollsARodUpToACircle) {
 TEST(EndMoment, NaturalCurvatureClosesToACircle) {
   const auto samples = sample({25, 50, 100}, [](int n) {
     SceneDesc scene = rod(n, 0.1);
+    material(scene).torsional_stiffness = 0.75;
     clamp_start(scene);
     scene.cables[0].rest_curvature.type = RestCurvatureDesc::Type::constant;
     scene.cables[0].rest_curvature.curvature = {0, 2 * M_PI};
@@ -183,6 +184,7 @@ TEST(EndMoment, NaturalCurvatureThatGrowsMakesAClothoid) {
   }
   const auto samples = sample({25, 50, 100}, [&](int n) {
     SceneDesc scene = rod(n, 0.1);
+    material(scene).torsional_stiffness = 0.75;
     clamp_start(scene);
     scene.cables[0].rest_curvature.type = RestCurvatureDesc::Type::profile;
     scene.cables[0].rest_curvature.profile = {{0, 0}, {0, 0.5 * growth}, {0, growth}};
@@ -201,6 +203,7 @@ TEST(EndMoment, StiffEndsStayStraight) {
                     (1 - std::cos(angle)) / curvature + last * std::sin(angle), 0);
   const auto samples = sample({25, 50, 100}, [&](int n) {
     SceneDesc scene = rod(n, 0.1);
+    material(scene).torsional_stiffness = 0.75;
     clamp_start(scene);
     scene.cables[0].rest_curvature.type = RestCurvatureDesc::Type::constant;
     scene.cables[0].rest_curvature.curvature = {0, curvature};

@@ -82,8 +82,9 @@ constexpr std::array<Field<MaterialDesc>, 10> material_fields{{
 constexpr Field<MaterialDesc, BendingStiffness> bending_stiffness_field{"bending_stiffness", &MaterialDesc::bending_stiffness,
                                                                         "N m^2", not_negative};
 
-constexpr std::array<Field<CableDesc>, 1> cable_fields{{
+constexpr std::array<Field<CableDesc>, 2> cable_fields{{
     {"length", &CableDesc::length, "m", {1e-9, 1e9, "any number above 0"}, true},
+    {"rest_twist", &CableDesc::rest_twist, "rad/m", {-1e9, 1e9, "any number"}},
 }};
 
 constexpr std::array<Field<CableDesc, int>, 1> cable_integer_fields{{

@@ -12,6 +12,13 @@ void keep(int first, int count, Array& array) {
   array.erase(array.begin(), array.begin() + first);
 }
 
+double zero_like(double) {
+  return 0;
+}
+Vector3 zero_like(const Vector3&) {
+  return Vector3::Zero();
+}
+
 template <class Array>
 void extend(const Array& tail, Array& array) {
   array.insert(array.end(), tail.begin(), tail.end());
@@ -44,15 +51,19 @@ void append(const SimulatedCable& tail, SimulatedCable& cable) {
   const std::array<double, 2> straight{0, 0};
   extend_where_needed(tail.model.rest_curvature, tail_size, size, straight, cable.model.rest_curvature);
   extend_where_needed(tail.model.flexible_fraction, tail_size, size, 1.0, cable.model.flexible_fraction);
+  extend_where_needed(tail.model.rest_twist, tail_size, size, 0.0, cable.model.rest_twist);
   extend(tail.model.masses, cable.model.masses);
   extend(tail.state.positions, cable.state.positions);
   extend(tail.state.velocities, cable.state.velocities);
   extend(tail.state.accelerations, cable.state.accelerations);
-  visit_segment_arrays(cable, [](std::vector<double>& array) { array.push_back(0); });
+  visit_segment_arrays(cable, [](auto& array) { array.push_back(zero_like(array.back())); });
   extend(tail.model.rest_lengths, cable.model.rest_lengths);
   extend(tail.state.tension, cable.state.tension);
   extend(tail.state.axial_multiplier, cable.state.axial_multiplier);
   extend(tail.state.twist, cable.state.twist);
+  extend(tail.state.spin, cable.state.spin);
+  extend(tail.state.directors, cable.state.directors);
+  extend(tail.state.joint_twist, cable.state.joint_twist);
 }
 
 void duplicate_node(int node, SimulatedCable& cable) {
@@ -64,7 +75,7 @@ void duplicate_node(int node, SimulatedCable& cable) {
 
 void duplicate_segment(int segment, SimulatedCable& cable) {
   visit_segment_arrays(cable, [&](auto& array) {
-    const double entry = array[segment];
+    const auto entry = array[segment];
     array.insert(array.begin() + segment, entry);
   });
 }

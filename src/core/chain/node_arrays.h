@@ -14,7 +14,9 @@ void visit_node_arrays(SimulatedCable& cable, const Visitor& visitor) {
   visitor(cable.state.accelerations);
   visitor(cable.model.masses);
   if (!cable.model.rest_curvature.empty()) visitor(cable.model.rest_curvature);
+  if (!cable.model.rest_twist.empty()) visitor(cable.model.rest_twist);
   if (!cable.model.flexible_fraction.empty()) visitor(cable.model.flexible_fraction);
+  if (!cable.state.joint_twist.empty()) visitor(cable.state.joint_twist);
 }
 template <class Visitor>
 void visit_segment_arrays(SimulatedCable& cable, const Visitor& visitor) {
@@ -22,6 +24,8 @@ void visit_segment_arrays(SimulatedCable& cable, const Visitor& visitor) {
   visitor(cable.state.tension);
   visitor(cable.state.axial_multiplier);
   visitor(cable.state.twist);
+  if (!cable.state.spin.empty()) visitor(cable.state.spin);
+  if (!cable.state.directors.empty()) visitor(cable.state.directors);
 }
 /// @}
 
@@ -31,7 +35,8 @@ void slice(int first, int last, SimulatedCable& cable);
 /// From the end to the start.
 void reverse_arrays(SimulatedCable& cable);
 
-/// The nodes of `tail` follow those of `cable`, with a new segment in between: of no rest length, tension or twist.
+/// The nodes of `tail` follow those of `cable`, with a new segment in between: of no rest length, tension or twist. Either
+/// both of them have frames or none.
 void append(const SimulatedCable& tail, SimulatedCable& cable);
 
 /// Another node with the same entries beside it, and a segment likewise.

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "chain/node_arrays.h"
+#include "rod/rod_frames.h"
 #include "verlet_cable/core/world.h"
 #include "world/implementation.h"
 
@@ -128,6 +129,9 @@ EditResult World::Implementation::apply(const edit::Unpin& unpin) {
   const int index = find(state.attachments, unpin.name);
   if (index < 0) return refused("name: " + unpin.name + "; there is no such attachment");
   const BodyId body = state.attachments[index].body;
+  if (body.is_cable())
+    for (const DirectionTarget& clamp : state.cable_progress[body.index].targets.directions)
+      if (clamp.attachment == index) release_joint_twist(clamp, state.cables[body.index].state);
   state.attachments.erase(state.attachments.begin() + index);
   for (CableProgress& s : state.cable_progress) {
     forget_attachment(index, s.targets.nodes);

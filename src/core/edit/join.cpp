@@ -4,7 +4,7 @@
 
 #include "chain/node_arrays.h"
 #include "rod/length_projection.h"
-#include "rod/material_frames.h"
+#include "rod/rod_frames.h"
 #include "scene/scene_errors.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/scene_fields.h"
@@ -43,18 +43,29 @@ const Quaternion turned(0, 0, 1, 0);
 void reverse(SimulatedCable& cable) {
   reverse_arrays(cable);
   for (auto& curvature : cable.model.rest_curvature) curvature[0] = -curvature[0];
+  for (double& spin : cable.state.spin) spin = -spin;
   cable.state.reference_node = cable.model.segments() - cable.state.reference_node;
   cable.state.reference_orientation = cable.state.reference_orientation * turned;
 }
 
-/// The unloaded curvature of `cable` about the axes of a cable that is welded to it, and whose material is carried on into it.
-void turn_rest_curvature(const Quaternion& welded, const Quaternion& own, SimulatedCable& cable) {
-  const double roll = relative_roll(welded, own, nullptr, 0);
-  const double cosine = std::cos(roll), sine = std::sin(roll);
-  for (auto& curvature : cable.model.rest_curvature) {
-    const auto [y, z] = curvature;
-    curvature = {y * cosine - z * sine, z * cosine + y * sine};
+/// At the node of two that are to be one: unloaded both in their places, and bent half as the one and half as the other.
+void join_rest_shapes(int node, SimulatedCable& cable) {
+  CableModel& model = cable.model;
+  const int gone = node + 1;
+  double twist = 0;
+  if (!cable.state.joint_twist.empty()) {
+    const double rest =
+        rest_angles(model, node, joint_length(model, node)).twist + rest_angles(model, gone, joint_length(model, gone)).twist;
+    const double length = 0.5 * (model.rest_lengths[node - 1] + model.rest_lengths[gone]);
+    model.rest_twist[node] = rest / model.bending_length(node, length);
+    twist = cable.state.joint_twist[node] += cable.state.joint_twist[gone];
   }
+  if (model.rest_curvature.empty()) return;
+  const double cosine = std::cos(0.5 * twist), sine = std::sin(0.5 * twist);
+  const auto [before_y, before_z] = model.rest_curvature[node];
+  const auto [after_y, after_z] = model.rest_curvature[gone];
+  model.rest_curvature[node] = {0.5 * (cosine * (before_y + after_y) + sine * (before_z - after_z)),
+                                0.5 * (cosine * (before_z + after_z) - sine * (before_y - after_y))};
 }
 
 /// `first` followed by `second`, with a weightless segment between them that is as long as they are apart.
@@ -63,6 +74,7 @@ void append_cable(const SimulatedCable& second, SimulatedCable& first) {
   const double gap = (second.state.positions.front() - first.state.positions.back()).norm();
   append(second, first);
   first.model.rest_lengths[between] = gap;
+  weld_frames(between, first);
 }
 
 template <typename T>
@@ -124,9 +136,10 @@ EditResult World::Implementation::apply(const edit::Join& join) {
   SimulatedCable &kept = state.cables[first], &gone = state.cables[second];
   const int shift = first_at_end ? kept.model.nodes() : gone.model.nodes();
   const std::string name = kept.model.name;
-  if (!gone.model.rest_curvature.empty()) {
-    const std::vector<Quaternion> axes = segment_orientations(kept), own = segment_orientations(gone);
-    turn_rest_curvature(first_at_end ? axes.back() : axes.front(), first_at_end ? own.front() : own.back(), gone);
+  for (const int index : {first, second}) {
+    std::vector<DirectionTarget>& clamps = state.cable_progress[index].targets.directions;
+    if (kept.model.is_whole_rod() || gone.model.is_whole_rod()) give_frames(state.cables[index], clamps);
+    take_end_twists(state.cables[index].state, clamps);
   }
   if (first_at_end) {
     append_cable(gone, kept);
@@ -200,6 +213,9 @@ void World::Implementation::reverse_cable(int index) {
   for (DirectionTarget& h : state.cable_progress[index].targets.directions) {
     h.node = n - h.node;
     h.orientation = h.orientation * turned;
+    h.next_orientation = h.next_orientation * turned;
+    h.roll = -h.roll;
+    std::swap(h.twist_before, h.twist_after);
   }
 }
 
@@ -216,12 +232,11 @@ void World::Implementation::close_joint(int index) {
 
   const double mass = model.masses[node] + model.masses[gone], part = model.masses[gone] / mass;
   model.masses[node] = mass;
+  const std::vector<Vector3> apart = cable.positions;
   for (auto* values : {&cable.positions, &cable.velocities, &cable.accelerations})
-    (*values)[node] += part * ((*values)[gone] - (*values)[node]);
-  if (!model.rest_curvature.empty()) {
-    for (const int axis : {0, 1})
-      model.rest_curvature[node][axis] = 0.5 * (model.rest_curvature[node][axis] + model.rest_curvature[gone][axis]);
-  }
+    (*values)[gone] = (*values)[node] += part * ((*values)[gone] - (*values)[node]);
+  carry_frames(apart, cable);
+  join_rest_shapes(node, state.cables[index]);
   if (!model.flexible_fraction.empty())
     model.flexible_fraction[node] = 0.5 * (model.flexible_fraction[node] + model.flexible_fraction[gone]);
   erase_node(gone, state.cables[index]);
@@ -232,8 +247,10 @@ void World::Implementation::close_joint(int index) {
   std::vector<HeldNode> held;
   for (const KinematicTarget& h : s.targets.nodes) held.push_back({h.node, h.position, h.velocity});
   std::sort(held.begin(), held.end(), [](const HeldNode& a, const HeldNode& b) { return a.node < b.node; });
+  const std::vector<Vector3> together = cable.positions;
   for (const HeldNode& h : held) cable.positions[h.node] = h.position;
   project_lengths(model, held, lengths, cable.positions);
+  carry_frames(together, cable);
   after_remeshing(index);
   project_velocities(model, boundary_now(s.targets).nodes, cable.positions, cable.velocities);
 }

@@ -1,5 +1,6 @@
 #include <memory>
 
+#include "rod/rod_frames.h"
 #include "verlet_cable/core/world.h"
 #include "world/implementation.h"
 
@@ -16,6 +17,11 @@ void World::tune(const SceneDesc& scene) {
   for (int i = 0; i < static_cast<int>(state.cables.size()); ++i) {
     CableModel& model = state.cables[i].model;
     model.material = *scene.find_material(model.material_name);
+    std::vector<DirectionTarget>& clamps = state.cable_progress[i].targets.directions;
+    if (model.is_whole_rod())
+      give_frames(state.cables[i], clamps);
+    else
+      drop_frames(state.cables[i], clamps);
     // A clamp holds the direction where the cable is stiff, the neighbouring node where it is not.
     implementation_->find_targets_of(i);
   }

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "rod/material_frames.h"
+#include "rod/rod_frames.h"
 
 namespace verlet_cable {
 
@@ -24,6 +25,11 @@ std::vector<double> CableModel::arc_length() const {
 
 std::vector<Quaternion> segment_orientations(const SimulatedCable& cable) {
   const int n = cable.model.segments();
+  if (!cable.state.directors.empty()) {
+    std::vector<Quaternion> orientations;
+    for (int i = 0; i < n; ++i) orientations.emplace_back(segment_frame(cable.state, i));
+    return orientations;
+  }
   VectorArray segment, director;
   segment.assign(n, 0.0);
   director.assign(n, 0.0);
@@ -53,7 +59,13 @@ std::vector<double> node_curvature(const SimulatedCable& cable) {
 
 std::vector<double> node_twist(const SimulatedCable& cable) {
   std::vector<double> twist;
-  for (int i = 1; i < cable.model.segments(); ++i) twist.push_back(0.5 * (cable.state.twist[i - 1] + cable.state.twist[i]));
+  const CableState& state = cable.state;
+  for (int i = 1; i < cable.model.segments(); ++i) {
+    if (state.directors.empty())
+      twist.push_back(0.5 * (state.twist[i - 1] + state.twist[i]));
+    else
+      twist.push_back(joint_angles_at(state, i).twist / joint_length(cable.model, i));
+  }
   return twist;
 }
 

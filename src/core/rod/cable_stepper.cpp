@@ -37,6 +37,7 @@ constexpr double noticed_jerk = 1e-9;
 void bring_to_rest(CableState& state) {
   std::fill(state.velocities.begin(), state.velocities.end(), Vector3::Zero());
   std::fill(state.accelerations.begin(), state.accelerations.end(), Vector3::Zero());
+  std::fill(state.spin.begin(), state.spin.end(), 0.0);
 }
 
 void CableStepper::resize(const CableModel& model) {

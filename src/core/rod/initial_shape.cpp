@@ -5,6 +5,7 @@
 
 #include "rod/catenary.h"
 #include "rod/length_projection.h"
+#include "rod/rod_frames.h"
 
 namespace verlet_cable {
 
@@ -108,7 +109,9 @@ bool settles_at_start(const CableDesc& desc, const MaterialDesc& material) {
                      [](const AttachmentDesc& a) { return a.type == AttachmentType::clamp; });
 }
 
-bool carry_along(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {
+namespace {
+
+bool carry_nodes_along(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {
   if (!held.empty()) {
     const std::vector<double> arc_length = model.arc_length();
     std::vector<Vector3> jumps;
@@ -133,6 +136,15 @@ bool carry_along(const CableModel& model, const std::vector<HeldNode>& held, con
   return false;
 }
 
+}  // namespace
+
+bool carry_along(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {
+  const std::vector<Vector3> before = state.positions;
+  const bool fits = carry_nodes_along(model, held, gravity, state);
+  carry_frames(before, state);
+  return fits;
+}
+
 void restore_lengths(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {
   if (model.material.axial_stiffness < infinity) return;
   const int n = model.segments();
@@ -152,7 +164,8 @@ void restore_lengths(const CableModel& model, const std::vector<HeldNode>& held,
   const int anchor = held.empty() ? n / 2 : held.front().node;
   for (int i = anchor; i < n; ++i) state.positions[i + 1] = state.positions[i] + lengths[i] * direction(i);
   for (int i = anchor; i-- > 0;) state.positions[i] = state.positions[i + 1] - lengths[i] * direction(i);
-  carry_along(model, held, gravity, state);
+  carry_nodes_along(model, held, gravity, state);
+  carry_frames(before, state);
   project_velocities(model, held, state.positions, state.velocities);
   std::fill(state.accelerations.begin(), state.accelerations.end(), Vector3::Zero());
 }

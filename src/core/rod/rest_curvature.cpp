@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "rod/rod_frames.h"
+
 namespace verlet_cable {
 
 namespace {
@@ -21,26 +23,30 @@ void spread(const std::vector<std::array<double, 2>>& profile, CableModel& model
 
 }  // namespace
 
-void set_rest_curvature(const RestCurvatureDesc& desc, const std::vector<DirectionTarget>& clamps, SimulatedCable& cable) {
-  const int n = cable.model.segments();
-  if (desc.type == RestCurvatureDesc::Type::straight) return;
-  cable.model.rest_curvature.assign(n + 1, desc.curvature);
-  if (desc.type == RestCurvatureDesc::Type::constant) return;
-  if (desc.type == RestCurvatureDesc::Type::profile) return spread(desc.profile, cable.model);
-  const std::vector<Quaternion> orientations = segment_orientations(cable);
-  for (int i = 1; i < n; ++i) {
-    const Vector3 before = orientations[i - 1] * Vector3::UnitX(), after = orientations[i] * Vector3::UnitX();
-    const Quaternion middle = orientations[i - 1].slerp(0.5, orientations[i]);
-    const Vector3 curvature = (after - before) / (0.5 * (cable.model.rest_lengths[i - 1] + cable.model.rest_lengths[i]));
-    cable.model.rest_curvature[i] = {-curvature.dot(middle * Vector3::UnitZ()), curvature.dot(middle * Vector3::UnitY())};
-  }
+void set_rest_shape(const CableDesc& desc, CableModel& model) {
+  using Type = RestCurvatureDesc::Type;
+  const std::size_t nodes = model.nodes();
+  if (desc.rest_twist != 0) model.rest_twist.assign(nodes, desc.rest_twist);
+  // What does not resist bending has no shape.
+  if (desc.rest_curvature.is_straight() || !(model.material.bending_stiffness.largest() > 0)) return;
+  model.rest_curvature.assign(nodes, desc.rest_curvature.curvature);
+  if (desc.rest_curvature.type == Type::profile) spread(desc.rest_curvature.profile, model);
+}
+
+void take_rest_curvature(const std::vector<DirectionTarget>& clamps, SimulatedCable& cable) {
+  CableModel& model = cable.model;
+  const int n = model.segments();
+  const auto take = [&](int node, double length, const JointAngles& angles) {
+    const double bending = model.bending_length(node, length);
+    model.rest_curvature[node] = {angles.y / bending, angles.z / bending};
+  };
+  for (int i = 1; i < n; ++i) take(i, joint_length(model, i), joint_angles_at(cable.state, i));
   for (const DirectionTarget& clamp : clamps) {
-    if (clamp.node != 0 && clamp.node != n) continue;
-    const int i = clamp.node == 0 ? 0 : n - 1;
-    const Vector3 along = orientations[i] * Vector3::UnitX(), axis = clamp.orientation * Vector3::UnitX();
-    const Vector3 curvature = (clamp.node == 0 ? along - axis : axis - along) / (0.5 * cable.model.rest_lengths[i]);
-    cable.model.rest_curvature[clamp.node] = {-curvature.dot(orientations[i] * Vector3::UnitZ()),
-                                              curvature.dot(orientations[i] * Vector3::UnitY())};
+    const Eigen::Matrix3d held = clamp.orientation.toRotationMatrix();
+    if (clamp.node == 0)
+      take(0, joint_length(model, 0), joint_angles(held, segment_frame(cable.state, 0), cable.state.joint_twist[0]));
+    if (clamp.node == n)
+      take(n, joint_length(model, n), joint_angles(segment_frame(cable.state, n - 1), held, cable.state.joint_twist[n]));
   }
 }
 

@@ -7,8 +7,11 @@
 
 namespace verlet_cable {
 
-/// Sets the model's unloaded curvature; where it is taken from the initial shape, from the present one, `clamps` holding its
-/// ends.
-void set_rest_curvature(const RestCurvatureDesc& desc, const std::vector<DirectionTarget>& clamps, SimulatedCable& cable);
+/// Sets the model's unloaded curvature and twist. Curvature that is to be taken from the initial shape is there, but no number
+/// yet.
+void set_rest_shape(const CableDesc& desc, CableModel& model);
+
+/// Sets the model's unloaded curvature to the present one, which frames measure, `clamps` holding the ends.
+void take_rest_curvature(const std::vector<DirectionTarget>& clamps, SimulatedCable& cable);
 
 }  // namespace verlet_cable

@@ -9,6 +9,7 @@
 #include "verlet_cable/core/world.h"
 
 namespace verlet_cable {
+
 namespace {
 
 std::string lines(const std::vector<std::string>& errors) {
@@ -22,6 +23,12 @@ bool is_fixed_frame(const SceneDesc& scene, const std::string& frame) {
 }
 
 }  // namespace
+
+bool RestCurvatureDesc::is_straight() const {
+  const std::array<double, 2> none{0, 0};
+  return type == Type::straight || (type == Type::constant && curvature == none) ||
+         (type == Type::profile && std::all_of(profile.begin(), profile.end(), [&](const auto& place) { return place == none; }));
+}
 
 Pose pose_of(const InitialPose& pose) {
   return {{pose[0], pose[1], pose[2]}, quaternion_from_rpy({pose[3], pose[4], pose[5]})};

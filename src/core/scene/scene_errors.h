@@ -59,6 +59,10 @@ inline void check_vector(const std::string& key, const Vector3& v, const char* u
   check_numbers(key, std::array<double, 3>{v.x(), v.y(), v.z()}, coordinate, unit, errors);
 }
 
+inline bool has_sound_size(const CableDesc& cable) {
+  return cable_fields[0].range.contains(cable.length) && cable_integer_fields[0].range.contains(cable.segments);
+}
+
 /// Names of one kind, each once in the scene.
 class UniqueNames {
  public:

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "scene/scene_errors.h"
+#include "scene/validate_materials.h"
 #include "scene/validate_nets.h"
 #include "scene/validate_obstacles.h"
 #include "verlet_cable/core/world.h"
@@ -16,10 +17,6 @@ constexpr double distance_tolerance = 1e-9;
 /// Of the length of a segment between two nodes that are held.
 constexpr double held_tolerance = 1e-4;
 constexpr double largest_length_error = 0.05;
-
-bool is_sound(const CableDesc& cable) {
-  return cable_fields[0].range.contains(cable.length) && cable_integer_fields[0].range.contains(cable.segments);
-}
 
 bool is_sound(const CableDesc& cable, const PlaceDesc& place) {
   return place.at != PlaceDesc::At::arc_length || (place.arc_length >= 0 && place.arc_length <= cable.length);
@@ -56,7 +53,7 @@ void check_initial(const std::string& key, const CableDesc& cable, Errors& error
     return errors.add(key + ".points", std::to_string(initial.points.size()) + " points", "at least two points");
   double length = 0;
   for (std::size_t i = 1; i < initial.points.size(); ++i) length += (initial.points[i] - initial.points[i - 1]).norm();
-  if (std::isfinite(length) && is_sound(cable) && std::abs(length - cable.length) > largest_length_error * cable.length)
+  if (std::isfinite(length) && has_sound_size(cable) && std::abs(length - cable.length) > largest_length_error * cable.length)
     errors.add(key + ".points", "a polyline of " + rounded_text(length) + " m",
                "at most 5 % more or less than the cable's length " + number_text(cable.length) + " m");
 }
@@ -72,49 +69,12 @@ void check_attachments(const std::string& prefix, const CableDesc& cable, Unique
     check_vector(key + ".offset", attachment.offset, "m", errors);
     check_vector(key + ".rotation", attachment.rotation, "rad", errors);
     if (attachment.initial_pose) check_numbers(key + ".initial_pose", *attachment.initial_pose, coordinate, "m, rad", errors);
-    if (!check_place(key + ".at", cable, attachment.place, errors) || !is_sound(cable)) continue;
+    if (!check_place(key + ".at", cable, attachment.place, errors) || !has_sound_size(cable)) continue;
     const int node = node_at(cable, attachment.place);
     const auto [target, is_new] = targets.emplace(node, key);
     if (!is_new)
       errors.add(key + ".at", "node " + std::to_string(node),
                  "a node that no other attachment holds; " + target->second + " does");
-  }
-}
-
-void check_bending_stiffness(const std::string& prefix, const MaterialDesc& material, Errors& errors) {
-  const auto& [key, member, unit, range, required] = bending_stiffness_field;
-  const BendingStiffness& stiffness = material.bending_stiffness;
-  if (!stiffness.is_isotropic()) return check_numbers(prefix + key, stiffness, range, unit, errors);
-  if (!range.contains(stiffness.front())) errors.add(prefix + key, number_text(stiffness.front()), range.text(unit));
-}
-
-/// Lines for dampings that leave nothing of a cable's motion. Steps are implicit and carry any damping; but where it outweighs
-/// the inertia of a segment so much, rounding does, too.
-void check_damping(const std::string& key, const SceneDesc& scene, const CableDesc& cable, const MaterialDesc& material,
-                   Errors& errors) {
-  if (!is_sound(cable) || !material_fields[0].range.contains(material.linear_density) ||
-      !scene_fields[0].range.contains(scene.time_step))
-    return;
-  constexpr double largest_ratio = 1e12;
-  const double length = cable.length / cable.segments;
-  const double axial = largest_ratio * material.linear_density * length * length / scene.time_step;
-  const double bending = axial * length * length;
-  struct Limit {
-    const char* key;
-    double value;
-    double most;
-    const char* unit;
-    const char* words;
-  };
-  for (const Limit& limit : {Limit{"axial_damping", material.axial_damping, axial, "N s", "segment length^2"},
-                             Limit{"bending_damping", material.bending_damping, bending, "N m^2 s", "segment length^4"},
-                             Limit{"torsional_damping", material.torsional_damping, bending, "N m^2 s", "segment length^4"}}) {
-    // What is out of its range is an error of the material already.
-    if (limit.value <= limit.most || !not_negative.contains(limit.value)) continue;
-    errors.add("materials." + escaped(cable.material) + "." + limit.key, number_text(limit.value),
-               "at most " + rounded_bound_text(limit.most, -1) + " [" + limit.unit + "] for " + key + ", " +
-                   number_text(largest_ratio) + " linear_density " + limit.words +
-                   " / time_step, the most that can be simulated at this time_step");
   }
 }
 
@@ -128,7 +88,7 @@ void check_rest_curvature(const std::string& key, const RestCurvatureDesc& desc,
 
 void check_stiff_ends(const std::string& key, const CableDesc& cable, Errors& errors) {
   check_numbers(key, cable.stiff_ends, not_negative, "m", errors);
-  if (is_sound(cable) && cable.stiff_ends[0] + cable.stiff_ends[1] >= cable.length)
+  if (has_sound_size(cable) && cable.stiff_ends[0] + cable.stiff_ends[1] >= cable.length)
     errors.add(key, list_text(cable.stiff_ends), "together less than the cable's length, " + number_text(cable.length) + " m");
 }
 
@@ -139,6 +99,7 @@ void check_cable(const std::string& key, const SceneDesc& scene, const CableDesc
   check_fields(prefix, cable_integer_fields, cable, errors);
   if (const MaterialDesc* material = scene.find_material(cable.material)) {
     check_damping(key, scene, cable, *material, errors);
+    check_torsional_stiffness(key, cable, *material, errors);
   } else {
     errors.add(prefix + "material", quoted(cable.material), "a material of the scene (" + material_names(scene.materials) + ")");
   }
@@ -260,7 +221,7 @@ std::vector<std::string> validate_distances(const SceneDesc& scene, const Bounda
   for (std::size_t i = 0; i < scene.cables.size(); ++i) {
     const CableDesc& cable = scene.cables[i];
     const MaterialDesc* material = scene.find_material(cable.material);
-    if (material && material->axial_stiffness == infinity && is_sound(cable))
+    if (material && material->axial_stiffness == infinity && has_sound_size(cable))
       check_distances(indexed("cables", i), cable, material->bending_stiffness.largest() > 0, poses, errors);
   }
   return errors.take();
@@ -281,12 +242,7 @@ std::vector<std::string> validate(const SceneDesc& scene) {
   check_vector("fluid.velocity", scene.fluid.velocity, "m/s", errors);
   check_fields("fluid.", fluid_fields, scene.fluid, errors);
 
-  UniqueNames materials;
-  for (const NamedMaterial& named : scene.materials) {
-    materials.check("materials." + escaped(named.name), named.name, errors);
-    check_fields("materials." + escaped(named.name) + ".", material_fields, named.material, errors);
-    check_bending_stiffness("materials." + escaped(named.name) + ".", named.material, errors);
-  }
+  check_materials(scene, errors);
 
   UniqueNames bodies, attachments;
   for (std::size_t i = 0; i < scene.cables.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rod/rod_frames.h"
 #include "target/jump.h"
 #include "verlet_cable/core/rotation.h"
 
@@ -39,6 +40,18 @@ Vector3 target_position(const CableModel& model, const Attachment& attachment, c
 Vector3 tangent(const CableState& state, int node) {
   const int last = static_cast<int>(state.positions.size()) - 1;
   return state.positions[std::min(node + 1, last)] - state.positions[std::max(node - 1, 0)];
+}
+
+Quaternion about_direction(double roll) {
+  return Quaternion(Eigen::AngleAxisd(roll, Vector3::UnitX()));
+}
+
+/// Holds the material where it is, as if it had come so into a clamp that wants another direction.
+void catch_material(const Eigen::Matrix3d& material, const Quaternion& wanted, DirectionTarget& target) {
+  target.gap = smallest_rotation(wanted * Vector3::UnitX(), material.col(0));
+  const Eigen::Matrix3d clamp = (target.gap * wanted).toRotationMatrix();
+  target.roll = std::atan2(clamp.col(2).dot(material.col(1)), clamp.col(1).dot(material.col(1)));
+  target.orientation = Quaternion(material);
 }
 
 void aim(const Vector3& wanted, double time, KinematicTarget& target) {
@@ -107,8 +120,12 @@ KinematicTargets find_targets(const CableModel& model, const CableState& state, 
     target.node = attachments[attachment].node;
     const Quaternion wanted = (frames[attachments[attachment].frame] * attachments[attachment].pose).orientation;
     // Its roll is followed from the start; a pinned node is not twisted by being pinned.
-    target.gap = smallest_rotation(wanted * Vector3::UnitX(), tangent(state, target.node));
-    target.orientation = target.gap * wanted;
+    if (state.directors.empty()) {
+      target.gap = smallest_rotation(wanted * Vector3::UnitX(), tangent(state, target.node));
+      target.orientation = target.gap * wanted;
+    } else {
+      catch_material(node_frame(model, state, target.node), wanted, target);
+    }
     target.caught = time;
     targets.directions.push_back(target);
   };
@@ -154,8 +171,8 @@ void aim_targets(const CableModel& model, const std::vector<Attachment>& attachm
   for (DirectionTarget& target : targets.directions) {
     const Attachment& attachment = attachments[target.attachment];
     const double left = remaining(target.caught, approach_radius, time);
-    target.next_orientation =
-        Quaternion::Identity().slerp(left, target.gap) * (frames[attachment.frame] * attachment.pose).orientation;
+    target.next_orientation = Quaternion::Identity().slerp(left, target.gap) *
+                              (frames[attachment.frame] * attachment.pose).orientation * about_direction(target.roll);
   }
 }
 

@@ -43,6 +43,8 @@ struct DirectionTarget {
   Quaternion gap = Quaternion::Identity();               ///< from its place to where it was when it was caught; closed smoothly
   double caught = -infinity;                             ///< [s] when that was
   Quaternion next_orientation = Quaternion::Identity();  ///< at the end of the step
+  /// [rad] of a whole rod, about the clamp's direction: how the material is turned against the attachment
+  double roll = 0;
   /// [rad] of a whole rod that is clamped inside, any number of turns: between the segment before and the clamp, and between the
   /// clamp and the segment after it
   double twist_before = 0, twist_after = 0;

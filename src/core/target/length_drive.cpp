@@ -1,9 +1,11 @@
 #include "target/length_drive.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "chain/node_arrays.h"
+#include "rod/rod_frames.h"
 
 namespace verlet_cable {
 
@@ -43,8 +45,16 @@ void wind(const LengthDrive& drive, double part, double time_step, CableModel& m
   const double uniform = drive.change - 0.5 * time_step * (drive.growth() + drive.next_growth());
   const double accelerated = time_step * (drive.growth() + 0.5 * part * (drive.next_growth() - drive.growth()));
   const double change = part == 1 ? drive.change : part * (uniform + accelerated);
+  const auto lengths = [&] { return std::array{joint_length(model, drive.segment), joint_length(model, drive.segment + 1)}; };
+  const std::array<double, 2> before = lengths();
   model.rest_lengths[drive.segment] = drive.start_length + change;
-  if (!drive.is_winch()) return;
+  if (!drive.is_winch()) {
+    // The two that are welded stay turned against each other as they are.
+    if (model.rest_twist.empty()) return;
+    const std::array<double, 2> after = lengths();
+    for (const int side : {0, 1}) model.rest_twist[drive.segment + side] *= before[side] / after[side];
+    return;
+  }
   for (const int side : {0, 1})
     model.masses[drive.segment + side] = drive.start_masses[side] + 0.5 * model.material.linear_density * part * drive.wound;
 }
@@ -65,10 +75,17 @@ void insert_node(int segment, double first, SimulatedCable& cable) {
   CableModel& model = cable.model;
   const double whole = model.rest_lengths[segment], second = whole - first, part = first / whole;
   const int node = segment + 1, neighbour = segment == 0 ? node : segment;
+  std::array<double, 2> turns{0, 0};  // [rad] from the segment's middle to those of its parts
+  if (!cable.state.joint_twist.empty()) {
+    // Twist goes on evenly.
+    const auto twist_rate = [&](int at) { return cable.state.joint_twist[at] / joint_length(model, at); };
+    turns = {0.5 * second * twist_rate(segment), 0.5 * first * twist_rate(node)};
+  }
   duplicate_node(node, cable);
   for (auto* values : {&cable.state.positions, &cable.state.velocities, &cable.state.accelerations})
     (*values)[node] = (*values)[segment] + part * ((*values)[node + 1] - (*values)[segment]);
   if (!model.rest_curvature.empty()) model.rest_curvature[node] = model.rest_curvature[neighbour];
+  if (!model.rest_twist.empty()) model.rest_twist[node] = model.rest_twist[neighbour];
   // What a winch pays out bends.
   if (!model.flexible_fraction.empty()) model.flexible_fraction[node] = 1;
   const double half_density = 0.5 * model.material.linear_density;
@@ -78,6 +95,13 @@ void insert_node(int segment, double first, SimulatedCable& cable) {
   duplicate_segment(segment, cable);
   model.rest_lengths[segment] = first;
   model.rest_lengths[node] = second;
+  if (!cable.state.joint_twist.empty()) {
+    cable.state.joint_twist[segment] -= turns[0];
+    cable.state.joint_twist[node] = turns[0] + turns[1];
+    cable.state.joint_twist[node + 1] -= turns[1];
+    turn_segment(segment, -turns[0], cable.state);
+    turn_segment(node, turns[1], cable.state);
+  }
   if (cable.state.reference_node >= node) ++cable.state.reference_node;
 }
 
@@ -96,10 +120,19 @@ double remove_node(int node, SimulatedCable& cable) {
     state.velocities[neighbour] = (model.masses[neighbour] * state.velocities[neighbour] + moved * state.velocities[node]) / sum;
     model.masses[neighbour] = sum;
   };
+  Vector3 director = Vector3::Zero();
+  if (!state.directors.empty()) {
+    // Seen from its own middle the new segment is turned by a part of the twist at the node.
+    const double to_first = state.joint_twist[node] * second / whole, to_second = state.joint_twist[node] - to_first;
+    state.joint_twist[before] += to_first;
+    state.joint_twist[after] += to_second;
+    const Vector3 along = state.positions[after] - state.positions[before];
+    director = carried_director(state, before, along, to_first);
+  }
   give(before, second / whole);
   give(after, first / whole);
-  visit_segment_arrays(
-      cable, [&](std::vector<double>& values) { values[before] = (first * values[before] + second * values[node]) / whole; });
+  visit_segment_arrays(cable, [&](auto& values) { values[before] = (first * values[before] + second * values[node]) / whole; });
+  if (!state.directors.empty()) state.directors[before] = director;
   model.rest_lengths[before] = length;
   erase_segment(node, cable);
   erase_node(node, cable);

@@ -5,6 +5,7 @@
 
 #include "rod/initial_shape.h"
 #include "rod/length_projection.h"
+#include "rod/rod_frames.h"
 #include "verlet_cable/core/rotation.h"
 
 namespace verlet_cable {
@@ -79,6 +80,7 @@ void add_forces(const Boundary& boundary, const KinematicTargets& targets, const
 
 void follow_material(const std::vector<HeldDirection>& directions, const std::vector<TwistSpan>& spans, SimulatedCable& cable) {
   CableState& state = cable.state;
+  if (cable.model.is_whole_rod()) return;  // its segments know
   if (directions.empty()) {
     const Vector3 before = state.reference_orientation * Vector3::UnitX(), now = state.positions[1] - state.positions[0];
     state.reference_node = 0;
@@ -115,10 +117,34 @@ void update_targets(int index, State& state, CableOutcome& outcome) {
   hold_at(0, 0, targets, boundary);
   if (jumps) {
     carry_along(cable.model, boundary.nodes, gravity_near(state, index), cable.state);
+    measure_joint_twists(cable, targets.directions);
     note_status(Status::jumped, cable_id(index), following.jumping_node, outcome.result);
   }
   project_velocities(cable.model, boundary.nodes, cable.state.positions, cable.state.velocities);
 }
+
+namespace {
+
+/// The same of a whole rod: the material that is in the clamp at the winch is turned against what was there before.
+void pass_twist_through_winch(const LengthDrive& drive, SimulatedCable& cable, KinematicTargets& targets) {
+  CableModel& model = cable.model;
+  CableState& state = cable.state;
+  const int end = drive.end_node(model.segments());
+  for (DirectionTarget& clamp : targets.directions) {
+    if (clamp.node != end) continue;
+    const int next = end == 0 ? 1 : end - 1;
+    double twist = state.joint_twist[end], length = joint_length(model, end);
+    if (next > 0 && next < model.segments()) {
+      twist += state.joint_twist[next];
+      length += joint_length(model, next);
+    }
+    const double turn = drive.wound * twist / length;
+    state.joint_twist[end] += turn;
+    turn_in_clamp(end == 0 ? -turn : turn, clamp);
+  }
+}
+
+}  // namespace
 
 void complete_drive_step(int index, State& state) {
   CableProgress& memory = state.cable_progress[index];
@@ -135,6 +161,7 @@ void complete_drive_step(int index, State& state) {
       span.angle += change;
       span.origin -= change;
     }
+    if (!state.cables[index].state.directors.empty()) pass_twist_through_winch(drive, state.cables[index], memory.targets);
   }
   if (!complete_drive(drive)) memory.drive.reset();
 }

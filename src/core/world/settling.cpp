@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "rod/length_projection.h"
+#include "rod/rod_frames.h"
 #include "world/island_stepper.h"
 
 namespace verlet_cable {
@@ -263,6 +264,7 @@ bool Settling::leaves_equilibrium(Approach& approach, double& h) {
   for (int i = 0; i < cable_.model.nodes(); ++i)
     cable_.state.positions[i] += size * direction_at(static_cast<double>(i) / cable_.model.segments());
   project_positions(cable_.model, work_.boundary.nodes, cable_.state.positions);
+  carry_frames(before.positions, cable_.state);
   const double first = largest_distance(cable_.state.positions, before.positions);
   for (h = shortest_step(cable_.model); h < last_nudged_step; h *= 2)
     for (int i = 0; i < nudged_steps; ++i) {

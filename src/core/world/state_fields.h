@@ -135,7 +135,8 @@ auto fields(T& x, const KinematicTarget*) {
 }
 template <class T>
 auto fields(T& x, const DirectionTarget*) {
-  return std::tie(x.attachment, x.node, x.orientation, x.gap, x.caught, x.next_orientation, x.twist_before, x.twist_after);
+  return std::tie(x.attachment, x.node, x.orientation, x.gap, x.caught, x.next_orientation, x.roll, x.twist_before,
+                  x.twist_after);
 }
 template <class T>
 auto fields(T& x, const KinematicTargets*) {

@@ -1,9 +1,9 @@
 #include <algorithm>
 
-#include "verlet_cable/core/world.h"
-#include "world/implementation.h"
 #include "rod/bending.h"
 #include "rod/kirchhoff_rod.h"
+#include "verlet_cable/core/world.h"
+#include "world/implementation.h"
 #include "world/state_fields.h"
 
 namespace verlet_cable {

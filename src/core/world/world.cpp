@@ -9,6 +9,7 @@
 #include "rod/initial_shape.h"
 #include "rod/length_projection.h"
 #include "rod/rest_curvature.h"
+#include "rod/rod_frames.h"
 #include "rod/stiff_ends.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/rotation.h"
@@ -218,29 +219,10 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   memory.spans = find_spans(cable.model, cable.state, boundary.directions);
   follow_material(boundary.directions, memory.spans, cable);
   set_stiff_ends(desc.stiff_ends, cable.model);
-  set_rest_curvature(desc.rest_curvature, memory.targets.directions, cable);
-  if (desc.rest_twist != 0) cable.model.rest_twist.assign(cable.model.nodes(), desc.rest_twist);  // DEV
-  if (cable.model.is_whole_rod()) {  // DEV
-    memory.spans.clear();
-    const int n = cable.model.segments();
-    cable.state.spin.assign(n, 0.0);
-    cable.state.joint_twist.assign(n + 1, 0.0);
-    cable.state.directors.clear();
-    Vector3 t = cable.state.reference_orientation * Vector3::UnitX(), y = cable.state.reference_orientation * Vector3::UnitY();
-    for (int i = 0; i < n; ++i) {
-      const Vector3 next = (cable.state.positions[i + 1] - cable.state.positions[i]).normalized();
-      const bool clamped = !boundary.directions.empty() && boundary.directions.front().node == 0;
-      const double length = cable.model.bending_length(i, i == 0 ? 0.5 * cable.model.rest_lengths[0] : 0.5 * (cable.model.rest_lengths[i - 1] + cable.model.rest_lengths[i]));
-      const double m = (i > 0 || clamped) && desc.rest_twist != 0 ? desc.rest_twist * length : 0;
-      y = y - y.dot(next) / (1 + t.dot(next)) * (t + next);
-      y = std::cos(m) * y + std::sin(m) * next.cross(y);
-      y = (y - y.dot(next) * next).normalized();
-      t = next;
-      cable.state.directors.push_back(y);
-      cable.state.joint_twist[i] = m;
-    }
-    if (!boundary.directions.empty() && boundary.directions.back().node == n) cable.state.joint_twist[n] = desc.rest_twist * cable.model.bending_length(n, 0.5 * cable.model.rest_lengths[n - 1]);
-  }
+  set_rest_shape(desc, cable.model);
+  start_frames(cable, memory.targets.directions);
+  if (desc.rest_curvature.type == RestCurvatureDesc::Type::initial && !cable.model.rest_curvature.empty())
+    take_rest_curvature(memory.targets.directions, cable);
   const bool held = !memory.targets.nodes.empty();
   state.cables.push_back(std::move(cable));
   state.cable_progress.push_back(std::move(memory));
@@ -258,6 +240,7 @@ void World::Implementation::find_targets_of(int index) {
   const Boundary boundary = boundary_now(memory.targets);
   restore_lengths(cable.model, boundary.nodes, gravity_near(state, index), cable.state);
   memory.spans = find_spans(cable.model, cable.state, boundary.directions);
+  measure_joint_twists(cable, memory.targets.directions);
 }
 
 }  // namespace verlet_cable
