@@ -36,10 +36,12 @@ double stiffness_of_ring(int n, const Ring& ring) {
   // What grows is the difference of two rings: next to the clamps a polygon is not quite plane in equilibrium.
   std::vector<Simulation> runs;
   for (const double size : {0.0, 1e-5}) {
-    SceneDesc scene = rod(n, 5e-4);
+    SceneDesc scene = rod(n, 1e-3);
     material(scene).bending_stiffness = ring.bending_stiffness;
     material(scene).torsional_stiffness = ring.torsional_stiffness;
-    bend_at_rest(scene, 0, 2 * M_PI * ring.rest_curvature);
+    // So little that it takes a time of no account; without it waves of twist go to and fro after the ends were turned.
+    material(scene).torsional_damping = 1e-3;
+    if (ring.rest_curvature != 0) bend_at_rest(scene, 0, 2 * M_PI * ring.rest_curvature);
     damp(scene, 60);
     hold_ends(scene, AttachmentType::clamp, 0);
     start_at(scene, [&](double s) -> Vector3 { return polygon(s, n) + size * bow(2 * M_PI * s) * Vector3::UnitZ(); });
@@ -61,7 +63,7 @@ double stiffness_of_ring(int n, const Ring& ring) {
 
 /// Leaves its plane where `ring(load)` has no stiffness: at `expected`.
 void expect_critical(const std::string& name, double expected, const std::function<Ring(double)>& ring) {
-  const auto samples = sample({25, 50, 100}, [&](int n) {
+  const auto samples = sample({20, 40, 80}, [&](int n) {
     std::vector<double> loads, stiffnesses;
     const auto stiffness = [&](double load) {
       loads.push_back(load / expected);
@@ -91,30 +93,26 @@ TEST_P(Michell, RingLeavesItsPlaneAtHisAngle) {
 INSTANTIATE_TEST_SUITE_P(Kernels, Michell, testing::Values(0, 1e-12));
 
 /// Zajac, Stability of two planar loop elasticas, 1962; Manning and Hoffman, Stability of n-covered circles, 2001. A ring of
-/// curvature k that is bent from a rest curvature k0 carries the moment m k, m = B (1 - k0 / k), and no force. A small rotation
-/// (a, b) about its tangent and its normal changes the moment's parts by (-b, a) m k, and the strains by (a' - k b, b' + k a):
-/// a' = (1 - m / C) k b, b' = -(1 - m / A) k a. The ring closes where (1 - m / C)(1 - m / A) = 2^2. A and B are the bending
-/// stiffnesses across and in its plane, C is the torsional one.
+/// curvature k that is bent open from a rest curvature k0 carries the moment m k, m = B (1 - k0 / k) < 0, and no force. A small
+/// rotation (a, b) about its tangent and its normal changes the moment's parts by (-b, a) m k, and the strains by
+/// (a' - k b, b' + k a): a' = (1 - m / C) k b, b' = -(1 - m / A) k a. The ring closes where (1 - m / C)(1 - m / A) = 2^2. A and
+/// B are the bending stiffnesses across and in its plane, C is the torsional one.
 struct ZajacCase {
   const char* name;
   double across, in_plane, torsional;
-  double sign;  ///< of m: bent open or bent further than it is at rest
 };
 
 class Zajac : public testing::TestWithParam<ZajacCase> {};
 
 TEST_P(Zajac, RingLeavesItsPlaneAtARestCurvature) {
   const ZajacCase& c = GetParam();
-  const double sum = c.across + c.torsional;
-  const double moment = 0.5 * (sum + c.sign * std::sqrt(sum * sum + 12 * c.across * c.torsional));
-  expect_critical(std::string("Zajac ring, ") + c.name, 1 - moment / c.in_plane, [&](double rest_curvature) {
+  const double sum = c.across + c.torsional, moment = 0.5 * (sum - std::sqrt(sum * sum + 12 * c.across * c.torsional));
+  expect_critical(std::string("Zajac ring") + c.name, 1 - moment / c.in_plane, [&](double rest_curvature) {
     return Ring{{c.across, c.in_plane}, c.torsional, rest_curvature, 0};
   });
 }
 
-INSTANTIATE_TEST_SUITE_P(Rings, Zajac,
-                         testing::Values(ZajacCase{"bent open", 1, 1, 0.75, -1}, ZajacCase{"bent back", 1, 1, 0.75, 1},
-                                         ZajacCase{"flat, bent open", 1, 0.5, 0.6, -1}));
+INSTANTIATE_TEST_SUITE_P(Rings, Zajac, testing::Values(ZajacCase{"", 1, 1, 0.75}, ZajacCase{", flat", 1, 0.5, 0.6}));
 
 }  // namespace
 }  // namespace verlet_cable::validation
