@@ -27,6 +27,8 @@ SCENES = {  # [s] until the picture
     'table': 0,
     'knot': 2,
     'crossed': 4,
+    'flat_cable': 4,
+    'coiled_cable': 1,
     'dress_pack': 8,
 }  # their views are rviz/scenes
 LECTURE = {  # [s] until the picture, and how many steps after a reset it is of; 0: time just stops for it; None: it goes on, for trails

@@ -15,14 +15,16 @@ SCENE = sys.argv[1]
 SECONDS = float(sys.argv[2])  # for how long it is watched
 # What has to be touched: obstacles by name, cables by theirs.
 TOUCHED = {
+    'coiled_cable': set(),
     'crossed': {'held', 'pulled'},
     'dress_pack': {'forearm_1'},
+    'flat_cable': set(),
     'knot': {'rope'},
     'pile': {'floor', 'rope'},
     'pole': {'pole'},
     'table': {'table'},
 }[SCENE]
-OBSTACLES = {'crossed': 0, 'dress_pack': 6, 'knot': 0, 'pile': 1, 'pole': 2, 'table': 2}[SCENE]
+OBSTACLES = {'coiled_cable': 0, 'crossed': 0, 'dress_pack': 6, 'flat_cable': 0, 'knot': 0, 'pile': 1, 'pole': 2, 'table': 2}[SCENE]
 DEEPEST = 0.2    # of the radius
 ANCHORED = 0.051  # [m]
 PATIENCE = 30.0  # [s] of wall time; the hands need 2 s

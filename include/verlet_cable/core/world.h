@@ -64,6 +64,13 @@ struct Energy {
   double total() const { return kinetic + gravity + stretch + bend + twist; }
 };
 
+/// How a cable bends and twists at a node, or beside a clamp.
+struct JointView {
+  double arc_length = 0;  ///< [m] of the node from the start, at rest
+  double curvature = 0;   ///< [1/m]
+  double twist = 0;       ///< [rad/m]
+};
+
 /// A segment that went in a step because its tension exceeded the material's breaking tension.
 struct Break {
   int cable = 0;      ///< index of the cable, now the first piece
@@ -157,6 +164,8 @@ class World {
   void tune(const SceneDesc& scene);
 
   Energy energy() const;
+  /// All joints of a cable from start to end: of inner nodes, and those of clamps with the segments beside them.
+  void view_joints(int cable, std::vector<JointView>& joints) const;
   std::uint64_t hash() const;  ///< of all that the future depends on
 
  private:

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rod/rod_frames.h"
+
 namespace verlet_cable {
 
 namespace {
@@ -13,14 +15,6 @@ constexpr double least_static_resistance = 1e-9;
 /// About the tangent, of a round section [kg m]
 double section_inertia(const MaterialDesc& material) {
   return 0.5 * material.linear_density * material.radius * material.radius;
-}
-
-Eigen::Matrix3d segment_frame(const Vector3& segment, const Vector3& director) {
-  Eigen::Matrix3d axes;
-  axes.col(0) = segment.normalized();
-  axes.col(1) = (director - director.dot(axes.col(0)) * axes.col(0)).normalized();
-  axes.col(2) = axes.col(0).cross(axes.col(1));
-  return axes;
 }
 
 /// Calls visitor(direction, segment, whether the segment comes after the clamp) for every joint of a clamp.
@@ -37,28 +31,16 @@ double clamp_twist(const CableState& state, const HeldDirection& direction, int 
   return after ? direction.twist_after : direction.twist_before;
 }
 
-/// How a clamp is rolled against the material's frame that it holds, so that the joint is as twisted as it is known to be [rad].
-double clamp_roll(const Eigen::Matrix3d& clamp, const Eigen::Matrix3d& segment, bool after, double twist) {
-  return after ? joint_angles(clamp, segment, twist).twist - twist : twist - joint_angles(segment, clamp, twist).twist;
-}
-
-Eigen::Matrix3d rolled(const Quaternion& orientation, double roll) {
-  return (orientation * Eigen::AngleAxisd(roll, Vector3::UnitX())).toRotationMatrix();
-}
-
 /// `around` [m]: the cable that the joint stands for.
 JointStiffness joint_stiffness(const CableModel& model, int node, double around, double damping_time) {
-  const double length = model.bending_length(node, around), per_length = 1 / length;
+  const double per_length = 1 / model.bending_length(node, around);
   JointStiffness stiffness;
   stiffness.twist = model.material.torsional_stiffness * per_length;
   stiffness.bend_y = model.material.bending_stiffness[0] * per_length;
   stiffness.bend_z = model.material.bending_stiffness[1] * per_length;
   stiffness.twist_damping = model.material.torsional_damping / damping_time * per_length;
   stiffness.bend_damping = model.material.bending_damping / damping_time * per_length;
-  if (!model.rest_twist.empty()) stiffness.rest.twist = model.rest_twist[node] * length;
-  if (model.rest_curvature.empty()) return stiffness;
-  stiffness.rest.y = model.rest_curvature[node][0] * length;
-  stiffness.rest.z = model.rest_curvature[node][1] * length;
+  stiffness.rest = rest_angles(model, node, around);
   return stiffness;
 }
 
@@ -117,8 +99,7 @@ void KirchhoffRod::start_joints(const CableModel& model, const CableState& state
                                 double damping_time) {
   const int n = segments_;
   for (int i = 1; i < n; ++i)
-    joints_.set(i, joint_stiffness(model, i, 0.5 * (model.rest_lengths[i - 1] + model.rest_lengths[i]), damping_time),
-                state.joint_twist[i]);
+    joints_.set(i, joint_stiffness(model, i, joint_length(model, i), damping_time), state.joint_twist[i]);
   for (const HeldDirection& direction : directions)
     if (direction.node > 0 && direction.node < n) joints_.set(direction.node, {}, 0);
   joints_.start(frames_.start, 0, frames_.start, 1, 1, n);
@@ -138,17 +119,15 @@ void KirchhoffRod::start_clamps(const CableModel& model, const CableState& state
     const HeldDirection& held = directions[target];
     const int joint = static_cast<int>(clamps_.size());
     clamps_.push_back({static_cast<int>(target), segment, after});
-    const double twist = clamp_twist(state, held, segments_, after);
-    const Eigen::Matrix3d beside = get(frames_.start, segment);
-    const double roll = clamp_roll(held.start.toRotationMatrix(), beside, after, twist);
+    const Eigen::Matrix3d start = held.start.toRotationMatrix(), end = held.end.toRotationMatrix();
     FrameMotion& of_clamp = after ? clamp_before_ : clamp_after_;
     FrameMotion& of_segment = after ? clamp_after_ : clamp_before_;
-    const Eigen::Matrix3d start = rolled(held.start, roll), end = rolled(held.end, roll);
     set(of_clamp.start, joint, start);
     set(of_clamp.end, joint, end);
     set(of_clamp.middle, joint, start + part_ * (end - start));
-    set(of_segment.start, joint, beside);
-    clamp_joints_.set(joint, joint_stiffness(model, held.node, 0.5 * model.rest_lengths[segment], damping_time), twist);
+    set(of_segment.start, joint, get(frames_.start, segment));
+    clamp_joints_.set(joint, joint_stiffness(model, held.node, 0.5 * model.rest_lengths[segment], damping_time),
+                      clamp_twist(state, held, segments_, after));
   });
   clamp_joints_.start(clamp_before_.start, 0, clamp_after_.start, 0, 0, static_cast<int>(count));
 }
@@ -309,17 +288,14 @@ RodEnergy rod_energy(const CableModel& model, const CableState& state, const std
     sum.bend += energy.bend;
     sum.twist += energy.twist;
   };
-  const auto frame = [&](int i) { return segment_frame(state.positions[i + 1] - state.positions[i], state.directors[i]); };
   for (int i = 1; i < n; ++i) {
     if (std::any_of(directions.begin(), directions.end(), [i](const HeldDirection& d) { return d.node == i; })) continue;
-    add(joint_stiffness(model, i, 0.5 * (model.rest_lengths[i - 1] + model.rest_lengths[i]), infinity),
-        joint_angles(frame(i - 1), frame(i), state.joint_twist[i]));
+    add(joint_stiffness(model, i, joint_length(model, i), infinity), joint_angles_at(state, i));
   }
   visit_clamp_joints(directions, n, [&](std::size_t target, int segment, bool after) {
     const HeldDirection& held = directions[target];
     const double twist = clamp_twist(state, held, n, after);
-    const Eigen::Matrix3d beside = frame(segment);
-    const Eigen::Matrix3d clamp = rolled(held.end, clamp_roll(held.end.toRotationMatrix(), beside, after, twist));
+    const Eigen::Matrix3d beside = segment_frame(state, segment), clamp = held.end.toRotationMatrix();
     add(joint_stiffness(model, held.node, 0.5 * model.rest_lengths[segment], infinity),
         after ? joint_angles(clamp, beside, twist) : joint_angles(beside, clamp, twist));
   });

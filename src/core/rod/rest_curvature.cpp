@@ -41,6 +41,11 @@ void take_rest_curvature(const std::vector<DirectionTarget>& clamps, SimulatedCa
     model.rest_curvature[node] = {angles.y / bending, angles.z / bending};
   };
   for (int i = 1; i < n; ++i) take(i, joint_length(model, i), joint_angles_at(cable.state, i));
+  // A free end is curved as its neighbour.
+  if (n > 1) {
+    model.rest_curvature[0] = model.rest_curvature[1];
+    model.rest_curvature[n] = model.rest_curvature[n - 1];
+  }
   for (const DirectionTarget& clamp : clamps) {
     const Eigen::Matrix3d held = clamp.orientation.toRotationMatrix();
     if (clamp.node == 0)

@@ -258,6 +258,47 @@ void measure_joint_twists(SimulatedCable& cable, std::vector<DirectionTarget>& c
   }
 }
 
+void roll_clamps_to_twist(SimulatedCable& cable, std::vector<DirectionTarget>& clamps) {
+  CableState& state = cable.state;
+  if (state.directors.empty()) return;
+  for (DirectionTarget& clamp : clamps) {
+    const Eigen::Matrix3d held = clamp.orientation.toRotationMatrix();
+    const bool has_before = clamp.node > 0, has_after = clamp.node < cable.model.segments();
+    double roll = 0;
+    if (has_after) {
+      double& twist = twist_after(clamp, state);
+      const double measured = joint_angles(held, segment_frame(state, clamp.node), twist).twist;
+      roll = measured - twist;
+      if (&clamp == &clamps.front()) twist = measured;
+    }
+    if (has_before) {
+      double& twist = twist_before(clamp, state);
+      const double measured = joint_angles(segment_frame(state, clamp.node - 1), held, twist).twist;
+      roll = twist - measured;
+      if (&clamp == &clamps.front()) twist = measured;
+    }
+    if (&clamp != &clamps.front()) turn_in_clamp(roll, clamp);
+  }
+}
+
+double take_excess_twist(SimulatedCable& cable, std::vector<DirectionTarget>& clamps) {
+  const CableModel& model = cable.model;
+  CableState& state = cable.state;
+  double largest = 0;
+  for (std::size_t k = 0; k + 1 < clamps.size() && !state.directors.empty(); ++k) {
+    DirectionTarget &first = clamps[k], &last = clamps[k + 1];
+    double excess = twist_after(first, state) - rest_angles(model, first.node, half_length(model, first.node)).twist +
+                    twist_before(last, state) - rest_angles(model, last.node, half_length(model, last.node - 1)).twist;
+    for (int i = first.node + 1; i < last.node; ++i)
+      excess += state.joint_twist[i] - rest_angles(model, i, joint_length(model, i)).twist;
+    largest = std::max(largest, std::abs(excess));
+    turn_in_clamp(-excess, last);
+    twist_before(last, state) -= excess;
+    if (last.node < model.segments()) twist_after(last, state) += excess;
+  }
+  return largest;
+}
+
 void release_joint_twist(const DirectionTarget& clamp, CableState& state) {
   if (state.joint_twist.empty()) return;
   const bool inside = clamp.node > 0 && clamp.node + 1 < static_cast<int>(state.joint_twist.size());

@@ -59,6 +59,13 @@ void carry_frames(const std::vector<Vector3>& before, CableState& state);
 /// cable's state.
 void measure_joint_twists(SimulatedCable& cable, std::vector<DirectionTarget>& clamps);
 
+/// After clamps were turned: the first one twists the cable by that, the others are rolled so that they do not.
+void roll_clamps_to_twist(SimulatedCable& cable, std::vector<DirectionTarget>& clamps);
+
+/// Turns the clamps after the first so that the cable has its rest twist, altogether, between each two of them. Returns the
+/// largest twist that was taken away [rad].
+double take_excess_twist(SimulatedCable& cable, std::vector<DirectionTarget>& clamps);
+
 /// Leaves the twist of a clamp that lets go to its joint; an end that is free has none.
 void release_joint_twist(const DirectionTarget& clamp, CableState& state);
 

@@ -39,6 +39,10 @@ constexpr double last_nudged_step = 1;
 constexpr int nudged_steps = 4;
 constexpr int maximum_nudges = 5;
 
+/// [rad] of twist, and how often that is taken from a start.
+constexpr double settled_twist = 1e-7;
+constexpr int most_untwistings = 30;
+
 /// What stands is left to itself for a trial, so long [s], in steps that grow from and by these [s]; it
 /// does not stand if a node gets faster than `moving` [m/s].
 constexpr int maximum_trials = 5;
@@ -133,7 +137,7 @@ bool Settling::settle_start() {
   Approach approach(index_, false);
   approach.iterations = std::max(most_start_iterations, short_start_iterations / cable_.model.segments());
   turn_clamps(approach);
-  bool settled = find_equilibrium(approach);
+  bool settled = find_untwisted_equilibrium(approach);
   find_obstacles();
   if (may_touch()) {
     find_contacts(approach, true, 1);
@@ -142,7 +146,7 @@ bool Settling::settle_start() {
       touching.iterations = approach.iterations;
       cable_.state = hanging;
       turn_clamps(touching);
-      settled = find_equilibrium(touching);
+      settled = find_untwisted_equilibrium(touching);
     }
   }
   memory_.spans = find_spans(cable_.model, cable_.state, work_.boundary.directions);
@@ -154,12 +158,14 @@ bool Settling::settle_start() {
 void Settling::hold_still() {
   aim_targets(cable_.model, state_.attachments, state_.frames.poses, state_.time(), memory_.targets);
   put_at_aim(memory_.targets);
+  measure_joint_twists(cable_, memory_.targets.directions);
   hold_at(1, 1, memory_.targets, work_.boundary);
   bring_to_rest(cable_.state);
 }
 
 /// The holders move with their frames, and take along what cannot stretch.
 void Settling::complete() {
+  keep_twist(work_.boundary, memory_.targets);
   project_velocities(cable_.model, work_.boundary.nodes, cable_.state.positions, cable_.state.velocities);
   add_forces(work_.boundary, memory_.targets, state_.frames.poses, 1, state_.attachments);
   follow_material();
@@ -171,25 +177,59 @@ void Settling::follow_material() {
 
 /// From the directions of the cable that hangs from them to their own.
 void Settling::turn_clamps(Approach& approach) {
-  std::vector<HeldDirection>& directions = work_.boundary.directions;
   std::vector<Eigen::AngleAxisd> turns;
   double most = 0;
-  for (const HeldDirection& direction : directions) {
+  for (const HeldDirection& direction : work_.boundary.directions) {
     turns.push_back(turn_to_cable(direction.end, direction.node, cable_.state.positions));
     most = std::max(most, turns.back().angle());
   }
   const int stages = static_cast<int>(std::ceil(most / turning_angle));
   for (int stage = 0; stage < stages; ++stage) {
     const double left = 1 - static_cast<double>(stage) / stages;
-    for (std::size_t k = 0; k < directions.size(); ++k) {
-      const Quaternion turn(Eigen::AngleAxisd(left * turns[k].angle(), turns[k].axis()));
-      directions[k].start = directions[k].end = turn * memory_.targets.directions[k].next_orientation;
-    }
+    place_clamps(turns, left);
     follow_material();
     relax(shortest_step(cable_.model), longest_turning_step, turning_steps, approach);
+    untwist();
   }
-  hold_at(1, 1, memory_.targets, work_.boundary);
+  place_clamps(turns, 0);
   follow_material();
+}
+
+/// Turns the clamps away from their own directions by a part of `turns`.
+void Settling::place_clamps(const std::vector<Eigen::AngleAxisd>& turns, double part) {
+  std::vector<DirectionTarget>& clamps = memory_.targets.directions;
+  keep_twist(work_.boundary, memory_.targets);
+  for (std::size_t k = 0; k < clamps.size(); ++k)
+    clamps[k].orientation = Quaternion(Eigen::AngleAxisd(part * turns[k].angle(), turns[k].axis())) * clamps[k].next_orientation;
+  roll_clamps_to_twist(cable_, clamps);
+  for (std::size_t k = 0; k < clamps.size(); ++k) {
+    HeldDirection& held = work_.boundary.directions[k];
+    held.start = held.end = clamps[k].orientation;
+    held.twist_before = clamps[k].twist_before;
+    held.twist_after = clamps[k].twist_after;
+  }
+}
+
+/// Lets clamps hold the material so that the cable has its rest twist. Returns how far from that it was [rad].
+double Settling::untwist() {
+  keep_twist(work_.boundary, memory_.targets);
+  const double excess = take_excess_twist(cable_, memory_.targets.directions);
+  for (std::size_t k = 0; k < memory_.targets.directions.size(); ++k) {
+    work_.boundary.directions[k].twist_before = memory_.targets.directions[k].twist_before;
+    work_.boundary.directions[k].twist_after = memory_.targets.directions[k].twist_after;
+  }
+  return excess;
+}
+
+/// The equilibrium of a cable that is not twisted by its clamps: where bending twists it, their roll is found in turns with the
+/// shape.
+bool Settling::find_untwisted_equilibrium(Approach& approach) {
+  bool settled = find_equilibrium(approach);
+  for (int i = 0; i < most_untwistings && settled && untwist() > settled_twist; ++i) {
+    hold_at(1, 1, memory_.targets, work_.boundary);
+    settled = relax(shortest_step(cable_.model), last_settling_step, maximum_settling_steps, approach);
+  }
+  return settled;
 }
 
 /// Brings a cable that is held still into an equilibrium that lasts. False if none was found: it is then where it first came to.
@@ -304,6 +344,7 @@ bool Settling::leaves_when_let_go(Approach& approach, double& h) {
   }
   leaves = leaves || trial.iterations <= 0;
   approach.iterations = trial.iterations;
+  measure_joint_twists(cable_, memory_.targets.directions);
   hold_at(1, 1, memory_.targets, work_.boundary);
   bring_to_rest(cable_.state);
   if (leaves) {

@@ -36,6 +36,9 @@ class Settling {
   void find_obstacles();
   void hold_still();
   void turn_clamps(Approach& approach);
+  void place_clamps(const std::vector<Eigen::AngleAxisd>& turns, double part);
+  double untwist();
+  bool find_untwisted_equilibrium(Approach& approach);
   bool find_equilibrium(Approach& approach);
   bool relax(double h, double longest, int steps, Approach& approach);
   bool leaves_equilibrium(Approach& approach, double& h);

@@ -47,12 +47,14 @@ Summary::Summary(const World& world, std::int64_t averaged_steps)
   for (const SimulatedNet& net : world.nets())
     segments_ += static_cast<std::int64_t>(std::max(net.model.links.size(), net.model.masses.size()));
   segments_ += static_cast<std::int64_t>(world.particles().size());
+  extremes_.add(world);
 }
 
 void Summary::add_step(const World& world, const StepResult& result, std::chrono::steady_clock::duration wall_time) {
   wall_time_ += wall_time;
   substeps_ += result.substeps;
   max_strain_ = std::max(max_strain_, result.max_strain);
+  extremes_.add(world);
   for (const Attachment& attachment : world.attachments()) {
     std::vector<Wrench>& last = wrenches_[attachment.name];
     if (steps_ < averaged_steps_) last.emplace_back();
@@ -97,6 +99,7 @@ std::string Summary::json(const World& world, const std::vector<Event>& events) 
       {"ns_per_segment_substep", nanoseconds * wall_seconds() / static_cast<double>(segments_ * substeps_)},
       {"max_strain", max_strain_},
       {"energy", energy_json(world.energy(), initial_energy_)},
+      {"extremes", extremes_.json()},
       {"attachments", Json::object_t(attachments.begin(), attachments.end())},
       {"state_hash", hash_text(world.hash())},
       {"events", std::move(listed_events)},

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "event_log.h"
+#include "extremes.h"
 #include "verlet_cable/core/world.h"
 
 namespace verlet_cable::cable_sim {
@@ -42,6 +43,7 @@ class Summary {
   std::size_t steps_ = 0;
   std::int64_t substeps_ = 0;
   double max_strain_ = 0;
+  Extremes extremes_;
   std::map<std::string, std::vector<Wrench>> wrenches_;  ///< by attachment: step k at k modulo `averaged_steps_`
 };
 
