@@ -10,7 +10,7 @@
 namespace verlet_cable::validation {
 namespace {
 
-enum class Ends { free, clamped, clamped_at_both };
+enum class Ends { free, clamped, clamped_at_both, clamped_inside };
 
 struct RestCase {
   const char* name;
@@ -31,38 +31,36 @@ Vector3 stress_free(bool helix, double arc_length) {
 
 TEST_P(AtRest, StaysWhereItIs) {
   const auto& [name, helix, ends, by_numbers] = GetParam();
-  constexpr int n = 40;
+  constexpr int n = 30;
   const double length = (helix ? 3.0 : 1.5) * M_PI * 0.1;
   SceneDesc scene = scenes::one_cable(n, length);
+  scene.time_step = 0.002;
   scene.gravity.acceleration.setZero();
   material(scene).bending_stiffness = {0.02, helix ? 0.01 : 0.02};
   material(scene).torsional_stiffness = 0.015;
-  const Vector3 along = stress_free(helix, 1e-6) / 1e-6;
-  Pose start, end;
-  start.orientation = Quaternion::FromTwoVectors(Vector3::UnitX(), along);
-  end.position = stress_free(helix, length);
   if (by_numbers) {
     bend_at_rest(scene, 0, helix ? 6.4 : 10);  // of the helix: cos^2 / radius', sin cos / radius'
     scene.cables[0].rest_twist = helix ? 4.8 : 0;
   } else {
     scene.cables[0].rest_curvature.type = RestCurvatureDesc::Type::initial;
   }
-  if (ends != Ends::free) {
-    scene.cables[0].attachments = {scenes::attachment("start", PlaceDesc::At::start, Vector3::Zero(), "base", AttachmentType::clamp)};
-    if (ends == Ends::clamped_at_both)
-      scene.cables[0].attachments.push_back(
-          scenes::attachment("end", PlaceDesc::At::end, Vector3::Zero(), "hand", AttachmentType::clamp));
-  }
+  // A clamp at an arc length, along the rod.
+  std::vector<Pose> poses;
+  const auto clamp_at = [&](double arc_length) {
+    const double d = 1e-6;
+    const Vector3 along = stress_free(helix, arc_length + d) - stress_free(helix, arc_length - d);
+    const std::string name = "clamp" + std::to_string(poses.size());
+    AttachmentDesc clamp = scenes::attachment(name, PlaceDesc::At::arc_length, Vector3::Zero(), name, AttachmentType::clamp);
+    clamp.place.arc_length = arc_length;
+    scene.cables[0].attachments.push_back(clamp);
+    poses.push_back({stress_free(helix, arc_length), Quaternion::FromTwoVectors(Vector3::UnitX(), along)});
+  };
+  if (ends == Ends::clamped || ends == Ends::clamped_at_both) clamp_at(0);
+  if (ends == Ends::clamped_at_both) clamp_at(length);
+  if (ends == Ends::clamped_inside) clamp_at(length / 2);
   start_at(scene, [&](double s) { return stress_free(helix, s * length); });
   BoundaryInputs frames = initial_frames(scene);
-  if (frames.size() > 1) frames[1].pose = start;
-  if (frames.size() > 1) frames[1].known = true;
-  if (frames.size() > 2) {
-    const Vector3 backwards = stress_free(helix, length) - stress_free(helix, length - 1e-6);
-    end.orientation = Quaternion::FromTwoVectors(Vector3::UnitX(), backwards);
-    frames[2].pose = end;
-    frames[2].known = true;
-  }
+  for (std::size_t i = 0; i < poses.size(); ++i) frames[i + 1] = {poses[i]};
   Simulation run(scene, frames);
   // Numbers are those of the smooth curve: the polygon's own rest is next to where it starts.
   if (by_numbers) {
@@ -82,6 +80,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, AtRest,
                          testing::Values(RestCase{"arc, free", false, Ends::free, false},
                                          RestCase{"arc, clamped", false, Ends::clamped, false},
                                          RestCase{"arc, clamped at both ends", false, Ends::clamped_at_both, false},
+                                         RestCase{"arc, clamped inside", false, Ends::clamped_inside, false},
                                          RestCase{"arc by its curvature, clamped", false, Ends::clamped, true},
                                          RestCase{"helix, free", true, Ends::free, false},
                                          RestCase{"helix, clamped", true, Ends::clamped, false},

@@ -11,7 +11,7 @@
 namespace verlet_cable::validation {
 namespace {
 
-/// A flat rod, curved and twisted at rest, that starts straight along x in gravity; what holds it moves.
+/// A flat rod, curved and twisted at rest, that starts as an arc from the origin along x, in gravity; what holds it moves.
 struct Motion {
   const char* name;
   std::vector<std::pair<double, AttachmentType>> holders;  ///< arc length, ascending
@@ -21,23 +21,26 @@ struct Motion {
   double damping = 0;  ///< [N m^2 s] of bending and of twist; along the rod a thousand times that
 };
 
-constexpr double length = 1, duration = 0.25;
+constexpr double length = 1, duration = 0.25, time_step = 5e-4;
+constexpr double arc = 1;  // [rad] in the xy plane
 constexpr double rest_twist = 2;
 
 /// The rod's own axes where it starts: rolled by its twist at rest.
-Pose on_straight_rod(double arc_length) {
-  return {Vector3(arc_length, 0, 0), Quaternion(Eigen::AngleAxisd(rest_twist * arc_length, Vector3::UnitX()))};
+Pose on_arc(double arc_length) {
+  const double angle = arc * arc_length / length, radius = length / arc;
+  return {radius * Vector3(std::sin(angle), 1 - std::cos(angle), 0),
+          Eigen::AngleAxisd(angle, Vector3::UnitZ()) * Quaternion(Eigen::AngleAxisd(rest_twist * arc_length, Vector3::UnitX()))};
 }
 
 Pose resting(double arc_length, double) {
-  return on_straight_rod(arc_length);
+  return on_arc(arc_length);
 }
 
 /// Draws near, aside, yaws and rolls, from rest.
 Pose moving(double arc_length, double time) {
   const double way = arc_length * time * time;
   const Pose motion{way * Vector3(-2, 1, 0.5), quaternion_from_rpy(way * Vector3(6, 2, -4))};
-  const Pose start = on_straight_rod(arc_length);
+  const Pose start = on_arc(arc_length);
   return {start.position + motion.position, motion.orientation * start.orientation};
 }
 
@@ -71,13 +74,17 @@ Pose seen(const Pose& pose, const View& view) {
           Quaternion(Eigen::Matrix3d(view.space * pose.orientation.toRotationMatrix() * axes.asDiagonal()))};
 }
 
-/// Positions of the nodes at the end of a motion, seen as ever: as if there were no view.
-std::vector<Vector3> positions_after(const Motion& motion, const View& view, int segments,
+/// Positions of the nodes at the end of a motion, and at rest after it, seen as ever: as if there were no view.
+struct Outcome {
+  std::vector<Vector3> moving, at_rest;
+};
+
+Outcome outcome(const Motion& motion, const View& view, int segments,
                                      const BendingStiffness& bending_stiffness = {0.01, 0.03}, bool curved = true) {
   const double l = view.lengths, t = view.times, handedness = view.space.determinant(), direction = view.reversed ? -1 : 1;
   const double force = view.densities * l * l / (t * t), stiffness = force * l * l;
   SceneDesc scene = scenes::one_cable(segments, l * length);
-  scene.time_step = 5e-4 * t;
+  scene.time_step = time_step * t;
   scene.gravity.acceleration = l / (t * t) * (view.space * Vector3(0, -3, -9));
   material(scene).linear_density *= view.densities;
   material(scene).radius *= l;
@@ -100,7 +107,7 @@ std::vector<Vector3> positions_after(const Motion& motion, const View& view, int
     cable.attachments.back().place.arc_length = l * (view.reversed ? length - arc_length : arc_length);
   }
   start_at(scene, [&](double s) -> Vector3 {
-    return l * (view.space * Vector3(length * (view.reversed ? 1 - s : s), 0, 0));
+    return l * (view.space * on_arc(length * (view.reversed ? 1 - s : s)).position);
   });
   const auto place_frames = [&](BoundaryInputs& inputs, double time) {
     for (std::size_t i = 0; i < holders.size(); ++i) {
@@ -111,14 +118,19 @@ std::vector<Vector3> positions_after(const Motion& motion, const View& view, int
   BoundaryInputs frames = initial_frames(scene);
   place_frames(frames, 0);
   Simulation run(scene, frames);
-  for (long i = 1; i <= std::lround(duration / 5e-4) && !testing::Test::HasFatalFailure(); ++i) {
-    place_frames(run.inputs, 5e-4 * i);
+  for (long i = 1; i <= std::lround(duration / time_step) && !testing::Test::HasFatalFailure(); ++i) {
+    place_frames(run.inputs, time_step * i);
     run.step();
   }
-  std::vector<Vector3> positions = run.positions();
-  if (view.reversed) std::reverse(positions.begin(), positions.end());
-  for (Vector3& p : positions) p = view.space.transpose() * p / l;
-  return positions;
+  const auto seen_as_ever = [&](std::vector<Vector3> positions) {
+    if (view.reversed) std::reverse(positions.begin(), positions.end());
+    for (Vector3& p : positions) p = view.space.transpose() * p / l;
+    return positions;
+  };
+  Outcome result{seen_as_ever(run.positions()), {}};
+  EXPECT_TRUE(run.world.settle());
+  result.at_rest = seen_as_ever(run.positions());
+  return result;
 }
 
 double distance(const std::vector<Vector3>& first, const std::vector<Vector3>& second) {
@@ -130,50 +142,51 @@ double distance(const std::vector<Vector3>& first, const std::vector<Vector3>& s
   return largest;
 }
 
-/// Rounding, and the solver's tolerance of 1e-6 segment lengths a second where its iterations end at other places.
 constexpr double rounding = 1e-9;
+/// Rounding may end an iteration earlier or later, at the solver's tolerance of 1e-6 segment lengths a second: what is left of a
+/// velocity adds up over the steps.
+double tolerance(int segments) {
+  return 1e-6 * (length / segments) * (duration / time_step) * duration;
+}
+
+void expect_same(const Outcome& first, const Outcome& second, int segments, const std::string& what) {
+  printf("XX %s moving %.2e rest %.2e\n", what.c_str(), distance(first.moving, second.moving), distance(first.at_rest, second.at_rest));
+  EXPECT_LT(distance(first.moving, second.moving), tolerance(segments)) << what;
+  EXPECT_LT(distance(first.at_rest, second.at_rest), rounding) << what << ", at rest";
+}
 
 class Symmetries : public testing::TestWithParam<Motion> {
  protected:
   static constexpr int segments = 20;
-  const std::vector<Vector3> plain = positions_after(GetParam(), {}, segments);
-  double difference(const View& view) const { return distance(plain, positions_after(GetParam(), view, segments)); }
+  const Outcome plain = outcome(GetParam(), {}, segments);
+  void expect_same_in(const View& view, const std::string& what) const {
+    expect_same(plain, outcome(GetParam(), view, segments), segments, std::string(GetParam().name) + " " + what);
+  }
 };
 
 TEST_P(Symmetries, TurnedInSpace) {
   View view;
   view.space = (Eigen::AngleAxisd(2.1, Vector3(0.3, -0.5, 0.8).normalized())).toRotationMatrix();
-  EXPECT_LT(difference(view), rounding);
-}
-
-TEST_P(Symmetries, TurnedUpsideDown) {
-  View view;
+  expect_same_in(view, "turned");
   view.space = Vector3(-1, -1, 1).asDiagonal();
-  EXPECT_LT(difference(view), rounding);
+  expect_same_in(view, "turned by pi");
 }
 
 TEST_P(Symmetries, InAMirror) {
   View view;
   view.space = Vector3(1, 1, -1).asDiagonal();
-  EXPECT_LT(difference(view), rounding);
+  expect_same_in(view, "mirrored");
 }
 
 TEST_P(Symmetries, CountedFromTheOtherEnd) {
   View view;
   view.reversed = true;
-  EXPECT_LT(difference(view), rounding);
+  expect_same_in(view, "reversed");
 }
 
 TEST_P(Symmetries, InOtherUnits) {
-  View view;
-  view.lengths = 4;
-  view.times = 2;
-  view.densities = 0.125;
-  EXPECT_LT(difference(view), 10 * rounding);  // the tolerance is an absolute speed
-  view.lengths = 0.125;
-  view.times = 0.5;
-  view.densities = 16;
-  EXPECT_LT(difference(view), 10 * rounding);
+  expect_same_in({Eigen::Matrix3d::Identity(), false, 4, 2, 0.125}, "large");
+  expect_same_in({Eigen::Matrix3d::Identity(), false, 0.125, 0.5, 16}, "small");
 }
 
 INSTANTIATE_TEST_SUITE_P(Motions, Symmetries, testing::ValuesIn(motions));
@@ -183,14 +196,15 @@ class SegmentCounts : public testing::TestWithParam<int> {};
 /// Any number of segments can be simulated, in every way of being held that it has nodes for.
 TEST_P(SegmentCounts, CanBeSimulated) {
   const int n = GetParam();
-  const std::vector<Vector3> fine = positions_after(motions[0], {}, 40);
-  EXPECT_LT((positions_after(motions[0], {}, n).back() - fine.back()).norm(), 1.0 / n);
+  const Outcome fine = outcome(motions[0], {}, 40);
+  EXPECT_LT((outcome(motions[0], {}, n).at_rest.back() - fine.at_rest.back()).norm(), 1.0 / n);
+  View turned;
+  turned.space = Eigen::AngleAxisd(1, Vector3(1, 2, 3).normalized()).toRotationMatrix();
   for (const Motion& motion : motions) {
     const auto inside = [](const auto& holder) { return holder.first == 0.5; };
     if (n % 2 == 1 && std::any_of(motion.holders.begin(), motion.holders.end(), inside)) continue;  // no node in the middle
-    View turned;
-    turned.space = Eigen::AngleAxisd(1, Vector3(1, 2, 3).normalized()).toRotationMatrix();
-    EXPECT_LT(distance(positions_after(motion, {}, n), positions_after(motion, turned, n)), rounding) << motion.name;
+    if (n < 3 && motion.holders.size() > 1) continue;                                              // no room to give way
+    expect_same(outcome(motion, {}, n), outcome(motion, turned, n), n, motion.name);
   }
 }
 
@@ -199,37 +213,41 @@ INSTANTIATE_TEST_SUITE_P(Few, SegmentCounts, testing::Values(1, 2, 3, 5, 11));
 /// A clamp inside parts a rod: each half is a rod of its own.
 TEST(InnerClamp, PartsARod) {
   constexpr int n = 20;
-  const std::vector<Vector3> whole = positions_after(motions[4], {}, n);
+  const Outcome whole = outcome(motions[4], {}, n);
   SceneDesc scene = scenes::one_cable(n / 2, 0.5);
-  scene.time_step = 5e-4;
+  scene.time_step = time_step;
   scene.gravity.acceleration = {0, -3, -9};
   material(scene).bending_stiffness = {0.01, 0.03};
   material(scene).torsional_stiffness = 0.0075;
   bend_at_rest(scene, 3, 2);
   scene.cables[0].rest_twist = rest_twist;
   scene.cables[0].attachments = {scenes::attachment("h", PlaceDesc::At::start, Vector3::Zero(), "h", clamp)};
-  start_at(scene, [](double s) { return Vector3(0.5 + 0.5 * s, 0, 0); });
+  start_at(scene, [](double s) { return on_arc(0.5 * (1 + s)).position; });
   BoundaryInputs frames = initial_frames(scene);
   frames[1] = {};
-  frames[1].pose = on_straight_rod(0.5);
+  frames[1].pose = on_arc(0.5);
   Simulation half(scene, frames);
   half.run(duration);
-  EXPECT_LT(distance(half.positions(), {whole.begin() + n / 2, whole.end()}), rounding);
+  const std::vector<Vector3> second_half(whole.moving.begin() + n / 2, whole.moving.end());
+  printf("XX inner %.2e\n", distance(half.positions(), second_half));
+  EXPECT_LT(distance(half.positions(), second_half), tolerance(n));
 }
 
 /// A straight rod alike about all axes has a cheaper law of its own; a difference of its stiffnesses that is nothing has it
 /// follow its material axes. Only the inertia of its sections is left out by the first.
-TEST(BothLaws, AgreeOnARodThatIsCantilevered) {
-  const std::vector<Vector3> cheap = positions_after(motions[0], {}, 40, {0.01, 0.01}, false);
-  const std::vector<Vector3> whole = positions_after(motions[0], {}, 40, {0.01, 0.01 * (1 + 1e-12)}, false);
-  EXPECT_LT(distance(cheap, whole), 1e-8);
+TEST(BothLaws, AgreeOnARodThatFalls) {
+  const Outcome cheap = outcome(motions[0], {}, 40, {0.01, 0.01}, false);
+  const Outcome whole = outcome(motions[0], {}, 40, {0.01, 0.01 * (1 + 1e-12)}, false);
+  expect_same(cheap, whole, 40, "falling");
 }
 
 /// The same while an end is rolled: twist spreads as a wave instead of at once.
 TEST(BothLaws, AgreeOnARodThatIsRolled) {
-  const std::vector<Vector3> cheap = positions_after(motions[2], {}, 40, {0.01, 0.01}, false);
-  const std::vector<Vector3> whole = positions_after(motions[2], {}, 40, {0.01, 0.01 * (1 + 1e-12)}, false);
-  EXPECT_LT(distance(cheap, whole), 1e-5);
+  const Outcome cheap = outcome(motions[2], {}, 40, {0.01, 0.01}, false);
+  const Outcome whole = outcome(motions[2], {}, 40, {0.01, 0.01 * (1 + 1e-12)}, false);
+  printf("XX rolled %.2e %.2e\n", distance(cheap.moving, whole.moving), distance(cheap.at_rest, whole.at_rest));
+  EXPECT_LT(distance(cheap.moving, whole.moving), 1e-4);
+  EXPECT_LT(distance(cheap.at_rest, whole.at_rest), rounding);
 }
 
 class Turns : public testing::TestWithParam<BendingStiffness> {};
@@ -241,7 +259,7 @@ TEST_P(Turns, AreCounted) {
   material(scene).axial_stiffness = 1e5;
   material(scene).bending_stiffness = GetParam();
   material(scene).torsional_stiffness = 1;
-  material(scene).torsional_damping = 0.01;
+  material(scene).torsional_damping = 1e-3;
   damp(scene, 100);
   hold_ends(scene, clamp, 1 + strain);
   start_at(scene, [](double s) { return Vector3((1 + strain) * s, 0, 0); });
@@ -253,7 +271,7 @@ TEST_P(Turns, AreCounted) {
       run.inputs[1].pose.orientation = Eigen::AngleAxisd(angle, Vector3::UnitX());
       run.step();
     }
-    run.run(0.5);
+    EXPECT_TRUE(run.world.settle());
     const double torque = way > 0 ? turns : 0;  // GJ / L = 1
     EXPECT_NEAR(run.torque("end").x(), -torque, 1e-6 * turns);
     EXPECT_NEAR(run.torque("start").x(), torque, 1e-6 * turns);
