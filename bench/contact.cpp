@@ -35,10 +35,10 @@ double distance(const Vector3& a0, const Vector3& a1, const Vector3& b0, const V
 double closest_approach(const SimulatedCable& cable) {
   const std::vector<Vector3>& x = cable.state.positions;
   double closest = infinity;
-  for (int i = 0; i < cable.model.segments(); ++i)
-    for (int j = i + 2; j < cable.model.segments(); ++j) {
-      const double reach = cable.model.rest_lengths[i] + 2 * contact_radius;
-      if (cable.model.length(i + 1, j) < 2.5 * contact_radius || (x[i] - x[j]).squaredNorm() > 4 * reach * reach) continue;
+  for (int i = 0; i < cable.state.segments(); ++i)
+    for (int j = i + 2; j < cable.state.segments(); ++j) {
+      const double reach = cable.state.rest_lengths[i] + 2 * contact_radius;
+      if (cable.state.length(i + 1, j) < 2.5 * contact_radius || (x[i] - x[j]).squaredNorm() > 4 * reach * reach) continue;
       closest = std::min(closest, distance(x[i], x[i + 1], x[j], x[j + 1]));
     }
   return closest;

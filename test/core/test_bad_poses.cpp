@@ -94,12 +94,12 @@ SceneDesc everything() {
   for (const SimulatedCable& cable : world.cables()) {
     for (const auto* vectors : {&cable.state.positions, &cable.state.velocities, &cable.state.accelerations})
       for (const Vector3& v : *vectors)
-        if (!v.allFinite()) return ::testing::AssertionFailure() << "cable " << cable.model.name;
+        if (!v.allFinite()) return ::testing::AssertionFailure() << "cable " << cable.model->name;
     for (const auto* values : {&cable.state.tension, &cable.state.axial_multiplier, &cable.state.twist})
       for (const double value : *values)
-        if (!std::isfinite(value)) return ::testing::AssertionFailure() << "a number of cable " << cable.model.name;
-    for (const Quaternion& q : segment_orientations(cable))
-      if (!q.coeffs().allFinite()) return ::testing::AssertionFailure() << "axes of cable " << cable.model.name;
+        if (!std::isfinite(value)) return ::testing::AssertionFailure() << "a number of cable " << cable.model->name;
+    for (const Quaternion& q : segment_orientations(cable.state))
+      if (!q.coeffs().allFinite()) return ::testing::AssertionFailure() << "axes of cable " << cable.model->name;
   }
   for (const SimulatedNet& net : world.nets()) {
     for (const auto* vectors : {&net.state.positions, &net.state.velocities})

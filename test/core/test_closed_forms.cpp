@@ -126,8 +126,8 @@ TEST(ClosedForms, FreeCableKeepsItsMomentaAndEnergy) {
   const auto momenta = [&](Vector3& linear, Vector3& angular) {
     linear.setZero();
     angular.setZero();
-    for (int i = 0; i < run.cable().model.nodes(); ++i) {
-      const Vector3 p = run.cable().model.masses[i] * run.cable().state.velocities[i];
+    for (int i = 0; i < run.cable().state.nodes(); ++i) {
+      const Vector3 p = run.cable().state.masses[i] * run.cable().state.velocities[i];
       linear += p;
       angular += run.cable().state.positions[i].cross(p);
     }

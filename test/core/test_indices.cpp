@@ -11,7 +11,7 @@ namespace {
 
 void expect_valid(const World& world, const StepResult& result) {
   const int cables = static_cast<int>(world.cables().size());
-  const auto segments = [&](int cable) { return world.cables()[cable].model.segments(); };
+  const auto segments = [&](int cable) { return world.cables()[cable].state.segments(); };
   if (result.body.is_cable()) {
     ASSERT_LT(result.body.index, cables);
     EXPECT_LE(result.node, segments(result.body.index));
@@ -132,7 +132,7 @@ TEST(Indices, WinchThatReelsInDuringSteps) {
   ASSERT_TRUE(world.apply(edit::SetLength{0, true, 0.85, 0.5}).ok);
   for (int i = 0; i < 600; ++i) {
     expect_valid(world, world.step(scenes::hand_at({0.8 + 2e-4 * i, 0, 0.05 * std::sin(0.1 * i)})));
-    if (i % 100 == 50) world.apply(edit::Cut{cable_id(0), world.cables()[0].model.segments() / 2});
+    if (i % 100 == 50) world.apply(edit::Cut{cable_id(0), world.cables()[0].state.segments() / 2});
   }
 }
 

@@ -27,7 +27,7 @@ SceneDesc two_ropes(double apart, double bending_stiffness = 0) {
 double total_mass(const World& world) {
   double mass = 0;
   for (const SimulatedCable& cable : world.cables())
-    mass += std::accumulate(cable.model.masses.begin(), cable.model.masses.end(), 0.0);
+    mass += std::accumulate(cable.state.masses.begin(), cable.state.masses.end(), 0.0);
   return mass;
 }
 
@@ -42,13 +42,13 @@ TEST(Join, EndsThatAreApartAreDrawnTogetherAndWelded) {
     ASSERT_EQ(world.cables().size(), 1u);
     for (int i = 0; i < 2000; ++i) ASSERT_EQ(world.step({FrameInput{}}).status, Status::ok) << i;
     const SimulatedCable& cable = world.cables()[0];
-    EXPECT_EQ(cable.model.segments(), 50);
-    EXPECT_NEAR(cable.model.length(), 1, 1e-12);
+    EXPECT_EQ(cable.state.segments(), 50);
+    EXPECT_NEAR(cable.state.length(), 1, 1e-12);
     EXPECT_NEAR(total_mass(world), mass, 1e-12);
     EXPECT_EQ(cable.state.positions.front(), Vector3(0, 0, 0));
     EXPECT_EQ(cable.state.positions.back(), Vector3(0.3, 0, 0));
     EXPECT_EQ(world.attachments()[1].node, 50);
-    for (const double l : cable.model.rest_lengths) EXPECT_NEAR(l, 0.02, 1e-12);
+    for (const double l : cable.state.rest_lengths) EXPECT_NEAR(l, 0.02, 1e-12);
   }
 }
 
@@ -62,7 +62,7 @@ TEST(Join, UndoesACut) {
   EXPECT_EQ(joined.name, "cable_2");
   for (int i = 0; i < 3000; ++i) ASSERT_EQ(world.step({FrameInput{}}).status, Status::ok) << i;
   const SimulatedCable& cable = world.cables()[0];
-  EXPECT_EQ(cable.model.segments(), 49);
+  EXPECT_EQ(cable.state.segments(), 49);
   EXPECT_EQ(cable.state.positions.front(), Vector3(0, 0, 0)) << "the start is where the joined cable's start was";
   EXPECT_EQ(cable.state.positions.back(), Vector3(0.6, 0, 0));
 }
@@ -83,14 +83,14 @@ TEST(Join, KeepsMomentumOfFreeCables) {
   const auto momentum = [&world] {
     Vector3 sum = Vector3::Zero();
     for (const SimulatedCable& cable : world.cables())
-      for (int i = 0; i < cable.model.nodes(); ++i) sum += cable.model.masses[i] * cable.state.velocities[i];
+      for (int i = 0; i < cable.state.nodes(); ++i) sum += cable.state.masses[i] * cable.state.velocities[i];
     return sum;
   };
   const Vector3 before = momentum();
   ASSERT_TRUE(world.apply(edit::Join{0, true, 1, false}).ok);
   EXPECT_LT((momentum() - before).norm(), 1e-12);
   for (int i = 0; i < 1000; ++i) ASSERT_EQ(world.step({}).status, Status::ok) << i;
-  EXPECT_EQ(world.cables()[0].model.segments(), 50);
+  EXPECT_EQ(world.cables()[0].state.segments(), 50);
   EXPECT_LT((momentum() - before).norm(), 1e-8);
 }
 
@@ -116,12 +116,12 @@ TEST(Join, StiffEndsStayWithTheirMaterial) {
   SceneDesc scene = two_ropes(0.3, 0.005);
   scene.cables[0].stiff_ends = {0.05, 0.03};  // 25 segments of 0.02 m
   World world(scene, initial_frames(scene));
-  const auto shares = [&](int cable) -> const std::vector<double>& { return world.cables()[cable].model.flexible_fraction; };
+  const auto shares = [&](int cable) -> const std::vector<double>& { return world.cables()[cable].state.flexible_fraction; };
   const auto run = [&](int steps) {
     for (int i = 0; i < steps; ++i) ASSERT_EQ(world.step({FrameInput{}}).status, Status::ok) << i;
     for (const SimulatedCable& cable : world.cables()) {
-      if (!cable.model.flexible_fraction.empty()) {
-        EXPECT_EQ(cable.model.flexible_fraction.size(), cable.model.masses.size());
+      if (!cable.state.flexible_fraction.empty()) {
+        EXPECT_EQ(cable.state.flexible_fraction.size(), cable.state.masses.size());
       }
       for (const Vector3& x : cable.state.positions) ASSERT_TRUE(x.allFinite());
     }
@@ -153,8 +153,25 @@ TEST(Join, StiffEndsStayWithTheirMaterial) {
   // What is paid out at the stiff end bends.
   ASSERT_TRUE(world.apply(edit::SetLength{joined, true, 1, 0.5}).ok);
   run(1000);
-  const int nodes = world.cables()[joined].model.nodes();
+  const int nodes = world.cables()[joined].state.nodes();
   EXPECT_EQ(shares(joined)[nodes - 2], 1);
+}
+
+TEST(Join, KeepsTheModelOfTheFirstAtEitherEnd) {
+  SceneDesc scene = two_ropes(0.3);
+  scene.materials.push_back(scene.materials[0]);
+  scene.materials[1].name = "other";
+  scene.cables[1].material = "other";
+  scene.cables[0].color = {1, 0, 0, 1};
+  for (const bool at_end : {false, true}) {
+    World world(scene, initial_frames(scene));
+    ASSERT_TRUE(world.apply(edit::Unpin{"a"}).ok);
+    const CableModel first = *world.cables()[0].model;
+    ASSERT_TRUE(world.apply(edit::Join{0, at_end, 1, true}).ok);
+    EXPECT_EQ(world.cables()[0].model->name, first.name);
+    EXPECT_EQ(world.cables()[0].model->material_name, first.material_name);
+    EXPECT_EQ(world.cables()[0].model->color, first.color);
+  }
 }
 
 TEST(Join, CutsLeaveMoreThanTheGapThatCloses) {
@@ -169,7 +186,7 @@ TEST(Join, CutsLeaveMoreThanTheGapThatCloses) {
   EXPECT_EQ(world.hash(), before);
   // Ends that are drawn together at up to 2 m/s meet within 0.5 s.
   for (int i = 0; i < 500; ++i) ASSERT_EQ(world.step({FrameInput{}}).status, Status::ok) << i;
-  EXPECT_EQ(world.cables()[0].model.segments(), 25);
+  EXPECT_EQ(world.cables()[0].state.segments(), 25);
 }
 
 TEST(Join, EndsThatAreBeingJoinedAreNotBothHeld) {

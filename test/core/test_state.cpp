@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <functional>
+#include <memory>
 
 #include "../support/nets.h"
 #include "../support/scenes.h"
@@ -172,6 +173,24 @@ TEST(State, EveryNumberOfTheModelIsHashed) {
     visit(changed, flip);
     if (!flip.flipped) continue;
     state.scene = std::make_shared<const SceneDesc>(changed);
+    EXPECT_NE(hash(state), before) << "number " << i;
+  }
+}
+
+TEST(State, EveryNumberOfACableIsHashed) {
+  World world = rich_world();
+  State& state = WorldInspector::state(world);
+  const std::uint64_t before = hash(state);
+  const CableModel model = *state.cables[0].model;
+  Flip counter(-1);
+  visit(model, counter);
+  EXPECT_GT(counter.count(), 10);
+  for (long i = 0; i < counter.count(); ++i) {
+    CableModel changed = model;
+    Flip flip(i);
+    visit(changed, flip);
+    if (!flip.flipped) continue;
+    state.cables[0].model = std::make_shared<const CableModel>(changed);
     EXPECT_NE(hash(state), before) << "number " << i;
   }
 }

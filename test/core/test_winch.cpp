@@ -12,12 +12,12 @@ using Status = StepResult::Status;
 constexpr double gravity = 9.81, density = 0.1, payload = 0.2;
 
 double mass(const World& world) {
-  const std::vector<double>& masses = world.cables()[0].model.masses;
+  const std::vector<double>& masses = world.cables()[0].state.masses;
   return std::accumulate(masses.begin(), masses.end(), 0.0);
 }
 
 double length(const World& world) {
-  return world.cables()[0].model.length();
+  return world.cables()[0].state.length();
 }
 
 /// A cable of 2 m with a load, hanging on a winch at one of its ends.
@@ -79,10 +79,10 @@ TEST_P(Winch, LiftsAndLowersALoad) {
       }
     }
     EXPECT_NEAR(length(world), goal, 1e-9);
-    EXPECT_EQ(world.cables()[0].model.segments(), std::lround(goal / 0.02));
+    EXPECT_EQ(world.cables()[0].state.segments(), std::lround(goal / 0.02));
     const double statics = gravity * (payload + density * goal);
     EXPECT_NEAR(world.attachments()[0].force.norm(), statics, 1e-3 * statics);
-    const int far_end = winch.at_end ? 0 : world.cables()[0].model.segments();
+    const int far_end = winch.at_end ? 0 : world.cables()[0].state.segments();
     EXPECT_NEAR(world.cables()[0].state.positions[far_end].z(), -goal, 1e-3 * goal);
   }
 }
@@ -128,9 +128,9 @@ TEST(WinchEdits, OtherAttachmentsKeepTheirMaterialPoint) {
   const SimulatedCable& cable = world.cables()[0];
   const int node = world.attachments()[2].node;
   EXPECT_EQ(cable.state.positions[node], Vector3(0.4, 0, -0.1));
-  EXPECT_NEAR(cable.model.length(node, cable.model.segments()), 0.5, 1e-12);
-  EXPECT_NEAR(cable.model.length(0, node), 0.8, 1e-9);
-  EXPECT_EQ(world.attachments()[1].node, cable.model.segments());
+  EXPECT_NEAR(cable.state.length(node, cable.state.segments()), 0.5, 1e-12);
+  EXPECT_NEAR(cable.state.length(0, node), 0.8, 1e-9);
+  EXPECT_EQ(world.attachments()[1].node, cable.state.segments());
 }
 
 TEST(WinchEdits, TwistPerLengthStaysAsItIs) {

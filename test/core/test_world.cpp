@@ -11,7 +11,7 @@ using Status = StepResult::Status;
 
 bool finite(const World& world) {
   for (const SimulatedCable& cable : world.cables())
-    for (int i = 0; i < cable.model.nodes(); ++i)
+    for (int i = 0; i < cable.state.nodes(); ++i)
       if (!cable.state.positions[i].allFinite() || !cable.state.velocities[i].allFinite()) return false;
   return true;
 }
@@ -140,13 +140,13 @@ TEST(World, CutKeepsMassMomentumAndHolders) {
   ASSERT_TRUE(cut.ok) << cut.message;
   ASSERT_EQ(world.cables().size(), 2u);
   const SimulatedCable &first = world.cables()[0], &second = world.cables()[1];
-  EXPECT_EQ(first.model.name, "cable");
-  EXPECT_EQ(second.model.name, cut.name);
-  EXPECT_EQ(first.model.nodes(), 8);
-  EXPECT_EQ(second.model.nodes(), 13);
+  EXPECT_EQ(first.model->name, "cable");
+  EXPECT_EQ(second.model->name, cut.name);
+  EXPECT_EQ(first.state.nodes(), 8);
+  EXPECT_EQ(second.state.nodes(), 13);
   for (int i = 0; i < 13; ++i) {
     EXPECT_EQ(second.state.positions[i], before.state.positions[i + 8]);
-    EXPECT_EQ(second.model.masses[i], before.model.masses[i + 8]);
+    EXPECT_EQ(second.state.masses[i], before.state.masses[i + 8]);
   }
   EXPECT_TRUE(world.attachments()[0].body == cable_id(0));
   EXPECT_TRUE(world.attachments()[1].body == cable_id(1));

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <memory>
 #include <tuple>
 #include <vector>
 
@@ -157,12 +158,14 @@ SceneDesc scene_with(double linear_density, double length, double payload, doubl
 }
 
 SimulatedCable two_segments(double first_tension, double second_tension) {
+  CableModel model;
+  model.name = "rope";
+  model.material.linear_density = 0.1;
+  model.color = {0.1, 0.2, 0.3, 0.4};
   SimulatedCable cable;
-  cable.model.name = "rope";
-  cable.model.material.linear_density = 0.1;
-  cable.model.color = {0.1, 0.2, 0.3, 0.4};
-  cable.model.rest_lengths = {1, 1};
-  cable.model.masses = {0.05, 0.1, 0.05};
+  cable.model = std::make_shared<const CableModel>(model);
+  cable.state.rest_lengths = {1, 1};
+  cable.state.masses = {0.05, 0.1, 0.05};
   cable.state.positions = {{0, 0, 0}, {1, 0, 0}, {2.1, 0, 0}};
   cable.state.velocities.assign(3, Vector3::Zero());
   cable.state.tension = {first_tension, second_tension};

@@ -250,7 +250,7 @@ TEST_F(Topics, StateIsEverythingInDoublePrecision) {
   for (int id = 0; id < 2; ++id) {
     const Cable& message = state.cables[id];
     const SimulatedCable& cable = world_.cables()[id];
-    EXPECT_EQ(message.name, cable.model.name);
+    EXPECT_EQ(message.name, cable.model->name);
     ASSERT_EQ(message.positions.size(), 11u);
     ASSERT_EQ(message.velocities.size(), 11u);
     for (int node = 0; node < 11; ++node) {
@@ -261,7 +261,7 @@ TEST_F(Topics, StateIsEverythingInDoublePrecision) {
     EXPECT_EQ(message.orientations.size(), 10u);
     EXPECT_EQ(message.curvature.size(), 9u);
     EXPECT_EQ(message.twist.size(), 9u);
-    EXPECT_EQ(message.arc_length, cable.model.arc_length());
+    EXPECT_EQ(message.arc_length, cable.state.arc_length());
     EXPECT_DOUBLE_EQ(message.rest_length, 1.0);
     EXPECT_DOUBLE_EQ(message.radius, 0.01);
   }

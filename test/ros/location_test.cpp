@@ -103,8 +103,8 @@ TEST(Location, NearestPointInAnyFrameOnAnyCable) {
   EXPECT_EQ(node(nearest("lower", "hand", -1.24, 0.3, 0.2)), 8);
   EXPECT_EQ(segment(nearest("lower", "hand", -1.24, 0.3, 0.2)), 7);
   const World world = two_cables();
-  EXPECT_EQ(world.cables()[locate_node(nearest("", "world", 0.5, 0, 0.4), world, find_frame).body.index].model.name, "lower");
-  EXPECT_EQ(world.cables()[locate_node(nearest("", "world", 0.5, 0, 0.6), world, find_frame).body.index].model.name, "upper");
+  EXPECT_EQ(world.cables()[locate_node(nearest("", "world", 0.5, 0, 0.4), world, find_frame).body.index].model->name, "lower");
+  EXPECT_EQ(world.cables()[locate_node(nearest("", "world", 0.5, 0, 0.6), world, find_frame).body.index].model->name, "upper");
 }
 
 TEST(Location, PointsThatAreTooFarAwayAreRefused) {

@@ -29,7 +29,7 @@ TEST_F(CableSim, rowsAreTheWorldsOwnNumbers) {
     if (step > 0) world.step(frames);
     if (step % 10 != 0) continue;
     const SimulatedCable& cable = world.cables()[0];
-    for (int node = 0; node < cable.model.nodes(); ++node, ++at) {
+    for (int node = 0; node < cable.state.nodes(); ++node, ++at) {
       const auto i = static_cast<std::size_t>(node);
       ASSERT_EQ(read[at].time, world.time());
       ASSERT_EQ(read[at].cable, "hose");

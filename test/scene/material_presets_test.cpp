@@ -52,7 +52,7 @@ TEST_P(MaterialPreset, hangsStillOnceSettled) {
   EXPECT_TRUE(world.settle());
   // A thousandth of the length a second: what falls is a thousand times as fast.
   EXPECT_LT(largest_speed(world, frames), 1e-3);
-  const double weight = 9.81 * world.cables()[0].model.material.linear_density;
+  const double weight = 9.81 * world.cables()[0].model->material.linear_density;
   const Vector3 force = world.attachments()[0].force + world.attachments()[1].force;
   // The two ends carry the cable.
   EXPECT_NEAR(force.z() / weight, -1, 1e-2);
@@ -65,7 +65,7 @@ TEST_P(MaterialPreset, standsOutOfAClampAndIsReleased) {
   EXPECT_TRUE(world.settle());
   EXPECT_LT(largest_speed(world, frames), 1e-3);
   // Large deflections are smaller than what is linear in the load, q L^4 / (8 EI), and a cable hangs no lower than it is long.
-  const MaterialDesc& material = world.cables()[0].model.material;
+  const MaterialDesc& material = world.cables()[0].model->material;
   const double small = 9.81 * material.linear_density / (8 * material.bending_stiffness.largest());
   const double tip = -world.cables()[0].state.positions.back().z();
   EXPECT_GT(tip, 0);

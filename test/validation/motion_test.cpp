@@ -26,8 +26,8 @@ struct Momenta {
 
 Momenta momenta(const Simulation& run) {
   Momenta sum;
-  for (int i = 0; i < run.cable().model.nodes(); ++i) {
-    const Vector3 momentum = run.cable().model.masses[i] * run.cable().state.velocities[i];
+  for (int i = 0; i < run.cable().state.nodes(); ++i) {
+    const Vector3 momentum = run.cable().state.masses[i] * run.cable().state.velocities[i];
     sum.linear += momentum;
     sum.angular += run.positions()[i].cross(momentum);
   }
@@ -140,8 +140,8 @@ TEST(Segments, BehaviourDoesNotDependOnTheirNumber) {
     Simulation swing(pushed);
     const auto sideways = [](const Simulation& s) {
       double sum = 0;
-      for (int i = 0; i < s.cable().model.nodes(); ++i)
-        sum += s.cable().model.masses[i] * s.positions()[i].y() * i * i / (s.cable().model.nodes() * s.cable().model.nodes());
+      for (int i = 0; i < s.cable().state.nodes(); ++i)
+        sum += s.cable().state.masses[i] * s.positions()[i].y() * i * i / (s.cable().state.nodes() * s.cable().state.nodes());
       return sum;
     };
     swing.step();

@@ -58,10 +58,10 @@ inline void start_at(SceneDesc& scene, const std::function<Vector3(double)>& poi
 /// The part of a run's `component` that goes as `shape(s)`: its projection, weighted with the nodes' masses.
 inline std::function<double(const Simulation&)> projection(int component, const std::function<double(double)>& shape) {
   return [component, shape](const Simulation& run) {
-    const int n = run.cable().model.segments();
+    const int n = run.cable().state.segments();
     double sum = 0;
     for (int i = 0; i <= n; ++i)
-      sum += run.cable().model.masses[i] * run.positions()[i][component] * shape(static_cast<double>(i) / n);
+      sum += run.cable().state.masses[i] * run.positions()[i][component] * shape(static_cast<double>(i) / n);
     return sum;
   };
 }
@@ -79,7 +79,7 @@ inline double stiffness_from_growth(Simulation& run, const std::function<double(
   const double before = amplitude(run);
   run.run((to - from) * time_unit);
   const double sigma = std::log(std::abs(amplitude(run) / before)) / (to - from);
-  return -sigma * (sigma + run.cable().model.material.drag / time_unit);
+  return -sigma * (sigma + run.cable().model->material.drag / time_unit);
 }
 
 /// Where `stiffness(load)` vanishes: the secant method, from 2 % on both sides of `expected`.

@@ -12,7 +12,7 @@ inline std::string name_of(const World& world, const BodyId& body) {
   const auto index = static_cast<std::size_t>(body.index);
   switch (body.kind) {
     case BodyId::Kind::cable:
-      return world.cables()[index].model.name;
+      return world.cables()[index].model->name;
     case BodyId::Kind::net:
       return world.nets()[index].model.name;
     case BodyId::Kind::particle:

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -9,14 +10,19 @@
 
 namespace verlet_cable {
 
-/// What does not change while a cable is stepped. A cable of n segments has n + 1 nodes; segment i joins nodes i and i + 1.
+/// What no step changes, only an edit.
 struct CableModel {
   std::string name;
   MaterialDesc material;
   std::string material_name;  ///< in the scene
   std::array<double, 4> color{0.1, 0.1, 0.1, 1.0};
-  double segment_length = 0;         ///< [m] of the scene's segments: winches pay out and take in such
-  std::vector<double> rest_lengths;  ///< [m] a segment, n; written by World's edits only
+  double segment_length = 0;  ///< [m] of the scene's segments: winches pay out and take in such
+};
+
+/// What a step changes. Written by World only. A cable of n segments has n + 1 nodes; segment i joins nodes i and i + 1. Winches
+/// that run change n, too.
+struct CableState {
+  std::vector<double> rest_lengths;  ///< [m] a segment, n
   std::vector<double> masses;        ///< [kg] a node, n + 1: half of each neighbouring segment, and payloads
   /// [1/m] a node, n + 1: curvature about the material's y and z axes that carries no moment; empty where the cable is straight
   /// unloaded
@@ -24,27 +30,6 @@ struct CableModel {
   std::vector<double> rest_twist;  ///< [rad/m] a node, n + 1: twist that carries no moment; empty where there is none
   /// a node, n + 1: how much of the cable half a segment around it bends, above 0 to 1; empty where all of it does
   std::vector<double> flexible_fraction;
-
-  int segments() const { return static_cast<int>(rest_lengths.size()); }
-  int nodes() const { return static_cast<int>(masses.size()); }
-  double length() const;                     ///< [m] at rest
-  double length(int first, int last) const;  ///< [m] at rest, between two nodes
-  std::vector<double> arc_length() const;    ///< [m] a node, n + 1, from the start, at rest
-  /// Whether bending and twist depend on each other through the material's axes: such a cable has a frame a segment, in
-  /// `directors`, `spin` and `joint_twist` of its state. One that is straight at rest and alike about y and z does without.
-  bool is_whole_rod() const {
-    const BendingStiffness& stiffness = material.bending_stiffness;
-    return !stiffness.is_isotropic() || (stiffness.largest() > 0 && !rest_curvature.empty()) ||
-           (material.torsional_stiffness > 0 && !rest_twist.empty());
-  }
-  /// [m] of so much cable around a node, what bends
-  double bending_length(int node, double around) const {
-    return flexible_fraction.empty() ? around : flexible_fraction[node] * around;
-  }
-};
-
-/// What a step changes. Written by World only.
-struct CableState {
   std::vector<Vector3> positions;   ///< [m] a node, n + 1
   std::vector<Vector3> velocities;  ///< [m/s] a node, n + 1, at the time of the positions
   /// [m/s^2] a node, n + 1, mean over the last substep: where the next one's solution starts
@@ -61,18 +46,32 @@ struct CableState {
   std::vector<double> joint_twist;
   int reference_node = 0;     ///< where the material's orientation is known: the first clamp's node
   Quaternion reference_orientation = Quaternion::Identity();  ///< there: x along the cable, roll of the material
+
+  int segments() const { return static_cast<int>(rest_lengths.size()); }
+  int nodes() const { return static_cast<int>(masses.size()); }
+  double length() const;                     ///< [m] at rest
+  double length(int first, int last) const;  ///< [m] at rest, between two nodes
+  std::vector<double> arc_length() const;    ///< [m] a node, n + 1, from the start, at rest
+  /// [m] of so much cable around a node, what bends
+  double bending_length(int node, double around) const {
+    return flexible_fraction.empty() ? around : flexible_fraction[node] * around;
+  }
 };
 
 struct SimulatedCable {
-  CableModel model;
+  std::shared_ptr<const CableModel> model;  ///< copies share it; an edit puts another in its place
   CableState state;
 };
 
+/// Whether bending and twist depend on each other through the material's axes: such a cable has a frame a segment, in `directors`,
+/// `spin` and `joint_twist` of its state. One that is straight at rest and alike about y and z does without.
+bool is_whole_rod(const CableModel& model, const CableState& state);
+
 /// Shapes derived from positions, for display and messages. n segments.
-std::vector<Quaternion> segment_orientations(const SimulatedCable& cable);  ///< n: x along the segment, roll of the material
-std::vector<double> node_curvature(const SimulatedCable& cable);            ///< [1/m] n - 1, inner nodes
-std::vector<double> node_twist(const SimulatedCable& cable);                ///< [rad/m] n - 1, inner nodes
-double strain(const SimulatedCable& cable, int segment);                    ///< l / l0 - 1
+std::vector<Quaternion> segment_orientations(const CableState& state);  ///< n: x along the segment, roll of the material
+std::vector<double> node_curvature(const CableState& state);            ///< [1/m] n - 1, inner nodes
+std::vector<double> node_twist(const CableState& state);                ///< [rad/m] n - 1, inner nodes
+double strain(const CableState& state, int segment);                    ///< l / l0 - 1
 
 /// The point of a cable nearest to `point`.
 struct NearestPoint {
@@ -80,6 +79,6 @@ struct NearestPoint {
   double fraction = 0;  ///< along the segment, 0 to 1
   double distance = 0;  ///< [m]
 };
-NearestPoint nearest_point(const SimulatedCable& cable, const Vector3& point);
+NearestPoint nearest_point(const CableState& state, const Vector3& point);
 
 }  // namespace verlet_cable

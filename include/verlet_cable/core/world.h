@@ -160,7 +160,8 @@ class World {
   /// Starts the waiting cables and nets whose frames are known now, at their default or given shapes. How many.
   int start_waiting(const BoundaryInputs& inputs);
   EditResult apply(const Edit& edit);
-  /// Takes over gravity, fluid, materials (those it has, by name) and the friction between cables from a sound scene.
+  /// Takes over gravity, fluid, materials (those it has, by name) and the friction between cables from a sound scene. Throws
+  /// SceneError, and changes nothing, where a cable that was joined with another would lack torsional stiffness for its rest shape.
   void tune(const SceneDesc& scene);
 
   Energy energy() const;

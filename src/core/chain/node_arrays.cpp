@@ -35,56 +35,56 @@ void extend_where_needed(const std::vector<T>& tail, int tail_size, int size, co
 
 }  // namespace
 
-void slice(int first, int last, SimulatedCable& cable) {
+void slice(int first, int last, CableState& cable) {
   visit_node_arrays(cable, [&](auto& array) { keep(first, last - first + 1, array); });
   visit_segment_arrays(cable, [&](auto& array) { keep(first, last - first, array); });
 }
 
-void reverse_arrays(SimulatedCable& cable) {
+void reverse_arrays(CableState& cable) {
   const auto reverse = [](auto& array) { std::reverse(array.begin(), array.end()); };
   visit_node_arrays(cable, reverse);
   visit_segment_arrays(cable, reverse);
 }
 
-void append(const SimulatedCable& tail, SimulatedCable& cable) {
-  const int size = cable.model.nodes(), tail_size = tail.model.nodes();
+void append(const CableState& tail, CableState& cable) {
+  const int size = cable.nodes(), tail_size = tail.nodes();
   const std::array<double, 2> straight{0, 0};
-  extend_where_needed(tail.model.rest_curvature, tail_size, size, straight, cable.model.rest_curvature);
-  extend_where_needed(tail.model.flexible_fraction, tail_size, size, 1.0, cable.model.flexible_fraction);
-  extend_where_needed(tail.model.rest_twist, tail_size, size, 0.0, cable.model.rest_twist);
-  extend(tail.model.masses, cable.model.masses);
-  extend(tail.state.positions, cable.state.positions);
-  extend(tail.state.velocities, cable.state.velocities);
-  extend(tail.state.accelerations, cable.state.accelerations);
+  extend_where_needed(tail.rest_curvature, tail_size, size, straight, cable.rest_curvature);
+  extend_where_needed(tail.flexible_fraction, tail_size, size, 1.0, cable.flexible_fraction);
+  extend_where_needed(tail.rest_twist, tail_size, size, 0.0, cable.rest_twist);
+  extend(tail.masses, cable.masses);
+  extend(tail.positions, cable.positions);
+  extend(tail.velocities, cable.velocities);
+  extend(tail.accelerations, cable.accelerations);
   visit_segment_arrays(cable, [](auto& array) { array.push_back(zero_like(array.back())); });
-  extend(tail.model.rest_lengths, cable.model.rest_lengths);
-  extend(tail.state.tension, cable.state.tension);
-  extend(tail.state.axial_multiplier, cable.state.axial_multiplier);
-  extend(tail.state.twist, cable.state.twist);
-  extend(tail.state.spin, cable.state.spin);
-  extend(tail.state.directors, cable.state.directors);
-  extend(tail.state.joint_twist, cable.state.joint_twist);
+  extend(tail.rest_lengths, cable.rest_lengths);
+  extend(tail.tension, cable.tension);
+  extend(tail.axial_multiplier, cable.axial_multiplier);
+  extend(tail.twist, cable.twist);
+  extend(tail.spin, cable.spin);
+  extend(tail.directors, cable.directors);
+  extend(tail.joint_twist, cable.joint_twist);
 }
 
-void duplicate_node(int node, SimulatedCable& cable) {
+void duplicate_node(int node, CableState& cable) {
   visit_node_arrays(cable, [&](auto& array) {
     const auto entry = array[node];
     array.insert(array.begin() + node, entry);
   });
 }
 
-void duplicate_segment(int segment, SimulatedCable& cable) {
+void duplicate_segment(int segment, CableState& cable) {
   visit_segment_arrays(cable, [&](auto& array) {
     const auto entry = array[segment];
     array.insert(array.begin() + segment, entry);
   });
 }
 
-void erase_node(int node, SimulatedCable& cable) {
+void erase_node(int node, CableState& cable) {
   visit_node_arrays(cable, [&](auto& array) { array.erase(array.begin() + node); });
 }
 
-void erase_segment(int segment, SimulatedCable& cable) {
+void erase_segment(int segment, CableState& cable) {
   visit_segment_arrays(cable, [&](auto& array) { array.erase(array.begin() + segment); });
 }
 

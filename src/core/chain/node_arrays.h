@@ -8,42 +8,42 @@ namespace verlet_cable {
 /// does it by these functions. A new array is added to the two visits, and to `append` if it may be empty.
 /// @{
 template <class Visitor>
-void visit_node_arrays(SimulatedCable& cable, const Visitor& visitor) {
-  visitor(cable.state.positions);
-  visitor(cable.state.velocities);
-  visitor(cable.state.accelerations);
-  visitor(cable.model.masses);
-  if (!cable.model.rest_curvature.empty()) visitor(cable.model.rest_curvature);
-  if (!cable.model.rest_twist.empty()) visitor(cable.model.rest_twist);
-  if (!cable.model.flexible_fraction.empty()) visitor(cable.model.flexible_fraction);
-  if (!cable.state.joint_twist.empty()) visitor(cable.state.joint_twist);
+void visit_node_arrays(CableState& cable, const Visitor& visitor) {
+  visitor(cable.positions);
+  visitor(cable.velocities);
+  visitor(cable.accelerations);
+  visitor(cable.masses);
+  if (!cable.rest_curvature.empty()) visitor(cable.rest_curvature);
+  if (!cable.rest_twist.empty()) visitor(cable.rest_twist);
+  if (!cable.flexible_fraction.empty()) visitor(cable.flexible_fraction);
+  if (!cable.joint_twist.empty()) visitor(cable.joint_twist);
 }
 template <class Visitor>
-void visit_segment_arrays(SimulatedCable& cable, const Visitor& visitor) {
-  visitor(cable.model.rest_lengths);
-  visitor(cable.state.tension);
-  visitor(cable.state.axial_multiplier);
-  visitor(cable.state.twist);
-  if (!cable.state.spin.empty()) visitor(cable.state.spin);
-  if (!cable.state.directors.empty()) visitor(cable.state.directors);
+void visit_segment_arrays(CableState& cable, const Visitor& visitor) {
+  visitor(cable.rest_lengths);
+  visitor(cable.tension);
+  visitor(cable.axial_multiplier);
+  visitor(cable.twist);
+  if (!cable.spin.empty()) visitor(cable.spin);
+  if (!cable.directors.empty()) visitor(cable.directors);
 }
 /// @}
 
 /// Keeps the nodes `first` to `last` and the segments between them.
-void slice(int first, int last, SimulatedCable& cable);
+void slice(int first, int last, CableState& cable);
 
 /// From the end to the start.
-void reverse_arrays(SimulatedCable& cable);
+void reverse_arrays(CableState& cable);
 
 /// The nodes of `tail` follow those of `cable`, with a new segment in between: of no rest length, tension or twist. Either
 /// both of them have frames or none.
-void append(const SimulatedCable& tail, SimulatedCable& cable);
+void append(const CableState& tail, CableState& cable);
 
 /// Another node with the same entries beside it, and a segment likewise.
-void duplicate_node(int node, SimulatedCable& cable);
-void duplicate_segment(int segment, SimulatedCable& cable);
+void duplicate_node(int node, CableState& cable);
+void duplicate_segment(int segment, CableState& cable);
 
-void erase_node(int node, SimulatedCable& cable);
-void erase_segment(int segment, SimulatedCable& cable);
+void erase_node(int node, CableState& cable);
+void erase_segment(int segment, CableState& cable);
 
 }  // namespace verlet_cable

@@ -23,7 +23,7 @@ constexpr double stopping_stiffness = 2;
 constexpr double deepest_arrival = 0.5;
 
 double stopping(const SimulatedCable& cable, int segment, double time_step) {
-  const double mass = cable.model.rest_lengths[segment] * cable.model.material.linear_density;
+  const double mass = cable.state.rest_lengths[segment] * cable.model->material.linear_density;
   return stopping_stiffness * mass / (time_step * time_step);
 }
 
@@ -52,17 +52,17 @@ bool apart(const Vector3& a, const Vector3& b, const Aabb& box, double reach) {
 }
 
 /// Whether a point is close to where an attachment joins the cable to the obstacle's own frame.
-bool anchored(const CableModel& model, const KinematicTargets& targets, const CablePoint& point, const Obstacle& obstacle,
+bool anchored(const CableState& state, const KinematicTargets& targets, const CablePoint& point, const Obstacle& obstacle,
               const std::vector<Attachment>& attachments) {
   if (obstacle.holders.empty()) return false;
-  const double length = model.rest_lengths[point.segment];
+  const double length = state.rest_lengths[point.segment];
   for (const KinematicTarget& target : targets.nodes) {
     const Attachment& attachment = attachments[target.attachment];
     if (attachment.node != target.node || !std::binary_search(obstacle.holders.begin(), obstacle.holders.end(), attachment.frame))
       continue;
     const double distance = attachment.node <= point.segment
-                                ? model.length(attachment.node, point.segment) + point.fraction * length
-                                : model.length(point.segment, attachment.node) - point.fraction * length;
+                                ? state.length(attachment.node, point.segment) + point.fraction * length
+                                : state.length(point.segment, attachment.node) - point.fraction * length;
     if (distance <= anchored_length) return true;
   }
   return false;
@@ -91,7 +91,7 @@ void ContactSet::find(const std::vector<SimulatedCable>& cables, const std::vect
   if (!rules.pairs.self && !rules.pairs.between_cables) return;
   double radius = 0, square = 0;
   for (const int cable : island) {
-    radius = std::max(radius, cables[cable].model.material.radius);
+    radius = std::max(radius, cables[cable].model->material.radius);
     for (const Vector3& v : cables[cable].state.velocities) square = std::max(square, v.squaredNorm());
   }
   grid_.update(cables, island, rules.pairs, reach(0, radius, h) + radius, h, pairs);
@@ -101,16 +101,16 @@ void ContactSet::find(const std::vector<SimulatedCable>& cables, const std::vect
 /// Which nodes are attached: nothing but their holders moves them.
 void ContactSet::set_held(const SimulatedCable& cable, const KinematicTargets& targets,
                           const std::vector<Attachment>& attachments) {
-  held_.assign(cable.model.nodes(), 0);
+  held_.assign(cable.state.nodes(), 0);
   for (const KinematicTarget& target : targets.nodes)
     if (attachments[target.attachment].node == target.node) held_[target.node] = 1;
 }
 
 void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const ContactMember& member, const MovingObstacle& moving,
                                const std::vector<Attachment>& attachments, double h) {
-  const CableModel& model = cable.model;
+  const CableModel& model = *cable.model;
   const CableState& state = cable.state;
-  const int n = model.segments();
+  const int n = state.segments();
   const double radius = model.material.radius, surface = radius + moving.obstacle->padding;
   const Pose to_shape = moving.start.inverse();
   const Shape& shape = moving.obstacle->shape;
@@ -125,7 +125,7 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
   };
   const double friction = moving.obstacle->friction.value_or(model.material.friction);
   const auto touch_at = [&](const CablePoint& point, std::uint64_t element, const SurfacePoint& nearest, double friction_there) {
-    if (anchored(model, *member.targets, point, *moving.obstacle, attachments)) return;
+    if (anchored(state, *member.targets, point, *moving.obstacle, attachments)) return;
     Touch touch;
     touch.key = moving.obstacle->id;
     touch.other_key = element;
@@ -176,13 +176,13 @@ void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, const std
     const int i = pair.first.segment, j = pair.second.segment;
     const Vector3 &a0 = a.state.positions[i], &a1 = a.state.positions[i + 1];
     const Vector3 &b0 = b.state.positions[j], &b1 = b.state.positions[j + 1];
-    const double radius = std::min(a.model.material.radius, b.model.material.radius);
-    const double surface = a.model.material.radius + b.model.material.radius;
+    const double radius = std::min(a.model->material.radius, b.model->material.radius);
+    const double surface = a.model->material.radius + b.model->material.radius;
     const double far = surface + reach(2 * speed, radius, h);
     const Vector3 along_a = a1 - a0, along_b = b1 - b0;
     // Twice the distance of the middles, squared, against a bound of the square of the sum by twice the sum of the squares
     const Vector3 middles = a0 + a1 - b0 - b1;
-    if (middles.squaredNorm() > 4 * far * (far + 2 * std::max(a.model.rest_lengths[i], b.model.rest_lengths[j])) +
+    if (middles.squaredNorm() > 4 * far * (far + 2 * std::max(a.state.rest_lengths[i], b.state.rest_lengths[j])) +
                                     2 * (along_a.squaredNorm() + along_b.squaredNorm()))
       continue;
     const ClosestPoints closest = closest_points(a0, along_a, b0, along_b);

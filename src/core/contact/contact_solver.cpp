@@ -79,11 +79,11 @@ void scale_and_add(double scale, const VectorArray& from, VectorArray& to, int c
 }
 
 int nodes(const Participant& p) {
-  return p.substep.model.nodes();
+  return p.state->nodes();
 }
 
 int segments(const Participant& p) {
-  return p.substep.model.segments();
+  return p.state->segments();
 }
 
 bool joins_cables(const Touch& touch) {
@@ -122,8 +122,8 @@ bool ContactSolver::solve(std::vector<Participant>& participants, std::vector<To
   const double tolerance = velocity_tolerance * std::min(first.h, longest_tolerated);
   negligible_energy_ = infinity;
   for (const Participant& p : participants) {
-    const double moved = tolerance * p.substep.model.rest_lengths.front();
-    const double mass = p.substep.model.rest_lengths.front() * p.substep.model.material.linear_density;
+    const double moved = tolerance * p.state->rest_lengths.front();
+    const double mass = p.state->rest_lengths.front() * p.substep.model.material.linear_density;
     negligible_energy_ = std::min(negligible_energy_, negligible_part * mass * moved * moved / (first.h * first.h));
   }
   double last = 0;
@@ -191,7 +191,7 @@ double ContactSolver::work_along(std::vector<Participant>& participants) const {
 
 /// Evaluates the loads, with the contacts' forces. True if one has changed its way to touch.
 bool ContactSolver::press(std::vector<Participant>& participants, std::vector<Touch>& touches) {
-  for (Participant& p : participants) p.stepper->evaluate(p.substep);
+  for (Participant& p : participants) p.stepper->evaluate(p.substep, *p.state);
   bool changed = false;
   for (Touch& touch : touches) {
     const CablePoint &point = touch.point, &other = touch.other;

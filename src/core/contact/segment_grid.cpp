@@ -20,9 +20,9 @@ double largest_speed(const std::vector<SimulatedCable>& cables, const std::vecto
 }
 
 /// Whether the cable from one node to another is longer than `length` [m], at rest.
-bool longer(const CableModel& model, int first, int last, double length) {
+bool longer(const CableState& state, int first, int last, double length) {
   for (int i = first; i < last; ++i) {
-    length -= model.rest_lengths[i];
+    length -= state.rest_lengths[i];
     if (length < 0) return true;
   }
   return false;
@@ -47,8 +47,8 @@ double find_margin(const std::vector<SimulatedCable>& cables, const std::vector<
   double longest = 0, thickest = 0;
   for (const int cable : group) {
     longest =
-        std::max(longest, *std::max_element(cables[cable].model.rest_lengths.begin(), cables[cable].model.rest_lengths.end()));
-    thickest = std::max(thickest, cables[cable].model.material.radius);
+        std::max(longest, *std::max_element(cables[cable].state.rest_lengths.begin(), cables[cable].state.rest_lengths.end()));
+    thickest = std::max(thickest, cables[cable].model->material.radius);
   }
   return std::max(thickest, margin_segments * longest) + 2 * h * largest_speed(cables, group);
 }
@@ -72,13 +72,13 @@ void SegmentGrid::fill(const std::vector<SimulatedCable>& cables, const std::vec
   entries_.clear();
   double largest = 0;
   for (const int cable : group) {
-    const CableModel& model = cables[cable].model;
+    const double radius = cables[cable].model->material.radius;
     const std::vector<Vector3>& x = cables[cable].state.positions;
-    for (int i = 0; i < model.segments(); ++i) {
+    for (int i = 0; i < cables[cable].state.segments(); ++i) {
       Entry entry;
       entry.id = {cable, i};
       entry.middle = 0.5 * (x[i] + x[i + 1]);
-      entry.radius = 0.5 * (x[i + 1] - x[i]).norm() + model.material.radius + 0.5 * reach + margin;
+      entry.radius = 0.5 * (x[i + 1] - x[i]).norm() + radius + 0.5 * reach + margin;
       entry.next = -1;
       largest = std::max(largest, entry.radius);
       entries_.push_back(entry);
@@ -104,7 +104,7 @@ void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules
   pairs.clear();
   for (int a = 0; a < static_cast<int>(entries_.size()); ++a) {
     const Entry& first = entries_[a];
-    const CableModel& model = cables[first.id.cable].model;
+    const SimulatedCable& cable = cables[first.id.cable];
     near_.clear();
     for (int dx = -1; dx <= 1; ++dx)
       for (int dy = -1; dy <= 1; ++dy)
@@ -118,7 +118,8 @@ void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules
             const bool same = first.id.cable == second.id.cable;
             if (same ? !rules.self : !rules.between_cables) continue;
             if (same) {
-              if (!longer(model, first.id.segment + 1, second.id.segment, bend_radii * model.material.radius)) continue;
+              if (!longer(cable.state, first.id.segment + 1, second.id.segment, bend_radii * cable.model->material.radius))
+                continue;
             }
             near_.push_back(b);
           }

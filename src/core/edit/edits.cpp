@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -26,11 +27,11 @@ std::string numbered(const std::string& base, int first, const Taken& taken) {
 }
 
 /// The nodes `first` to `last` of a cable as a cable of their own.
-SimulatedCable piece(const SimulatedCable& whole, int first, int last) {
-  SimulatedCable cable = whole;
+CableState piece(const CableState& whole, int first, int last) {
+  CableState cable = whole;
   slice(first, last, cable);
-  cable.state.reference_node = 0;
-  cable.state.reference_orientation = segment_orientations(whole)[first];
+  cable.reference_node = 0;
+  cable.reference_orientation = segment_orientations(whole)[first];
   return cable;
 }
 
@@ -81,7 +82,7 @@ std::string node_problem(const State& state, const BodyId& body, int node) {
   const bool is_net = body.is_net();
   const int bodies = static_cast<int>(is_net ? state.nets.size() : state.cables.size());
   if (body.index < 0 || body.index >= bodies) return out_of_range(is_net ? "net" : "cable", body.index);
-  const int last = is_net ? state.nets[body.index].model.nodes() - 1 : state.cables[body.index].model.segments();
+  const int last = is_net ? state.nets[body.index].model.nodes() - 1 : state.cables[body.index].state.segments();
   if (node < 0 || node > last) return "node: " + std::to_string(node) + "; must be from 0 to " + std::to_string(last);
   return "";
 }
@@ -102,7 +103,7 @@ EditResult World::Implementation::apply(const edit::Pin& pin) {
   if (!pin.name.empty() && is_attachment(pin.name)) return refused("name: " + pin.name + "; is taken by another attachment");
   const std::string node =
       "node: " + std::to_string(pin.node) + " of " +
-      (pin.body.is_net() ? "net " + state.nets[pin.body.index].model.name : "cable " + state.cables[pin.body.index].model.name);
+      (pin.body.is_net() ? "net " + state.nets[pin.body.index].model.name : "cable " + state.cables[pin.body.index].model->name);
   if (holds_something(state.attachments, pin.body, pin.node)) return refused(node + "; is already held by an attachment");
   if (pin.body.is_cable()) {
     const int other = joining_node(state.cable_progress[pin.body.index].drive, pin.node);
@@ -160,8 +161,8 @@ EditResult World::Implementation::apply(const edit::Cut& cut) {
 EditResult World::Implementation::cut_cable(int cable, int segment) {
   if (cable < 0 || cable >= static_cast<int>(state.cables.size()))
     return refused("cable: " + std::to_string(cable) + "; must be the index of a cable");
-  const int segments = state.cables[cable].model.segments();
-  const std::string& name = state.cables[cable].model.name;
+  const int segments = state.cables[cable].state.segments();
+  const std::string& name = state.cables[cable].model->name;
   if (segments < 3) return refused("cable: " + name + "; has " + std::to_string(segments) + " segments, a cut needs 3");
   if (segment < 1 || segment > segments - 2)
     return refused("segment: " + std::to_string(segment) + " of cable " + name + "; must be from 1 to " +
@@ -177,14 +178,15 @@ EditResult World::Implementation::cut_cable(int cable, int segment) {
     const auto any = [&](const auto& descs) { return std::any_of(descs.begin(), descs.end(), has_name); };
     return find(state.cables, n) >= 0 || any(state.scene->cables) || any(state.scene->nets) || any(state.scene->particles);
   };
-  const SimulatedCable& whole = state.cables[cable];
-  SimulatedCable first = piece(whole, 0, segment), second = piece(whole, segment + 1, segments);
-  second.model.name = numbered(name + "_", 2, taken);
+  CableModel model = *state.cables[cable].model;
+  model.name = numbered(name + "_", 2, taken);
 
   const int new_cable = static_cast<int>(state.cables.size());
-  const std::string new_name = second.model.name;
-  state.cables[cable] = std::move(first);
-  state.cables.push_back(std::move(second));
+  const std::string new_name = model.name;
+  const CableState& whole = state.cables[cable].state;
+  CableState first = piece(whole, 0, segment), second = piece(whole, segment + 1, segments);
+  state.cables[cable].state = std::move(first);
+  state.cables.push_back({std::make_shared<const CableModel>(std::move(model)), std::move(second)});
   follow_cut(cable, segment, new_cable);
   const std::uint32_t id = state.new_cable_id();
   state.cable_progress.emplace_back().id = id;

@@ -40,40 +40,39 @@ std::optional<std::string> difference(const MaterialDesc& first, const MaterialD
 const Quaternion turned(0, 0, 1, 0);
 
 /// The same cable from its end to its start.
-void reverse(SimulatedCable& cable) {
+void reverse(CableState& cable) {
   reverse_arrays(cable);
-  for (auto& curvature : cable.model.rest_curvature) curvature[0] = -curvature[0];
-  for (double& spin : cable.state.spin) spin = -spin;
-  cable.state.reference_node = cable.model.segments() - cable.state.reference_node;
-  cable.state.reference_orientation = cable.state.reference_orientation * turned;
+  for (auto& curvature : cable.rest_curvature) curvature[0] = -curvature[0];
+  for (double& spin : cable.spin) spin = -spin;
+  cable.reference_node = cable.segments() - cable.reference_node;
+  cable.reference_orientation = cable.reference_orientation * turned;
 }
 
 /// At the node of two that are to be one: unloaded both in their places, and bent half as the one and half as the other.
-void join_rest_shapes(int node, SimulatedCable& cable) {
-  CableModel& model = cable.model;
+void join_rest_shapes(int node, CableState& cable) {
   const int gone = node + 1;
   double twist = 0;
-  if (!cable.state.joint_twist.empty()) {
+  if (!cable.joint_twist.empty()) {
     const double rest =
-        rest_angles(model, node, joint_length(model, node)).twist + rest_angles(model, gone, joint_length(model, gone)).twist;
-    const double length = 0.5 * (model.rest_lengths[node - 1] + model.rest_lengths[gone]);
-    model.rest_twist[node] = rest / model.bending_length(node, length);
-    twist = cable.state.joint_twist[node] += cable.state.joint_twist[gone];
+        rest_angles(cable, node, joint_length(cable, node)).twist + rest_angles(cable, gone, joint_length(cable, gone)).twist;
+    const double length = 0.5 * (cable.rest_lengths[node - 1] + cable.rest_lengths[gone]);
+    cable.rest_twist[node] = rest / cable.bending_length(node, length);
+    twist = cable.joint_twist[node] += cable.joint_twist[gone];
   }
-  if (model.rest_curvature.empty()) return;
+  if (cable.rest_curvature.empty()) return;
   const double cosine = std::cos(0.5 * twist), sine = std::sin(0.5 * twist);
-  const auto [before_y, before_z] = model.rest_curvature[node];
-  const auto [after_y, after_z] = model.rest_curvature[gone];
-  model.rest_curvature[node] = {0.5 * (cosine * (before_y + after_y) + sine * (before_z - after_z)),
+  const auto [before_y, before_z] = cable.rest_curvature[node];
+  const auto [after_y, after_z] = cable.rest_curvature[gone];
+  cable.rest_curvature[node] = {0.5 * (cosine * (before_y + after_y) + sine * (before_z - after_z)),
                                 0.5 * (cosine * (before_z + after_z) - sine * (before_y - after_y))};
 }
 
 /// `first` followed by `second`, with a weightless segment between them that is as long as they are apart.
-void append_cable(const SimulatedCable& second, SimulatedCable& first) {
-  const int between = first.model.segments();
-  const double gap = (second.state.positions.front() - first.state.positions.back()).norm();
+void append_cable(const CableState& second, CableState& first) {
+  const int between = first.segments();
+  const double gap = (second.positions.front() - first.positions.back()).norm();
   append(second, first);
-  first.model.rest_lengths[between] = gap;
+  first.rest_lengths[between] = gap;
   weld_frames(between, first);
 }
 
@@ -89,12 +88,12 @@ struct JointEnd {
   double length = 0;  ///< [m]
 };
 
-JointEnd find_end(const CableModel& model, int cable, bool at_end, const std::vector<Attachment>& attachments) {
+JointEnd find_end(const CableState& state, int cable, bool at_end, const std::vector<Attachment>& attachments) {
   JointEnd end;
-  end.node = at_end ? model.segments() : 0;
+  end.node = at_end ? state.segments() : 0;
   for (const Attachment& a : attachments) {
     if (a.body != cable_id(cable)) continue;
-    const double length = model.length(std::min(a.node, end.node), std::max(a.node, end.node));
+    const double length = state.length(std::min(a.node, end.node), std::max(a.node, end.node));
     if (end.next && length >= end.length) continue;
     end.next = &a;
     end.length = length;
@@ -109,17 +108,17 @@ EditResult World::Implementation::apply(const edit::Join& join) {
   const int count = static_cast<int>(state.cables.size());
   for (const int index : {first, second})
     if (index < 0 || index >= count) return refused("cable: " + std::to_string(index) + "; must be the index of a cable");
-  const CableModel &model = state.cables[first].model, &other = state.cables[second].model;
+  const CableModel &model = *state.cables[first].model, &other = *state.cables[second].model;
   if (first == second) return refused("second: " + other.name + "; must be another cable than first");
   for (const int index : {first, second})
     if (state.cable_progress[index].drive)
-      return refused("cable: " + state.cables[index].model.name +
+      return refused("cable: " + state.cables[index].model->name +
                      "; it is still being wound by its winch or drawn together by an earlier join; wait until that is done");
   if (const auto differing = difference(model.material, other.material))
     return refused("second: " + other.name + "; must be of the same material as " + model.name + ", but they differ in " +
                    *differing);
-  const JointEnd end = find_end(model, first, first_at_end, state.attachments);
-  const JointEnd other_end = find_end(other, second, second_at_end, state.attachments);
+  const JointEnd end = find_end(state.cables[first].state, first, first_at_end, state.attachments);
+  const JointEnd other_end = find_end(state.cables[second].state, second, second_at_end, state.attachments);
   if (end.next && other_end.next) {
     const auto place = [&](const Attachment& a) { return (state.frames.poses[a.frame] * a.pose).position; };
     if (end.next->node == end.node && other_end.next->node == other_end.node)
@@ -133,24 +132,22 @@ EditResult World::Implementation::apply(const edit::Join& join) {
 
   // The second cable in the direction of the first.
   if (first_at_end == second_at_end) reverse_cable(second);
-  SimulatedCable &kept = state.cables[first], &gone = state.cables[second];
-  const int shift = first_at_end ? kept.model.nodes() : gone.model.nodes();
-  const std::string name = kept.model.name;
+  const bool whole = is_whole_rod(model, state.cables[first].state) || is_whole_rod(other, state.cables[second].state);
   for (const int index : {first, second}) {
     std::vector<DirectionTarget>& clamps = state.cable_progress[index].targets.directions;
-    if (kept.model.is_whole_rod() || gone.model.is_whole_rod()) give_frames(state.cables[index], clamps);
+    if (whole) give_frames(state.cables[index].state, clamps);
     take_end_twists(state.cables[index].state, clamps);
   }
+  CableState &kept = state.cables[first].state, &gone = state.cables[second].state;
+  const int shift = first_at_end ? kept.nodes() : gone.nodes();
+  const std::string name = model.name;
   if (first_at_end) {
     append_cable(gone, kept);
   } else {
-    SimulatedCable joined = gone;
+    CableState joined = gone;
     append_cable(kept, joined);
-    joined.model.name = name;
-    joined.model.color = kept.model.color;
-    joined.model.segment_length = kept.model.segment_length;
-    joined.state.reference_node = kept.state.reference_node + shift;
-    joined.state.reference_orientation = kept.state.reference_orientation;
+    joined.reference_node = kept.reference_node + shift;
+    joined.reference_orientation = kept.reference_orientation;
     kept = std::move(joined);
   }
   renumber(first_at_end ? second : first, 0, shift);
@@ -161,8 +158,8 @@ EditResult World::Implementation::apply(const edit::Join& join) {
   LengthDrive drive;
   drive.place = LengthDrive::Place::inside;
   drive.segment = shift - 1;
-  const double gap = kept.model.rest_lengths[drive.segment];
-  drive.left = -std::max(gap - approach * kept.model.segment_length, 0.0);
+  const double gap = kept.rest_lengths[drive.segment];
+  drive.left = -std::max(gap - approach * model.segment_length, 0.0);
   drive.speed = joining_speed;
   drive.acceleration = joining_acceleration;
   state.cable_progress[first].drive = drive;
@@ -178,8 +175,7 @@ EditResult World::Implementation::apply(const edit::Join& join) {
   } else {
     after_remeshing(joined);
     SimulatedCable& cable = state.cables[joined];
-    project_velocities(cable.model, boundary_now(state.cable_progress[joined].targets).nodes, cable.state.positions,
-                       cable.state.velocities);
+    project_velocities(*cable.model, boundary_now(state.cable_progress[joined].targets).nodes, cable.state);
   }
   return {true, "", name};
 }
@@ -200,8 +196,8 @@ void World::Implementation::follow_join(int first, int second) {
 }
 
 void World::Implementation::reverse_cable(int index) {
-  reverse(state.cables[index]);
-  const int n = state.cables[index].model.segments();
+  reverse(state.cables[index].state);
+  const int n = state.cables[index].state.segments();
   for (Intrusion& intrusion : findings.intrusions)
     if (intrusion.cable == index) intrusion.segment = n - 1 - intrusion.segment;
   for (Attachment& a : state.attachments) {
@@ -222,25 +218,24 @@ void World::Implementation::reverse_cable(int index) {
 /// The two ends become one node; all segments keep the lengths that they have.
 void World::Implementation::close_joint(int index) {
   CableProgress& s = state.cable_progress[index];
-  CableModel& model = state.cables[index].model;
   CableState& cable = state.cables[index].state;
   const int node = s.drive->segment, gone = node + 1;
   s.drive.reset();
   std::vector<double> lengths;
-  for (int i = 0; i < model.segments(); ++i)
+  for (int i = 0; i < cable.segments(); ++i)
     if (i != node) lengths.push_back((cable.positions[i + 1] - cable.positions[i]).norm());
 
-  const double mass = model.masses[node] + model.masses[gone], part = model.masses[gone] / mass;
-  model.masses[node] = mass;
+  const double mass = cable.masses[node] + cable.masses[gone], part = cable.masses[gone] / mass;
+  cable.masses[node] = mass;
   const std::vector<Vector3> apart = cable.positions;
   for (auto* values : {&cable.positions, &cable.velocities, &cable.accelerations})
     (*values)[gone] = (*values)[node] += part * ((*values)[gone] - (*values)[node]);
   carry_frames(apart, cable);
-  join_rest_shapes(node, state.cables[index]);
-  if (!model.flexible_fraction.empty())
-    model.flexible_fraction[node] = 0.5 * (model.flexible_fraction[node] + model.flexible_fraction[gone]);
-  erase_node(gone, state.cables[index]);
-  erase_segment(node, state.cables[index]);
+  join_rest_shapes(node, cable);
+  if (!cable.flexible_fraction.empty())
+    cable.flexible_fraction[node] = 0.5 * (cable.flexible_fraction[node] + cable.flexible_fraction[gone]);
+  erase_node(gone, cable);
+  erase_segment(node, cable);
   if (cable.reference_node >= gone) --cable.reference_node;
   renumber(index, gone, -1);
 
@@ -249,10 +244,10 @@ void World::Implementation::close_joint(int index) {
   std::sort(held.begin(), held.end(), [](const HeldNode& a, const HeldNode& b) { return a.node < b.node; });
   const std::vector<Vector3> together = cable.positions;
   for (const HeldNode& h : held) cable.positions[h.node] = h.position;
-  project_lengths(model, held, lengths, cable.positions);
+  project_lengths(held, lengths, cable);
   carry_frames(together, cable);
   after_remeshing(index);
-  project_velocities(model, boundary_now(s.targets).nodes, cable.positions, cable.velocities);
+  project_velocities(*state.cables[index].model, boundary_now(s.targets).nodes, cable);
 }
 
 }  // namespace verlet_cable

@@ -1,6 +1,8 @@
 #include <memory>
+#include <utility>
 
 #include "rod/rod_frames.h"
+#include "scene/validate_materials.h"
 #include "verlet_cable/core/world.h"
 #include "world/implementation.h"
 
@@ -8,6 +10,10 @@ namespace verlet_cable {
 
 void World::tune(const SceneDesc& scene) {
   State& state = implementation_->state;
+  Errors errors;
+  for (const SimulatedCable& cable : state.cables)
+    check_torsional_stiffness(cable, *scene.find_material(cable.model->material_name), errors);
+  if (std::vector<std::string> lines = errors.take(); !lines.empty()) throw SceneError(std::move(lines));
   auto tuned = std::make_shared<SceneDesc>(*state.scene);
   tuned->gravity = scene.gravity;
   tuned->fluid = scene.fluid;
@@ -15,13 +21,15 @@ void World::tune(const SceneDesc& scene) {
   if (tuned->contact && scene.contact) tuned->contact->friction = scene.contact->friction;
   state.scene = std::move(tuned);
   for (int i = 0; i < static_cast<int>(state.cables.size()); ++i) {
-    CableModel& model = state.cables[i].model;
+    CableModel model = *state.cables[i].model;
     model.material = *scene.find_material(model.material_name);
+    state.cables[i].model = std::make_shared<const CableModel>(std::move(model));
+    SimulatedCable& cable = state.cables[i];
     std::vector<DirectionTarget>& clamps = state.cable_progress[i].targets.directions;
-    if (model.is_whole_rod())
-      give_frames(state.cables[i], clamps);
+    if (is_whole_rod(*cable.model, cable.state))
+      give_frames(cable.state, clamps);
     else
-      drop_frames(state.cables[i], clamps);
+      drop_frames(cable.state, clamps);
     // A clamp holds the direction where the cable is stiff, the neighbouring node where it is not.
     implementation_->find_targets_of(i);
   }

@@ -19,20 +19,20 @@ constexpr double longest_segment = 1.5, shortest_segment = 0.5, least_segment = 
 constexpr double closing_distance = 0.25;
 
 /// Whether a node carries more than its segments and what a cut left on an end weigh.
-bool carries_payload(const CableModel& model, int node) {
+bool carries_payload(const SimulatedCable& cable, int node) {
   double share = 0;
-  if (node > 0) share += 0.5 * model.rest_lengths[node - 1];
-  if (node < model.segments()) share += 0.5 * model.rest_lengths[node];
-  const double residue = 0.5 * model.segment_length;
-  return model.masses[node] > model.material.linear_density * (share + 1.5 * residue);
+  if (node > 0) share += 0.5 * cable.state.rest_lengths[node - 1];
+  if (node < cable.state.segments()) share += 0.5 * cable.state.rest_lengths[node];
+  const double residue = 0.5 * cable.model->segment_length;
+  return cable.state.masses[node] > cable.model->material.linear_density * (share + 1.5 * residue);
 }
 
 /// At a winch the material moves through the end node. Adds (`side` 1) this motion to the node's velocity, or takes it away (-1).
-void add_material_motion(const LengthDrive& drive, double side, SimulatedCable& cable) {
+void add_material_motion(const LengthDrive& drive, double side, CableState& cable) {
   if (!drive.is_winch()) return;
-  const int n = cable.model.segments(), node = drive.end_node(n), i = drive.segment;
-  const Vector3 along = (cable.state.positions[i + 1] - cable.state.positions[i]).normalized();
-  cable.state.velocities[node] += (node == 0 ? side : -side) * drive.growth() * along;
+  const int n = cable.segments(), node = drive.end_node(n), i = drive.segment;
+  const Vector3 along = (cable.positions[i + 1] - cable.positions[i]).normalized();
+  cable.velocities[node] += (node == 0 ? side : -side) * drive.growth() * along;
 }
 
 }  // namespace
@@ -41,7 +41,8 @@ EditResult World::Implementation::apply(const edit::SetLength& change) {
   const auto [index, at_end, length, speed] = change;
   if (index < 0 || index >= static_cast<int>(state.cables.size()))
     return refused("cable: " + std::to_string(index) + "; must be the index of a cable");
-  const CableModel& model = state.cables[index].model;
+  const CableModel& model = *state.cables[index].model;
+  const CableState& cable = state.cables[index].state;
   CableProgress& s = state.cable_progress[index];
   const LengthDrive::Place place = at_end ? LengthDrive::Place::end : LengthDrive::Place::start;
   if (s.drive && !s.drive->is_winch())
@@ -54,7 +55,7 @@ EditResult World::Implementation::apply(const edit::SetLength& change) {
   if (!(speed > 0 && speed <= fastest))
     return refused("speed: " + number_text(speed) + "; must be above 0, and at most " + rounded_bound_text(fastest, -1) + " m/s");
   int others = 0;
-  for (int i = 0; i < static_cast<int>(state.cables.size()); ++i) others += i == index ? 0 : state.cables[i].model.segments();
+  for (int i = 0; i < static_cast<int>(state.cables.size()); ++i) others += i == index ? 0 : state.cables[i].state.segments();
   const double longest = (state.scene->limits.segments - others) * model.segment_length;
   if (!(length > 0 && length <= longest))
     return refused("length: " + number_text(length) + "; must be above 0, and at most " + rounded_bound_text(longest, -1) +
@@ -62,13 +63,13 @@ EditResult World::Implementation::apply(const edit::SetLength& change) {
 
   LengthDrive drive = s.drive.value_or(LengthDrive{});
   drive.place = place;
-  drive.segment = at_end ? model.segments() - 1 : 0;
+  drive.segment = at_end ? cable.segments() - 1 : 0;
   drive.speed = speed;
   drive.acceleration = winch_acceleration;
-  drive.left = length - (model.length() + drive.debt);
+  drive.left = length - (cable.length() + drive.debt);
   const std::optional<LengthDrive> before = std::exchange(s.drive, drive);
-  const double shortest = model.length() - available_length(index);
-  const double needed = model.length() - slack_at_winch(index);
+  const double shortest = cable.length() - available_length(index);
+  const double needed = cable.length() - slack_at_winch(index);
   if (length >= shortest && length >= needed) return {true, "", model.name};
   s.drive = before;
   return refused(
@@ -79,9 +80,9 @@ EditResult World::Implementation::apply(const edit::SetLength& change) {
 
 /// [m] That can be taken in: up to the next node that is attached or carries a payload, or to the other end.
 double World::Implementation::available_length(int index) const {
-  const CableModel& model = state.cables[index].model;
+  const SimulatedCable& cable = state.cables[index];
   const bool from_start = state.cable_progress[index].drive->place == LengthDrive::Place::start;
-  const int n = model.segments();
+  const int n = cable.state.segments();
   int stop = from_start ? n : 0;
   for (const Attachment& a : state.attachments) {
     if (a.body != cable_id(index) || a.node == (from_start ? 0 : n)) continue;
@@ -90,17 +91,17 @@ double World::Implementation::available_length(int index) const {
   const int step = from_start ? 1 : -1;
   double length = 0;
   for (int node = from_start ? 0 : n; node != stop; node += step) {
-    length += model.rest_lengths[from_start ? node : node - 1];
-    if (node + step != stop && carries_payload(model, node + step)) break;
+    length += cable.state.rest_lengths[from_start ? node : node - 1];
+    if (node + step != stop && carries_payload(cable, node + step)) break;
   }
-  return length - least_segment * model.segment_length;
+  return length - least_segment * cable.model->segment_length;
 }
 
 /// [m] That the cable between the winch and the next attachment is longer than they are apart; infinite where there are no two.
 double World::Implementation::slack_at_winch(int index) const {
-  const CableModel& model = state.cables[index].model;
+  const SimulatedCable& cable = state.cables[index];
   const bool from_start = state.cable_progress[index].drive->place == LengthDrive::Place::start;
-  const int end = from_start ? 0 : model.segments();
+  const int end = from_start ? 0 : cable.state.segments();
   const Attachment *winch = nullptr, *next = nullptr;
   for (const Attachment& a : state.attachments) {
     if (a.body != cable_id(index)) continue;
@@ -112,49 +113,50 @@ double World::Implementation::slack_at_winch(int index) const {
   }
   if (!winch || !next) return infinity;
   const auto place = [&](const Attachment& a) { return (state.frames.poses[a.frame] * a.pose).position; };
-  return model.length(std::min(end, next->node), std::max(end, next->node)) - (place(*winch) - place(*next)).norm();
+  return cable.state.length(std::min(end, next->node), std::max(end, next->node)) - (place(*winch) - place(*next)).norm();
 }
 
 void World::Implementation::plan_drive_step(int index) {
   CableProgress& s = state.cable_progress[index];
-  const CableModel& model = state.cables[index].model;
-  if (!s.drive->is_winch() && model.rest_lengths[s.drive->segment] <= closing_distance * model.segment_length) {
+  SimulatedCable& cable = state.cables[index];
+  if (!s.drive->is_winch() && cable.state.rest_lengths[s.drive->segment] <= closing_distance * cable.model->segment_length) {
     close_joint(index);
     return;
   }
   plan_drive(s.drive->is_winch() ? available_length(index) : infinity, state.scene->time_step, *s.drive);
   if (s.drive->is_winch()) remesh_winch(index);
   LengthDrive& drive = *s.drive;
-  drive.start_length = model.rest_lengths[drive.segment];
-  for (const int side : {0, 1}) drive.start_masses[side] = model.masses[drive.segment + side];
-  wind(drive, 1, state.scene->time_step, state.cables[index].model);
+  drive.start_length = cable.state.rest_lengths[drive.segment];
+  for (const int side : {0, 1}) drive.start_masses[side] = cable.state.masses[drive.segment + side];
+  wind(drive, 1, state.scene->time_step, *cable.model, cable.state);
 }
 
 /// Segments appear and vanish at the winch, so that the one there stays about as long as the others.
 void World::Implementation::remesh_winch(int index) {
-  const CableModel& model = state.cables[index].model;
+  const SimulatedCable& cable = state.cables[index];
   const LengthDrive& drive = *state.cable_progress[index].drive;
-  while (model.rest_lengths[drive.segment] > longest_segment * model.segment_length) add_winch_node(index);
+  while (cable.state.rest_lengths[drive.segment] > longest_segment * cable.model->segment_length) add_winch_node(index);
   const auto too_short = [&] {
-    return model.rest_lengths[drive.segment] + std::min(drive.change, 0.0) < shortest_segment * model.segment_length;
+    return cable.state.rest_lengths[drive.segment] + std::min(drive.change, 0.0) < shortest_segment * cable.model->segment_length;
   };
   const auto is_free = [&](int node) {
-    return node > 0 && node < model.segments() && !carries_payload(model, node) &&
+    return node > 0 && node < cable.state.segments() && !carries_payload(cable, node) &&
            std::none_of(state.attachments.begin(), state.attachments.end(),
                         [&](const Attachment& a) { return a.body == cable_id(index) && a.node == node; });
   };
-  while (too_short() && is_free(drive.place == LengthDrive::Place::start ? 1 : model.segments() - 1)) take_in_winch_node(index);
+  while (too_short() && is_free(drive.place == LengthDrive::Place::start ? 1 : cable.state.segments() - 1))
+    take_in_winch_node(index);
 }
 
 void World::Implementation::add_winch_node(int index) {
   SimulatedCable& cable = state.cables[index];
   LengthDrive& drive = *state.cable_progress[index].drive;
-  const double whole = cable.model.rest_lengths[drive.segment], regular = cable.model.segment_length;
+  const double whole = cable.state.rest_lengths[drive.segment], regular = cable.model->segment_length;
   const int node = drive.segment + 1;
-  add_material_motion(drive, 1, cable);
-  insert_node(drive.segment, drive.place == LengthDrive::Place::start ? whole - regular : regular, cable);
+  add_material_motion(drive, 1, cable.state);
+  insert_node(drive.segment, drive.place == LengthDrive::Place::start ? whole - regular : regular, *cable.model, cable.state);
   if (drive.place == LengthDrive::Place::end) ++drive.segment;
-  add_material_motion(drive, -1, cable);
+  add_material_motion(drive, -1, cable.state);
   renumber(index, node, 1);
   after_remeshing(index);
 }
@@ -163,9 +165,9 @@ void World::Implementation::take_in_winch_node(int index) {
   SimulatedCable& cable = state.cables[index];
   CableProgress& s = state.cable_progress[index];
   LengthDrive& drive = *s.drive;
-  const int node = drive.place == LengthDrive::Place::start ? 1 : cable.model.segments() - 1;
-  add_material_motion(drive, 1, cable);
-  drive.debt += remove_node(node, cable);
+  const int node = drive.place == LengthDrive::Place::start ? 1 : cable.state.segments() - 1;
+  add_material_motion(drive, 1, cable.state);
+  drive.debt += remove_node(node, cable.state);
   if (drive.place == LengthDrive::Place::end) --drive.segment;
   auto& held = s.targets.nodes;
   held.erase(std::remove_if(held.begin(), held.end(), [&](const KinematicTarget& h) { return h.node == node; }), held.end());
@@ -174,13 +176,13 @@ void World::Implementation::take_in_winch_node(int index) {
   // Nothing but the rest length at the winch changes lengths now, either.
   std::vector<HeldNode> nodes = boundary_now(s.targets).nodes;
   for (HeldNode& h : nodes) {
-    if (h.node != drive.end_node(cable.model.segments())) continue;
+    if (h.node != drive.end_node(cable.state.segments())) continue;
     cable.state.velocities[h.node] = h.velocity;
-    add_material_motion(drive, 1, cable);
+    add_material_motion(drive, 1, cable.state);
     h.velocity = cable.state.velocities[h.node];
   }
-  project_velocities(cable.model, nodes, cable.state.positions, cable.state.velocities);
-  add_material_motion(drive, -1, cable);
+  project_velocities(*cable.model, nodes, cable.state);
+  add_material_motion(drive, -1, cable.state);
 }
 
 /// The nodes of a cable from `first` on have moved by `shift`.

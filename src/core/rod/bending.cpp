@@ -8,26 +8,26 @@
 
 namespace verlet_cable {
 
-void Bending::resize(const CableModel& model) {
-  segments_ = model.segments();
-  const std::size_t nodes = model.nodes();
+void Bending::resize(int segments) {
+  segments_ = segments;
+  const std::size_t nodes = segments + 1;
   for (std::vector<double>* a : {&inverse_length_, &stiffness_, &damping_, &start_square_, &end_square_, &slope_})
     a->assign(nodes, 0.0);
   for (VectorArray* a : {&start_, &natural_, &change_, &moment_}) a->assign(nodes, 0.0);
   clamps_.reserve(2 * nodes);
 }
 
-void Bending::start(const CableModel& model, const VectorArray& segment, const std::vector<HeldDirection>& directions, double h,
-                    double part) {
+void Bending::start(const CableModel& model, const CableState& state, const VectorArray& segment,
+                    const std::vector<HeldDirection>& directions, double h, double part) {
   const double stiffness = model.material.bending_stiffness.largest(), damping = model.material.bending_damping / h;
-  active_ = !model.is_whole_rod() && (stiffness > 0 || model.material.bending_damping > 0);
+  active_ = state.directors.empty() && (stiffness > 0 || model.material.bending_damping > 0);
   if (!active_) return;
   part_ = part;
-  if (is_curved_ && model.rest_curvature.empty()) natural_.assign(model.nodes(), 0.0);
-  is_curved_ = !model.rest_curvature.empty();
-  for (int i = 0; i < segments_; ++i) inverse_length_[i] = 1 / model.rest_lengths[i];
+  if (is_curved_ && state.rest_curvature.empty()) natural_.assign(state.nodes(), 0.0);
+  is_curved_ = !state.rest_curvature.empty();
+  for (int i = 0; i < segments_; ++i) inverse_length_[i] = 1 / state.rest_lengths[i];
   for (int i = 1; i < segments_; ++i) {
-    const double joint = 1 / model.bending_length(i, 0.5 * (model.rest_lengths[i - 1] + model.rest_lengths[i]));
+    const double joint = 1 / state.bending_length(i, 0.5 * (state.rest_lengths[i - 1] + state.rest_lengths[i]));
     stiffness_[i] = stiffness * joint;
     damping_[i] = damping * joint;
     const Vector3 e = inverse_length_[i] * get(segment, i) - inverse_length_[i - 1] * get(segment, i - 1);
@@ -45,7 +45,7 @@ void Bending::start(const CableModel& model, const VectorArray& segment, const s
       clamp.target = static_cast<int>(k);
       clamp.segment = i;
       clamp.side = i < target.node ? -1 : 1;
-      const double joint = 1 / model.bending_length(target.node, 0.5 * model.rest_lengths[i]);
+      const double joint = 1 / state.bending_length(target.node, 0.5 * state.rest_lengths[i]);
       clamp.stiffness = stiffness * joint;
       clamp.damping = damping * joint;
       // The axis is as long as the segment is stretched: a clamp does not resist stretch.
@@ -59,18 +59,18 @@ void Bending::start(const CableModel& model, const VectorArray& segment, const s
   }
 }
 
-void Bending::set_natural_shape(const CableModel& model, const VectorArray& middle, const VectorArray& director) {
-  if (model.rest_curvature.empty()) return;
+void Bending::set_natural_shape(const CableState& state, const VectorArray& middle, const VectorArray& director) {
+  if (state.rest_curvature.empty()) return;
   for (int i = 1; i < segments_; ++i) {
     const Vector3 along = get(middle, i - 1) + get(middle, i), normal = 0.5 * (get(director, i - 1) + get(director, i));
     set(natural_, i,
-        natural_change(model.rest_curvature[i],
-                       model.bending_length(i, 0.5 * (model.rest_lengths[i - 1] + model.rest_lengths[i])), along, normal));
+        natural_change(state.rest_curvature[i],
+                       state.bending_length(i, 0.5 * (state.rest_lengths[i - 1] + state.rest_lengths[i])), along, normal));
   }
   for (ClampJoint& clamp : clamps_) {
     const int i = clamp.segment, node = clamp.side > 0 ? i : i + 1;
     clamp.natural =
-        clamp.side * natural_change(model.rest_curvature[node], model.bending_length(node, 0.5 * model.rest_lengths[i]),
+        clamp.side * natural_change(state.rest_curvature[node], state.bending_length(node, 0.5 * state.rest_lengths[i]),
                                     get(middle, i), get(director, i));
   }
 }
@@ -143,31 +143,31 @@ void Bending::react(const VectorArray& displacement, std::vector<HeldDirection>&
 }
 
 double bending_energy(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions) {
-  const int n = model.segments();
+  const int n = state.segments();
   VectorArray segment, director;
   segment.assign(n, 0.0);
   director.assign(n, 0.0);
   for (int i = 0; i < n; ++i) set(segment, i, state.positions[i + 1] - state.positions[i]);
-  if (!model.rest_curvature.empty()) carry_directors(model, state, segment, director);
-  const auto direction = [&](int i) -> Vector3 { return get(segment, i) / model.rest_lengths[i]; };
+  if (!state.rest_curvature.empty()) carry_directors(state, segment, director);
+  const auto direction = [&](int i) -> Vector3 { return get(segment, i) / state.rest_lengths[i]; };
   const auto joint = [](double length, const Vector3& change, const Vector3& natural) {
     return (angle_energy(0.5 * change.squaredNorm()) - change.dot(natural) + 0.5 * natural.squaredNorm()) / length;
   };
   const auto natural = [&](int node, double length, int first, int last) -> Vector3 {
-    if (model.rest_curvature.empty()) return Vector3::Zero();
-    return natural_change(model.rest_curvature[node], length, get(segment, first) + get(segment, last),
+    if (state.rest_curvature.empty()) return Vector3::Zero();
+    return natural_change(state.rest_curvature[node], length, get(segment, first) + get(segment, last),
                           0.5 * (get(director, first) + get(director, last)));
   };
   double energy = 0;
   for (int i = 1; i < n; ++i) {
     const auto clamped = std::find_if(directions.begin(), directions.end(), [i](const HeldDirection& d) { return d.node == i; });
-    const double length = model.bending_length(i, 0.5 * (model.rest_lengths[i - 1] + model.rest_lengths[i]));
+    const double length = state.bending_length(i, 0.5 * (state.rest_lengths[i - 1] + state.rest_lengths[i]));
     if (clamped == directions.end()) energy += joint(length, direction(i) - direction(i - 1), natural(i, length, i - 1, i));
   }
   for (const HeldDirection& clamp : directions) {
     for (const int i : {clamp.node - 1, clamp.node}) {
       if (i < 0 || i >= n) continue;
-      const double length = model.bending_length(clamp.node, 0.5 * model.rest_lengths[i]), side = i < clamp.node ? -1 : 1;
+      const double length = state.bending_length(clamp.node, 0.5 * state.rest_lengths[i]), side = i < clamp.node ? -1 : 1;
       energy += joint(length, direction(i) - direction(i).norm() * (clamp.end * Vector3::UnitX()),
                       side * natural(clamp.node, length, i, i));
     }

@@ -20,13 +20,13 @@ namespace verlet_cable {
 /// segment away.
 class Bending {
  public:
-  void resize(const CableModel& model);
+  void resize(int segments);
   /// `segment`: the segments at the start of the substep [m]; `part`: where in the substep forces are taken, 1/2 or 1.
-  void start(const CableModel& model, const VectorArray& segment, const std::vector<HeldDirection>& directions, double h,
-             double part);
+  void start(const CableModel& model, const CableState& state, const VectorArray& segment,
+             const std::vector<HeldDirection>& directions, double h, double part);
   /// Takes the unloaded shape's directions from the material's: `middle`: segments [m], `director`: the material's y axis on
   /// each.
-  void set_natural_shape(const CableModel& model, const VectorArray& middle, const VectorArray& director);
+  void set_natural_shape(const CableState& state, const VectorArray& middle, const VectorArray& director);
   bool active() const { return active_; }
   /// Adds the forces of the segments on their first nodes [N], for displacements of the nodes [m].
   void add_segment_forces(const VectorArray& displacement, VectorArray& pull);

@@ -9,32 +9,38 @@
 
 namespace verlet_cable {
 
-double CableModel::length() const {
+double CableState::length() const {
   return length(0, segments());
 }
 
-double CableModel::length(int first, int last) const {
+double CableState::length(int first, int last) const {
   return std::accumulate(rest_lengths.begin() + first, rest_lengths.begin() + last, 0.0);
 }
 
-std::vector<double> CableModel::arc_length() const {
+std::vector<double> CableState::arc_length() const {
   std::vector<double> arc{0};
   for (const double l : rest_lengths) arc.push_back(arc.back() + l);
   return arc;
 }
 
-std::vector<Quaternion> segment_orientations(const SimulatedCable& cable) {
-  const int n = cable.model.segments();
-  if (!cable.state.directors.empty()) {
+bool is_whole_rod(const CableModel& model, const CableState& state) {
+  const BendingStiffness& stiffness = model.material.bending_stiffness;
+  return !stiffness.is_isotropic() || (stiffness.largest() > 0 && !state.rest_curvature.empty()) ||
+         (model.material.torsional_stiffness > 0 && !state.rest_twist.empty());
+}
+
+std::vector<Quaternion> segment_orientations(const CableState& state) {
+  const int n = state.segments();
+  if (!state.directors.empty()) {
     std::vector<Quaternion> orientations;
-    for (int i = 0; i < n; ++i) orientations.emplace_back(segment_frame(cable.state, i));
+    for (int i = 0; i < n; ++i) orientations.emplace_back(segment_frame(state, i));
     return orientations;
   }
   VectorArray segment, director;
   segment.assign(n, 0.0);
   director.assign(n, 0.0);
-  for (int i = 0; i < n; ++i) set(segment, i, cable.state.positions[i + 1] - cable.state.positions[i]);
-  carry_directors(cable.model, cable.state, segment, director);
+  for (int i = 0; i < n; ++i) set(segment, i, state.positions[i + 1] - state.positions[i]);
+  carry_directors(state, segment, director);
   std::vector<Quaternion> orientations;
   for (int i = 0; i < n; ++i) {
     Eigen::Matrix3d axes;
@@ -46,38 +52,37 @@ std::vector<Quaternion> segment_orientations(const SimulatedCable& cable) {
   return orientations;
 }
 
-std::vector<double> node_curvature(const SimulatedCable& cable) {
+std::vector<double> node_curvature(const CableState& state) {
   std::vector<double> curvature;
-  for (int i = 1; i < cable.model.segments(); ++i) {
-    const Vector3 before = cable.state.positions[i] - cable.state.positions[i - 1];
-    const Vector3 after = cable.state.positions[i + 1] - cable.state.positions[i];
+  for (int i = 1; i < state.segments(); ++i) {
+    const Vector3 before = state.positions[i] - state.positions[i - 1];
+    const Vector3 after = state.positions[i + 1] - state.positions[i];
     const double angle = std::atan2(before.cross(after).norm(), before.dot(after));
-    curvature.push_back(angle / (0.5 * (cable.model.rest_lengths[i - 1] + cable.model.rest_lengths[i])));
+    curvature.push_back(angle / (0.5 * (state.rest_lengths[i - 1] + state.rest_lengths[i])));
   }
   return curvature;
 }
 
-std::vector<double> node_twist(const SimulatedCable& cable) {
+std::vector<double> node_twist(const CableState& state) {
   std::vector<double> twist;
-  const CableState& state = cable.state;
-  for (int i = 1; i < cable.model.segments(); ++i) {
+  for (int i = 1; i < state.segments(); ++i) {
     if (state.directors.empty())
       twist.push_back(0.5 * (state.twist[i - 1] + state.twist[i]));
     else
-      twist.push_back(joint_angles_at(state, i).twist / joint_length(cable.model, i));
+      twist.push_back(joint_angles_at(state, i).twist / joint_length(state, i));
   }
   return twist;
 }
 
-double strain(const SimulatedCable& cable, int segment) {
-  return (cable.state.positions[segment + 1] - cable.state.positions[segment]).norm() / cable.model.rest_lengths[segment] - 1;
+double strain(const CableState& state, int segment) {
+  return (state.positions[segment + 1] - state.positions[segment]).norm() / state.rest_lengths[segment] - 1;
 }
 
-NearestPoint nearest_point(const SimulatedCable& cable, const Vector3& point) {
+NearestPoint nearest_point(const CableState& state, const Vector3& point) {
   NearestPoint nearest;
   nearest.distance = infinity;
-  for (int i = 0; i < cable.model.segments(); ++i) {
-    const Vector3 start = cable.state.positions[i], along = cable.state.positions[i + 1] - start;
+  for (int i = 0; i < state.segments(); ++i) {
+    const Vector3 start = state.positions[i], along = state.positions[i + 1] - start;
     const double square = along.squaredNorm();
     const double fraction = square > 0 ? std::clamp((point - start).dot(along) / square, 0.0, 1.0) : 0;
     const double distance = (start + fraction * along - point).norm();

@@ -40,10 +40,10 @@ void bring_to_rest(CableState& state) {
   std::fill(state.spin.begin(), state.spin.end(), 0.0);
 }
 
-void CableStepper::resize(const CableModel& model) {
-  if (model.segments() == segments_) return;
-  segments_ = model.segments();
-  const std::size_t nodes = model.nodes() + 1;  // one more, where two are computed with together
+void CableStepper::resize(int segments) {
+  if (segments == segments_) return;
+  segments_ = segments;
+  const int nodes = segments + 2;  // one more, where two are computed with together
   for (VectorArray* a : {&position_, &velocity_, &acceleration_, &segment_, &displacement_, &middle_, &segment_force_,
                          &end_velocity_, &base_load_, &director_})
     a->assign(nodes, 0.0);
@@ -51,10 +51,10 @@ void CableStepper::resize(const CableModel& model) {
                                  &end_square_, &pivot_, &off_, &impulse_})
     a->assign(nodes, 0.0);
   both_held_.reserve(nodes);
-  bending_.resize(model);
-  twist_.resize(model);
-  rod_.resize(model);
-  fluid_.resize(model);
+  bending_.resize(segments);
+  twist_.resize(segments);
+  rod_.resize(segments);
+  fluid_.resize(segments + 1);
   system_.resize(segments_);
   solver_.resize(segments_);
 }
@@ -70,16 +70,16 @@ SubstepResult CableStepper::advance(const Substep& s, CableState& state) {
 void CableStepper::begin(const Substep& s, const CableState& state, SubstepResult& result) {
   load(s, state);
   hold(s.boundary.nodes);
-  result.overstretched_node = reachable_lengths(s.model, s.boundary.nodes, target_length_);
-  set_loads(s);
+  result.overstretched_node = reachable_lengths(s.model, state, s.boundary.nodes, target_length_);
+  set_loads(s, state);
   set_growth(s);
-  start_bending(s);
-  if (s.model.is_whole_rod())
-    rod_.start(s.model, state, segment_, s.boundary, s.h, s.damping_time(), s.part());
-  else
+  start_bending(s, state);
+  if (state.directors.empty())
     rod_.leave_out();
-  twist_.start(s.model, s.spans, s.damping_time(), s.part());
-  fluid_.start(s.environment.fluid, s.environment.gravity, s.damping_time());
+  else
+    rod_.start(s.model, state, segment_, s.boundary, s.h, s.damping_time(), s.part());
+  twist_.start(s.model, state, s.spans, s.damping_time(), s.part());
+  fluid_.start(s.environment.fluid, s.environment.gravity, s.model.material.radius, s.damping_time());
   predict(s.h);
   set_natural_shape(s, state);
 }
@@ -87,10 +87,10 @@ void CableStepper::begin(const Substep& s, const CableState& state, SubstepResul
 void CableStepper::finish(const Substep& s, bool struck, CableState& state, SubstepResult& result) {
   if (s.statics)
     for (int i = 0; i <= segments_; ++i) result.displacement = std::max(result.displacement, get(displacement_, i).norm());
-  react(s);
+  react(s, state.masses);
   move(s);
   if (!s.statics && (struck || !s.boundary.growing.empty() || holders_accelerate(s.h, s.boundary.nodes)))
-    project(s.model, s.boundary.growing);
+    project(s, state.masses);
   result.max_strain = store(s, state);
   if (rod_.active()) rod_.store(s.boundary, state);
   if (twist_.active()) twist_.follow(s.boundary.directions, state.positions, s.spans);
@@ -107,7 +107,7 @@ void CableStepper::load(const Substep& s, const CableState& state) {
   for (int i = 0; i < segments_; ++i) {
     const Vector3 d = state.positions[i + 1] - state.positions[i];
     set(segment_, i, d);
-    length_[i] = elastic ? d.norm() : s.model.rest_lengths[i];
+    length_[i] = elastic ? d.norm() : state.rest_lengths[i];
     tension_density_[i] = state.axial_multiplier[i] / length_[i];
   }
 }
@@ -121,12 +121,12 @@ void CableStepper::hold(const std::vector<HeldNode>& held) {
 }
 
 /// The parts of the equations of motion that no iteration changes.
-void CableStepper::set_loads(const Substep& s) {
+void CableStepper::set_loads(const Substep& s, const CableState& state) {
   const Vector3 wind = s.model.material.drag * s.environment.fluid.velocity;
   const double drag = s.model.material.drag / s.damping_time();
   for (int i = 0; i <= segments_; ++i) {
-    const double mass = s.model.masses[i], inertia = 2 * mass / s.h;
-    const double length = 0.5 * ((i > 0 ? s.model.rest_lengths[i - 1] : 0) + (i < segments_ ? s.model.rest_lengths[i] : 0));
+    const double mass = state.masses[i], inertia = 2 * mass / s.h;
+    const double length = 0.5 * ((i > 0 ? state.rest_lengths[i - 1] : 0) + (i < segments_ ? state.rest_lengths[i] : 0));
     inertia_[i] = inertia / s.h + drag * length;
     // In the middle of the substep, where the other forces are; velocities are zero in statics.
     const Vector3 gravity = s.environment.gravity.at(get(position_, i) + 0.5 * s.h * get(velocity_, i));
@@ -137,8 +137,8 @@ void CableStepper::set_loads(const Substep& s) {
   const std::vector<HeldNode>& held = s.boundary.nodes;
   std::fill_n(system_.compliance.begin(), segments_, 0.0);
   if (held.size() > 1) {
-    const double mass = std::accumulate(s.model.masses.begin(), s.model.masses.end(), 0.0);
-    const double length = s.model.length();
+    const double mass = std::accumulate(state.masses.begin(), state.masses.end(), 0.0);
+    const double length = state.length();
     const double weight = std::max(s.environment.gravity.at(get(position_, 0)).norm(), standard_gravity) * mass;
     const double stiffness = taut_stiffness * (weight + s.model.material.bending_stiffness.largest() / (length * length));
     for (int i = held.front().node; i < held.back().node; ++i)
@@ -163,12 +163,12 @@ void CableStepper::set_growth(const Substep& s) {
 }
 
 /// The material's segment at a winch is as long at the start as it is unstrained in the substep: growth is no bending.
-void CableStepper::start_bending(const Substep& s) {
+void CableStepper::start_bending(const Substep& s, const CableState& state) {
   const int i = std::clamp(winch_node_ - 1, 0, segments_ - 1);
   const Vector3 segment = get(segment_, i);
   const double part = s.model.material.axial_stiffness < infinity ? 0.5 : 1;
   if (winch_node_ >= 0) set(segment_, i, segment + part * rest_growth_[i] * segment.normalized());
-  bending_.start(s.model, segment_, s.boundary.directions, s.damping_time(), s.part());
+  bending_.start(s.model, state, segment_, s.boundary.directions, s.damping_time(), s.part());
   set(segment_, i, segment);
   if (!bending_.active() && couples_second_) std::fill(system_.second.begin(), system_.second.end(), 0.0);
   couples_second_ = bending_.active();
@@ -194,11 +194,11 @@ void CableStepper::predict(double h) {
 
 /// The unloaded shape, turned as the material is expected to be where forces are taken.
 void CableStepper::set_natural_shape(const Substep& s, const CableState& state) {
-  if (s.model.rest_curvature.empty() || !bending_.active()) return;
+  if (state.rest_curvature.empty() || !bending_.active()) return;
   for (int i = 0; i < segments_; ++i)
     set(middle_, i, get(segment_, i) + s.part() * (get(displacement_, i + 1) - get(displacement_, i)));
-  carry_directors(s.model, state, middle_, director_);
-  bending_.set_natural_shape(s.model, middle_, director_);
+  carry_directors(state, middle_, director_);
+  bending_.set_natural_shape(state, middle_, director_);
 }
 
 /// Newton's method on places and tensions together, its matrix kept as long as it converges fast.
@@ -210,7 +210,7 @@ bool CableStepper::solve(const Substep& s, const CableState& state, SubstepResul
   bool stale = true;
   for (int i = 0; i < maximum_iterations; ++i) {
     if (s.statics && i > 0) set_natural_shape(s, state);
-    evaluate(s);
+    evaluate(s, state);
     if (stale) {
       assemble(s.part());
       factor();
@@ -229,14 +229,14 @@ bool CableStepper::solve(const Substep& s, const CableState& state, SubstepResul
 }
 
 /// Residuals of the equations of motion and of the tension laws at the present iterate.
-void CableStepper::evaluate(const Substep& s) {
+void CableStepper::evaluate(const Substep& s, const CableState& state) {
   std::fill(end_square_.begin(), end_square_.end(), 0.0);
   for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) evaluate_segments(s.part(), component);
   if (bending_.active()) add_bending_pulls();
   if (rod_.active()) rod_.add_segment_forces(displacement_, segment_, middle_, segment_force_);
   if (twist_.active()) twist_.add_segment_forces(middle_, displacement_, s.boundary, segment_force_);
   if (s.model.material.axial_stiffness < infinity)
-    evaluate_elastic_lengths(s);
+    evaluate_elastic_lengths(s, state.rest_lengths);
   else
     evaluate_rigid_lengths();
   for (const int i : both_held_) {
@@ -244,7 +244,7 @@ void CableStepper::evaluate(const Substep& s) {
     system_.compliance[i] = 1;
   }
   for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) evaluate_nodes(component);
-  if (fluid_.active()) fluid_.add_loads(s.model, middle_, position_, displacement_, system_.load);
+  if (fluid_.active()) fluid_.add_loads(state.rest_lengths, middle_, position_, displacement_, system_.load);
 }
 
 void CableStepper::evaluate_segments(double part, Component component) {
@@ -277,10 +277,10 @@ void CableStepper::evaluate_rigid_lengths() {
     system_.gap[i] = 0.5 * (target_length_[i] * target_length_[i] - end_square_[i]) + system_.compliance[i] * tension_density_[i];
 }
 
-void CableStepper::evaluate_elastic_lengths(const Substep& sub) {
+void CableStepper::evaluate_elastic_lengths(const Substep& sub, const std::vector<double>& rest_lengths) {
   const double stiffness = sub.model.material.axial_stiffness, part = sub.part();
   for (int i = 0; i < segments_; ++i) {
-    const double rest = sub.model.rest_lengths[i], s = std::sqrt(end_square_[i]), mean = length_[i] + part * (s - length_[i]);
+    const double rest = rest_lengths[i], s = std::sqrt(end_square_[i]), mean = length_[i] + part * (s - length_[i]);
     const double damping = sub.model.material.axial_damping / (sub.damping_time() * rest);
     const double excess =
         stiffness / rest * (mean - rest) + damping * (s - length_[i] - rest_growth_[i]) - tension_density_[i] * mean;
@@ -394,10 +394,10 @@ bool CableStepper::holders_accelerate(double h, const std::vector<HeldNode>& hel
 
 /// Impulses along inextensible segments that end all change of length but that of rest lengths; without them such velocities
 /// would alternate from step to step.
-void CableStepper::project(const CableModel& model, const std::vector<GrowingSegment>& growing) {
-  if (model.material.axial_stiffness < infinity) return;
+void CableStepper::project(const Substep& s, const std::vector<double>& masses) {
+  if (s.model.material.axial_stiffness < infinity) return;
   const int n = segments_;
-  for (int i = 0; i <= n; ++i) inverse_mass_[i] = system_.movable[i] / model.masses[i];
+  for (int i = 0; i <= n; ++i) inverse_mass_[i] = system_.movable[i] / masses[i];
   std::fill(pivot_.begin(), pivot_.end(), 0.0);
   std::fill(off_.begin(), off_.end(), 0.0);
   std::fill(impulse_.begin(), impulse_.end(), 0.0);
@@ -416,7 +416,8 @@ void CableStepper::project(const CableModel& model, const std::vector<GrowingSeg
     pivot_[i] *= mobility * (1 + pivot_regularisation);
     off_[i] *= -inverse_mass_[i + 1];
   }
-  for (const GrowingSegment& s : growing) impulse_[s.segment] += target_length_[s.segment] * s.growth;
+  for (const GrowingSegment& growing : s.boundary.growing)
+    impulse_[growing.segment] += target_length_[growing.segment] * growing.growth;
   for (const int i : both_held_) {
     pivot_[i] = 1;
     impulse_[i] = 0;
@@ -433,13 +434,13 @@ void CableStepper::project(const CableModel& model, const std::vector<GrowingSeg
 }
 
 /// What the held nodes' equations of motion lack is what their holders supply.
-void CableStepper::react(const Substep& s) {
+void CableStepper::react(const Substep& s, const std::vector<double>& masses) {
   for (HeldDirection& target : s.boundary.directions) target.torque.setZero();
   if (rod_.active()) rod_.finish(displacement_, segment_, s.boundary);
   if (s.boundary.nodes.empty()) return;
   for (HeldNode& target : s.boundary.nodes) {
     const int i = target.node;
-    const double mass = s.model.masses[i];
+    const double mass = masses[i];
     target.force = corrected_load(i) + 2 * mass / s.h * (get(displacement_, i) / s.h - get(velocity_, i));
     if (!s.statics) target.force -= mass * (target.velocity - get(velocity_, i)) / s.h;
   }
@@ -487,7 +488,7 @@ double CableStepper::store(const Substep& s, CableState& state) const {
   double longest = 1, shortest = 1;  // squares, relative
   for (int i = 0; i < segments_; ++i) {
     const double square = get(segment_, i).squaredNorm();
-    const double relative = square / (s.model.rest_lengths[i] * s.model.rest_lengths[i]);
+    const double relative = square / (state.rest_lengths[i] * state.rest_lengths[i]);
     longest = std::max(longest, relative);
     shortest = std::min(shortest, relative);
     const double length = elastic ? 0.5 * (length_[i] + std::sqrt(square)) : target_length_[i];

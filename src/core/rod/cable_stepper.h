@@ -58,7 +58,7 @@ void bring_to_rest(CableState& state);
 /// s' = l; for an elastic one it is EA ((s + s') / (2 l) - 1) + axial damping. Both conserve momentum and energy exactly.
 class CableStepper {
  public:
-  void resize(const CableModel& model);  ///< does nothing where the number of segments stays
+  void resize(int segments);  ///< does nothing where their number stays
 
   /// If it has not converged, `state` is untouched.
   SubstepResult advance(const Substep& substep, CableState& state);
@@ -66,7 +66,7 @@ class CableStepper {
   // The stages of `advance`, for a solver of several cables at once: begin; evaluate, assemble, factor, solve and correct until
   // that has converged; finish.
   void begin(const Substep& substep, const CableState& state, SubstepResult& result);
-  void evaluate(const Substep& substep);
+  void evaluate(const Substep& substep, const CableState& state);
   void assemble(double part);
   void factor();
   void solve_linear();  ///< for the loads that `evaluate` found
@@ -91,9 +91,9 @@ class CableStepper {
 
   void load(const Substep& substep, const CableState& state);
   void hold(const std::vector<HeldNode>& held);
-  void set_loads(const Substep& substep);
+  void set_loads(const Substep& substep, const CableState& state);
   void set_growth(const Substep& substep);
-  void start_bending(const Substep& substep);
+  void start_bending(const Substep& substep, const CableState& state);
   void add_bending_pulls();
   void predict(double h);
   void set_natural_shape(const Substep& substep, const CableState& state);
@@ -101,13 +101,13 @@ class CableStepper {
   void evaluate_segments(double part, Component component);
   void evaluate_nodes(Component component);
   void evaluate_rigid_lengths();
-  void evaluate_elastic_lengths(const Substep& substep);
-  void react(const Substep& substep);
+  void evaluate_elastic_lengths(const Substep& substep, const std::vector<double>& rest_lengths);
+  void react(const Substep& substep, const std::vector<double>& masses);
   Vector3 corrected_load(int node) const;
   double force_along(int segment) const;
   void move(const Substep& substep);
   bool holders_accelerate(double h, const std::vector<HeldNode>& held) const;
-  void project(const CableModel& model, const std::vector<GrowingSegment>& growing);
+  void project(const Substep& substep, const std::vector<double>& masses);
   double store(const Substep& substep, CableState& state) const;
 
   int segments_ = 0;

@@ -11,13 +11,14 @@ namespace verlet_cable {
 /// across and along the cable (Morison et al. 1950; coefficients per unit of width): 1/2 density coefficient width length |v| v.
 class FluidForces {
  public:
-  void resize(const CableModel& model);
-  /// `damping_time` [s]: displacement over it is velocity; infinite in statics.
-  void start(const FluidDesc& fluid, const GravityDesc& gravity, double damping_time);
+  void resize(int nodes);
+  /// `radius` [m]: of the cable; `damping_time` [s]: displacement over it is velocity; infinite in statics.
+  void start(const FluidDesc& fluid, const GravityDesc& gravity, double radius, double damping_time);
   bool active() const { return active_; }
-  /// Adds the forces [N] to `load`. `middle`: segments [m]; `position`: nodes at the start [m]; `displacement`: of the nodes [m].
-  void add_loads(const CableModel& model, const VectorArray& middle, const VectorArray& position, const VectorArray& displacement,
-                 VectorArray& load);
+  /// Adds the forces [N] to `load`. `rest_lengths`, `middle`: segments [m]; `position`: nodes at the start [m]; `displacement`:
+  /// of the nodes [m].
+  void add_loads(const std::vector<double>& rest_lengths, const VectorArray& middle, const VectorArray& position,
+                 const VectorArray& displacement, VectorArray& load);
   /// Adds to the diagonal what `add_loads` found last.
   void add_stiffness(std::vector<double>& diagonal) const;
   /// The force on a node that `add_loads` found last [N].
@@ -27,6 +28,7 @@ class FluidForces {
   bool active_ = false;
   FluidDesc fluid_;
   GravityDesc gravity_;
+  double radius_ = 0;
   double damping_time_ = 0;
   VectorArray force_;
   std::vector<double> stiffness_;

@@ -14,9 +14,9 @@ namespace {
 /// Relative; more is not left by steps, but by holders that have gone.
 constexpr double tolerated_length_error = 1e-3;
 
-std::vector<Vector3> straight_line(const Vector3& from, const Vector3& direction, const CableModel& model) {
+std::vector<Vector3> straight_line(const Vector3& from, const Vector3& direction, const CableState& state) {
   std::vector<Vector3> nodes;
-  for (const double s : model.arc_length()) nodes.push_back(from + s * direction);
+  for (const double s : state.arc_length()) nodes.push_back(from + s * direction);
   return nodes;
 }
 
@@ -33,37 +33,38 @@ Vector3 moved_apart(const Vector3& from, const Vector3& to, const Vector3& down,
 }
 
 /// Hangs between each two neighbouring holders, straight down from the outer ones; `open`: without folds.
-std::vector<Vector3> hanging(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, bool open) {
-  if (held.empty()) return straight_line(Vector3::Zero(), Vector3::UnitX(), model);
+std::vector<Vector3> hanging(const CableModel& model, const CableState& state, const std::vector<HeldNode>& held,
+                             const Vector3& gravity, bool open) {
+  if (held.empty()) return straight_line(Vector3::Zero(), Vector3::UnitX(), state);
   const bool weightless = gravity.norm() == 0;
   const Vector3 down = weightless ? Vector3(-Vector3::UnitZ()) : Vector3(gravity.normalized());
   const double weight = weightless ? 1 : gravity.norm();
-  std::vector<Vector3> nodes(model.nodes());
+  std::vector<Vector3> nodes(state.nodes());
   nodes[held.front().node] = held.front().position;
-  for (int i = held.front().node; i-- > 0;) nodes[i] = nodes[i + 1] + model.rest_lengths[i] * down;
+  for (int i = held.front().node; i-- > 0;) nodes[i] = nodes[i + 1] + state.rest_lengths[i] * down;
   for (std::size_t k = 0; k + 1 < held.size(); ++k) {
     const int first = held[k].node, last = held[k + 1].node;
-    const std::vector<double> lengths(model.rest_lengths.begin() + first, model.rest_lengths.begin() + last);
+    const std::vector<double> lengths(state.rest_lengths.begin() + first, state.rest_lengths.begin() + last);
     std::vector<double> weights;
-    for (int i = first + 1; i < last; ++i) weights.push_back(weight * model.masses[i]);
+    for (int i = first + 1; i < last; ++i) weights.push_back(weight * state.masses[i]);
     const Vector3 &from = held[k].position, &to = held[k + 1].position;
-    const Vector3 end = open ? moved_apart(from, to, down, model.length(first, last)) : to;
+    const Vector3 end = open ? moved_apart(from, to, down, state.length(first, last)) : to;
     std::vector<Vector3> span = hanging_chain(from, end, lengths, weights, down, model.material.axial_stiffness);
     for (int i = 0; i <= last - first; ++i) span[i] += static_cast<double>(i) / (last - first) * (to - end);
     std::copy(span.begin(), span.end(), nodes.begin() + first);
   }
-  for (int i = held.back().node; i < model.segments(); ++i) nodes[i + 1] = nodes[i] + model.rest_lengths[i] * down;
+  for (int i = held.back().node; i < state.segments(); ++i) nodes[i + 1] = nodes[i] + state.rest_lengths[i] * down;
   return nodes;
 }
 
 /// Value of a polyline's per-point quantity at each node, the nodes spread along its arc length as they are along the cable's.
-std::vector<Vector3> spread(const std::vector<Vector3>& points, const std::vector<Vector3>& values, const CableModel& model) {
+std::vector<Vector3> spread(const std::vector<Vector3>& points, const std::vector<Vector3>& values, const CableState& state) {
   std::vector<double> along{0};
   for (std::size_t i = 1; i < points.size(); ++i) along.push_back(along.back() + (points[i] - points[i - 1]).norm());
   std::vector<Vector3> nodes;
   std::size_t k = 0;
-  for (const double s : model.arc_length()) {
-    const double target = std::min(s / model.length(), 1.0) * along.back();
+  for (const double s : state.arc_length()) {
+    const double target = std::min(s / state.length(), 1.0) * along.back();
     while (k + 2 < along.size() && along[k + 1] < target) ++k;
     const double gap = along[k + 1] - along[k];
     const double fraction = gap > 0 ? std::min((target - along[k]) / gap, 1.0) : 0;
@@ -77,26 +78,26 @@ std::vector<Vector3> spread(const std::vector<Vector3>& points, const std::vecto
 bool set_initial_state(const InitialShapeDesc& initial, bool settles, const CableModel& model, const std::vector<HeldNode>& held,
                        const Vector3& gravity, CableState& state) {
   using Type = InitialShapeDesc::Type;
-  state.velocities.assign(model.nodes(), Vector3::Zero());
-  state.accelerations.assign(model.nodes(), Vector3::Zero());
-  state.tension.assign(model.segments(), 0.0);
-  state.axial_multiplier.assign(model.segments(), 0.0);
+  state.velocities.assign(state.nodes(), Vector3::Zero());
+  state.accelerations.assign(state.nodes(), Vector3::Zero());
+  state.tension.assign(state.segments(), 0.0);
+  state.axial_multiplier.assign(state.segments(), 0.0);
   bool fits = true;
   switch (initial.type) {
     case Type::straight:
-      state.positions = straight_line(initial.from, (initial.to - initial.from).normalized(), model);
+      state.positions = straight_line(initial.from, (initial.to - initial.from).normalized(), state);
       fits = carry_along(model, held, gravity, state);
       break;
     case Type::points:
-      state.positions = spread(initial.points, initial.points, model);
-      if (!initial.velocities.empty()) state.velocities = spread(initial.points, initial.velocities, model);
+      state.positions = spread(initial.points, initial.points, state);
+      if (!initial.velocities.empty()) state.velocities = spread(initial.points, initial.velocities, state);
       fits = carry_along(model, held, gravity, state);
       break;
     case Type::automatic:
     case Type::catenary:
     case Type::settled:
-      state.positions = hanging(model, held, gravity, settles);
-      project_positions(model, held, state.positions);
+      state.positions = hanging(model, state, held, gravity, settles);
+      project_positions(model, held, state);
       break;
   }
   return fits;
@@ -113,11 +114,11 @@ namespace {
 
 bool carry_nodes_along(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {
   if (!held.empty()) {
-    const std::vector<double> arc_length = model.arc_length();
+    const std::vector<double> arc_length = state.arc_length();
     std::vector<Vector3> jumps;
     for (const HeldNode& h : held) jumps.push_back(h.position - state.positions[h.node]);
     std::size_t k = 0;
-    for (int i = 0; i < model.nodes(); ++i) {
+    for (int i = 0; i < state.nodes(); ++i) {
       while (k + 2 < held.size() && held[k + 1].node <= i) ++k;
       const HeldNode& before = held[k];
       if (k + 1 == held.size()) {
@@ -129,10 +130,10 @@ bool carry_nodes_along(const CableModel& model, const std::vector<HeldNode>& hel
       state.positions[i] += jumps[k] + fraction * (jumps[k + 1] - jumps[k]);
     }
   }
-  if (project_positions(model, held, state.positions)) return true;
+  if (project_positions(model, held, state)) return true;
   // KinematicTargets that come close along a straight cable do not tell where its slack goes.
-  state.positions = hanging(model, held, gravity, false);
-  project_positions(model, held, state.positions);
+  state.positions = hanging(model, state, held, gravity, false);
+  project_positions(model, held, state);
   return false;
 }
 
@@ -147,9 +148,9 @@ bool carry_along(const CableModel& model, const std::vector<HeldNode>& held, con
 
 void restore_lengths(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {
   if (model.material.axial_stiffness < infinity) return;
-  const int n = model.segments();
+  const int n = state.segments();
   std::vector<double> lengths(n);
-  reachable_lengths(model, held, lengths);
+  reachable_lengths(model, state, held, lengths);
   bool wrong = false;
   for (int i = 0; i < n; ++i) {
     const double length = (state.positions[i + 1] - state.positions[i]).norm();
@@ -166,7 +167,7 @@ void restore_lengths(const CableModel& model, const std::vector<HeldNode>& held,
   for (int i = anchor; i-- > 0;) state.positions[i] = state.positions[i + 1] - lengths[i] * direction(i);
   carry_nodes_along(model, held, gravity, state);
   carry_frames(before, state);
-  project_velocities(model, held, state.positions, state.velocities);
+  project_velocities(model, held, state);
   std::fill(state.accelerations.begin(), state.accelerations.end(), Vector3::Zero());
 }
 

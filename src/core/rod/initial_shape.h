@@ -7,10 +7,10 @@
 
 namespace verlet_cable {
 
-/// Puts a cable into its initial shape and motion (`desc.initial`), its held nodes where their holders are (`held`, ascending),
-/// its lengths kept if it is inextensible; velocities are those given, not projected. `gravity` [m/s^2] says where cables hang.
-/// False if a shape that was given could not be brought to its lengths there, so that it hangs instead. `settles`: it is to be
-/// settled from there, and hangs without folds.
+/// Puts a cable, whose `state` has its lengths and masses, into its initial shape and motion (`desc.initial`), its held nodes
+/// where their holders are (`held`, ascending), its lengths kept if it is inextensible; velocities are those given, not
+/// projected. `gravity` [m/s^2] says where cables hang. False if a shape that was given could not be brought to its lengths
+/// there, so that it hangs instead. `settles`: it is to be settled from there, and hangs without folds.
 bool set_initial_state(const InitialShapeDesc& initial, bool settles, const CableModel& model, const std::vector<HeldNode>& held,
                        const Vector3& gravity, CableState& state);
 

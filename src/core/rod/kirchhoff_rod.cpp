@@ -32,22 +32,22 @@ double clamp_twist(const CableState& state, const HeldDirection& direction, int 
 }
 
 /// `around` [m]: the cable that the joint stands for.
-JointStiffness joint_stiffness(const CableModel& model, int node, double around, double damping_time) {
-  const double per_length = 1 / model.bending_length(node, around);
+JointStiffness joint_stiffness(const CableModel& model, const CableState& state, int node, double around, double damping_time) {
+  const double per_length = 1 / state.bending_length(node, around);
   JointStiffness stiffness;
   stiffness.twist = model.material.torsional_stiffness * per_length;
   stiffness.bend_y = model.material.bending_stiffness[0] * per_length;
   stiffness.bend_z = model.material.bending_stiffness[1] * per_length;
   stiffness.twist_damping = model.material.torsional_damping / damping_time * per_length;
   stiffness.bend_damping = model.material.bending_damping / damping_time * per_length;
-  stiffness.rest = rest_angles(model, node, around);
+  stiffness.rest = rest_angles(state, node, around);
   return stiffness;
 }
 
 }  // namespace
 
-void KirchhoffRod::resize(const CableModel& model) {
-  segments_ = model.segments();
+void KirchhoffRod::resize(int segments) {
+  segments_ = segments;
   const std::size_t nodes = segments_ + 2;
   for (std::vector<double>* a : {&inertia_, &spin_, &tau_}) a->assign(nodes, 0.0);
   frames_.resize(nodes);
@@ -76,10 +76,10 @@ void KirchhoffRod::start_segments(const CableModel& model, const CableState& sta
   for (int i = 0; i < segments_; ++i) {
     const Vector3& director = state.directors[i];
     set(frames_.start.y, i, director);
-    inertia_[i] = moment * model.rest_lengths[i];
+    inertia_[i] = moment * state.rest_lengths[i];
     if (is_static)
       inertia_[i] = std::max(inertia_[i], 0.5 * h_ * h_ * least_static_resistance * model.material.torsional_stiffness /
-                                              model.rest_lengths[i]);
+                                              state.rest_lengths[i]);
     spin_[i] = is_static ? 0 : state.spin[i];
     tau_[i] = h_ * spin_[i];
   }
@@ -99,7 +99,7 @@ void KirchhoffRod::start_joints(const CableModel& model, const CableState& state
                                 double damping_time) {
   const int n = segments_;
   for (int i = 1; i < n; ++i)
-    joints_.set(i, joint_stiffness(model, i, joint_length(model, i), damping_time), state.joint_twist[i]);
+    joints_.set(i, joint_stiffness(model, state, i, joint_length(state, i), damping_time), state.joint_twist[i]);
   for (const HeldDirection& direction : directions)
     if (direction.node > 0 && direction.node < n) joints_.set(direction.node, {}, 0);
   joints_.start(frames_.start, 0, frames_.start, 1, 1, n);
@@ -126,7 +126,7 @@ void KirchhoffRod::start_clamps(const CableModel& model, const CableState& state
     set(of_clamp.end, joint, end);
     set(of_clamp.middle, joint, start + part_ * (end - start));
     set(of_segment.start, joint, get(frames_.start, segment));
-    clamp_joints_.set(joint, joint_stiffness(model, held.node, 0.5 * model.rest_lengths[segment], damping_time),
+    clamp_joints_.set(joint, joint_stiffness(model, state, held.node, 0.5 * state.rest_lengths[segment], damping_time),
                       clamp_twist(state, held, segments_, after));
   });
   clamp_joints_.start(clamp_before_.start, 0, clamp_after_.start, 0, 0, static_cast<int>(count));
@@ -281,7 +281,7 @@ void KirchhoffRod::set_stiffness(const VectorArray& direction, bool simple) {
 }
 
 RodEnergy rod_energy(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions) {
-  const int n = model.segments();
+  const int n = state.segments();
   RodEnergy sum;
   const auto add = [&](const JointStiffness& stiffness, const JointAngles& angles) {
     const JointEnergy energy = joint_energy(stiffness, angles);
@@ -290,16 +290,16 @@ RodEnergy rod_energy(const CableModel& model, const CableState& state, const std
   };
   for (int i = 1; i < n; ++i) {
     if (std::any_of(directions.begin(), directions.end(), [i](const HeldDirection& d) { return d.node == i; })) continue;
-    add(joint_stiffness(model, i, joint_length(model, i), infinity), joint_angles_at(state, i));
+    add(joint_stiffness(model, state, i, joint_length(state, i), infinity), joint_angles_at(state, i));
   }
   visit_clamp_joints(directions, n, [&](std::size_t target, int segment, bool after) {
     const HeldDirection& held = directions[target];
     const double twist = clamp_twist(state, held, n, after);
     const Eigen::Matrix3d beside = segment_frame(state, segment), clamp = held.end.toRotationMatrix();
-    add(joint_stiffness(model, held.node, 0.5 * model.rest_lengths[segment], infinity),
+    add(joint_stiffness(model, state, held.node, 0.5 * state.rest_lengths[segment], infinity),
         after ? joint_angles(clamp, beside, twist) : joint_angles(beside, clamp, twist));
   });
-  for (int i = 0; i < n; ++i) sum.spin += 0.5 * section_inertia(model.material) * model.rest_lengths[i] * state.spin[i] * state.spin[i];
+  for (int i = 0; i < n; ++i) sum.spin += 0.5 * section_inertia(model.material) * state.rest_lengths[i] * state.spin[i] * state.spin[i];
   return sum;
 }
 

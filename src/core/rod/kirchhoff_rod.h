@@ -19,7 +19,7 @@ namespace verlet_cable {
 ///   N . t = 0,   N = M_after - M_before - J (spin' t' - spin t) / h,   spin' = 2 tau |m|² / h - spin.
 class KirchhoffRod {
  public:
-  void resize(const CableModel& model);
+  void resize(int segments);
   /// `segment` [m]: at the start; `part`: where in the substep forces are taken; `damping_time` [s]: infinite in statics, which
   /// begin without spin.
   void start(const CableModel& model, const CableState& state, const VectorArray& segment, const Boundary& boundary, double h,

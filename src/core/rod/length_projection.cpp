@@ -17,12 +17,12 @@ constexpr double regularisation = 1e-12;    // relative, for spans pulled straig
 /// J M^-1 J^T for the segments' lengths, and its solution for given changes of ½ s².
 class LengthSystem {
  public:
-  LengthSystem(const CableModel& model, const std::vector<HeldNode>& held) : mobility_(model.nodes()) {
-    for (int i = 0; i < model.nodes(); ++i) mobility_[i] = 1 / model.masses[i];
+  LengthSystem(const std::vector<double>& masses, const std::vector<HeldNode>& held) : mobility_(masses.size()) {
+    for (std::size_t i = 0; i < masses.size(); ++i) mobility_[i] = 1 / masses[i];
     for (const HeldNode& h : held) mobility_[h.node] = 0;
-    diagonal_.resize(model.segments());
-    off_.resize(model.segments());
-    impulse_.resize(model.segments());
+    diagonal_.resize(masses.size() - 1);
+    off_.resize(masses.size() - 1);
+    impulse_.resize(masses.size() - 1);
   }
 
   /// Adds M^-1 J^T y to `vectors` for J M^-1 J^T y = changes, J from `positions`.
@@ -53,40 +53,39 @@ class LengthSystem {
 };
 
 /// Spans that their holders pull straight have only one shape.
-void straighten_taut_spans(const CableModel& model, const std::vector<HeldNode>& held, std::vector<Vector3>& positions) {
+void straighten_taut_spans(const std::vector<HeldNode>& held, CableState& state) {
   for (std::size_t k = 0; k + 1 < held.size(); ++k) {
     const int first = held[k].node, last = held[k + 1].node;
     const Vector3 span = held[k + 1].position - held[k].position;
-    const double rest_length = model.length(first, last);
+    const double rest_length = state.length(first, last);
     if (span.norm() < straight * rest_length) continue;
     double along = 0;
     for (int i = first; i + 1 < last; ++i) {
-      along += model.rest_lengths[i];
-      positions[i + 1] = held[k].position + along / rest_length * span;
+      along += state.rest_lengths[i];
+      state.positions[i + 1] = held[k].position + along / rest_length * span;
     }
   }
 }
 
 }  // namespace
 
-bool project_positions(const CableModel& model, const std::vector<HeldNode>& held, std::vector<Vector3>& positions) {
-  for (const HeldNode& h : held) positions[h.node] = h.position;
+bool project_positions(const CableModel& model, const std::vector<HeldNode>& held, CableState& state) {
+  for (const HeldNode& h : held) state.positions[h.node] = h.position;
   if (model.material.axial_stiffness < infinity) return true;
-  straighten_taut_spans(model, held, positions);
-  std::vector<double> lengths(model.segments());
-  reachable_lengths(model, held, lengths);
-  return project_lengths(model, held, lengths, positions);
+  straighten_taut_spans(held, state);
+  std::vector<double> lengths(state.segments());
+  reachable_lengths(model, state, held, lengths);
+  return project_lengths(held, lengths, state);
 }
 
-bool project_lengths(const CableModel& model, const std::vector<HeldNode>& held, const std::vector<double>& lengths,
-                     std::vector<Vector3>& positions) {
-  const int n = model.segments();
+bool project_lengths(const std::vector<HeldNode>& held, const std::vector<double>& lengths, CableState& state) {
+  const int n = state.segments();
   std::vector<double> changes(n);
-  LengthSystem system(model, held);
+  LengthSystem system(state.masses, held);
   // Seen from the cable's first node: far from the origin, rounding of the places outweighs what is left of the lengths.
-  const Vector3 origin = positions.front();
+  const Vector3 origin = state.positions.front();
   std::vector<Vector3> local;
-  for (const Vector3& position : positions) local.push_back(position - origin);
+  for (const Vector3& position : state.positions) local.push_back(position - origin);
   for (int iteration = 0; iteration < maximum_iterations; ++iteration) {
     double error = 0;
     for (int i = 0; i < n; ++i) {
@@ -98,7 +97,7 @@ bool project_lengths(const CableModel& model, const std::vector<HeldNode>& held,
     if (!std::isfinite(error)) return false;
     if (error < length_tolerance) {
       for (int i = 0; i <= n; ++i)
-        if (system.movable_node(i)) positions[i] = origin + local[i];
+        if (system.movable_node(i)) state.positions[i] = origin + local[i];
       return true;
     }
     const std::vector<Vector3> from = local;
@@ -107,14 +106,15 @@ bool project_lengths(const CableModel& model, const std::vector<HeldNode>& held,
   return false;
 }
 
-void project_velocities(const CableModel& model, const std::vector<HeldNode>& held, const std::vector<Vector3>& positions,
-                        std::vector<Vector3>& velocities) {
+void project_velocities(const CableModel& model, const std::vector<HeldNode>& held, CableState& state) {
+  const std::vector<Vector3>& positions = state.positions;
+  std::vector<Vector3>& velocities = state.velocities;
   for (const HeldNode& h : held) velocities[h.node] = h.velocity;
   if (model.material.axial_stiffness < infinity) return;
-  std::vector<double> changes(model.segments());
-  for (int i = 0; i < model.segments(); ++i)
+  std::vector<double> changes(state.segments());
+  for (int i = 0; i < state.segments(); ++i)
     changes[i] = -(positions[i + 1] - positions[i]).dot(velocities[i + 1] - velocities[i]);
-  LengthSystem(model, held).apply(positions, changes, velocities);
+  LengthSystem(state.masses, held).apply(positions, changes, velocities);
 }
 
 }  // namespace verlet_cable

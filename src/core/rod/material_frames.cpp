@@ -4,8 +4,8 @@
 
 namespace verlet_cable {
 
-void carry_directors(const CableModel& model, const CableState& state, const VectorArray& segment, VectorArray& director) {
-  const auto half_turn = [&](int i) { return 0.5 * state.twist[i] * model.rest_lengths[i]; };
+void carry_directors(const CableState& state, const VectorArray& segment, VectorArray& director) {
+  const auto half_turn = [&](int i) { return 0.5 * state.twist[i] * state.rest_lengths[i]; };
   const auto carry = [&](int first, int step, int end) {
     Vector3 direction = state.reference_orientation * Vector3::UnitX();
     Vector3 normal = state.reference_orientation * Vector3::UnitY();
@@ -20,7 +20,7 @@ void carry_directors(const CableModel& model, const CableState& state, const Vec
       set(director, i, normal);
     }
   };
-  carry(state.reference_node, 1, model.segments());
+  carry(state.reference_node, 1, state.segments());
   carry(state.reference_node - 1, -1, -1);
 }
 

@@ -14,6 +14,6 @@ inline Vector3 parallel_transport(const Vector3& normal, const Vector3& from, co
 
 /// The material's y axis on every segment (n), carried along the cable from its reference and turned by its twist. `segment`: n
 /// [m].
-void carry_directors(const CableModel& model, const CableState& state, const VectorArray& segment, VectorArray& director);
+void carry_directors(const CableState& state, const VectorArray& segment, VectorArray& director);
 
 }  // namespace verlet_cable

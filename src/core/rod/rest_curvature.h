@@ -7,11 +7,10 @@
 
 namespace verlet_cable {
 
-/// Sets the model's unloaded curvature and twist. Curvature that is to be taken from the initial shape is there, but no number
-/// yet.
-void set_rest_shape(const CableDesc& desc, CableModel& model);
+/// Sets the unloaded curvature and twist. Curvature that is to be taken from the initial shape is there, but no number yet.
+void set_rest_shape(const CableDesc& desc, const MaterialDesc& material, CableState& state);
 
-/// Sets the model's unloaded curvature to the present one, which frames measure, `clamps` holding the ends.
-void take_rest_curvature(const std::vector<DirectionTarget>& clamps, SimulatedCable& cable);
+/// Sets the unloaded curvature to the present one, which frames measure, `clamps` holding the ends.
+void take_rest_curvature(const std::vector<DirectionTarget>& clamps, CableState& state);
 
 }  // namespace verlet_cable

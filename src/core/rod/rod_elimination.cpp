@@ -7,8 +7,8 @@ namespace verlet_cable {
 
 namespace {
 
-/// A held node inside is so much stiffer than what is beside it.
-constexpr double held_stiffness = 1e9;
+/// Between held nodes that are next to each other, relative to what is beside them, nothing gives way: so much does.
+constexpr double held_compliance = 1e-10;
 /// Where a stretch would meet less resistance than this, relative to what it meets where nothing is added, the matrix is replaced by one
 /// that is as good.
 constexpr double least_resistance = 1e-3;
@@ -108,29 +108,34 @@ void RodElimination::resize(int segments) {
   mobility_.assign(2, 0.0);
   eliminations_.assign(padded_ / 2, Elimination{});
   forward_.assign(padded_ / 2, Forward{});
+  held_inside_.reserve(padded_ / 2);
   displacement_.assign(segments + 2, 0.0);
   force_.assign(segments + 2, 0.0);
   multiplier_.assign(segments + 2, 0.0);
   twist_.assign(segments + 2, 0.0);
 }
 
+namespace {
+
+/// Of a node inside, in a direction in which nothing else gives way [m/N].
+double least_compliance(const KktSystem& system, const RodStiffness& stiffness, const RodJoints& joints, int node) {
+  double beside = system.diagonal[node];
+  for (const int i : {node - 1, node})
+    beside += std::abs(stiffness.force_density[i]) + (get(stiffness.segment, i).trace() + get(joints.stiffness, i).trace()) /
+                                                         get(system.direction, i).squaredNorm();
+  return held_compliance / beside;
+}
+
+}  // namespace
+
 bool RodElimination::factor(const KktSystem& system, const RodStiffness& stiffness, const RodJoints& joints) {
   const int n = segments_;
-  for (int i = 0; i <= n; ++i) {
-    inertia_[i] = system.diagonal[i];
-    if (system.movable[i] != 0 || i == 0 || i == n) continue;
-    double beside = inertia_[i];
-    for (const int k : {i - 1, i}) {
-      const double square = get(system.direction, k).squaredNorm();
-      beside += std::abs(stiffness.force_density[k]) +
-                (get(stiffness.segment, k).trace() + get(joints.stiffness, k).trace() + get(joints.stiffness, k + 1).trace()) / square;
-    }
-    inertia_[i] = held_stiffness * beside;
-  }
+  std::copy_n(system.diagonal.begin(), n + 1, inertia_.begin());
   if (padded_ > n) inertia_[n] = inertia_[n + 1] = 0.5 * inertia_[n];
   mobility_[0] = system.movable[0] != 0 ? 1 / inertia_[0] : 0;
   mobility_[1] = system.movable[n] != 0 ? 1 / inertia_[padded_] : 0;
   stiffened_ = system.stiffened;
+  held_inside_.clear();
   return stiffened_ ? factor_lanes<true>(system, stiffness, joints) : factor_lanes<false>(system, stiffness, joints);
 }
 
@@ -165,7 +170,8 @@ bool RodElimination::factor_lanes(const KktSystem& system, const RodStiffness& s
   const Pair side{1, -1}, turning_part = stiffness.turning_part * side;
   PairSymmetric give = ends<stiffened>(system), resist{};
   PairMatrix turned{};
-  bool positive = true;
+  // Where what is added outweighs the stiffness of a stretch, pivots may be negative though the matrix is not.
+  bool positive = true, judged = true;
   for (int k = 0; k < half; ++k) {
     const int left = k, right = padded_ - 1 - k;  // segments; the nodes after them are left + 1 and right
     const bool last = k + 1 == half;
@@ -191,8 +197,10 @@ bool RodElimination::factor_lanes(const KktSystem& system, const RodStiffness& s
       const PairVector along = e.across * e.direction;
       e.stretch_turn = cross(e.direction, along);
       Pair softened = 1.0 - e.stretch * dot(e.direction, along);
-      for (int lane = 0; lane < 2; ++lane)
+      for (int lane = 0; lane < 2; ++lane) {
+        judged = judged && softened[lane] > 0;
         if (std::abs(softened[lane]) < least_resistance) softened[lane] = least_resistance;
+      }
       e.stretch = e.stretch / softened;
       e.gap_share = e.gap_share / softened;
       const PairMatrix arm = minus_cross(PairMatrix{}, e.direction);
@@ -218,7 +226,22 @@ bool RodElimination::factor_lanes(const KktSystem& system, const RodStiffness& s
       image = inertia * turned;
     }
     e.turned = turned - e.give * image;
+    const PairSymmetric behind = resist;
     resist = minus_product(resist, both(-1) * image, e.turned);
+    const Pair free{left + 1 == segments_ ? 1 : system.movable[left + 1],
+                    last || right == segments_ ? 1 : system.movable[right]};
+    if (free[0] == 0 || free[1] == 0) {
+      // x = 0: the force is what makes it so, -A^-1 (B w + a).
+      Pair floor = both(1);
+      if (free[0] == 0) floor[0] = least_compliance(system, stiffness, joints, left + 1);
+      if (free[1] == 0) floor[1] = least_compliance(system, stiffness, joints, right);
+      HeldInside held{k, free, scaled_inverse(plus_diagonal(give, floor), 1.0 - free), {}, {}};
+      held.turned = held.stiffness * turned;
+      held_inside_.push_back(held);
+      resist = times(free, resist) + times(1.0 - free, minus_product(behind, both(-1) * turned, held.turned));
+      e.give = times(free, e.give);
+      e.turned = free * e.turned;
+    }
     if (last) break;
 
     const PairSymmetric joint = pair(joints.stiffness, left + 1, right);
@@ -248,7 +271,7 @@ bool RodElimination::factor_lanes(const KktSystem& system, const RodStiffness& s
   a.block<3, 3>(3, 6) = turning - joint;
   a.block<3, 3>(6, 3) = -turning - joint;
   middle_.compute(a);
-  return positive && middle_.determinant() > 0;
+  return !judged || (positive && middle_.determinant() > 0);
 }
 
 template <bool stiffened>
@@ -264,6 +287,7 @@ void RodElimination::solve_lanes(const KktSystem& system, const std::vector<doub
   const double part = padded_ > segments_ ? 0.5 : 1;
   const Pair share{1, part}, next_share{segments_ == 1 ? part : 1, part};
   PairVector give = ends<stiffened>(system) * (share * pair(system.load, 0, segments_)), moment{};
+  auto held = held_inside_.begin();
   for (int k = 0; k < half; ++k) {
     const int left = k, right = padded_ - 1 - k;
     const Elimination& e = eliminations_[k];
@@ -275,6 +299,12 @@ void RodElimination::solve_lanes(const KktSystem& system, const std::vector<doub
     if (k == 0) load = next_share * load;
     if (k + 1 == half) load = Pair{1, 0} * load;
     const PairVector rest = load - inertia_times(e, give);
+    if (held != held_inside_.end() && held->step == k) {
+      held->force = held->stiffness * give;
+      moment = moment - transposed_times(held->turned, give);
+      give = held->free * give;
+      ++held;
+    }
     give = give + e.give * rest;
     moment = moment + transposed_times(e.turned, rest);
     forward_[k] = {load, give, moment};
@@ -304,6 +334,10 @@ void RodElimination::solve_lanes(const KktSystem& system, const std::vector<doub
     const PairVector node = e.give * force + e.turned * rotation + f.give;
     put(node, left + 1, right, displacement_);  // in the middle both are one node
     force = force + f.load - inertia_times(e, node);
+    if (held != held_inside_.begin() && (held - 1)->step == k) {
+      --held;
+      force = held->free * force - held->force - held->turned * rotation;
+    }
     put(Pair{1, -1} * force, left, right, force_);
 
     Pair along = dot(e.direction, force);

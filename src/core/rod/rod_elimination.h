@@ -59,6 +59,14 @@ class RodElimination {
   struct Forward {
     PairVector load, give, moment;
   };
+  /// A held node between the ends.
+  struct HeldInside {
+    int step;                 ///< of the elimination
+    Pair free;                ///< 0 where it is the lane's
+    PairSymmetric stiffness;  ///< A^-1
+    PairMatrix turned;        ///< that times B
+    PairVector force;         ///< that times a
+  };
   using Middle = Eigen::Matrix<double, 9, 9>;
   using MiddleVector = Eigen::Matrix<double, 9, 1>;
 
@@ -76,6 +84,7 @@ class RodElimination {
   std::vector<double> mobility_;           ///< of the two ends: left, right; 0 where held [m/N]
   std::vector<Elimination> eliminations_;  ///< padded_ / 2
   std::vector<Forward> forward_;
+  std::vector<HeldInside> held_inside_;
   Eigen::PartialPivLU<Middle> middle_;
   VectorArray displacement_, force_;
   std::vector<double> multiplier_, twist_;

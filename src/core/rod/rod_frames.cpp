@@ -33,8 +33,8 @@ Eigen::Matrix3d carried(const Eigen::Matrix3d& frame, const Vector3& to, double 
 }
 
 /// The length [m] of cable and the twist [rad] that a joint between a clamp and a segment beside it has.
-double half_length(const CableModel& model, int segment) {
-  return 0.5 * model.rest_lengths[segment];
+double half_length(const CableState& state, int segment) {
+  return 0.5 * state.rest_lengths[segment];
 }
 
 std::vector<DirectionTarget>::iterator clamp_at(int node, std::vector<DirectionTarget>& clamps) {
@@ -56,31 +56,29 @@ void hold_roll(const Eigen::Matrix3d& material, DirectionTarget& clamp) {
 }
 
 /// Carries frames along the cable from a node on, `side` 1 towards the end and -1 towards the start.
-void carry_from(int node, int side, Eigen::Matrix3d frame, bool clamped, SimulatedCable& cable,
-                std::vector<DirectionTarget>& clamps) {
-  const CableModel& model = cable.model;
-  CableState& state = cable.state;
+void carry_from(int node, int side, Eigen::Matrix3d frame, bool clamped, std::vector<DirectionTarget>& clamps,
+                CableState& state) {
   const auto go_on = [&](int at, double length, const Vector3& to) {
-    const double twist = rest_angles(model, at, length).twist;
+    const double twist = rest_angles(state, at, length).twist;
     frame = carried(frame, to, side * twist);
     return twist;
   };
-  const int n = model.segments();
+  const int n = state.segments();
   for (int i = node; side > 0 ? i <= n : i >= 0; i += side) {
     const int before = side > 0 ? i - 1 : i, after = side > 0 ? i : i - 1;
     const auto clamp = clamp_at(i, clamps);
     const bool leaves = after >= 0 && after < n;
     if (clamp == clamps.end()) {
       if (!leaves) return;
-      if (i != node) state.joint_twist[i] = go_on(i, joint_length(model, i), direction(state, after));
+      if (i != node) state.joint_twist[i] = go_on(i, joint_length(state, i), direction(state, after));
     } else {
       if (i != node || !clamped) {
-        const double twist = go_on(i, half_length(model, before), clamp->orientation * Vector3::UnitX());
+        const double twist = go_on(i, half_length(state, before), clamp->orientation * Vector3::UnitX());
         (side > 0 ? twist_before(*clamp, state) : twist_after(*clamp, state)) = twist;
         hold_roll(frame, *clamp);
       }
       if (!leaves) return;
-      const double twist = go_on(i, half_length(model, after), direction(state, after));
+      const double twist = go_on(i, half_length(state, after), direction(state, after));
       (side > 0 ? twist_after(*clamp, state) : twist_before(*clamp, state)) = twist;
     }
     state.directors[after] = frame.col(1);
@@ -93,17 +91,17 @@ Eigen::Matrix3d segment_frame(const CableState& state, int segment) {
   return frame_of(direction(state, segment), state.directors[segment]);
 }
 
-double joint_length(const CableModel& model, int node) {
-  return (node > 0 ? half_length(model, node - 1) : 0) + (node < model.segments() ? half_length(model, node) : 0);
+double joint_length(const CableState& state, int node) {
+  return (node > 0 ? half_length(state, node - 1) : 0) + (node < state.segments() ? half_length(state, node) : 0);
 }
 
-JointAngles rest_angles(const CableModel& model, int node, double length) {
+JointAngles rest_angles(const CableState& state, int node, double length) {
   JointAngles angles;
-  const double flexible = model.bending_length(node, length);
-  if (!model.rest_twist.empty()) angles.twist = model.rest_twist[node] * flexible;
-  if (model.rest_curvature.empty()) return angles;
-  angles.y = model.rest_curvature[node][0] * flexible;
-  angles.z = model.rest_curvature[node][1] * flexible;
+  const double flexible = state.bending_length(node, length);
+  if (!state.rest_twist.empty()) angles.twist = state.rest_twist[node] * flexible;
+  if (state.rest_curvature.empty()) return angles;
+  angles.y = state.rest_curvature[node][0] * flexible;
+  angles.z = state.rest_curvature[node][1] * flexible;
   return angles;
 }
 
@@ -115,48 +113,45 @@ Eigen::Matrix3d joint_rotation(const JointAngles& angles) {
   return half * Eigen::AngleAxisd(angle, bend / angle).toRotationMatrix() * half;
 }
 
-Eigen::Matrix3d node_frame(const CableModel& model, const CableState& state, int node) {
-  const int n = model.segments();
+Eigen::Matrix3d node_frame(const CableState& state, int node) {
+  const int n = state.segments();
   if (node > 0 && node < n) {
     const Vector3 sum = direction(state, node - 1) + direction(state, node);
     const Vector3 along = sum.norm() > 0 ? Vector3(sum.normalized()) : direction(state, node);
     return carried(segment_frame(state, node - 1), along, 0.5 * joint_angles_at(state, node).twist);
   }
   const int segment = node == 0 ? 0 : n - 1;
-  const Eigen::Matrix3d to_node = joint_rotation(rest_angles(model, node, half_length(model, segment)));
+  const Eigen::Matrix3d to_node = joint_rotation(rest_angles(state, node, half_length(state, segment)));
   const Eigen::Matrix3d frame = segment_frame(state, segment);
   return node == 0 ? Eigen::Matrix3d(frame * to_node.transpose()) : Eigen::Matrix3d(frame * to_node);
 }
 
-void start_frames(SimulatedCable& cable, std::vector<DirectionTarget>& clamps) {
-  CableState& state = cable.state;
-  const int n = cable.model.segments();
-  if (!cable.model.is_whole_rod()) return;
+void start_frames(std::vector<DirectionTarget>& clamps, CableState& state) {
+  const int n = state.segments();
   state.directors.assign(n, Vector3::Zero());
   state.spin.assign(n, 0.0);
   state.joint_twist.assign(n + 1, 0.0);
   if (clamps.empty()) {
     const Vector3 along = direction(state, 0);
     const Eigen::Matrix3d frame = smallest_rotation(Vector3::UnitX(), along).toRotationMatrix();
-    carry_from(0, 1, frame_of(along, frame.col(1)), false, cable, clamps);
+    carry_from(0, 1, frame_of(along, frame.col(1)), false, clamps, state);
     return;
   }
   const int first = clamps.front().node;
   const Eigen::Matrix3d frame = clamps.front().orientation.toRotationMatrix();
-  carry_from(first, 1, frame, true, cable, clamps);
-  carry_from(first, -1, frame, true, cable, clamps);
+  carry_from(first, 1, frame, true, clamps, state);
+  carry_from(first, -1, frame, true, clamps, state);
 }
 
-void give_frames(SimulatedCable& cable, std::vector<DirectionTarget>& clamps) {
-  CableState& state = cable.state;
+void give_frames(CableState& state, std::vector<DirectionTarget>& clamps) {
   if (!state.directors.empty()) return;
-  const int n = cable.model.segments();
+  const int n = state.segments();
   std::vector<Vector3> directors;
-  for (const Quaternion& orientation : segment_orientations(cable)) directors.push_back(orientation * Vector3::UnitY());
+  for (const Quaternion& orientation : segment_orientations(state)) directors.push_back(orientation * Vector3::UnitY());
   state.directors = std::move(directors);
   state.spin.assign(n, 0.0);
   state.joint_twist.assign(n + 1, 0.0);
-  const auto half_twist = [&](int segment) { return half_length(cable.model, segment) * state.twist[segment]; };
+  const auto half_twist = [&](int segment) { return half_length(state, segment) * state.twist[segment]; };
   for (int i = 1; i < n; ++i) state.joint_twist[i] = half_twist(i - 1) + half_twist(i);
   for (DirectionTarget& clamp : clamps) {
     const int i = clamp.node;
@@ -170,15 +165,13 @@ void give_frames(SimulatedCable& cable, std::vector<DirectionTarget>& clamps) {
   std::fill(state.twist.begin(), state.twist.end(), 0.0);
 }
 
-void drop_frames(SimulatedCable& cable, std::vector<DirectionTarget>& clamps) {
-  CableState& state = cable.state;
-  const CableModel& model = cable.model;
+void drop_frames(CableState& state, std::vector<DirectionTarget>& clamps) {
   if (state.directors.empty()) return;
   for (std::size_t k = 0; k + 1 < clamps.size(); ++k) {
     const int first = clamps[k].node, last = clamps[k + 1].node;
     double twist = twist_after(clamps[k], state) + twist_before(clamps[k + 1], state);
     for (int i = first + 1; i < last; ++i) twist += state.joint_twist[i];
-    std::fill(state.twist.begin() + first, state.twist.begin() + last, twist / model.length(first, last));
+    std::fill(state.twist.begin() + first, state.twist.begin() + last, twist / state.length(first, last));
   }
   state.reference_node = clamps.empty() ? 0 : clamps.front().node;
   state.reference_orientation = clamps.empty() ? Quaternion(segment_frame(state, 0)) : clamps.front().orientation;
@@ -188,8 +181,7 @@ void drop_frames(SimulatedCable& cable, std::vector<DirectionTarget>& clamps) {
   state.joint_twist.clear();
 }
 
-void weld_frames(int segment, SimulatedCable& cable) {
-  CableState& state = cable.state;
+void weld_frames(int segment, CableState& state) {
   if (state.directors.empty()) return;
   const int after = segment + 1;
   const Vector3 way = direction(state, segment);
@@ -198,9 +190,9 @@ void weld_frames(int segment, SimulatedCable& cable) {
   state.directors[segment] = between.col(1);
   state.joint_twist[segment] = 0;
   state.joint_twist[after] = joint_angles(between, segment_frame(state, after), 0).twist;
-  cable.model.rest_twist.resize(cable.model.nodes(), 0.0);
-  const double flexible = cable.model.bending_length(after, joint_length(cable.model, after));
-  cable.model.rest_twist[after] += state.joint_twist[after] / flexible;
+  state.rest_twist.resize(state.nodes(), 0.0);
+  const double flexible = state.bending_length(after, joint_length(state, after));
+  state.rest_twist[after] += state.joint_twist[after] / flexible;
 }
 
 Vector3 carried_director(const CableState& state, int segment, const Vector3& along, double angle) {
@@ -229,10 +221,9 @@ JointAngles joint_angles_at(const CableState& state, int node) {
   return joint_angles(segment_frame(state, node - 1), segment_frame(state, node), state.joint_twist[node]);
 }
 
-void measure_joint_twists(SimulatedCable& cable, std::vector<DirectionTarget>& clamps) {
-  CableState& state = cable.state;
+void measure_joint_twists(std::vector<DirectionTarget>& clamps, CableState& state) {
   if (state.directors.empty()) return;
-  const int n = cable.model.segments();
+  const int n = state.segments();
   for (const int end : {0, n})
     if (clamp_at(end, clamps) == clamps.end()) state.joint_twist[end] = 0;
   for (int i = 1; i < n; ++i)
@@ -258,12 +249,11 @@ void measure_joint_twists(SimulatedCable& cable, std::vector<DirectionTarget>& c
   }
 }
 
-void roll_clamps_to_twist(SimulatedCable& cable, std::vector<DirectionTarget>& clamps) {
-  CableState& state = cable.state;
+void roll_clamps_to_twist(std::vector<DirectionTarget>& clamps, CableState& state) {
   if (state.directors.empty()) return;
   for (DirectionTarget& clamp : clamps) {
     const Eigen::Matrix3d held = clamp.orientation.toRotationMatrix();
-    const bool has_before = clamp.node > 0, has_after = clamp.node < cable.model.segments();
+    const bool has_before = clamp.node > 0, has_after = clamp.node < state.segments();
     double roll = 0;
     if (has_after) {
       double& twist = twist_after(clamp, state);
@@ -281,20 +271,18 @@ void roll_clamps_to_twist(SimulatedCable& cable, std::vector<DirectionTarget>& c
   }
 }
 
-double take_excess_twist(SimulatedCable& cable, std::vector<DirectionTarget>& clamps) {
-  const CableModel& model = cable.model;
-  CableState& state = cable.state;
+double take_excess_twist(std::vector<DirectionTarget>& clamps, CableState& state) {
   double largest = 0;
   for (std::size_t k = 0; k + 1 < clamps.size() && !state.directors.empty(); ++k) {
     DirectionTarget &first = clamps[k], &last = clamps[k + 1];
-    double excess = twist_after(first, state) - rest_angles(model, first.node, half_length(model, first.node)).twist +
-                    twist_before(last, state) - rest_angles(model, last.node, half_length(model, last.node - 1)).twist;
+    double excess = twist_after(first, state) - rest_angles(state, first.node, half_length(state, first.node)).twist +
+                    twist_before(last, state) - rest_angles(state, last.node, half_length(state, last.node - 1)).twist;
     for (int i = first.node + 1; i < last.node; ++i)
-      excess += state.joint_twist[i] - rest_angles(model, i, joint_length(model, i)).twist;
+      excess += state.joint_twist[i] - rest_angles(state, i, joint_length(state, i)).twist;
     largest = std::max(largest, std::abs(excess));
     turn_in_clamp(-excess, last);
     twist_before(last, state) -= excess;
-    if (last.node < model.segments()) twist_after(last, state) += excess;
+    if (last.node < state.segments()) twist_after(last, state) += excess;
   }
   return largest;
 }

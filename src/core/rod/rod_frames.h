@@ -15,32 +15,32 @@ namespace verlet_cable {
 Eigen::Matrix3d segment_frame(const CableState& state, int segment);
 
 /// [m] of cable around a node, halfway to its neighbours.
-double joint_length(const CableModel& model, int node);
+double joint_length(const CableState& state, int node);
 
 /// The angles that `length` [m] of cable at a node has unloaded.
-JointAngles rest_angles(const CableModel& model, int node, double length);
+JointAngles rest_angles(const CableState& state, int node, double length);
 
 /// The rotation from the one frame of a joint to the other, seen from the one.
 Eigen::Matrix3d joint_rotation(const JointAngles& angles);
 
 /// Axes of the material at a node where nothing but the cable's own stiffness acts: halfway between its segments; at an end as the
 /// unloaded shape goes on from the segment.
-Eigen::Matrix3d node_frame(const CableModel& model, const CableState& state, int node);
+Eigen::Matrix3d node_frame(const CableState& state, int node);
 
 /// Gives a cable that needs them frames, in its rest twist: carried from the first clamp along it; without a clamp from the
 /// smallest rotation that takes the fixed frame's x to the first segment. The other clamps hold the material as it comes to them,
 /// whatever their frames' roll.
-void start_frames(SimulatedCable& cable, std::vector<DirectionTarget>& clamps);
+void start_frames(std::vector<DirectionTarget>& clamps, CableState& state);
 
 /// Gives frames to a cable that has none yet and is to be a whole rod, twisted as it is; its clamps hold the material as it is.
-void give_frames(SimulatedCable& cable, std::vector<DirectionTarget>& clamps);
+void give_frames(CableState& state, std::vector<DirectionTarget>& clamps);
 
 /// Takes them away from one that no longer needs them, its twist evenly spread between clamps.
-void drop_frames(SimulatedCable& cable, std::vector<DirectionTarget>& clamps);
+void drop_frames(CableState& state, std::vector<DirectionTarget>& clamps);
 
 /// Gives the segment between two cables that are being joined a frame, and the joint after it the twist that the two have against
 /// each other, unloaded: they are welded as they come.
-void weld_frames(int segment, SimulatedCable& cable);
+void weld_frames(int segment, CableState& state);
 
 /// The director of a segment if it had the direction of `along` [m], and was turned about that by an angle [rad].
 Vector3 carried_director(const CableState& state, int segment, const Vector3& along, double angle);
@@ -57,14 +57,14 @@ void carry_frames(const std::vector<Vector3>& before, CableState& state);
 /// Brings the twists of joints and clamps in line with frames and clamps that an edit has changed, each the nearest to what it
 /// was: a clamp that has come between two segments shares the twist that they had, one that has become an end's has it in the
 /// cable's state.
-void measure_joint_twists(SimulatedCable& cable, std::vector<DirectionTarget>& clamps);
+void measure_joint_twists(std::vector<DirectionTarget>& clamps, CableState& state);
 
 /// After clamps were turned: the first one twists the cable by that, the others are rolled so that they do not.
-void roll_clamps_to_twist(SimulatedCable& cable, std::vector<DirectionTarget>& clamps);
+void roll_clamps_to_twist(std::vector<DirectionTarget>& clamps, CableState& state);
 
 /// Turns the clamps after the first so that the cable has its rest twist, altogether, between each two of them. Returns the
 /// largest twist that was taken away [rad].
-double take_excess_twist(SimulatedCable& cable, std::vector<DirectionTarget>& clamps);
+double take_excess_twist(std::vector<DirectionTarget>& clamps, CableState& state);
 
 /// Leaves the twist of a clamp that lets go to its joint; an end that is free has none.
 void release_joint_twist(const DirectionTarget& clamp, CableState& state);

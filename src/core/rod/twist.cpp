@@ -42,8 +42,8 @@ double relative_roll(const Quaternion& first, const Quaternion& last, const Vect
   return std::atan2(normal.cross(held).dot(axis), normal.dot(held));
 }
 
-void Twist::resize(const CableModel& model) {
-  const std::size_t nodes = model.nodes();
+void Twist::resize(int segments) {
+  const std::size_t nodes = segments + 1;
   tangent_.assign(nodes, 0.0);
   binormal_.assign(nodes, 0.0);
   slope_.assign(nodes, 0.0);
@@ -53,7 +53,7 @@ void Twist::resize(const CableModel& model) {
   damping_.reserve(nodes);
 }
 
-void Twist::start(const CableModel& model, const std::vector<TwistSpan>& spans, double h, double part) {
+void Twist::start(const CableModel& model, const CableState& state, const std::vector<TwistSpan>& spans, double h, double part) {
   spans_ = nullptr;
   if (spans.empty() || (model.material.torsional_stiffness == 0 && model.material.torsional_damping == 0)) return;
   spans_ = &spans;
@@ -62,7 +62,7 @@ void Twist::start(const CableModel& model, const std::vector<TwistSpan>& spans, 
   stiffness_.resize(spans.size());
   damping_.resize(spans.size());
   for (std::size_t k = 0; k < spans.size(); ++k) {
-    const double length = model.length(spans[k].first_node, spans[k].last_node);
+    const double length = state.length(spans[k].first_node, spans[k].last_node);
     stiffness_[k] = model.material.torsional_stiffness / length;
     damping_[k] = model.material.torsional_damping / (length * h);
   }
@@ -169,17 +169,16 @@ void Twist::follow(const std::vector<HeldDirection>& directions, const std::vect
   if (++spans.front().age >= measuring_interval) measure_twist(directions, positions, spans);
 }
 
-std::vector<TwistSpan> find_spans(const CableModel& model, const CableState& state,
-                                  const std::vector<HeldDirection>& directions) {
+std::vector<TwistSpan> find_spans(const CableState& state, const std::vector<HeldDirection>& directions) {
   std::vector<TwistSpan> spans;
-  if (model.is_whole_rod()) return spans;
+  if (!state.directors.empty()) return spans;
   for (std::size_t k = 0; k + 1 < directions.size(); ++k) {
     TwistSpan span;
     span.first_holder = static_cast<int>(k);
     span.last_holder = span.first_holder + 1;
     span.first_node = directions[k].node;
     span.last_node = directions[k + 1].node;
-    for (int i = span.first_node; i < span.last_node; ++i) span.angle += state.twist[i] * model.rest_lengths[i];
+    for (int i = span.first_node; i < span.last_node; ++i) span.angle += state.twist[i] * state.rest_lengths[i];
     spans.push_back(span);
   }
   for (TwistSpan& span : spans) span.origin = measured_roll(span, directions, state.positions) - span.angle;

@@ -26,14 +26,14 @@ void measure_twist(const std::vector<HeldDirection>& directions, const std::vect
                    std::vector<TwistSpan>& spans);
 
 /// The spans between neighbouring held directions, as twisted as the cable is there now; none of a whole rod.
-std::vector<TwistSpan> find_spans(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions);
+std::vector<TwistSpan> find_spans(const CableState& state, const std::vector<HeldDirection>& directions);
 
 /// Twist and its forces on the centre line over a substep. Energy GJ angle² / (2 length); the angle depends on the centre line
 /// through the holonomy of its directions (Bergou et al., Discrete Elastic Rods, 2008, eq. 9: curvature binormals).
 class Twist {
  public:
-  void resize(const CableModel& model);
-  void start(const CableModel& model, const std::vector<TwistSpan>& spans, double h, double part);
+  void resize(int segments);
+  void start(const CableModel& model, const CableState& state, const std::vector<TwistSpan>& spans, double h, double part);
   bool active() const { return spans_ != nullptr; }
   /// Adds the forces of the segments on their first nodes [N]. `middle`: the segments where forces are taken, `displacement` of
   /// nodes [m].

@@ -81,4 +81,11 @@ void check_torsional_stiffness(const std::string& key, const CableDesc& cable, c
     require_torsional_stiffness(cable.material, material, "as " + key + " has rest_twist", errors);
 }
 
+void check_torsional_stiffness(const SimulatedCable& cable, const MaterialDesc& material, Errors& errors) {
+  const bool is_curved = !cable.state.rest_curvature.empty() && material.bending_stiffness.largest() > 0;
+  if (is_curved || !cable.state.rest_twist.empty())
+    require_torsional_stiffness(cable.model->material_name, material,
+                                "as cable " + cable.model->name + " has " + (is_curved ? "rest_curvature" : "rest_twist"), errors);
+}
+
 }  // namespace verlet_cable

@@ -13,13 +13,14 @@ constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
-int reachable_lengths(const CableModel& model, const std::vector<HeldNode>& held, std::vector<double>& lengths) {
-  for (int i = 0; i < model.segments(); ++i) lengths[i] = model.rest_lengths[i];
+int reachable_lengths(const CableModel& model, const CableState& state, const std::vector<HeldNode>& held,
+                      std::vector<double>& lengths) {
+  for (int i = 0; i < state.segments(); ++i) lengths[i] = state.rest_lengths[i];
   if (model.material.axial_stiffness < infinity) return -1;
   int overstretched = -1;
   for (std::size_t k = 0; k + 1 < held.size(); ++k) {
     const int first = held[k].node, last = held[k + 1].node;
-    const double rest_length = model.length(first, last);
+    const double rest_length = state.length(first, last);
     const double distance = (held[k + 1].position - held[k].position).norm();
     const double rounded = rounding * held[k].position.cwiseAbs().maxCoeff();
     if (distance > rest_length * (1 + reported_stretch) + rounded && overstretched < 0) overstretched = first;

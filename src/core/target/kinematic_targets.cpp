@@ -30,10 +30,10 @@ bool holds_direction(const CableModel& model, const Attachment& attachment) {
 }
 
 /// Where an attachment at `pose` wants its own node or one next to it.
-Vector3 target_position(const CableModel& model, const Attachment& attachment, const Pose& pose, int node) {
+Vector3 target_position(const CableState& state, const Attachment& attachment, const Pose& pose, int node) {
   if (node == attachment.node) return pose.position;
   const double side = node < attachment.node ? -1 : 1;
-  return pose.position + side * model.rest_lengths[std::min(node, attachment.node)] * (pose.orientation * Vector3::UnitX());
+  return pose.position + side * state.rest_lengths[std::min(node, attachment.node)] * (pose.orientation * Vector3::UnitX());
 }
 
 /// The cable's direction at a node.
@@ -84,13 +84,14 @@ void add_target(int attachment, const WantedNode& wanted, const std::vector<Vect
 
 }  // namespace
 
-std::vector<WantedNode> wanted_nodes(const CableModel& model, const Attachment& attachment, const Pose& frame) {
+std::vector<WantedNode> wanted_nodes(const CableModel& model, const CableState& state, const Attachment& attachment,
+                                     const Pose& frame) {
   const Pose pose = frame * attachment.pose;
   const int node = attachment.node;
   std::vector<WantedNode> wanted{{node, pose.position}};
   if (attachment.type == AttachmentType::hinge || model.material.bending_stiffness.largest() > 0) return wanted;
-  if (node > 0) wanted.push_back({node - 1, target_position(model, attachment, pose, node - 1)});
-  if (node < model.segments()) wanted.push_back({node + 1, target_position(model, attachment, pose, node + 1)});
+  if (node > 0) wanted.push_back({node - 1, target_position(state, attachment, pose, node - 1)});
+  if (node < state.segments()) wanted.push_back({node + 1, target_position(state, attachment, pose, node + 1)});
   return wanted;
 }
 
@@ -124,7 +125,7 @@ KinematicTargets find_targets(const CableModel& model, const CableState& state, 
       target.gap = smallest_rotation(wanted * Vector3::UnitX(), tangent(state, target.node));
       target.orientation = target.gap * wanted;
     } else {
-      catch_material(node_frame(model, state, target.node), wanted, target);
+      catch_material(node_frame(state, target.node), wanted, target);
     }
     target.caught = time;
     targets.directions.push_back(target);
@@ -132,7 +133,7 @@ KinematicTargets find_targets(const CableModel& model, const CableState& state, 
   // The attachments' own nodes first, then the neighbours that clamps want.
   for (const bool own : {true, false}) {
     for (const int a : attached) {
-      const std::vector<WantedNode> wanted = wanted_nodes(model, attachments[a], frames[attachments[a].frame]);
+      const std::vector<WantedNode> wanted = wanted_nodes(model, state, attachments[a], frames[attachments[a].frame]);
       for (const WantedNode& wanted : wanted)
         if ((wanted.node == attachments[a].node) == own) add_node(a, wanted);
       if (own && holds_direction(model, attachments[a])) add_direction(a);
@@ -161,12 +162,12 @@ void start_targets(const std::vector<Attachment>& attachments, const std::vector
   }
 }
 
-void aim_targets(const CableModel& model, const std::vector<Attachment>& attachments, const std::vector<Pose>& frames,
+void aim_targets(const CableState& state, const std::vector<Attachment>& attachments, const std::vector<Pose>& frames,
                  double time, KinematicTargets& targets) {
   for (KinematicTarget& target : targets.nodes) {
     const Attachment& attachment = attachments[target.attachment];
     const Pose pose = frames[attachment.frame] * attachment.pose;
-    aim(target_position(model, attachment, pose, target.node), time, target);
+    aim(target_position(state, attachment, pose, target.node), time, target);
   }
   for (DirectionTarget& target : targets.directions) {
     const Attachment& attachment = attachments[target.attachment];

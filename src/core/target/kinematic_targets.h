@@ -62,7 +62,8 @@ struct WantedNode {
   int node = 0;
   Vector3 position = Vector3::Zero();
 };
-std::vector<WantedNode> wanted_nodes(const CableModel& model, const Attachment& attachment, const Pose& frame);
+std::vector<WantedNode> wanted_nodes(const CableModel& model, const CableState& state, const Attachment& attachment,
+                                     const Pose& frame);
 
 /// Indices of the attachments of a body, ascending.
 std::vector<int> attachments_of(const BodyId& body, const std::vector<Attachment>& attachments);
@@ -84,7 +85,7 @@ void start_targets(const std::vector<Attachment>& attachments, const std::vector
                    KinematicTargets& targets);
 
 /// Sets where the holders will be at the end of a step that ends at `time`, `frames` being the poses then.
-void aim_targets(const CableModel& model, const std::vector<Attachment>& attachments, const std::vector<Pose>& frames,
+void aim_targets(const CableState& state, const std::vector<Attachment>& attachments, const std::vector<Pose>& frames,
                  double time, KinematicTargets& targets);
 
 /// The same for hinges.

@@ -41,22 +41,22 @@ void plan_drive(double available, double time_step, LengthDrive& drive) {
   drive.change = drive.wound + drive.debt - drive.next_debt;
 }
 
-void wind(const LengthDrive& drive, double part, double time_step, CableModel& model) {
+void wind(const LengthDrive& drive, double part, double time_step, const CableModel& model, CableState& state) {
   const double uniform = drive.change - 0.5 * time_step * (drive.growth() + drive.next_growth());
   const double accelerated = time_step * (drive.growth() + 0.5 * part * (drive.next_growth() - drive.growth()));
   const double change = part == 1 ? drive.change : part * (uniform + accelerated);
-  const auto lengths = [&] { return std::array{joint_length(model, drive.segment), joint_length(model, drive.segment + 1)}; };
+  const auto lengths = [&] { return std::array{joint_length(state, drive.segment), joint_length(state, drive.segment + 1)}; };
   const std::array<double, 2> before = lengths();
-  model.rest_lengths[drive.segment] = drive.start_length + change;
+  state.rest_lengths[drive.segment] = drive.start_length + change;
   if (!drive.is_winch()) {
     // The two that are welded stay turned against each other as they are.
-    if (model.rest_twist.empty()) return;
+    if (state.rest_twist.empty()) return;
     const std::array<double, 2> after = lengths();
-    for (const int side : {0, 1}) model.rest_twist[drive.segment + side] *= before[side] / after[side];
+    for (const int side : {0, 1}) state.rest_twist[drive.segment + side] *= before[side] / after[side];
     return;
   }
   for (const int side : {0, 1})
-    model.masses[drive.segment + side] = drive.start_masses[side] + 0.5 * model.material.linear_density * part * drive.wound;
+    state.masses[drive.segment + side] = drive.start_masses[side] + 0.5 * model.material.linear_density * part * drive.wound;
 }
 
 double growth_at(const LengthDrive& drive, double part) {
@@ -71,54 +71,51 @@ bool complete_drive(LengthDrive& drive) {
   return !drive.arrives || drive.debt != 0;
 }
 
-void insert_node(int segment, double first, SimulatedCable& cable) {
-  CableModel& model = cable.model;
-  const double whole = model.rest_lengths[segment], second = whole - first, part = first / whole;
+void insert_node(int segment, double first, const CableModel& model, CableState& state) {
+  const double whole = state.rest_lengths[segment], second = whole - first, part = first / whole;
   const int node = segment + 1, neighbour = segment == 0 ? node : segment;
   std::array<double, 2> turns{0, 0};  // [rad] from the segment's middle to those of its parts
-  if (!cable.state.joint_twist.empty()) {
+  if (!state.joint_twist.empty()) {
     // Twist goes on evenly.
-    const auto twist_rate = [&](int at) { return cable.state.joint_twist[at] / joint_length(model, at); };
+    const auto twist_rate = [&](int at) { return state.joint_twist[at] / joint_length(state, at); };
     turns = {0.5 * second * twist_rate(segment), 0.5 * first * twist_rate(node)};
   }
-  duplicate_node(node, cable);
-  for (auto* values : {&cable.state.positions, &cable.state.velocities, &cable.state.accelerations})
+  duplicate_node(node, state);
+  for (auto* values : {&state.positions, &state.velocities, &state.accelerations})
     (*values)[node] = (*values)[segment] + part * ((*values)[node + 1] - (*values)[segment]);
-  if (!model.rest_curvature.empty()) model.rest_curvature[node] = model.rest_curvature[neighbour];
-  if (!model.rest_twist.empty()) model.rest_twist[node] = model.rest_twist[neighbour];
+  if (!state.rest_curvature.empty()) state.rest_curvature[node] = state.rest_curvature[neighbour];
+  if (!state.rest_twist.empty()) state.rest_twist[node] = state.rest_twist[neighbour];
   // What a winch pays out bends.
-  if (!model.flexible_fraction.empty()) model.flexible_fraction[node] = 1;
+  if (!state.flexible_fraction.empty()) state.flexible_fraction[node] = 1;
   const double half_density = 0.5 * model.material.linear_density;
-  model.masses[segment] -= half_density * second;
-  model.masses[node + 1] -= half_density * first;
-  model.masses[node] = half_density * whole;
-  duplicate_segment(segment, cable);
-  model.rest_lengths[segment] = first;
-  model.rest_lengths[node] = second;
-  if (!cable.state.joint_twist.empty()) {
-    cable.state.joint_twist[segment] -= turns[0];
-    cable.state.joint_twist[node] = turns[0] + turns[1];
-    cable.state.joint_twist[node + 1] -= turns[1];
-    turn_segment(segment, -turns[0], cable.state);
-    turn_segment(node, turns[1], cable.state);
+  state.masses[segment] -= half_density * second;
+  state.masses[node + 1] -= half_density * first;
+  state.masses[node] = half_density * whole;
+  duplicate_segment(segment, state);
+  state.rest_lengths[segment] = first;
+  state.rest_lengths[node] = second;
+  if (!state.joint_twist.empty()) {
+    state.joint_twist[segment] -= turns[0];
+    state.joint_twist[node] = turns[0] + turns[1];
+    state.joint_twist[node + 1] -= turns[1];
+    turn_segment(segment, -turns[0], state);
+    turn_segment(node, turns[1], state);
   }
-  if (cable.state.reference_node >= node) ++cable.state.reference_node;
+  if (state.reference_node >= node) ++state.reference_node;
 }
 
-double remove_node(int node, SimulatedCable& cable) {
-  CableModel& model = cable.model;
-  CableState& state = cable.state;
+double remove_node(int node, CableState& state) {
   const int before = node - 1, after = node + 1;
-  const double first = model.rest_lengths[before], second = model.rest_lengths[node], whole = first + second;
+  const double first = state.rest_lengths[before], second = state.rest_lengths[node], whole = first + second;
   const double stretch =
       ((state.positions[node] - state.positions[before]).norm() + (state.positions[after] - state.positions[node]).norm()) /
       whole;
   const double length = (state.positions[after] - state.positions[before]).norm() / stretch;
-  const double mass = model.masses[node];
+  const double mass = state.masses[node];
   const auto give = [&](int neighbour, double share) {
-    const double moved = share * mass, sum = model.masses[neighbour] + moved;
-    state.velocities[neighbour] = (model.masses[neighbour] * state.velocities[neighbour] + moved * state.velocities[node]) / sum;
-    model.masses[neighbour] = sum;
+    const double moved = share * mass, sum = state.masses[neighbour] + moved;
+    state.velocities[neighbour] = (state.masses[neighbour] * state.velocities[neighbour] + moved * state.velocities[node]) / sum;
+    state.masses[neighbour] = sum;
   };
   Vector3 director = Vector3::Zero();
   if (!state.directors.empty()) {
@@ -131,11 +128,11 @@ double remove_node(int node, SimulatedCable& cable) {
   }
   give(before, second / whole);
   give(after, first / whole);
-  visit_segment_arrays(cable, [&](auto& values) { values[before] = (first * values[before] + second * values[node]) / whole; });
+  visit_segment_arrays(state, [&](auto& values) { values[before] = (first * values[before] + second * values[node]) / whole; });
   if (!state.directors.empty()) state.directors[before] = director;
-  model.rest_lengths[before] = length;
-  erase_segment(node, cable);
-  erase_node(node, cable);
+  state.rest_lengths[before] = length;
+  erase_segment(node, state);
+  erase_node(node, state);
   if (state.reference_node >= node) --state.reference_node;
   return whole - length;
 }

@@ -37,7 +37,7 @@ struct LengthDrive {
 void plan_drive(double available, double time_step, LengthDrive& drive);
 
 /// Gives the segment the rest length, and its nodes the masses, that it has at a part of the step, 0 to 1.
-void wind(const LengthDrive& drive, double part, double time_step, CableModel& model);
+void wind(const LengthDrive& drive, double part, double time_step, const CableModel& model, CableState& state);
 /// [m/s] growth of the rest length at a part of the step.
 double growth_at(const LengthDrive& drive, double part);
 
@@ -46,10 +46,10 @@ bool complete_drive(LengthDrive& drive);
 
 /// Splits a segment in two of the rest lengths `first` [m] and what is left, on a straight line; velocities change linearly along
 /// it. Mass and momentum stay as they are.
-void insert_node(int segment, double first, SimulatedCable& cable);
+void insert_node(int segment, double first, const CableModel& model, CableState& state);
 
 /// Makes one segment of the two at an inner node, with the strain that they had. Its mass and momentum go to its neighbours.
 /// Returns by how much the rest length is shorter than that of the two [m]: a bent place has no straight segment of its length.
-double remove_node(int node, SimulatedCable& cable);
+double remove_node(int node, CableState& state);
 
 }  // namespace verlet_cable

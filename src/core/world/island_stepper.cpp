@@ -27,12 +27,12 @@ bool finite(const std::vector<Vector3>& vectors) {
 /// The segment of a cable that breaks now, -1 if it holds. A piece keeps at least one segment, so that the outermost ones do not
 /// break.
 int find_breaking_segment(const SimulatedCable& cable, const StepResult& result) {
-  const double limit = cable.model.material.breaking_tension;
+  const double limit = cable.model->material.breaking_tension;
   const std::vector<double>& tension = cable.state.tension;
   if (!(limit < infinity) || tension.size() < 3) return -1;
   const auto tightest = std::max_element(tension.begin() + 1, tension.end() - 1);
   // What cannot stretch and is pulled beyond its length findings.breaks at any strength.
-  const bool torn = result.status == StepResult::Status::overstretched && cable.model.material.axial_stiffness == infinity;
+  const bool torn = result.status == StepResult::Status::overstretched && cable.model->material.axial_stiffness == infinity;
   const bool exceeded = *std::max_element(tension.begin(), tension.end()) > limit;
   return torn || exceeded ? static_cast<int>(tightest - tension.begin()) : -1;
 }
@@ -78,9 +78,8 @@ void add_forces(const Boundary& boundary, const KinematicTargets& targets, const
     attachments[targets.directions[k].attachment].torque += weight * boundary.directions[k].torque;
 }
 
-void follow_material(const std::vector<HeldDirection>& directions, const std::vector<TwistSpan>& spans, SimulatedCable& cable) {
-  CableState& state = cable.state;
-  if (cable.model.is_whole_rod()) return;  // its segments know
+void follow_material(const std::vector<HeldDirection>& directions, const std::vector<TwistSpan>& spans, CableState& state) {
+  if (!state.directors.empty()) return;  // its segments know
   if (directions.empty()) {
     const Vector3 before = state.reference_orientation * Vector3::UnitX(), now = state.positions[1] - state.positions[0];
     state.reference_node = 0;
@@ -91,7 +90,7 @@ void follow_material(const std::vector<HeldDirection>& directions, const std::ve
   }
   std::fill(state.twist.begin(), state.twist.end(), 0.0);
   for (const TwistSpan& span : spans) {
-    const double length = cable.model.length(span.first_node, span.last_node);
+    const double length = state.length(span.first_node, span.last_node);
     std::fill(state.twist.begin() + span.first_node, state.twist.begin() + span.last_node, span.angle / length);
   }
 }
@@ -106,7 +105,7 @@ void forget_forces(const KinematicTargets& targets, std::vector<Attachment>& att
 void update_targets(int index, State& state, CableOutcome& outcome) {
   SimulatedCable& cable = state.cables[index];
   KinematicTargets& targets = state.cable_progress[index].targets;
-  aim_targets(cable.model, state.attachments, state.frames.poses, state.time(), targets);
+  aim_targets(cable.state, state.attachments, state.frames.poses, state.time(), targets);
   forget_forces(targets, state.attachments);
   outcome.jumps.clear();
   take_back_shown_velocities(targets, cable.state.velocities);
@@ -116,27 +115,26 @@ void update_targets(int index, State& state, CableOutcome& outcome) {
   Boundary boundary;
   hold_at(0, 0, targets, boundary);
   if (jumps) {
-    carry_along(cable.model, boundary.nodes, gravity_near(state, index), cable.state);
-    measure_joint_twists(cable, targets.directions);
+    carry_along(*cable.model, boundary.nodes, gravity_near(state, index), cable.state);
+    measure_joint_twists(targets.directions, cable.state);
     note_status(Status::jumped, cable_id(index), following.jumping_node, outcome.result);
   }
-  project_velocities(cable.model, boundary.nodes, cable.state.positions, cable.state.velocities);
+  project_velocities(*cable.model, boundary.nodes, cable.state);
 }
 
 namespace {
 
 /// The same of a whole rod: the material that is in the clamp at the winch is turned against what was there before.
-void pass_twist_through_winch(const LengthDrive& drive, SimulatedCable& cable, KinematicTargets& targets) {
-  CableModel& model = cable.model;
-  CableState& state = cable.state;
-  const int end = drive.end_node(model.segments());
+void pass_twist_through_winch(const LengthDrive& drive, CableState& state, KinematicTargets& targets) {
+  const int end = drive.end_node(state.segments());
   for (DirectionTarget& clamp : targets.directions) {
     if (clamp.node != end) continue;
     const int next = end == 0 ? 1 : end - 1;
-    double twist = state.joint_twist[end], length = joint_length(model, end);
-    if (next > 0 && next < model.segments()) {
+    // Over the lengths that were so twisted: those before this step.
+    double twist = state.joint_twist[end], length = joint_length(state, end) - 0.5 * drive.wound;
+    if (next > 0 && next < state.segments()) {
       twist += state.joint_twist[next];
-      length += joint_length(model, next);
+      length += joint_length(state, next) - 0.5 * drive.wound;
     }
     const double turn = drive.wound * twist / length;
     state.joint_twist[end] += turn;
@@ -148,20 +146,20 @@ void pass_twist_through_winch(const LengthDrive& drive, SimulatedCable& cable, K
 
 void complete_drive_step(int index, State& state) {
   CableProgress& memory = state.cable_progress[index];
-  CableModel& model = state.cables[index].model;
+  SimulatedCable& cable = state.cables[index];
   LengthDrive& drive = *memory.drive;
-  wind(drive, 1, state.scene->time_step, model);
+  wind(drive, 1, state.scene->time_step, *cable.model, cable.state);
   if (drive.is_winch()) {
     // What goes through the winch is as twisted as the cable is.
-    const int end = drive.end_node(model.segments());
+    const int end = drive.end_node(cable.state.segments());
     for (TwistSpan& span : memory.spans) {
       if (span.first_node != end && span.last_node != end) continue;
-      const double length = model.length(span.first_node, span.last_node);
+      const double length = cable.state.length(span.first_node, span.last_node);
       const double change = span.angle * drive.wound / (length - drive.wound);
       span.angle += change;
       span.origin -= change;
     }
-    if (!state.cables[index].state.directors.empty()) pass_twist_through_winch(drive, state.cables[index], memory.targets);
+    if (!cable.state.directors.empty()) pass_twist_through_winch(drive, cable.state, memory.targets);
   }
   if (!complete_drive(drive)) memory.drive.reset();
 }
@@ -213,7 +211,7 @@ void IslandStepper::begin(const Island& island) {
   for (std::size_t k = 0; k < island.cables.size(); ++k) {
     CableProgress& memory = state_.cable_progress[island.cables[k]];
     workspace_.members.push_back({memory.id, &memory.targets, &memory.contacts});
-    workspace_.cables[k].stepper.resize(state_.cables[island.cables[k]].model);
+    workspace_.cables[k].stepper.resize(state_.cables[island.cables[k]].state.segments());
     workspace_.cables[k].boundary.growing.clear();
   }
 }
@@ -238,7 +236,7 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
       work.before = c.state;
       work.spans_before = memory.spans;
     }
-    const Substep substep{c.model, environment, work.boundary, memory.spans, h};
+    const Substep substep{*c.model, environment, work.boundary, memory.spans, h};
     if (workspace_.contacts.touched(k)) {
       work.result = {};
       workspace_.participants.push_back({static_cast<int>(k), cable, &work.stepper, substep, &c.state, {}});
@@ -270,10 +268,10 @@ void IslandStepper::find_contacts(Island& island, double from, double to) {
 
 void IslandStepper::wind_drive(int index, double from, double to, Boundary& boundary) {
   const LengthDrive& drive = *state_.cable_progress[index].drive;
-  CableModel& model = state_.cables[index].model;
+  SimulatedCable& cable = state_.cables[index];
   // An inextensible segment has its length at the end of the substep, an elastic one strains about that in the middle.
-  const bool elastic = model.material.axial_stiffness < infinity;
-  wind(drive, elastic ? 0.5 * (from + to) : to, state_.scene->time_step, model);
+  const bool elastic = cable.model->material.axial_stiffness < infinity;
+  wind(drive, elastic ? 0.5 * (from + to) : to, state_.scene->time_step, *cable.model, cable.state);
   boundary.growing.assign(1, {drive.segment, growth_at(drive, to)});
 }
 
@@ -300,7 +298,7 @@ void IslandStepper::give_up(int index, Boundary& boundary) {
   SimulatedCable& cable = state_.cables[index];
   hold_at(1, 1, state_.cable_progress[index].targets, boundary);
   const std::vector<Vector3> before = cable.state.positions;
-  carry_along(cable.model, boundary.nodes, gravity_near(state_, index), cable.state);
+  carry_along(*cable.model, boundary.nodes, gravity_near(state_, index), cable.state);
   if (finite(cable.state.positions)) return;
   cable.state.positions = before;
   note_status(Status::fault, cable_id(index), 0, outcomes_[index].result);
@@ -341,7 +339,7 @@ void IslandStepper::complete(const Island& island, int substeps, IslandOutcome& 
     const int index = island.cables[k];
     CableProgress& memory = state_.cable_progress[index];
     if (memory.drive) complete_drive_step(index, state_);
-    follow_material(workspace_.cables[k].boundary.directions, memory.spans, state_.cables[index]);
+    follow_material(workspace_.cables[k].boundary.directions, memory.spans, state_.cables[index].state);
     outcomes_[index].result.substeps = substeps;
     outcomes_[index].breaking_segment = find_breaking_segment(state_.cables[index], outcomes_[index].result);
     complete_step(state_.scene->time_step, memory.targets);

@@ -28,7 +28,7 @@ Aabb reach_of(const SimulatedCable& cable, const KinematicTargets& targets, doub
     speed = std::max({speed, target.velocity.squaredNorm(), target.next_velocity.squaredNorm()});
   }
   const double motion = std::sqrt(speed) + time_step * (std::sqrt(acceleration) + spare_acceleration);
-  const double margin = (1 + still_reach) * cable.model.material.radius + steps_of_motion * time_step * motion;
+  const double margin = (1 + still_reach) * cable.model->material.radius + steps_of_motion * time_step * motion;
   return Aabb(box.min() - Vector3::Constant(margin), box.max() + Vector3::Constant(margin));
 }
 
@@ -65,7 +65,7 @@ void Islands::build(const State& state) {
   }
   last_labels_ = labels_;
   segments_ = 0;
-  for (const SimulatedCable& cable : state.cables) segments_ += cable.model.segments();
+  for (const SimulatedCable& cable : state.cables) segments_ += cable.state.segments();
 }
 
 /// Joins cables whose reaches overlap: a sweep along the axis on which they are spread furthest.

@@ -111,7 +111,7 @@ Settling::Settling(int cable, State& state, Workspace& workspace, const std::ato
       cable_(state.cables[cable]),
       memory_(state.cable_progress[cable]),
       work_(workspace.cables.empty() ? workspace.cables.emplace_back() : workspace.cables.front()) {
-  work_.stepper.resize(cable_.model);
+  work_.stepper.resize(cable_.state.segments());
   work_.boundary.growing.clear();
 }
 
@@ -123,7 +123,7 @@ bool Settling::settle() {
   hold_still();
   find_obstacles();
   Approach approach(index_, may_touch());
-  const bool settled = relax(shortest_step(cable_.model), last_settling_step, maximum_settling_steps, approach);
+  const bool settled = relax(shortest_step(*cable_.model), last_settling_step, maximum_settling_steps, approach);
   complete();
   return settled;
 }
@@ -135,7 +135,7 @@ bool Settling::settle_start() {
   // As if there was nothing to touch, which is much faster; if that ends where something is, once more.
   workspace_.obstacles.clear();
   Approach approach(index_, false);
-  approach.iterations = std::max(most_start_iterations, short_start_iterations / cable_.model.segments());
+  approach.iterations = std::max(most_start_iterations, short_start_iterations / cable_.state.segments());
   turn_clamps(approach);
   bool settled = find_untwisted_equilibrium(approach);
   find_obstacles();
@@ -149,16 +149,16 @@ bool Settling::settle_start() {
       settled = find_untwisted_equilibrium(touching);
     }
   }
-  memory_.spans = find_spans(cable_.model, cable_.state, work_.boundary.directions);
+  memory_.spans = find_spans(cable_.state, work_.boundary.directions);
   complete();
   return settled;
 }
 
 /// Puts the holders where they are to be, and takes the cable's motion away.
 void Settling::hold_still() {
-  aim_targets(cable_.model, state_.attachments, state_.frames.poses, state_.time(), memory_.targets);
+  aim_targets(cable_.state, state_.attachments, state_.frames.poses, state_.time(), memory_.targets);
   put_at_aim(memory_.targets);
-  measure_joint_twists(cable_, memory_.targets.directions);
+  measure_joint_twists(memory_.targets.directions, cable_.state);
   hold_at(1, 1, memory_.targets, work_.boundary);
   bring_to_rest(cable_.state);
 }
@@ -166,13 +166,13 @@ void Settling::hold_still() {
 /// The holders move with their frames, and take along what cannot stretch.
 void Settling::complete() {
   keep_twist(work_.boundary, memory_.targets);
-  project_velocities(cable_.model, work_.boundary.nodes, cable_.state.positions, cable_.state.velocities);
+  project_velocities(*cable_.model, work_.boundary.nodes, cable_.state);
   add_forces(work_.boundary, memory_.targets, state_.frames.poses, 1, state_.attachments);
   follow_material();
 }
 
 void Settling::follow_material() {
-  verlet_cable::follow_material(work_.boundary.directions, memory_.spans, cable_);
+  verlet_cable::follow_material(work_.boundary.directions, memory_.spans, cable_.state);
 }
 
 /// From the directions of the cable that hangs from them to their own.
@@ -188,7 +188,7 @@ void Settling::turn_clamps(Approach& approach) {
     const double left = 1 - static_cast<double>(stage) / stages;
     place_clamps(turns, left);
     follow_material();
-    relax(shortest_step(cable_.model), longest_turning_step, turning_steps, approach);
+    relax(shortest_step(*cable_.model), longest_turning_step, turning_steps, approach);
     untwist();
   }
   place_clamps(turns, 0);
@@ -201,7 +201,7 @@ void Settling::place_clamps(const std::vector<Eigen::AngleAxisd>& turns, double 
   keep_twist(work_.boundary, memory_.targets);
   for (std::size_t k = 0; k < clamps.size(); ++k)
     clamps[k].orientation = Quaternion(Eigen::AngleAxisd(part * turns[k].angle(), turns[k].axis())) * clamps[k].next_orientation;
-  roll_clamps_to_twist(cable_, clamps);
+  roll_clamps_to_twist(clamps, cable_.state);
   for (std::size_t k = 0; k < clamps.size(); ++k) {
     HeldDirection& held = work_.boundary.directions[k];
     held.start = held.end = clamps[k].orientation;
@@ -213,7 +213,7 @@ void Settling::place_clamps(const std::vector<Eigen::AngleAxisd>& turns, double 
 /// Lets clamps hold the material so that the cable has its rest twist. Returns how far from that it was [rad].
 double Settling::untwist() {
   keep_twist(work_.boundary, memory_.targets);
-  const double excess = take_excess_twist(cable_, memory_.targets.directions);
+  const double excess = take_excess_twist(memory_.targets.directions, cable_.state);
   for (std::size_t k = 0; k < memory_.targets.directions.size(); ++k) {
     work_.boundary.directions[k].twist_before = memory_.targets.directions[k].twist_before;
     work_.boundary.directions[k].twist_after = memory_.targets.directions[k].twist_after;
@@ -227,14 +227,14 @@ bool Settling::find_untwisted_equilibrium(Approach& approach) {
   bool settled = find_equilibrium(approach);
   for (int i = 0; i < most_untwistings && settled && untwist() > settled_twist; ++i) {
     hold_at(1, 1, memory_.targets, work_.boundary);
-    settled = relax(shortest_step(cable_.model), last_settling_step, maximum_settling_steps, approach);
+    settled = relax(shortest_step(*cable_.model), last_settling_step, maximum_settling_steps, approach);
   }
   return settled;
 }
 
 /// Brings a cable that is held still into an equilibrium that lasts. False if none was found: it is then where it first came to.
 bool Settling::find_equilibrium(Approach& approach) {
-  double h = shortest_step(cable_.model);
+  double h = shortest_step(*cable_.model);
   bool settled = relax(h, last_settling_step, maximum_settling_steps, approach);
   const CableState first = cable_.state;
   const std::vector<TwistSpan> first_spans = memory_.spans;
@@ -259,7 +259,7 @@ bool Settling::find_equilibrium(Approach& approach) {
 /// Substeps without motion, ever longer as long as they converge and the loads that are left grow less, until inertia carries
 /// nothing: what is left is Newton's method for the equilibrium. True if that was found.
 bool Settling::relax(double h, double longest, int steps, Approach& approach) {
-  const double radius = cable_.model.material.radius;
+  const double radius = cable_.model->material.radius;
   double last = infinity, growth = fastest_growth;
   bool failed = false;
   int calm = 0;
@@ -300,13 +300,13 @@ bool Settling::leaves_equilibrium(Approach& approach, double& h) {
   if (touches(approach)) return false;
   const CableState before = cable_.state;
   const std::vector<TwistSpan> spans_before = memory_.spans;
-  const double size = nudge * cable_.model.segment_length;
-  for (int i = 0; i < cable_.model.nodes(); ++i)
-    cable_.state.positions[i] += size * direction_at(static_cast<double>(i) / cable_.model.segments());
-  project_positions(cable_.model, work_.boundary.nodes, cable_.state.positions);
+  const double size = nudge * cable_.model->segment_length;
+  for (int i = 0; i < cable_.state.nodes(); ++i)
+    cable_.state.positions[i] += size * direction_at(static_cast<double>(i) / cable_.state.segments());
+  project_positions(*cable_.model, work_.boundary.nodes, cable_.state);
   carry_frames(before.positions, cable_.state);
   const double first = largest_distance(cable_.state.positions, before.positions);
-  for (h = shortest_step(cable_.model); h < last_nudged_step; h *= 2)
+  for (h = shortest_step(*cable_.model); h < last_nudged_step; h *= 2)
     for (int i = 0; i < nudged_steps; ++i) {
       if (!advance(approach, h).converged) break;
       if (largest_distance(cable_.state.positions, before.positions) > grown * first) return true;
@@ -328,7 +328,7 @@ bool Settling::leaves_when_let_go(Approach& approach, double& h) {
   bool leaves = false;
   double step = first_trial_step;
   // What leaves is followed until it is far from where it would only come back to.
-  const double far = far_away * cable_.model.segment_length;
+  const double far = far_away * cable_.model->segment_length;
   for (double time = 0; time < (leaves ? 2 : 1) * trial_time && trial.iterations > 0;) {
     if (advance(trial, step).converged) {
       leaves = leaves || fastest(cable_.state) > moving;
@@ -344,11 +344,11 @@ bool Settling::leaves_when_let_go(Approach& approach, double& h) {
   }
   leaves = leaves || trial.iterations <= 0;
   approach.iterations = trial.iterations;
-  measure_joint_twists(cable_, memory_.targets.directions);
+  measure_joint_twists(memory_.targets.directions, cable_.state);
   hold_at(1, 1, memory_.targets, work_.boundary);
   bring_to_rest(cable_.state);
   if (leaves) {
-    h = shortest_step(cable_.model);
+    h = shortest_step(*cable_.model);
     return true;
   }
   cable_.state = before;
@@ -364,7 +364,7 @@ SubstepResult Settling::advance(Approach& approach, double h) {
     return {};
   }
   const Environment environment{state_.scene->gravity, state_.scene->fluid};
-  const Substep substep{cable_.model, environment, work_.boundary, memory_.spans, h, !approach.let_go};
+  const Substep substep{*cable_.model, environment, work_.boundary, memory_.spans, h, !approach.let_go};
   if (!approach.touches) {
     const SubstepResult result = work_.stepper.advance(substep, cable_.state);
     approach.iterations -= result.iterations;
@@ -383,7 +383,7 @@ SubstepResult Settling::advance(Approach& approach, double h) {
     result = workspace_.participants.front().result;
   }
   approach.iterations -= result.iterations;
-  if (result.converged && result.displacement > settling_reach * cable_.model.material.radius) {
+  if (result.converged && result.displacement > settling_reach * cable_.model->material.radius) {
     cable_.state = before;
     memory_.spans = spans_before;
     result.converged = false;

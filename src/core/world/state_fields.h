@@ -115,13 +115,13 @@ auto fields(T& x, const SceneDesc*) {
 // Cables
 template <class T>
 auto fields(T& x, const CableModel*) {
-  return std::tie(x.name, x.material, x.material_name, x.color, x.segment_length, x.rest_lengths, x.masses, x.rest_curvature,
-                  x.rest_twist, x.flexible_fraction);
+  return std::tie(x.name, x.material, x.material_name, x.color, x.segment_length);
 }
 template <class T>
 auto fields(T& x, const CableState*) {
-  return std::tie(x.positions, x.velocities, x.accelerations, x.tension, x.axial_multiplier, x.twist, x.directors, x.spin,
-                  x.joint_twist, x.reference_node, x.reference_orientation);
+  return std::tie(x.rest_lengths, x.masses, x.rest_curvature, x.rest_twist, x.flexible_fraction, x.positions, x.velocities,
+                  x.accelerations, x.tension, x.axial_multiplier, x.twist, x.directors, x.spin, x.joint_twist, x.reference_node,
+                  x.reference_orientation);
 }
 template <class T>
 auto fields(T& x, const SimulatedCable*) {
@@ -269,7 +269,8 @@ void visit(T& x, Visitor&& visitor) {
   using Type = std::remove_const_t<T>;
   if constexpr (std::is_arithmetic_v<Type> || std::is_enum_v<Type>) {
     visitor(x);
-  } else if constexpr (std::is_same_v<Type, std::shared_ptr<const SceneDesc>>) {
+  } else if constexpr (std::is_same_v<Type, std::shared_ptr<const SceneDesc>> ||
+                       std::is_same_v<Type, std::shared_ptr<const CableModel>>) {
     visit(*x, visitor);
   } else if constexpr (std::is_same_v<Type, std::shared_ptr<const TriangleMesh>>) {
     visit(x->vertices(), visitor);

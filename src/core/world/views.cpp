@@ -59,7 +59,7 @@ const Findings& World::findings() const {
 }
 
 int find(const std::vector<SimulatedCable>& cables, const std::string& name) {
-  return index_of(cables, [&](const SimulatedCable& cable) { return cable.model.name == name; });
+  return index_of(cables, [&](const SimulatedCable& cable) { return cable.model->name == name; });
 }
 
 int find(const std::vector<SimulatedNet>& nets, const std::string& name) {
@@ -76,25 +76,25 @@ Energy World::energy() const {
   for (std::size_t k = 0; k < cables().size(); ++k) {
     const SimulatedCable& cable = cables()[k];
     const std::vector<HeldDirection> directions = boundary_now(implementation_->state.cable_progress[k].targets).directions;
-    if (cable.model.is_whole_rod()) {
-      const RodEnergy rod = rod_energy(cable.model, cable.state, directions);
+    if (cable.state.directors.empty()) {
+      energy.bend += bending_energy(*cable.model, cable.state, directions);
+    } else {
+      const RodEnergy rod = rod_energy(*cable.model, cable.state, directions);
       energy.bend += rod.bend;
       energy.twist += rod.twist;
       energy.kinetic += rod.spin;
-    } else {
-      energy.bend += bending_energy(cable.model, cable.state, directions);
     }
-    for (int i = 0; i < cable.model.nodes(); ++i) {
-      energy.kinetic += 0.5 * cable.model.masses[i] * cable.state.velocities[i].squaredNorm();
-      energy.gravity += cable.model.masses[i] * gravity.potential_at(cable.state.positions[i]);
+    for (int i = 0; i < cable.state.nodes(); ++i) {
+      energy.kinetic += 0.5 * cable.state.masses[i] * cable.state.velocities[i].squaredNorm();
+      energy.gravity += cable.state.masses[i] * gravity.potential_at(cable.state.positions[i]);
     }
-    for (int i = 0; i < cable.model.segments(); ++i)
-      energy.twist += 0.5 * cable.model.material.torsional_stiffness * cable.model.rest_lengths[i] * cable.state.twist[i] *
+    for (int i = 0; i < cable.state.segments(); ++i)
+      energy.twist += 0.5 * cable.model->material.torsional_stiffness * cable.state.rest_lengths[i] * cable.state.twist[i] *
                       cable.state.twist[i];
-    if (cable.model.material.axial_stiffness == infinity) continue;
-    for (int i = 0; i < cable.model.segments(); ++i) {
-      const double e = strain(cable, i);
-      energy.stretch += 0.5 * cable.model.material.axial_stiffness * cable.model.rest_lengths[i] * e * e;
+    if (cable.model->material.axial_stiffness == infinity) continue;
+    for (int i = 0; i < cable.state.segments(); ++i) {
+      const double e = strain(cable.state, i);
+      energy.stretch += 0.5 * cable.model->material.axial_stiffness * cable.state.rest_lengths[i] * e * e;
     }
   }
   implementation_->add_net_energy(energy);
@@ -102,10 +102,9 @@ Energy World::energy() const {
 }
 
 void World::view_joints(int index, std::vector<JointView>& joints) const {
-  const CableModel& model = cables()[index].model;
   const CableState& state = cables()[index].state;
   const std::vector<DirectionTarget>& clamps = implementation_->state.cable_progress[index].targets.directions;
-  const int n = model.segments();
+  const int n = state.segments();
   joints.clear();
   const auto direction = [&](int i) -> Vector3 { return state.positions[i + 1] - state.positions[i]; };
   const auto add = [&](double place, double length, const Vector3& before, const Vector3& after, double twist) {
@@ -114,7 +113,7 @@ void World::view_joints(int index, std::vector<JointView>& joints) const {
   auto clamp = clamps.begin();
   double place = 0;
   for (int i = 0; i <= n; ++i) {
-    const double before = i > 0 ? 0.5 * model.rest_lengths[i - 1] : 0, after = i < n ? 0.5 * model.rest_lengths[i] : 0;
+    const double before = i > 0 ? 0.5 * state.rest_lengths[i - 1] : 0, after = i < n ? 0.5 * state.rest_lengths[i] : 0;
     place += before;
     const bool whole = !state.directors.empty(), inside = i > 0 && i < n;
     if (clamp != clamps.end() && clamp->node == i) {

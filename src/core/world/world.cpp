@@ -28,16 +28,24 @@ CableModel make_model(const SceneDesc& scene, const CableDesc& desc) {
   model.material = *scene.find_material(desc.material);
   model.material_name = desc.material;
   model.color = desc.color;
-  const double length = desc.length / desc.segments;
-  model.segment_length = length;
-  model.rest_lengths.assign(desc.segments, length);
-  model.masses.assign(desc.segments + 1, 0.0);
-  for (int i = 0; i < desc.segments; ++i) {
-    model.masses[i] += 0.5 * length * model.material.linear_density;
-    model.masses[i + 1] += 0.5 * length * model.material.linear_density;
-  }
-  for (const PointMassDesc& point : desc.point_masses) model.masses[node_at(desc, point.place)] += point.mass;
+  model.segment_length = desc.length / desc.segments;
   return model;
+}
+
+/// Its lengths and masses; all nodes at the origin.
+CableState make_state(const CableModel& model, const CableDesc& desc) {
+  CableState state;
+  const double length = model.segment_length;
+  state.rest_lengths.assign(desc.segments, length);
+  state.masses.assign(desc.segments + 1, 0.0);
+  for (int i = 0; i < desc.segments; ++i) {
+    state.masses[i] += 0.5 * length * model.material.linear_density;
+    state.masses[i + 1] += 0.5 * length * model.material.linear_density;
+  }
+  for (const PointMassDesc& point : desc.point_masses) state.masses[node_at(desc, point.place)] += point.mass;
+  state.positions.assign(state.nodes(), Vector3::Zero());
+  state.velocities.assign(state.nodes(), Vector3::Zero());
+  return state;
 }
 
 template <class Desc>
@@ -81,7 +89,7 @@ bool World::settle() {
   for (int cable = 0; cable < static_cast<int>(w.state.cables.size()); ++cable) {
     if (w.state.cable_progress[cable].targets.nodes.empty()) continue;
     if (!Settling(cable, w.state, w.workspaces.value.local()).settle())
-      w.findings.unsettled.push_back(w.state.cables[cable].model.name);
+      w.findings.unsettled.push_back(w.state.cables[cable].model->name);
   }
   return w.findings.unsettled.empty();
 }
@@ -176,7 +184,8 @@ int World::Implementation::update_frames(const BoundaryInputs& inputs) {
 void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& ids, const BoundaryInputs& inputs) {
   const int index = static_cast<int>(state.cables.size());
   SimulatedCable cable;
-  cable.model = make_model(*state.scene, desc);
+  cable.model = std::make_shared<const CableModel>(make_model(*state.scene, desc));
+  cable.state = make_state(*cable.model, desc);
   std::vector<int> own;
   for (const AttachmentDesc& a : desc.attachments) {
     Attachment attachment;
@@ -190,39 +199,37 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
     state.attachments.push_back(attachment);
   }
   // The holders catch the nodes where they want them: there is no gap to close.
-  cable.state.positions.assign(cable.model.nodes(), Vector3::Zero());
-  cable.state.velocities.assign(cable.model.nodes(), Vector3::Zero());
   CableProgress memory;
   memory.id = state.new_cable_id();
-  memory.targets = find_targets(cable.model, cable.state, state.attachments, own, state.frames.poses, {}, state.time());
+  memory.targets = find_targets(*cable.model, cable.state, state.attachments, own, state.frames.poses, {}, state.time());
   for (KinematicTarget& target : memory.targets.nodes) {
     target.gap.setZero();
     target.caught = -infinity;
   }
   for (DirectionTarget& target : memory.targets.directions) target.gap.setIdentity();
-  aim_targets(cable.model, state.attachments, state.frames.poses, state.time(), memory.targets);
+  aim_targets(cable.state, state.attachments, state.frames.poses, state.time(), memory.targets);
   put_at_aim(memory.targets);
   start_targets(state.attachments, state.frames.poses, inputs, memory.targets);
   Boundary boundary;
   hold_at(1, 1, memory.targets, boundary);
   const Vector3 gravity =
       state.scene->gravity.at(boundary.nodes.empty() ? Vector3(Vector3::Zero()) : boundary.nodes.front().position);
-  const bool settles = settles_at_start(desc, cable.model.material);
-  if (!set_initial_state(desc.initial, settles, cable.model, boundary.nodes, gravity, cable.state))
+  const bool settles = settles_at_start(desc, cable.model->material);
+  if (!set_initial_state(desc.initial, settles, *cable.model, boundary.nodes, gravity, cable.state))
     findings.misfits.push_back(desc.name);
   // Where velocities of holders are not known yet, the first step finds them, and all go together.
   const auto starts = [](const KinematicTarget& target) { return target.starts; };
   if (std::none_of(memory.targets.nodes.begin(), memory.targets.nodes.end(), starts))
-    project_velocities(cable.model, boundary.nodes, cable.state.positions, cable.state.velocities);
-  cable.state.twist.assign(cable.model.segments(), 0.0);
+    project_velocities(*cable.model, boundary.nodes, cable.state);
+  cable.state.twist.assign(cable.state.segments(), 0.0);
   cable.state.reference_orientation = smallest_rotation(Vector3::UnitX(), cable.state.positions[1] - cable.state.positions[0]);
-  memory.spans = find_spans(cable.model, cable.state, boundary.directions);
-  follow_material(boundary.directions, memory.spans, cable);
-  set_stiff_ends(desc.stiff_ends, cable.model);
-  set_rest_shape(desc, cable.model);
-  start_frames(cable, memory.targets.directions);
-  if (desc.rest_curvature.type == RestCurvatureDesc::Type::initial && !cable.model.rest_curvature.empty())
-    take_rest_curvature(memory.targets.directions, cable);
+  set_stiff_ends(desc.stiff_ends, cable.state);
+  set_rest_shape(desc, cable.model->material, cable.state);
+  if (is_whole_rod(*cable.model, cable.state)) start_frames(memory.targets.directions, cable.state);
+  if (desc.rest_curvature.type == RestCurvatureDesc::Type::initial && !cable.state.rest_curvature.empty())
+    take_rest_curvature(memory.targets.directions, cable.state);
+  memory.spans = find_spans(cable.state, boundary.directions);
+  follow_material(boundary.directions, memory.spans, cable.state);
   const bool held = !memory.targets.nodes.empty();
   state.cables.push_back(std::move(cable));
   state.cable_progress.push_back(std::move(memory));
@@ -234,13 +241,13 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
 void World::Implementation::find_targets_of(int index) {
   SimulatedCable& cable = state.cables[index];
   CableProgress& memory = state.cable_progress[index];
-  memory.targets = find_targets(cable.model, cable.state, state.attachments, attachments_of(cable_id(index), state.attachments),
+  memory.targets = find_targets(*cable.model, cable.state, state.attachments, attachments_of(cable_id(index), state.attachments),
                                 state.frames.poses, memory.targets, state.time());
-  aim_targets(cable.model, state.attachments, state.frames.poses, state.time(), memory.targets);
+  aim_targets(cable.state, state.attachments, state.frames.poses, state.time(), memory.targets);
   const Boundary boundary = boundary_now(memory.targets);
-  restore_lengths(cable.model, boundary.nodes, gravity_near(state, index), cable.state);
-  memory.spans = find_spans(cable.model, cable.state, boundary.directions);
-  measure_joint_twists(cable, memory.targets.directions);
+  restore_lengths(*cable.model, boundary.nodes, gravity_near(state, index), cable.state);
+  memory.spans = find_spans(cable.state, boundary.directions);
+  measure_joint_twists(memory.targets.directions, cable.state);
 }
 
 }  // namespace verlet_cable

@@ -85,9 +85,9 @@ InteractiveMarkerControl axis_control(const std::string& name, int axis, std::ui
 
 Handle handle_of(const SimulatedCable& cable) {
   Handle handle;
-  handle.cable = cable.model.name;
-  handle.radius = cable.model.material.radius;
-  handle.arm_length = std::max(smallest_arm * handle.radius, std::min(arm_of_cable * cable.model.length(), largest_arm));
+  handle.cable = cable.model->name;
+  handle.radius = cable.model->material.radius;
+  handle.arm_length = std::max(smallest_arm * handle.radius, std::min(arm_of_cable * cable.state.length(), largest_arm));
   return handle;
 }
 
@@ -117,7 +117,7 @@ void add_attachments(const Simulation& simulation, const std::set<std::string>& 
 
 void add_nodes(const World& world, const std::set<std::string>& grabs, std::vector<Handle>& handles) {
   std::size_t nodes = 0;
-  for (const SimulatedCable& cable : world.cables()) nodes += cable.model.masses.size();
+  for (const SimulatedCable& cable : world.cables()) nodes += cable.state.masses.size();
   const int stride = static_cast<int>((nodes + most_nodes - 1) / most_nodes);
   std::set<std::pair<int, int>> held;
   for (const Attachment& attachment : world.attachments())
@@ -125,11 +125,11 @@ void add_nodes(const World& world, const std::set<std::string>& grabs, std::vect
   for (int i = 0; i < static_cast<int>(world.cables().size()); ++i) {
     const SimulatedCable& cable = world.cables()[i];
     if (!is_finite(cable)) continue;
-    const int last = cable.model.segments();
+    const int last = cable.state.segments();
     for (int node = 0; node <= last; ++node) {
       if ((node % stride != 0 && node != last) || held.count({i, node}) > 0) continue;
       Handle handle = handle_of(cable);
-      handle.name = cable.model.name + "/" + std::to_string(node);
+      handle.name = cable.model->name + "/" + std::to_string(node);
       handle.node = node;
       handle.pose.position = cable.state.positions[node];
       handles.push_back(std::move(handle));

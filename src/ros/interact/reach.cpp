@@ -14,9 +14,8 @@ constexpr int projections = 50;
 }  // namespace
 
 Vector3 within_reach(const World& world, int cable, int node, const std::string& except, const Vector3& place) {
-  const CableModel& model = world.cables()[cable].model;
-  if (std::isfinite(model.material.axial_stiffness)) return place;
-  const std::vector<double> arc_length = model.arc_length();
+  if (std::isfinite(world.cables()[cable].model->material.axial_stiffness)) return place;
+  const std::vector<double> arc_length = world.cables()[cable].state.arc_length();
   Vector3 reached = place;
   for (int i = 0; i < projections; ++i) {
     bool inside = true;

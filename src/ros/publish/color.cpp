@@ -88,7 +88,8 @@ ColorScale::ColorScale(const SceneDesc& scene)
 
 double ColorScale::load(const SimulatedCable& cable, int segment, const std::vector<double>& contact_forces) const {
   if (color_by_ == ColorBy::contact) return contact_forces.empty() ? 0 : std::cbrt(contact_forces[segment] / full_tension_);
-  return color_by_ == ColorBy::strain ? strain(cable, segment) / full_strain_ : cable.state.tension[segment] / full_tension_;
+  return color_by_ == ColorBy::strain ? strain(cable.state, segment) / full_strain_
+                                      : cable.state.tension[segment] / full_tension_;
 }
 
 Legend ColorScale::legend() const {
@@ -113,7 +114,7 @@ std::vector<std::vector<double>> ColorScale::contact_forces(const World& world) 
   if (color_by_ != ColorBy::contact) return forces;
   for (const SimulatedContact& contact : contacts_of_both(world)) {
     std::vector<double>& of_cable = forces[contact.cable];
-    of_cable.resize(world.cables()[contact.cable].model.segments());
+    of_cable.resize(world.cables()[contact.cable].state.segments());
     of_cable[contact.segment] += contact.force.norm();
   }
   return forces;
@@ -121,8 +122,8 @@ std::vector<std::vector<double>> ColorScale::contact_forces(const World& world) 
 
 std::vector<std_msgs::ColorRGBA> ColorScale::node_colors(const SimulatedCable& cable,
                                                          const std::vector<double>& contact_forces) const {
-  const int segments = cable.model.segments();
-  std::vector<std_msgs::ColorRGBA> colors(cable.model.nodes());
+  const int segments = cable.state.segments();
+  std::vector<std_msgs::ColorRGBA> colors(cable.state.nodes());
   if (color_by_ != ColorBy::cable) {
     for (int node = 0; node <= segments; ++node) {
       const double before = load(cable, std::max(node - 1, 0), contact_forces);
@@ -130,7 +131,7 @@ std::vector<std_msgs::ColorRGBA> ColorScale::node_colors(const SimulatedCable& c
       colors[node] = color_of_load((before + after) / 2);
     }
   } else {
-    std::fill(colors.begin(), colors.end(), to_color(cable.model.color));
+    std::fill(colors.begin(), colors.end(), to_color(cable.model->color));
   }
   return colors;
 }

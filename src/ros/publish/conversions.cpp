@@ -59,7 +59,7 @@ bool is_finite(const SimulatedParticle& particle) {
 
 std::vector<SimulatedContact> contacts_of_both(const World& world) {
   std::vector<SimulatedContact> contacts = world.findings().contacts;
-  const auto radius = [&](int cable) { return world.cables()[cable].model.material.radius; };
+  const auto radius = [&](int cable) { return world.cables()[cable].model->material.radius; };
   for (std::size_t i = 0, once = contacts.size(); i < once; ++i) {
     const SimulatedContact c = contacts[i];
     if (c.other_cable < 0) continue;
@@ -78,26 +78,27 @@ Contact to_message(const World& world, const SimulatedContact& contact) {
   message.normal = to_vector(contact.normal);
   message.force = to_vector(contact.force);
   message.other =
-      contact.obstacle >= 0 ? world.obstacles()[contact.obstacle].name : world.cables()[contact.other_cable].model.name;
+      contact.obstacle >= 0 ? world.obstacles()[contact.obstacle].name : world.cables()[contact.other_cable].model->name;
   return message;
 }
 
 /// All but attachments and contacts.
 Cable to_message(const SimulatedCable& cable) {
   Cable message;
-  message.name = cable.model.name;
-  message.positions.reserve(cable.model.nodes());
+  message.name = cable.model->name;
+  message.positions.reserve(cable.state.nodes());
   for (const Vector3& position : cable.state.positions) message.positions.push_back(to_point(position));
-  message.velocities.reserve(cable.model.nodes());
+  message.velocities.reserve(cable.state.nodes());
   for (const Vector3& velocity : cable.state.velocities) message.velocities.push_back(to_vector(velocity));
-  message.orientations.reserve(cable.model.segments());
-  for (const Quaternion& orientation : segment_orientations(cable)) message.orientations.push_back(to_quaternion(orientation));
-  message.arc_length = cable.model.arc_length();
+  message.orientations.reserve(cable.state.segments());
+  for (const Quaternion& orientation : segment_orientations(cable.state))
+    message.orientations.push_back(to_quaternion(orientation));
+  message.arc_length = cable.state.arc_length();
   message.tension = cable.state.tension;
-  message.curvature = node_curvature(cable);
-  message.twist = node_twist(cable);
-  message.rest_length = cable.model.length();
-  message.radius = cable.model.material.radius;
+  message.curvature = node_curvature(cable.state);
+  message.twist = node_twist(cable.state);
+  message.rest_length = cable.state.length();
+  message.radius = cable.model->material.radius;
   return message;
 }
 

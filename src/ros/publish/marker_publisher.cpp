@@ -36,14 +36,14 @@ void set_scale(Marker& marker, double x, double y, double z) {
 }
 
 /// [kg] What a node weighs beyond the segments that meet there. The half segments that cuts leave on the ends do not count.
-double payload(const CableModel& model, int node) {
+double payload(const SimulatedCable& cable, int node) {
   double share = 0, largest_half = 0;
-  for (int segment = std::max(node - 1, 0); segment <= std::min(node, model.segments() - 1); ++segment) {
-    const double half = model.material.linear_density * model.rest_lengths[segment] / 2;
+  for (int segment = std::max(node - 1, 0); segment <= std::min(node, cable.state.segments() - 1); ++segment) {
+    const double half = cable.model->material.linear_density * cable.state.rest_lengths[segment] / 2;
     share += half;
     largest_half = std::max(largest_half, half);
   }
-  const double excess = model.masses[node] - share;
+  const double excess = cable.state.masses[node] - share;
   return excess > 1.5 * largest_half ? excess : 0;
 }
 
@@ -110,10 +110,10 @@ Marker MarkerPublisher::make_marker(const std::string& ns, int id, int type) con
 
 void MarkerPublisher::add_cable(const SimulatedCable& cable, const std::vector<double>& contact_forces, int most_corners,
                                 MarkerArray& markers) const {
-  const double radius = cable.model.material.radius;
+  const double radius = cable.model->material.radius;
   std::vector<std_msgs::ColorRGBA> colors = colors_.node_colors(cable, contact_forces);
   const bool tube = style_ == MarkerStyle::tube;
-  Marker marker = make_marker(cable.model.name, cable_marker_id, tube ? Marker::TRIANGLE_LIST : Marker::LINE_STRIP);
+  Marker marker = make_marker(cable.model->name, cable_marker_id, tube ? Marker::TRIANGLE_LIST : Marker::LINE_STRIP);
   marker.color = colors.front();
   if (tube) {
     set_scale(marker, 1, 1, 1);
@@ -128,14 +128,14 @@ void MarkerPublisher::add_cable(const SimulatedCable& cable, const std::vector<d
 
 void MarkerPublisher::add_payloads(const SimulatedCable& cable, MarkerArray& markers) {
   int payloads = 0;
-  for (int node = 0; node < cable.model.nodes(); ++node) {
-    const double mass = payload(cable.model, node);
+  for (int node = 0; node < cable.state.nodes(); ++node) {
+    const double mass = payload(cable, node);
     if (mass <= 0) continue;
     // Counted, since a winch changes the numbers of the nodes.
-    Marker marker = make_marker("payloads", id_of(cable.model.name + "/" + std::to_string(payloads++)), Marker::SPHERE);
+    Marker marker = make_marker("payloads", id_of(cable.model->name + "/" + std::to_string(payloads++)), Marker::SPHERE);
     marker.pose.position = to_point(cable.state.positions[node]);
     const double ball = 2 * std::cbrt(3 * mass / (4 * M_PI * aluminium_density));
-    const double diameter = std::max(ball, 2 * pin_size * cable.model.material.radius);
+    const double diameter = std::max(ball, 2 * pin_size * cable.model->material.radius);
     set_scale(marker, diameter, diameter, diameter);
     marker.color = grey(0.55f);
     markers.markers.push_back(std::move(marker));
@@ -172,7 +172,7 @@ void MarkerPublisher::add_pin(const World& world, const Attachment& attachment, 
   const Pose pose = world.frame_pose(attachment.frame) * attachment.pose;
   if (!pose.position.allFinite() || !pose.orientation.coeffs().allFinite()) return;
   const double size = attachment.body.is_net() ? net_pin_size * link_length(world.nets()[attachment.body.index].model)
-                                               : 2 * pin_size * world.cables()[attachment.body.index].model.material.radius;
+                                               : 2 * pin_size * world.cables()[attachment.body.index].model->material.radius;
   const bool clamp = attachment.type == AttachmentType::clamp;
   Marker marker = make_marker("pins", id_of(attachment.name), clamp ? Marker::CUBE : Marker::SPHERE);
   marker.pose = to_pose(pose);

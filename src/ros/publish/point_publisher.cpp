@@ -21,10 +21,10 @@ struct PointRecord {
 
 void append_points(const SimulatedCable& cable, std::uint32_t cable_id, const std::vector<std_msgs::ColorRGBA>& colors,
                    std::vector<PointRecord>& points) {
-  const std::vector<double> arc_length = cable.model.arc_length();
-  for (int node = 0; node < cable.model.nodes(); ++node) {
+  const std::vector<double> arc_length = cable.state.arc_length();
+  for (int node = 0; node < cable.state.nodes(); ++node) {
     const Eigen::Vector3f position = cable.state.positions[node].cast<float>();
-    const double tension = cable.state.tension[std::min(node, cable.model.segments() - 1)];
+    const double tension = cable.state.tension[std::min(node, cable.state.segments() - 1)];
     points.push_back({position.x(), position.y(), position.z(), packed_rgb(colors[node]), static_cast<float>(tension), cable_id,
                       static_cast<std::uint32_t>(node), static_cast<float>(arc_length[node])});
   }

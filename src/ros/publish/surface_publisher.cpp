@@ -22,31 +22,31 @@ struct PointRecord {
 };
 
 /// Of the rings of a segment, if they are as far apart as the points of a ring, times `coarseness`.
-int rings(const CableModel& model, int segment, double coarseness) {
-  const double spacing = coarseness * 2 * M_PI * model.material.radius / sides;
-  return static_cast<int>(std::clamp(std::round(model.rest_lengths[segment] / spacing), 1.0, most_points));
+int rings(const SimulatedCable& cable, int segment, double coarseness) {
+  const double spacing = coarseness * 2 * M_PI * cable.model->material.radius / sides;
+  return static_cast<int>(std::clamp(std::round(cable.state.rest_lengths[segment] / spacing), 1.0, most_points));
 }
 
 /// By how much rings must be further apart than the points of a ring.
 double find_coarseness(const World& world) {
   double points = 0;
   for (const SimulatedCable& cable : world.cables())
-    points += cable.model.length() / (2 * M_PI * cable.model.material.radius / sides) * sides;
+    points += cable.state.length() / (2 * M_PI * cable.model->material.radius / sides) * sides;
   return std::max(1.0, points / most_points);
 }
 
 void append_points(const SimulatedCable& cable, std::uint32_t cable_id, double coarseness,
                    const std::vector<std_msgs::ColorRGBA>& colors, std::vector<PointRecord>& points) {
-  const std::vector<Quaternion> orientations = segment_orientations(cable);
-  for (int i = 0; i < cable.model.segments(); ++i) {
-    const int count = rings(cable.model, i, coarseness);
+  const std::vector<Quaternion> orientations = segment_orientations(cable.state);
+  for (int i = 0; i < cable.state.segments(); ++i) {
+    const int count = rings(cable, i, coarseness);
     for (int ring = 0; ring < count; ++ring) {
       const double part = (ring + 0.5) / count;
       const Vector3 center = cable.state.positions[i] + part * (cable.state.positions[i + 1] - cable.state.positions[i]);
       const float rgb = packed_rgb(colors[part < 0.5 ? i : i + 1]);
       for (int side = 0; side < sides; ++side) {
         const double angle = 2 * M_PI * side / sides;
-        const Vector3 spoke = cable.model.material.radius * Vector3(0, std::cos(angle), std::sin(angle));
+        const Vector3 spoke = cable.model->material.radius * Vector3(0, std::cos(angle), std::sin(angle));
         const Eigen::Vector3f point = (center + orientations[i] * spoke).cast<float>();
         points.push_back({point.x(), point.y(), point.z(), rgb, cable_id});
       }

@@ -17,8 +17,8 @@ std::string text(const Vector3& v) {
 
 /// The node's place and the cable's direction there, between the directions of its segments.
 Pose node_pose(const SimulatedCable& cable, int node) {
-  const std::vector<Quaternion> orientations = segment_orientations(cable);
-  const int last = cable.model.segments() - 1;
+  const std::vector<Quaternion> orientations = segment_orientations(cable.state);
+  const int last = cable.state.segments() - 1;
   const Quaternion& before = orientations[std::max(node - 1, 0)];
   const Quaternion& after = orientations[std::min(node, last)];
   return {cable.state.positions[node], before.slerp(0.5, after).normalized()};
@@ -26,10 +26,10 @@ Pose node_pose(const SimulatedCable& cable, int node) {
 
 /// What an inextensible cable between the pin and its neighbours cannot do.
 void check_reach(const CheckedPin& pin, const World& world, std::vector<std::string>& errors) {
-  const CableModel& model = world.cables()[pin.body.index].model;
-  if (std::isfinite(model.material.axial_stiffness)) return;
+  const SimulatedCable& cable = world.cables()[pin.body.index];
+  if (std::isfinite(cable.model->material.axial_stiffness)) return;
   constexpr double rounding = 1e-6;
-  const std::vector<double> arc_length = model.arc_length();
+  const std::vector<double> arc_length = cable.state.arc_length();
   const Vector3 place = (pin.frame_pose * pin.offset).position;
   for (const Attachment& other : world.attachments()) {
     if (other.body != pin.body) continue;

@@ -37,7 +37,7 @@ void find_cable(const CableLocation& location, const World& world, PointOnCable&
     return;
   }
   std::string names;
-  for (const SimulatedCable& cable : world.cables()) names += (names.empty() ? "" : ", ") + cable.model.name;
+  for (const SimulatedCable& cable : world.cables()) names += (names.empty() ? "" : ", ") + cable.model->name;
   for (const SimulatedNet& net : world.nets()) names += (names.empty() ? "" : ", ") + net.model.name;
   found.errors.push_back("location.cable: " + quoted(location.cable) +
                          "; allowed: " + (names.empty() ? "none, there are no cables or nets" : names));
@@ -46,7 +46,7 @@ void find_cable(const CableLocation& location, const World& world, PointOnCable&
 void find_node(const CableLocation& location, const World& world, PointOnCable& found) {
   found.field = "location.node: " + std::to_string(location.node);
   if (found.cable < 0) return;
-  const auto segments = static_cast<std::uint32_t>(world.cables()[found.cable].model.segments());
+  const auto segments = static_cast<std::uint32_t>(world.cables()[found.cable].state.segments());
   if (location.node > segments) {
     found.errors.push_back(found.field + "; allowed: 0 to " + std::to_string(segments));
     return;
@@ -61,8 +61,8 @@ void find_arc_length(const CableLocation& location, const World& world, PointOnC
     if (!std::isfinite(location.arc_length)) found.errors.push_back(found.field + "; allowed: finite numbers [m]");
     return;
   }
-  const CableModel& model = world.cables()[found.cable].model;
-  const std::vector<double> arc_length = model.arc_length();
+  const CableState& state = world.cables()[found.cable].state;
+  const std::vector<double> arc_length = state.arc_length();
   // The end is a sum, rounded.
   constexpr double rounding = 1e-9;
   if (!(location.arc_length >= 0 && location.arc_length <= arc_length.back() * (1 + rounding))) {
@@ -70,8 +70,8 @@ void find_arc_length(const CableLocation& location, const World& world, PointOnC
     return;
   }
   const auto after = std::upper_bound(arc_length.begin(), arc_length.end(), location.arc_length);
-  found.segment = std::min(static_cast<int>(std::distance(arc_length.begin(), after)), model.segments()) - 1;
-  found.fraction = (location.arc_length - arc_length[found.segment]) / model.rest_lengths[found.segment];
+  found.segment = std::min(static_cast<int>(std::distance(arc_length.begin(), after)), state.segments()) - 1;
+  found.fraction = (location.arc_length - arc_length[found.segment]) / state.rest_lengths[found.segment];
 }
 
 /// The point of NEAREST in the fixed frame; what is wrong with it is added to `errors`.
@@ -98,7 +98,7 @@ void find_nearest(const CableLocation& location, const World& world, const FindF
   const bool any = found.cable < 0;
   const int first = any ? 0 : found.cable, last = any ? static_cast<int>(world.cables().size()) - 1 : found.cable;
   for (int cable = first; cable <= last; ++cable) {
-    const NearestPoint nearest = nearest_point(world.cables()[cable], *position);
+    const NearestPoint nearest = nearest_point(world.cables()[cable].state, *position);
     // Squares of far points overflow: then one cable is as near as another.
     if (found.cable >= 0 && !(nearest.distance < least)) continue;
     least = nearest.distance;
@@ -141,7 +141,7 @@ int find_net(const CableLocation& location, const World& world, const FindFrame&
   const std::optional<Vector3> point = read_point(location, find_frame, errors);
   if (!point) return -1;
   double least = infinity;
-  for (const SimulatedCable& cable : world.cables()) least = std::min(least, nearest_point(cable, *point).distance);
+  for (const SimulatedCable& cable : world.cables()) least = std::min(least, nearest_point(cable.state, *point).distance);
   int nearest = -1;
   for (int net = 0; net < static_cast<int>(world.nets().size()); ++net) {
     if (!(distance(world.nets()[net], *point) < least)) continue;
@@ -204,15 +204,15 @@ Location locate_cut(const CableLocation& location, const World& world, const Fin
   PointOnCable found = find_point(location, world, find_frame);
   if (found.errors.empty()) {
     const SimulatedCable& cable = world.cables()[found.cable];
-    const int last = cable.model.segments() - 2;
+    const int last = cable.state.segments() - 2;
     const bool behind_the_end = location.mode == CableLocation::NODE && found.fraction > 0;
     if (last < 1) {
-      found.errors.push_back("location.cable: " + quoted(cable.model.name) + " of " + std::to_string(cable.model.segments()) +
+      found.errors.push_back("location.cable: " + quoted(cable.model->name) + " of " + std::to_string(cable.state.segments()) +
                              " segments; allowed: cables of at least 3, so that each piece keeps one");
     } else if (found.segment < 1 || found.segment > last || behind_the_end) {
       found.errors.push_back(
           found.field + " means " + (behind_the_end ? "no segment" : "segment " + std::to_string(found.segment)) + " of cable " +
-          quoted(cable.model.name) + "; allowed: segments 1 to " + std::to_string(last) + ", so that each piece keeps one");
+          quoted(cable.model->name) + "; allowed: segments 1 to " + std::to_string(last) + ", so that each piece keeps one");
     }
   }
   return {cable_id(found.cable), found.segment, {found.segment}, found.distance, found.errors};

@@ -20,7 +20,7 @@ constexpr std::size_t most_errors = 20;
 
 int count_nodes(const World& world) {
   int nodes = 0;
-  for (const SimulatedCable& cable : world.cables()) nodes += cable.model.nodes();
+  for (const SimulatedCable& cable : world.cables()) nodes += cable.state.nodes();
   for (const SimulatedNet& net : world.nets()) nodes += net.model.nodes();
   nodes += static_cast<int>(world.particles().size());
   return nodes;

@@ -35,8 +35,8 @@ void CableWatch::report_status(const StepResult& result, Nanoseconds stamp, cons
 
 void CableWatch::report_breaks(Nanoseconds stamp, const World& world) const {
   for (const Break& broken : world.findings().breaks) {
-    const CableModel& first = world.cables()[broken.cable].model;
-    const std::string& second = world.cables()[broken.new_cable].model.name;
+    const CableModel& first = *world.cables()[broken.cable].model;
+    const std::string& second = world.cables()[broken.new_cable].model->name;
     events_.publish(CableEvent::BROKE, stamp, {first.name, {}, broken.segment, second},
                     "cable " + quoted(first.name) + " broke at segment " + std::to_string(broken.segment) +
                         ", where its tension was above breaking_tension, " + number_text(first.material.breaking_tension) +
@@ -46,7 +46,7 @@ void CableWatch::report_breaks(Nanoseconds stamp, const World& world) const {
 
 void CableWatch::report_intrusions(const World& world) {
   for (const Intrusion& intrusion : world.findings().intrusions) {
-    const std::string& cable = world.cables()[intrusion.cable].model.name;
+    const std::string& cable = world.cables()[intrusion.cable].model->name;
     const std::string& obstacle = world.obstacles()[intrusion.obstacle].name;
     if (!intrusions_.insert(cable + " in " + obstacle).second) continue;
     ROS_WARN("cable %s is %s m deep inside obstacle %s at segment %d and is pushed out of it", quoted(cable).c_str(),

@@ -101,7 +101,7 @@ std::optional<EditResult> Simulation::refused_cable(const std::string& field, co
   if (std::find(waiting.begin(), waiting.end(), cable) != waiting.end())
     return refused(field + ": " + quoted(cable) + " waits for its tf frames; allowed: cables that are simulated already");
   std::string names;
-  for (const SimulatedCable& other : world_.cables()) names += (names.empty() ? "" : ", ") + other.model.name;
+  for (const SimulatedCable& other : world_.cables()) names += (names.empty() ? "" : ", ") + other.model->name;
   return refused(field + ": " + quoted(cable) + "; allowed: " + (names.empty() ? "none, there are no cables" : names));
 }
 
@@ -109,7 +109,7 @@ EditResult Simulation::set_length(const std::string& cable, bool at_end, double 
   if (!started_) return refused_before_start();
   if (const auto reason = refused_cable("cable", cable)) return *reason;
   const int index = find(world_.cables(), cable);
-  const double before = world_.cables()[index].model.length();
+  const double before = world_.cables()[index].state.length();
   const EditResult result = world_.apply(edit::SetLength{index, at_end, length, speed});
   if (!result.ok) return result;
   return done("cable " + quoted(cable) + (length < before ? " is taken in from " : " is paid out from ") + rounded_text(before) +
@@ -121,7 +121,7 @@ EditResult Simulation::join(const std::string& first, bool first_at_end, const s
   if (!started_) return refused_before_start();
   if (const auto reason = refused_cable("first", first)) return *reason;
   if (const auto reason = refused_cable("second", second)) return *reason;
-  const int nodes = world_.cables()[find(world_.cables(), first_at_end ? first : second)].model.nodes();
+  const int nodes = world_.cables()[find(world_.cables(), first_at_end ? first : second)].state.nodes();
   const EditResult result =
       world_.apply(edit::Join{find(world_.cables(), first), first_at_end, find(world_.cables(), second), second_at_end});
   if (!result.ok) return result;

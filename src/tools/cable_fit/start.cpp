@@ -56,11 +56,11 @@ std::vector<Vector3> marker_positions(const SimulatedCable& cable, const Markers
   const std::vector<Vector3>& nodes = cable.state.positions;
   std::vector<Vector3> positions;
   for (const double marker : markers.places) {
-    const Place place = place_on(cable.model.segments(), marker);
+    const Place place = place_on(cable.state.segments(), marker);
     positions.emplace_back((1 - place.fraction) * nodes[place.segment] + place.fraction * nodes[place.segment + 1]);
   }
   if (markers.offsets.empty()) return positions;
-  const std::vector<Quaternion> orientations = segment_orientations(cable);
+  const std::vector<Quaternion> orientations = segment_orientations(cable.state);
   for (std::size_t i = 0; i < positions.size(); ++i) positions[i] += offset(markers, orientations, i);
   return positions;
 }
@@ -75,7 +75,7 @@ void start_along(const Markers& markers, const Recording& recording, const Bound
     const std::vector<Vector3> velocities = initial.velocities;
     start_smoothly(points, velocities, initial);
     const World along_markers(with_allowed_length(scene), inputs);
-    const std::vector<Quaternion> orientations = segment_orientations(along_markers.cables().front());
+    const std::vector<Quaternion> orientations = segment_orientations(along_markers.cables().front().state);
     for (std::size_t i = 0; i < points.size(); ++i) points[i] -= offset(markers, orientations, i);
     start_smoothly(points, velocities, initial);
   }

@@ -16,8 +16,8 @@ CsvWriter::CsvWriter(tools::OutputFile& file) : file_(file), buffer_("t,cable,no
 void CsvWriter::write_nodes(const World& world) {
   const std::string time = number_text(world.time());
   for (const SimulatedCable& cable : world.cables()) {
-    const std::string start = time + ',' + cable.model.name + ',';
-    const auto nodes = static_cast<std::size_t>(cable.model.nodes());
+    const std::string start = time + ',' + cable.model->name + ',';
+    const auto nodes = static_cast<std::size_t>(cable.state.nodes());
     for (std::size_t node = 0; node < nodes; ++node)
       write_row(start, node, cable.state.positions[node], cable.state.velocities[node],
                 cable.state.tension[std::min(node, nodes - 2)]);

@@ -84,8 +84,8 @@ std::vector<Event> EventLog::events() const {
 
 void EventLog::add_breaks(const World& world) {
   for (const Break& broken : world.findings().breaks) {
-    const CableModel& first = world.cables()[static_cast<std::size_t>(broken.cable)].model;
-    const std::string& second = world.cables()[static_cast<std::size_t>(broken.new_cable)].model.name;
+    const CableModel& first = *world.cables()[static_cast<std::size_t>(broken.cable)].model;
+    const std::string& second = world.cables()[static_cast<std::size_t>(broken.new_cable)].model->name;
     add({world.time(), "BROKE", first.name, broken.segment, "",
          "the segment that starts here was pulled harder than " + number_text(first.material.breaking_tension) +
              " N and is gone; the rest of the cable is " + second,
@@ -106,7 +106,7 @@ void EventLog::add_jumps(const World& world) {
 
 void EventLog::add_intrusions(const World& world) {
   for (const Intrusion& intrusion : world.findings().intrusions) {
-    const std::string& cable = world.cables()[static_cast<std::size_t>(intrusion.cable)].model.name;
+    const std::string& cable = world.cables()[static_cast<std::size_t>(intrusion.cable)].model->name;
     const std::string& obstacle = world.obstacles()[static_cast<std::size_t>(intrusion.obstacle)].name;
     if (!intrusions_.emplace(cable, obstacle).second) continue;
     add({world.time(), "inside_obstacle", cable, intrusion.segment, "",

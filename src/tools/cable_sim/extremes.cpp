@@ -30,10 +30,10 @@ void Extremes::add(const World& world) {
   const auto stronger = [](double a, double b) { return std::abs(a) > std::abs(b); };
   for (std::size_t i = 0; i < world.cables().size(); ++i) {
     const SimulatedCable& cable = world.cables()[i];
-    OfCable& extremes = cables_[cable.model.name];
+    OfCable& extremes = cables_[cable.model->name];
     double place = 0;
-    for (int k = 0; k < cable.model.segments(); ++k) {
-      const double length = cable.model.rest_lengths[k], tension = cable.state.tension[k];
+    for (int k = 0; k < cable.state.segments(); ++k) {
+      const double length = cable.state.rest_lengths[k], tension = cable.state.tension[k];
       take(tension, time, place + 0.5 * length, larger, extremes.max_tension);
       take(tension, time, place + 0.5 * length, smaller, extremes.min_tension);
       place += length;

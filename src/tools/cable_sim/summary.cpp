@@ -43,7 +43,7 @@ Json energy_json(const Energy& energy, double initial_total) {
 
 Summary::Summary(const World& world, std::int64_t averaged_steps)
     : averaged_steps_(static_cast<std::size_t>(averaged_steps)), initial_energy_(world.energy().total()) {
-  for (const SimulatedCable& cable : world.cables()) segments_ += cable.model.segments();
+  for (const SimulatedCable& cable : world.cables()) segments_ += cable.state.segments();
   for (const SimulatedNet& net : world.nets())
     segments_ += static_cast<std::int64_t>(std::max(net.model.links.size(), net.model.masses.size()));
   segments_ += static_cast<std::int64_t>(world.particles().size());
