@@ -22,6 +22,8 @@ CASES = {
     'cantilever, own weight': ('Cantilever under its own weight', '', ''),
     'elastica': ('Cantilever under a tip load', 'x / L', 'z / L'),
     'cantilever mode': ('Modes of a cantilever', '', ''),
+    'flat cantilever': ('Modes of a flat cantilever', '', ''),
+    'torsional mode': ('Torsion of a cantilever', '', ''),
     'end moment': ('End moment 2π EI/L', 'x / L', 'z / L'),
     'natural circle': ('Natural curvature 2π / L', '', ''),
     'Euler': ('Euler buckling', 'load / critical load', 'stiffness of the lowest mode'),

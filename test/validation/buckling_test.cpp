@@ -64,6 +64,8 @@ double stiffness_under_torque(int n, double difference, double tension, double t
   material(scene).axial_stiffness = axial_stiffness;
   material(scene).bending_stiffness = {1, 1 + difference};
   material(scene).torsional_stiffness = torsional_stiffness;
+  // So little that it takes a time of no account; without it waves of twist go to and fro after the end was turned.
+  material(scene).torsional_damping = 1e-3;
   damp(scene, drag);
   hold_ends(scene, AttachmentType::clamp, length);
   const auto helix = [&](double s) {

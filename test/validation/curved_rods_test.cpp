@@ -219,7 +219,7 @@ Simulation start_spring(const Helix& helix, int segments) {
 struct SpringCase {
   const char* name;
   Helix rest;
-  double pitch;        ///< after it was drawn out
+  double pitch;       ///< after it was drawn out
   bool turns_freely;  ///< its ends turn about its axis until there is no moment about it
 };
 

@@ -76,18 +76,16 @@ TEST_P(AtRest, StaysWhereItIs) {
   EXPECT_LT(run.world.energy().kinetic, 1e-15);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, AtRest,
-                         testing::Values(RestCase{"arc, free", false, Ends::free, false},
-                                         RestCase{"arc, clamped", false, Ends::clamped, false},
-                                         RestCase{"arc, clamped at both ends", false, Ends::clamped_at_both, false},
-                                         RestCase{"arc, clamped inside", false, Ends::clamped_inside, false},
-                                         RestCase{"arc by its curvature, clamped", false, Ends::clamped, true},
-                                         RestCase{"helix, free", true, Ends::free, false},
-                                         RestCase{"helix, clamped", true, Ends::clamped, false},
-                                         RestCase{"helix, clamped at both ends", true, Ends::clamped_at_both, false},
-                                         RestCase{"helix by its curvature and twist, clamped", true, Ends::clamped, true},
-                                         RestCase{"helix by its curvature and twist, clamped at both ends", true,
-                                                  Ends::clamped_at_both, true}));
+INSTANTIATE_TEST_SUITE_P(
+    Shapes, AtRest,
+    testing::Values(RestCase{"arc, free", false, Ends::free, false}, RestCase{"arc, clamped", false, Ends::clamped, false},
+                    RestCase{"arc, clamped at both ends", false, Ends::clamped_at_both, false},
+                    RestCase{"arc, clamped inside", false, Ends::clamped_inside, false},
+                    RestCase{"arc by its curvature, clamped", false, Ends::clamped, true},
+                    RestCase{"helix, free", true, Ends::free, false}, RestCase{"helix, clamped", true, Ends::clamped, false},
+                    RestCase{"helix, clamped at both ends", true, Ends::clamped_at_both, false},
+                    RestCase{"helix by its curvature and twist, clamped", true, Ends::clamped, true},
+                    RestCase{"helix by its curvature and twist, clamped at both ends", true, Ends::clamped_at_both, true}));
 
 struct Momenta {
   Vector3 linear = Vector3::Zero(), angular = Vector3::Zero();
@@ -96,17 +94,17 @@ struct Momenta {
 /// Of the nodes, and of the segments' spin: a section of radius r has r^2 / 2 of polar inertia a mass.
 Momenta momenta(const Simulation& run) {
   Momenta sum;
-  const CableModel& model = run.cable().model;
+  const MaterialDesc& material = run.cable().model->material;
   const CableState& state = run.cable().state;
-  for (int i = 0; i < model.nodes(); ++i) {
-    const Vector3 momentum = model.masses[i] * state.velocities[i];
+  for (int i = 0; i < state.nodes(); ++i) {
+    const Vector3 momentum = state.masses[i] * state.velocities[i];
     sum.linear += momentum;
     sum.angular += state.positions[i].cross(momentum);
   }
-  const double polar_inertia = 0.5 * model.material.linear_density * model.material.radius * model.material.radius;
+  const double polar_inertia = 0.5 * material.linear_density * material.radius * material.radius;
   for (std::size_t i = 0; i < state.spin.size(); ++i)
     sum.angular +=
-        polar_inertia * model.rest_lengths[i] * state.spin[i] * (state.positions[i + 1] - state.positions[i]).normalized();
+        polar_inertia * state.rest_lengths[i] * state.spin[i] * (state.positions[i + 1] - state.positions[i]).normalized();
   return sum;
 }
 
@@ -114,11 +112,13 @@ struct ThrownCase {
   const char* name;
   double axial_stiffness;
   bool numerical_damping;
+  double damping;  ///< [N m^2 s] of bending and twist
 };
 
 class Thrown : public testing::TestWithParam<ThrownCase> {};
 
-/// A flat rod, curved and twisted at rest, that is thrown, turns head over heels and swings as it flies.
+/// A flat rod, curved and twisted at rest, that is thrown, turns head over heels and swings as it flies. Damping inside it takes
+/// its energy, and not its momenta.
 TEST_P(Thrown, KeepsItsMomentaAndItsEnergy) {
   const ThrownCase& thrown = GetParam();
   constexpr int n = 40;
@@ -128,6 +128,7 @@ TEST_P(Thrown, KeepsItsMomentaAndItsEnergy) {
   material(scene).axial_stiffness = thrown.axial_stiffness;
   material(scene).bending_stiffness = {0.01, 0.03};
   material(scene).torsional_stiffness = 0.0075;
+  material(scene).bending_damping = material(scene).torsional_damping = thrown.damping;
   bend_at_rest(scene, 3, 2);
   scene.cables[0].rest_twist = 2;
   // Its shape at rest: with a clamp to find it.
@@ -141,8 +142,8 @@ TEST_P(Thrown, KeepsItsMomentaAndItsEnergy) {
   for (const Vector3& p : held.positions()) center += p / (n + 1);
   for (int i = 0; i <= n; ++i) {
     const double s = static_cast<double>(i) / n;
-    scene.cables[0].initial.velocities.push_back(Vector3(0.5, -1, 2).cross(held.positions()[i] - center) +
-                                                 Vector3(0.1, 0, 0.2) + 0.2 * std::sin(M_PI * s) * Vector3(0, 1, 1));
+    scene.cables[0].initial.velocities.push_back(Vector3(0.5, -1, 2).cross(held.positions()[i] - center) + Vector3(0.1, 0, 0.2) +
+                                                 0.2 * std::sin(M_PI * s) * Vector3(0, 1, 1));
   }
   Simulation run(scene);
   const Momenta before = momenta(run);
@@ -152,13 +153,18 @@ TEST_P(Thrown, KeepsItsMomentaAndItsEnergy) {
   const std::string name = std::string("thrown rod, ") + thrown.name;
   report(name + ": linear momentum", {{n, (after.linear - before.linear).norm() / before.linear.norm()}}, 1e-9, Order::none);
   report(name + ": angular momentum", {{n, (after.angular - before.angular).norm() / before.angular.norm()}}, 1e-9, Order::none);
-  report(name + ": energy", {{n, std::abs(run.world.energy().total() / energy - 1)}}, 1e-4, Order::none);
+  if (thrown.damping == 0)
+    report(name + ": energy", {{n, std::abs(run.world.energy().total() / energy - 1)}}, 1e-4, Order::none);
+  else
+    EXPECT_LT(run.world.energy().total(), 0.99 * energy);
 }
 
 INSTANTIATE_TEST_SUITE_P(Rods, Thrown,
-                         testing::Values(ThrownCase{"inextensible", infinity, true},
-                                         ThrownCase{"inextensible, nothing damped", infinity, false},
-                                         ThrownCase{"elastic, nothing damped", 1e4, false}));
+                         testing::Values(ThrownCase{"inextensible", infinity, true, 0},
+                                         ThrownCase{"inextensible, nothing damped", infinity, false, 0},
+                                         ThrownCase{"elastic, nothing damped", 1e4, false, 0},
+                                         ThrownCase{"inextensible, damped", infinity, true, 1e-4},
+                                         ThrownCase{"elastic, damped", 1e4, true, 1e-4}));
 
 }  // namespace
 }  // namespace verlet_cable::validation

@@ -84,8 +84,8 @@ class Michell : public testing::TestWithParam<double> {};
 TEST_P(Michell, RingLeavesItsPlaneAtHisAngle) {
   constexpr double torsional_stiffness = 2;
   const double difference = GetParam();
-  expect_critical(difference == 0 ? "Michell ring" : "Michell ring, material axes", 2 * M_PI * std::sqrt(3.0) / torsional_stiffness,
-                  [&](double angle) {
+  expect_critical(difference == 0 ? "Michell ring" : "Michell ring, material axes",
+                  2 * M_PI * std::sqrt(3.0) / torsional_stiffness, [&](double angle) {
                     return Ring{{1, 1 + difference}, torsional_stiffness, 0, angle};
                   });
 }

