@@ -65,6 +65,8 @@ void KirchhoffRod::start(const CableModel& model, const CableState& state, const
   simplified_ = false;
   h_ = h;
   part_ = part;
+  is_static_ = damping_time == infinity;
+  spin_rate_ = part == 1 ? 1 : 2;
   start_segments(model, state, segment);
   start_joints(model, state, boundary.directions, damping_time);
   start_clamps(model, state, boundary.directions, damping_time);
@@ -72,15 +74,14 @@ void KirchhoffRod::start(const CableModel& model, const CableState& state, const
 
 void KirchhoffRod::start_segments(const CableModel& model, const CableState& state, const VectorArray& segment) {
   const double moment = section_inertia(model.material);
-  const bool is_static = part_ == 1;
   for (int i = 0; i < segments_; ++i) {
     const Vector3& director = state.directors[i];
     set(frames_.start.y, i, director);
     inertia_[i] = moment * state.rest_lengths[i];
-    if (is_static)
-      inertia_[i] = std::max(inertia_[i], 0.5 * h_ * h_ * least_static_resistance * model.material.torsional_stiffness /
+    if (is_static_)
+      inertia_[i] = std::max(inertia_[i], h_ * h_ * least_static_resistance * model.material.torsional_stiffness /
                                               state.rest_lengths[i]);
-    spin_[i] = is_static ? 0 : state.spin[i];
+    spin_[i] = is_static_ ? 0 : state.spin[i];
     tau_[i] = h_ * spin_[i];
   }
   for (int i = 0; i < segments_; i += 2) {
@@ -176,12 +177,13 @@ void KirchhoffRod::add_segment_forces(const VectorArray& displacement, const Vec
     const Vector3 moment = get(clamp_joints_.moment, static_cast<int>(k));
     set(net_moment_, clamp.segment, get(net_moment_, clamp.segment) + (clamp.after ? -moment : moment));
   }
-  const Pair inverse_h = both(1 / h_);
+  const Pair inverse_h = both(1 / h_), spin_rate = both(spin_rate_);
   for (int i = 0; i < segments_; i += 2) {
     const PairVector start = neighbours(frames_.start.x, i), end = neighbours(frames_.end.x, i), d = neighbours(middle, i);
     const PairVector moment = neighbours(net_moment_, i);
     const Pair spin = neighbours(spin_, i), tau = neighbours(tau_, i);
-    const Pair mean_square = 0.5 * (1.0 + dot(start, end)), end_spin = 2.0 * inverse_h * tau * mean_square - spin;
+    const Pair mean_square = 0.5 * (1.0 + dot(start, end));
+    const Pair end_spin = spin + spin_rate * (inverse_h * tau * mean_square - spin);
     const PairVector unbalanced = moment - (inverse_h * neighbours(inertia_, i)) * (end_spin * end - spin * start);
     const Pair inverse_square = 1.0 / dot(d, d);
     put(square_root(inverse_square) * dot(unbalanced, d), stiffness_.torque, i);
@@ -243,7 +245,7 @@ void KirchhoffRod::store(const Boundary& boundary, CableState& state) const {
   for (int i = 0; i < segments_; ++i) {
     state.directors[i] = get(frames_.end.y, i);
     const double mean_square = 0.5 * (1 + get(frames_.start.x, i).dot(get(frames_.end.x, i)));
-    state.spin[i] = part_ == 1 ? 0 : 2 * tau_[i] * mean_square / h_ - spin_[i];
+    state.spin[i] = is_static_ ? 0 : spin_[i] + spin_rate_ * (tau_[i] * mean_square / h_ - spin_[i]);
     if (i > 0) state.joint_twist[i] = joints_.end_twist(i);
   }
   for (const HeldDirection& direction : boundary.directions) {
@@ -255,7 +257,7 @@ void KirchhoffRod::store(const Boundary& boundary, CableState& state) const {
 /// `simple`: without what may be negative (Gauss and Newton's).
 void KirchhoffRod::set_stiffness(const VectorArray& direction, bool simple) {
   stiffness_.turning_part = simple ? 0 : 0.5 * part_;
-  const Pair turns = both(stiffness_.turning_part), spins = both(2 / (h_ * h_));
+  const Pair turns = both(stiffness_.turning_part), spins = both(spin_rate_ / (h_ * h_));
   for (int i = 0; i < segments_; i += 2) {
     const PairVector d = neighbours(direction, i);
     const Pair square = dot(d, d);

@@ -16,7 +16,8 @@ namespace verlet_cable {
 ///   w = t x t' / |m|² + tau m,   m = (t + t') / 2,
 /// with t and t' the segment's directions at start and end, which `tau` adds its twist to. Moments of joints (see RodJoints) turn
 /// segments: what of them is normal to a segment acts as a pair of forces on its nodes, the rest is the equation for tau,
-///   N . t = 0,   N = M_after - M_before - J (spin' t' - spin t) / h,   spin' = 2 tau |m|² / h - spin.
+///   N . t = 0,   N = M_after - M_before - J (spin' t' - spin t) / h,   spin' = 2 tau |m|² / h - spin,
+/// or spin' = tau |m|² / h where forces are taken at the end of the substep, which damps.
 class KirchhoffRod {
  public:
   void resize(int segments);
@@ -68,7 +69,9 @@ class KirchhoffRod {
   bool elastic_ = false;
   bool simplified_ = false;
   int segments_ = 0;
+  bool is_static_ = false;
   double h_ = 0, part_ = 0.5;
+  double spin_rate_ = 2;  ///< of (tau / h - spin) / h in the equation for tau
   // Segments
   std::vector<double> inertia_;  // about the tangent [kg m^2]
   std::vector<double> spin_;     // at the start [rad/s]
