@@ -22,15 +22,26 @@ CASES = {
     'cantilever, own weight': ('Cantilever under its own weight', '', ''),
     'elastica': ('Cantilever under a tip load', 'x / L', 'z / L'),
     'cantilever mode': ('Modes of a cantilever', '', ''),
+    'flat cantilever': ('Modes of a flat cantilever', '', ''),
+    'torsional mode': ('Torsion of a cantilever', '', ''),
     'end moment': ('End moment 2π EI/L', 'x / L', 'z / L'),
     'natural circle': ('Natural curvature 2π / L', '', ''),
     'Euler': ('Euler buckling', 'load / critical load', 'stiffness of the lowest mode'),
     'twisted rod': ('Twisted rod without tension', 'torque / critical torque', 'stiffness of the lowest mode'),
     'long twisted rod': ('Long twisted rod under tension', 'torque / critical torque', 'stiffness of the lowest mode'),
     'Michell ring': ("Michell's ring", 'angle / critical angle', 'stiffness out of the plane'),
+    'Zajac ring': ('Rings that are curved at rest', 'rest curvature / critical rest curvature', 'stiffness out of the plane'),
+    'ribbon': ('Ribbons', 'load / critical load', 'stiffness out of the plane'),
+    'bow beam': ('Bow beam: quarter circle, load across its plane', 'angle from the clamp [rad]', 'deflection / reference at the end'),
+    'clamped rod': ('Rods between two clamps, seen from above', 'x / L', 'y / L'),
+    'spring': ('Helical springs, drawn out', 'length / at rest', 'force'),
+    'close spring': ('Closely wound spring', '', ''),
+    'natural helix': ('Rolled up by curvature and twist at rest', 'x / L', 'z / L'),
     'towed cable': ('Cable towed in a stream', '', ''),
     'terminal velocity': ('Terminal velocity', 't [s]', 'speed [m/s]'),
     'free cable': ('Free cable in space, 10 s', '', ''),
+    'at rest': ('Free of stress, at rest for 20 s', '', ''),
+    'thrown rod': ('Thrown flat rod, curved and twisted at rest, 10 s', '', ''),
     'folded chain': ('Folded chain dropped from one end', 't [s]', 'fallen [m]'),
     'step size': ('Step size halved', '', ''),
     'number of segments': ('Number of segments', '', ''),
@@ -63,12 +74,17 @@ def plot_curves(axes, rows, x_label, y_label):
     curves = defaultdict(list)
     for name, label, x, y in rows:
         curves[name + ', ' + label].append((float(x), float(y)))
+    references = [label for label in curves if label.endswith(', reference')]
     for label, points in curves.items():
         if 'stiffness' in y_label:
             points.sort()
-        axes.plot(*zip(*points), '.-' if len(points) < 10 else '-', label=label)
+        if label.endswith(', reference'):
+            axes.plot(*zip(*points), 'k--', linewidth=1, label='reference' if label == min(references) else None)
+        else:
+            axes.plot(*zip(*points), '.-' if len(points) < 10 else '-', label=label)
     if 'stiffness' in y_label:
         axes.axhline(0, color='k', linewidth=0.5)
+        axes.axvline(1, color='k', linestyle='--', linewidth=1, label='reference')
     elif x_label.startswith('x'):
         axes.set_aspect('equal', 'datalim')
     axes.set_xlabel(x_label)

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "../support/analytic_beam.h"
@@ -85,6 +86,69 @@ TEST_P(Cantilever, ModesAreThoseOfABeam) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, Cantilever, testing::Values(1, 2));
+
+/// Bends about y where it swings along z, and about z where it swings along y: four times the stiffness, twice the frequency.
+TEST(FlatCantilever, SwingsTwiceAsFastAcross) {
+  const double root = analytic::cantilever_roots[0];
+  const auto shape = [root](double s) { return analytic::cantilever_mode(root, s); };
+  for (const int component : {1, 2}) {
+    const double exact = root * root / time_unit * (component == 1 ? 2 : 1);
+    const auto samples = sample({20, 40, 80}, [&](int n) {
+      SceneDesc scene = rod(n, step_for(exact * time_unit, n));
+      material(scene).bending_stiffness = {1, 4};
+      material(scene).torsional_stiffness = 1;
+      clamp_start(scene);
+      start_at(scene, [&](double s) {
+        Vector3 point(s, 0, 0);
+        point[component] = 1e-4 * shape(s);
+        return point;
+      });
+      Simulation run(scene);
+      return angular_frequency(run, projection(component, shape), 3) / exact - 1;
+    });
+    report(std::string("flat cantilever, along ") + (component == 1 ? "y" : "z"), samples, 5e-3, Order::second);
+  }
+}
+
+/// Torsion of a rod of round section: waves of speed sqrt(GJ / (mu r^2 / 2)), four lengths long in the lowest mode of a
+/// cantilever (Blevins 1979, table 8-16).
+TEST(TorsionalMode, IsAQuarterWave) {
+  constexpr double radius = 0.02, torsional_stiffness = 0.0075;
+  const auto samples = sample({20, 40, 80}, [&](int n) {
+    SceneDesc scene = scenes::one_cable(n);
+    scene.gravity.acceleration.setZero();
+    material(scene).radius = radius;
+    material(scene).bending_stiffness = {0.01, 0.02};
+    material(scene).torsional_stiffness = torsional_stiffness;
+    const double exact = M_PI / 2 * std::sqrt(2 * torsional_stiffness / material(scene).linear_density) / radius;
+    scene.time_step = step_for(exact, n);
+    scene.cables[0].attachments = {
+        scenes::attachment("start", PlaceDesc::At::start, Vector3::Zero(), "hand", AttachmentType::clamp)};
+    scene.cables[0].attachments[0].initial_pose = InitialPose{};
+    start_at(scene, [](double s) { return Vector3(s, 0, 0); });
+    Simulation run(scene);
+    // The clamp turns evenly for half a period, which leaves the lowest mode at its largest; the next one, three times as fast,
+    // is no part of what is projected.
+    constexpr double angle = 0.01;
+    const double time = M_PI / exact;
+    while (run.world.time() < time) {
+      const double part = std::min(1.0, (run.world.time() + run.world.time_step()) / time);
+      run.inputs[1].pose.orientation = Eigen::AngleAxisd(angle * part, Vector3::UnitX());
+      run.step();
+    }
+    const auto roll = [angle](const Simulation& r) {
+      const std::vector<Quaternion> frames = segment_orientations(r.cable().state);
+      double sum = 0;
+      for (std::size_t i = 0; i < frames.size(); ++i) {
+        const Vector3 y = frames[i] * Vector3::UnitY();
+        sum += (std::atan2(y.z(), y.y()) - angle) * std::sin(M_PI / 2 * (i + 0.5) / frames.size());
+      }
+      return sum;
+    };
+    return angular_frequency(run, roll, 4) / exact - 1;
+  });
+  report("torsional mode", samples, 5e-3, Order::second);
+}
 
 }  // namespace
 }  // namespace verlet_cable::validation

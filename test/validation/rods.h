@@ -28,6 +28,12 @@ inline SceneDesc rod(int segments, double time_step) {
   return scene;
 }
 
+/// [1/m] about the material's y and z axes, all along.
+inline void bend_at_rest(SceneDesc& scene, double about_y, double about_z) {
+  scene.cables[0].rest_curvature.type = RestCurvatureDesc::Type::constant;
+  scene.cables[0].rest_curvature.curvature = {about_y, about_z};
+}
+
 /// Clamped at the origin, along +x.
 inline void clamp_start(SceneDesc& scene) {
   scene.cables[0].attachments.push_back(

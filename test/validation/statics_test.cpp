@@ -47,6 +47,13 @@ TEST_P(Catenary, ShapeAndForcesAreIrvines) {
     }
     return largest;
   });
+  std::vector<double> x, z;
+  for (int i = 0; i <= 100; ++i) {
+    const Eigen::Vector2d at = exact.point(i / 100.0);
+    x.push_back(at[0]);
+    z.push_back(at[1]);
+  }
+  record_curve(name, "reference", x, z);
   report(name + ": shape", samples, 1e-3, Order::second);
   report(name + ": end force", force_samples, 1e-3, Order::second);
 }
@@ -80,7 +87,14 @@ class TipLoad : public testing::TestWithParam<Elastica> {};
 TEST_P(TipLoad, BendsToTheElastica) {
   const Elastica& elastica = GetParam();
   const std::string name = "elastica P = " + std::to_string(static_cast<int>(elastica.load));
-  const Eigen::Vector2d tip = analytic::elastica(elastica.load, 1).back();
+  const std::vector<Eigen::Vector2d> curve = analytic::elastica(elastica.load, 20);
+  const Eigen::Vector2d& tip = curve.back();
+  std::vector<double> x, z;
+  for (const Eigen::Vector2d& at : curve) {
+    x.push_back(at[0]);
+    z.push_back(-at[1]);
+  }
+  record_curve(name, "reference", x, z);
   // The table's digits.
   EXPECT_NEAR(tip[1], elastica.deflection, 5e-5);
   const auto samples = sample({20, 40, 80}, [&](int n) {
@@ -133,6 +147,12 @@ TEST(EndMoment, RollsARodUpToACircle) {
     record_curve("end moment", "n = " + std::to_string(n), coordinates(run, 0), coordinates(run, 2));
     return end.norm();
   });
+  std::vector<double> x, z;
+  for (int i = 0; i <= 100; ++i) {
+    x.push_back(arc_point(i / 100.0, 2 * M_PI).x());
+    z.push_back(arc_point(i / 100.0, 2 * M_PI).z());
+  }
+  record_curve("end moment", "reference", x, z);
   report("end moment: gap", gaps, 1e-3, Order::none);
   report("end moment: moment", moments, 1e-3, Order::none);
 }

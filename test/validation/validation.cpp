@@ -22,18 +22,18 @@ void append(const std::string& file, const std::string& rows) {
     std::ofstream(std::string(directory) + "/" + file, std::ios::app) << rows;
 }
 
-std::string text(double value) {
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.3g", value);
-  return buffer;
-}
-
 /// For CSV: names have commas.
 std::string quoted(const std::string& name) {
   return '"' + name + '"';
 }
 
 }  // namespace
+
+std::string short_text(double value) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%.3g", value);
+  return buffer;
+}
 
 void Simulation::step() {
   ASSERT_EQ(world.step(inputs).status, StepResult::Status::ok) << "at t = " << world.time();
@@ -55,23 +55,23 @@ void report(const std::string& name, const std::vector<Sample>& samples, double 
   std::string line = "validation: " + name + ":";
   std::string rows;
   for (const Sample& s : samples) {
-    line += " " + text(s.error) + " (n = " + text(s.n) + ")";
-    rows += quoted(name) + "," + text(s.n) + "," + text(s.error) + "," + text(tolerance) + "\n";
+    line += " " + short_text(s.error) + " (n = " + short_text(s.n) + ")";
+    rows += quoted(name) + "," + short_text(s.n) + "," + short_text(s.error) + "," + short_text(tolerance) + "\n";
   }
   const Sample& last = samples.back();
   if (samples.size() > 1) {
     const Sample& before = samples[samples.size() - 2];
     const double slope = std::log(before.error / last.error) / std::log(last.n / before.n);
-    line += ", order " + text(slope);
+    line += ", order " + short_text(slope);
     if (order == Order::second && last.error > error_floor) {
       EXPECT_GT(slope, lowest_order) << name;
     }
   }
-  std::printf("%s, to reach %s\n", line.c_str(), text(tolerance).c_str());
+  std::printf("%s, to reach %s\n", line.c_str(), short_text(tolerance).c_str());
   std::string key = name;
   std::replace_if(
       key.begin(), key.end(), [](char c) { return c == ' ' || c == ',' || c == ':'; }, '_');
-  testing::Test::RecordProperty(key, text(last.error));
+  testing::Test::RecordProperty(key, short_text(last.error));
   append("errors.csv", rows);
   EXPECT_LT(last.error, tolerance) << name;
 }

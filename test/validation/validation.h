@@ -14,7 +14,8 @@ struct Simulation {
   World world;
   BoundaryInputs inputs;
 
-  explicit Simulation(const SceneDesc& scene) : world(scene, initial_frames(scene)), inputs(initial_frames(scene)) {}
+  explicit Simulation(const SceneDesc& scene) : Simulation(scene, initial_frames(scene)) {}
+  Simulation(const SceneDesc& scene, const BoundaryInputs& frames) : world(scene, frames), inputs(frames) {}
   const SimulatedCable& cable() const { return world.cables()[0]; }
   const std::vector<Vector3>& positions() const { return cable().state.positions; }
   /// Steps; a status other than ok is a failure of the test.
@@ -24,6 +25,9 @@ struct Simulation {
   const Vector3& force(const std::string& attachment) const;
   const Vector3& torque(const std::string& attachment) const;
 };
+
+/// Three digits.
+std::string short_text(double value);
 
 /// A relative error at a refinement: number of segments, or of steps.
 struct Sample {
