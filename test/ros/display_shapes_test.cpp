@@ -1,8 +1,7 @@
-// Tubes, colors and wrenches of the display, without a ROS master.
+// Colors and wrenches of the display, without a ROS master.
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -14,130 +13,12 @@
 
 #include "publish/color.h"
 #include "publish/conversions.h"
-#include "publish/tube.h"
 
 namespace verlet_cable {
 namespace {
 
-using visualization_msgs::Marker;
-
 // Coordinates are of order 1 and computed with some ten roundings.
 constexpr double rounding = 1e-13;
-
-Vector3 from_point(const geometry_msgs::Point& point) {
-  return {point.x, point.y, point.z};
-}
-
-Marker tube_along(const std::vector<Vector3>& centers, double radius, int most_corners = 100000) {
-  Marker marker;
-  fill_tube(centers, std::vector<std_msgs::ColorRGBA>(centers.size()), radius, most_corners, marker);
-  return marker;
-}
-
-std::vector<Vector3> straight_line(int segments, double length) {
-  std::vector<Vector3> centers;
-  for (int node = 0; node <= segments; ++node) centers.emplace_back(length * node / segments, 0, 0);
-  return centers;
-}
-
-/// Six times the volume that the triangles enclose, counted positive where they face outwards.
-double enclosed_volume(const Marker& tube) {
-  double six_volumes = 0;
-  for (std::size_t i = 0; i + 2 < tube.points.size(); i += 3) {
-    six_volumes += from_point(tube.points[i]).dot(from_point(tube.points[i + 1]).cross(from_point(tube.points[i + 2])));
-  }
-  return six_volumes / 6;
-}
-
-/// How often the directed edges between distinct corners occur, opposite directions cancelling: 0 everywhere on a closed surface.
-int unmatched_edges(const Marker& tube) {
-  using Corner = std::array<std::int64_t, 3>;
-  const auto corner = [](const geometry_msgs::Point& p) {
-    return Corner{std::llround(p.x * 1e9), std::llround(p.y * 1e9), std::llround(p.z * 1e9)};
-  };
-  std::map<std::pair<Corner, Corner>, int> edges;
-  for (std::size_t i = 0; i + 2 < tube.points.size(); i += 3) {
-    for (int k = 0; k < 3; ++k) {
-      const Corner from = corner(tube.points[i + k]), to = corner(tube.points[i + (k + 1) % 3]);
-      if (from < to) ++edges[{from, to}];
-      if (to < from) --edges[{to, from}];
-    }
-  }
-  int unmatched = 0;
-  for (const auto& [edge, count] : edges) unmatched += std::abs(count);
-  return unmatched;
-}
-
-TEST(Tube, IsClosedAndAsThickAsTheCable) {
-  const double radius = 0.01, length = 1.0;
-  const Marker tube = tube_along(straight_line(100, length), radius);
-  EXPECT_EQ(unmatched_edges(tube), 0);
-  // A prism of k corners has k sin(2 pi / k) / (2 pi) of the round cylinder's volume, 0.83 at six corners, the fewest there are;
-  // the half spheres add 1.3 % here.
-  const double cylinder = M_PI * radius * radius * length;
-  EXPECT_GT(enclosed_volume(tube), 0.83 * cylinder);
-  EXPECT_LT(enclosed_volume(tube), 1.014 * cylinder);
-}
-
-TEST(Tube, EndsInHalfSpheres) {
-  const double radius = 0.05;
-  const Marker tube = tube_along(straight_line(10, 1.0), radius);
-  double first = 0, last = 0;
-  for (const geometry_msgs::Point& point : tube.points) {
-    first = std::min(first, point.x);
-    last = std::max(last, point.x);
-    const double off_the_ends = std::max({-point.x, point.x - 1, 0.0});
-    const double off_the_axis = std::hypot(point.y, point.z);
-    EXPECT_NEAR(std::hypot(off_the_ends, off_the_axis), radius, rounding);
-  }
-  EXPECT_NEAR(first, -radius, rounding);
-  EXPECT_NEAR(last, 1 + radius, rounding);
-}
-
-TEST(Tube, IsNotWrungByBending) {
-  // In a plane, carrying a ring along leaves its spoke across the plane where it is, whatever the bends.
-  std::vector<Vector3> centers{Vector3::Zero()};
-  for (int node = 1; node <= 60; ++node) {
-    const double heading = 1.5 * std::sin(0.2 * node);
-    centers.push_back(centers.back() + 0.01 * Vector3(std::cos(heading), 0, std::sin(heading)));
-  }
-  const double radius = 0.002;
-  const Marker tube = tube_along(centers, radius);
-  for (const Vector3& center : centers) {
-    const Vector3 expected = center + radius * Vector3::UnitY();
-    double nearest = 1;
-    for (const geometry_msgs::Point& point : tube.points) nearest = std::min(nearest, (from_point(point) - expected).norm());
-    EXPECT_LT(nearest, rounding);
-  }
-}
-
-TEST(Tube, OfAVeryLongCableStaysLight) {
-  const Marker tube = tube_along(straight_line(100000, 1000.0), 0.01);
-  const std::size_t bytes = tube.points.size() * 3 * sizeof(double) + tube.colors.size() * 4 * sizeof(float);
-  EXPECT_LT(bytes, 300000u);
-  EXPECT_EQ(tube.points.size(), tube.colors.size());
-  EXPECT_NEAR(from_point(tube.points.back()).x(), 1000.0, 0.011);
-}
-
-TEST(Tube, InACrowdHasNoMoreCornersThanItMayAndIsStillClosed) {
-  const std::vector<Vector3> line = straight_line(50, 1.0);
-  for (const int most : {72, 100, 600, 1300, 2000, 2600}) {
-    const Marker tube = tube_along(line, 0.01, most);
-    EXPECT_LE(tube.points.size(), static_cast<std::size_t>(most));
-    EXPECT_GT(tube.points.size(), most / 2u);
-    EXPECT_EQ(tube.points.size(), tube.colors.size());
-    EXPECT_EQ(unmatched_edges(tube), 0) << most;
-    EXPECT_GT(enclosed_volume(tube), 0.63 * M_PI * 1e-4) << "four corners have 0.64 of a circle's area";
-  }
-}
-
-TEST(Tube, SurvivesFoldsAndCoincidingNodes) {
-  const std::vector<Vector3> centers{{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {0, 0, 0}, {-1, 0, 0}, {-1, 0, 0}};
-  for (const geometry_msgs::Point& point : tube_along(centers, 0.1).points) ASSERT_TRUE(from_point(point).allFinite());
-  for (const geometry_msgs::Point& point : tube_along({Vector3::Zero(), Vector3::Zero()}, 0.1).points) {
-    ASSERT_TRUE(from_point(point).allFinite());
-  }
-}
 
 SceneDesc scene_with(double linear_density, double length, double payload, double axial_stiffness) {
   SceneDesc scene;

@@ -16,7 +16,7 @@ using visualization_msgs::MarkerArray;
 
 constexpr double aluminium_density = 2700;  // [kg/m^3]
 constexpr double pin_size = 2.2;            // of a pin to the cable it holds, radius to radius
-constexpr int most_tube_corners = 60000;    // of all cables: what a network and rviz take 50 times a second
+constexpr int most_tube_corners = 30000;    // of all cables: 1.2 MB, that a network and rviz take 50 times a second
 constexpr int cable_marker_id = 0;
 constexpr int net_lines_id = 0, net_triangles_id = 1, particle_marker_id = 0;
 constexpr double net_line_width = 0.04;  // of the first link's length
