@@ -39,6 +39,14 @@ void Publishers::show(const SceneDesc& scene) {
   implementation_->surface.show(scene);
 }
 
+void Publishers::note_step(const World& world) {
+  implementation_->wrenches.means().add(world);
+}
+
+void Publishers::forget_steps() {
+  implementation_->wrenches.means().forget();
+}
+
 void Publishers::publish(const World& world, const ros::Time& stamp) {
   implementation_->markers.publish(world, stamp);
   implementation_->points.publish(world, stamp);

@@ -56,15 +56,16 @@ void WrenchPublisher::publish(const World& world, const ros::Time& stamp) {
   follow_attachments(world);
   for (const Attachment& attachment : world.attachments()) {
     const auto topic = topics_.find(attachment.name);
-    if (topic == topics_.end() || topic->second.getNumSubscribers() == 0 || !attachment.force.allFinite() ||
-        !attachment.torque.allFinite())
-      continue;
+    if (topic == topics_.end() || topic->second.getNumSubscribers() == 0) continue;
+    const Attachment mean = means_.mean(attachment);
+    if (!mean.force.allFinite() || !mean.torque.allFinite()) continue;
     const auto message = boost::make_shared<geometry_msgs::WrenchStamped>();
     message->header.stamp = stamp;
     message->header.frame_id = world.frames()[attachment.frame];
-    message->wrench = wrench_on_frame(attachment, world.frame_pose(attachment.frame));
+    message->wrench = wrench_on_frame(mean, world.frame_pose(attachment.frame));
     topic->second.publish(message);
   }
+  means_.end_tick();
 }
 
 }  // namespace verlet_cable

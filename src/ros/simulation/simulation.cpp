@@ -59,6 +59,7 @@ void Simulation::jump_back() {
   const bool forget = scene_.on_time_jump == TimeJumpPolicy::reset;
   interrupt_steps("ROS time went back");
   forget_resets("ROS time went back");
+  publishers_.forget_steps();
   frames_.restart(clock_.now(), forget);
   if (started_) {
     stamp_ = std::max<Nanoseconds>(target(), 0);
@@ -166,6 +167,7 @@ bool Simulation::step_world(Nanoseconds time) {
   cable_watch_.report_status(result, stamp_, world_);
   faulted_ = result.status == StepResult::Status::fault;
   if (faulted_) return false;
+  publishers_.note_step(world_);
   const Nanoseconds before = std::exchange(stamp_, time);
   stepped_to_ = stamp_;
   frame_watch_.report_jumps(stamp_, world_);

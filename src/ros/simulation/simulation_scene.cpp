@@ -21,6 +21,7 @@ World Simulation::build(const BoundaryInputs& frames) {
 /// In place of the one that is there.
 void Simulation::use_world(World world) {
   std::swap(world_, world);
+  publishers_.forget_steps();
   tasks_.dispose(std::move(world));
 }
 

@@ -48,6 +48,7 @@ EditResult Simulation::restore_state(const std::string& name) {
   interrupt_steps(message);
   forget_resets(message);
   world_ = snapshot.world;
+  publishers_.forget_steps();
   added_obstacles_ = snapshot.added_obstacles;
   moves_.clear();
   use_scene(snapshot.scene);
