@@ -6,8 +6,8 @@
 #include "rods.h"
 #include "validation.h"
 
-/// Rods of material frames where they lose their stability. A small load across gives a deflection d; 1 / d goes to nothing as the
-/// load that buckles is approached, in a straight line close to it.
+/// Rods of material frames where they lose their stability. A small load across gives a deflection d; 1 / d goes to nothing as
+/// the load that buckles is approached, in a straight line close to it.
 namespace verlet_cable::validation {
 namespace {
 
@@ -19,8 +19,8 @@ double vanishing_load(const std::function<double(double)>& stiffness, double exp
   return x1 + y1 * (x1 - x0) / (y0 - y1);
 }
 
-/// A ribbon on edge, clamped at its start, with a load at its tip: it gives way sideways and twists (Timoshenko and Gere, Theory of
-/// Elastic Stability, 1961, 6.3).
+/// A ribbon on edge, clamped at its start, with a load at its tip: it gives way sideways and twists (Timoshenko and Gere, Theory
+/// of Elastic Stability, 1961, 6.3).
 TEST(Ribbon, CantileverBucklesSideways) {
   constexpr double weak = 1, torsional = 1;
   const double expected = 4.01260 * std::sqrt(weak * torsional);
@@ -43,7 +43,8 @@ TEST(Ribbon, CantileverBucklesSideways) {
   report("ribbon: cantilever", samples, 5e-3, Order::none);
 }
 
-/// A rod that is straight and bends alike about all axes, with frames: a torque buckles it (Greenhill 1883), its end free to come closer.
+/// A rod that is straight and bends alike about all axes, with frames: a torque buckles it (Greenhill 1883), its end free to come
+/// closer.
 TEST(MaterialFrames, TwistedRodBuckles) {
   const double expected = analytic::untensioned_buckling_torque;
   constexpr double torsional = 5;
