@@ -29,9 +29,7 @@ double largest_distance(const Points& a, const Points& b) {
 /// Nodes of an unloaded rod whose first segment leaves the origin along x, or comes half a segment after a clamp that does.
 Points unloaded_shape(double length, const JointAngles& per_metre, bool clamped = false) {
   const double l = length / segments;
-  const auto turn = [&](double part) {
-    return joint_rotation({part * per_metre.twist, part * per_metre.y, part * per_metre.z});
-  };
+  const auto turn = [&](double part) { return joint_rotation({part * per_metre.twist, part * per_metre.y, part * per_metre.z}); };
   Points nodes{Vector3::Zero()};
   Eigen::Matrix3d frame = clamped ? turn(0.5 * l) : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
   for (int i = 0; i < segments; ++i) {
@@ -73,8 +71,8 @@ void clamp(SceneDesc& scene, bool both) {
   end = end * turn(0.5 * l);
   attachments.push_back(scenes::attachment("end", At::end, Vector3::Zero(), "hand", AttachmentType::clamp));
   const Vector3 place = cable.initial.points.back();
-  attachments.back().initial_pose = InitialPose{place.x(), place.y(), place.z(), std::atan2(end(2, 1), end(2, 2)),
-                                                std::asin(-end(2, 0)), std::atan2(end(1, 0), end(0, 0))};
+  attachments.back().initial_pose = InitialPose{
+      place.x(), place.y(), place.z(), std::atan2(end(2, 1), end(2, 2)), std::asin(-end(2, 0)), std::atan2(end(1, 0), end(0, 0))};
 }
 
 struct Shape {
@@ -101,8 +99,8 @@ TEST_P(UnloadedRod, StaysAsItIs) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, UnloadedRod,
-                         testing::Values(Shape{"arc", 1.5 * M_PI * 0.1, {0, 0, 10}, 0.02},
-                                         Shape{"helix", 1, {3, 0, 8}, 0.02}, Shape{"ribbon", 1, {2, 3, -2}, {0.02, 0.003}}),
+                         testing::Values(Shape{"arc", 1.5 * M_PI * 0.1, {0, 0, 10}, 0.02}, Shape{"helix", 1, {3, 0, 8}, 0.02},
+                                         Shape{"ribbon", 1, {2, 3, -2}, {0.02, 0.003}}),
                          [](const auto& info) { return info.param.name; });
 
 /// Thrown and spinning, shaken.
@@ -152,8 +150,8 @@ TEST(KirchhoffRod, KeepsEnergyAndMomentaInFreeFlight) {
   }
 }
 
-/// Falls, clamped at its start. The frames carry nothing where a rod is straight and bends alike about all axes, but for the inertia
-/// of its section, which is next to nothing here.
+/// Falls, clamped at its start. The frames carry nothing where a rod is straight and bends alike about all axes, but for the
+/// inertia of its section, which is next to nothing here.
 TEST(KirchhoffRod, StraightRodMovesAsWithoutFrames) {
   SceneDesc scene = scenes::one_cable(segments);
   MaterialDesc& material = scene.materials[0].material;
@@ -271,8 +269,8 @@ double distance_from(const ClampedRod& solution, int n, const std::array<double,
   constexpr int stages = 40;
   for (int stage = 1; stage <= stages; ++stage) {
     const double part = static_cast<double>(stage) / stages;
-    inputs[1].pose = {start + part * (end - start), Eigen::AngleAxisd(2 - part, Vector3::UnitZ()) *
-                                                        Eigen::AngleAxisd(2 * part, Vector3::UnitX())};
+    inputs[1].pose = {start + part * (end - start),
+                      Eigen::AngleAxisd(2 - part, Vector3::UnitZ()) * Eigen::AngleAxisd(2 * part, Vector3::UnitX())};
     world.step(inputs);
     EXPECT_TRUE(world.settle()) << stage;
   }

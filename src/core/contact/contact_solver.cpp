@@ -94,7 +94,8 @@ bool joins_cables(const Touch& touch) {
 
 void ContactSolver::Work::resize(std::size_t nodes) {
   for (VectorArray* a : {&load, &correction, &direction, &own_image, &image}) a->assign(nodes, 0.0);
-  for (std::vector<double>* a : {&gap, &correction_multiplier, &direction_multiplier, &torque, &correction_twist, &direction_twist})
+  for (std::vector<double>* a :
+       {&gap, &correction_multiplier, &direction_multiplier, &torque, &correction_twist, &direction_twist})
     a->assign(nodes, 0.0);
 }
 

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 
-#include "geometry/vector_array.h"
 #include "rod/angle_energy.h"
-#include "rod/material_frames.h"
 
 namespace verlet_cable {
 
@@ -13,7 +11,7 @@ void Bending::resize(int segments) {
   const std::size_t nodes = segments + 1;
   for (std::vector<double>* a : {&inverse_length_, &stiffness_, &damping_, &start_square_, &end_square_, &slope_})
     a->assign(nodes, 0.0);
-  for (VectorArray* a : {&start_, &natural_, &change_, &moment_}) a->assign(nodes, 0.0);
+  for (VectorArray* a : {&start_, &change_, &moment_}) a->assign(nodes, 0.0);
   clamps_.reserve(2 * nodes);
 }
 
@@ -23,8 +21,6 @@ void Bending::start(const CableModel& model, const CableState& state, const Vect
   active_ = state.directors.empty() && (stiffness > 0 || model.material.bending_damping > 0);
   if (!active_) return;
   part_ = part;
-  if (is_curved_ && state.rest_curvature.empty()) natural_.assign(state.nodes(), 0.0);
-  is_curved_ = !state.rest_curvature.empty();
   for (int i = 0; i < segments_; ++i) inverse_length_[i] = 1 / state.rest_lengths[i];
   for (int i = 1; i < segments_; ++i) {
     const double joint = 1 / state.bending_length(i, 0.5 * (state.rest_lengths[i - 1] + state.rest_lengths[i]));
@@ -44,7 +40,6 @@ void Bending::start(const CableModel& model, const CableState& state, const Vect
       ClampJoint clamp;
       clamp.target = static_cast<int>(k);
       clamp.segment = i;
-      clamp.side = i < target.node ? -1 : 1;
       const double joint = 1 / state.bending_length(target.node, 0.5 * state.rest_lengths[i]);
       clamp.stiffness = stiffness * joint;
       clamp.damping = damping * joint;
@@ -56,22 +51,6 @@ void Bending::start(const CableModel& model, const CableState& state, const Vect
       clamp.middle_axis = stretch * start_axis + part * clamp.axis_change;
       clamps_.push_back(clamp);
     }
-  }
-}
-
-void Bending::set_natural_shape(const CableState& state, const VectorArray& middle, const VectorArray& director) {
-  if (state.rest_curvature.empty()) return;
-  for (int i = 1; i < segments_; ++i) {
-    const Vector3 along = get(middle, i - 1) + get(middle, i), normal = 0.5 * (get(director, i - 1) + get(director, i));
-    set(natural_, i,
-        natural_change(state.rest_curvature[i],
-                       state.bending_length(i, 0.5 * (state.rest_lengths[i - 1] + state.rest_lengths[i])), along, normal));
-  }
-  for (ClampJoint& clamp : clamps_) {
-    const int i = clamp.segment, node = clamp.side > 0 ? i : i + 1;
-    clamp.natural =
-        clamp.side * natural_change(state.rest_curvature[node], state.bending_length(node, 0.5 * state.rest_lengths[i]),
-                                    get(middle, i), get(director, i));
   }
 }
 
@@ -90,12 +69,10 @@ void Bending::add_segment_forces(const VectorArray& displacement, VectorArray& p
   for (int i = 1; i < segments_; ++i) slope_[i] = stiffness_[i] * mean_slope(0.5 * start_square_[i], 0.5 * end_square_[i]);
   for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) {
     const double *w = inverse_length_.data(), *e = (start_.*component).data(), *change = (change_.*component).data();
-    const double *natural = (natural_.*component).data(), *slope = slope_.data(), *damping = damping_.data(),
-                 *stiffness = stiffness_.data();
+    const double *slope = slope_.data(), *damping = damping_.data();
     double *moment = (moment_.*component).data(), *f = (pull.*component).data();
 #pragma GCC ivdep
-    for (int i = 1; i < segments_; ++i)
-      moment[i] = slope[i] * (e[i] + part_ * change[i]) + damping[i] * change[i] - stiffness[i] * natural[i];
+    for (int i = 1; i < segments_; ++i) moment[i] = slope[i] * (e[i] + part_ * change[i]) + damping[i] * change[i];
 #pragma GCC ivdep
     for (int i = 0; i < segments_; ++i) f[i] += w[i] * (moment[i] - moment[i + 1]);
   }
@@ -112,7 +89,7 @@ void Bending::bend_clamps(const VectorArray& displacement) {
     const Vector3 change = inverse_length_[i] * (get(displacement, i + 1) - get(displacement, i)) - clamp.axis_change;
     const Vector3 middle = clamp.start + part_ * change;
     clamp.slope = clamp.stiffness * mean_slope(0.5 * clamp.start_square, 0.5 * (clamp.start + change).squaredNorm());
-    clamp.moment = clamp.slope * middle + clamp.damping * change - clamp.stiffness * clamp.natural;
+    clamp.moment = clamp.slope * middle + clamp.damping * change;
   }
 }
 
@@ -144,32 +121,19 @@ void Bending::react(const VectorArray& displacement, std::vector<HeldDirection>&
 
 double bending_energy(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions) {
   const int n = state.segments();
-  VectorArray segment, director;
-  segment.assign(n, 0.0);
-  director.assign(n, 0.0);
-  for (int i = 0; i < n; ++i) set(segment, i, state.positions[i + 1] - state.positions[i]);
-  if (!state.rest_curvature.empty()) carry_directors(state, segment, director);
-  const auto direction = [&](int i) -> Vector3 { return get(segment, i) / state.rest_lengths[i]; };
-  const auto joint = [](double length, const Vector3& change, const Vector3& natural) {
-    return (angle_energy(0.5 * change.squaredNorm()) - change.dot(natural) + 0.5 * natural.squaredNorm()) / length;
-  };
-  const auto natural = [&](int node, double length, int first, int last) -> Vector3 {
-    if (state.rest_curvature.empty()) return Vector3::Zero();
-    return natural_change(state.rest_curvature[node], length, get(segment, first) + get(segment, last),
-                          0.5 * (get(director, first) + get(director, last)));
-  };
+  const auto direction = [&](int i) -> Vector3 { return (state.positions[i + 1] - state.positions[i]) / state.rest_lengths[i]; };
+  const auto joint = [](double length, const Vector3& change) { return angle_energy(0.5 * change.squaredNorm()) / length; };
   double energy = 0;
   for (int i = 1; i < n; ++i) {
     const auto clamped = std::find_if(directions.begin(), directions.end(), [i](const HeldDirection& d) { return d.node == i; });
     const double length = state.bending_length(i, 0.5 * (state.rest_lengths[i - 1] + state.rest_lengths[i]));
-    if (clamped == directions.end()) energy += joint(length, direction(i) - direction(i - 1), natural(i, length, i - 1, i));
+    if (clamped == directions.end()) energy += joint(length, direction(i) - direction(i - 1));
   }
   for (const HeldDirection& clamp : directions) {
     for (const int i : {clamp.node - 1, clamp.node}) {
       if (i < 0 || i >= n) continue;
-      const double length = state.bending_length(clamp.node, 0.5 * state.rest_lengths[i]), side = i < clamp.node ? -1 : 1;
-      energy += joint(length, direction(i) - direction(i).norm() * (clamp.end * Vector3::UnitX()),
-                      side * natural(clamp.node, length, i, i));
+      const double length = state.bending_length(clamp.node, 0.5 * state.rest_lengths[i]);
+      energy += joint(length, direction(i) - direction(i).norm() * (clamp.end * Vector3::UnitX()));
     }
   }
   return model.material.bending_stiffness.largest() * energy;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "rod/material_frames.h"
 #include "rod/tridiagonal.h"
 
 namespace verlet_cable {
@@ -45,7 +44,7 @@ void CableStepper::resize(int segments) {
   segments_ = segments;
   const int nodes = segments + 2;  // one more, where two are computed with together
   for (VectorArray* a : {&position_, &velocity_, &acceleration_, &segment_, &displacement_, &middle_, &segment_force_,
-                         &end_velocity_, &base_load_, &director_})
+                         &end_velocity_, &base_load_})
     a->assign(nodes, 0.0);
   for (std::vector<double>* a : {&length_, &rest_growth_, &target_length_, &inverse_mass_, &tension_density_, &inertia_,
                                  &end_square_, &pivot_, &off_, &impulse_})
@@ -63,6 +62,11 @@ SubstepResult CableStepper::advance(const Substep& s, CableState& state) {
   SubstepResult result;
   begin(s, state, result);
   result.converged = solve(s, state, result);
+  if (!result.converged && rod_.active()) {
+    begin(s, state, result);
+    rod_.simplify();
+    result.converged = solve(s, state, result);
+  }
   if (result.converged) finish(s, false, state, result);
   return result;
 }
@@ -81,7 +85,6 @@ void CableStepper::begin(const Substep& s, const CableState& state, SubstepResul
   twist_.start(s.model, state, s.spans, s.damping_time(), s.part());
   fluid_.start(s.environment.fluid, s.environment.gravity, s.model.material.radius, s.damping_time());
   predict(s.h);
-  set_natural_shape(s, state);
 }
 
 void CableStepper::finish(const Substep& s, bool struck, CableState& state, SubstepResult& result) {
@@ -192,15 +195,6 @@ void CableStepper::predict(double h) {
   }
 }
 
-/// The unloaded shape, turned as the material is expected to be where forces are taken.
-void CableStepper::set_natural_shape(const Substep& s, const CableState& state) {
-  if (state.rest_curvature.empty() || !bending_.active()) return;
-  for (int i = 0; i < segments_; ++i)
-    set(middle_, i, get(segment_, i) + s.part() * (get(displacement_, i + 1) - get(displacement_, i)));
-  carry_directors(state, middle_, director_);
-  bending_.set_natural_shape(state, middle_, director_);
-}
-
 /// Newton's method on places and tensions together, its matrix kept as long as it converges fast.
 bool CableStepper::solve(const Substep& s, const CableState& state, SubstepResult& result) {
   const bool free = s.boundary.nodes.empty();
@@ -209,7 +203,6 @@ bool CableStepper::solve(const Substep& s, const CableState& state, SubstepResul
   double last = 0;
   bool stale = true;
   for (int i = 0; i < maximum_iterations; ++i) {
-    if (s.statics && i > 0) set_natural_shape(s, state);
     evaluate(s, state);
     if (stale) {
       assemble(s.part());

@@ -96,7 +96,6 @@ class CableStepper {
   void start_bending(const Substep& substep, const CableState& state);
   void add_bending_pulls();
   void predict(double h);
-  void set_natural_shape(const Substep& substep, const CableState& state);
   bool solve(const Substep& substep, const CableState& state, SubstepResult& result);
   void evaluate_segments(double part, Component component);
   void evaluate_nodes(Component component);
@@ -135,7 +134,6 @@ class CableStepper {
   Twist twist_;
   KirchhoffRod rod_;
   FluidForces fluid_;
-  VectorArray director_;  // segments: the material's y axis; only where the unloaded shape is curved
   KktSystem system_;
   bool couples_second_ = false;  // the system's couplings to second neighbours are set
   BlockElimination solver_;

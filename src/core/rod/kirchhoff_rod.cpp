@@ -79,8 +79,8 @@ void KirchhoffRod::start_segments(const CableModel& model, const CableState& sta
     set(frames_.start.y, i, director);
     inertia_[i] = moment * state.rest_lengths[i];
     if (is_static_)
-      inertia_[i] = std::max(inertia_[i], h_ * h_ * least_static_resistance * model.material.torsional_stiffness /
-                                              state.rest_lengths[i]);
+      inertia_[i] =
+          std::max(inertia_[i], h_ * h_ * least_static_resistance * model.material.torsional_stiffness / state.rest_lengths[i]);
     spin_[i] = is_static_ ? 0 : state.spin[i];
     tau_[i] = h_ * spin_[i];
   }
@@ -147,8 +147,7 @@ void KirchhoffRod::turn_frames(const VectorArray& displacement, const VectorArra
     end.z = cross(end.x, end.y);
     put(end, frames_.end, i);
     PairFrame middle = end;
-    if (part_ != 1)
-      middle = {mean, both(0.5) * (start.y + end.y), both(0.5) * (start.z + end.z)};
+    if (part_ != 1) middle = {mean, both(0.5) * (start.y + end.y), both(0.5) * (start.z + end.z)};
     put(middle, frames_.middle, i);
   }
   set(frames_.end, segments_, get(frames_.end, segments_ - 1));
@@ -301,7 +300,8 @@ RodEnergy rod_energy(const CableModel& model, const CableState& state, const std
     add(joint_stiffness(model, state, held.node, 0.5 * state.rest_lengths[segment], infinity),
         after ? joint_angles(clamp, beside, twist) : joint_angles(beside, clamp, twist));
   });
-  for (int i = 0; i < n; ++i) sum.spin += 0.5 * section_inertia(model.material) * state.rest_lengths[i] * state.spin[i] * state.spin[i];
+  for (int i = 0; i < n; ++i)
+    sum.spin += 0.5 * section_inertia(model.material) * state.rest_lengths[i] * state.spin[i] * state.spin[i];
   return sum;
 }
 

@@ -10,7 +10,8 @@
 namespace verlet_cable {
 
 /// Bending and twist of a cable that has a frame of its material on every segment, over a substep: Kirchhoff's rod, with two
-/// bending stiffnesses, curvature and twist at rest, twist that varies along it, and the inertia of its section about the tangent.
+/// bending stiffnesses, curvature and twist at rest, twist that varies along it, and the inertia of its section about the
+/// tangent.
 ///
 /// In a substep a frame turns by the Cayley rotation (1 + [w]x / 2 / ...) of
 ///   w = t x t' / |m|² + tau m,   m = (t + t') / 2,
@@ -38,7 +39,7 @@ class KirchhoffRod {
   void solve(const KktSystem& system) { elimination_.solve(system, stiffness_.torque); }
   /// Adds a part of the solution to the twist increments; the largest change [rad].
   double correct(double part);
-  /// From here on only with the part of the tangent that is always positive.
+  /// From here on only with the part of the tangent that is always positive, which leads further and converges more slowly.
   void simplify() { simplified_ = true; }
 
   /// Writes the moments on clamps [N m] and their joints' twist, and turns the frames for the last time.
@@ -51,8 +52,8 @@ class KirchhoffRod {
 
  private:
   struct ClampJoint {
-    int target = 0;    ///< index of the held direction
-    int segment = 0;   ///< the segment next to the clamp
+    int target = 0;     ///< index of the held direction
+    int segment = 0;    ///< the segment next to the clamp
     bool after = true;  ///< the segment comes after the clamp
   };
 

@@ -9,8 +9,8 @@ namespace {
 
 /// Between held nodes that are next to each other, relative to what is beside them, nothing gives way: so much does.
 constexpr double held_compliance = 1e-10;
-/// Where a stretch would meet less resistance than this, relative to what it meets where nothing is added, the matrix is replaced by one
-/// that is as good.
+/// Where a stretch would meet less resistance than this, relative to what it meets where nothing is added, the matrix is replaced
+/// by one that is as good.
 constexpr double least_resistance = 1e-3;
 
 PairVector row(const PairSymmetric& m, int i) {
@@ -121,8 +121,8 @@ namespace {
 double least_compliance(const KktSystem& system, const RodStiffness& stiffness, const RodJoints& joints, int node) {
   double beside = system.diagonal[node];
   for (const int i : {node - 1, node})
-    beside += std::abs(stiffness.force_density[i]) + (get(stiffness.segment, i).trace() + get(joints.stiffness, i).trace()) /
-                                                         get(system.direction, i).squaredNorm();
+    beside += std::abs(stiffness.force_density[i]) +
+              (get(stiffness.segment, i).trace() + get(joints.stiffness, i).trace()) / get(system.direction, i).squaredNorm();
   return held_compliance / beside;
 }
 
@@ -228,8 +228,7 @@ bool RodElimination::factor_lanes(const KktSystem& system, const RodStiffness& s
     e.turned = turned - e.give * image;
     const PairSymmetric behind = resist;
     resist = minus_product(resist, both(-1) * image, e.turned);
-    const Pair free{left + 1 == segments_ ? 1 : system.movable[left + 1],
-                    last || right == segments_ ? 1 : system.movable[right]};
+    const Pair free{left + 1 == segments_ ? 1 : system.movable[left + 1], last || right == segments_ ? 1 : system.movable[right]};
     if (free[0] == 0 || free[1] == 0) {
       // x = 0: the force is what makes it so, -A^-1 (B w + a).
       Pair floor = both(1);

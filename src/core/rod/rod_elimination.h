@@ -20,11 +20,11 @@ struct RodStiffness {
   void resize(int segments);
 };
 
-/// Solves the KktSystem of a rod of material frames directly, in O(n), from both ends at once. What lies behind a cut is condensed
-/// to how its end gives way to a force f and the rotation w of its last segment, and how that resists:
+/// Solves the KktSystem of a rod of material frames directly, in O(n), from both ends at once. What lies behind a cut is
+/// condensed to how its end gives way to a force f and the rotation w of its last segment, and how that resists:
 ///   x = A f + B w + a,   C w - B^T f = s,
-/// which holds for held ends (A = 0) and free ones, and needs pivots of 3 x 3 only. A node of inertia and stiffness M behind the cut
-/// makes A of it (A^-1 + M)^-1.
+/// which holds for held ends (A = 0) and free ones, and needs pivots of 3 x 3 only. A node of inertia and stiffness M behind the
+/// cut makes A of it (A^-1 + M)^-1.
 class RodElimination {
  public:
   void resize(int segments);
@@ -46,10 +46,10 @@ class RodElimination {
   /// A segment, the node after it and the joint there, eliminated.
   struct Elimination {
     PairVector direction, axis;
-    PairSymmetric give;      ///< A
-    PairMatrix turned;       ///< B
-    PairSymmetric inertia;   ///< M
-    PairSymmetric pivot;     ///< inverse of C and the joint
+    PairSymmetric give;       ///< A
+    PairMatrix turned;        ///< B
+    PairSymmetric inertia;    ///< M
+    PairSymmetric pivot;      ///< inverse of C and the joint
     PairMatrix turned_pivot;  ///< B times that
     PairMatrix carried;       ///< the pivot times the coupling to the next segment
     PairVector stretch_turn;  ///< moment of the segment's own stiffness against a stretch

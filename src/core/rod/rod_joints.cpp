@@ -77,7 +77,8 @@ SineCosine half_angle(Pair twist) {
   const Pair x = 0.5 * twist, x2 = x * x;
   SineCosine result;
   result.sine = x * (1.0 - x2 / 6.0 * (1.0 - x2 / 20.0 * (1.0 - x2 / 42.0 * (1.0 - x2 / 72.0 * (1.0 - x2 / 110.0)))));
-  result.cosine = 1.0 - x2 / 2.0 * (1.0 - x2 / 12.0 * (1.0 - x2 / 30.0 * (1.0 - x2 / 56.0 * (1.0 - x2 / 90.0 * (1.0 - x2 / 132.0)))));
+  result.cosine =
+      1.0 - x2 / 2.0 * (1.0 - x2 / 12.0 * (1.0 - x2 / 30.0 * (1.0 - x2 / 56.0 * (1.0 - x2 / 90.0 * (1.0 - x2 / 132.0)))));
   for (int lane = 0; lane < 2; ++lane) {
     if (x2[lane] < small_half_twist * small_half_twist) continue;
     result.sine[lane] = std::sin(x[lane]);
@@ -119,8 +120,8 @@ JointEnergy joint_energy(const JointStiffness& stiffness, const JointAngles& ang
 void RodJoints::resize(int count) {
   const std::size_t size = count + 1;
   for (std::vector<double>* a :
-       {&twist_stiffness_, &y_stiffness_, &z_stiffness_, &twist_damping_, &bend_damping_, &rest_twist_, &rest_y_, &rest_z_, &twist_,
-        &u_, &y_, &z_, &sine_, &cosine_, &chi_, &half_sine_, &half_cosine_, &end_twist_})
+       {&twist_stiffness_, &y_stiffness_, &z_stiffness_, &twist_damping_, &bend_damping_, &rest_twist_, &rest_y_, &rest_z_,
+        &twist_, &u_, &y_, &z_, &sine_, &cosine_, &chi_, &half_sine_, &half_cosine_, &end_twist_})
     a->assign(size, 0.0);
   moment.assign(size, 0.0);
   stiffness.assign(size, 0.0);
@@ -187,10 +188,10 @@ void RodJoints::evaluate(double part, const FrameMotion& frames_before, int befo
     const Pair end_half_cosine = half_cosine * turned_cosine - half_sine * turned_sine;
     const Pair end_half_sine = half_sine * turned_cosine + half_cosine * turned_sine;
 
-    const Pair angle_change_y = end_chi * (end_half_cosine * end.y + end_half_sine * end.z) -
-                                start_chi * (half_cosine * start.y + half_sine * start.z);
-    const Pair angle_change_z = end_chi * (end_half_cosine * end.z - end_half_sine * end.y) -
-                                start_chi * (half_cosine * start.z - half_sine * start.y);
+    const Pair angle_change_y =
+        end_chi * (end_half_cosine * end.y + end_half_sine * end.z) - start_chi * (half_cosine * start.y + half_sine * start.z);
+    const Pair angle_change_z =
+        end_chi * (end_half_cosine * end.z - end_half_sine * end.y) - start_chi * (half_cosine * start.z - half_sine * start.y);
     if (part == 1) {
       // Forces are those of the end: quotients of differences become derivatives.
       start = end;
@@ -217,8 +218,7 @@ void RodJoints::evaluate(double part, const FrameMotion& frames_before, int befo
     const PairVector of_sine = cross(b.y, a.z) - cross(b.z, a.y), of_cosine = cross(b.y, a.y) + cross(b.z, a.z);
 
     // Gradients of the three angles
-    const PairVector twist_gradient =
-        (change.quotient * cosine) * of_sine - (change.quotient * sine) * of_cosine;
+    const PairVector twist_gradient = (change.quotient * cosine) * of_sine - (change.quotient * sine) * of_cosine;
     const Pair half_chi = 0.5 * mean_chi * tangent_quotient;
     const PairVector y_gradient = (mean_chi * s) * about_y - (mean_chi * c) * about_z - (chi_slope * along_y) * about_x +
                                   (half_chi * (z * c - y * s)) * twist_gradient;

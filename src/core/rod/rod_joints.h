@@ -62,8 +62,8 @@ JointAngles joint_angles(const Eigen::Matrix3d& before, const Eigen::Matrix3d& a
 
 /// How a joint resists [N m], [N m / rad] and where it is unloaded.
 struct JointStiffness {
-  double twist = 0, bend_y = 0, bend_z = 0;         ///< GJ and EI over the length of cable that it stands for
-  double twist_damping = 0, bend_damping = 0;       ///< over length and time of the substep
+  double twist = 0, bend_y = 0, bend_z = 0;    ///< GJ and EI over the length of cable that it stands for
+  double twist_damping = 0, bend_damping = 0;  ///< over length and time of the substep
   JointAngles rest;
 };
 
