@@ -53,6 +53,30 @@ def read(path):
         return list(csv.reader(file))
 
 
+def legend(axes, size):
+    """Beside the data where there is room, below them otherwise."""
+    entries = len(axes.get_legend_handles_labels()[1])
+    if entries <= 6:
+        axes.legend(fontsize=size)
+    else:
+        columns = len(axes.figure.axes)
+        axes.legend(fontsize=6, loc='upper center', bbox_to_anchor=(0.5, -0.26), ncol=columns)
+        axes.figure.set_figheight(3.4 + 0.14 * entries / columns)
+
+
+def finest(curves):
+    """Of each case with its reference the curve of the most segments, where there are too many to tell apart."""
+    if len(curves) <= 9:
+        return curves
+    most = {}
+    for label in curves:
+        case, _, segments = label.rpartition(', n = ')
+        if case:
+            most[case] = max(most.get(case, 0), int(segments))
+    kept = [f'{case}, n = {segments}' for case, segments in most.items()]
+    return {label: points for label, points in curves.items() if label in kept or ', n = ' not in label}
+
+
 def plot_errors(axes, rows):
     series = defaultdict(list)
     for name, n, error, tolerance in rows:
@@ -67,19 +91,21 @@ def plot_errors(axes, rows):
         axes.loglog(n, [longest[0][1] * (n[0] / x) ** 2 for x in n], 'k:', linewidth=1, label='second order')
     axes.set_xlabel('segments or steps; dash: to reach')
     axes.set_ylabel('relative error')
-    axes.legend(fontsize=7)
+    legend(axes, 7)
 
 
 def plot_curves(axes, rows, x_label, y_label):
     curves = defaultdict(list)
     for name, label, x, y in rows:
         curves[name + ', ' + label].append((float(x), float(y)))
+    if 'stiffness' not in y_label:
+        curves = finest(curves)
     references = [label for label in curves if label.endswith(', reference')]
     for label, points in curves.items():
         if 'stiffness' in y_label:
             points.sort()
         if label.endswith(', reference'):
-            axes.plot(*zip(*points), 'k--', linewidth=1, label='reference' if label == min(references) else None)
+            axes.plot(*zip(*points), 'k--', linewidth=1, zorder=3, label='reference' if label == min(references) else None)
         else:
             axes.plot(*zip(*points), '.-' if len(points) < 10 else '-', label=label)
     if 'stiffness' in y_label:
@@ -89,7 +115,7 @@ def plot_curves(axes, rows, x_label, y_label):
         axes.set_aspect('equal', 'datalim')
     axes.set_xlabel(x_label)
     axes.set_ylabel(y_label)
-    axes.legend(fontsize=6)
+    legend(axes, 6)
 
 
 def main(data, pictures):
