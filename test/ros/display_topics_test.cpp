@@ -241,6 +241,42 @@ TEST_F(Topics, PointsAreTheNodesInOrder) {
   }
 }
 
+TEST_F(Topics, SurfaceIsOnTheCables) {
+  Listener<sensor_msgs::PointCloud2> listener(node_, "surface");
+  const sensor_msgs::PointCloud2& cloud = next(listener);
+  EXPECT_EQ(cloud.header.stamp, stamp);
+  // Two cables of 1 m, with rings of 12 points that are as far apart as these.
+  EXPECT_EQ(cloud.width, 2 * 12 * static_cast<unsigned>(1 / (2 * M_PI * 0.01 / 12)));
+  sensor_msgs::PointCloud2ConstIterator<float> x(cloud, "x");
+  sensor_msgs::PointCloud2ConstIterator<std::uint32_t> cable_id(cloud, "cable_id");
+  float lowest = 10, highest = 0;
+  for (unsigned point = 0; point < cloud.width / 2; ++point, ++x, ++cable_id) {
+    // The rope, which hangs from (1, 2, 3.3)
+    EXPECT_EQ(*cable_id, 0u);
+    EXPECT_NEAR(std::hypot(x[0] - 1, x[1] - 2), 0.01, 1e-5);
+    lowest = std::min(lowest, x[2]);
+    highest = std::max(highest, x[2]);
+  }
+  EXPECT_NEAR(highest, 3.3, 0.003);
+  EXPECT_NEAR(lowest, 2.3, 0.003);
+}
+
+TEST_F(Topics, SurfaceOfManyCablesStaysLight) {
+  CableDesc cable = scene_.cables[1];
+  cable.segments = 50;
+  cable.attachments.clear();
+  scene_.cables.clear();
+  for (int i = 0; i < 120; ++i) {
+    cable.name = "cable" + std::to_string(i);
+    scene_.cables.push_back(cable);
+  }
+  world_ = World(scene_, initial_frames(scene_));
+  Listener<sensor_msgs::PointCloud2> listener(node_, "surface");
+  const sensor_msgs::PointCloud2& cloud = next(listener);
+  EXPECT_LE(cloud.width, 100000u);
+  EXPECT_GT(cloud.width, 98000u);
+}
+
 TEST_F(Topics, StateIsEverythingInDoublePrecision) {
   Listener<CableArray> listener(node_, "state");
   const CableArray& state = next(listener);

@@ -102,6 +102,16 @@ class HandsTest(unittest.TestCase):
         self.assertEqual([e.id for e in markers['rope/3'].menu_entries], [PIN, CUT, RESET])
         self.assertLess(distance(markers['attachment/right'].pose.position, (0.7, 0, 1)), 1e-6)
 
+    def test_who_comes_late_gets_all_handles_as_they_are_now(self):
+        for _ in range(2):
+            with Messages('/robot/cable/hands/update', InteractiveMarkerUpdate) as updates:
+                number = updates.next().seq_num
+                with Messages('/robot/cable/hands/update_full', InteractiveMarkerInit) as late:
+                    full = late.wait_for(lambda _: True, 'handles')
+            self.assertIn('rope/10', {m.name for m in full.markers})
+            self.assertGreaterEqual(full.seq_num, number)
+            self.assertEqual(full._connection_header['latching'], '0', 'what nobody listens to is put together')
+
     def test_handles_of_nodes_are_not_seen(self):
         self.shown.clear()
         markers = self.shown.wait_for(lambda _: True, 'handles')

@@ -1,7 +1,5 @@
 #include "interact/handle_server.h"
 
-#include <visualization_msgs/InteractiveMarkerInit.h>
-
 #include <utility>
 
 #include "threads/guarded_queue.h"
@@ -23,7 +21,9 @@ const ros::WallDuration hold_time(1.0);  // in which nobody else drags what a cl
 HandleServer::HandleServer(const ros::NodeHandle& parent, const std::string& topic, std::function<void(const Feedback&)> receive)
     : receive_(std::move(receive)) {
   ros::NodeHandle node(parent, topic);
-  all_ = node.advertise<InteractiveMarkerInit>("update_full", queue_size, true);
+  // Not latched: who comes gets all that is there, and as long as nobody listens none of it is put together and sent.
+  all_ = node.advertise<InteractiveMarkerInit>("update_full", queue_size,
+                                               [this](const ros::SingleSubscriberPublisher& viewer) { viewer.publish(all()); });
   updates_ = node.advertise<InteractiveMarkerUpdate>("update", queue_size);
   feedback_ = node.subscribe<Feedback>("feedback", queue_size, [this](const Feedback::ConstPtr& feedback) { take(*feedback); });
   timer_ = node.createWallTimer(sign_of_life, [this](const ros::WallTimerEvent&) {
@@ -67,13 +67,19 @@ void HandleServer::clear() {
 
 void HandleServer::apply_changes() {
   InteractiveMarkerUpdate update = std::exchange(changes_, {});
-  InteractiveMarkerInit all;
   update.type = InteractiveMarkerUpdate::UPDATE;
-  update.server_id = all.server_id = ros::this_node::getName();
-  update.seq_num = all.seq_num = ++sequence_;
-  for (const auto& [name, marker] : markers_) all.markers.push_back(marker);
+  update.server_id = ros::this_node::getName();
+  update.seq_num = ++sequence_;
   updates_.publish(update);
-  all_.publish(all);
+  if (all_.getNumSubscribers() > 0) all_.publish(all());
+}
+
+InteractiveMarkerInit HandleServer::all() const {
+  InteractiveMarkerInit all;
+  all.server_id = ros::this_node::getName();
+  all.seq_num = sequence_;
+  for (const auto& [name, marker] : markers_) all.markers.push_back(marker);
+  return all;
 }
 
 void HandleServer::take(const Feedback& feedback) {

@@ -3,6 +3,7 @@
 #include <ros/ros.h>
 #include <visualization_msgs/InteractiveMarker.h>
 #include <visualization_msgs/InteractiveMarkerFeedback.h>
+#include <visualization_msgs/InteractiveMarkerInit.h>
 #include <visualization_msgs/InteractiveMarkerUpdate.h>
 
 #include <cstdint>
@@ -37,6 +38,7 @@ class HandleServer {
   };
 
   void take(const Feedback& feedback);
+  visualization_msgs::InteractiveMarkerInit all() const;
 
   const std::function<void(const Feedback&)> receive_;
   std::map<std::string, visualization_msgs::InteractiveMarker> markers_;  ///< by name

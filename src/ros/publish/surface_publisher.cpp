@@ -21,10 +21,10 @@ struct PointRecord {
   std::uint32_t cable_id;
 };
 
-/// Of the rings of a segment, if they are as far apart as the points of a ring, times `coarseness`.
-int rings(const SimulatedCable& cable, int segment, double coarseness) {
+/// Rings of a cable, if they are as far apart as the points of a ring, times `coarseness`.
+int ring_count(const SimulatedCable& cable, double coarseness) {
   const double spacing = coarseness * 2 * M_PI * cable.model->material.radius / sides;
-  return static_cast<int>(std::clamp(std::round(cable.state.rest_lengths[segment] / spacing), 1.0, most_points));
+  return static_cast<int>(std::clamp(std::floor(cable.state.length() / spacing), 1.0, most_points / sides));
 }
 
 /// By how much rings must be further apart than the points of a ring.
@@ -38,18 +38,20 @@ double find_coarseness(const World& world) {
 void append_points(const SimulatedCable& cable, std::uint32_t cable_id, double coarseness,
                    const std::vector<std_msgs::ColorRGBA>& colors, std::vector<PointRecord>& points) {
   const std::vector<Quaternion> orientations = segment_orientations(cable.state);
-  for (int i = 0; i < cable.state.segments(); ++i) {
-    const int count = rings(cable, i, coarseness);
-    for (int ring = 0; ring < count; ++ring) {
-      const double part = (ring + 0.5) / count;
-      const Vector3 center = cable.state.positions[i] + part * (cable.state.positions[i + 1] - cable.state.positions[i]);
-      const float rgb = packed_rgb(colors[part < 0.5 ? i : i + 1]);
-      for (int side = 0; side < sides; ++side) {
-        const double angle = 2 * M_PI * side / sides;
-        const Vector3 spoke = cable.model->material.radius * Vector3(0, std::cos(angle), std::sin(angle));
-        const Eigen::Vector3f point = (center + orientations[i] * spoke).cast<float>();
-        points.push_back({point.x(), point.y(), point.z(), rgb, cable_id});
-      }
+  const std::vector<double> arc_length = cable.state.arc_length();
+  const int rings = ring_count(cable, coarseness);
+  int i = 0;
+  for (int ring = 0; ring < rings; ++ring) {
+    const double s = (ring + 0.5) / rings * arc_length.back();
+    while (i + 1 < cable.state.segments() && arc_length[i + 1] < s) ++i;
+    const double part = std::clamp((s - arc_length[i]) / cable.state.rest_lengths[i], 0.0, 1.0);
+    const Vector3 center = cable.state.positions[i] + part * (cable.state.positions[i + 1] - cable.state.positions[i]);
+    const float rgb = packed_rgb(colors[part < 0.5 ? i : i + 1]);
+    for (int side = 0; side < sides; ++side) {
+      const double angle = 2 * M_PI * side / sides;
+      const Vector3 spoke = cable.model->material.radius * Vector3(0, std::cos(angle), std::sin(angle));
+      const Eigen::Vector3f point = (center + orientations[i] * spoke).cast<float>();
+      points.push_back({point.x(), point.y(), point.z(), rgb, cable_id});
     }
   }
 }
