@@ -31,6 +31,20 @@ TEST(Allocation, StepAllocatesNothing) {
   scene.cables.push_back(whip.cables[0]);
   scene.cables.back().name = "whip";
   scene.cables.back().attachments[0].name = "top";
+  scene.materials.push_back({"ribbon", scene.materials[0].material});
+  scene.materials.back().material.bending_stiffness = {0.02, 0.005};
+  scene.materials.back().material.torsional_stiffness = 0.01;
+  CableDesc& ribbon = scene.cables.emplace_back();
+  ribbon.name = "ribbon";
+  ribbon.material = "ribbon";
+  ribbon.length = 1;
+  ribbon.segments = 41;
+  ribbon.rest_curvature.type = RestCurvatureDesc::Type::constant;
+  ribbon.rest_curvature.curvature = {1, 2};
+  ribbon.attachments = {
+      scenes::attachment("first", PlaceDesc::At::start, Vector3::Zero(), "", AttachmentType::clamp),
+      scenes::attachment("inside", PlaceDesc::At::arc_length, Vector3::Zero(), "hand", AttachmentType::clamp)};
+  ribbon.attachments.back().place.arc_length = 0.7;
   BoundaryInputs inputs = scenes::hand_at({0.6, 0, 0});
   World world(scene, inputs);
   world.step(inputs);
