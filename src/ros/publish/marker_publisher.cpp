@@ -17,6 +17,7 @@ using visualization_msgs::MarkerArray;
 constexpr double aluminium_density = 2700;  // [kg/m^3]
 constexpr double pin_size = 2.2;            // of a pin to the cable it holds, radius to radius
 constexpr int most_tube_corners = 30000;    // of all cables: 1.2 MB, that a network and rviz take 50 times a second
+constexpr int fewest_tube_corners = 108;    // of a cable, however many there are: six rings
 constexpr int cable_marker_id = 0;
 constexpr int net_lines_id = 0, net_triangles_id = 1, particle_marker_id = 0;
 constexpr double net_line_width = 0.04;  // of the first link's length
@@ -84,7 +85,7 @@ void MarkerPublisher::publish(const World& world, const ros::Time& stamp) {
   for (int i = 0; i < cables; ++i) {
     const SimulatedCable& cable = world.cables()[i];
     if (!is_finite(cable)) continue;
-    add_cable(cable, contact_forces[i], most_tube_corners / cables, *markers);
+    add_cable(cable, contact_forces[i], std::max(most_tube_corners / cables, fewest_tube_corners), *markers);
     add_payloads(cable, *markers);
   }
   for (const SimulatedNet& net : world.nets())
