@@ -19,11 +19,13 @@ constexpr double weight = 0.1 * g;  // [N] of `scenes::one_cable`
 struct Material {
   AttachmentType type;
   double bending_stiffness, bending_damping, axial_stiffness;
+  double second_stiffness = 0;  ///< about the material's z axis; 0: the same about both
 };
 
 void PrintTo(const Material& m, std::ostream* out) {
   *out << (m.type == AttachmentType::clamp ? "clamps" : "hinges") << ", EI " << m.bending_stiffness << ", damping "
-       << m.bending_damping << ", EA " << m.axial_stiffness;
+       << m.bending_damping << ", EA " << m.axial_stiffness
+       << (m.second_stiffness > 0 ? ", a ribbon" : "");
 }
 
 /// Between the frames "left" and "right" on a level, 0.4 m apart.
@@ -31,6 +33,11 @@ SceneDesc between_hands(const Material& material, double drag = 0.05) {
   SceneDesc scene = scenes::one_cable(50);
   MaterialDesc& m = scene.materials[0].material;
   m.bending_stiffness = material.bending_stiffness;
+  if (material.second_stiffness > 0) {
+    m.bending_stiffness = {material.bending_stiffness, material.second_stiffness};
+    m.torsional_stiffness = 0.75 * material.second_stiffness;
+    m.torsional_damping = material.bending_damping;
+  }
   m.bending_damping = material.bending_damping;
   m.axial_stiffness = material.axial_stiffness;
   m.axial_damping = material.axial_stiffness < infinity ? 1 : 0;
@@ -128,7 +135,9 @@ INSTANTIATE_TEST_SUITE_P(
     Materials, Quiet,
     testing::Values(Material{AttachmentType::hinge, 1e-3, 5e-4, infinity}, Material{AttachmentType::hinge, 0.01, 5e-4, infinity},
                     Material{AttachmentType::clamp, 0.01, 5e-4, infinity}, Material{AttachmentType::clamp, 0.05, 2e-3, infinity},
-                    Material{AttachmentType::clamp, 0.1, 5e-4, infinity}, Material{AttachmentType::clamp, 0.01, 5e-4, 1e4}));
+                    Material{AttachmentType::clamp, 0.1, 5e-4, infinity}, Material{AttachmentType::clamp, 0.01, 5e-4, 1e4},
+                    Material{AttachmentType::clamp, 0.05, 1e-3, infinity, 0.01},
+                    Material{AttachmentType::hinge, 0.05, 1e-3, infinity, 0.01}));
 
 TEST(Quiet, AfterAClampHasTurnedItsForcesAreThoseOfEquilibrium) {
   for (const double bending : {1e-2, 0.05}) {

@@ -32,6 +32,9 @@ inline SceneDesc known_cable() {
   cable.length = 1.0;
   cable.segments = 40;
   cable.stiff_ends = {held_distance, held_distance};
+  // Hardly any, as real cables have it: a fit looks for a curved one, which is a rod of material frames.
+  cable.rest_curvature.type = RestCurvatureDesc::Type::constant;
+  cable.rest_curvature.curvature = {0.02, 0};
   return scene;
 }
 

@@ -13,6 +13,7 @@ from tf2_msgs.msg import TFMessage
 from verlet_cable.msg import CableArray, CableEvent, CableLocation
 from verlet_cable.srv import Cut, Join, LoadScene, Pin, PinRequest, RestoreState, SaveState, SetLength, Step, Unpin
 
+STARTING = 30.0  # [s] of wall time in which a node that is just started has its services
 PATIENCE = 5.0  # [s] of wall time, far more than anything here takes on a busy machine
 
 
@@ -117,7 +118,7 @@ class CableClient:
         self.name = name
 
         def service(topic, kind):
-            rospy.wait_for_service(f'{name}/{topic}', PATIENCE)
+            rospy.wait_for_service(f'{name}/{topic}', STARTING)
             return rospy.ServiceProxy(f'{name}/{topic}', kind)
 
         self.reset = service('reset', Trigger)

@@ -49,6 +49,8 @@ class CableSimSignals : public CableSim {
     dup2(standard_input >= 0 ? standard_input : open("/dev/null", O_RDONLY), STDIN_FILENO);
     dup2(standard_output >= 0 ? standard_output : open("/dev/null", O_WRONLY), STDOUT_FILENO);
     dup2(open(error_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666), STDERR_FILENO);
+    // Whoever runs the tests may ignore some.
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) signal(number, SIG_DFL);
     if (nohup) signal(SIGHUP, SIG_IGN);
     execv(CABLE_SIM_PROGRAM, pointers.data());
     _exit(127);

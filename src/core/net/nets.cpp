@@ -197,7 +197,7 @@ EditResult World::Implementation::cut_link(int index, int link) {
   std::vector<double>& impulses = state.net_progress[index].links.impulses;
   impulses.erase(impulses.begin() + link);
   update_net(index);
-  return {true, "", net.model.name};
+  return {true, {}, {}};
 }
 
 }  // namespace verlet_cable

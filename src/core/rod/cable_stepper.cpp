@@ -477,8 +477,10 @@ void CableStepper::quieten(const Substep& s, CableState& state) {
     growth_[growing.segment] = target_length_[growing.segment] * growing.growth;
   cleaner_.load(s.model, state, inertia_, segment_, end_velocity_, growth_, system_);
   for (const int i : both_held_) system_.gap[i] = 0;
-  solver_.solve(system_);
-  cleaner_.take_out(s.h, s.boundary.nodes, solver_.displacement(), position_, state);
+  if (rod_.active()) std::fill(rod_.torque().begin(), rod_.torque().end(), 0.0);
+  solve_linear();
+  cleaner_.take_out(s.h, s.boundary.nodes, correction(), position_, state);
+  if (rod_.active()) rod_.calm_spin(state);
 }
 
 /// The matrix at the end of the substep, of motion about it: without contacts and fluid, tension being the mean of two substeps,
@@ -487,6 +489,7 @@ void CableStepper::assemble_for_velocities() {
   for (int i = 0; i < segments_; ++i) start_density_[i] = std::max(0.0, 0.5 * (start_density_[i] + tension_density_[i]));
   assemble_segments(0.5, start_density_, segment_);
   if (bending_.active()) bending_.add_stiffness(system_);
+  if (rod_.active()) rod_.assemble(segment_, start_density_);
 }
 
 /// What the held nodes' equations of motion lack is what their holders supply.

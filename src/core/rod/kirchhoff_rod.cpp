@@ -253,6 +253,13 @@ void KirchhoffRod::store(const Boundary& boundary, CableState& state) const {
   }
 }
 
+void KirchhoffRod::calm_spin(CableState& state) const {
+  for (int i = 0; i < segments_; ++i) {
+    const double mean = 0.5 * (spin_[i] + state.spin[i]);
+    if (std::abs(mean) < std::abs(state.spin[i])) state.spin[i] = mean;
+  }
+}
+
 /// `simple`: without what may be negative (Gauss and Newton's).
 void KirchhoffRod::set_stiffness(const VectorArray& direction, bool simple) {
   stiffness_.turning_part = simple ? 0 : 0.5 * part_;

@@ -45,6 +45,9 @@ class KirchhoffRod {
   /// Writes the moments on clamps [N m] and their joints' twist, and turns the frames for the last time.
   void finish(const VectorArray& displacement, const VectorArray& segment, Boundary& boundary);
   void store(const Boundary& boundary, CableState& state) const;
+  /// Where motion was found that is not resolved, sections that alternate spin as they did on the mean over the substep: twist is
+  /// the fastest motion of all. Their kinetic energy does not grow.
+  void calm_spin(CableState& state) const;
 
   RodElimination& elimination() { return elimination_; }
   const RodElimination& elimination() const { return elimination_; }

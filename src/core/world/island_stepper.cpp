@@ -240,7 +240,7 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     }
     Substep substep{*c.model, environment, work.boundary, memory.spans, h};
     substep.scheme = scheme;
-    if (is_quietened(c.state)) substep.treatment = touches || to - from < 1 ? Treatment::damping : Treatment::cleaning;
+    if (state_.scene->numerical_damping) substep.treatment = touches || to - from < 1 ? Treatment::damping : Treatment::cleaning;
     if (touches) {
       work.result = {};
       workspace_.participants.push_back({static_cast<int>(k), cable, &work.stepper, substep, &c.state, {}});
@@ -270,13 +270,9 @@ void IslandStepper::find_contacts(Island& island, double from, double to) {
                            contact_rules(*state_.scene, false), (to - from) * state_.scene->time_step, island.pairs);
 }
 
-bool IslandStepper::is_quietened(const CableState& cable) const {
-  return state_.scene->numerical_damping && cable.directors.empty();
-}
-
 Scheme IslandStepper::scheme_of(int cable) const {
   const SimulatedCable& c = state_.cables[cable];
-  return is_quietened(c.state) ? next_scheme(*c.model, c.state.unresolved) : Scheme::conserving;
+  return state_.scene->numerical_damping ? next_scheme(*c.model, c.state.unresolved) : Scheme::conserving;
 }
 
 /// Cables that touch something go by one scheme, which their contacts heed: where one is to damp, all do.
@@ -284,7 +280,6 @@ Scheme IslandStepper::find_touching_scheme(const Island& island, double h) {
   Scheme scheme = Scheme::conserving;
   for (std::size_t k = 0; k < island.cables.size(); ++k) {
     if (!workspace_.contacts.touched(k)) continue;
-    if (!is_quietened(state_.cables[island.cables[k]].state)) return Scheme::conserving;
     const Scheme own = scheme_of(island.cables[k]);
     if (own == Scheme::first_order || scheme == Scheme::conserving) scheme = own;
   }

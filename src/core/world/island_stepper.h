@@ -59,7 +59,6 @@ class IslandStepper {
   void begin(const Island& island);
   bool advance(Island& island, double from, double to, bool tolerated);
   void find_contacts(Island& island, double from, double to);
-  bool is_quietened(const CableState& cable) const;
   Scheme scheme_of(int cable) const;
   Scheme find_touching_scheme(const Island& island, double h);
   void wind_drive(int cable, Scheme scheme, double from, double to, Boundary& boundary);
