@@ -83,7 +83,7 @@ struct RestCurvatureDesc {
   /// profile: the same at places spread evenly from start to end, at least two, straight lines in between [1/m]
   std::vector<std::array<double, 2>> profile;
 
-  /// Whether it is given as straight. A profile, be it of zeros, and an initial shape count as curved.
+  /// Whether the numbers alone say so; an initial shape may be straight, too.
   bool is_straight() const;
 };
 

@@ -26,7 +26,8 @@ bool is_fixed_frame(const SceneDesc& scene, const std::string& frame) {
 
 bool RestCurvatureDesc::is_straight() const {
   const std::array<double, 2> none{0, 0};
-  return type == Type::straight || (type == Type::constant && curvature == none);
+  return type == Type::straight || (type == Type::constant && curvature == none) ||
+         (type == Type::profile && std::all_of(profile.begin(), profile.end(), [&](const auto& place) { return place == none; }));
 }
 
 Pose pose_of(const InitialPose& pose) {
