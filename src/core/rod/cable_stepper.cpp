@@ -465,8 +465,8 @@ void CableStepper::restore_momenta(const Substep& s, const std::vector<double>& 
 
 /// Finds motion that the substep has not resolved: it is taken out of the velocities, or the next substeps damp it.
 void CableStepper::quieten(const Substep& s, CableState& state) {
-  // Its spin is a part of the angular momentum that a free rod keeps.
-  if (rod_.active() && s.boundary.nodes.empty()) return;
+  // Its spin is a part of the angular momentum that a free rod keeps. One that was let go is not damped any longer.
+  if (rod_.active() && s.boundary.nodes.empty()) return begin_anew(state.unresolved);
   if (!cleaner_.finds_unresolved(s.h, system_.movable, acceleration_, state)) return;
   if (s.treatment == Treatment::damping || s.scheme != Scheme::conserving) {
     state.unresolved.damped = s.scheme == Scheme::conserving ? damped_substeps : damped_substeps - 1;
