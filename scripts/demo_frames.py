@@ -4,6 +4,8 @@
 Publishes tf left_hand, right_hand, hook and swivel at 100 Hz, and demo/markers: what there is to see, in words.
 """
 import math
+import os
+import sys
 import threading
 
 import rospy
@@ -15,6 +17,9 @@ from visualization_msgs.msg import Marker, MarkerArray
 
 from verlet_cable.msg import CableLocation
 from verlet_cable.srv import Cut
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import node_thread  # noqa: E402
 
 FIXED_FRAME = 'world'
 RATE = 100.0          # [Hz]
@@ -109,7 +114,10 @@ class Director:
 
 
 def main():
-    rospy.init_node('demo_frames')
+    node_thread.run('demo_frames', move_frames)
+
+
+def move_frames():
     broadcaster = tf2_ros.TransformBroadcaster()
     rate = rospy.Rate(RATE)
     started = rospy.Time.now()
@@ -123,8 +131,4 @@ def main():
 
 
 if __name__ == '__main__':
-    try:
-        main()
-    except rospy.ROSException:
-        if not rospy.core.is_shutdown_requested():  # else it has only been ended
-            raise
+    main()

@@ -4,12 +4,17 @@
 Publishes tf at 100 Hz and example/labels. `~example` names the example.
 """
 import math
+import os
+import sys
 
 import rospy
 import tf2_ros
 from geometry_msgs.msg import Point, Quaternion, TransformStamped, Vector3
 from std_msgs.msg import ColorRGBA
 from visualization_msgs.msg import Marker, MarkerArray
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import node_thread  # noqa: E402
 
 FIXED_FRAME = 'world'
 RATE = 100.0  # [Hz]
@@ -98,7 +103,10 @@ def label(number, text, x, y, z, height):
 
 
 def main():
-    rospy.init_node('example_frames')
+    node_thread.run('example_frames', move_frames)
+
+
+def move_frames():
     motion, texts = EXAMPLES[rospy.get_param('~example')]
     labels = rospy.Publisher('example/labels', MarkerArray, queue_size=1, latch=True)
     labels.publish([label(number, *text) for number, text in enumerate(texts)])
@@ -112,8 +120,4 @@ def main():
 
 
 if __name__ == '__main__':
-    try:
-        main()
-    except rospy.ROSException:
-        if not rospy.core.is_shutdown_requested():  # else it has only been ended
-            raise
+    main()

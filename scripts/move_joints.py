@@ -1,9 +1,14 @@
 #!/usr/bin/python3
 """move_joints.py: moves the joints of config/scenes/dress_pack.urdf, from rest, on joint_states at 100 Hz."""
 import math
+import os
+import sys
 
 import rospy
 from sensor_msgs.msg import JointState
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import node_thread  # noqa: E402
 
 RATE = 100.0  # [Hz]
 RAMP = 2.0    # [s] in which the motion grows to its full size
@@ -26,7 +31,10 @@ def joint_positions(t):
 
 
 def main():
-    rospy.init_node('move_joints')
+    node_thread.run('move_joints', move_joints)
+
+
+def move_joints():
     publisher = rospy.Publisher('joint_states', JointState, queue_size=10)
     rate = rospy.Rate(RATE)
     started = rospy.Time.now()
@@ -40,8 +48,4 @@ def main():
 
 
 if __name__ == '__main__':
-    try:
-        main()
-    except rospy.ROSException:
-        if not rospy.core.is_shutdown_requested():  # else it has only been ended
-            raise
+    main()

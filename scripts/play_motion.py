@@ -18,6 +18,9 @@ from std_srvs.srv import Trigger
 
 from verlet_cable.msg import CableArray
 
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import node_thread  # noqa: E402
+
 RATE = 100.0  # [Hz]
 REWIND = 3.0  # times as fast as forward
 HEADER = 't,frame,x,y,z,qx,qy,qz,qw'
@@ -194,7 +197,10 @@ def check_arguments(arguments):
 
 def main():
     check_arguments(rospy.myargv()[1:])
-    rospy.init_node('play_motion')
+    node_thread.run('play_motion', play)
+
+
+def play():
     path = rospy.get_param('~motion', '')
     if not path:
         sys.exit(f'play_motion.py: no motion\n{USAGE}')
@@ -213,8 +219,4 @@ def main():
 
 
 if __name__ == '__main__':
-    try:
-        main()
-    except (rospy.ROSException, rospy.ServiceException):
-        if not rospy.core.is_shutdown_requested():  # else it has only been ended
-            raise
+    main()

@@ -29,6 +29,7 @@ from visualization_msgs.msg import Marker, MarkerArray  # noqa: E402
 from verlet_cable.msg import CableArray, CableEvent  # noqa: E402
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import node_thread  # noqa: E402
 from recording import Recording, RecordingError  # noqa: E402
 
 FIXED_FRAME = 'world'
@@ -245,7 +246,10 @@ class Replay:
 
 
 def main():
-    rospy.init_node('replay')
+    node_thread.run('replay', replay_runs)
+
+
+def replay_runs():
     loop = rospy.get_param('~loop', True)
     rospy.wait_for_service('cable/reset')  # first: what is wrong with the recording, replay_scene.py has said before the node starts
     replay = Replay(Recording(rospy.get_param('~data')))
@@ -262,9 +266,6 @@ def main():
 if __name__ == '__main__':
     try:
         main()
-    except (rospy.ROSInterruptException, rospy.exceptions.ROSInitException):
-        pass  # ended from outside
     except (RecordingError, rospy.ROSException, rospy.ServiceException) as problem:
-        if not rospy.core.is_shutdown_requested():  # else the node has only been ended first
-            rospy.logfatal('%s', problem)
-            sys.exit(1)
+        rospy.logfatal('%s', problem)
+        sys.exit(1)

@@ -3,12 +3,16 @@
 import os
 import signal
 import subprocess
+import sys
 import tempfile
+import threading
 import time
 import unittest
 
+import rospkg
 import rospy
 import rostest
+from std_msgs.msg import Empty
 from std_srvs.srv import Trigger, TriggerResponse
 from tf2_msgs.msg import TFMessage
 
@@ -17,6 +21,7 @@ from verlet_cable.msg import CableArray
 MOTION = 't,frame,x,y,z,qx,qy,qz,qw\n0,hand,0,0,1,0,0,0,1\n0.5,hand,0.2,0,1,0,0,0,1\n1,hand,0.5,0,1,0,0,0,1\n'
 FASTEST = 4.0      # [m/s] 1 m/s or less between the rows, three times as fast on the way back
 BEHIND = 0.3       # [s] the cables run behind ROS time
+SCRIPTS = os.path.join(rospkg.RosPack().get_path('verlet_cable'), 'scripts')
 LIMIT = 120.0      # [s] far more than anything here takes on a busy machine
 
 
@@ -65,6 +70,23 @@ class PlayMotionTest(unittest.TestCase):
             still = [stamp for stamp, x in poses if x > 1e-9][-1]
             self.assertGreater(poses[-1][0] - BEHIND, still)  # what is shown of the cables is of when the hand had arrived
         self.assertNotIn('Traceback', output)
+
+    def test_nodes_end_while_they_publish(self):
+        program = ("import node_thread, rospy, std_msgs.msg\n"
+                   "def publish():\n"
+                   "    publisher = rospy.Publisher('ended', std_msgs.msg.Empty, queue_size=1)\n"
+                   "    while True:\n"
+                   "        publisher.publish()\n"
+                   "node_thread.run('publishes', publish)\n")
+        for _ in range(10):
+            heard = threading.Event()
+            subscriber = rospy.Subscriber('ended', Empty, lambda _, heard=heard: heard.set())
+            process = subprocess.Popen([sys.executable, '-c', program], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                                       env={**os.environ, 'PYTHONPATH': f"{SCRIPTS}:{os.environ['PYTHONPATH']}"})
+            self.assertTrue(heard.wait(LIMIT))
+            process.send_signal(signal.SIGINT)
+            self.assertEqual(process.communicate(timeout=LIMIT)[0], '')
+            subscriber.unregister()
 
     def refuse(self, *arguments):
         """What is written of a wrong start, after the program's name."""

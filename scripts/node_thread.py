@@ -1,0 +1,36 @@
+"""Runs what a node does in a thread of its own."""
+import threading
+
+import rospy
+
+
+def run(name, work):
+    """A node of this name, until `work()` has ended or the node is shut down; raises what `work` raised, unless that came of the shutdown.
+
+    rospy shuts a node down in the main thread, wherever that is. A thread that publishes holds the lock of a queue that the shutdown
+    takes, too: were it the main thread, Ctrl-C could wait for ever (QueuedConnection in rospy/impl/tcpros_pubsub.py).
+    """
+    problems = []
+
+    def guarded_work():
+        try:
+            work()
+        except BaseException as problem:  # SystemExit, too: a thread cannot end the program with it
+            ended = rospy.core.is_shutdown_requested() and isinstance(problem, (rospy.ROSException, rospy.ServiceException))
+            if not ended:
+                problems.append(problem)
+        finally:
+            rospy.signal_shutdown('its work has ended')
+
+    try:
+        rospy.init_node(name)
+    except rospy.exceptions.ROSInitException:
+        if rospy.core.is_shutdown_requested():
+            return
+        raise
+    thread = threading.Thread(target=guarded_work, daemon=True)
+    thread.start()
+    rospy.spin()
+    thread.join(1.0)
+    if problems:
+        raise problems[0]
