@@ -1,10 +1,9 @@
 #pragma once
 
-#include <Eigen/LU>
 #include <vector>
 
 #include "geometry/vector_array.h"
-#include "rod/pair.h"
+#include "rod/node_elimination.h"
 
 namespace verlet_cable {
 
@@ -56,39 +55,17 @@ class BlockElimination {
   const std::vector<double>& multiplier() const { return multiplier_; }  ///< n
 
  private:
-  /// The block of node k and of the multiplier between nodes k - 1 and k, [[K, q], [q^T, -c]], eliminated. Its inverse is
-  /// [[node, cross], [cross^T, -multiplier]].
-  struct Elimination {
-    PairSymmetric node;
-    PairVector cross;
-    Pair multiplier;
-    PairMatrix node_next;        ///< the inverse times the couplings to node k + 1: rows of the node,
-    PairVector multiplier_next;  ///< row of the multiplier
-    PairVector node_along;       ///< the inverse times the coupling to the next multiplier: rows of the node,
-    Pair multiplier_along;       ///< row of the multiplier
-    PairVector direction;
-    Pair first, second;
-    PairVector beyond;  ///< coupling of the block's multiplier to node k + 1
-  };
-  struct Forward {
-    PairVector node;
-    Pair multiplier;
-  };
-  /// What is left in the middle: nodes m, m + 1, multipliers m - 1, m + 1 and m.
-  using Middle = Eigen::Matrix<double, 9, 9>;
-  using MiddleVector = Eigen::Matrix<double, 9, 1>;
-
-  template <bool bending, bool stiffened>
+  template <Couplings couplings>
   void factor_lanes(const KktSystem& system);
-  template <bool bending>
+  template <Couplings couplings>
   void solve_lanes(const KktSystem& system);
 
-  int nodes_ = 0;                          ///< even: padded by a held one where necessary
-  int lane_ = 0;                           ///< eliminations from either end; two nodes are left in the middle
-  bool wide_ = false;                      ///< whether a node is coupled to more than a multiple of its neighbour
-  std::vector<Elimination> eliminations_;  ///< lane_
-  std::vector<Forward> forward_;           ///< lane_
-  Eigen::PartialPivLU<Middle> middle_;
+  int nodes_ = 0;                                ///< even: padded by a held one where necessary
+  int lane_ = 0;                                 ///< eliminations from either end; two nodes are left in the middle
+  Couplings couplings_ = Couplings::plain;       ///< of the last factorisation
+  std::vector<Elimination<Pair>> eliminations_;  ///< lane_
+  std::vector<Forward<Pair>> forward_;           ///< lane_
+  MiddleElimination middle_;
   VectorArray displacement_;
   std::vector<double> multiplier_;
 };
