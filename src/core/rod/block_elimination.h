@@ -4,6 +4,7 @@
 
 #include "geometry/vector_array.h"
 #include "rod/node_elimination.h"
+#include "rod/pair.h"
 
 namespace verlet_cable {
 

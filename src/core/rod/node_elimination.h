@@ -1,11 +1,11 @@
 #pragma once
 
-#include "rod/pair.h"
+#include "rod/lane_algebra.h"
 
 namespace verlet_cable {
 
 /// Elimination of a cable's KktSystem node by node, from an end towards the middle: with each node goes the multiplier before it,
-/// so that no pivot vanishes at a held end. `Real`: see pair.h.
+/// so that no pivot vanishes at a held end. `Real`: see lane_algebra.h.
 
 /// What the eliminated nodes left to the next node, to the one after, and to the multiplier before the next node.
 template <class Real>
