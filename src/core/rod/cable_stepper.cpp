@@ -97,6 +97,7 @@ void CableStepper::finish(const Substep& s, bool struck, CableState& state, Subs
   move(s);
   const bool damped = !s.statics && s.scheme != Scheme::conserving;
   if (damped && s.boundary.nodes.empty()) restore_momenta(s, state.masses);
+  if (!s.statics && s.boundary.nodes.empty()) restore_angular_momentum(s, state.masses);
   if (!s.statics && (struck || damped || !s.boundary.growing.empty() || holders_accelerate(s.h, s.boundary.nodes)))
     project(s, state.masses);
   result.max_strain = store(s, state);
@@ -460,6 +461,15 @@ void CableStepper::restore_momenta(const Substep& s, const std::vector<double>& 
     angular_momentum += masses[i] * (start_arm.cross(v) + arm.cross(gain - end));
   }
   const RigidMotion missing = rigid_motion(masses, position_, momentum, angular_momentum);
+  for (int i = 0; i <= segments_; ++i) set(end_velocity_, i, get(end_velocity_, i) + missing.at(get(position_, i)));
+}
+
+/// Bending that is damped moves no free cable as a whole; what it did to the angular momentum, the material's twist would have
+/// balanced.
+void CableStepper::restore_angular_momentum(const Substep& s, const std::vector<double>& masses) {
+  const Vector3 taken = s.h * bending_.damping_torque(displacement_);
+  if (taken.isZero(0)) return;
+  const RigidMotion missing = rigid_motion(masses, position_, Vector3::Zero(), -taken);
   for (int i = 0; i <= segments_; ++i) set(end_velocity_, i, get(end_velocity_, i) + missing.at(get(position_, i)));
 }
 

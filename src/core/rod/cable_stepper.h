@@ -115,6 +115,7 @@ class CableStepper {
   double force_along(int segment) const;
   void move(const Substep& substep);
   void restore_momenta(const Substep& substep, const std::vector<double>& masses);
+  void restore_angular_momentum(const Substep& substep, const std::vector<double>& masses);
   void quieten(const Substep& substep, CableState& state);
   void assemble_for_velocities();
   bool holders_accelerate(double h, const std::vector<HeldNode>& held) const;
