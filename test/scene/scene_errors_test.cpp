@@ -149,6 +149,7 @@ const Mistake mistakes[] = {
      "materials.m.torsional_stiffness: 0; allowed: any number above 0 [N m^2] as cables[0] has rest_twist"},
     {"nanRestTwist", color, "rest_twist: .nan", "cables[0].rest_twist: \".nan\";"},
     {"infiniteRestTwist", color, "rest_twist: .inf", "cables[0].rest_twist: inf;"},
+    {"tightTolerance", "cables:", "tolerance: 1e-7\ncables:", "tolerance: 1e-07; allowed: any number from 1e-6 to 1e-3 [1/s]"},
     {"badNumericalDamping", "cables:", "numerical_damping: 1\ncables:", "numerical_damping: 1; allowed: true | false"},
     {"negativeDamping", "radius: 0.005", "radius: 0.005, torsional_damping: -1", "materials.m.torsional_damping: -1;"},
     {"infiniteDamping", "radius: 0.005", "radius: 0.005, axial_damping: .inf", "materials.m.axial_damping: inf;"},

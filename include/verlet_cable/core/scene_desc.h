@@ -261,6 +261,7 @@ struct SceneDesc {
   double time_step = 0.001;  ///< [s], > 0
   /// Motion that a step cannot resolve dies out within some steps; without, energy is conserved and such motion goes on.
   bool numerical_damping = true;
+  double tolerance = 1e-5;  ///< [1/s] error of velocities at which a cable's iteration ends, in segment lengths; 1e-6 to 1e-3
   GravityDesc gravity;
   FluidDesc fluid;
   double publish_rate = 50;  ///< [Hz], > 0

@@ -12,11 +12,9 @@ namespace verlet_cable {
 namespace {
 
 constexpr int maximum_iterations = 40;
-/// Error of a node's velocity at which an iteration ends, in segment lengths per second: far below what energy is asked for.
-constexpr double velocity_tolerance = 1e-5;
-/// Of a free cable: nothing but the solution keeps its angular momentum.
-constexpr double free_velocity_tolerance = 1e-6;
-/// Of what stands: errors times the stiffness are loads that would set it moving.
+/// Of a free cable nothing but the solution keeps the angular momentum: so much of the tolerance is allowed.
+constexpr double free_part = 0.1;
+/// [1/s] Of what stands: errors times the stiffness are loads that would set it moving.
 constexpr double static_velocity_tolerance = 1e-8;
 /// A matrix that is kept does not make corrections shrink faster than this for long, however fast the first one shrank.
 constexpr double fastest_convergence = 0.03;
@@ -205,7 +203,7 @@ void CableStepper::predict(double h) {
 /// Newton's method on places and tensions together, its matrix kept as long as it converges fast.
 bool CableStepper::solve(const Substep& s, const CableState& state, SubstepResult& result) {
   const bool free = s.boundary.nodes.empty();
-  const double error = s.statics ? static_velocity_tolerance : free ? free_velocity_tolerance : velocity_tolerance;
+  const double error = s.statics ? static_velocity_tolerance : free ? free_part * s.tolerance : s.tolerance;
   const double tolerance = error * std::min(s.h, longest_tolerated);
   double last = 0;
   bool stale = true;

@@ -240,6 +240,7 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     }
     Substep substep{*c.model, environment, work.boundary, memory.spans, h};
     substep.scheme = scheme;
+    substep.tolerance = state_.scene->tolerance;
     if (state_.scene->numerical_damping) substep.treatment = touches || to - from < 1 ? Treatment::damping : Treatment::cleaning;
     if (touches) {
       work.result = {};

@@ -108,7 +108,7 @@ auto fields(T& x, const RobotDesc*) {
 /// What the world itself reads: not what only programs do, nor what is made into particles and obstacles at once.
 template <class T>
 auto fields(T& x, const SceneDesc*) {
-  return std::tie(x.time_step, x.numerical_damping, x.gravity, x.fluid, x.limits.segments, x.materials, x.cables, x.nets,
+  return std::tie(x.time_step, x.numerical_damping, x.tolerance, x.gravity, x.fluid, x.limits.segments, x.materials, x.cables, x.nets,
                   x.integrator, x.robot, x.contact);
 }
 
