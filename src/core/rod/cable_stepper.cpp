@@ -445,6 +445,12 @@ void CableStepper::project(const Substep& s, const std::vector<double>& masses) 
     for (int i = 1; i < n; ++i) v[i] += w[i] * (impulse[i - 1] * d[i - 1] - impulse[i] * d[i]);
     v[n] += w[n] * impulse[n - 1] * d[n - 1];
   }
+  // What the segments exert on the other nodes they exert on the holders.
+  for (HeldNode& target : s.boundary.nodes) {
+    const int i = target.node;
+    if (i > 0) target.force += impulse_[i - 1] / s.h * get(segment_, i - 1);
+    if (i < n) target.force -= impulse_[i] / s.h * get(segment_, i);
+  }
 }
 
 /// Substeps that damp keep momenta to second order. Those of a free cable are kept exactly: what is missing is given back as a
@@ -481,7 +487,9 @@ void CableStepper::quieten(const Substep& s, CableState& state) {
   for (const int i : both_held_) system_.gap[i] = 0;
   if (rod_.active()) std::fill(rod_.torque().begin(), rod_.torque().end(), 0.0);
   solve_linear();
-  cleaner_.take_out(s.h, s.boundary.nodes, correction(), position_, state);
+  const double share = cleaner_.take_out(s.h, s.boundary.nodes, correction(), position_, state);
+  // What is taken out is what forces in the cable do: its holders feel them, too.
+  for (HeldNode& target : s.boundary.nodes) target.force += 0.5 * share * s.h * corrected_load(target.node);
   if (rod_.active()) rod_.calm_spin(state);
 }
 

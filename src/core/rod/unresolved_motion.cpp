@@ -83,7 +83,7 @@ void MotionCleaner::load(const CableModel& model, const CableState& state, const
   }
 }
 
-void MotionCleaner::take_out(double h, const std::vector<HeldNode>& held, const VectorArray& solution, const VectorArray& place,
+double MotionCleaner::take_out(double h, const std::vector<HeldNode>& held, const VectorArray& solution, const VectorArray& place,
                              CableState& state) {
   const int nodes = state.nodes();
   for (int i = 0; i < nodes; ++i) set(alternating_, i, get(alternating_, i) - get(solution, i));
@@ -102,6 +102,7 @@ void MotionCleaner::take_out(double h, const std::vector<HeldNode>& held, const 
     state.accelerations[i] -= 2 / h * w;
     state.unresolved.acceleration_changes[i] -= 4 / h * w;
   }
+  return share;
 }
 
 /// Takes what a rigid body's motion would be out of w.

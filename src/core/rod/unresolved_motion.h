@@ -46,7 +46,7 @@ class MotionCleaner {
 
   /// Takes w out of the velocities, or as much of it as lowers the kinetic energy, seen from what holds the cable: it would grow
   /// where p is less than 2/3 pi. Free cables keep their momenta. `solution`: y; `place` [m].
-  void take_out(double h, const std::vector<HeldNode>& held, const VectorArray& solution, const VectorArray& place,
+  double take_out(double h, const std::vector<HeldNode>& held, const VectorArray& solution, const VectorArray& place,
                 CableState& state);
 
  private:
