@@ -473,7 +473,7 @@ void CableStepper::restore_momenta(const Substep& s, const std::vector<double>& 
 void CableStepper::quieten(const Substep& s, CableState& state) {
   // Its spin is a part of the angular momentum that a free rod keeps. One that was let go is not damped any longer.
   if (rod_.active() && s.boundary.nodes.empty()) return begin_anew(state.unresolved);
-  if (!cleaner_.finds_unresolved(s.h, system_.movable, acceleration_, state)) return;
+  if (!cleaner_.finds_unresolved(system_.movable, acceleration_, state)) return;
   if (s.treatment == Treatment::damping || s.scheme != Scheme::conserving) {
     state.unresolved.damped = s.scheme == Scheme::conserving ? damped_substeps : damped_substeps - 1;
     return;
@@ -483,7 +483,7 @@ void CableStepper::quieten(const Substep& s, CableState& state) {
   std::fill(growth_.begin(), growth_.end(), 0.0);
   for (const GrowingSegment& growing : s.boundary.growing)
     growth_[growing.segment] = target_length_[growing.segment] * growing.growth;
-  cleaner_.load(s.model, state, inertia_, segment_, end_velocity_, growth_, system_);
+  cleaner_.load(s.h, s.model, state, inertia_, segment_, end_velocity_, growth_, system_);
   for (const int i : both_held_) system_.gap[i] = 0;
   if (rod_.active()) std::fill(rod_.torque().begin(), rod_.torque().end(), 0.0);
   solve_linear();
