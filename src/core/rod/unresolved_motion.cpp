@@ -87,7 +87,7 @@ void MotionCleaner::load(double h, const CableModel& model, const CableState& st
 }
 
 double MotionCleaner::take_out(double h, const std::vector<HeldNode>& held, const VectorArray& solution, const VectorArray& place,
-                             CableState& state) {
+                               CableState& state) {
   const int nodes = state.nodes();
   for (int i = 0; i < nodes; ++i) set(alternating_, i, get(alternating_, i) - get(solution, i));
   if (held.empty()) keep_momenta(state.masses, place);

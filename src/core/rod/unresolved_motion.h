@@ -42,13 +42,13 @@ class MotionCleaner {
   /// that alternates is then w = (...) / 8 - y: of motion of frequency omega it is s^5 e^(3/2 i (pi - p)) where s = sin(p / 2):
   /// all of it where omega h is large, O((omega h)^5) where it is resolved. Without w the velocities `end_velocity` [m/s] change
   /// the lengths of inextensible `segment`s [m] by `growth` [m^2/s] alone, half of their squares'. The last substep took h [s].
-  void load(double h, const CableModel& model, const CableState& state, const std::vector<double>& inertia, const VectorArray& segment,
-            const VectorArray& end_velocity, const std::vector<double>& growth, KktSystem& system);
+  void load(double h, const CableModel& model, const CableState& state, const std::vector<double>& inertia,
+            const VectorArray& segment, const VectorArray& end_velocity, const std::vector<double>& growth, KktSystem& system);
 
   /// Takes w out of the velocities, or as much of it as lowers the kinetic energy, seen from what holds the cable: it would grow
   /// where p is less than 2/3 pi. Free cables keep their momenta. `solution`: y; `place` [m]. Returns how much, 0 to 1.
   double take_out(double h, const std::vector<HeldNode>& held, const VectorArray& solution, const VectorArray& place,
-                CableState& state);
+                  CableState& state);
 
  private:
   void keep_momenta(const std::vector<double>& masses, const VectorArray& place);
