@@ -473,7 +473,7 @@ void CableStepper::restore_momenta(const Substep& s, const std::vector<double>& 
 void CableStepper::quieten(const Substep& s, CableState& state) {
   // Its spin is a part of the angular momentum that a free rod keeps. One that was let go is not damped any longer.
   if (rod_.active() && s.boundary.nodes.empty()) return begin_anew(state.unresolved);
-  if (!cleaner_.finds_unresolved(system_.movable, acceleration_, state)) return;
+  if (!cleaner_.finds_unresolved(s.treatment, system_.movable, acceleration_, state)) return;
   if (s.treatment == Treatment::damping || s.scheme != Scheme::conserving) {
     state.unresolved.damped = s.scheme == Scheme::conserving ? damped_substeps : damped_substeps - 1;
     return;

@@ -11,8 +11,11 @@ namespace {
 /// Cosine of the phase a substep below which motion is not resolved: where taking out what alternates lowers its energy, from a
 /// frequency times the substep of 3.5.
 constexpr double least_cosine = -0.5;
-/// How much of what was seen is remembered from one substep to the next.
-constexpr double memory = 0.6;
+/// The same where substeps will damp: of a frequency times the substep of 2. A little less, as a first blow has no phase, but
+/// what rounding makes of it.
+constexpr double least_cosine_damped = -0.02;
+/// How much of what was seen is remembered from one substep to the next: longer than a turning point of a motion lasts.
+constexpr double memory = 0.8;
 /// [m/s^2] Changes of less from one substep to the next go unnoticed: of the tension by a thousandth of the weight.
 constexpr double noticed_change = 0.01;
 
@@ -46,7 +49,8 @@ void MotionCleaner::resize(int nodes) {
   alternating_.assign(nodes, 0.0);
 }
 
-bool MotionCleaner::finds_unresolved(const std::vector<double>& movable, const VectorArray& before, CableState& state) {
+bool MotionCleaner::finds_unresolved(Treatment treatment, const std::vector<double>& movable, const VectorArray& before,
+                                     CableState& state) {
   UnresolvedMotion& motion = state.unresolved;
   const double known = motion.known < 2 ? 0 : 0.5;
   double product = 0, square = 0, mass = 0;
@@ -68,8 +72,8 @@ bool MotionCleaner::finds_unresolved(const std::vector<double>& movable, const V
   }
   motion.changed = memory * motion.changed + square;
   motion.turned = memory * motion.turned + product;
-  const bool unresolved =
-      motion.turned < least_cosine * motion.changed && motion.changed > noticed_change * noticed_change * mass;
+  const double least = treatment == Treatment::damping ? least_cosine_damped : least_cosine;
+  const bool unresolved = motion.turned < least * motion.changed && motion.changed > noticed_change * noticed_change * mass;
   if (unresolved) motion.changed = motion.turned = 0;
   return unresolved;
 }

@@ -34,7 +34,7 @@ class MotionCleaner {
   /// After a substep of h [s]: adds what it has changed to what is known of the cable's motion. True if motion was found that is
   /// not resolved; what is known is then forgotten. `movable`: a node, 1 or 0; `before`: a node, accelerations at the substep's
   /// start [m/s^2].
-  bool finds_unresolved(const std::vector<double>& movable, const VectorArray& before, CableState& state);
+  bool finds_unresolved(Treatment treatment, const std::vector<double>& movable, const VectorArray& before, CableState& state);
 
   /// Sets the right-hand side of
   ///   (A + K) y = A (v_3 - 3 v_2 + 3 v_1 - v_0) / 8,
