@@ -444,6 +444,12 @@ void CableStepper::project(const Substep& s, const std::vector<double>& masses) 
     for (int i = 1; i < n; ++i) v[i] += w[i] * (impulse[i - 1] * d[i - 1] - impulse[i] * d[i]);
     v[n] += w[n] * impulse[n - 1] * d[n - 1];
   }
+  // What the segments exert on the other nodes they exert on the holders.
+  for (HeldNode& target : s.boundary.nodes) {
+    const int i = target.node;
+    if (i > 0) target.force += impulse_[i - 1] / s.h * get(segment_, i - 1);
+    if (i < n) target.force -= impulse_[i] / s.h * get(segment_, i);
+  }
 }
 
 /// Substeps that damp keep momenta to second order. Those of a free cable are kept exactly: what is missing is given back as a
@@ -475,7 +481,7 @@ void CableStepper::restore_angular_momentum(const Substep& s, const std::vector<
 void CableStepper::quieten(const Substep& s, CableState& state) {
   // Its spin is a part of the angular momentum that a free rod keeps. One that was let go is not damped any longer.
   if (rod_.active() && s.boundary.nodes.empty()) return begin_anew(state.unresolved);
-  if (!cleaner_.finds_unresolved(s.h, system_.movable, acceleration_, state)) return;
+  if (!cleaner_.finds_unresolved(s.treatment, system_.movable, acceleration_, state)) return;
   if (s.treatment == Treatment::damping || s.scheme != Scheme::conserving) {
     state.unresolved.damped = s.scheme == Scheme::conserving ? damped_substeps : damped_substeps - 1;
     return;
@@ -485,11 +491,13 @@ void CableStepper::quieten(const Substep& s, CableState& state) {
   std::fill(growth_.begin(), growth_.end(), 0.0);
   for (const GrowingSegment& growing : s.boundary.growing)
     growth_[growing.segment] = target_length_[growing.segment] * growing.growth;
-  cleaner_.load(s.model, state, inertia_, segment_, end_velocity_, growth_, system_);
+  cleaner_.load(s.h, s.model, state, inertia_, segment_, end_velocity_, growth_, system_);
   for (const int i : both_held_) system_.gap[i] = 0;
   if (rod_.active()) std::fill(rod_.torque().begin(), rod_.torque().end(), 0.0);
   solve_linear();
-  cleaner_.take_out(s.h, s.boundary.nodes, correction(), position_, state);
+  const double share = cleaner_.take_out(s.h, s.boundary.nodes, correction(), position_, state);
+  // What is taken out is what forces in the cable do: its holders feel them, too.
+  for (HeldNode& target : s.boundary.nodes) target.force += 0.5 * share * s.h * corrected_load(target.node);
   if (rod_.active()) rod_.calm_spin(state);
 }
 

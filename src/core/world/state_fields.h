@@ -119,7 +119,7 @@ auto fields(T& x, const CableModel*) {
 }
 template <class T>
 auto fields(T& x, const UnresolvedMotion*) {
-  return std::tie(x.acceleration_changes, x.changed, x.turned, x.known, x.damped);
+  return std::tie(x.acceleration_changes, x.turns, x.changed, x.turned, x.known, x.damped);
 }
 template <class T>
 auto fields(T& x, const CableState*) {
@@ -134,7 +134,7 @@ auto fields(T& x, const SimulatedCable*) {
 template <class T>
 auto fields(T& x, const KinematicTarget*) {
   return std::tie(x.attachment, x.node, x.position, x.velocity, x.mean_velocity, x.starts, x.gap, x.caught, x.next_position,
-                  x.next_velocity, x.frame_velocity, x.average_velocity, x.change, x.liveliness, x.jumping_steps, x.jumped_from,
+                  x.next_velocity, x.frame_velocity, x.average_velocity, x.change, x.left_velocity, x.left_for, x.liveliness, x.jumping_steps, x.jumped_from,
                   x.carried, x.first_excess, x.last_excess, x.least_excess, x.greatest_excess);
 }
 template <class T>
