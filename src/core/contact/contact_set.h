@@ -47,10 +47,11 @@ class ContactSet {
   void set_held(const SimulatedCable& cable, const KinematicTargets& targets, const std::vector<Attachment>& attachments);
   void find_obstacle(const SimulatedCable& cable, int index, const ContactMember& member, const MovingObstacle& moving,
                      const std::vector<Attachment>& attachments, double h);
-  void find_pairs(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members,
-                  const std::vector<SegmentPairs::Pair>& pairs, double speed, double h);
-  void add(Touch& touch, const ContactMember& member, const Vector3& velocity, const Vector3& other, double h);
+  void find_pairs(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members, const SegmentPairs& found,
+                  double h);
+  void add(Touch& touch, const ContactMember& member, const Vector3& velocity, double h);
   double reach(double speed, double radius, double h) const;
+  bool may_close(double gap, const Vector3& normal, const Vector3& velocity, double radius, double h) const;
   bool recall(const ContactMember& member, Touch& touch);
 
   SegmentGrid grid_;

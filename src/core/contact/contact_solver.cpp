@@ -213,11 +213,12 @@ void ContactSolver::factor(std::vector<Participant>& participants, std::vector<T
   couplings_.clear();
   for (const Touch& touch : touches) {
     if (touch.mode == Touch::Mode::open) continue;
-    at(participants, touch.point).stepper->system().add_stiffness(touch.point.segment, touch.point.fraction, touch.slope);
+    const Eigen::Matrix3d stiffness = slope(touch);
+    at(participants, touch.point).stepper->system().add_stiffness(touch.point.segment, touch.point.fraction, stiffness);
     if (!joins_cables(touch)) continue;
-    at(participants, touch.other).stepper->system().add_stiffness(touch.other.segment, touch.other.fraction, touch.slope);
+    at(participants, touch.other).stepper->system().add_stiffness(touch.other.segment, touch.other.fraction, stiffness);
     couplings_.push_back({index_[touch.point.cable], index_[touch.other.cable], touch.point.segment, touch.other.segment,
-                          touch.point.fraction, touch.other.fraction, touch.slope});
+                          touch.point.fraction, touch.other.fraction, stiffness});
   }
   for (Participant& p : participants) p.stepper->factor();
 }
