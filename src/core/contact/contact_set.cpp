@@ -96,7 +96,7 @@ void ContactSet::find(const std::vector<SimulatedCable>& cables, const std::vect
   double radius = 0;
   for (const int cable : island) radius = std::max(radius, cables[cable].model->material.radius);
   grid_.update(cables, island, rules.pairs, reach(0, radius, h) + radius, h, pairs);
-  find_pairs(cables, members, pairs, h);
+  find_pairs(cables, members, pairs, radius, h);
 }
 
 /// Which nodes are attached: nothing but their holders moves them.
@@ -179,14 +179,15 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
 }
 
 void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members,
-                            const SegmentPairs& found, double h) {
+                            const SegmentPairs& found, double thickest, double h) {
   for (const SegmentPairs::Pair& pair : found.pairs) {
+    const double speed = found.speeds[pair.first_node] + found.speeds[pair.second_node];
+    const double moved = found.moved[pair.first_node] + found.moved[pair.second_node];
+    if (pair.distance - moved > (2 * thickest + reach(speed, thickest, h)) * (1 + distance_rounding)) continue;
     const SimulatedCable &a = cables[pair.first.cable], &b = cables[pair.second.cable];
     const double radius = std::min(a.model->material.radius, b.model->material.radius);
     const double surface = a.model->material.radius + b.model->material.radius;
-    const double far = surface + reach(found.speeds[pair.first_node] + found.speeds[pair.second_node], radius, h);
-    const double moved = found.moved[pair.first_node] + found.moved[pair.second_node];
-    if (pair.distance - moved > far * (1 + distance_rounding)) continue;
+    const double far = surface + reach(speed, radius, h);
     const int i = pair.first.segment, j = pair.second.segment;
     const Vector3 &a0 = a.state.positions[i], &b0 = b.state.positions[j];
     const Vector3 along_a = a.state.positions[i + 1] - a0, along_b = b.state.positions[j + 1] - b0;
@@ -251,15 +252,6 @@ bool ContactSet::recall(const ContactMember& member, Touch& touch) {
   touch.mode = cache[recalled].mode;
   touch.inside = cache[recalled].inside;
   return true;
-}
-
-bool ContactSet::crossed(const std::vector<SimulatedCable>& cables) const {
-  return std::any_of(touches_.begin(), touches_.end(), [&](const Touch& touch) {
-    if (touch.other.cable < 0) return false;
-    const std::vector<Vector3>&a = cables[touch.point.cable].state.positions, &b = cables[touch.other.cable].state.positions;
-    const int i = touch.point.segment, j = touch.other.segment;
-    return closest_points(a[i], a[i + 1] - a[i], b[j], b[j + 1] - b[j]).between.dot(touch.normal) < 0;
-  });
 }
 
 void ContactSet::keep(const std::vector<ContactMember>& members) const {

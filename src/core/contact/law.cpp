@@ -56,7 +56,9 @@ double gentle_gap(double radius, double contact_time) {
 
 void start_touch(Touch& touch) {
   touch.depth = std::max(0.0, -touch.gap);
-  touch.stiffness = depth_law(touch.depth, touch).slope;
+  const ForceAndSlope law = depth_law(touch.depth, touch);
+  touch.depth_force = law.force;
+  touch.stiffness = law.slope;
 }
 
 bool evaluate_touch(const Vector3& w, Touch& touch) {
@@ -70,10 +72,12 @@ bool evaluate_touch(const Vector3& w, Touch& touch) {
     touch.force.setZero();
     return before != touch.mode;
   }
-  const ForceAndSlope law = depth_law(depth, touch), here = depth_law(touch.depth, touch);
-  const bool bent = std::abs(here.force + here.slope * (depth - touch.depth) - law.force) > linear_enough * law.force;
+  const ForceAndSlope law = depth_law(depth, touch);
+  const double linear_force = touch.depth_force + touch.stiffness * (depth - touch.depth);
+  const bool bent = std::abs(linear_force - law.force) > linear_enough * law.force;
   if (bent) {
     touch.depth = depth;
+    touch.depth_force = law.force;
     touch.stiffness = law.slope;
   }
   touch.normal_force = law.force;

@@ -38,6 +38,7 @@ struct Touch {
   // Of the present iterate
   Vector3 displacement = Vector3::Zero();                      ///< [m] w
   double depth = 0;                                            ///< [m] where the force's law is linearised
+  double depth_force = 0;                                      ///< [N] there
   double stiffness = 0;                                        ///< [N/m] there
   double normal_force = 0;                                     ///< [N]
   Vector3 force = Vector3::Zero();                             ///< [N] on the point
