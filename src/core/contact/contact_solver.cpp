@@ -27,6 +27,11 @@ constexpr double coupling_precision = 1e-10;
 /// Or when it is this part of what moves a segment by no more than is tolerated.
 constexpr double negligible_part = 0.1;
 constexpr int maximum_coupling_iterations = 60;
+/// Friction has followed the normal forces when displacements at the contacts change by less than this, relatively, or by this
+/// part of what is tolerated.
+constexpr double followed = 0.03;
+constexpr double followed_part = 0.2;
+constexpr int maximum_followings = 20;
 
 inline Vector3 between(const VectorArray& nodes, int i, double fraction) {
   return (1 - fraction) * get(nodes, i) + fraction * get(nodes, i + 1);
@@ -116,9 +121,10 @@ bool ContactSolver::crosses(const std::vector<Participant>& participants, const 
 bool ContactSolver::iterate(std::vector<Participant>& participants, std::vector<Touch>& touches) {
   const Substep& first = participants.front().substep;
   const double tolerance = velocity_tolerance * std::min(first.h, longest_tolerated);
-  negligible_energy_ = infinity;
+  negligible_energy_ = tolerated_ = infinity;
   for (const Participant& p : participants) {
     const double moved = tolerance * p.state->rest_lengths.front();
+    tolerated_ = std::min(tolerated_, moved);
     const double mass = p.state->rest_lengths.front() * p.substep.model.material.linear_density;
     negligible_energy_ = std::min(negligible_energy_, negligible_part * mass * moved * moved / (first.h * first.h));
   }
@@ -128,7 +134,10 @@ bool ContactSolver::iterate(std::vector<Participant>& participants, std::vector<
     const bool changed = i == 0 ? press(participants, touches) : shorten(participants, touches);
     if (stale || changed) factor(participants, touches);
     for (Participant& p : participants) p.stepper->solve_linear();
-    couple(participants);
+    if (couplings_.empty())
+      follow_friction(participants, touches);
+    else
+      couple(participants);
     work_along_ = work_along(participants);
     double largest = 0;
     for (Participant& p : participants) {
@@ -217,10 +226,68 @@ void ContactSolver::factor(std::vector<Participant>& participants, std::vector<T
   for (Participant& p : participants) p.stepper->factor();
 }
 
+/// The matrix has no part of the friction that follows the normal force of what slides, since that is not symmetric. Improves the
+/// solutions until it follows all the same: along a capstan it takes as many times as the cable's tension has to be handed on.
+void ContactSolver::follow_friction(std::vector<Participant>& participants, const std::vector<Touch>& touches) {
+  slips_.clear();
+  for (std::size_t k = 0; k < participants.size(); ++k) work_[k].slips = false;
+  for (const Touch& touch : touches) {
+    if (touch.mode != Touch::Mode::slides || !(touch.friction > 0)) continue;
+    Slip slip;
+    slip.participant = index_[touch.point.cable];
+    slip.segment = touch.point.segment;
+    slip.fraction = touch.point.fraction;
+    slip.normal = touch.normal;
+    slip.friction = touch.force / touch.normal_force - touch.normal;
+    slip.normal_force = touch.normal_force;
+    slip.stiffness = touch.rate * touch.stiffness;
+    slips_.push_back(slip);
+    work_[slip.participant].slips = true;
+  }
+  if (slips_.empty()) return;
+  for (std::size_t k = 0; k < participants.size(); ++k)
+    if (work_[k].slips) work_[k].load = participants[k].stepper->system().load;
+  double last = follow_slips(participants);
+  bool follows = true;
+  for (int i = 0; i < maximum_followings && follows && last > 0; ++i) {
+    solve_slipping(participants);
+    const double way = follow_slips(participants);
+    if (!(way > 0)) break;
+    follows = way < last;
+    last = way;
+  }
+  for (std::size_t k = 0; k < participants.size(); ++k)
+    if (work_[k].slips) std::swap(participants[k].stepper->system().load, work_[k].load);
+  // Where it gets away from them, without.
+  if (!follows) solve_slipping(participants);
+}
+
+/// Adds to the loads what friction changes with the normal forces in the present solution. How far that has come since the last
+/// time [m], 0 if no distance.
+double ContactSolver::follow_slips(std::vector<Participant>& participants) {
+  double way = 0, largest = 0;
+  for (Slip& slip : slips_) {
+    CableStepper& stepper = *participants[slip.participant].stepper;
+    const Vector3 displacement = between(stepper.correction(), slip.segment, slip.fraction);
+    way = std::max(way, (displacement - slip.displacement).squaredNorm());
+    largest = std::max(largest, displacement.squaredNorm());
+    slip.displacement = displacement;
+    const double change = std::max(-slip.stiffness * slip.normal.dot(displacement), -slip.normal_force);
+    share((change - slip.change) * slip.friction, slip.segment, slip.fraction, stepper.system().load);
+    slip.change = change;
+  }
+  way = std::sqrt(way);
+  return way > std::max(followed * std::sqrt(largest), followed_part * tolerated_) ? way : 0;
+}
+
+void ContactSolver::solve_slipping(std::vector<Participant>& participants) {
+  for (std::size_t k = 0; k < participants.size(); ++k)
+    if (work_[k].slips) participants[k].stepper->solve_linear();
+}
+
 /// Improves the solutions that the cables have found alone until they heed each other. The matrix differs from the cables' own by
 /// what joins the two sides of contacts, so that all residuals are forces on their points.
 void ContactSolver::couple(std::vector<Participant>& participants) {
-  if (couplings_.empty()) return;
   double whole = 0;
   for (std::size_t k = 0; k < participants.size(); ++k) {
     CableStepper& stepper = *participants[k].stepper;
@@ -243,6 +310,7 @@ void ContactSolver::couple(std::vector<Participant>& participants) {
   const double enough = std::max({coupling_tolerance * whole, coupling_precision * largest_energy_, negligible_energy_});
 
   double energy = 0;
+  bool improved = false;
   for (int i = 0; i < maximum_coupling_iterations; ++i) {
     const double next_energy = precondition(participants);
     if (!(next_energy > enough)) break;
@@ -259,13 +327,14 @@ void ContactSolver::couple(std::vector<Participant>& participants) {
     }
     if (!(curvature > 0)) break;
     const double step = energy / curvature;
+    improved = true;
     for (Coupling& c : couplings_) {
       c.first.residual -= step * (c.first.image - c.matrix * c.second.direction);
       c.second.residual -= step * (c.second.image - c.matrix * c.first.direction);
       for (Side* side : {&c.first, &c.second}) side->correction += step * side->image;
     }
   }
-  take_loads_back(participants);
+  take_loads_back(participants, improved);
 }
 
 /// Solves the cables' own systems for the residuals; their energy.
@@ -303,14 +372,16 @@ void ContactSolver::set_loads_aside(std::vector<Participant>& participants) {
     work_[k].load = stepper.system().load;
     work_[k].gap = stepper.system().gap;
     work_[k].torque = stepper.torque();
+    work_[k].correction = stepper.correction();
+    work_[k].multiplier = stepper.multiplier_correction();
     stepper.system().load.assign(work_[k].load.x.size(), 0.0);
     std::fill(stepper.system().gap.begin(), stepper.system().gap.end(), 0.0);
     std::fill(stepper.torque().begin(), stepper.torque().end(), 0.0);
   }
 }
 
-/// Solves once more, for the loads and for what the contacts add to them.
-void ContactSolver::take_loads_back(std::vector<Participant>& participants) {
+/// Where that has `improved` the solutions, solves once more, for the loads and for what the contacts add to them.
+void ContactSolver::take_loads_back(std::vector<Participant>& participants, bool improved) {
   for (std::size_t k = 0; k < participants.size(); ++k) {
     if (!work_[k].coupled) continue;
     CableStepper& stepper = *participants[k].stepper;
@@ -322,7 +393,10 @@ void ContactSolver::take_loads_back(std::vector<Participant>& participants) {
   for (std::size_t k = 0; k < participants.size(); ++k) {
     if (!work_[k].coupled) continue;
     CableStepper& stepper = *participants[k].stepper;
-    stepper.solve_linear();
+    if (improved || stepper.is_whole_rod())
+      stepper.solve_linear();
+    else
+      stepper.set_correction(work_[k].correction, work_[k].multiplier);
     std::swap(stepper.system().load, work_[k].load);
   }
 }

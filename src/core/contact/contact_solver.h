@@ -34,10 +34,13 @@ class ContactSolver {
  private:
   /// The loads of one participant's own system, while the conjugate gradients solve it for others.
   struct Work {
-    bool coupled = false;
+    bool coupled = false, slips = false;
     VectorArray load;            // nodes
     std::vector<double> gap;     // segments
     std::vector<double> torque;  // of a whole rod: segments
+    // The solution for them
+    VectorArray correction;          // nodes
+    std::vector<double> multiplier;  // segments
   };
 
   /// One side of a contact, in the conjugate gradients: of forces and displacements at its point alone. Forces on other points
@@ -58,6 +61,16 @@ class ContactSolver {
     Eigen::Matrix3d matrix;
   };
 
+  /// A contact that slides on an obstacle.
+  struct Slip {
+    int participant = 0, segment = 0;
+    double fraction = 0;
+    Vector3 normal, friction;                ///< the second: over the normal force
+    double normal_force = 0, stiffness = 0;  ///< [N], [N/m] of it
+    double change = 0;                       ///< [N] of it, in the correction
+    Vector3 displacement = Vector3::Zero();  ///< [m] likewise
+  };
+
   void begin(std::vector<Participant>& participants);
   bool iterate(std::vector<Participant>& participants, std::vector<Touch>& touches);
   bool press(std::vector<Participant>& participants, std::vector<Touch>& touches);
@@ -65,8 +78,11 @@ class ContactSolver {
   double work_along(std::vector<Participant>& participants) const;
   void factor(std::vector<Participant>& participants, std::vector<Touch>& touches);
   void couple(std::vector<Participant>& participants);
+  void follow_friction(std::vector<Participant>& participants, const std::vector<Touch>& touches);
+  double follow_slips(std::vector<Participant>& participants);
+  void solve_slipping(std::vector<Participant>& participants);
   void set_loads_aside(std::vector<Participant>& participants);
-  void take_loads_back(std::vector<Participant>& participants);
+  void take_loads_back(std::vector<Participant>& participants, bool improved);
   double precondition(std::vector<Participant>& participants);
   void load(Vector3 Side::*force, std::vector<Participant>& participants) const;
   Participant& at(std::vector<Participant>& participants, const CablePoint& point) const;
@@ -75,6 +91,8 @@ class ContactSolver {
   std::vector<int> index_;  ///< of the participant, by cable
   std::vector<Work> work_;  ///< one a participant
   std::vector<Coupling> couplings_;
+  std::vector<Slip> slips_;
+  double tolerated_ = 0;          ///< [m] of a node
   double work_along_ = 0;         ///< [J] of the forces along the last correction, where it begins
   double negligible_energy_ = 0;  ///< [J] moves no node by more than what is tolerated
   double largest_energy_ = 0;     ///< of a correction in this substep
