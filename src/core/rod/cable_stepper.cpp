@@ -333,12 +333,8 @@ const std::vector<double>& CableStepper::multiplier_correction() const {
   return rod_.active() ? rod_.elimination().multiplier() : solver_.multiplier();
 }
 
-void CableStepper::set_correction(const VectorArray& displacement, const std::vector<double>& multiplier,
-                                  const std::vector<double>& twist) {
-  if (rod_.active())
-    rod_.elimination().set_solution(displacement, multiplier, twist);
-  else
-    solver_.set_solution(displacement, multiplier);
+void CableStepper::set_correction(const VectorArray& displacement, const std::vector<double>& multiplier) {
+  solver_.set_solution(displacement, multiplier);
 }
 
 /// Applies the solution; the largest correction, in segment lengths or angles.

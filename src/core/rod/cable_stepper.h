@@ -89,8 +89,8 @@ class CableStepper {
   const VectorArray& correction() const;
   const std::vector<double>& multiplier_correction() const;
   const std::vector<double>& twist_correction() const { return rod_.elimination().twist(); }
-  /// Replaces it by one of a larger system that this one is part of.
-  void set_correction(const VectorArray& displacement, const std::vector<double>& multiplier, const std::vector<double>& twist);
+  /// Replaces it; not that of a whole rod.
+  void set_correction(const VectorArray& displacement, const std::vector<double>& multiplier);
   /// Of a whole rod, what is out of balance about the segments' directions [N m]
   std::vector<double>& torque() { return rod_.torque(); }
   bool is_whole_rod() const { return rod_.active(); }
