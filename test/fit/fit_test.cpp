@@ -113,6 +113,28 @@ TEST(Fit, FindsHowFarMarkersSitOffTheCentreLine) {
   EXPECT_NEAR(found / known.materials[0].material.bending_stiffness.front(), 1, 0.05);
 }
 
+TEST(Fit, CurvatureOfZeroGoesByTheSameLawAsOthers) {
+  const Recording recording = synthetic_recording(known_cable(), 0, 1, 0);
+  CableSettings settings;
+  settings.name = "found";
+  settings.segments = 16;
+  const std::vector<Recording> recordings{recording};
+  measure_cable(recordings, smooth(recordings), {0}, settings);
+  const std::vector<double> straight = first_guess(settings, 1e-2, 1e-3);
+  std::vector<double> curved = straight;
+  const std::vector<Parameter> parameters = cable_parameters(settings);
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    if (parameters[i].key.find("rest_curvature") != std::string::npos) curved[i] = 1e-7;
+  const Markers markers = markers_of(settings, straight);
+  const Prediction one = predict(cable_scene(settings, straight), markers, recording),
+                   other = predict(cable_scene(settings, curved), markers, recording);
+  double gap = 0;
+  for (int row = 0; row < recording.rows(); ++row)
+    for (int marker = 0; marker < recording.marker_count(); ++marker)
+      gap = std::max(gap, (one.positions[row][marker] - other.positions[row][marker]).norm());
+  EXPECT_LT(gap, 1e-6);
+}
+
 TEST(Markers, OnTheLineThroughThemNothingChanges) {
   const Recording recording = synthetic_recording(known_cable(), 1, 0.3, 0);
   CableSettings settings;
