@@ -21,6 +21,8 @@ from recording import Recording  # noqa: E402
 # Mean absolute errors [cm] over 5 s of the learned model that was published with the recordings (arXiv 2406.05931).
 PUBLISHED = {1: 1.03, 2: 1.02, 3: 0.99, 4: 1.15}
 SHOWN_TIMES = (0.0, 1.0, 2.5, 4.9)  # [s]
+# In the order of a report's parameters.
+MATERIAL = ('bending stiffness [N m²]', 'bending damping [N m² s]', 'drag [kg/(m s)]', 'torsional stiffness [N m²]')
 
 
 def fit(programs, cable, recordings, segments, work):
@@ -101,6 +103,15 @@ def table_row(cable, name, report, in_order):
           f"{last:.2f} | {errors(centre_line, 'fitted', in_order)[0]:.2f} |")
 
 
+def material_row(cable, report):
+    """What the fit of the centre line found, for the linear density that cable_fit takes where none is given."""
+    cells = [str(cable)]
+    for parameter in report['centre_line']['parameters'][:len(MATERIAL)]:
+        told = parameter['told_by_the_data'] == 'yes'
+        cells.append('{value:.3g} ({low:.2g} to {high:.2g})'.format(**parameter) if told else 'not determined')
+    return '| ' + ' | '.join(cells) + ' |'
+
+
 def other_numbers(cable, report, seconds, factor):
     """Errors [cm] with half, as many and twice the segments; times."""
     cells = [str(cable)]
@@ -118,7 +129,7 @@ def main():
     os.makedirs(work, exist_ok=True)
     os.makedirs(pictures, exist_ok=True)
     figure, axis = plt.subplots(figsize=(8, 4.5), constrained_layout=True)
-    others = []
+    materials, others = [], []
     print('| cable | left out [cm] | line through the markers [cm] | published [cm] | largest [cm] | at 5 s [cm] | fitted [cm] |\n'
           '|---|---|---|---|---|---|---|')
     for cable in range(1, 6):
@@ -129,6 +140,7 @@ def main():
         table_row(cable, cable, report, in_order=True)
         recordings = [Recording(path) for path in paths]
         factor = min(real_time_factor(programs, cable, recording, work) for recording in recordings)
+        materials.append(material_row(cable, report))
         others.append(other_numbers(cable, report, seconds, factor))
         predicted = [Recording(os.path.join(work, f'predicted{cable}', os.path.basename(path))).markers for path in paths]
         in_order = [recording['swapped_markers'] == 'none' for recording in report['recordings']]
@@ -138,6 +150,7 @@ def main():
                   label=f'cable {cable}')
         draw_shapes(cable, recordings[0], predicted[0], pictures)
         sys.stdout.flush()
+    print('\n| cable | ' + ' | '.join(MATERIAL) + ' |\n' + (1 + len(MATERIAL)) * '|---' + '|', *materials, sep='\n')
     counts = f'{segments // 2} segments [cm] | {segments} | {2 * segments}'
     print(f'\n| cable | centre line: {counts} | line through the markers: {counts} | all fits [s] | times real time |\n'
           + 9 * '|---' + '|', *others, sep='\n')
