@@ -82,6 +82,8 @@ struct RestCurvatureDesc {
   std::array<double, 2> curvature{0, 0};  ///< constant: about the material's y and z axes [1/m]
   /// profile: the same at places spread evenly from start to end, at least two, straight lines in between [1/m]
   std::vector<std::array<double, 2>> profile;
+  /// Numbers that are zero count as curved, too: cables that differ in these numbers alone then go by one law, as a fit needs it.
+  bool zero_counts = false;
 
   /// Whether the numbers alone say so; an initial shape may be straight, too.
   bool is_straight() const;
