@@ -97,7 +97,7 @@ Outcome outcome(const Motion& motion, const View& view, int segments, const Bend
   material(scene).axial_damping = force * t * 1000 * motion.damping;
   if (curved) {
     // Curvature and twist are parts of an axial vector: mirrored, those about axes in the mirror turn round.
-    bend_at_rest(scene, handedness * direction * 3 / l, 2 / l);
+    bend_at_rest(scene, handedness * direction * 2.5 / l, 1.7 / l);
     scene.cables[0].rest_twist = handedness * rest_twist / l;
   }
   CableDesc& cable = scene.cables[0];
@@ -219,7 +219,7 @@ TEST(InnerClamp, PartsARod) {
   scene.gravity.acceleration = {0, -3, -9};
   material(scene).bending_stiffness = {0.01, 0.03};
   material(scene).torsional_stiffness = 0.0075;
-  bend_at_rest(scene, 3, 2);
+  bend_at_rest(scene, 2.5, 1.7);
   scene.cables[0].rest_twist = rest_twist;
   scene.cables[0].attachments = {scenes::attachment("h", PlaceDesc::At::start, Vector3::Zero(), "h", clamp)};
   start_at(scene, [](double s) { return on_arc(0.5 * (1 + s)).position; });

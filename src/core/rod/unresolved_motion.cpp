@@ -8,10 +8,10 @@ namespace verlet_cable {
 
 namespace {
 
-/// Cosine of the phase a substep below which motion is not resolved: where taking out what alternates lowers its energy, from a
-/// frequency times the substep of 3.5.
-constexpr double least_cosine = -0.5;
-/// The same where substeps will damp: of a frequency times the substep of 2. A little less, as a first blow has no phase, but
+/// Cosine of the phase a substep below which motion is not resolved: of a frequency times the substep of 2.7. From 3.5 on (-0.5)
+/// taking out what alternates always lowers the energy; below, no more than that is taken out.
+constexpr double least_cosine = -0.3;
+/// The same where substeps will damp, of changes instead of turns: of a frequency times the substep of 2. A little less, as a first blow has no phase, but
 /// what rounding makes of it.
 constexpr double least_cosine_damped = -0.02;
 /// How much of what was seen is remembered from one substep to the next: longer than a turning point of a motion lasts.
@@ -52,6 +52,7 @@ void MotionCleaner::resize(int nodes) {
 bool MotionCleaner::finds_unresolved(Treatment treatment, const std::vector<double>& movable, const VectorArray& before,
                                      CableState& state) {
   UnresolvedMotion& motion = state.unresolved;
+  const bool damps = treatment == Treatment::damping;
   const double known = motion.known < 2 ? 0 : 0.5;
   double product = 0, square = 0, mass = 0;
   for (int i = 0; i < state.nodes(); ++i) {
@@ -59,8 +60,9 @@ bool MotionCleaner::finds_unresolved(Treatment treatment, const std::vector<doub
     // Changes from or to what was before the motion began anew are none.
     const Vector3 turn = known * (change - motion.acceleration_changes[i]);
     const double weight = movable[i] * state.masses[i];
-    product += weight * turn.dot(motion.turns[i]);
-    square += 0.5 * weight * (turn.squaredNorm() + motion.turns[i].squaredNorm());
+    const Vector3 now = damps ? change : turn, last = damps ? motion.acceleration_changes[i] : motion.turns[i];
+    product += weight * now.dot(last);
+    square += 0.5 * weight * (now.squaredNorm() + last.squaredNorm());
     mass += weight;
     motion.acceleration_changes[i] = change;
     motion.turns[i] = turn;
@@ -72,7 +74,7 @@ bool MotionCleaner::finds_unresolved(Treatment treatment, const std::vector<doub
   }
   motion.changed = memory * motion.changed + square;
   motion.turned = memory * motion.turned + product;
-  const double least = treatment == Treatment::damping ? least_cosine_damped : least_cosine;
+  const double least = damps ? least_cosine_damped : least_cosine;
   const bool unresolved = motion.turned < least * motion.changed && motion.changed > noticed_change * noticed_change * mass;
   if (unresolved) motion.changed = motion.turned = 0;
   return unresolved;
