@@ -12,10 +12,13 @@ struct SegmentMotion {
   Vector3 direction, rate;  ///< unit vector; [1/s] of it
 };
 
-SegmentMotion motion_of(const CableState& state, const VectorArray& segment, int i) {
+/// Over about the last substep: of the velocities without what alternates from one to the next.
+SegmentMotion motion_of(const CableState& state, const VectorArray& segment, double h, int i) {
   const Vector3 d = get(segment, i);
   const double inverse = 1 / d.norm();
-  const Vector3 direction = inverse * d, rate = inverse * (state.velocities[i + 1] - state.velocities[i]);
+  const Vector3 velocity = state.velocities[i + 1] - state.velocities[i];
+  const Vector3 mean_velocity = velocity - 0.5 * h * (state.accelerations[i + 1] - state.accelerations[i]);
+  const Vector3 direction = inverse * d, rate = inverse * mean_velocity;
   return {direction, rate - direction.dot(rate) * direction};
 }
 
@@ -33,9 +36,9 @@ void find_material_spin(const CableModel& model, const CableState& state, const 
   // rotations would turn against each other at this rate (Bergou et al., Discrete Elastic Rods, 2008, section 6).
   double square = 0, along = 0;
   spin[0] = 0;
-  SegmentMotion before = motion_of(state, segment, 0);
+  SegmentMotion before = motion_of(state, segment, h, 0);
   for (int i = 1; i < n; ++i) {
-    const SegmentMotion after = motion_of(state, segment, i);
+    const SegmentMotion after = motion_of(state, segment, h, i);
     const Vector3 binormal = curvature_binormal(before.direction, after.direction);
     spin[i] = spin[i - 1] - 0.5 * binormal.dot(before.rate + after.rate);
     const Vector3 e = after.direction - before.direction;
