@@ -24,8 +24,7 @@ struct Material {
 
 void PrintTo(const Material& m, std::ostream* out) {
   *out << (m.type == AttachmentType::clamp ? "clamps" : "hinges") << ", EI " << m.bending_stiffness << ", damping "
-       << m.bending_damping << ", EA " << m.axial_stiffness
-       << (m.second_stiffness > 0 ? ", a ribbon" : "");
+       << m.bending_damping << ", EA " << m.axial_stiffness << (m.second_stiffness > 0 ? ", a ribbon" : "");
 }
 
 /// Between the frames "left" and "right" on a level, 0.4 m apart.

@@ -155,7 +155,8 @@ const Mistake mistakes[] = {
     {"infiniteDamping", "radius: 0.005", "radius: 0.005, axial_damping: .inf", "materials.m.axial_damping: inf;"},
     {"zeroBreakingTension", "radius: 0.005", "radius: 0.005, breaking_tension: 0", "materials.m.breaking_tension: 0;"},
     {"tightRestCurvature", color, "rest_curvature: [0, 40]",
-     "cables[0].rest_curvature: [0, 40]; allowed: at most 31.41 1/m in all with segments of 0.05 m, a quarter turn from one to the next; "
+     "cables[0].rest_curvature: [0, 40]; allowed: at most 31.41 1/m in all with segments of 0.05 m, a quarter turn from one to "
+     "the next; "
      "more segments allow more"},
     {"tightPlaceOfRestCurvature", color, "rest_curvature: [[1, 2], [30, 30]]", "cables[0].rest_curvature[1]: [30, 30];"},
     {"shortRestCurvature", color, "rest_curvature: [1]", "cables[0].rest_curvature: [1];"},

@@ -166,7 +166,8 @@ INSTANTIATE_TEST_SUITE_P(Rods, Thrown,
                                          ThrownCase{"inextensible, damped", infinity, true, 1e-4},
                                          ThrownCase{"elastic, damped", 1e4, true, 1e-4}));
 
-/// A straight rod that is thrown bent, spins and swings, about two axes at once. `second`: of its bending stiffnesses, to the first.
+/// A straight rod that is thrown bent, spins and swings, about two axes at once. `second`: of its bending stiffnesses, to the
+/// first.
 SceneDesc thrown_straight_rod(double second, double torsional_stiffness, double axial_stiffness) {
   constexpr int n = 40;
   SceneDesc scene = scenes::one_cable(n);

@@ -284,8 +284,9 @@ TEST_P(Turns, AreCounted) {
 INSTANTIATE_TEST_SUITE_P(Sections, Turns,
                          testing::Values(BendingStiffness(1, 1), BendingStiffness(1, 1 + 1e-12), BendingStiffness(1, 0.2)));
 
-/// A heavy rod that is straight unloaded, sags, and is turned about its axis at one end or both: damping in the material that turns
-/// pushes it aside. The cheap law of straight rods leaves out the torque that damping passes along the rod. `second`: of its bending stiffnesses, to the first.
+/// A heavy rod that is straight unloaded, sags, and is turned about its axis at one end or both: damping in the material that
+/// turns pushes it aside. The cheap law of straight rods leaves out the torque that damping passes along the rod. `second`: of
+/// its bending stiffnesses, to the first.
 Simulation turning_shaft(bool both_ends, double second) {
   SceneDesc scene = scenes::one_cable(30);
   material(scene).bending_stiffness = {0.05, second * 0.05};
@@ -293,7 +294,8 @@ Simulation turning_shaft(bool both_ends, double second) {
   material(scene).bending_damping = 5e-3;
   material(scene).torsional_damping = 5e-3;
   material(scene).drag = 0.2;
-  scene.cables[0].attachments = {scenes::attachment("start", PlaceDesc::At::start, Vector3::Zero(), "hand", AttachmentType::clamp)};
+  scene.cables[0].attachments = {
+      scenes::attachment("start", PlaceDesc::At::start, Vector3::Zero(), "hand", AttachmentType::clamp)};
   if (both_ends)
     scene.cables[0].attachments.push_back(
         scenes::attachment("end", PlaceDesc::At::end, {0.6, 0, 0}, "hand", AttachmentType::clamp));

@@ -32,8 +32,8 @@ void find_material_spin(const CableModel& model, const CableState& state, const 
                         const std::vector<HeldDirection>& directions, const std::vector<double>& damping, double h,
                         std::vector<double>& spin) {
   const int n = state.segments();
-  // Of a cable that does not twist, relative to its first segment: neighbouring frames that follow their directions by the smallest
-  // rotations would turn against each other at this rate (Bergou et al., Discrete Elastic Rods, 2008, section 6).
+  // Of a cable that does not twist, relative to its first segment: neighbouring frames that follow their directions by the
+  // smallest rotations would turn against each other at this rate (Bergou et al., Discrete Elastic Rods, 2008, section 6).
   double square = 0, along = 0;
   spin[0] = 0;
   SegmentMotion before = motion_of(state, segment, h, 0);
@@ -53,9 +53,7 @@ void find_material_spin(const CableModel& model, const CableState& state, const 
     for (int i = 0; i < n; ++i) spin[i] += common;
     return;
   }
-  const auto missing_at = [&](const HeldDirection& clamp) {
-    return spin_of(clamp, h) - spin[std::min(clamp.node, n - 1)];
-  };
+  const auto missing_at = [&](const HeldDirection& clamp) { return spin_of(clamp, h) - spin[std::min(clamp.node, n - 1)]; };
   int done = 0;
   for (std::size_t k = 0; k <= directions.size(); ++k) {
     const double first = missing_at(directions[k == 0 ? 0 : k - 1]);

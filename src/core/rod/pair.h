@@ -11,8 +11,8 @@ namespace verlet_cable {
 /// a cable's start, and one of that which comes from its end.
 using Pair = double __attribute__((vector_size(16)));
 
-/// Vectors and matrices of numbers of one type: `Real` is a double, a Pair, or more doubles that are computed with together. All
-/// that is done with them is part of the function that does it, as files are compiled for different processors.
+/// Vectors and matrices of numbers of one type: `Real` is a double, a Pair, or more doubles that are computed with together.
+/// Always inlined, as they are to stay in registers.
 template <class Real>
 struct VectorOf {
   Real x, y, z;
@@ -113,7 +113,8 @@ template <class Real>
 
 /// a - b^T c for b^T c symmetric
 template <class Real>
-[[gnu::always_inline]] inline SymmetricOf<Real> minus_product(const SymmetricOf<Real>& a, const MatrixOf<Real>& b, const MatrixOf<Real>& c) {
+[[gnu::always_inline]] inline SymmetricOf<Real> minus_product(const SymmetricOf<Real>& a, const MatrixOf<Real>& b,
+                                                              const MatrixOf<Real>& c) {
   return {a.xx - (b.row_x.x * c.row_x.x + (b.row_y.x * c.row_y.x + b.row_z.x * c.row_z.x)),
           a.xy - (b.row_x.x * c.row_x.y + (b.row_y.x * c.row_y.y + b.row_z.x * c.row_z.y)),
           a.xz - (b.row_x.x * c.row_x.z + (b.row_y.x * c.row_y.z + b.row_z.x * c.row_z.z)),

@@ -11,8 +11,8 @@ namespace {
 /// Cosine of the phase a substep below which motion is not resolved: of a frequency times the substep of 2.7. From 3.5 on (-0.5)
 /// taking out what alternates always lowers the energy; below, no more than that is taken out.
 constexpr double least_cosine = -0.3;
-/// The same where substeps will damp, of changes instead of turns: of a frequency times the substep of 2. A little less, as a first blow has no phase, but
-/// what rounding makes of it.
+/// The same where substeps will damp, of changes instead of turns: of a frequency times the substep of 2. A little less, as a
+/// first blow has no phase, but what rounding makes of it.
 constexpr double least_cosine_damped = -0.02;
 /// How much of what was seen is remembered from one substep to the next: longer than a turning point of a motion lasts.
 constexpr double memory = 0.8;

@@ -85,8 +85,8 @@ void check_turn(const std::string& key, const std::array<double, 2>& curvature, 
   const double length = cable.length / cable.segments;
   if (cable.segments == 1 || !(std::hypot(curvature[0], curvature[1]) * length > largest_rest_turn)) return;
   errors.add(key, list_text(curvature),
-             "at most " + rounded_bound_text(largest_rest_turn / length, -1) + " 1/m in all with segments of " + rounded_text(length) +
-                 " m, a quarter turn from one to the next; more segments allow more");
+             "at most " + rounded_bound_text(largest_rest_turn / length, -1) + " 1/m in all with segments of " +
+                 rounded_text(length) + " m, a quarter turn from one to the next; more segments allow more");
 }
 
 void check_rest_curvature(const std::string& key, const CableDesc& cable, Errors& errors) {
