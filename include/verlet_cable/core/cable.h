@@ -23,8 +23,9 @@ struct CableModel {
 struct UnresolvedMotion {
   std::vector<Vector3> acceleration_changes;  ///< [m/s^2] a node, n + 1, from the substep before the last to the last
   std::vector<Vector3> turns;  ///< [m/s^2] a node, n + 1: half of what the last change differs by from the one before
-  double changed = 0;          ///< [N^2/kg] sum over nodes and recent substeps: mass times the square of the turn
-  double turned = 0;           ///< [N^2/kg] likewise, mass times the turn times the one before
+  double changed = 0;          ///< [N^2/kg] sum over nodes and recent substeps: mass times the square of the turn,
+                               ///< or of the change, where what is found is to be damped
+  double turned = 0;           ///< [N^2/kg] likewise, mass times the one times the one before
   int known = 0;               ///< substeps since the motion began anew, up to 2: then changes are known
   int damped = 0;              ///< substeps that are still to damp
 };

@@ -16,9 +16,12 @@ NodeCouplings<Pair> couplings_of_lanes(const KktSystem& s, int left, int right) 
           Pair{s.second[left], s.second[right - 2]}};
 }
 
+SymmetricOf<double> symmetric(const SymmetricArray& a, int i) {
+  return {a.xx[i], a.xy[i], a.xz[i], a.yy[i], a.yz[i], a.zz[i]};
+}
+
 SymmetricOf<double> own_block(const KktSystem& s, int i) {
-  const SymmetricOf<double> added{s.added.xx[i], s.added.xy[i], s.added.xz[i], s.added.yy[i], s.added.yz[i], s.added.zz[i]};
-  return plus_diagonal(added, s.diagonal[i]);
+  return plus_diagonal(symmetric(s.added, i), s.diagonal[i]);
 }
 
 PairVector joined(const VectorOf<double>& a, const VectorOf<double>& b) {
@@ -111,8 +114,7 @@ void BlockElimination::factor_lanes(const KktSystem& s) {
                          eliminations_[k]);
   }
   const int m = lane_;
-  const NodeCouplings<double> between{vector(s.direction, m), s.compliance[m], s.first[m], lane_of(pair(s.added_next, m, m), 0),
-                                      0};
+  const NodeCouplings<double> between{vector(s.direction, m), s.compliance[m], s.first[m], symmetric(s.added_next, m), 0};
   eliminate_middle(lane_of(front, 0), lane_of(front, 1), own_block(s, m), own_block(s, m + 1), s.movable[m], s.movable[m + 1],
                    between, middle_);
 }

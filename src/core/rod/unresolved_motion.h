@@ -26,12 +26,13 @@ void begin_anew(UnresolvedMotion& motion);
 /// Finds motion of a cable that substeps do not resolve, and takes it out of the velocities. Where it is resolved, with phase p a
 /// substep (p = 2 atan(omega h / 2) for a frequency omega), successive turns of the accelerations (differences of their changes)
 /// have products that are cos(p) of their squares; what is much faster turns round from each substep to the next, for ever: -1.
-/// Of slow motion with fast motion on it, turns show the fast one.
+/// Of slow motion with fast motion on it, turns show the fast one. Where substeps will damp what is found, it is the changes
+/// themselves that are looked at.
 class MotionCleaner {
  public:
   void resize(int nodes);
 
-  /// After a substep of h [s]: adds what it has changed to what is known of the cable's motion. True if motion was found that is
+  /// After a substep: adds what it has changed to what is known of the cable's motion. True if motion was found that is
   /// not resolved; what is known is then forgotten. `movable`: a node, 1 or 0; `before`: a node, accelerations at the substep's
   /// start [m/s^2].
   bool finds_unresolved(Treatment treatment, const std::vector<double>& movable, const VectorArray& before, CableState& state);
