@@ -21,23 +21,21 @@ from recording import Recording  # noqa: E402
 # Mean absolute errors [cm] over 5 s of the learned model that was published with the recordings (arXiv 2406.05931).
 PUBLISHED = {1: 1.03, 2: 1.02, 3: 0.99, 4: 1.15}
 SHOWN_TIMES = (0.0, 1.0, 2.5, 4.9)  # [s]
+# In the order of a report's parameters.
+MATERIAL = ('bending stiffness [N m²]', 'bending damping [N m² s]', 'drag [kg/(m s)]', 'torsional stiffness [N m²]')
 
 
 def fit(programs, cable, recordings, segments, work):
-    """Runs cable_fit, unless its report is there; the report, and how long [s] it took to fit, without and with the centre line,
-    neither cross-validated."""
+    """Runs cable_fit, unless its report is there; the report, and how long [s] it took to fit both lines and to cross-validate."""
     report, seconds = (os.path.join(work, f'dlo{cable}.{kind}') for kind in ('json', 'seconds'))
     if not os.path.exists(seconds):
-        command = [os.path.join(programs, 'cable_fit'), *recordings, '--name', f'dlo{cable}', '--segments', str(segments),
-                   '--output', os.path.join(work, f'dlo{cable}.yaml')]
-        centre_line = ['--centre-line', os.path.join(work, f'dlo{cable}_centre_line.yaml')]
-        taken = []
-        for more in ([], centre_line, [*centre_line, '--report', report, '--predictions', os.path.join(work, f'predicted{cable}')]):
-            began = time.monotonic()
-            subprocess.run(command + more, check=True, stdout=subprocess.DEVNULL)
-            taken.append(time.monotonic() - began)
+        began = time.monotonic()
+        subprocess.run([os.path.join(programs, 'cable_fit'), *recordings, '--name', f'dlo{cable}', '--segments', str(segments),
+                        '--output', os.path.join(work, f'dlo{cable}.yaml'),
+                        '--centre-line', os.path.join(work, f'dlo{cable}_centre_line.yaml'), '--report', report,
+                        '--predictions', os.path.join(work, f'predicted{cable}')], check=True, stdout=subprocess.DEVNULL)
         with open(seconds, 'w', encoding='utf-8') as file:
-            json.dump(taken[:2], file)
+            json.dump(time.monotonic() - began, file)
     with open(report, encoding='utf-8') as file, open(seconds, encoding='utf-8') as taken:
         found = json.load(file)
         if found['segments'] != segments:
@@ -105,13 +103,22 @@ def table_row(cable, name, report, in_order):
           f"{last:.2f} | {errors(centre_line, 'fitted', in_order)[0]:.2f} |")
 
 
+def material_row(cable, report):
+    """What the fit of the centre line found, for the linear density that cable_fit takes where none is given."""
+    cells = [str(cable)]
+    for parameter in report['centre_line']['parameters'][:len(MATERIAL)]:
+        told = parameter['told_by_the_data'] == 'yes'
+        cells.append('{value:.3g} ({low:.2g} to {high:.2g})'.format(**parameter) if told else 'not determined')
+    return '| ' + ' | '.join(cells) + ' |'
+
+
 def other_numbers(cable, report, seconds, factor):
     """Errors [cm] with half, as many and twice the segments; times."""
     cells = [str(cable)]
     for fitted in (report['centre_line'], report):
         half, twice = (100 * other['mean_error'] for other in fitted['resegmented'])
         cells += [f'{error:.3f}' for error in (half, errors(fitted, 'fitted', True)[0], twice)]
-    return '| ' + ' | '.join(cells + [f'{taken:.0f}' for taken in seconds] + [f'{factor:.0f}']) + ' |'
+    return '| ' + ' | '.join([*cells, f'{seconds:.0f}', f'{factor:.0f}']) + ' |'
 
 
 def main():
@@ -122,7 +129,7 @@ def main():
     os.makedirs(work, exist_ok=True)
     os.makedirs(pictures, exist_ok=True)
     figure, axis = plt.subplots(figsize=(8, 4.5), constrained_layout=True)
-    others = []
+    materials, others = [], []
     print('| cable | left out [cm] | line through the markers [cm] | published [cm] | largest [cm] | at 5 s [cm] | fitted [cm] |\n'
           '|---|---|---|---|---|---|---|')
     for cable in range(1, 6):
@@ -133,6 +140,7 @@ def main():
         table_row(cable, cable, report, in_order=True)
         recordings = [Recording(path) for path in paths]
         factor = min(real_time_factor(programs, cable, recording, work) for recording in recordings)
+        materials.append(material_row(cable, report))
         others.append(other_numbers(cable, report, seconds, factor))
         predicted = [Recording(os.path.join(work, f'predicted{cable}', os.path.basename(path))).markers for path in paths]
         in_order = [recording['swapped_markers'] == 'none' for recording in report['recordings']]
@@ -142,9 +150,10 @@ def main():
                   label=f'cable {cable}')
         draw_shapes(cable, recordings[0], predicted[0], pictures)
         sys.stdout.flush()
+    print('\n| cable | ' + ' | '.join(MATERIAL) + ' |\n' + (1 + len(MATERIAL)) * '|---' + '|', *materials, sep='\n')
     counts = f'{segments // 2} segments [cm] | {segments} | {2 * segments}'
-    print(f'\n| cable | centre line: {counts} | line through the markers: {counts} | fit [s] | and centre line [s] | times real time |\n'
-          + 10 * '|---' + '|', *others, sep='\n')
+    print(f'\n| cable | centre line: {counts} | line through the markers: {counts} | all fits [s] | times real time |\n'
+          + 9 * '|---' + '|', *others, sep='\n')
     axis.set(xlabel='t [s]', ylabel='mean absolute error [cm]', ylim=(0, None), title='Recordings left out of the fit, mean')
     axis.legend()
     figure.savefig(os.path.join(pictures, 'errors.png'), dpi=90)

@@ -122,11 +122,9 @@ TEST(Contact, PileTouchesItselfAndComesToRest) {
   EXPECT_GT(closest, 1.8 * radius);
 }
 
-/// A light cable over a cylinder, wrapped by half a turn and any number of whole ones, with payloads at both ends whose weights
-/// are in the ratio exp(friction * angle) * factor. How far the heavy one has sunk after half a second, after a time for it to
-/// settle [m].
-double capstan_slip(double friction, double angle, double factor) {
-  const double cylinder = 0.05, arm = 0.2, light = 1.0;
+/// A light cable over a cylinder, wrapped by half a turn and any number of whole ones.
+SceneDesc capstan(double friction, double angle) {
+  const double cylinder = 0.05, arm = 0.2;
   const double wrap = cylinder + radius;
   SceneDesc scene = straight_rope(angle * wrap + 2 * arm, 100, 0.002);
   CableDesc& cable = scene.cables[0];
@@ -137,10 +135,19 @@ double capstan_slip(double friction, double angle, double factor) {
     cable.initial.points.push_back({-wrap * std::cos(turned), 0, wrap * std::sin(turned)});
   }
   cable.initial.points.push_back(cable.initial.points.back() + Vector3(0, 0, -arm));
-  cable.point_masses.push_back({{PlaceDesc::At::start, 0}, light / 9.81});
-  cable.point_masses.push_back({{PlaceDesc::At::end, 0}, light * factor * std::exp(friction * angle) / 9.81});
   add_obstacle("capstan", ShapeType::cylinder, {0, 0, 0, pi / 2, 0, 0}, scene);
   scene.obstacles.back().friction = friction;
+  return scene;
+}
+
+/// With payloads at both ends of a capstan's cable whose weights are in the ratio exp(friction * angle) * factor: how far the
+/// heavy one has sunk after half a second, after a time for it to settle [m].
+double capstan_slip(double friction, double angle, double factor) {
+  const double light = 1.0;
+  SceneDesc scene = capstan(friction, angle);
+  CableDesc& cable = scene.cables[0];
+  cable.point_masses.push_back({{PlaceDesc::At::start, 0}, light / 9.81});
+  cable.point_masses.push_back({{PlaceDesc::At::end, 0}, light * factor * std::exp(friction * angle) / 9.81});
   World world(scene, BoundaryInputs(1));
   run(world, 0.5);
   const double before = world.cables()[0].state.positions.back().z();
@@ -154,6 +161,37 @@ TEST(Contact, CapstanHoldsAndSlipsAsEulerSays) {
       EXPECT_LT(capstan_slip(friction, angle, 0.97), 2e-4) << "friction " << friction << ", angle " << angle;
       EXPECT_GT(capstan_slip(friction, angle, 1.03), 2e-3) << "friction " << friction << ", angle " << angle;
     }
+}
+
+TEST(Contact, FrictionFollowsTheTensionWithinAnIteration) {
+  const double friction = 0.5, angle = 3 * pi;
+  SceneDesc scene = capstan(friction, angle);
+  scene.gravity.acceleration.setZero();
+  scene.materials[0].material.axial_stiffness = 2000;
+  scene.materials[0].material.axial_damping = 2;
+  CableDesc& cable = scene.cables[0];
+  cable.length *= 0.998;  // tight from the start
+  const std::vector<Vector3>& points = cable.initial.points;
+  for (const bool first : {true, false}) {
+    const Vector3& end = first ? points.front() : points.back();
+    const char* frame = first ? "first" : "second";
+    AttachmentDesc held = scenes::attachment(frame, first ? PlaceDesc::At::start : PlaceDesc::At::end, Vector3::Zero(), frame);
+    held.initial_pose = InitialPose{end.x(), end.y(), end.z(), 0, 0, 0};
+    cable.attachments.push_back(held);
+  }
+  BoundaryInputs frames = initial_frames(scene);
+  World world(scene, frames);
+  int iterations = 0;
+  for (int i = 0; i < 300; ++i) {
+    frames[1].pose.position.z() += 1e-4;
+    frames[2].pose.position.z() -= 1e-4;
+    const StepResult result = world.step(frames);
+    if (i >= 100) iterations += result.iterations;
+  }
+  const std::vector<Attachment>& ends = world.attachments();
+  EXPECT_NEAR(ends[1].force.norm() / ends[0].force.norm() / std::exp(friction * angle), 1, 0.02);
+  // Where iterations hand it on along the cable, they are seven a step.
+  EXPECT_LT(iterations, 3 * 200);
 }
 
 TEST(Contact, CableSettlesOnAFloor) {

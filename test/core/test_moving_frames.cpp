@@ -274,6 +274,16 @@ TEST(Jumps, LastNoLongerThanFiveMilliseconds) {
   }
 }
 
+/// What lasted was a motion, and so is its end: the cable is not carried on.
+TEST(Jumps, TheEndOfAShortMotionIsNone) {
+  for (const double duration : {0.006, 0.008, 0.01, 0.02}) {
+    Hanging hanging(0.001);
+    hanging.run([&](double t) { return at_one_speed(20 * duration, duration, t); }, 0, 0.15);
+    EXPECT_TRUE(hanging.jumps_.empty()) << duration;
+    EXPECT_EQ(hanging.carried_, 5) << duration;
+  }
+}
+
 TEST(Jumps, OutAndBackLeavesTheCableWhereItWas) {
   Hanging hanging(0.001);
   hanging.run([](double t) { return t > 0.1005 && t < 0.1015 ? 0.0045 : 0; }, 0, 0.3);

@@ -41,6 +41,8 @@ TEST(Fit, FindsTheMaterialThatMadeTheRecordings) {
   const Problem problem{recordings, inputs, settings, cable_parameters(settings), [&] { ++simulations; }};
   const std::vector<double> values = fit(problem, all, coarse_search(problem, all));
   EXPECT_LE(simulations, most_simulations(problem, 3));
+  // Slopes take most of them: after the search they are found at nine places or fewer.
+  EXPECT_LT(simulations, 3 * (21 + 9 * static_cast<int>(problem.parameters.size() + 1)));
 
   const SceneDesc found = cable_scene(settings, values);
   const MaterialDesc &is = found.materials[0].material, &should = known.materials[0].material;
@@ -81,7 +83,7 @@ TEST(Fit, FindsHowFarMarkersSitOffTheCentreLine) {
   const SceneDesc known = known_cable();
   const Vector3 hand_offset(0, -0.01, 0.005);
   std::vector<Recording> recordings;
-  for (int take = 0; take < 3; ++take) recordings.push_back(synthetic_recording(known, take, 5, 0, 0, hand_offset));
+  for (int take = 0; take < 3; ++take) recordings.push_back(synthetic_recording(known, take, 3, 0, 0, hand_offset));
   const std::vector<Smoothed> inputs = smooth(recordings);
   const std::vector<int> all = all_of(recordings);
   CableSettings settings;
@@ -102,7 +104,7 @@ TEST(Fit, FindsHowFarMarkersSitOffTheCentreLine) {
       sum += one.mean / static_cast<double>(recordings.size());
     return sum;
   };
-  EXPECT_LT(error(beside, values), 0.36 * error(on_markers, line));
+  EXPECT_LT(error(beside, values), 0.3 * error(on_markers, line));
   EXPECT_LT(error(beside, values), 0.001);
   // Alike offsets of all would only move the cable: those of markers on hands and between differ.
   const Markers markers = markers_of(settings, values);
@@ -111,6 +113,28 @@ TEST(Fit, FindsHowFarMarkersSitOffTheCentreLine) {
   for (std::size_t marker = 2; marker < 10; ++marker) EXPECT_LT(off(marker).norm(), 0.003) << marker;
   const double found = cable_scene(settings, values).materials[0].material.bending_stiffness.front();
   EXPECT_NEAR(found / known.materials[0].material.bending_stiffness.front(), 1, 0.05);
+}
+
+TEST(Fit, CurvatureOfZeroGoesByTheSameLawAsOthers) {
+  const Recording recording = synthetic_recording(known_cable(), 0, 1, 0);
+  CableSettings settings;
+  settings.name = "found";
+  settings.segments = 16;
+  const std::vector<Recording> recordings{recording};
+  measure_cable(recordings, smooth(recordings), {0}, settings);
+  const std::vector<double> straight = first_guess(settings, 1e-2, 1e-3);
+  std::vector<double> curved = straight;
+  const std::vector<Parameter> parameters = cable_parameters(settings);
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    if (parameters[i].key.find("rest_curvature") != std::string::npos) curved[i] = 1e-7;
+  const Markers markers = markers_of(settings, straight);
+  const Prediction one = predict(cable_scene(settings, straight), markers, recording),
+                   other = predict(cable_scene(settings, curved), markers, recording);
+  double gap = 0;
+  for (int row = 0; row < recording.rows(); ++row)
+    for (int marker = 0; marker < recording.marker_count(); ++marker)
+      gap = std::max(gap, (one.positions[row][marker] - other.positions[row][marker]).norm());
+  EXPECT_LT(gap, 1e-6);
 }
 
 TEST(Markers, OnTheLineThroughThemNothingChanges) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 
@@ -122,6 +123,32 @@ TEST(Recording, RollOfHandsIsTheSmallestFromTheUsualDirection) {
   const Quaternion tilt(Eigen::AngleAxisd(std::atan2(0.03, 0.1), Vector3::UnitX()));
   EXPECT_TRUE(held_ends(recording, usual).start.at(0).orientation.isApprox(tilt * down, 1e-12));
   EXPECT_TRUE(held_ends(recording, usual).end.at(0).orientation.isApprox(held_ends(recording).end.at(0).orientation, 1e-12));
+}
+
+/// Whose first hand goes round and comes back, so far from +x [rad].
+Recording hand_goes_round(double angle) {
+  Recording recording;
+  for (int row = 0; row <= 40; ++row) {
+    const double around = M_PI * row / 20;
+    recording.times.push_back(0.01 * row);
+    const Vector3 held(std::cos(angle), std::sin(angle) * std::cos(around), std::sin(angle) * std::sin(around));
+    recording.markers.push_back({{0, 0, 0}, 0.1 * held, {0.5, 0, -0.1}, {0.6, 0, 0}});
+  }
+  return recording;
+}
+
+TEST(Recording, HandThatComesBackHasTheRollThatItHad) {
+  const HeldDirections usual{Vector3::UnitX(), Vector3::UnitX()};
+  const auto rolled = [](const HeldEnds& ends) {
+    return ends.start.at(0).orientation.angularDistance(ends.start.at(0.4).orientation);
+  };
+  EXPECT_LT(rolled(held_ends(hand_goes_round(0.5), usual)), 1e-9);
+  // Carried along it rolls by the solid angle that it has gone round.
+  EXPECT_NEAR(rolled(held_ends(hand_goes_round(0.5))), 2 * M_PI * (1 - std::cos(0.5)), 0.02);
+  // Near the opposite direction the smallest turn from the usual one would whirl round: no row differs much from the one before.
+  const HeldEnds far = held_ends(hand_goes_round(3), usual);
+  for (int row = 0; row < 40; ++row)
+    EXPECT_LT(far.start.at(0.01 * row).orientation.angularDistance(far.start.at(0.01 * (row + 1)).orientation), 0.05) << row;
 }
 
 TEST(Recording, UsualDirectionsAreTheMeanOnes) {

@@ -70,7 +70,8 @@ class SnapshotsTest(unittest.TestCase):
             try:
                 self.assertTrue(self.node.set_length('hose', False, 1.8, 0.2).success)
                 with self.node.states() as states:
-                    states.wait_for(lambda s: cable(s, 'hose') and cable(s, 'hose').rest_length > 1.1, 'a longer hose')
+                    states.wait_for(lambda s: cable(s, 'hose') and cable(s, 'hose').rest_length > 1.1 and cable(s, 'hose').contacts,
+                                    'a longer hose that touches the floor')
                 self.assertTrue(self.node.pause(True).success)
                 rospy.sleep(1.3)  # tf has come for what follows
                 self.assertTrue(self.node.save_state('busy').success)

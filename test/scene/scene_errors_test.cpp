@@ -149,10 +149,16 @@ const Mistake mistakes[] = {
      "materials.m.torsional_stiffness: 0; allowed: any number above 0 [N m^2] as cables[0] has rest_twist"},
     {"nanRestTwist", color, "rest_twist: .nan", "cables[0].rest_twist: \".nan\";"},
     {"infiniteRestTwist", color, "rest_twist: .inf", "cables[0].rest_twist: inf;"},
+    {"tightTolerance", "cables:", "tolerance: 1e-7\ncables:", "tolerance: 1e-07; allowed: any number from 1e-6 to 1e-3 [1/s]"},
     {"badNumericalDamping", "cables:", "numerical_damping: 1\ncables:", "numerical_damping: 1; allowed: true | false"},
     {"negativeDamping", "radius: 0.005", "radius: 0.005, torsional_damping: -1", "materials.m.torsional_damping: -1;"},
     {"infiniteDamping", "radius: 0.005", "radius: 0.005, axial_damping: .inf", "materials.m.axial_damping: inf;"},
     {"zeroBreakingTension", "radius: 0.005", "radius: 0.005, breaking_tension: 0", "materials.m.breaking_tension: 0;"},
+    {"tightRestCurvature", color, "rest_curvature: [0, 40]",
+     "cables[0].rest_curvature: [0, 40]; allowed: at most 31.41 1/m in all with segments of 0.05 m, a quarter turn from one to "
+     "the next; "
+     "more segments allow more"},
+    {"tightPlaceOfRestCurvature", color, "rest_curvature: [[1, 2], [30, 30]]", "cables[0].rest_curvature[1]: [30, 30];"},
     {"shortRestCurvature", color, "rest_curvature: [1]", "cables[0].rest_curvature: [1];"},
     {"nanRestCurvature", color, "rest_curvature: [1, .nan]", "cables[0].rest_curvature: [1, .nan];"},
     {"noPlaceOfRestCurvature", color, "rest_curvature: []", "cables[0].rest_curvature: [];"},

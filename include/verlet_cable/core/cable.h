@@ -22,10 +22,12 @@ struct CableModel {
 /// Signs of motion that substeps do not resolve: it turns round from each to the next.
 struct UnresolvedMotion {
   std::vector<Vector3> acceleration_changes;  ///< [m/s^2] a node, n + 1, from the substep before the last to the last
-  double changed = 0;  ///< [N^2/kg] sum over nodes and recent substeps: mass times the square of the change
-  double turned = 0;   ///< [N^2/kg] likewise, mass times the change times the one before
-  int known = 0;       ///< substeps since the motion began anew, up to 2: then changes are known
-  int damped = 0;      ///< substeps that are still to damp
+  std::vector<Vector3> turns;  ///< [m/s^2] a node, n + 1: half of what the last change differs by from the one before
+  double changed = 0;          ///< [N^2/kg] sum over nodes and recent substeps: mass times the square of the turn,
+                               ///< or of the change, where what is found is to be damped
+  double turned = 0;           ///< [N^2/kg] likewise, mass times the one times the one before
+  int known = 0;               ///< substeps since the motion began anew, up to 2: then changes are known
+  int damped = 0;              ///< substeps that are still to damp
 };
 
 /// What a step changes. Written by World only. A cable of n segments has n + 1 nodes; segment i joins nodes i and i + 1. Winches

@@ -82,6 +82,8 @@ struct RestCurvatureDesc {
   std::array<double, 2> curvature{0, 0};  ///< constant: about the material's y and z axes [1/m]
   /// profile: the same at places spread evenly from start to end, at least two, straight lines in between [1/m]
   std::vector<std::array<double, 2>> profile;
+  /// Numbers that are zero count as curved, too: cables that differ in these numbers alone then go by one law, as a fit needs it.
+  bool zero_counts = false;
 
   /// Whether the numbers alone say so; an initial shape may be straight, too.
   bool is_straight() const;
@@ -261,6 +263,7 @@ struct SceneDesc {
   double time_step = 0.001;  ///< [s], > 0
   /// Motion that a step cannot resolve dies out within some steps; without, energy is conserved and such motion goes on.
   bool numerical_damping = true;
+  double tolerance = 1e-5;  ///< [1/s] error of velocities at which a cable's iteration ends, in segment lengths; 1e-6 to 1e-3
   GravityDesc gravity;
   FluidDesc fluid;
   double publish_rate = 50;  ///< [Hz], > 0

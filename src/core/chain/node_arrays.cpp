@@ -57,6 +57,7 @@ void append(const CableState& tail, CableState& cable) {
   extend(tail.velocities, cable.velocities);
   extend(tail.accelerations, cable.accelerations);
   extend(tail.unresolved.acceleration_changes, cable.unresolved.acceleration_changes);
+  extend(tail.unresolved.turns, cable.unresolved.turns);
   visit_segment_arrays(cable, [](auto& array) { array.push_back(zero_like(array.back())); });
   extend(tail.rest_lengths, cable.rest_lengths);
   extend(tail.tension, cable.tension);

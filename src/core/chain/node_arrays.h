@@ -13,6 +13,7 @@ void visit_node_arrays(CableState& cable, const Visitor& visitor) {
   visitor(cable.velocities);
   visitor(cable.accelerations);
   visitor(cable.unresolved.acceleration_changes);
+  visitor(cable.unresolved.turns);
   visitor(cable.masses);
   if (!cable.rest_curvature.empty()) visitor(cable.rest_curvature);
   if (!cable.rest_twist.empty()) visitor(cable.rest_twist);

@@ -19,6 +19,8 @@ constexpr double bulge = 0.08;
 constexpr double anchored_length = 0.05;
 /// Stiffness of a contact without load, relative to what stops a segment within a step.
 constexpr double stopping_stiffness = 2;
+/// Relative, of distances.
+constexpr double distance_rounding = 1e-6;
 /// Deeper than this, in radii, nothing comes through a surface before its contact is found.
 constexpr double deepest_arrival = 0.5;
 
@@ -41,10 +43,12 @@ CablePoint node_point(int cable, int node, int segments) {
 /// (1 + f tan(angle / 2)) / (1 - f tan(angle / 2)).
 double friction_of_arc(double friction, const CableState& state, int node, const Vector3& normal) {
   if (node == 0 || node + 1 == static_cast<int>(state.positions.size())) return friction;
-  const Vector3 before = (state.positions[node] - state.positions[node - 1]).normalized();
-  const Vector3 after = (state.positions[node + 1] - state.positions[node]).normalized();
-  const double half_angle = std::asin(std::clamp(0.5 * normal.dot(before - after), 0.0, 1.0));
-  return half_angle > 0 ? std::tanh(friction * half_angle) / std::tan(half_angle) : friction;
+  const Vector3 before = state.positions[node] - state.positions[node - 1];
+  const Vector3 after = state.positions[node + 1] - state.positions[node];
+  const double sine = std::min(0.5 * (normal.dot(before) / before.norm() - normal.dot(after) / after.norm()), 1.0);
+  if (!(sine > 0)) return friction;
+  const double half_angle = std::asin(sine);
+  return std::tanh(friction * half_angle) / std::tan(half_angle);
 }
 
 bool apart(const Vector3& a, const Vector3& b, const Aabb& box, double reach) {
@@ -89,13 +93,10 @@ void ContactSet::find(const std::vector<SimulatedCable>& cables, const std::vect
     for (const MovingObstacle& obstacle : obstacles) find_obstacle(cable, island[k], members[k], obstacle, attachments, h);
   }
   if (!rules.pairs.self && !rules.pairs.between_cables) return;
-  double radius = 0, square = 0;
-  for (const int cable : island) {
-    radius = std::max(radius, cables[cable].model->material.radius);
-    for (const Vector3& v : cables[cable].state.velocities) square = std::max(square, v.squaredNorm());
-  }
+  double radius = 0;
+  for (const int cable : island) radius = std::max(radius, cables[cable].model->material.radius);
   grid_.update(cables, island, rules.pairs, reach(0, radius, h) + radius, h, pairs);
-  find_pairs(cables, members, pairs.pairs, std::sqrt(square), h);
+  find_pairs(cables, members, pairs, radius, h);
 }
 
 /// Which nodes are attached: nothing but their holders moves them.
@@ -112,7 +113,7 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
   const CableState& state = cable.state;
   const int n = state.segments();
   const double radius = model.material.radius, surface = radius + moving.obstacle->padding;
-  const Pose to_shape = moving.start.inverse();
+  const Eigen::Matrix3d orientation = moving.start.orientation.toRotationMatrix();
   const Shape& shape = moving.obstacle->shape;
   const bool flat = std::holds_alternative<PlaneShape>(shape);
 
@@ -120,26 +121,34 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
   const auto visit = [&](int i, double far) {
     if (visited_[i] != 0) return;
     visited_[i] = 1;
-    local_[i] = to_shape.position + to_shape.orientation * state.positions[i];
+    local_[i] = orientation.transpose() * (state.positions[i] - moving.start.position);
     nearest_[i] = closest_point(shape, local_[i], far);
   };
+  const auto way_of_surface = [&](const Vector3& point) -> Vector3 {
+    if (!(moving.speed > 0)) return Vector3::Zero();
+    return moving.end.position - moving.start.position + moving.end.orientation * point - orientation * point;
+  };
   const double friction = moving.obstacle->friction.value_or(model.material.friction);
-  const auto touch_at = [&](const CablePoint& point, std::uint64_t element, const SurfacePoint& nearest, double friction_there) {
+  const auto touch_at = [&](const CablePoint& point, std::uint64_t element, const SurfacePoint& nearest) {
+    const double gap = nearest.distance - surface;
+    const Vector3 normal = orientation * nearest.normal, way = way_of_surface(nearest.point);
+    const Vector3 velocity = interpolate(state.velocities, point.segment, point.fraction);
+    if (!may_close(gap, normal, velocity - way / h, radius, h)) return;
     if (anchored(state, *member.targets, point, *moving.obstacle, attachments)) return;
     Touch touch;
     touch.key = moving.obstacle->id;
     touch.other_key = element;
     touch.point = point;
     touch.obstacle = moving.index;
-    touch.normal = moving.start.orientation * nearest.normal;
-    touch.gap = nearest.distance - surface;
-    touch.friction = friction_there;
+    touch.normal = normal;
+    touch.gap = gap;
+    const bool on_node = element % 2 == 0;
+    touch.friction = on_node ? friction_of_arc(friction, state, static_cast<int>(element / 2), normal) : friction;
     touch.radius = radius;
     touch.base_stiffness = stopping(cable, point.segment, rules_.time_step);
-    touch.other_displacement = moving.end.position + moving.end.orientation * nearest.point -
-                               (moving.start.position + moving.start.orientation * nearest.point);
+    touch.other_displacement = way;
     touch.position = interpolate(state.positions, point.segment, point.fraction);
-    add(touch, member, interpolate(state.velocities, point.segment, point.fraction), touch.other_displacement / h, h);
+    add(touch, member, velocity, h);
   };
 
   visited_.assign(n + 1, 0);
@@ -149,69 +158,64 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
   for (int i = 0; i <= n; ++i) {
     const double far = std::max(node_reach(i), i < n ? node_reach(i + 1) : 0.0);
     const bool close = i < n && !apart(state.positions[i], state.positions[i + 1], moving.box, far);
-    const double length = i < n ? (state.positions[i + 1] - state.positions[i]).norm() : 0;
+    const double length = close ? (state.positions[i + 1] - state.positions[i]).norm() : 0;
     if (close) {
       visit(i, far + length);
       visit(i + 1, far + length);
     }
-    if ((close || last) && held_[i] == 0)
-      touch_at(node_point(index, i, n), 2 * i, nearest_[i],
-               friction_of_arc(friction, state, i, moving.start.orientation * nearest_[i].normal));
+    if ((close || last) && held_[i] == 0) touch_at(node_point(index, i, n), 2 * i, nearest_[i]);
     last = close;
     if (!close || flat || held_[i] != 0 || held_[i + 1] != 0) continue;
     const double first = nearest_[i].distance, second = nearest_[i + 1].distance;
     if (0.5 * (first + second - length) > far) continue;
-    SegmentSurfacePoint deepest = deepest_point(shape, local_[i], local_[i + 1], far);
+    // Where it is nowhere deeper than this, it does not cut in by more than bulges out.
+    const double shallow = std::max(first, second) - bulge * radius;
+    SegmentSurfacePoint deepest = deepest_point(shape, local_[i], local_[i + 1], std::min(far, shallow));
     const double cut = first + deepest.fraction * (second - first) - deepest.surface.distance;
     if (deepest.surface.distance >= far || cut <= bulge * radius) continue;
     deepest.surface.distance += bulge * radius;
-    touch_at({index, i, deepest.fraction}, 2 * i + 1, deepest.surface, friction);
+    touch_at({index, i, deepest.fraction}, 2 * i + 1, deepest.surface);
   }
 }
 
 void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members,
-                            const std::vector<SegmentPairs::Pair>& pairs, double speed, double h) {
-  for (const SegmentPairs::Pair& pair : pairs) {
+                            const SegmentPairs& found, double thickest, double h) {
+  for (const SegmentPairs::Pair& pair : found.pairs) {
+    const double speed = found.speeds[pair.first_node] + found.speeds[pair.second_node];
+    const double moved = found.moved[pair.first_node] + found.moved[pair.second_node];
+    if (pair.distance - moved > (2 * thickest + reach(speed, thickest, h)) * (1 + distance_rounding)) continue;
     const SimulatedCable &a = cables[pair.first.cable], &b = cables[pair.second.cable];
-    const int i = pair.first.segment, j = pair.second.segment;
-    const Vector3 &a0 = a.state.positions[i], &a1 = a.state.positions[i + 1];
-    const Vector3 &b0 = b.state.positions[j], &b1 = b.state.positions[j + 1];
     const double radius = std::min(a.model->material.radius, b.model->material.radius);
     const double surface = a.model->material.radius + b.model->material.radius;
-    const double far = surface + reach(2 * speed, radius, h);
-    const Vector3 along_a = a1 - a0, along_b = b1 - b0;
-    // Twice the distance of the middles, squared, against a bound of the square of the sum by twice the sum of the squares
-    const Vector3 middles = a0 + a1 - b0 - b1;
-    if (middles.squaredNorm() > 4 * far * (far + 2 * std::max(a.state.rest_lengths[i], b.state.rest_lengths[j])) +
-                                    2 * (along_a.squaredNorm() + along_b.squaredNorm()))
-      continue;
+    const double far = surface + reach(speed, radius, h);
+    const int i = pair.first.segment, j = pair.second.segment;
+    const Vector3 &a0 = a.state.positions[i], &b0 = b.state.positions[j];
+    const Vector3 along_a = a.state.positions[i + 1] - a0, along_b = b.state.positions[j + 1] - b0;
     const ClosestPoints closest = closest_points(a0, along_a, b0, along_b);
     const double distance = closest.between.norm();
     if (distance > far) continue;
+    const Vector3 normal = distance > 0 ? Vector3(closest.between / distance) : along_a.unitOrthogonal();
+    const Vector3 velocity =
+        interpolate(a.state.velocities, i, closest.first) - interpolate(b.state.velocities, j, closest.second);
+    if (!may_close(distance - surface, normal, velocity, radius, h)) continue;
 
     Touch touch;
-    const ContactMember& member = members[places_[pair.first.cable]];
     touch.key = pair_key | i;
     touch.other_key = key_of(members[places_[pair.second.cable]].id, j);
     touch.point = {pair.first.cable, i, closest.first};
     touch.other = {pair.second.cable, j, closest.second};
-    touch.normal = distance > 0 ? Vector3(closest.between / distance) : along_a.unitOrthogonal();
+    touch.normal = normal;
     touch.gap = distance - surface;
     touch.friction = rules_.cable_friction;
     touch.radius = radius;
     touch.base_stiffness = std::min(stopping(a, i, rules_.time_step), stopping(b, j, rules_.time_step));
     touch.position = a0 + closest.first * along_a;
-    const Vector3 velocity =
-        interpolate(a.state.velocities, i, closest.first) - interpolate(b.state.velocities, j, closest.second);
-    add(touch, member, velocity, Vector3::Zero(), h);
+    add(touch, members[places_[pair.first.cable]], velocity, h);
   }
 }
 
-/// Adds a touch if its gap may close; `velocity` [m/s] is that of the point, relative to another cable's, `other` that of an
-/// obstacle.
-void ContactSet::add(Touch& touch, const ContactMember& member, const Vector3& velocity, const Vector3& other, double h) {
-  const double approach = -touch.normal.dot(velocity - other);
-  if (!(touch.gap < reach(std::max(0.0, approach), touch.radius, h))) return;
+/// `velocity` [m/s] is that of the point, relative to another cable's where that is touched.
+void ContactSet::add(Touch& touch, const ContactMember& member, const Vector3& velocity, double h) {
   const double gentle = gentle_gap(touch.radius, contact_time(rules_.time_step));
   const bool known = recall(member, touch);
   if (!known && touch.obstacle >= 0 && touch.gap < -deepest_arrival * touch.radius)
@@ -224,6 +228,11 @@ void ContactSet::add(Touch& touch, const ContactMember& member, const Vector3& v
   touched_[places_[touch.point.cable]] = 1;
   if (touch.other.cable >= 0) touched_[places_[touch.other.cable]] = 1;
   touches_.push_back(touch);
+}
+
+/// Whether a gap [m] may close, at a `velocity` [m/s] relative to what is touched.
+bool ContactSet::may_close(double gap, const Vector3& normal, const Vector3& velocity, double radius, double h) const {
+  return gap < reach(std::max(0.0, -normal.dot(velocity)), radius, h);
 }
 
 /// How far [m] from a surface contact may matter in a substep, at a velocity of approach [m/s].
@@ -243,15 +252,6 @@ bool ContactSet::recall(const ContactMember& member, Touch& touch) {
   touch.mode = cache[recalled].mode;
   touch.inside = cache[recalled].inside;
   return true;
-}
-
-bool ContactSet::crossed(const std::vector<SimulatedCable>& cables) const {
-  return std::any_of(touches_.begin(), touches_.end(), [&](const Touch& touch) {
-    if (touch.other.cable < 0) return false;
-    const std::vector<Vector3>&a = cables[touch.point.cable].state.positions, &b = cables[touch.other.cable].state.positions;
-    const int i = touch.point.segment, j = touch.other.segment;
-    return closest_points(a[i], a[i + 1] - a[i], b[j], b[j + 1] - b[j]).between.dot(touch.normal) < 0;
-  });
 }
 
 void ContactSet::keep(const std::vector<ContactMember>& members) const {

@@ -33,8 +33,6 @@ class ContactSet {
   void find(const std::vector<SimulatedCable>& cables, const std::vector<int>& island, const std::vector<ContactMember>& members,
             const std::vector<MovingObstacle>& obstacles, const std::vector<Attachment>& attachments, const ContactRules& rules,
             double h, SegmentPairs& pairs);
-  /// Whether segments that touch have passed through each other since `find`.
-  bool crossed(const std::vector<SimulatedCable>& cables) const;
   /// The substep is done: the caches of the members take what sticks.
   void keep(const std::vector<ContactMember>& members) const;
 
@@ -47,10 +45,11 @@ class ContactSet {
   void set_held(const SimulatedCable& cable, const KinematicTargets& targets, const std::vector<Attachment>& attachments);
   void find_obstacle(const SimulatedCable& cable, int index, const ContactMember& member, const MovingObstacle& moving,
                      const std::vector<Attachment>& attachments, double h);
-  void find_pairs(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members,
-                  const std::vector<SegmentPairs::Pair>& pairs, double speed, double h);
-  void add(Touch& touch, const ContactMember& member, const Vector3& velocity, const Vector3& other, double h);
+  void find_pairs(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members, const SegmentPairs& found,
+                  double thickest, double h);
+  void add(Touch& touch, const ContactMember& member, const Vector3& velocity, double h);
   double reach(double speed, double radius, double h) const;
+  bool may_close(double gap, const Vector3& normal, const Vector3& velocity, double radius, double h) const;
   bool recall(const ContactMember& member, Touch& touch);
 
   SegmentGrid grid_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/segment_geometry.h"
+
 namespace verlet_cable {
 
 namespace {
@@ -25,6 +27,11 @@ constexpr double coupling_precision = 1e-10;
 /// Or when it is this part of what moves a segment by no more than is tolerated.
 constexpr double negligible_part = 0.1;
 constexpr int maximum_coupling_iterations = 60;
+/// Friction has followed the normal forces when displacements at the contacts change by less than this, relatively, or by this
+/// part of what is tolerated.
+constexpr double followed = 0.03;
+constexpr double followed_part = 0.2;
+constexpr int maximum_followings = 20;
 
 inline Vector3 between(const VectorArray& nodes, int i, double fraction) {
   return (1 - fraction) * get(nodes, i) + fraction * get(nodes, i + 1);
@@ -60,24 +67,6 @@ double dot(const VectorArray& a, const VectorArray& b, int count) {
   return sum;
 }
 
-/// to += scale from
-void add_scaled(double scale, const std::vector<double>& from, std::vector<double>& to, int count) {
-  for (int i = 0; i < count; ++i) to[i] += scale * from[i];
-}
-
-void add_scaled(double scale, const VectorArray& from, VectorArray& to, int count) {
-  each_component([&](auto component) { add_scaled(scale, from.*component, to.*component, count); });
-}
-
-/// to = from + scale to
-void scale_and_add(double scale, const std::vector<double>& from, std::vector<double>& to, int count) {
-  for (int i = 0; i < count; ++i) to[i] = from[i] + scale * to[i];
-}
-
-void scale_and_add(double scale, const VectorArray& from, VectorArray& to, int count) {
-  each_component([&](auto component) { scale_and_add(scale, from.*component, to.*component, count); });
-}
-
 int nodes(const Participant& p) {
   return p.state->nodes();
 }
@@ -92,38 +81,50 @@ bool joins_cables(const Touch& touch) {
 
 }  // namespace
 
-void ContactSolver::Work::resize(std::size_t nodes) {
-  for (VectorArray* a : {&load, &correction, &direction, &own_image, &image}) a->assign(nodes, 0.0);
-  for (std::vector<double>* a :
-       {&gap, &correction_multiplier, &direction_multiplier, &torque, &correction_twist, &direction_twist})
-    a->assign(nodes, 0.0);
+bool ContactSolver::solve(std::vector<Participant>& participants, std::vector<Touch>& touches) {
+  begin(participants);
+  return iterate(participants, touches);
 }
 
-bool ContactSolver::advance(std::vector<Participant>& participants, std::vector<Touch>& touches) {
+void ContactSolver::begin(std::vector<Participant>& participants) {
   if (work_.size() < participants.size()) work_.resize(participants.size());
   for (std::size_t k = 0; k < participants.size(); ++k) {
     Participant& p = participants[k];
     if (static_cast<int>(index_.size()) <= p.cable) index_.resize(p.cable + 1);
     index_[p.cable] = static_cast<int>(k);
-    work_[k].resize(nodes(p) + 1);
     p.result = {};
     p.stepper->begin(p.substep, *p.state, p.result);
   }
   largest_energy_ = 0;
-  if (!solve(participants, touches)) return false;
+}
+
+void ContactSolver::finish(std::vector<Participant>& participants) const {
   for (Participant& p : participants) p.stepper->finish(p.substep, true, *p.state, p.result);
-  return true;
+}
+
+bool ContactSolver::crosses(const std::vector<Participant>& participants, const std::vector<Touch>& touches) const {
+  return std::any_of(touches.begin(), touches.end(), [&](const Touch& touch) {
+    if (!joins_cables(touch)) return false;
+    const Participant &a = participants[index_[touch.point.cable]], &b = participants[index_[touch.other.cable]];
+    const int i = touch.point.segment, j = touch.other.segment;
+    const auto end = [](const Participant& p, int node) -> Vector3 {
+      return p.state->positions[node] + get(p.stepper->displacement(), node);
+    };
+    const Vector3 a0 = end(a, i), b0 = end(b, j);
+    return closest_points(a0, end(a, i + 1) - a0, b0, end(b, j + 1) - b0).between.dot(touch.normal) < 0;
+  });
 }
 
 /// Newton's method on the places, tensions and contacts of all. Contacts are stiff on one side and nothing on the other, so that
 /// whole corrections may jump to and fro between them: each is shortened until the forces along it have no more than half turned
 /// round.
-bool ContactSolver::solve(std::vector<Participant>& participants, std::vector<Touch>& touches) {
+bool ContactSolver::iterate(std::vector<Participant>& participants, std::vector<Touch>& touches) {
   const Substep& first = participants.front().substep;
   const double tolerance = velocity_tolerance * std::min(first.h, longest_tolerated);
-  negligible_energy_ = infinity;
+  negligible_energy_ = tolerated_ = infinity;
   for (const Participant& p : participants) {
     const double moved = tolerance * p.state->rest_lengths.front();
+    tolerated_ = std::min(tolerated_, moved);
     const double mass = p.state->rest_lengths.front() * p.substep.model.material.linear_density;
     negligible_energy_ = std::min(negligible_energy_, negligible_part * mass * moved * moved / (first.h * first.h));
   }
@@ -133,7 +134,10 @@ bool ContactSolver::solve(std::vector<Participant>& participants, std::vector<To
     const bool changed = i == 0 ? press(participants, touches) : shorten(participants, touches);
     if (stale || changed) factor(participants, touches);
     for (Participant& p : participants) p.stepper->solve_linear();
-    couple(participants);
+    if (couplings_.empty())
+      follow_friction(participants, touches);
+    else
+      couple(participants);
     work_along_ = work_along(participants);
     double largest = 0;
     for (Participant& p : participants) {
@@ -213,94 +217,196 @@ void ContactSolver::factor(std::vector<Participant>& participants, std::vector<T
   couplings_.clear();
   for (const Touch& touch : touches) {
     if (touch.mode == Touch::Mode::open) continue;
-    at(participants, touch.point).stepper->system().add_stiffness(touch.point.segment, touch.point.fraction, touch.slope);
+    const Eigen::Matrix3d stiffness = slope(touch);
+    at(participants, touch.point).stepper->system().add_stiffness(touch.point.segment, touch.point.fraction, stiffness);
     if (!joins_cables(touch)) continue;
-    at(participants, touch.other).stepper->system().add_stiffness(touch.other.segment, touch.other.fraction, touch.slope);
-    couplings_.push_back({index_[touch.point.cable], index_[touch.other.cable], touch.point.segment, touch.other.segment,
-                          touch.point.fraction, touch.other.fraction, touch.slope});
+    at(participants, touch.other).stepper->system().add_stiffness(touch.other.segment, touch.other.fraction, stiffness);
+    couplings_.push_back({side_at(touch.point), side_at(touch.other), stiffness});
   }
   for (Participant& p : participants) p.stepper->factor();
 }
 
-/// Improves the solutions that the cables have found alone until they heed each other.
-void ContactSolver::couple(std::vector<Participant>& participants) {
-  if (couplings_.empty()) return;
-  const std::size_t count = participants.size();
-  const auto residual = [&](int k) -> VectorArray& { return participants[k].stepper->system().load; };
-  double whole = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    Participant& p = participants[k];
-    Work& w = work_[k];
-    w.correction = p.stepper->correction();
-    w.correction_multiplier = p.stepper->multiplier_correction();
-    w.correction_twist = p.stepper->twist_correction();
-    whole += std::abs(dot(residual(k), w.correction, nodes(p)));
-    std::swap(w.load, residual(k));
-    std::swap(w.gap, p.stepper->system().gap);
-    std::swap(w.torque, p.stepper->torque());
-    residual(k).assign(w.load.x.size(), 0.0);
-    p.stepper->system().gap.assign(w.gap.size(), 0.0);
-    p.stepper->torque().assign(w.torque.size(), 0.0);
+/// The matrix has no part of the friction that follows the normal force of what slides, since that is not symmetric. Improves the
+/// solutions until it follows all the same: along a capstan it takes as many times as the cable's tension has to be handed on.
+void ContactSolver::follow_friction(std::vector<Participant>& participants, const std::vector<Touch>& touches) {
+  slips_.clear();
+  for (std::size_t k = 0; k < participants.size(); ++k) work_[k].slips = false;
+  for (const Touch& touch : touches) {
+    if (touch.mode != Touch::Mode::slides || !(touch.friction > 0)) continue;
+    Slip slip;
+    slip.participant = index_[touch.point.cable];
+    slip.segment = touch.point.segment;
+    slip.fraction = touch.point.fraction;
+    slip.normal = touch.normal;
+    slip.friction = touch.force / touch.normal_force - touch.normal;
+    slip.normal_force = touch.normal_force;
+    slip.stiffness = touch.rate * touch.stiffness;
+    slips_.push_back(slip);
+    work_[slip.participant].slips = true;
   }
-  add_coupling(
-      -1, [&](int k) -> const VectorArray& { return work_[k].correction; }, residual);
+  if (slips_.empty()) return;
+  for (std::size_t k = 0; k < participants.size(); ++k)
+    if (work_[k].slips) work_[k].load = participants[k].stepper->system().load;
+  double last = follow_slips(participants);
+  bool follows = true;
+  for (int i = 0; i < maximum_followings && follows && last > 0; ++i) {
+    solve_slipping(participants);
+    const double way = follow_slips(participants);
+    if (!(way > 0)) break;
+    follows = way < last;
+    last = way;
+  }
+  for (std::size_t k = 0; k < participants.size(); ++k)
+    if (work_[k].slips) std::swap(participants[k].stepper->system().load, work_[k].load);
+  // Where it gets away from them, without.
+  if (!follows) solve_slipping(participants);
+}
+
+/// Adds to the loads what friction changes with the normal forces in the present solution. How far that has come since the last
+/// time [m], 0 if no distance.
+double ContactSolver::follow_slips(std::vector<Participant>& participants) {
+  double way = 0, largest = 0;
+  for (Slip& slip : slips_) {
+    CableStepper& stepper = *participants[slip.participant].stepper;
+    const Vector3 displacement = between(stepper.correction(), slip.segment, slip.fraction);
+    way = std::max(way, (displacement - slip.displacement).squaredNorm());
+    largest = std::max(largest, displacement.squaredNorm());
+    slip.displacement = displacement;
+    const double change = std::max(-slip.stiffness * slip.normal.dot(displacement), -slip.normal_force);
+    share((change - slip.change) * slip.friction, slip.segment, slip.fraction, stepper.system().load);
+    slip.change = change;
+  }
+  way = std::sqrt(way);
+  return way > std::max(followed * std::sqrt(largest), followed_part * tolerated_) ? way : 0;
+}
+
+void ContactSolver::solve_slipping(std::vector<Participant>& participants) {
+  for (std::size_t k = 0; k < participants.size(); ++k)
+    if (work_[k].slips) participants[k].stepper->solve_linear();
+}
+
+/// Improves the solutions that the cables have found alone until they heed each other. The matrix differs from the cables' own by
+/// what joins the two sides of contacts, so that all residuals are forces on their points.
+void ContactSolver::couple(std::vector<Participant>& participants) {
+  double whole = 0;
+  for (std::size_t k = 0; k < participants.size(); ++k) {
+    CableStepper& stepper = *participants[k].stepper;
+    whole += std::abs(dot(stepper.system().load, stepper.correction(), nodes(participants[k])));
+    work_[k].coupled = false;
+  }
+  const auto displacement_of = [&](const Side& side) {
+    return between(participants[side.participant].stepper->correction(), side.segment, side.fraction);
+  };
+  for (Coupling& c : couplings_) {
+    c.first.residual = c.matrix * displacement_of(c.second);
+    c.second.residual = c.matrix * displacement_of(c.first);
+    for (Side* side : {&c.first, &c.second}) {
+      side->direction = side->image = side->correction = Vector3::Zero();
+      work_[side->participant].coupled = true;
+    }
+  }
+  set_loads_aside(participants);
   largest_energy_ = std::max(largest_energy_, whole);
   const double enough = std::max({coupling_tolerance * whole, coupling_precision * largest_energy_, negligible_energy_});
 
   double energy = 0;
+  bool improved = false;
   for (int i = 0; i < maximum_coupling_iterations; ++i) {
-    double next_energy = 0;
-    for (std::size_t k = 0; k < count; ++k) {
-      CableStepper& stepper = *participants[k].stepper;
-      stepper.solve_linear();
-      next_energy += dot(residual(k), stepper.correction(), nodes(participants[k]));
-    }
+    const double next_energy = precondition(participants);
     if (!(next_energy > enough)) break;
     const double ratio = i == 0 ? 0 : next_energy / energy;
     energy = next_energy;
-    for (std::size_t k = 0; k < count; ++k) {
-      const Participant& p = participants[k];
-      Work& w = work_[k];
-      scale_and_add(ratio, p.stepper->correction(), w.direction, nodes(p));
-      scale_and_add(ratio, p.stepper->multiplier_correction(), w.direction_multiplier, segments(p));
-      if (p.stepper->is_whole_rod()) scale_and_add(ratio, p.stepper->twist_correction(), w.direction_twist, segments(p));
-      scale_and_add(ratio, residual(k), w.own_image, nodes(p));
-      w.image = w.own_image;
-    }
-    add_coupling(
-        1, [&](int k) -> const VectorArray& { return work_[k].direction; },
-        [&](int k) -> VectorArray& { return work_[k].image; });
     double curvature = 0;
-    for (std::size_t k = 0; k < count; ++k) curvature += dot(work_[k].direction, work_[k].image, nodes(participants[k]));
+    for (Coupling& c : couplings_) {
+      for (Side* side : {&c.first, &c.second}) {
+        side->direction = side->displacement + ratio * side->direction;
+        side->image = side->residual + ratio * side->image;
+      }
+      curvature += c.first.direction.dot(c.first.image) + c.second.direction.dot(c.second.image) -
+                   2 * c.first.direction.dot(c.matrix * c.second.direction);
+    }
     if (!(curvature > 0)) break;
     const double step = energy / curvature;
-    for (std::size_t k = 0; k < count; ++k) {
-      const Participant& p = participants[k];
-      Work& w = work_[k];
-      add_scaled(step, w.direction, w.correction, nodes(p));
-      add_scaled(step, w.direction_multiplier, w.correction_multiplier, segments(p));
-      if (p.stepper->is_whole_rod()) add_scaled(step, w.direction_twist, w.correction_twist, segments(p));
-      add_scaled(-step, w.image, residual(k), nodes(p));
+    improved = true;
+    for (Coupling& c : couplings_) {
+      c.first.residual -= step * (c.first.image - c.matrix * c.second.direction);
+      c.second.residual -= step * (c.second.image - c.matrix * c.first.direction);
+      for (Side* side : {&c.first, &c.second}) side->correction += step * side->image;
     }
   }
-  for (std::size_t k = 0; k < count; ++k) {
+  take_loads_back(participants, improved);
+}
+
+/// Solves the cables' own systems for the residuals; their energy.
+double ContactSolver::precondition(std::vector<Participant>& participants) {
+  for (const Coupling& c : couplings_)
+    for (const Side* side : {&c.first, &c.second}) {
+      VectorArray& load = participants[side->participant].stepper->system().load;
+      set(load, side->segment, Vector3::Zero());
+      set(load, side->segment + 1, Vector3::Zero());
+    }
+  load(&Side::residual, participants);
+  for (std::size_t k = 0; k < participants.size(); ++k)
+    if (work_[k].coupled) participants[k].stepper->solve_linear();
+  double energy = 0;
+  for (Coupling& c : couplings_)
+    for (Side* side : {&c.first, &c.second}) {
+      side->displacement = between(participants[side->participant].stepper->correction(), side->segment, side->fraction);
+      energy += side->residual.dot(side->displacement);
+    }
+  return energy;
+}
+
+/// Adds forces at the contacts to the loads.
+void ContactSolver::load(Vector3 Side::*force, std::vector<Participant>& participants) const {
+  for (const Coupling& c : couplings_)
+    for (const Side* side : {&c.first, &c.second})
+      share(side->*force, side->segment, side->fraction, participants[side->participant].stepper->system().load);
+}
+
+/// Coupled cables are loaded by residuals alone.
+void ContactSolver::set_loads_aside(std::vector<Participant>& participants) {
+  for (std::size_t k = 0; k < participants.size(); ++k) {
+    if (!work_[k].coupled) continue;
     CableStepper& stepper = *participants[k].stepper;
-    std::swap(work_[k].load, stepper.system().load);
-    std::swap(work_[k].gap, stepper.system().gap);
-    std::swap(work_[k].torque, stepper.torque());
-    stepper.set_correction(work_[k].correction, work_[k].correction_multiplier, work_[k].correction_twist);
+    work_[k].load = stepper.system().load;
+    work_[k].gap = stepper.system().gap;
+    work_[k].torque = stepper.torque();
+    work_[k].correction = stepper.correction();
+    work_[k].multiplier = stepper.multiplier_correction();
+    stepper.system().load.assign(work_[k].load.x.size(), 0.0);
+    std::fill(stepper.system().gap.begin(), stepper.system().gap.end(), 0.0);
+    std::fill(stepper.torque().begin(), stepper.torque().end(), 0.0);
   }
 }
 
-/// to += sign * (the part of the matrix that joins the two sides of contacts) of
-template <typename Of, typename To>
-void ContactSolver::add_coupling(double sign, const Of& of, const To& to) const {
-  for (const Coupling& c : couplings_) {
-    const Vector3 first = c.matrix * between(of(c.first), c.first_segment, c.first_fraction);
-    const Vector3 second = c.matrix * between(of(c.second), c.second_segment, c.second_fraction);
-    share(-sign * second, c.first_segment, c.first_fraction, to(c.first));
-    share(-sign * first, c.second_segment, c.second_fraction, to(c.second));
+/// Where that has `improved` the solutions, solves once more, for the loads and for what the contacts add to them.
+void ContactSolver::take_loads_back(std::vector<Participant>& participants, bool improved) {
+  for (std::size_t k = 0; k < participants.size(); ++k) {
+    if (!work_[k].coupled) continue;
+    CableStepper& stepper = *participants[k].stepper;
+    stepper.system().load = work_[k].load;
+    std::swap(stepper.system().gap, work_[k].gap);
+    std::swap(stepper.torque(), work_[k].torque);
   }
+  load(&Side::correction, participants);
+  for (std::size_t k = 0; k < participants.size(); ++k) {
+    if (!work_[k].coupled) continue;
+    CableStepper& stepper = *participants[k].stepper;
+    if (improved || stepper.is_whole_rod())
+      stepper.solve_linear();
+    else
+      stepper.set_correction(work_[k].correction, work_[k].multiplier);
+    std::swap(stepper.system().load, work_[k].load);
+  }
+}
+
+ContactSolver::Side ContactSolver::side_at(const CablePoint& point) const {
+  Side side;
+  side.participant = index_[point.cable];
+  side.segment = point.segment;
+  side.fraction = point.fraction;
+  return side;
 }
 
 Participant& ContactSolver::at(std::vector<Participant>& participants, const CablePoint& point) const {

@@ -24,43 +24,75 @@ struct Participant {
 /// 2001).
 class ContactSolver {
  public:
-  /// If it has not converged, the states are untouched, and `converged` is false in the result of the participant that failed.
-  bool advance(std::vector<Participant>& participants, std::vector<Touch>& touches);
+  /// If it has not converged, `converged` is false in the result of the participant that failed. The states are untouched.
+  bool solve(std::vector<Participant>& participants, std::vector<Touch>& touches);
+  /// Whether segments that touch pass through each other in what has been found.
+  bool crosses(const std::vector<Participant>& participants, const std::vector<Touch>& touches) const;
+  /// The states take what has been found.
+  void finish(std::vector<Participant>& participants) const;
 
  private:
-  /// Of one participant, for the conjugate gradients; their residual is in the load of its system.
+  /// The loads of one participant's own system, while the conjugate gradients solve it for others.
   struct Work {
-    VectorArray load;                   // nodes: the system's own
-    std::vector<double> gap;            // segments: likewise
-    VectorArray correction, direction;  // nodes
-    VectorArray own_image, image;       // nodes: the matrix times the direction, `own` without couplings
-    std::vector<double> correction_multiplier, direction_multiplier;  // segments
-    std::vector<double> torque, correction_twist, direction_twist;    // of a whole rod: segments
+    bool coupled = false, slips = false;
+    VectorArray load;            // nodes
+    std::vector<double> gap;     // segments
+    std::vector<double> torque;  // of a whole rod: segments
+    // The solution for them
+    VectorArray correction;          // nodes
+    std::vector<double> multiplier;  // segments
+  };
 
-    void resize(std::size_t nodes);
+  /// One side of a contact, in the conjugate gradients: of forces and displacements at its point alone. Forces on other points
+  /// of the cables are none.
+  struct Side {
+    int participant = 0, segment = 0;
+    double fraction = 0;
+    Vector3 residual = Vector3::Zero();      ///< [N]
+    Vector3 displacement = Vector3::Zero();  ///< [m] that the cables alone make of the residuals
+    Vector3 direction = Vector3::Zero();     ///< [m]
+    Vector3 image = Vector3::Zero();         ///< [N] the cables' own matrices times the direction
+    Vector3 correction = Vector3::Zero();    ///< [N] with which the cables' own matrices make the whole solution
   };
 
   /// What the matrix has of a contact beyond the cables' own blocks.
   struct Coupling {
-    int first = 0, second = 0;  ///< participants
-    int first_segment = 0, second_segment = 0;
-    double first_fraction = 0, second_fraction = 0;
+    Side first, second;
     Eigen::Matrix3d matrix;
   };
 
-  bool solve(std::vector<Participant>& participants, std::vector<Touch>& touches);
+  /// A contact that slides on an obstacle.
+  struct Slip {
+    int participant = 0, segment = 0;
+    double fraction = 0;
+    Vector3 normal, friction;                ///< the second: over the normal force
+    double normal_force = 0, stiffness = 0;  ///< [N], [N/m] of it
+    double change = 0;                       ///< [N] of it, in the correction
+    Vector3 displacement = Vector3::Zero();  ///< [m] likewise
+  };
+
+  void begin(std::vector<Participant>& participants);
+  bool iterate(std::vector<Participant>& participants, std::vector<Touch>& touches);
   bool press(std::vector<Participant>& participants, std::vector<Touch>& touches);
   bool shorten(std::vector<Participant>& participants, std::vector<Touch>& touches);
   double work_along(std::vector<Participant>& participants) const;
   void factor(std::vector<Participant>& participants, std::vector<Touch>& touches);
   void couple(std::vector<Participant>& participants);
-  template <typename Of, typename To>
-  void add_coupling(double sign, const Of& of, const To& to) const;
+  void follow_friction(std::vector<Participant>& participants, const std::vector<Touch>& touches);
+  double follow_slips(std::vector<Participant>& participants);
+  void solve_slipping(std::vector<Participant>& participants);
+  void set_loads_aside(std::vector<Participant>& participants);
+  void take_loads_back(std::vector<Participant>& participants, bool improved);
+  double precondition(std::vector<Participant>& participants);
+  void load(Vector3 Side::*force, std::vector<Participant>& participants) const;
   Participant& at(std::vector<Participant>& participants, const CablePoint& point) const;
+  Side side_at(const CablePoint& point) const;
 
   std::vector<int> index_;  ///< of the participant, by cable
   std::vector<Work> work_;  ///< one a participant
   std::vector<Coupling> couplings_;
+  std::vector<Slip> slips_;
+  double tolerated_ = 0;          ///< [m] of a node
   double work_along_ = 0;         ///< [J] of the forces along the last correction, where it begins
   double negligible_energy_ = 0;  ///< [J] moves no node by more than what is tolerated
   double largest_energy_ = 0;     ///< of a correction in this substep

@@ -56,7 +56,9 @@ double gentle_gap(double radius, double contact_time) {
 
 void start_touch(Touch& touch) {
   touch.depth = std::max(0.0, -touch.gap);
-  touch.stiffness = depth_law(touch.depth, touch).slope;
+  const ForceAndSlope law = depth_law(touch.depth, touch);
+  touch.depth_force = law.force;
+  touch.stiffness = law.slope;
 }
 
 bool evaluate_touch(const Vector3& w, Touch& touch) {
@@ -70,28 +72,30 @@ bool evaluate_touch(const Vector3& w, Touch& touch) {
     touch.force.setZero();
     return before != touch.mode;
   }
-  const ForceAndSlope law = depth_law(depth, touch), here = depth_law(touch.depth, touch);
-  const bool bent = std::abs(here.force + here.slope * (depth - touch.depth) - law.force) > linear_enough * law.force;
+  const ForceAndSlope law = depth_law(depth, touch);
+  const double linear_force = touch.depth_force + touch.stiffness * (depth - touch.depth);
+  const bool bent = std::abs(linear_force - law.force) > linear_enough * law.force;
   if (bent) {
     touch.depth = depth;
+    touch.depth_force = law.force;
     touch.stiffness = law.slope;
   }
   touch.normal_force = law.force;
-  const Eigen::Matrix3d across = touch.normal * touch.normal.transpose(), tangential = Eigen::Matrix3d::Identity() - across;
-  const double stiffness = touch.rate * touch.stiffness;
-  const Vector3 trial = tangential * (touch.stuck_force - touch.stiffness * e);
+  Vector3 trial = touch.stuck_force - touch.stiffness * e;
+  trial -= touch.normal.dot(trial) * touch.normal;
   const double size = trial.norm(), limit = touch.friction * touch.normal_force;
-  if (size <= limit) {
-    touch.mode = Touch::Mode::sticks;
-    touch.force = touch.normal_force * touch.normal + trial;
-    touch.slope = stiffness * Eigen::Matrix3d::Identity();
-  } else {
-    touch.mode = Touch::Mode::slides;
-    touch.force = touch.normal_force * touch.normal + limit / size * trial;
-    // The secant, not the tangent, which is nothing along the slip: iterations would turn it to and fro.
-    touch.slope = stiffness * (across + limit / size * tangential);
-  }
+  const bool sticks = size <= limit;
+  touch.mode = sticks ? Touch::Mode::sticks : Touch::Mode::slides;
+  touch.part = sticks ? 1 : limit / size;
+  touch.force = touch.normal_force * touch.normal + touch.part * trial;
   return bent || before != touch.mode;
+}
+
+Eigen::Matrix3d slope(const Touch& touch) {
+  const double stiffness = touch.rate * touch.stiffness;
+  Eigen::Matrix3d slope = stiffness * (1 - touch.part) * touch.normal * touch.normal.transpose();
+  slope.diagonal().array() += stiffness * touch.part;
+  return slope;
 }
 
 Vector3 remaining_friction(const Touch& touch) {

@@ -36,13 +36,13 @@ struct Touch {
   Vector3 stuck_force = Vector3::Zero();         ///< [N] friction at the start of the substep
   Vector3 other_displacement = Vector3::Zero();  ///< [m] of what is touched, over the substep
   // Of the present iterate
-  Vector3 displacement = Vector3::Zero();           ///< [m] w
-  double depth = 0;                                 ///< [m] where the force's law is linearised
-  double stiffness = 0;                             ///< [N/m] there
-  double normal_force = 0;                          ///< [N]
-  Vector3 force = Vector3::Zero();                  ///< [N] on the point
-  Eigen::Matrix3d slope = Eigen::Matrix3d::Zero();  ///< [N/m] - d force / d w, without the part of friction that follows f;
-                                                    ///< not set where open
+  Vector3 displacement = Vector3::Zero();                      ///< [m] w
+  double depth = 0;                                            ///< [m] where the force's law is linearised
+  double depth_force = 0;                                      ///< [N] there
+  double stiffness = 0;                                        ///< [N/m] there
+  double normal_force = 0;                                     ///< [N]
+  Vector3 force = Vector3::Zero();                             ///< [N] on the point
+  double part = 1;                                             ///< of the friction that sticking would take
   enum class Mode { open, sticks, slides } mode = Mode::open;  ///< at first that of the substep before
 };
 
@@ -63,8 +63,12 @@ double gentle_gap(double radius, double contact_time);
 /// Linearises the law at the start of the substep.
 void start_touch(Touch& touch);
 
-/// Sets force and slope for a displacement w [m]. True if the contact has changed its mode or its linearisation.
+/// Sets the force for a displacement w [m]. True if the contact has changed its mode or its linearisation.
 bool evaluate_touch(const Vector3& w, Touch& touch);
+
+/// [N/m] - d force / d w of a touch that is not open, without the part of friction that follows f. Along the slip it is the
+/// secant, not the tangent, which is nothing: iterations would turn it to and fro.
+Eigen::Matrix3d slope(const Touch& touch);
 
 /// Friction [N] that stays when the substep is done: the bristle's without what velocity adds.
 Vector3 remaining_friction(const Touch& touch);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/segment_geometry.h"
+
 namespace verlet_cable {
 
 namespace {
@@ -28,15 +30,23 @@ bool longer(const CableState& state, int first, int last, double length) {
   return false;
 }
 
-bool still_valid(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, double h, const SegmentPairs& found) {
-  if (found.places.empty()) return false;
+/// How far and how fast the nodes have come since pairs were found; then, of the two nodes of a segment, the larger. False if
+/// one may leave its margin in the next h [s].
+bool follow_nodes(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, double h, SegmentPairs& found) {
   std::size_t k = 0;
   for (const int cable : group) {
     const CableState& state = cables[cable].state;
-    if (k + state.positions.size() > found.places.size()) return false;
-    for (std::size_t i = 0; i < state.positions.size(); ++i, ++k) {
-      const double left = found.margin - h * state.velocities[i].norm();
-      if (left < 0 || (state.positions[i] - found.places[k]).squaredNorm() > left * left) return false;
+    const std::size_t first = k, nodes = state.positions.size();
+    if (first + nodes > found.places.size()) return false;
+    for (std::size_t i = 0; i < nodes; ++i, ++k) {
+      const double moved = (state.positions[i] - found.places[k]).norm(), speed = state.velocities[i].norm();
+      if (!(moved + h * speed <= found.margin)) return false;
+      found.moved[k] = moved;
+      found.speeds[k] = speed;
+    }
+    for (std::size_t i = first; i + 1 < k; ++i) {
+      found.moved[i] = std::max(found.moved[i], found.moved[i + 1]);
+      found.speeds[i] = std::max(found.speeds[i], found.speeds[i + 1]);
     }
   }
   return k == found.places.size();
@@ -57,32 +67,38 @@ double find_margin(const std::vector<SimulatedCable>& cables, const std::vector<
 
 void SegmentGrid::update(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, const Rules& rules,
                          double reach, double h, SegmentPairs& found) {
-  if (still_valid(cables, group, h, found)) return;
+  if (follow_nodes(cables, group, h, found)) return;
   found.margin = find_margin(cables, group, h);
   found.places.clear();
   for (const int cable : group) {
     const std::vector<Vector3>& places = cables[cable].state.positions;
     found.places.insert(found.places.end(), places.begin(), places.end());
   }
+  found.moved.resize(found.places.size());
+  found.speeds.resize(found.places.size());
   fill(cables, group, reach, found.margin);
-  collect(cables, rules, found.pairs);
+  collect(cables, rules, reach, found);
+  follow_nodes(cables, group, h, found);
 }
 
 void SegmentGrid::fill(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, double reach, double margin) {
   entries_.clear();
   double largest = 0;
+  int node = 0;
   for (const int cable : group) {
     const double radius = cables[cable].model->material.radius;
     const std::vector<Vector3>& x = cables[cable].state.positions;
-    for (int i = 0; i < cables[cable].state.segments(); ++i) {
+    for (int i = 0; i < cables[cable].state.segments(); ++i, ++node) {
       Entry entry;
       entry.id = {cable, i};
+      entry.node = node;
       entry.middle = 0.5 * (x[i] + x[i + 1]);
       entry.radius = 0.5 * (x[i + 1] - x[i]).norm() + radius + 0.5 * reach + margin;
       entry.next = -1;
       largest = std::max(largest, entry.radius);
       entries_.push_back(entry);
     }
+    ++node;
   }
   std::size_t buckets = 1;
   while (buckets < 2 * entries_.size()) buckets *= 2;
@@ -100,11 +116,12 @@ void SegmentGrid::fill(const std::vector<SimulatedCable>& cables, const std::vec
   }
 }
 
-void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules& rules, std::vector<SegmentPairs::Pair>& pairs) {
-  pairs.clear();
+void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules& rules, double reach, SegmentPairs& found) {
+  found.pairs.clear();
   for (int a = 0; a < static_cast<int>(entries_.size()); ++a) {
     const Entry& first = entries_[a];
     const SimulatedCable& cable = cables[first.id.cable];
+    const double radius = cable.model->material.radius;
     near_.clear();
     for (int dx = -1; dx <= 1; ++dx)
       for (int dy = -1; dy <= 1; ++dy)
@@ -117,15 +134,21 @@ void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules
             if ((first.middle - second.middle).squaredNorm() > sum * sum) continue;
             const bool same = first.id.cable == second.id.cable;
             if (same ? !rules.self : !rules.between_cables) continue;
-            if (same) {
-              if (!longer(cable.state, first.id.segment + 1, second.id.segment, bend_radii * cable.model->material.radius))
-                continue;
-            }
+            if (same && !longer(cable.state, first.id.segment + 1, second.id.segment, bend_radii * radius)) continue;
             near_.push_back(b);
           }
         }
     std::sort(near_.begin(), near_.end());
-    for (const int b : near_) pairs.push_back({first.id, entries_[b].id});
+    const Vector3 &start = found.places[first.node], &end = found.places[first.node + 1];
+    for (const int b : near_) {
+      const Entry& second = entries_[b];
+      const Vector3 &other_start = found.places[second.node], &other_end = found.places[second.node + 1];
+      const SegmentFractions closest = closest_fractions(start, end, other_start, other_end);
+      const double distance =
+          (start + closest.first * (end - start) - other_start - closest.second * (other_end - other_start)).norm();
+      const double far = radius + cables[second.id.cable].model->material.radius + reach + 2 * found.margin;
+      if (distance <= far) found.pairs.push_back({first.id, second.id, first.node, second.node, distance});
+    }
   }
 }
 

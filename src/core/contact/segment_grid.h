@@ -17,12 +17,17 @@ struct SegmentId {
 /// substeps find them ready.
 struct SegmentPairs {
   struct Pair {
-    SegmentId first, second;  ///< ascending
+    SegmentId first, second;              ///< ascending
+    int first_node = 0, second_node = 0;  ///< of the segments, into the arrays of nodes
+    double distance = 0;                  ///< [m] of the centre lines
   };
   std::vector<Pair> pairs;  ///< ascending
   // When they were found; nowhere: never
-  std::vector<Vector3> places;  ///< [m] of the nodes
+  std::vector<Vector3> places;  ///< [m] of the nodes, cable by cable
   double margin = 0;            ///< [m] that a node may move
+  // Now
+  std::vector<double> moved;   ///< [m] by a segment since, at either end; by its first node
+  std::vector<double> speeds;  ///< [m/s] of a segment, at either end; likewise
 };
 
 /// Finds pairs of segments with a hash of cubic cells (Teschner et al., Optimized Spatial Hashing for Collision Detection of
@@ -36,13 +41,15 @@ class SegmentGrid {
   };
 
   /// Brings `found` up to date: those of `group`, ascending indices into `cables`, whose centre lines may come closer in the
-  /// next h [s] than the sum of the radii and `reach` [m].
+  /// next h [s] than the sum of the radii and `reach` [m]. No centre lines of a pair are closer now than its distance less what
+  /// its two segments have moved.
   void update(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, const Rules& rules, double reach,
               double h, SegmentPairs& found);
 
  private:
   struct Entry {
     SegmentId id;
+    int node;  ///< its first one, among all
     Vector3 middle;
     double radius;  ///< of a ball around the capsule, with margin
     std::array<std::int32_t, 3> cell{};
@@ -50,7 +57,7 @@ class SegmentGrid {
   };
 
   void fill(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, double reach, double margin);
-  void collect(const std::vector<SimulatedCable>& cables, const Rules& rules, std::vector<SegmentPairs::Pair>& pairs);
+  void collect(const std::vector<SimulatedCable>& cables, const Rules& rules, double reach, SegmentPairs& found);
   std::size_t bucket(const std::array<std::int32_t, 3>& cell) const;
 
   std::vector<Entry> entries_;

@@ -3,15 +3,16 @@
 #include <algorithm>
 
 #include "rod/angle_energy.h"
+#include "rod/material_spin.h"
 
 namespace verlet_cable {
 
 void Bending::resize(int segments) {
   segments_ = segments;
   const std::size_t nodes = segments + 1;
-  for (std::vector<double>* a : {&inverse_length_, &stiffness_, &damping_, &start_square_, &end_square_, &slope_})
+  for (std::vector<double>* a : {&inverse_length_, &stiffness_, &damping_, &start_square_, &end_square_, &slope_, &spin_})
     a->assign(nodes, 0.0);
-  for (VectorArray* a : {&start_, &change_, &moment_}) a->assign(nodes, 0.0);
+  for (VectorArray* a : {&start_, &change_, &moment_, &turned_}) a->assign(nodes, 0.0);
   clamps_.reserve(2 * nodes);
 }
 
@@ -55,6 +56,22 @@ void Bending::start(const CableModel& model, const CableState& state, const Vect
       clamps_.push_back(clamp);
     }
   }
+  is_damped_ = damping > 0;
+  if (is_damped_) turn_with_material(model, state, segment, directions, h);
+}
+
+/// What of the change of e over the substep is the material's own turn, as far as it is known at the start.
+void Bending::turn_with_material(const CableModel& model, const CableState& state, const VectorArray& segment,
+                                 const std::vector<HeldDirection>& directions, double h) {
+  find_material_spin(model, state, segment, directions, damping_, h, spin_);
+  for (int i = 1; i < segments_; ++i) {
+    const double spin = 0.5 * (spin_[i - 1] + spin_[i]);
+    set(turned_, i, h * turning_rate(get(segment, i - 1), get(segment, i), spin, get(start_, i)));
+  }
+  for (ClampJoint& clamp : clamps_) {
+    const HeldDirection& target = directions[clamp.target];
+    clamp.turned = h * turning_rate(get(segment, clamp.segment), clamp.start_axis, spin_of(target, h), clamp.start);
+  }
 }
 
 void Bending::add_segment_forces(const VectorArray& displacement, VectorArray& pull) {
@@ -74,8 +91,15 @@ void Bending::add_segment_forces(const VectorArray& displacement, VectorArray& p
     const double *w = inverse_length_.data(), *e = (start_.*component).data(), *change = (change_.*component).data();
     const double *slope = slope_.data(), *damping = damping_.data();
     double *moment = (moment_.*component).data(), *f = (pull.*component).data();
+    if (is_damped_) {
+      const double* turned = (turned_.*component).data();
 #pragma GCC ivdep
-    for (int i = 1; i < segments_; ++i) moment[i] = slope[i] * (e[i] + part_ * change[i]) + damping[i] * change[i];
+      for (int i = 1; i < segments_; ++i)
+        moment[i] = slope[i] * (e[i] + part_ * change[i]) + damping[i] * (change[i] - turned[i]);
+    } else {
+#pragma GCC ivdep
+      for (int i = 1; i < segments_; ++i) moment[i] = slope[i] * (e[i] + part_ * change[i]);
+    }
 #pragma GCC ivdep
     for (int i = 0; i < segments_; ++i) f[i] += w[i] * (moment[i] - moment[i + 1]);
   }
@@ -97,7 +121,7 @@ void Bending::bend_clamps(const VectorArray& displacement) {
     const Vector3 change = direction_change - clamp.axis_change;
     const Vector3 middle = clamp.start + part_ * change;
     clamp.slope = clamp.stiffness * mean_slope(0.5 * clamp.start_square, 0.5 * (clamp.start + change).squaredNorm());
-    clamp.moment = clamp.slope * middle + clamp.damping * change;
+    clamp.moment = clamp.slope * middle + clamp.damping * (change - clamp.turned);
     // The energy depends on the axis a through d / l - a: the torque on the axis is a x moment.
     clamp.torque = clamp.middle_axis.cross(clamp.moment);
   }
@@ -116,10 +140,21 @@ void Bending::bend_elastic_clamp(const Vector3& change, ClampJoint& clamp) const
   const double slope =
       clamp.stiffness * mean_slope(0.5 * clamp.start_square, 0.5 * (end - end.norm() * clamp.end_axis).squaredNorm());
   clamp.slope = slope * (2 - along / stretch);
-  const Vector3 bending = change - stretch * axis_change;
+  const Vector3 bending = change - stretch * axis_change - clamp.turned;
   const Vector3 damping = clamp.damping * (bending - axis * (axis.dot(bending) / axis.squaredNorm()));
   clamp.moment = clamp.slope * direction - slope * stretch * axis + damping;
   clamp.torque = axis.cross(slope * stretch * direction + damping);
+}
+
+Vector3 Bending::damping_torque(const VectorArray& displacement) const {
+  Vector3 torque = Vector3::Zero();
+  if (!active_ || !is_damped_) return torque;
+  for (int i = 1; i < segments_; ++i) {
+    const Vector3 change = inverse_length_[i] * (get(displacement, i + 1) - get(displacement, i)) -
+                           inverse_length_[i - 1] * (get(displacement, i) - get(displacement, i - 1));
+    torque -= damping_[i] * (get(start_, i) + part_ * change).cross(change - get(turned_, i));
+  }
+  return torque;
 }
 
 void Bending::add_stiffness(KktSystem& system) const {

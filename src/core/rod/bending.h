@@ -17,6 +17,8 @@ namespace verlet_cable {
 /// To first order in u it is quadratic (Bergou et al., A Quadratic Bending Model for Inextensible Surfaces, 2006); the higher
 /// ones make the moment proportional to the angle. At a clamp the frame's axis stands for one of the two directions, half a
 /// segment away; it is as long as the segment is stretched, so that a clamp does not resist stretch.
+///
+/// Damping resists the change of e in the material, which spins as in material_spin.h: not what only turns with it.
 class Bending {
  public:
   void resize(int segments);
@@ -28,6 +30,8 @@ class Bending {
   void add_segment_forces(const VectorArray& displacement, VectorArray& pull);
   /// Adds what `add_segment_forces` found last to the matrix.
   void add_stiffness(KktSystem& system) const;
+  /// What damping does to the angular momentum [N m], which a cable as a whole would keep.
+  Vector3 damping_torque(const VectorArray& displacement) const;
   /// Adds the moments on the holders of directions [N m] to their `torque`.
   void react(const VectorArray& displacement, std::vector<HeldDirection>& directions);
 
@@ -36,6 +40,7 @@ class Bending {
     int target = 0;   ///< index of the held direction
     int segment = 0;  ///< the segment next to the clamp
     double stiffness = 0, damping = 0;
+    Vector3 turned = Vector3::Zero();  ///< as of nodes
     Vector3 start = Vector3::Zero(), axis_change = Vector3::Zero(), middle_axis = Vector3::Zero();
     double start_square = 0;
     Vector3 moment = Vector3::Zero();  ///< force times length, on the side's direction
@@ -45,10 +50,13 @@ class Bending {
     double slope = 0;
   };
 
+  void turn_with_material(const CableModel& model, const CableState& state, const VectorArray& segment,
+                          const std::vector<HeldDirection>& directions, double h);
   void bend_clamps(const VectorArray& displacement);
   void bend_elastic_clamp(const Vector3& change, ClampJoint& clamp) const;
 
   bool active_ = false;
+  bool is_damped_ = false;
   bool is_elastic_ = false;
   int segments_ = 0;
   double part_ = 0.5;
@@ -56,6 +64,8 @@ class Bending {
   std::vector<double> stiffness_, damping_;  // nodes: EI / l and damping / (l h) [N m]; 0 at ends and clamps
   VectorArray start_;                        // nodes: e at the start
   std::vector<double> start_square_;         // nodes: |e|² at the start
+  std::vector<double> spin_;                 // segments: of the material [rad/s]
+  VectorArray turned_;                       // nodes: change of e that turns with the material, not damped
   VectorArray change_, moment_;              // nodes: change of e; moment along it [N m]
   std::vector<double> end_square_, slope_;   // nodes: |e|² at the end; d moment / d e at the end [N m]
   std::vector<ClampJoint> clamps_;

@@ -8,8 +8,7 @@ namespace {
 
 NodeCouplings<Pair> couplings_of_lanes(const KktSystem& s, int left, int right) {
   // The segment to the next node: left, and right - 1 backwards.
-  return {{Pair{s.direction.x[left], -s.direction.x[right - 1]},
-           Pair{s.direction.y[left], -s.direction.y[right - 1]},
+  return {{Pair{s.direction.x[left], -s.direction.x[right - 1]}, Pair{s.direction.y[left], -s.direction.y[right - 1]},
            Pair{s.direction.z[left], -s.direction.z[right - 1]}},
           Pair{s.compliance[left], s.compliance[right - 1]},
           Pair{s.first[left], s.first[right - 1]},
@@ -17,9 +16,12 @@ NodeCouplings<Pair> couplings_of_lanes(const KktSystem& s, int left, int right) 
           Pair{s.second[left], s.second[right - 2]}};
 }
 
+SymmetricOf<double> symmetric(const SymmetricArray& a, int i) {
+  return {a.xx[i], a.xy[i], a.xz[i], a.yy[i], a.yz[i], a.zz[i]};
+}
+
 SymmetricOf<double> own_block(const KktSystem& s, int i) {
-  const SymmetricOf<double> added{s.added.xx[i], s.added.xy[i], s.added.xz[i], s.added.yy[i], s.added.yz[i], s.added.zz[i]};
-  return plus_diagonal(added, s.diagonal[i]);
+  return plus_diagonal(symmetric(s.added, i), s.diagonal[i]);
 }
 
 PairVector joined(const VectorOf<double>& a, const VectorOf<double>& b) {
@@ -108,10 +110,11 @@ void BlockElimination::factor_lanes(const KktSystem& s) {
     const int left = k, right = nodes_ - 1 - k;
     SymmetricOf<Pair> own = plus_diagonal(SymmetricOf<Pair>{}, Pair{s.diagonal[left], s.diagonal[right]});
     if constexpr (couplings == Couplings::stiffened) own = own + pair(s.added, left, right);
-    eliminate<couplings>(own, Pair{s.movable[left], s.movable[right]}, couplings_of_lanes(s, left, right), front, eliminations_[k]);
+    eliminate<couplings>(own, Pair{s.movable[left], s.movable[right]}, couplings_of_lanes(s, left, right), front,
+                         eliminations_[k]);
   }
   const int m = lane_;
-  const NodeCouplings<double> between{vector(s.direction, m), s.compliance[m], s.first[m], lane_of(pair(s.added_next, m, m), 0), 0};
+  const NodeCouplings<double> between{vector(s.direction, m), s.compliance[m], s.first[m], symmetric(s.added_next, m), 0};
   eliminate_middle(lane_of(front, 0), lane_of(front, 1), own_block(s, m), own_block(s, m + 1), s.movable[m], s.movable[m + 1],
                    between, middle_);
 }
@@ -125,9 +128,9 @@ void BlockElimination::solve_lanes(const KktSystem& s) {
   }
 
   const int m = lane_;
-  const MiddleSolution middle =
-      solve_middle(middle_, vector(s.load, m) + lane_of(front.next, 0) + lane_of(front.after, 1),
-                   vector(s.load, m + 1) + lane_of(front.next, 1) + lane_of(front.after, 0), front.gap[0], s.gap[m], front.gap[1]);
+  const MiddleSolution middle = solve_middle(middle_, vector(s.load, m) + lane_of(front.next, 0) + lane_of(front.after, 1),
+                                             vector(s.load, m + 1) + lane_of(front.next, 1) + lane_of(front.after, 0),
+                                             front.gap[0], s.gap[m], front.gap[1]);
 
   const auto put_nodes = [this](int left, int right, const PairVector& x) {
     displacement_.x[left] = x.x[0];

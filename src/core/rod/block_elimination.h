@@ -49,7 +49,7 @@ class BlockElimination {
   /// Solves for the right-hand sides `load` and `gap` with the last factorisation.
   void solve(const KktSystem& system);
 
-  /// Replaces the solution by one of a larger system that this one is part of.
+  /// Replaces the solution.
   void set_solution(const VectorArray& displacement, const std::vector<double>& multiplier);
 
   const VectorArray& displacement() const { return displacement_; }      ///< N

@@ -12,11 +12,9 @@ namespace verlet_cable {
 namespace {
 
 constexpr int maximum_iterations = 40;
-/// Error of a node's velocity at which an iteration ends, in segment lengths per second: far below what energy is asked for.
-constexpr double velocity_tolerance = 1e-5;
-/// Of a free cable: nothing but the solution keeps its angular momentum.
-constexpr double free_velocity_tolerance = 1e-6;
-/// Of what stands: errors times the stiffness are loads that would set it moving.
+/// Of a free cable nothing but the solution keeps the angular momentum: so much of the tolerance is allowed.
+constexpr double free_part = 0.1;
+/// [1/s] Of what stands: errors times the stiffness are loads that would set it moving.
 constexpr double static_velocity_tolerance = 1e-8;
 /// A matrix that is kept does not make corrections shrink faster than this for long, however fast the first one shrank.
 constexpr double fastest_convergence = 0.03;
@@ -97,6 +95,7 @@ void CableStepper::finish(const Substep& s, bool struck, CableState& state, Subs
   move(s);
   const bool damped = !s.statics && s.scheme != Scheme::conserving;
   if (damped && s.boundary.nodes.empty()) restore_momenta(s, state.masses);
+  if (!s.statics && s.boundary.nodes.empty()) restore_angular_momentum(s, state.masses);
   if (!s.statics && (struck || damped || !s.boundary.growing.empty() || holders_accelerate(s.h, s.boundary.nodes)))
     project(s, state.masses);
   result.max_strain = store(s, state);
@@ -204,7 +203,7 @@ void CableStepper::predict(double h) {
 /// Newton's method on places and tensions together, its matrix kept as long as it converges fast.
 bool CableStepper::solve(const Substep& s, const CableState& state, SubstepResult& result) {
   const bool free = s.boundary.nodes.empty();
-  const double error = s.statics ? static_velocity_tolerance : free ? free_velocity_tolerance : velocity_tolerance;
+  const double error = s.statics ? static_velocity_tolerance : free ? free_part * s.tolerance : s.tolerance;
   const double tolerance = error * std::min(s.h, longest_tolerated);
   double last = 0;
   bool stale = true;
@@ -334,12 +333,8 @@ const std::vector<double>& CableStepper::multiplier_correction() const {
   return rod_.active() ? rod_.elimination().multiplier() : solver_.multiplier();
 }
 
-void CableStepper::set_correction(const VectorArray& displacement, const std::vector<double>& multiplier,
-                                  const std::vector<double>& twist) {
-  if (rod_.active())
-    rod_.elimination().set_solution(displacement, multiplier, twist);
-  else
-    solver_.set_solution(displacement, multiplier);
+void CableStepper::set_correction(const VectorArray& displacement, const std::vector<double>& multiplier) {
+  solver_.set_solution(displacement, multiplier);
 }
 
 /// Applies the solution; the largest correction, in segment lengths or angles.
@@ -445,6 +440,12 @@ void CableStepper::project(const Substep& s, const std::vector<double>& masses) 
     for (int i = 1; i < n; ++i) v[i] += w[i] * (impulse[i - 1] * d[i - 1] - impulse[i] * d[i]);
     v[n] += w[n] * impulse[n - 1] * d[n - 1];
   }
+  // What the segments exert on the other nodes they exert on the holders.
+  for (HeldNode& target : s.boundary.nodes) {
+    const int i = target.node;
+    if (i > 0) target.force += impulse_[i - 1] / s.h * get(segment_, i - 1);
+    if (i < n) target.force -= impulse_[i] / s.h * get(segment_, i);
+  }
 }
 
 /// Substeps that damp keep momenta to second order. Those of a free cable are kept exactly: what is missing is given back as a
@@ -463,11 +464,20 @@ void CableStepper::restore_momenta(const Substep& s, const std::vector<double>& 
   for (int i = 0; i <= segments_; ++i) set(end_velocity_, i, get(end_velocity_, i) + missing.at(get(position_, i)));
 }
 
+/// Bending that is damped moves no free cable as a whole; what it did to the angular momentum, the material's twist would have
+/// balanced.
+void CableStepper::restore_angular_momentum(const Substep& s, const std::vector<double>& masses) {
+  const Vector3 taken = s.h * bending_.damping_torque(displacement_);
+  if (taken.isZero(0)) return;
+  const RigidMotion missing = rigid_motion(masses, position_, Vector3::Zero(), -taken);
+  for (int i = 0; i <= segments_; ++i) set(end_velocity_, i, get(end_velocity_, i) + missing.at(get(position_, i)));
+}
+
 /// Finds motion that the substep has not resolved: it is taken out of the velocities, or the next substeps damp it.
 void CableStepper::quieten(const Substep& s, CableState& state) {
   // Its spin is a part of the angular momentum that a free rod keeps. One that was let go is not damped any longer.
   if (rod_.active() && s.boundary.nodes.empty()) return begin_anew(state.unresolved);
-  if (!cleaner_.finds_unresolved(s.h, system_.movable, acceleration_, state)) return;
+  if (!cleaner_.finds_unresolved(s.treatment, system_.movable, acceleration_, state)) return;
   if (s.treatment == Treatment::damping || s.scheme != Scheme::conserving) {
     state.unresolved.damped = s.scheme == Scheme::conserving ? damped_substeps : damped_substeps - 1;
     return;
@@ -477,11 +487,13 @@ void CableStepper::quieten(const Substep& s, CableState& state) {
   std::fill(growth_.begin(), growth_.end(), 0.0);
   for (const GrowingSegment& growing : s.boundary.growing)
     growth_[growing.segment] = target_length_[growing.segment] * growing.growth;
-  cleaner_.load(s.model, state, inertia_, segment_, end_velocity_, growth_, system_);
+  cleaner_.load(s.h, s.model, state, inertia_, segment_, end_velocity_, growth_, system_);
   for (const int i : both_held_) system_.gap[i] = 0;
   if (rod_.active()) std::fill(rod_.torque().begin(), rod_.torque().end(), 0.0);
   solve_linear();
-  cleaner_.take_out(s.h, s.boundary.nodes, correction(), position_, state);
+  const double share = cleaner_.take_out(s.h, s.boundary.nodes, correction(), position_, state);
+  // What is taken out is what forces in the cable do: its holders feel them, too.
+  for (HeldNode& target : s.boundary.nodes) target.force += 0.5 * share * s.h * corrected_load(target.node);
   if (rod_.active()) rod_.calm_spin(state);
 }
 

@@ -38,6 +38,7 @@ struct Substep {
   bool statics = false;           ///< a step towards equilibrium: inertia only slows it, nothing moves or is damped
   Scheme scheme = Scheme::conserving;
   Treatment treatment = Treatment::none;  ///< of motion that is found not to be resolved
+  double tolerance = 1e-5;                ///< [1/s] of velocities, as SceneDesc's
 
   /// Where in the substep forces are taken.
   double part() const { return statics || scheme != Scheme::conserving ? 1 : 0.5; }
@@ -88,8 +89,8 @@ class CableStepper {
   const VectorArray& correction() const;
   const std::vector<double>& multiplier_correction() const;
   const std::vector<double>& twist_correction() const { return rod_.elimination().twist(); }
-  /// Replaces it by one of a larger system that this one is part of.
-  void set_correction(const VectorArray& displacement, const std::vector<double>& multiplier, const std::vector<double>& twist);
+  /// Replaces it; not that of a whole rod.
+  void set_correction(const VectorArray& displacement, const std::vector<double>& multiplier);
   /// Of a whole rod, what is out of balance about the segments' directions [N m]
   std::vector<double>& torque() { return rod_.torque(); }
   bool is_whole_rod() const { return rod_.active(); }
@@ -115,6 +116,7 @@ class CableStepper {
   double force_along(int segment) const;
   void move(const Substep& substep);
   void restore_momenta(const Substep& substep, const std::vector<double>& masses);
+  void restore_angular_momentum(const Substep& substep, const std::vector<double>& masses);
   void quieten(const Substep& substep, CableState& state);
   void assemble_for_velocities();
   bool holders_accelerate(double h, const std::vector<HeldNode>& held) const;

@@ -81,6 +81,7 @@ bool set_initial_state(const InitialShapeDesc& initial, bool settles, const Cabl
   state.velocities.assign(state.nodes(), Vector3::Zero());
   state.accelerations.assign(state.nodes(), Vector3::Zero());
   state.unresolved.acceleration_changes.assign(state.nodes(), Vector3::Zero());
+  state.unresolved.turns.assign(state.nodes(), Vector3::Zero());
   state.tension.assign(state.segments(), 0.0);
   state.last_tension.assign(state.segments(), 0.0);
   state.axial_multiplier.assign(state.segments(), 0.0);

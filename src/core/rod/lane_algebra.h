@@ -92,7 +92,8 @@ template <class Real>
 
 /// a - b^T c for b^T c symmetric
 template <class Real>
-[[gnu::always_inline]] inline SymmetricOf<Real> minus_product(const SymmetricOf<Real>& a, const MatrixOf<Real>& b, const MatrixOf<Real>& c) {
+[[gnu::always_inline]] inline SymmetricOf<Real> minus_product(const SymmetricOf<Real>& a, const MatrixOf<Real>& b,
+                                                              const MatrixOf<Real>& c) {
   return {a.xx - (b.row_x.x * c.row_x.x + (b.row_y.x * c.row_y.x + b.row_z.x * c.row_z.x)),
           a.xy - (b.row_x.x * c.row_x.y + (b.row_y.x * c.row_y.y + b.row_z.x * c.row_z.y)),
           a.xz - (b.row_x.x * c.row_x.z + (b.row_y.x * c.row_y.z + b.row_z.x * c.row_z.z)),

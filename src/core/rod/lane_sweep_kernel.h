@@ -163,11 +163,11 @@ void sweep_lanes(const LaneSweep& s) {
   Front<Real> front;
   start(zero, front);
   FrontLoad<Real> load{none, none, zero};
-  Real tension_before = zero;                         // its stiffness, of the segment before
-  VectorOf<Real> force_before = none;                 // that segment's on its first node
-  Real inverse_before = zero;                         // its 1 / length
+  Real tension_before = zero;          // its stiffness, of the segment before
+  VectorOf<Real> force_before = none;  // that segment's on its first node
+  Real inverse_before = zero;          // its 1 / length
   Joint<Real> joint{none, zero}, joint_next{none, zero};
-  Real stiffness_before = zero;                       // of the joint before
+  Real stiffness_before = zero;  // of the joint before
   VectorOf<Real> u = place(0).displacement(), next = displacement(1), change = next - u;
   Span<Real> span;
   VectorOf<Real> force;
@@ -245,10 +245,10 @@ void sweep_lanes(const LaneSweep& s) {
                      plus_diagonal(nothing, own[lane + 1]), movable[lane], movable[lane + 1],
                      NodeCouplings<double>{lane_of(span.middle, lane), span.compliance[lane], first[lane], nothing, 0},
                      elimination);
-    const MiddleSolution solution = solve_middle(
-        elimination, lane_of(unbalanced, lane) + lane_of(load.next, lane) + lane_of(load.after, lane + 1),
-        lane_of(unbalanced, lane + 1) + lane_of(load.next, lane + 1) + lane_of(load.after, lane), load.gap[lane], span.gap[lane],
-        load.gap[lane + 1]);
+    const MiddleSolution solution =
+        solve_middle(elimination, lane_of(unbalanced, lane) + lane_of(load.next, lane) + lane_of(load.after, lane + 1),
+                     lane_of(unbalanced, lane + 1) + lane_of(load.next, lane + 1) + lane_of(load.after, lane), load.gap[lane],
+                     span.gap[lane], load.gap[lane + 1]);
     solved.next.x[lane] = solved.after.x[lane + 1] = solution.left.x;
     solved.next.y[lane] = solved.after.y[lane + 1] = solution.left.y;
     solved.next.z[lane] = solved.after.z[lane + 1] = solution.left.z;

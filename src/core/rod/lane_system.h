@@ -26,8 +26,8 @@ class LaneSystem {
   /// Sets what a cable that is not there, or a node that pads it, needs so as to stay as it is.
   void clear(int cable);
 
-  /// One iteration of the cables that are `active` [1 or 0 a lane]. `squares`: the square of the largest correction of a node [m^2],
-  /// by lane.
+  /// One iteration of the cables that are `active` [1 or 0 a lane]. `squares`: the square of the largest correction of a node
+  /// [m^2], by lane.
   void sweep(const LaneLaw& law, const double* active, double* squares);
 
   int lanes() const { return lanes_; }

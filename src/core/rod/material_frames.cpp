@@ -1,8 +1,19 @@
 #include "rod/material_frames.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace verlet_cable {
+
+Vector3 curvature_binormal(const Vector3& before, const Vector3& after) {
+  return 2 / std::max(1 + before.dot(after), smallest_turn) * before.cross(after);
+}
+
+Vector3 rotation_between(const Quaternion& from, const Quaternion& to) {
+  const Eigen::AngleAxisd rotation(to * from.conjugate());
+  const double angle = rotation.angle() > M_PI ? rotation.angle() - 2 * M_PI : rotation.angle();
+  return angle * rotation.axis();
+}
 
 void carry_directors(const CableState& state, const VectorArray& segment, VectorArray& director) {
   const auto half_turn = [&](int i) { return 0.5 * state.twist[i] * state.rest_lengths[i]; };

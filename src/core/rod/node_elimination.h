@@ -74,7 +74,8 @@ template <class Real>
 
 /// m + a b^T
 template <class Real>
-[[gnu::always_inline]] inline MatrixOf<Real> plus_outer(const MatrixOf<Real>& m, const VectorOf<Real>& a, const VectorOf<Real>& b) {
+[[gnu::always_inline]] inline MatrixOf<Real> plus_outer(const MatrixOf<Real>& m, const VectorOf<Real>& a,
+                                                        const VectorOf<Real>& b) {
   return {m.row_x + a.x * b, m.row_y + a.y * b, m.row_z + a.z * b};
 }
 
@@ -98,8 +99,8 @@ template <class Real>
   const Real yx = m.yy * q.z - m.yz * q.y, zx = m.yz * q.z - m.zz * q.y;
   const Real xy = m.xz * q.x - m.xx * q.z, yy = m.yz * q.x - m.xy * q.z, zy = m.zz * q.x - m.xz * q.z;
   const Real xz = m.xx * q.y - m.xy * q.x, yz = m.xy * q.y - m.yy * q.x, zz = m.xz * q.y - m.yz * q.x;
-  return {yx * q.z - zx * q.y, yy * q.z - zy * q.y, yz * q.z - zz * q.y, zy * q.x - xy * q.z, zz * q.x - xz * q.z,
-          xz * q.y - yz * q.x};
+  return {yx * q.z - zx * q.y, yy * q.z - zy * q.y, yz * q.z - zz * q.y,
+          zy * q.x - xy * q.z, zz * q.x - xz * q.z, xz * q.y - yz * q.x};
 }
 
 /// The inverse of [[K, q], [q^T, -c]] with one division: with A the adjugate of K, a = A q and D = c det(K) + q . a, it is
@@ -119,6 +120,7 @@ template <class Real>
   e.multiplier = scale * determinant + held * inverse;
 }
 
+/// Of an end, before which there is nothing.
 template <class Real>
 [[gnu::always_inline]] inline void start(const Real& zero, Front<Real>& front) {
   const VectorOf<Real> none{zero, zero, zero};
@@ -218,14 +220,16 @@ template <class Lanes>
 /// What is left in the middle once both ends are eliminated up to there: two nodes, the multiplier between them and those before
 /// and after them. `left` and `right` are the fronts of the two ends, seen from each.
 struct MiddleElimination {
-  Elimination<double> first;  ///< of the left node and the multiplier before it
-  SymmetricOf<double> node;   ///< inverse of the right node's block
-  VectorOf<double> reach, reach_beyond;        ///< of the right node and the multipliers before and after it
-  VectorOf<double> beyond, node_beyond;        ///< of the left node and the multiplier after the right one; the inverse times it
+  Elimination<double> first;             ///< of the left node and the multiplier before it
+  SymmetricOf<double> node;              ///< inverse of the right node's block
+  VectorOf<double> reach, reach_beyond;  ///< of the right node and the multipliers before and after it
+  VectorOf<double> beyond, node_beyond;  ///< of the left node and the multiplier after the right one; the inverse times it
   double multiplier_beyond;
-  double own, shared, other, inverse;          ///< block of the two multipliers, and the inverse of its determinant
+  double own, shared, other, inverse;  ///< block of the two multipliers, and the inverse of its determinant
 };
 
+/// Eliminates the left node with the multiplier before it, then the right node; what is left are the two multipliers after them.
+/// `to`: from the left node to the right one.
 [[gnu::always_inline]] inline void eliminate_middle(const Front<double>& left, const Front<double>& right,
                                                     const SymmetricOf<double>& left_own, const SymmetricOf<double>& right_own,
                                                     double left_movable, double right_movable, const NodeCouplings<double>& to,
@@ -264,6 +268,7 @@ struct MiddleSolution {
   double before, between, after;  ///< multipliers
 };
 
+/// For what the fronts left of the right-hand sides.
 [[gnu::always_inline]] inline MiddleSolution solve_middle(const MiddleElimination& m, const VectorOf<double>& left_load,
                                                           const VectorOf<double>& right_load, double before_gap,
                                                           double between_gap, double after_gap) {

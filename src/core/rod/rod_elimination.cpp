@@ -146,13 +146,6 @@ void RodElimination::solve(const KktSystem& system, const std::vector<double>& t
     solve_lanes<false>(system, torque);
 }
 
-void RodElimination::set_solution(const VectorArray& displacement, const std::vector<double>& multiplier,
-                                  const std::vector<double>& twist) {
-  displacement_ = displacement;
-  multiplier_ = multiplier;
-  twist_ = twist;
-}
-
 /// How the outermost nodes give way alone.
 template <bool stiffened>
 PairSymmetric RodElimination::ends(const KktSystem& system) const {

@@ -34,9 +34,6 @@ class RodElimination {
   /// Solves for `load` and `gap` of the system and `torque`, with the last factorisation.
   void solve(const KktSystem& system, const std::vector<double>& torque);
 
-  /// Replaces the solution by one of a larger system that this one is part of.
-  void set_solution(const VectorArray& displacement, const std::vector<double>& multiplier, const std::vector<double>& twist);
-
   const VectorArray& displacement() const { return displacement_; }      ///< nodes
   const std::vector<double>& multiplier() const { return multiplier_; }  ///< segments
   const std::vector<double>& twist() const { return twist_; }            ///< segments: tau [rad]

@@ -9,23 +9,8 @@ namespace verlet_cable {
 
 namespace {
 
-/// Of 1 + cos(angle): a cable that is folded back on itself has no binormal.
-constexpr double smallest_turn = 1e-6;
-
 /// Substeps between two measurements of the angles, which cost as much as an iteration.
 constexpr int measuring_interval = 16;
-
-/// Curvature binormal of two directions: 2 tan(angle / 2), about the axis of the turn.
-Vector3 curvature_binormal(const Vector3& before, const Vector3& after) {
-  return 2 / std::max(1 + before.dot(after), smallest_turn) * before.cross(after);
-}
-
-/// Rotation vector of the small rotation from one orientation to another.
-Vector3 rotation_between(const Quaternion& from, const Quaternion& to) {
-  const Eigen::AngleAxisd rotation(to * from.conjugate());
-  const double angle = rotation.angle() > M_PI ? rotation.angle() - 2 * M_PI : rotation.angle();
-  return angle * rotation.axis();
-}
 
 }  // namespace
 

@@ -8,10 +8,13 @@ namespace verlet_cable {
 
 namespace {
 
-/// Cosine of the phase a substep below which motion is not resolved: of a frequency times the substep of 2. A little less, as a
+/// Cosine of the phase a substep below which motion is not resolved: of a frequency times the substep of 2.7. From 3.5 on (-0.5)
+/// taking out what alternates always lowers the energy; below, no more than that is taken out.
+constexpr double least_cosine = -0.3;
+/// The same where substeps will damp, of changes instead of turns: of a frequency times the substep of 2. A little less, as a
 /// first blow has no phase, but what rounding makes of it.
-constexpr double least_cosine = -0.02;
-/// How much of what was seen is remembered from one substep to the next: longer than a motion's turning point lasts.
+constexpr double least_cosine_damped = -0.02;
+/// How much of what was seen is remembered from one substep to the next: longer than a turning point of a motion lasts.
 constexpr double memory = 0.8;
 /// [m/s^2] Changes of less from one substep to the next go unnoticed: of the tension by a thousandth of the weight.
 constexpr double noticed_change = 0.01;
@@ -37,6 +40,7 @@ Scheme next_scheme(const CableModel& model, const UnresolvedMotion& motion) {
 
 void begin_anew(UnresolvedMotion& motion) {
   std::fill(motion.acceleration_changes.begin(), motion.acceleration_changes.end(), Vector3::Zero());
+  std::fill(motion.turns.begin(), motion.turns.end(), Vector3::Zero());
   motion.changed = motion.turned = 0;
   motion.known = motion.damped = 0;
 }
@@ -45,19 +49,23 @@ void MotionCleaner::resize(int nodes) {
   alternating_.assign(nodes, 0.0);
 }
 
-bool MotionCleaner::finds_unresolved(double h, const std::vector<double>& movable, const VectorArray& before, CableState& state) {
+bool MotionCleaner::finds_unresolved(Treatment treatment, const std::vector<double>& movable, const VectorArray& before,
+                                     CableState& state) {
   UnresolvedMotion& motion = state.unresolved;
+  const bool damps = treatment == Treatment::damping;
+  const double known = motion.known < 2 ? 0 : 0.5;
   double product = 0, square = 0, mass = 0;
   for (int i = 0; i < state.nodes(); ++i) {
     const Vector3 change = state.accelerations[i] - get(before, i);
-    Vector3& last = motion.acceleration_changes[i];
-    if (movable[i] != 0) {
-      product += state.masses[i] * change.dot(last);
-      square += 0.5 * state.masses[i] * (change.squaredNorm() + last.squaredNorm());
-      mass += state.masses[i];
-    }
-    set(alternating_, i, movable[i] * 0.125 * h * (change - last));
-    last = change;
+    // Changes from or to what was before the motion began anew are none.
+    const Vector3 turn = known * (change - motion.acceleration_changes[i]);
+    const double weight = movable[i] * state.masses[i];
+    const Vector3 now = damps ? change : turn, last = damps ? motion.acceleration_changes[i] : motion.turns[i];
+    product += weight * now.dot(last);
+    square += 0.5 * weight * (now.squaredNorm() + last.squaredNorm());
+    mass += weight;
+    motion.acceleration_changes[i] = change;
+    motion.turns[i] = turn;
   }
   if (motion.damped > 0) --motion.damped;
   if (motion.known < 2) {
@@ -66,15 +74,16 @@ bool MotionCleaner::finds_unresolved(double h, const std::vector<double>& movabl
   }
   motion.changed = memory * motion.changed + square;
   motion.turned = memory * motion.turned + product;
-  const bool unresolved =
-      motion.turned < least_cosine * motion.changed && motion.changed > noticed_change * noticed_change * mass;
+  const double least = damps ? least_cosine_damped : least_cosine;
+  const bool unresolved = motion.turned < least * motion.changed && motion.changed > noticed_change * noticed_change * mass;
   if (unresolved) motion.changed = motion.turned = 0;
   return unresolved;
 }
 
-void MotionCleaner::load(const CableModel& model, const CableState& state, const std::vector<double>& inertia,
+void MotionCleaner::load(double h, const CableModel& model, const CableState& state, const std::vector<double>& inertia,
                          const VectorArray& segment, const VectorArray& end_velocity, const std::vector<double>& growth,
-                         KktSystem& system) const {
+                         KktSystem& system) {
+  for (int i = 0; i < state.nodes(); ++i) set(alternating_, i, system.movable[i] * 0.25 * h * state.unresolved.turns[i]);
   for (int i = 0; i < state.nodes(); ++i) set(system.load, i, inertia[i] * get(alternating_, i));
   const bool elastic = model.material.axial_stiffness < infinity;
   for (int i = 0; i < state.segments(); ++i) {
@@ -83,8 +92,8 @@ void MotionCleaner::load(const CableModel& model, const CableState& state, const
   }
 }
 
-void MotionCleaner::take_out(double h, const std::vector<HeldNode>& held, const VectorArray& solution, const VectorArray& place,
-                             CableState& state) {
+double MotionCleaner::take_out(double h, const std::vector<HeldNode>& held, const VectorArray& solution, const VectorArray& place,
+                               CableState& state) {
   const int nodes = state.nodes();
   for (int i = 0; i < nodes; ++i) set(alternating_, i, get(alternating_, i) - get(solution, i));
   if (held.empty()) keep_momenta(state.masses, place);
@@ -101,7 +110,9 @@ void MotionCleaner::take_out(double h, const std::vector<HeldNode>& held, const 
     state.velocities[i] -= w;
     state.accelerations[i] -= 2 / h * w;
     state.unresolved.acceleration_changes[i] -= 4 / h * w;
+    state.unresolved.turns[i] -= 4 / h * w;
   }
+  return share;
 }
 
 /// Takes what a rigid body's motion would be out of w.

@@ -24,30 +24,32 @@ Scheme next_scheme(const CableModel& model, const UnresolvedMotion& motion);
 void begin_anew(UnresolvedMotion& motion);
 
 /// Finds motion of a cable that substeps do not resolve, and takes it out of the velocities. Where it is resolved, with phase p a
-/// substep (p = 2 atan(omega h / 2) for a frequency omega), successive changes of the accelerations have products that are cos(p)
-/// of their squares; what is much faster turns round from each substep to the next, for ever: -1.
+/// substep (p = 2 atan(omega h / 2) for a frequency omega), successive turns of the accelerations (differences of their changes)
+/// have products that are cos(p) of their squares; what is much faster turns round from each substep to the next, for ever: -1.
+/// Of slow motion with fast motion on it, turns show the fast one. Where substeps will damp what is found, it is the changes
+/// themselves that are looked at.
 class MotionCleaner {
  public:
   void resize(int nodes);
 
-  /// After a substep of h [s]: adds what it has changed to what is known of the cable's motion. True if motion was found that is
+  /// After a substep: adds what it has changed to what is known of the cable's motion. True if motion was found that is
   /// not resolved; what is known is then forgotten. `movable`: a node, 1 or 0; `before`: a node, accelerations at the substep's
   /// start [m/s^2].
-  bool finds_unresolved(double h, const std::vector<double>& movable, const VectorArray& before, CableState& state);
+  bool finds_unresolved(Treatment treatment, const std::vector<double>& movable, const VectorArray& before, CableState& state);
 
   /// Sets the right-hand side of
   ///   (A + K) y = A (v_3 - 3 v_2 + 3 v_1 - v_0) / 8,
   /// of the last four velocities, with A the inertia (`inertia`, a node [kg/s^2]) and A + K the matrix of the system. The part
   /// that alternates is then w = (...) / 8 - y: of motion of frequency omega it is s^5 e^(3/2 i (pi - p)) where s = sin(p / 2):
   /// all of it where omega h is large, O((omega h)^5) where it is resolved. Without w the velocities `end_velocity` [m/s] change
-  /// the lengths of inextensible `segment`s [m] by `growth` [m^2/s] alone, half of their squares'.
-  void load(const CableModel& model, const CableState& state, const std::vector<double>& inertia, const VectorArray& segment,
-            const VectorArray& end_velocity, const std::vector<double>& growth, KktSystem& system) const;
+  /// the lengths of inextensible `segment`s [m] by `growth` [m^2/s] alone, half of their squares'. The last substep took h [s].
+  void load(double h, const CableModel& model, const CableState& state, const std::vector<double>& inertia,
+            const VectorArray& segment, const VectorArray& end_velocity, const std::vector<double>& growth, KktSystem& system);
 
   /// Takes w out of the velocities, or as much of it as lowers the kinetic energy, seen from what holds the cable: it would grow
-  /// where p is less than 2/3 pi. Free cables keep their momenta. `solution`: y; `place` [m].
-  void take_out(double h, const std::vector<HeldNode>& held, const VectorArray& solution, const VectorArray& place,
-                CableState& state);
+  /// where p is less than 2/3 pi. Free cables keep their momenta. `solution`: y; `place` [m]. Returns how much, 0 to 1.
+  double take_out(double h, const std::vector<HeldNode>& held, const VectorArray& solution, const VectorArray& place,
+                  CableState& state);
 
  private:
   void keep_momenta(const std::vector<double>& masses, const VectorArray& place);

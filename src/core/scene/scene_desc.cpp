@@ -26,7 +26,9 @@ bool is_fixed_frame(const SceneDesc& scene, const std::string& frame) {
 
 bool RestCurvatureDesc::is_straight() const {
   const std::array<double, 2> none{0, 0};
-  return type == Type::straight || (type == Type::constant && curvature == none) ||
+  if (type == Type::straight) return true;
+  if (zero_counts) return false;
+  return (type == Type::constant && curvature == none) ||
          (type == Type::profile && std::all_of(profile.begin(), profile.end(), [&](const auto& place) { return place == none; }));
 }
 

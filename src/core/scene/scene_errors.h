@@ -20,6 +20,7 @@ class Errors {
   void add(const std::string& key, const std::string& value, const std::string& allowed) {
     lines_.push_back(key + ": " + value + "; allowed: " + allowed);
   }
+  std::size_t size() const { return lines_.size(); }
   std::vector<std::string> take() { return std::move(lines_); }
 
  private:

@@ -16,6 +16,8 @@ namespace {
 constexpr double distance_tolerance = 1e-9;
 /// Of the length of a segment between two nodes that are held.
 constexpr double held_tolerance = 1e-4;
+/// [rad] from one segment to the next, at rest
+constexpr double largest_rest_turn = 0.5 * M_PI;
 constexpr double largest_length_error = 0.05;
 
 bool is_sound(const CableDesc& cable, const PlaceDesc& place) {
@@ -78,12 +80,25 @@ void check_attachments(const std::string& prefix, const CableDesc& cable, Unique
   }
 }
 
-void check_rest_curvature(const std::string& key, const RestCurvatureDesc& desc, Errors& errors) {
-  check_numbers(key, desc.curvature, coordinate, "1/m", errors);
-  if (desc.type != RestCurvatureDesc::Type::profile) return;
+/// Segments that turn further from one to the next could as well turn the other way round.
+void check_turn(const std::string& key, const std::array<double, 2>& curvature, const CableDesc& cable, Errors& errors) {
+  const double length = cable.length / cable.segments;
+  if (cable.segments == 1 || !(std::hypot(curvature[0], curvature[1]) * length > largest_rest_turn)) return;
+  errors.add(key, list_text(curvature),
+             "at most " + rounded_bound_text(largest_rest_turn / length, -1) + " 1/m in all with segments of " +
+                 rounded_text(length) + " m, a quarter turn from one to the next; more segments allow more");
+}
+
+void check_rest_curvature(const std::string& key, const CableDesc& cable, Errors& errors) {
+  const RestCurvatureDesc& desc = cable.rest_curvature;
+  const auto check = [&](const std::string& place, const std::array<double, 2>& curvature) {
+    const std::size_t found = errors.size();
+    check_numbers(place, curvature, coordinate, "1/m", errors);
+    if (errors.size() == found && has_sound_size(cable)) check_turn(place, curvature, cable, errors);
+  };
+  if (desc.type != RestCurvatureDesc::Type::profile) return check(key, desc.curvature);
   if (desc.profile.size() < 2) errors.add(key, std::to_string(desc.profile.size()) + " places", "2 or more, from start to end");
-  for (std::size_t i = 0; i < desc.profile.size(); ++i)
-    check_numbers(indexed(key, i), desc.profile[i], coordinate, "1/m", errors);
+  for (std::size_t i = 0; i < desc.profile.size(); ++i) check(indexed(key, i), desc.profile[i]);
 }
 
 void check_stiff_ends(const std::string& key, const CableDesc& cable, Errors& errors) {
@@ -105,7 +120,7 @@ void check_cable(const std::string& key, const SceneDesc& scene, const CableDesc
   }
   check_numbers(prefix + "color", cable.color, unit_interval, "", errors);
   check_initial(prefix + "initial", cable, errors);
-  check_rest_curvature(prefix + "rest_curvature", cable.rest_curvature, errors);
+  check_rest_curvature(prefix + "rest_curvature", cable, errors);
   check_stiff_ends(prefix + "stiff_ends", cable, errors);
   check_attachments(prefix, cable, attachments, errors);
   for (std::size_t i = 0; i < cable.point_masses.size(); ++i) {

@@ -19,6 +19,8 @@ constexpr double steady_change = 1;
 constexpr double averaging_time = 0.02;
 /// A jump at one speed may begin and end inside steps: up to this fraction it is one speed.
 constexpr double one_speed = 0.1;
+/// What might have been a jump and was a motion, as it lasted, ends without one if it does within this time [s].
+constexpr double shortly = 0.02;
 constexpr double rounding = 1e-6;
 
 bool is_greater_than_a_motion(const Vector3& change) {
@@ -30,6 +32,7 @@ bool is_greater_than_a_motion(const Vector3& change) {
 bool may_begin_jump(const Vector3& mean, double time_step, KinematicTarget& target) {
   const Vector3 change = mean - target.mean_velocity;
   if (!is_greater_than_a_motion(change)) return false;
+  if (target.left_for < shortly && !is_greater_than_a_motion(mean - target.left_velocity)) return false;
   const double jerk = (change - target.change).norm();
   if (jerk <= greatest_change || jerk <= sudden * target.change.norm()) return false;
   if (time_step > longest_jump * (1 + rounding) && change.norm() <= out_of_proportion * target.liveliness) return false;
@@ -80,7 +83,11 @@ Change judge(const Vector3& mean, double time_step, KinematicTarget& target) {
     return Change::undecided;
   }
   const Vector3 lasting = (target.next_position - target.jumped_from) / ((target.jumping_steps + 1) * time_step);
-  if (is_greater_than_a_motion(lasting - target.mean_velocity)) return Change::motion;
+  if (is_greater_than_a_motion(lasting - target.mean_velocity)) {
+    target.left_velocity = target.mean_velocity;
+    target.left_for = 0;
+    return Change::motion;
+  }
   end_jump(target);
   target.mean_velocity = lasting;
   if (!is_greater_than_a_motion(mean - lasting)) return Change::none;
@@ -90,6 +97,7 @@ Change judge(const Vector3& mean, double time_step, KinematicTarget& target) {
 
 void note_motion(const Vector3& change, const Vector3& mean, double time_step, KinematicTarget& target) {
   target.change = change;
+  target.left_for += time_step;
   target.liveliness = std::max(fading * target.liveliness, change.norm());
   target.average_velocity += time_step / (averaging_time + time_step) * (mean - target.average_velocity);
 }

@@ -24,6 +24,8 @@ struct KinematicTarget {
   Vector3 frame_velocity = Vector3::Zero();    ///< [m/s] over the last step, also while it jumps
   Vector3 average_velocity = Vector3::Zero();  ///< [m/s] of the last 20 ms or so, without jumps
   Vector3 change = Vector3::Zero();            ///< [m/s] of the velocity from step to step, the last one
+  Vector3 left_velocity = Vector3::Zero();     ///< [m/s] before the last motion that might have been a jump
+  double left_for = infinity;                  ///< [s] since that was known to be a motion
   double liveliness = 0;                       ///< [m/s] the greatest change of late
   // Of a jump: a change of velocity that is too great for a motion, as long as it is not known to last.
   int jumping_steps = 0;                  ///< in which it has lasted; 0: there is none

@@ -221,7 +221,7 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
   const Environment environment{state_.scene->gravity, state_.scene->fluid};
   const double h = (to - from) * state_.scene->time_step;
   find_contacts(island, from, to);
-  const bool touching = !workspace_.contacts.touches().empty(), keeps = touching || island.cables.size() > 1;
+  const bool touching = !workspace_.contacts.touches().empty(), keeps = island.cables.size() > 1;
   workspace_.participants.clear();
   const Scheme touching_scheme = find_touching_scheme(island, h);
   bool converged = true;
@@ -234,12 +234,14 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     const bool touches = workspace_.contacts.touched(k);
     const Scheme scheme = touches ? touching_scheme : scheme_of(cable);
     if (memory.drive) wind_drive(cable, scheme, from, to, work.boundary);
-    if (keeps) {
+    // What touches is left as it is until all have converged.
+    if (keeps && !touches) {
       work.before = c.state;
       work.spans_before = memory.spans;
     }
     Substep substep{*c.model, environment, work.boundary, memory.spans, h};
     substep.scheme = scheme;
+    substep.tolerance = state_.scene->tolerance;
     if (state_.scene->numerical_damping) substep.treatment = touches || to - from < 1 ? Treatment::damping : Treatment::cleaning;
     if (touches) {
       work.result = {};
@@ -250,9 +252,11 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     }
   }
   if (converged && touching) {
-    converged = workspace_.contact_solver.advance(workspace_.participants, workspace_.contacts.touches());
+    ContactSolver& solver = workspace_.contact_solver;
+    converged = solver.solve(workspace_.participants, workspace_.contacts.touches()) &&
+                (tolerated || !solver.crosses(workspace_.participants, workspace_.contacts.touches()));
+    if (converged) solver.finish(workspace_.participants);
     for (const Participant& p : workspace_.participants) workspace_.cables[p.place].result = p.result;
-    if (converged && !tolerated) converged = !workspace_.contacts.crossed(state_.cables);
   }
   if (converged) {
     for (std::size_t k = 0; k < island.cables.size(); ++k)
@@ -302,6 +306,7 @@ void IslandStepper::wind_drive(int index, Scheme scheme, double from, double to,
 
 void IslandStepper::take_back(const Island& island) {
   for (std::size_t k = 0; k < island.cables.size(); ++k) {
+    if (workspace_.contacts.touched(k)) continue;
     state_.cables[island.cables[k]].state = workspace_.cables[k].before;
     state_.cable_progress[island.cables[k]].spans = workspace_.cables[k].spans_before;
   }

@@ -379,7 +379,8 @@ SubstepResult Settling::advance(Approach& approach, double h) {
   } else {
     workspace_.participants.clear();
     workspace_.participants.push_back({0, index_, &work_.stepper, substep, &cable_.state, {}});
-    workspace_.contact_solver.advance(workspace_.participants, workspace_.contacts.touches());
+    if (workspace_.contact_solver.solve(workspace_.participants, workspace_.contacts.touches()))
+      workspace_.contact_solver.finish(workspace_.participants);
     result = workspace_.participants.front().result;
   }
   approach.iterations -= result.iterations;

@@ -108,8 +108,8 @@ auto fields(T& x, const RobotDesc*) {
 /// What the world itself reads: not what only programs do, nor what is made into particles and obstacles at once.
 template <class T>
 auto fields(T& x, const SceneDesc*) {
-  return std::tie(x.time_step, x.numerical_damping, x.gravity, x.fluid, x.limits.segments, x.materials, x.cables, x.nets,
-                  x.integrator, x.robot, x.contact);
+  return std::tie(x.time_step, x.numerical_damping, x.tolerance, x.gravity, x.fluid, x.limits.segments, x.materials, x.cables,
+                  x.nets, x.integrator, x.robot, x.contact);
 }
 
 // Cables
@@ -119,7 +119,7 @@ auto fields(T& x, const CableModel*) {
 }
 template <class T>
 auto fields(T& x, const UnresolvedMotion*) {
-  return std::tie(x.acceleration_changes, x.changed, x.turned, x.known, x.damped);
+  return std::tie(x.acceleration_changes, x.turns, x.changed, x.turned, x.known, x.damped);
 }
 template <class T>
 auto fields(T& x, const CableState*) {
@@ -134,8 +134,8 @@ auto fields(T& x, const SimulatedCable*) {
 template <class T>
 auto fields(T& x, const KinematicTarget*) {
   return std::tie(x.attachment, x.node, x.position, x.velocity, x.mean_velocity, x.starts, x.gap, x.caught, x.next_position,
-                  x.next_velocity, x.frame_velocity, x.average_velocity, x.change, x.liveliness, x.jumping_steps, x.jumped_from,
-                  x.carried, x.first_excess, x.last_excess, x.least_excess, x.greatest_excess);
+                  x.next_velocity, x.frame_velocity, x.average_velocity, x.change, x.left_velocity, x.left_for, x.liveliness,
+                  x.jumping_steps, x.jumped_from, x.carried, x.first_excess, x.last_excess, x.least_excess, x.greatest_excess);
 }
 template <class T>
 auto fields(T& x, const DirectionTarget*) {

@@ -224,6 +224,7 @@ SceneDesc cable_scene(const CableSettings& settings, const std::vector<double>& 
   cable.length = values[length_index];
   cable.stiff_ends = {std::pow(10, values[stiff_index]), std::pow(10, values[stiff_index + 1])};
   cable.rest_curvature.type = RestCurvatureDesc::Type::profile;
+  cable.rest_curvature.zero_counts = true;
   for (std::size_t i = curvature_index; i < marker_index; i += 2)
     cable.rest_curvature.profile.push_back({values[i], values[i + 1]});
   return scene;

@@ -16,7 +16,9 @@ constexpr double starting_bending[] = {1e-3, 3e-3, 1e-2, 3e-2, 1e-1, 3e-1, 1};  
 constexpr double starting_damping[] = {1e-4, 1e-3, 5e-3};                       // of bending, likewise [N m^3 s / kg]
 constexpr int coarse_segments = 16;                                             ///< of the search
 constexpr int few_segments = 24;                                                ///< of a fit's first part
+constexpr double tolerance_with_few = 1e-2;
 constexpr double first_trust_radius = 30;
+constexpr int most_steps = 12;  ///< of a round
 
 SceneDesc coarse(const CableSettings& settings, const std::vector<double>& values) {
   CableSettings coarser = settings;
@@ -25,43 +27,106 @@ SceneDesc coarse(const CableSettings& settings, const std::vector<double>& value
 }
 
 /// The differences of all training recordings as one block: one block each would be summed in the order in which threads end, and
-/// the result would depend on it.
+/// the result would depend on it. Slopes take most of the time: they are found once, and then follow what steps have changed
+/// (Broyden's update).
 class Cost : public ceres::CostFunction {
  public:
   Cost(const Problem& problem, const std::vector<int>& training) : problem_(problem), training_(training) {
     mutable_parameter_block_sizes()->push_back(static_cast<int>(problem.parameters.size()));
-    std::size_t count = problem.parameters.size();
-    for (const int i : training) count += difference_count(problem.recordings[i]);
-    set_num_residuals(static_cast<int>(count));
+    for (const int i : training) count_ += static_cast<Eigen::Index>(difference_count(problem.recordings[i]));
+    set_num_residuals(static_cast<int>(count_ + problem.parameters.size()));
   }
+
+  /// The next slopes are found anew.
+  void forget_slopes() { slopes_.resize(0, 0); }
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     const std::vector<double> values(blocks[0], blocks[0] + problem_.parameters.size());
-    const Linearization linear = linearize(problem_, training_, values, jacobians && jacobians[0]);
-    double* residual = residuals;
-    double* row = jacobians ? jacobians[0] : nullptr;
-    for (const RecordingDifferences& of_recording : linear) {
-      for (Eigen::Index i = 0; i < of_recording.values.size(); ++i) {
-        *residual++ = of_recording.values[i];
-        if (!row) continue;
-        for (Eigen::Index k = 0; k < of_recording.slopes.cols(); ++k) *row++ = of_recording.slopes(i, k);
-      }
-    }
+    const bool with_slopes = jacobians && jacobians[0];
+    if (with_slopes && slopes_.size() == 0)
+      find_slopes(values);
+    else if (values != evaluated_at_)
+      find_differences(values, linearize(problem_, training_, values, false));
+    if (with_slopes && values != slopes_at_) update_slopes();
     const Prior prior(problem_.parameters, values);
-    for (Eigen::Index i = 0; i < prior.values.size(); ++i) {
-      *residual++ = prior.values[i];
-      if (!row) continue;
-      for (Eigen::Index k = 0; k < prior.slopes.cols(); ++k) *row++ = prior.slopes(i, k);
-    }
+    Eigen::Map<Eigen::VectorXd> all(residuals, num_residuals());
+    all << differences_, prior.values;
+    if (!with_slopes) return true;
+    Eigen::Map<Slopes> matrix(jacobians[0], num_residuals(), static_cast<Eigen::Index>(values.size()));
+    matrix << slopes_, prior.slopes;
     return true;
   }
 
  private:
+  using Slopes = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  void find_differences(const std::vector<double>& values, const Linearization& linear) const {
+    evaluated_at_ = values;
+    differences_.resize(count_);
+    Eigen::Index row = 0;
+    for (const RecordingDifferences& of_recording : linear) {
+      differences_.segment(row, of_recording.values.size()) = of_recording.values;
+      row += of_recording.values.size();
+    }
+  }
+
+  void find_slopes(const std::vector<double>& values) const {
+    const Linearization linear = linearize(problem_, training_, values, true);
+    find_differences(values, linear);
+    slopes_.resize(count_, static_cast<Eigen::Index>(values.size()));
+    Eigen::Index row = 0;
+    for (const RecordingDifferences& of_recording : linear) {
+      slopes_.middleRows(row, of_recording.slopes.rows()) = of_recording.slopes;
+      row += of_recording.slopes.rows();
+    }
+    slopes_at_ = values;
+    differences_there_ = differences_;
+  }
+
+  /// Slopes along the step since then become what it has changed; of parameters in units of what derivatives are taken over.
+  void update_slopes() const {
+    const auto count = static_cast<Eigen::Index>(slopes_at_.size());
+    Eigen::VectorXd step(count), weighted(count);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      step[k] = evaluated_at_[k] - slopes_at_[k];
+      weighted[k] = step[k] / (problem_.parameters[k].step * problem_.parameters[k].step);
+    }
+    const Eigen::VectorXd missed = differences_ - differences_there_ - slopes_ * step;
+    slopes_ += missed * (weighted / step.dot(weighted)).transpose();
+    slopes_at_ = evaluated_at_;
+    differences_there_ = differences_;
+  }
+
   const Problem& problem_;
   const std::vector<int>& training_;
+  Eigen::Index count_ = 0;
+  mutable std::vector<double> evaluated_at_, slopes_at_;
+  mutable Eigen::VectorXd differences_, differences_there_;
+  mutable Slopes slopes_;
 };
 
-std::vector<double> minimize(const Problem& problem, const std::vector<int>& training, std::vector<double> values, int iterations,
+/// Ends a round where slopes that were updated lead no further.
+class EndOfRound : public ceres::IterationCallback {
+ public:
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
+    if (iteration.iteration == 0) return ceres::SOLVER_CONTINUE;
+    if (!iteration.step_is_successful && moved_) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
+    if (iteration.step_is_successful) {
+      moved_ = true;
+      radius_ = iteration.trust_region_radius;
+    }
+    return ceres::SOLVER_CONTINUE;
+  }
+  /// After the last step that led further.
+  double trust_radius() const { return radius_; }
+
+ private:
+  bool moved_ = false;
+  double radius_ = first_trust_radius;
+};
+
+/// `rounds`: each finds slopes anew.
+std::vector<double> minimize(const Problem& problem, const std::vector<int>& training, std::vector<double> values, int rounds,
                              double tolerance) {
   Cost cost(problem, training);
   ceres::Problem::Options ownership;
@@ -74,12 +139,19 @@ std::vector<double> minimize(const Problem& problem, const std::vector<int>& tra
   }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
-  options.max_num_iterations = iterations;
-  options.function_tolerance = tolerance;
+  options.max_num_iterations = most_steps;
+  options.function_tolerance = tolerance / 10;
   options.initial_trust_region_radius = first_trust_radius;
   options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &least_squares, &summary);
+  for (int round = 0; round < rounds; ++round) {
+    cost.forget_slopes();
+    EndOfRound ending;
+    options.callbacks = {&ending};
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &least_squares, &summary);
+    if (summary.initial_cost - summary.final_cost <= tolerance * summary.initial_cost) break;
+    options.initial_trust_region_radius = ending.trust_radius();
+  }
   return values;
 }
 
@@ -87,7 +159,8 @@ std::vector<double> minimize(const Problem& problem, const std::vector<int>& tra
 
 int most_simulations(const Problem& problem, int recordings, const Ending& ending) {
   const int guesses = static_cast<int>(std::size(starting_bending) * std::size(starting_damping));
-  return recordings * (guesses + (ending.iterations + ending.refinements) * static_cast<int>(problem.parameters.size() + 1));
+  return recordings *
+         (guesses + (ending.rounds + ending.refinements) * static_cast<int>(problem.parameters.size() + 1 + most_steps));
 }
 
 std::vector<double> coarse_search(const Problem& problem, const std::vector<int>& training) {
@@ -116,10 +189,10 @@ std::vector<double> fit(const Problem& problem, const std::vector<int>& training
   if (problem.settings.segments > few_segments) {
     Problem with_few = problem;
     with_few.settings.segments = few_segments;
-    values = minimize(with_few, training, std::move(values), ending.iterations, ending.tolerance);
+    values = minimize(with_few, training, std::move(values), ending.rounds, std::max(ending.tolerance, tolerance_with_few));
     return minimize(problem, training, std::move(values), ending.refinements, ending.tolerance);
   }
-  return minimize(problem, training, std::move(values), ending.iterations, ending.tolerance);
+  return minimize(problem, training, std::move(values), ending.rounds, ending.tolerance);
 }
 
 }  // namespace verlet_cable::cable_fit

@@ -6,16 +6,17 @@
 
 namespace verlet_cable::cable_fit {
 
-/// When a fit ends. It looks first with few segments, then refines with all of them.
+/// When a fit ends. It looks first with few segments, then refines with all of them. A round finds slopes, and goes as far as
+/// they lead.
 struct Ending {
-  int iterations;    ///< at most, with few segments
-  int refinements;   ///< iterations with all of them, at most
-  double tolerance;  ///< relative change of the cost in an iteration
+  int rounds;        ///< at most, with few segments
+  int refinements;   ///< rounds with all of them, at most
+  double tolerance;  ///< relative change of the cost in a round
 };
 /// Parameters move along where predictions hardly change: noise that predictions cannot know is most of the cost.
-constexpr Ending for_parameters{20, 8, 1e-3};
+constexpr Ending for_parameters{10, 6, 1e-3};
 /// Fits that are only predicted with, and take most of the time.
-constexpr Ending for_predictions{12, 3, 3e-3};
+constexpr Ending for_predictions{8, 3, 3e-3};
 
 /// Largest number of recordings that a fit to so many simulates.
 int most_simulations(const Problem& problem, int recordings, const Ending& ending = for_parameters);

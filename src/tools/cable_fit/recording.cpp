@@ -10,18 +10,47 @@ namespace {
 
 constexpr double doubled_back = -0.5;  ///< cosine of the turn behind a held end: 120 degrees
 
-/// Orientations whose x axes are the directions, each turned as little as possible from the one before, the first from the usual
-/// one.
-void carry_along(const Recording& recording, int from, int to, int origin, const Vector3& usual, FrameTrack& track) {
+constexpr double turned_round = -0.5;  ///< cosine of the angle to the usual direction: 120 degrees
+
+/// [m] the directions from one marker to another, a row.
+std::vector<Vector3> directions(const Recording& recording, int from, int to) {
+  std::vector<Vector3> directions;
+  for (const std::vector<Vector3>& markers : recording.markers)
+    directions.emplace_back((markers[to] - markers[from]).normalized());
+  return directions;
+}
+
+/// Each turned as little as possible from the one before, the first one from the usual one.
+std::vector<Quaternion> carried_along(const std::vector<Vector3>& directions, const Vector3& usual) {
+  std::vector<Quaternion> orientations;
   Vector3 last = usual;
   Quaternion orientation = smallest_rotation(Vector3::UnitX(), usual);
-  for (int row = 0; row < recording.rows(); ++row) {
-    const std::vector<Vector3>& markers = recording.markers[row];
-    const Vector3 direction = (markers[to] - markers[from]).normalized();
+  for (const Vector3& direction : directions) {
     orientation = (smallest_rotation(last, direction) * orientation).normalized();
     last = direction;
-    track.add(recording.times[row], {markers[origin], orientation});
+    orientations.push_back(orientation);
   }
+  return orientations;
+}
+
+/// Each turned as little as possible from the usual one: a hand that has swung round and comes back to a direction has the roll
+/// that it had there, which it would not have if each row followed the one before. Opposite to the usual direction there is no
+/// smallest turn: a hand that comes near it is carried along.
+std::vector<Quaternion> near_usual(const std::vector<Vector3>& directions, const Vector3& usual) {
+  const auto turns_round = [&](const Vector3& direction) { return direction.dot(usual) < turned_round; };
+  if (std::any_of(directions.begin(), directions.end(), turns_round)) return carried_along(directions, usual);
+  const Quaternion upright = smallest_rotation(Vector3::UnitX(), usual);
+  std::vector<Quaternion> orientations;
+  for (const Vector3& direction : directions)
+    orientations.push_back((smallest_rotation(usual, direction) * upright).normalized());
+  return orientations;
+}
+
+FrameTrack track_of(const Recording& recording, int origin, const std::vector<Quaternion>& orientations) {
+  FrameTrack track;
+  for (int row = 0; row < recording.rows(); ++row)
+    track.add(recording.times[row], {recording.markers[row][origin], orientations[row]});
+  return track;
 }
 
 }  // namespace
@@ -104,12 +133,16 @@ HeldDirections usual_directions(const std::vector<const Recording*>& recordings)
   return sums;
 }
 
+HeldEnds held_ends(const Recording& recording) {
+  const int last = recording.marker_count() - 1;
+  const auto carried = [&](int from, int to) { return carried_along(directions(recording, from, to), Vector3::UnitX()); };
+  return {track_of(recording, 0, carried(0, 1)), track_of(recording, last, carried(last - 1, last))};
+}
+
 HeldEnds held_ends(const Recording& recording, const HeldDirections& usual) {
   const int last = recording.marker_count() - 1;
-  HeldEnds ends;
-  carry_along(recording, 0, 1, 0, usual[0], ends.start);
-  carry_along(recording, last - 1, last, last, usual[1], ends.end);
-  return ends;
+  return {track_of(recording, 0, near_usual(directions(recording, 0, 1), usual[0])),
+          track_of(recording, last, near_usual(directions(recording, last - 1, last), usual[1]))};
 }
 
 }  // namespace verlet_cable::cable_fit

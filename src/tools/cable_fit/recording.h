@@ -65,8 +65,11 @@ using HeldDirections = std::array<Vector3, 2>;
 HeldDirections usual_directions(const std::vector<const Recording*>& recordings);
 
 /// The frames in the outer markers, +x along the cable from start to end. Roll was not recorded: the hands' axes are the world's,
-/// turned the smallest way from +x to the usual direction, from there to that of the first row, then from row to row. With the
-/// default it is the smallest rotation from the world's axes at the first row.
-HeldEnds held_ends(const Recording& recording, const HeldDirections& usual = {Vector3::UnitX(), Vector3::UnitX()});
+/// turned the smallest way from +x to the direction of the first row, then from row to row.
+HeldEnds held_ends(const Recording& recording);
+
+/// The same with the hands' axes turned the smallest way from +x to the usual direction, and from there to that of each row; of a
+/// hand that ever turns further than 120 degrees from it, to that of the first row, then from row to row.
+HeldEnds held_ends(const Recording& recording, const HeldDirections& usual);
 
 }  // namespace verlet_cable::cable_fit

@@ -18,7 +18,7 @@ std::string vector_text(const Vector3& v) {
 std::string frames_text(const HeldDirections& usual) {
   return "Frames: origins in the outer markers, x along the cable, from start to end.\n"
          "# Their roll: the world's axes, turned the smallest way to x = " +
-         vector_text(usual[0]) + " at the start, " + vector_text(usual[1]) + " at the end, and from there on.\n";
+         vector_text(usual[0]) + " at the start, " + vector_text(usual[1]) + " at the end, and from there to each row's x.\n";
 }
 
 }  // namespace

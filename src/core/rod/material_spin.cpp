@@ -1,0 +1,67 @@
+#include "rod/material_spin.h"
+
+#include <algorithm>
+
+#include "rod/material_frames.h"
+
+namespace verlet_cable {
+
+namespace {
+
+struct SegmentMotion {
+  Vector3 direction, rate;  ///< unit vector; [1/s] of it
+};
+
+/// Over about the last substep: of the velocities without what alternates from one to the next.
+SegmentMotion motion_of(const CableState& state, const VectorArray& segment, double h, int i) {
+  const Vector3 d = get(segment, i);
+  const double inverse = 1 / d.norm();
+  const Vector3 velocity = state.velocities[i + 1] - state.velocities[i];
+  const Vector3 mean_velocity = velocity - 0.5 * h * (state.accelerations[i + 1] - state.accelerations[i]);
+  const Vector3 direction = inverse * d, rate = inverse * mean_velocity;
+  return {direction, rate - direction.dot(rate) * direction};
+}
+
+}  // namespace
+
+double spin_of(const HeldDirection& target, double h) {
+  return rotation_between(target.start, target.end).dot(target.end * Vector3::UnitX()) / h;
+}
+
+void find_material_spin(const CableModel& model, const CableState& state, const VectorArray& segment,
+                        const std::vector<HeldDirection>& directions, const std::vector<double>& damping, double h,
+                        std::vector<double>& spin) {
+  const int n = state.segments();
+  // Of a cable that does not twist, relative to its first segment: neighbouring frames that follow their directions by the
+  // smallest rotations would turn against each other at this rate (Bergou et al., Discrete Elastic Rods, 2008, section 6).
+  double square = 0, along = 0;
+  spin[0] = 0;
+  SegmentMotion before = motion_of(state, segment, h, 0);
+  for (int i = 1; i < n; ++i) {
+    const SegmentMotion after = motion_of(state, segment, h, i);
+    const Vector3 binormal = curvature_binormal(before.direction, after.direction);
+    spin[i] = spin[i - 1] - 0.5 * binormal.dot(before.rate + after.rate);
+    const Vector3 e = after.direction - before.direction;
+    const Vector3 turned = turning_rate(before.direction, after.direction, 1, e);
+    square += damping[i] * turned.squaredNorm();
+    along += damping[i] * turned.dot(after.rate - before.rate - 0.5 * (spin[i - 1] + spin[i]) * turned);
+    before = after;
+  }
+  const bool passed_on = model.material.torsional_stiffness > 0 || model.material.torsional_damping > 0;
+  if (directions.empty() || !passed_on) {
+    const double common = square > 0 ? along / square : 0;
+    for (int i = 0; i < n; ++i) spin[i] += common;
+    return;
+  }
+  const auto missing_at = [&](const HeldDirection& clamp) { return spin_of(clamp, h) - spin[std::min(clamp.node, n - 1)]; };
+  int done = 0;
+  for (std::size_t k = 0; k <= directions.size(); ++k) {
+    const double first = missing_at(directions[k == 0 ? 0 : k - 1]);
+    const double last = missing_at(directions[std::min(k, directions.size() - 1)]);
+    const int end = k < directions.size() ? directions[k].node : n;
+    for (int i = done; i < end; ++i) spin[i] += first + (last - first) * (i + 0.5 - done) / (end - done);
+    done = std::max(done, end);
+  }
+}
+
+}  // namespace verlet_cable
