@@ -6,7 +6,7 @@ namespace verlet_cable {
 
 namespace {
 
-NodeCouplings<Pair> couplings_of_lanes(const KktSystem& s, int left, int right) {
+[[gnu::always_inline]] inline NodeCouplings<Pair> couplings_of_lanes(const KktSystem& s, int left, int right) {
   // The segment to the next node: left, and right - 1 backwards.
   return {{Pair{s.direction.x[left], -s.direction.x[right - 1]}, Pair{s.direction.y[left], -s.direction.y[right - 1]},
            Pair{s.direction.z[left], -s.direction.z[right - 1]}},

@@ -30,6 +30,14 @@ constexpr double standard_gravity = 9.81;
 /// A holder's change of velocity that moves a node by less in a substep, in segment lengths, goes unnoticed.
 constexpr double noticed_jerk = 1e-9;
 
+/// Of the first `count` numbers.
+void add(const std::vector<double>& more, int count, std::vector<double>& sum) {
+  const double* from = more.data();
+  double* to = sum.data();
+#pragma GCC ivdep
+  for (int i = 0; i < count; ++i) to[i] += from[i];
+}
+
 }  // namespace
 
 void bring_to_rest(CableState& state) {
@@ -132,15 +140,20 @@ void CableStepper::hold(const std::vector<HeldNode>& held) {
 void CableStepper::set_loads(const Substep& s, const CableState& state) {
   const Vector3 wind = s.model.material.drag * s.environment.fluid.velocity;
   const double drag = s.model.material.drag / s.damping_time();
+  const GravityDesc& gravity = s.environment.gravity;
+  const bool is_uniform = gravity.type == GravityDesc::Type::uniform;
+  Vector3 g = gravity.acceleration;
+  double half_before = 0;
   for (int i = 0; i <= segments_; ++i) {
     const double mass = state.masses[i], inertia = s.inertia() * mass / s.h;
-    const double length = 0.5 * ((i > 0 ? state.rest_lengths[i - 1] : 0) + (i < segments_ ? state.rest_lengths[i] : 0));
+    const double half = i < segments_ ? 0.5 * state.rest_lengths[i] : 0, length = half_before + half;
+    half_before = half;
     inertia_[i] = inertia / s.h + drag * length;
     // In the middle of the substep, where the other forces are; velocities are zero in statics.
-    const Vector3 gravity = s.environment.gravity.at(get(position_, i) + 0.5 * s.h * get(velocity_, i));
-    base_load_.x[i] = mass * gravity.x() + inertia * velocity_.x[i] + length * wind.x();
-    base_load_.y[i] = mass * gravity.y() + inertia * velocity_.y[i] + length * wind.y();
-    base_load_.z[i] = mass * gravity.z() + inertia * velocity_.z[i] + length * wind.z();
+    if (!is_uniform) g = gravity.at(get(position_, i) + 0.5 * s.h * get(velocity_, i));
+    base_load_.x[i] = mass * g.x() + inertia * velocity_.x[i] + length * wind.x();
+    base_load_.y[i] = mass * g.y() + inertia * velocity_.y[i] + length * wind.y();
+    base_load_.z[i] = mass * g.z() + inertia * velocity_.z[i] + length * wind.z();
   }
   const std::vector<HeldNode>& held = s.boundary.nodes;
   std::fill_n(system_.compliance.begin(), segments_, 0.0);
@@ -339,17 +352,19 @@ void CableStepper::set_correction(const VectorArray& displacement, const std::ve
 
 /// Applies the solution; the largest correction, in segment lengths or angles.
 double CableStepper::correct() {
-  double largest = 0;
   const VectorArray& delta = correction();
-  for (int i = 0; i <= segments_; ++i) {
-    displacement_.x[i] += delta.x[i];
-    displacement_.y[i] += delta.y[i];
-    displacement_.z[i] += delta.z[i];
-    const double square = delta.x[i] * delta.x[i] + delta.y[i] * delta.y[i] + delta.z[i] * delta.z[i];
-    largest = square <= largest ? largest : square;  // keeps a NaN
+  for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z})
+    add(delta.*component, segments_ + 1, displacement_.*component);
+  add(multiplier_correction(), segments_, tension_density_);
+  Pair largest{}, sum{};
+  for (int i = 0; i <= segments_; i += 2) {
+    const PairVector d = neighbours(delta, i);
+    const Pair square = dot(d, d);
+    largest = square <= largest ? largest : square;
+    sum += square;
   }
-  for (int i = 0; i < segments_; ++i) tension_density_[i] += multiplier_correction()[i];
-  const double size = std::sqrt(largest) / target_length_[0];
+  // A NaN may be lost among squares, but not in their sum.
+  const double size = std::sqrt(std::max(largest[0], largest[1])) / target_length_[0] + 0 * (sum[0] + sum[1]);
   if (!rod_.active()) return size;
   const double turn = rod_.correct(1);
   return turn <= size ? size : turn;  // keeps a NaN
