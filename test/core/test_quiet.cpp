@@ -273,7 +273,7 @@ TEST(Quiet, WhatIsResolvedKeepsItsEnergy) {
 
 /// Its motion becomes chaotic after some seconds, and as fast as the step is long: what is lost is the mean of some runs.
 TEST(Quiet, AFastCantileverLosesLittle) {
-  constexpr int runs = 8, segments = 40;
+  constexpr int runs = 24, segments = 40;
   double left = 0;
   for (int run = 0; run < runs; ++run) {
     SceneDesc scene = scenes::one_cable(segments);

@@ -133,6 +133,9 @@ class World {
   /// Cables that cannot touch are stepped by all cores at once where they are many, with the same result; or not, for programs
   /// that run many worlds at once.
   void step_one_by_one(bool one_by_one);
+  /// Cables that are alike and touch nothing are stepped several at once, in lanes of the numbers that the processor computes with
+  /// together: two a cable, 2, 4 or 8, or as many of them as it has. The result is the same.
+  void limit_lanes(int most);
 
   /// Puts every cable that is held into static equilibrium, its holders where they are (Newton's method, no waiting); free cables
   /// and nets stay as they are. False if one of them found none; it is then at rest near it.

@@ -32,30 +32,9 @@ void Bending::start(const CableModel& model, const CableState& state, const Vect
     set(start_, i, e);
     start_square_[i] = e.squaredNorm();
   }
-  clamps_.clear();
-  for (std::size_t k = 0; k < directions.size(); ++k) {
-    const HeldDirection& target = directions[k];
-    stiffness_[target.node] = damping_[target.node] = 0;
-    const Vector3 start_axis = target.start * Vector3::UnitX(), end_axis = target.end * Vector3::UnitX();
-    for (const int i : {target.node - 1, target.node}) {
-      if (i < 0 || i >= segments_) continue;
-      ClampJoint clamp;
-      clamp.target = static_cast<int>(k);
-      clamp.segment = i;
-      const double joint = 1 / state.bending_length(target.node, 0.5 * state.rest_lengths[i]);
-      clamp.stiffness = stiffness * joint;
-      clamp.damping = damping * joint;
-      const double stretch = inverse_length_[i] * get(segment, i).norm();
-      clamp.start = inverse_length_[i] * get(segment, i) - stretch * start_axis;
-      clamp.start_square = clamp.start.squaredNorm();
-      clamp.axis_change = stretch * (end_axis - start_axis);
-      clamp.middle_axis = stretch * start_axis + part * clamp.axis_change;
-      clamp.start_direction = inverse_length_[i] * get(segment, i);
-      clamp.start_axis = start_axis;
-      clamp.end_axis = end_axis;
-      clamps_.push_back(clamp);
-    }
-  }
+  for (const HeldDirection& target : directions) stiffness_[target.node] = damping_[target.node] = 0;
+  find_clamp_joints(
+      model, state, directions, [&segment](int i) { return get(segment, i); }, h, part, clamps_);
   is_damped_ = damping > 0;
   if (is_damped_) turn_with_material(model, state, segment, directions, h);
 }
@@ -113,37 +92,8 @@ void Bending::add_segment_forces(const VectorArray& displacement, VectorArray& p
 void Bending::bend_clamps(const VectorArray& displacement) {
   for (ClampJoint& clamp : clamps_) {
     const int i = clamp.segment;
-    const Vector3 direction_change = inverse_length_[i] * (get(displacement, i + 1) - get(displacement, i));
-    if (is_elastic_) {
-      bend_elastic_clamp(direction_change, clamp);
-      continue;
-    }
-    const Vector3 change = direction_change - clamp.axis_change;
-    const Vector3 middle = clamp.start + part_ * change;
-    clamp.slope = clamp.stiffness * mean_slope(0.5 * clamp.start_square, 0.5 * (clamp.start + change).squaredNorm());
-    clamp.moment = clamp.slope * middle + clamp.damping * (change - clamp.turned);
-    // The energy depends on the axis a through d / l - a: the torque on the axis is a x moment.
-    clamp.torque = clamp.middle_axis.cross(clamp.moment);
+    bend_clamp(is_elastic_, part_, get(displacement, i + 1) - get(displacement, i), clamp);
   }
-}
-
-/// With q = d / l, its length r and the unit axis a, the energy is EI / l psi(u), u = |q - r a|^2 / 2 = r^2 - r c, c = q . a. Its
-/// change over the substep is that of u times a mean slope, and
-///   u' - u = ((2 - mean c / mean r) mean q - mean r mean a) . (q' - q) - mean r mean q . (a' - a),
-/// which gives the mean moments that keep the energy. Only what is across the axis is damped.
-void Bending::bend_elastic_clamp(const Vector3& change, ClampJoint& clamp) const {
-  const Vector3 start = clamp.start_direction, end = start + change, axis_change = clamp.end_axis - clamp.start_axis;
-  const Vector3 direction = start + part_ * change, axis = clamp.start_axis + part_ * axis_change;
-  const auto at_part = [this](double from, double to) { return from + part_ * (to - from); };
-  const double stretch = at_part(start.norm(), end.norm());
-  const double along = at_part(start.dot(clamp.start_axis), end.dot(clamp.end_axis));
-  const double slope =
-      clamp.stiffness * mean_slope(0.5 * clamp.start_square, 0.5 * (end - end.norm() * clamp.end_axis).squaredNorm());
-  clamp.slope = slope * (2 - along / stretch);
-  const Vector3 bending = change - stretch * axis_change - clamp.turned;
-  const Vector3 damping = clamp.damping * (bending - axis * (axis.dot(bending) / axis.squaredNorm()));
-  clamp.moment = clamp.slope * direction - slope * stretch * axis + damping;
-  clamp.torque = axis.cross(slope * stretch * direction + damping);
 }
 
 Vector3 Bending::damping_torque(const VectorArray& displacement) const {
@@ -170,7 +120,7 @@ void Bending::add_stiffness(KktSystem& system) const {
   }
   for (const ClampJoint& clamp : clamps_) {
     const int i = clamp.segment;
-    const double slope = (part_ * clamp.slope + clamp.damping) * inverse_length_[i] * inverse_length_[i];
+    const double slope = stiffness_across(clamp, part_);
     add(i, slope);
     add(i + 1, slope);
     system.first[i] -= slope;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "rod/block_elimination.h"
+#include "rod/clamp_joint.h"
 #include "target/boundary.h"
 #include "verlet_cable/core/cable.h"
 
@@ -36,24 +37,9 @@ class Bending {
   void react(const VectorArray& displacement, std::vector<HeldDirection>& directions);
 
  private:
-  struct ClampJoint {
-    int target = 0;   ///< index of the held direction
-    int segment = 0;  ///< the segment next to the clamp
-    double stiffness = 0, damping = 0;
-    Vector3 turned = Vector3::Zero();  ///< as of nodes
-    Vector3 start = Vector3::Zero(), axis_change = Vector3::Zero(), middle_axis = Vector3::Zero();
-    double start_square = 0;
-    Vector3 moment = Vector3::Zero();  ///< force times length, on the side's direction
-    Vector3 torque = Vector3::Zero();  ///< on the axis [N m]
-    // Of elastic cables: d / l and the unit axis
-    Vector3 start_direction = Vector3::Zero(), start_axis = Vector3::Zero(), end_axis = Vector3::Zero();
-    double slope = 0;
-  };
-
   void turn_with_material(const CableModel& model, const CableState& state, const VectorArray& segment,
                           const std::vector<HeldDirection>& directions, double h);
   void bend_clamps(const VectorArray& displacement);
-  void bend_elastic_clamp(const Vector3& change, ClampJoint& clamp) const;
 
   bool active_ = false;
   bool is_damped_ = false;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "rod/rigid_motion.h"
 #include "rod/tridiagonal.h"
@@ -12,24 +11,10 @@ namespace verlet_cable {
 namespace {
 
 constexpr int maximum_iterations = 40;
-/// Of a free cable nothing but the solution keeps the angular momentum: so much of the tolerance is allowed.
-constexpr double free_part = 0.1;
-/// [1/s] Of what stands: errors times the stiffness are loads that would set it moving.
-constexpr double static_velocity_tolerance = 1e-8;
-/// A matrix that is kept does not make corrections shrink faster than this for long, however fast the first one shrank.
-constexpr double fastest_convergence = 0.03;
 /// A correction that shrinks less than this from one iteration to the next calls for a new factorisation.
 constexpr double slow_convergence = 0.1;
 /// Relative, for spans that are pulled straight.
 constexpr double pivot_regularisation = 1e-9;
-/// Between two holders a rigid chain that is pulled straight has no unique tension, and one that is pushed together has no
-/// motion. So much axial stiffness, relative to the cable's weight, gives it both: its own weight strains it by a part in ten
-/// million.
-constexpr double taut_stiffness = 1e7;
-constexpr double standard_gravity = 9.81;
-/// A holder's change of velocity that moves a node by less in a substep, in segment lengths, goes unnoticed.
-constexpr double noticed_jerk = 1e-9;
-
 /// Of the first `count` numbers.
 void add(const std::vector<double>& more, int count, std::vector<double>& sum) {
   const double* from = more.data();
@@ -104,8 +89,7 @@ void CableStepper::finish(const Substep& s, bool struck, CableState& state, Subs
   const bool damped = !s.statics && s.scheme != Scheme::conserving;
   if (damped && s.boundary.nodes.empty()) restore_momenta(s, state.masses);
   if (!s.statics && s.boundary.nodes.empty()) restore_angular_momentum(s, state.masses);
-  if (!s.statics && (struck || damped || !s.boundary.growing.empty() || holders_accelerate(s.h, s.boundary.nodes)))
-    project(s, state.masses);
+  if (!s.statics && (struck || damped || !s.boundary.growing.empty() || holders_accelerate(s, state))) project(s, state.masses);
   result.max_strain = store(s, state);
   if (rod_.active()) rod_.store(s.boundary, state);
   if (s.treatment != Treatment::none) quieten(s, state);
@@ -158,10 +142,7 @@ void CableStepper::set_loads(const Substep& s, const CableState& state) {
   const std::vector<HeldNode>& held = s.boundary.nodes;
   std::fill_n(system_.compliance.begin(), segments_, 0.0);
   if (held.size() > 1) {
-    const double mass = std::accumulate(state.masses.begin(), state.masses.end(), 0.0);
-    const double length = state.length();
-    const double weight = std::max(s.environment.gravity.at(get(position_, 0)).norm(), standard_gravity) * mass;
-    const double stiffness = taut_stiffness * (weight + s.model.material.bending_stiffness.largest() / (length * length));
+    const double stiffness = stiffness_of_taut(s, state);
     for (int i = held.front().node; i < held.back().node; ++i)
       system_.compliance[i] = target_length_[i] * target_length_[i] * target_length_[i] / stiffness;
   }
@@ -215,10 +196,7 @@ void CableStepper::predict(double h) {
 
 /// Newton's method on places and tensions together, its matrix kept as long as it converges fast.
 bool CableStepper::solve(const Substep& s, const CableState& state, SubstepResult& result) {
-  const bool free = s.boundary.nodes.empty();
-  const double error = s.statics ? static_velocity_tolerance : free ? free_part * s.tolerance : s.tolerance;
-  const double tolerance = error * std::min(s.h, longest_tolerated);
-  double last = 0;
+  Convergence convergence(s);
   bool stale = true;
   for (int i = 0; i < maximum_iterations; ++i) {
     evaluate(s, state);
@@ -230,11 +208,8 @@ bool CableStepper::solve(const Substep& s, const CableState& state, SubstepResul
     ++result.iterations;
     const double size = correct();
     if (!(size < largest_correction)) return false;
-    // The next correction would be about the last one times the ratio of the last two.
-    const double ratio = i == 0 ? 1 : size / last;
-    if (size * std::clamp(ratio, fastest_convergence, 1.0) < tolerance) return true;
-    stale = i > 0 && ratio > slow_convergence;
-    last = size;
+    if (convergence.is_reached(size)) return true;
+    stale = i > 0 && convergence.ratio() > slow_convergence;
   }
   return false;
 }
@@ -408,14 +383,6 @@ void CableStepper::move(const Substep& s) {
   }
 }
 
-/// Whether a holder's velocity has changed: only then do velocities along the segments appear that the equations do not damp.
-bool CableStepper::holders_accelerate(double h, const std::vector<HeldNode>& held) const {
-  const double noticed = noticed_jerk * target_length_[0] / h;
-  return std::any_of(held.begin(), held.end(), [&](const HeldNode& target) {
-    return (target.velocity - get(velocity_, target.node)).squaredNorm() > noticed * noticed;
-  });
-}
-
 /// Impulses along inextensible segments that end all change of length but that of rest lengths; without them such velocities
 /// would alternate from step to step.
 void CableStepper::project(const Substep& s, const std::vector<double>& masses) {
@@ -497,6 +464,20 @@ void CableStepper::quieten(const Substep& s, CableState& state) {
     state.unresolved.damped = s.scheme == Scheme::conserving ? damped_substeps : damped_substeps - 1;
     return;
   }
+  take_out_unresolved(s, state);
+}
+
+void CableStepper::clean(const Substep& s, const std::vector<double>& start_multiplier, CableState& state) {
+  SubstepResult unused;
+  begin(s, state, unused);
+  displacement_.assign(segments_ + 2, 0.0);
+  end_velocity_ = velocity_;
+  evaluate(s, state);
+  for (int i = 0; i < segments_; ++i) start_density_[i] = start_multiplier[i] / length_[i];
+  take_out_unresolved(s, state);
+}
+
+void CableStepper::take_out_unresolved(const Substep& s, CableState& state) {
   assemble_for_velocities();
   factor();
   std::fill(growth_.begin(), growth_.end(), 0.0);

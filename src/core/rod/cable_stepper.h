@@ -6,54 +6,10 @@
 #include "rod/block_elimination.h"
 #include "rod/fluid_forces.h"
 #include "rod/kirchhoff_rod.h"
-#include "rod/scheme.h"
+#include "rod/substep.h"
 #include "rod/twist.h"
-#include "rod/unresolved_motion.h"
-#include "target/boundary.h"
-#include "verlet_cable/core/cable.h"
 
 namespace verlet_cable {
-
-/// What acts on a cable from outside, the same in all substeps of a step.
-struct Environment {
-  GravityDesc gravity;
-  FluidDesc fluid;
-};
-
-/// A tolerated error is one of velocity in substeps up to this long [s]; beyond, the error of the place counts.
-constexpr double longest_tolerated = 1e-3;
-/// A larger correction, in segment lengths, leads to solutions that have nothing to do with the motion: halve the step.
-constexpr double largest_correction = 2;
-
-/// No substep is shorter [s]; a cable that needs one has lost its way.
-constexpr double shortest_substep = 1e-6;
-
-/// What a substep is done with.
-struct Substep {
-  const CableModel& model;
-  const Environment& environment;
-  Boundary& boundary;             ///< forces and torques on the holders are written to it
-  std::vector<TwistSpan>& spans;  ///< their twist is kept up
-  double h;                       ///< [s]
-  bool statics = false;           ///< a step towards equilibrium: inertia only slows it, nothing moves or is damped
-  Scheme scheme = Scheme::conserving;
-  Treatment treatment = Treatment::none;  ///< of motion that is found not to be resolved
-  double tolerance = 1e-5;                ///< [1/s] of velocities, as SceneDesc's
-
-  /// Where in the substep forces are taken.
-  double part() const { return statics || scheme != Scheme::conserving ? 1 : 0.5; }
-  /// [mass] Of (u / h - v) / h in the equations of motion, u being the displacement.
-  double inertia() const { return scheme == Scheme::first_order ? 1 : 2; }
-  double damping_time() const { return statics ? infinity : h; }
-};
-
-struct SubstepResult {
-  bool converged = false;
-  int overstretched_node = -1;  ///< first node of a span that was lengthened; -1: none
-  int iterations = 0;
-  double max_strain = 0;    ///< largest |l / l0 - 1| at the end
-  double displacement = 0;  ///< largest of a node [m]; in statics only
-};
 
 /// Takes a cable's motion away.
 void bring_to_rest(CableState& state);
@@ -71,6 +27,10 @@ class CableStepper {
 
   /// If it has not converged, `state` is untouched.
   SubstepResult advance(const Substep& substep, CableState& state);
+
+  /// Takes motion that a conserving substep has not resolved out of the velocities of a cable that others have advanced.
+  /// `start_multiplier`: CableState::axial_multiplier at the substep's start.
+  void clean(const Substep& substep, const std::vector<double>& start_multiplier, CableState& state);
 
   // The stages of `advance`, for a solver of several cables at once: begin; evaluate, assemble, factor, solve and correct until
   // that has converged; finish.
@@ -118,8 +78,8 @@ class CableStepper {
   void restore_momenta(const Substep& substep, const std::vector<double>& masses);
   void restore_angular_momentum(const Substep& substep, const std::vector<double>& masses);
   void quieten(const Substep& substep, CableState& state);
+  void take_out_unresolved(const Substep& substep, CableState& state);
   void assemble_for_velocities();
-  bool holders_accelerate(double h, const std::vector<HeldNode>& held) const;
   void project(const Substep& substep, const std::vector<double>& masses);
   double store(const Substep& substep, CableState& state) const;
 

@@ -49,35 +49,38 @@ void MotionCleaner::resize(int nodes) {
   alternating_.assign(nodes, 0.0);
 }
 
-bool MotionCleaner::finds_unresolved(Treatment treatment, const std::vector<double>& movable, const VectorArray& before,
-                                     CableState& state) {
-  UnresolvedMotion& motion = state.unresolved;
-  const bool damps = treatment == Treatment::damping;
-  const double known = motion.known < 2 ? 0 : 0.5;
-  double product = 0, square = 0, mass = 0;
-  for (int i = 0; i < state.nodes(); ++i) {
-    const Vector3 change = state.accelerations[i] - get(before, i);
-    // Changes from or to what was before the motion began anew are none.
-    const Vector3 turn = known * (change - motion.acceleration_changes[i]);
-    const double weight = movable[i] * state.masses[i];
-    const Vector3 now = damps ? change : turn, last = damps ? motion.acceleration_changes[i] : motion.turns[i];
-    product += weight * now.dot(last);
-    square += 0.5 * weight * (now.squaredNorm() + last.squaredNorm());
-    mass += weight;
-    motion.acceleration_changes[i] = change;
-    motion.turns[i] = turn;
-  }
+bool is_unresolved(Treatment treatment, const MotionSums& sums, UnresolvedMotion& motion) {
   if (motion.damped > 0) --motion.damped;
   if (motion.known < 2) {
     ++motion.known;
     return false;
   }
-  motion.changed = memory * motion.changed + square;
-  motion.turned = memory * motion.turned + product;
-  const double least = damps ? least_cosine_damped : least_cosine;
-  const bool unresolved = motion.turned < least * motion.changed && motion.changed > noticed_change * noticed_change * mass;
+  motion.changed = memory * motion.changed + sums.square;
+  motion.turned = memory * motion.turned + sums.product;
+  const double least = treatment == Treatment::damping ? least_cosine_damped : least_cosine;
+  const bool unresolved = motion.turned < least * motion.changed && motion.changed > noticed_change * noticed_change * sums.mass;
   if (unresolved) motion.changed = motion.turned = 0;
   return unresolved;
+}
+
+bool MotionCleaner::finds_unresolved(Treatment treatment, const std::vector<double>& movable, const VectorArray& before,
+                                     CableState& state) {
+  UnresolvedMotion& motion = state.unresolved;
+  const bool damps = treatment == Treatment::damping;
+  const double known = known_part(motion);
+  MotionSums sums;
+  for (int i = 0; i < state.nodes(); ++i) {
+    const Vector3 change = state.accelerations[i] - get(before, i);
+    const Vector3 turn = known * (change - motion.acceleration_changes[i]);
+    const double weight = movable[i] * state.masses[i];
+    const Vector3 now = damps ? change : turn, last = damps ? motion.acceleration_changes[i] : motion.turns[i];
+    sums.product += weight * now.dot(last);
+    sums.square += 0.5 * weight * (now.squaredNorm() + last.squaredNorm());
+    sums.mass += weight;
+    motion.acceleration_changes[i] = change;
+    motion.turns[i] = turn;
+  }
+  return is_unresolved(treatment, sums, motion);
 }
 
 void MotionCleaner::load(double h, const CableModel& model, const CableState& state, const std::vector<double>& inertia,

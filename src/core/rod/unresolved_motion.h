@@ -23,6 +23,23 @@ Scheme next_scheme(const CableModel& model, const UnresolvedMotion& motion);
 /// Motion begins anew, as after an edit: the next two substeps are not judged.
 void begin_anew(UnresolvedMotion& motion);
 
+/// How much of what `known` says counts as a change of the change of acceleration: changes from or to what was before the motion
+/// began anew are none.
+inline double known_part(const UnresolvedMotion& motion) {
+  return motion.known < 2 ? 0 : 0.5;
+}
+
+/// Sums over a cable's nodes that move.
+struct MotionSums {
+  double product = 0;  ///< [N^2/kg] mass times a turn (or change, where what is found is to be damped) times the one before
+  double square = 0;   ///< [N^2/kg] mass times the mean of their squares
+  double mass = 0;     ///< [kg]
+};
+
+/// After a substep: adds what it has changed to what is known of the motion. True if motion was found that is not resolved; what
+/// is known is then forgotten.
+bool is_unresolved(Treatment treatment, const MotionSums& sums, UnresolvedMotion& motion);
+
 /// Finds motion of a cable that substeps do not resolve, and takes it out of the velocities. Where it is resolved, with phase p a
 /// substep (p = 2 atan(omega h / 2) for a frequency omega), successive turns of the accelerations (differences of their changes)
 /// have products that are cos(p) of their squares; what is much faster turns round from each substep to the next, for ever: -1.

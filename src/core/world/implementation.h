@@ -18,6 +18,7 @@ struct World::Implementation {
   State state;
   Findings findings;
   bool one_by_one = false;                       ///< as World::step_one_by_one asks
+  int most_lanes = widest_lanes();               ///< as World::limit_lanes asks
   const std::atomic<bool>* cancelled = nullptr;  ///< during construction
   // Scratch, and what follows from the state
   NotCopied<Workspaces> workspaces;

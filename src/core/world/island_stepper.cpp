@@ -163,9 +163,92 @@ void complete_drive_step(int index, State& state) {
   if (!complete_drive(drive)) memory.drive.reset();
 }
 
+IslandStepper::IslandStepper(State& state, Workspace& workspace, std::vector<CableOutcome>& outcomes, int lanes)
+    : state_(state), workspace_(workspace), outcomes_(outcomes), lanes_(lanes) {
+  workspace_.environment = {state.scene->gravity, state.scene->fluid};
+}
+
 void IslandStepper::step(Island& island, IslandOutcome& found) {
   found.intrusions.clear();
   found.contacts.clear();
+  if (!wait_for_others(island, found)) step_alone(island, found);
+}
+
+/// False if the island is not one for lanes.
+bool IslandStepper::wait_for_others(Island& island, IslandOutcome& found) {
+  const int cable = island.cables.front();
+  CableProgress& memory = state_.cable_progress[cable];
+  if (island.cables.size() > 1 || memory.level > 0 || memory.drive) return false;
+  const CableState& state = state_.cables[cable].state;
+  Boundary unknown;
+  const Substep substep = whole_step(cable, unknown);
+  if (!fits_lanes(substep, state)) return false;
+  begin(island);
+  find_contacts(island, 0, 1);
+  if (!workspace_.contacts.touches().empty() || !workspace_.contacts.intrusions().empty()) return false;
+  WaitingCables& waiting = waiting_of(law_of(substep, state));
+  if (waiting.boundaries.size() == waiting.islands.size()) waiting.boundaries.emplace_back();
+  Boundary& boundary = waiting.boundaries[waiting.islands.size()];
+  boundary.growing.clear();
+  hold_at(0, 1, memory.targets, boundary);
+  waiting.islands.push_back(&island);
+  waiting.outcomes.push_back(&found);
+  if (2 * static_cast<int>(waiting.islands.size()) == lanes_) step_together(waiting);
+  return true;
+}
+
+/// Of a cable that touches nothing.
+Substep IslandStepper::whole_step(int cable, Boundary& boundary) {
+  Substep substep{*state_.cables[cable].model, workspace_.environment, boundary, state_.cable_progress[cable].spans,
+                  state_.scene->time_step};
+  substep.scheme = scheme_of(cable);
+  substep.tolerance = state_.scene->tolerance;
+  if (state_.scene->numerical_damping) substep.treatment = Treatment::cleaning;
+  return substep;
+}
+
+WaitingCables& IslandStepper::waiting_of(const LaneLaw& law) {
+  std::vector<WaitingCables>& all = workspace_.waiting;
+  auto same = std::find_if(all.begin(), all.end(), [&](const WaitingCables& w) { return w.law == law; });
+  if (same == all.end()) same = std::find_if(all.begin(), all.end(), [](const WaitingCables& w) { return w.islands.empty(); });
+  if (same == all.end()) same = all.emplace(all.end());
+  same->law = law;
+  return *same;
+}
+
+void IslandStepper::finish() {
+  for (WaitingCables& waiting : workspace_.waiting)
+    if (!waiting.islands.empty()) step_together(waiting);
+}
+
+void IslandStepper::step_together(WaitingCables& waiting) {
+  std::vector<LaneMember>& members = workspace_.lane_members;
+  members.clear();
+  for (std::size_t k = 0; k < waiting.islands.size(); ++k) {
+    const int cable = waiting.islands[k]->cables.front();
+    members.push_back({whole_step(cable, waiting.boundaries[k]), &state_.cables[cable].state, {}});
+  }
+  workspace_.lane_stepper.advance(members, lanes_, workspace_.cables.front().stepper);
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    Island& island = *waiting.islands[k];
+    if (members[k].result.converged)
+      complete_whole_step(island, waiting.boundaries[k], members[k].result);
+    else
+      step_alone(island, *waiting.outcomes[k]);
+  }
+  waiting.islands.clear();
+  waiting.outcomes.clear();
+}
+
+void IslandStepper::complete_whole_step(const Island& island, Boundary& boundary, const SubstepResult& result) {
+  const int cable = island.cables.front();
+  CableProgress& memory = state_.cable_progress[cable];
+  memory.contacts.clear();
+  note_substep(cable, boundary, result, 1);
+  complete_cable(cable, boundary, 1);
+}
+
+void IslandStepper::step_alone(Island& island, IslandOutcome& found) {
   begin(island);
   int level = 0;
   for (const int cable : island.cables) level = std::max(level, state_.cable_progress[cable].level);
@@ -197,7 +280,8 @@ void IslandStepper::step(Island& island, IslandOutcome& found) {
     ++substeps;
     note_intrusions(found.intrusions);
     for (std::size_t k = 0; k < island.cables.size(); ++k)
-      note_substep(island.cables[k], workspace_.cables[k], static_cast<double>(ticks) * part);
+      note_substep(island.cables[k], workspace_.cables[k].boundary, workspace_.cables[k].result,
+                   static_cast<double>(ticks) * part);
     if (level > 0 && was_easy() && done % (2 * ticks) == 0) --level;
   }
   for (const int cable : island.cables) state_.cable_progress[cable].level = level;
@@ -218,7 +302,6 @@ void IslandStepper::begin(const Island& island) {
 /// One substep, from one part of the step to another. False if it has not converged or cables have passed through each other
 /// (where that is not `tolerated`); the states are then as before.
 bool IslandStepper::advance(Island& island, double from, double to, bool tolerated) {
-  const Environment environment{state_.scene->gravity, state_.scene->fluid};
   const double h = (to - from) * state_.scene->time_step;
   find_contacts(island, from, to);
   const bool touching = !workspace_.contacts.touches().empty(), keeps = island.cables.size() > 1;
@@ -239,7 +322,7 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
       work.before = c.state;
       work.spans_before = memory.spans;
     }
-    Substep substep{*c.model, environment, work.boundary, memory.spans, h};
+    Substep substep{*c.model, workspace_.environment, work.boundary, memory.spans, h};
     substep.scheme = scheme;
     substep.tolerance = state_.scene->tolerance;
     if (state_.scene->numerical_damping) substep.treatment = touches || to - from < 1 ? Treatment::damping : Treatment::cleaning;
@@ -342,13 +425,12 @@ bool IslandStepper::was_easy() const {
                      [&](const CableWorkspace& of_cable) { return of_cable.result.iterations <= most; });
 }
 
-void IslandStepper::note_substep(int index, const CableWorkspace& work, double part) {
+void IslandStepper::note_substep(int index, const Boundary& boundary, const SubstepResult& substep, double part) {
   StepResult& result = outcomes_[index].result;
-  add_forces(work.boundary, state_.cable_progress[index].targets, state_.frames.poses, part, state_.attachments);
-  result.max_strain = std::max(result.max_strain, work.result.max_strain);
-  result.iterations += work.result.iterations;
-  if (work.result.overstretched_node >= 0)
-    note_status(Status::overstretched, cable_id(index), work.result.overstretched_node, result);
+  add_forces(boundary, state_.cable_progress[index].targets, state_.frames.poses, part, state_.attachments);
+  result.max_strain = std::max(result.max_strain, substep.max_strain);
+  result.iterations += substep.iterations;
+  if (substep.overstretched_node >= 0) note_status(Status::overstretched, cable_id(index), substep.overstretched_node, result);
 }
 
 void IslandStepper::note_intrusions(std::vector<Intrusion>& noted) const {
@@ -365,21 +447,24 @@ void IslandStepper::note_intrusions(std::vector<Intrusion>& noted) const {
 }
 
 void IslandStepper::complete(const Island& island, int substeps, IslandOutcome& found) {
-  for (std::size_t k = 0; k < island.cables.size(); ++k) {
-    const int index = island.cables[k];
-    CableProgress& memory = state_.cable_progress[index];
-    if (memory.drive) complete_drive_step(index, state_);
-    follow_material(workspace_.cables[k].boundary.directions, memory.spans, state_.cables[index].state);
-    outcomes_[index].result.substeps = substeps;
-    outcomes_[index].breaking_segment = find_breaking_segment(state_.cables[index], outcomes_[index].result);
-    complete_step(state_.scene->time_step, memory.targets);
-    show_velocities(memory.targets, state_.cables[index].state.velocities);
-  }
+  for (std::size_t k = 0; k < island.cables.size(); ++k)
+    complete_cable(island.cables[k], workspace_.cables[k].boundary, substeps);
   for (const Touch& touch : workspace_.contacts.touches()) {
     if (touch.mode == Touch::Mode::open) continue;
     found.contacts.push_back({touch.point.cable, touch.point.segment, touch.position, touch.normal, touch.force, touch.obstacle,
                               touch.other.cable, touch.other.segment});
   }
+}
+
+void IslandStepper::complete_cable(int index, const Boundary& boundary, int substeps) {
+  CableProgress& memory = state_.cable_progress[index];
+  CableState& state = state_.cables[index].state;
+  if (memory.drive) complete_drive_step(index, state_);
+  follow_material(boundary.directions, memory.spans, state);
+  outcomes_[index].result.substeps = substeps;
+  outcomes_[index].breaking_segment = find_breaking_segment(state_.cables[index], outcomes_[index].result);
+  complete_step(state_.scene->time_step, memory.targets);
+  show_velocities(memory.targets, state.velocities);
 }
 
 }  // namespace verlet_cable

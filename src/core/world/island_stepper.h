@@ -51,11 +51,20 @@ void update_targets(int cable, State& state, CableOutcome& outcome);
 /// solver does not converge, doubled where it does easily. Changes nothing but these cables and the forces on their attachments.
 class IslandStepper {
  public:
-  IslandStepper(State& state, Workspace& workspace, std::vector<CableOutcome>& outcomes)
-      : state_(state), workspace_(workspace), outcomes_(outcomes) {}
+  /// `lanes`: 2, 4 or 8, no more than the processor has.
+  IslandStepper(State& state, Workspace& workspace, std::vector<CableOutcome>& outcomes, int lanes);
+  /// A cable that is alone and whole steps do for waits for others like it, with which it is stepped at once, or for `finish`.
   void step(Island& island, IslandOutcome& found);
+  /// Steps those that wait.
+  void finish();
 
  private:
+  bool wait_for_others(Island& island, IslandOutcome& found);
+  Substep whole_step(int cable, Boundary& boundary);
+  WaitingCables& waiting_of(const LaneLaw& law);
+  void step_together(WaitingCables& waiting);
+  void complete_whole_step(const Island& island, Boundary& boundary, const SubstepResult& result);
+  void step_alone(Island& island, IslandOutcome& found);
   void begin(const Island& island);
   bool advance(Island& island, double from, double to, bool tolerated);
   void find_contacts(Island& island, double from, double to);
@@ -66,13 +75,15 @@ class IslandStepper {
   void stop(const Island& island);
   void give_up(int cable, Boundary& boundary);
   bool was_easy() const;
-  void note_substep(int cable, const CableWorkspace& of_cable, double part);
+  void note_substep(int cable, const Boundary& boundary, const SubstepResult& result, double part);
   void note_intrusions(std::vector<Intrusion>& noted) const;
   void complete(const Island& island, int substeps, IslandOutcome& found);
+  void complete_cable(int cable, const Boundary& boundary, int substeps);
 
   State& state_;
   Workspace& workspace_;
   std::vector<CableOutcome>& outcomes_;
+  int lanes_;  ///< two a cable that is stepped together with others
 };
 
 /// The step of a winch or joint is done.

@@ -38,6 +38,10 @@ void World::step_one_by_one(bool one_by_one) {
   implementation_->one_by_one = one_by_one;
 }
 
+void World::limit_lanes(int most) {
+  implementation_->most_lanes = std::min(most < 4 ? 2 : most < 8 ? 4 : 8, widest_lanes());
+}
+
 void World::Implementation::begin_step() {
   ++state.steps;
   findings.breaks.clear();
@@ -67,19 +71,19 @@ void World::Implementation::advance_islands() {
   std::vector<Island>& all = islands.value.all();
   island_outcomes.value.resize(all.size());
   const bool updates_targets = !are_islands_of_many(*state.scene);
-  const auto advance = [&](std::size_t i) {
-    if (updates_targets) update_targets(static_cast<int>(i), state, cable_outcomes.value[i]);
-    IslandStepper(state, workspaces.value.local(), cable_outcomes.value).step(all[i], island_outcomes.value[i]);
+  const auto advance = [&](std::size_t from, std::size_t to) {
+    IslandStepper stepper(state, workspaces.value.local(), cable_outcomes.value, most_lanes);
+    for (std::size_t i = from; i < to; ++i) {
+      if (updates_targets) update_targets(static_cast<int>(i), state, cable_outcomes.value[i]);
+      stepper.step(all[i], island_outcomes.value[i]);
+    }
+    stepper.finish();
   };
   const std::size_t segments = islands.value.segments();
-  if (one_by_one || all.size() < 2 || segments < 2 * least_share) {
-    for (std::size_t i = 0; i < all.size(); ++i) advance(i);
-    return;
-  }
+  if (one_by_one || all.size() < 2 || segments < 2 * least_share) return advance(0, all.size());
   const std::size_t share = std::max<std::size_t>(1, least_share * all.size() / segments);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, all.size(), share), [&](const auto& some) {
-    for (std::size_t i = some.begin(); i < some.end(); ++i) advance(i);
-  });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, all.size(), share),
+                    [&](const auto& some) { advance(some.begin(), some.end()); });
 }
 
 void World::Implementation::collect_outcomes(StepResult& result) {

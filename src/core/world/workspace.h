@@ -8,6 +8,8 @@
 #include "contact/contact_solver.h"
 #include "net/constraint_solver.h"
 #include "net/spring_stepper.h"
+#include "rod/lane_stepper.h"
+#include "world/islands.h"
 
 namespace verlet_cable {
 
@@ -21,6 +23,16 @@ struct CableWorkspace {
   SubstepResult result;
 };
 
+struct IslandOutcome;
+
+/// Cables, each alone in its island, that one substep does for the whole step, waiting to be stepped at once.
+struct WaitingCables {
+  LaneLaw law;
+  std::vector<Island*> islands;
+  std::vector<IslandOutcome*> outcomes;
+  std::vector<Boundary> boundaries;  ///< no fewer than there are cables
+};
+
 /// Of a step of cables that are stepped together. Holds nothing beyond it.
 struct Workspace {
   std::vector<CableWorkspace> cables;  ///< one a cable of the island
@@ -29,6 +41,10 @@ struct Workspace {
   std::vector<ContactMember> members;     ///< likewise
   std::vector<Participant> participants;  ///< the cables that touch something
   ContactSolver contact_solver;
+  Environment environment;
+  std::vector<WaitingCables> waiting;  ///< those of one law each
+  std::vector<LaneMember> lane_members;
+  LaneStepper lane_stepper;
 };
 
 /// One a thread.

@@ -1,0 +1,9 @@
+#include "rod/lane_passes_kernel.h"
+
+namespace verlet_cable {
+
+LanePasses passes_of_4_lanes() {
+  return passes_of_lanes<double __attribute__((vector_size(32)))>();
+}
+
+}  // namespace verlet_cable

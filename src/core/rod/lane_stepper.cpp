@@ -1,0 +1,409 @@
+#include "rod/lane_stepper.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rod/angle_energy.h"
+
+namespace verlet_cable {
+
+namespace {
+
+/// Shorter cables have no room for two lanes.
+constexpr int fewest_segments = 4;
+constexpr int maximum_iterations = 40;
+constexpr int iterations_of_a_matrix = 3;
+/// Sides of clamps; a cable with more of them takes its memory in its first step.
+constexpr int expected_clamps = 8;
+
+bool bends(const CableModel& model) {
+  return model.material.bending_stiffness.largest() > 0;
+}
+
+bool is_elastic(const CableModel& model) {
+  return model.material.axial_stiffness < infinity;
+}
+
+double* numbers(std::vector<Vector3>& vectors) {
+  return vectors.front().data();
+}
+
+}  // namespace
+
+bool fits_lanes(const Substep& s, const CableState& state) {
+  const MaterialDesc& material = s.model.material;
+  const bool is_simple = state.directors.empty() && state.flexible_fraction.empty() && material.bending_damping == 0 &&
+                         (s.spans.empty() || (material.torsional_stiffness == 0 && material.torsional_damping == 0));
+  const bool is_moved_simply =
+      s.boundary.growing.empty() && s.environment.fluid.density == 0 && s.environment.gravity.type == GravityDesc::Type::uniform;
+  return is_simple && is_moved_simply && !s.statics && s.scheme == Scheme::conserving && s.treatment != Treatment::damping &&
+         state.segments() >= fewest_segments;
+}
+
+LaneLaw law_of(const Substep& s, const CableState& state) {
+  LaneLaw law;
+  law.bends = bends(s.model);
+  law.is_elastic = is_elastic(s.model);
+  law.is_watched = s.treatment != Treatment::none;
+  law.segments = state.segments();
+  law.h = s.h;
+  return law;
+}
+
+int widest_lanes() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")) return 8;
+  if (__builtin_cpu_supports("avx2")) return 4;
+#endif
+  return 2;
+}
+
+void LaneStepper::advance(std::vector<LaneMember>& members, int widest, CableStepper& cleaner) {
+  choose_passes(members.size(), widest);
+  resize(law_of(members.front().substep, *members.front().state));
+  load(members);
+  iterate(members);
+  const int count = static_cast<int>(members.size());
+  for (int c = 0; c < count; ++c)
+    if (members[c].result.converged) react(c, members[c]);
+  passes_.finish(work_);
+  for (int c = 0; c < count; ++c) values_.stores[2 * c] = values_.stores[2 * c + 1] = members[c].result.converged ? 1 : 0;
+  for (int c = 0; c < count; ++c) {
+    if (!members[c].result.converged) continue;
+    const bool unresolved = leaves_unresolved(c, members[c]);
+    if (unresolved)
+      start_multipliers_[c] = members[c].state->axial_multiplier;
+    else
+      start_multipliers_[c].clear();
+  }
+  passes_.store(work_);
+  for (int c = 0; c < count; ++c) {
+    if (!members[c].result.converged) continue;
+    complete(c, members[c]);
+    if (start_multipliers_[c].empty()) continue;
+    cleaner.resize(work_.law.segments);
+    cleaner.clean(members[c].substep, start_multipliers_[c], *members[c].state);
+  }
+}
+
+/// The narrowest that take them all.
+void LaneStepper::choose_passes(std::size_t cables, int widest) {
+  if (cables == 1 || widest == 2)
+    passes_ = passes_of_2_lanes();
+  else if (cables == 2 || widest == 4)
+    passes_ = passes_of_4_lanes();
+  else
+    passes_ = passes_of_8_lanes();
+}
+
+void LaneStepper::resize(const LaneLaw& law) {
+  const int nodes = law.segments + 1;
+  work_.law = law;
+  work_.padded = nodes % 2 == 1;
+  work_.last_node = nodes + (work_.padded ? 1 : 0) - 1;
+  work_.lane = (work_.last_node + 1) / 2 - 1;
+  const std::size_t places = work_.lane + 1, lanes = passes_.lanes;
+  const std::size_t records = places * static_cast<std::size_t>(LaneField::count) * lanes;
+  if (records_.size() < records) records_.resize(records);
+  if (eliminations_.size() < places * elimination_size * lanes) eliminations_.resize(places * elimination_size * lanes);
+  cables_.resize(most_lanes / 2);
+  middles_.resize(most_lanes / 2);
+  clamps_.resize(most_lanes / 2);
+  target_lengths_.resize(most_lanes / 2);
+  start_multipliers_.resize(most_lanes / 2);
+  for (int c = 0; c < most_lanes / 2; ++c) {
+    clamps_[c].reserve(expected_clamps);
+    target_lengths_[c].reserve(law.segments);
+    start_multipliers_[c].reserve(law.segments);
+  }
+  convergences_.reserve(most_lanes / 2);
+  work_.records = records_.data();
+  work_.eliminations = eliminations_.data();
+  work_.middles = middles_.data();
+  work_.cables = cables_.data();
+  work_.values = &values_;
+}
+
+void LaneStepper::load(std::vector<LaneMember>& members) {
+  const int count = static_cast<int>(members.size());
+  for (int c = 0; c < count; ++c) set_cable(c, members[c]);
+  // Lanes that are left over compute what the first cable's do.
+  for (int c = 0; c < passes_.lanes / 2; ++c) {
+    if (c >= count) cables_[c] = cables_[0];
+    set_values(c, members[c < count ? c : 0]);
+  }
+  passes_.load(work_);
+  for (int c = 0; c < passes_.lanes / 2; ++c) {
+    if (work_.padded) set_pad(c);
+    set_ends(c, members[c < count ? c : 0]);
+    hold(c, members[c < count ? c : 0]);
+  }
+}
+
+void LaneStepper::set_cable(int c, LaneMember& member) {
+  CableState& state = *member.state;
+  const Substep& s = member.substep;
+  LaneCable& cable = cables_[c];
+  cable.positions = numbers(state.positions);
+  cable.velocities = numbers(state.velocities);
+  cable.accelerations = numbers(state.accelerations);
+  cable.acceleration_changes = numbers(state.unresolved.acceleration_changes);
+  cable.turns = numbers(state.unresolved.turns);
+  cable.tension = state.tension.data();
+  cable.last_tension = state.last_tension.data();
+  cable.axial_multiplier = state.axial_multiplier.data();
+  cable.masses = state.masses.data();
+  cable.rest_lengths = cable.target_lengths = state.rest_lengths.data();
+  member.result = {};
+  if (!is_elastic(s.model) && s.boundary.nodes.size() > 1) {
+    target_lengths_[c].resize(state.segments());
+    member.result.overstretched_node = reachable_lengths(s.model, state, s.boundary.nodes, target_lengths_[c]);
+    cable.target_lengths = target_lengths_[c].data();
+  }
+  find_clamp_joints(
+      s.model, state, s.boundary.directions, [&state](int i) -> Vector3 { return state.positions[i + 1] - state.positions[i]; },
+      s.h, s.part(), clamps_[c]);
+}
+
+void LaneStepper::set_values(int c, const LaneMember& member) {
+  const Substep& s = member.substep;
+  const MaterialDesc& material = s.model.material;
+  const Vector3 gravity = s.environment.gravity.acceleration, wind = material.drag * s.environment.fluid.velocity;
+  for (const int lane : {2 * c, 2 * c + 1}) {
+    values_.gravity_x[lane] = gravity.x();
+    values_.gravity_y[lane] = gravity.y();
+    values_.gravity_z[lane] = gravity.z();
+    values_.wind_x[lane] = wind.x();
+    values_.wind_y[lane] = wind.y();
+    values_.wind_z[lane] = wind.z();
+    values_.drag[lane] = material.drag / s.h;
+    values_.bending_stiffness[lane] = material.bending_stiffness.largest();
+    values_.axial_stiffness[lane] = material.axial_stiffness;
+    values_.axial_damping[lane] = material.axial_damping / s.h;
+    values_.active[lane] = 1;
+    values_.projects[lane] = !is_elastic(s.model) && holders_accelerate(s, *member.state) ? 1 : 0;
+    values_.known[lane] = known_part(member.state->unresolved);
+    values_.smooths[lane] = work_.law.is_watched && member.state->unresolved.known > 0 ? 1 : 0;
+    values_.stores[lane] = 0;
+  }
+}
+
+/// A held node without couplings, and the segment to it.
+void LaneStepper::set_pad(int c) {
+  const int lane = 2 * c + 1;
+  for (int field = 0; field < static_cast<int>(LaneField::count); ++field) value(static_cast<LaneField>(field), 0, lane) = 0;
+  for (const LaneField field :
+       {LaneField::inertia, LaneField::target_length, LaneField::start_length, LaneField::axial_stiffness, LaneField::pivot})
+    value(field, 0, lane) = 1;
+}
+
+void LaneStepper::set_ends(int c, const LaneMember& member) {
+  if (!work_.law.bends) return;
+  at(LaneField::joint_stiffness, c, 0) = at(LaneField::joint_stiffness, c, work_.law.segments) = 0;
+  for (const HeldDirection& clamp : member.substep.boundary.directions) at(LaneField::joint_stiffness, c, clamp.node) = 0;
+}
+
+void LaneStepper::hold(int c, const LaneMember& member) {
+  const Substep& s = member.substep;
+  const std::vector<HeldNode>& held = s.boundary.nodes;
+  const CableState& state = *member.state;
+  for (const HeldNode& target : held) {
+    const Vector3 displacement = target.position - state.positions[target.node];
+    // So that the end velocity comes out as the holder's.
+    const Vector3 velocity = 2 / s.h * displacement - target.velocity;
+    for (int component = 0; component < 3; ++component) {
+      const auto of = [component](LaneField first) { return static_cast<LaneField>(static_cast<int>(first) + component); };
+      at(of(LaneField::displacement_x), c, target.node) = displacement[component];
+      at(of(LaneField::velocity_x), c, target.node) = velocity[component];
+    }
+    at(LaneField::movable, c, target.node) = at(LaneField::inverse_mass, c, target.node) = 0;
+  }
+  for (std::size_t k = 0; k + 1 < held.size(); ++k)
+    if (held[k].node + 1 == held[k + 1].node)
+      each_lane_of(c, held[k].node, [&](int place, int lane, double) { value(LaneField::adjustable, place, lane) = 0; });
+  if (work_.law.is_elastic || held.size() < 2) return;
+  const double stiffness = stiffness_of_taut(s, state);
+  for (int i = held.front().node; i < held.back().node; ++i) {
+    each_lane_of(c, i, [&](int place, int lane, double) {
+      const double length = value(LaneField::target_length, place, lane);
+      value(LaneField::compliance, place, lane) = length * length * length / stiffness;
+    });
+  }
+}
+
+/// Newton's method; a matrix serves some iterations, for all cables alike.
+void LaneStepper::iterate(std::vector<LaneMember>& members) {
+  convergences_.clear();
+  for (const LaneMember& member : members) convergences_.emplace_back(member.substep);
+  const int count = static_cast<int>(members.size());
+  int active = count;
+  for (int i = 0; i < maximum_iterations && active > 0; ++i) {
+    if (work_.law.bends)
+      for (int c = 0; c < count; ++c) bend_clamps(c, members[c]);
+    if (i % iterations_of_a_matrix == 0)
+      passes_.sweep(work_);
+    else
+      passes_.light_sweep(work_);
+    for (int c = 0; c < count; ++c) {
+      if (values_.active[2 * c] == 0) continue;
+      ++members[c].result.iterations;
+      const double square = values_.largest[2 * c] + 0 * values_.largest[2 * c + 1];
+      const double size = std::sqrt(std::max(square, values_.largest[2 * c + 1])) / members[c].state->rest_lengths[0];
+      const bool fails = !(size < largest_correction);
+      members[c].result.converged = !fails && convergences_[c].is_reached(size);
+      if (!fails && !members[c].result.converged) continue;
+      values_.active[2 * c] = values_.active[2 * c + 1] = 0;
+      --active;
+    }
+  }
+}
+
+void LaneStepper::bend_clamps(int c, const LaneMember& member) {
+  for (ClampJoint& clamp : clamps_[c])
+    each_lane_of(c, clamp.segment, [&](int place, int lane, double) {
+      for (const LaneField field :
+           {LaneField::clamp_force_x, LaneField::clamp_force_y, LaneField::clamp_force_z, LaneField::clamp_stiffness})
+        value(field, place, lane) = 0;
+    });
+  for (ClampJoint& clamp : clamps_[c]) {
+    const int i = clamp.segment;
+    bend_clamp(work_.law.is_elastic, member.substep.part(),
+               vector_at(LaneField::displacement_x, c, i + 1) - vector_at(LaneField::displacement_x, c, i), clamp);
+    const Vector3 force = clamp.inverse_length * clamp.moment;
+    each_lane_of(c, i, [&](int place, int lane, double sign) {
+      value(LaneField::clamp_force_x, place, lane) += sign * force.x();
+      value(LaneField::clamp_force_y, place, lane) += sign * force.y();
+      value(LaneField::clamp_force_z, place, lane) += sign * force.z();
+      value(LaneField::clamp_stiffness, place, lane) += stiffness_across(clamp, member.substep.part());
+    });
+  }
+}
+
+/// What the held nodes' equations of motion lack is what their holders supply.
+void LaneStepper::react(int c, LaneMember& member) {
+  Boundary& boundary = member.substep.boundary;
+  const CableState& state = *member.state;
+  const double h = member.substep.h;
+  const MaterialDesc& material = member.substep.model.material;
+  for (HeldDirection& target : boundary.directions) target.torque.setZero();
+  if (work_.law.bends) {
+    bend_clamps(c, member);
+    for (const ClampJoint& clamp : clamps_[c]) boundary.directions[clamp.target].torque += clamp.torque;
+  }
+  for (HeldNode& target : boundary.nodes) {
+    const int i = target.node;
+    const Vector3 flow = member.substep.environment.fluid.velocity - vector_at(LaneField::displacement_x, c, i) / h;
+    double length = 0;
+    target.force = Vector3::Zero();
+    if (i > 0) {
+      length += 0.5 * state.rest_lengths[i - 1];
+      target.force -= force_of(c, i - 1);
+    }
+    if (i < state.segments()) {
+      length += 0.5 * state.rest_lengths[i];
+      target.force += force_of(c, i);
+    }
+    const Vector3 acceleration = (target.velocity - state.velocities[i]) / h;
+    target.force +=
+        material.drag * length * flow + state.masses[i] * (member.substep.environment.gravity.acceleration - acceleration);
+  }
+}
+
+/// The force on a segment's first node [N].
+Vector3 LaneStepper::force_of(int c, int i) {
+  const Vector3 start = segment_at(LaneField::segment_x, c, i);
+  const Vector3 change = vector_at(LaneField::displacement_x, c, i + 1) - vector_at(LaneField::displacement_x, c, i);
+  double density = 0;
+  each_lane_of(c, i, [&](int place, int lane, double) { density = value(LaneField::density, place, lane); });
+  Vector3 force = density * (start + 0.5 * change);
+  if (!work_.law.bends) return force;
+  double inverse = 0;
+  each_lane_of(c, i, [&](int place, int lane, double) { inverse = value(LaneField::inverse_length, place, lane); });
+  force += segment_at(LaneField::clamp_force_x, c, i);
+  if (i > 0) force += inverse * joint_moment(c, i);
+  if (i + 1 < work_.law.segments) force -= inverse * joint_moment(c, i + 1);
+  return force;
+}
+
+/// On the change of direction at an inner node [N m].
+Vector3 LaneStepper::joint_moment(int c, int i) {
+  const auto over_length = [&](int segment, const Vector3& vector) -> Vector3 {
+    double inverse = 0;
+    each_lane_of(c, segment, [&](int place, int lane, double) { inverse = value(LaneField::inverse_length, place, lane); });
+    return inverse * vector;
+  };
+  const Vector3 before = vector_at(LaneField::displacement_x, c, i - 1), here = vector_at(LaneField::displacement_x, c, i),
+                after = vector_at(LaneField::displacement_x, c, i + 1);
+  const Vector3 start =
+      over_length(i, segment_at(LaneField::segment_x, c, i)) - over_length(i - 1, segment_at(LaneField::segment_x, c, i - 1));
+  const Vector3 change = over_length(i, after - here) - over_length(i - 1, here - before);
+  const double slope = mean_slope(0.5 * start.squaredNorm(), 0.5 * (start + change).squaredNorm());
+  return at(LaneField::joint_stiffness, c, i) * slope * (start + 0.5 * change);
+}
+
+bool LaneStepper::leaves_unresolved(int c, const LaneMember& member) const {
+  if (!work_.law.is_watched) return false;
+  const int first = 2 * c, second = first + 1;
+  MotionSums sums;
+  sums.product = values_.product[first] + values_.product[second];
+  sums.square = values_.square[first] + values_.square[second];
+  sums.mass = values_.mass[first] + values_.mass[second];
+  return is_unresolved(member.substep.treatment, sums, member.state->unresolved);
+}
+
+void LaneStepper::complete(int c, LaneMember& member) {
+  const int first = 2 * c, second = first + 1;
+  const double longest = std::max(values_.longest[first], values_.longest[second]);
+  const double shortest = std::min(values_.shortest[first], values_.shortest[second]);
+  member.result.max_strain = std::max(std::sqrt(longest) - 1, 1 - std::sqrt(shortest));
+  for (const HeldNode& target : member.substep.boundary.nodes) {
+    member.state->positions[target.node] = target.position;
+    member.state->velocities[target.node] = target.velocity;
+  }
+  if (values_.projects[first] != 0) react_to_projection(c, member);
+}
+
+/// What the segments exert on the other nodes they exert on the holders.
+void LaneStepper::react_to_projection(int c, LaneMember& member) {
+  const auto exerted = [&](int segment) -> Vector3 {
+    double impulse = 0;
+    each_lane_of(c, segment, [&](int place, int lane, double) { impulse = value(LaneField::impulse, place, lane); });
+    return impulse / member.substep.h * segment_at(LaneField::segment_x, c, segment);
+  };
+  for (HeldNode& target : member.substep.boundary.nodes) {
+    if (target.node > 0) target.force += exerted(target.node - 1);
+    if (target.node < work_.law.segments) target.force -= exerted(target.node);
+  }
+}
+
+template <class Operation>
+void LaneStepper::each_lane_of(int c, int segment, const Operation& operation) {
+  if (segment <= work_.lane) operation(segment, 2 * c, 1.0);
+  if (segment >= work_.lane) operation(work_.last_node - 1 - segment, 2 * c + 1, -1.0);
+}
+
+double& LaneStepper::value(LaneField field, int place, int lane) {
+  return records_[(place * static_cast<int>(LaneField::count) + static_cast<int>(field)) * passes_.lanes + lane];
+}
+
+double& LaneStepper::at(LaneField field, int c, int node) {
+  return node <= work_.lane ? value(field, node, 2 * c) : value(field, work_.last_node - node, 2 * c + 1);
+}
+
+Vector3 LaneStepper::vector_at(LaneField first, int c, int node) {
+  const int x = static_cast<int>(first);
+  return {at(first, c, node), at(static_cast<LaneField>(x + 1), c, node), at(static_cast<LaneField>(x + 2), c, node)};
+}
+
+/// Towards the segment's second node.
+Vector3 LaneStepper::segment_at(LaneField first, int c, int segment) {
+  const int x = static_cast<int>(first);
+  Vector3 v;
+  each_lane_of(c, segment, [&](int place, int lane, double sign) {
+    for (int component = 0; component < 3; ++component)
+      v[component] = sign * value(static_cast<LaneField>(x + component), place, lane);
+  });
+  return v;
+}
+
+}  // namespace verlet_cable

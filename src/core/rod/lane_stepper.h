@@ -1,0 +1,79 @@
+#pragma once
+
+#include <tbb/cache_aligned_allocator.h>
+
+#include <vector>
+
+#include "rod/cable_stepper.h"
+#include "rod/clamp_joint.h"
+#include "rod/lane_passes.h"
+#include "rod/node_elimination.h"
+#include "rod/substep.h"
+
+namespace verlet_cable {
+
+/// A substep of a cable that may be stepped together with others.
+struct LaneMember {
+  Substep substep;
+  CableState* state = nullptr;
+  SubstepResult result;
+};
+
+/// Whether a cable can be stepped in lanes: straight isotropic ones can, as long as they move as in conserving substeps and feel
+/// nothing that has a law of its own (twist, bending damping, fluids, winches).
+bool fits_lanes(const Substep& substep, const CableState& state);
+
+/// Those of equal laws can be stepped together.
+LaneLaw law_of(const Substep& substep, const CableState& state);
+
+/// The lanes of the widest numbers that this processor computes with: 2, 4 or 8.
+int widest_lanes();
+
+/// Advances several cables at once, as CableStepper does one, by conserving substeps. A cable's numbers are the same whatever it
+/// is stepped together with, and in lanes of any width.
+class LaneStepper {
+ public:
+  /// Of up to widest / 2 cables that fit, of equal laws. A state is untouched where its result has not converged. `cleaner` takes
+  /// out motion that the substep has not resolved.
+  void advance(std::vector<LaneMember>& members, int widest, CableStepper& cleaner);
+
+ private:
+  /// A segment as its lanes have it: one, or where they meet both.
+  template <class Operation>
+  void each_lane_of(int cable, int segment, const Operation& operation);
+
+  void choose_passes(std::size_t cables, int widest);
+  void resize(const LaneLaw& law);
+  void load(std::vector<LaneMember>& members);
+  void set_cable(int place, LaneMember& member);
+  void set_values(int cable, const LaneMember& member);
+  void set_pad(int cable);
+  void set_ends(int cable, const LaneMember& member);
+  void hold(int cable, const LaneMember& member);
+  void bend_clamps(int cable, const LaneMember& member);
+  void iterate(std::vector<LaneMember>& members);
+  void react(int cable, LaneMember& member);
+  void react_to_projection(int cable, LaneMember& member);
+  bool leaves_unresolved(int cable, const LaneMember& member) const;
+  void complete(int cable, LaneMember& member);
+  double& value(LaneField field, int place, int lane);
+  double& at(LaneField field, int cable, int node);
+  Vector3 vector_at(LaneField first, int cable, int node);
+  Vector3 segment_at(LaneField first, int cable, int segment);
+  Vector3 joint_moment(int cable, int node);
+  Vector3 force_of(int cable, int segment);
+
+  using Array = std::vector<double, tbb::cache_aligned_allocator<double>>;
+  LanePasses passes_{};
+  LaneWork work_;
+  LaneValues values_{};
+  std::vector<LaneCable> cables_;
+  std::vector<MiddleElimination> middles_;
+  std::vector<Convergence> convergences_;
+  std::vector<std::vector<ClampJoint>> clamps_;         // a cable
+  std::vector<std::vector<double>> target_lengths_;     // a cable, a segment [m]
+  std::vector<std::vector<double>> start_multipliers_;  // a cable, a segment [N]; empty where nothing is to be cleaned
+  Array records_, eliminations_;
+};
+
+}  // namespace verlet_cable

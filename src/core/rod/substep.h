@@ -1,0 +1,77 @@
+#pragma once
+
+#include <vector>
+
+#include "rod/scheme.h"
+#include "rod/twist.h"
+#include "rod/unresolved_motion.h"
+#include "target/boundary.h"
+#include "verlet_cable/core/cable.h"
+
+namespace verlet_cable {
+
+/// What acts on a cable from outside, the same in all substeps of a step.
+struct Environment {
+  GravityDesc gravity;
+  FluidDesc fluid;
+};
+
+/// A tolerated error is one of velocity in substeps up to this long [s]; beyond, the error of the place counts.
+constexpr double longest_tolerated = 1e-3;
+/// A larger correction, in segment lengths, leads to solutions that have nothing to do with the motion: halve the step.
+constexpr double largest_correction = 2;
+
+/// No substep is shorter [s]; a cable that needs one has lost its way.
+constexpr double shortest_substep = 1e-6;
+
+/// What a substep is done with.
+struct Substep {
+  const CableModel& model;
+  const Environment& environment;
+  Boundary& boundary;             ///< forces and torques on the holders are written to it
+  std::vector<TwistSpan>& spans;  ///< their twist is kept up
+  double h;                       ///< [s]
+  bool statics = false;           ///< a step towards equilibrium: inertia only slows it, nothing moves or is damped
+  Scheme scheme = Scheme::conserving;
+  Treatment treatment = Treatment::none;  ///< of motion that is found not to be resolved
+  double tolerance = 1e-5;                ///< [1/s] of velocities, as SceneDesc's
+
+  /// Where in the substep forces are taken.
+  double part() const { return statics || scheme != Scheme::conserving ? 1 : 0.5; }
+  /// [mass] Of (u / h - v) / h in the equations of motion, u being the displacement.
+  double inertia() const { return scheme == Scheme::first_order ? 1 : 2; }
+  double damping_time() const { return statics ? infinity : h; }
+};
+
+struct SubstepResult {
+  bool converged = false;
+  int overstretched_node = -1;  ///< first node of a span that was lengthened; -1: none
+  int iterations = 0;
+  double max_strain = 0;    ///< largest |l / l0 - 1| at the end
+  double displacement = 0;  ///< largest of a node [m]; in statics only
+};
+
+/// When the corrections of a substep's iterations are small enough.
+class Convergence {
+ public:
+  explicit Convergence(const Substep& substep);
+  /// `size` [segment lengths or rad] of the last one.
+  bool is_reached(double size);
+  /// By which it was smaller than the one before; 1 of the first.
+  double ratio() const { return ratio_; }
+
+ private:
+  double tolerance_;  // of the next correction, in segment lengths
+  double last_ = 0, ratio_ = 1;
+};
+
+/// [N] Between two holders a rigid chain that is pulled straight has no unique tension, and one that is pushed together has no
+/// motion. So much axial stiffness, relative to the cable's weight, gives it both: its own weight strains it by a part in ten
+/// million.
+double stiffness_of_taut(const Substep& substep, const CableState& state);
+
+/// Whether a holder's velocity changes: only then do velocities along the segments appear that the equations do not damp. `state`
+/// is that at the start of the substep.
+bool holders_accelerate(const Substep& substep, const CableState& state);
+
+}  // namespace verlet_cable
