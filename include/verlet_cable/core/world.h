@@ -174,6 +174,7 @@ class World {
 
  private:
   friend struct WorldInspector;  // tests
+  friend class WorldStepper;
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };

@@ -30,11 +30,14 @@ struct World::Implementation {
   NotCopied<std::vector<MovingObstacle>> moving_obstacles;  ///< of nets, particles and cables that settle
 
   // Stages of a step
-  void begin_step();
+  void begin_step(const BoundaryInputs& inputs, StepResult& result);
+  void end_step(StepResult& result);
+  void count_step();
   int update_frames(const BoundaryInputs& inputs);
   void advance_winches();
   void build_islands();
   void advance_islands();
+  void step_islands(std::size_t from, std::size_t to, IslandStepper& stepper);
   void collect_outcomes(StepResult& result);
   void apply_breaks(StepResult& result);
   void step_nets_and_particles(StepResult& result);

@@ -164,9 +164,11 @@ void complete_drive_step(int index, State& state) {
 }
 
 IslandStepper::IslandStepper(State& state, Workspace& workspace, std::vector<CableOutcome>& outcomes, int lanes)
-    : state_(state), workspace_(workspace), outcomes_(outcomes), lanes_(lanes) {
-  workspace_.environment = {state.scene->gravity, state.scene->fluid};
-}
+    : state_(state),
+      workspace_(workspace),
+      outcomes_(outcomes),
+      environment_{state.scene->gravity, state.scene->fluid},
+      lanes_(lanes) {}
 
 void IslandStepper::step(Island& island, IslandOutcome& found) {
   found.intrusions.clear();
@@ -187,19 +189,18 @@ bool IslandStepper::wait_for_others(Island& island, IslandOutcome& found) {
   find_contacts(island, 0, 1);
   if (!workspace_.contacts.touches().empty() || !workspace_.contacts.intrusions().empty()) return false;
   WaitingCables& waiting = waiting_of(law_of(substep, state));
-  if (waiting.boundaries.size() == waiting.islands.size()) waiting.boundaries.emplace_back();
-  Boundary& boundary = waiting.boundaries[waiting.islands.size()];
+  if (waiting.boundaries.size() == waiting.cables.size()) waiting.boundaries.emplace_back();
+  Boundary& boundary = waiting.boundaries[waiting.cables.size()];
   boundary.growing.clear();
   hold_at(0, 1, memory.targets, boundary);
-  waiting.islands.push_back(&island);
-  waiting.outcomes.push_back(&found);
-  if (2 * static_cast<int>(waiting.islands.size()) == lanes_) step_together(waiting);
+  waiting.cables.push_back({this, &island, &found});
+  if (2 * static_cast<int>(waiting.cables.size()) == lanes_) step_together(waiting);
   return true;
 }
 
 /// Of a cable that touches nothing.
 Substep IslandStepper::whole_step(int cable, Boundary& boundary) {
-  Substep substep{*state_.cables[cable].model, workspace_.environment, boundary, state_.cable_progress[cable].spans,
+  Substep substep{*state_.cables[cable].model, environment_, boundary, state_.cable_progress[cable].spans,
                   state_.scene->time_step};
   substep.scheme = scheme_of(cable);
   substep.tolerance = state_.scene->tolerance;
@@ -210,7 +211,7 @@ Substep IslandStepper::whole_step(int cable, Boundary& boundary) {
 WaitingCables& IslandStepper::waiting_of(const LaneLaw& law) {
   std::vector<WaitingCables>& all = workspace_.waiting;
   auto same = std::find_if(all.begin(), all.end(), [&](const WaitingCables& w) { return w.law == law; });
-  if (same == all.end()) same = std::find_if(all.begin(), all.end(), [](const WaitingCables& w) { return w.islands.empty(); });
+  if (same == all.end()) same = std::find_if(all.begin(), all.end(), [](const WaitingCables& w) { return w.cables.empty(); });
   if (same == all.end()) same = all.emplace(all.end());
   same->law = law;
   return *same;
@@ -218,26 +219,26 @@ WaitingCables& IslandStepper::waiting_of(const LaneLaw& law) {
 
 void IslandStepper::finish() {
   for (WaitingCables& waiting : workspace_.waiting)
-    if (!waiting.islands.empty()) step_together(waiting);
+    if (!waiting.cables.empty()) step_together(waiting);
 }
 
 void IslandStepper::step_together(WaitingCables& waiting) {
   std::vector<LaneMember>& members = workspace_.lane_members;
   members.clear();
-  for (std::size_t k = 0; k < waiting.islands.size(); ++k) {
-    const int cable = waiting.islands[k]->cables.front();
-    members.push_back({whole_step(cable, waiting.boundaries[k]), &state_.cables[cable].state, {}});
+  for (std::size_t k = 0; k < waiting.cables.size(); ++k) {
+    const WaitingCable& w = waiting.cables[k];
+    const int cable = w.island->cables.front();
+    members.push_back({w.stepper->whole_step(cable, waiting.boundaries[k]), &w.stepper->state_.cables[cable].state, {}});
   }
   workspace_.lane_stepper.advance(members, lanes_, workspace_.cables.front().stepper);
   for (std::size_t k = 0; k < members.size(); ++k) {
-    Island& island = *waiting.islands[k];
+    const WaitingCable& w = waiting.cables[k];
     if (members[k].result.converged)
-      complete_whole_step(island, waiting.boundaries[k], members[k].result);
+      w.stepper->complete_whole_step(*w.island, waiting.boundaries[k], members[k].result);
     else
-      step_alone(island, *waiting.outcomes[k]);
+      w.stepper->step_alone(*w.island, *w.found);
   }
-  waiting.islands.clear();
-  waiting.outcomes.clear();
+  waiting.cables.clear();
 }
 
 void IslandStepper::complete_whole_step(const Island& island, Boundary& boundary, const SubstepResult& result) {
@@ -322,7 +323,7 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
       work.before = c.state;
       work.spans_before = memory.spans;
     }
-    Substep substep{*c.model, workspace_.environment, work.boundary, memory.spans, h};
+    Substep substep{*c.model, environment_, work.boundary, memory.spans, h};
     substep.scheme = scheme;
     substep.tolerance = state_.scene->tolerance;
     if (state_.scene->numerical_damping) substep.treatment = touches || to - from < 1 ? Treatment::damping : Treatment::cleaning;

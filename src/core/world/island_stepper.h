@@ -55,7 +55,7 @@ class IslandStepper {
   IslandStepper(State& state, Workspace& workspace, std::vector<CableOutcome>& outcomes, int lanes);
   /// A cable that is alone and whole steps do for waits for others like it, with which it is stepped at once, or for `finish`.
   void step(Island& island, IslandOutcome& found);
-  /// Steps those that wait.
+  /// Steps those that wait, of this world and of others that are stepped in the same workspace.
   void finish();
 
  private:
@@ -83,6 +83,7 @@ class IslandStepper {
   State& state_;
   Workspace& workspace_;
   std::vector<CableOutcome>& outcomes_;
+  Environment environment_;
   int lanes_;  ///< two a cable that is stepped together with others
 };
 

@@ -23,15 +23,23 @@ void append(const std::vector<T>& more, std::vector<T>& all) {
 StepResult World::step(const BoundaryInputs& inputs) {
   Implementation& w = *implementation_;
   StepResult result;
-  w.begin_step();
-  result.ignored_frame = w.update_frames(inputs);
-  w.advance_winches();
-  w.build_islands();
+  w.begin_step(inputs, result);
   w.advance_islands();
-  w.collect_outcomes(result);
-  w.apply_breaks(result);
-  w.step_nets_and_particles(result);
+  w.end_step(result);
   return result;
+}
+
+void World::Implementation::begin_step(const BoundaryInputs& inputs, StepResult& result) {
+  count_step();
+  result.ignored_frame = update_frames(inputs);
+  advance_winches();
+  build_islands();
+}
+
+void World::Implementation::end_step(StepResult& result) {
+  collect_outcomes(result);
+  apply_breaks(result);
+  step_nets_and_particles(result);
 }
 
 void World::step_one_by_one(bool one_by_one) {
@@ -42,7 +50,7 @@ void World::limit_lanes(int most) {
   implementation_->most_lanes = std::min(most < 4 ? 2 : most < 8 ? 4 : 8, widest_lanes());
 }
 
-void World::Implementation::begin_step() {
+void World::Implementation::count_step() {
   ++state.steps;
   findings.breaks.clear();
   findings.jumps.clear();
@@ -68,22 +76,25 @@ void World::Implementation::build_islands() {
 
 /// Islands do not know of each other: the result is the same whether one after the other or all at once.
 void World::Implementation::advance_islands() {
-  std::vector<Island>& all = islands.value.all();
-  island_outcomes.value.resize(all.size());
-  const bool updates_targets = !are_islands_of_many(*state.scene);
   const auto advance = [&](std::size_t from, std::size_t to) {
     IslandStepper stepper(state, workspaces.value.local(), cable_outcomes.value, most_lanes);
-    for (std::size_t i = from; i < to; ++i) {
-      if (updates_targets) update_targets(static_cast<int>(i), state, cable_outcomes.value[i]);
-      stepper.step(all[i], island_outcomes.value[i]);
-    }
+    step_islands(from, to, stepper);
     stepper.finish();
   };
-  const std::size_t segments = islands.value.segments();
-  if (one_by_one || all.size() < 2 || segments < 2 * least_share) return advance(0, all.size());
-  const std::size_t share = std::max<std::size_t>(1, least_share * all.size() / segments);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, all.size(), share),
+  const std::size_t count = islands.value.all().size(), segments = islands.value.segments();
+  island_outcomes.value.resize(count);
+  if (one_by_one || count < 2 || segments < 2 * least_share) return advance(0, count);
+  const std::size_t share = std::max<std::size_t>(1, least_share * count / segments);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, share),
                     [&](const auto& some) { advance(some.begin(), some.end()); });
+}
+
+void World::Implementation::step_islands(std::size_t from, std::size_t to, IslandStepper& stepper) {
+  const bool updates_targets = !are_islands_of_many(*state.scene);
+  for (std::size_t i = from; i < to; ++i) {
+    if (updates_targets) update_targets(static_cast<int>(i), state, cable_outcomes.value[i]);
+    stepper.step(islands.value.all()[i], island_outcomes.value[i]);
+  }
 }
 
 void World::Implementation::collect_outcomes(StepResult& result) {

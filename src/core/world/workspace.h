@@ -24,12 +24,19 @@ struct CableWorkspace {
 };
 
 struct IslandOutcome;
+class IslandStepper;
 
-/// Cables, each alone in its island, that one substep does for the whole step, waiting to be stepped at once.
+/// A cable that is alone in its island, and that one substep does for the whole step.
+struct WaitingCable {
+  IslandStepper* stepper = nullptr;  ///< of its world
+  Island* island = nullptr;
+  IslandOutcome* found = nullptr;
+};
+
+/// Those of one law, waiting to be stepped at once.
 struct WaitingCables {
   LaneLaw law;
-  std::vector<Island*> islands;
-  std::vector<IslandOutcome*> outcomes;
+  std::vector<WaitingCable> cables;
   std::vector<Boundary> boundaries;  ///< no fewer than there are cables
 };
 
@@ -41,7 +48,6 @@ struct Workspace {
   std::vector<ContactMember> members;     ///< likewise
   std::vector<Participant> participants;  ///< the cables that touch something
   ContactSolver contact_solver;
-  Environment environment;
   std::vector<WaitingCables> waiting;  ///< those of one law each
   std::vector<LaneMember> lane_members;
   LaneStepper lane_stepper;

@@ -1,0 +1,50 @@
+#include "verlet_cable/core/world_stepper.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "world/implementation.h"
+#include "world/island_stepper.h"
+
+namespace verlet_cable {
+
+namespace {
+
+/// Fewer worlds are not worth another core.
+constexpr std::size_t least_share = 8;
+
+}  // namespace
+
+struct WorldStepper::Implementation {
+  Workspaces workspaces;
+
+  void step(std::vector<WorldStep>& worlds, std::size_t from, std::size_t to);
+};
+
+WorldStepper::WorldStepper() : implementation_(std::make_unique<Implementation>()) {}
+WorldStepper::~WorldStepper() = default;
+
+void WorldStepper::step(std::vector<WorldStep>& worlds, bool all_cores) {
+  if (!all_cores || worlds.size() < 2 * least_share) return implementation_->step(worlds, 0, worlds.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, worlds.size(), least_share),
+                    [&](const auto& some) { implementation_->step(worlds, some.begin(), some.end()); });
+}
+
+void WorldStepper::Implementation::step(std::vector<WorldStep>& worlds, std::size_t from, std::size_t to) {
+  Workspace& workspace = workspaces.local();
+  std::vector<IslandStepper> steppers;
+  steppers.reserve(to - from);  // what waits points to them
+  for (std::size_t i = from; i < to; ++i) {
+    World::Implementation& world = *worlds[i].world->implementation_;
+    worlds[i].result = {};
+    world.begin_step(*worlds[i].inputs, worlds[i].result);
+    const std::size_t islands = world.islands.value.all().size();
+    world.island_outcomes.value.resize(islands);
+    steppers.emplace_back(world.state, workspace, world.cable_outcomes.value, world.most_lanes);
+    world.step_islands(0, islands, steppers.back());
+  }
+  if (!steppers.empty()) steppers.back().finish();
+  for (std::size_t i = from; i < to; ++i) worlds[i].world->implementation_->end_step(worlds[i].result);
+}
+
+}  // namespace verlet_cable
