@@ -27,6 +27,10 @@ class Bending {
   void start(const CableModel& model, const CableState& state, const VectorArray& segment,
              const std::vector<HeldDirection>& directions, double h, double part);
   bool active() const { return active_; }
+  bool is_damped() const { return active_ && is_damped_; }
+  double damping(int node) const { return damping_[node]; }      ///< damping / (length h) [N m]
+  Vector3 turned(int node) const { return get(turned_, node); }  ///< change of e that turns with the material
+  const std::vector<ClampJoint>& clamps() const { return clamps_; }
   /// Adds the forces of the segments on their first nodes [N], for displacements of the nodes [m].
   void add_segment_forces(const VectorArray& displacement, VectorArray& pull);
   /// Adds what `add_segment_forces` found last to the matrix.

@@ -30,7 +30,11 @@ enum class LaneField {
   axial_damping,    ///< in the substep [N/m]
   inverse_length,   ///< of the segment, at rest [1/m]
   joint_stiffness,  ///< of the node, EI / length [N m]; 0 at ends and clamps
-  clamp_force_x,    ///< of a clamp beside the segment on its first node [N]
+  joint_damping,    ///< likewise, in the substep
+  turned_x,         ///< of the node: change of direction that turns with the material and is not damped
+  turned_y,
+  turned_z,
+  clamp_force_x,  ///< of a clamp beside the segment on its first node [N]
   clamp_force_y,
   clamp_force_z,
   clamp_stiffness,  ///< of a clamp, on both nodes and against each other [N/m]
@@ -51,14 +55,15 @@ enum class LaneField {
 /// What is the same for all cables of one sweep.
 struct LaneLaw {
   bool bends = false;
+  bool is_damped = false;  ///< bending is
   bool is_elastic = false;
   bool is_watched = false;  ///< for motion that is not resolved
   int segments = 0;
   double h = 0;  ///< [s]
 
   bool operator==(const LaneLaw& other) const {
-    return bends == other.bends && is_elastic == other.is_elastic && is_watched == other.is_watched &&
-           segments == other.segments && h == other.h;
+    return bends == other.bends && is_damped == other.is_damped && is_elastic == other.is_elastic &&
+           is_watched == other.is_watched && segments == other.segments && h == other.h;
   }
 };
 

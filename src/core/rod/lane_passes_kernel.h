@@ -13,6 +13,9 @@ namespace {
 template <class Real>
 constexpr int lanes_of = sizeof(Real) / sizeof(double);
 
+/// How cables bend.
+enum class Bends { not_at_all, freely, damped };
+
 /// What a matrix that is kept, and the way back, need of an elimination.
 template <class Real>
 struct Kept {
@@ -170,7 +173,7 @@ template <class Real, class Numbers>
   return v;
 }
 
-template <bool bends, bool is_elastic, class Real>
+template <Bends bends, bool is_elastic, class Real>
 void load_lanes(const LaneWork& w) {
   const LaneValues& values = *w.values;
   const double h = w.law.h;
@@ -216,7 +219,7 @@ void load_lanes(const LaneWork& w) {
       at[LaneField::compliance] = zero;
       at[LaneField::density] = multiplier / rest;
     }
-    if constexpr (bends) {
+    if constexpr (bends != Bends::not_at_all) {
       at[LaneField::joint_stiffness] = values_of<Real>(values.bending_stiffness) * (1.0 / (0.5 * (length_before + rest)));
       at.set(LaneField::clamp_force_x, none);
       at[LaneField::clamp_stiffness] = zero;
@@ -232,13 +235,19 @@ struct Joint {
   Real stiffness;         ///< its derivative by that [N m]
 };
 
-/// `start`: e, `change`: of it over the substep.
-template <class Real>
-[[gnu::always_inline]] inline Joint<Real> bend(const VectorOf<Real>& start, const VectorOf<Real>& change, const Real& stiffness) {
+/// `start`: e, `change`: of it over the substep; `at`: the node's place.
+template <Bends bends, class Real>
+[[gnu::always_inline]] inline Joint<Real> bend(const VectorOf<Real>& start, const VectorOf<Real>& change, const Place<Real>& at) {
   const Real half = Real{} + 0.5;
   const VectorOf<Real> end = start + change;
-  const Real slope = stiffness * mean_slope<Real>(0.5 * dot(start, start), 0.5 * dot(end, end));
-  return {slope * (start + half * change), 0.5 * slope};
+  const Real slope = at[LaneField::joint_stiffness] * mean_slope<Real>(0.5 * dot(start, start), 0.5 * dot(end, end));
+  Joint<Real> joint{slope * (start + half * change), 0.5 * slope};
+  if constexpr (bends == Bends::damped) {
+    const Real damping = at[LaneField::joint_damping];
+    joint.moment = joint.moment + damping * (change - at.vector(LaneField::turned_x));
+    joint.stiffness = joint.stiffness + damping;
+  }
+  return joint;
 }
 
 /// A segment in the middle of the substep, and how its length follows its tension.
@@ -271,8 +280,9 @@ template <bool is_elastic, class Real>
   return span;
 }
 
-template <bool bends, bool is_elastic, bool is_light, class Real>
+template <Bends bending, bool is_elastic, bool is_light, class Real>
 void sweep_lanes(const LaneWork& w) {
+  constexpr bool bends = bending != Bends::not_at_all;
   constexpr Couplings couplings = bends ? Couplings::bending : Couplings::plain;
   static_assert(sizeof(Kept<Real>) <= elimination_size * sizeof(Real));
   const int m = w.lane;
@@ -316,8 +326,9 @@ void sweep_lanes(const LaneWork& w) {
         const Place<Real> following = place_of<Real>(w, k + 1);
         inverse_after = following[LaneField::inverse_length];
         after = displacement(k + 2) - next;
-        joint_next = bend(inverse_after * following.vector(LaneField::segment_x) - inverse * at.vector(LaneField::segment_x),
-                          inverse_after * after - inverse * change, following[LaneField::joint_stiffness]);
+        joint_next =
+            bend<bending>(inverse_after * following.vector(LaneField::segment_x) - inverse * at.vector(LaneField::segment_x),
+                          inverse_after * after - inverse * change, following);
       } else {
         inverse_after = crossed_over(inverse_before);
         joint_next = {crossed_over(joint.moment), crossed_over(joint.stiffness)};
@@ -555,7 +566,7 @@ template <class Real>
   }
 }
 
-template <bool bends, bool is_elastic, class Real>
+template <Bends bends, bool is_elastic, class Real>
 void store_lanes(const LaneWork& w) {
   const LaneValues& values = *w.values;
   const Real known = values_of<Real>(values.known), smooths = values_of<Real>(values.smooths);
@@ -576,7 +587,7 @@ void store_lanes(const LaneWork& w) {
     }
     const Real multiplier = at[LaneField::density] * length;
     Real tension = multiplier;
-    if constexpr (bends) tension = tension + at[LaneField::force_along];
+    if constexpr (bends != Bends::not_at_all) tension = tension + at[LaneField::force_along];
     const Real last = gather_segment<Real>(w, &LaneCable::last_tension, k);
     const Real shown = smooths != 0.0 ? 0.5 * (last + tension) : tension;
     scatter_vector<Real>(w, &LaneCable::positions, k, position);
@@ -588,17 +599,24 @@ void store_lanes(const LaneWork& w) {
   }
 }
 
+template <Bends value>
+using BendsConstant = std::integral_constant<Bends, value>;
+
 /// Calls what is compiled for the cables' law.
 template <class Call>
 void by_law(const LaneLaw& law, const Call& call) {
-  if (law.bends && law.is_elastic)
-    call(std::true_type(), std::true_type());
+  const auto with = [&](auto bends) {
+    if (law.is_elastic)
+      call(bends, std::true_type());
+    else
+      call(bends, std::false_type());
+  };
+  if (law.is_damped)
+    with(BendsConstant<Bends::damped>());
   else if (law.bends)
-    call(std::true_type(), std::false_type());
-  else if (law.is_elastic)
-    call(std::false_type(), std::true_type());
+    with(BendsConstant<Bends::freely>());
   else
-    call(std::false_type(), std::false_type());
+    with(BendsConstant<Bends::not_at_all>());
 }
 
 template <class Real>

@@ -17,7 +17,7 @@ constexpr int iterations_of_a_matrix = 3;
 constexpr int expected_clamps = 8;
 
 bool bends(const CableModel& model) {
-  return model.material.bending_stiffness.largest() > 0;
+  return model.material.bending_stiffness.largest() > 0 || model.material.bending_damping > 0;
 }
 
 bool is_elastic(const CableModel& model) {
@@ -30,19 +30,22 @@ double* numbers(std::vector<Vector3>& vectors) {
 
 }  // namespace
 
-bool fits_lanes(const Substep& s, const CableState& state) {
+bool fits_lanes(const Substep& s, const CableState& state, bool is_held) {
   const MaterialDesc& material = s.model.material;
-  const bool is_simple = state.directors.empty() && state.flexible_fraction.empty() && material.bending_damping == 0 &&
+  const bool is_simple = state.directors.empty() && state.flexible_fraction.empty() &&
                          (s.spans.empty() || (material.torsional_stiffness == 0 && material.torsional_damping == 0));
+  // Of a free one, what bending damping does to the angular momentum is given back.
+  const bool is_steady = is_held || material.bending_damping == 0;
   const bool is_moved_simply =
       s.boundary.growing.empty() && s.environment.fluid.density == 0 && s.environment.gravity.type == GravityDesc::Type::uniform;
-  return is_simple && is_moved_simply && !s.statics && s.scheme == Scheme::conserving && s.treatment != Treatment::damping &&
-         state.segments() >= fewest_segments;
+  return is_simple && is_steady && is_moved_simply && !s.statics && s.scheme == Scheme::conserving &&
+         s.treatment != Treatment::damping && state.segments() >= fewest_segments;
 }
 
 LaneLaw law_of(const Substep& s, const CableState& state) {
   LaneLaw law;
   law.bends = bends(s.model);
+  law.is_damped = s.model.material.bending_damping > 0;
   law.is_elastic = is_elastic(s.model);
   law.is_watched = s.treatment != Treatment::none;
   law.segments = state.segments();
@@ -135,6 +138,7 @@ void LaneStepper::load(std::vector<LaneMember>& members) {
   passes_.load(work_);
   for (int c = 0; c < passes_.lanes / 2; ++c) {
     if (work_.padded) set_pad(c);
+    if (work_.law.is_damped) set_damping(c, members[c < count ? c : 0]);
     set_ends(c, members[c < count ? c : 0]);
     hold(c, members[c < count ? c : 0]);
   }
@@ -197,9 +201,31 @@ void LaneStepper::set_pad(int c) {
     value(field, 0, lane) = 1;
 }
 
+/// And its clamps, which are damped, too.
+void LaneStepper::set_damping(int c, const LaneMember& member) {
+  const Substep& s = member.substep;
+  const CableState& state = *member.state;
+  const int n = work_.law.segments;
+  if (static_cast<int>(segments_.x.size()) != n + 1) {
+    segments_.assign(n + 1, 0.0);
+    bending_.resize(n);
+  }
+  for (int i = 0; i < n; ++i) set(segments_, i, state.positions[i + 1] - state.positions[i]);
+  bending_.start(s.model, state, segments_, s.boundary.directions, s.h, s.part());
+  for (int i = 1; i < n; ++i) {
+    const Vector3 turned = bending_.turned(i);
+    at(LaneField::joint_damping, c, i) = bending_.damping(i);
+    at(LaneField::turned_x, c, i) = turned.x();
+    at(LaneField::turned_y, c, i) = turned.y();
+    at(LaneField::turned_z, c, i) = turned.z();
+  }
+  clamps_[c] = bending_.clamps();
+}
+
 void LaneStepper::set_ends(int c, const LaneMember& member) {
   if (!work_.law.bends) return;
   at(LaneField::joint_stiffness, c, 0) = at(LaneField::joint_stiffness, c, work_.law.segments) = 0;
+  at(LaneField::joint_damping, c, 0) = at(LaneField::joint_damping, c, work_.law.segments) = 0;
   for (const HeldDirection& clamp : member.substep.boundary.directions) at(LaneField::joint_stiffness, c, clamp.node) = 0;
 }
 
@@ -338,7 +364,9 @@ Vector3 LaneStepper::joint_moment(int c, int i) {
       over_length(i, segment_at(LaneField::segment_x, c, i)) - over_length(i - 1, segment_at(LaneField::segment_x, c, i - 1));
   const Vector3 change = over_length(i, after - here) - over_length(i - 1, here - before);
   const double slope = mean_slope(0.5 * start.squaredNorm(), 0.5 * (start + change).squaredNorm());
-  return at(LaneField::joint_stiffness, c, i) * slope * (start + 0.5 * change);
+  const Vector3 moment = at(LaneField::joint_stiffness, c, i) * slope * (start + 0.5 * change);
+  if (!work_.law.is_damped) return moment;
+  return moment + at(LaneField::joint_damping, c, i) * (change - vector_at(LaneField::turned_x, c, i));
 }
 
 bool LaneStepper::leaves_unresolved(int c, const LaneMember& member) const {

@@ -19,9 +19,9 @@ struct LaneMember {
   SubstepResult result;
 };
 
-/// Whether a cable can be stepped in lanes: straight isotropic ones can, as long as they move as in conserving substeps and feel
-/// nothing that has a law of its own (twist, bending damping, fluids, winches).
-bool fits_lanes(const Substep& substep, const CableState& state);
+/// Whether a cable can be stepped in lanes: straight isotropic ones can, as long as they move as in conserving substeps and
+/// nothing acts on them that has a law of its own (twist, fluids, winches). The substep's boundary need not be known.
+bool fits_lanes(const Substep& substep, const CableState& state, bool is_held);
 
 /// Those of equal laws can be stepped together.
 LaneLaw law_of(const Substep& substep, const CableState& state);
@@ -47,6 +47,7 @@ class LaneStepper {
   void load(std::vector<LaneMember>& members);
   void set_cable(int place, LaneMember& member);
   void set_values(int cable, const LaneMember& member);
+  void set_damping(int cable, const LaneMember& member);
   void set_pad(int cable);
   void set_ends(int cable, const LaneMember& member);
   void hold(int cable, const LaneMember& member);
@@ -73,6 +74,8 @@ class LaneStepper {
   std::vector<std::vector<ClampJoint>> clamps_;         // a cable
   std::vector<std::vector<double>> target_lengths_;     // a cable, a segment [m]
   std::vector<std::vector<double>> start_multipliers_;  // a cable, a segment [N]; empty where nothing is to be cleaned
+  Bending bending_;                                     // of one cable: what of its bending is damped
+  VectorArray segments_;                                // likewise, at the start of the substep [m]
   Array records_, eliminations_;
 };
 

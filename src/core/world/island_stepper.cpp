@@ -184,7 +184,7 @@ bool IslandStepper::wait_for_others(Island& island, IslandOutcome& found) {
   const CableState& state = state_.cables[cable].state;
   Boundary unknown;
   const Substep substep = whole_step(cable, unknown);
-  if (!fits_lanes(substep, state)) return false;
+  if (!fits_lanes(substep, state, !memory.targets.nodes.empty())) return false;
   begin(island);
   find_contacts(island, 0, 1);
   if (!workspace_.contacts.touches().empty() || !workspace_.contacts.intrusions().empty()) return false;
