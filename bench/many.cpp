@@ -8,6 +8,7 @@
 
 #include "rows.h"
 #include "scenes.h"
+#include "verlet_cable/core/world_stepper.h"
 
 namespace verlet_cable::bench {
 
@@ -89,9 +90,77 @@ Cost measure(int count, bool contact) {
   return cost;
 }
 
+/// Real-time factor of all cables of a world on all cores.
+double real_time_factor(SceneDesc scene) {
+  scene.time_step = 0.01;
+  const BoundaryInputs inputs = initial_frames(scene);
+  World world(scene, inputs);
+  SceneDesc windy = scene;
+  windy.fluid.velocity = {0.3, 1, 0};
+  windy.materials[0].material.drag = 0.02;
+  world.tune(windy);
+  for (int i = 0; i < 20; ++i) world.step(inputs);
+  return scene.time_step / seconds([&] { world.step(inputs); });
+}
+
+/// Of copies of a world, each with its own motion of a hand, one second long.
+double real_time_factor_of_rollouts(int count, bool bends, bool at_once) {
+  constexpr double duration = 1;
+  SceneDesc scene = scenes::held_by_a_hand(100, bends ? AttachmentType::clamp : AttachmentType::hinge);
+  scene.time_step = 0.005;
+  if (bends) scene.materials[0].material.bending_stiffness = 0.01;
+  const Vector3 hand(0.6, 0, 0);
+  World world(scene, scenes::hand_at(hand));
+  world.settle();
+  world.step_one_by_one(true);
+  std::vector<World> worlds(count, world);
+  std::vector<BoundaryInputs> inputs(count, scenes::hand_at(hand));
+  std::vector<WorldStep> steps(count);
+  for (int i = 0; i < count; ++i) {
+    steps[i].world = &worlds[i];
+    steps[i].inputs = &inputs[i];
+  }
+  WorldStepper stepper;
+  const double start = now();
+  const int ends = static_cast<int>(std::lround(duration / scene.time_step));
+  for (int k = 1; k <= ends; ++k) {
+    const double t = k * scene.time_step;
+    for (int i = 0; i < count; ++i) {
+      const double frequency = 1 + 0.5 * i / count;
+      inputs[i][1].pose.position.x() = hand.x() + 0.1 * (1 - std::cos(2 * M_PI * frequency * t));
+    }
+    if (at_once)
+      stepper.step(steps, true);
+    else
+      for (const WorldStep& step : steps) step.world->step(*step.inputs);
+  }
+  return duration / (now() - start);
+}
+
+void in_real_time(Report& report, bool quick) {
+  report.table("Many cables in real time, on all cores", {"", "real-time factor", "target", "verdict"});
+  const int cables = quick ? 1000 : 10000;
+  for (const double bending_stiffness : {0.0, 0.001}) {
+    SceneDesc scene = many_cables(cables, false);
+    scene.materials[0].material.bending_stiffness = bending_stiffness;
+    const double factor = real_time_factor(scene) * cables / 10000;
+    report.row({"10000 cables of 50 segments in the wind, 10 ms, EI = " + figure(bending_stiffness) + " N m^2", figure(factor),
+                "1", report.at_least(factor, 1)});
+  }
+  const int rollouts = quick ? 200 : 1000;
+  for (const bool bends : {false, true}) {
+    const double factor = real_time_factor_of_rollouts(rollouts, bends, true) * rollouts / 1000;
+    report.row({std::string("1000 rollouts of 100 segments, driven, 5 ms, ") + (bends ? "clamped, EI = 0.01 N m^2" : "hinged"),
+                figure(factor), "2.5", report.at_least(factor, 2.5)});
+  }
+  const double apart = real_time_factor_of_rollouts(rollouts / 10, false, false) * (rollouts / 10) / 1000;
+  report.note("hinged, world after world on one core: " + figure(apart));
+}
+
 }  // namespace
 
 void many(Report& report, bool quick) {
+  in_real_time(report, quick);
   for (const bool contact : {false, true}) {
     report.table(std::string("Many cables of 50 segments that hang side by side") +
                      (contact ? ", looking out for each other (contact: {})" : ", apart"),
