@@ -84,48 +84,53 @@ Rollout::Rollout(const RolloutGoal& goal, RolloutStart start)
   check_times(goal, world_, errors);
   motion_ = read_motion(goal, world_, errors);
   if (!errors.empty()) throw SceneError(std::move(errors));
-  world_.step_one_by_one(true);
+  all_steps_ = std::llround(duration_ / world_.time_step());
 }
 
-bool Rollout::run(const std::function<bool(double)>& goes_on, RolloutResult& result) {
-  const double step = world_.time_step();
-  const auto steps = static_cast<std::int64_t>(std::llround(duration_ / step));
-  const auto follow = [&](double time) {
-    for (const auto& [frame, track] : motion_) frames_[frame] = {track.at(time), true, track.velocity_from(time)};
-  };
+void Rollout::begin() {
   follow(0);
   world_.start_waiting(frames_);
-  record(0, result);
-  std::int64_t recorded = 1;
-  for (std::int64_t i = 1; i <= steps; ++i) {
-    const double time = static_cast<double>(i) * step;
-    follow(time);
-    const StepResult done = world_.step(frames_);
-    if (done.status == StepResult::Status::fault) {
-      result.message = "the simulation failed after " + rounded_text(time) + " s";
-      return false;
-    }
-    // Half a step's tolerance: states are those of the steps nearest to their times.
-    const bool is_due = (time + 0.5 * step) * rate_ >= static_cast<double>(recorded);
-    if (is_due) {
-      record(time, result);
-      ++recorded;
-    }
-    if (!goes_on(static_cast<double>(i) / static_cast<double>(steps))) {
-      result.message = "cancelled after " + rounded_text(time) + " s";
-      return false;
-    }
-  }
-  result.success = true;
-  result.message = std::to_string(result.states.size()) + " states";
-  return true;
+  record();
+  if (all_steps_ == 0) end(true, "1 states");
 }
 
-void Rollout::record(double time, RolloutResult& result) const {
+double Rollout::progress() const {
+  return all_steps_ > 0 ? static_cast<double>(steps_) / static_cast<double>(all_steps_) : 1;
+}
+
+WorldStep Rollout::next_step() {
+  ++steps_;
+  follow(time());
+  return {&world_, &frames_, {}};
+}
+
+void Rollout::take(const StepResult& done) {
+  if (done.status == StepResult::Status::fault) return end(false, "the simulation failed after " + rounded_text(time()) + " s");
+  // Half a step's tolerance: states are those of the steps nearest to their times.
+  const auto recorded = static_cast<double>(result_.states.size());
+  if ((time() + 0.5 * world_.time_step()) * rate_ >= recorded) record();
+  if (steps_ == all_steps_) end(true, std::to_string(result_.states.size()) + " states");
+}
+
+void Rollout::cancel() {
+  end(false, "cancelled after " + rounded_text(time()) + " s");
+}
+
+void Rollout::follow(double time) {
+  for (const auto& [frame, track] : motion_) frames_[frame] = {track.at(time), true, track.velocity_from(time)};
+}
+
+void Rollout::record() {
   CableArray state = to_message(world_);
-  state.header.stamp.fromSec(time);
+  state.header.stamp.fromSec(time());
   state.header.frame_id = world_.frames().front();
-  result.states.push_back(std::move(state));
+  result_.states.push_back(std::move(state));
+}
+
+void Rollout::end(bool success, const std::string& message) {
+  ended_ = true;
+  result_.success = success;
+  result_.message = message;
 }
 
 }  // namespace verlet_cable

@@ -3,10 +3,11 @@
 #include <verlet_cable/RolloutGoal.h>
 #include <verlet_cable/RolloutResult.h>
 
-#include <functional>
+#include <cstdint>
 #include <map>
+#include <string>
 
-#include "verlet_cable/core/world.h"
+#include "verlet_cable/core/world_stepper.h"
 #include "verlet_cable/scene/motion.h"
 
 namespace verlet_cable {
@@ -23,18 +24,32 @@ class Rollout {
   /// Throws SceneError with everything that is wrong with the goal.
   Rollout(const RolloutGoal& goal, RolloutStart start);
 
-  /// Runs to the end, or until `goes_on`, which is told the progress (0 to 1) now and then, says no. False if it was ended, or
-  /// the simulation failed; `result` then has the states so far and says why.
-  bool run(const std::function<bool(double)>& goes_on, RolloutResult& result);
+  /// Records the state it starts from.
+  void begin();
+  bool has_ended() const { return ended_; }
+  double progress() const;  ///< 0 to 1
+  /// Its next step, to be done together with those of others; then the step's result.
+  WorldStep next_step();
+  void take(const StepResult& done);
+  void cancel();
+  /// The states so far; at the end, how it ended.
+  const RolloutResult& result() const { return result_; }
 
  private:
-  void record(double time, RolloutResult& result) const;
+  double time() const { return static_cast<double>(steps_) * world_.time_step(); }
+  void follow(double time);
+  void record();
+  void end(bool success, const std::string& message);
 
   World world_;
   BoundaryInputs frames_;
   std::map<int, FrameTrack> motion_;  ///< by frame id
   double duration_;                   ///< [s]
   double rate_;                       ///< [Hz]
+  std::int64_t steps_ = 0;            ///< done
+  std::int64_t all_steps_;
+  bool ended_ = false;
+  RolloutResult result_;
 };
 
 }  // namespace verlet_cable

@@ -17,6 +17,8 @@ namespace {
 /// Of the threads: the live simulation goes first.
 constexpr int niceness = 10;
 const ros::WallDuration feedback_period(0.1);
+/// Rollouts that a thread runs at once. More would let the first ones wait for the last ones.
+constexpr std::size_t most_at_once = 8;
 
 RolloutResult failure(const std::string& message) {
   RolloutResult result;
@@ -82,34 +84,61 @@ void Rollouts::cancel(Server::GoalHandle goal) {
 
 void Rollouts::work() {
   setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), niceness);
+  WorldStepper stepper;
   while (true) {
-    std::shared_ptr<Job> job;
-    {
-      std::unique_lock<std::mutex> lock(mutex_);
-      new_job_.wait(lock, [this] { return ending_ || !waiting_.empty(); });
-      if (ending_) return;
-      job = std::move(waiting_.front());
-      waiting_.pop_front();
-    }
-    run_guarded("a rollout", [&] { run(*job); });
+    const Jobs jobs = take_waiting();
+    if (jobs.empty()) return;
+    run_guarded("a rollout", [&] { run(jobs, stepper); });
     const std::lock_guard<std::mutex> lock(mutex_);
-    jobs_.remove(job);
+    for (const auto& job : jobs) jobs_.remove(job);
   }
 }
 
-void Rollouts::run(Job& job) const {
-  RolloutResult result;
-  ros::WallTime reported = ros::WallTime::now();
-  const auto goes_on = [&](double progress) {
-    if (ros::WallTime::now() - reported >= feedback_period || progress == 1) {
-      reported = ros::WallTime::now();
-      RolloutFeedback feedback;
-      feedback.progress = progress;
-      job.goal.publishFeedback(feedback);
+/// This thread's share of those that wait; none when the node ends.
+Rollouts::Jobs Rollouts::take_waiting() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  new_job_.wait(lock, [this] { return ending_ || !waiting_.empty(); });
+  Jobs jobs;
+  if (ending_) return jobs;
+  const std::size_t share = (waiting_.size() + threads_.size() - 1) / std::max<std::size_t>(1, threads_.size());
+  for (std::size_t i = 0; i < std::min(std::max<std::size_t>(1, share), most_at_once); ++i) {
+    jobs.push_back(std::move(waiting_.front()));
+    waiting_.pop_front();
+  }
+  return jobs;
+}
+
+void Rollouts::run(Jobs jobs, WorldStepper& stepper) const {
+  for (const auto& job : jobs) job->rollout.begin();
+  std::vector<WorldStep> steps;
+  while (!jobs.empty()) {
+    steps.clear();
+    for (const auto& job : jobs)
+      if (!job->rollout.has_ended()) steps.push_back(job->rollout.next_step());
+    stepper.step(steps, false);
+    auto done = steps.cbegin();
+    for (const auto& job : jobs) {
+      if (!job->rollout.has_ended()) job->rollout.take((done++)->result);
+      report(*job);
+      if ((job->cancelled || ending_) && !job->rollout.has_ended()) job->rollout.cancel();
+      if (job->rollout.has_ended()) end(*job);
     }
-    return !job.cancelled && !ending_;
-  };
-  if (job.rollout.run(goes_on, result)) {
+    jobs.erase(std::remove_if(jobs.begin(), jobs.end(), [](const auto& job) { return job->rollout.has_ended(); }), jobs.end());
+  }
+}
+
+void Rollouts::report(Job& job) const {
+  const double progress = job.rollout.progress();
+  if (ros::WallTime::now() - job.reported < feedback_period && progress < 1) return;
+  job.reported = ros::WallTime::now();
+  RolloutFeedback feedback;
+  feedback.progress = progress;
+  job.goal.publishFeedback(feedback);
+}
+
+void Rollouts::end(Job& job) {
+  const RolloutResult& result = job.rollout.result();
+  if (result.success) {
     job.goal.setSucceeded(result, result.message);
   } else if (job.cancelled) {
     job.goal.setCanceled(result, result.message);

@@ -19,7 +19,8 @@
 namespace verlet_cable {
 
 /// The action `rollout`: copies of the world that are run on as fast as it goes, many at once, by threads that give way to the
-/// live simulation. Goals are checked and cancelled by the node's own thread.
+/// live simulation. A thread runs several of them step by step, so that cables that are alike are stepped together. Goals are
+/// checked and cancelled by the node's own thread.
 class Rollouts {
  public:
   Rollouts(ros::NodeHandle& private_node, const Simulation& simulation);
@@ -31,13 +32,18 @@ class Rollouts {
     Job(const Server::GoalHandle& handle, Rollout run) : goal(handle), rollout(std::move(run)) {}
     Server::GoalHandle goal;
     Rollout rollout;
+    ros::WallTime reported = ros::WallTime::now();
     std::atomic<bool> cancelled{false};
   };
+  using Jobs = std::vector<std::shared_ptr<Job>>;
 
   void accept(Server::GoalHandle goal);
   void cancel(Server::GoalHandle goal);
   void work();
-  void run(Job& job) const;
+  Jobs take_waiting();
+  void run(Jobs jobs, WorldStepper& stepper) const;
+  void report(Job& job) const;
+  static void end(Job& job);
 
   const Simulation& simulation_;
   std::mutex mutex_;
