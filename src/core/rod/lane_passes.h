@@ -39,13 +39,25 @@ enum class LaneField {
   clamp_force_z,
   clamp_stiffness,  ///< of a clamp, on both nodes and against each other [N/m]
   force_along,      ///< of bending, along the segment [N]
-  velocity_x,       ///< of the node, at the start of the substep; after `finish` at its end [m/s]
+  velocity_x,       ///< of the node, at the start of the substep [m/s]; where held, so that the end velocity is the holder's
   velocity_y,
   velocity_z,
+  start_acceleration_x,  ///< of the node, over the substep before [m/s^2]
+  start_acceleration_y,
+  start_acceleration_z,
   inverse_mass,    ///< of the node [1/kg], 0 where held
+  end_velocity_x,  ///< of the node [m/s]
+  end_velocity_y,
+  end_velocity_z,
   acceleration_x,  ///< of the node, over the substep [m/s^2]
   acceleration_y,
   acceleration_z,
+  change_x,  ///< see UnresolvedMotion [m/s^2]
+  change_y,
+  change_z,
+  turn_x,  ///< likewise
+  turn_y,
+  turn_z,
   pivot,    ///< of the velocity projection: inverse of the segment's row, eliminated up to there
   off,      ///< to the next row
   impulse,  ///< [kg/s]

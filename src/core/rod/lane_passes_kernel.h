@@ -208,6 +208,7 @@ void load_lanes(const LaneWork& w) {
     at[LaneField::inverse_length] = 1.0 / rest;
     at[LaneField::inverse_mass] = 1.0 / mass;
     at.set(LaneField::velocity_x, velocity);
+    at.set(LaneField::start_acceleration_x, acceleration);
     const Real multiplier = gather_segment<Real>(w, &LaneCable::axial_multiplier, k);
     if constexpr (is_elastic) {
       const Real start = root(dot(segment, segment));
@@ -464,7 +465,7 @@ class Projection {
     constexpr double pivot_regularisation = 1e-9;
     const Real adjustable = at[LaneField::adjustable], mobility = at[LaneField::inverse_mass] + inverse_mass_next;
     diagonal = adjustable * (dot(direction, direction) * mobility * (1 + pivot_regularisation)) + (1.0 - adjustable);
-    load = adjustable * dot(direction, at.vector(LaneField::velocity_x) - velocity_next);
+    load = adjustable * dot(direction, at.vector(LaneField::end_velocity_x) - velocity_next);
   }
   Real ratio_{}, coupling_{}, before_{}, value_{};
 };
@@ -493,7 +494,7 @@ void finish_lanes(const LaneWork& w) {
       const VectorOf<Real> direction = without_pad(w, k, at.vector(LaneField::segment_x) + (u_next - u));
       u = u_next;
       at.set(LaneField::segment_x, direction);
-      at.set(LaneField::velocity_x, velocity);
+      at.set(LaneField::end_velocity_x, velocity);
       const Real inverse = at[LaneField::inverse_length];
       Real relative = dot(direction, direction) * (inverse * inverse);
       if (w.padded && k == 0)
@@ -517,7 +518,7 @@ void finish_lanes(const LaneWork& w) {
   Real impulse = place_of<Real>(w, m)[LaneField::impulse];
   for (int k = m; k >= 0; --k) {
     const Place<Real> at = place_of<Real>(w, k);
-    VectorOf<Real> velocity = at.vector(LaneField::velocity_x);
+    VectorOf<Real> velocity = at.vector(LaneField::end_velocity_x);
     if constexpr (projects) {
       VectorOf<Real> pull = none - impulse * at.vector(LaneField::segment_x);
       if (k > 0) {
@@ -527,14 +528,15 @@ void finish_lanes(const LaneWork& w) {
         pull = pull + impulse * before.vector(LaneField::segment_x);
       }
       velocity = where(wanted, velocity + at[LaneField::inverse_mass] * pull, velocity);
-      at.set(LaneField::velocity_x, velocity);
+      at.set(LaneField::end_velocity_x, velocity);
     }
-    const VectorOf<Real> start = gather_vector<Real>(w, &LaneCable::velocities, k);
-    const VectorOf<Real> acceleration = inverse_h * (velocity - start);
+    const VectorOf<Real> acceleration = inverse_h * (velocity - at.vector(LaneField::velocity_x));
     at.set(LaneField::acceleration_x, acceleration);
     if (w.law.is_watched) {
-      const VectorOf<Real> change = acceleration - gather_vector<Real>(w, &LaneCable::accelerations, k);
+      const VectorOf<Real> change = acceleration - at.vector(LaneField::start_acceleration_x);
       const VectorOf<Real> turn = known * (change - gather_vector<Real>(w, &LaneCable::acceleration_changes, k));
+      at.set(LaneField::change_x, change);
+      at.set(LaneField::turn_x, turn);
       const VectorOf<Real> last = gather_vector<Real>(w, &LaneCable::turns, k);
       const Real weight = at[LaneField::movable] * gather_node<Real>(w, &LaneCable::masses, k);
       product += weight * dot(turn, last);
@@ -547,55 +549,78 @@ void finish_lanes(const LaneWork& w) {
   set_values(mass, values.mass);
 }
 
-template <class Real>
-[[gnu::always_inline]] inline void scatter_vector(const LaneWork& w, double* LaneCable::*array, int k, const VectorOf<Real>& v) {
-  for (int i = 0; i < lanes_of<Real>; ++i) {
-    if (w.values->stores[i] == 0 || (w.padded && k == 0 && i % 2 == 1)) continue;
-    double* to = w.cables[i / 2].*array + 3 * node_at(w, k, i);
-    to[0] = v.x[i];
-    to[1] = v.y[i];
-    to[2] = v.z[i];
+/// Where lanes write to: all of them at most places of most batches.
+template <bool all, class Real>
+class Scatter {
+ public:
+  [[gnu::always_inline]] Scatter(const LaneWork& w, int k) : work_(w), place_(k) {}
+  [[gnu::always_inline]] void nodes(double* LaneCable::*array, const VectorOf<Real>& v) const {
+    for (int i = 0; i < lanes_of<Real>; ++i) {
+      if (!has_node(i)) continue;
+      double* to = work_.cables[i / 2].*array + 3 * node_at(work_, place_, i);
+      to[0] = v.x[i];
+      to[1] = v.y[i];
+      to[2] = v.z[i];
+    }
   }
-}
-template <class Real>
-[[gnu::always_inline]] inline void scatter_segment(const LaneWork& w, double* LaneCable::*array, int k, const Real& v) {
-  for (int i = 0; i < lanes_of<Real>; ++i) {
-    // The segment in the middle is the first lane's.
-    if (w.values->stores[i] == 0 || (i % 2 == 1 && (k == w.lane || (w.padded && k == 0)))) continue;
-    (w.cables[i / 2].*array)[segment_at(w, k, i)] = v[i];
+  [[gnu::always_inline]] void add_to_nodes(double* LaneCable::*array, const VectorOf<Real>& v) const {
+    for (int i = 0; i < lanes_of<Real>; ++i) {
+      if (!has_node(i)) continue;
+      double* to = work_.cables[i / 2].*array + 3 * node_at(work_, place_, i);
+      to[0] += v.x[i];
+      to[1] += v.y[i];
+      to[2] += v.z[i];
+    }
   }
+  [[gnu::always_inline]] void segments(double* LaneCable::*array, const Real& v) const {
+    for (int i = 0; i < lanes_of<Real>; ++i)
+      if (has_segment(i)) (work_.cables[i / 2].*array)[segment_at(work_, place_, i)] = v[i];
+  }
+
+ private:
+  [[gnu::always_inline]] bool has_node(int i) const {
+    return all || (work_.values->stores[i] != 0 && !(work_.padded && place_ == 0 && i % 2 == 1));
+  }
+  /// The segment in the middle is the first lane's.
+  [[gnu::always_inline]] bool has_segment(int i) const { return all || (has_node(i) && !(i % 2 == 1 && place_ == work_.lane)); }
+  const LaneWork& work_;
+  int place_;
+};
+
+template <Bends bends, bool is_elastic, bool all, class Real>
+[[gnu::always_inline]] inline void store_place(const LaneWork& w, int k) {
+  const Place<Real> at = place_of<Real>(w, k);
+  const Scatter<all, Real> scatter(w, k);
+  scatter.add_to_nodes(&LaneCable::positions, at.vector(LaneField::displacement_x));
+  scatter.nodes(&LaneCable::velocities, at.vector(LaneField::end_velocity_x));
+  scatter.nodes(&LaneCable::accelerations, at.vector(LaneField::acceleration_x));
+  if (w.law.is_watched) {
+    scatter.nodes(&LaneCable::acceleration_changes, at.vector(LaneField::change_x));
+    scatter.nodes(&LaneCable::turns, at.vector(LaneField::turn_x));
+  }
+  Real length = at[LaneField::target_length];
+  if constexpr (is_elastic) {
+    const VectorOf<Real> end = at.vector(LaneField::segment_x);
+    length = at[LaneField::start_length] + 0.5 * (root(dot(end, end)) - at[LaneField::start_length]);
+  }
+  const Real multiplier = at[LaneField::density] * length;
+  Real tension = multiplier;
+  if constexpr (bends != Bends::not_at_all) tension = tension + at[LaneField::force_along];
+  const Real last = gather_segment<Real>(w, &LaneCable::last_tension, k);
+  scatter.segments(&LaneCable::axial_multiplier, multiplier);
+  scatter.segments(&LaneCable::tension, where(values_of<Real>(w.values->smooths), 0.5 * (last + tension), tension));
+  scatter.segments(&LaneCable::last_tension, tension);
 }
 
 template <Bends bends, bool is_elastic, class Real>
 void store_lanes(const LaneWork& w) {
-  const LaneValues& values = *w.values;
-  const Real known = values_of<Real>(values.known), smooths = values_of<Real>(values.smooths);
+  bool all = true;
+  for (int i = 0; i < lanes_of<Real>; ++i) all = all && w.values->stores[i] != 0;
   for (int k = 0; k <= w.lane; ++k) {
-    const Place<Real> at = place_of<Real>(w, k);
-    const VectorOf<Real> position = gather_vector<Real>(w, &LaneCable::positions, k) + at.vector(LaneField::displacement_x);
-    const VectorOf<Real> acceleration = at.vector(LaneField::acceleration_x);
-    if (w.law.is_watched) {
-      const VectorOf<Real> change = acceleration - gather_vector<Real>(w, &LaneCable::accelerations, k);
-      const VectorOf<Real> turn = known * (change - gather_vector<Real>(w, &LaneCable::acceleration_changes, k));
-      scatter_vector<Real>(w, &LaneCable::acceleration_changes, k, change);
-      scatter_vector<Real>(w, &LaneCable::turns, k, turn);
-    }
-    Real length = at[LaneField::target_length];
-    if constexpr (is_elastic) {
-      const VectorOf<Real> end = at.vector(LaneField::segment_x);
-      length = at[LaneField::start_length] + 0.5 * (root(dot(end, end)) - at[LaneField::start_length]);
-    }
-    const Real multiplier = at[LaneField::density] * length;
-    Real tension = multiplier;
-    if constexpr (bends != Bends::not_at_all) tension = tension + at[LaneField::force_along];
-    const Real last = gather_segment<Real>(w, &LaneCable::last_tension, k);
-    const Real shown = smooths != 0.0 ? 0.5 * (last + tension) : tension;
-    scatter_vector<Real>(w, &LaneCable::positions, k, position);
-    scatter_vector<Real>(w, &LaneCable::velocities, k, at.vector(LaneField::velocity_x));
-    scatter_vector<Real>(w, &LaneCable::accelerations, k, acceleration);
-    scatter_segment<Real>(w, &LaneCable::axial_multiplier, k, multiplier);
-    scatter_segment<Real>(w, &LaneCable::tension, k, shown);
-    scatter_segment<Real>(w, &LaneCable::last_tension, k, tension);
+    if (all && k > 0 && k < w.lane)
+      store_place<bends, is_elastic, true, Real>(w, k);
+    else
+      store_place<bends, is_elastic, false, Real>(w, k);
   }
 }
 

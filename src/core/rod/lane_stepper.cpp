@@ -73,6 +73,7 @@ void LaneStepper::advance(std::vector<LaneMember>& members, int widest, CableSte
   for (int c = 0; c < count; ++c) values_.stores[2 * c] = values_.stores[2 * c + 1] = members[c].result.converged ? 1 : 0;
   for (int c = 0; c < count; ++c) {
     if (!members[c].result.converged) continue;
+    set_held_accelerations(c, members[c]);
     const bool unresolved = leaves_unresolved(c, members[c]);
     if (unresolved)
       start_multipliers_[c] = members[c].state->axial_multiplier;
@@ -367,6 +368,15 @@ Vector3 LaneStepper::joint_moment(int c, int i) {
   const Vector3 moment = at(LaneField::joint_stiffness, c, i) * slope * (start + 0.5 * change);
   if (!work_.law.is_damped) return moment;
   return moment + at(LaneField::joint_damping, c, i) * (change - vector_at(LaneField::turned_x, c, i));
+}
+
+void LaneStepper::set_held_accelerations(int c, const LaneMember& member) {
+  for (const HeldNode& target : member.substep.boundary.nodes) {
+    const Vector3 acceleration = (target.velocity - member.state->velocities[target.node]) / member.substep.h;
+    at(LaneField::acceleration_x, c, target.node) = acceleration.x();
+    at(LaneField::acceleration_y, c, target.node) = acceleration.y();
+    at(LaneField::acceleration_z, c, target.node) = acceleration.z();
+  }
 }
 
 bool LaneStepper::leaves_unresolved(int c, const LaneMember& member) const {

@@ -55,6 +55,7 @@ class LaneStepper {
   void iterate(std::vector<LaneMember>& members);
   void react(int cable, LaneMember& member);
   void react_to_projection(int cable, LaneMember& member);
+  void set_held_accelerations(int cable, const LaneMember& member);
   bool leaves_unresolved(int cable, const LaneMember& member) const;
   void complete(int cable, LaneMember& member);
   double& value(LaneField field, int place, int lane);
