@@ -31,8 +31,7 @@ class MarkerPublisher {
   using Key = std::pair<std::string, int>;  // namespace and id
 
   visualization_msgs::Marker make_marker(const std::string& ns, int id, int type) const;
-  void add_cable(const SimulatedCable& cable, const std::vector<double>& contact_forces, int most_corners,
-                 visualization_msgs::MarkerArray& markers) const;
+  void add_cables(const World& world, visualization_msgs::MarkerArray& markers);
   void add_payloads(const SimulatedCable& cable, visualization_msgs::MarkerArray& markers);
   void add_net(const SimulatedNet& net, visualization_msgs::MarkerArray& markers) const;
   void add_particle(const SimulatedParticle& particle, visualization_msgs::MarkerArray& markers) const;
