@@ -9,6 +9,7 @@ import unittest
 import rospy
 import rostest
 import yaml
+from diagnostic_msgs.msg import DiagnosticArray
 from visualization_msgs.msg import MarkerArray
 
 from cable_client import CableClient, Frames, Messages, Processor
@@ -41,11 +42,13 @@ class CrowdTest(unittest.TestCase):
         cls.node = CableClient('/crowd')
 
     def test_markers_of_a_crowd(self):
-        with Frames(hand=hand), Messages('/crowd/markers', rospy.AnyMsg) as markers:
+        with Frames(hand=hand), Messages('/crowd/markers', rospy.AnyMsg) as markers, \
+                Messages('/diagnostics', DiagnosticArray) as diagnostics:
             answer = self.node.load_scene(yaml=scene())
             self.assertTrue(answer.success, answer.message)
             rospy.sleep(6)  # until it is as late as it gets
             markers.clear()
+            diagnostics.clear()
             processor = Processor('/crowd')
             begin = time.monotonic()
             answers = []
@@ -57,11 +60,16 @@ class CrowdTest(unittest.TestCase):
             raw = markers.all()
             now = rospy.get_time()
             share = processor.share()
+            reports = [{value.key: float(value.value) for value in status.values if value.key in ('real_time_factor', 'dropped_time_s')}
+                       for array in diagnostics.all() for status in array.status if status.name == 'crowd: simulation']
         rate = len(raw) / SECONDS
         messages = [MarkerArray().deserialize(m._buff) for m in (raw[0], raw[-1])]
         first, last = (m.markers[0].header.stamp.to_sec() for m in messages)
-        rospy.loginfo('markers of %d cables: %.1f Hz of %.1f MB, %.2f s late; services answer in %.1f ms; processor %.0f %% of the time',
+        rospy.loginfo('markers of %d cables: %.1f Hz of %.3f MB, %.2f s late; services answer in %.1f ms; processor %.0f %% of the time',
                       CABLES, rate, 1e-6 * len(raw[-1]._buff), now - last, 1e3 * statistics.median(answers), 100 * share)
+        if reports:
+            rospy.loginfo('steps at %.1f times real time; %.2f s dropped', statistics.median(r['real_time_factor'] for r in reports),
+                          reports[-1]['dropped_time_s'] - reports[0]['dropped_time_s'])
         self.assertGreater(rate, 20 * share)
         self.assertLess(len(raw[-1]._buff), 0.25e6)
         self.assertAlmostEqual(last - first, SECONDS, delta=1)

@@ -20,6 +20,8 @@ constexpr int cable_marker_id = 0;
 constexpr int net_lines_id = 0, net_triangles_id = 1, particle_marker_id = 0;
 constexpr double net_line_width = 0.04;  // of the first link's length
 constexpr double net_pin_size = 0.4;     // likewise
+constexpr double ambient_light = 0.35;   // of all
+const Vector3 to_light(-0.4, -0.6, 0.7);
 
 std_msgs::ColorRGBA grey(float level) {
   std_msgs::ColorRGBA color;
@@ -51,13 +53,29 @@ double link_length(const NetModel& model) {
   return model.rest_lengths.empty() ? 0.1 : model.rest_lengths.front();
 }
 
-/// Both sides of the two triangles of each cell.
+/// A color in a light that falls alike on both sides: rviz lights one side only of what it lights, and of two triangles that
+/// coincide it shows one.
+std_msgs::ColorRGBA lit(const std_msgs::ColorRGBA& color, const Vector3& normal) {
+  const auto brightness = static_cast<float>(ambient_light + (1 - ambient_light) * std::abs(normal.dot(to_light.normalized())));
+  std_msgs::ColorRGBA lit = color;
+  lit.r *= brightness;
+  lit.g *= brightness;
+  lit.b *= brightness;
+  return lit;
+}
+
+/// The two triangles of each cell.
 void add_triangles(const SimulatedNet& net, Marker& marker) {
   const int columns = net.model.columns;
   for (int row = 0; row + 1 < net.model.rows; ++row)
     for (int column = 0; column + 1 < columns; ++column) {
       const int a = row * columns + column, b = a + 1, c = a + columns, d = c + 1;
-      for (const int node : {a, c, b, b, c, a, d, b, c, c, b, d}) marker.points.push_back(to_point(net.state.positions[node]));
+      for (const std::array<int, 3>& corners : {std::array<int, 3>{a, c, b}, {b, c, d}}) {
+        const auto at = [&](int corner) -> const Vector3& { return net.state.positions[corners[corner]]; };
+        const Vector3 normal = (at(1) - at(0)).cross(at(2) - at(0)).normalized();
+        for (int corner = 0; corner < 3; ++corner) marker.points.push_back(to_point(at(corner)));
+        marker.colors.insert(marker.colors.end(), 3, lit(marker.color, normal));
+      }
     }
 }
 
