@@ -171,6 +171,54 @@ TEST_F(Topics, MarkersAsLines) {
   EXPECT_DOUBLE_EQ(rope->scale.x, 0.02);
 }
 
+TEST_F(Topics, TrianglesOfANetArePublishedOnceAndLitFromBothSides) {
+  NetDesc net;
+  net.name = "flag";
+  net.grid = GridDesc{};
+  net.grid->rows = 3;
+  net.grid->columns = 4;
+  net.grid->spacing = 0.1;
+  net.mass = 0.1;
+  net.color = {0.8, 0.4, 0.2, 0.5};
+  scene_.nets.push_back(net);
+  world_ = World(scene_, inputs_);
+  Listener<MarkerArray> listener(node_, "markers");
+  const Marker* triangles = find(next(listener), "flag", Marker::TRIANGLE_LIST);
+  ASSERT_TRUE(triangles);
+  EXPECT_EQ(triangles->points.size(), 6 * 2 * 3u);
+  ASSERT_EQ(triangles->colors.size(), triangles->points.size());
+  for (const std_msgs::ColorRGBA& color : triangles->colors) {
+    EXPECT_GE(color.r, 0.3f * 0.8f);
+    EXPECT_LE(color.r, 0.8f);
+    EXPECT_FLOAT_EQ(color.g, color.r / 2);
+    EXPECT_FLOAT_EQ(color.b, color.r / 4);
+    EXPECT_FLOAT_EQ(color.a, 0.5f);
+  }
+}
+
+TEST_F(Topics, CablesThatTakeTooManyTrianglesAreLinesAndTubesAgain) {
+  CableDesc cable = scene_.cables[0];
+  cable.point_masses.clear();
+  cable.attachments.clear();
+  cable.segments = 2;
+  SceneDesc many = scene_;
+  for (int i = 0; i < 200; ++i) {
+    cable.name = "cable" + std::to_string(i);
+    many.cables.push_back(cable);
+  }
+  Listener<MarkerArray> listener(node_, "markers");
+  EXPECT_TRUE(find(next(listener), "rope", Marker::TRIANGLE_LIST));
+  world_ = World(many, inputs_);
+  const MarkerArray& lines = next(listener);
+  EXPECT_FALSE(find(lines, "rope", Marker::TRIANGLE_LIST));
+  const Marker* rope = find(lines, "rope", Marker::LINE_STRIP);
+  ASSERT_TRUE(rope);
+  EXPECT_EQ(rope->id, 0);
+  EXPECT_DOUBLE_EQ(rope->scale.x, 0.02);
+  world_ = World(scene_, inputs_);
+  EXPECT_TRUE(find(next(listener), "rope", Marker::TRIANGLE_LIST));
+}
+
 TEST_F(Topics, MarkersOfWhatIsGoneAreDeletedOnceAndIdsStay) {
   Listener<MarkerArray> listener(node_, "markers");
   const auto before = keys(next(listener), Marker::ADD);

@@ -112,6 +112,22 @@ class HandsTest(unittest.TestCase):
             self.assertGreaterEqual(full.seq_num, number)
             self.assertEqual(full._connection_header['latching'], '0', 'what nobody listens to is put together')
 
+    def test_poses_are_sent_of_what_moves_and_of_what_a_viewer_has_moved(self):
+        def poses_of(update):
+            return {p.name for p in update.poses}
+
+        self.assertTrue(self.node.pause(True).success)
+        with Messages('/robot/cable/hands/update', InteractiveMarkerUpdate) as updates:
+            updates.wait_for(lambda m: m.type == InteractiveMarkerUpdate.UPDATE and not m.poses, 'update without poses')
+            # no mouse button was pressed: nothing moves but in the viewer
+            self.send('rope/7', InteractiveMarkerFeedback.MOUSE_UP)
+            updates.wait_for(lambda m: poses_of(m) == {'rope/7'}, 'pose of what a viewer has moved')
+            updates.clear()
+            updates.wait_for(lambda m: m.type == InteractiveMarkerUpdate.UPDATE and not m.poses, 'update without poses, again')
+            self.assertTrue(self.node.pause(False).success)
+            self.drag('attachment/left', 0, 0.1, 1.1)
+            updates.wait_for(lambda m: {'attachment/left', 'rope/10'} <= poses_of(m), 'poses of what moves')
+
     def test_handles_of_nodes_are_not_seen(self):
         self.shown.clear()
         markers = self.shown.wait_for(lambda _: True, 'handles')

@@ -15,6 +15,8 @@ using visualization_msgs::InteractiveMarkerUpdate;
 constexpr std::uint32_t queue_size = 100;
 const ros::WallDuration sign_of_life(0.5);
 const ros::WallDuration hold_time(1.0);  // in which nobody else drags what a client has dragged
+/// After feedback on a marker, in which its pose is sent though it is where it was.
+const ros::WallDuration correction_time(2.0);
 
 }  // namespace
 
@@ -55,6 +57,7 @@ void HandleServer::set_pose(const std::string& name, const geometry_msgs::Pose& 
 void HandleServer::erase(const std::string& marker) {
   markers_.erase(marker);
   clients_.erase(marker);
+  heard_of_.erase(marker);
   changes_.erases.push_back(marker);
 }
 
@@ -63,6 +66,12 @@ void HandleServer::clear() {
   for (const auto& [name, marker] : markers_) changes_.erases.push_back(name);
   markers_.clear();
   clients_.clear();
+  heard_of_.clear();
+}
+
+bool HandleServer::may_be_elsewhere(const std::string& marker) const {
+  const auto heard = heard_of_.find(marker);
+  return heard != heard_of_.end() && ros::WallTime::now() - heard->second < correction_time;
 }
 
 void HandleServer::apply_changes() {
@@ -86,6 +95,7 @@ void HandleServer::take(const Feedback& feedback) {
   if (markers_.count(feedback.marker_name) == 0) return;
   Client& client = clients_[feedback.marker_name];
   const ros::WallTime now = ros::WallTime::now();
+  heard_of_[feedback.marker_name] = now;
   if (client.id != feedback.client_id && now - client.last < hold_time) return;
   client = {feedback.client_id, now};
   receive_(feedback);

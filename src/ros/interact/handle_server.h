@@ -28,6 +28,9 @@ class HandleServer {
   void erase(const std::string& marker);
   void clear();
 
+  /// Whether a viewer shows it where its mouse is, or was a short time ago.
+  bool may_be_elsewhere(const std::string& marker) const;
+
   void apply_changes();
   std::uint32_t viewers() const { return updates_.getNumSubscribers(); }
 
@@ -43,6 +46,7 @@ class HandleServer {
   const std::function<void(const Feedback&)> receive_;
   std::map<std::string, visualization_msgs::InteractiveMarker> markers_;  ///< by name
   std::map<std::string, Client> clients_;                                 ///< by the marker they drag
+  std::map<std::string, ros::WallTime> heard_of_;                         ///< the last feedback on each marker
   visualization_msgs::InteractiveMarkerUpdate changes_;                   ///< since the last `apply_changes`
   std::uint64_t sequence_ = 0;
   ros::Publisher updates_, all_;

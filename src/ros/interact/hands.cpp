@@ -31,6 +31,10 @@ CableLocation location_of(const Handle& handle) {
   return location;
 }
 
+bool is_same(const Pose& a, const Pose& b) {
+  return a.position == b.position && a.orientation.coeffs() == b.orientation.coeffs();
+}
+
 }  // namespace
 
 Hands::Hands(ros::NodeHandle& private_node, Simulation& simulation)
@@ -176,8 +180,7 @@ void Hands::show() {
     const auto before = shown_.find(name);
     if (before == shown_.end() || !look_alike(before->second, handle)) {
       server_.insert(interactive_marker(handle, frame));
-    } else {
-      // Also where it has not moved: a viewer has put it where the mouse was.
+    } else if (!is_same(before->second.pose, handle.pose) || server_.may_be_elsewhere(name)) {
       server_.set_pose(name, to_pose(handle.pose));
     }
   }

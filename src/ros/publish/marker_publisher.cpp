@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "publish/cable_markers.h"
 #include "publish/conversions.h"
 #include "publish/obstacle_markers.h"
 #include "publish/queue_size.h"
-#include "publish/tube.h"
 
 namespace verlet_cable {
 namespace {
@@ -16,12 +16,12 @@ using visualization_msgs::MarkerArray;
 
 constexpr double aluminium_density = 2700;  // [kg/m^3]
 constexpr double pin_size = 2.2;            // of a pin to the cable it holds, radius to radius
-constexpr int most_tube_corners = 30000;    // of all cables: 1.2 MB, that a network and rviz take 50 times a second
-constexpr int fewest_tube_corners = 108;    // of a cable, however many there are: six rings
 constexpr int cable_marker_id = 0;
 constexpr int net_lines_id = 0, net_triangles_id = 1, particle_marker_id = 0;
 constexpr double net_line_width = 0.04;  // of the first link's length
 constexpr double net_pin_size = 0.4;     // likewise
+constexpr double ambient_light = 0.35;   // of all
+const Vector3 to_light(-0.4, -0.6, 0.7);
 
 std_msgs::ColorRGBA grey(float level) {
   std_msgs::ColorRGBA color;
@@ -53,13 +53,29 @@ double link_length(const NetModel& model) {
   return model.rest_lengths.empty() ? 0.1 : model.rest_lengths.front();
 }
 
-/// Both sides of the two triangles of each cell.
+/// A color in a light that falls alike on both sides: rviz lights one side only of what it lights, and of two triangles that
+/// coincide it shows one.
+std_msgs::ColorRGBA lit(const std_msgs::ColorRGBA& color, const Vector3& normal) {
+  const auto brightness = static_cast<float>(ambient_light + (1 - ambient_light) * std::abs(normal.dot(to_light.normalized())));
+  std_msgs::ColorRGBA lit = color;
+  lit.r *= brightness;
+  lit.g *= brightness;
+  lit.b *= brightness;
+  return lit;
+}
+
+/// The two triangles of each cell.
 void add_triangles(const SimulatedNet& net, Marker& marker) {
   const int columns = net.model.columns;
   for (int row = 0; row + 1 < net.model.rows; ++row)
     for (int column = 0; column + 1 < columns; ++column) {
       const int a = row * columns + column, b = a + 1, c = a + columns, d = c + 1;
-      for (const int node : {a, c, b, b, c, a, d, b, c, c, b, d}) marker.points.push_back(to_point(net.state.positions[node]));
+      for (const std::array<int, 3>& corners : {std::array<int, 3>{a, c, b}, {b, c, d}}) {
+        const auto at = [&](int corner) -> const Vector3& { return net.state.positions[corners[corner]]; };
+        const Vector3 normal = (at(1) - at(0)).cross(at(2) - at(0)).normalized();
+        for (int corner = 0; corner < 3; ++corner) marker.points.push_back(to_point(at(corner)));
+        marker.colors.insert(marker.colors.end(), 3, lit(marker.color, normal));
+      }
     }
 }
 
@@ -80,14 +96,7 @@ void MarkerPublisher::show(const SceneDesc& scene) {
 void MarkerPublisher::publish(const World& world, const ros::Time& stamp) {
   if (publisher_.getNumSubscribers() == 0) return;
   const auto markers = boost::make_shared<MarkerArray>();
-  const std::vector<std::vector<double>> contact_forces = colors_.contact_forces(world);
-  const int cables = static_cast<int>(world.cables().size());
-  for (int i = 0; i < cables; ++i) {
-    const SimulatedCable& cable = world.cables()[i];
-    if (!is_finite(cable)) continue;
-    add_cable(cable, contact_forces[i], std::max(most_tube_corners / cables, fewest_tube_corners), *markers);
-    add_payloads(cable, *markers);
-  }
+  add_cables(world, *markers);
   for (const SimulatedNet& net : world.nets())
     if (is_finite(net)) add_net(net, *markers);
   for (const SimulatedParticle& particle : world.particles())
@@ -109,22 +118,26 @@ Marker MarkerPublisher::make_marker(const std::string& ns, int id, int type) con
   return marker;
 }
 
-void MarkerPublisher::add_cable(const SimulatedCable& cable, const std::vector<double>& contact_forces, int most_corners,
-                                MarkerArray& markers) const {
-  const double radius = cable.model->material.radius;
-  std::vector<std_msgs::ColorRGBA> colors = colors_.node_colors(cable, contact_forces);
-  const bool tube = style_ == MarkerStyle::tube;
-  Marker marker = make_marker(cable.model->name, cable_marker_id, tube ? Marker::TRIANGLE_LIST : Marker::LINE_STRIP);
-  marker.color = colors.front();
-  if (tube) {
-    set_scale(marker, 1, 1, 1);
-    fill_tube(cable.state.positions, colors, radius, most_corners, marker);
-  } else {
-    marker.scale.x = 2 * radius;
-    for (const Vector3& position : cable.state.positions) marker.points.push_back(to_point(position));
-    marker.colors = std::move(colors);
+void MarkerPublisher::add_cables(const World& world, MarkerArray& markers) {
+  const std::vector<std::vector<double>> contact_forces = colors_.contact_forces(world);
+  std::vector<const SimulatedCable*> cables;
+  std::vector<CableLook> looks;
+  for (std::size_t i = 0; i < world.cables().size(); ++i) {
+    const SimulatedCable& cable = world.cables()[i];
+    if (!is_finite(cable)) continue;
+    cables.push_back(&cable);
+    looks.push_back({cable.state.positions, colors_.node_colors(cable, contact_forces[i]), cable.model->material.radius});
   }
-  markers.markers.push_back(std::move(marker));
+  std::vector<Marker> shapes = cable_markers(looks, style_);
+  for (std::size_t i = 0; i < cables.size(); ++i) {
+    Marker marker = make_marker(cables[i]->model->name, cable_marker_id, shapes[i].type);
+    marker.scale = shapes[i].scale;
+    marker.color = shapes[i].color;
+    marker.points.swap(shapes[i].points);
+    marker.colors.swap(shapes[i].colors);
+    markers.markers.push_back(std::move(marker));
+    add_payloads(*cables[i], markers);
+  }
 }
 
 void MarkerPublisher::add_payloads(const SimulatedCable& cable, MarkerArray& markers) {

@@ -14,8 +14,9 @@
 namespace verlet_cable {
 
 /// Topic `markers`. Complete at every tick, so that a viewer that starts late lacks nothing; what is gone is deleted once.
-///  * namespace = name of a cable, id 0: the cable, a tube or a line;
-///  * namespace = name of a net, id 0: its links, as lines; id 1, of a grid with marker_style tube: its triangles, both sides;
+///  * namespace = name of a cable, id 0: the cable, a tube or a line (cable_markers.h);
+///  * namespace = name of a net, id 0: its links, as lines; id 1, of a grid with marker_style tube: its triangles, lit from both
+///  sides;
 ///  * namespace = name of a particle, id 0: a sphere;
 ///  * namespace "pins", ids from 1: what holds cables and nets: hinges are spheres, clamps are boxes, long along the cable;
 ///  cable's +x;
@@ -31,8 +32,7 @@ class MarkerPublisher {
   using Key = std::pair<std::string, int>;  // namespace and id
 
   visualization_msgs::Marker make_marker(const std::string& ns, int id, int type) const;
-  void add_cable(const SimulatedCable& cable, const std::vector<double>& contact_forces, int most_corners,
-                 visualization_msgs::MarkerArray& markers) const;
+  void add_cables(const World& world, visualization_msgs::MarkerArray& markers);
   void add_payloads(const SimulatedCable& cable, visualization_msgs::MarkerArray& markers);
   void add_net(const SimulatedNet& net, visualization_msgs::MarkerArray& markers) const;
   void add_particle(const SimulatedParticle& particle, visualization_msgs::MarkerArray& markers) const;

@@ -8,6 +8,9 @@ namespace verlet_cable {
 namespace {
 
 constexpr double color_tolerance = 0.025;  // of a channel
+/// Of a straight line's length, by which it may be off at most: in sharp bends, where that is less than the tolerance, one line
+/// turns against the next by a quarter of a radian. Less than the smallest part of the tolerance cannot be seen.
+constexpr double steepest = 1.0 / 40, smallest_part = 0.3;
 /// Of the rings of `spread_rings`: those that straight stretches get, too, for their colors.
 constexpr double even_share = 0.1;
 
@@ -20,14 +23,15 @@ double color_error(const std_msgs::ColorRGBA& from, const std_msgs::ColorRGBA& t
 }
 
 /// Whether rings at the nodes `first` and `last` are enough for those between.
-bool suffice(const std::vector<Vector3>& centers, const std::vector<std_msgs::ColorRGBA>& colors, double tolerance, int first,
-             int last) {
+bool are_enough(const std::vector<Vector3>& centers, const std::vector<std_msgs::ColorRGBA>& colors, double tolerance, int first,
+                int last) {
   const Vector3 along = centers[last] - centers[first];
   const double squared_length = along.squaredNorm();
+  const double allowed = std::clamp(steepest * std::sqrt(squared_length), smallest_part * tolerance, tolerance);
   for (int node = first + 1; node < last; ++node) {
     const Vector3 offset = centers[node] - centers[first];
     const double part = squared_length > 0 ? std::clamp(offset.dot(along) / squared_length, 0.0, 1.0) : 0;
-    if ((offset - part * along).squaredNorm() > tolerance * tolerance) return false;
+    if ((offset - part * along).squaredNorm() > allowed * allowed) return false;
     if (color_error(colors[first], colors[last], static_cast<float>(part), colors[node]) > color_tolerance) return false;
   }
   return true;
@@ -53,15 +57,20 @@ std::vector<double> bends(const std::vector<Vector3>& centers) {
 
 std::vector<int> choose_rings(const std::vector<Vector3>& centers, const std::vector<std_msgs::ColorRGBA>& colors,
                               double tolerance, int most) {
+  const auto enough = [&](int first, int last) { return are_enough(centers, colors, tolerance, first, last); };
   std::vector<int> rings{0}, next{static_cast<int>(centers.size()) - 1};  // those behind the last of `rings`, the nearest last
   while (!next.empty()) {
-    const int first = rings.back(), last = next.back();
+    const int first = rings.back(), last = next.back(), nodes = last - first;
     if (static_cast<int>(rings.size() + next.size()) > most) return {};
-    if (suffice(centers, colors, tolerance, first, last)) {
+    const int half = first + nodes / 2, third = first + nodes / 3, two_thirds = first + 2 * nodes / 3;
+    if (enough(first, last)) {
       rings.push_back(last);
       next.pop_back();
+    } else if (enough(first, third) && enough(third, two_thirds) && enough(two_thirds, last) &&
+               !(enough(first, half) && enough(half, last))) {
+      next.insert(next.end(), {two_thirds, third});
     } else {
-      next.push_back(first + (last - first) / 2);
+      next.push_back(half);
     }
   }
   return rings;

@@ -9,9 +9,9 @@
 namespace verlet_cable {
 
 /// The nodes at which a tube along `centers` has its rings, ascending, the first and the last among them: straight lines from
-/// one to the next pass all other nodes within `tolerance` [m] and mix their colors to a fortieth of a channel. A stretch is
-/// always halved at the same node, so that rings do not wander along a cable that moves. Empty if it takes more than `most` (2 at
-/// least).
+/// one to the next pass all other nodes within `tolerance` [m], closer in sharp bends, and mix their colors to a fortieth of a
+/// channel. A stretch is always divided at the same nodes, in halves or, where that is enough, in thirds, so that rings do not
+/// wander along a cable that moves. Empty if it takes more than `most` (2 at least).
 std::vector<int> choose_rings(const std::vector<Vector3>& centers, const std::vector<std_msgs::ColorRGBA>& colors,
                               double tolerance, int most);
 

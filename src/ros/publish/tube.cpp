@@ -2,64 +2,40 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "publish/conversions.h"
-#include "publish/ring_choice.h"
 #include "verlet_cable/core/rotation.h"
 
 namespace verlet_cable {
 namespace {
 
-/// [m] What a pixel of rviz shows from a metre away: flat sides and straight stretches are off the round tube by no more.
-constexpr double finest_detail = 0.001;
-/// Of the radius: of thin tubes, that are seen from nearer.
-constexpr double finest_bend = 0.03;
-// An odd number of sides is about equally wide from everywhere, seven more so than twelve.
-constexpr int fewest_sides = 7, most_sides = 21;
-constexpr int sides_in_a_crowd = 3;
-constexpr int cap_rings = 2;                // of a half sphere, between its tip and its rim
-constexpr int corners_of_a_side = 6;        // two triangles from ring to ring
-constexpr int most_corners_of_tube = 7500;  // 300 kB
+/// [m] What a pixel of rviz shows from a metre away: flat sides are no deeper inside the round tube.
+constexpr double finest_detail = 0.0012;
+/// [m] By which straight stretches may be off the cable's line; of thin tubes, that are seen from nearer, of the radius.
+constexpr double finest_bend = 0.0005, finest_bend_of_radius = 0.1;
+// An odd number of sides is about equally wide from everywhere, five more so than eight.
+constexpr int fewest_sides = 5, most_sides = 21;
+constexpr int most_cap_rings = 2;
+constexpr int corners_of_a_side = 6;  // two triangles from ring to ring
 
-struct Detail {
-  int sides;      ///< of a ring
-  int cap_rings;  ///< 0: cones
-};
-
-/// Those between the ends, and those of half spheres or cones on both.
-int corners(int rings, const Detail& detail) {
-  return corners_of_a_side * detail.sides * (rings + 2 * detail.cap_rings);
+/// Of a ring's corners to the tube's radius: so far outside that the tube's width is right in the mean of the directions from
+/// which it is seen widest and narrowest.
+double widening(int sides) {
+  return 4 / (1 + std::cos(M_PI / sides) + 2 * std::cos(M_PI_2 / sides));
 }
 
 int sides_of(double radius) {
-  const double half_side = std::acos(1 - std::min(finest_detail / radius, 1.0));
-  const int sides = static_cast<int>(std::ceil(std::min(M_PI / half_side, 1.0 * most_sides)));
-  return std::clamp(sides | 1, fewest_sides, most_sides);
+  int sides = fewest_sides;
+  while (sides < most_sides && radius * (1 - widening(sides) * std::cos(M_PI / sides)) > finest_detail) sides += 2;
+  return sides;
 }
 
-/// [m] By which straight stretches may be off the cable.
-double tolerance(double radius) {
-  return std::min(finest_bend * radius, finest_detail);
-}
-
-/// Of a tube that has nothing but rings.
-int most_rings(int most_corners) {
-  return std::max(most_corners / corners(1, {sides_in_a_crowd, 0}), 2);
-}
-
-/// Fewer sides first, then cones instead of half spheres.
-Detail detail(double radius, int rings, int most_corners) {
-  Detail detail{sides_of(radius), cap_rings};
-  while (detail.sides > sides_in_a_crowd && corners(rings, detail) > most_corners) detail.sides -= 2;
-  if (corners(rings, detail) > most_corners) detail.cap_rings = 0;
-  return detail;
-}
-
-/// Of a ring's corners to the cable's radius. Many corners are on the cable's surface; the few of a tube in a crowd are so far
-/// outside that its width is right in the mean of the directions from which it is seen widest and narrowest.
-double widening(int sides) {
-  if (sides >= fewest_sides) return 1;
-  return 4 / (1 + std::cos(M_PI / sides) + 2 * std::cos(M_PI_2 / sides));
+/// The bands of a half sphere are no deeper inside it than sides may be.
+int cap_rings_of(double radius) {
+  int rings = 1;
+  while (rings < most_cap_rings && radius * (1 - std::cos(M_PI_4 / (rings + 1))) > finest_detail) ++rings;
+  return rings;
 }
 
 /// A circle of the tube's surface.
@@ -106,63 +82,63 @@ Ring on_half_sphere(const Ring& rim, double radius, double part, double outwards
   return ring;
 }
 
-std::vector<double> places_of_rings(const std::vector<Vector3>& centers, const std::vector<std_msgs::ColorRGBA>& colors,
-                                    double radius, int most) {
-  const std::vector<int> nodes = choose_rings(centers, colors, tolerance(radius), most);
-  return nodes.empty() ? spread_rings(centers, most) : std::vector<double>(nodes.begin(), nodes.end());
-}
-
-std_msgs::ColorRGBA mix(const std_msgs::ColorRGBA& a, const std_msgs::ColorRGBA& b, float part) {
-  std_msgs::ColorRGBA color;
-  color.r = a.r + part * (b.r - a.r);
-  color.g = a.g + part * (b.g - a.g);
-  color.b = a.b + part * (b.b - a.b);
-  color.a = a.a + part * (b.a - a.a);
-  return color;
-}
-
 /// From tip to tip, which are rings without a radius.
 std::vector<Ring> make_rings(const std::vector<Vector3>& centers, const std::vector<std_msgs::ColorRGBA>& colors, double radius,
-                             const std::vector<double>& places, const Detail& detail) {
+                             const TubeDetail& detail) {
   std::vector<Ring> along;
-  for (const double place : places) {
-    const auto node = std::min(static_cast<std::size_t>(place), centers.size() - 2);
-    const double part = place - static_cast<double>(node);
-    along.push_back({centers[node] + part * (centers[node + 1] - centers[node]), Quaternion::Identity(),
-                     widening(detail.sides) * radius, mix(colors[node], colors[node + 1], static_cast<float>(part))});
-  }
+  along.reserve(detail.rings.size());
+  for (const int node : detail.rings)
+    along.push_back({centers[node], Quaternion::Identity(), widening(detail.sides) * radius, colors[node]});
   orient(along);
   const double latitudes = detail.cap_rings + 1;
   std::vector<Ring> rings;
+  rings.reserve(along.size() + 2 * (detail.cap_rings + 1));
   for (int k = detail.cap_rings + 1; k > 0; --k) rings.push_back(on_half_sphere(along.front(), radius, k / latitudes, -1));
   rings.insert(rings.end(), along.begin(), along.end());
   for (int k = 1; k <= detail.cap_rings + 1; ++k) rings.push_back(on_half_sphere(along.back(), radius, k / latitudes, 1));
   return rings;
 }
 
+/// Of a circle of radius 1 across x, one a side.
+std::vector<Vector3> spokes(int sides) {
+  std::vector<Vector3> spokes;
+  for (int side = 0; side < sides; ++side) {
+    const double angle = 2 * M_PI * side / sides;
+    spokes.emplace_back(0, std::cos(angle), std::sin(angle));
+  }
+  return spokes;
+}
+
 }  // namespace
 
+int TubeDetail::corners() const {
+  return corners_of_a_side * sides * (static_cast<int>(rings.size()) + 2 * cap_rings);
+}
+
+double line_tolerance(double radius) {
+  return std::min(finest_bend_of_radius * radius, finest_bend);
+}
+
+TubeDetail tube_detail(double radius, std::vector<int> rings) {
+  return {std::move(rings), sides_of(radius), cap_rings_of(radius)};
+}
+
 void fill_tube(const std::vector<Vector3>& centers, const std::vector<std_msgs::ColorRGBA>& colors, double radius,
-               int most_corners, visualization_msgs::Marker& marker) {
-  const int most = std::min(most_corners, most_corners_of_tube);
-  const std::vector<double> places = places_of_rings(centers, colors, radius, most_rings(most));
-  const Detail shown = detail(radius, static_cast<int>(places.size()), most);
-  const int sides = shown.sides;
-  const std::vector<Ring> rings = make_rings(centers, colors, radius, places, shown);
+               const TubeDetail& detail, visualization_msgs::Marker& marker) {
+  const int sides = detail.sides;
+  const std::vector<Ring> rings = make_rings(centers, colors, radius, detail);
   const int ring_count = static_cast<int>(rings.size());
 
   std::vector<geometry_msgs::Point> surface;  // sides points a ring
   surface.reserve(rings.size() * sides);
+  const std::vector<Vector3> circle = spokes(sides);
   for (const Ring& ring : rings) {
-    for (int side = 0; side < sides; ++side) {
-      const double angle = 2 * M_PI * side / sides;
-      const Vector3 spoke(0, ring.radius * std::cos(angle), ring.radius * std::sin(angle));
-      surface.push_back(to_point(ring.center + ring.orientation * spoke));
-    }
+    const Eigen::Matrix3d place = ring.radius * ring.orientation.toRotationMatrix();
+    for (const Vector3& spoke : circle) surface.push_back(to_point(ring.center + place * spoke));
   }
 
-  marker.points.reserve(corners(static_cast<int>(places.size()), shown));
-  marker.colors.reserve(marker.points.capacity());
+  marker.points.reserve(detail.corners());
+  marker.colors.reserve(detail.corners());
   const auto add_corner = [&](int ring, int side) {
     marker.points.push_back(surface[ring * sides + side % sides]);
     marker.colors.push_back(rings[ring].color);
