@@ -15,6 +15,7 @@ class CableRope : public Rope {
   CableRope(const RopeTask& task, double time_step) : hand_(task.hand), inputs_(1) {
     SceneDesc scene = hand_ ? scenes::held_by_a_hand(task.segments) : scenes::released(task.segments, 0.5 * pi);
     scene.time_step = time_step;
+    scene.numerical_damping = task.numerical_damping;
     if (hand_) inputs_ = scenes::hand_at(hand_(0));
     world_ = std::make_unique<World>(scene, inputs_);
   }

@@ -17,6 +17,7 @@ struct RopeTask {
   std::vector<Vector3> positions;  ///< [m] at the start, at rest; a node, segments + 1
   /// Where the last node is held at a time [s]; empty: it is free.
   std::function<Vector3(double)> hand;
+  bool numerical_damping = true;  ///< of the package, see SceneDesc
 
   double node_mass(int node) const { return mass / segments * (node == 0 || node == segments ? 0.5 : 1); }
   double energy_scale() const { return mass * 9.81 * length; }  ///< m g L [J]

@@ -6,6 +6,7 @@
 #include "../support/scenes.h"
 #include "rod/lane_stepper.h"
 #include "verlet_cable/core/world_stepper.h"
+#include "world/flush_denormals.h"
 
 namespace verlet_cable {
 namespace {
@@ -216,6 +217,25 @@ TEST(WorldStepper, DoesWhatEachWorldDoes) {
       ASSERT_EQ(steps[i].result.max_strain, expected.max_strain);
     }
   }
+}
+
+TEST(FlushDenormals, HoldsAsLongAsItLives) {
+  const volatile double small = 1e-300, scale = 1e-15;
+  {
+    const FlushDenormals flush_denormals;
+    const FlushDenormals nested;
+    EXPECT_EQ(small * scale, 0);
+  }
+  EXPECT_GT(small * scale, 0);
+}
+
+TEST(FlushDenormals, AWorldLeavesTheCallersModeAsItWas) {
+  const volatile double small = 1e-300, scale = 1e-15;
+  const SceneDesc scene = crowd();
+  World world(scene, crowd_frames(scene, 0));
+  world.settle();
+  world.step(crowd_frames(scene, 0.005));
+  EXPECT_GT(small * scale, 0);
 }
 
 }  // namespace

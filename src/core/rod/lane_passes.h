@@ -20,31 +20,18 @@ enum class LaneField {
   load_x,   ///< on the node, all that no iteration changes [N]
   load_y,
   load_z,
-  inertia,          ///< of the node [kg/s^2]
-  movable,          ///< of the node, 1 or 0
-  adjustable,       ///< 0 where both nodes of a segment are held, else 1
-  target_length,    ///< of an inextensible segment, or the rest length [m]
-  compliance,       ///< of an inextensible segment, see CableStepper
-  start_length,     ///< of an elastic segment [m]
-  axial_stiffness,  ///< EA / rest length [N/m]
-  axial_damping,    ///< in the substep [N/m]
-  inverse_length,   ///< of the segment, at rest [1/m]
-  joint_stiffness,  ///< of the node, EI / length [N m]; 0 at ends and clamps
-  joint_damping,    ///< likewise, in the substep
-  turned_x,         ///< of the node: change of direction that turns with the material and is not damped
-  turned_y,
-  turned_z,
-  clamp_force_x,  ///< of a clamp beside the segment on its first node [N]
-  clamp_force_y,
-  clamp_force_z,
-  clamp_stiffness,  ///< of a clamp, on both nodes and against each other [N/m]
-  force_along,      ///< of bending, along the segment [N]
-  velocity_x,       ///< of the node, at the start of the substep [m/s]; where held, so that the end velocity is the holder's
+  inertia,        ///< of the node [kg/s^2]
+  movable,        ///< of the node, 1 or 0
+  adjustable,     ///< 0 where both nodes of a segment are held, else 1
+  target_length,  ///< of an inextensible segment, or the rest length [m]
+  compliance,     ///< of an inextensible segment, see CableStepper
+  velocity_x,     ///< of the node, at the start of the substep [m/s]; where held, so that the end velocity is the holder's
   velocity_y,
   velocity_z,
   start_acceleration_x,  ///< of the node, over the substep before [m/s^2]
   start_acceleration_y,
   start_acceleration_z,
+  inverse_length,  ///< of the segment, at rest [1/m]
   inverse_mass,    ///< of the node [1/kg], 0 where held
   end_velocity_x,  ///< of the node [m/s]
   end_velocity_y,
@@ -61,6 +48,22 @@ enum class LaneField {
   pivot,    ///< of the velocity projection: inverse of the segment's row, eliminated up to there
   off,      ///< to the next row
   impulse,  ///< [kg/s]
+  // Of elastic cables
+  start_length,     ///< of the segment [m]
+  axial_stiffness,  ///< EA / rest length [N/m]
+  axial_damping,    ///< in the substep [N/m]
+  // Of cables that bend
+  joint_stiffness,  ///< of the node, EI / length [N m]; 0 at ends and clamps
+  clamp_force_x,    ///< of a clamp beside the segment on its first node [N]
+  clamp_force_y,
+  clamp_force_z,
+  clamp_stiffness,  ///< of a clamp, on both nodes and against each other [N/m]
+  force_along,      ///< of bending, along the segment [N]
+  // Of damped bending
+  joint_damping,  ///< of the node, as its stiffness, in the substep [N m]
+  turned_x,       ///< of the node: change of direction that turns with the material and is not damped
+  turned_y,
+  turned_z,
   count
 };
 
@@ -78,6 +81,14 @@ struct LaneLaw {
            is_watched == other.is_watched && segments == other.segments && h == other.h;
   }
 };
+
+/// Values in a record: only those that cables of this law have.
+inline int record_size(const LaneLaw& law) {
+  return static_cast<int>(law.is_damped    ? LaneField::count
+                          : law.bends      ? LaneField::joint_damping
+                          : law.is_elastic ? LaneField::joint_stiffness
+                                           : LaneField::start_length);
+}
 
 constexpr int most_lanes = 8;
 
@@ -116,13 +127,17 @@ struct LaneWork {
   int last_node = 0;  ///< of an even number of nodes, padded by one that is held, after the end, where necessary
   bool padded = false;
   int lane = 0;                          ///< nodes that either lane eliminates; two are left in the middle
+  int record = 0;                        ///< its size
   double* records = nullptr;             ///< lane + 1
   double* eliminations = nullptr;        ///< lane
   MiddleElimination* middles = nullptr;  ///< a cable
   const LaneCable* cables = nullptr;
   LaneValues* values = nullptr;
 };
-constexpr int elimination_size = 38;  ///< numbers a lane
+/// Numbers a lane.
+inline int elimination_size(const LaneLaw& law) {
+  return law.bends ? 35 : 22;
+}
 
 /// For lanes of one width.
 struct LanePasses {

@@ -18,18 +18,22 @@ enum class Bends { not_at_all, freely, damped };
 
 /// What a matrix that is kept, and the way back, need of an elimination.
 template <class Real>
-struct Kept {
+struct KeptPlain {
   SymmetricOf<Real> node;
   VectorOf<Real> cross, node_along, direction, forward_node;
   Real multiplier, multiplier_along, forward_multiplier, first;
-  // Where it bends
+};
+template <class Real>
+struct KeptBending : KeptPlain<Real> {
   Real second;
   MatrixOf<Real> node_next;
   VectorOf<Real> multiplier_next;
 };
+template <bool bends, class Real>
+using Kept = std::conditional_t<bends, KeptBending<Real>, KeptPlain<Real>>;
 
 template <bool bends, class Real>
-[[gnu::always_inline]] inline void keep(const Elimination<Real>& e, Kept<Real>& kept) {
+[[gnu::always_inline]] inline void keep(const Elimination<Real>& e, Kept<bends, Real>& kept) {
   kept.node = e.node;
   kept.cross = e.cross;
   kept.node_along = e.node_along;
@@ -45,7 +49,7 @@ template <bool bends, class Real>
 }
 
 template <bool bends, class Real>
-[[gnu::always_inline]] inline void recall(const Kept<Real>& kept, Elimination<Real>& e) {
+[[gnu::always_inline]] inline void recall(const Kept<bends, Real>& kept, Elimination<Real>& e) {
   e.node = kept.node;
   e.cross = kept.cross;
   e.node_along = kept.node_along;
@@ -83,7 +87,7 @@ class Place {
 
 template <class Real>
 [[gnu::always_inline]] inline Place<Real> place_of(const LaneWork& w, int k) {
-  return Place<Real>(reinterpret_cast<Real*>(w.records) + k * static_cast<int>(LaneField::count));
+  return Place<Real>(reinterpret_cast<Real*>(w.records) + k * w.record);
 }
 
 template <class Real>
@@ -285,9 +289,9 @@ template <Bends bending, bool is_elastic, bool is_light, class Real>
 void sweep_lanes(const LaneWork& w) {
   constexpr bool bends = bending != Bends::not_at_all;
   constexpr Couplings couplings = bends ? Couplings::bending : Couplings::plain;
-  static_assert(sizeof(Kept<Real>) <= elimination_size * sizeof(Real));
+  static_assert(sizeof(Kept<bends, Real>) == (bends ? 35 : 22) * sizeof(Real));
   const int m = w.lane;
-  Kept<Real>* kept = reinterpret_cast<Kept<Real>*>(w.eliminations);
+  auto* kept = reinterpret_cast<Kept<bends, Real>*>(w.eliminations);
   const Real zero{};
   const VectorOf<Real> none{zero, zero, zero};
   // The node that is next to the middle in this lane's way is the other lane's.
@@ -365,11 +369,11 @@ void sweep_lanes(const LaneWork& w) {
     force_before = force;
     Elimination<Real> e;
     if constexpr (is_light) {
-      recall<bends>(kept[k], e);
+      recall<bends, Real>(kept[k], e);
     } else {
       eliminate<couplings>(plus_diagonal(SymmetricOf<Real>{zero, zero, zero, zero, zero, zero}, own), at[LaneField::movable],
                            NodeCouplings<Real>{span.middle, span.compliance, first, {}, second}, front, e);
-      keep<bends>(e, kept[k]);
+      keep<bends, Real>(e, kept[k]);
     }
     Forward<Real> f;
     forward<couplings>(e, unbalanced, span.gap, load, f);
@@ -420,7 +424,7 @@ void sweep_lanes(const LaneWork& w) {
     const Place<Real> at = place_of<Real>(w, k);
     const Real multiplier = solved.multiplier;
     Elimination<Real> e;
-    recall<bends>(kept[k], e);
+    recall<bends, Real>(kept[k], e);
     back<couplings>(e, Forward<Real>{kept[k].forward_node, kept[k].forward_multiplier}, solved);
     correct(at, solved.next, multiplier);
     const Real square = dot(solved.next, solved.next);

@@ -106,10 +106,12 @@ void LaneStepper::resize(const LaneLaw& law) {
   work_.padded = nodes % 2 == 1;
   work_.last_node = nodes + (work_.padded ? 1 : 0) - 1;
   work_.lane = (work_.last_node + 1) / 2 - 1;
+  work_.record = record_size(law);
   const std::size_t places = work_.lane + 1, lanes = passes_.lanes;
-  const std::size_t records = places * static_cast<std::size_t>(LaneField::count) * lanes;
+  const std::size_t records = places * work_.record * lanes;
   if (records_.size() < records) records_.resize(records);
-  if (eliminations_.size() < places * elimination_size * lanes) eliminations_.resize(places * elimination_size * lanes);
+  const std::size_t eliminations = places * elimination_size(law) * lanes;
+  if (eliminations_.size() < eliminations) eliminations_.resize(eliminations);
   cables_.resize(most_lanes / 2);
   middles_.resize(most_lanes / 2);
   clamps_.resize(most_lanes / 2);
@@ -196,10 +198,9 @@ void LaneStepper::set_values(int c, const LaneMember& member) {
 /// A held node without couplings, and the segment to it.
 void LaneStepper::set_pad(int c) {
   const int lane = 2 * c + 1;
-  for (int field = 0; field < static_cast<int>(LaneField::count); ++field) value(static_cast<LaneField>(field), 0, lane) = 0;
-  for (const LaneField field :
-       {LaneField::inertia, LaneField::target_length, LaneField::start_length, LaneField::axial_stiffness, LaneField::pivot})
-    value(field, 0, lane) = 1;
+  for (int field = 0; field < work_.record; ++field) value(static_cast<LaneField>(field), 0, lane) = 0;
+  value(LaneField::inertia, 0, lane) = value(LaneField::target_length, 0, lane) = value(LaneField::pivot, 0, lane) = 1;
+  if (work_.law.is_elastic) value(LaneField::start_length, 0, lane) = value(LaneField::axial_stiffness, 0, lane) = 1;
 }
 
 /// And its clamps, which are damped, too.
@@ -226,7 +227,7 @@ void LaneStepper::set_damping(int c, const LaneMember& member) {
 void LaneStepper::set_ends(int c, const LaneMember& member) {
   if (!work_.law.bends) return;
   at(LaneField::joint_stiffness, c, 0) = at(LaneField::joint_stiffness, c, work_.law.segments) = 0;
-  at(LaneField::joint_damping, c, 0) = at(LaneField::joint_damping, c, work_.law.segments) = 0;
+  if (work_.law.is_damped) at(LaneField::joint_damping, c, 0) = at(LaneField::joint_damping, c, work_.law.segments) = 0;
   for (const HeldDirection& clamp : member.substep.boundary.directions) at(LaneField::joint_stiffness, c, clamp.node) = 0;
 }
 
@@ -421,7 +422,7 @@ void LaneStepper::each_lane_of(int c, int segment, const Operation& operation) {
 }
 
 double& LaneStepper::value(LaneField field, int place, int lane) {
-  return records_[(place * static_cast<int>(LaneField::count) + static_cast<int>(field)) * passes_.lanes + lane];
+  return records_[(place * work_.record + static_cast<int>(field)) * passes_.lanes + lane];
 }
 
 double& LaneStepper::at(LaneField field, int c, int node) {

@@ -5,6 +5,7 @@
 
 #include "rod/length_projection.h"
 #include "rod/rod_frames.h"
+#include "world/flush_denormals.h"
 #include "world/island_stepper.h"
 
 namespace verlet_cable {
@@ -120,6 +121,7 @@ void Settling::find_obstacles() {
 }
 
 bool Settling::settle() {
+  const FlushDenormals flush_denormals;
   hold_still();
   find_obstacles();
   Approach approach(index_, may_touch());
@@ -129,6 +131,7 @@ bool Settling::settle() {
 }
 
 bool Settling::settle_start() {
+  const FlushDenormals flush_denormals;
   hold_still();
   memory_.spans.clear();
   const CableState hanging = cable_.state;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "verlet_cable/core/world.h"
+#include "world/flush_denormals.h"
 #include "world/implementation.h"
 #include "world/island_stepper.h"
 
@@ -21,6 +22,7 @@ void append(const std::vector<T>& more, std::vector<T>& all) {
 }  // namespace
 
 StepResult World::step(const BoundaryInputs& inputs) {
+  const FlushDenormals flush_denormals;
   Implementation& w = *implementation_;
   StepResult result;
   w.begin_step(inputs, result);
@@ -77,6 +79,7 @@ void World::Implementation::build_islands() {
 /// Islands do not know of each other: the result is the same whether one after the other or all at once.
 void World::Implementation::advance_islands() {
   const auto advance = [&](std::size_t from, std::size_t to) {
+    const FlushDenormals flush_denormals;
     IslandStepper stepper(state, workspaces.value.local(), cable_outcomes.value, most_lanes);
     step_islands(from, to, stepper);
     stepper.finish();

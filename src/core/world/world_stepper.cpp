@@ -3,6 +3,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "world/flush_denormals.h"
 #include "world/implementation.h"
 #include "world/island_stepper.h"
 
@@ -31,6 +32,7 @@ void WorldStepper::step(std::vector<WorldStep>& worlds, bool all_cores) {
 }
 
 void WorldStepper::Implementation::step(std::vector<WorldStep>& worlds, std::size_t from, std::size_t to) {
+  const FlushDenormals flush_denormals;
   Workspace& workspace = workspaces.local();
   std::vector<IslandStepper> steppers;
   steppers.reserve(to - from);  // what waits points to them
