@@ -12,7 +12,8 @@ namespace {
 /// Shorter cables have no room for two lanes.
 constexpr int fewest_segments = 4;
 constexpr int maximum_iterations = 40;
-constexpr int iterations_of_a_matrix = 3;
+/// A matrix serves so many iterations; what has not converged then moves so violently that every one needs its own.
+constexpr int iterations_of_first_matrix = 4;
 /// Sides of clamps; a cable with more of them takes its memory in its first step.
 constexpr int expected_clamps = 8;
 
@@ -259,7 +260,7 @@ void LaneStepper::hold(int c, const LaneMember& member) {
   }
 }
 
-/// Newton's method; a matrix serves some iterations, for all cables alike.
+/// Newton's method, with the same matrices whichever cables there are.
 void LaneStepper::iterate(std::vector<LaneMember>& members) {
   convergences_.clear();
   for (const LaneMember& member : members) convergences_.emplace_back(member.substep);
@@ -268,7 +269,7 @@ void LaneStepper::iterate(std::vector<LaneMember>& members) {
   for (int i = 0; i < maximum_iterations && active > 0; ++i) {
     if (work_.law.bends)
       for (int c = 0; c < count; ++c) bend_clamps(c, members[c]);
-    if (i % iterations_of_a_matrix == 0)
+    if (i == 0 || i >= iterations_of_first_matrix)
       passes_.sweep(work_);
     else
       passes_.light_sweep(work_);
