@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -162,6 +163,41 @@ TEST(FrameBuffer, ChainsOfStaticAndDynamicTransforms) {
   buffer.clear();
   EXPECT_FALSE(buffer.newest("finger").has_value());
   EXPECT_EQ(buffer.newest("post"), 0) << "static transforms are not sent again";
+}
+
+TEST(FrameBuffer, KnowsTheTransformsOnWhichAFrameDepends) {
+  FrameBuffer buffer("base");
+  const auto insert = [&](const std::string& child, const std::string& parent, double stamp, bool is_static = false) {
+    ReceivedTransform received = good();
+    received.is_static = is_static;
+    received.transform.child_frame_id = child;
+    received.transform.header.frame_id = parent;
+    received.transform.header.stamp = ros::Time(stamp);
+    return buffer.insert(received);
+  };
+  using Names = std::set<std::string>;
+  EXPECT_EQ(buffer.transforms_of("hand"), Names{});
+  EXPECT_TRUE(insert("hand", "arm", 5));
+  EXPECT_TRUE(insert("/arm", "/world", 5));
+  EXPECT_TRUE(insert("other", "world", 5));
+  EXPECT_TRUE(insert("base", "world", 0, true));
+  EXPECT_EQ(buffer.transforms_of("hand"), (Names{"arm", "base", "hand"}));
+  EXPECT_EQ(buffer.transforms_of("world"), Names{"base"});
+  const int version = buffer.tree_version();
+  EXPECT_TRUE(insert("hand", "arm", 6));
+  EXPECT_EQ(buffer.tree_version(), version);
+  EXPECT_TRUE(insert("hand", "other", 7));
+  EXPECT_NE(buffer.tree_version(), version);
+  EXPECT_EQ(buffer.transforms_of("hand"), (Names{"base", "hand", "other"}));
+  // What comes late is not where the frame is now.
+  EXPECT_TRUE(insert("hand", "arm", 6.5));
+  EXPECT_EQ(buffer.transforms_of("hand"), (Names{"base", "hand", "other"}));
+  buffer.see_from("other");
+  EXPECT_NE(buffer.tree_version(), version);
+  EXPECT_EQ(buffer.transforms_of("hand"), (Names{"hand", "other"}));
+  // In a circle
+  insert("other", "hand", 8);
+  EXPECT_EQ(buffer.transforms_of("hand"), (Names{"hand", "other"}));
 }
 
 TEST(FrameBuffer, NamesFramesThatAreStaticAndNot) {

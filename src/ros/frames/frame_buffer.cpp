@@ -23,10 +23,6 @@ const ros::WallDuration log_period(5.0);  // of each frame
 constexpr std::size_t most_frames = 20000;
 constexpr std::size_t most_refused = 100;  // that are remembered
 
-std::string without_slash(const std::string& frame) {
-  return frame.substr(frame.find('/') == 0 ? 1 : 0);
-}
-
 Pose to_pose(const geometry_msgs::Transform& transform) {
   const auto& t = transform.translation;
   const auto& r = transform.rotation;
@@ -34,6 +30,10 @@ Pose to_pose(const geometry_msgs::Transform& transform) {
 }
 
 }  // namespace
+
+std::string without_slash(const std::string& frame) {
+  return frame.substr(frame.find('/') == 0 ? 1 : 0);
+}
 
 std::string transform_problem(const ReceivedTransform& received, Nanoseconds now) {
   // The tolerance that tf2 has on the squared length; it would refuse the same without saying so to us.
@@ -89,9 +89,17 @@ bool FrameBuffer::insert(const ReceivedTransform& received, Nanoseconds now) {
     Nanoseconds& newest = newest_[child];
     const Nanoseconds stamp = from_ros_time(received.transform.header.stamp);
     if (stamp == newest || stamp < newest - memory) return false;
+    if (stamp > newest) note_parent(child, without_slash(received.transform.header.frame_id));
     newest = std::max(newest, stamp);
+  } else {
+    note_parent(child, without_slash(received.transform.header.frame_id));
   }
   return buffer_.setTransform(received.transform, "verlet_cable", received.is_static);
+}
+
+void FrameBuffer::see_from(const std::string& fixed_frame) {
+  fixed_frame_ = fixed_frame;
+  ++tree_version_;
 }
 
 void FrameBuffer::refuse(const std::string& child, const std::string& problem) {
@@ -126,6 +134,13 @@ void FrameBuffer::note_kind(const std::string& child, bool is_static) {
         "start the node again",
         quoted(child).c_str());
   }
+}
+
+void FrameBuffer::note_parent(const std::string& child, const std::string& parent) {
+  std::string& known = parents_[child];
+  if (known == parent) return;
+  known = parent;
+  ++tree_version_;
 }
 
 void FrameBuffer::note_source(const std::string& child, const std::string& source) {
@@ -170,6 +185,16 @@ std::optional<Nanoseconds> FrameBuffer::newest(const std::string& frame) const {
   } catch (const std::runtime_error&) {
     return std::nullopt;
   }
+}
+
+std::set<std::string> FrameBuffer::transforms_of(const std::string& frame) const {
+  std::set<std::string> transforms;
+  for (const std::string& from : {frame, fixed_frame_}) {
+    // Frames may have come in a circle; tf2 says no pose then.
+    for (auto edge = parents_.find(from); edge != parents_.end() && transforms.insert(edge->first).second;)
+      edge = parents_.find(edge->second);
+  }
+  return transforms;
 }
 
 }  // namespace verlet_cable

@@ -15,6 +15,9 @@
 
 namespace verlet_cable {
 
+/// A frame's name as tf2 has it: older programs send it with a leading slash.
+std::string without_slash(const std::string& frame);
+
 /// Why a transform cannot be used; empty if it can. Refused are values that are not finite, quaternions that are not of length
 /// one, missing, endless or equal frame names, and a transform over time without a stamp, or with one that is further ahead of
 /// ROS time `now` than transforms are kept: tf2 would take everything else for too old. `now` is 0 where there is no time.
@@ -29,7 +32,7 @@ class FrameBuffer {
 
   /// Whether the transform is in the tree now. What is wrong with it is logged now and then, and counted.
   bool insert(const ReceivedTransform& received, Nanoseconds now = 0);
-  void see_from(const std::string& fixed_frame) { fixed_frame_ = fixed_frame; }
+  void see_from(const std::string& fixed_frame);
   /// Forgets everything but static transforms.
   void clear();
 
@@ -37,6 +40,11 @@ class FrameBuffer {
   std::optional<Pose> pose(const std::string& frame, Nanoseconds time) const;
   /// The newest time at which the frame is known; 0 for one that does not depend on time; none where it is not connected.
   std::optional<Nanoseconds> newest(const std::string& frame) const;
+
+  /// The child frames of the transforms between a frame and the fixed frame, and of those above both: `newest` changes with
+  /// these only.
+  std::set<std::string> transforms_of(const std::string& frame) const;
+  int tree_version() const { return tree_version_; }  ///< another number: `transforms_of` may be others
 
   const std::map<std::string, std::string>& refused() const {
     return refused_;
@@ -51,6 +59,7 @@ class FrameBuffer {
   void refuse(const std::string& child, const std::string& problem);
   bool know(const std::string& frame);
   void note_kind(const std::string& child, bool is_static);
+  void note_parent(const std::string& child, const std::string& parent);
   void note_source(const std::string& child, const std::string& source);
 
   std::string fixed_frame_;
@@ -59,10 +68,12 @@ class FrameBuffer {
   std::map<std::string, bool> static_;  ///< by child frame: whether it came as a static one first
   std::set<std::string> mixed_;
   std::map<std::string, Nanoseconds> newest_;                            ///< by child frame, dynamic transforms
+  std::map<std::string, std::string> parents_;                           ///< by child frame, as in its newest transform
   std::map<std::string, std::map<std::string, ros::WallTime>> sources_;  ///< by child frame and node: when it last came
   std::map<std::string, std::string> refused_;
   std::map<std::string, ros::WallTime> logged_;  ///< by child frame, when a refusal was last logged
   int refused_count_ = 0;
+  int tree_version_ = 0;
 };
 
 }  // namespace verlet_cable

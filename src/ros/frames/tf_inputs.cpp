@@ -48,6 +48,7 @@ void TfInputs::receive(Nanoseconds ros_now) {
   const ros::WallTime now = ros::WallTime::now();
   while (!recent_.empty() && recent_.front().first + longest_overtaking < now) recent_.pop_front();
   for (ReceivedTransform& received : listener_.take()) received_.push_back(std::move(received));
+  if (!received_.empty()) find_followers();
   // The rest waits for the next call: however much somebody sends, others do not wait.
   for (; !received_.empty() && ros::WallTime::now() - now < longest_receiving; received_.pop_front()) {
     insert(received_.front(), ros_now);
@@ -57,7 +58,17 @@ void TfInputs::receive(Nanoseconds ros_now) {
 
 void TfInputs::insert(const ReceivedTransform& received, Nanoseconds now) {
   if (!buffer_.insert(received, now)) return;
-  for (Track& track : tracks_) update_history(track);
+  if (buffer_.tree_version() != followers_version_) find_followers();
+  const auto moved = followers_.find(without_slash(received.transform.child_frame_id));
+  if (moved == followers_.end()) return;
+  for (const int frame : moved->second) update_history(tracks_[frame]);
+}
+
+void TfInputs::find_followers() {
+  followers_.clear();
+  followers_version_ = buffer_.tree_version();
+  for (std::size_t i = 0; i < tracks_.size(); ++i)
+    for (const std::string& child : buffer_.transforms_of(tracks_[i].name)) followers_[child].push_back(static_cast<int>(i));
 }
 
 void TfInputs::update_history(Track& track) const {
@@ -85,6 +96,7 @@ void TfInputs::restart(Nanoseconds now, bool forget) {
     }
     update_history(track);
   }
+  find_followers();
   for (const auto& [arrival, received] : recent_) {
     if (from_ros_time(received.transform.header.stamp) <= now + longest_ahead) insert(received, now);
   }

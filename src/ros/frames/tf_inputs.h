@@ -3,6 +3,7 @@
 #include <ros/ros.h>
 
 #include <deque>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -111,6 +112,7 @@ class TfInputs {
   };
 
   void insert(const ReceivedTransform& received, Nanoseconds now);
+  void find_followers();
   void update_history(Track& track) const;
   const Track* find_track(const std::string& frame) const;
   Track track_from(const std::string& frame, const FrameInput& at, Nanoseconds time) const;
@@ -130,8 +132,10 @@ class TfInputs {
   double max_frame_speed_ = infinity;
   bool approaches_ = true;  ///< frames that come back
   int scene_frames_ = 0;
-  std::vector<Track> tracks_;  ///< by frame id; the first is the fixed frame
-  BoundaryInputs inputs_;      ///< by frame id
+  std::vector<Track> tracks_;                          ///< by frame id; the first is the fixed frame
+  std::map<std::string, std::vector<int>> followers_;  ///< by child frame of a transform: the frame ids it moves
+  int followers_version_ = -1;                         ///< of the tree, for which they hold
+  BoundaryInputs inputs_;                              ///< by frame id
   std::vector<FrameChange> changes_;
 };
 

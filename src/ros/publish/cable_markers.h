@@ -21,7 +21,8 @@ struct CableLook {
 ///
 /// Style line: a LINE_STRIP through all centers. Style tube: a TRIANGLE_LIST, with rings where the cable bends or changes its
 /// color, so that straight stretches are off its line by no more than half a millimetre, or a tenth of the radius of thin ones,
-/// and turn against each other by no more than a fifth of a radian, where the cable has nodes enough for it.
+/// and turn against each other by no more than a fifth of a radian, a quarter in the sharpest bends, where the cable has nodes
+/// enough for it.
 ///
 /// Where all tubes together would take more than 15000 corners of triangles (0.6 MB), and of a cable that alone would take more
 /// than 7500, the tube is drawn as a line, as wide as the tube and through the same rings. In rviz, which draws triangles that
