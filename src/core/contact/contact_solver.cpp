@@ -31,6 +31,8 @@ constexpr int maximum_coupling_iterations = 60;
 /// part of what is tolerated.
 constexpr double followed = 0.03;
 constexpr double followed_part = 0.2;
+/// In radii: what is no deeper in each other than by one and moves by less passes through nothing.
+constexpr double short_way = 0.5;
 constexpr int maximum_followings = 20;
 
 inline Vector3 between(const VectorArray& nodes, int i, double fraction) {
@@ -129,6 +131,11 @@ bool ContactSolver::crosses(const std::vector<Participant>& participants, const 
     if (!joins_cables(touch)) return false;
     const Participant &a = participants[index_[touch.point.cable]], &b = participants[index_[touch.other.cable]];
     const int i = touch.point.segment, j = touch.other.segment;
+    const auto way = [](const Participant& p, int segment) {
+      const VectorArray& u = p.stepper->displacement();
+      return std::sqrt(std::max(get(u, segment).squaredNorm(), get(u, segment + 1).squaredNorm()));
+    };
+    if (way(a, i) + way(b, j) < short_way * touch.radius && !touch.inside && touch.gap > -touch.radius) return false;
     const auto end = [](const Participant& p, int node) -> Vector3 {
       return p.state->positions[node] + get(p.stepper->displacement(), node);
     };

@@ -11,8 +11,11 @@ namespace {
 
 /// Segments of one cable touch only where the cable between them is longer than this, in radii: it cannot bend more sharply.
 constexpr double bend_radii = 2.5;
-/// A margin of so many segment lengths lets nodes move for a while until the pairs have to be found anew.
+/// A margin lets nodes move for so many substeps until the pairs have to be found anew,
+constexpr double margin_substeps = 20;
+/// by no more than so many segment lengths, or a radius, and no less than this part of a radius.
 constexpr double margin_segments = 0.5;
+constexpr double least_margin = 0.2;
 
 double largest_speed(const std::vector<SimulatedCable>& cables, const std::vector<int>& group) {
   double square = 0;
@@ -60,7 +63,8 @@ double find_margin(const std::vector<SimulatedCable>& cables, const std::vector<
         std::max(longest, *std::max_element(cables[cable].state.rest_lengths.begin(), cables[cable].state.rest_lengths.end()));
     thickest = std::max(thickest, cables[cable].model->material.radius);
   }
-  return std::max(thickest, margin_segments * longest) + 2 * h * largest_speed(cables, group);
+  const double way = h * largest_speed(cables, group);
+  return std::clamp(margin_substeps * way, least_margin * thickest, std::max(thickest, margin_segments * longest)) + 2 * way;
 }
 
 }  // namespace
