@@ -21,8 +21,8 @@ constexpr double anchored_length = 0.05;
 constexpr double stopping_stiffness = 2;
 /// Relative, of distances.
 constexpr double distance_rounding = 1e-6;
-/// Of an angle at which a cable is as good as straight.
-constexpr double small_sine = 1e-3;
+/// Of the sine of an angle for which series do.
+constexpr double small_square = 0.01;
 /// Deeper than this, in radii, nothing comes through a surface before its contact is found.
 constexpr double deepest_arrival = 0.5;
 
@@ -49,8 +49,14 @@ double friction_of_arc(double friction, const CableState& state, int node, const
   const Vector3 after = state.positions[node + 1] - state.positions[node];
   const double sine = std::min(0.5 * (normal.dot(before) / before.norm() - normal.dot(after) / after.norm()), 1.0);
   if (!(sine > 0)) return friction;
-  // What is left out of the series is no more than a part in 10^11.
-  if (sine < small_sine) return friction * (1 - sine * sine * (1 + friction * friction) / 3);
+  const double square = sine * sine;
+  if (square < small_square && friction * friction * square < small_square) {
+    // The same in series of asin, tan and tanh, to a part in 10^9.
+    const double arc = 1 + square * (1.0 / 6 + square * (3.0 / 40 + square * (5.0 / 112)));
+    const double turned = friction * friction * square * arc * arc;
+    const double tanh = 1 - turned * (1.0 / 3 - turned * (2.0 / 15 - turned * (17.0 / 315)));
+    return friction * arc * tanh * std::sqrt(1 - square);
+  }
   const double half_angle = std::asin(sine);
   return std::tanh(friction * half_angle) / std::tan(half_angle);
 }

@@ -15,7 +15,7 @@ constexpr double velocity_tolerance = 4e-3;
 constexpr double fastest_convergence = 0.1;
 constexpr double slow_convergence = 0.2;
 /// Where friction turns round slowly, a larger error is as good after so many iterations.
-constexpr int patient_iterations = 10;
+constexpr int patient_iterations = 6;
 constexpr double impatience = 30;
 /// A correction may turn the forces along it round to this part of what they were.
 constexpr double turned_round = 0.5;
@@ -29,7 +29,7 @@ constexpr double negligible_part = 0.1;
 constexpr int maximum_coupling_iterations = 60;
 /// Friction has followed the normal forces when displacements at the contacts change by less than this, relatively, or by this
 /// part of what is tolerated.
-constexpr double followed = 0.03;
+constexpr double followed = 0.1;
 constexpr double followed_part = 0.2;
 /// In radii: what is no deeper in each other than by one and moves by less passes through nothing.
 constexpr double short_way = 0.5;

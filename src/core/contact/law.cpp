@@ -19,6 +19,7 @@ constexpr double gentle_velocity = 0.5;  // [m/s]
 constexpr double contact_steps = 2;
 /// A linearisation is as good as the law if the forces differ by no more than this, relatively.
 constexpr double linear_enough = 0.05;
+constexpr double slope_enough = 0.3;
 
 struct ForceAndSlope {
   double force = 0, slope = 0;
@@ -31,6 +32,18 @@ ForceAndSlope depth_law(double depth, const Touch& touch) {
   const double slope = touch.base_stiffness + scale * x * (2 + 6 * y4);
   const double force = touch.base_stiffness * x * touch.radius + scale * touch.radius * x * x * (1 + y4);
   return {force + slope * (depth - x * touch.radius), slope};
+}
+
+/// [m] At which the law has a force [N], within some percent.
+double depth_of(double force, const Touch& touch) {
+  const double scaled = force / (contact_modulus * touch.radius * touch.radius);
+  double depth = touch.radius * std::min(std::sqrt(scaled), std::cbrt(std::sqrt(scaled) * soft_depth * soft_depth));
+  if (depth > deepest * touch.radius) depth = force / depth_law(deepest * touch.radius, touch).force * deepest * touch.radius;
+  for (int i = 0; i < 2; ++i) {
+    const ForceAndSlope law = depth_law(depth, touch);
+    depth += (force - law.force) / law.slope;
+  }
+  return std::max(depth, 0.0);
 }
 
 }  // namespace
@@ -74,11 +87,16 @@ bool evaluate_touch(const Vector3& w, Touch& touch) {
   }
   const ForceAndSlope law = depth_law(depth, touch);
   const double linear_force = touch.depth_force + touch.stiffness * (depth - touch.depth);
-  const bool bent = std::abs(linear_force - law.force) > linear_enough * law.force;
-  if (bent) {
+  bool bent = std::abs(linear_force - law.force) > linear_enough * law.force;
+  if (bent || std::abs(touch.stiffness - law.slope) > slope_enough * law.slope) {
+    bent = true;
+    touch.stiffness = law.slope;
+    if (linear_force > 0) {
+      const double d = depth_of(linear_force, touch), f = depth_law(d, touch).force;
+      if (std::abs(depth - d) > 1e-3 * depth) touch.stiffness = (law.force - f) / (depth - d);
+    }
     touch.depth = depth;
     touch.depth_force = law.force;
-    touch.stiffness = law.slope;
   }
   touch.normal_force = law.force;
   Vector3 trial = touch.stuck_force - touch.stiffness * e;

@@ -104,26 +104,22 @@ void SegmentGrid::fill(const std::vector<SimulatedCable>& cables, const std::vec
     }
     ++node;
   }
-  std::size_t buckets = 1;
-  while (buckets < 2 * entries_.size()) buckets *= 2;
-  buckets_.assign(buckets, -1);
   const double cell = 2 * largest;
-  for (int k = static_cast<int>(entries_.size()) - 1; k >= 0; --k) {
-    Entry& entry = entries_[k];
+  for (Entry& entry : entries_)
     for (int axis = 0; axis < 3; ++axis) {
       constexpr double far = 1e9;  // what is further away shares the outermost cells
       entry.cell[axis] = static_cast<std::int32_t>(std::floor(std::clamp(entry.middle[axis] / cell, -far, far)));
     }
-    int& first = buckets_[bucket(entry.cell)];
-    entry.next = first;
-    first = k;
-  }
 }
 
 void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules& rules, double reach, SegmentPairs& found) {
   found.pairs.clear();
-  for (int a = 0; a < static_cast<int>(entries_.size()); ++a) {
-    const Entry& first = entries_[a];
+  std::size_t buckets = 1;
+  while (buckets < 2 * entries_.size()) buckets *= 2;
+  buckets_.assign(buckets, -1);
+  // From the last one on, so that each meets those after it alone.
+  for (int a = static_cast<int>(entries_.size()) - 1; a >= 0; --a) {
+    Entry& first = entries_[a];
     const SimulatedCable& cable = cables[first.id.cable];
     const double radius = cable.model->material.radius;
     near_.clear();
@@ -133,7 +129,7 @@ void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules
           const std::array<std::int32_t, 3> cell{first.cell[0] + dx, first.cell[1] + dy, first.cell[2] + dz};
           for (int b = buckets_[bucket(cell)]; b >= 0; b = entries_[b].next) {
             const Entry& second = entries_[b];
-            if (b <= a || second.cell != cell) continue;
+            if (second.cell[0] != cell[0] || second.cell[1] != cell[1] || second.cell[2] != cell[2]) continue;
             const double sum = first.radius + second.radius;
             if ((first.middle - second.middle).squaredNorm() > sum * sum) continue;
             const bool same = first.id.cable == second.id.cable;
@@ -142,7 +138,10 @@ void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules
             near_.push_back(b);
           }
         }
-    std::sort(near_.begin(), near_.end());
+    int& own_bucket = buckets_[bucket(first.cell)];
+    first.next = own_bucket;
+    own_bucket = a;
+    std::sort(near_.rbegin(), near_.rend());
     const Vector3 &start = found.places[first.node], &end = found.places[first.node + 1];
     for (const int b : near_) {
       const Entry& second = entries_[b];
@@ -154,6 +153,7 @@ void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules
       if (distance <= far) found.pairs.push_back({first.id, second.id, first.node, second.node, distance});
     }
   }
+  std::reverse(found.pairs.begin(), found.pairs.end());
 }
 
 std::size_t SegmentGrid::bucket(const std::array<std::int32_t, 3>& cell) const {
