@@ -444,8 +444,7 @@ void ContactSolver::put_solutions(double last_step, std::vector<Participant>& pa
   for (std::size_t k = 0; k < participants.size(); ++k) {
     if (!work_[k].coupled || participants[k].stepper->is_whole_rod()) continue;
     Work& work = work_[k];
-    each_component(
-        [&](auto component) { advance(last_step, work.direction.*component, work.correction.*component); });
+    each_component([&](auto component) { advance(last_step, work.direction.*component, work.correction.*component); });
     advance(last_step, work.multiplier_direction, work.multiplier);
     participants[k].stepper->set_correction(work.correction, work.multiplier);
   }

@@ -19,7 +19,10 @@ constexpr double gentle_velocity = 0.5;  // [m/s]
 constexpr double contact_steps = 2;
 /// A linearisation is as good as the law if the forces differ by no more than this, relatively.
 constexpr double linear_enough = 0.05;
+/// And if its slope differs from the law's by no more than this, relatively.
 constexpr double slope_enough = 0.3;
+/// Relative, of depths between which a secant is taken.
+constexpr double least_secant = 1e-3;
 
 struct ForceAndSlope {
   double force = 0, slope = 0;
@@ -44,6 +47,16 @@ double depth_of(double force, const Touch& touch) {
     depth += (force - law.force) / law.slope;
   }
   return std::max(depth, 0.0);
+}
+
+/// [N/m] With which the law is linearised at a depth, where cables have come to press with a force [N] by the linearisation
+/// before. Along its tangent the law is walked down in steps of a sixth, as it grows with the sixth power; the force that the
+/// cables press with hardly changes meanwhile, so that the secant to the depth of that force leads there at once.
+double secant(double depth, const ForceAndSlope& law, double pressing_force, const Touch& touch) {
+  if (!(pressing_force > 0)) return law.slope;
+  const double wanted = depth_of(pressing_force, touch), way = depth - wanted;
+  if (std::abs(way) <= least_secant * depth) return law.slope;
+  return (law.force - depth_law(wanted, touch).force) / way;
 }
 
 }  // namespace
@@ -87,14 +100,10 @@ bool evaluate_touch(const Vector3& w, Touch& touch) {
   }
   const ForceAndSlope law = depth_law(depth, touch);
   const double linear_force = touch.depth_force + touch.stiffness * (depth - touch.depth);
-  bool bent = std::abs(linear_force - law.force) > linear_enough * law.force;
-  if (bent || std::abs(touch.stiffness - law.slope) > slope_enough * law.slope) {
-    bent = true;
-    touch.stiffness = law.slope;
-    if (linear_force > 0) {
-      const double d = depth_of(linear_force, touch), f = depth_law(d, touch).force;
-      if (std::abs(depth - d) > 1e-3 * depth) touch.stiffness = (law.force - f) / (depth - d);
-    }
+  const bool bent = std::abs(linear_force - law.force) > linear_enough * law.force ||
+                    std::abs(touch.stiffness - law.slope) > slope_enough * law.slope;
+  if (bent) {
+    touch.stiffness = secant(depth, law, linear_force, touch);
     touch.depth = depth;
     touch.depth_force = law.force;
   }
