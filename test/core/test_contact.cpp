@@ -309,6 +309,23 @@ TEST(ContactLaw, StiffensWithDepthAndKeepsFrictionInItsCone) {
   EXPECT_EQ(touch.force, Vector3::Zero());
 }
 
+TEST(ContactLaw, DeepContactIsLedToTheDepthOfItsForceInOneIteration) {
+  for (const double force : {0.1, 1.0, 10.0, 100.0}) {
+    Touch touch;
+    touch.radius = radius;
+    touch.base_stiffness = 100;
+    anticipate(1e-3, contact_time(1e-3), Vector3::Zero(), touch);
+    start_touch(touch);
+    touch.stiffness = force / (0.3 * radius);  // by which the cables have come so deep with this force
+    evaluate_touch(Vector3(0, 0, -0.3 * radius / touch.rate), touch);
+    EXPECT_GT(touch.normal_force, 5 * force);
+    const double next = touch.depth - (touch.normal_force - force) / touch.stiffness;
+    evaluate_touch(Vector3(0, 0, -next / touch.rate), touch);
+    // The depth of a force is found to some percent; the tangent would leave twenty times the force, and more.
+    EXPECT_NEAR(touch.normal_force, force, 0.2 * force);
+  }
+}
+
 TEST(SegmentDistance, AgreesWithASearch) {
   unsigned seed = 1;
   const auto random = [&] { return (seed = seed * 1664525u + 1013904223u) / 4294967296.0 - 0.5; };

@@ -15,22 +15,24 @@ constexpr double velocity_tolerance = 4e-3;
 constexpr double fastest_convergence = 0.1;
 constexpr double slow_convergence = 0.2;
 /// Where friction turns round slowly, a larger error is as good after so many iterations.
-constexpr int patient_iterations = 10;
+constexpr int patient_iterations = 6;
 constexpr double impatience = 30;
 /// A correction may turn the forces along it round to this part of what they were.
 constexpr double turned_round = 0.5;
 constexpr int maximum_shortenings = 8;
 /// Conjugate gradients end when the energy of what is missing is less than this, relative to that of the whole correction and
 /// of the substep's largest.
-constexpr double coupling_tolerance = 1e-3;
+constexpr double coupling_tolerance = 1e-2;
 constexpr double coupling_precision = 1e-10;
 /// Or when it is this part of what moves a segment by no more than is tolerated.
 constexpr double negligible_part = 0.1;
 constexpr int maximum_coupling_iterations = 60;
 /// Friction has followed the normal forces when displacements at the contacts change by less than this, relatively, or by this
 /// part of what is tolerated.
-constexpr double followed = 0.03;
+constexpr double followed = 0.1;
 constexpr double followed_part = 0.2;
+/// In radii: what is no deeper in each other than by one and moves by less passes through nothing.
+constexpr double short_way = 0.5;
 constexpr int maximum_followings = 20;
 
 inline Vector3 between(const VectorArray& nodes, int i, double fraction) {
@@ -65,6 +67,28 @@ double dot(const VectorArray& a, const VectorArray& b, int count) {
     for (int i = 0; i < count; ++i) sum += (a.*component)[i] * (b.*component)[i];
   });
   return sum;
+}
+
+/// place += step * direction
+void advance(double step, const std::vector<double>& direction, std::vector<double>& place) {
+  const double* p = direction.data();
+  double* x = place.data();
+  const std::size_t count = place.size();
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) x[i] += step * p[i];
+}
+
+/// The same; then direction = found + ratio * direction
+void turn(double step, double ratio, const std::vector<double>& found, std::vector<double>& direction,
+          std::vector<double>& place) {
+  const double* z = found.data();
+  double *p = direction.data(), *x = place.data();
+  const std::size_t count = place.size();
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) {
+    x[i] += step * p[i];
+    p[i] = z[i] + ratio * p[i];
+  }
 }
 
 int nodes(const Participant& p) {
@@ -107,6 +131,11 @@ bool ContactSolver::crosses(const std::vector<Participant>& participants, const 
     if (!joins_cables(touch)) return false;
     const Participant &a = participants[index_[touch.point.cable]], &b = participants[index_[touch.other.cable]];
     const int i = touch.point.segment, j = touch.other.segment;
+    const auto way = [](const Participant& p, int segment) {
+      const VectorArray& u = p.stepper->displacement();
+      return std::sqrt(std::max(get(u, segment).squaredNorm(), get(u, segment + 1).squaredNorm()));
+    };
+    if (way(a, i) + way(b, j) < short_way * touch.radius && !touch.inside && touch.gap > -touch.radius) return false;
     const auto end = [](const Participant& p, int node) -> Vector3 {
       return p.state->positions[node] + get(p.stepper->displacement(), node);
     };
@@ -246,7 +275,7 @@ void ContactSolver::follow_friction(std::vector<Participant>& participants, cons
   }
   if (slips_.empty()) return;
   for (std::size_t k = 0; k < participants.size(); ++k)
-    if (work_[k].slips) work_[k].load = participants[k].stepper->system().load;
+    if (work_[k].slips) work_[k].kept_load = participants[k].stepper->system().load;
   double last = follow_slips(participants);
   bool follows = true;
   for (int i = 0; i < maximum_followings && follows && last > 0; ++i) {
@@ -257,7 +286,7 @@ void ContactSolver::follow_friction(std::vector<Participant>& participants, cons
     last = way;
   }
   for (std::size_t k = 0; k < participants.size(); ++k)
-    if (work_[k].slips) std::swap(participants[k].stepper->system().load, work_[k].load);
+    if (work_[k].slips) std::swap(participants[k].stepper->system().load, work_[k].kept_load);
   // Where it gets away from them, without.
   if (!follows) solve_slipping(participants);
 }
@@ -300,22 +329,21 @@ void ContactSolver::couple(std::vector<Participant>& participants) {
   for (Coupling& c : couplings_) {
     c.first.residual = c.matrix * displacement_of(c.second);
     c.second.residual = c.matrix * displacement_of(c.first);
-    for (Side* side : {&c.first, &c.second}) {
-      side->direction = side->image = side->correction = Vector3::Zero();
-      work_[side->participant].coupled = true;
-    }
+    work_[c.first.participant].coupled = work_[c.second.participant].coupled = true;
   }
-  set_loads_aside(participants);
+  begin_solutions(participants);
+  exchange_loads(participants);
   largest_energy_ = std::max(largest_energy_, whole);
   const double enough = std::max({coupling_tolerance * whole, coupling_precision * largest_energy_, negligible_energy_});
 
-  double energy = 0;
-  bool improved = false;
+  double energy = 0, step = 0;
   for (int i = 0; i < maximum_coupling_iterations; ++i) {
     const double next_energy = precondition(participants);
     if (!(next_energy > enough)) break;
     const double ratio = i == 0 ? 0 : next_energy / energy;
     energy = next_energy;
+    turn_directions(step, ratio, participants);
+    step = 0;
     double curvature = 0;
     for (Coupling& c : couplings_) {
       for (Side* side : {&c.first, &c.second}) {
@@ -326,26 +354,23 @@ void ContactSolver::couple(std::vector<Participant>& participants) {
                    2 * c.first.direction.dot(c.matrix * c.second.direction);
     }
     if (!(curvature > 0)) break;
-    const double step = energy / curvature;
-    improved = true;
+    step = energy / curvature;
     for (Coupling& c : couplings_) {
       c.first.residual -= step * (c.first.image - c.matrix * c.second.direction);
       c.second.residual -= step * (c.second.image - c.matrix * c.first.direction);
       for (Side* side : {&c.first, &c.second}) side->correction += step * side->image;
     }
   }
-  take_loads_back(participants, improved);
+  clear_loads(participants);
+  exchange_loads(participants);
+  put_solutions(step, participants);
+  solve_whole_rods(participants);
 }
 
 /// Solves the cables' own systems for the residuals; their energy.
 double ContactSolver::precondition(std::vector<Participant>& participants) {
-  for (const Coupling& c : couplings_)
-    for (const Side* side : {&c.first, &c.second}) {
-      VectorArray& load = participants[side->participant].stepper->system().load;
-      set(load, side->segment, Vector3::Zero());
-      set(load, side->segment + 1, Vector3::Zero());
-    }
-  load(&Side::residual, participants);
+  clear_loads(participants);
+  load_residuals(participants);
   for (std::size_t k = 0; k < participants.size(); ++k)
     if (work_[k].coupled) participants[k].stepper->solve_linear();
   double energy = 0;
@@ -357,47 +382,87 @@ double ContactSolver::precondition(std::vector<Participant>& participants) {
   return energy;
 }
 
-/// Adds forces at the contacts to the loads.
-void ContactSolver::load(Vector3 Side::*force, std::vector<Participant>& participants) const {
-  for (const Coupling& c : couplings_)
-    for (const Side* side : {&c.first, &c.second})
-      share(side->*force, side->segment, side->fraction, participants[side->participant].stepper->system().load);
-}
-
-/// Coupled cables are loaded by residuals alone.
-void ContactSolver::set_loads_aside(std::vector<Participant>& participants) {
+/// Takes the last step along the directions and turns them: the new one is what the cables have just found and `ratio` times the
+/// last one.
+void ContactSolver::turn_directions(double last_step, double ratio, const std::vector<Participant>& participants) {
   for (std::size_t k = 0; k < participants.size(); ++k) {
-    if (!work_[k].coupled) continue;
-    CableStepper& stepper = *participants[k].stepper;
-    work_[k].load = stepper.system().load;
-    work_[k].gap = stepper.system().gap;
-    work_[k].torque = stepper.torque();
-    work_[k].correction = stepper.correction();
-    work_[k].multiplier = stepper.multiplier_correction();
-    stepper.system().load.assign(work_[k].load.x.size(), 0.0);
-    std::fill(stepper.system().gap.begin(), stepper.system().gap.end(), 0.0);
-    std::fill(stepper.torque().begin(), stepper.torque().end(), 0.0);
+    if (!work_[k].coupled || participants[k].stepper->is_whole_rod()) continue;
+    Work& work = work_[k];
+    const CableStepper& stepper = *participants[k].stepper;
+    each_component([&](auto component) {
+      turn(last_step, ratio, stepper.correction().*component, work.direction.*component, work.correction.*component);
+    });
+    turn(last_step, ratio, stepper.multiplier_correction(), work.multiplier_direction, work.multiplier);
   }
 }
 
-/// Where that has `improved` the solutions, solves once more, for the loads and for what the contacts add to them.
-void ContactSolver::take_loads_back(std::vector<Participant>& participants, bool improved) {
+void ContactSolver::load_residuals(std::vector<Participant>& participants) const {
+  for (const Coupling& c : couplings_)
+    for (const Side* side : {&c.first, &c.second})
+      share(side->residual, side->segment, side->fraction, participants[side->participant].stepper->system().load);
+}
+
+/// The solutions that the cables have found alone are where improvement begins.
+void ContactSolver::begin_solutions(const std::vector<Participant>& participants) {
+  for (std::size_t k = 0; k < participants.size(); ++k) {
+    if (!work_[k].coupled) continue;
+    Work& work = work_[k];
+    CableStepper& stepper = *participants[k].stepper;
+    const std::size_t count = stepper.system().load.x.size();
+    if (work.load.x.size() != count) {
+      work.load.assign(count, 0.0);
+      work.gap.assign(stepper.system().gap.size(), 0.0);
+    }
+    if (work.torque.size() != stepper.torque().size()) work.torque.assign(stepper.torque().size(), 0.0);
+    if (stepper.is_whole_rod()) continue;
+    work.correction = stepper.correction();
+    work.multiplier = stepper.multiplier_correction();
+    work.direction.assign(count, 0.0);
+    work.multiplier_direction.assign(work.multiplier.size(), 0.0);
+  }
+}
+
+/// Coupled cables are loaded by residuals alone, and by their own loads again.
+void ContactSolver::exchange_loads(std::vector<Participant>& participants) {
   for (std::size_t k = 0; k < participants.size(); ++k) {
     if (!work_[k].coupled) continue;
     CableStepper& stepper = *participants[k].stepper;
-    stepper.system().load = work_[k].load;
+    std::swap(stepper.system().load, work_[k].load);
     std::swap(stepper.system().gap, work_[k].gap);
     std::swap(stepper.torque(), work_[k].torque);
   }
-  load(&Side::correction, participants);
+}
+void ContactSolver::clear_loads(std::vector<Participant>& participants) const {
   for (std::size_t k = 0; k < participants.size(); ++k) {
-    if (!work_[k].coupled) continue;
-    CableStepper& stepper = *participants[k].stepper;
-    if (improved || stepper.is_whole_rod())
-      stepper.solve_linear();
-    else
-      stepper.set_correction(work_[k].correction, work_[k].multiplier);
-    std::swap(stepper.system().load, work_[k].load);
+    VectorArray& load = participants[k].stepper->system().load;
+    if (work_[k].coupled) load.assign(load.x.size(), 0.0);
+  }
+}
+
+/// The improved solutions, which the cables have kept with a last step along the directions.
+void ContactSolver::put_solutions(double last_step, std::vector<Participant>& participants) {
+  for (std::size_t k = 0; k < participants.size(); ++k) {
+    if (!work_[k].coupled || participants[k].stepper->is_whole_rod()) continue;
+    Work& work = work_[k];
+    each_component([&](auto component) { advance(last_step, work.direction.*component, work.correction.*component); });
+    advance(last_step, work.multiplier_direction, work.multiplier);
+    participants[k].stepper->set_correction(work.correction, work.multiplier);
+  }
+}
+
+/// Whole rods have more unknowns than are kept: they are solved once more, with what the contacts add to their loads.
+void ContactSolver::solve_whole_rods(std::vector<Participant>& participants) {
+  const auto is_whole_rod = [&](std::size_t k) { return work_[k].coupled && participants[k].stepper->is_whole_rod(); };
+  for (std::size_t k = 0; k < participants.size(); ++k)
+    if (is_whole_rod(k)) work_[k].kept_load = participants[k].stepper->system().load;
+  for (const Coupling& c : couplings_)
+    for (const Side* side : {&c.first, &c.second})
+      if (is_whole_rod(side->participant))
+        share(side->correction, side->segment, side->fraction, participants[side->participant].stepper->system().load);
+  for (std::size_t k = 0; k < participants.size(); ++k) {
+    if (!is_whole_rod(k)) continue;
+    participants[k].stepper->solve_linear();
+    std::swap(participants[k].stepper->system().load, work_[k].kept_load);
   }
 }
 

@@ -32,15 +32,17 @@ class ContactSolver {
   void finish(std::vector<Participant>& participants) const;
 
  private:
-  /// The loads of one participant's own system, while the conjugate gradients solve it for others.
+  /// One participant, in the conjugate gradients.
   struct Work {
     bool coupled = false, slips = false;
-    VectorArray load;            // nodes
-    std::vector<double> gap;     // segments
-    std::vector<double> torque;  // of a whole rod: segments
-    // The solution for them
-    VectorArray correction;          // nodes
-    std::vector<double> multiplier;  // segments
+    // Its own loads meanwhile, and none while it has its own
+    VectorArray load;            // nodes [N]
+    std::vector<double> gap;     // segments [m^2]
+    std::vector<double> torque;  // of a whole rod: segments [N m]
+    VectorArray kept_load;       // nodes [N]: as it was before contacts added to it
+    // The solution so far and the direction in which it is improved
+    VectorArray correction, direction;                     // nodes [m]
+    std::vector<double> multiplier, multiplier_direction;  // segments [N/m]
   };
 
   /// One side of a contact, in the conjugate gradients: of forces and displacements at its point alone. Forces on other points
@@ -81,10 +83,14 @@ class ContactSolver {
   void follow_friction(std::vector<Participant>& participants, const std::vector<Touch>& touches);
   double follow_slips(std::vector<Participant>& participants);
   void solve_slipping(std::vector<Participant>& participants);
-  void set_loads_aside(std::vector<Participant>& participants);
-  void take_loads_back(std::vector<Participant>& participants, bool improved);
+  void exchange_loads(std::vector<Participant>& participants);
+  void begin_solutions(const std::vector<Participant>& participants);
+  void clear_loads(std::vector<Participant>& participants) const;
   double precondition(std::vector<Participant>& participants);
-  void load(Vector3 Side::*force, std::vector<Participant>& participants) const;
+  void turn_directions(double last_step, double ratio, const std::vector<Participant>& participants);
+  void put_solutions(double last_step, std::vector<Participant>& participants);
+  void load_residuals(std::vector<Participant>& participants) const;
+  void solve_whole_rods(std::vector<Participant>& participants);
   Participant& at(std::vector<Participant>& participants, const CablePoint& point) const;
   Side side_at(const CablePoint& point) const;
 

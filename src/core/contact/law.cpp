@@ -19,6 +19,10 @@ constexpr double gentle_velocity = 0.5;  // [m/s]
 constexpr double contact_steps = 2;
 /// A linearisation is as good as the law if the forces differ by no more than this, relatively.
 constexpr double linear_enough = 0.05;
+/// And if its slope differs from the law's by no more than this, relatively.
+constexpr double slope_enough = 0.3;
+/// Relative, of depths between which a secant is taken.
+constexpr double least_secant = 1e-3;
 
 struct ForceAndSlope {
   double force = 0, slope = 0;
@@ -31,6 +35,28 @@ ForceAndSlope depth_law(double depth, const Touch& touch) {
   const double slope = touch.base_stiffness + scale * x * (2 + 6 * y4);
   const double force = touch.base_stiffness * x * touch.radius + scale * touch.radius * x * x * (1 + y4);
   return {force + slope * (depth - x * touch.radius), slope};
+}
+
+/// [m] At which the law has a force [N], within some percent.
+double depth_of(double force, const Touch& touch) {
+  const double scaled = force / (contact_modulus * touch.radius * touch.radius);
+  double depth = touch.radius * std::min(std::sqrt(scaled), std::cbrt(std::sqrt(scaled) * soft_depth * soft_depth));
+  if (depth > deepest * touch.radius) depth = force / depth_law(deepest * touch.radius, touch).force * deepest * touch.radius;
+  for (int i = 0; i < 2; ++i) {
+    const ForceAndSlope law = depth_law(depth, touch);
+    depth += (force - law.force) / law.slope;
+  }
+  return std::max(depth, 0.0);
+}
+
+/// [N/m] With which the law is linearised at a depth, where cables have come to press with a force [N] by the linearisation
+/// before. Along its tangent the law is walked down in steps of a sixth, as it grows with the sixth power; the force that the
+/// cables press with hardly changes meanwhile, so that the secant to the depth of that force leads there at once.
+double secant(double depth, const ForceAndSlope& law, double pressing_force, const Touch& touch) {
+  if (!(pressing_force > 0)) return law.slope;
+  const double wanted = depth_of(pressing_force, touch), way = depth - wanted;
+  if (std::abs(way) <= least_secant * depth) return law.slope;
+  return (law.force - depth_law(wanted, touch).force) / way;
 }
 
 }  // namespace
@@ -74,11 +100,12 @@ bool evaluate_touch(const Vector3& w, Touch& touch) {
   }
   const ForceAndSlope law = depth_law(depth, touch);
   const double linear_force = touch.depth_force + touch.stiffness * (depth - touch.depth);
-  const bool bent = std::abs(linear_force - law.force) > linear_enough * law.force;
+  const bool bent = std::abs(linear_force - law.force) > linear_enough * law.force ||
+                    std::abs(touch.stiffness - law.slope) > slope_enough * law.slope;
   if (bent) {
+    touch.stiffness = secant(depth, law, linear_force, touch);
     touch.depth = depth;
     touch.depth_force = law.force;
-    touch.stiffness = law.slope;
   }
   touch.normal_force = law.force;
   Vector3 trial = touch.stuck_force - touch.stiffness * e;

@@ -11,8 +11,11 @@ namespace {
 
 /// Segments of one cable touch only where the cable between them is longer than this, in radii: it cannot bend more sharply.
 constexpr double bend_radii = 2.5;
-/// A margin of so many segment lengths lets nodes move for a while until the pairs have to be found anew.
+/// A margin lets nodes move for so many substeps until the pairs have to be found anew,
+constexpr double margin_substeps = 20;
+/// by no more than so many segment lengths, or a radius, and no less than this part of a radius.
 constexpr double margin_segments = 0.5;
+constexpr double least_margin = 0.2;
 
 double largest_speed(const std::vector<SimulatedCable>& cables, const std::vector<int>& group) {
   double square = 0;
@@ -60,7 +63,8 @@ double find_margin(const std::vector<SimulatedCable>& cables, const std::vector<
         std::max(longest, *std::max_element(cables[cable].state.rest_lengths.begin(), cables[cable].state.rest_lengths.end()));
     thickest = std::max(thickest, cables[cable].model->material.radius);
   }
-  return std::max(thickest, margin_segments * longest) + 2 * h * largest_speed(cables, group);
+  const double way = h * largest_speed(cables, group);
+  return std::clamp(margin_substeps * way, least_margin * thickest, std::max(thickest, margin_segments * longest)) + 2 * way;
 }
 
 }  // namespace
@@ -100,26 +104,22 @@ void SegmentGrid::fill(const std::vector<SimulatedCable>& cables, const std::vec
     }
     ++node;
   }
-  std::size_t buckets = 1;
-  while (buckets < 2 * entries_.size()) buckets *= 2;
-  buckets_.assign(buckets, -1);
   const double cell = 2 * largest;
-  for (int k = static_cast<int>(entries_.size()) - 1; k >= 0; --k) {
-    Entry& entry = entries_[k];
+  for (Entry& entry : entries_)
     for (int axis = 0; axis < 3; ++axis) {
       constexpr double far = 1e9;  // what is further away shares the outermost cells
       entry.cell[axis] = static_cast<std::int32_t>(std::floor(std::clamp(entry.middle[axis] / cell, -far, far)));
     }
-    int& first = buckets_[bucket(entry.cell)];
-    entry.next = first;
-    first = k;
-  }
 }
 
 void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules& rules, double reach, SegmentPairs& found) {
   found.pairs.clear();
-  for (int a = 0; a < static_cast<int>(entries_.size()); ++a) {
-    const Entry& first = entries_[a];
+  std::size_t buckets = 1;
+  while (buckets < 2 * entries_.size()) buckets *= 2;
+  buckets_.assign(buckets, -1);
+  // From the last one on, so that each meets those after it alone.
+  for (int a = static_cast<int>(entries_.size()) - 1; a >= 0; --a) {
+    Entry& first = entries_[a];
     const SimulatedCable& cable = cables[first.id.cable];
     const double radius = cable.model->material.radius;
     near_.clear();
@@ -129,7 +129,7 @@ void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules
           const std::array<std::int32_t, 3> cell{first.cell[0] + dx, first.cell[1] + dy, first.cell[2] + dz};
           for (int b = buckets_[bucket(cell)]; b >= 0; b = entries_[b].next) {
             const Entry& second = entries_[b];
-            if (b <= a || second.cell != cell) continue;
+            if (second.cell[0] != cell[0] || second.cell[1] != cell[1] || second.cell[2] != cell[2]) continue;
             const double sum = first.radius + second.radius;
             if ((first.middle - second.middle).squaredNorm() > sum * sum) continue;
             const bool same = first.id.cable == second.id.cable;
@@ -138,7 +138,10 @@ void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules
             near_.push_back(b);
           }
         }
-    std::sort(near_.begin(), near_.end());
+    int& own_bucket = buckets_[bucket(first.cell)];
+    first.next = own_bucket;
+    own_bucket = a;
+    std::sort(near_.rbegin(), near_.rend());
     const Vector3 &start = found.places[first.node], &end = found.places[first.node + 1];
     for (const int b : near_) {
       const Entry& second = entries_[b];
@@ -150,6 +153,7 @@ void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules
       if (distance <= far) found.pairs.push_back({first.id, second.id, first.node, second.node, distance});
     }
   }
+  std::reverse(found.pairs.begin(), found.pairs.end());
 }
 
 std::size_t SegmentGrid::bucket(const std::array<std::int32_t, 3>& cell) const {

@@ -1,13 +1,8 @@
 #include "rod/material_frames.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace verlet_cable {
-
-Vector3 curvature_binormal(const Vector3& before, const Vector3& after) {
-  return 2 / std::max(1 + before.dot(after), smallest_turn) * before.cross(after);
-}
 
 Vector3 rotation_between(const Quaternion& from, const Quaternion& to) {
   const Eigen::AngleAxisd rotation(to * from.conjugate());

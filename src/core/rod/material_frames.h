@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "geometry/vector_array.h"
@@ -16,7 +17,9 @@ inline Vector3 parallel_transport(const Vector3& normal, const Vector3& from, co
 constexpr double smallest_turn = 1e-6;
 
 /// Curvature binormal of two directions: 2 tan(angle / 2), about the axis of the turn.
-Vector3 curvature_binormal(const Vector3& before, const Vector3& after);
+inline Vector3 curvature_binormal(const Vector3& before, const Vector3& after) {
+  return 2 / std::max(1 + before.dot(after), smallest_turn) * before.cross(after);
+}
 
 /// Rotation vector of the small rotation from one orientation to another [rad].
 Vector3 rotation_between(const Quaternion& from, const Quaternion& to);

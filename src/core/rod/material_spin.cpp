@@ -1,6 +1,7 @@
 #include "rod/material_spin.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "rod/material_frames.h"
 
@@ -39,10 +40,11 @@ void find_material_spin(const CableModel& model, const CableState& state, const 
   SegmentMotion before = motion_of(state, segment, h, 0);
   for (int i = 1; i < n; ++i) {
     const SegmentMotion after = motion_of(state, segment, h, i);
-    const Vector3 binormal = curvature_binormal(before.direction, after.direction);
-    spin[i] = spin[i - 1] - 0.5 * binormal.dot(before.rate + after.rate);
-    const Vector3 e = after.direction - before.direction;
-    const Vector3 turned = turning_rate(before.direction, after.direction, 1, e);
+    const double cosine = std::max(1 + before.direction.dot(after.direction), smallest_turn);
+    const Vector3 half_binormal = before.direction.cross(after.direction) / cosine;
+    spin[i] = spin[i - 1] - half_binormal.dot(before.rate + after.rate);
+    // As `turning_rate`, of the change of direction at a spin of one
+    const Vector3 turned = std::sqrt(2 * cosine) * half_binormal;
     square += damping[i] * turned.squaredNorm();
     along += damping[i] * turned.dot(after.rate - before.rate - 0.5 * (spin[i - 1] + spin[i]) * turned);
     before = after;
