@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "net/turning_link_rows.h"
+
 namespace verlet_cable {
 
 namespace {
@@ -16,6 +18,13 @@ constexpr double aimed_part = 0.97;
 /// to what swings: there only a part of them is kept from step to step.
 constexpr int links_followed = 60;
 constexpr double kept_in_large_nets = 0.5;
+/// Springs up to h^2 stiffness / mass are resolved on two grids in a step. What stiffer ones lack would feed energy to the net.
+constexpr double resolved_stiffness = 40;
+/// Sweeps over a large net: before its coarse correction, and after it.
+constexpr int sweeps_on_two_grids = 1 + 2;
+/// Sweeps over the links that are at most so many from a held node: what holds a net carries all of it, which a coarse net
+/// spreads over too many links.
+constexpr int sweeps_near_held = 8, links_near_held = 6;
 /// Relative error of a rigid link's length that is left.
 constexpr double rigid_tolerance = 1e-4;
 /// Rounds over what is outside its bounds; then it is reported.
@@ -65,9 +74,43 @@ void NetConstraintSolver::resize(const NetModel& model, const std::vector<HeldNo
   contacts_.reserve(nodes);
   wind_.resize(model);
   long_range_attachments_.resize(model, held, 1 + aimed_part * tolerance_of(model));
-  kept_part_ = long_range_attachments_.most_links() > links_followed ? kept_in_large_nets : 1;
+  const bool large = long_range_attachments_.most_links() > links_followed;
+  const double lightest = *std::min_element(model.masses.begin(), model.masses.end());
+  on_two_grids_ = large && model.is_grid() && model.link_type == LinkType::limited && model.minimum_distances.empty() &&
+                  h * h * model.stiffness <= resolved_stiffness * lightest;
+  kept_part_ = large && !on_two_grids_ ? kept_in_large_nets : 1;
   add_rows(model, h);
   connect(nodes);
+  if (!on_two_grids_) return;
+  arrays_.turning_impulse.assign(links, 0.0);
+  lacking_.assign(links, 0.0);
+  coarse_net_.resize(model, arrays_.inverse_mass, h * h * model.stiffness + h * model.damping);
+  collect_links_near_held(model, held);
+}
+
+void NetConstraintSolver::collect_links_near_held(const NetModel& model, const std::vector<HeldNode>& held) {
+  const auto is_near = [&](int node) {
+    return std::any_of(held.begin(), held.end(), [&](const HeldNode& h) {
+      return std::abs(node / model.columns - h.node / model.columns) <= links_near_held &&
+             std::abs(node % model.columns - h.node % model.columns) <= links_near_held;
+    });
+  };
+  near_held_.clear();
+  std::vector<char> near(model.masses.size());
+  for (int node = 0; node < model.nodes(); ++node) near[node] = is_near(node);
+  for (int row = 0; row < static_cast<int>(rows_.size()); ++row) {
+    const LinkRun& run = rows_[row].run;
+    bool follows = false;
+    for (int k = 0; k < run.count; ++k) {
+      const int ahead = k * run.stride;
+      const bool inside = near[run.first_node + ahead] && near[run.second_node + ahead];
+      if (inside && follows)
+        ++near_held_.back().run.count;
+      else if (inside)
+        near_held_.push_back({{run.first + ahead, run.first_node + ahead, run.second_node + ahead, run.stride, 1}, row});
+      follows = inside;
+    }
+  }
 }
 
 /// Groups links that are alike into runs. Grids give long ones, row by row, so that the nodes of a row are still at hand when its
@@ -80,6 +123,10 @@ void NetConstraintSolver::add_rows(const NetModel& model, double h) {
     return arrays_.inverse_mass[nodes_[link][0]] == 0 && arrays_.inverse_mass[nodes_[link][1]] == 0;
   };
   for (int link = 0; link < static_cast<int>(nodes_.size()); ++link) used[link] = held(link);
+  const auto same_masses = [&](int link, int other) {
+    return arrays_.inverse_mass[nodes_[link][0]] == arrays_.inverse_mass[nodes_[other][0]] &&
+           arrays_.inverse_mass[nodes_[link][1]] == arrays_.inverse_mass[nodes_[other][1]];
+  };
   const auto run_from = [&](int first, int stride) {
     LinkRun run{first, nodes_[first][0], nodes_[first][1], stride, 1};
     const int apart = std::abs(run.second_node - run.first_node);
@@ -88,7 +135,7 @@ void NetConstraintSolver::add_rows(const NetModel& model, double h) {
       const bool follows =
           nodes_[link][0] == run.first_node + run.count * stride && nodes_[link][1] == run.second_node + run.count * stride;
       const double ratio = model.rest_lengths[link] / model.rest_lengths[first];
-      if (used[link] || !follows || std::abs(ratio - 1) > same_length) break;
+      if (used[link] || !follows || !same_masses(link, first) || std::abs(ratio - 1) > same_length) break;
     }
     return run;
   };
@@ -117,10 +164,11 @@ void NetConstraintSolver::add_rows(const NetModel& model, double h) {
                      false});
   }
   if (!model.is_grid()) return;
-  std::stable_sort(rows_.begin(), rows_.end(), [&](const Row& a, const Row& b) {
-    return std::min(a.run.first_node, a.run.second_node) / model.columns <
-           std::min(b.run.first_node, b.run.second_node) / model.columns;
-  });
+  const auto row_of_grid = [&](const Row& row) { return std::min(row.run.first_node, row.run.second_node) / model.columns; };
+  std::stable_sort(rows_.begin(), rows_.end(), [&](const Row& a, const Row& b) { return row_of_grid(a) < row_of_grid(b); });
+  first_row_.assign(model.rows + 1, 0);
+  for (const Row& row : rows_) ++first_row_[row_of_grid(row) + 1];
+  for (int row = 0; row < model.rows; ++row) first_row_[row + 1] += first_row_[row];
 }
 
 void NetConstraintSolver::connect(std::size_t nodes) {
@@ -142,16 +190,67 @@ NetStepResult NetConstraintSolver::advance(const NetStep& step, NetState& state,
   load(step, state, memory);
   apply_loads(step);
   find_contacts(step);
-  start();
-  const int sweeps = step.model.link_type == LinkType::rigid ? rigid_sweeps : limited_sweeps;
-  for (int i = 0; i < sweeps; ++i) sweep(i % 2 == 0);
-  result.iterations = sweeps;
-  long_range_attachments_.pull(step.held, h_, arrays_);
+  result.iterations = on_two_grids_ ? solve_on_two_grids() : solve_by_sweeps(step);
   keep_bounds(result);
   react(step, memory);
   store(step, state, memory);
   result.finite = is_sane(state.positions) && is_sane(state.velocities) && std::isfinite(result.max_strain);
   return result;
+}
+
+/// Large nets do not fit into a processor's cache: what is done to a row is done while it is there, each stage a row behind the
+/// one before. That is the same as one after the other, since a row's links end in the next row at most.
+template <class... Stages>
+void NetConstraintSolver::pass(Stages... stages) {
+  const int count = sizeof...(stages), rows = static_cast<int>(first_row_.size()) - 1;
+  for (int t = 0; t < rows + count - 1; ++t) {
+    int at = t;
+    const auto run = [&](const auto& stage) {
+      if (at >= 0 && at < rows)
+        for (int row = first_row_[at]; row < first_row_[at + 1]; ++row) stage(rows_[row]);
+      --at;
+    };
+    (run(stages), ...);
+  }
+}
+
+int NetConstraintSolver::solve_on_two_grids() {
+  const auto start = [&](const Row& row) { start_turning_links(row.run, arrays_); };
+  const auto sweep = [&](const Row& row) { sweep_turning_links(row.run, row.law, h_, arrays_); };
+  const auto lack = [&](const Row& row) { find_lacking(row.run, row.law, h_, arrays_, lacking_); };
+  const auto add = [&](const Row& row) { add_impulses(row.run, lacking_, arrays_); };
+  pass(start, sweep, lack);
+  coarse_net_.correct(arrays_.position, lacking_);
+  if (contacts_.empty()) {
+    pass(add, sweep, sweep);
+  } else {
+    pass(add, sweep);
+    press_contacts();
+    pass(sweep);
+  }
+  sweep_near_held();
+  press_contacts();
+  return sweeps_on_two_grids;
+}
+
+void NetConstraintSolver::sweep_near_held() {
+  for (int i = 0; i < sweeps_near_held; ++i) {
+    if (i % 2 == 0) {
+      for (auto near = near_held_.rbegin(); near != near_held_.rend(); ++near)
+        sweep_turning_links(near->run, rows_[near->row].law, h_, arrays_);
+    } else {
+      for (auto near = near_held_.begin(); near != near_held_.end(); ++near)
+        sweep_turning_links(near->run, rows_[near->row].law, h_, arrays_);
+    }
+  }
+}
+
+int NetConstraintSolver::solve_by_sweeps(const NetStep& step) {
+  start();
+  const int sweeps = step.model.link_type == LinkType::rigid ? rigid_sweeps : limited_sweeps;
+  for (int i = 0; i < sweeps; ++i) sweep(i % 2 == 0);
+  long_range_attachments_.pull(step.held, h_, arrays_);
+  return sweeps;
 }
 
 void NetConstraintSolver::load(const NetStep& s, const NetState& state, LinkMemory& memory) {
@@ -275,12 +374,16 @@ bool NetConstraintSolver::is_outside(int link) const {
 
 void NetConstraintSolver::correct(int link, bool along_end) {
   const Row& row = rows_[row_of_[link]];
+  const auto [i, j] = nodes_[link];
+  if (on_two_grids_) {  // the whole law, because what is not released again pulls the more in the next step
+    sweep_turning_links({link, i, j, 1, 1}, row.law, h_, arrays_);
+    return;
+  }
   const double rest = row.law.rest_length;
-  const double length = end_length(nodes_[link][0], nodes_[link][1], h_, arrays_);
+  const double length = end_length(i, j, h_, arrays_);
   const double part = row.law.longest < unbounded ? aimed_part : 0;  // rigid links are brought to their rest length
   const double shortest = rest + part * (row.shortest - rest);
   const double longest = row.is_link ? rest + part * (row.longest - rest) : unbounded;
-  const auto [i, j] = nodes_[link];
   const Vector3 impulse = set_length(link, i, j, std::clamp(length, shortest, longest), along_end, h_, arrays_);
   if (held_at_[i] >= 0) bound_impulses_[held_at_[i]] -= impulse;
   if (held_at_[j] >= 0) bound_impulses_[held_at_[j]] += impulse;
@@ -314,6 +417,13 @@ void NetConstraintSolver::keep_bounds(NetStepResult& result) {
   if (measure(result)) result.overstretched_node = nodes_[outside_.front()][0];
 }
 
+/// On its second node [N s].
+Vector3 NetConstraintSolver::impulse_of(int link) const {
+  if (on_two_grids_) return get(arrays_.turning_impulse, link);
+  const Vector3 along = get(arrays_.position, nodes_[link][1]) - get(arrays_.position, nodes_[link][0]);
+  return arrays_.impulse[link] * arrays_.inverse_length[link] * along;
+}
+
 void NetConstraintSolver::react(const NetStep& s, const LinkMemory& memory) const {
   for (std::size_t k = 0; k < s.held.size(); ++k) {
     HeldNode& held = s.held[k];
@@ -321,8 +431,7 @@ void NetConstraintSolver::react(const NetStep& s, const LinkMemory& memory) cons
     for (int at = first_at_[held.node]; at < first_at_[held.node + 1]; ++at) {
       const int link = links_at_[at];
       const double sign = nodes_[link][1] == held.node ? 1 : -1;
-      const Vector3 along = get(arrays_.position, nodes_[link][1]) - get(arrays_.position, nodes_[link][0]);
-      links += sign * arrays_.impulse[link] * arrays_.inverse_length[link] / h_ * along;
+      links += sign / h_ * impulse_of(link);
     }
     const Vector3 wind = wind_.active() ? get(wind_.force(), held.node) : Vector3(Vector3::Zero());
     const Vector3 acceleration = (get(arrays_.velocity, held.node) - memory.midstep_velocities[held.node]) / h_;

@@ -1,0 +1,166 @@
+#include "net/turning_link_rows.h"
+
+#include <cmath>
+
+#include "geometry/vector_code.h"
+#include "net/link_law.h"
+
+namespace verlet_cable {
+
+namespace {
+
+/// [m^2] Keeps what has no length finite.
+constexpr double least_square = 1e-300;
+
+/// Changes the impulse of a link by (x, y, z).
+inline __attribute__((always_inline)) void push(const LinkPointers& p, int i, int j, double of_i, double of_j, double x, double y,
+                                                double z) {
+  p.u[i] -= of_i * x;
+  p.v[i] -= of_i * y;
+  p.s[i] -= of_i * z;
+  p.u[j] += of_j * x;
+  p.v[j] += of_j * y;
+  p.s[j] += of_j * z;
+}
+
+template <int stride>
+inline __attribute__((always_inline)) void start(const LinkPointers& p, double of_i, double of_j) {
+#pragma GCC ivdep
+  for (int k = 0; k < p.count; ++k) {
+    const int i = p.i + k * stride, j = p.j + k * stride, link = p.link + k * stride;
+    const double dx = p.x[j] - p.x[i], dy = p.y[j] - p.y[i], dz = p.z[j] - p.z[i];
+    const double e = 1 / std::sqrt(dx * dx + dy * dy + dz * dz + least_square);
+    p.inverse_length[link] = e;
+    const double size = p.impulse[link] * e;
+    p.px[link] = size * dx;
+    p.py[link] = size * dy;
+    p.pz[link] = size * dz;
+    push(p, i, j, of_i, of_j, size * dx, size * dy, size * dz);
+  }
+}
+
+/// How a link would be without its own impulse, and the direction [1] that its impulse has. What pulls turns with the link, so
+/// that its direction is the same with it and without. What pushes would turn a link over: it acts along the direction at the
+/// start.
+struct FreeLink {
+  double x, y, z, length, start_length;
+};
+
+inline __attribute__((always_inline)) FreeLink free_link(const LinkPointers& p, const LawOfRun& law, int i, int j, int link) {
+  const double dx = p.x[j] - p.x[i], dy = p.y[j] - p.y[i], dz = p.z[j] - p.z[i];
+  const double e = p.inverse_length[link], before = p.impulse[link];
+  const double mobility = before > 0 ? 0.0 : law.mobility;
+  const double x = dx + (law.h * (p.u[j] - p.u[i]) - mobility * p.px[link]);
+  const double y = dy + (law.h * (p.v[j] - p.v[i]) - mobility * p.py[link]);
+  const double z = dz + (law.h * (p.s[j] - p.s[i]) - mobility * p.pz[link]);
+  const double length = std::sqrt(x * x + y * y + z * z + least_square), inverse = 1 / length;
+  FreeLink f;
+  f.length = length - (before > 0 ? law.mobility * before : 0.0);
+  f.x = before > 0 ? e * dx : inverse * x;
+  f.y = before > 0 ? e * dy : inverse * y;
+  f.z = before > 0 ? e * dz : inverse * z;
+  f.start_length = e * (dx * dx + dy * dy + dz * dz);
+  return f;
+}
+
+template <int stride>
+inline __attribute__((always_inline)) void sweep(const LinkPointers& p, const LawOfRun& law) {
+#pragma GCC ivdep
+  for (int k = 0; k < p.count; ++k) {
+    const int i = p.i + k * stride, j = p.j + k * stride, link = p.link + k * stride;
+    const FreeLink f = free_link(p, law, i, j, link);
+    const double impulse = impulse_of(law, f.length, f.start_length);
+    const double x = impulse * f.x, y = impulse * f.y, z = impulse * f.z;
+    const double change_x = x - p.px[link], change_y = y - p.py[link], change_z = z - p.pz[link];
+    p.impulse[link] = impulse;
+    p.px[link] = x;
+    p.py[link] = y;
+    p.pz[link] = z;
+    push(p, i, j, law.of_i, law.of_j, change_x, change_y, change_z);
+  }
+}
+
+template <int stride>
+inline __attribute__((always_inline)) void find_lacking(const LinkPointers& p, const LawOfRun& law, double* __restrict lacking) {
+  const double resistance = law.h / law.yielding;
+#pragma GCC ivdep
+  for (int k = 0; k < p.count; ++k) {
+    const int i = p.i + k * stride, j = p.j + k * stride, link = p.link + k * stride;
+    const FreeLink f = free_link(p, law, i, j, link);
+    lacking[link] = (impulse_of(law, f.length, f.start_length) - p.impulse[link]) * resistance;
+  }
+}
+
+template <int stride>
+inline __attribute__((always_inline)) void add(const LinkPointers& p, double of_i, double of_j, const double* __restrict added) {
+#pragma GCC ivdep
+  for (int k = 0; k < p.count; ++k) {
+    const int i = p.i + k * stride, j = p.j + k * stride, link = p.link + k * stride;
+    const double size = added[link] * p.inverse_length[link];
+    const double x = size * (p.x[j] - p.x[i]), y = size * (p.y[j] - p.y[i]), z = size * (p.z[j] - p.z[i]);
+    p.impulse[link] += added[link];
+    p.px[link] += x;
+    p.py[link] += y;
+    p.pz[link] += z;
+    push(p, i, j, of_i, of_j, x, y, z);
+  }
+}
+
+VERLET_CABLE_VECTOR_CODE void start_by_one(LinkPointers p, double of_i, double of_j) {
+  start<1>(p, of_i, of_j);
+}
+VERLET_CABLE_VECTOR_CODE void start_by_two(LinkPointers p, double of_i, double of_j) {
+  start<2>(p, of_i, of_j);
+}
+VERLET_CABLE_VECTOR_CODE void sweep_by_one(LinkPointers p, LawOfRun law) {
+  sweep<1>(p, law);
+}
+VERLET_CABLE_VECTOR_CODE void sweep_by_two(LinkPointers p, LawOfRun law) {
+  sweep<2>(p, law);
+}
+VERLET_CABLE_VECTOR_CODE void find_lacking_by_one(LinkPointers p, LawOfRun law, double* lacking) {
+  find_lacking<1>(p, law, lacking);
+}
+VERLET_CABLE_VECTOR_CODE void find_lacking_by_two(LinkPointers p, LawOfRun law, double* lacking) {
+  find_lacking<2>(p, law, lacking);
+}
+VERLET_CABLE_VECTOR_CODE void add_by_one(LinkPointers p, double of_i, double of_j, const double* added) {
+  add<1>(p, of_i, of_j, added);
+}
+VERLET_CABLE_VECTOR_CODE void add_by_two(LinkPointers p, double of_i, double of_j, const double* added) {
+  add<2>(p, of_i, of_j, added);
+}
+
+}  // namespace
+
+void start_turning_links(const LinkRun& run, LinkArrays& a) {
+  const double of_i = a.inverse_mass[run.first_node], of_j = a.inverse_mass[run.second_node];
+  if (run.stride == 1)
+    start_by_one({run, a}, of_i, of_j);
+  else
+    start_by_two({run, a}, of_i, of_j);
+}
+
+void sweep_turning_links(const LinkRun& run, const LinkLaw& law, double h, LinkArrays& a) {
+  if (run.stride == 1)
+    sweep_by_one({run, a}, {run, law, h, a});
+  else
+    sweep_by_two({run, a}, {run, law, h, a});
+}
+
+void find_lacking(const LinkRun& run, const LinkLaw& law, double h, const LinkArrays& a, std::vector<double>& lacking) {
+  if (run.stride == 1)
+    find_lacking_by_one({run, a}, {run, law, h, a}, lacking.data());
+  else
+    find_lacking_by_two({run, a}, {run, law, h, a}, lacking.data());
+}
+
+void add_impulses(const LinkRun& run, const std::vector<double>& added, LinkArrays& a) {
+  const double of_i = a.inverse_mass[run.first_node], of_j = a.inverse_mass[run.second_node];
+  if (run.stride == 1)
+    add_by_one({run, a}, of_i, of_j, added.data());
+  else
+    add_by_two({run, a}, of_i, of_j, added.data());
+}
+
+}  // namespace verlet_cable
