@@ -20,8 +20,8 @@ constexpr int links_followed = 60;
 constexpr double kept_in_large_nets = 0.5;
 /// Springs up to h^2 stiffness / mass are resolved on two grids in a step. What stiffer ones lack would feed energy to the net.
 constexpr double resolved_stiffness = 40;
-/// Sweeps over a large net: before its coarse correction, and after it.
-constexpr int sweeps_on_two_grids = 1 + 2;
+/// Sweeps over a large net after its coarse correction.
+constexpr int sweeps_on_two_grids = 2;
 /// Sweeps over the links that are at most so many from a held node: what holds a net carries all of it, which a coarse net
 /// spreads over too many links.
 constexpr int sweeps_near_held = 8, links_near_held = 6;
@@ -80,7 +80,7 @@ void NetConstraintSolver::resize(const NetModel& model, const std::vector<HeldNo
                   h * h * model.stiffness <= resolved_stiffness * lightest;
   kept_part_ = large && !on_two_grids_ ? kept_in_large_nets : 1;
   add_rows(model, h);
-  connect(nodes);
+  connect(nodes, static_cast<int>(model.links.size()));
   if (!on_two_grids_) return;
   arrays_.turning_impulse.assign(links, 0.0);
   lacking_.assign(links, 0.0);
@@ -171,10 +171,13 @@ void NetConstraintSolver::add_rows(const NetModel& model, double h) {
   for (int row = 0; row < model.rows; ++row) first_row_[row + 1] += first_row_[row];
 }
 
-void NetConstraintSolver::connect(std::size_t nodes) {
+void NetConstraintSolver::connect(std::size_t nodes, int links) {
   for (std::size_t row = 0; row < rows_.size(); ++row)
     for (int k = 0; k < rows_[row].run.count; ++k)
       row_of_[rows_[row].run.first + k * rows_[row].run.stride] = static_cast<int>(row);
+  between_held_.clear();
+  for (int link = 0; link < links; ++link)
+    if (row_of_[link] < 0) between_held_.push_back(link);
   first_at_.assign(nodes + 1, 0);
   for (const std::array<int, 2>& link : nodes_)
     for (const int node : link) ++first_at_[node + 1];
@@ -192,9 +195,10 @@ NetStepResult NetConstraintSolver::advance(const NetStep& step, NetState& state,
   find_contacts(step);
   result.iterations = on_two_grids_ ? solve_on_two_grids() : solve_by_sweeps(step);
   keep_bounds(result);
+  result.finite = std::isfinite(result.max_strain) && is_sane();
+  if (!result.finite) return result;
   react(step, memory);
   store(step, state, memory);
-  result.finite = is_sane(state.positions) && is_sane(state.velocities) && std::isfinite(result.max_strain);
   return result;
 }
 
@@ -219,7 +223,7 @@ int NetConstraintSolver::solve_on_two_grids() {
   const auto sweep = [&](const Row& row) { sweep_turning_links(row.run, row.law, h_, arrays_); };
   const auto lack = [&](const Row& row) { find_lacking(row.run, row.law, h_, arrays_, lacking_); };
   const auto add = [&](const Row& row) { add_impulses(row.run, lacking_, arrays_); };
-  pass(start, sweep, lack);
+  pass(start, lack);
   coarse_net_.correct(arrays_.position, lacking_);
   if (contacts_.empty()) {
     pass(add, sweep, sweep);
@@ -439,6 +443,19 @@ void NetConstraintSolver::react(const NetStep& s, const LinkMemory& memory) cons
   }
 }
 
+/// Whether nothing has run away, or is no number.
+bool NetConstraintSolver::is_sane() const {
+  int insane = 0;
+  const auto count = [&](const std::vector<double>& positions, const std::vector<double>& velocities) {
+    for (std::size_t i = 0; i < positions.size(); ++i)
+      insane += !(std::abs(positions[i] + h_ * velocities[i]) <= largest_sane) | !(std::abs(velocities[i]) <= largest_sane);
+  };
+  count(arrays_.position.x, arrays_.velocity.x);
+  count(arrays_.position.y, arrays_.velocity.y);
+  count(arrays_.position.z, arrays_.velocity.z);
+  return insane == 0;
+}
+
 /// The recursion's velocity is that of half a step before; the velocity at the end of the step is found by going on as from the
 /// step before, but not across a bounce.
 void NetConstraintSolver::store(const NetStep& s, NetState& state, LinkMemory& memory) const {
@@ -455,10 +472,11 @@ void NetConstraintSolver::store(const NetStep& s, NetState& state, LinkMemory& m
     state.velocities[held.node] = held.velocity;
   }
   std::copy(arrays_.impulse.begin(), arrays_.impulse.end(), memory.impulses.begin());
-  for (std::size_t link = 0; link < state.tension.size(); ++link) {
+  const double forces = -1 / h_;
+  for (std::size_t link = 0; link < state.tension.size(); ++link) state.tension[link] = forces * arrays_.impulse[link];
+  for (const int link : between_held_) {
     const Vector3 along = state.positions[nodes_[link][1]] - state.positions[nodes_[link][0]];
-    state.tension[link] =
-        row_of_[link] >= 0 ? -arrays_.impulse[link] / h_ : s.model.stiffness * (along.norm() - s.model.rest_lengths[link]);
+    state.tension[link] = s.model.stiffness * (along.norm() - s.model.rest_lengths[link]);
   }
 }
 

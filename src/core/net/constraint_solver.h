@@ -42,7 +42,7 @@ class NetConstraintSolver {
   };
 
   void add_rows(const NetModel& model, double h);
-  void connect(std::size_t nodes);
+  void connect(std::size_t nodes, int links);
   void collect_links_near_held(const NetModel& model, const std::vector<HeldNode>& held);
   int solve_on_two_grids();
   int solve_by_sweeps(const NetStep& step);
@@ -61,6 +61,7 @@ class NetConstraintSolver {
   void list_outside(const Row& row);
   bool is_outside(int link) const;
   void correct(int link, bool along_end);
+  bool is_sane() const;
   Vector3 impulse_of(int link) const;
   void react(const NetStep& step, const LinkMemory& memory) const;
   void store(const NetStep& step, NetState& state, LinkMemory& memory) const;
@@ -71,6 +72,7 @@ class NetConstraintSolver {
   std::vector<std::array<int, 2>> nodes_;  ///< of a link or minimum distance
   std::vector<int> row_of_;                ///< of a link or minimum distance, -1 between held nodes
   std::vector<int> first_at_, links_at_;   ///< the links at a node: links_at_[first_at_[node]] to [first_at_[node + 1]]
+  std::vector<int> between_held_;          ///< links that nothing moves
   LinkArrays arrays_;
   NetWind wind_;
   LongRangeAttachments long_range_attachments_;

@@ -53,12 +53,13 @@ inline __attribute__((always_inline)) FreeLink free_link(const LinkPointers& p, 
   const double x = dx + (law.h * (p.u[j] - p.u[i]) - mobility * p.px[link]);
   const double y = dy + (law.h * (p.v[j] - p.v[i]) - mobility * p.py[link]);
   const double z = dz + (law.h * (p.s[j] - p.s[i]) - mobility * p.pz[link]);
-  const double length = std::sqrt(x * x + y * y + z * z + least_square), inverse = 1 / length;
+  const double length = std::sqrt(x * x + y * y + z * z + least_square);
+  const double inverse = 1 / (before > 0 ? before : length);
   FreeLink f;
   f.length = length - (before > 0 ? law.mobility * before : 0.0);
-  f.x = before > 0 ? e * dx : inverse * x;
-  f.y = before > 0 ? e * dy : inverse * y;
-  f.z = before > 0 ? e * dz : inverse * z;
+  f.x = inverse * (before > 0 ? p.px[link] : x);
+  f.y = inverse * (before > 0 ? p.py[link] : y);
+  f.z = inverse * (before > 0 ? p.pz[link] : z);
   f.start_length = e * (dx * dx + dy * dy + dz * dz);
   return f;
 }
@@ -106,28 +107,28 @@ inline __attribute__((always_inline)) void add(const LinkPointers& p, double of_
   }
 }
 
-VERLET_CABLE_VECTOR_CODE void start_by_one(LinkPointers p, double of_i, double of_j) {
+VERLET_CABLE_WIDE_VECTOR_CODE void start_by_one(LinkPointers p, double of_i, double of_j) {
   start<1>(p, of_i, of_j);
 }
-VERLET_CABLE_VECTOR_CODE void start_by_two(LinkPointers p, double of_i, double of_j) {
+VERLET_CABLE_WIDE_VECTOR_CODE void start_by_two(LinkPointers p, double of_i, double of_j) {
   start<2>(p, of_i, of_j);
 }
-VERLET_CABLE_VECTOR_CODE void sweep_by_one(LinkPointers p, LawOfRun law) {
+VERLET_CABLE_WIDE_VECTOR_CODE void sweep_by_one(LinkPointers p, LawOfRun law) {
   sweep<1>(p, law);
 }
-VERLET_CABLE_VECTOR_CODE void sweep_by_two(LinkPointers p, LawOfRun law) {
+VERLET_CABLE_WIDE_VECTOR_CODE void sweep_by_two(LinkPointers p, LawOfRun law) {
   sweep<2>(p, law);
 }
-VERLET_CABLE_VECTOR_CODE void find_lacking_by_one(LinkPointers p, LawOfRun law, double* lacking) {
+VERLET_CABLE_WIDE_VECTOR_CODE void find_lacking_by_one(LinkPointers p, LawOfRun law, double* lacking) {
   find_lacking<1>(p, law, lacking);
 }
-VERLET_CABLE_VECTOR_CODE void find_lacking_by_two(LinkPointers p, LawOfRun law, double* lacking) {
+VERLET_CABLE_WIDE_VECTOR_CODE void find_lacking_by_two(LinkPointers p, LawOfRun law, double* lacking) {
   find_lacking<2>(p, law, lacking);
 }
-VERLET_CABLE_VECTOR_CODE void add_by_one(LinkPointers p, double of_i, double of_j, const double* added) {
+VERLET_CABLE_WIDE_VECTOR_CODE void add_by_one(LinkPointers p, double of_i, double of_j, const double* added) {
   add<1>(p, of_i, of_j, added);
 }
-VERLET_CABLE_VECTOR_CODE void add_by_two(LinkPointers p, double of_i, double of_j, const double* added) {
+VERLET_CABLE_WIDE_VECTOR_CODE void add_by_two(LinkPointers p, double of_i, double of_j, const double* added) {
   add<2>(p, of_i, of_j, added);
 }
 

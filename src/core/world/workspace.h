@@ -39,7 +39,6 @@ struct NetSolver {
   Boundary boundary;
   SpringStepper springs;
   NetConstraintSolver links;
-  NetState before;  ///< the step
 };
 
 }  // namespace verlet_cable
