@@ -84,6 +84,8 @@ void NetConstraintSolver::resize(const NetModel& model, const std::vector<HeldNo
   if (!on_two_grids_) return;
   arrays_.turning_impulse.assign(links, 0.0);
   lacking_.assign(links, 0.0);
+  added_.assign(model.columns, 0.0);
+  add_whole_rows(model);
   coarse_net_.resize(model, arrays_.inverse_mass, h * h * model.stiffness + h * model.damping);
   collect_links_near_held(model, held);
 }
@@ -164,11 +166,40 @@ void NetConstraintSolver::add_rows(const NetModel& model, double h) {
                      false});
   }
   if (!model.is_grid()) return;
+  first_row_ = sort_by_grid_rows(model, rows_);
+}
+
+/// Returns the index of the first of each row of the grid.
+std::vector<int> NetConstraintSolver::sort_by_grid_rows(const NetModel& model, std::vector<Row>& rows) {
   const auto row_of_grid = [&](const Row& row) { return std::min(row.run.first_node, row.run.second_node) / model.columns; };
-  std::stable_sort(rows_.begin(), rows_.end(), [&](const Row& a, const Row& b) { return row_of_grid(a) < row_of_grid(b); });
-  first_row_.assign(model.rows + 1, 0);
-  for (const Row& row : rows_) ++first_row_[row_of_grid(row) + 1];
-  for (int row = 0; row < model.rows; ++row) first_row_[row + 1] += first_row_[row];
+  std::stable_sort(rows.begin(), rows.end(), [&](const Row& a, const Row& b) { return row_of_grid(a) < row_of_grid(b); });
+  std::vector<int> first(model.rows + 1, 0);
+  for (const Row& row : rows) ++first[row_of_grid(row) + 1];
+  for (int row = 0; row < model.rows; ++row) first[row + 1] += first[row];
+  return first;
+}
+
+/// Links that follow each other in a row of the grid, also where they share nodes.
+void NetConstraintSolver::add_whole_rows(const NetModel& model) {
+  whole_rows_.clear();
+  for (int link = 0; link < static_cast<int>(model.links.size()); ++link) {
+    if (row_of_[link] < 0) continue;
+    const auto follows = [&](const LinkRun& run) {
+      const int last = run.first + run.count - 1;
+      return link == last + 1 && nodes_[link][0] == nodes_[last][0] + 1 && nodes_[link][1] == nodes_[last][1] + 1 &&
+             nodes_[link][0] / model.columns == nodes_[last][0] / model.columns &&
+             arrays_.inverse_mass[nodes_[link][0]] == arrays_.inverse_mass[nodes_[last][0]] &&
+             arrays_.inverse_mass[nodes_[link][1]] == arrays_.inverse_mass[nodes_[last][1]] &&
+             std::abs(model.rest_lengths[link] / model.rest_lengths[run.first] - 1) <= same_length;
+    };
+    if (!whole_rows_.empty() && follows(whole_rows_.back().run)) {
+      ++whole_rows_.back().run.count;
+    } else {
+      whole_rows_.push_back(rows_[row_of_[link]]);
+      whole_rows_.back().run = {link, nodes_[link][0], nodes_[link][1], 1, 1};
+    }
+  }
+  first_whole_row_ = sort_by_grid_rows(model, whole_rows_);
 }
 
 void NetConstraintSolver::connect(std::size_t nodes, int links) {
@@ -210,8 +241,7 @@ void NetConstraintSolver::pass(Stages... stages) {
   for (int t = 0; t < rows + count - 1; ++t) {
     int at = t;
     const auto run = [&](const auto& stage) {
-      if (at >= 0 && at < rows)
-        for (int row = first_row_[at]; row < first_row_[at + 1]; ++row) stage(rows_[row]);
+      if (at >= 0 && at < rows) stage(at);
       --at;
     };
     (run(stages), ...);
@@ -219,10 +249,18 @@ void NetConstraintSolver::pass(Stages... stages) {
 }
 
 int NetConstraintSolver::solve_on_two_grids() {
-  const auto start = [&](const Row& row) { start_turning_links(row.run, arrays_); };
-  const auto sweep = [&](const Row& row) { sweep_turning_links(row.run, row.law, h_, arrays_); };
-  const auto lack = [&](const Row& row) { find_lacking(row.run, row.law, h_, arrays_, lacking_); };
-  const auto add = [&](const Row& row) { add_impulses(row.run, lacking_, arrays_); };
+  const auto for_whole_rows = [&](int at, const auto& work) {
+    for (int row = first_whole_row_[at]; row < first_whole_row_[at + 1]; ++row) work(whole_rows_[row]);
+  };
+  const auto start = [&](int at) { for_whole_rows(at, [&](const Row& row) { start_turning_links(row.run, arrays_); }); };
+  const auto lack = [&](int at) {
+    for_whole_rows(at, [&](const Row& row) { find_lacking(row.run, row.law, h_, arrays_, lacking_); });
+  };
+  const auto add = [&](int at) { for_whole_rows(at, [&](const Row& row) { add_impulses(row.run, lacking_, arrays_, added_); }); };
+  const auto sweep = [&](int at) {
+    for (int row = first_row_[at]; row < first_row_[at + 1]; ++row)
+      sweep_turning_links(rows_[row].run, rows_[row].law, h_, arrays_);
+  };
   pass(start, lack);
   coarse_net_.correct(arrays_.position, lacking_);
   if (contacts_.empty()) {
@@ -349,7 +387,7 @@ void NetConstraintSolver::press_contacts() {
 bool NetConstraintSolver::measure(NetStepResult& result) {
   outside_.clear();
   double least = 1, largest = 1;
-  for (const Row& row : rows_) {
+  for (const Row& row : on_two_grids_ ? whole_rows_ : rows_) {
     const double rest = row.law.rest_length;
     const SquareRange range = measure_links(row.run, rest, h_, arrays_);
     if (row.is_link) {

@@ -42,6 +42,8 @@ class NetConstraintSolver {
   };
 
   void add_rows(const NetModel& model, double h);
+  static std::vector<int> sort_by_grid_rows(const NetModel& model, std::vector<Row>& rows);
+  void add_whole_rows(const NetModel& model);
   void connect(std::size_t nodes, int links);
   void collect_links_near_held(const NetModel& model, const std::vector<HeldNode>& held);
   int solve_on_two_grids();
@@ -79,7 +81,10 @@ class NetConstraintSolver {
   double kept_part_ = 1;  ///< of the impulses of the step before
   bool on_two_grids_ = false;
   CoarseNet coarse_net_;
-  std::vector<double> lacking_;      ///< [N s] by link, then what is added to it
+  std::vector<double> lacking_;  ///< [N s] by link, then what is added to it
+  VectorArray added_;            ///< [N s] scratch, of one row
+  std::vector<Row> whole_rows_;  ///< for what may be done to links that share nodes at once
+  std::vector<int> first_whole_row_;
   std::vector<RunOfRow> near_held_;  ///< links near held nodes
   std::vector<NodeContact> contacts_;
   std::vector<int> held_at_;                 ///< by node: index of what holds it, -1: none

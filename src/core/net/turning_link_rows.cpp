@@ -23,20 +23,26 @@ inline __attribute__((always_inline)) void push(const LinkPointers& p, int i, in
   p.s[j] += of_j * z;
 }
 
-template <int stride>
-inline __attribute__((always_inline)) void start(const LinkPointers& p, double of_i, double of_j) {
+VERLET_CABLE_WIDE_VECTOR_CODE void start(LinkPointers p) {
 #pragma GCC ivdep
   for (int k = 0; k < p.count; ++k) {
-    const int i = p.i + k * stride, j = p.j + k * stride, link = p.link + k * stride;
+    const int i = p.i + k, j = p.j + k, link = p.link + k;
     const double dx = p.x[j] - p.x[i], dy = p.y[j] - p.y[i], dz = p.z[j] - p.z[i];
-    const double e = 1 / std::sqrt(dx * dx + dy * dy + dz * dz + least_square);
+    const double e = 1 / std::sqrt(dx * dx + dy * dy + dz * dz + least_square), size = p.impulse[link] * e;
     p.inverse_length[link] = e;
-    const double size = p.impulse[link] * e;
     p.px[link] = size * dx;
     p.py[link] = size * dy;
     p.pz[link] = size * dz;
-    push(p, i, j, of_i, of_j, size * dx, size * dy, size * dz);
   }
+}
+
+/// Of links that may share nodes: first what all of them do to their first nodes, then what they do to their second ones.
+VERLET_CABLE_WIDE_VECTOR_CODE void push_all(int count, double of_i, double of_j, const double* __restrict impulse, double* u_i,
+                                            double* u_j) {
+#pragma GCC ivdep
+  for (int k = 0; k < count; ++k) u_i[k] -= of_i * impulse[k];
+#pragma GCC ivdep
+  for (int k = 0; k < count; ++k) u_j[k] += of_j * impulse[k];
 }
 
 /// How a link would be without its own impulse, and the direction [1] that its impulse has. What pulls turns with the link, so
@@ -81,65 +87,56 @@ inline __attribute__((always_inline)) void sweep(const LinkPointers& p, const La
   }
 }
 
-template <int stride>
-inline __attribute__((always_inline)) void find_lacking(const LinkPointers& p, const LawOfRun& law, double* __restrict lacking) {
+VERLET_CABLE_WIDE_VECTOR_CODE void find_lacking(LinkPointers p, LawOfRun law, double* __restrict lacking) {
   const double resistance = law.h / law.yielding;
 #pragma GCC ivdep
   for (int k = 0; k < p.count; ++k) {
-    const int i = p.i + k * stride, j = p.j + k * stride, link = p.link + k * stride;
+    const int i = p.i + k, j = p.j + k, link = p.link + k;
     const FreeLink f = free_link(p, law, i, j, link);
     lacking[link] = (impulse_of(law, f.length, f.start_length) - p.impulse[link]) * resistance;
   }
 }
 
-template <int stride>
-inline __attribute__((always_inline)) void add(const LinkPointers& p, double of_i, double of_j, const double* __restrict added) {
+/// Impulses that are added are left in x, y and z.
+VERLET_CABLE_WIDE_VECTOR_CODE void add(LinkPointers p, const double* __restrict added, double* __restrict x, double* __restrict y,
+                                       double* __restrict z) {
 #pragma GCC ivdep
   for (int k = 0; k < p.count; ++k) {
-    const int i = p.i + k * stride, j = p.j + k * stride, link = p.link + k * stride;
+    const int i = p.i + k, j = p.j + k, link = p.link + k;
     const double size = added[link] * p.inverse_length[link];
-    const double x = size * (p.x[j] - p.x[i]), y = size * (p.y[j] - p.y[i]), z = size * (p.z[j] - p.z[i]);
+    x[k] = size * (p.x[j] - p.x[i]);
+    y[k] = size * (p.y[j] - p.y[i]);
+    z[k] = size * (p.z[j] - p.z[i]);
     p.impulse[link] += added[link];
-    p.px[link] += x;
-    p.py[link] += y;
-    p.pz[link] += z;
-    push(p, i, j, of_i, of_j, x, y, z);
+    p.px[link] += x[k];
+    p.py[link] += y[k];
+    p.pz[link] += z[k];
   }
 }
 
-VERLET_CABLE_WIDE_VECTOR_CODE void start_by_one(LinkPointers p, double of_i, double of_j) {
-  start<1>(p, of_i, of_j);
-}
-VERLET_CABLE_WIDE_VECTOR_CODE void start_by_two(LinkPointers p, double of_i, double of_j) {
-  start<2>(p, of_i, of_j);
-}
 VERLET_CABLE_WIDE_VECTOR_CODE void sweep_by_one(LinkPointers p, LawOfRun law) {
   sweep<1>(p, law);
 }
 VERLET_CABLE_WIDE_VECTOR_CODE void sweep_by_two(LinkPointers p, LawOfRun law) {
   sweep<2>(p, law);
 }
-VERLET_CABLE_WIDE_VECTOR_CODE void find_lacking_by_one(LinkPointers p, LawOfRun law, double* lacking) {
-  find_lacking<1>(p, law, lacking);
-}
-VERLET_CABLE_WIDE_VECTOR_CODE void find_lacking_by_two(LinkPointers p, LawOfRun law, double* lacking) {
-  find_lacking<2>(p, law, lacking);
-}
-VERLET_CABLE_WIDE_VECTOR_CODE void add_by_one(LinkPointers p, double of_i, double of_j, const double* added) {
-  add<1>(p, of_i, of_j, added);
-}
-VERLET_CABLE_WIDE_VECTOR_CODE void add_by_two(LinkPointers p, double of_i, double of_j, const double* added) {
-  add<2>(p, of_i, of_j, added);
+
+void push_row(const LinkRun& run, LinkArrays& a, const double* x, const double* y, const double* z) {
+  const double of_i = a.inverse_mass[run.first_node], of_j = a.inverse_mass[run.second_node];
+  const auto push = [&](std::vector<double>& u, const double* impulse) {
+    push_all(run.count, of_i, of_j, impulse, u.data() + run.first_node, u.data() + run.second_node);
+  };
+  push(a.velocity.x, x);
+  push(a.velocity.y, y);
+  push(a.velocity.z, z);
 }
 
 }  // namespace
 
-void start_turning_links(const LinkRun& run, LinkArrays& a) {
-  const double of_i = a.inverse_mass[run.first_node], of_j = a.inverse_mass[run.second_node];
-  if (run.stride == 1)
-    start_by_one({run, a}, of_i, of_j);
-  else
-    start_by_two({run, a}, of_i, of_j);
+void start_turning_links(const LinkRun& row, LinkArrays& a) {
+  start({row, a});
+  push_row(row, a, a.turning_impulse.x.data() + row.first, a.turning_impulse.y.data() + row.first,
+           a.turning_impulse.z.data() + row.first);
 }
 
 void sweep_turning_links(const LinkRun& run, const LinkLaw& law, double h, LinkArrays& a) {
@@ -149,19 +146,13 @@ void sweep_turning_links(const LinkRun& run, const LinkLaw& law, double h, LinkA
     sweep_by_two({run, a}, {run, law, h, a});
 }
 
-void find_lacking(const LinkRun& run, const LinkLaw& law, double h, const LinkArrays& a, std::vector<double>& lacking) {
-  if (run.stride == 1)
-    find_lacking_by_one({run, a}, {run, law, h, a}, lacking.data());
-  else
-    find_lacking_by_two({run, a}, {run, law, h, a}, lacking.data());
+void find_lacking(const LinkRun& row, const LinkLaw& law, double h, const LinkArrays& a, std::vector<double>& lacking) {
+  find_lacking({row, a}, {row, law, h, a}, lacking.data());
 }
 
-void add_impulses(const LinkRun& run, const std::vector<double>& added, LinkArrays& a) {
-  const double of_i = a.inverse_mass[run.first_node], of_j = a.inverse_mass[run.second_node];
-  if (run.stride == 1)
-    add_by_one({run, a}, of_i, of_j, added.data());
-  else
-    add_by_two({run, a}, of_i, of_j, added.data());
+void add_impulses(const LinkRun& row, const std::vector<double>& added, LinkArrays& a, VectorArray& scratch) {
+  add({row, a}, added.data(), scratch.x.data(), scratch.y.data(), scratch.z.data());
+  push_row(row, a, scratch.x.data(), scratch.y.data(), scratch.z.data());
 }
 
 }  // namespace verlet_cable

@@ -8,13 +8,16 @@ namespace verlet_cable {
 /// start, the motion of a taut link across itself grows where h^2 pull > length mass, and a large net is full of such links where
 /// it is held. Where that motion is resolved, both do the same, but for a little angular momentum that this one loses.
 
-/// Sets the inverse lengths, and applies the impulses that the links have from the step before.
-void start_turning_links(const LinkRun& run, LinkArrays& arrays);
 /// One sweep: each link's law is fulfilled in turn, length and direction, with what its nodes do at present.
 void sweep_turning_links(const LinkRun& run, const LinkLaw& law, double h, LinkArrays& arrays);
+
+// Of these, `row` is a run of stride 1 whose links may share nodes.
+
+/// Sets the inverse lengths, and applies the impulses that the links have from the step before.
+void start_turning_links(const LinkRun& row, LinkArrays& arrays);
 /// What each link lacks of the impulse of its law at present [N s], by link.
-void find_lacking(const LinkRun& run, const LinkLaw& law, double h, const LinkArrays& arrays, std::vector<double>& lacking);
-/// Adds to the links' impulses, by link [N s].
-void add_impulses(const LinkRun& run, const std::vector<double>& added, LinkArrays& arrays);
+void find_lacking(const LinkRun& row, const LinkLaw& law, double h, const LinkArrays& arrays, std::vector<double>& lacking);
+/// Adds to the links' impulses, by link [N s]. `scratch`: as many as the row has links, or more.
+void add_impulses(const LinkRun& row, const std::vector<double>& added, LinkArrays& arrays, VectorArray& scratch);
 
 }  // namespace verlet_cable
