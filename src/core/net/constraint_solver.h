@@ -41,6 +41,9 @@ class NetConstraintSolver {
     int row = 0;
   };
 
+  /// Relative: rest lengths of a grid differ by rounding.
+  static constexpr double same_length = 1e-9;
+
   void add_rows(const NetModel& model, double h);
   static std::vector<int> sort_by_grid_rows(const NetModel& model, std::vector<Row>& rows);
   void add_whole_rows(const NetModel& model);
