@@ -61,7 +61,6 @@ struct NetSolver {
   Boundary boundary;
   SpringStepper springs;
   NetConstraintSolver links;
-  NetState before;  ///< the step
 };
 
 }  // namespace verlet_cable
