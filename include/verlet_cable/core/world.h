@@ -133,8 +133,8 @@ class World {
   /// Cables that cannot touch are stepped by all cores at once where they are many, with the same result; or not, for programs
   /// that run many worlds at once.
   void step_one_by_one(bool one_by_one);
-  /// Cables that are alike and touch nothing are stepped several at once, in lanes of the numbers that the processor computes with
-  /// together: two a cable, 2, 4 or 8, or as many of them as it has. The result is the same.
+  /// Cables that are alike and touch nothing are stepped several at once, in lanes of the numbers that the processor computes
+  /// with together: two a cable, 2, 4 or 8, or as many of them as it has. The result is the same.
   void limit_lanes(int most);
 
   /// Puts every cable that is held into static equilibrium, its holders where they are (Newton's method, no waiting); free cables
@@ -164,7 +164,8 @@ class World {
   int start_waiting(const BoundaryInputs& inputs);
   EditResult apply(const Edit& edit);
   /// Takes over gravity, fluid, materials (those it has, by name) and the friction between cables from a sound scene. Throws
-  /// SceneError, and changes nothing, where a cable that was joined with another would lack torsional stiffness for its rest shape.
+  /// SceneError, and changes nothing, where a cable that was joined with another would lack torsional stiffness for its rest
+  /// shape.
   void tune(const SceneDesc& scene);
 
   Energy energy() const;

@@ -13,14 +13,20 @@ namespace verlet_cable {
 class FlushDenormals {
  public:
 #if defined(__SSE2__)
-  FlushDenormals() : before_(_mm_getcsr()) { _mm_setcsr(before_ | flush_to_zero | denormals_are_zero); }
-  ~FlushDenormals() { _mm_setcsr(before_); }
+  FlushDenormals() : before_(_mm_getcsr()) {
+    _mm_setcsr(before_ | flush_to_zero | denormals_are_zero);
+  }
+  ~FlushDenormals() {
+    _mm_setcsr(before_);
+  }
 #elif defined(__aarch64__)
   FlushDenormals() {
     asm volatile("mrs %0, fpcr" : "=r"(before_));
     asm volatile("msr fpcr, %0" : : "r"(before_ | flush_to_zero));
   }
-  ~FlushDenormals() { asm volatile("msr fpcr, %0" : : "r"(before_)); }
+  ~FlushDenormals() {
+    asm volatile("msr fpcr, %0" : : "r"(before_));
+  }
 #else
   FlushDenormals() = default;
   ~FlushDenormals() = default;
