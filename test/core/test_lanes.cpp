@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "../support/scenes.h"
-#include "rod/lane_stepper.h"
+#include "lanes/lane_stepper.h"
 #include "verlet_cable/core/world_stepper.h"
 #include "world/flush_denormals.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rod/lane_algebra.h"
+#include "geometry/lane_algebra.h"
 
 namespace verlet_cable {
 

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <cmath>
 
+#include "geometry/lane_algebra.h"
 #include "geometry/vector_array.h"
-#include "rod/lane_algebra.h"
 
 namespace verlet_cable {
 

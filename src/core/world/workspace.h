@@ -8,7 +8,7 @@
 #include "contact/contact_solver.h"
 #include "net/constraint_solver.h"
 #include "net/spring_stepper.h"
-#include "rod/lane_stepper.h"
+#include "lanes/lane_stepper.h"
 #include "world/islands.h"
 
 namespace verlet_cable {

@@ -4,9 +4,9 @@
 
 #include <vector>
 
+#include "lanes/passes.h"
 #include "rod/cable_stepper.h"
 #include "rod/clamp_joint.h"
-#include "rod/lane_passes.h"
 #include "rod/node_elimination.h"
 #include "rod/substep.h"
 
@@ -79,5 +79,11 @@ class LaneStepper {
   VectorArray segments_;                                // likewise, at the start of the substep [m]
   Array records_, eliminations_;
 };
+
+template <class Operation>
+void LaneStepper::each_lane_of(int c, int segment, const Operation& operation) {
+  if (segment <= work_.lane) operation(segment, 2 * c, 1.0);
+  if (segment >= work_.lane) operation(work_.last_node - 1 - segment, 2 * c + 1, -1.0);
+}
 
 }  // namespace verlet_cable

@@ -1,4 +1,4 @@
-#include "rod/lane_passes_kernel.h"
+#include "lanes/kernel.h"
 
 namespace verlet_cable {
 

@@ -1,9 +1,7 @@
-#include "rod/lane_stepper.h"
+#include "lanes/lane_stepper.h"
 
 #include <algorithm>
 #include <cmath>
-
-#include "rod/angle_energy.h"
 
 namespace verlet_cable {
 
@@ -308,70 +306,6 @@ void LaneStepper::bend_clamps(int c, const LaneMember& member) {
   }
 }
 
-/// What the held nodes' equations of motion lack is what their holders supply.
-void LaneStepper::react(int c, LaneMember& member) {
-  Boundary& boundary = member.substep.boundary;
-  const CableState& state = *member.state;
-  const double h = member.substep.h;
-  const MaterialDesc& material = member.substep.model.material;
-  for (HeldDirection& target : boundary.directions) target.torque.setZero();
-  if (work_.law.bends) {
-    bend_clamps(c, member);
-    for (const ClampJoint& clamp : clamps_[c]) boundary.directions[clamp.target].torque += clamp.torque;
-  }
-  for (HeldNode& target : boundary.nodes) {
-    const int i = target.node;
-    const Vector3 flow = member.substep.environment.fluid.velocity - vector_at(LaneField::displacement_x, c, i) / h;
-    double length = 0;
-    target.force = Vector3::Zero();
-    if (i > 0) {
-      length += 0.5 * state.rest_lengths[i - 1];
-      target.force -= force_of(c, i - 1);
-    }
-    if (i < state.segments()) {
-      length += 0.5 * state.rest_lengths[i];
-      target.force += force_of(c, i);
-    }
-    const Vector3 acceleration = (target.velocity - state.velocities[i]) / h;
-    target.force +=
-        material.drag * length * flow + state.masses[i] * (member.substep.environment.gravity.acceleration - acceleration);
-  }
-}
-
-/// The force on a segment's first node [N].
-Vector3 LaneStepper::force_of(int c, int i) {
-  const Vector3 start = segment_at(LaneField::segment_x, c, i);
-  const Vector3 change = vector_at(LaneField::displacement_x, c, i + 1) - vector_at(LaneField::displacement_x, c, i);
-  double density = 0;
-  each_lane_of(c, i, [&](int place, int lane, double) { density = value(LaneField::density, place, lane); });
-  Vector3 force = density * (start + 0.5 * change);
-  if (!work_.law.bends) return force;
-  double inverse = 0;
-  each_lane_of(c, i, [&](int place, int lane, double) { inverse = value(LaneField::inverse_length, place, lane); });
-  force += segment_at(LaneField::clamp_force_x, c, i);
-  if (i > 0) force += inverse * joint_moment(c, i);
-  if (i + 1 < work_.law.segments) force -= inverse * joint_moment(c, i + 1);
-  return force;
-}
-
-/// On the change of direction at an inner node [N m].
-Vector3 LaneStepper::joint_moment(int c, int i) {
-  const auto over_length = [&](int segment, const Vector3& vector) -> Vector3 {
-    double inverse = 0;
-    each_lane_of(c, segment, [&](int place, int lane, double) { inverse = value(LaneField::inverse_length, place, lane); });
-    return inverse * vector;
-  };
-  const Vector3 before = vector_at(LaneField::displacement_x, c, i - 1), here = vector_at(LaneField::displacement_x, c, i),
-                after = vector_at(LaneField::displacement_x, c, i + 1);
-  const Vector3 start =
-      over_length(i, segment_at(LaneField::segment_x, c, i)) - over_length(i - 1, segment_at(LaneField::segment_x, c, i - 1));
-  const Vector3 change = over_length(i, after - here) - over_length(i - 1, here - before);
-  const double slope = mean_slope(0.5 * start.squaredNorm(), 0.5 * (start + change).squaredNorm());
-  const Vector3 moment = at(LaneField::joint_stiffness, c, i) * slope * (start + 0.5 * change);
-  if (!work_.law.is_damped) return moment;
-  return moment + at(LaneField::joint_damping, c, i) * (change - vector_at(LaneField::turned_x, c, i));
-}
-
 void LaneStepper::set_held_accelerations(int c, const LaneMember& member) {
   for (const HeldNode& target : member.substep.boundary.nodes) {
     const Vector3 acceleration = (target.velocity - member.state->velocities[target.node]) / member.substep.h;
@@ -401,25 +335,6 @@ void LaneStepper::complete(int c, LaneMember& member) {
     member.state->velocities[target.node] = target.velocity;
   }
   if (values_.projects[first] != 0) react_to_projection(c, member);
-}
-
-/// What the segments exert on the other nodes they exert on the holders.
-void LaneStepper::react_to_projection(int c, LaneMember& member) {
-  const auto exerted = [&](int segment) -> Vector3 {
-    double impulse = 0;
-    each_lane_of(c, segment, [&](int place, int lane, double) { impulse = value(LaneField::impulse, place, lane); });
-    return impulse / member.substep.h * segment_at(LaneField::segment_x, c, segment);
-  };
-  for (HeldNode& target : member.substep.boundary.nodes) {
-    if (target.node > 0) target.force += exerted(target.node - 1);
-    if (target.node < work_.law.segments) target.force -= exerted(target.node);
-  }
-}
-
-template <class Operation>
-void LaneStepper::each_lane_of(int c, int segment, const Operation& operation) {
-  if (segment <= work_.lane) operation(segment, 2 * c, 1.0);
-  if (segment >= work_.lane) operation(work_.last_node - 1 - segment, 2 * c + 1, -1.0);
 }
 
 double& LaneStepper::value(LaneField field, int place, int lane) {

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <type_traits>
+
+#include "lanes/finish.h"
+#include "lanes/load.h"
+#include "lanes/store.h"
+#include "lanes/sweep.h"
+
+namespace verlet_cable {
+// Without linkage: what is compiled for one processor is not to be used for another.
+namespace {
+
+template <Bends value>
+using BendsConstant = std::integral_constant<Bends, value>;
+
+/// Calls what is compiled for the cables' law.
+template <class Call>
+void by_law(const LaneLaw& law, const Call& call) {
+  const auto with = [&](auto bends) {
+    if (law.is_elastic)
+      call(bends, std::true_type());
+    else
+      call(bends, std::false_type());
+  };
+  if (law.is_damped)
+    with(BendsConstant<Bends::damped>());
+  else if (law.bends)
+    with(BendsConstant<Bends::freely>());
+  else
+    with(BendsConstant<Bends::not_at_all>());
+}
+
+template <class Real>
+LanePasses passes_of_lanes() {
+  LanePasses passes;
+  passes.lanes = lanes_of<Real>;
+  passes.load = [](const LaneWork& w) {
+    by_law(w.law, [&](auto bends, auto elastic) { load_lanes<bends.value, elastic.value, Real>(w); });
+  };
+  passes.sweep = [](const LaneWork& w) {
+    by_law(w.law, [&](auto bends, auto elastic) { sweep_lanes<bends.value, elastic.value, false, Real>(w); });
+  };
+  passes.light_sweep = [](const LaneWork& w) {
+    by_law(w.law, [&](auto bends, auto elastic) { sweep_lanes<bends.value, elastic.value, true, Real>(w); });
+  };
+  passes.finish = [](const LaneWork& w) {
+    bool projects = false;
+    for (int i = 0; i < lanes_of<Real>; ++i) projects = projects || w.values->projects[i] != 0;
+    if (projects)
+      finish_lanes<true, Real>(w);
+    else
+      finish_lanes<false, Real>(w);
+  };
+  passes.store = [](const LaneWork& w) {
+    by_law(w.law, [&](auto bends, auto elastic) { store_lanes<bends.value, elastic.value, Real>(w); });
+  };
+  return passes;
+}
+
+}  // namespace
+}  // namespace verlet_cable
