@@ -188,6 +188,54 @@ TEST(LanesOfEveryWidth, GiveTheSameBytes) {
   }
 }
 
+TEST(WorldStepper, TakesWorldsOfDifferentWidths) {
+  const SceneDesc scene = crowd();
+  std::vector<World> alone(8, World(scene, crowd_frames(scene, 0)));
+  for (std::size_t i = 0; i < alone.size(); ++i) alone[i].limit_lanes(i % 2 == 0 ? 4 : 2);
+  std::vector<World> together = alone;
+  const BoundaryInputs inputs = crowd_frames(scene, 0.005);
+  std::vector<WorldStep> steps(alone.size());
+  for (std::size_t i = 0; i < alone.size(); ++i) steps[i] = {&together[i], &inputs, {}};
+  WorldStepper stepper;
+  for (int k = 0; k < 3; ++k) {
+    stepper.step(steps, false);
+    for (World& world : alone) world.step(inputs);
+    for (std::size_t i = 0; i < alone.size(); ++i) ASSERT_EQ(together[i].hash(), alone[i].hash()) << i;
+  }
+}
+
+/// Numbers that are not finite stay with the cable that has them: a lane's record is all its own.
+TEST(LanesOfEveryWidth, LeaveNothingToTheNextCables) {
+  const Kind& damped = kinds()[7];
+  SceneDesc scene = swinging(damped, 20);
+  BoundaryInputs inputs = crowd_frames(scene, 0);
+  World world(scene, inputs);
+  const SimulatedCable& cable = world.cables()[0];
+  const Environment environment{scene.gravity, scene.fluid};
+  std::vector<TwistSpan> spans;
+  CableStepper cleaner;
+  cleaner.resize(20);
+  LaneStepper used, fresh;
+  const auto advance = [&](LaneStepper& lanes, CableState& state) {
+    Boundary boundary;
+    boundary.nodes.push_back({0, state.positions.front(), Vector3::Zero()});
+    std::vector<LaneMember> members;
+    members.push_back({Substep{*cable.model, environment, boundary, spans, 1e-3}, &state, {}});
+    lanes.advance(members, 2, cleaner);
+    return members[0].result.converged;
+  };
+  CableState broken = cable.state;
+  for (Vector3& velocity : broken.velocities) velocity.setConstant(std::nan(""));
+  EXPECT_FALSE(advance(used, broken));
+  CableState state = cable.state, expected = cable.state;
+  ASSERT_TRUE(advance(used, state));
+  ASSERT_TRUE(advance(fresh, expected));
+  for (std::size_t i = 0; i < state.positions.size(); ++i) {
+    EXPECT_EQ(state.positions[i], expected.positions[i]);
+    EXPECT_EQ(state.velocities[i], expected.velocities[i]);
+  }
+}
+
 TEST(WorldStepper, DoesWhatEachWorldDoes) {
   const SceneDesc scene = crowd();
   SceneDesc touching = swinging(kinds()[4], 20);

@@ -57,6 +57,10 @@ void load_lanes(const LaneWork& w) {
       at[LaneField::joint_stiffness] = values_of<Real>(values.bending_stiffness) * (1.0 / (0.5 * (length_before + rest)));
       at.set(LaneField::clamp_force_x, none);
       at[LaneField::clamp_stiffness] = zero;
+      if constexpr (bends == Bends::damped) {
+        at[LaneField::joint_damping] = zero;
+        at.set(LaneField::turned_x, none);
+      }
       length_before = rest;
     }
   }

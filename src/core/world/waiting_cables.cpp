@@ -22,7 +22,7 @@ bool IslandStepper::wait_for_others(Island& island, IslandOutcome& found) {
   boundary.growing.clear();
   hold_at(0, 1, memory.targets, boundary);
   waiting.cables.push_back({this, &island, &found});
-  if (2 * static_cast<int>(waiting.cables.size()) == lanes_) step_together(waiting);
+  if (2 * static_cast<int>(waiting.cables.size()) == waiting.lanes) step_together(waiting);
   return true;
 }
 
@@ -38,10 +38,11 @@ Substep IslandStepper::whole_step(int cable, Boundary& boundary) {
 
 WaitingCables& IslandStepper::waiting_of(const LaneLaw& law) {
   std::vector<WaitingCables>& all = workspace_.waiting;
-  auto same = std::find_if(all.begin(), all.end(), [&](const WaitingCables& w) { return w.law == law; });
+  auto same = std::find_if(all.begin(), all.end(), [&](const WaitingCables& w) { return w.law == law && w.lanes == lanes_; });
   if (same == all.end()) same = std::find_if(all.begin(), all.end(), [](const WaitingCables& w) { return w.cables.empty(); });
   if (same == all.end()) same = all.emplace(all.end());
   same->law = law;
+  same->lanes = lanes_;
   return *same;
 }
 
@@ -58,7 +59,7 @@ void IslandStepper::step_together(WaitingCables& waiting) {
     const int cable = w.island->cables.front();
     members.push_back({w.stepper->whole_step(cable, waiting.boundaries[k]), &w.stepper->state_.cables[cable].state, {}});
   }
-  workspace_.lane_stepper.advance(members, lanes_, workspace_.cables.front().stepper);
+  workspace_.lane_stepper.advance(members, waiting.lanes, workspace_.cables.front().stepper);
   for (std::size_t k = 0; k < members.size(); ++k) {
     const WaitingCable& w = waiting.cables[k];
     if (members[k].result.converged)

@@ -6,9 +6,9 @@
 
 #include "contact/contact_set.h"
 #include "contact/contact_solver.h"
+#include "lanes/lane_stepper.h"
 #include "net/constraint_solver.h"
 #include "net/spring_stepper.h"
-#include "lanes/lane_stepper.h"
 #include "world/islands.h"
 
 namespace verlet_cable {
@@ -36,6 +36,7 @@ struct WaitingCable {
 /// Those of one law, waiting to be stepped at once.
 struct WaitingCables {
   LaneLaw law;
+  int lanes = 0;  ///< that they are stepped in, two a cable
   std::vector<WaitingCable> cables;
   std::vector<Boundary> boundaries;  ///< no fewer than there are cables
 };

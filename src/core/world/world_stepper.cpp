@@ -17,7 +17,12 @@ constexpr std::size_t least_share = 8;
 }  // namespace
 
 struct WorldStepper::Implementation {
-  Workspaces workspaces;
+  /// Of a thread.
+  struct Buffers {
+    Workspace workspace;
+    std::vector<IslandStepper> steppers;
+  };
+  tbb::enumerable_thread_specific<Buffers> buffers;
 
   void step(std::vector<WorldStep>& worlds, std::size_t from, std::size_t to);
 };
@@ -33,8 +38,9 @@ void WorldStepper::step(std::vector<WorldStep>& worlds, bool all_cores) {
 
 void WorldStepper::Implementation::step(std::vector<WorldStep>& worlds, std::size_t from, std::size_t to) {
   const FlushDenormals flush_denormals;
-  Workspace& workspace = workspaces.local();
-  std::vector<IslandStepper> steppers;
+  Workspace& workspace = buffers.local().workspace;
+  std::vector<IslandStepper>& steppers = buffers.local().steppers;
+  steppers.clear();
   steppers.reserve(to - from);  // what waits points to them
   for (std::size_t i = from; i < to; ++i) {
     World::Implementation& world = *worlds[i].world->implementation_;
