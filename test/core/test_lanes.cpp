@@ -206,15 +206,13 @@ TEST(WorldStepper, TakesWorldsOfDifferentWidths) {
 
 /// Numbers that are not finite stay with the cable that has them: a lane's record is all its own.
 TEST(LanesOfEveryWidth, LeaveNothingToTheNextCables) {
-  const Kind& damped = kinds()[7];
-  SceneDesc scene = swinging(damped, 20);
-  BoundaryInputs inputs = crowd_frames(scene, 0);
-  World world(scene, inputs);
-  const SimulatedCable& cable = world.cables()[0];
+  // Where the longer one has an inner node, the shorter one has its end.
+  const SceneDesc long_scene = swinging(kinds()[7], 21), scene = swinging(kinds()[7], 20);
+  const World longer(long_scene, crowd_frames(long_scene, 0)), shorter(scene, crowd_frames(scene, 0));
+  const SimulatedCable& cable = shorter.cables()[0];
   const Environment environment{scene.gravity, scene.fluid};
   std::vector<TwistSpan> spans;
   CableStepper cleaner;
-  cleaner.resize(20);
   LaneStepper used, fresh;
   const auto advance = [&](LaneStepper& lanes, CableState& state) {
     Boundary boundary;
@@ -224,7 +222,7 @@ TEST(LanesOfEveryWidth, LeaveNothingToTheNextCables) {
     lanes.advance(members, 2, cleaner);
     return members[0].result.converged;
   };
-  CableState broken = cable.state;
+  CableState broken = longer.cables()[0].state;
   for (Vector3& velocity : broken.velocities) velocity.setConstant(std::nan(""));
   EXPECT_FALSE(advance(used, broken));
   CableState state = cable.state, expected = cable.state;
