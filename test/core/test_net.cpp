@@ -138,52 +138,6 @@ TEST(Net, LargeFlagStaysCalmAndWithinItsTolerance) {
   EXPECT_LT(fastest, 2.0);
 }
 
-TEST(Net, LargeFlagGainsNoEnergyAndSagsAsItsSpringsSay) {
-  SceneDesc scene = scenes::flag(100, 100, 0.01, LinkType::limited);
-  scene.nets[0].stiffness = 500;
-  scene.nets[0].damping = 0.5;
-  scene.fluid.velocity.setZero();
-  World world(scene, initial_frames(scene));
-  const double energy = world.energy().total();
-  for (int i = 0; i < 200; ++i) {
-    ASSERT_EQ(world.step({FrameInput{}}).status, StepResult::Status::ok) << i;
-    ASSERT_LT(world.energy().total(), energy + 0.02) << i;
-    // 1.96 N on 100 columns of springs stretch them by 0.2 % in the mean, twice as much in a swing, and the corners more.
-    ASSERT_GT(world.nets()[0].state.positions[50 * 100 + 50].z(), -0.5 * 1.04) << i;
-  }
-}
-
-TEST(Net, LargeFlagInWindKeepsItsTolerance) {
-  // 12 N of wind on springs that bear 0.5 N each at their bounds: what holds the corners is taut, the rest in folds.
-  SceneDesc scene = scenes::flag(100, 100, 0.01, LinkType::limited);
-  scene.nets[0].stiffness = 500;
-  scene.nets[0].damping = 0.5;
-  World world(scene, initial_frames(scene));
-  for (int i = 0; i < 250; ++i) {
-    const StepResult result = world.step({FrameInput{}});
-    ASSERT_EQ(result.status, StepResult::Status::ok) << i;
-    ASSERT_LE(result.max_strain, 0.1 + 1e-12) << i;
-    // With 100 sweeps a step it is 0.14 J at most, at the corners.
-    ASSERT_LT(world.energy().stretch, 0.25) << i;
-  }
-}
-
-TEST(Net, LargeFlagThatIsPulledByItsCornerGoesOnAlikeInACopy) {
-  SceneDesc scene = scenes::flag(70, 70, 0.01, LinkType::limited);
-  scene.nets[0].stiffness = 200;
-  World world(scene, initial_frames(scene));
-  run(world, 30);
-  ASSERT_TRUE(world.apply(edit::Pin{"hand", net_id(0), 69 * 70, 0, {{-0.05, -0.1, -0.7}, Quaternion::Identity()}}).ok);
-  ASSERT_TRUE(world.apply(edit::Cut{net_id(0), 100}).ok);
-  run(world, 30);
-  World copy = world;
-  run(world, 30);
-  run(copy, 30);
-  EXPECT_EQ(copy.hash(), world.hash());
-  for (int link = 0; link < static_cast<int>(world.nets()[0].model.links.size()); ++link)
-    ASSERT_LE(std::abs(strain(world.nets()[0], link)), 0.1 + 1e-12) << link;
-}
-
 TEST(Net, ElasticFlagSagsFarBeyondTheTolerance) {
   SceneDesc scene = scenes::flag(16, 24, 0.05, LinkType::spring);
   scene.nets[0].stiffness = 3;

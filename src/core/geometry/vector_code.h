@@ -5,9 +5,6 @@
 /// and a program with it would crash at its start.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
 #define VERLET_CABLE_VECTOR_CODE __attribute__((target_clones("avx2", "default")))
-/// For long loops with much to compute: the widest vectors only pay there.
-#define VERLET_CABLE_WIDE_VECTOR_CODE __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
 #define VERLET_CABLE_VECTOR_CODE
-#define VERLET_CABLE_WIDE_VECTOR_CODE
 #endif

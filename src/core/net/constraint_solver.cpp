@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "net/turning_link_rows.h"
-
 namespace verlet_cable {
 
 namespace {
@@ -18,8 +16,6 @@ constexpr double aimed_part = 0.97;
 /// to what swings: there only a part of them is kept from step to step.
 constexpr int links_followed = 60;
 constexpr double kept_in_large_nets = 0.5;
-/// Springs up to h^2 stiffness / mass are resolved on two grids in a step. What stiffer ones lack would feed energy to the net.
-constexpr double resolved_stiffness = 40;
 /// Relative error of a rigid link's length that is left.
 constexpr double rigid_tolerance = 1e-4;
 /// Rounds over what is outside its bounds; then it is reported.
@@ -33,6 +29,8 @@ constexpr int rounds_along_start = 8;
 constexpr double rigid_softness = 1e-3;
 /// [m] Longer than anything.
 constexpr double unbounded = 1e12;
+/// Relative: rest lengths of a grid differ by rounding.
+constexpr double same_length = 1e-9;
 /// [m/s] What comes slower does not bounce, and what is inside an obstacle is pushed out no faster.
 constexpr double resting_speed = 0.05;
 constexpr double exit_speed = 1;
@@ -67,20 +65,9 @@ void NetConstraintSolver::resize(const NetModel& model, const std::vector<HeldNo
   contacts_.reserve(nodes);
   wind_.resize(model);
   long_range_attachments_.resize(model, held, 1 + aimed_part * tolerance_of(model));
-  const bool large = long_range_attachments_.most_links() > links_followed;
-  const double lightest = *std::min_element(model.masses.begin(), model.masses.end());
-  on_two_grids_ = large && model.is_grid() && model.link_type == LinkType::limited && model.minimum_distances.empty() &&
-                  h * h * model.stiffness <= resolved_stiffness * lightest;
-  kept_part_ = large && !on_two_grids_ ? kept_in_large_nets : 1;
+  kept_part_ = long_range_attachments_.most_links() > links_followed ? kept_in_large_nets : 1;
   add_rows(model, h);
-  connect(nodes, static_cast<int>(model.links.size()));
-  if (!on_two_grids_) return;
-  arrays_.turning_impulse.assign(links, 0.0);
-  lacking_.assign(links, 0.0);
-  added_.assign(model.columns, 0.0);
-  add_whole_rows(model);
-  coarse_net_.resize(model, arrays_.inverse_mass, h * h * model.stiffness + h * model.damping);
-  collect_links_near_held(model, held);
+  connect(nodes);
 }
 
 /// Groups links that are alike into runs. Grids give long ones, row by row, so that the nodes of a row are still at hand when its
@@ -93,10 +80,6 @@ void NetConstraintSolver::add_rows(const NetModel& model, double h) {
     return arrays_.inverse_mass[nodes_[link][0]] == 0 && arrays_.inverse_mass[nodes_[link][1]] == 0;
   };
   for (int link = 0; link < static_cast<int>(nodes_.size()); ++link) used[link] = held(link);
-  const auto same_masses = [&](int link, int other) {
-    return arrays_.inverse_mass[nodes_[link][0]] == arrays_.inverse_mass[nodes_[other][0]] &&
-           arrays_.inverse_mass[nodes_[link][1]] == arrays_.inverse_mass[nodes_[other][1]];
-  };
   const auto run_from = [&](int first, int stride) {
     LinkRun run{first, nodes_[first][0], nodes_[first][1], stride, 1};
     const int apart = std::abs(run.second_node - run.first_node);
@@ -105,7 +88,7 @@ void NetConstraintSolver::add_rows(const NetModel& model, double h) {
       const bool follows =
           nodes_[link][0] == run.first_node + run.count * stride && nodes_[link][1] == run.second_node + run.count * stride;
       const double ratio = model.rest_lengths[link] / model.rest_lengths[first];
-      if (used[link] || !follows || !same_masses(link, first) || std::abs(ratio - 1) > same_length) break;
+      if (used[link] || !follows || std::abs(ratio - 1) > same_length) break;
     }
     return run;
   };
@@ -134,26 +117,16 @@ void NetConstraintSolver::add_rows(const NetModel& model, double h) {
                      false});
   }
   if (!model.is_grid()) return;
-  first_row_ = sort_by_grid_rows(model, rows_);
+  std::stable_sort(rows_.begin(), rows_.end(), [&](const Row& a, const Row& b) {
+    return std::min(a.run.first_node, a.run.second_node) / model.columns <
+           std::min(b.run.first_node, b.run.second_node) / model.columns;
+  });
 }
 
-/// Returns the index of the first of each row of the grid.
-std::vector<int> NetConstraintSolver::sort_by_grid_rows(const NetModel& model, std::vector<Row>& rows) {
-  const auto row_of_grid = [&](const Row& row) { return std::min(row.run.first_node, row.run.second_node) / model.columns; };
-  std::stable_sort(rows.begin(), rows.end(), [&](const Row& a, const Row& b) { return row_of_grid(a) < row_of_grid(b); });
-  std::vector<int> first(model.rows + 1, 0);
-  for (const Row& row : rows) ++first[row_of_grid(row) + 1];
-  for (int row = 0; row < model.rows; ++row) first[row + 1] += first[row];
-  return first;
-}
-
-void NetConstraintSolver::connect(std::size_t nodes, int links) {
+void NetConstraintSolver::connect(std::size_t nodes) {
   for (std::size_t row = 0; row < rows_.size(); ++row)
     for (int k = 0; k < rows_[row].run.count; ++k)
       row_of_[rows_[row].run.first + k * rows_[row].run.stride] = static_cast<int>(row);
-  between_held_.clear();
-  for (int link = 0; link < links; ++link)
-    if (row_of_[link] < 0) between_held_.push_back(link);
   first_at_.assign(nodes + 1, 0);
   for (const std::array<int, 2>& link : nodes_)
     for (const int node : link) ++first_at_[node + 1];
@@ -169,21 +142,16 @@ NetStepResult NetConstraintSolver::advance(const NetStep& step, NetState& state,
   load(step, state, memory);
   apply_loads(step);
   find_contacts(step);
-  result.iterations = on_two_grids_ ? solve_on_two_grids() : solve_by_sweeps(step);
-  keep_bounds(result);
-  result.finite = std::isfinite(result.max_strain) && is_sane();
-  if (!result.finite) return result;
-  react(step, memory);
-  store(step, state, memory);
-  return result;
-}
-
-int NetConstraintSolver::solve_by_sweeps(const NetStep& step) {
   start();
   const int sweeps = step.model.link_type == LinkType::rigid ? rigid_sweeps : limited_sweeps;
   for (int i = 0; i < sweeps; ++i) sweep(i % 2 == 0);
+  result.iterations = sweeps;
   long_range_attachments_.pull(step.held, h_, arrays_);
-  return sweeps;
+  keep_bounds(result);
+  react(step, memory);
+  store(step, state, memory);
+  result.finite = is_sane(state.positions) && is_sane(state.velocities) && std::isfinite(result.max_strain);
+  return result;
 }
 
 void NetConstraintSolver::load(const NetStep& s, const NetState& state, LinkMemory& memory) {
@@ -278,7 +246,7 @@ void NetConstraintSolver::press_contacts() {
 bool NetConstraintSolver::measure(NetStepResult& result) {
   outside_.clear();
   double least = 1, largest = 1;
-  for (const Row& row : on_two_grids_ ? whole_rows_ : rows_) {
+  for (const Row& row : rows_) {
     const double rest = row.law.rest_length;
     const SquareRange range = measure_links(row.run, rest, h_, arrays_);
     if (row.is_link) {
@@ -307,16 +275,12 @@ bool NetConstraintSolver::is_outside(int link) const {
 
 void NetConstraintSolver::correct(int link, bool along_end) {
   const Row& row = rows_[row_of_[link]];
-  const auto [i, j] = nodes_[link];
-  if (on_two_grids_) {  // the whole law, because what is not released again pulls the more in the next step
-    sweep_turning_links({link, i, j, 1, 1}, row.law, h_, arrays_);
-    return;
-  }
   const double rest = row.law.rest_length;
-  const double length = end_length(i, j, h_, arrays_);
+  const double length = end_length(nodes_[link][0], nodes_[link][1], h_, arrays_);
   const double part = row.law.longest < unbounded ? aimed_part : 0;  // rigid links are brought to their rest length
   const double shortest = rest + part * (row.shortest - rest);
   const double longest = row.is_link ? rest + part * (row.longest - rest) : unbounded;
+  const auto [i, j] = nodes_[link];
   const Vector3 impulse = set_length(link, i, j, std::clamp(length, shortest, longest), along_end, h_, arrays_);
   if (held_at_[i] >= 0) bound_impulses_[held_at_[i]] -= impulse;
   if (held_at_[j] >= 0) bound_impulses_[held_at_[j]] += impulse;
@@ -350,13 +314,6 @@ void NetConstraintSolver::keep_bounds(NetStepResult& result) {
   if (measure(result)) result.overstretched_node = nodes_[outside_.front()][0];
 }
 
-/// On its second node [N s].
-Vector3 NetConstraintSolver::impulse_of(int link) const {
-  if (on_two_grids_) return get(arrays_.turning_impulse, link);
-  const Vector3 along = get(arrays_.position, nodes_[link][1]) - get(arrays_.position, nodes_[link][0]);
-  return arrays_.impulse[link] * arrays_.inverse_length[link] * along;
-}
-
 void NetConstraintSolver::react(const NetStep& s, const LinkMemory& memory) const {
   for (std::size_t k = 0; k < s.held.size(); ++k) {
     HeldNode& held = s.held[k];
@@ -364,25 +321,13 @@ void NetConstraintSolver::react(const NetStep& s, const LinkMemory& memory) cons
     for (int at = first_at_[held.node]; at < first_at_[held.node + 1]; ++at) {
       const int link = links_at_[at];
       const double sign = nodes_[link][1] == held.node ? 1 : -1;
-      links += sign / h_ * impulse_of(link);
+      const Vector3 along = get(arrays_.position, nodes_[link][1]) - get(arrays_.position, nodes_[link][0]);
+      links += sign * arrays_.impulse[link] * arrays_.inverse_length[link] / h_ * along;
     }
     const Vector3 wind = wind_.active() ? get(wind_.force(), held.node) : Vector3(Vector3::Zero());
     const Vector3 acceleration = (get(arrays_.velocity, held.node) - memory.midstep_velocities[held.node]) / h_;
     held.force = force_on_holder(s, held, links, wind, acceleration);
   }
-}
-
-/// Whether nothing has run away, or is no number.
-bool NetConstraintSolver::is_sane() const {
-  int insane = 0;
-  const auto count = [&](const std::vector<double>& positions, const std::vector<double>& velocities) {
-    for (std::size_t i = 0; i < positions.size(); ++i)
-      insane += !(std::abs(positions[i] + h_ * velocities[i]) <= largest_sane) | !(std::abs(velocities[i]) <= largest_sane);
-  };
-  count(arrays_.position.x, arrays_.velocity.x);
-  count(arrays_.position.y, arrays_.velocity.y);
-  count(arrays_.position.z, arrays_.velocity.z);
-  return insane == 0;
 }
 
 /// The recursion's velocity is that of half a step before; the velocity at the end of the step is found by going on as from the
@@ -401,11 +346,10 @@ void NetConstraintSolver::store(const NetStep& s, NetState& state, LinkMemory& m
     state.velocities[held.node] = held.velocity;
   }
   std::copy(arrays_.impulse.begin(), arrays_.impulse.end(), memory.impulses.begin());
-  const double forces = -1 / h_;
-  for (std::size_t link = 0; link < state.tension.size(); ++link) state.tension[link] = forces * arrays_.impulse[link];
-  for (const int link : between_held_) {
+  for (std::size_t link = 0; link < state.tension.size(); ++link) {
     const Vector3 along = state.positions[nodes_[link][1]] - state.positions[nodes_[link][0]];
-    state.tension[link] = s.model.stiffness * (along.norm() - s.model.rest_lengths[link]);
+    state.tension[link] =
+        row_of_[link] >= 0 ? -arrays_.impulse[link] / h_ : s.model.stiffness * (along.norm() - s.model.rest_lengths[link]);
   }
 }
 

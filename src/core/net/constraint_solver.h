@@ -1,7 +1,6 @@
 #pragma once
 
 #include "contact/point_contact.h"
-#include "net/coarse_net.h"
 #include "net/link_rows.h"
 #include "net/long_range_attachments.h"
 #include "net/step.h"
@@ -20,8 +19,6 @@ struct LinkMemory {
 /// bounds by impulses at its end (Provot, Deformation Constraints in a Mass-Spring Model to Describe Rigid Cloth Behavior, 1995).
 /// They begin as in the step before, so that what hangs still is solved already; a few sweeps follow it where it moves, tethers
 /// bound the whole, and what is then still outside its bounds is corrected alone, with its neighbours, until nothing is.
-/// Large grids are solved on two grids instead of with tethers: a coarse net carries changes over the whole, so that the sweeps
-/// find the springs' solution there, too; and impulses turn with their links.
 class NetConstraintSolver {
  public:
   /// Sets what no step changes: after pins and cuts, too.
@@ -36,24 +33,8 @@ class NetConstraintSolver {
     bool is_link = true;               ///< not a minimum distance
   };
 
-  struct RunOfRow {
-    LinkRun run;
-    int row = 0;
-  };
-
-  /// Relative: rest lengths of a grid differ by rounding.
-  static constexpr double same_length = 1e-9;
-
   void add_rows(const NetModel& model, double h);
-  static std::vector<int> sort_by_grid_rows(const NetModel& model, std::vector<Row>& rows);
-  void add_whole_rows(const NetModel& model);
-  void connect(std::size_t nodes, int links);
-  void collect_links_near_held(const NetModel& model, const std::vector<HeldNode>& held);
-  int solve_on_two_grids();
-  int solve_by_sweeps(const NetStep& step);
-  template <class... Stages>
-  void pass(Stages... stages);
-  void sweep_near_held();
+  void connect(std::size_t nodes);
   void load(const NetStep& step, const NetState& state, LinkMemory& memory);
   void begin(const NetStep& step, const NetState& state, LinkMemory& memory);
   void apply_loads(const NetStep& step);
@@ -66,29 +47,18 @@ class NetConstraintSolver {
   void list_outside(const Row& row);
   bool is_outside(int link) const;
   void correct(int link, bool along_end);
-  bool is_sane() const;
-  Vector3 impulse_of(int link) const;
   void react(const NetStep& step, const LinkMemory& memory) const;
   void store(const NetStep& step, NetState& state, LinkMemory& memory) const;
 
   double h_ = 0;
   std::vector<Row> rows_;
-  std::vector<int> first_row_;             ///< of a grid: index of the first of the links that begin in one of its rows
   std::vector<std::array<int, 2>> nodes_;  ///< of a link or minimum distance
   std::vector<int> row_of_;                ///< of a link or minimum distance, -1 between held nodes
   std::vector<int> first_at_, links_at_;   ///< the links at a node: links_at_[first_at_[node]] to [first_at_[node + 1]]
-  std::vector<int> between_held_;          ///< links that nothing moves
   LinkArrays arrays_;
   NetWind wind_;
   LongRangeAttachments long_range_attachments_;
   double kept_part_ = 1;  ///< of the impulses of the step before
-  bool on_two_grids_ = false;
-  CoarseNet coarse_net_;
-  std::vector<double> lacking_;  ///< [N s] by link, then what is added to it
-  VectorArray added_;            ///< [N s] scratch, of one row
-  std::vector<Row> whole_rows_;  ///< for what may be done to links that share nodes at once
-  std::vector<int> first_whole_row_;
-  std::vector<RunOfRow> near_held_;  ///< links near held nodes
   std::vector<NodeContact> contacts_;
   std::vector<int> held_at_;                 ///< by node: index of what holds it, -1: none
   std::vector<Vector3> bound_impulses_;      ///< [N s] of links' bounds on what is held, besides the links' own impulses

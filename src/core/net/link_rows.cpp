@@ -4,14 +4,48 @@
 #include <cmath>
 
 #include "geometry/vector_code.h"
-#include "net/link_law.h"
 
 namespace verlet_cable {
 
 namespace {
 
+/// The arrays of one run, as plain pointers: compilers make vector code of these only.
+struct Pointers {
+  const double *x, *y, *z, *w;
+  double *u, *v, *s;
+  double *impulse, *inverse_length;
+  int i, j, link, stride, count;
+
+  Pointers(const LinkRun& run, const LinkArrays& a)
+      : x(a.position.x.data()),
+        y(a.position.y.data()),
+        z(a.position.z.data()),
+        w(a.inverse_mass.data()),
+        u(const_cast<double*>(a.velocity.x.data())),
+        v(const_cast<double*>(a.velocity.y.data())),
+        s(const_cast<double*>(a.velocity.z.data())),
+        impulse(const_cast<double*>(a.impulse.data())),
+        inverse_length(const_cast<double*>(a.inverse_length.data())),
+        i(run.first_node),
+        j(run.second_node),
+        link(run.first),
+        stride(run.stride),
+        count(run.count) {}
+};
+
+struct Law {
+  double h, rest_stiffness, total_stiffness, damping, shortest, longest;
+  Law(const LinkLaw& law, double step)
+      : h(step),
+        rest_stiffness(law.stiffness * law.rest_length),
+        total_stiffness(law.stiffness + law.damping / step),
+        damping(law.damping / step),
+        shortest(law.shortest),
+        longest(law.longest) {}
+};
+
 template <int stride>
-inline __attribute__((always_inline)) void start(const LinkPointers& p) {
+inline __attribute__((always_inline)) void start(const Pointers& p) {
   const double *x = p.x, *y = p.y, *z = p.z, *w = p.w;
   double *u = p.u, *v = p.v, *s = p.s, *inverse = p.inverse_length;
   const double* impulse = p.impulse;
@@ -33,8 +67,8 @@ inline __attribute__((always_inline)) void start(const LinkPointers& p) {
 }
 
 template <int stride>
-inline __attribute__((always_inline)) void sweep(const LinkPointers& p, const LawOfRun& law) {
-  const double *x = p.x, *y = p.y, *z = p.z, *inverse_length = p.inverse_length;
+inline __attribute__((always_inline)) void sweep(const Pointers& p, const Law& law) {
+  const double *x = p.x, *y = p.y, *z = p.z, *w = p.w, *inverse_length = p.inverse_length;
   double *u = p.u, *v = p.v, *s = p.s, *impulse = p.impulse;
   const int step = stride > 0 ? stride : p.stride;
   const double h = law.h;
@@ -44,10 +78,18 @@ inline __attribute__((always_inline)) void sweep(const LinkPointers& p, const La
     const double dx = x[j] - x[i], dy = y[j] - y[i], dz = z[j] - z[i];
     const double ex = dx + h * (u[j] - u[i]), ey = dy + h * (v[j] - v[i]), ez = dz + h * (s[j] - s[i]);
     const double length = std::sqrt(ex * ex + ey * ey + ez * ez);
-    const double e = inverse_length[link], before = impulse[link];
-    const double after = impulse_of(law, length - law.mobility * before, e * (dx * dx + dy * dy + dz * dz));
-    impulse[link] = after;
-    const double size = (after - before) * e, of_i = size * law.of_i, of_j = size * law.of_j;
+    const double e = inverse_length[link], mobility = h * (w[i] + w[j]), before = impulse[link];
+    // The law is solved for P with l' = length + mobility (P - before). Divisions are dear: both are made of one.
+    const double free = length - mobility * before, resistance = 1 + h * law.total_stiffness * mobility;
+    const double inverse = 1 / (mobility * resistance);
+    const double start_length = e * (dx * dx + dy * dy + dz * dz);
+    const double pull = law.total_stiffness * free - law.rest_stiffness - law.damping * start_length;
+    double next = free - h * mobility * mobility * inverse * pull;
+    next = next < law.longest ? next : law.longest;
+    next = next > law.shortest ? next : law.shortest;
+    const double change = (next - length) * inverse * resistance;
+    impulse[link] = before + change;
+    const double size = change * e, of_i = size * w[i], of_j = size * w[j];
     u[i] -= of_i * dx;
     v[i] -= of_i * dy;
     s[i] -= of_i * dz;
@@ -57,47 +99,36 @@ inline __attribute__((always_inline)) void sweep(const LinkPointers& p, const La
   }
 }
 
-VERLET_CABLE_VECTOR_CODE void start_by_one(LinkPointers p) {
+VERLET_CABLE_VECTOR_CODE void start_by_one(Pointers p) {
   start<1>(p);
 }
-VERLET_CABLE_VECTOR_CODE void start_by_two(LinkPointers p) {
+VERLET_CABLE_VECTOR_CODE void start_by_two(Pointers p) {
   start<2>(p);
 }
-VERLET_CABLE_VECTOR_CODE void sweep_by_one(LinkPointers p, LawOfRun law) {
+VERLET_CABLE_VECTOR_CODE void sweep_by_one(Pointers p, Law law) {
   sweep<1>(p, law);
 }
-VERLET_CABLE_VECTOR_CODE void sweep_by_two(LinkPointers p, LawOfRun law) {
+VERLET_CABLE_VECTOR_CODE void sweep_by_two(Pointers p, Law law) {
   sweep<2>(p, law);
 }
 
-constexpr int lanes = 8;
+constexpr int block = 64;
 
-/// Largest and least of each place in lanes: what a compiler makes vector code of without reordering anything.
-template <int stride>
-inline __attribute__((always_inline)) void measure(const LinkPointers& p, double h, double* __restrict least,
-                                                   double* __restrict largest) {
-  const auto square_of = [&](int k) __attribute__((always_inline)) {
-    const int i = p.i + k * stride, j = p.j + k * stride;
-    const double ex = p.x[j] - p.x[i] + h * (p.u[j] - p.u[i]);
-    const double ey = p.y[j] - p.y[i] + h * (p.v[j] - p.v[i]);
-    const double ez = p.z[j] - p.z[i] + h * (p.s[j] - p.s[i]);
-    return ex * ex + ey * ey + ez * ez;
-  };
-  const auto include = [&](double square, int lane) __attribute__((always_inline)) {
-    least[lane] = square < least[lane] ? square : least[lane];
-    largest[lane] = square > largest[lane] ? square : largest[lane];
-  };
-  int start = 0;
-  for (; start + lanes <= p.count; start += lanes)
+/// Largest and least of each place in blocks: what a compiler makes vector code of without reordering anything.
+VERLET_CABLE_VECTOR_CODE void measure(Pointers p, double h, double* __restrict least, double* __restrict largest) {
+  for (int start = 0; start < p.count; start += block) {
+    const int count = std::min(block, p.count - start);
 #pragma GCC ivdep
-    for (int lane = 0; lane < lanes; ++lane) include(square_of(start + lane), lane);
-  for (; start < p.count; ++start) include(square_of(start), 0);
-}
-VERLET_CABLE_VECTOR_CODE void measure_by_one(LinkPointers p, double h, double* __restrict least, double* __restrict largest) {
-  measure<1>(p, h, least, largest);
-}
-VERLET_CABLE_VECTOR_CODE void measure_by_two(LinkPointers p, double h, double* __restrict least, double* __restrict largest) {
-  measure<2>(p, h, least, largest);
+    for (int k = 0; k < count; ++k) {
+      const int i = p.i + (start + k) * p.stride, j = p.j + (start + k) * p.stride;
+      const double ex = p.x[j] - p.x[i] + h * (p.u[j] - p.u[i]);
+      const double ey = p.y[j] - p.y[i] + h * (p.v[j] - p.v[i]);
+      const double ez = p.z[j] - p.z[i] + h * (p.s[j] - p.s[i]);
+      const double square = ex * ex + ey * ey + ez * ez;
+      least[k] = square < least[k] ? square : least[k];
+      largest[k] = square > largest[k] ? square : largest[k];
+    }
+  }
 }
 
 }  // namespace
@@ -111,21 +142,18 @@ void start_links(const LinkRun& run, LinkArrays& arrays) {
 
 void sweep_links(const LinkRun& run, const LinkLaw& law, double h, LinkArrays& arrays) {
   if (run.stride == 1)
-    sweep_by_one({run, arrays}, {run, law, h, arrays});
+    sweep_by_one({run, arrays}, {law, h});
   else
-    sweep_by_two({run, arrays}, {run, law, h, arrays});
+    sweep_by_two({run, arrays}, {law, h});
 }
 
 SquareRange measure_links(const LinkRun& run, double rest_length, double h, const LinkArrays& arrays) {
-  double least[lanes], largest[lanes];
-  std::fill(least, least + lanes, 1e300);
-  std::fill(largest, largest + lanes, 0.0);
-  if (run.stride == 1)
-    measure_by_one({run, arrays}, h, least, largest);
-  else
-    measure_by_two({run, arrays}, h, least, largest);
+  double least[block], largest[block];
+  std::fill(least, least + block, 1e300);
+  std::fill(largest, largest + block, 0.0);
+  measure({run, arrays}, h, least, largest);
   const double scale = 1 / (rest_length * rest_length);
-  return {scale * *std::min_element(least, least + lanes), scale * *std::max_element(largest, largest + lanes)};
+  return {scale * *std::min_element(least, least + block), scale * *std::max_element(largest, largest + block)};
 }
 
 double end_length(int i, int j, double h, const LinkArrays& a) {

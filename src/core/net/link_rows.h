@@ -8,8 +8,7 @@
 namespace verlet_cable {
 
 /// Links that are alike: link `first + k * stride` joins the nodes `first_node + k * stride` and `second_node + k * stride`. No
-/// node is in two of them, so that they may be treated in any order, or at once. All first nodes have one mass, all second ones,
-/// too.
+/// node is in two of them, so that they may be treated in any order, or at once.
 struct LinkRun {
   int first = 0, first_node = 0, second_node = 0;
   int stride = 1;
@@ -34,7 +33,6 @@ struct LinkArrays {
   std::vector<double> inverse_mass;    ///< nodes: [1/kg], 0 where held
   std::vector<double> impulse;         ///< links: P [N s]
   std::vector<double> inverse_length;  ///< links: 1 / l at the start of the step [1/m]
-  VectorArray turning_impulse;         ///< links, of large grids only: P as a vector on the second node [N s]
 };
 
 /// Sets the inverse lengths, and applies the impulses that the links have from the step before.

@@ -121,10 +121,12 @@ void World::Implementation::step_net(int index, StepResult& result) {
   NetSolver& solver = solver_of(index);
   aim_net(index, result);
   hold_at(0, 1, memory.targets, solver.boundary);
+  solver.before = net.state;
   const NetStep step{net.model, *state.scene, moving_obstacles.value, memory.targets, solver.boundary.nodes};
   const NetStepResult of_net = net.model.link_type == LinkType::spring ? solver.springs.advance(step, net.state, memory.points)
                                                                        : solver.links.advance(step, net.state, memory.links);
   if (!of_net.finite) {
+    net.state = solver.before;
     bring_to_rest(net.state);
     forget_motion(net.model, memory);
     note_net(Status::degraded, index, 0, result);

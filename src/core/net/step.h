@@ -34,13 +34,10 @@ inline Vector3 force_on_holder(const NetStep& s, const HeldNode& held, const Vec
   return links + wind + s.model.masses[held.node] * (s.scene.gravity.at(held.position) - acceleration);
 }
 
-/// [m] or [m/s] Larger than in any scene.
-constexpr double largest_sane = 1e9;
-
 /// Whether nothing has run away: positions and velocities are numbers of a scene's size.
 inline bool is_sane(const std::vector<Vector3>& vectors) {
   for (const Vector3& v : vectors)
-    if (!(v.cwiseAbs().maxCoeff() <= largest_sane)) return false;
+    if (!(v.cwiseAbs().maxCoeff() <= 1e9)) return false;
   return true;
 }
 

@@ -62,6 +62,7 @@ struct NetSolver {
   Boundary boundary;
   SpringStepper springs;
   NetConstraintSolver links;
+  NetState before;  ///< the step
 };
 
 }  // namespace verlet_cable
