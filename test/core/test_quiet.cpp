@@ -271,6 +271,51 @@ TEST(Quiet, WhatIsResolvedKeepsItsEnergy) {
   }
 }
 
+/// However much it is damped, and whether it is stiff or not: it bends at a corner, and turns.
+TEST(DampedFreeCable, NeverGainsEnergy) {
+  struct Bending {
+    double stiffness, damping;
+    bool keeps_angular_momentum;
+  };
+  for (const Bending& bending : {Bending{0, 0.1, false},
+                                 {0, 0.01, false},
+                                 {0, 0.001, false},
+                                 {0.02, 0.1, false},
+                                 {0.02, 0.01, true},
+                                 {0.02, 0.001, true}}) {
+    SceneDesc scene = scenes::one_cable(20);
+    scene.gravity.acceleration.setZero();
+    scene.numerical_damping = false;
+    scene.materials[0].material.bending_stiffness = bending.stiffness;
+    scene.materials[0].material.bending_damping = bending.damping;
+    scene.cables[0].initial.type = InitialShapeDesc::Type::points;
+    scene.cables[0].initial.points = {{0, 0, 0}, {0.5, 0, 0}, {0.5, 0.5, 0}};
+    scene.cables[0].initial.velocities = {{0, 1, 0}, {0, -2, 1}, {3, 0, 1}};
+    World world(scene, initial_frames(scene));
+    const auto angular_momentum = [&] {
+      const CableState& state = world.cables()[0].state;
+      double mass = 0;
+      Vector3 moment = Vector3::Zero(), momentum = Vector3::Zero(), sum = Vector3::Zero();
+      for (int i = 0; i < state.nodes(); ++i) {
+        mass += state.masses[i];
+        moment += state.masses[i] * state.positions[i];
+        momentum += state.masses[i] * state.velocities[i];
+        sum += state.masses[i] * state.positions[i].cross(state.velocities[i]);
+      }
+      return Vector3(sum - moment.cross(momentum) / mass);
+    };
+    const Vector3 start = angular_momentum();
+    const double energy = world.energy().total();
+    double last = energy;
+    for (int i = 0; i < 2500; ++i) {
+      ASSERT_EQ(world.step(initial_frames(scene)).status, StepResult::Status::ok);
+      ASSERT_LT(world.energy().total(), last + 1e-5 * energy) << bending.stiffness << ' ' << bending.damping << ' ' << i;
+      last = world.energy().total();
+    }
+    if (bending.keeps_angular_momentum) EXPECT_LT((angular_momentum() - start).norm(), 1e-4 * start.norm());
+  }
+}
+
 /// Its motion becomes chaotic after some seconds, and as fast as the step is long: what is lost is the mean of some runs.
 TEST(Quiet, AFastCantileverLosesLittle) {
   constexpr int runs = 24, segments = 40;

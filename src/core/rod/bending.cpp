@@ -39,6 +39,10 @@ void Bending::start(const CableModel& model, const CableState& state, const Vect
   if (is_damped_) turn_with_material(model, state, segment, directions, h);
 }
 
+void Bending::resist_all_changes() {
+  turned_.assign(segments_ + 1, 0.0);
+}
+
 /// What of the change of e over the substep is the material's own turn, as far as it is known at the start.
 void Bending::turn_with_material(const CableModel& model, const CableState& state, const VectorArray& segment,
                                  const std::vector<HeldDirection>& directions, double h) {
@@ -100,11 +104,27 @@ Vector3 Bending::damping_torque(const VectorArray& displacement) const {
   Vector3 torque = Vector3::Zero();
   if (!active_ || !is_damped_) return torque;
   for (int i = 1; i < segments_; ++i) {
-    const Vector3 change = inverse_length_[i] * (get(displacement, i + 1) - get(displacement, i)) -
-                           inverse_length_[i - 1] * (get(displacement, i) - get(displacement, i - 1));
+    const Vector3 change = change_at(i, displacement);
     torque -= damping_[i] * (get(start_, i) + part_ * change).cross(change - get(turned_, i));
   }
   return torque;
+}
+
+double Bending::damping_work(const VectorArray& displacement) const {
+  double work = 0;
+  if (!active_ || !is_damped_) return work;
+  for (int i = 1; i < segments_; ++i) {
+    const Vector3 change = change_at(i, displacement);
+    work += damping_[i] * change.dot(change - get(turned_, i));
+  }
+  return work;
+}
+
+/// Of e, over the substep.
+Vector3 Bending::change_at(int node, const VectorArray& displacement) const {
+  const Vector3 here = get(displacement, node);
+  return inverse_length_[node] * (get(displacement, node + 1) - here) -
+         inverse_length_[node - 1] * (here - get(displacement, node - 1));
 }
 
 void Bending::add_stiffness(KktSystem& system) const {

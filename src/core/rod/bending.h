@@ -19,7 +19,8 @@ namespace verlet_cable {
 /// ones make the moment proportional to the angle. At a clamp the frame's axis stands for one of the two directions, half a
 /// segment away; it is as long as the segment is stretched, so that a clamp does not resist stretch.
 ///
-/// Damping resists the change of e in the material, which spins as in material_spin.h: not what only turns with it.
+/// Damping resists the change of e in the material, which spins as in material_spin.h: not what only turns with it. As the spin
+/// is that of the substep before, a free cable could gain energy so; see `resist_all_changes`.
 class Bending {
  public:
   void resize(int segments);
@@ -27,6 +28,8 @@ class Bending {
   void start(const CableModel& model, const CableState& state, const VectorArray& segment,
              const std::vector<HeldDirection>& directions, double h, double part);
   bool active() const { return active_; }
+  /// Damping resists what turns with the material, too: it always takes energy then.
+  void resist_all_changes();
   bool is_damped() const { return active_ && is_damped_; }
   double damping(int node) const { return damping_[node]; }      ///< damping / (length h) [N m]
   Vector3 turned(int node) const { return get(turned_, node); }  ///< change of e that turns with the material
@@ -37,10 +40,13 @@ class Bending {
   void add_stiffness(KktSystem& system) const;
   /// What damping does to the angular momentum [N m], which a cable as a whole would keep.
   Vector3 damping_torque(const VectorArray& displacement) const;
+  /// What damping takes from the energy [J].
+  double damping_work(const VectorArray& displacement) const;
   /// Adds the moments on the holders of directions [N m] to their `torque`.
   void react(const VectorArray& displacement, std::vector<HeldDirection>& directions);
 
  private:
+  Vector3 change_at(int node, const VectorArray& displacement) const;
   void turn_with_material(const CableModel& model, const CableState& state, const VectorArray& segment,
                           const std::vector<HeldDirection>& directions, double h);
   void bend_clamps(const VectorArray& displacement);

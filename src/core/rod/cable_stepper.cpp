@@ -61,6 +61,12 @@ SubstepResult CableStepper::advance(const Substep& s, CableState& state) {
     rod_.simplify();
     result.converged = solve(s, state, result);
   }
+  // Where the material's spin is not that of the substep before.
+  if (result.converged && s.boundary.nodes.empty() && bending_.damping_work(displacement_) < 0) {
+    begin(s, state, result);
+    bending_.resist_all_changes();
+    result.converged = solve(s, state, result);
+  }
   if (result.converged) finish(s, false, state, result);
   return result;
 }
@@ -446,13 +452,22 @@ void CableStepper::restore_momenta(const Substep& s, const std::vector<double>& 
   for (int i = 0; i <= segments_; ++i) set(end_velocity_, i, get(end_velocity_, i) + missing.at(get(position_, i)));
 }
 
-/// Bending that is damped moves no free cable as a whole; what it did to the angular momentum, the material's twist would have
-/// balanced.
+/// Bending that is damped moves no free cable as a whole; what it did to the angular momentum is given back as a rigid body's
+/// motion, but no more energy than it took.
 void CableStepper::restore_angular_momentum(const Substep& s, const std::vector<double>& masses) {
   const Vector3 taken = s.h * bending_.damping_torque(displacement_);
   if (taken.isZero(0)) return;
   const RigidMotion missing = rigid_motion(masses, position_, Vector3::Zero(), -taken);
-  for (int i = 0; i <= segments_; ++i) set(end_velocity_, i, get(end_velocity_, i) + missing.at(get(position_, i)));
+  double along = 0, square = 0;  // a share of it adds share * along + share^2 * square [J]
+  for (int i = 0; i <= segments_; ++i) {
+    const Vector3 given = missing.at(get(position_, i));
+    along += masses[i] * given.dot(get(end_velocity_, i));
+    square += 0.5 * masses[i] * given.squaredNorm();
+  }
+  const double work = std::max(0.0, bending_.damping_work(displacement_));
+  double share = 1;
+  if (along + square > work) share = (std::sqrt(along * along + 4 * square * work) - along) / (2 * square);
+  for (int i = 0; i <= segments_; ++i) set(end_velocity_, i, get(end_velocity_, i) + share * missing.at(get(position_, i)));
 }
 
 /// Finds motion that the substep has not resolved: it is taken out of the velocities, or the next substeps damp it.
