@@ -26,35 +26,20 @@ struct KeptBending : KeptPlain<Real> {
 template <bool bends, class Real>
 using Kept = std::conditional_t<bends, KeptBending<Real>, KeptPlain<Real>>;
 
-template <bool bends, class Real>
-[[gnu::always_inline]] inline void keep(const Elimination<Real>& e, Kept<bends, Real>& kept) {
-  kept.node = e.node;
-  kept.cross = e.cross;
-  kept.node_along = e.node_along;
-  kept.direction = e.direction;
-  kept.multiplier = e.multiplier;
-  kept.multiplier_along = e.multiplier_along;
-  kept.first = e.first;
+/// Of an elimination to what is kept, or back.
+template <bool bends, class From, class To>
+[[gnu::always_inline]] inline void copy_elimination(const From& from, To& to) {
+  to.node = from.node;
+  to.cross = from.cross;
+  to.node_along = from.node_along;
+  to.direction = from.direction;
+  to.multiplier = from.multiplier;
+  to.multiplier_along = from.multiplier_along;
+  to.first = from.first;
   if constexpr (bends) {
-    kept.second = e.second;
-    kept.node_next = e.node_next;
-    kept.multiplier_next = e.multiplier_next;
-  }
-}
-
-template <bool bends, class Real>
-[[gnu::always_inline]] inline void recall(const Kept<bends, Real>& kept, Elimination<Real>& e) {
-  e.node = kept.node;
-  e.cross = kept.cross;
-  e.node_along = kept.node_along;
-  e.direction = kept.direction;
-  e.multiplier = kept.multiplier;
-  e.multiplier_along = kept.multiplier_along;
-  e.first = kept.first;
-  if constexpr (bends) {
-    e.second = kept.second;
-    e.node_next = kept.node_next;
-    e.multiplier_next = kept.multiplier_next;
+    to.second = from.second;
+    to.node_next = from.node_next;
+    to.multiplier_next = from.multiplier_next;
   }
 }
 
@@ -194,11 +179,11 @@ void sweep_lanes(const LaneWork& w) {
     force_before = force;
     Elimination<Real> e;
     if constexpr (is_light) {
-      recall<bends, Real>(kept[k], e);
+      copy_elimination<bends>(kept[k], e);
     } else {
       eliminate<couplings>(plus_diagonal(SymmetricOf<Real>{zero, zero, zero, zero, zero, zero}, own), at[LaneField::movable],
                            NodeCouplings<Real>{span.middle, span.compliance, first, {}, second}, front, e);
-      keep<bends, Real>(e, kept[k]);
+      copy_elimination<bends>(e, kept[k]);
     }
     Forward<Real> f;
     forward<couplings>(e, unbalanced, span.gap, load, f);
@@ -249,7 +234,7 @@ void sweep_lanes(const LaneWork& w) {
     const Place<Real> at = place_of<Real>(w, k);
     const Real multiplier = solved.multiplier;
     Elimination<Real> e;
-    recall<bends, Real>(kept[k], e);
+    copy_elimination<bends>(kept[k], e);
     back<couplings>(e, Forward<Real>{kept[k].forward_node, kept[k].forward_multiplier}, solved);
     correct(at, solved.next, multiplier);
     const Real square = dot(solved.next, solved.next);

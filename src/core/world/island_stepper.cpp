@@ -173,10 +173,12 @@ IslandStepper::IslandStepper(State& state, Workspace& workspace, std::vector<Cab
 void IslandStepper::step(Island& island, IslandOutcome& found) {
   found.intrusions.clear();
   found.contacts.clear();
-  if (!wait_for_others(island, found)) step_alone(island, found);
+  bool contacts_known = false;
+  if (!wait_for_others(island, found, contacts_known)) step_alone(island, found, contacts_known);
 }
 
-void IslandStepper::step_alone(Island& island, IslandOutcome& found) {
+/// `contacts_known`: those of the whole step have been found, and it is not split yet.
+void IslandStepper::step_alone(Island& island, IslandOutcome& found, bool contacts_known) {
   begin(island);
   int level = 0;
   for (const int cable : island.cables) level = std::max(level, state_.cable_progress[cable].level);
@@ -190,7 +192,10 @@ void IslandStepper::step_alone(Island& island, IslandOutcome& found) {
   while (done < whole) {
     const std::int64_t ticks = whole >> level;
     const bool splits = level < finest && substeps < maximum_substeps;
-    const bool converged = advance(island, part * static_cast<double>(done), part * static_cast<double>(done + ticks), !splits);
+    const double from = part * static_cast<double>(done), to = part * static_cast<double>(done + ticks);
+    if (!contacts_known) find_contacts(island, from, to);
+    contacts_known = false;
+    const bool converged = advance(island, from, to, !splits);
     if (!converged) {
       if (splits) {
         ++level;
@@ -227,11 +232,10 @@ void IslandStepper::begin(const Island& island) {
   }
 }
 
-/// One substep, from one part of the step to another. False if it has not converged or cables have passed through each other
-/// (where that is not `tolerated`); the states are then as before.
+/// One substep, from one part of the step to another, whose contacts have been found. False if it has not converged or cables
+/// have passed through each other (where that is not `tolerated`); the states are then as before.
 bool IslandStepper::advance(Island& island, double from, double to, bool tolerated) {
   const double h = (to - from) * state_.scene->time_step;
-  find_contacts(island, from, to);
   const bool touching = !workspace_.contacts.touches().empty(), keeps = island.cables.size() > 1;
   workspace_.participants.clear();
   const Scheme touching_scheme = find_touching_scheme(island, h);

@@ -59,12 +59,12 @@ class IslandStepper {
   void finish();
 
  private:
-  bool wait_for_others(Island& island, IslandOutcome& found);
+  bool wait_for_others(Island& island, IslandOutcome& found, bool& contacts_known);
   Substep whole_step(int cable, Boundary& boundary);
   WaitingCables& waiting_of(const LaneLaw& law);
   void step_together(WaitingCables& waiting);
   void complete_whole_step(const Island& island, Boundary& boundary, const SubstepResult& result);
-  void step_alone(Island& island, IslandOutcome& found);
+  void step_alone(Island& island, IslandOutcome& found, bool contacts_known);
   void begin(const Island& island);
   bool advance(Island& island, double from, double to, bool tolerated);
   void find_contacts(Island& island, double from, double to);

@@ -4,8 +4,8 @@
 
 namespace verlet_cable {
 
-/// False if the island is not one for lanes.
-bool IslandStepper::wait_for_others(Island& island, IslandOutcome& found) {
+/// False if the island is not one for lanes; the contacts of the whole step may be known then.
+bool IslandStepper::wait_for_others(Island& island, IslandOutcome& found, bool& contacts_known) {
   const int cable = island.cables.front();
   CableProgress& memory = state_.cable_progress[cable];
   if (island.cables.size() > 1 || memory.level > 0 || memory.drive) return false;
@@ -15,6 +15,7 @@ bool IslandStepper::wait_for_others(Island& island, IslandOutcome& found) {
   if (!fits_lanes(substep, state, !memory.targets.nodes.empty())) return false;
   begin(island);
   find_contacts(island, 0, 1);
+  contacts_known = true;
   if (!workspace_.contacts.touches().empty() || !workspace_.contacts.intrusions().empty()) return false;
   WaitingCables& waiting = waiting_of(law_of(substep, state));
   if (waiting.boundaries.size() == waiting.cables.size()) waiting.boundaries.emplace_back();
@@ -65,7 +66,7 @@ void IslandStepper::step_together(WaitingCables& waiting) {
     if (members[k].result.converged)
       w.stepper->complete_whole_step(*w.island, waiting.boundaries[k], members[k].result);
     else
-      w.stepper->step_alone(*w.island, *w.found);
+      w.stepper->step_alone(*w.island, *w.found, false);
   }
   waiting.cables.clear();
 }
