@@ -51,6 +51,12 @@ void append_fields(Keys<Owner>& keys, const Table& table) {
   for (const auto& field : table) keys.push_back(field_key(field));
 }
 
+/// The keys of what `Target` derives from.
+template <class Target, class Base>
+void append_keys(Keys<Target>& keys, const Keys<Base>& base) {
+  for (const Key<Base>& key : base) keys.push_back({key.name, key.allowed, key.required, key.read});
+}
+
 template <class Owner, class Enumeration>
 Key<Owner> choice_key(const std::string& name, Enumeration Owner::*member,
                       const Choices<std::common_type_t<Enumeration>>& choices, bool required = false) {

@@ -13,21 +13,20 @@ void read_friction(const Value& value, ObstacleDesc& obstacle) {
 }
 
 /// One factor for all directions, or three.
-void read_scale(const Value& value, ObstacleDesc& obstacle) {
+void read_scale(const Value& value, ShapeDesc& shape) {
   const std::string allowed = "one or three numbers above 0";
   if (value.node.IsScalar()) {
-    obstacle.scale.setConstant(read_number(value, allowed));
+    shape.scale.setConstant(read_number(value, allowed));
   } else {
     const auto factors = read_numbers<3>(value, allowed);
-    obstacle.scale = {factors[0], factors[1], factors[2]};
+    shape.scale = {factors[0], factors[1], factors[2]};
   }
 }
 
-const Keys<ObstacleDesc>& obstacle_keys() {
-  static const Keys<ObstacleDesc> keys = [] {
-    Keys<ObstacleDesc> obstacle{
-        text_key("name", &ObstacleDesc::name, name_words, true),
-        choice_key("type", &ObstacleDesc::type,
+const Keys<ShapeDesc>& shape_keys() {
+  static const Keys<ShapeDesc> keys = [] {
+    Keys<ShapeDesc> shape{
+        choice_key("type", &ShapeDesc::type,
                    {{"plane", ShapeType::plane},
                     {"sphere", ShapeType::sphere},
                     {"capsule", ShapeType::capsule},
@@ -35,34 +34,49 @@ const Keys<ObstacleDesc>& obstacle_keys() {
                     {"box", ShapeType::box},
                     {"mesh", ShapeType::mesh}},
                    true),
-        text_key("frame", &ObstacleDesc::frame, frame_words),
-        {"pose", pose_words, false, [](const Value& value, ObstacleDesc& o) { o.pose = read_numbers<6>(value, pose_words); }},
-        vector_key("size", &ObstacleDesc::size, "m"),
-        text_key("uri", &ObstacleDesc::uri, uri_words),
+        {"pose", pose_words, false, [](const Value& value, ShapeDesc& s) { s.pose = read_numbers<6>(value, pose_words); }},
+        vector_key("size", &ShapeDesc::size, "m"),
+        text_key("uri", &ShapeDesc::uri, uri_words),
         {"scale", "one or three numbers above 0", false, read_scale},
+    };
+    append_fields(shape, shape_fields);
+    return shape;
+  }();
+  return keys;
+}
+
+const Keys<ObstacleDesc>& obstacle_keys() {
+  static const Keys<ObstacleDesc> keys = [] {
+    Keys<ObstacleDesc> obstacle{
+        text_key("name", &ObstacleDesc::name, name_words, true),
+        text_key("frame", &ObstacleDesc::frame, frame_words),
         {"friction", not_negative.text(), false, read_friction},
         {"initial_pose", pose_words, false,
          [](const Value& value, ObstacleDesc& o) { o.initial_pose = read_numbers<6>(value, pose_words); }},
     };
-    append_fields(obstacle, obstacle_fields);
+    append_keys(obstacle, shape_keys());
     return obstacle;
   }();
   return keys;
 }
 
-void read_obstacle(const Value& value, ObstacleDesc& obstacle) {
-  const std::set<std::string> given = read_map(value, obstacle_keys(), obstacle);
+/// Dimensions go with their type: others are errors, and all that the type has are required but `scale`.
+void check_dimensions(const Value& value, const std::set<std::string>& given, ShapeType type) {
   if (!given.count("type") || value.errors->is_unread(value.child("type", {}).key)) {
     for (const char* key : {"radius", "length", "size", "uri"}) value.errors->mark(value.child(key, {}).key);
     return;
   }
   for (const char* key : {"radius", "length", "size", "uri", "scale"}) {
     const std::string full_key = value.child(key, {}).key;
-    const bool has = has_dimension(obstacle.type, key);
+    const bool has = has_dimension(type, key);
     if (given.count(key) && !has) value.errors->add(full_key, "given with another type", "only with a type that has this key");
     if (!given.count(key) && has && key != std::string("scale"))
       value.errors->add_unread(full_key, "missing", "a value, as obstacles of this type need it");
   }
+}
+
+void read_obstacle(const Value& value, ObstacleDesc& obstacle) {
+  check_dimensions(value, read_map(value, obstacle_keys(), obstacle), obstacle.type);
 }
 
 void read_links(const Value& value, RobotDesc& robot) {

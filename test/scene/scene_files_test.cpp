@@ -110,7 +110,7 @@ TEST(SceneFiles, templateDocumentsEveryKey) {
   expect_documented(lines, fluid_fields);
   expect_documented(lines, cable_fields);
   expect_documented(lines, cable_integer_fields);
-  expect_documented(lines, obstacle_fields);
+  expect_documented(lines, shape_fields);
   expect_documented(lines, contact_fields);
   expect_documented(lines, particle_fields);
   expect_documented(lines, net_fields);

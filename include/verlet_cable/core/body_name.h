@@ -17,6 +17,8 @@ inline std::string name_of(const World& world, const BodyId& body) {
       return world.nets()[index].model.name;
     case BodyId::Kind::particle:
       return world.particles()[index].desc.name;
+    case BodyId::Kind::rigid_body:
+      return world.bodies()[index].name;
     case BodyId::Kind::none:
       break;
   }
@@ -25,7 +27,7 @@ inline std::string name_of(const World& world, const BodyId& body) {
 
 /// As in messages: cable "hose".
 inline std::string kind_and_name(const World& world, const BodyId& body) {
-  const char* kind = body.is_cable() ? "cable" : body.is_net() ? "net" : "particle";
+  const char* kind = body.is_cable() ? "cable" : body.is_net() ? "net" : body.is_rigid_body() ? "body" : "particle";
   return std::string(kind) + " " + quoted(name_of(world, body));
 }
 

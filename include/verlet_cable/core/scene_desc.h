@@ -2,17 +2,19 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "verlet_cable/core/attachment_desc.h"
+#include "verlet_cable/core/body_desc.h"
+#include "verlet_cable/core/guide_desc.h"
+#include "verlet_cable/core/junction_desc.h"
+#include "verlet_cable/core/shape_desc.h"
 #include "verlet_cable/core/types.h"
 
 namespace verlet_cable {
-
-class TriangleMesh;
 
 /// EI [N m^2] about the material's y and z axes; one number means both.
 struct BendingStiffness : std::array<double, 2> {
@@ -37,28 +39,6 @@ struct MaterialDesc {
   double drag = 0;                     ///< [kg/(m s)] linear drag per unit length, >= 0
   double friction = 0.5;               ///< Coulomb coefficient against obstacles, >= 0
   double breaking_tension = infinity;  ///< [N], > 0
-};
-
-/// A place on a cable: its start, its end, or the node nearest to an arc length.
-struct PlaceDesc {
-  enum class At { start, end, arc_length };
-  At at = At::start;
-  double arc_length = 0;  ///< [m] from the start, at rest; 0 to the cable's length
-};
-
-enum class AttachmentType { hinge, clamp };
-
-/// Roll, pitch, yaw and position of a frame, as written in a scene.
-using InitialPose = std::array<double, 6>;  // x, y, z [m], roll, pitch, yaw [rad]
-
-struct AttachmentDesc {
-  std::string name;
-  PlaceDesc place;
-  std::string frame;                   ///< empty: the fixed frame
-  Vector3 offset = Vector3::Zero();    ///< [m] in the frame
-  Vector3 rotation = Vector3::Zero();  ///< roll, pitch, yaw [rad] in the frame
-  AttachmentType type = AttachmentType::hinge;
-  std::optional<InitialPose> initial_pose;  ///< where the frame is until anything says otherwise
 };
 
 struct PointMassDesc {
@@ -103,24 +83,13 @@ struct CableDesc {
   std::vector<PointMassDesc> point_masses;
 };
 
-enum class ShapeType { plane, sphere, capsule, cylinder, box, mesh };
-
-/// What cables bump into. Its dimensions are those that the type has; the others are not looked at.
-struct ObstacleDesc {
+/// What cables bump into. Its pose is in its frame.
+struct ObstacleDesc : ShapeDesc {
   std::string name;
-  ShapeType type = ShapeType::plane;
   std::string frame;                        ///< empty: the fixed frame
-  InitialPose pose{};                       ///< in the frame
-  double radius = 0;                        ///< [m] sphere, capsule, cylinder: > 0
-  double length = 0;                        ///< [m] capsule: of the cylindrical part, cylinder: > 0
-  Vector3 size = Vector3::Zero();           ///< [m] box: > 0
-  std::string uri;                          ///< mesh: package:// or file://
-  Vector3 scale = Vector3::Ones();          ///< mesh: > 0
   std::optional<double> friction;           ///< Coulomb coefficient, >= 0; none: that of the cable's material
   std::optional<InitialPose> initial_pose;  ///< where the frame is until anything says otherwise
   double padding = 0;                       ///< [m] added all around, >= 0
-  /// mesh: what `uri` names, scaled; filled in by whoever reads the file
-  std::shared_ptr<const TriangleMesh> mesh;
 };
 
 /// A link of a robot, as its URDF has it.
@@ -274,6 +243,7 @@ struct SceneDesc {
   TimeJumpPolicy on_time_jump = TimeJumpPolicy::reset;
   MarkerStyle marker_style = MarkerStyle::tube;
   ColorBy color_by = ColorBy::tension;
+  bool broadcast_tf = true;  ///< the bodies' poses as tf frames named like the bodies
   std::string scene_directory;
   LimitsDesc limits;
   int seed = 0;
@@ -281,6 +251,9 @@ struct SceneDesc {
   std::vector<CableDesc> cables;
   std::vector<ParticleDesc> particles;
   std::vector<NetDesc> nets;
+  std::vector<BodyDesc> bodies;
+  std::vector<JunctionDesc> junctions;
+  std::vector<GuideDesc> guides;  ///< those of one cable in the order of their places
   IntegratorDesc integrator;
   std::vector<ObstacleDesc> obstacles;
   std::optional<RobotDesc> robot;

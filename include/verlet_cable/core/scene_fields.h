@@ -124,9 +124,9 @@ constexpr std::array<Field<NetDesc>, 5> net_fields{{
     {"friction", &NetDesc::friction, "", not_negative},
 }};
 
-constexpr std::array<Field<ObstacleDesc>, 2> obstacle_fields{{
-    {"radius", &ObstacleDesc::radius, "m", positive},
-    {"length", &ObstacleDesc::length, "m", positive},
+constexpr std::array<Field<ShapeDesc>, 2> shape_fields{{
+    {"radius", &ShapeDesc::radius, "m", positive},
+    {"length", &ShapeDesc::length, "m", positive},
 }};
 
 constexpr std::array<Field<RobotDesc>, 1> robot_fields{{
@@ -144,7 +144,7 @@ bool is_name(const std::string& name);
 /// Whether `name` can be a tf frame: not empty, no leading /, no blanks or control characters.
 bool is_frame_name(const std::string& name);
 
-/// Which keys an obstacle's type has; all of them are required but `scale`.
+/// Which keys a shape's type has; all of them are required but `scale`.
 bool has_dimension(ShapeType type, const std::string& key);
 
 /// The names of materials, for messages: the first 20 of them.

@@ -10,6 +10,8 @@
 
 namespace verlet_cable {
 
+struct ShapeDesc;
+
 /// The half space z < 0; its normal is +z.
 struct PlaneShape {};
 
@@ -43,6 +45,9 @@ struct MeshShape {
 };
 
 using Shape = std::variant<PlaneShape, SphereShape, CapsuleShape, CylinderShape, BoxShape, MeshShape>;
+
+/// The solid that a scene describes, in its own frame. Of a mesh, the file must have been read.
+Shape shape_of(const ShapeDesc& desc);
 
 /// The point of the surface that is nearest to `point` [m], both in the shape's frame. Where several are equally near (on an
 /// axis, in the middle), one of them; the normal has unit length everywhere. Points that are `reach` or further outside are told

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "verlet_cable/core/body.h"
 #include "verlet_cable/core/body_id.h"
 #include "verlet_cable/core/cable.h"
 #include "verlet_cable/core/contact.h"
@@ -29,15 +30,17 @@ struct FrameInput {
 };
 using BoundaryInputs = std::vector<FrameInput>;
 
-/// What holds a node of a cable or net to a frame.
+/// What holds a node of a cable or net, or a rigid body, to a frame. The frame may be that of a rigid body.
 struct Attachment {
   std::string name;
-  BodyId body;  ///< a cable or a net
-  int node = 0;
+  BodyId body;    ///< a cable, a net or a rigid body
+  int node = 0;   ///< of a cable or net
   int frame = 0;  ///< index into World::frames()
   AttachmentType type = AttachmentType::hinge;
-  Pose pose;                         ///< of the attachment, in the frame
-  Vector3 force = Vector3::Zero();   ///< [N] what the cable exerts on its holder, fixed frame's axes, mean over the last step
+  Pose pose;  ///< of the attachment, in the frame
+  Pose at;    ///< of the attachment, in the frame of the rigid body that is held
+  Vector3 force =
+      Vector3::Zero();  ///< [N] what the cable or body exerts on its holder, fixed frame's axes, mean over the last step
   Vector3 torque = Vector3::Zero();  ///< [N m] likewise, about the attachment's point
 };
 
@@ -145,18 +148,20 @@ class World {
   std::int64_t steps() const;
   double time_step() const;  ///< [s]
 
-  /// Frames by id: 0 is the fixed frame, then those of the scene in order of appearance, then those that pins and obstacles
-  /// added.
+  /// Frames by id: 0 is the fixed frame, then those of the scene in order of appearance, then those of its bodies, then those
+  /// that pins and obstacles added.
   const std::vector<std::string>& frames() const;
   const Pose& frame_pose(int frame) const;  ///< at the world's time
   bool frame_known(int frame) const;        ///< whether it has been seen, or given a pose
+  bool is_body_frame(int frame) const;      ///< whether it is a body's: its pose is a result, inputs for it are not looked at
   /// Id of the new or the existing frame. Without a (sound) pose, a new one is unknown until a step knows it.
   int add_frame(const std::string& name, const std::optional<Pose>& pose);
 
   const std::vector<SimulatedCable>& cables() const;  ///< those that have started, pieces of cuts included
   const std::vector<SimulatedNet>& nets() const;      ///< those that have started
   const std::vector<SimulatedParticle>& particles() const;
-  const std::vector<Attachment>& attachments() const;  ///< of the started cables and nets
+  const std::vector<SimulatedBody>& bodies() const;    ///< those that have started
+  const std::vector<Attachment>& attachments() const;  ///< of the started cables, nets and bodies
   const std::vector<Obstacle>& obstacles() const;      ///< those of the scene, of its robot's links, then those that were set
   const Findings& findings() const;
 
@@ -180,9 +185,10 @@ class World {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Index of the cable, net or attachment of a name, -1 if there is none.
+/// Index of the cable, net, body or attachment of a name, -1 if there is none.
 int find(const std::vector<SimulatedCable>& cables, const std::string& name);
 int find(const std::vector<SimulatedNet>& nets, const std::string& name);
+int find(const std::vector<SimulatedBody>& bodies, const std::string& name);
 int find(const std::vector<Attachment>& attachments, const std::string& name);
 
 /// Whether a pose can be worked with: coordinates within 1e9 m, and an orientation whose length is from 0.5 to 2, which is

@@ -13,24 +13,6 @@ namespace verlet_cable {
 
 namespace {
 
-Shape make_shape(const ObstacleDesc& desc) {
-  switch (desc.type) {
-    case ShapeType::plane:
-      return PlaneShape{};
-    case ShapeType::sphere:
-      return SphereShape{desc.radius};
-    case ShapeType::capsule:
-      return CapsuleShape{desc.radius, desc.length};
-    case ShapeType::cylinder:
-      return CylinderShape{desc.radius, desc.length};
-    case ShapeType::box:
-      return BoxShape{desc.size};
-    case ShapeType::mesh:
-      break;
-  }
-  return MeshShape{desc.mesh, desc.uri, desc.scale};
-}
-
 /// Indices of the links that are rigidly joined to one, itself included, ascending.
 std::vector<int> rigid_links(const std::vector<LinkDesc>& tree, int link) {
   std::vector<int> roots(tree.size());
@@ -122,7 +104,7 @@ void World::Implementation::add_scene_obstacles() {
     obstacle.name = desc.name;
     obstacle.frame = desc.frame.empty() ? 0 : state.frames.find(desc.frame);
     obstacle.pose = pose_of(desc.pose);
-    obstacle.shape = make_shape(desc);
+    obstacle.shape = shape_of(desc);
     obstacle.friction = desc.friction;
     obstacle.padding = desc.padding;
     obstacle.present = state.frames.known[obstacle.frame];

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geometry/segment_geometry.h"
+#include "verlet_cable/core/shape_desc.h"
 
 namespace verlet_cable {
 
@@ -148,6 +149,24 @@ SegmentSurfacePoint deepest_point_of(const MeshShape& mesh, const Vector3& start
 }
 
 }  // namespace
+
+Shape shape_of(const ShapeDesc& desc) {
+  switch (desc.type) {
+    case ShapeType::plane:
+      return PlaneShape{};
+    case ShapeType::sphere:
+      return SphereShape{desc.radius};
+    case ShapeType::capsule:
+      return CapsuleShape{desc.radius, desc.length};
+    case ShapeType::cylinder:
+      return CylinderShape{desc.radius, desc.length};
+    case ShapeType::box:
+      return BoxShape{desc.size};
+    case ShapeType::mesh:
+      break;
+  }
+  return MeshShape{desc.mesh, desc.uri, desc.scale};
+}
 
 SurfacePoint closest_point(const Shape& shape, const Vector3& point, double reach) {
   return std::visit([&](const auto& of_type) { return closest_point_of(of_type, point, reach); }, shape);

@@ -10,7 +10,7 @@ void check_vector_is_positive(const std::string& key, const Vector3& v, const ch
 }
 
 void check_shape(const std::string& prefix, const ObstacleDesc& obstacle, Errors& errors) {
-  for (const Field<ObstacleDesc>& field : obstacle_fields) {
+  for (const Field<ShapeDesc>& field : shape_fields) {
     const double value = obstacle.*field.member;
     if (has_dimension(obstacle.type, field.key) && !field.range.contains(value))
       errors.add(prefix + field.key, number_text(value), field.range.text(field.unit));

@@ -62,6 +62,7 @@ struct State {
   std::vector<NetProgress> net_progress;  ///< one a net
   std::vector<SimulatedParticle> particles;
   std::vector<PointState> particle_integrators;  ///< one a particle
+  std::vector<SimulatedBody> bodies;
   std::vector<Attachment> attachments;
   std::vector<Obstacle> obstacles;
 

@@ -20,6 +20,10 @@ auto fields(T& x, const Quaternion*) {
   return std::tie(x.x(), x.y(), x.z(), x.w());
 }
 template <class T>
+auto fields(T& x, const Eigen::Matrix3d*) {
+  return std::tie(x(0, 0), x(1, 0), x(2, 0), x(0, 1), x(1, 1), x(2, 1), x(0, 2), x(1, 2), x(2, 2));
+}
+template <class T>
 auto fields(T& x, const Pose*) {
   return std::tie(x.position, x.orientation);
 }
@@ -40,7 +44,7 @@ auto fields(T& x, const PlaceDesc*) {
 }
 template <class T>
 auto fields(T& x, const AttachmentDesc*) {
-  return std::tie(x.name, x.place, x.frame, x.offset, x.rotation, x.type, x.initial_pose);
+  return std::tie(x.name, x.place, x.frame, x.body, x.offset, x.rotation, x.type, x.initial_pose);
 }
 template <class T>
 auto fields(T& x, const PointMassDesc*) {
@@ -206,7 +210,7 @@ auto fields(T& x, const BodyId*) {
 }
 template <class T>
 auto fields(T& x, const Attachment*) {
-  return std::tie(x.name, x.body, x.node, x.frame, x.type, x.pose, x.force, x.torque);
+  return std::tie(x.name, x.body, x.node, x.frame, x.type, x.pose, x.at, x.force, x.torque);
 }
 template <class T>
 auto fields(T&, const PlaneShape*) {
@@ -233,6 +237,15 @@ auto fields(T& x, const MeshShape*) {
   return std::tie(x.mesh, x.uri, x.scale);
 }
 template <class T>
+auto fields(T& x, const BodyShape*) {
+  return std::tie(x.pose, x.shape);
+}
+template <class T>
+auto fields(T& x, const SimulatedBody*) {
+  return std::tie(x.name, x.mass, x.center_of_mass, x.inertia, x.shapes, x.friction, x.linear_damping, x.angular_damping, x.frame,
+                  x.pose, x.velocity, x.angular_velocity);
+}
+template <class T>
 auto fields(T& x, const Obstacle*) {
   return std::tie(x.name, x.frame, x.pose, x.shape, x.friction, x.padding, x.holders, x.present, x.id);
 }
@@ -245,7 +258,7 @@ auto fields(T& x, const Frames*) {
 template <class T>
 auto fields(T& x, const State*) {
   return std::tie(x.scene, x.waiting_cables, x.waiting_nets, x.frames, x.steps, x.cables, x.cable_progress, x.nets,
-                  x.net_progress, x.particles, x.particle_integrators, x.attachments, x.obstacles);
+                  x.net_progress, x.particles, x.particle_integrators, x.bodies, x.attachments, x.obstacles);
 }
 /// @}
 

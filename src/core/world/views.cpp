@@ -48,6 +48,14 @@ const std::vector<SimulatedParticle>& World::particles() const {
   return implementation_->state.particles;
 }
 
+const std::vector<SimulatedBody>& World::bodies() const {
+  return implementation_->state.bodies;
+}
+
+bool World::is_body_frame(int frame) const {
+  return std::any_of(bodies().begin(), bodies().end(), [&](const SimulatedBody& body) { return body.frame == frame; });
+}
+
 const std::vector<Attachment>& World::attachments() const {
   return implementation_->state.attachments;
 }
@@ -64,6 +72,10 @@ int find(const std::vector<SimulatedCable>& cables, const std::string& name) {
 
 int find(const std::vector<SimulatedNet>& nets, const std::string& name) {
   return index_of(nets, [&](const SimulatedNet& net) { return net.model.name == name; });
+}
+
+int find(const std::vector<SimulatedBody>& bodies, const std::string& name) {
+  return index_of(bodies, [&](const SimulatedBody& body) { return body.name == name; });
 }
 
 int find(const std::vector<Attachment>& attachments, const std::string& name) {

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "verlet_cable/core/attachment_desc.h"
+#include "verlet_cable/core/types.h"
+
+namespace verlet_cable {
+
+/// An end of a cable that is welded to a node of another one.
+struct BranchDesc {
+  enum class End { start, end };
+  std::string cable;
+  End end = End::start;
+  /// Roll, pitch, yaw [rad] in the material's axes of the cable at the junction. A branch that has no initial shape of its own
+  /// goes on along that cable, turned by this.
+  Vector3 rotation = Vector3::Zero();
+};
+
+/// Where cables branch: light, and without size.
+struct JunctionDesc {
+  /// rigid: the angles that the directions have at first are kept, roll included; hinge: a point only
+  enum class Type { rigid, hinge };
+  std::string name;
+  std::string cable;  ///< that the branches come off
+  PlaceDesc place;    ///< on that cable
+  std::vector<BranchDesc> branches;
+  Type type = Type::rigid;
+  double mass = 0;  ///< [kg], >= 0; added to the node's mass
+};
+
+}  // namespace verlet_cable

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+
+#include "verlet_cable/core/types.h"
+
+namespace verlet_cable {
+
+class TriangleMesh;
+
+/// Roll, pitch, yaw and position of a frame, as written in a scene.
+using InitialPose = std::array<double, 6>;  // x, y, z [m], roll, pitch, yaw [rad]
+
+enum class ShapeType { plane, sphere, capsule, cylinder, box, mesh };
+
+/// A solid. Its dimensions are those that the type has; the others are not looked at.
+struct ShapeDesc {
+  ShapeType type = ShapeType::plane;
+  InitialPose pose{};               ///< in the frame or body that it belongs to
+  double radius = 0;                ///< [m] sphere, capsule, cylinder: > 0
+  double length = 0;                ///< [m] capsule: of the cylindrical part, cylinder: > 0
+  Vector3 size = Vector3::Zero();   ///< [m] box: > 0
+  std::string uri;                  ///< mesh: package:// or file://
+  Vector3 scale = Vector3::Ones();  ///< mesh: > 0
+  /// mesh: what `uri` names, scaled; filled in by whoever reads the file
+  std::shared_ptr<const TriangleMesh> mesh;
+};
+
+}  // namespace verlet_cable
