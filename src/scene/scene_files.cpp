@@ -20,9 +20,9 @@ class MeshReader {
  public:
   explicit MeshReader(const FileAccess& files) : files_(files) {}
 
-  std::shared_ptr<const TriangleMesh> read(const ObstacleDesc& obstacle) {
-    const std::string file = file_of(obstacle.uri, files_);
-    const Vector3& scale = obstacle.scale;
+  std::shared_ptr<const TriangleMesh> read(const ShapeDesc& shape) {
+    const std::string file = file_of(shape.uri, files_);
+    const Vector3& scale = shape.scale;
     std::shared_ptr<const TriangleMesh>& mesh = meshes_[{file, scale.x(), scale.y(), scale.z()}];
     if (mesh) return mesh;
     const auto read = read_mesh_file(file, scale, patience_);
@@ -39,15 +39,15 @@ class MeshReader {
   std::map<std::tuple<std::string, double, double, double>, std::shared_ptr<const TriangleMesh>> meshes_;
 };
 
-void read_mesh(const std::string& key, MeshReader& reader, ErrorList& errors, ObstacleDesc& obstacle) {
+void read_mesh(const std::string& key, MeshReader& reader, ErrorList& errors, ShapeDesc& shape) {
   const bool unread = errors.is_unread(key + ".uri") || errors.is_unread(key + ".scale");
-  const Vector3& scale = obstacle.scale;
+  const Vector3& scale = shape.scale;
   const bool scaled = positive.contains(scale.minCoeff()) && positive.contains(scale.maxCoeff());
-  if (obstacle.type != ShapeType::mesh || unread || !scaled) return errors.mark(key + ".uri");
+  if (shape.type != ShapeType::mesh || unread || !scaled) return errors.mark(key + ".uri");
   try {
-    obstacle.mesh = reader.read(obstacle);
+    shape.mesh = reader.read(shape);
   } catch (const ResourceError& error) {
-    errors.add_unread(key + ".uri", quoted(obstacle.uri) + ": " + error.what(), mesh_words);
+    errors.add_unread(key + ".uri", quoted(shape.uri) + ": " + error.what(), mesh_words);
   }
 }
 
@@ -106,6 +106,11 @@ void read_scene_files(const Value& root, const SceneSources& sources, SceneDesc&
   MeshReader meshes(sources.files);
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i)
     read_mesh(root.child("obstacles", {}).element(i, {}).key, meshes, *root.errors, scene.obstacles[i]);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Value shapes = root.child("bodies", {}).element(i, {}).child("shapes", {});
+    for (std::size_t k = 0; k < scene.bodies[i].shapes.size(); ++k)
+      read_mesh(shapes.element(k, {}).key, meshes, *root.errors, scene.bodies[i].shapes[k]);
+  }
   if (scene.robot && !root.errors->is_unread("robot")) read_robot(root, sources, meshes, *scene.robot);
 }
 
