@@ -28,6 +28,7 @@ const Keys<AttachmentDesc>& attachment_keys() {
       text_key("name", &AttachmentDesc::name, name_words, true),
       place_key(&AttachmentDesc::place),
       text_key("frame", &AttachmentDesc::frame, frame_words),
+      text_key("body", &AttachmentDesc::body, "the name of a body"),
       vector_key("offset", &AttachmentDesc::offset, "m"),
       vector_key("rotation", &AttachmentDesc::rotation, "rad"),
       choice_key("type", &AttachmentDesc::type, {{"hinge", AttachmentType::hinge}, {"clamp", AttachmentType::clamp}}),

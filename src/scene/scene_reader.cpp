@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "body_keys.h"
 #include "cable_keys.h"
 #include "keys.h"
 #include "material_keys.h"
@@ -68,6 +69,7 @@ Keys<SceneDesc> scene_keys(const std::vector<std::string>& ignored) {
   };
   append_net_keys(keys);
   append_obstacle_keys(keys);
+  append_body_keys(keys);
   append_fields(keys, scene_fields);
   append_fields(keys, scene_integer_fields);
   for (const std::string& name : ignored) keys.push_back({name, "anything", false, [](const Value&, SceneDesc&) {}});
@@ -94,8 +96,8 @@ void add_presets(const Value& root, SceneDesc& scene) {
 
 /// A scene is of something that moves.
 void check_not_empty(const Value& root, const std::set<std::string>& given, const SceneDesc& scene) {
-  if (!scene.cables.empty() || !scene.nets.empty() || !scene.particles.empty()) return;
-  const char* allowed = "a list of at least one cable, or `nets` or `particles`";
+  if (!scene.cables.empty() || !scene.nets.empty() || !scene.particles.empty() || !scene.bodies.empty()) return;
+  const char* allowed = "a list of at least one cable, or `nets`, `particles` or `bodies`";
   const Value cables = root.child("cables", given.count("cables") ? root.node["cables"] : YAML::Node{});
   if (!given.count("cables")) root.errors->add_unread(cables.key, "missing", allowed);
   if (cables.node.IsSequence()) cables.reject(allowed);

@@ -81,6 +81,22 @@ TEST(SceneFiles, templateHoldsTheDefaultsOfNetsAndParticles) {
   EXPECT_EQ(net.attachments[0].offset, NetAttachmentDesc{}.offset);
 }
 
+TEST(SceneFiles, templateHoldsTheDefaultsOfBodies) {
+  const SceneDesc scene = read_scene_file(config("scene_template.yaml"));
+  EXPECT_EQ(scene.broadcast_tf, SceneDesc{}.broadcast_tf);
+  ASSERT_EQ(scene.bodies.size(), 1u);
+  const BodyDesc& body = scene.bodies[0];
+  expect_defaults(body, body_fields);
+  EXPECT_EQ(body.velocity, BodyDesc{}.velocity);
+  EXPECT_EQ(body.angular_velocity, BodyDesc{}.angular_velocity);
+  ASSERT_EQ(body.attachments.size(), 1u);
+  const BodyAttachmentDesc& attachment = body.attachments[0];
+  EXPECT_EQ(attachment.type, BodyAttachmentDesc{}.type);
+  EXPECT_EQ(attachment.at, BodyAttachmentDesc{}.at);
+  EXPECT_EQ(attachment.offset, BodyAttachmentDesc{}.offset);
+  EXPECT_EQ(attachment.rotation, BodyAttachmentDesc{}.rotation);
+}
+
 /// Whether the template has the key somewhere with a comment above it that has the unit.
 bool is_documented(const std::vector<std::string>& lines, const std::string& key, const std::string& unit) {
   for (std::size_t i = 1; i < lines.size(); ++i) {
@@ -116,6 +132,7 @@ TEST(SceneFiles, templateDocumentsEveryKey) {
   expect_documented(lines, net_fields);
   expect_documented(lines, grid_fields);
   expect_documented(lines, grid_integer_fields);
+  expect_documented(lines, body_fields);
   for (const char* key : {"frame_id",
                           "numerical_damping",
                           "gravity",
@@ -161,6 +178,12 @@ TEST(SceneFiles, templateDocumentsEveryKey) {
                           "y_axis",
                           "node",
                           "minimum_distances",
+                          "bodies",
+                          "inertia",
+                          "center_of_mass",
+                          "angular_velocity",
+                          "shapes",
+                          "broadcast_tf",
                           "integrator"})
     EXPECT_TRUE(is_documented(lines, key, "")) << key;
 }

@@ -129,6 +129,16 @@ constexpr std::array<Field<ShapeDesc>, 2> shape_fields{{
     {"length", &ShapeDesc::length, "m", positive},
 }};
 
+constexpr std::array<Field<BodyDesc>, 4> body_fields{{
+    {"mass", &BodyDesc::mass, "kg", positive, true},
+    {"friction", &BodyDesc::friction, "", not_negative},
+    {"linear_damping", &BodyDesc::linear_damping, "N s/m", not_negative},
+    {"angular_damping", &BodyDesc::angular_damping, "N m s", not_negative},
+}};
+
+/// Of a body, along an axis: of a milligram, some micrometres in size, to a ship's.
+constexpr Range moment_of_inertia{1e-24, 1e24, "any number above 0"};
+
 constexpr std::array<Field<RobotDesc>, 1> robot_fields{{
     {"padding", &RobotDesc::padding, "m", not_negative},
 }};

@@ -140,11 +140,11 @@ const char* name_of(IntegratorDesc::Type type) {
 
 }  // namespace
 
-void check_particles(const SceneDesc& scene, UniqueNames& bodies, Errors& errors) {
+void check_particles(const SceneDesc& scene, UniqueNames& names, Errors& errors) {
   for (std::size_t i = 0; i < scene.particles.size(); ++i) {
     const ParticleDesc& particle = scene.particles[i];
     const std::string prefix = indexed("particles", i) + ".";
-    bodies.check(prefix + "name", particle.name, errors);
+    names.check(prefix + "name", particle.name, errors);
     check_fields(prefix, particle_fields, particle, errors);
     check_vector(prefix + "position", particle.position, "m", errors);
     check_vector(prefix + "velocity", particle.velocity, "m/s", errors);
@@ -152,10 +152,10 @@ void check_particles(const SceneDesc& scene, UniqueNames& bodies, Errors& errors
   }
 }
 
-void check_nets(const SceneDesc& scene, UniqueNames& bodies, UniqueNames& attachments, Errors& errors) {
+void check_nets(const SceneDesc& scene, UniqueNames& names, UniqueNames& attachments, Errors& errors) {
   for (std::size_t i = 0; i < scene.nets.size(); ++i) {
     const std::string prefix = indexed("nets", i) + ".";
-    bodies.check(prefix + "name", scene.nets[i].name, errors);
+    names.check(prefix + "name", scene.nets[i].name, errors);
     check_net(prefix, scene.nets[i], attachments, errors);
   }
 }

@@ -4,10 +4,10 @@
 
 namespace verlet_cable {
 
-/// The parts of `validate` that are about particles, nets and how they are integrated. `bodies`: names of cables, nets and
-/// particles; `attachments`: names of attachments.
-void check_particles(const SceneDesc& scene, UniqueNames& bodies, Errors& errors);
-void check_nets(const SceneDesc& scene, UniqueNames& bodies, UniqueNames& attachments, Errors& errors);
+/// The parts of `validate` that are about particles, nets and how they are integrated. `names`: those of cables, nets,
+/// particles and bodies; `attachments`: those of attachments.
+void check_particles(const SceneDesc& scene, UniqueNames& names, Errors& errors);
+void check_nets(const SceneDesc& scene, UniqueNames& names, UniqueNames& attachments, Errors& errors);
 void check_integrator(const SceneDesc& scene, Errors& errors);
 
 }  // namespace verlet_cable

@@ -9,18 +9,6 @@ void check_vector_is_positive(const std::string& key, const Vector3& v, const ch
   check_numbers(key, std::array<double, 3>{v.x(), v.y(), v.z()}, positive, unit, errors);
 }
 
-void check_shape(const std::string& prefix, const ObstacleDesc& obstacle, Errors& errors) {
-  for (const Field<ShapeDesc>& field : shape_fields) {
-    const double value = obstacle.*field.member;
-    if (has_dimension(obstacle.type, field.key) && !field.range.contains(value))
-      errors.add(prefix + field.key, number_text(value), field.range.text(field.unit));
-  }
-  if (obstacle.type == ShapeType::box) check_vector_is_positive(prefix + "size", obstacle.size, "m", errors);
-  if (obstacle.type != ShapeType::mesh) return;
-  check_vector_is_positive(prefix + "scale", obstacle.scale, "", errors);
-  if (!obstacle.mesh) errors.add(prefix + "uri", quoted(obstacle.uri), "a mesh file that could be read");
-}
-
 void check_obstacle(const std::string& key, const ObstacleDesc& obstacle, Errors& errors) {
   const std::string prefix = key + ".";
   if (!obstacle.frame.empty() && !is_frame_name(obstacle.frame))
@@ -33,6 +21,18 @@ void check_obstacle(const std::string& key, const ObstacleDesc& obstacle, Errors
 }
 
 }  // namespace
+
+void check_shape(const std::string& prefix, const ShapeDesc& shape, Errors& errors) {
+  for (const Field<ShapeDesc>& field : shape_fields) {
+    const double value = shape.*field.member;
+    if (has_dimension(shape.type, field.key) && !field.range.contains(value))
+      errors.add(prefix + field.key, number_text(value), field.range.text(field.unit));
+  }
+  if (shape.type == ShapeType::box) check_vector_is_positive(prefix + "size", shape.size, "m", errors);
+  if (shape.type != ShapeType::mesh) return;
+  check_vector_is_positive(prefix + "scale", shape.scale, "", errors);
+  if (!shape.mesh) errors.add(prefix + "uri", quoted(shape.uri), "a mesh file that could be read");
+}
 
 void check_obstacles(const SceneDesc& scene, Errors& errors) {
   UniqueNames names;

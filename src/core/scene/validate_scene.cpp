@@ -4,6 +4,8 @@
 #include <numeric>
 
 #include "scene/scene_errors.h"
+#include "scene/validate_bodies.h"
+#include "scene/validate_holders.h"
 #include "scene/validate_materials.h"
 #include "scene/validate_nets.h"
 #include "scene/validate_obstacles.h"
@@ -60,17 +62,15 @@ void check_initial(const std::string& key, const CableDesc& cable, Errors& error
                "at most 5 % more or less than the cable's length " + number_text(cable.length) + " m");
 }
 
-void check_attachments(const std::string& prefix, const CableDesc& cable, UniqueNames& names, Errors& errors) {
+void check_attachments(const std::string& prefix, const CableDesc& cable, const SceneNames& scene_names, UniqueNames& names,
+                       Errors& errors) {
   std::map<int, std::string> targets;
   for (std::size_t i = 0; i < cable.attachments.size(); ++i) {
     const AttachmentDesc& attachment = cable.attachments[i];
     const std::string key = indexed(prefix + "attachments", i);
     names.check(key + ".name", attachment.name, errors);
-    if (!attachment.frame.empty() && !is_frame_name(attachment.frame))
-      errors.add(key + ".frame", quoted(attachment.frame), frame_words);
-    check_vector(key + ".offset", attachment.offset, "m", errors);
-    check_vector(key + ".rotation", attachment.rotation, "rad", errors);
-    if (attachment.initial_pose) check_numbers(key + ".initial_pose", *attachment.initial_pose, coordinate, "m, rad", errors);
+    check_holder(key, scene_names, attachment, errors);
+    if (attachment.type == AttachmentType::axle) errors.add(key + ".type", "axle", "hinge | clamp; axles are for bodies");
     if (!check_place(key + ".at", cable, attachment.place, errors) || !has_sound_size(cable)) continue;
     const int node = node_at(cable, attachment.place);
     const auto [target, is_new] = targets.emplace(node, key);
@@ -107,8 +107,8 @@ void check_stiff_ends(const std::string& key, const CableDesc& cable, Errors& er
     errors.add(key, list_text(cable.stiff_ends), "together less than the cable's length, " + number_text(cable.length) + " m");
 }
 
-void check_cable(const std::string& key, const SceneDesc& scene, const CableDesc& cable, UniqueNames& attachments,
-                 Errors& errors) {
+void check_cable(const std::string& key, const SceneDesc& scene, const CableDesc& cable, const SceneNames& scene_names,
+                 UniqueNames& attachments, Errors& errors) {
   const std::string prefix = key + ".";
   check_fields(prefix, cable_fields, cable, errors);
   check_fields(prefix, cable_integer_fields, cable, errors);
@@ -122,7 +122,7 @@ void check_cable(const std::string& key, const SceneDesc& scene, const CableDesc
   check_initial(prefix + "initial", cable, errors);
   check_rest_curvature(prefix + "rest_curvature", cable, errors);
   check_stiff_ends(prefix + "stiff_ends", cable, errors);
-  check_attachments(prefix, cable, attachments, errors);
+  check_attachments(prefix, cable, scene_names, attachments, errors);
   for (std::size_t i = 0; i < cable.point_masses.size(); ++i) {
     const std::string point_mass = indexed(prefix + "point_masses", i) + ".";
     check_place(point_mass + "at", cable, cable.point_masses[i].place, errors);
@@ -136,7 +136,7 @@ void check_initial_poses(const SceneDesc& scene, Errors& errors) {
     std::string key;
   };
   std::map<std::string, FirstUse> first_use{{scene.frame_id, {InitialPose{}, "the fixed frame"}}};
-  const auto check = [&](const std::string& user, const auto& desc) {
+  visit_frame_users(scene, [&](const std::string& user, const auto& desc) {
     if (!desc.initial_pose) return;
     const std::string key = user + ".initial_pose";
     const std::string& frame = desc.frame.empty() ? scene.frame_id : desc.frame;
@@ -145,16 +145,7 @@ void check_initial_poses(const SceneDesc& scene, Errors& errors) {
       errors.add(key, list_text(*desc.initial_pose),
                  "the same initial_pose wherever a frame is named; " + quoted(frame) + " has " + list_text(first->second.pose) +
                      " by " + first->second.key);
-  };
-  for (std::size_t c = 0; c < scene.cables.size(); ++c) {
-    const std::vector<AttachmentDesc>& attachments = scene.cables[c].attachments;
-    for (std::size_t a = 0; a < attachments.size(); ++a) check(indexed(indexed("cables", c) + ".attachments", a), attachments[a]);
-  }
-  for (std::size_t n = 0; n < scene.nets.size(); ++n) {
-    const std::vector<NetAttachmentDesc>& attachments = scene.nets[n].attachments;
-    for (std::size_t a = 0; a < attachments.size(); ++a) check(indexed(indexed("nets", n) + ".attachments", a), attachments[a]);
-  }
-  for (std::size_t i = 0; i < scene.obstacles.size(); ++i) check(indexed("obstacles", i), scene.obstacles[i]);
+  });
 }
 
 /// Where an attachment's point is held with its frame at `frame`.
@@ -191,7 +182,8 @@ void check_distances(const std::string& key, const CableDesc& cable, bool bends,
   std::iota(order.begin(), order.end(), 0);
   const auto node = [&](std::size_t i) { return node_at(cable, cable.attachments[i].place); };
   const auto is_unknown = [&](std::size_t i) {
-    return !frames.count(cable.attachments[i].frame) || !is_sound(cable, cable.attachments[i].place);
+    return !cable.attachments[i].body.empty() || !frames.count(cable.attachments[i].frame) ||
+           !is_sound(cable, cable.attachments[i].place);
   };
   order.erase(std::remove_if(order.begin(), order.end(), is_unknown), order.end());
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return node(a) < node(b); });
@@ -211,16 +203,21 @@ void check_distances(const std::string& key, const CableDesc& cable, bool bends,
   }
 }
 
-/// `limits.segments` counts segments of cables, nodes or links of nets, whichever are more, and particles.
+/// `limits.segments` counts segments of cables, nodes or links of nets, whichever are more, particles and bodies.
 void check_size(const SceneDesc& scene, Errors& errors) {
   double segments = 0;
   for (const CableDesc& cable : scene.cables) segments += std::max(0, cable.segments);
-  const bool cables_only = scene.nets.empty() && scene.particles.empty();
+  const bool cables_only = scene.nets.empty() && scene.particles.empty() && scene.bodies.empty();
+  const bool has_bodies = !scene.bodies.empty();
   for (const NetDesc& net : scene.nets) segments += static_cast<double>(std::max(net.node_count(), net.link_count()));
-  segments += static_cast<double>(scene.particles.size());
+  segments += static_cast<double>(scene.particles.size() + scene.bodies.size());
   if (!limits_fields[0].range.contains(scene.limits.segments) || segments <= scene.limits.segments) return;
-  errors.add(cables_only ? "cables" : "cables, nets, particles",
-             number_text(segments) + (cables_only ? " segments in all" : " segments, links and particles in all"),
+  errors.add(cables_only  ? "cables"
+             : has_bodies ? "cables, nets, particles, bodies"
+                          : "cables, nets, particles",
+             number_text(segments) + (cables_only  ? " segments in all"
+                                      : has_bodies ? " segments, links, particles and bodies in all"
+                                                   : " segments, links and particles in all"),
              "at most limits.segments = " + std::to_string(scene.limits.segments));
 }
 
@@ -259,18 +256,21 @@ std::vector<std::string> validate(const SceneDesc& scene) {
 
   check_materials(scene, errors);
 
-  UniqueNames bodies, attachments;
+  UniqueNames names, attachments;
+  const SceneNames scene_names(scene);
   for (std::size_t i = 0; i < scene.cables.size(); ++i) {
-    bodies.check(indexed("cables", i) + ".name", scene.cables[i].name, errors);
-    check_cable(indexed("cables", i), scene, scene.cables[i], attachments, errors);
+    names.check(indexed("cables", i) + ".name", scene.cables[i].name, errors);
+    check_cable(indexed("cables", i), scene, scene.cables[i], scene_names, attachments, errors);
   }
-  check_particles(scene, bodies, errors);
-  check_nets(scene, bodies, attachments, errors);
+  check_particles(scene, names, errors);
+  check_nets(scene, names, attachments, errors);
+  check_bodies(scene, scene_names, names, attachments, errors);
   check_integrator(scene, errors);
   check_size(scene, errors);
 
   check_obstacles(scene, errors);
   check_initial_poses(scene, errors);
+  check_broadcast(scene, scene_names, errors);
   std::vector<std::string> lines = errors.take();
   for (std::string& line : validate_distances(scene, initial_frames(scene))) lines.push_back(std::move(line));
   return lines;

@@ -1,0 +1,17 @@
+#include "scene/validate_holders.h"
+
+namespace verlet_cable {
+
+std::string one_of(const char* kind, const NameIndex& names) {
+  constexpr std::size_t most = 20;
+  std::string list;
+  std::size_t count = 0;
+  for (const auto& [name, index] : names) {
+    if (++count > most) break;
+    list += (list.empty() ? "" : ", ") + escaped(name);
+  }
+  return std::string("a ") + kind + " of the scene (" + (names.empty() ? "there are none" : list) +
+         (names.size() > most ? ", ...)" : ")");
+}
+
+}  // namespace verlet_cable
