@@ -1,32 +1,17 @@
 #include "cable_keys.h"
 
-#include "keys.h"
+#include "place_key.h"
 
 namespace verlet_cable {
 namespace {
 
 constexpr const char* stiff_ends_words = "[start, end], two numbers [m]";
 constexpr const char* rest_curvature_words = "straight | initial | [ky, kz], two numbers [1/m] | a list of at least two [ky, kz]";
-constexpr const char* place_words = "start, end, or an arc length [m] from 0 to the cable's length";
-
-template <class Owner>
-Key<Owner> place_key(PlaceDesc Owner::*member) {
-  return {"at", place_words, true, [member](const Value& value, Owner& owner) {
-            PlaceDesc& place = owner.*member;
-            if (value.node.IsScalar() && value.node.Scalar() == "start") {
-              place.at = PlaceDesc::At::start;
-            } else if (value.node.IsScalar() && value.node.Scalar() == "end") {
-              place.at = PlaceDesc::At::end;
-            } else {
-              place = {PlaceDesc::At::arc_length, read_number(value, place_words)};
-            }
-          }};
-}
 
 const Keys<AttachmentDesc>& attachment_keys() {
   static const Keys<AttachmentDesc> keys{
       text_key("name", &AttachmentDesc::name, name_words, true),
-      place_key(&AttachmentDesc::place),
+      place_key(&AttachmentDesc::place, true),
       text_key("frame", &AttachmentDesc::frame, frame_words),
       text_key("body", &AttachmentDesc::body, "the name of a body"),
       vector_key("offset", &AttachmentDesc::offset, "m"),
@@ -41,7 +26,7 @@ const Keys<AttachmentDesc>& attachment_keys() {
 }
 
 const Keys<PointMassDesc>& point_mass_keys() {
-  static const Keys<PointMassDesc> keys{place_key(&PointMassDesc::place), field_key(point_mass_fields[0])};
+  static const Keys<PointMassDesc> keys{place_key(&PointMassDesc::place, true), field_key(point_mass_fields[0])};
   return keys;
 }
 

@@ -41,7 +41,7 @@ TEST(SceneFiles, templateHoldsTheDefaults) {
   }
   EXPECT_EQ(scene.materials[0].material.bending_stiffness, MaterialDesc{}.bending_stiffness);
   EXPECT_EQ(scene.numerical_damping, defaults.numerical_damping);
-  ASSERT_EQ(scene.cables.size(), 1u);
+  ASSERT_EQ(scene.cables.size(), 2u);
   EXPECT_EQ(scene.cables[0].rest_twist, CableDesc{}.rest_twist);
   EXPECT_EQ(scene.cables[0].color, CableDesc{}.color);
   EXPECT_EQ(scene.cables[0].rest_curvature.type, CableDesc{}.rest_curvature.type);
@@ -97,6 +97,16 @@ TEST(SceneFiles, templateHoldsTheDefaultsOfBodies) {
   EXPECT_EQ(attachment.rotation, BodyAttachmentDesc{}.rotation);
 }
 
+TEST(SceneFiles, templateHoldsTheDefaultsOfJunctions) {
+  const SceneDesc scene = read_scene_file(config("scene_template.yaml"));
+  ASSERT_EQ(scene.junctions.size(), 1u);
+  expect_defaults(scene.junctions[0], junction_fields);
+  EXPECT_EQ(scene.junctions[0].type, JunctionDesc{}.type);
+  ASSERT_EQ(scene.junctions[0].branches.size(), 1u);
+  EXPECT_EQ(scene.junctions[0].branches[0].end, BranchDesc{}.end);
+  EXPECT_EQ(scene.junctions[0].branches[0].rotation, BranchDesc{}.rotation);
+}
+
 /// Whether the template has the key somewhere with a comment above it that has the unit.
 bool is_documented(const std::vector<std::string>& lines, const std::string& key, const std::string& unit) {
   for (std::size_t i = 1; i < lines.size(); ++i) {
@@ -133,6 +143,7 @@ TEST(SceneFiles, templateDocumentsEveryKey) {
   expect_documented(lines, grid_fields);
   expect_documented(lines, grid_integer_fields);
   expect_documented(lines, body_fields);
+  expect_documented(lines, junction_fields);
   for (const char* key : {"frame_id",
                           "numerical_damping",
                           "gravity",
@@ -184,6 +195,10 @@ TEST(SceneFiles, templateDocumentsEveryKey) {
                           "angular_velocity",
                           "shapes",
                           "broadcast_tf",
+                          "junctions",
+                          "branches",
+                          "cable",
+                          "end",
                           "integrator"})
     EXPECT_TRUE(is_documented(lines, key, "")) << key;
 }

@@ -136,6 +136,10 @@ constexpr std::array<Field<BodyDesc>, 4> body_fields{{
     {"angular_damping", &BodyDesc::angular_damping, "N m s", not_negative},
 }};
 
+constexpr std::array<Field<JunctionDesc>, 1> junction_fields{{
+    {"mass", &JunctionDesc::mass, "kg", not_negative},
+}};
+
 /// Of a body, along an axis: of a milligram, some micrometres in size, to a ship's.
 constexpr Range moment_of_inertia{1e-24, 1e24, "any number above 0"};
 

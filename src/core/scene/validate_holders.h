@@ -21,12 +21,13 @@ NameIndex index_of_names(const std::vector<Desc>& descs) {
 /// What a name may be, for messages: `a body of the scene (a, b)`.
 std::string one_of(const char* kind, const NameIndex& names);
 
-/// Names of what a scene's descriptions refer to.
+/// What a scene's descriptions refer to.
 struct SceneNames {
-  explicit SceneNames(const SceneDesc& scene) : cables(index_of_names(scene.cables)), bodies(index_of_names(scene.bodies)) {}
+  explicit SceneNames(const SceneDesc& scene);
 
   NameIndex cables;
   NameIndex bodies;
+  std::vector<int> joints;  ///< one a cable: how many places of it are in junctions
 };
 
 /// What something is held by, and where: a frame or a body.

@@ -6,9 +6,11 @@
 #include "scene/scene_errors.h"
 #include "scene/validate_bodies.h"
 #include "scene/validate_holders.h"
+#include "scene/validate_junctions.h"
 #include "scene/validate_materials.h"
 #include "scene/validate_nets.h"
 #include "scene/validate_obstacles.h"
+#include "scene/validate_place.h"
 #include "verlet_cable/core/world.h"
 
 namespace verlet_cable {
@@ -22,26 +24,16 @@ constexpr double held_tolerance = 1e-4;
 constexpr double largest_rest_turn = 0.5 * M_PI;
 constexpr double largest_length_error = 0.05;
 
-bool is_sound(const CableDesc& cable, const PlaceDesc& place) {
-  return place.at != PlaceDesc::At::arc_length || (place.arc_length >= 0 && place.arc_length <= cable.length);
-}
-
-bool check_place(const std::string& key, const CableDesc& cable, const PlaceDesc& place, Errors& errors) {
-  if (is_sound(cable, place) || !cable_fields[0].range.contains(cable.length)) return true;
-  errors.add(key, number_text(place.arc_length),
-             "start, end, or an arc length [m] from 0 to the cable's length " + number_text(cable.length));
-  return false;
-}
-
-void check_initial(const std::string& key, const CableDesc& cable, Errors& errors) {
+/// `joints`: how many junctions the cable is part of.
+void check_initial(const std::string& key, const CableDesc& cable, int joints, Errors& errors) {
   const InitialShapeDesc& initial = cable.initial;
   check_vector(key + ".from", initial.from, "m", errors);
   check_vector(key + ".to", initial.to, "m", errors);
   if (initial.type == InitialShapeDesc::Type::straight && initial.from == initial.to)
     errors.add(key + ".to", list_text(initial.to), "a point other than `from`, it gives the direction");
-  if (initial.type == InitialShapeDesc::Type::settled && cable.attachments.empty())
+  if (initial.type == InitialShapeDesc::Type::settled && cable.attachments.empty() && joints == 0)
     errors.add(key + ".type", "settled without attachments", "settled for a cable with at least one attachment");
-  if (initial.type == InitialShapeDesc::Type::catenary && cable.attachments.size() < 2)
+  if (initial.type == InitialShapeDesc::Type::catenary && cable.attachments.size() + joints < 2)
     errors.add(key + ".type", "catenary with " + std::to_string(cable.attachments.size()) + " attachments",
                "catenary for a cable with at least two attachments");
   if (initial.type != InitialShapeDesc::Type::points) return;
@@ -119,7 +111,7 @@ void check_cable(const std::string& key, const SceneDesc& scene, const CableDesc
     errors.add(prefix + "material", quoted(cable.material), "a material of the scene (" + material_names(scene.materials) + ")");
   }
   check_numbers(prefix + "color", cable.color, unit_interval, "", errors);
-  check_initial(prefix + "initial", cable, errors);
+  check_initial(prefix + "initial", cable, scene_names.joints[&cable - scene.cables.data()], errors);
   check_rest_curvature(prefix + "rest_curvature", cable, errors);
   check_stiff_ends(prefix + "stiff_ends", cable, errors);
   check_attachments(prefix, cable, scene_names, attachments, errors);
@@ -265,6 +257,7 @@ std::vector<std::string> validate(const SceneDesc& scene) {
   check_particles(scene, names, errors);
   check_nets(scene, names, attachments, errors);
   check_bodies(scene, scene_names, names, attachments, errors);
+  check_junctions(scene, scene_names, errors);
   check_integrator(scene, errors);
   check_size(scene, errors);
 
