@@ -4,6 +4,7 @@
 
 #include "body_keys.h"
 #include "cable_keys.h"
+#include "guide_keys.h"
 #include "junction_keys.h"
 #include "keys.h"
 #include "material_keys.h"
@@ -72,6 +73,7 @@ Keys<SceneDesc> scene_keys(const std::vector<std::string>& ignored) {
   append_obstacle_keys(keys);
   append_body_keys(keys);
   append_junction_keys(keys);
+  append_guide_keys(keys);
   append_fields(keys, scene_fields);
   append_fields(keys, scene_integer_fields);
   for (const std::string& name : ignored) keys.push_back({name, "anything", false, [](const Value&, SceneDesc&) {}});

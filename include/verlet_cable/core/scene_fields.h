@@ -24,6 +24,7 @@ struct Range {
 
 constexpr Range positive{1e-12, 1e12, "any number above 0"};
 constexpr Range positive_or_infinite{1e-12, 1e12, "any number above 0, or .inf", true};
+constexpr Range not_negative_or_infinite{0, 1e12, "0 or any number above, or .inf", true};
 constexpr Range not_negative{0, 1e12, "0 or any number above"};
 constexpr Range coordinate{-1e9, 1e9, "finite numbers"};
 constexpr Range unit_interval{0, 1, "numbers"};
@@ -138,6 +139,17 @@ constexpr std::array<Field<BodyDesc>, 4> body_fields{{
 
 constexpr std::array<Field<JunctionDesc>, 1> junction_fields{{
     {"mass", &JunctionDesc::mass, "kg", not_negative},
+}};
+
+constexpr std::array<Field<GuideDesc>, 3> sheave_fields{{
+    {"radius", &GuideDesc::radius, "m", positive},
+    {"inertia", &GuideDesc::inertia, "kg m^2", not_negative},
+    {"bearing_friction", &GuideDesc::bearing_friction, "N m", not_negative},
+}};
+
+constexpr std::array<Field<GuideDesc>, 2> clip_fields{{
+    {"retention", &GuideDesc::retention, "N", positive_or_infinite},
+    {"capture", &GuideDesc::capture, "m", not_negative},
 }};
 
 /// Of a body, along an axis: of a milligram, some micrometres in size, to a ship's.

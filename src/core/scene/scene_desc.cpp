@@ -102,6 +102,7 @@ std::vector<std::string> frame_names(const SceneDesc& scene) {
     for (const NetAttachmentDesc& attachment : net.attachments) add(attachment.frame);
   for (const BodyDesc& body : scene.bodies)
     for (const BodyAttachmentDesc& attachment : body.attachments) add(attachment.frame);
+  for (const GuideDesc& guide : scene.guides) add(guide.frame);
   for (const ObstacleDesc& obstacle : all_obstacles(scene)) add(obstacle.frame);
   return names;
 }
@@ -114,6 +115,7 @@ BoundaryInputs initial_frames(const SceneDesc& scene) {
   for (const CableDesc& cable : scene.cables) std::for_each(cable.attachments.begin(), cable.attachments.end(), add);
   for (const NetDesc& net : scene.nets) std::for_each(net.attachments.begin(), net.attachments.end(), add);
   for (const BodyDesc& body : scene.bodies) std::for_each(body.attachments.begin(), body.attachments.end(), add);
+  std::for_each(scene.guides.begin(), scene.guides.end(), add);
   std::for_each(scene.obstacles.begin(), scene.obstacles.end(), add);
   const std::vector<std::string> names = frame_names(scene);
   BoundaryInputs frames(names.size(), FrameInput{Pose{}, false});

@@ -12,6 +12,8 @@ SceneNames::SceneNames(const SceneDesc& scene)
     count(junction.cable);
     for (const BranchDesc& branch : junction.branches) count(branch.cable);
   }
+  for (const GuideDesc& guide : scene.guides)
+    if (guide.place) count(guide.cable);
 }
 
 std::string one_of(const char* kind, const NameIndex& names) {

@@ -27,7 +27,7 @@ struct SceneNames {
 
   NameIndex cables;
   NameIndex bodies;
-  std::vector<int> joints;  ///< one a cable: how many places of it are in junctions
+  std::vector<int> joints;  ///< one a cable: how many places of it are in junctions or guides
 };
 
 /// What something is held by, and where: a frame or a body.
@@ -57,6 +57,7 @@ void visit_frame_users(const SceneDesc& scene, const Visit& visit) {
   for (std::size_t i = 0; i < scene.nets.size(); ++i) visit_all(indexed("nets", i) + ".attachments", scene.nets[i].attachments);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
     visit_all(indexed("bodies", i) + ".attachments", scene.bodies[i].attachments);
+  visit_all("guides", scene.guides);
   visit_all("obstacles", scene.obstacles);
 }
 

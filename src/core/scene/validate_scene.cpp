@@ -5,6 +5,7 @@
 
 #include "scene/scene_errors.h"
 #include "scene/validate_bodies.h"
+#include "scene/validate_guides.h"
 #include "scene/validate_holders.h"
 #include "scene/validate_junctions.h"
 #include "scene/validate_materials.h"
@@ -24,7 +25,7 @@ constexpr double held_tolerance = 1e-4;
 constexpr double largest_rest_turn = 0.5 * M_PI;
 constexpr double largest_length_error = 0.05;
 
-/// `joints`: how many junctions the cable is part of.
+/// `joints`: how many places of the cable are in junctions or guides.
 void check_initial(const std::string& key, const CableDesc& cable, int joints, Errors& errors) {
   const InitialShapeDesc& initial = cable.initial;
   check_vector(key + ".from", initial.from, "m", errors);
@@ -258,6 +259,7 @@ std::vector<std::string> validate(const SceneDesc& scene) {
   check_nets(scene, names, attachments, errors);
   check_bodies(scene, scene_names, names, attachments, errors);
   check_junctions(scene, scene_names, errors);
+  check_guides(scene, scene_names, names, errors);
   check_integrator(scene, errors);
   check_size(scene, errors);
 

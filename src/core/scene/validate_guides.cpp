@@ -1,0 +1,178 @@
+#include "scene/validate_guides.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "scene/validate_place.h"
+#include "verlet_cable/core/world.h"
+
+namespace verlet_cable {
+namespace {
+
+/// Of a cable's length: places that are closer are one.
+constexpr double same_place = 1e-9;
+
+double arc_length_of(const CableDesc& cable, const PlaceDesc& place) {
+  switch (place.at) {
+    case PlaceDesc::At::start:
+      return 0;
+    case PlaceDesc::At::end:
+      return cable.length;
+    case PlaceDesc::At::arc_length:
+      break;
+  }
+  return place.arc_length;
+}
+
+/// A shape that is given in numbers, as a polyline; empty where it is not.
+std::vector<Vector3> shape_in_numbers(const CableDesc& cable) {
+  const InitialShapeDesc& initial = cable.initial;
+  if (initial.type == InitialShapeDesc::Type::points) return initial.points;
+  if (initial.type != InitialShapeDesc::Type::straight) return {};
+  return {initial.from, initial.from + cable.length * (initial.to - initial.from).normalized()};
+}
+
+/// Of a point in a guide's axes: from the point, or the circle, on which the cable's center line is.
+double distance_from_guide(const GuideDesc& guide, const Vector3& point) {
+  if (guide.type != GuideDesc::Type::sheave) return point.norm();
+  return std::hypot(std::hypot(point.x(), point.y()) - guide.radius, point.z());
+}
+
+/// The least over a segment from `a` to `b`, in the guide's axes. Of a circle, whose distance may have two minima, it is sought
+/// between places that are closer than what the radius turns by.
+double distance_from_guide(const GuideDesc& guide, const Vector3& a, const Vector3& b) {
+  if (guide.type != GuideDesc::Type::sheave) {
+    const double square = (b - a).squaredNorm();
+    const double way = square > 0 ? std::clamp(-a.dot(b - a) / square, 0.0, 1.0) : 0;
+    return (a + way * (b - a)).norm();
+  }
+  constexpr int places = 1000;
+  double least = infinity;
+  for (int i = 0; i <= places; ++i) least = std::min(least, distance_from_guide(guide, a + (b - a) * i / places));
+  return least;
+}
+
+class GuideChecker {
+ public:
+  GuideChecker(const SceneDesc& scene, const SceneNames& names, Errors& errors) : scene_(scene), names_(names), errors_(errors) {}
+
+  void check(UniqueNames& names) {
+    for (std::size_t i = 0; i < scene_.guides.size(); ++i) {
+      const GuideDesc& guide = scene_.guides[i];
+      const std::string key = indexed("guides", i);
+      names.check(key + ".name", guide.name, errors_);
+      check_holder(key, names_, guide, errors_);
+      check_numbers(key, guide);
+      if (!guide.place && guide.type != GuideDesc::Type::clip)
+        errors_.add(key + ".at", "missing",
+                    "start, end, or an arc length [m]; only a clip may be without, which is open at first");
+      const auto cable = names_.cables.find(guide.cable);
+      if (cable == names_.cables.end()) {
+        errors_.add(key + ".cable", quoted(guide.cable), one_of("cable", names_.cables));
+      } else if (guide.place) {
+        check_on_cable(key, guide, scene_.cables[cable->second]);
+      }
+    }
+  }
+
+ private:
+  void check_numbers(const std::string& key, const GuideDesc& guide) {
+    if (guide.friction && !not_negative_or_infinite.contains(*guide.friction))
+      errors_.add(key + ".friction", number_text(*guide.friction), not_negative_or_infinite.text());
+    if (guide.type == GuideDesc::Type::sheave) check_fields(key + ".", sheave_fields, guide, errors_);
+    if (guide.type == GuideDesc::Type::clip) check_fields(key + ".", clip_fields, guide, errors_);
+  }
+
+  void check_on_cable(const std::string& key, const GuideDesc& guide, const CableDesc& cable) {
+    if (!check_place(key + ".at", cable, *guide.place, errors_) || !has_sound_size(cable)) return;
+    const double arc_length = arc_length_of(cable, *guide.place);
+    check_order(key, guide, cable, arc_length);
+    check_holders(key, cable, arc_length);
+    check_shape(key, guide, cable);
+  }
+
+  void check_order(const std::string& key, const GuideDesc& guide, const CableDesc& cable, double arc_length) {
+    const auto [last, is_first] = last_places_.emplace(cable.name, LastPlace{guide.name, arc_length});
+    if (is_first) return;
+    if (arc_length <= last->second.arc_length)
+      errors_.add(key + ".at", number_text(arc_length),
+                  "more than the " + number_text(last->second.arc_length) + " m of " + quoted(last->second.name) +
+                      ": the guides of a cable are listed in the order of `at`");
+    last->second = {guide.name, arc_length};
+  }
+
+  void check_holders(const std::string& key, const CableDesc& cable, double arc_length) {
+    const auto check = [&](const PlaceDesc& place, const std::string& holder) {
+      if (!is_sound(cable, place)) return;
+      const double held = cable.length * node_at(cable, place) / cable.segments;
+      if (std::abs(arc_length - held) <= same_place * cable.length)
+        errors_.add(key + ".at", number_text(arc_length), "a place where nothing holds the cable; " + holder + " does");
+    };
+    for (const AttachmentDesc& attachment : cable.attachments) check(attachment.place, "attachment " + quoted(attachment.name));
+    for (const JunctionDesc& junction : scene_.junctions) {
+      if (junction.cable == cable.name) check(junction.place, "junction " + quoted(junction.name));
+      for (const BranchDesc& branch : junction.branches) {
+        const auto at = branch.end == BranchDesc::End::start ? PlaceDesc::At::start : PlaceDesc::At::end;
+        if (branch.cable == cable.name) check({at, 0}, "junction " + quoted(junction.name));
+      }
+    }
+  }
+
+  /// Where the guide is at first, as far as the scene says so.
+  std::optional<Pose> pose_at_first(const GuideDesc& guide) {
+    const Pose own{guide.offset, quaternion_from_rpy(guide.rotation)};
+    if (!guide.body.empty() && !guide.frame.empty()) return std::nullopt;
+    if (!guide.body.empty()) {
+      const auto body = names_.bodies.find(guide.body);
+      if (body == names_.bodies.end() || !scene_.bodies[body->second].pose) return std::nullopt;
+      return pose_of(*scene_.bodies[body->second].pose) * own;
+    }
+    if (guide.frame.empty() || guide.frame == scene_.frame_id) return own;
+    if (frames_.empty()) {
+      const std::vector<std::string> names = frame_names(scene_);
+      const BoundaryInputs inputs = initial_frames(scene_);
+      for (std::size_t i = 0; i < names.size(); ++i)
+        if (inputs[i].known) frames_.emplace(names[i], inputs[i].pose);
+    }
+    const auto frame = frames_.find(guide.frame);
+    return frame == frames_.end() ? std::nullopt : std::optional<Pose>(frame->second * own);
+  }
+
+  void check_shape(const std::string& key, const GuideDesc& guide, const CableDesc& cable) {
+    const std::vector<Vector3> shape = shape_in_numbers(cable);
+    const bool is_sheave = guide.type == GuideDesc::Type::sheave;
+    if (shape.size() < 2 || (is_sheave && !sheave_fields[0].range.contains(guide.radius))) return;
+    const std::optional<Pose> pose = pose_at_first(guide);
+    if (!pose || !is_sound(*pose)) return;
+    double distance = infinity;
+    const Pose inverse = pose->inverse();
+    const auto seen = [&](const Vector3& point) -> Vector3 { return inverse.position + inverse.orientation * point; };
+    for (std::size_t i = 1; i < shape.size(); ++i)
+      distance = std::min(distance, distance_from_guide(guide, seen(shape[i - 1]), seen(shape[i])));
+    const double segment = cable.length / cable.segments;
+    if (distance <= segment || !std::isfinite(distance)) return;
+    errors_.add(key, "the initial shape of " + quoted(cable.name) + " misses it by " + rounded_text(distance) + " m",
+                "a shape in numbers that passes within a segment's length, " + rounded_bound_text(segment, -1) + " m");
+  }
+
+  struct LastPlace {
+    std::string name;
+    double arc_length;
+  };
+
+  const SceneDesc& scene_;
+  const SceneNames& names_;
+  Errors& errors_;
+  std::map<std::string, LastPlace> last_places_;  ///< by cable
+  std::map<std::string, Pose> frames_;            ///< at first, where they are known
+};
+
+}  // namespace
+
+void check_guides(const SceneDesc& scene, const SceneNames& scene_names, UniqueNames& names, Errors& errors) {
+  GuideChecker(scene, scene_names, errors).check(names);
+}
+
+}  // namespace verlet_cable
