@@ -79,6 +79,7 @@ std::string out_of_range(const char* what, int index) {
 
 /// Why a body has no such node to hold; empty if it has.
 std::string node_problem(const State& state, const BodyId& body, int node) {
+  if (body.is_rigid_body()) return "body: " + std::to_string(body.index) + "; bodies cannot be pinned";
   const bool is_net = body.is_net();
   const int bodies = static_cast<int>(is_net ? state.nets.size() : state.cables.size());
   if (body.index < 0 || body.index >= bodies) return out_of_range(is_net ? "net" : "cable", body.index);

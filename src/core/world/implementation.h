@@ -60,6 +60,7 @@ struct World::Implementation {
   EditResult cut_link(int net, int link);
   void update_net(int net);
   void add_particle(const ParticleDesc& desc);
+  void add_bodies();
   NetSolver& solver_of(int net);
   void step_net(int net, StepResult& result);
   void aim_net(int net, StepResult& result);

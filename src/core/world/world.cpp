@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "body/make_body.h"
 #include "rod/initial_shape.h"
 #include "rod/length_projection.h"
 #include "rod/rest_curvature.h"
@@ -120,6 +121,7 @@ World::World(const SceneDesc& scene) : implementation_(std::make_unique<Implemen
   w.state.frames.previous_poses.resize(w.state.frames.names.size());
   w.state.frames.known.assign(w.state.frames.names.size(), false);
   w.state.frames.known.front() = true;
+  w.add_bodies();
   w.add_scene_obstacles();
   for (int i = 0; i < static_cast<int>(scene.cables.size()); ++i) w.state.waiting_cables.push_back(i);
   for (int i = 0; i < static_cast<int>(scene.nets.size()); ++i) w.state.waiting_nets.push_back(i);
@@ -162,13 +164,45 @@ void World::Implementation::name_waiting() {
   for (const int i : state.waiting_nets) findings.waiting.push_back(state.scene->nets[i].name);
 }
 
+/// With their frames, after those of the scene, and with what holds them.
+void World::Implementation::add_bodies() {
+  const FrameIds ids = state.frames.ids();
+  for (const BodyDesc& desc : state.scene->bodies) {
+    const int index = static_cast<int>(state.bodies.size());
+    const SimulatedBody& body = state.bodies.emplace_back(make_body(desc, static_cast<int>(state.frames.names.size())));
+    state.frames.names.push_back(body.name);
+    state.frames.poses.push_back(body.pose);
+    state.frames.previous_poses.push_back(body.pose);
+    state.frames.known.push_back(true);
+    for (const BodyAttachmentDesc& a : desc.attachments) {
+      Attachment attachment;
+      attachment.name = a.name;
+      attachment.body = rigid_body_id(index);
+      attachment.type = a.type;
+      attachment.pose = {a.offset, quaternion_from_rpy(a.rotation)};
+      attachment.at = pose_of(a.at);
+      attachment.frame = a.body.empty() ? ids.at(a.frame) : -1;
+      state.attachments.push_back(attachment);
+    }
+  }
+  for (Attachment& attachment : state.attachments) {
+    if (attachment.frame >= 0) continue;
+    const BodyDesc& held = state.scene->bodies[attachment.body.index];
+    const auto desc = std::find_if(held.attachments.begin(), held.attachments.end(),
+                                   [&](const BodyAttachmentDesc& a) { return a.name == attachment.name; });
+    attachment.frame = state.bodies[find(state.bodies, desc->body)].frame;
+  }
+}
+
 /// A frame that is unknown, or whose pose is not sound, stays where it was; the first of the latter is returned, else -1. The
 /// fixed frame does not move.
 int World::Implementation::update_frames(const BoundaryInputs& inputs) {
   int ignored = -1;
   state.frames.previous_poses = state.frames.poses;
   for (std::size_t i = 1; i < std::min(state.frames.poses.size(), inputs.size()); ++i) {
-    if (!inputs[i].known) continue;
+    const bool is_body = !state.bodies.empty() && static_cast<int>(i) >= state.bodies.front().frame &&
+                         static_cast<int>(i) <= state.bodies.back().frame;
+    if (!inputs[i].known || is_body) continue;
     if (!is_sound(inputs[i].pose)) {
       if (ignored < 0) ignored = static_cast<int>(i);
       continue;
@@ -192,7 +226,7 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
     attachment.name = a.name;
     attachment.body = cable_id(index);
     attachment.node = node_at(desc, a.place);
-    attachment.frame = ids.at(a.frame);
+    attachment.frame = a.body.empty() ? ids.at(a.frame) : state.bodies[find(state.bodies, a.body)].frame;
     attachment.type = a.type;
     attachment.pose = {a.offset, quaternion_from_rpy(a.rotation)};
     own.push_back(static_cast<int>(state.attachments.size()));
