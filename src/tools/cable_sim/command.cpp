@@ -23,11 +23,13 @@ int refuse(const std::vector<std::string>& errors) {
 
 /// The files that a run writes; those that were not asked for stay closed.
 struct Outputs {
-  tools::OutputFile csv;
+  tools::OutputFile nodes;
+  tools::OutputFile bodies;
   tools::OutputFile summary;
 
   void open(const Options& options, std::vector<std::string>& errors) {
-    open_one("--output", options.output, csv, errors);
+    open_one("--output", options.output, nodes, errors);
+    open_one("--bodies", options.bodies, bodies, errors);
     open_one("--summary", options.summary, summary, errors);
   }
 
@@ -89,23 +91,27 @@ int simulate_job(const Options& options, const Job& job) {
   note_unused(options, unused_frames(job.scene, job.motion));
   warn_of_unplaced(unplaced_frames(job.scene, job.motion));
 
-  const bool has_data = tools::is_standard_output(options.output) || tools::is_standard_output(options.summary);
+  const bool has_data = tools::is_standard_output(options.output) || tools::is_standard_output(options.bodies) ||
+                        tools::is_standard_output(options.summary);
   tools::ProgressBar progress(options.duration, "s", has_data);
   EventLog events(progress);
   if (job.settle) world.settle();
   const tools::StopRequest stop;
   events.add_starts(world);
-  CsvWriter csv(outputs.csv);
+  CsvWriter nodes(outputs.nodes, node_columns), bodies(outputs.bodies, body_columns);
   Summary summary(world, averaged_steps(job));
   // A summary tells of a disk that rows have filled.
   if (!options.summary.empty()) outputs.summary.reserve(2 * summary.json(world, {}).size() + room_for_events);
-  const RunEnd end =
-      simulate(job, options.rate, frames, world, {options.output.empty() ? nullptr : &csv, summary, events, progress, stop});
+  const RunEnd end = simulate(
+      job, options.rate, frames, world,
+      {options.output.empty() ? nullptr : &nodes, options.bodies.empty() ? nullptr : &bodies, summary, events, progress, stop});
   progress.clear();
   report(end, stop.signal(), world.time());
 
-  if (!options.output.empty()) csv.flush();
-  bool good = finish(outputs.csv, options.output, world.time(), csv.keep_whole_times());
+  if (!options.output.empty()) nodes.flush();
+  if (!options.bodies.empty()) bodies.flush();
+  bool good = finish(outputs.nodes, options.output, world.time(), nodes.keep_whole_times());
+  good = finish(outputs.bodies, options.bodies, world.time(), bodies.keep_whole_times()) && good;
   if (!options.summary.empty()) {
     const std::string json = summary.json(world, events.events());
     outputs.summary.write(json.data(), json.size());

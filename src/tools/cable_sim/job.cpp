@@ -37,13 +37,18 @@ void check_outputs(const Options& options, std::vector<std::string>& errors) {
     const char* what;
     const std::string& path;
   };
-  const Other others[] = {{"the scene", options.scene}, {"the motion", options.motion}, {"the output", options.output}};
-  for (const Output& output : {Output{"--output", options.output}, Output{"--summary", options.summary}}) {
+  const Other others[] = {{"the scene", options.scene},
+                          {"the motion", options.motion},
+                          {"the output", options.output},
+                          {"the output of bodies", options.bodies}};
+  for (const Output& output :
+       {Output{"--output", options.output}, Output{"--bodies", options.bodies}, Output{"--summary", options.summary}}) {
     if (output.path.empty()) continue;
     const std::string problem = tools::why_not_writable(output.path);
     if (!problem.empty()) errors.push_back(std::string(output.option) + ": " + tools::cannot_write(output.path, problem));
     for (const Other& other : others) {
-      if (&other.path == &output.path || other.path.empty() || !tools::is_same_file(output.path, other.path)) continue;
+      if (&other.path == &output.path) break;  // what comes later is compared with this
+      if (other.path.empty() || !tools::is_same_file(output.path, other.path)) continue;
       errors.push_back(std::string(output.option) + ": " + tools::quoted_path(output.path) + " is " + other.what +
                        "; allowed: another file");
     }

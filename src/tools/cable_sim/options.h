@@ -12,6 +12,7 @@ struct Options {
   double rate = 100;     ///< [Hz] of rows
   std::string motion;    ///< path, empty: none
   std::string output;    ///< path, empty: none
+  std::string bodies;    ///< path, empty: none
   std::string summary;   ///< path, empty: none
   bool settle = false;   ///< into equilibrium before t = 0
   std::string help;      ///< what --help prints, empty: not asked for

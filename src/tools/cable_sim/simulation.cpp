@@ -25,7 +25,8 @@ RunEnd simulate(const Job& job, double rate, const FrameSource& frames, World& w
   const auto write_due_rows = [&] {
     if (row == job.rows || world.steps() < schedule.step_of(row)) return;
     ++row;
-    if (recorders.csv) recorders.csv->write_nodes(world);
+    if (recorders.nodes) write_nodes(world, *recorders.nodes);
+    if (recorders.bodies) write_bodies(world, *recorders.bodies);
   };
 
   BoundaryInputs inputs = frames.at(0);
@@ -39,7 +40,8 @@ RunEnd simulate(const Job& job, double rate, const FrameSource& frames, World& w
   write_due_rows();
   while (world.steps() < job.steps) {
     if (recorders.stop.signal()) return RunEnd::signal;
-    if (recorders.csv && recorders.csv->has_failed()) return RunEnd::output_failed;
+    for (const CsvWriter* csv : {recorders.nodes, recorders.bodies})
+      if (csv && csv->has_failed()) return RunEnd::output_failed;
     inputs_of_next_step(world, held_back);
     const Clock::time_point start = Clock::now();
     const StepResult result = world.step(inputs);

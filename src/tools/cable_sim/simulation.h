@@ -12,7 +12,8 @@ namespace verlet_cable::cable_sim {
 
 /// What a run fills.
 struct Recorders {
-  CsvWriter* csv;  ///< may be null
+  CsvWriter* nodes;   ///< may be null
+  CsvWriter* bodies;  ///< likewise
   Summary& summary;
   EventLog& events;
   tools::ProgressBar& progress;

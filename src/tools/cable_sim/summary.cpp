@@ -24,6 +24,15 @@ Json array(const Vector3& vector) {
   return {vector.x(), vector.y(), vector.z()};
 }
 
+Json bodies_json(const World& world) {
+  Json json = Json::object();
+  for (const SimulatedBody& body : world.bodies()) {
+    const Quaternion& q = body.pose.orientation;
+    json[body.name] = {{"position", array(body.pose.position)}, {"orientation", {q.x(), q.y(), q.z(), q.w()}}};
+  }
+  return json;
+}
+
 Json event_json(const Event& event) {
   Json json{{"time", event.time}, {"type", event.type}};
   if (!event.cable.empty()) json["cable"] = event.cable;
@@ -46,7 +55,7 @@ Summary::Summary(const World& world, std::int64_t averaged_steps)
   for (const SimulatedCable& cable : world.cables()) segments_ += cable.state.segments();
   for (const SimulatedNet& net : world.nets())
     segments_ += static_cast<std::int64_t>(std::max(net.model.links.size(), net.model.masses.size()));
-  segments_ += static_cast<std::int64_t>(world.particles().size());
+  segments_ += static_cast<std::int64_t>(world.particles().size() + world.bodies().size());
   extremes_.add(world);
 }
 
@@ -101,6 +110,7 @@ std::string Summary::json(const World& world, const std::vector<Event>& events) 
       {"energy", energy_json(world.energy(), initial_energy_)},
       {"extremes", extremes_.json()},
       {"attachments", Json::object_t(attachments.begin(), attachments.end())},
+      {"bodies", bodies_json(world)},
       {"state_hash", hash_text(world.hash())},
       {"events", std::move(listed_events)},
   };

@@ -37,7 +37,7 @@ class Summary {
   double wall_seconds() const { return std::chrono::duration<double>(wall_time_).count(); }
 
   std::size_t averaged_steps_;
-  std::int64_t segments_ = 0;  ///< as `limits.segments` counts: links or nodes of nets and particles, too
+  std::int64_t segments_ = 0;  ///< as `limits.segments` counts: links or nodes of nets, particles and bodies, too
   double initial_energy_;      ///< [J]
   std::chrono::steady_clock::duration wall_time_{0};
   std::size_t steps_ = 0;
