@@ -45,6 +45,8 @@ void KktSystem::resize(int segments) {
   compliance.assign(nodes, 1.0);
   load.assign(nodes, 0.0);
   gap.assign(nodes, 0.0);
+  moves_held = false;
+  held_displacement.assign(nodes, 0.0);
   stiffened = false;
   added.assign(nodes, 0.0);
   added_next.assign(nodes, 0.0);
@@ -78,6 +80,8 @@ void BlockElimination::resize(int segments) {
   forward_.assign(lane_, Forward<Pair>{});
   displacement_.assign(segments + 2, 0.0);
   multiplier_.assign(segments + 2, 0.0);
+  load_.assign(segments + 2, 0.0);
+  gap_.assign(segments + 2, 0.0);
 }
 
 void BlockElimination::factor(const KktSystem& system, bool bending) {
@@ -91,10 +95,38 @@ void BlockElimination::factor(const KktSystem& system, bool bending) {
 }
 
 void BlockElimination::solve(const KktSystem& system) {
+  if (system.moves_held) load_by_held(system);
+  const VectorArray& load = system.moves_held ? load_ : system.load;
+  const std::vector<double>& gap = system.moves_held ? gap_ : system.gap;
   if (couplings_ == Couplings::plain)
-    solve_lanes<Couplings::plain>(system);
+    solve_lanes<Couplings::plain>(system, load, gap);
   else
-    solve_lanes<Couplings::bending>(system);
+    solve_lanes<Couplings::bending>(system, load, gap);
+  if (!system.moves_held) return;
+  for (int i = 0; i < static_cast<int>(system.movable.size()) - 1; ++i)
+    if (system.movable[i] == 0) set(displacement_, i, get(system.held_displacement, i));
+}
+
+/// What displaced nodes do to the others stands on the right-hand sides.
+void BlockElimination::load_by_held(const KktSystem& system) {
+  load_ = system.load;
+  gap_ = system.gap;
+  const int last = static_cast<int>(system.movable.size()) - 2;
+  const auto load_node = [&](int i, const Vector3& load) { set(load_, i, get(load_, i) - load); };
+  for (int i = 0; i <= last; ++i) {
+    if (system.movable[i] != 0) continue;
+    const Vector3 held = get(system.held_displacement, i);
+    if (i > 0) {
+      load_node(i - 1, system.first[i - 1] * held + get(system.added_next, i - 1) * held);
+      gap_[i - 1] -= get(system.direction, i - 1).dot(held);
+    }
+    if (i < last) {
+      load_node(i + 1, system.first[i] * held + get(system.added_next, i) * held);
+      gap_[i] += get(system.direction, i).dot(held);
+    }
+    if (i > 1) load_node(i - 2, system.second[i - 2] * held);
+    if (i + 1 < last) load_node(i + 2, system.second[i] * held);
+  }
 }
 
 void BlockElimination::set_solution(const VectorArray& displacement, const std::vector<double>& multiplier) {
@@ -120,17 +152,17 @@ void BlockElimination::factor_lanes(const KktSystem& s) {
 }
 
 template <Couplings couplings>
-void BlockElimination::solve_lanes(const KktSystem& s) {
+void BlockElimination::solve_lanes(const KktSystem& s, const VectorArray& load, const std::vector<double>& gap) {
   FrontLoad<Pair> front{};
   for (int k = 0; k < lane_; ++k) {
     const int left = k, right = nodes_ - 1 - k;
-    forward<couplings>(eliminations_[k], pair(s.load, left, right), Pair{s.gap[left], s.gap[right - 1]}, front, forward_[k]);
+    forward<couplings>(eliminations_[k], pair(load, left, right), Pair{gap[left], gap[right - 1]}, front, forward_[k]);
   }
 
   const int m = lane_;
-  const MiddleSolution middle = solve_middle(middle_, vector(s.load, m) + lane_of(front.next, 0) + lane_of(front.after, 1),
-                                             vector(s.load, m + 1) + lane_of(front.next, 1) + lane_of(front.after, 0),
-                                             front.gap[0], s.gap[m], front.gap[1]);
+  const MiddleSolution middle = solve_middle(middle_, vector(load, m) + lane_of(front.next, 0) + lane_of(front.after, 1),
+                                             vector(load, m + 1) + lane_of(front.next, 1) + lane_of(front.after, 0),
+                                             front.gap[0], gap[m], front.gap[1]);
 
   const auto put_nodes = [this](int left, int right, const PairVector& x) {
     displacement_.x[left] = x.x[0];

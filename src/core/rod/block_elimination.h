@@ -15,6 +15,7 @@ namespace verlet_cable {
 ///       - p_i m_i + p_(i-1) m_(i-1) = load_i,     or x_i = 0 where movable_i is 0
 ///   p_i . (x_(i+1) - x_i) - compliance_i m_i = gap_i
 ///
+/// and where what holds nodes moves, too, x_i = held_displacement_i there;
 /// and where something else resists the motion, symmetric blocks `added` to the diagonal and `added_next` to the coupling of node
 /// i and i + 1.
 struct KktSystem {
@@ -26,6 +27,8 @@ struct KktSystem {
   std::vector<double> compliance;  ///< n, >= 0
   VectorArray load;                ///< N
   std::vector<double> gap;         ///< n
+  bool moves_held = false;         ///< whether held nodes are displaced
+  VectorArray held_displacement;   ///< N, read where movable is 0
   bool stiffened = false;          ///< whether there are added blocks
   SymmetricArray added;            ///< N
   SymmetricArray added_next;       ///< n
@@ -59,7 +62,8 @@ class BlockElimination {
   template <Couplings couplings>
   void factor_lanes(const KktSystem& system);
   template <Couplings couplings>
-  void solve_lanes(const KktSystem& system);
+  void solve_lanes(const KktSystem& system, const VectorArray& load, const std::vector<double>& gap);
+  void load_by_held(const KktSystem& system);
 
   int nodes_ = 0;                                ///< even: padded by a held one where necessary
   int lane_ = 0;                                 ///< eliminations from either end; two nodes are left in the middle
@@ -69,6 +73,9 @@ class BlockElimination {
   MiddleElimination middle_;
   VectorArray displacement_;
   std::vector<double> multiplier_;
+  // Right-hand sides with what displaced nodes add to them
+  VectorArray load_;
+  std::vector<double> gap_;
 };
 
 }  // namespace verlet_cable

@@ -43,6 +43,9 @@ void CableStepper::resize(int segments) {
                                  &end_square_, &start_density_, &pivot_, &off_, &impulse_, &growth_})
     a->assign(nodes, 0.0);
   both_held_.reserve(nodes);
+  kept_load_.assign(nodes, 0.0);
+  kept_gap_.assign(nodes, 0.0);
+  kept_torque_.assign(nodes, 0.0);
   bending_.resize(segments);
   twist_.resize(segments);
   rod_.resize(segments);
@@ -153,8 +156,8 @@ void CableStepper::set_loads(const Substep& s, const CableState& state) {
       system_.compliance[i] = target_length_[i] * target_length_[i] * target_length_[i] / stiffness;
   }
   both_held_.clear();
-  for (int i = 0; i < segments_; ++i)
-    if (system_.movable[i] == 0 && system_.movable[i + 1] == 0) both_held_.push_back(i);
+  for (std::size_t k = 0; k + 1 < held.size(); ++k)
+    if (held[k].node + 1 == held[k + 1].node && held[k].body == held[k + 1].body) both_held_.push_back(held[k].node);
 }
 
 /// At a winch the material moves through the end node.
@@ -349,6 +352,62 @@ double CableStepper::correct() {
   if (!rod_.active()) return size;
   const double turn = rod_.correct(1);
   return turn <= size ? size : turn;  // keeps a NaN
+}
+
+void CableStepper::follow_holders(const Boundary& boundary) {
+  hold(boundary.nodes);
+  if (rod_.active()) rod_.follow_clamps(boundary);
+}
+
+void CableStepper::read_holder_loads(const Substep& s, const std::vector<double>& masses, HolderLoads& loads) const {
+  const Boundary& boundary = s.boundary;
+  loads.forces.resize(boundary.nodes.size());
+  loads.torques.assign(boundary.directions.size(), Vector3::Zero());
+  for (std::size_t k = 0; k < boundary.nodes.size(); ++k) {
+    const int i = boundary.nodes[k].node;
+    loads.forces[k] = corrected_load(i) + s.inertia() * masses[i] / s.h * (get(displacement_, i) / s.h - get(velocity_, i));
+  }
+  if (!rod_.active()) return;
+  rod_.add_clamp_torques(loads.torques);
+  rod_.add_clamp_reactions(system_, loads.torques);
+}
+
+void CableStepper::solve_moved(const Boundary& boundary, const HolderMotion& motion) {
+  move_held(boundary, motion);
+  solve_linear();
+  system_.moves_held = false;
+}
+
+void CableStepper::respond(const Boundary& boundary, const HolderMotion& motion, HolderLoads& loads) {
+  std::swap(system_.load, kept_load_);
+  std::swap(system_.gap, kept_gap_);
+  std::swap(rod_.torque(), kept_torque_);
+  system_.load.assign(segments_ + 2, 0.0);
+  system_.gap.assign(segments_ + 2, 0.0);
+  rod_.torque().assign(segments_ + 2, 0.0);
+  move_held(boundary, motion);
+  solve_linear();
+  loads.forces.resize(boundary.nodes.size());
+  loads.torques.assign(boundary.directions.size(), Vector3::Zero());
+  for (std::size_t k = 0; k < boundary.nodes.size(); ++k) {
+    const int i = boundary.nodes[k].node;
+    loads.forces[k] = corrected_load(i);
+    if (!rod_.active()) loads.forces[k] -= (system_.diagonal[i] - inertia_[i]) * motion.displacements[k];
+    if (system_.stiffened) loads.forces[k] -= get(system_.added, i) * motion.displacements[k];
+  }
+  if (rod_.active()) rod_.add_clamp_reactions(system_, loads.torques);
+  system_.moves_held = false;
+  std::swap(system_.load, kept_load_);
+  std::swap(system_.gap, kept_gap_);
+  std::swap(rod_.torque(), kept_torque_);
+}
+
+/// What holders that move do to the cable's equations.
+void CableStepper::move_held(const Boundary& boundary, const HolderMotion& motion) {
+  system_.moves_held = true;
+  for (std::size_t k = 0; k < boundary.nodes.size(); ++k)
+    set(system_.held_displacement, boundary.nodes[k].node, motion.displacements[k]);
+  if (rod_.active()) rod_.add_clamp_loads(motion.rotations, system_);
 }
 
 void CableStepper::take_back(double part) {

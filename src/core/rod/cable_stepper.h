@@ -43,6 +43,16 @@ class CableStepper {
   void take_back(double part);  ///< of the last correction
   /// `struck`: forces from outside have changed velocities abruptly.
   void finish(const Substep& substep, bool struck, CableState& state, SubstepResult& result);
+  // For holders that move as the cable lets them, between `factor` and `correct`
+  /// Takes over where the holders are at the end of the substep.
+  void follow_holders(const Boundary& boundary);
+  /// What the cable exerts on its holders after the last correction, to first order, without the inertia of the nodes that they
+  /// hold: where the last solution was that of `solve_linear` or `solve_moved`.
+  void read_holder_loads(const Substep& substep, const std::vector<double>& masses, HolderLoads& loads) const;
+  /// `solve_linear` where the holders move instead of staying where they are.
+  void solve_moved(const Boundary& boundary, const HolderMotion& motion);
+  /// What the cable exerts on its holders where they move so and nothing loads it.
+  void respond(const Boundary& boundary, const HolderMotion& motion, HolderLoads& loads);
   const VectorArray& displacement() const { return displacement_; }  ///< nodes: x' - x of the present iterate [m]
   KktSystem& system() { return system_; }
   // The solution of the linear system: of nodes [m], of segments [N/m], and of a whole rod's segments [rad]
@@ -72,6 +82,7 @@ class CableStepper {
   void evaluate_elastic_lengths(const Substep& substep, const std::vector<double>& rest_lengths);
   void assemble_segments(double part, const std::vector<double>& density, const VectorArray& direction);
   void react(const Substep& substep, const std::vector<double>& masses);
+  void move_held(const Boundary& boundary, const HolderMotion& motion);
   Vector3 corrected_load(int node) const;
   double force_along(int segment) const;
   void move(const Substep& substep);
@@ -96,7 +107,7 @@ class CableStepper {
   std::vector<double> inverse_mass_;                // nodes: [1/kg], 0 where held
   std::vector<double> inertia_;                     // nodes: 2 m / h^2 and drag / h [kg/s^2]
   VectorArray base_load_;                           // nodes: gravity and inertia of the velocity [N]
-  std::vector<int> both_held_;                      // segments between two held nodes
+  std::vector<int> both_held_;                      // segments between two held nodes that do not give way
   // The unknowns
   VectorArray displacement_;             // nodes: x' - x [m]
   std::vector<double> tension_density_;  // segments: 2 T / (s + s') [N/m]
@@ -113,6 +124,9 @@ class CableStepper {
   KktSystem system_;
   bool couples_second_ = false;  // the system's couplings to second neighbours are set
   BlockElimination solver_;
+  // Loads that wait, and none
+  VectorArray kept_load_;
+  std::vector<double> kept_gap_, kept_torque_;
   // Velocity projection: a tridiagonal system
   std::vector<double> pivot_, off_, impulse_;  // segments
   std::vector<double> growth_;                 // segments: rate of half the square of the length [m^2/s]

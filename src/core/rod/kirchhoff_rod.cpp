@@ -133,6 +133,17 @@ void KirchhoffRod::start_clamps(const CableModel& model, const CableState& state
   clamp_joints_.start(clamp_before_.start, 0, clamp_after_.start, 0, 0, static_cast<int>(count));
 }
 
+void KirchhoffRod::follow_clamps(const Boundary& boundary) {
+  for (std::size_t k = 0; k < clamps_.size(); ++k) {
+    const int joint = static_cast<int>(k);
+    FrameMotion& of_clamp = clamps_[k].after ? clamp_before_ : clamp_after_;
+    const Eigen::Matrix3d start = get(of_clamp.start, joint);
+    const Eigen::Matrix3d end = boundary.directions[clamps_[k].target].end.toRotationMatrix();
+    set(of_clamp.end, joint, end);
+    set(of_clamp.middle, joint, start + part_ * (end - start));
+  }
+}
+
 /// The frames at the end of the present iterate.
 void KirchhoffRod::turn_frames(const VectorArray& displacement, const VectorArray& segment) {
   for (int i = 0; i < segments_; i += 2) {
@@ -214,6 +225,46 @@ void KirchhoffRod::factor(const KktSystem& system) {
   if (elimination_.factor(system, stiffness_, joints_) || simplified_) return;
   set_stiffness(system.direction, true);
   elimination_.factor(system, stiffness_, joints_);
+}
+
+/// By what a clamp that turns adds to the moment on the segment beside it; see RodElimination for what turns with the frames.
+Vector3 KirchhoffRod::turned_by_clamp(const ClampJoint& clamp, int joint, const Vector3& rotation) const {
+  const Vector3 moment = stiffness_.turning_part * get(clamp_joints_.moment, joint);
+  return get(clamp_joints_.stiffness, joint) * rotation + (clamp.after ? 1 : -1) * moment.cross(rotation);
+}
+
+void KirchhoffRod::add_clamp_loads(const std::vector<Vector3>& rotations, KktSystem& system) {
+  for (std::size_t k = 0; k < clamps_.size(); ++k) {
+    ClampJoint& clamp = clamps_[k];
+    const int i = clamp.segment;
+    clamp.rotation = rotations[clamp.target];
+    const Vector3 moment = turned_by_clamp(clamp, static_cast<int>(k), clamp.rotation);
+    const Vector3 direction = get(system.direction, i);
+    const Vector3 force = direction.cross(moment) / direction.squaredNorm();
+    set(system.load, i, get(system.load, i) + force);
+    set(system.load, i + 1, get(system.load, i + 1) - force);
+    stiffness_.torque[i] += moment.dot(direction.normalized());
+  }
+}
+
+void KirchhoffRod::add_clamp_reactions(const KktSystem& system, std::vector<Vector3>& torques) const {
+  const VectorArray& displacement = elimination_.displacement();
+  for (std::size_t k = 0; k < clamps_.size(); ++k) {
+    const ClampJoint& clamp = clamps_[k];
+    const int i = clamp.segment, joint = static_cast<int>(k);
+    const Vector3 direction = get(system.direction, i), change = get(displacement, i + 1) - get(displacement, i);
+    const Vector3 turn =
+        direction.cross(change) / direction.squaredNorm() + elimination_.twist()[i] * direction.normalized();
+    const Vector3 clamp_turn = system.moves_held ? clamp.rotation : Vector3(Vector3::Zero());
+    const Vector3 moment = stiffness_.turning_part * get(clamp_joints_.moment, joint);
+    torques[clamp.target] += get(clamp_joints_.stiffness, joint) * (turn - clamp_turn) +
+                             (clamp.after ? -1 : 1) * moment.cross(turn);
+  }
+}
+
+void KirchhoffRod::add_clamp_torques(std::vector<Vector3>& torques) const {
+  for (std::size_t k = 0; k < clamps_.size(); ++k)
+    torques[clamps_[k].target] += (clamps_[k].after ? 1 : -1) * get(clamp_joints_.moment, static_cast<int>(k));
 }
 
 double KirchhoffRod::correct(double part) {

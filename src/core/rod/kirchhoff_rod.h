@@ -30,6 +30,9 @@ class KirchhoffRod {
   void leave_out() { active_ = false; }
   bool active() const { return active_; }
 
+  /// Takes over where the clamps are at the end of the substep, which bodies decide in its course.
+  void follow_clamps(const Boundary& boundary);
+
   /// Adds the forces of the segments on their first nodes [N]. `segment`: at the start, `middle`: where forces are taken [m].
   void add_segment_forces(const VectorArray& displacement, const VectorArray& segment, const VectorArray& middle,
                           VectorArray& segment_force);
@@ -41,6 +44,14 @@ class KirchhoffRod {
   double correct(double part);
   /// From here on only with the part of the tangent that is always positive, which leads further and converges more slowly.
   void simplify() { simplified_ = true; }
+
+  /// Adds to the loads what clamps that turn by `rotation` [rad] (of the directions that the boundary holds) exert.
+  void add_clamp_loads(const std::vector<Vector3>& rotations, KktSystem& system);
+  /// Adds what the last solution changes of the torques on the clamps' holders [N m]; clamps turned as in `add_clamp_loads`, or
+  /// not if `system` moves no holders.
+  void add_clamp_reactions(const KktSystem& system, std::vector<Vector3>& torques) const;
+  /// Adds the torques on the clamps' holders [N m] of the present iterate.
+  void add_clamp_torques(std::vector<Vector3>& torques) const;
 
   /// Writes the moments on clamps [N m] and their joints' twist, and turns the frames for the last time.
   void finish(const VectorArray& displacement, const VectorArray& segment, Boundary& boundary);
@@ -58,6 +69,7 @@ class KirchhoffRod {
     int target = 0;     ///< index of the held direction
     int segment = 0;    ///< the segment next to the clamp
     bool after = true;  ///< the segment comes after the clamp
+    Vector3 rotation = Vector3::Zero();  ///< [rad] in the last solution for moved clamps
   };
 
   void start_segments(const CableModel& model, const CableState& state, const VectorArray& segment);
@@ -67,6 +79,7 @@ class KirchhoffRod {
                     double damping_time);
   void turn_frames(const VectorArray& displacement, const VectorArray& segment);
   void set_clamp_frames();
+  Vector3 turned_by_clamp(const ClampJoint& clamp, int joint, const Vector3& rotation) const;
   void set_stiffness(const VectorArray& direction, bool simple);
 
   bool active_ = false;

@@ -157,6 +157,12 @@ PairSymmetric RodElimination::ends(const KktSystem& system) const {
   return stiffened_by(free, added);
 }
 
+/// How far the outermost nodes are displaced by what holds them.
+PairVector RodElimination::held_ends(const KktSystem& system) const {
+  const Pair held{1 - system.movable[0], 1 - system.movable[segments_]};
+  return held * pair(system.held_displacement, 0, segments_);
+}
+
 template <bool stiffened>
 bool RodElimination::factor_lanes(const KktSystem& system, const RodStiffness& stiffness, const RodJoints& joints) {
   const int half = padded_ / 2;
@@ -279,6 +285,7 @@ void RodElimination::solve_lanes(const KktSystem& system, const std::vector<doub
   const double part = padded_ > segments_ ? 0.5 : 1;
   const Pair share{1, part}, next_share{segments_ == 1 ? part : 1, part};
   PairVector give = ends<stiffened>(system) * (share * pair(system.load, 0, segments_)), moment{};
+  if (system.moves_held) give = give + held_ends(system);
   auto held = held_inside_.begin();
   for (int k = 0; k < half; ++k) {
     const int left = k, right = padded_ - 1 - k;
@@ -292,9 +299,12 @@ void RodElimination::solve_lanes(const KktSystem& system, const std::vector<doub
     if (k + 1 == half) load = Pair{1, 0} * load;
     const PairVector rest = load - inertia_times(e, give);
     if (held != held_inside_.end() && held->step == k) {
-      held->force = held->stiffness * give;
-      moment = moment - transposed_times(held->turned, give);
-      give = held->free * give;
+      PairVector place{};
+      if (system.moves_held) place = (1.0 - held->free) * pair(system.held_displacement, left + 1, right);
+      const PairVector away = give - place;
+      held->force = held->stiffness * away;
+      moment = moment - transposed_times(held->turned, away);
+      give = held->free * give + place;
       ++held;
     }
     give = give + e.give * rest;
@@ -347,7 +357,8 @@ void RodElimination::solve_lanes(const KktSystem& system, const std::vector<doub
     if (k == 0) put(node - change, 0, padded_, displacement_);
   }
   for (int i = 0; i <= segments_; ++i)
-    if (system.movable[i] == 0) set(displacement_, i, Vector3::Zero());
+    if (system.movable[i] == 0)
+      set(displacement_, i, system.moves_held ? get(system.held_displacement, i) : Vector3(Vector3::Zero()));
 }
 
 }  // namespace verlet_cable

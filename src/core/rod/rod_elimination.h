@@ -69,6 +69,7 @@ class RodElimination {
 
   template <bool stiffened>
   PairSymmetric ends(const KktSystem& system) const;
+  PairVector held_ends(const KktSystem& system) const;
   template <bool stiffened>
   bool factor_lanes(const KktSystem& system, const RodStiffness& stiffness, const RodJoints& joints);
   template <bool stiffened>

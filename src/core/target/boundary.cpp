@@ -1,5 +1,6 @@
 #include "target/boundary.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace verlet_cable {
@@ -13,12 +14,17 @@ constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
+bool Boundary::is_on_bodies() const {
+  return std::any_of(nodes.begin(), nodes.end(), [](const HeldNode& held) { return held.body >= 0; });
+}
+
 int reachable_lengths(const CableModel& model, const CableState& state, const std::vector<HeldNode>& held,
                       std::vector<double>& lengths) {
   for (int i = 0; i < state.segments(); ++i) lengths[i] = state.rest_lengths[i];
   if (model.material.axial_stiffness < infinity) return -1;
   int overstretched = -1;
   for (std::size_t k = 0; k + 1 < held.size(); ++k) {
+    if (held[k].body >= 0 || held[k + 1].body >= 0) continue;  // they give way
     const int first = held[k].node, last = held[k + 1].node;
     const double rest_length = state.length(first, last);
     const double distance = (held[k + 1].position - held[k].position).norm();

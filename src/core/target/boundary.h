@@ -12,6 +12,10 @@ struct HeldNode {
   Vector3 position = Vector3::Zero();  ///< [m]
   Vector3 velocity = Vector3::Zero();  ///< [m/s]
   Vector3 force = Vector3::Zero();     ///< [N] out: what the cable exerts on the holder, mean over the substep
+  /// Of a body that moves freely, -1: none. Place and velocity are then found with the cable's, and those above are where that
+  /// begins.
+  int body = -1;
+  Vector3 point = Vector3::Zero();  ///< [m] of the body that holds the node, in the axes of its frame
 };
 
 /// A clamp's direction and roll at the start and the end of a substep.
@@ -23,6 +27,8 @@ struct HeldDirection {
   /// [rad] of a whole rod: between the segment before and the clamp, and between the clamp and the segment after it. In: at the
   /// start, if the clamp is inside; out: at the end of the substep
   double twist_before = 0, twist_after = 0;
+  int body = -1;                                  ///< likewise
+  Quaternion on_body = Quaternion::Identity();  ///< in the axes of the body's frame
 };
 
 /// A segment whose rest length changes.
@@ -36,6 +42,20 @@ struct Boundary {
   std::vector<HeldNode> nodes;
   std::vector<HeldDirection> directions;
   std::vector<GrowingSegment> growing;
+
+  bool is_on_bodies() const;  ///< whether a body that moves freely holds any of it
+};
+
+/// By what the holders of a boundary move from one iterate to the next.
+struct HolderMotion {
+  std::vector<Vector3> displacements;  ///< one a held node [m]
+  std::vector<Vector3> rotations;      ///< one a held direction [rad]
+};
+
+/// What a cable exerts on the holders of a boundary.
+struct HolderLoads {
+  std::vector<Vector3> forces;   ///< one a held node [N]
+  std::vector<Vector3> torques;  ///< one a held direction [N m]
 };
 
 /// The lengths [m] that the segments can keep: their rest lengths, but longer between holders of an inextensible cable that are
