@@ -16,6 +16,7 @@ struct CableModel {
   MaterialDesc material;
   std::string material_name;  ///< in the scene
   std::array<double, 4> color{0.1, 0.1, 0.1, 1.0};
+  bool turns_bodies = false;  ///< clamps of bodies that move freely are turned by it
   double segment_length = 0;  ///< [m] of the scene's segments: winches pay out and take in such
 };
 

@@ -33,9 +33,10 @@ using BoundaryInputs = std::vector<FrameInput>;
 /// What holds a node of a cable or net, or a rigid body, to a frame. The frame may be that of a rigid body.
 struct Attachment {
   std::string name;
-  BodyId body;    ///< a cable, a net or a rigid body
-  int node = 0;   ///< of a cable or net
-  int frame = 0;  ///< index into World::frames()
+  BodyId body;      ///< a cable, a net or a rigid body
+  int node = 0;     ///< of a cable or net
+  int frame = 0;    ///< index into World::frames()
+  int holder = -1;  ///< index into World::bodies() if the frame is a body's
   AttachmentType type = AttachmentType::hinge;
   Pose pose;  ///< of the attachment, in the frame
   Pose at;    ///< of the attachment, in the frame of the rigid body that is held

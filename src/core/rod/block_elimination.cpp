@@ -99,9 +99,9 @@ void BlockElimination::solve(const KktSystem& system) {
   const VectorArray& load = system.moves_held ? load_ : system.load;
   const std::vector<double>& gap = system.moves_held ? gap_ : system.gap;
   if (couplings_ == Couplings::plain)
-    solve_lanes<Couplings::plain>(system, load, gap);
+    solve_lanes<Couplings::plain>(load, gap);
   else
-    solve_lanes<Couplings::bending>(system, load, gap);
+    solve_lanes<Couplings::bending>(load, gap);
   if (!system.moves_held) return;
   for (int i = 0; i < static_cast<int>(system.movable.size()) - 1; ++i)
     if (system.movable[i] == 0) set(displacement_, i, get(system.held_displacement, i));
@@ -152,7 +152,7 @@ void BlockElimination::factor_lanes(const KktSystem& s) {
 }
 
 template <Couplings couplings>
-void BlockElimination::solve_lanes(const KktSystem& s, const VectorArray& load, const std::vector<double>& gap) {
+void BlockElimination::solve_lanes(const VectorArray& load, const std::vector<double>& gap) {
   FrontLoad<Pair> front{};
   for (int k = 0; k < lane_; ++k) {
     const int left = k, right = nodes_ - 1 - k;

@@ -62,7 +62,7 @@ class BlockElimination {
   template <Couplings couplings>
   void factor_lanes(const KktSystem& system);
   template <Couplings couplings>
-  void solve_lanes(const KktSystem& system, const VectorArray& load, const std::vector<double>& gap);
+  void solve_lanes(const VectorArray& load, const std::vector<double>& gap);
   void load_by_held(const KktSystem& system);
 
   int nodes_ = 0;                                ///< even: padded by a held one where necessary

@@ -25,7 +25,7 @@ std::vector<double> CableState::arc_length() const {
 
 bool is_whole_rod(const CableModel& model, const CableState& state) {
   const BendingStiffness& stiffness = model.material.bending_stiffness;
-  return !stiffness.is_isotropic() || (stiffness.largest() > 0 && !state.rest_curvature.empty()) ||
+  return !stiffness.is_isotropic() || (stiffness.largest() > 0 && model.turns_bodies) || (stiffness.largest() > 0 && !state.rest_curvature.empty()) ||
          (model.material.torsional_stiffness > 0 && !state.rest_twist.empty());
 }
 

@@ -21,10 +21,11 @@ constexpr double noticed_jerk = 1e-9;
 
 }  // namespace
 
-Convergence::Convergence(const Substep& s) {
-  const double error = s.statics ? static_velocity_tolerance : s.boundary.nodes.empty() ? free_part * s.tolerance : s.tolerance;
-  tolerance_ = error * std::min(s.h, longest_tolerated);
-}
+Convergence::Convergence(const Substep& s)
+    : Convergence(s.boundary.nodes.empty() ? free_part * s.tolerance : s.tolerance, s.h, s.statics) {}
+
+Convergence::Convergence(double tolerance, double h, bool statics)
+    : tolerance_((statics ? static_velocity_tolerance : tolerance) * std::min(h, longest_tolerated)) {}
 
 bool Convergence::is_reached(double size) {
   ratio_ = last_ > 0 ? size / last_ : 1;
@@ -34,7 +35,8 @@ bool Convergence::is_reached(double size) {
 }
 
 double stiffness_of_taut(const Substep& s, const CableState& state) {
-  const double mass = std::accumulate(state.masses.begin(), state.masses.end(), 0.0);
+  double mass = std::accumulate(state.masses.begin(), state.masses.end(), 0.0);
+  for (const HeldNode& held : s.boundary.nodes) mass += held.body_mass;
   const double length = state.length();
   const double weight = std::max(s.environment.gravity.at(state.positions[0]).norm(), standard_gravity) * mass;
   return taut_stiffness * (weight + s.model.material.bending_stiffness.largest() / (length * length));

@@ -55,6 +55,8 @@ struct SubstepResult {
 class Convergence {
  public:
   explicit Convergence(const Substep& substep);
+  /// `tolerance` [1/s], of substeps of `h` [s].
+  Convergence(double tolerance, double h, bool statics);
   /// `size` [segment lengths or rad] of the last one.
   bool is_reached(double size);
   /// By which it was smaller than the one before; 1 of the first.
@@ -66,8 +68,8 @@ class Convergence {
 };
 
 /// [N] Between two holders a rigid chain that is pulled straight has no unique tension, and one that is pushed together has no
-/// motion. So much axial stiffness, relative to the cable's weight, gives it both: its own weight strains it by a part in ten
-/// million.
+/// motion. So much axial stiffness, relative to the weight of the cable and of bodies that hold it, gives it both: that weight
+/// strains it by a part in ten million.
 double stiffness_of_taut(const Substep& substep, const CableState& state);
 
 /// Whether a holder's velocity changes: only then do velocities along the segments appear that the equations do not damp. `state`

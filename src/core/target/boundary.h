@@ -16,6 +16,7 @@ struct HeldNode {
   /// begins.
   int body = -1;
   Vector3 point = Vector3::Zero();  ///< [m] of the body that holds the node, in the axes of its frame
+  double body_mass = 0;             ///< [kg]
 };
 
 /// A clamp's direction and roll at the start and the end of a substep.
@@ -27,7 +28,7 @@ struct HeldDirection {
   /// [rad] of a whole rod: between the segment before and the clamp, and between the clamp and the segment after it. In: at the
   /// start, if the clamp is inside; out: at the end of the substep
   double twist_before = 0, twist_after = 0;
-  int body = -1;                                  ///< likewise
+  int body = -1;                                ///< likewise
   Quaternion on_body = Quaternion::Identity();  ///< in the axes of the body's frame
 };
 

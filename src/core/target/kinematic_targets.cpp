@@ -149,7 +149,7 @@ void start_targets(const std::vector<Attachment>& attachments, const std::vector
                    KinematicTargets& targets) {
   for (KinematicTarget& target : targets.nodes) {
     const auto frame = static_cast<std::size_t>(attachments[target.attachment].frame);
-    if (frame == 0) continue;
+    if (frame == 0 || attachments[target.attachment].holder >= 0) continue;
     target.starts = true;
     target.liveliness = greatest_change;
     if (frame >= inputs.size() || !inputs[frame].velocity) continue;
@@ -210,6 +210,7 @@ Following follow_aims(const std::vector<Attachment>& attachments, double time, d
                       std::vector<Jump>& over) {
   Following following;
   for (KinematicTarget& target : targets.nodes) {
+    if (attachments[target.attachment].holder >= 0) continue;
     const Vector3 mean = (target.next_position - target.position) / time_step;
     if (target.starts) {
       target.starts = false;
@@ -265,6 +266,8 @@ void hold_at(double from, double to, const KinematicTargets& targets, Boundary& 
     const KinematicTarget& target = targets.nodes[k];
     HeldNode& held = boundary.nodes[k];
     held.node = target.node;
+    held.body = -1;
+    held.body_mass = 0;
     held.position = to == 1 ? target.next_position : target.position + to * (target.next_position - target.position);
     held.velocity = target.velocity + to * (target.next_velocity - target.velocity);
   }
@@ -272,11 +275,48 @@ void hold_at(double from, double to, const KinematicTargets& targets, Boundary& 
   for (std::size_t k = 0; k < targets.directions.size(); ++k) {
     const DirectionTarget& target = targets.directions[k];
     boundary.directions[k].node = target.node;
+    boundary.directions[k].body = -1;
     boundary.directions[k].twist_before = target.twist_before;
     boundary.directions[k].twist_after = target.twist_after;
     boundary.directions[k].start = target.orientation.slerp(from, target.next_orientation);
     boundary.directions[k].end = target.orientation.slerp(to, target.next_orientation);
   }
+}
+
+void hold_on_bodies(const CableState& state, const std::vector<Attachment>& attachments, const std::vector<SimulatedBody>& bodies,
+                    const KinematicTargets& targets, Boundary& boundary) {
+  for (std::size_t k = 0; k < targets.nodes.size(); ++k) {
+    const Attachment& attachment = attachments[targets.nodes[k].attachment];
+    if (attachment.holder < 0) continue;
+    HeldNode& held = boundary.nodes[k];
+    const SimulatedBody& body = bodies[attachment.holder];
+    held.body = attachment.holder;
+    held.body_mass = body.mass;
+    held.point = target_position(state, attachment, attachment.pose, held.node);
+    const Vector3 arm = body.pose.orientation * (held.point - body.center_of_mass);
+    held.position = (body.pose * Pose{held.point}).position;
+    held.velocity = body.velocity + body.angular_velocity.cross(arm);
+  }
+  for (std::size_t k = 0; k < targets.directions.size(); ++k) {
+    const Attachment& attachment = attachments[targets.directions[k].attachment];
+    if (attachment.holder < 0) continue;
+    HeldDirection& held = boundary.directions[k];
+    held.body = attachment.holder;
+    held.on_body = attachment.pose.orientation * about_direction(targets.directions[k].roll);
+    held.start = held.end = bodies[attachment.holder].pose.orientation * held.on_body;
+  }
+}
+
+void follow_bodies(const Boundary& boundary, KinematicTargets& targets) {
+  for (std::size_t k = 0; k < targets.nodes.size(); ++k) {
+    const HeldNode& held = boundary.nodes[k];
+    if (held.body < 0) continue;
+    KinematicTarget& target = targets.nodes[k];
+    target.next_position = held.position;
+    target.next_velocity = held.velocity;
+  }
+  for (std::size_t k = 0; k < targets.directions.size(); ++k)
+    if (boundary.directions[k].body >= 0) targets.directions[k].next_orientation = boundary.directions[k].end;
 }
 
 void keep_twist(const Boundary& boundary, KinematicTargets& targets) {

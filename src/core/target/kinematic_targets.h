@@ -111,6 +111,13 @@ Following follow_aims(const std::vector<Attachment>& attachments, double time, d
 /// What is held at the end of a substep that goes from one part of the step to another, 0 to 1.
 void hold_at(double from, double to, const KinematicTargets& targets, Boundary& boundary);
 
+/// Lets bodies hold what is theirs, from where they are now; `bodies` as World::bodies().
+void hold_on_bodies(const CableState& state, const std::vector<Attachment>& attachments, const std::vector<SimulatedBody>& bodies,
+                    const KinematicTargets& targets, Boundary& boundary);
+
+/// Takes over where bodies, which have come to the end of the step, hold a cable.
+void follow_bodies(const Boundary& boundary, KinematicTargets& targets);
+
 /// Takes over how whole rods are twisted at their clamps after a substep.
 void keep_twist(const Boundary& boundary, KinematicTargets& targets);
 

@@ -61,6 +61,13 @@ struct World::Implementation {
   void update_net(int net);
   void add_particle(const ParticleDesc& desc);
   void add_bodies();
+  void place_bodies();
+  bool place_body(int index);
+  void note_placed(int index);
+  bool is_held_by_cable(int index) const;
+  bool has_bodies_of(const CableDesc& cable) const;
+  void place_bodies_on(const std::vector<Attachment>& attachments);
+  void start_with_bodies(const CableState& cable, KinematicTargets& targets) const;
   NetSolver& solver_of(int net);
   void step_net(int net, StepResult& result);
   void aim_net(int net, StepResult& result);

@@ -238,6 +238,7 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
   const double h = (to - from) * state_.scene->time_step;
   const bool touching = !workspace_.contacts.touches().empty(), keeps = island.cables.size() > 1;
   workspace_.participants.clear();
+  workspace_.held_by_bodies.clear();
   const Scheme touching_scheme = find_touching_scheme(island, h);
   bool converged = true;
   for (std::size_t k = 0; k < island.cables.size(); ++k) {
@@ -246,26 +247,31 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     CableProgress& memory = state_.cable_progress[cable];
     CableWorkspace& work = workspace_.cables[k];
     hold_at(from, to, memory.targets, work.boundary);
-    const bool touches = workspace_.contacts.touched(k);
-    const Scheme scheme = touches ? touching_scheme : scheme_of(cable);
+    if (!island.bodies.empty()) hold_on_bodies(c.state, state_.attachments, state_.bodies, memory.targets, work.boundary);
+    const bool touches = workspace_.contacts.touched(k), on_bodies = work.boundary.is_on_bodies();
+    const Scheme scheme = touches || on_bodies ? touching_scheme : scheme_of(cable);
     if (memory.drive) wind_drive(cable, scheme, from, to, work.boundary);
     // What touches is left as it is until all have converged.
-    if (keeps && !touches) {
+    if (keeps && !touches && !on_bodies) {
       work.before = c.state;
       work.spans_before = memory.spans;
     }
     Substep substep{*c.model, environment_, work.boundary, memory.spans, h};
     substep.scheme = scheme;
     substep.tolerance = state_.scene->tolerance;
-    if (state_.scene->numerical_damping) substep.treatment = touches || to - from < 1 ? Treatment::damping : Treatment::cleaning;
+    if (state_.scene->numerical_damping)
+      substep.treatment = touches || on_bodies || to - from < 1 ? Treatment::damping : Treatment::cleaning;
     if (touches) {
       work.result = {};
       workspace_.participants.push_back({static_cast<int>(k), cable, &work.stepper, substep, &c.state, {}});
+    } else if (on_bodies) {
+      workspace_.held_by_bodies.push_back({static_cast<int>(k), cable, &work.stepper, substep, &c.state, {}});
     } else {
       work.result = work.stepper.advance(substep, c.state);
       converged = converged && work.result.converged;
     }
   }
+  if (converged && !island.bodies.empty()) converged = advance_bodies(island, from, to, touching_scheme);
   if (converged && touching) {
     ContactSolver& solver = workspace_.contact_solver;
     converged = solver.solve(workspace_.participants, workspace_.contacts.touches()) &&
@@ -274,6 +280,7 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     for (const Participant& p : workspace_.participants) workspace_.cables[p.place].result = p.result;
   }
   if (converged) {
+    if (!island.bodies.empty()) finish_bodies(island, from, to);
     for (std::size_t k = 0; k < island.cables.size(); ++k)
       keep_twist(workspace_.cables[k].boundary, state_.cable_progress[island.cables[k]].targets);
     workspace_.contacts.keep(workspace_.members);
@@ -294,11 +301,12 @@ Scheme IslandStepper::scheme_of(int cable) const {
   return state_.scene->numerical_damping ? next_scheme(*c.model, c.state.unresolved) : Scheme::conserving;
 }
 
-/// Cables that touch something go by one scheme, which their contacts heed: where one is to damp, all do.
+/// Cables that touch something, or that bodies hold, go by one scheme, which their contacts and bodies heed: where one is to
+/// damp, all do.
 Scheme IslandStepper::find_touching_scheme(const Island& island, double h) {
   Scheme scheme = Scheme::conserving;
   for (std::size_t k = 0; k < island.cables.size(); ++k) {
-    if (!workspace_.contacts.touched(k)) continue;
+    if (!workspace_.contacts.touched(k) && island.bodies.empty()) continue;
     const Scheme own = scheme_of(island.cables[k]);
     if (own == Scheme::first_order || scheme == Scheme::conserving) scheme = own;
   }
@@ -321,7 +329,7 @@ void IslandStepper::wind_drive(int index, Scheme scheme, double from, double to,
 
 void IslandStepper::take_back(const Island& island) {
   for (std::size_t k = 0; k < island.cables.size(); ++k) {
-    if (workspace_.contacts.touched(k)) continue;
+    if (workspace_.contacts.touched(k) || workspace_.cables[k].boundary.is_on_bodies()) continue;
     state_.cables[island.cables[k]].state = workspace_.cables[k].before;
     state_.cable_progress[island.cables[k]].spans = workspace_.cables[k].spans_before;
   }
@@ -329,6 +337,7 @@ void IslandStepper::take_back(const Island& island) {
 
 /// What did not converge goes on from rest.
 void IslandStepper::stop(const Island& island) {
+  stop_bodies(island);
   for (std::size_t k = 0; k < island.cables.size(); ++k) {
     if (workspace_.cables[k].result.converged) continue;
     CableState& state = state_.cables[island.cables[k]].state;
@@ -342,6 +351,7 @@ void IslandStepper::stop(const Island& island) {
 void IslandStepper::give_up(int index, Boundary& boundary) {
   SimulatedCable& cable = state_.cables[index];
   hold_at(1, 1, state_.cable_progress[index].targets, boundary);
+  hold_on_bodies(cable.state, state_.attachments, state_.bodies, state_.cable_progress[index].targets, boundary);
   const CableState before = cable.state;
   carry_along(*cable.model, boundary.nodes, gravity_near(state_, index), cable.state);
   if (finite(cable.state.positions)) return;
@@ -391,6 +401,7 @@ void IslandStepper::complete(const Island& island, int substeps, IslandOutcome& 
 void IslandStepper::complete_cable(int index, const Boundary& boundary, int substeps) {
   CableProgress& memory = state_.cable_progress[index];
   CableState& state = state_.cables[index].state;
+  follow_bodies(boundary, memory.targets);
   if (memory.drive) complete_drive_step(index, state_);
   follow_material(boundary.directions, memory.spans, state);
   outcomes_[index].result.substeps = substeps;

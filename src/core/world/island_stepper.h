@@ -67,6 +67,10 @@ class IslandStepper {
   void step_alone(Island& island, IslandOutcome& found, bool contacts_known);
   void begin(const Island& island);
   bool advance(Island& island, double from, double to, bool tolerated);
+  bool advance_bodies(const Island& island, double from, double to, Scheme scheme);
+  void find_body_joints(const Island& island, double to);
+  void finish_bodies(const Island& island, double from, double to);
+  void stop_bodies(const Island& island);
   void find_contacts(Island& island, double from, double to);
   Scheme scheme_of(int cable) const;
   Scheme find_touching_scheme(const Island& island, double h);

@@ -44,23 +44,30 @@ int longest_axis(const std::vector<Aabb>& boxes) {
 }  // namespace
 
 void Islands::build(const State& state) {
-  labels_.resize(state.cables.size());
+  const int cables = static_cast<int>(state.cables.size());
+  labels_.resize(state.cables.size() + state.bodies.size());
   std::iota(labels_.begin(), labels_.end(), 0);
   if (are_islands_of_many(*state.scene)) find_labels(state);
+  if (!state.bodies.empty()) join_by_bodies(state);
   if (!islands_.empty() && labels_ == last_labels_) return;
   std::vector<Island> before;
   before.swap(islands_);
   auto same = before.begin();
   std::vector<int> place(labels_.size());
-  for (int cable = 0; cable < static_cast<int>(labels_.size()); ++cable) {
-    if (labels_[cable] == cable) {
-      place[cable] = static_cast<int>(islands_.size());
+  for (int i = 0; i < static_cast<int>(labels_.size()); ++i) {
+    if (labels_[i] == i) {
+      place[i] = static_cast<int>(islands_.size());
       islands_.emplace_back();
     }
-    islands_[place[labels_[cable]]].cables.push_back(cable);
+    Island& island = islands_[place[labels_[i]]];
+    if (i < cables)
+      island.cables.push_back(i);
+    else
+      island.bodies.push_back(i - cables);
   }
   for (Island& island : islands_) {
-    while (same != before.end() && same->cables.front() < island.cables.front()) ++same;
+    if (island.cables.empty()) break;
+    while (same != before.end() && !same->cables.empty() && same->cables.front() < island.cables.front()) ++same;
     if (same != before.end() && same->cables == island.cables) island.pairs = std::move(same->pairs);
   }
   last_labels_ = labels_;
@@ -91,6 +98,16 @@ void Islands::find_labels(const State& state) {
     open_.push_back(cable);
   }
   for (int cable = 0; cable < static_cast<int>(count); ++cable) labels_[cable] = root(cable);
+}
+
+void Islands::join_by_bodies(const State& state) {
+  const int cables = static_cast<int>(state.cables.size());
+  for (const Attachment& attachment : state.attachments) {
+    const int holder = state.body_of_frame(attachment.frame);
+    if (holder < 0 || attachment.body.is_net()) continue;
+    join(attachment.body.is_cable() ? attachment.body.index : cables + attachment.body.index, cables + holder);
+  }
+  for (int i = 0; i < static_cast<int>(labels_.size()); ++i) labels_[i] = root(i);
 }
 
 int Islands::root(int cable) {

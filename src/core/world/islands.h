@@ -8,9 +8,11 @@
 
 namespace verlet_cable {
 
-/// Cables that may touch each other in a step: they are advanced in the same substeps.
+/// Cables that may touch each other in a step, and bodies, with the cables that they hold: they are advanced in the same
+/// substeps.
 struct Island {
   std::vector<int> cables;  ///< indices into State::cables, ascending
+  std::vector<int> bodies;  ///< that hold them, or each other; indices into State::bodies, ascending
   SegmentPairs pairs;       ///< of their segments
 };
 
@@ -22,8 +24,9 @@ inline bool are_islands_of_many(const SceneDesc& scene) {
 /// What cables are stepped together with. Follows from the state; islands whose cables stay the same keep their pairs.
 class Islands {
  public:
-  /// Every cable is in one island, and those that may come close enough to touch in the next step are in the same one.
-  /// KinematicTargets aim at the end of that step. Ascending by the first cable.
+  /// Every cable and every body is in one island, and those that may come close enough to touch in the next step, or that hold
+  /// each other, are in the same one. KinematicTargets aim at the end of that step. Ascending by the first cable; those without
+  /// cables come last.
   void build(const State& state);
   /// Segments have been numbered anew.
   void invalidate() { islands_.clear(); }
@@ -32,12 +35,13 @@ class Islands {
 
  private:
   void find_labels(const State& state);
+  void join_by_bodies(const State& state);
   int root(int cable);
   void join(int first, int second);
 
   std::vector<Island> islands_;
   std::size_t segments_ = 0;
-  std::vector<int> labels_;       ///< by cable: the first one of its island
+  std::vector<int> labels_;       ///< by cable, then by body: the first one of its island
   std::vector<int> last_labels_;  ///< those of `islands_`
   // Scratch
   std::vector<Aabb> reaches_;  ///< by cable: where it may touch something in the step

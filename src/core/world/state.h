@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "body/body_progress.h"
 #include "contact/cache.h"
 #include "net/constraint_solver.h"
 #include "particle/integrator.h"
@@ -63,11 +64,17 @@ struct State {
   std::vector<SimulatedParticle> particles;
   std::vector<PointState> particle_integrators;  ///< one a particle
   std::vector<SimulatedBody> bodies;
+  std::vector<BodyProgress> body_progress;  ///< one a body
   std::vector<Attachment> attachments;
   std::vector<Obstacle> obstacles;
 
   std::uint32_t new_cable_id() const { return cable_progress.empty() ? 0 : cable_progress.back().id + 1; }
   std::uint32_t new_obstacle_id() const { return obstacles.empty() ? 0 : obstacles.back().id + 1; }
+  /// The index of the body whose frame it is, -1 if it is none's.
+  int body_of_frame(int frame) const {
+    const int body = bodies.empty() ? -1 : frame - bodies.front().frame;
+    return body >= 0 && body < static_cast<int>(bodies.size()) ? body : -1;
+  }
   double time() const { return static_cast<double>(steps) * scene->time_step; }
 };
 

@@ -210,7 +210,7 @@ auto fields(T& x, const BodyId*) {
 }
 template <class T>
 auto fields(T& x, const Attachment*) {
-  return std::tie(x.name, x.body, x.node, x.frame, x.type, x.pose, x.at, x.force, x.torque);
+  return std::tie(x.name, x.body, x.node, x.frame, x.holder, x.type, x.pose, x.at, x.force, x.torque);
 }
 template <class T>
 auto fields(T&, const PlaneShape*) {
@@ -241,6 +241,10 @@ auto fields(T& x, const BodyShape*) {
   return std::tie(x.pose, x.shape);
 }
 template <class T>
+auto fields(T& x, const BodyProgress*) {
+  return std::tie(x.is_placed, x.acceleration, x.angular_acceleration);
+}
+template <class T>
 auto fields(T& x, const SimulatedBody*) {
   return std::tie(x.name, x.mass, x.center_of_mass, x.inertia, x.shapes, x.friction, x.linear_damping, x.angular_damping, x.frame,
                   x.pose, x.velocity, x.angular_velocity);
@@ -258,7 +262,7 @@ auto fields(T& x, const Frames*) {
 template <class T>
 auto fields(T& x, const State*) {
   return std::tie(x.scene, x.waiting_cables, x.waiting_nets, x.frames, x.steps, x.cables, x.cable_progress, x.nets,
-                  x.net_progress, x.particles, x.particle_integrators, x.bodies, x.attachments, x.obstacles);
+                  x.net_progress, x.particles, x.particle_integrators, x.bodies, x.body_progress, x.attachments, x.obstacles);
 }
 /// @}
 

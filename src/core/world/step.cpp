@@ -95,7 +95,8 @@ void World::Implementation::advance_islands() {
 void World::Implementation::step_islands(std::size_t from, std::size_t to, IslandStepper& stepper) {
   const bool updates_targets = !are_islands_of_many(*state.scene);
   for (std::size_t i = from; i < to; ++i) {
-    if (updates_targets) update_targets(static_cast<int>(i), state, cable_outcomes.value[i]);
+    if (updates_targets)
+      for (const int cable : islands.value.all()[i].cables) update_targets(cable, state, cable_outcomes.value[cable]);
     stepper.step(islands.value.all()[i], island_outcomes.value[i]);
   }
 }

@@ -109,6 +109,11 @@ Energy World::energy() const {
       energy.stretch += 0.5 * cable.model->material.axial_stiffness * cable.state.rest_lengths[i] * e * e;
     }
   }
+  for (const SimulatedBody& body : bodies()) {
+    const Vector3 spin = body.pose.orientation.conjugate() * body.angular_velocity;
+    energy.kinetic += 0.5 * body.mass * body.velocity.squaredNorm() + 0.5 * spin.dot(body.inertia * spin);
+    energy.gravity += body.mass * gravity.potential_at((body.pose * Pose{body.center_of_mass}).position);
+  }
   implementation_->add_net_energy(energy);
   return energy;
 }

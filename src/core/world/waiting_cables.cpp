@@ -6,9 +6,10 @@ namespace verlet_cable {
 
 /// False if the island is not one for lanes; the contacts of the whole step may be known then.
 bool IslandStepper::wait_for_others(Island& island, IslandOutcome& found, bool& contacts_known) {
+  if (island.cables.size() != 1 || !island.bodies.empty()) return false;
   const int cable = island.cables.front();
   CableProgress& memory = state_.cable_progress[cable];
-  if (island.cables.size() > 1 || memory.level > 0 || memory.drive) return false;
+  if (memory.level > 0 || memory.drive) return false;
   const CableState& state = state_.cables[cable].state;
   Boundary unknown;
   const Substep substep = whole_step(cable, unknown);

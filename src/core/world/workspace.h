@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "body/body_system.h"
 #include "contact/contact_set.h"
 #include "contact/contact_solver.h"
 #include "lanes/lane_stepper.h"
@@ -49,6 +50,10 @@ struct Workspace {
   std::vector<ContactMember> members;     ///< likewise
   std::vector<Participant> participants;  ///< the cables that touch something
   ContactSolver contact_solver;
+  // Of the bodies of the island, and the cables that they hold
+  std::vector<BodyMember> body_members;
+  std::vector<Participant> held_by_bodies;
+  BodySystem body_system;
   std::vector<WaitingCables> waiting;  ///< those of one law each
   std::vector<LaneMember> lane_members;
   LaneStepper lane_stepper;

@@ -30,6 +30,8 @@ CableModel make_model(const SceneDesc& scene, const CableDesc& desc) {
   model.material_name = desc.material;
   model.color = desc.color;
   model.segment_length = desc.length / desc.segments;
+  model.turns_bodies = std::any_of(desc.attachments.begin(), desc.attachments.end(),
+                                   [](const AttachmentDesc& a) { return !a.body.empty() && a.type == AttachmentType::clamp; });
   return model;
 }
 
@@ -145,8 +147,9 @@ int World::start_waiting(const BoundaryInputs& inputs) {
   if (w.is_cancelled()) return 0;
   const FrameIds ids = w.state.frames.ids();
   const SceneDesc& scene = *w.state.scene;
-  const std::vector<int> cables =
-      take_out(w.state.waiting_cables, [&](int i) { return frames_known(scene.cables[i], ids, inputs); });
+  const std::vector<int> cables = take_out(w.state.waiting_cables, [&](int i) {
+    return frames_known(scene.cables[i], ids, inputs) && w.has_bodies_of(scene.cables[i]);
+  });
   const std::vector<int> nets = take_out(w.state.waiting_nets, [&](int i) { return frames_known(scene.nets[i], ids, inputs); });
   if (cables.empty() && nets.empty()) return 0;
   w.update_frames(inputs);
@@ -173,7 +176,8 @@ void World::Implementation::add_bodies() {
     state.frames.names.push_back(body.name);
     state.frames.poses.push_back(body.pose);
     state.frames.previous_poses.push_back(body.pose);
-    state.frames.known.push_back(true);
+    state.frames.known.push_back(false);
+    state.body_progress.emplace_back();
     for (const BodyAttachmentDesc& a : desc.attachments) {
       Attachment attachment;
       attachment.name = a.name;
@@ -190,7 +194,8 @@ void World::Implementation::add_bodies() {
     const BodyDesc& held = state.scene->bodies[attachment.body.index];
     const auto desc = std::find_if(held.attachments.begin(), held.attachments.end(),
                                    [&](const BodyAttachmentDesc& a) { return a.name == attachment.name; });
-    attachment.frame = state.bodies[find(state.bodies, desc->body)].frame;
+    attachment.holder = find(state.bodies, desc->body);
+    attachment.frame = state.bodies[attachment.holder].frame;
   }
 }
 
@@ -200,9 +205,7 @@ int World::Implementation::update_frames(const BoundaryInputs& inputs) {
   int ignored = -1;
   state.frames.previous_poses = state.frames.poses;
   for (std::size_t i = 1; i < std::min(state.frames.poses.size(), inputs.size()); ++i) {
-    const bool is_body = !state.bodies.empty() && static_cast<int>(i) >= state.bodies.front().frame &&
-                         static_cast<int>(i) <= state.bodies.back().frame;
-    if (!inputs[i].known || is_body) continue;
+    if (!inputs[i].known || state.body_of_frame(static_cast<int>(i)) >= 0) continue;
     if (!is_sound(inputs[i].pose)) {
       if (ignored < 0) ignored = static_cast<int>(i);
       continue;
@@ -211,6 +214,7 @@ int World::Implementation::update_frames(const BoundaryInputs& inputs) {
     if (!state.frames.known[i]) state.frames.previous_poses[i] = state.frames.poses[i];
     state.frames.known[i] = true;
   }
+  place_bodies();
   for (Obstacle& obstacle : state.obstacles) obstacle.present = state.frames.known[obstacle.frame];
   return ignored;
 }
@@ -221,14 +225,20 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   cable.model = std::make_shared<const CableModel>(make_model(*state.scene, desc));
   cable.state = make_state(*cable.model, desc);
   std::vector<int> own;
+  std::vector<Attachment> placing;  // bodies that begin where the cable ends
   for (const AttachmentDesc& a : desc.attachments) {
     Attachment attachment;
     attachment.name = a.name;
     attachment.body = cable_id(index);
     attachment.node = node_at(desc, a.place);
-    attachment.frame = a.body.empty() ? ids.at(a.frame) : state.bodies[find(state.bodies, a.body)].frame;
+    attachment.holder = a.body.empty() ? -1 : find(state.bodies, a.body);
+    attachment.frame = attachment.holder < 0 ? ids.at(a.frame) : state.bodies[attachment.holder].frame;
     attachment.type = a.type;
     attachment.pose = {a.offset, quaternion_from_rpy(a.rotation)};
+    if (attachment.holder >= 0 && !state.body_progress[attachment.holder].is_placed) {
+      placing.push_back(attachment);
+      continue;
+    }
     own.push_back(static_cast<int>(state.attachments.size()));
     state.attachments.push_back(attachment);
   }
@@ -244,6 +254,7 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   aim_targets(cable.state, state.attachments, state.frames.poses, state.time(), memory.targets);
   put_at_aim(memory.targets);
   start_targets(state.attachments, state.frames.poses, inputs, memory.targets);
+  start_with_bodies(cable.state, memory.targets);
   Boundary boundary;
   hold_at(1, 1, memory.targets, boundary);
   const Vector3 gravity =
@@ -269,6 +280,7 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   state.cable_progress.push_back(std::move(memory));
   if (settles && held && !Settling(index, state, workspaces.value.local(), cancelled).settle_start())
     findings.unsettled.push_back(desc.name);
+  place_bodies_on(placing);
 }
 
 /// After a change of what holds a cable, or of its nodes.
