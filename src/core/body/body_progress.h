@@ -1,0 +1,16 @@
+#pragma once
+
+#include "verlet_cable/core/types.h"
+
+namespace verlet_cable {
+
+/// What decides a rigid body's future besides the state that it shows.
+struct BodyProgress {
+  /// It is where it begins: what holds it is known, or a cable whose end it is has started. Until then nothing hangs on it.
+  bool is_placed = false;
+  /// [m/s^2] of its center of mass, and [rad/s^2] in its frame's axes, mean over the last substep: where the next one's solution
+  /// starts, and what substeps that damp go on from
+  Vector3 acceleration = Vector3::Zero(), angular_acceleration = Vector3::Zero();
+};
+
+}  // namespace verlet_cable

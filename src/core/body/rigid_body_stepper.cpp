@@ -1,0 +1,129 @@
+#include "body/rigid_body_stepper.h"
+
+namespace verlet_cable {
+
+namespace {
+
+Quaternion cayley(const Vector3& vector) {
+  return Quaternion(1, 0.5 * vector.x(), 0.5 * vector.y(), 0.5 * vector.z()).normalized();
+}
+
+Vector3 cayley_vector(const Quaternion& rotation) {
+  return 2 / rotation.w() * rotation.vec();
+}
+
+}  // namespace
+
+Eigen::Matrix3d cross_matrix(const Vector3& v) {
+  Eigen::Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+void RigidBodyStepper::begin(const SimulatedBody& body, const BodyProgress& progress, const MassProperties& whole,
+                             const GravityDesc& gravity, const SubstepRules& rules) {
+  rules_ = rules;
+  whole_ = whole;
+  mass_ = body.mass;
+  own_ = body.center_of_mass - whole.center_of_mass;
+  linear_damping_ = rules.statics ? 0 : body.linear_damping;
+  angular_damping_ = rules.statics ? 0 : body.angular_damping;
+  gravity_ = &gravity;
+  orientation_ = body.pose.orientation;
+  start_ = orientation_.toRotationMatrix();
+  center_ = body.pose.position + start_ * whole.center_of_mass;
+  velocity_ = acceleration_ = spin_ = spin_change_ = Vector3::Zero();
+  if (!rules.statics) {
+    const Vector3 arm = start_ * own_;
+    spin_ = start_.transpose() * body.angular_velocity;
+    spin_change_ = progress.angular_acceleration;
+    velocity_ = body.velocity - body.angular_velocity.cross(arm);
+    acceleration_ = progress.acceleration - (start_ * spin_change_).cross(arm) -
+                    body.angular_velocity.cross(body.angular_velocity.cross(arm));
+  }
+  displacement_ = rules.h * (velocity_ + 0.5 * rules.h * acceleration_);
+  turn_by(orientation_ * cayley(rules.h * (spin_ + 0.5 * rules.h * spin_change_)));
+}
+
+void RigidBodyStepper::turn_by(const Quaternion& end) {
+  end_orientation_ = end.normalized();
+  end_ = end_orientation_.toRotationMatrix();
+  turn_ = cayley_vector(orientation_.conjugate() * end_orientation_);
+}
+
+Pose RigidBodyStepper::pose() const {
+  return {position_of(Vector3::Zero()), end_orientation_};
+}
+
+Vector3 RigidBodyStepper::position_of(const Vector3& point) const {
+  return center_ + displacement_ + end_arm(point);
+}
+
+Vector3 RigidBodyStepper::force_arm(const Vector3& point) const {
+  const Vector3 arm = point - whole_.center_of_mass;
+  const double part = rules_.part();
+  return (1 - part) * (start_ * arm) + part * (end_ * arm);
+}
+
+void RigidBodyStepper::evaluate(Vector6& load, Matrix6& stiffness) const {
+  const double h = rules_.h, inertia = rules_.inertia(), part = rules_.part();
+  const double damping = rules_.statics ? 0 : 1 / h;
+  const Vector3 arm = (1 - part) * (start_ * own_) + part * (end_ * own_);
+  const Vector3 weight = mass_ * gravity_->at(center_ + 0.5 * h * velocity_ + start_ * own_);
+  const Vector3 drag = -linear_damping_ * damping * (displacement_ + (end_ - start_) * own_);
+  const Vector3 w = turn();
+  load.head<3>() = weight + drag - inertia * whole_.mass / h * (displacement_ / h - velocity_);
+
+  // Angular momenta with the mean spin over the substep, or of which that is the mean
+  const Vector3 spin = inertia / h * turn_ - (inertia - 1) * spin_;
+  const Vector3 before = start_ * (whole_.inertia * spin_), after = end_ * (whole_.inertia * spin);
+  load.tail<3>() = arm.cross(weight + drag) - angular_damping_ * damping * w - (after - before) / h;
+
+  // The Cayley vector changes by (1 + w w^T / 4 - [w] / 2) times a rotation of the end.
+  const Eigen::Matrix3d along = Eigen::Matrix3d::Identity() + 0.25 * w * w.transpose() - 0.5 * cross_matrix(w);
+  stiffness.setZero();
+  stiffness.topLeftCorner<3, 3>().diagonal().setConstant(inertia * whole_.mass / (h * h) + linear_damping_ * damping);
+  stiffness.bottomRightCorner<3, 3>() =
+      inertia / (h * h) * end_ * whole_.inertia * start_.transpose() * along - cross_matrix(after) / h +
+      angular_damping_ * damping * along -
+      part * ((end_ * own_) * weight.transpose() - (end_ * own_).dot(weight) * Eigen::Matrix3d::Identity());
+}
+
+void RigidBodyStepper::correct(const Vector6& change) {
+  displacement_ += change.head<3>();
+  turn_by(cayley(change.tail<3>()) * end_orientation_);
+}
+
+Vector3 RigidBodyStepper::end_velocity() const {
+  if (rules_.statics) return Vector3::Zero();
+  const VelocityWeights weights = velocity_weights(rules_.scheme);
+  return weights.displacement / rules_.h * displacement_ + weights.velocity * velocity_ +
+         weights.acceleration * rules_.h * acceleration_;
+}
+
+Vector3 RigidBodyStepper::end_spin() const {
+  if (rules_.statics) return Vector3::Zero();
+  const VelocityWeights weights = velocity_weights(rules_.scheme);
+  return weights.displacement / rules_.h * turn_ + weights.velocity * spin_ + weights.acceleration * rules_.h * spin_change_;
+}
+
+Vector3 RigidBodyStepper::velocity_of(const Vector3& point) const {
+  return end_velocity() + (end_ * end_spin()).cross(end_arm(point));
+}
+
+void RigidBodyStepper::finish(SimulatedBody& body, BodyProgress& progress) const {
+  const double h = rules_.h;
+  const Vector3 before = body.velocity;
+  body.pose = pose();
+  body.velocity = velocity_of(body.center_of_mass);
+  body.angular_velocity = end_ * end_spin();
+  progress = {};
+  if (rules_.statics) return;
+  progress.acceleration = (body.velocity - before) / h;
+  progress.angular_acceleration = (end_spin() - spin_) / h;
+  if (rules_.scheme != Scheme::damped) return;
+  progress.acceleration = (displacement_ / h - velocity_) / h + 0.5 * acceleration_;
+  progress.angular_acceleration = (turn_ / h - spin_) / h + 0.5 * spin_change_;
+}
+
+}  // namespace verlet_cable
