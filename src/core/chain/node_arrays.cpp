@@ -15,6 +15,9 @@ void keep(int first, int count, Array& array) {
 double zero_like(double) {
   return 0;
 }
+int zero_like(int) {
+  return 0;
+}
 Vector3 zero_like(const Vector3&) {
   return Vector3::Zero();
 }
@@ -58,7 +61,12 @@ void append(const CableState& tail, CableState& cable) {
   extend(tail.accelerations, cable.accelerations);
   extend(tail.unresolved.acceleration_changes, cable.unresolved.acceleration_changes);
   extend(tail.unresolved.turns, cable.unresolved.turns);
+  if (!tail.section_material.empty()) cable.section_material.resize(cable.segments(), 0);
   visit_segment_arrays(cable, [](auto& array) { array.push_back(zero_like(array.back())); });
+  if (!cable.section_material.empty()) {
+    extend(tail.section_material, cable.section_material);
+    cable.section_material.resize(cable.segments() + tail.segments(), 0);
+  }
   extend(tail.rest_lengths, cable.rest_lengths);
   extend(tail.tension, cable.tension);
   extend(tail.last_tension, cable.last_tension);

@@ -27,6 +27,7 @@ void visit_segment_arrays(CableState& cable, const Visitor& visitor) {
   visitor(cable.last_tension);
   visitor(cable.axial_multiplier);
   visitor(cable.twist);
+  if (!cable.section_material.empty()) visitor(cable.section_material);
   if (!cable.spin.empty()) visitor(cable.spin);
   if (!cable.directors.empty()) visitor(cable.directors);
 }

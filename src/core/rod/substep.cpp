@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "verlet_cable/core/cable_materials.h"
+
 namespace verlet_cable {
 
 namespace {
@@ -37,7 +39,7 @@ double stiffness_of_taut(const Substep& s, const CableState& state) {
   const double mass = std::accumulate(state.masses.begin(), state.masses.end(), 0.0);
   const double length = state.length();
   const double weight = std::max(s.environment.gravity.at(state.positions[0]).norm(), standard_gravity) * mass;
-  return taut_stiffness * (weight + s.model.material.bending_stiffness.largest() / (length * length));
+  return taut_stiffness * (weight + CableMaterials(s.model, state).largest_bending_stiffness() / (length * length));
 }
 
 bool holders_accelerate(const Substep& s, const CableState& state) {

@@ -3,6 +3,7 @@
 
 #include "rod/bending.h"
 #include "rod/kirchhoff_rod.h"
+#include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/world.h"
 #include "world/implementation.h"
 #include "world/state_fields.h"
@@ -75,6 +76,7 @@ Energy World::energy() const {
   const GravityDesc& gravity = implementation_->state.scene->gravity;
   for (std::size_t k = 0; k < cables().size(); ++k) {
     const SimulatedCable& cable = cables()[k];
+    const CableMaterials materials(cable);
     const std::vector<HeldDirection> directions = boundary_now(implementation_->state.cable_progress[k].targets).directions;
     if (cable.state.directors.empty()) {
       energy.bend += bending_energy(*cable.model, cable.state, directions);
@@ -89,12 +91,12 @@ Energy World::energy() const {
       energy.gravity += cable.state.masses[i] * gravity.potential_at(cable.state.positions[i]);
     }
     for (int i = 0; i < cable.state.segments(); ++i)
-      energy.twist += 0.5 * cable.model->material.torsional_stiffness * cable.state.rest_lengths[i] * cable.state.twist[i] *
-                      cable.state.twist[i];
-    if (cable.model->material.axial_stiffness == infinity) continue;
+      energy.twist +=
+          0.5 * materials[i].torsional_stiffness * cable.state.rest_lengths[i] * cable.state.twist[i] * cable.state.twist[i];
     for (int i = 0; i < cable.state.segments(); ++i) {
+      if (!is_elastic(materials[i])) continue;
       const double e = strain(cable.state, i);
-      energy.stretch += 0.5 * cable.model->material.axial_stiffness * cable.state.rest_lengths[i] * e * e;
+      energy.stretch += 0.5 * materials[i].axial_stiffness * cable.state.rest_lengths[i] * e * e;
     }
   }
   implementation_->add_net_energy(energy);
