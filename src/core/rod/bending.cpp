@@ -20,9 +20,10 @@ void Bending::resize(int segments) {
 void Bending::start(const CableModel& model, const CableState& state, const VectorArray& segment,
                     const std::vector<HeldDirection>& directions, double h, double part) {
   const CableMaterials materials(model, state);
-  is_damped_ = materials.any([](const MaterialDesc& material) { return material.bending_damping > 0; });
-  active_ = state.directors.empty() && (is_damped_ || materials.any_bends());
+  const bool damps = materials.any([](const MaterialDesc& material) { return material.bending_damping > 0; });
+  active_ = state.directors.empty() && (damps || materials.any_bends());
   if (!active_) return;
+  is_damped_ = damps && h < infinity;
   part_ = part;
   double stiffness = model.material.bending_stiffness.largest(), damping = model.material.bending_damping / h;
   for (int i = 0; i < segments_; ++i) inverse_length_[i] = 1 / state.rest_lengths[i];
