@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <string>
 
 #include "verlet_cable/core/cable.h"
 
@@ -86,5 +88,9 @@ class CableMaterials {
   const CableModel& model_;
   const CableState& state_;
 };
+
+/// [1/m] Of the segments before and after an inner node, where the cable is bent by `angle` [rad]: one moment bends both halves,
+/// about the axis about which they bend more easily.
+std::array<double, 2> curvature_beside(const CableMaterials& materials, const CableState& state, int node, double angle);
 
 }  // namespace verlet_cable

@@ -205,6 +205,7 @@ void World::Implementation::follow_join(int first, int second) {
   for (Attachment& a : state.attachments)
     if (a.body.is_cable()) follow(a.body.index);
   for (Intrusion& intrusion : findings.intrusions) follow(intrusion.cable);
+  for (Excursion& excursion : findings.excursions) follow(excursion.cable);
   for (Break& broken : findings.breaks) {
     follow(broken.cable);
     follow(broken.new_cable);
@@ -216,6 +217,8 @@ void World::Implementation::reverse_cable(int index) {
   const int n = state.cables[index].state.segments();
   for (Intrusion& intrusion : findings.intrusions)
     if (intrusion.cable == index) intrusion.segment = n - 1 - intrusion.segment;
+  for (Excursion& excursion : findings.excursions)
+    if (excursion.cable == index) excursion.node = n - excursion.node - (excursion.kind == Excursion::Kind::tension ? 1 : 0);
   for (Attachment& a : state.attachments) {
     if (a.body != cable_id(index)) continue;
     a.node = n - a.node;

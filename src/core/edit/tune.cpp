@@ -5,6 +5,7 @@
 #include "scene/validate_materials.h"
 #include "verlet_cable/core/world.h"
 #include "world/implementation.h"
+#include "world/limits.h"
 
 namespace verlet_cable {
 
@@ -30,6 +31,7 @@ void World::tune(const SceneDesc& scene) {
       give_frames(cable.state, clamps);
     else
       drop_frames(cable.state, clamps);
+    watch_limits(cable);
     // A clamp holds the direction where the cable is stiff, the neighbouring node where it is not.
     implementation_->find_targets_of(i);
   }

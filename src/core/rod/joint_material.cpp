@@ -25,14 +25,17 @@ JointMaterial joint_material(const CableMaterials& materials, const CableState& 
   return joint;
 }
 
-double bend_share_before(const CableMaterials& materials, const CableState& state, int node) {
+std::array<double, 2> curvature_beside(const CableMaterials& materials, const CableState& state, int node, double angle) {
   const MaterialDesc &before = materials[node - 1], &after = materials[node];
   const double first = 0.5 * state.rest_lengths[node - 1], second = 0.5 * state.rest_lengths[node];
-  if (&before == &after) return first / (first + second);
+  if (&before == &after) return {angle / (first + second), angle / (first + second)};
   Series bend;
+  const auto share = [&](const MaterialDesc& material, double length) {
+    return bend.share(length, material.bending_stiffness.smallest(), material.bending_damping);
+  };
   bend.add(first, before.bending_stiffness.smallest(), before.bending_damping);
   bend.add(second, after.bending_stiffness.smallest(), after.bending_damping);
-  return bend.share(first, before.bending_stiffness.smallest(), before.bending_damping);
+  return {angle * share(before, first) / first, angle * share(after, second) / second};
 }
 
 }  // namespace verlet_cable

@@ -22,8 +22,4 @@ struct JointMaterial {
 /// Of the joint at an inner node, which stands for half of each segment beside it, one after the other: see Series.
 JointMaterial joint_material(const CableMaterials& materials, const CableState& state, int node);
 
-/// What part of the bend at an inner node is in the segment before it: the rest is in the one after. About the axis that bends
-/// more easily.
-double bend_share_before(const CableMaterials& materials, const CableState& state, int node);
-
 }  // namespace verlet_cable

@@ -128,9 +128,9 @@ auto fields(T& x, const UnresolvedMotion*) {
 }
 template <class T>
 auto fields(T& x, const CableState*) {
-  return std::tie(x.rest_lengths, x.section_material, x.masses, x.rest_curvature, x.rest_twist, x.flexible_fraction, x.positions,
-                  x.velocities, x.accelerations, x.unresolved, x.tension, x.last_tension, x.axial_multiplier, x.twist,
-                  x.directors, x.spin, x.joint_twist, x.reference_node, x.reference_orientation);
+  return std::tie(x.rest_lengths, x.section_material, x.masses, x.rest_curvature, x.rest_twist, x.flexible_fraction,
+                  x.beyond_limits, x.positions, x.velocities, x.accelerations, x.unresolved, x.tension, x.last_tension,
+                  x.axial_multiplier, x.twist, x.directors, x.spin, x.joint_twist, x.reference_node, x.reference_orientation);
 }
 template <class T>
 auto fields(T& x, const SimulatedCable*) {

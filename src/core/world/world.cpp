@@ -17,6 +17,7 @@
 #include "verlet_cable/core/scene_fields.h"
 #include "world/implementation.h"
 #include "world/island_stepper.h"
+#include "world/limits.h"
 #include "world/settling.h"
 
 namespace verlet_cable {
@@ -248,6 +249,7 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
     take_rest_curvature(memory.targets.directions, cable.state);
   memory.spans = find_spans(cable.state, boundary.directions);
   follow_material(*cable.model, boundary.directions, memory.spans, cable.state);
+  watch_limits(cable);
   const bool held = !memory.targets.nodes.empty();
   state.cables.push_back(std::move(cable));
   state.cable_progress.push_back(std::move(memory));
