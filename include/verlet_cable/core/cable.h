@@ -44,9 +44,9 @@ struct CableState {
   std::vector<double> rest_twist;  ///< [rad/m] a node, n + 1: twist that carries no moment; empty where there is none
   /// a node, n + 1: how much of the cable half a segment around it bends, above 0 to 1; empty where all of it does
   std::vector<double> flexible_fraction;
-  /// a node, n + 1: which of its materials' limits the cable is beyond there, 1 of bend radius and 2 of tension (of the segment
-  /// that starts there); empty where they have none
-  std::vector<unsigned char> beyond_limits;
+  /// a node, n + 1: for so many more steps it counts as beyond its material's limit of bend radius, and of tension (of the
+  /// segment that starts there); empty where its materials have none
+  std::vector<std::array<int, 2>> beyond_limits;
   std::vector<Vector3> positions;   ///< [m] a node, n + 1
   std::vector<Vector3> velocities;  ///< [m/s] a node, n + 1, at the time of the positions
   /// [m/s^2] a node, n + 1, mean over the last substep: where the next one's solution starts

@@ -80,7 +80,8 @@ struct Break {
 };
 
 /// A cable has come to bend more tightly than its material's minimum_bend_radius, or to be pulled harder than its
-/// maximum_tension. One while that lasts at neighbouring nodes. Edits and breaks keep its indices valid.
+/// maximum_tension. One while that lasts at neighbouring nodes, and a tenth of a second after. Edits and breaks keep its indices
+/// valid.
 struct Excursion {
   enum class Kind { bend, tension };
   int cable = 0;  ///< index into World::cables()

@@ -10,7 +10,7 @@ namespace verlet_cable {
 void watch_limits(SimulatedCable& cable);
 
 /// Adds where cables have come beyond their materials' limits in this step. All nodes beyond a limit that are next to each other,
-/// or next to where it was exceeded before, are of one excursion, which is told once, by its worst node.
+/// or to where it was exceeded in the last tenth of a second, are of one excursion, which is told once, by its worst node.
 void find_excursions(State& state, std::vector<Excursion>& found);
 
 }  // namespace verlet_cable
