@@ -22,10 +22,15 @@ void FluidForces::start(const FluidDesc& fluid, const GravityDesc& gravity, cons
   gravity_ = gravity;
   damping_time_ = damping_time;
   const CableMaterials materials(model, state);
+  if (!materials.vary()) {
+    std::fill(radius_.begin(), radius_.end(), model.material.radius);
+    std::fill(area_radius_.begin(), area_radius_.end(), model.material.radius);
+    return;
+  }
   for (int i = 0; i < state.nodes(); ++i) {
+    const auto square = [](const MaterialDesc& material) { return material.radius * material.radius; };
     radius_[i] = materials.mean_at(i, [](const MaterialDesc& material) { return material.radius; });
-    area_radius_[i] =
-        std::sqrt(materials.mean_at(i, [](const MaterialDesc& material) { return material.radius * material.radius; }));
+    area_radius_[i] = std::sqrt(materials.mean_at(i, square));
   }
 }
 

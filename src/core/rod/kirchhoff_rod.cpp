@@ -76,10 +76,12 @@ void KirchhoffRod::start(const CableModel& model, const CableState& state, const
 
 void KirchhoffRod::start_segments(const CableModel& model, const CableState& state, const VectorArray& segment) {
   const CableMaterials materials(model, state);
+  double moment = section_inertia(model.material);
   for (int i = 0; i < segments_; ++i) {
     const Vector3& director = state.directors[i];
     set(frames_.start.y, i, director);
-    inertia_[i] = section_inertia(materials[i]) * state.rest_lengths[i];
+    if (materials.vary()) moment = section_inertia(materials[i]);
+    inertia_[i] = moment * state.rest_lengths[i];
     if (is_static_)
       inertia_[i] =
           std::max(inertia_[i], h_ * h_ * least_static_resistance * materials[i].torsional_stiffness / state.rest_lengths[i]);
@@ -102,9 +104,11 @@ void KirchhoffRod::start_joints(const CableModel& model, const CableState& state
                                 double damping_time) {
   const int n = segments_;
   const CableMaterials materials(model, state);
-  for (int i = 1; i < n; ++i)
-    joints_.set(i, joint_stiffness(joint_material(materials, state, i), state, i, joint_length(state, i), damping_time),
-                state.joint_twist[i]);
+  JointMaterial material(model.material);
+  for (int i = 1; i < n; ++i) {
+    if (materials.vary()) material = joint_material(materials, state, i);
+    joints_.set(i, joint_stiffness(material, state, i, joint_length(state, i), damping_time), state.joint_twist[i]);
+  }
   for (const HeldDirection& direction : directions)
     if (direction.node > 0 && direction.node < n) joints_.set(direction.node, {}, 0);
   joints_.start(frames_.start, 0, frames_.start, 1, 1, n);
