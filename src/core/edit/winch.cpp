@@ -26,8 +26,10 @@ bool carries_payload(const SimulatedCable& cable, int node) {
   if (node > 0) share += 0.5 * cable.state.rest_lengths[node - 1];
   if (node < cable.state.segments()) share += 0.5 * cable.state.rest_lengths[node];
   const double residue = 0.5 * cable.model->segment_length;
-  const double density = CableMaterials(cable).mean_at(node, [](const MaterialDesc& m) { return m.linear_density; });
-  return cable.state.masses[node] > density * (share + 1.5 * residue);
+  const CableMaterials materials(cable);
+  const auto density = [](const MaterialDesc& material) { return material.linear_density; };
+  // What a cut has left may be of any of the cable's materials.
+  return cable.state.masses[node] > materials.mean_at(node, density) * share + 1.5 * residue * materials.largest(density);
 }
 
 /// The segments beside a node that is to go become one, of the longer one's material: the other weighs as much as that from now

@@ -9,20 +9,37 @@ namespace verlet_cable {
 
 namespace {
 
+struct Torsion {
+  double stiffness = 0, damping = 0;  ///< [N m^2], [N m^2 s]
+};
+
+Torsion torsion_at(const CableMaterials& materials, int segment) {
+  const MaterialDesc& material = materials[segment];
+  if (material.bending_stiffness.largest() == 0) return {};
+  return {material.torsional_stiffness, material.torsional_damping};
+}
+
 /// Substeps between two measurements of the angles, which cost as much as an iteration.
 constexpr int measuring_interval = 16;
 
 }  // namespace
 
+double torsional_stiffness_at(const CableMaterials& materials, int segment) {
+  return torsion_at(materials, segment).stiffness;
+}
+
 Series torsion_of(const CableMaterials& materials, const CableState& state, int first, int last) {
   Series series;
-  for (int i = first; i < last; ++i)
-    series.add(state.rest_lengths[i], materials[i].torsional_stiffness, materials[i].torsional_damping);
+  for (int i = first; i < last; ++i) {
+    const Torsion torsion = torsion_at(materials, i);
+    series.add(state.rest_lengths[i], torsion.stiffness, torsion.damping);
+  }
   return series;
 }
 
 double twist_share(const Series& series, const CableMaterials& materials, const CableState& state, int segment) {
-  return series.share(state.rest_lengths[segment], materials[segment].torsional_stiffness, materials[segment].torsional_damping);
+  const Torsion torsion = torsion_at(materials, segment);
+  return series.share(state.rest_lengths[segment], torsion.stiffness, torsion.damping);
 }
 
 void spread_twist(const CableModel& model, const std::vector<TwistSpan>& spans, CableState& state) {

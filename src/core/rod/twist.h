@@ -19,6 +19,8 @@ struct TwistSpan {
   int age = 0;        ///< substeps since the angle was measured; in between its changes are added up
 };
 
+/// [N m^2] GJ of a segment of a cable of several materials: what does not resist bending gives way to any torque.
+double torsional_stiffness_at(const CableMaterials& materials, int segment);
 /// How the segments from node `first` to node `last` resist twist together.
 Series torsion_of(const CableMaterials& materials, const CableState& state, int first, int last);
 /// What part of the twist of those in `series` is in a segment.

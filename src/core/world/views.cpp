@@ -91,9 +91,10 @@ Energy World::energy() const {
       energy.kinetic += 0.5 * cable.state.masses[i] * cable.state.velocities[i].squaredNorm();
       energy.gravity += cable.state.masses[i] * gravity.potential_at(cable.state.positions[i]);
     }
-    for (int i = 0; i < cable.state.segments(); ++i)
-      energy.twist +=
-          0.5 * materials[i].torsional_stiffness * cable.state.rest_lengths[i] * cable.state.twist[i] * cable.state.twist[i];
+    for (int i = 0; i < cable.state.segments(); ++i) {
+      const double torsion = torsional_stiffness_at(materials, i);
+      energy.twist += 0.5 * torsion * cable.state.rest_lengths[i] * cable.state.twist[i] * cable.state.twist[i];
+    }
     for (int i = 0; i < cable.state.segments(); ++i) {
       if (!is_elastic(materials[i])) continue;
       const double e = strain(cable.state, i);

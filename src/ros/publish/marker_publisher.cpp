@@ -39,11 +39,13 @@ void set_scale(Marker& marker, double x, double y, double z) {
 
 /// [kg] What a node weighs beyond the segments that meet there. The half segments that cuts leave on the ends do not count.
 double payload(const SimulatedCable& cable, int node) {
+  const CableMaterials materials(cable);
+  const double heaviest = materials.largest([](const MaterialDesc& material) { return material.linear_density; });
   double share = 0, largest_half = 0;
   for (int segment = std::max(node - 1, 0); segment <= std::min(node, cable.state.segments() - 1); ++segment) {
-    const double half = CableMaterials(cable)[segment].linear_density * cable.state.rest_lengths[segment] / 2;
-    share += half;
-    largest_half = std::max(largest_half, half);
+    const double half = cable.state.rest_lengths[segment] / 2;
+    share += materials[segment].linear_density * half;
+    largest_half = std::max(largest_half, heaviest * half);
   }
   const double excess = cable.state.masses[node] - share;
   return excess > 1.5 * largest_half ? excess : 0;
