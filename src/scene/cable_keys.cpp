@@ -30,6 +30,12 @@ const Keys<PointMassDesc>& point_mass_keys() {
   return keys;
 }
 
+const Keys<SectionDesc>& section_keys() {
+  static const Keys<SectionDesc> keys{field_key(section_fields[0]), field_key(section_fields[1]),
+                                      text_key("material", &SectionDesc::material, "the name of a material", true)};
+  return keys;
+}
+
 Key<InitialShapeDesc> vectors_key(const std::string& name, std::vector<Vector3> InitialShapeDesc::*member, const char* unit) {
   return {name, "a list of points", false, [=](const Value& value, InitialShapeDesc& initial) {
             initial.*member =
@@ -89,6 +95,11 @@ const Keys<CableDesc>& cable_keys() {
       field_key(cable_fields[1]),
       field_key(cable_integer_fields[0]),
       text_key("material", &CableDesc::material, "the name of a material", true),
+      {"sections", "a list", false,
+       [](const Value& value, CableDesc& cable) {
+         cable.sections = read_list<SectionDesc>(
+             value, [](const Value& element, SectionDesc& section) { read_map(element, section_keys(), section); });
+       }},
       {"color", "four numbers", false,
        [](const Value& value, CableDesc& cable) {
          cable.color = read_numbers<4>(value, "red, green, blue, alpha: four numbers from 0 to 1");

@@ -59,9 +59,12 @@ Keys<SceneDesc> scene_keys(const std::vector<std::string>& ignored) {
                  {{"hold", LostFramePolicy::hold}, {"release", LostFramePolicy::release}, {"pause", LostFramePolicy::pause}}),
       choice_key("on_time_jump", &SceneDesc::on_time_jump, {{"reset", TimeJumpPolicy::reset}, {"keep", TimeJumpPolicy::keep}}),
       choice_key("marker_style", &SceneDesc::marker_style, {{"tube", MarkerStyle::tube}, {"line", MarkerStyle::line}}),
-      choice_key(
-          "color_by", &SceneDesc::color_by,
-          {{"cable", ColorBy::cable}, {"tension", ColorBy::tension}, {"strain", ColorBy::strain}, {"contact", ColorBy::contact}}),
+      choice_key("color_by", &SceneDesc::color_by,
+                 {{"cable", ColorBy::cable},
+                  {"tension", ColorBy::tension},
+                  {"strain", ColorBy::strain},
+                  {"contact", ColorBy::contact},
+                  {"bend", ColorBy::bend}}),
       text_key("scene_directory", &SceneDesc::scene_directory, "a directory, or \"\""),
       {"limits", "a map", false, read_limits},
       {"materials", "a map of names to materials", false,
@@ -84,10 +87,8 @@ Keys<SceneDesc> scene_keys(const std::vector<std::string>& ignored) {
 void add_presets(const Value& root, SceneDesc& scene) {
   const std::vector<NamedMaterial>& presets = material_presets();
   const std::string own = material_names(scene.materials);
-  for (std::size_t i = 0; i < scene.cables.size(); ++i) {
-    const std::string& name = scene.cables[i].material;
-    const std::string key = root.child("cables", {}).element(i, {}).key + ".material";
-    if (scene.find_material(name) || root.errors->is_unread(key)) continue;
+  const auto add = [&](const std::string& name, const std::string& key) {
+    if (scene.find_material(name) || root.errors->is_unread(key)) return;
     const auto preset = std::find_if(presets.begin(), presets.end(), [&](const auto& material) { return material.name == name; });
     if (preset != presets.end()) {
       scene.materials.push_back(*preset);
@@ -95,6 +96,12 @@ void add_presets(const Value& root, SceneDesc& scene) {
       root.errors->add_unread(key, quoted(name),
                               "a material of the scene (" + own + "), or one that is shipped (" + material_names(presets) + ")");
     }
+  };
+  for (std::size_t i = 0; i < scene.cables.size(); ++i) {
+    const Value cable = root.child("cables", {}).element(i, {});
+    add(scene.cables[i].material, cable.key + ".material");
+    for (std::size_t k = 0; k < scene.cables[i].sections.size(); ++k)
+      add(scene.cables[i].sections[k].material, cable.child("sections", {}).element(k, {}).key + ".material");
   }
 }
 

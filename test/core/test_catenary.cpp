@@ -25,7 +25,7 @@ TEST(Catenary, IsInEquilibriumBetweenAllEnds) {
     for (const double stiffness : {1.0, 10.0, 100.0, 1e4, 1e6, infinity})
       for (const Vector3& span : spans(stiffness)) {
         const std::vector<double> lengths(n, 1.0 / n), weights(n - 1, weight / n);
-        const std::vector<Vector3> nodes = hanging_chain(Vector3::Zero(), span, lengths, weights, -Vector3::UnitZ(), stiffness);
+        const std::vector<Vector3> nodes = hanging_chain(Vector3::Zero(), span, lengths, weights, -Vector3::UnitZ(), {stiffness});
         const std::string text =
             std::to_string(n) + " " + std::to_string(stiffness) + " " + std::to_string(span.x()) + " " + std::to_string(span.z());
         ASSERT_LT((nodes.back() - span).norm(), 1e-9) << text;

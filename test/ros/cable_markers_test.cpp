@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <set>
 #include <vector>
 
 #include "publish/color.h"
@@ -158,6 +160,63 @@ TEST(CableMarkers, InACrowdHaveTheColorsOfTheirNodes) {
       EXPECT_NEAR(marker.colors[i].b, wanted.b, 0.04);
     }
   }
+}
+
+/// Straight along x, as long as it has nodes, thin and from its middle on thick: there it has both ends.
+TEST(CableMarkers, SectionsAreAsThickAsTheyAre) {
+  std::vector<Vector3> centers;
+  for (int node = 0; node <= 10; ++node) centers.emplace_back(0.1 * node, 0, 0);
+  std::vector<double> radii(10, 0.005);
+  std::fill(radii.begin() + 5, radii.end(), 0.02);
+  const CableLook look{centers, std::vector<std_msgs::ColorRGBA>(11), 0.02, radii};
+  const Marker tube = cable_markers({look}, MarkerStyle::tube).front();
+  ASSERT_EQ(tube.type, Marker::TRIANGLE_LIST);
+  const auto widths_at = [&](double x) {
+    std::set<int> widths;  // [0.1 mm]
+    for (const auto& point : tube.points)
+      if (std::abs(point.x - x) < 1e-9) widths.insert(static_cast<int>(std::lround(1e4 * std::hypot(point.y, point.z))));
+    return widths;
+  };
+  const std::set<int> thin = widths_at(0), both = widths_at(0.5), thick = widths_at(1);
+  ASSERT_EQ(thin.size(), 1u);
+  ASSERT_EQ(thick.size(), 1u);
+  EXPECT_NEAR(*thin.begin(), 50, 4);
+  EXPECT_NEAR(*thick.begin(), 200, 15);
+  EXPECT_EQ(both, (std::set<int>{*thin.begin(), *thick.begin()}));
+}
+
+/// Red where the bend is as tight as it may be, blue where its radius is five times that, or the material has no smallest one.
+TEST(CableMarkers, ColorsByBendAreOfTheSectionsLimits) {
+  SceneDesc scene;
+  scene.color_by = ColorBy::bend;
+  scene.cables.emplace_back();
+  auto model = std::make_shared<CableModel>();
+  model->section_materials.emplace_back();
+  SimulatedCable cable;
+  constexpr double bend = 0.5;
+  for (const Vector3& center : arc(40, bend, 1)) cable.state.positions.push_back(center);
+  cable.state.rest_lengths.assign(40, bend / 40);
+  cable.state.masses.assign(41, 1);
+  cable.state.section_material.assign(40, 0);
+  std::fill(cable.state.section_material.begin() + 20, cable.state.section_material.end(), 1);
+  const auto colors = [&](double of_first, double of_second) {
+    model->material.minimum_bend_radius = of_first;
+    model->section_materials[0].material.minimum_bend_radius = of_second;
+    cable.model = model;
+    return ColorScale(scene).node_colors(cable, {});
+  };
+  const std::vector<std_msgs::ColorRGBA> shown = colors(1.01 * bend, bend / 5.1), none = colors(0, 1.01 * bend);
+  EXPECT_EQ(shown[0], color_of_load(1));
+  EXPECT_EQ(shown[10], color_of_load(1));
+  EXPECT_EQ(shown[30], color_of_load(0));
+  EXPECT_EQ(none[10], color_of_load(0));
+  EXPECT_EQ(none[40], color_of_load(1));
+  const Legend legend = ColorScale(scene).legend();
+  EXPECT_EQ(legend.quantity, "bend radius over the smallest allowed");
+  EXPECT_EQ(legend.values.front(), 1);
+  EXPECT_EQ(legend.values.back(), 5);
+  EXPECT_TRUE(std::is_sorted(legend.values.begin(), legend.values.end()));
+  EXPECT_EQ(legend.colors.front(), color_of_load(1));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What happens to cables is told: one breaks, one found no equilibrium to start from."""
+"""What happens to cables is told: one is pulled too hard and breaks, one found no equilibrium to start from."""
 import unittest
 
 import rospy
@@ -29,7 +29,11 @@ class CableReportsTest(unittest.TestCase):
             # 15 N strain it by 15 mm; 0.1 m/s is slow enough for tf's samples to be a smooth motion.
             start = rospy.get_time()
             self.frames.motions['hand'] = lambda t: (0.98 + min(0.1 * max(t - start, 0), 0.06), 0, 0)
+            limit = events.wait_for(lambda e: e.type == CableEvent.LIMIT, 'LIMIT')
             event = events.wait_for(lambda e: e.type == CableEvent.BROKE, 'BROKE')
+            self.assertEqual(limit.cable, 'string')
+            self.assertIn('above maximum_tension, 12 N', limit.message)
+            self.assertLess(limit.header.stamp, event.header.stamp)
             self.assertEqual((event.cable, event.other), ('string', 'string_2'))
             self.assertIn('15 N', event.message)
             state = states.wait_for(lambda s: cable(s, 'string_2'), 'second piece')

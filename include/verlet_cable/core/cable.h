@@ -13,8 +13,9 @@ namespace verlet_cable {
 /// What no step changes, only an edit.
 struct CableModel {
   std::string name;
-  MaterialDesc material;
-  std::string material_name;  ///< in the scene
+  MaterialDesc material;                         ///< where the cable is of no other: see CableMaterials
+  std::string material_name;                     ///< in the scene
+  std::vector<NamedMaterial> section_materials;  ///< of its sections, each once
   std::array<double, 4> color{0.1, 0.1, 0.1, 1.0};
   bool turns_bodies = false;  ///< clamps of bodies that move freely are turned by it
   double segment_length = 0;  ///< [m] of the scene's segments: winches pay out and take in such
@@ -35,13 +36,18 @@ struct UnresolvedMotion {
 /// that run change n, too.
 struct CableState {
   std::vector<double> rest_lengths;  ///< [m] a segment, n
-  std::vector<double> masses;        ///< [kg] a node, n + 1: half of each neighbouring segment, and payloads
+  /// a segment, n: 0 for CableModel::material, k for the k-th of its `section_materials`; empty where all is of the former
+  std::vector<int> section_material;
+  std::vector<double> masses;  ///< [kg] a node, n + 1: half of each neighbouring segment, and payloads
   /// [1/m] a node, n + 1: curvature about the material's y and z axes that carries no moment; empty where the cable is straight
   /// unloaded
   std::vector<std::array<double, 2>> rest_curvature;
   std::vector<double> rest_twist;  ///< [rad/m] a node, n + 1: twist that carries no moment; empty where there is none
   /// a node, n + 1: how much of the cable half a segment around it bends, above 0 to 1; empty where all of it does
   std::vector<double> flexible_fraction;
+  /// a node, n + 1: for so many more steps it counts as beyond its material's limit of bend radius, and of tension (of the
+  /// segment that starts there); empty where its materials have none
+  std::vector<std::array<int, 2>> beyond_limits;
   std::vector<Vector3> positions;   ///< [m] a node, n + 1
   std::vector<Vector3> velocities;  ///< [m/s] a node, n + 1, at the time of the positions
   /// [m/s^2] a node, n + 1, mean over the last substep: where the next one's solution starts

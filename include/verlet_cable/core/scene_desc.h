@@ -39,6 +39,8 @@ struct MaterialDesc {
   double drag = 0;                     ///< [kg/(m s)] linear drag per unit length, >= 0
   double friction = 0.5;               ///< Coulomb coefficient against obstacles, >= 0
   double breaking_tension = infinity;  ///< [N], > 0
+  double minimum_bend_radius = 0;      ///< [m], >= 0; an event where it bends more tightly; 0: never
+  double maximum_tension = infinity;   ///< [N], > 0; an event where it is pulled harder
 };
 
 struct PointMassDesc {
@@ -69,11 +71,18 @@ struct RestCurvatureDesc {
   bool is_straight() const;
 };
 
+/// A stretch of a cable that is of another material. It goes from segment to segment: those whose middle is in it.
+struct SectionDesc {
+  double from = 0, to = 0;  ///< [m] from the cable's start, at rest; 0 to its length
+  std::string material;     ///< a key of SceneDesc::materials
+};
+
 struct CableDesc {
   std::string name;
   double length = 0;                                ///< [m] rest length, > 0
   int segments = 0;                                 ///< >= 1; all equally long
   std::string material;                             ///< a key of SceneDesc::materials
+  std::vector<SectionDesc> sections;                ///< of other materials; they do not overlap
   std::array<double, 4> color{0.1, 0.1, 0.1, 1.0};  ///< red, green, blue, alpha; 0 to 1
   InitialShapeDesc initial;
   RestCurvatureDesc rest_curvature;
@@ -213,7 +222,7 @@ struct FluidDesc {
 enum class LostFramePolicy { hold, release, pause };
 enum class TimeJumpPolicy { reset, keep };
 enum class MarkerStyle { tube, line };
-enum class ColorBy { cable, tension, strain, contact };
+enum class ColorBy { cable, tension, strain, contact, bend };
 
 struct LimitsDesc {
   int segments = 100000;
@@ -282,6 +291,9 @@ std::vector<ObstacleDesc> all_obstacles(const SceneDesc& scene);
 
 /// The pose that six numbers of a scene mean.
 Pose pose_of(const InitialPose& pose);
+
+/// The section that a segment of a cable is in: an index into its sections, -1 if it is in none.
+int section_at(const CableDesc& cable, int segment);
 
 /// The node that a place on a cable means: arc lengths go to the nearest node.
 int node_at(const CableDesc& cable, const PlaceDesc& place);

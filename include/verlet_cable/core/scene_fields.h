@@ -68,7 +68,7 @@ constexpr std::array<Field<FluidDesc>, 4> fluid_fields{{
     {"tangential_drag", &FluidDesc::tangential_drag, "", not_negative},
 }};
 
-constexpr std::array<Field<MaterialDesc>, 10> material_fields{{
+constexpr std::array<Field<MaterialDesc>, 12> material_fields{{
     {"linear_density", &MaterialDesc::linear_density, "kg/m", positive, true},
     {"radius", &MaterialDesc::radius, "m", positive, true},
     {"axial_stiffness", &MaterialDesc::axial_stiffness, "N", positive_or_infinite},
@@ -79,6 +79,8 @@ constexpr std::array<Field<MaterialDesc>, 10> material_fields{{
     {"drag", &MaterialDesc::drag, "kg/(m s)", not_negative},
     {"friction", &MaterialDesc::friction, "", not_negative},
     {"breaking_tension", &MaterialDesc::breaking_tension, "N", positive_or_infinite},
+    {"minimum_bend_radius", &MaterialDesc::minimum_bend_radius, "m", not_negative},
+    {"maximum_tension", &MaterialDesc::maximum_tension, "N", positive_or_infinite},
 }};
 
 constexpr Field<MaterialDesc, BendingStiffness> bending_stiffness_field{"bending_stiffness", &MaterialDesc::bending_stiffness,
@@ -91,6 +93,11 @@ constexpr std::array<Field<CableDesc>, 2> cable_fields{{
 
 constexpr std::array<Field<CableDesc, int>, 1> cable_integer_fields{{
     {"segments", &CableDesc::segments, "", {1, 1e7, "an integer"}, true},
+}};
+
+constexpr std::array<Field<SectionDesc>, 2> section_fields{{
+    {"from", &SectionDesc::from, "m", not_negative, true},
+    {"to", &SectionDesc::to, "m", not_negative, true},
 }};
 
 constexpr std::array<Field<PointMassDesc>, 1> point_mass_fields{{

@@ -80,6 +80,19 @@ struct Break {
   int cable = 0;      ///< index of the cable, now the first piece
   int segment = 0;    ///< that is gone
   int new_cable = 0;  ///< index of the second piece
+  double limit = 0;   ///< [N] the segment's breaking tension
+};
+
+/// A cable has come to bend more tightly than its material's minimum_bend_radius, or to be pulled harder than its
+/// maximum_tension. One while that lasts at neighbouring nodes, and a tenth of a second after. Edits and breaks keep its indices
+/// valid.
+struct Excursion {
+  enum class Kind { bend, tension };
+  int cable = 0;  ///< index into World::cables()
+  int node = 0;   ///< the worst one; of tension that of the segment that starts there
+  Kind kind = Kind::bend;
+  double value = 0;    ///< the radius [m] or tension [N] there
+  double allowed = 0;  ///< the material's
 };
 
 /// What an attachment holds was carried along with it instead of being struck: its velocity had changed by more than 5 m/s within
@@ -111,6 +124,7 @@ struct Findings {
   std::vector<std::string> misfits;
   // In the last step
   std::vector<Break> breaks;
+  std::vector<Excursion> excursions;       ///< that have begun
   std::vector<Jump> jumps;                 ///< that were found to be over, one an attachment
   std::vector<Intrusion> intrusions;       ///< one a cable and obstacle
   std::vector<SimulatedContact> contacts;  ///< where cables touched something in the last substep

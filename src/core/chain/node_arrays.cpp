@@ -15,6 +15,9 @@ void keep(int first, int count, Array& array) {
 double zero_like(double) {
   return 0;
 }
+int zero_like(int) {
+  return 0;
+}
 Vector3 zero_like(const Vector3&) {
   return Vector3::Zero();
 }
@@ -51,6 +54,7 @@ void append(const CableState& tail, CableState& cable) {
   const std::array<double, 2> straight{0, 0};
   extend_where_needed(tail.rest_curvature, tail_size, size, straight, cable.rest_curvature);
   extend_where_needed(tail.flexible_fraction, tail_size, size, 1.0, cable.flexible_fraction);
+  extend_where_needed(tail.beyond_limits, tail_size, size, std::array<int, 2>{0, 0}, cable.beyond_limits);
   extend_where_needed(tail.rest_twist, tail_size, size, 0.0, cable.rest_twist);
   extend(tail.masses, cable.masses);
   extend(tail.positions, cable.positions);
@@ -58,7 +62,12 @@ void append(const CableState& tail, CableState& cable) {
   extend(tail.accelerations, cable.accelerations);
   extend(tail.unresolved.acceleration_changes, cable.unresolved.acceleration_changes);
   extend(tail.unresolved.turns, cable.unresolved.turns);
+  if (!tail.section_material.empty()) cable.section_material.resize(cable.segments(), 0);
   visit_segment_arrays(cable, [](auto& array) { array.push_back(zero_like(array.back())); });
+  if (!cable.section_material.empty()) {
+    extend(tail.section_material, cable.section_material);
+    cable.section_material.resize(cable.segments() + tail.segments(), 0);
+  }
   extend(tail.rest_lengths, cable.rest_lengths);
   extend(tail.tension, cable.tension);
   extend(tail.last_tension, cable.last_tension);

@@ -18,6 +18,7 @@ void visit_node_arrays(CableState& cable, const Visitor& visitor) {
   if (!cable.rest_curvature.empty()) visitor(cable.rest_curvature);
   if (!cable.rest_twist.empty()) visitor(cable.rest_twist);
   if (!cable.flexible_fraction.empty()) visitor(cable.flexible_fraction);
+  if (!cable.beyond_limits.empty()) visitor(cable.beyond_limits);
   if (!cable.joint_twist.empty()) visitor(cable.joint_twist);
 }
 template <class Visitor>
@@ -27,6 +28,7 @@ void visit_segment_arrays(CableState& cable, const Visitor& visitor) {
   visitor(cable.last_tension);
   visitor(cable.axial_multiplier);
   visitor(cable.twist);
+  if (!cable.section_material.empty()) visitor(cable.section_material);
   if (!cable.spin.empty()) visitor(cable.spin);
   if (!cable.directors.empty()) visitor(cable.directors);
 }

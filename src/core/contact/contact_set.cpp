@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "geometry/segment_geometry.h"
+#include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
 
@@ -27,7 +28,7 @@ constexpr double small_square = 0.01;
 constexpr double deepest_arrival = 0.5;
 
 double stopping(const SimulatedCable& cable, int segment, double time_step) {
-  const double mass = cable.state.rest_lengths[segment] * cable.model->material.linear_density;
+  const double mass = cable.state.rest_lengths[segment] * CableMaterials(cable)[segment].linear_density;
   return stopping_stiffness * mass / (time_step * time_step);
 }
 
@@ -104,7 +105,7 @@ void ContactSet::find(const std::vector<SimulatedCable>& cables, const std::vect
   }
   if (!rules.pairs.self && !rules.pairs.between_cables) return;
   double radius = 0;
-  for (const int cable : island) radius = std::max(radius, cables[cable].model->material.radius);
+  for (const int cable : island) radius = std::max(radius, CableMaterials(cables[cable]).largest_radius());
   grid_.update(cables, island, rules.pairs, reach(0, radius, h) + radius, h, pairs);
   find_pairs(cables, members, pairs, radius, h);
 }
@@ -119,15 +120,20 @@ void ContactSet::set_held(const SimulatedCable& cable, const KinematicTargets& t
 
 void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const ContactMember& member, const MovingObstacle& moving,
                                const std::vector<Attachment>& attachments, double h) {
-  const CableModel& model = *cable.model;
+  const CableMaterials materials(cable);
   const CableState& state = cable.state;
   const int n = state.segments();
-  const double radius = model.material.radius, surface = radius + moving.obstacle->padding;
+  // At a node between sections the thicker one ends.
+  const auto node_radius = [&](int i) {
+    return std::max(materials[std::max(i - 1, 0)].radius, materials[std::min(i, n - 1)].radius);
+  };
   const Eigen::Matrix3d orientation = moving.start.orientation.toRotationMatrix();
   const Shape& shape = moving.obstacle->shape;
   const bool flat = std::holds_alternative<PlaneShape>(shape);
 
-  const auto node_reach = [&](int i) { return surface + reach(state.velocities[i].norm() + moving.speed, radius, h); };
+  const auto node_reach = [&](int i) {
+    return node_radius(i) + moving.obstacle->padding + reach(state.velocities[i].norm() + moving.speed, node_radius(i), h);
+  };
   const auto visit = [&](int i, double far) {
     if (visited_[i] != 0) return;
     visited_[i] = 1;
@@ -138,9 +144,14 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
     if (!(moving.speed > 0)) return Vector3::Zero();
     return moving.end.position - moving.start.position + moving.end.orientation * point - orientation * point;
   };
-  const double friction = moving.obstacle->friction.value_or(model.material.friction);
+  const auto node_friction = [&](int i) {
+    return materials.mean_at(i, [](const MaterialDesc& material) { return material.friction; });
+  };
   const auto touch_at = [&](const CablePoint& point, std::uint64_t element, const SurfacePoint& nearest) {
-    const double gap = nearest.distance - surface;
+    const bool on_node = element % 2 == 0;
+    const int place = static_cast<int>(element / 2);
+    const double radius = on_node ? node_radius(place) : materials[place].radius;
+    const double gap = nearest.distance - (radius + moving.obstacle->padding);
     const Vector3 normal = orientation * nearest.normal, way = way_of_surface(nearest.point);
     const Vector3 velocity = interpolate(state.velocities, point.segment, point.fraction);
     if (!may_close(gap, normal, velocity - way / h, radius, h)) return;
@@ -152,8 +163,8 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
     touch.obstacle = moving.index;
     touch.normal = normal;
     touch.gap = gap;
-    const bool on_node = element % 2 == 0;
-    touch.friction = on_node ? friction_of_arc(friction, state, static_cast<int>(element / 2), normal) : friction;
+    const double friction = moving.obstacle->friction.value_or(on_node ? node_friction(place) : materials[place].friction);
+    touch.friction = on_node ? friction_of_arc(friction, state, place, normal) : friction;
     touch.radius = radius;
     touch.base_stiffness = stopping(cable, point.segment, rules_.time_step);
     touch.other_displacement = way;
@@ -182,7 +193,7 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
     const double first = nearest_[i].distance, second = nearest_[i + 1].distance;
     if (0.5 * (first + second - length) > far) continue;
     // Where it is nowhere deeper than this, it does not cut in by more than bulges out.
-    const double shallow = std::max(first, second) - bulge * radius;
+    const double radius = materials[i].radius, shallow = std::max(first, second) - bulge * radius;
     SegmentSurfacePoint deepest = deepest_point(shape, local_[i], local_[i + 1], std::min(far, shallow));
     const double cut = first + deepest.fraction * (second - first) - deepest.surface.distance;
     if (deepest.surface.distance >= far || cut <= bulge * radius) continue;
@@ -198,10 +209,10 @@ void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, const std
     const double moved = found.moved[pair.first_node] + found.moved[pair.second_node];
     if (pair.distance - moved > (2 * thickest + reach(speed, thickest, h)) * (1 + distance_rounding)) continue;
     const SimulatedCable &a = cables[pair.first.cable], &b = cables[pair.second.cable];
-    const double radius = std::min(a.model->material.radius, b.model->material.radius);
-    const double surface = a.model->material.radius + b.model->material.radius;
-    const double far = surface + reach(speed, radius, h);
     const int i = pair.first.segment, j = pair.second.segment;
+    const double first_radius = CableMaterials(a)[i].radius, second_radius = CableMaterials(b)[j].radius;
+    const double radius = std::min(first_radius, second_radius), surface = first_radius + second_radius;
+    const double far = surface + reach(speed, radius, h);
     const Vector3 &a0 = a.state.positions[i], &b0 = b.state.positions[j];
     const Vector3 along_a = a.state.positions[i + 1] - a0, along_b = b.state.positions[j + 1] - b0;
     const ClosestPoints closest = closest_points(a0, along_a, b0, along_b);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geometry/segment_geometry.h"
+#include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
 
@@ -154,7 +155,7 @@ bool ContactSolver::iterate(std::vector<Participant>& participants, std::vector<
   for (const Participant& p : participants) {
     const double moved = tolerance * p.state->rest_lengths.front();
     tolerated_ = std::min(tolerated_, moved);
-    const double mass = p.state->rest_lengths.front() * p.substep.model.material.linear_density;
+    const double mass = p.state->rest_lengths.front() * CableMaterials(p.substep.model, *p.state)[0].linear_density;
     negligible_energy_ = std::min(negligible_energy_, negligible_part * mass * moved * moved / (first.h * first.h));
   }
   double last = 0;

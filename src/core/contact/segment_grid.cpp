@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geometry/segment_geometry.h"
+#include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
 
@@ -61,7 +62,7 @@ double find_margin(const std::vector<SimulatedCable>& cables, const std::vector<
   for (const int cable : group) {
     longest =
         std::max(longest, *std::max_element(cables[cable].state.rest_lengths.begin(), cables[cable].state.rest_lengths.end()));
-    thickest = std::max(thickest, cables[cable].model->material.radius);
+    thickest = std::max(thickest, CableMaterials(cables[cable]).largest_radius());
   }
   const double way = h * largest_speed(cables, group);
   return std::clamp(margin_substeps * way, least_margin * thickest, std::max(thickest, margin_segments * longest)) + 2 * way;
@@ -90,14 +91,14 @@ void SegmentGrid::fill(const std::vector<SimulatedCable>& cables, const std::vec
   double largest = 0;
   int node = 0;
   for (const int cable : group) {
-    const double radius = cables[cable].model->material.radius;
+    const CableMaterials materials(cables[cable]);
     const std::vector<Vector3>& x = cables[cable].state.positions;
     for (int i = 0; i < cables[cable].state.segments(); ++i, ++node) {
       Entry entry;
       entry.id = {cable, i};
       entry.node = node;
       entry.middle = 0.5 * (x[i] + x[i + 1]);
-      entry.radius = 0.5 * (x[i + 1] - x[i]).norm() + radius + 0.5 * reach + margin;
+      entry.radius = 0.5 * (x[i + 1] - x[i]).norm() + materials[i].radius + 0.5 * reach + margin;
       entry.next = -1;
       largest = std::max(largest, entry.radius);
       entries_.push_back(entry);
@@ -121,7 +122,7 @@ void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules
   for (int a = static_cast<int>(entries_.size()) - 1; a >= 0; --a) {
     Entry& first = entries_[a];
     const SimulatedCable& cable = cables[first.id.cable];
-    const double radius = cable.model->material.radius;
+    const double radius = CableMaterials(cable)[first.id.segment].radius;
     near_.clear();
     for (int dx = -1; dx <= 1; ++dx)
       for (int dy = -1; dy <= 1; ++dy)
@@ -134,7 +135,9 @@ void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules
             if ((first.middle - second.middle).squaredNorm() > sum * sum) continue;
             const bool same = first.id.cable == second.id.cable;
             if (same ? !rules.self : !rules.between_cables) continue;
-            if (same && !longer(cable.state, first.id.segment + 1, second.id.segment, bend_radii * radius)) continue;
+            const double other_radius = CableMaterials(cables[second.id.cable])[second.id.segment].radius;
+            const double bend = bend_radii * std::max(radius, other_radius);
+            if (same && !longer(cable.state, first.id.segment + 1, second.id.segment, bend)) continue;
             near_.push_back(b);
           }
         }
@@ -149,7 +152,7 @@ void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules
       const SegmentFractions closest = closest_fractions(start, end, other_start, other_end);
       const double distance =
           (start + closest.first * (end - start) - other_start - closest.second * (other_end - other_start)).norm();
-      const double far = radius + cables[second.id.cable].model->material.radius + reach + 2 * found.margin;
+      const double far = radius + CableMaterials(cables[second.id.cable])[second.id.segment].radius + reach + 2 * found.margin;
       if (distance <= far) found.pairs.push_back({first.id, second.id, first.node, second.node, distance});
     }
   }

@@ -221,6 +221,11 @@ void World::Implementation::follow_cut(int cable, int segment, int new_cable) {
     intrusion.cable = new_cable;
     intrusion.segment -= segment + 1;
   }
+  for (Excursion& excursion : findings.excursions) {
+    if (excursion.cable != cable || excursion.node <= segment) continue;
+    excursion.cable = new_cable;
+    excursion.node -= segment + 1;
+  }
 }
 
 int World::add_frame(const std::string& name, const std::optional<Pose>& pose) {

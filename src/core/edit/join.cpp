@@ -6,6 +6,7 @@
 #include "rod/length_projection.h"
 #include "rod/rod_frames.h"
 #include "scene/scene_errors.h"
+#include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/scene_fields.h"
 #include "world/implementation.h"
@@ -66,12 +67,23 @@ double join_rest_shapes(int node, CableState& cable) {
   return excess;
 }
 
+/// Adds the materials of the sections of `other` to a model, and names them so in the state of the cable that they come from.
+void take_over_sections(const CableModel& other, CableModel& model, CableState& state) {
+  std::vector<int> names{0};
+  for (const NamedMaterial& material : other.section_materials) {
+    if (find_material(model, material.name) < 0) model.section_materials.push_back(material);
+    names.push_back(find_material(model, material.name));
+  }
+  for (int& material : state.section_material) material = names[material];
+}
+
 /// `first` followed by `second`, with a weightless segment between them that is as long as they are apart.
 void append_cable(const CableState& second, CableState& first) {
   const int between = first.segments();
   const double gap = (second.positions.front() - first.positions.back()).norm();
   append(second, first);
   first.rest_lengths[between] = gap;
+  if (!first.section_material.empty()) first.section_material[between] = first.section_material[between - 1];
   weld_frames(between, first);
 }
 
@@ -124,7 +136,9 @@ EditResult World::Implementation::apply(const edit::Join& join) {
       return refused("first, second: both ends are held, by " + end.next->name + " and " + other_end.next->name +
                      "; one of them must be unpinned");
     const double distance = (place(*end.next) - place(*other_end.next)).norm(), length = end.length + other_end.length;
-    if (model.material.axial_stiffness == infinity && distance > length * (1 + rounding))
+    const bool is_rigid =
+        !CableMaterials(state.cables[first]).any_elastic() && !CableMaterials(state.cables[second]).any_elastic();
+    if (is_rigid && distance > length * (1 + rounding))
       return refused("first, second: the ends cannot meet: " + end.next->name + " and " + other_end.next->name + " are " +
                      rounded_text(distance) + " m apart, the cable between them would be " + rounded_text(length) + " m long");
   }
@@ -140,6 +154,8 @@ EditResult World::Implementation::apply(const edit::Join& join) {
   CableState &kept = state.cables[first].state, &gone = state.cables[second].state;
   const int shift = first_at_end ? kept.nodes() : gone.nodes();
   const std::string name = model.name;
+  CableModel joined_model = model;
+  take_over_sections(other, joined_model, gone);
   if (first_at_end) {
     append_cable(gone, kept);
   } else {
@@ -149,6 +165,7 @@ EditResult World::Implementation::apply(const edit::Join& join) {
     joined.reference_orientation = kept.reference_orientation;
     kept = std::move(joined);
   }
+  state.cables[first].model = std::make_shared<const CableModel>(std::move(joined_model));
   renumber(first_at_end ? second : first, 0, shift);
   KinematicTargets &targets = state.cable_progress[first].targets, &holders_of_gone = state.cable_progress[second].targets;
   append(holders_of_gone.nodes, targets.nodes);
@@ -158,7 +175,7 @@ EditResult World::Implementation::apply(const edit::Join& join) {
   drive.place = LengthDrive::Place::inside;
   drive.segment = shift - 1;
   const double gap = kept.rest_lengths[drive.segment];
-  drive.left = -std::max(gap - approach * model.segment_length, 0.0);
+  drive.left = -std::max(gap - approach * state.cables[first].model->segment_length, 0.0);
   drive.speed = joining_speed;
   drive.acceleration = joining_acceleration;
   state.cable_progress[first].drive = drive;
@@ -188,6 +205,7 @@ void World::Implementation::follow_join(int first, int second) {
   for (Attachment& a : state.attachments)
     if (a.body.is_cable()) follow(a.body.index);
   for (Intrusion& intrusion : findings.intrusions) follow(intrusion.cable);
+  for (Excursion& excursion : findings.excursions) follow(excursion.cable);
   for (Break& broken : findings.breaks) {
     follow(broken.cable);
     follow(broken.new_cable);
@@ -199,6 +217,8 @@ void World::Implementation::reverse_cable(int index) {
   const int n = state.cables[index].state.segments();
   for (Intrusion& intrusion : findings.intrusions)
     if (intrusion.cable == index) intrusion.segment = n - 1 - intrusion.segment;
+  for (Excursion& excursion : findings.excursions)
+    if (excursion.cable == index) excursion.node = n - excursion.node - (excursion.kind == Excursion::Kind::tension ? 1 : 0);
   for (Attachment& a : state.attachments) {
     if (a.body != cable_id(index)) continue;
     a.node = n - a.node;

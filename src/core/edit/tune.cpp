@@ -5,14 +5,14 @@
 #include "scene/validate_materials.h"
 #include "verlet_cable/core/world.h"
 #include "world/implementation.h"
+#include "world/limits.h"
 
 namespace verlet_cable {
 
 void World::tune(const SceneDesc& scene) {
   State& state = implementation_->state;
   Errors errors;
-  for (const SimulatedCable& cable : state.cables)
-    check_torsional_stiffness(cable, *scene.find_material(cable.model->material_name), errors);
+  for (const SimulatedCable& cable : state.cables) check_torsional_stiffness(cable, scene, errors);
   if (std::vector<std::string> lines = errors.take(); !lines.empty()) throw SceneError(std::move(lines));
   auto tuned = std::make_shared<SceneDesc>(*state.scene);
   tuned->gravity = scene.gravity;
@@ -23,6 +23,7 @@ void World::tune(const SceneDesc& scene) {
   for (int i = 0; i < static_cast<int>(state.cables.size()); ++i) {
     CableModel model = *state.cables[i].model;
     model.material = *scene.find_material(model.material_name);
+    for (NamedMaterial& other : model.section_materials) other.material = *scene.find_material(other.name);
     state.cables[i].model = std::make_shared<const CableModel>(std::move(model));
     SimulatedCable& cable = state.cables[i];
     std::vector<DirectionTarget>& clamps = state.cable_progress[i].targets.directions;
@@ -30,6 +31,7 @@ void World::tune(const SceneDesc& scene) {
       give_frames(cable.state, clamps);
     else
       drop_frames(cable.state, clamps);
+    watch_limits(cable);
     // A clamp holds the direction where the cable is stiff, the neighbouring node where it is not.
     implementation_->find_targets_of(i);
   }

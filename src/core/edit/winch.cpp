@@ -4,6 +4,7 @@
 
 #include "rod/length_projection.h"
 #include "rod/unresolved_motion.h"
+#include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/number_text.h"
 #include "world/implementation.h"
 
@@ -25,7 +26,22 @@ bool carries_payload(const SimulatedCable& cable, int node) {
   if (node > 0) share += 0.5 * cable.state.rest_lengths[node - 1];
   if (node < cable.state.segments()) share += 0.5 * cable.state.rest_lengths[node];
   const double residue = 0.5 * cable.model->segment_length;
-  return cable.state.masses[node] > cable.model->material.linear_density * (share + 1.5 * residue);
+  const CableMaterials materials(cable);
+  const auto density = [](const MaterialDesc& material) { return material.linear_density; };
+  // What a cut has left may be of any of the cable's materials.
+  return cable.state.masses[node] > materials.mean_at(node, density) * share + 1.5 * residue * materials.largest(density);
+}
+
+/// The segments beside a node that is to go become one, of the longer one's material: the other weighs as much as that from now
+/// on.
+void take_on_material(int node, SimulatedCable& cable) {
+  CableState& state = cable.state;
+  const bool first_goes = state.rest_lengths[node - 1] < state.rest_lengths[node];
+  const int going = first_goes ? node - 1 : node, kept = first_goes ? node : node - 1;
+  const CableMaterials materials(cable);
+  const double change = materials[kept].linear_density - materials[going].linear_density;
+  if (change == 0) return;
+  for (const int side : {0, 1}) state.masses[going + side] += 0.5 * change * state.rest_lengths[going];
 }
 
 /// At a winch the material moves through the end node. Adds (`side` 1) this motion to the node's velocity, or takes it away (-1).
@@ -168,6 +184,7 @@ void World::Implementation::take_in_winch_node(int index) {
   LengthDrive& drive = *s.drive;
   const int node = drive.place == LengthDrive::Place::start ? 1 : cable.state.segments() - 1;
   add_material_motion(drive, 1, cable.state);
+  take_on_material(node, cable);
   // The step is planned already.
   const double lost = remove_node(node, cable.state);
   drive.debt += lost;
@@ -198,6 +215,8 @@ void World::Implementation::renumber(int index, int first, int shift) {
     if (a.body == cable_id(index)) follow(a.node);
   for (Intrusion& intrusion : findings.intrusions)
     if (intrusion.cable == index) follow(intrusion.segment);
+  for (Excursion& excursion : findings.excursions)
+    if (excursion.cable == index) follow(excursion.node);
   for (KinematicTarget& h : state.cable_progress[index].targets.nodes) follow(h.node);
   for (DirectionTarget& h : state.cable_progress[index].targets.directions) follow(h.node);
 }

@@ -31,7 +31,7 @@ double* numbers(std::vector<Vector3>& vectors) {
 
 bool fits_lanes(const Substep& s, const CableState& state, bool is_held) {
   const MaterialDesc& material = s.model.material;
-  const bool is_simple = state.directors.empty() && state.flexible_fraction.empty() &&
+  const bool is_simple = state.section_material.empty() && state.directors.empty() && state.flexible_fraction.empty() &&
                          (s.spans.empty() || (material.torsional_stiffness == 0 && material.torsional_damping == 0));
   // Of a free one, what bending damping does to the angular momentum is given back.
   const bool is_steady = is_held || material.bending_damping == 0;
@@ -294,8 +294,8 @@ void LaneStepper::bend_clamps(int c, const LaneMember& member) {
     });
   for (ClampJoint& clamp : clamps_[c]) {
     const int i = clamp.segment;
-    bend_clamp(work_.law.is_elastic, member.substep.part(),
-               vector_at(LaneField::displacement_x, c, i + 1) - vector_at(LaneField::displacement_x, c, i), clamp);
+    bend_clamp(member.substep.part(), vector_at(LaneField::displacement_x, c, i + 1) - vector_at(LaneField::displacement_x, c, i),
+               clamp);
     const Vector3 force = clamp.inverse_length * clamp.moment;
     each_lane_of(c, i, [&](int place, int lane, double sign) {
       value(LaneField::clamp_force_x, place, lane) += sign * force.x();

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "rod/angle_energy.h"
+#include "rod/joint_material.h"
 #include "rod/material_spin.h"
 
 namespace verlet_cable {
@@ -18,14 +19,21 @@ void Bending::resize(int segments) {
 
 void Bending::start(const CableModel& model, const CableState& state, const VectorArray& segment,
                     const std::vector<HeldDirection>& directions, double h, double part) {
-  const double stiffness = model.material.bending_stiffness.largest(), damping = model.material.bending_damping / h;
-  active_ = state.directors.empty() && (stiffness > 0 || model.material.bending_damping > 0);
+  const CableMaterials materials(model, state);
+  const bool damps = materials.any([](const MaterialDesc& material) { return material.bending_damping > 0; });
+  active_ = state.directors.empty() && (damps || materials.any_bends());
   if (!active_) return;
+  is_damped_ = damps && h < infinity;
   part_ = part;
-  is_elastic_ = model.material.axial_stiffness < infinity;
+  double stiffness = model.material.bending_stiffness.largest(), damping = model.material.bending_damping / h;
   for (int i = 0; i < segments_; ++i) inverse_length_[i] = 1 / state.rest_lengths[i];
   for (int i = 1; i < segments_; ++i) {
     const double joint = 1 / state.bending_length(i, 0.5 * (state.rest_lengths[i - 1] + state.rest_lengths[i]));
+    if (materials.vary()) {
+      const JointMaterial material = joint_material(materials, state, i);
+      stiffness = material.bending_stiffness.largest();
+      damping = material.bending_damping / h;
+    }
     stiffness_[i] = stiffness * joint;
     damping_[i] = damping * joint;
     const Vector3 e = inverse_length_[i] * get(segment, i) - inverse_length_[i - 1] * get(segment, i - 1);
@@ -35,7 +43,6 @@ void Bending::start(const CableModel& model, const CableState& state, const Vect
   for (const HeldDirection& target : directions) stiffness_[target.node] = damping_[target.node] = 0;
   find_clamp_joints(
       model, state, directions, [&segment](int i) { return get(segment, i); }, h, part, clamps_);
-  is_damped_ = damping > 0;
   if (is_damped_) turn_with_material(model, state, segment, directions, h);
 }
 
@@ -96,7 +103,7 @@ void Bending::add_segment_forces(const VectorArray& displacement, VectorArray& p
 void Bending::bend_clamps(const VectorArray& displacement) {
   for (ClampJoint& clamp : clamps_) {
     const int i = clamp.segment;
-    bend_clamp(is_elastic_, part_, get(displacement, i + 1) - get(displacement, i), clamp);
+    bend_clamp(part_, get(displacement, i + 1) - get(displacement, i), clamp);
   }
 }
 
@@ -156,20 +163,25 @@ double bending_energy(const CableModel& model, const CableState& state, const st
   const int n = state.segments();
   const auto direction = [&](int i) -> Vector3 { return (state.positions[i + 1] - state.positions[i]) / state.rest_lengths[i]; };
   const auto joint = [](double length, const Vector3& change) { return angle_energy(0.5 * change.squaredNorm()) / length; };
+  const CableMaterials materials(model, state);
+  // EI is a factor of the sum where it is the same everywhere.
+  const auto weight = [&](const JointMaterial& material) { return materials.vary() ? material.bending_stiffness.largest() : 1; };
   double energy = 0;
   for (int i = 1; i < n; ++i) {
     const auto clamped = std::find_if(directions.begin(), directions.end(), [i](const HeldDirection& d) { return d.node == i; });
     const double length = state.bending_length(i, 0.5 * (state.rest_lengths[i - 1] + state.rest_lengths[i]));
-    if (clamped == directions.end()) energy += joint(length, direction(i) - direction(i - 1));
+    if (clamped == directions.end())
+      energy += weight(joint_material(materials, state, i)) * joint(length, direction(i) - direction(i - 1));
   }
   for (const HeldDirection& clamp : directions) {
     for (const int i : {clamp.node - 1, clamp.node}) {
       if (i < 0 || i >= n) continue;
       const double length = state.bending_length(clamp.node, 0.5 * state.rest_lengths[i]);
-      energy += joint(length, direction(i) - direction(i).norm() * (clamp.end * Vector3::UnitX()));
+      energy += weight(JointMaterial(materials[i])) *
+                joint(length, direction(i) - direction(i).norm() * (clamp.end * Vector3::UnitX()));
     }
   }
-  return model.material.bending_stiffness.largest() * energy;
+  return materials.vary() ? energy : model.material.bending_stiffness.largest() * energy;
 }
 
 }  // namespace verlet_cable

@@ -53,7 +53,6 @@ class Bending {
 
   bool active_ = false;
   bool is_damped_ = false;
-  bool is_elastic_ = false;
   int segments_ = 0;
   double part_ = 0.5;
   std::vector<double> inverse_length_;       // segments [1/m]

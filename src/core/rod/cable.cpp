@@ -1,11 +1,13 @@
 #include "verlet_cable/core/cable.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "geometry/segment_geometry.h"
 #include "rod/material_frames.h"
 #include "rod/rod_frames.h"
+#include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
 
@@ -23,10 +25,19 @@ std::vector<double> CableState::arc_length() const {
   return arc;
 }
 
+int find_material(const CableModel& model, const std::string& name) {
+  if (name == model.material_name) return 0;
+  const auto& others = model.section_materials;
+  const auto found = std::find_if(others.begin(), others.end(), [&](const NamedMaterial& other) { return other.name == name; });
+  return found == others.end() ? -1 : static_cast<int>(found - others.begin()) + 1;
+}
+
 bool is_whole_rod(const CableModel& model, const CableState& state) {
-  const BendingStiffness& stiffness = model.material.bending_stiffness;
-  return !stiffness.is_isotropic() || (stiffness.largest() > 0 && model.turns_bodies) || (stiffness.largest() > 0 && !state.rest_curvature.empty()) ||
-         (model.material.torsional_stiffness > 0 && !state.rest_twist.empty());
+  return CableMaterials(model, state).any([&](const MaterialDesc& material) {
+    const BendingStiffness& stiffness = material.bending_stiffness;
+    return !stiffness.is_isotropic() || (stiffness.largest() > 0 && (model.turns_bodies || !state.rest_curvature.empty())) ||
+           (material.torsional_stiffness > 0 && !state.rest_twist.empty());
+  });
 }
 
 std::vector<Quaternion> segment_orientations(const CableState& state) {

@@ -5,6 +5,7 @@
 
 #include "rod/rigid_motion.h"
 #include "rod/tridiagonal.h"
+#include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
 
@@ -39,8 +40,9 @@ void CableStepper::resize(int segments) {
   for (VectorArray* a : {&position_, &velocity_, &acceleration_, &segment_, &displacement_, &middle_, &segment_force_,
                          &end_velocity_, &base_load_})
     a->assign(nodes, 0.0);
-  for (std::vector<double>* a : {&length_, &rest_growth_, &target_length_, &inverse_mass_, &tension_density_, &inertia_,
-                                 &end_square_, &start_density_, &pivot_, &off_, &impulse_, &growth_})
+  for (std::vector<double>* a :
+       {&length_, &rest_growth_, &target_length_, &inverse_mass_, &tension_density_, &inertia_, &end_square_, &start_density_,
+        &pivot_, &off_, &impulse_, &growth_, &axial_stiffness_, &axial_damping_, &strain_compliance_})
     a->assign(nodes, 0.0);
   both_held_.reserve(nodes);
   kept_load_.assign(nodes, 0.0);
@@ -86,7 +88,7 @@ void CableStepper::begin(const Substep& s, const CableState& state, SubstepResul
   else
     rod_.start(s.model, state, segment_, s.boundary, s.h, s.damping_time(), s.part());
   twist_.start(s.model, state, s.spans, s.damping_time(), s.part());
-  fluid_.start(s.environment.fluid, s.environment.gravity, s.model.material.radius, s.damping_time());
+  fluid_.start(s.environment.fluid, s.environment.gravity, s.model, state, s.damping_time());
   predict(s.h);
 }
 
@@ -106,7 +108,13 @@ void CableStepper::finish(const Substep& s, bool struck, CableState& state, Subs
 }
 
 void CableStepper::load(const Substep& s, const CableState& state) {
-  const bool elastic = s.model.material.axial_stiffness < infinity;
+  const CableMaterials materials(s.model, state);
+  any_elastic_ = materials.any_elastic();
+  any_rigid_ = materials.any_rigid();
+  for (int i = 0; any_elastic_ && i < segments_; ++i) {
+    axial_stiffness_[i] = materials[i].axial_stiffness;
+    axial_damping_[i] = materials[i].axial_damping;
+  }
   for (int i = 0; i <= segments_; ++i) {
     set(position_, i, state.positions[i]);
     set(velocity_, i, s.statics ? Vector3::Zero() : state.velocities[i]);
@@ -116,7 +124,7 @@ void CableStepper::load(const Substep& s, const CableState& state) {
   for (int i = 0; i < segments_; ++i) {
     const Vector3 d = state.positions[i + 1] - state.positions[i];
     set(segment_, i, d);
-    length_[i] = elastic ? d.norm() : state.rest_lengths[i];
+    length_[i] = is_elastic_at(i) ? d.norm() : state.rest_lengths[i];
     tension_density_[i] = start_density_[i] = state.axial_multiplier[i] / length_[i];
   }
 }
@@ -131,8 +139,9 @@ void CableStepper::hold(const std::vector<HeldNode>& held) {
 
 /// The parts of the equations of motion that no iteration changes.
 void CableStepper::set_loads(const Substep& s, const CableState& state) {
-  const Vector3 wind = s.model.material.drag * s.environment.fluid.velocity;
-  const double drag = s.model.material.drag / s.damping_time();
+  const CableMaterials materials(s.model, state);
+  Vector3 wind = s.model.material.drag * s.environment.fluid.velocity;
+  double drag = s.model.material.drag / s.damping_time();
   const GravityDesc& gravity = s.environment.gravity;
   const bool is_uniform = gravity.type == GravityDesc::Type::uniform;
   Vector3 g = gravity.acceleration;
@@ -141,6 +150,11 @@ void CableStepper::set_loads(const Substep& s, const CableState& state) {
     const double mass = state.masses[i], inertia = s.inertia() * mass / s.h;
     const double half = i < segments_ ? 0.5 * state.rest_lengths[i] : 0, length = half_before + half;
     half_before = half;
+    if (materials.vary()) {
+      const double mean = materials.mean_at(i, [](const MaterialDesc& material) { return material.drag; });
+      wind = mean * s.environment.fluid.velocity;
+      drag = mean / s.damping_time();
+    }
     inertia_[i] = inertia / s.h + drag * length;
     // In the middle of the substep, where the other forces are; velocities are zero in statics.
     if (!is_uniform) g = gravity.at(get(position_, i) + 0.5 * s.h * get(velocity_, i));
@@ -150,10 +164,18 @@ void CableStepper::set_loads(const Substep& s, const CableState& state) {
   }
   const std::vector<HeldNode>& held = s.boundary.nodes;
   std::fill_n(system_.compliance.begin(), segments_, 0.0);
-  if (held.size() > 1) {
+  std::fill_n(strain_compliance_.begin(), segments_, 0.0);
+  if (held.size() > 1 && any_rigid_) {
     const double stiffness = stiffness_of_taut(s, state);
-    for (int i = held.front().node; i < held.back().node; ++i)
-      system_.compliance[i] = target_length_[i] * target_length_[i] * target_length_[i] / stiffness;
+    for (std::size_t k = 0; k + 1 < held.size(); ++k) {
+      // What can stretch has a tension.
+      if (materials.any_elastic_between(held[k].node, held[k + 1].node)) continue;
+      const bool gives_way = held[k].body >= 0 || held[k + 1].body >= 0;
+      for (int i = held[k].node; i < held[k + 1].node; ++i) {
+        system_.compliance[i] = target_length_[i] * target_length_[i] * target_length_[i] / stiffness;
+        if (!gives_way) strain_compliance_[i] = system_.compliance[i];
+      }
+    }
   }
   both_held_.clear();
   for (std::size_t k = 0; k + 1 < held.size(); ++k)
@@ -177,7 +199,7 @@ void CableStepper::set_growth(const Substep& s) {
 void CableStepper::start_bending(const Substep& s, const CableState& state) {
   const int i = std::clamp(winch_node_ - 1, 0, segments_ - 1);
   const Vector3 segment = get(segment_, i);
-  const double part = s.model.material.axial_stiffness < infinity && s.scheme == Scheme::conserving ? 0.5 : 1;
+  const double part = is_elastic_at(i) && s.scheme == Scheme::conserving ? 0.5 : 1;
   if (winch_node_ >= 0) set(segment_, i, segment + part * rest_growth_[i] * segment.normalized());
   bending_.start(s.model, state, segment_, s.boundary.directions, s.damping_time(), s.part());
   set(segment_, i, segment);
@@ -230,7 +252,7 @@ void CableStepper::evaluate(const Substep& s, const CableState& state) {
   if (bending_.active()) add_bending_pulls();
   if (rod_.active()) rod_.add_segment_forces(displacement_, segment_, middle_, segment_force_);
   if (twist_.active()) twist_.add_segment_forces(middle_, displacement_, s.boundary, segment_force_);
-  if (s.model.material.axial_stiffness < infinity)
+  if (any_elastic_)
     evaluate_elastic_lengths(s, state.rest_lengths);
   else
     evaluate_rigid_lengths();
@@ -268,15 +290,25 @@ void CableStepper::evaluate_nodes(Component component) {
 
 void CableStepper::evaluate_rigid_lengths() {
 #pragma GCC ivdep
-  for (int i = 0; i < segments_; ++i)
-    system_.gap[i] = 0.5 * (target_length_[i] * target_length_[i] - end_square_[i]) + system_.compliance[i] * tension_density_[i];
+  for (int i = 0; i < segments_; ++i) evaluate_rigid_length(i);
+}
+
+/// `compliance`: what `set_loads` has set.
+inline void CableStepper::evaluate_rigid_length(int i) {
+  system_.gap[i] =
+      0.5 * (target_length_[i] * target_length_[i] - end_square_[i]) + strain_compliance_[i] * tension_density_[i];
 }
 
 void CableStepper::evaluate_elastic_lengths(const Substep& sub, const std::vector<double>& rest_lengths) {
-  const double stiffness = sub.model.material.axial_stiffness, part = sub.part();
+  const double part = sub.part();
   for (int i = 0; i < segments_; ++i) {
+    if (any_rigid_ && !is_elastic_at(i)) {
+      evaluate_rigid_length(i);
+      continue;
+    }
+    const double stiffness = axial_stiffness_[i];
     const double rest = rest_lengths[i], s = std::sqrt(end_square_[i]), mean = length_[i] + part * (s - length_[i]);
-    const double damping = sub.model.material.axial_damping / (sub.damping_time() * rest);
+    const double damping = axial_damping_[i] / (sub.damping_time() * rest);
     const double excess =
         stiffness / rest * (mean - rest) + damping * (s - length_[i] - rest_growth_[i]) - tension_density_[i] * mean;
     const double slope = part * (stiffness / rest - tension_density_[i]) + damping;
@@ -451,7 +483,7 @@ void CableStepper::move(const Substep& s) {
 /// Impulses along inextensible segments that end all change of length but that of rest lengths; without them such velocities
 /// would alternate from step to step.
 void CableStepper::project(const Substep& s, const std::vector<double>& masses) {
-  if (s.model.material.axial_stiffness < infinity) return;
+  if (!any_rigid_) return;
   const int n = segments_;
   for (int i = 0; i <= n; ++i) inverse_mass_[i] = system_.movable[i] / masses[i];
   std::fill(pivot_.begin(), pivot_.end(), 0.0);
@@ -477,6 +509,11 @@ void CableStepper::project(const Substep& s, const std::vector<double>& masses) 
   for (const int i : both_held_) {
     pivot_[i] = 1;
     impulse_[i] = 0;
+  }
+  for (int i = 0; any_elastic_ && i < n; ++i) {
+    if (!is_elastic_at(i)) continue;
+    pivot_[i] = 1;
+    off_[i] = off_[std::max(i - 1, 0)] = impulse_[i] = 0;
   }
   solve_tridiagonal(pivot_, off_, impulse_, n);
   for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) {
@@ -631,14 +668,13 @@ double CableStepper::store(const Substep& s, CableState& state) const {
   }
   const double part = s.scheme == Scheme::conserving ? 0.5 : 1;
   const bool alternates = s.treatment != Treatment::none && state.unresolved.known > 0;
-  const bool elastic = s.model.material.axial_stiffness < infinity;
   double longest = 1, shortest = 1;  // squares, relative
   for (int i = 0; i < segments_; ++i) {
     const double square = get(segment_, i).squaredNorm();
     const double relative = square / (state.rest_lengths[i] * state.rest_lengths[i]);
     longest = std::max(longest, relative);
     shortest = std::min(shortest, relative);
-    const double length = elastic ? length_[i] + part * (std::sqrt(square) - length_[i]) : target_length_[i];
+    const double length = is_elastic_at(i) ? length_[i] + part * (std::sqrt(square) - length_[i]) : target_length_[i];
     state.axial_multiplier[i] = tension_density_[i] * length;
     const double tension =
         bending_.active() || rod_.active() ? state.axial_multiplier[i] + force_along(i) : state.axial_multiplier[i];

@@ -66,6 +66,8 @@ class CableStepper {
   bool is_whole_rod() const { return rod_.active(); }
 
  private:
+  bool is_elastic_at(int segment) const { return any_elastic_ && (!any_rigid_ || axial_stiffness_[segment] < infinity); }
+
   using Component = std::vector<double> VectorArray::*;
 
   void load(const Substep& substep, const CableState& state);
@@ -79,6 +81,7 @@ class CableStepper {
   void evaluate_segments(double part, Component component);
   void evaluate_nodes(Component component);
   void evaluate_rigid_lengths();
+  void evaluate_rigid_length(int segment);
   void evaluate_elastic_lengths(const Substep& substep, const std::vector<double>& rest_lengths);
   void assemble_segments(double part, const std::vector<double>& density, const VectorArray& direction);
   void react(const Substep& substep, const std::vector<double>& masses);
@@ -95,6 +98,8 @@ class CableStepper {
   double store(const Substep& substep, CableState& state) const;
 
   int segments_ = 0;
+  bool any_elastic_ = false, any_rigid_ = false;         // among the segments
+  std::vector<double> axial_stiffness_, axial_damping_;  // segments: EA [N], [N s]; of a cable that is not elastic not set
   // At the start of the substep
   VectorArray position_, velocity_, acceleration_;  // nodes: [m], [m/s], [m/s^2]
   VectorArray segment_;                             // segments: d [m]
@@ -107,6 +112,7 @@ class CableStepper {
   std::vector<double> inverse_mass_;                // nodes: [1/kg], 0 where held
   std::vector<double> inertia_;                     // nodes: 2 m / h^2 and drag / h [kg/s^2]
   VectorArray base_load_;                           // nodes: gravity and inertia of the velocity [N]
+  std::vector<double> strain_compliance_;           // segments: of the system's compliance, what tension strains; see set_loads
   std::vector<int> both_held_;                      // segments between two held nodes that do not give way
   // The unknowns
   VectorArray displacement_;             // nodes: x' - x [m]

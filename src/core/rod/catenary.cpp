@@ -26,8 +26,9 @@ constexpr double close_enough = 1e-12;
 struct Chain {
   std::vector<double> lengths;
   std::vector<double> weights;  ///< of the nodes before a link, all together
-  double axial_stiffness = 0;
-  int strut = -1;  ///< the link that is compressed, -1: none is
+  std::vector<double> axial_stiffness;
+  double mean_stiffness = 0;  ///< of all links one after the other
+  int strut = -1;             ///< the link that is compressed, -1: none is
 
   int links() const { return static_cast<int>(lengths.size()); }
   double sign(int link) const { return link == strut ? -1 : 1; }
@@ -35,7 +36,7 @@ struct Chain {
   Vector2d reach(const Vector2d& first, int link) const {
     const Vector2d f = force(first, link);
     const double size = f.norm();
-    return lengths[link] * ((size > 0 ? sign(link) / size : 0) + 1 / axial_stiffness) * f;
+    return lengths[link] * ((size > 0 ? sign(link) / size : 0) + 1 / axial_stiffness[link]) * f;
   }
 };
 
@@ -48,7 +49,7 @@ struct ChainEnd {
 ChainEnd chain_end(const Chain& chain, const Vector2d& first) {
   ChainEnd end;
   for (int i = 0; i < chain.links(); ++i) {
-    const double length = chain.lengths[i], elastic = length / chain.axial_stiffness;
+    const double length = chain.lengths[i], elastic = length / chain.axial_stiffness[i];
     const Vector2d force = chain.force(first, i);
     const double size = std::max(force.norm(), std::numeric_limits<double>::min());
     const Vector2d across(-force.y() / size, force.x() / size);
@@ -92,7 +93,7 @@ Vector2d left_for(const Chain& chain, int slack, const Vector2d& span) {
   Vector2d left = span;
   for (int i = 0; i < chain.links(); ++i) {
     if (i != slack) left.y() -= i < slack ? -chain.lengths[i] : chain.lengths[i];
-    left.y() -= chain.lengths[i] * (chain.weights[i] - chain.weights[slack]) / chain.axial_stiffness;
+    left.y() -= chain.lengths[i] * (chain.weights[i] - chain.weights[slack]) / chain.axial_stiffness[i];
   }
   return left;
 }
@@ -101,12 +102,12 @@ Vector2d left_for(const Chain& chain, int slack, const Vector2d& span) {
 /// guess of the force in it is that of small deflections, where the others give way by `sideways` and `upwards` [of the force].
 Vector2d strut_force(const Chain& chain, const Vector2d& left) {
   const int strut = chain.strut;
-  const double length = chain.lengths[strut], own = length / chain.axial_stiffness;
+  const double length = chain.lengths[strut], own = length / chain.axial_stiffness[strut];
   double sideways = own, upwards = own;
   for (int i = 0; i < chain.links(); ++i) {
     if (i == strut) continue;
-    sideways += chain.lengths[i] * (1 / std::abs(chain.weights[i] - chain.weights[strut]) + 1 / chain.axial_stiffness);
-    upwards += chain.lengths[i] / chain.axial_stiffness;
+    sideways += chain.lengths[i] * (1 / std::abs(chain.weights[i] - chain.weights[strut]) + 1 / chain.axial_stiffness[i]);
+    upwards += chain.lengths[i] / chain.axial_stiffness[i];
   }
   const double most = length / sideways;
   double low = 0, high = most;
@@ -124,7 +125,7 @@ Vector2d strut_force(const Chain& chain, const Vector2d& left) {
 Vector2d force_on_line(const Chain& chain, double rise) {
   double total = std::accumulate(chain.lengths.begin(), chain.lengths.end(), 0.0);
   double reach = 0, best_miss = std::numeric_limits<double>::infinity(), best = 0;
-  for (int i = 0; i < chain.links(); ++i) reach += chain.lengths[i] * (1 + chain.weights[i] / chain.axial_stiffness);
+  for (int i = 0; i < chain.links(); ++i) reach += chain.lengths[i] * (1 + chain.weights[i] / chain.axial_stiffness[i]);
   // The first k links go down, the others up.
   for (int k = 0; k <= chain.links(); ++k) {
     if (k > 0) reach -= 2 * chain.lengths[k - 1];
@@ -132,9 +133,9 @@ Vector2d force_on_line(const Chain& chain, double rise) {
     const double high = k > 0 ? -chain.weights[k - 1] : std::numeric_limits<double>::infinity();
     const double middle = k == 0 ? low + 1 : k == chain.links() ? high - 1 : 0.5 * (low + high);
     const double wanted =
-        chain.axial_stiffness < std::numeric_limits<double>::infinity() ? (rise - reach) * chain.axial_stiffness / total : middle;
+        chain.mean_stiffness < std::numeric_limits<double>::infinity() ? (rise - reach) * chain.mean_stiffness / total : middle;
     const double force = std::clamp(wanted, std::min(low + close_enough, middle), std::max(high - close_enough, middle));
-    const double miss = std::abs(reach + total * force / chain.axial_stiffness - rise);
+    const double miss = std::abs(reach + total * force / chain.mean_stiffness - rise);
     if (miss >= best_miss) continue;
     best_miss = miss;
     best = force;
@@ -185,17 +186,32 @@ Vector2d first_force(Chain& chain, const Vector2d& span) {
   return force;
 }
 
+/// [N] Of links one after the other.
+double mean_stiffness(const std::vector<double>& lengths, const std::vector<double>& axial_stiffness) {
+  const double first = axial_stiffness.front();
+  if (std::all_of(axial_stiffness.begin(), axial_stiffness.end(), [first](double other) { return other == first; })) return first;
+  double length = 0, compliance = 0;
+  for (std::size_t i = 0; i < lengths.size(); ++i) {
+    length += lengths[i];
+    compliance += lengths[i] / axial_stiffness[i];
+  }
+  return length / compliance;
+}
+
 }  // namespace
 
 std::vector<Vector3> hanging_chain(const Vector3& from, const Vector3& to, const std::vector<double>& lengths,
-                                   const std::vector<double>& weights, const Vector3& down, double axial_stiffness) {
+                                   const std::vector<double>& weights, const Vector3& down,
+                                   const std::vector<double>& axial_stiffness) {
   const double length = std::accumulate(lengths.begin(), lengths.end(), 0.0);
   const double weight = std::accumulate(weights.begin(), weights.end(), 0.0);
   if (lengths.size() == 1) return {from, to};
   // Added up from zero: far from the origin each sum would round.
   std::vector<Vector3> nodes{Vector3::Zero()};
   const Vector3 span = to - from;
-  if (span.norm() >= straight * length && !(axial_stiffness < std::numeric_limits<double>::infinity())) {
+  const bool is_rigid = std::none_of(axial_stiffness.begin(), axial_stiffness.end(),
+                                     [](double stiffness) { return stiffness < std::numeric_limits<double>::infinity(); });
+  if (span.norm() >= straight * length && is_rigid) {
     double along = 0;
     for (const double l : lengths) nodes.push_back((along += l) / length * span);
     for (Vector3& node : nodes) node += from;
@@ -206,10 +222,11 @@ std::vector<Vector3> hanging_chain(const Vector3& from, const Vector3& to, const
   const Vector3 side = is_upright ? Vector3(down.unitOrthogonal()) : Vector3(level.normalized());
 
   Chain chain;
-  chain.axial_stiffness = axial_stiffness / weight;
+  chain.mean_stiffness = mean_stiffness(lengths, axial_stiffness) / weight;
   double above = 0;
   for (std::size_t i = 0; i < lengths.size(); ++i) {
     chain.lengths.push_back(lengths[i] / length);
+    chain.axial_stiffness.push_back(axial_stiffness[axial_stiffness.size() == 1 ? 0 : i] / weight);
     chain.weights.push_back(above / weight);
     if (i < weights.size()) above += weights[i];
   }

@@ -1,6 +1,7 @@
 #include "rod/clamp_joint.h"
 
 #include "rod/angle_energy.h"
+#include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
 
@@ -29,6 +30,7 @@ void bend_elastic_clamp(double part, const Vector3& change, ClampJoint& clamp) {
 
 void find_clamp_joints(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions,
                        const std::function<Vector3(int)>& segment_at, double h, double part, std::vector<ClampJoint>& joints) {
+  const CableMaterials materials(model, state);
   joints.clear();
   for (std::size_t k = 0; k < directions.size(); ++k) {
     const HeldDirection& target = directions[k];
@@ -40,8 +42,9 @@ void find_clamp_joints(const CableModel& model, const CableState& state, const s
       clamp.segment = i;
       clamp.inverse_length = 1 / state.rest_lengths[i];
       const double joint = 1 / state.bending_length(target.node, 0.5 * state.rest_lengths[i]);
-      clamp.stiffness = model.material.bending_stiffness.largest() * joint;
-      clamp.damping = model.material.bending_damping / h * joint;
+      clamp.is_elastic = is_elastic(materials[i]);
+      clamp.stiffness = materials[i].bending_stiffness.largest() * joint;
+      clamp.damping = materials[i].bending_damping / h * joint;
       clamp.start_axis = start_axis;
       clamp.end_axis = end_axis;
       clamp.start_direction = clamp.inverse_length * segment_at(i);
@@ -55,9 +58,9 @@ void find_clamp_joints(const CableModel& model, const CableState& state, const s
   }
 }
 
-void bend_clamp(bool is_elastic, double part, const Vector3& displacement, ClampJoint& clamp) {
+void bend_clamp(double part, const Vector3& displacement, ClampJoint& clamp) {
   const Vector3 direction_change = clamp.inverse_length * displacement;
-  if (is_elastic) return bend_elastic_clamp(part, direction_change, clamp);
+  if (clamp.is_elastic) return bend_elastic_clamp(part, direction_change, clamp);
   const Vector3 change = direction_change - clamp.axis_change;
   const Vector3 middle = clamp.start + part * change;
   clamp.slope = clamp.stiffness * mean_slope(0.5 * clamp.start_square, 0.5 * (clamp.start + change).squaredNorm());

@@ -12,6 +12,7 @@ namespace verlet_cable {
 struct ClampJoint {
   int target = 0;                     ///< index of the held direction
   int segment = 0;                    ///< the segment next to the clamp
+  bool is_elastic = false;            ///< that segment
   double inverse_length = 0;          ///< of the segment, at rest [1/m]
   double stiffness = 0, damping = 0;  ///< EI / length, and damping / (length h) [N m]
   Vector3 turned = Vector3::Zero();   ///< change of e that turns with the material, not damped
@@ -19,7 +20,7 @@ struct ClampJoint {
   double start_square = 0;
   Vector3 moment = Vector3::Zero();  ///< force times length, on the side's direction
   Vector3 torque = Vector3::Zero();  ///< on the axis [N m]
-  // Of elastic cables: d / l and the unit axis
+  // Of elastic segments: d / l and the unit axis
   Vector3 start_direction = Vector3::Zero(), start_axis = Vector3::Zero(), end_axis = Vector3::Zero();
   double slope = 0;
 };
@@ -30,7 +31,7 @@ void find_clamp_joints(const CableModel& model, const CableState& state, const s
                        const std::function<Vector3(int)>& segment_at, double h, double part, std::vector<ClampJoint>& joints);
 
 /// Sets moment, torque and slope for a displacement of the segment's second node against its first [m].
-void bend_clamp(bool is_elastic, double part, const Vector3& displacement, ClampJoint& clamp);
+void bend_clamp(double part, const Vector3& displacement, ClampJoint& clamp);
 
 /// [N/m] of the segment's nodes against each other.
 inline double stiffness_across(const ClampJoint& clamp, double part) {

@@ -3,19 +3,35 @@
 #include <algorithm>
 #include <cmath>
 
+#include "verlet_cable/core/cable_materials.h"
+
 namespace verlet_cable {
 
 void FluidForces::resize(int nodes) {
   force_.assign(nodes, 0.0);
   stiffness_.assign(nodes, 0.0);
+  radius_.assign(nodes, 0.0);
+  area_radius_.assign(nodes, 0.0);
 }
 
-void FluidForces::start(const FluidDesc& fluid, const GravityDesc& gravity, double radius, double damping_time) {
+void FluidForces::start(const FluidDesc& fluid, const GravityDesc& gravity, const CableModel& model, const CableState& state,
+                        double damping_time) {
   active_ = fluid.density > 0;
+  if (!active_) return;
   fluid_ = fluid;
   gravity_ = gravity;
-  radius_ = radius;
   damping_time_ = damping_time;
+  const CableMaterials materials(model, state);
+  if (!materials.vary()) {
+    std::fill(radius_.begin(), radius_.end(), model.material.radius);
+    std::fill(area_radius_.begin(), area_radius_.end(), model.material.radius);
+    return;
+  }
+  for (int i = 0; i < state.nodes(); ++i) {
+    const auto square = [](const MaterialDesc& material) { return material.radius * material.radius; };
+    radius_[i] = materials.mean_at(i, [](const MaterialDesc& material) { return material.radius; });
+    area_radius_[i] = std::sqrt(materials.mean_at(i, square));
+  }
 }
 
 void FluidForces::add_loads(const std::vector<double>& rest_lengths, const VectorArray& middle, const VectorArray& position,
@@ -27,16 +43,17 @@ void FluidForces::add_loads(const std::vector<double>& rest_lengths, const Vecto
     if (i > 0) along += get(middle, i - 1), length += 0.5 * rest_lengths[i - 1];
     if (i < n) along += get(middle, i), length += 0.5 * rest_lengths[i];
     const double norm = along.norm();
+    const double radius = radius_[i];
     const Vector3 tangent = norm > 0 ? Vector3(along / norm) : Vector3(Vector3::Zero());
     // A node dips in over its diameter.
     const double depth = fluid_.surface - position.z[i] - 0.5 * displacement.z[i];
-    const double immersed = std::clamp(0.5 + 0.5 * depth / radius_, 0.0, 1.0);
+    const double immersed = std::clamp(0.5 + 0.5 * depth / radius, 0.0, 1.0);
     const Vector3 flow = fluid_.velocity - get(displacement, i) / damping_time_;
     const Vector3 flow_along = flow.dot(tangent) * tangent, flow_across = flow - flow_along;
-    const double width = immersed * fluid_.density * radius_ * length;
+    const double width = immersed * fluid_.density * radius * length;
     const double across = width * fluid_.normal_drag * flow_across.norm();
     const double tangential = width * fluid_.tangential_drag * flow_along.norm();
-    const double displaced = immersed * fluid_.density * M_PI * radius_ * radius_ * length;
+    const double displaced = immersed * fluid_.density * M_PI * area_radius_[i] * area_radius_[i] * length;
     const Vector3 force = across * flow_across + tangential * flow_along - displaced * gravity_.at(get(position, i));
     stiffness_[i] = 2 * across / damping_time_;
     set(force_, i, force);

@@ -12,8 +12,9 @@ namespace verlet_cable {
 class FluidForces {
  public:
   void resize(int nodes);
-  /// `radius` [m]: of the cable; `damping_time` [s]: displacement over it is velocity; infinite in statics.
-  void start(const FluidDesc& fluid, const GravityDesc& gravity, double radius, double damping_time);
+  /// `damping_time` [s]: displacement over it is velocity; infinite in statics.
+  void start(const FluidDesc& fluid, const GravityDesc& gravity, const CableModel& model, const CableState& state,
+             double damping_time);
   bool active() const { return active_; }
   /// Adds the forces [N] to `load`. `rest_lengths`, `middle`: segments [m]; `position`: nodes at the start [m]; `displacement`:
   /// of the nodes [m].
@@ -28,7 +29,7 @@ class FluidForces {
   bool active_ = false;
   FluidDesc fluid_;
   GravityDesc gravity_;
-  double radius_ = 0;
+  std::vector<double> radius_, area_radius_;  // nodes [m]: of mean width and of mean section
   double damping_time_ = 0;
   VectorArray force_;
   std::vector<double> stiffness_;

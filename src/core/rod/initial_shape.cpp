@@ -6,6 +6,7 @@
 #include "rod/catenary.h"
 #include "rod/length_projection.h"
 #include "rod/rod_frames.h"
+#include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
 
@@ -39,6 +40,7 @@ std::vector<Vector3> hanging(const CableModel& model, const CableState& state, c
   const bool weightless = gravity.norm() == 0;
   const Vector3 down = weightless ? Vector3(-Vector3::UnitZ()) : Vector3(gravity.normalized());
   const double weight = weightless ? 1 : gravity.norm();
+  const CableMaterials materials(model, state);
   std::vector<Vector3> nodes(state.nodes());
   nodes[held.front().node] = held.front().position;
   for (int i = held.front().node; i-- > 0;) nodes[i] = nodes[i + 1] + state.rest_lengths[i] * down;
@@ -47,9 +49,11 @@ std::vector<Vector3> hanging(const CableModel& model, const CableState& state, c
     const std::vector<double> lengths(state.rest_lengths.begin() + first, state.rest_lengths.begin() + last);
     std::vector<double> weights;
     for (int i = first + 1; i < last; ++i) weights.push_back(weight * state.masses[i]);
+    std::vector<double> axial_stiffness;
+    for (int i = first; i < last; ++i) axial_stiffness.push_back(materials[i].axial_stiffness);
     const Vector3 &from = held[k].position, &to = held[k + 1].position;
     const Vector3 end = open ? moved_apart(from, to, down, state.length(first, last)) : to;
-    std::vector<Vector3> span = hanging_chain(from, end, lengths, weights, down, model.material.axial_stiffness);
+    std::vector<Vector3> span = hanging_chain(from, end, lengths, weights, down, axial_stiffness);
     for (int i = 0; i <= last - first; ++i) span[i] += static_cast<double>(i) / (last - first) * (to - end);
     std::copy(span.begin(), span.end(), nodes.begin() + first);
   }
@@ -106,9 +110,9 @@ bool set_initial_state(const InitialShapeDesc& initial, bool settles, const Cabl
   return fits;
 }
 
-bool settles_at_start(const CableDesc& desc, const MaterialDesc& material) {
+bool settles_at_start(const CableDesc& desc, const CableModel& model, const CableState& state) {
   if (desc.initial.type == InitialShapeDesc::Type::settled) return true;
-  return desc.initial.type == InitialShapeDesc::Type::automatic && material.bending_stiffness.largest() > 0 &&
+  return desc.initial.type == InitialShapeDesc::Type::automatic && CableMaterials(model, state).any_bends() &&
          std::any_of(desc.attachments.begin(), desc.attachments.end(),
                      [](const AttachmentDesc& a) { return a.type == AttachmentType::clamp; });
 }
@@ -154,19 +158,21 @@ void carry_with_targets(const CableModel& model, const std::vector<HeldNode>& he
   std::vector<double> lengths(state.segments());
   for (int i = 0; i < state.segments(); ++i) lengths[i] = (before[i + 1] - before[i]).norm();
   carry_nodes_along(model, held, gravity, state);
-  const bool elastic = model.material.axial_stiffness < infinity;
+  const bool elastic = CableMaterials(model, state).any_elastic();
   if (elastic && !project_lengths(held, lengths, state)) state.positions = hanging(model, state, held, gravity, false);
   carry_frames(before, state);
 }
 
 void restore_lengths(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {
-  if (model.material.axial_stiffness < infinity) return;
+  const CableMaterials materials(model, state);
+  if (!materials.any_rigid()) return;
   const int n = state.segments();
   std::vector<double> lengths(n);
   reachable_lengths(model, state, held, lengths);
   bool wrong = false;
   for (int i = 0; i < n; ++i) {
     const double length = (state.positions[i + 1] - state.positions[i]).norm();
+    if (is_elastic(materials[i])) lengths[i] = length;
     wrong = wrong || std::abs(length - lengths[i]) > tolerated_length_error * lengths[i];
   }
   if (!wrong) return;

@@ -22,7 +22,7 @@ bool carry_along(const CableModel& model, const std::vector<HeldNode>& held, con
 void carry_with_targets(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state);
 
 /// Whether a cable starts in static equilibrium: also if it is given no shape, and a clamp turns it away from its catenary.
-bool settles_at_start(const CableDesc& desc, const MaterialDesc& material);
+bool settles_at_start(const CableDesc& desc, const CableModel& model, const CableState& state);
 
 /// Gives the segments of an inextensible cable the lengths that its holders allow, after a holder that had lengthened it let go:
 /// from the first holder on, or the middle of a free cable, along the directions that they have.

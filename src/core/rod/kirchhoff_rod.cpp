@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rod/joint_material.h"
 #include "rod/rod_frames.h"
 
 namespace verlet_cable {
@@ -32,14 +33,15 @@ double clamp_twist(const CableState& state, const HeldDirection& direction, int 
 }
 
 /// `around` [m]: the cable that the joint stands for.
-JointStiffness joint_stiffness(const CableModel& model, const CableState& state, int node, double around, double damping_time) {
+JointStiffness joint_stiffness(const JointMaterial& material, const CableState& state, int node, double around,
+                               double damping_time) {
   const double per_length = 1 / state.bending_length(node, around);
   JointStiffness stiffness;
-  stiffness.twist = model.material.torsional_stiffness * per_length;
-  stiffness.bend_y = model.material.bending_stiffness[0] * per_length;
-  stiffness.bend_z = model.material.bending_stiffness[1] * per_length;
-  stiffness.twist_damping = model.material.torsional_damping / damping_time * per_length;
-  stiffness.bend_damping = model.material.bending_damping / damping_time * per_length;
+  stiffness.twist = material.torsional_stiffness * per_length;
+  stiffness.bend_y = material.bending_stiffness[0] * per_length;
+  stiffness.bend_z = material.bending_stiffness[1] * per_length;
+  stiffness.twist_damping = material.torsional_damping / damping_time * per_length;
+  stiffness.bend_damping = material.bending_damping / damping_time * per_length;
   stiffness.rest = rest_angles(state, node, around);
   return stiffness;
 }
@@ -61,7 +63,7 @@ void KirchhoffRod::resize(int segments) {
 void KirchhoffRod::start(const CableModel& model, const CableState& state, const VectorArray& segment, const Boundary& boundary,
                          double h, double damping_time, double part) {
   active_ = true;
-  elastic_ = model.material.axial_stiffness < infinity;
+  elastic_ = CableMaterials(model, state).any_elastic();
   simplified_ = false;
   h_ = h;
   part_ = part;
@@ -73,14 +75,16 @@ void KirchhoffRod::start(const CableModel& model, const CableState& state, const
 }
 
 void KirchhoffRod::start_segments(const CableModel& model, const CableState& state, const VectorArray& segment) {
-  const double moment = section_inertia(model.material);
+  const CableMaterials materials(model, state);
+  double moment = section_inertia(model.material);
   for (int i = 0; i < segments_; ++i) {
     const Vector3& director = state.directors[i];
     set(frames_.start.y, i, director);
+    if (materials.vary()) moment = section_inertia(materials[i]);
     inertia_[i] = moment * state.rest_lengths[i];
     if (is_static_)
       inertia_[i] =
-          std::max(inertia_[i], h_ * h_ * least_static_resistance * model.material.torsional_stiffness / state.rest_lengths[i]);
+          std::max(inertia_[i], h_ * h_ * least_static_resistance * materials[i].torsional_stiffness / state.rest_lengths[i]);
     spin_[i] = is_static_ ? 0 : state.spin[i];
     tau_[i] = h_ * spin_[i];
   }
@@ -99,8 +103,12 @@ void KirchhoffRod::start_segments(const CableModel& model, const CableState& sta
 void KirchhoffRod::start_joints(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions,
                                 double damping_time) {
   const int n = segments_;
-  for (int i = 1; i < n; ++i)
-    joints_.set(i, joint_stiffness(model, state, i, joint_length(state, i), damping_time), state.joint_twist[i]);
+  const CableMaterials materials(model, state);
+  JointMaterial material(model.material);
+  for (int i = 1; i < n; ++i) {
+    if (materials.vary()) material = joint_material(materials, state, i);
+    joints_.set(i, joint_stiffness(material, state, i, joint_length(state, i), damping_time), state.joint_twist[i]);
+  }
   for (const HeldDirection& direction : directions)
     if (direction.node > 0 && direction.node < n) joints_.set(direction.node, {}, 0);
   joints_.start(frames_.start, 0, frames_.start, 1, 1, n);
@@ -108,6 +116,7 @@ void KirchhoffRod::start_joints(const CableModel& model, const CableState& state
 
 void KirchhoffRod::start_clamps(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions,
                                 double damping_time) {
+  const CableMaterials materials(model, state);
   std::size_t count = 0;
   visit_clamp_joints(directions, segments_, [&](std::size_t, int, bool) { ++count; });
   if (clamp_before_.start.x.x.size() < count + 2) {
@@ -127,8 +136,10 @@ void KirchhoffRod::start_clamps(const CableModel& model, const CableState& state
     set(of_clamp.end, joint, end);
     set(of_clamp.middle, joint, start + part_ * (end - start));
     set(of_segment.start, joint, get(frames_.start, segment));
-    clamp_joints_.set(joint, joint_stiffness(model, state, held.node, 0.5 * state.rest_lengths[segment], damping_time),
-                      clamp_twist(state, held, segments_, after));
+    clamp_joints_.set(
+        joint,
+        joint_stiffness(JointMaterial(materials[segment]), state, held.node, 0.5 * state.rest_lengths[segment], damping_time),
+        clamp_twist(state, held, segments_, after));
   });
   clamp_joints_.start(clamp_before_.start, 0, clamp_after_.start, 0, 0, static_cast<int>(count));
 }
@@ -341,6 +352,7 @@ void KirchhoffRod::set_stiffness(const VectorArray& direction, bool simple) {
 
 RodEnergy rod_energy(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions) {
   const int n = state.segments();
+  const CableMaterials materials(model, state);
   RodEnergy sum;
   const auto add = [&](const JointStiffness& stiffness, const JointAngles& angles) {
     const JointEnergy energy = joint_energy(stiffness, angles);
@@ -349,17 +361,18 @@ RodEnergy rod_energy(const CableModel& model, const CableState& state, const std
   };
   for (int i = 1; i < n; ++i) {
     if (std::any_of(directions.begin(), directions.end(), [i](const HeldDirection& d) { return d.node == i; })) continue;
-    add(joint_stiffness(model, state, i, joint_length(state, i), infinity), joint_angles_at(state, i));
+    add(joint_stiffness(joint_material(materials, state, i), state, i, joint_length(state, i), infinity),
+        joint_angles_at(state, i));
   }
   visit_clamp_joints(directions, n, [&](std::size_t target, int segment, bool after) {
     const HeldDirection& held = directions[target];
     const double twist = clamp_twist(state, held, n, after);
     const Eigen::Matrix3d beside = segment_frame(state, segment), clamp = held.end.toRotationMatrix();
-    add(joint_stiffness(model, state, held.node, 0.5 * state.rest_lengths[segment], infinity),
+    add(joint_stiffness(JointMaterial(materials[segment]), state, held.node, 0.5 * state.rest_lengths[segment], infinity),
         after ? joint_angles(clamp, beside, twist) : joint_angles(beside, clamp, twist));
   });
   for (int i = 0; i < n; ++i)
-    sum.spin += 0.5 * section_inertia(model.material) * state.rest_lengths[i] * state.spin[i] * state.spin[i];
+    sum.spin += 0.5 * section_inertia(materials[i]) * state.rest_lengths[i] * state.spin[i] * state.spin[i];
   return sum;
 }
 

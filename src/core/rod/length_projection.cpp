@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "rod/tridiagonal.h"
+#include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
 
@@ -14,10 +15,12 @@ constexpr double length_tolerance = 1e-12;  // relative
 constexpr double straight = 1 - 1e-7;       // of a span's length
 constexpr double regularisation = 1e-12;    // relative, for spans pulled straight
 
-/// J M^-1 J^T for the segments' lengths, and its solution for given changes of ½ s².
+/// J M^-1 J^T for the segments' lengths, and its solution for given changes of ½ s². Segments of length 0 in `lengths`, one a
+/// segment or none, are free to have any.
 class LengthSystem {
  public:
-  LengthSystem(const std::vector<double>& masses, const std::vector<HeldNode>& held) : mobility_(masses.size()) {
+  LengthSystem(const std::vector<double>& masses, const std::vector<HeldNode>& held, const std::vector<double>& lengths)
+      : mobility_(masses.size()), lengths_(lengths) {
     for (std::size_t i = 0; i < masses.size(); ++i) mobility_[i] = 1 / masses[i];
     for (const HeldNode& h : held) mobility_[h.node] = 0;
     diagonal_.resize(masses.size() - 1);
@@ -31,9 +34,10 @@ class LengthSystem {
     for (std::size_t i = 0; i < n; ++i) {
       const Vector3 d = positions[i + 1] - positions[i];
       const double mobility = mobility_[i] + mobility_[i + 1];
-      diagonal_[i] = mobility > 0 ? d.squaredNorm() * mobility * (1 + regularisation) : 1;
-      impulse_[i] = mobility > 0 ? changes[i] : 0;
+      diagonal_[i] = movable(i) ? d.squaredNorm() * mobility * (1 + regularisation) : 1;
+      impulse_[i] = movable(i) ? changes[i] : 0;
       if (i + 1 < n) off_[i] = -mobility_[i + 1] * d.dot(positions[i + 2] - positions[i + 1]);
+      if (i + 1 < n && (is_free(i) || is_free(i + 1))) off_[i] = 0;
     }
     solve_tridiagonal(diagonal_, off_, impulse_, static_cast<int>(n));
     Vector3 direction = positions[1] - positions[0];
@@ -46,16 +50,20 @@ class LengthSystem {
   }
 
   bool movable_node(int node) const { return mobility_[node] > 0; }
-  bool movable(int segment) const { return mobility_[segment] + mobility_[segment + 1] > 0; }
+  bool movable(std::size_t segment) const { return mobility_[segment] + mobility_[segment + 1] > 0 && !is_free(segment); }
 
  private:
+  bool is_free(std::size_t segment) const { return lengths_[segment] == 0; }
+
   std::vector<double> mobility_, diagonal_, off_, impulse_;
+  const std::vector<double>& lengths_;
 };
 
 /// Spans that their holders pull straight have only one shape.
-void straighten_taut_spans(const std::vector<HeldNode>& held, CableState& state) {
+void straighten_taut_spans(const CableMaterials& materials, const std::vector<HeldNode>& held, CableState& state) {
   for (std::size_t k = 0; k + 1 < held.size(); ++k) {
     const int first = held[k].node, last = held[k + 1].node;
+    if (materials.any_elastic_between(first, last)) continue;
     const Vector3 span = held[k + 1].position - held[k].position;
     const double rest_length = state.length(first, last);
     if (span.norm() < straight * rest_length) continue;
@@ -67,21 +75,28 @@ void straighten_taut_spans(const std::vector<HeldNode>& held, CableState& state)
   }
 }
 
+void free_elastic(const CableMaterials& materials, std::vector<double>& lengths) {
+  for (std::size_t i = 0; i < lengths.size(); ++i)
+    if (is_elastic(materials[static_cast<int>(i)])) lengths[i] = 0;
+}
+
 }  // namespace
 
 bool project_positions(const CableModel& model, const std::vector<HeldNode>& held, CableState& state) {
   for (const HeldNode& h : held) state.positions[h.node] = h.position;
-  if (model.material.axial_stiffness < infinity) return true;
-  straighten_taut_spans(held, state);
+  const CableMaterials materials(model, state);
+  if (!materials.any_rigid()) return true;
+  straighten_taut_spans(materials, held, state);
   std::vector<double> lengths(state.segments());
   reachable_lengths(model, state, held, lengths);
+  free_elastic(materials, lengths);
   return project_lengths(held, lengths, state);
 }
 
 bool project_lengths(const std::vector<HeldNode>& held, const std::vector<double>& lengths, CableState& state) {
   const int n = state.segments();
   std::vector<double> changes(n);
-  LengthSystem system(state.masses, held);
+  LengthSystem system(state.masses, held, lengths);
   // Seen from the cable's first node: far from the origin, rounding of the places outweighs what is left of the lengths.
   const Vector3 origin = state.positions.front();
   std::vector<Vector3> local;
@@ -110,11 +125,14 @@ void project_velocities(const CableModel& model, const std::vector<HeldNode>& he
   const std::vector<Vector3>& positions = state.positions;
   std::vector<Vector3>& velocities = state.velocities;
   for (const HeldNode& h : held) velocities[h.node] = h.velocity;
-  if (model.material.axial_stiffness < infinity) return;
+  const CableMaterials materials(model, state);
+  if (!materials.any_rigid()) return;
   std::vector<double> changes(state.segments());
   for (int i = 0; i < state.segments(); ++i)
     changes[i] = -(positions[i + 1] - positions[i]).dot(velocities[i + 1] - velocities[i]);
-  LengthSystem(state.masses, held).apply(positions, changes, velocities);
+  std::vector<double> lengths = state.rest_lengths;
+  free_elastic(materials, lengths);
+  LengthSystem(state.masses, held, lengths).apply(positions, changes, velocities);
 }
 
 }  // namespace verlet_cable

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "rod/material_frames.h"
+#include "rod/twist.h"
+#include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
 
@@ -49,7 +51,9 @@ void find_material_spin(const CableModel& model, const CableState& state, const 
     along += damping[i] * turned.dot(after.rate - before.rate - 0.5 * (spin[i - 1] + spin[i]) * turned);
     before = after;
   }
-  const bool passed_on = model.material.torsional_stiffness > 0 || model.material.torsional_damping > 0;
+  const CableMaterials materials(model, state);
+  const bool passed_on = materials.any(
+      [](const MaterialDesc& material) { return material.torsional_stiffness > 0 || material.torsional_damping > 0; });
   if (directions.empty() || !passed_on) {
     const double common = square > 0 ? along / square : 0;
     for (int i = 0; i < n; ++i) spin[i] += common;
@@ -61,7 +65,17 @@ void find_material_spin(const CableModel& model, const CableState& state, const 
     const double first = missing_at(directions[k == 0 ? 0 : k - 1]);
     const double last = missing_at(directions[std::min(k, directions.size() - 1)]);
     const int end = k < directions.size() ? directions[k].node : n;
-    for (int i = done; i < end; ++i) spin[i] += first + (last - first) * (i + 0.5 - done) / (end - done);
+    if (materials.vary() && done < end) {
+      const Series series = torsion_of(materials, state, done, end);
+      double before = 0;
+      for (int i = done; i < end; ++i) {
+        const double share = twist_share(series, materials, state, i);
+        spin[i] += first + (last - first) * (before + 0.5 * share);
+        before += share;
+      }
+    } else {
+      for (int i = done; i < end; ++i) spin[i] += first + (last - first) * (i + 0.5 - done) / (end - done);
+    }
     done = std::max(done, end);
   }
 }

@@ -8,10 +8,10 @@
 
 namespace verlet_cable {
 
-/// How the material of a cable without frames spins about its segments' directions, one a segment [rad/s]: it twists evenly
-/// between clamps that pass their roll on, not at all beyond them. Where there are none it spins as it has to bend least: bending
-/// that only turns with the material is not damped. `segment`: [m]; `damping`: what resists bending, a node; `h`: the substep
-/// [s].
+/// How the material of a cable without frames spins about its segments' directions, one a segment [rad/s]: it twists as under one
+/// torque between clamps that pass their roll on, not at all beyond them. Where there are none it spins as it has to bend least:
+/// bending that only turns with the material is not damped. `segment`: [m]; `damping`: what resists bending, a node; `h`: the
+/// substep [s].
 void find_material_spin(const CableModel& model, const CableState& state, const VectorArray& segment,
                         const std::vector<HeldDirection>& directions, const std::vector<double>& damping, double h,
                         std::vector<double>& spin);

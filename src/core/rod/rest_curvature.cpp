@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "rod/rod_frames.h"
+#include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
 
@@ -23,12 +24,12 @@ void spread(const std::vector<std::array<double, 2>>& profile, CableState& state
 
 }  // namespace
 
-void set_rest_shape(const CableDesc& desc, const MaterialDesc& material, CableState& state) {
+void set_rest_shape(const CableDesc& desc, const CableModel& model, CableState& state) {
   using Type = RestCurvatureDesc::Type;
   const std::size_t nodes = state.nodes();
   if (desc.rest_twist != 0) state.rest_twist.assign(nodes, desc.rest_twist);
   // What does not resist bending has no shape.
-  if (desc.rest_curvature.is_straight() || !(material.bending_stiffness.largest() > 0)) return;
+  if (desc.rest_curvature.is_straight() || !CableMaterials(model, state).any_bends()) return;
   state.rest_curvature.assign(nodes, desc.rest_curvature.curvature);
   if (desc.rest_curvature.type == Type::profile) spread(desc.rest_curvature.profile, state);
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "verlet_cable/core/cable_materials.h"
+
 namespace verlet_cable {
 
 namespace {
@@ -15,6 +17,8 @@ constexpr double static_velocity_tolerance = 1e-8;
 constexpr double fastest_convergence = 0.03;
 /// Of the weight.
 constexpr double taut_stiffness = 1e7;
+/// Of the inertia in a substep, where bodies give way.
+constexpr double taut_inertia = 1e5;
 constexpr double standard_gravity = 9.81;
 /// A holder's change of velocity that moves a node by less in a substep, in segment lengths, goes unnoticed.
 constexpr double noticed_jerk = 1e-9;
@@ -39,13 +43,15 @@ double stiffness_of_taut(const Substep& s, const CableState& state) {
   for (const HeldNode& held : s.boundary.nodes) mass += held.body_mass;
   const double length = state.length();
   const double weight = std::max(s.environment.gravity.at(state.positions[0]).norm(), standard_gravity) * mass;
-  return taut_stiffness * (weight + s.model.material.bending_stiffness.largest() / (length * length));
+  double inertia = 0;
+  if (s.boundary.is_on_bodies()) inertia = taut_inertia * s.inertia() * mass * length / (s.h * s.h);
+  return inertia + taut_stiffness * (weight + CableMaterials(s.model, state).largest_bending_stiffness() / (length * length));
 }
 
 bool holders_accelerate(const Substep& s, const CableState& state) {
   const double noticed = noticed_jerk * state.rest_lengths[0] / s.h;
   return std::any_of(s.boundary.nodes.begin(), s.boundary.nodes.end(), [&](const HeldNode& target) {
-    return (target.velocity - state.velocities[target.node]).squaredNorm() > noticed * noticed;
+    return target.body < 0 && (target.velocity - state.velocities[target.node]).squaredNorm() > noticed * noticed;
   });
 }
 

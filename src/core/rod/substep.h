@@ -72,7 +72,7 @@ class Convergence {
 /// strains it by a part in ten million.
 double stiffness_of_taut(const Substep& substep, const CableState& state);
 
-/// Whether a holder's velocity changes: only then do velocities along the segments appear that the equations do not damp. `state`
+/// Whether the velocity of a holder that is no body changes: only then do velocities along the segments appear that the equations do not damp. `state`
 /// is that at the start of the substep.
 bool holders_accelerate(const Substep& substep, const CableState& state);
 

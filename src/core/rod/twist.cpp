@@ -9,10 +9,53 @@ namespace verlet_cable {
 
 namespace {
 
+struct Torsion {
+  double stiffness = 0, damping = 0;  ///< [N m^2], [N m^2 s]
+};
+
+Torsion torsion_at(const CableMaterials& materials, int segment) {
+  const MaterialDesc& material = materials[segment];
+  if (material.bending_stiffness.largest() == 0) return {};
+  return {material.torsional_stiffness, material.torsional_damping};
+}
+
 /// Substeps between two measurements of the angles, which cost as much as an iteration.
 constexpr int measuring_interval = 16;
 
 }  // namespace
+
+double torsional_stiffness_at(const CableMaterials& materials, int segment) {
+  return torsion_at(materials, segment).stiffness;
+}
+
+Series torsion_of(const CableMaterials& materials, const CableState& state, int first, int last) {
+  Series series;
+  for (int i = first; i < last; ++i) {
+    const Torsion torsion = torsion_at(materials, i);
+    series.add(state.rest_lengths[i], torsion.stiffness, torsion.damping);
+  }
+  return series;
+}
+
+double twist_share(const Series& series, const CableMaterials& materials, const CableState& state, int segment) {
+  const Torsion torsion = torsion_at(materials, segment);
+  return series.share(state.rest_lengths[segment], torsion.stiffness, torsion.damping);
+}
+
+void spread_twist(const CableModel& model, const std::vector<TwistSpan>& spans, CableState& state) {
+  const CableMaterials materials(model, state);
+  std::fill(state.twist.begin(), state.twist.end(), 0.0);
+  for (const TwistSpan& span : spans) {
+    if (materials.vary()) {
+      const Series series = torsion_of(materials, state, span.first_node, span.last_node);
+      for (int i = span.first_node; i < span.last_node; ++i)
+        state.twist[i] = span.angle * twist_share(series, materials, state, i) / state.rest_lengths[i];
+    } else {
+      const double length = state.length(span.first_node, span.last_node);
+      std::fill(state.twist.begin() + span.first_node, state.twist.begin() + span.last_node, span.angle / length);
+    }
+  }
+}
 
 double relative_roll(const Quaternion& first, const Quaternion& last, const Vector3* nodes, int count) {
   Vector3 direction = first * Vector3::UnitX(), normal = first * Vector3::UnitY();
@@ -40,13 +83,23 @@ void Twist::resize(int segments) {
 
 void Twist::start(const CableModel& model, const CableState& state, const std::vector<TwistSpan>& spans, double h, double part) {
   spans_ = nullptr;
-  if (spans.empty() || (model.material.torsional_stiffness == 0 && model.material.torsional_damping == 0)) return;
+  const CableMaterials materials(model, state);
+  const auto resists = [](const MaterialDesc& material) {
+    return material.torsional_stiffness != 0 || material.torsional_damping != 0;
+  };
+  if (spans.empty() || !materials.any(resists)) return;
   spans_ = &spans;
   part_ = part;
   states_.resize(spans.size());
   stiffness_.resize(spans.size());
   damping_.resize(spans.size());
   for (std::size_t k = 0; k < spans.size(); ++k) {
+    if (materials.vary()) {
+      const Series series = torsion_of(materials, state, spans[k].first_node, spans[k].last_node);
+      stiffness_[k] = series.stiffness();
+      damping_[k] = series.damping() / h;
+      continue;
+    }
     const double length = state.length(spans[k].first_node, spans[k].last_node);
     stiffness_[k] = model.material.torsional_stiffness / length;
     damping_[k] = model.material.torsional_damping / (length * h);

@@ -3,12 +3,14 @@
 #include <vector>
 
 #include "geometry/vector_array.h"
+#include "rod/series.h"
 #include "target/boundary.h"
-#include "verlet_cable/core/cable.h"
+#include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
 
-/// A piece of cable between two clamps. Twist spreads along it at the speed of sound and is taken to be uniform.
+/// A piece of cable between two clamps. Twist spreads along it at the speed of sound: its torque is taken to be the same
+/// everywhere.
 struct TwistSpan {
   int first_holder = 0, last_holder = 0;  ///< indices into Boundary::directions
   int first_node = 0, last_node = 0;
@@ -16,6 +18,16 @@ struct TwistSpan {
   double origin = 0;  ///< [rad] roll of the last clamp against the first one's, carried along the cable, that would be no twist
   int age = 0;        ///< substeps since the angle was measured; in between its changes are added up
 };
+
+/// [N m^2] GJ of a segment of a cable of several materials: what does not resist bending gives way to any torque.
+double torsional_stiffness_at(const CableMaterials& materials, int segment);
+/// How the segments from node `first` to node `last` resist twist together.
+Series torsion_of(const CableMaterials& materials, const CableState& state, int first, int last);
+/// What part of the twist of those in `series` is in a segment.
+double twist_share(const Series& series, const CableMaterials& materials, const CableState& state, int segment);
+
+/// Sets the twist of the segments: none outside the spans.
+void spread_twist(const CableModel& model, const std::vector<TwistSpan>& spans, CableState& state);
 
 /// Roll of one clamp's orientation against another's that is carried along segments without twist [rad]: `nodes`: positions of
 /// the nodes between them.

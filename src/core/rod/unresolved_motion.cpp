@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "rod/rigid_motion.h"
+#include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
 
@@ -32,10 +33,11 @@ Vector3 velocity_between(const std::vector<HeldNode>& held, int node, std::size_
 
 }  // namespace
 
-Scheme next_scheme(const CableModel& model, const UnresolvedMotion& motion) {
+Scheme next_scheme(const CableModel& model, const CableState& state) {
+  const UnresolvedMotion& motion = state.unresolved;
   if (motion.damped == 0) return Scheme::conserving;
   // The generalised-alpha method overshoots where an elastic cable is suddenly let go.
-  return motion.damped == damped_substeps || model.material.axial_stiffness < infinity ? Scheme::first_order : Scheme::damped;
+  return motion.damped == damped_substeps || CableMaterials(model, state).any_elastic() ? Scheme::first_order : Scheme::damped;
 }
 
 void begin_anew(UnresolvedMotion& motion) {
@@ -88,10 +90,10 @@ void MotionCleaner::load(double h, const CableModel& model, const CableState& st
                          KktSystem& system) {
   for (int i = 0; i < state.nodes(); ++i) set(alternating_, i, system.movable[i] * 0.25 * h * state.unresolved.turns[i]);
   for (int i = 0; i < state.nodes(); ++i) set(system.load, i, inertia[i] * get(alternating_, i));
-  const bool elastic = model.material.axial_stiffness < infinity;
+  const CableMaterials materials(model, state);
   for (int i = 0; i < state.segments(); ++i) {
     const Vector3 kept = get(end_velocity, i + 1) - get(end_velocity, i) - get(alternating_, i + 1) + get(alternating_, i);
-    system.gap[i] = elastic ? 0 : growth[i] - get(segment, i).dot(kept);
+    system.gap[i] = is_elastic(materials[i]) ? 0 : growth[i] - get(segment, i).dot(kept);
   }
 }
 

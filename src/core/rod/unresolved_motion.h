@@ -18,7 +18,7 @@ enum class Treatment { none, cleaning, damping };
 constexpr int damped_substeps = 3;
 
 /// How the next substep of a cable goes.
-Scheme next_scheme(const CableModel& model, const UnresolvedMotion& motion);
+Scheme next_scheme(const CableModel& model, const CableState& state);
 
 /// Motion begins anew, as after an edit: the next two substeps are not judged.
 void begin_anew(UnresolvedMotion& motion);

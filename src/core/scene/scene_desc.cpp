@@ -77,6 +77,13 @@ const MaterialDesc* SceneDesc::find_material(const std::string& name) const {
   return found == materials.end() ? nullptr : &found->material;
 }
 
+int section_at(const CableDesc& cable, int segment) {
+  const double middle = (segment + 0.5) * cable.length / cable.segments;
+  const auto found = std::find_if(cable.sections.begin(), cable.sections.end(),
+                                  [middle](const SectionDesc& section) { return middle >= section.from && middle < section.to; });
+  return found == cable.sections.end() ? -1 : static_cast<int>(found - cable.sections.begin());
+}
+
 int node_at(const CableDesc& cable, const PlaceDesc& place) {
   switch (place.at) {
     case PlaceDesc::At::start:

@@ -1,5 +1,8 @@
 #include "scene/validate_materials.h"
 
+#include <algorithm>
+#include <vector>
+
 namespace verlet_cable {
 
 namespace {
@@ -44,8 +47,21 @@ void check_materials(const SceneDesc& scene, Errors& errors) {
   }
 }
 
-void check_damping(const std::string& key, const SceneDesc& scene, const CableDesc& cable, const MaterialDesc& material,
+std::vector<NamedMaterial> materials_of(const SceneDesc& scene, const CableDesc& cable) {
+  std::vector<NamedMaterial> materials;
+  const auto add = [&](const std::string& name) {
+    const auto is_it = [&](const NamedMaterial& other) { return other.name == name; };
+    const MaterialDesc* material = scene.find_material(name);
+    if (material && std::none_of(materials.begin(), materials.end(), is_it)) materials.push_back({name, *material});
+  };
+  add(cable.material);
+  for (const SectionDesc& section : cable.sections) add(section.material);
+  return materials;
+}
+
+void check_damping(const std::string& key, const SceneDesc& scene, const CableDesc& cable, const NamedMaterial& named,
                    Errors& errors) {
+  const auto& [name, material] = named;
   if (!has_sound_size(cable) || !material_fields[0].range.contains(material.linear_density) ||
       !scene_fields[0].range.contains(scene.time_step))
     return;
@@ -65,27 +81,52 @@ void check_damping(const std::string& key, const SceneDesc& scene, const CableDe
                              Limit{"torsional_damping", material.torsional_damping, bending, "N m^2 s", "segment length^4"}}) {
     // What is out of its range is an error of the material already.
     if (limit.value <= limit.most || !not_negative.contains(limit.value)) continue;
-    errors.add("materials." + escaped(cable.material) + "." + limit.key, number_text(limit.value),
+    errors.add("materials." + escaped(name) + "." + limit.key, number_text(limit.value),
                "at most " + rounded_bound_text(limit.most, -1) + " [" + limit.unit + "] for " + key + ", " +
                    number_text(largest_ratio) + " linear_density " + limit.words +
                    " / time_step, the most that can be simulated at this time_step");
   }
 }
 
-void check_torsional_stiffness(const std::string& key, const CableDesc& cable, const MaterialDesc& material, Errors& errors) {
+namespace {
+
+/// `curved`, `twisted`: in words, why a cable of these materials has frames; empty where it has no such rest shape.
+void check_torsional_stiffness(const std::string& cable, const std::vector<NamedMaterial>& materials, const std::string& curved,
+                               const std::string& twisted, Errors& errors) {
+  const auto bends = [](const NamedMaterial& m) { return m.material.bending_stiffness.largest() > 0; };
+  const auto is_unequal = [](const NamedMaterial& m) { return !m.material.bending_stiffness.is_isotropic(); };
+  const auto unequal = std::find_if(materials.begin(), materials.end(), is_unequal);
+  const bool is_curved = !curved.empty() && std::any_of(materials.begin(), materials.end(), bends);
+  std::string why;
+  if (unequal != materials.end())
+    why = "as " + cable + " is of " + escaped(unequal->name) + ", too, whose bending_stiffness differs about y and z";
+  else if (is_curved)
+    why = materials.size() > 1 ? "as " + curved : "with bending_stiffness, as " + curved;
+  else if (!twisted.empty())
+    why = "as " + twisted;
+  else
+    return;
   // What bends unequally needs it anyhow.
-  if (!material.bending_stiffness.is_isotropic()) return;
-  if (!cable.rest_curvature.is_straight() && material.bending_stiffness.largest() > 0)
-    require_torsional_stiffness(cable.material, material, "with bending_stiffness, as " + key + " has rest_curvature", errors);
-  else if (cable.rest_twist != 0 && cable_fields[1].range.contains(cable.rest_twist))
-    require_torsional_stiffness(cable.material, material, "as " + key + " has rest_twist", errors);
+  for (const NamedMaterial& named : materials)
+    if (!is_unequal(named)) require_torsional_stiffness(named.name, named.material, why, errors);
 }
 
-void check_torsional_stiffness(const SimulatedCable& cable, const MaterialDesc& material, Errors& errors) {
-  const bool is_curved = !cable.state.rest_curvature.empty() && material.bending_stiffness.largest() > 0;
-  if (is_curved || !cable.state.rest_twist.empty())
-    require_torsional_stiffness(cable.model->material_name, material,
-                                "as cable " + cable.model->name + " has " + (is_curved ? "rest_curvature" : "rest_twist"), errors);
+}  // namespace
+
+void check_torsional_stiffness(const std::string& key, const SceneDesc& scene, const CableDesc& cable, Errors& errors) {
+  const bool is_twisted = cable.rest_twist != 0 && cable_fields[1].range.contains(cable.rest_twist);
+  check_torsional_stiffness(key, materials_of(scene, cable),
+                            cable.rest_curvature.is_straight() ? "" : key + " has rest_curvature",
+                            is_twisted ? key + " has rest_twist" : "", errors);
+}
+
+void check_torsional_stiffness(const SimulatedCable& cable, const SceneDesc& scene, Errors& errors) {
+  const std::string name = "cable " + cable.model->name;
+  const auto in_scene = [&](const std::string& material) { return NamedMaterial{material, *scene.find_material(material)}; };
+  std::vector<NamedMaterial> materials{in_scene(cable.model->material_name)};
+  for (const NamedMaterial& other : cable.model->section_materials) materials.push_back(in_scene(other.name));
+  check_torsional_stiffness(name, materials, cable.state.rest_curvature.empty() ? "" : name + " has rest_curvature",
+                            cable.state.rest_twist.empty() ? "" : name + " has rest_twist", errors);
 }
 
 }  // namespace verlet_cable

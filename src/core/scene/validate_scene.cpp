@@ -100,17 +100,57 @@ void check_stiff_ends(const std::string& key, const CableDesc& cable, Errors& er
     errors.add(key, list_text(cable.stiff_ends), "together less than the cable's length, " + number_text(cable.length) + " m");
 }
 
+/// Sections that are sound by themselves: where they are, and that none is in another.
+void check_section(const std::string& key, const std::string& list, const CableDesc& cable, std::size_t index, Errors& errors) {
+  const SectionDesc& section = cable.sections[index];
+  const std::string place = number_text(section.from) + " to " + number_text(section.to) + " m";
+  if (section.to > cable.length) {
+    errors.add(key + ".to", number_text(section.to), "at most the cable's length, " + number_text(cable.length) + " m");
+    return;
+  }
+  if (!(section.from < section.to)) {
+    errors.add(key + ".to", number_text(section.to), "more than " + key + ".from, " + number_text(section.from) + " m");
+    return;
+  }
+  for (std::size_t other = 0; other < index; ++other) {
+    const SectionDesc& before = cable.sections[other];
+    if (!(section.from < before.to && before.from < section.to)) continue;
+    errors.add(key, place,
+               "sections that do not overlap; " + indexed(list, other) + " is from " + number_text(before.from) + " to " +
+                   number_text(before.to) + " m");
+    return;
+  }
+  const double length = cable.length / cable.segments;
+  const int near = static_cast<int>(std::min(section.from / length, cable.segments - 1.0));
+  for (int i = std::max(near - 1, 0); i <= std::min(near + 1, cable.segments - 1); ++i)
+    if (section_at(cable, i) == static_cast<int>(index)) return;
+  errors.add(key, place,
+             "with the middle of a segment in it; segments are " + rounded_text(length) + " m long, more segments are shorter");
+}
+
+void check_sections(const std::string& list, const SceneDesc& scene, const CableDesc& cable, Errors& errors) {
+  for (std::size_t i = 0; i < cable.sections.size(); ++i) {
+    const SectionDesc& section = cable.sections[i];
+    const std::string key = indexed(list, i);
+    const std::size_t found = errors.size();
+    check_fields(key + ".", section_fields, section, errors);
+    if (!scene.find_material(section.material))
+      errors.add(key + ".material", quoted(section.material),
+                 "a material of the scene (" + material_names(scene.materials) + ")");
+    if (errors.size() == found && has_sound_size(cable)) check_section(key, list, cable, i, errors);
+  }
+}
+
 void check_cable(const std::string& key, const SceneDesc& scene, const CableDesc& cable, const SceneNames& scene_names,
                  UniqueNames& attachments, Errors& errors) {
   const std::string prefix = key + ".";
   check_fields(prefix, cable_fields, cable, errors);
   check_fields(prefix, cable_integer_fields, cable, errors);
-  if (const MaterialDesc* material = scene.find_material(cable.material)) {
-    check_damping(key, scene, cable, *material, errors);
-    check_torsional_stiffness(key, cable, *material, errors);
-  } else {
+  if (!scene.find_material(cable.material))
     errors.add(prefix + "material", quoted(cable.material), "a material of the scene (" + material_names(scene.materials) + ")");
-  }
+  check_sections(prefix + "sections", scene, cable, errors);
+  for (const NamedMaterial& named : materials_of(scene, cable)) check_damping(key, scene, cable, named, errors);
+  check_torsional_stiffness(key, scene, cable, errors);
   check_numbers(prefix + "color", cable.color, unit_interval, "", errors);
   check_initial(prefix + "initial", cable, scene_names.joints[&cable - scene.cables.data()], errors);
   check_rest_curvature(prefix + "rest_curvature", cable, errors);
@@ -146,16 +186,36 @@ Vector3 held_point(const AttachmentDesc& attachment, const Pose& frame) {
   return frame.position + frame.orientation * attachment.offset;
 }
 
+/// What a segment is made of, in a scene that has all materials.
+const MaterialDesc& material_at(const SceneDesc& scene, const CableDesc& cable, int segment) {
+  const int section = section_at(cable, segment);
+  return *scene.find_material(section < 0 ? cable.material : cable.sections[section].material);
+}
+
+bool bends_at(const SceneDesc& scene, const CableDesc& cable, int node) {
+  const auto bends = [&](int segment) { return material_at(scene, cable, segment).bending_stiffness.largest() > 0; };
+  return bends(std::max(node - 1, 0)) || bends(std::min(node, cable.segments - 1));
+}
+
+/// Whether none of the cable between two nodes can stretch.
+bool is_rigid(const SceneDesc& scene, const CableDesc& cable, int first, int last) {
+  const int uniform_last = cable.sections.empty() ? std::min(first + 1, last) : last;
+  for (int i = first; i < uniform_last; ++i)
+    if (material_at(scene, cable, i).axial_stiffness < infinity) return false;
+  return true;
+}
+
 /// Where two attachments leave no node between them free, the one segment that is not held along its clamp has the length that it
 /// has at rest only if they are in the right places. Clamps of a cable without bending stiffness hold the nodes beside theirs.
-void check_held_segment(const std::string& key, const CableDesc& cable, bool bends, const AttachmentDesc& first,
+void check_held_segment(const std::string& key, const SceneDesc& scene, const CableDesc& cable, const AttachmentDesc& first,
                         const AttachmentDesc& second, const std::map<std::string, Pose>& frames, Errors& errors) {
   const double length = cable.length / cable.segments;
   int free = node_at(cable, second.place) - node_at(cable, first.place) - 1;
   const auto end_of = [&](const AttachmentDesc& attachment, double way) -> Vector3 {
     const Pose& frame = frames.at(attachment.frame);
     const Vector3 point = held_point(attachment, frame);
-    if (bends || attachment.type != AttachmentType::clamp || free == 0) return point;
+    if (attachment.type != AttachmentType::clamp || free == 0 || bends_at(scene, cable, node_at(cable, attachment.place)))
+      return point;
     --free;
     return point + frame.orientation * quaternion_from_rpy(attachment.rotation) * Vector3(way, 0, 0);
   };
@@ -169,8 +229,8 @@ void check_held_segment(const std::string& key, const CableDesc& cable, bool ben
              "so many that a node between them is free, as the cable is inextensible (axial_stiffness .inf)");
 }
 
-void check_distances(const std::string& key, const CableDesc& cable, bool bends, const std::map<std::string, Pose>& frames,
-                     Errors& errors) {
+void check_distances(const std::string& key, const SceneDesc& scene, const CableDesc& cable,
+                     const std::map<std::string, Pose>& frames, Errors& errors) {
   std::vector<std::size_t> order(cable.attachments.size());
   std::iota(order.begin(), order.end(), 0);
   const auto node = [&](std::size_t i) { return node_at(cable, cable.attachments[i].place); };
@@ -183,6 +243,7 @@ void check_distances(const std::string& key, const CableDesc& cable, bool bends,
   for (std::size_t i = 1; i < order.size(); ++i) {
     const AttachmentDesc& first = cable.attachments[order[i - 1]];
     const AttachmentDesc& second = cable.attachments[order[i]];
+    if (!is_rigid(scene, cable, node(order[i - 1]), node(order[i]))) continue;
     const double length = cable.length * (node(order[i]) - node(order[i - 1])) / cable.segments;
     const double distance = (held_point(second, frames.at(second.frame)) - held_point(first, frames.at(first.frame))).norm();
     if (length > 0 && distance > length * (1 + distance_tolerance)) {
@@ -192,7 +253,7 @@ void check_distances(const std::string& key, const CableDesc& cable, bool bends,
                      " m, as the cable is inextensible (axial_stiffness .inf)");
       continue;
     }
-    check_held_segment(key, cable, bends, first, second, frames, errors);
+    check_held_segment(key, scene, cable, first, second, frames, errors);
   }
 }
 
@@ -225,9 +286,9 @@ std::vector<std::string> validate_distances(const SceneDesc& scene, const Bounda
   }
   for (std::size_t i = 0; i < scene.cables.size(); ++i) {
     const CableDesc& cable = scene.cables[i];
-    const MaterialDesc* material = scene.find_material(cable.material);
-    if (material && material->axial_stiffness == infinity && has_sound_size(cable))
-      check_distances(indexed("cables", i), cable, material->bending_stiffness.largest() > 0, poses, errors);
+    const auto is_known = [&](const SectionDesc& section) { return scene.find_material(section.material) != nullptr; };
+    const bool known = scene.find_material(cable.material) && std::all_of(cable.sections.begin(), cable.sections.end(), is_known);
+    if (known && has_sound_size(cable)) check_distances(indexed("cables", i), scene, cable, poses, errors);
   }
   return errors.take();
 }

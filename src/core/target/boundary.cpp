@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "verlet_cable/core/cable_materials.h"
+
 namespace verlet_cable {
 
 namespace {
@@ -21,11 +23,13 @@ bool Boundary::is_on_bodies() const {
 int reachable_lengths(const CableModel& model, const CableState& state, const std::vector<HeldNode>& held,
                       std::vector<double>& lengths) {
   for (int i = 0; i < state.segments(); ++i) lengths[i] = state.rest_lengths[i];
-  if (model.material.axial_stiffness < infinity) return -1;
+  const CableMaterials materials(model, state);
+  if (!materials.any_rigid()) return -1;
   int overstretched = -1;
   for (std::size_t k = 0; k + 1 < held.size(); ++k) {
     if (held[k].body >= 0 || held[k + 1].body >= 0) continue;  // they give way
     const int first = held[k].node, last = held[k + 1].node;
+    if (materials.any_elastic_between(first, last)) continue;
     const double rest_length = state.length(first, last);
     const double distance = (held[k + 1].position - held[k].position).norm();
     const double rounded = rounding * held[k].position.cwiseAbs().maxCoeff();

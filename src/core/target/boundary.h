@@ -59,9 +59,9 @@ struct HolderLoads {
   std::vector<Vector3> torques;  ///< one a held direction [N m]
 };
 
-/// The lengths [m] that the segments can keep: their rest lengths, but longer between holders of an inextensible cable that are
-/// further apart than the cable between them is long. Returns the first node of such a span, -1 if there is none. `held` ascends
-/// by node; `lengths`: one a segment.
+/// The lengths [m] that the segments can keep: their rest lengths, but longer between holders that are further apart
+/// than the cable between them is long, where none of it can stretch. Returns the first node of such a span, -1 if there is none.
+/// `held` ascends by node; `lengths`: one a segment.
 int reachable_lengths(const CableModel& model, const CableState& state, const std::vector<HeldNode>& held,
                       std::vector<double>& lengths);
 

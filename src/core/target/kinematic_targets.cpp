@@ -5,6 +5,7 @@
 
 #include "rod/rod_frames.h"
 #include "target/jump.h"
+#include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/rotation.h"
 
 namespace verlet_cable {
@@ -25,8 +26,11 @@ double remaining(double caught, double distance, double time) {
   return 1 - part * part * (3 - 2 * part);
 }
 
-bool holds_direction(const CableModel& model, const Attachment& attachment) {
-  return attachment.type == AttachmentType::clamp && model.material.bending_stiffness.largest() > 0;
+/// Whether the cable resists bending on a side of a node.
+bool bends_at(const CableModel& model, const CableState& state, int node) {
+  const CableMaterials materials(model, state);
+  return std::max(materials[std::max(node - 1, 0)].bending_stiffness.largest(),
+                  materials[std::min(node, state.segments() - 1)].bending_stiffness.largest()) > 0;
 }
 
 /// Where an attachment at `pose` wants its own node or one next to it.
@@ -89,7 +93,7 @@ std::vector<WantedNode> wanted_nodes(const CableModel& model, const CableState& 
   const Pose pose = frame * attachment.pose;
   const int node = attachment.node;
   std::vector<WantedNode> wanted{{node, pose.position}};
-  if (attachment.type == AttachmentType::hinge || model.material.bending_stiffness.largest() > 0) return wanted;
+  if (attachment.type == AttachmentType::hinge || bends_at(model, state, node)) return wanted;
   if (node > 0) wanted.push_back({node - 1, target_position(state, attachment, pose, node - 1)});
   if (node < state.segments()) wanted.push_back({node + 1, target_position(state, attachment, pose, node + 1)});
   return wanted;
@@ -136,7 +140,7 @@ KinematicTargets find_targets(const CableModel& model, const CableState& state, 
       const std::vector<WantedNode> wanted = wanted_nodes(model, state, attachments[a], frames[attachments[a].frame]);
       for (const WantedNode& wanted : wanted)
         if ((wanted.node == attachments[a].node) == own) add_node(a, wanted);
-      if (own && holds_direction(model, attachments[a])) add_direction(a);
+      if (own && attachments[a].type == AttachmentType::clamp && bends_at(model, state, attachments[a].node)) add_direction(a);
     }
   }
   const auto by_node = [](const auto& a, const auto& b) { return a.node < b.node; };

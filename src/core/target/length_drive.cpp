@@ -6,6 +6,7 @@
 
 #include "chain/node_arrays.h"
 #include "rod/rod_frames.h"
+#include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
 
@@ -14,6 +15,13 @@ namespace {
 /// [1/s] Of the critically damped motion that gives lost length back.
 constexpr double giving_back = 20;
 constexpr double smallest_debt = 1e-9;  // [m]
+
+template <class... Functions>
+struct Overloaded : Functions... {
+  using Functions::operator()...;
+};
+template <class... Functions>
+Overloaded(Functions...) -> Overloaded<Functions...>;
 
 }  // namespace
 
@@ -55,8 +63,8 @@ void wind(const LengthDrive& drive, double part, double time_step, const CableMo
     for (const int side : {0, 1}) state.rest_twist[drive.segment + side] *= before[side] / after[side];
     return;
   }
-  for (const int side : {0, 1})
-    state.masses[drive.segment + side] = drive.start_masses[side] + 0.5 * model.material.linear_density * part * drive.wound;
+  const double half_density = 0.5 * CableMaterials(model, state)[drive.segment].linear_density;
+  for (const int side : {0, 1}) state.masses[drive.segment + side] = drive.start_masses[side] + half_density * part * drive.wound;
 }
 
 double growth_at(const LengthDrive& drive, double part) {
@@ -87,7 +95,7 @@ void insert_node(int segment, double first, const CableModel& model, CableState&
   if (!state.rest_twist.empty()) state.rest_twist[node] = state.rest_twist[neighbour];
   // What a winch pays out bends.
   if (!state.flexible_fraction.empty()) state.flexible_fraction[node] = 1;
-  const double half_density = 0.5 * model.material.linear_density;
+  const double half_density = 0.5 * CableMaterials(model, state)[segment].linear_density;
   state.masses[segment] -= half_density * second;
   state.masses[node + 1] -= half_density * first;
   state.masses[node] = half_density * whole;
@@ -128,7 +136,11 @@ double remove_node(int node, CableState& state) {
   }
   give(before, second / whole);
   give(after, first / whole);
-  visit_segment_arrays(state, [&](auto& values) { values[before] = (first * values[before] + second * values[node]) / whole; });
+  const auto mean = Overloaded{
+      [&](const auto& a, const auto& b) { return (first * a + second * b) / whole; },
+      [&](int a, int b) { return first < second ? b : a; }  // what it is made of: as the longer one
+  };
+  visit_segment_arrays(state, [&](auto& values) { values[before] = mean(values[before], values[node]); });
   if (!state.directors.empty()) state.directors[before] = director;
   state.rest_lengths[before] = length;
   erase_segment(node, state);

@@ -6,6 +6,7 @@
 #include "rod/initial_shape.h"
 #include "rod/length_projection.h"
 #include "rod/rod_frames.h"
+#include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/rotation.h"
 
 namespace verlet_cable {
@@ -27,14 +28,21 @@ bool finite(const std::vector<Vector3>& vectors) {
 /// The segment of a cable that breaks now, -1 if it holds. A piece keeps at least one segment, so that the outermost ones do not
 /// break.
 int find_breaking_segment(const SimulatedCable& cable, const StepResult& result) {
-  const double limit = cable.model->material.breaking_tension;
+  const CableMaterials materials(cable);
   const std::vector<double>& tension = cable.state.tension;
-  if (!(limit < infinity) || tension.size() < 3) return -1;
-  const auto tightest = std::max_element(tension.begin() + 1, tension.end() - 1);
+  const int last = static_cast<int>(tension.size()) - 1;
+  if (last < 2 || !materials.any([](const MaterialDesc& material) { return material.breaking_tension < infinity; })) return -1;
+  const auto load = [&](int i) { return materials.vary() ? tension[i] / materials[i].breaking_tension : tension[i]; };
+  const auto limited = [&](int i) { return materials[i].breaking_tension < infinity; };
+  int weakest = -1, broken = -1;
+  for (int i = 0; i <= last; ++i) {
+    if (tension[i] > materials[i].breaking_tension) broken = i;
+    if (i > 0 && i < last && limited(i) && (weakest < 0 || load(i) > load(weakest))) weakest = i;
+  }
   // What cannot stretch and is pulled beyond its length findings.breaks at any strength.
-  const bool torn = result.status == StepResult::Status::overstretched && cable.model->material.axial_stiffness == infinity;
-  const bool exceeded = *std::max_element(tension.begin(), tension.end()) > limit;
-  return torn || exceeded ? static_cast<int>(tightest - tension.begin()) : -1;
+  const bool torn = result.status == StepResult::Status::overstretched && !materials.any_elastic();
+  if (weakest < 0) return broken < 0 ? -1 : std::clamp(broken, 1, last - 1);
+  return torn || broken >= 0 ? weakest : -1;
 }
 
 }  // namespace
@@ -78,7 +86,8 @@ void add_forces(const Boundary& boundary, const KinematicTargets& targets, const
     attachments[targets.directions[k].attachment].torque += weight * boundary.directions[k].torque;
 }
 
-void follow_material(const std::vector<HeldDirection>& directions, const std::vector<TwistSpan>& spans, CableState& state) {
+void follow_material(const CableModel& model, const std::vector<HeldDirection>& directions, const std::vector<TwistSpan>& spans,
+                     CableState& state) {
   if (!state.directors.empty()) return;  // its segments know
   if (directions.empty()) {
     const Vector3 before = state.reference_orientation * Vector3::UnitX(), now = state.positions[1] - state.positions[0];
@@ -88,11 +97,7 @@ void follow_material(const std::vector<HeldDirection>& directions, const std::ve
     state.reference_node = directions.front().node;
     state.reference_orientation = directions.front().end;
   }
-  std::fill(state.twist.begin(), state.twist.end(), 0.0);
-  for (const TwistSpan& span : spans) {
-    const double length = state.length(span.first_node, span.last_node);
-    std::fill(state.twist.begin() + span.first_node, state.twist.begin() + span.last_node, span.angle / length);
-  }
+  spread_twist(model, spans, state);
 }
 
 void forget_forces(const KinematicTargets& targets, std::vector<Attachment>& attachments) {
@@ -154,7 +159,8 @@ void complete_drive_step(int index, State& state) {
     for (TwistSpan& span : memory.spans) {
       if (span.first_node != end && span.last_node != end) continue;
       const double length = cable.state.length(span.first_node, span.last_node);
-      const double change = span.angle * drive.wound / (length - drive.wound);
+      const double change = CableMaterials(cable).vary() ? cable.state.twist[drive.segment] * drive.wound
+                                                         : span.angle * drive.wound / (length - drive.wound);
       span.angle += change;
       span.origin -= change;
     }
@@ -298,7 +304,7 @@ void IslandStepper::find_contacts(Island& island, double from, double to) {
 
 Scheme IslandStepper::scheme_of(int cable) const {
   const SimulatedCable& c = state_.cables[cable];
-  return state_.scene->numerical_damping ? next_scheme(*c.model, c.state.unresolved) : Scheme::conserving;
+  return state_.scene->numerical_damping ? next_scheme(*c.model, c.state) : Scheme::conserving;
 }
 
 /// Cables that touch something, or that bodies hold, go by one scheme, which their contacts and bodies heed: where one is to
@@ -321,7 +327,7 @@ void IslandStepper::wind_drive(int index, Scheme scheme, double from, double to,
   SimulatedCable& cable = state_.cables[index];
   // An inextensible segment has its length at the end of the substep, an elastic one strains about that where its forces are
   // taken.
-  const bool elastic = cable.model->material.axial_stiffness < infinity;
+  const bool elastic = is_elastic(CableMaterials(cable)[drive.segment]);
   const bool in_the_middle = elastic && scheme == Scheme::conserving;
   wind(drive, in_the_middle ? 0.5 * (from + to) : to, state_.scene->time_step, *cable.model, cable.state);
   boundary.growing.assign(1, {drive.segment, growth_at(drive, to)});
@@ -403,7 +409,7 @@ void IslandStepper::complete_cable(int index, const Boundary& boundary, int subs
   CableState& state = state_.cables[index].state;
   follow_bodies(boundary, memory.targets);
   if (memory.drive) complete_drive_step(index, state_);
-  follow_material(boundary.directions, memory.spans, state);
+  follow_material(*state_.cables[index].model, boundary.directions, memory.spans, state);
   outcomes_[index].result.substeps = substeps;
   outcomes_[index].breaking_segment = find_breaking_segment(state_.cables[index], outcomes_[index].result);
   complete_step(state_.scene->time_step, memory.targets);

@@ -41,7 +41,8 @@ void add_forces(const Boundary& boundary, const KinematicTargets& targets, const
 void forget_forces(const KinematicTargets& targets, std::vector<Attachment>& attachments);
 
 /// Twist and roll of the material: from the clamps where there are any, else the first segment's is carried along in time.
-void follow_material(const std::vector<HeldDirection>& directions, const std::vector<TwistSpan>& spans, CableState& state);
+void follow_material(const CableModel& model, const std::vector<HeldDirection>& directions, const std::vector<TwistSpan>& spans,
+                     CableState& state);
 
 /// Aims a cable's holders at where they will be at the end of the step. Where they jump, the cable is carried along with them
 /// before it is stepped, and keeps its velocities.

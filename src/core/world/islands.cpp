@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "verlet_cable/core/cable_materials.h"
+
 namespace verlet_cable {
 
 namespace {
@@ -28,7 +30,7 @@ Aabb reach_of(const SimulatedCable& cable, const KinematicTargets& targets, doub
     speed = std::max({speed, target.velocity.squaredNorm(), target.next_velocity.squaredNorm()});
   }
   const double motion = std::sqrt(speed) + time_step * (std::sqrt(acceleration) + spare_acceleration);
-  const double margin = (1 + still_reach) * cable.model->material.radius + steps_of_motion * time_step * motion;
+  const double margin = (1 + still_reach) * CableMaterials(cable).largest_radius() + steps_of_motion * time_step * motion;
   return Aabb(box.min() - Vector3::Constant(margin), box.max() + Vector3::Constant(margin));
 }
 

@@ -5,6 +5,7 @@
 
 #include "rod/length_projection.h"
 #include "rod/rod_frames.h"
+#include "verlet_cable/core/cable_materials.h"
 #include "world/flush_denormals.h"
 #include "world/island_stepper.h"
 
@@ -58,11 +59,18 @@ constexpr int most_start_iterations = 1000;
 constexpr int short_start_iterations = 2500000;  // times segments
 
 /// A step [s] in which a fold of a single joint opens, where a longer one would hold on to it.
-double shortest_step(const CableModel& model) {
-  const double stiffness = model.material.bending_stiffness.largest(), length = model.segment_length;
-  if (!(stiffness > 0)) return first_settling_step;
-  const double period = length * length * std::sqrt(model.material.linear_density / stiffness);
-  return std::clamp(0.05 * period, shortest_substep, first_settling_step);
+double shortest_step(const SimulatedCable& cable) {
+  const double length = cable.model->segment_length;
+  return CableMaterials(cable).smallest([length](const MaterialDesc& material) {
+    const double stiffness = material.bending_stiffness.largest();
+    if (!(stiffness > 0)) return first_settling_step;
+    const double period = length * length * std::sqrt(material.linear_density / stiffness);
+    return std::clamp(0.05 * period, shortest_substep, first_settling_step);
+  });
+}
+
+double smallest_radius(const SimulatedCable& cable) {
+  return CableMaterials(cable).smallest([](const MaterialDesc& material) { return material.radius; });
 }
 
 double largest_distance(const std::vector<Vector3>& a, const std::vector<Vector3>& b) {
@@ -125,7 +133,7 @@ bool Settling::settle() {
   hold_still();
   find_obstacles();
   Approach approach(index_, may_touch());
-  const bool settled = relax(shortest_step(*cable_.model), last_settling_step, maximum_settling_steps, approach);
+  const bool settled = relax(shortest_step(cable_), last_settling_step, maximum_settling_steps, approach);
   complete();
   return settled;
 }
@@ -175,7 +183,7 @@ void Settling::complete() {
 }
 
 void Settling::follow_material() {
-  verlet_cable::follow_material(work_.boundary.directions, memory_.spans, cable_.state);
+  verlet_cable::follow_material(*cable_.model, work_.boundary.directions, memory_.spans, cable_.state);
 }
 
 /// From the directions of the cable that hangs from them to their own.
@@ -191,7 +199,7 @@ void Settling::turn_clamps(Approach& approach) {
     const double left = 1 - static_cast<double>(stage) / stages;
     place_clamps(turns, left);
     follow_material();
-    relax(shortest_step(*cable_.model), longest_turning_step, turning_steps, approach);
+    relax(shortest_step(cable_), longest_turning_step, turning_steps, approach);
     untwist();
   }
   place_clamps(turns, 0);
@@ -230,14 +238,14 @@ bool Settling::find_untwisted_equilibrium(Approach& approach) {
   bool settled = find_equilibrium(approach);
   for (int i = 0; i < most_untwistings && settled && untwist() > settled_twist; ++i) {
     hold_at(1, 1, memory_.targets, work_.boundary);
-    settled = relax(shortest_step(*cable_.model), last_settling_step, maximum_settling_steps, approach);
+    settled = relax(shortest_step(cable_), last_settling_step, maximum_settling_steps, approach);
   }
   return settled;
 }
 
 /// Brings a cable that is held still into an equilibrium that lasts. False if none was found: it is then where it first came to.
 bool Settling::find_equilibrium(Approach& approach) {
-  double h = shortest_step(*cable_.model);
+  double h = shortest_step(cable_);
   bool settled = relax(h, last_settling_step, maximum_settling_steps, approach);
   const CableState first = cable_.state;
   const std::vector<TwistSpan> first_spans = memory_.spans;
@@ -262,7 +270,7 @@ bool Settling::find_equilibrium(Approach& approach) {
 /// Substeps without motion, ever longer as long as they converge and the loads that are left grow less, until inertia carries
 /// nothing: what is left is Newton's method for the equilibrium. True if that was found.
 bool Settling::relax(double h, double longest, int steps, Approach& approach) {
-  const double radius = cable_.model->material.radius;
+  const double radius = smallest_radius(cable_);
   double last = infinity, growth = fastest_growth;
   bool failed = false;
   int calm = 0;
@@ -309,7 +317,7 @@ bool Settling::leaves_equilibrium(Approach& approach, double& h) {
   project_positions(*cable_.model, work_.boundary.nodes, cable_.state);
   carry_frames(before.positions, cable_.state);
   const double first = largest_distance(cable_.state.positions, before.positions);
-  for (h = shortest_step(*cable_.model); h < last_nudged_step; h *= 2)
+  for (h = shortest_step(cable_); h < last_nudged_step; h *= 2)
     for (int i = 0; i < nudged_steps; ++i) {
       if (!advance(approach, h).converged) break;
       if (largest_distance(cable_.state.positions, before.positions) > grown * first) return true;
@@ -351,7 +359,7 @@ bool Settling::leaves_when_let_go(Approach& approach, double& h) {
   hold_at(1, 1, memory_.targets, work_.boundary);
   bring_to_rest(cable_.state);
   if (leaves) {
-    h = shortest_step(*cable_.model);
+    h = shortest_step(cable_);
     return true;
   }
   cable_.state = before;
@@ -387,7 +395,7 @@ SubstepResult Settling::advance(Approach& approach, double h) {
     result = workspace_.participants.front().result;
   }
   approach.iterations -= result.iterations;
-  if (result.converged && result.displacement > settling_reach * cable_.model->material.radius) {
+  if (result.converged && result.displacement > settling_reach * smallest_radius(cable_)) {
     cable_.state = before;
     memory_.spans = spans_before;
     result.converged = false;

@@ -32,7 +32,8 @@ auto fields(T& x, const Pose*) {
 template <class T>
 auto fields(T& x, const MaterialDesc*) {
   return std::tie(x.linear_density, x.radius, x.axial_stiffness, x.bending_stiffness, x.torsional_stiffness, x.axial_damping,
-                  x.bending_damping, x.torsional_damping, x.drag, x.friction, x.breaking_tension);
+                  x.bending_damping, x.torsional_damping, x.drag, x.friction, x.breaking_tension, x.minimum_bend_radius,
+                  x.maximum_tension);
 }
 template <class T>
 auto fields(T& x, const NamedMaterial*) {
@@ -59,9 +60,13 @@ auto fields(T& x, const RestCurvatureDesc*) {
   return std::tie(x.type, x.curvature, x.profile);
 }
 template <class T>
+auto fields(T& x, const SectionDesc*) {
+  return std::tie(x.from, x.to, x.material);
+}
+template <class T>
 auto fields(T& x, const CableDesc*) {
-  return std::tie(x.name, x.length, x.segments, x.material, x.color, x.initial, x.rest_curvature, x.rest_twist, x.stiff_ends,
-                  x.attachments, x.point_masses);
+  return std::tie(x.name, x.length, x.segments, x.material, x.sections, x.color, x.initial, x.rest_curvature, x.rest_twist,
+                  x.stiff_ends, x.attachments, x.point_masses);
 }
 template <class T>
 auto fields(T& x, const GridDesc*) {
@@ -119,7 +124,7 @@ auto fields(T& x, const SceneDesc*) {
 // Cables
 template <class T>
 auto fields(T& x, const CableModel*) {
-  return std::tie(x.name, x.material, x.material_name, x.color, x.segment_length);
+  return std::tie(x.name, x.material, x.material_name, x.section_materials, x.color, x.segment_length);
 }
 template <class T>
 auto fields(T& x, const UnresolvedMotion*) {
@@ -127,9 +132,9 @@ auto fields(T& x, const UnresolvedMotion*) {
 }
 template <class T>
 auto fields(T& x, const CableState*) {
-  return std::tie(x.rest_lengths, x.masses, x.rest_curvature, x.rest_twist, x.flexible_fraction, x.positions, x.velocities,
-                  x.accelerations, x.unresolved, x.tension, x.last_tension, x.axial_multiplier, x.twist, x.directors, x.spin,
-                  x.joint_twist, x.reference_node, x.reference_orientation);
+  return std::tie(x.rest_lengths, x.section_material, x.masses, x.rest_curvature, x.rest_twist, x.flexible_fraction,
+                  x.beyond_limits, x.positions, x.velocities, x.accelerations, x.unresolved, x.tension, x.last_tension,
+                  x.axial_multiplier, x.twist, x.directors, x.spin, x.joint_twist, x.reference_node, x.reference_orientation);
 }
 template <class T>
 auto fields(T& x, const SimulatedCable*) {

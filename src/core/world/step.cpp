@@ -2,10 +2,12 @@
 
 #include <algorithm>
 
+#include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/world.h"
 #include "world/flush_denormals.h"
 #include "world/implementation.h"
 #include "world/island_stepper.h"
+#include "world/limits.h"
 
 namespace verlet_cable {
 
@@ -40,6 +42,7 @@ void World::Implementation::begin_step(const BoundaryInputs& inputs, StepResult&
 
 void World::Implementation::end_step(StepResult& result) {
   collect_outcomes(result);
+  find_excursions(state, findings.excursions);
   apply_breaks(result);
   step_nets_and_particles(result);
 }
@@ -55,6 +58,7 @@ void World::limit_lanes(int most) {
 void World::Implementation::count_step() {
   ++state.steps;
   findings.breaks.clear();
+  findings.excursions.clear();
   findings.jumps.clear();
   findings.intrusions.clear();
   findings.contacts.clear();
@@ -118,9 +122,11 @@ void World::Implementation::collect_outcomes(StepResult& result) {
 void World::Implementation::apply_breaks(StepResult& result) {
   for (int cable = 0; cable < static_cast<int>(cable_outcomes.value.size()); ++cable) {
     const int segment = cable_outcomes.value[cable].breaking_segment;
-    if (segment < 0 || !cut_cable(cable, segment).ok) continue;
+    if (segment < 0) continue;
+    const double limit = CableMaterials(state.cables[cable])[segment].breaking_tension;
+    if (!cut_cable(cable, segment).ok) continue;
     const int rest = static_cast<int>(state.cables.size()) - 1;
-    findings.breaks.push_back({cable, segment, rest});
+    findings.breaks.push_back({cable, segment, rest, limit});
     if (result.body != cable_id(cable) || result.node <= segment) continue;
     result.body = cable_id(rest);
     result.node -= segment + 1;

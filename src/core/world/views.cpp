@@ -2,7 +2,9 @@
 #include <cmath>
 
 #include "rod/bending.h"
+#include "rod/joint_views.h"
 #include "rod/kirchhoff_rod.h"
+#include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/world.h"
 #include "world/implementation.h"
 #include "world/state_fields.h"
@@ -87,6 +89,7 @@ Energy World::energy() const {
   const GravityDesc& gravity = implementation_->state.scene->gravity;
   for (std::size_t k = 0; k < cables().size(); ++k) {
     const SimulatedCable& cable = cables()[k];
+    const CableMaterials materials(cable);
     const std::vector<HeldDirection> directions = boundary_now(implementation_->state.cable_progress[k].targets).directions;
     if (cable.state.directors.empty()) {
       energy.bend += bending_energy(*cable.model, cable.state, directions);
@@ -100,13 +103,14 @@ Energy World::energy() const {
       energy.kinetic += 0.5 * cable.state.masses[i] * cable.state.velocities[i].squaredNorm();
       energy.gravity += cable.state.masses[i] * gravity.potential_at(cable.state.positions[i]);
     }
-    for (int i = 0; i < cable.state.segments(); ++i)
-      energy.twist += 0.5 * cable.model->material.torsional_stiffness * cable.state.rest_lengths[i] * cable.state.twist[i] *
-                      cable.state.twist[i];
-    if (cable.model->material.axial_stiffness == infinity) continue;
     for (int i = 0; i < cable.state.segments(); ++i) {
+      const double torsion = torsional_stiffness_at(materials, i);
+      energy.twist += 0.5 * torsion * cable.state.rest_lengths[i] * cable.state.twist[i] * cable.state.twist[i];
+    }
+    for (int i = 0; i < cable.state.segments(); ++i) {
+      if (!is_elastic(materials[i])) continue;
       const double e = strain(cable.state, i);
-      energy.stretch += 0.5 * cable.model->material.axial_stiffness * cable.state.rest_lengths[i] * e * e;
+      energy.stretch += 0.5 * materials[i].axial_stiffness * cable.state.rest_lengths[i] * e * e;
     }
   }
   for (const SimulatedBody& body : bodies()) {
@@ -119,38 +123,10 @@ Energy World::energy() const {
 }
 
 void World::view_joints(int index, std::vector<JointView>& joints) const {
-  const CableState& state = cables()[index].state;
-  const std::vector<DirectionTarget>& clamps = implementation_->state.cable_progress[index].targets.directions;
-  const int n = state.segments();
   joints.clear();
-  const auto direction = [&](int i) -> Vector3 { return state.positions[i + 1] - state.positions[i]; };
-  const auto add = [&](double place, double length, const Vector3& before, const Vector3& after, double twist) {
-    joints.push_back({place, std::atan2(before.cross(after).norm(), before.dot(after)) / length, twist});
-  };
-  auto clamp = clamps.begin();
-  double place = 0;
-  for (int i = 0; i <= n; ++i) {
-    const double before = i > 0 ? 0.5 * state.rest_lengths[i - 1] : 0, after = i < n ? 0.5 * state.rest_lengths[i] : 0;
-    place += before;
-    const bool whole = !state.directors.empty(), inside = i > 0 && i < n;
-    if (clamp != clamps.end() && clamp->node == i) {
-      const Vector3 held = clamp->orientation * Vector3::UnitX();
-      if (i > 0) {
-        const double twist = inside ? clamp->twist_before : whole ? state.joint_twist[i] : 0;
-        add(place, before, direction(i - 1), held, whole ? twist / before : state.twist[i - 1]);
-      }
-      if (i < n) {
-        const double twist = inside ? clamp->twist_after : whole ? state.joint_twist[i] : 0;
-        add(place, after, held, direction(i), whole ? twist / after : state.twist[i]);
-      }
-      ++clamp;
-    } else if (inside) {
-      const double length = before + after;
-      add(place, length, direction(i - 1), direction(i),
-          whole ? state.joint_twist[i] / length : 0.5 * (state.twist[i - 1] + state.twist[i]));
-    }
-    place += after;
-  }
+  visit_joints(cables()[index].state, implementation_->state.cable_progress[index].targets.directions, [&](const Joint& joint) {
+    joints.push_back({joint.place, joint.curvature(), joint.twist});
+  });
 }
 
 std::uint64_t World::hash() const {

@@ -12,22 +12,37 @@
 #include "rod/rest_curvature.h"
 #include "rod/rod_frames.h"
 #include "rod/stiff_ends.h"
+#include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/rotation.h"
 #include "verlet_cable/core/scene_fields.h"
 #include "world/implementation.h"
 #include "world/island_stepper.h"
+#include "world/limits.h"
 #include "world/settling.h"
 
 namespace verlet_cable {
 
 namespace {
 
+/// Of each segment, as `section_at`.
+std::vector<int> sections_of(const CableDesc& desc) {
+  std::vector<int> sections(desc.segments, -1);
+  for (int i = 0; i < desc.segments && !desc.sections.empty(); ++i) sections[i] = section_at(desc, i);
+  return sections;
+}
+
 CableModel make_model(const SceneDesc& scene, const CableDesc& desc) {
   CableModel model;
   model.name = desc.name;
-  model.material = *scene.find_material(desc.material);
-  model.material_name = desc.material;
+  const std::vector<int> sections = sections_of(desc);
+  // One that is of one section's material all along has no other.
+  const bool is_uniform = std::all_of(sections.begin(), sections.end(), [&](int section) { return section == sections.front(); });
+  model.material_name = is_uniform && sections.front() >= 0 ? desc.sections[sections.front()].material : desc.material;
+  model.material = *scene.find_material(model.material_name);
+  for (const SectionDesc& section : desc.sections)
+    if (!is_uniform && find_material(model, section.material) < 0)
+      model.section_materials.push_back({section.material, *scene.find_material(section.material)});
   model.color = desc.color;
   model.segment_length = desc.length / desc.segments;
   model.turns_bodies = std::any_of(desc.attachments.begin(), desc.attachments.end(),
@@ -41,9 +56,13 @@ CableState make_state(const CableModel& model, const CableDesc& desc) {
   const double length = model.segment_length;
   state.rest_lengths.assign(desc.segments, length);
   state.masses.assign(desc.segments + 1, 0.0);
+  if (!model.section_materials.empty())
+    for (const int section : sections_of(desc))
+      state.section_material.push_back(section < 0 ? 0 : find_material(model, desc.sections[section].material));
+  const CableMaterials materials(model, state);
   for (int i = 0; i < desc.segments; ++i) {
-    state.masses[i] += 0.5 * length * model.material.linear_density;
-    state.masses[i + 1] += 0.5 * length * model.material.linear_density;
+    state.masses[i] += 0.5 * length * materials[i].linear_density;
+    state.masses[i + 1] += 0.5 * length * materials[i].linear_density;
   }
   for (const PointMassDesc& point : desc.point_masses) state.masses[node_at(desc, point.place)] += point.mass;
   state.positions.assign(state.nodes(), Vector3::Zero());
@@ -259,7 +278,7 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   hold_at(1, 1, memory.targets, boundary);
   const Vector3 gravity =
       state.scene->gravity.at(boundary.nodes.empty() ? Vector3(Vector3::Zero()) : boundary.nodes.front().position);
-  const bool settles = settles_at_start(desc, cable.model->material);
+  const bool settles = settles_at_start(desc, *cable.model, cable.state);
   if (!set_initial_state(desc.initial, settles, *cable.model, boundary.nodes, gravity, cable.state))
     findings.misfits.push_back(desc.name);
   // Where velocities of holders are not known yet, the first step finds them, and all go together.
@@ -269,12 +288,13 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   cable.state.twist.assign(cable.state.segments(), 0.0);
   cable.state.reference_orientation = smallest_rotation(Vector3::UnitX(), cable.state.positions[1] - cable.state.positions[0]);
   set_stiff_ends(desc.stiff_ends, cable.state);
-  set_rest_shape(desc, cable.model->material, cable.state);
+  set_rest_shape(desc, *cable.model, cable.state);
   if (is_whole_rod(*cable.model, cable.state)) start_frames(memory.targets.directions, cable.state);
   if (desc.rest_curvature.type == RestCurvatureDesc::Type::initial && !cable.state.rest_curvature.empty())
     take_rest_curvature(memory.targets.directions, cable.state);
   memory.spans = find_spans(cable.state, boundary.directions);
-  follow_material(boundary.directions, memory.spans, cable.state);
+  follow_material(*cable.model, boundary.directions, memory.spans, cable.state);
+  watch_limits(cable);
   const bool held = !memory.targets.nodes.empty();
   state.cables.push_back(std::move(cable));
   state.cable_progress.push_back(std::move(memory));

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "publish/conversions.h"
+#include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
 namespace {
@@ -86,7 +87,7 @@ InteractiveMarkerControl axis_control(const std::string& name, int axis, std::ui
 Handle handle_of(const SimulatedCable& cable) {
   Handle handle;
   handle.cable = cable.model->name;
-  handle.radius = cable.model->material.radius;
+  handle.radius = CableMaterials(cable).largest_radius();
   handle.arm_length = std::max(smallest_arm * handle.radius, std::min(arm_of_cable * cable.state.length(), largest_arm));
   return handle;
 }

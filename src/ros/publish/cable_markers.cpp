@@ -33,10 +33,38 @@ Marker marker_of(const CableLook& cable, int type) {
   return marker;
 }
 
+/// The rings of a tube, see choose_rings; where its radius changes, two at that node.
+std::vector<int> rings_of(const CableLook& cable) {
+  const double tolerance = line_tolerance(cable.radius);
+  if (cable.segment_radii.empty()) return choose_rings(cable.centers, cable.colors, tolerance, most_points_of_one);
+  std::vector<int> rings;
+  const int segments = static_cast<int>(cable.segment_radii.size());
+  for (int first = 0, last; first < segments; first = last) {
+    last = first + 1;
+    while (last < segments && cable.segment_radii[last] == cable.segment_radii[first]) ++last;
+    const std::vector<Vector3> centers(cable.centers.begin() + first, cable.centers.begin() + last + 1);
+    const std::vector<std_msgs::ColorRGBA> colors(cable.colors.begin() + first, cable.colors.begin() + last + 1);
+    const std::vector<int> stretch = choose_rings(centers, colors, tolerance, most_points_of_one);
+    if (stretch.empty()) return {};
+    for (const int ring : stretch) rings.push_back(first + ring);
+  }
+  return rings;
+}
+
+/// [m] Of each ring: the first of two at a node ends what is before it.
+std::vector<double> ring_radii(const CableLook& cable, const std::vector<int>& rings) {
+  std::vector<double> radii;
+  for (std::size_t k = 0; k < rings.size() && !cable.segment_radii.empty(); ++k) {
+    const bool ends = k > 0 && (k + 1 == rings.size() || rings[k + 1] == rings[k]);
+    radii.push_back(cable.segment_radii[rings[k] - (ends ? 1 : 0)]);
+  }
+  return radii;
+}
+
 Marker tube(const CableLook& cable, const TubeDetail& detail) {
   Marker marker = marker_of(cable, Marker::TRIANGLE_LIST);
   marker.scale.x = marker.scale.y = marker.scale.z = 1;
-  fill_tube(cable.centers, cable.colors, cable.radius, detail, marker);
+  fill_tube(cable.centers, cable.colors, cable.radius, detail, marker, ring_radii(cable, detail.rings));
   return marker;
 }
 
@@ -83,8 +111,7 @@ std::vector<Marker> cable_markers(const std::vector<CableLook>& cables, MarkerSt
   };
   int corners = 0;
   for (const CableLook& cable : cables) {
-    details.push_back(
-        tube_detail(cable.radius, choose_rings(cable.centers, cable.colors, line_tolerance(cable.radius), most_points_of_one)));
+    details.push_back(tube_detail(cable.radius, rings_of(cable)));
     if (can_be_tube(details.back())) corners += details.back().corners();
   }
   const int most_of_line =

@@ -14,7 +14,8 @@ namespace verlet_cable {
 struct CableLook {
   const std::vector<Vector3>& centers;      ///< [m] two or more
   std::vector<std_msgs::ColorRGBA> colors;  ///< one a center
-  double radius;                            ///< [m]
+  double radius;                            ///< [m] the largest
+  std::vector<double> segment_radii = {};   ///< [m] one between each two centers; none: all have that
 };
 
 /// Markers of cables: type, scale, color, points and colors; all else is the caller's.

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "publish/conversions.h"
+#include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
 namespace {
@@ -25,8 +26,15 @@ constexpr std::array<std::array<float, 3>, 9> stops{{{0.27f, 0.46f, 0.71f},
                                                      {0.84f, 0.19f, 0.15f}}};
 
 double mass(const SceneDesc& scene, const CableDesc& cable) {
-  const MaterialDesc* material = scene.find_material(cable.material);
-  double mass = material ? material->linear_density * cable.length : 0;
+  double mass = 0, own_length = cable.length;
+  const auto add = [&](const std::string& name, double length) {
+    if (const MaterialDesc* material = scene.find_material(name)) mass += material->linear_density * length;
+  };
+  for (const SectionDesc& section : cable.sections) {
+    add(section.material, section.to - section.from);
+    own_length -= section.to - section.from;
+  }
+  add(cable.material, own_length);
   for (const PointMassDesc& payload : cable.point_masses) mass += payload.mass;
   return mass;
 }
@@ -40,12 +48,33 @@ double largest_weight(const SceneDesc& scene) {
 
 double largest_strain(const SceneDesc& scene, double tension) {
   double largest = 0;
-  for (const CableDesc& cable : scene.cables) {
-    if (const MaterialDesc* material = scene.find_material(cable.material)) {
+  const auto add = [&](const std::string& name) {
+    if (const MaterialDesc* material = scene.find_material(name))
       largest = std::max(largest, tension / material->axial_stiffness);
-    }
+  };
+  for (const CableDesc& cable : scene.cables) {
+    add(cable.material);
+    for (const SectionDesc& section : cable.sections) add(section.material);
   }
   return largest > 0 ? largest : full_strain_if_inextensible;
+}
+
+/// Of a radius that is as small as allowed, 1; 0 of one that is so many times as large.
+constexpr double gentle_bend = 5;
+
+/// Of how the cable bends at a node; at an end as at its neighbour.
+double bend_load(const SimulatedCable& cable, int node) {
+  const int last = cable.state.segments() - 1;
+  if (last < 1) return 0;
+  const CableMaterials materials(cable);
+  const int inner = std::clamp(node, 1, last);
+  const Vector3 before = cable.state.positions[inner] - cable.state.positions[inner - 1];
+  const Vector3 after = cable.state.positions[inner + 1] - cable.state.positions[inner];
+  const std::array<double, 2> curvature =
+      curvature_beside(materials, cable.state, inner, std::atan2(before.cross(after).norm(), before.dot(after)));
+  const double tightness =
+      std::max(curvature[0] * materials[inner - 1].minimum_bend_radius, curvature[1] * materials[inner].minimum_bend_radius);
+  return (gentle_bend - 1 / tightness) / (gentle_bend - 1);
 }
 
 }  // namespace
@@ -99,6 +128,16 @@ Legend ColorScale::legend() const {
                     : color_by_ == ColorBy::strain ? "strain"
                                                    : "tension";
   legend.unit = color_by_ == ColorBy::strain ? "%" : "N";
+  if (color_by_ == ColorBy::bend) {
+    legend.quantity = "bend radius over the smallest allowed";
+    legend.unit = "1";
+    for (std::size_t i = 0; i < stops.size(); ++i) {
+      const double load = 1 - static_cast<double>(i) / (stops.size() - 1);
+      legend.colors.push_back(color_of_load(load));
+      legend.values.push_back(gentle_bend - load * (gentle_bend - 1));
+    }
+    return legend;
+  }
   for (std::size_t i = 0; i < stops.size(); ++i) {
     const double load = static_cast<double>(i) / (stops.size() - 1);
     legend.colors.push_back(color_of_load(load));
@@ -124,7 +163,9 @@ std::vector<std_msgs::ColorRGBA> ColorScale::node_colors(const SimulatedCable& c
                                                          const std::vector<double>& contact_forces) const {
   const int segments = cable.state.segments();
   std::vector<std_msgs::ColorRGBA> colors(cable.state.nodes());
-  if (color_by_ != ColorBy::cable) {
+  if (color_by_ == ColorBy::bend) {
+    for (int node = 0; node <= segments; ++node) colors[node] = color_of_load(bend_load(cable, node));
+  } else if (color_by_ != ColorBy::cable) {
     for (int node = 0; node <= segments; ++node) {
       const double before = load(cable, std::max(node - 1, 0), contact_forces);
       const double after = load(cable, std::min(node, segments - 1), contact_forces);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "verlet_cable/core/cable_materials.h"
+
 namespace verlet_cable {
 
 geometry_msgs::Point to_point(const Vector3& vector) {
@@ -59,11 +61,11 @@ bool is_finite(const SimulatedParticle& particle) {
 
 std::vector<SimulatedContact> contacts_of_both(const World& world) {
   std::vector<SimulatedContact> contacts = world.findings().contacts;
-  const auto radius = [&](int cable) { return world.cables()[cable].model->material.radius; };
+  const auto radius = [&](int cable, int segment) { return CableMaterials(world.cables()[cable])[segment].radius; };
   for (std::size_t i = 0, once = contacts.size(); i < once; ++i) {
     const SimulatedContact c = contacts[i];
     if (c.other_cable < 0) continue;
-    const Vector3 across = (radius(c.cable) + radius(c.other_cable)) * c.normal;
+    const Vector3 across = (radius(c.cable, c.segment) + radius(c.other_cable, c.other_segment)) * c.normal;
     contacts.push_back({c.other_cable, c.other_segment, c.position - across, -c.normal, -c.force, -1, c.cable, c.segment});
   }
   return contacts;
@@ -98,7 +100,7 @@ Cable to_message(const SimulatedCable& cable) {
   message.curvature = node_curvature(cable.state);
   message.twist = node_twist(cable.state);
   message.rest_length = cable.state.length();
-  message.radius = cable.model->material.radius;
+  message.radius = CableMaterials(cable).largest_radius();
   return message;
 }
 

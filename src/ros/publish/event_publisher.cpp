@@ -37,7 +37,7 @@ void EventPublisher::publish_each(std::uint8_t type, Nanoseconds stamp, const st
   if (type == CableEvent::FAULT) {
     ROS_ERROR("%s", message.c_str());
   } else if (type == CableEvent::FRAME_LOST || type == CableEvent::TIME_JUMP || type == CableEvent::BROKE ||
-             type == CableEvent::JUMPED) {
+             type == CableEvent::JUMPED || type == CableEvent::LIMIT) {
     ROS_WARN("%s", message.c_str());
   } else {
     ROS_INFO("%s", message.c_str());

@@ -7,6 +7,7 @@
 #include "publish/conversions.h"
 #include "publish/obstacle_markers.h"
 #include "publish/queue_size.h"
+#include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
 namespace {
@@ -38,14 +39,22 @@ void set_scale(Marker& marker, double x, double y, double z) {
 
 /// [kg] What a node weighs beyond the segments that meet there. The half segments that cuts leave on the ends do not count.
 double payload(const SimulatedCable& cable, int node) {
+  const CableMaterials materials(cable);
+  const double heaviest = materials.largest([](const MaterialDesc& material) { return material.linear_density; });
   double share = 0, largest_half = 0;
   for (int segment = std::max(node - 1, 0); segment <= std::min(node, cable.state.segments() - 1); ++segment) {
-    const double half = cable.model->material.linear_density * cable.state.rest_lengths[segment] / 2;
-    share += half;
-    largest_half = std::max(largest_half, half);
+    const double half = cable.state.rest_lengths[segment] / 2;
+    share += materials[segment].linear_density * half;
+    largest_half = std::max(largest_half, heaviest * half);
   }
   const double excess = cable.state.masses[node] - share;
   return excess > 1.5 * largest_half ? excess : 0;
+}
+
+/// [m] Of the thicker of the segments beside a node.
+double radius_at(const SimulatedCable& cable, int node) {
+  const CableMaterials materials(cable);
+  return std::max(materials[std::max(node - 1, 0)].radius, materials[std::min(node, cable.state.segments() - 1)].radius);
 }
 
 /// [m] How long a net's links are, for the sizes of what shows it.
@@ -126,7 +135,10 @@ void MarkerPublisher::add_cables(const World& world, MarkerArray& markers) {
     const SimulatedCable& cable = world.cables()[i];
     if (!is_finite(cable)) continue;
     cables.push_back(&cable);
-    looks.push_back({cable.state.positions, colors_.node_colors(cable, contact_forces[i]), cable.model->material.radius});
+    const CableMaterials materials(cable);
+    looks.push_back({cable.state.positions, colors_.node_colors(cable, contact_forces[i]), materials.largest_radius()});
+    for (int segment = 0; materials.vary() && segment < cable.state.segments(); ++segment)
+      looks.back().segment_radii.push_back(materials[segment].radius);
   }
   std::vector<Marker> shapes = cable_markers(looks, style_);
   for (std::size_t i = 0; i < cables.size(); ++i) {
@@ -149,7 +161,7 @@ void MarkerPublisher::add_payloads(const SimulatedCable& cable, MarkerArray& mar
     Marker marker = make_marker("payloads", id_of(cable.model->name + "/" + std::to_string(payloads++)), Marker::SPHERE);
     marker.pose.position = to_point(cable.state.positions[node]);
     const double ball = 2 * std::cbrt(3 * mass / (4 * M_PI * aluminium_density));
-    const double diameter = std::max(ball, 2 * pin_size * cable.model->material.radius);
+    const double diameter = std::max(ball, 2 * pin_size * radius_at(cable, node));
     set_scale(marker, diameter, diameter, diameter);
     marker.color = grey(0.55f);
     markers.markers.push_back(std::move(marker));
@@ -186,7 +198,7 @@ void MarkerPublisher::add_pin(const World& world, const Attachment& attachment, 
   const Pose pose = world.frame_pose(attachment.frame) * attachment.pose;
   if (!pose.position.allFinite() || !pose.orientation.coeffs().allFinite()) return;
   const double size = attachment.body.is_net() ? net_pin_size * link_length(world.nets()[attachment.body.index].model)
-                                               : 2 * pin_size * world.cables()[attachment.body.index].model->material.radius;
+                                               : 2 * pin_size * radius_at(world.cables()[attachment.body.index], attachment.node);
   const bool clamp = attachment.type == AttachmentType::clamp;
   Marker marker = make_marker("pins", id_of(attachment.name), clamp ? Marker::CUBE : Marker::SPHERE);
   marker.pose = to_pose(pose);

@@ -8,6 +8,7 @@
 #include "publish/conversions.h"
 #include "publish/point_cloud.h"
 #include "publish/queue_size.h"
+#include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
 namespace {
@@ -21,9 +22,13 @@ struct PointRecord {
   std::uint32_t cable_id;
 };
 
+double smallest_radius(const SimulatedCable& cable) {
+  return CableMaterials(cable).smallest([](const MaterialDesc& material) { return material.radius; });
+}
+
 /// Rings of a cable, if they are as far apart as the points of a ring, times `coarseness`.
 int ring_count(const SimulatedCable& cable, double coarseness) {
-  const double spacing = coarseness * 2 * M_PI * cable.model->material.radius / sides;
+  const double spacing = coarseness * 2 * M_PI * smallest_radius(cable) / sides;
   return static_cast<int>(std::clamp(std::floor(cable.state.length() / spacing), 1.0, most_points / sides));
 }
 
@@ -31,7 +36,7 @@ int ring_count(const SimulatedCable& cable, double coarseness) {
 double find_coarseness(const World& world) {
   double points = 0;
   for (const SimulatedCable& cable : world.cables())
-    points += cable.state.length() / (2 * M_PI * cable.model->material.radius / sides) * sides;
+    points += cable.state.length() / (2 * M_PI * smallest_radius(cable) / sides) * sides;
   return std::max(1.0, points / most_points);
 }
 
@@ -39,6 +44,7 @@ void append_points(const SimulatedCable& cable, std::uint32_t cable_id, double c
                    const std::vector<std_msgs::ColorRGBA>& colors, std::vector<PointRecord>& points) {
   const std::vector<Quaternion> orientations = segment_orientations(cable.state);
   const std::vector<double> arc_length = cable.state.arc_length();
+  const CableMaterials materials(cable);
   const int rings = ring_count(cable, coarseness);
   int i = 0;
   for (int ring = 0; ring < rings; ++ring) {
@@ -49,7 +55,7 @@ void append_points(const SimulatedCable& cable, std::uint32_t cable_id, double c
     const float rgb = packed_rgb(colors[part < 0.5 ? i : i + 1]);
     for (int side = 0; side < sides; ++side) {
       const double angle = 2 * M_PI * side / sides;
-      const Vector3 spoke = cable.model->material.radius * Vector3(0, std::cos(angle), std::sin(angle));
+      const Vector3 spoke = materials[i].radius * Vector3(0, std::cos(angle), std::sin(angle));
       const Eigen::Vector3f point = (center + orientations[i] * spoke).cast<float>();
       points.push_back({point.x(), point.y(), point.z(), rgb, cable_id});
     }

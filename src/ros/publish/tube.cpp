@@ -84,18 +84,22 @@ Ring on_half_sphere(const Ring& rim, double radius, double part, double outwards
 
 /// From tip to tip, which are rings without a radius.
 std::vector<Ring> make_rings(const std::vector<Vector3>& centers, const std::vector<std_msgs::ColorRGBA>& colors, double radius,
-                             const TubeDetail& detail) {
+                             const std::vector<double>& radii, const TubeDetail& detail) {
+  const auto radius_of = [&](std::size_t ring) { return radii.empty() ? radius : radii[ring]; };
   std::vector<Ring> along;
   along.reserve(detail.rings.size());
-  for (const int node : detail.rings)
-    along.push_back({centers[node], Quaternion::Identity(), widening(detail.sides) * radius, colors[node]});
+  for (std::size_t k = 0; k < detail.rings.size(); ++k) {
+    const int node = detail.rings[k];
+    along.push_back({centers[node], Quaternion::Identity(), widening(detail.sides) * radius_of(k), colors[node]});
+  }
   orient(along);
   const double latitudes = detail.cap_rings + 1;
   std::vector<Ring> rings;
   rings.reserve(along.size() + 2 * (detail.cap_rings + 1));
-  for (int k = detail.cap_rings + 1; k > 0; --k) rings.push_back(on_half_sphere(along.front(), radius, k / latitudes, -1));
+  for (int k = detail.cap_rings + 1; k > 0; --k) rings.push_back(on_half_sphere(along.front(), radius_of(0), k / latitudes, -1));
   rings.insert(rings.end(), along.begin(), along.end());
-  for (int k = 1; k <= detail.cap_rings + 1; ++k) rings.push_back(on_half_sphere(along.back(), radius, k / latitudes, 1));
+  for (int k = 1; k <= detail.cap_rings + 1; ++k)
+    rings.push_back(on_half_sphere(along.back(), radius_of(along.size() - 1), k / latitudes, 1));
   return rings;
 }
 
@@ -124,9 +128,9 @@ TubeDetail tube_detail(double radius, std::vector<int> rings) {
 }
 
 void fill_tube(const std::vector<Vector3>& centers, const std::vector<std_msgs::ColorRGBA>& colors, double radius,
-               const TubeDetail& detail, visualization_msgs::Marker& marker) {
+               const TubeDetail& detail, visualization_msgs::Marker& marker, const std::vector<double>& radii) {
   const int sides = detail.sides;
-  const std::vector<Ring> rings = make_rings(centers, colors, radius, detail);
+  const std::vector<Ring> rings = make_rings(centers, colors, radius, radii, detail);
   const int ring_count = static_cast<int>(rings.size());
 
   std::vector<geometry_msgs::Point> surface;  // sides points a ring

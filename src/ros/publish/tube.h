@@ -29,8 +29,8 @@ TubeDetail tube_detail(double radius, std::vector<int> rings);
 
 /// Fills the marker's points and colors with the triangles of a round tube of `radius` [m] along `centers`, closed by half
 /// spheres; for type TRIANGLE_LIST. Rings are carried along without turning about the tube, so that it never looks wrung.
-/// `centers`: two points or more; `colors`: one a center.
+/// `centers`: two points or more; `colors`: one a center; `radii` [m]: one a ring, none where all have `radius`.
 void fill_tube(const std::vector<Vector3>& centers, const std::vector<std_msgs::ColorRGBA>& colors, double radius,
-               const TubeDetail& detail, visualization_msgs::Marker& marker);
+               const TubeDetail& detail, visualization_msgs::Marker& marker, const std::vector<double>& radii = {});
 
 }  // namespace verlet_cable

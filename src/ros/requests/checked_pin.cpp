@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "verlet_cable/core/body_name.h"
+#include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/core/scene_fields.h"
@@ -27,12 +28,13 @@ Pose node_pose(const SimulatedCable& cable, int node) {
 /// What an inextensible cable between the pin and its neighbours cannot do.
 void check_reach(const CheckedPin& pin, const World& world, std::vector<std::string>& errors) {
   const SimulatedCable& cable = world.cables()[pin.body.index];
-  if (std::isfinite(cable.model->material.axial_stiffness)) return;
+  const CableMaterials materials(cable);
   constexpr double rounding = 1e-6;
   const std::vector<double> arc_length = cable.state.arc_length();
   const Vector3 place = (pin.frame_pose * pin.offset).position;
   for (const Attachment& other : world.attachments()) {
     if (other.body != pin.body) continue;
+    if (materials.any_elastic_between(std::min(pin.node, other.node), std::max(pin.node, other.node))) continue;
     const double distance = (place - (world.frame_pose(other.frame) * other.pose).position).norm();
     const double length = std::abs(arc_length[pin.node] - arc_length[other.node]);
     if (distance <= length * (1 + rounding)) continue;

@@ -1,6 +1,7 @@
 #include "simulation/cable_watch.h"
 
 #include "verlet_cable/core/body_name.h"
+#include "verlet_cable/core/excursion_text.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 
@@ -39,8 +40,16 @@ void CableWatch::report_breaks(Nanoseconds stamp, const World& world) const {
     const std::string& second = world.cables()[broken.new_cable].model->name;
     events_.publish(CableEvent::BROKE, stamp, {first.name, {}, broken.segment, second},
                     "cable " + quoted(first.name) + " broke at segment " + std::to_string(broken.segment) +
-                        ", where its tension was above breaking_tension, " + number_text(first.material.breaking_tension) +
+                        ", where its tension was above breaking_tension, " + number_text(broken.limit) +
                         " N; the part behind it is now cable " + quoted(second));
+  }
+}
+
+void CableWatch::report_excursions(Nanoseconds stamp, const World& world) const {
+  for (const Excursion& excursion : world.findings().excursions) {
+    const std::string& cable = world.cables()[excursion.cable].model->name;
+    events_.publish(CableEvent::LIMIT, stamp, {cable, {}, excursion.node, {}},
+                    "cable " + quoted(cable) + " at node " + std::to_string(excursion.node) + ": " + excursion_text(excursion));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "verlet_cable/core/body_name.h"
+#include "verlet_cable/core/excursion_text.h"
 #include "verlet_cable/core/jump_text.h"
 #include "verlet_cable/core/number_text.h"
 
@@ -51,6 +52,7 @@ void EventLog::observe(const World& world, const StepResult& result, const std::
     report({world.time(), text.type, cable, result.node, "", text.message, ""}, result.max_strain);
   }
   add_breaks(world);
+  add_excursions(world);
   add_jumps(world);
   add_intrusions(world);
   for (const int frame : held_back) {
@@ -87,10 +89,16 @@ void EventLog::add_breaks(const World& world) {
     const CableModel& first = *world.cables()[static_cast<std::size_t>(broken.cable)].model;
     const std::string& second = world.cables()[static_cast<std::size_t>(broken.new_cable)].model->name;
     add({world.time(), "BROKE", first.name, broken.segment, "",
-         "the segment that starts here was pulled harder than " + number_text(first.material.breaking_tension) +
+         "the segment that starts here was pulled harder than " + number_text(broken.limit) +
              " N and is gone; the rest of the cable is " + second,
          second});
   }
+}
+
+void EventLog::add_excursions(const World& world) {
+  for (const Excursion& excursion : world.findings().excursions)
+    add({world.time(), "LIMIT", world.cables()[static_cast<std::size_t>(excursion.cable)].model->name, excursion.node, "",
+         excursion_text(excursion), ""});
 }
 
 void EventLog::add_jumps(const World& world) {

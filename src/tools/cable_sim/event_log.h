@@ -48,6 +48,7 @@ class EventLog {
   };
 
   void add_breaks(const World& world);
+  void add_excursions(const World& world);
   void add_intrusions(const World& world);
   void report(const Event& event, double strain);
   void end_episodes(double time);
