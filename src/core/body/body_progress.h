@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "verlet_cable/core/types.h"
 
 namespace verlet_cable {
@@ -8,9 +10,12 @@ namespace verlet_cable {
 struct BodyProgress {
   /// It is where it begins: what holds it is known, or a cable whose end it is has started. Until then nothing hangs on it.
   bool is_placed = false;
+  bool has_moved = false;  ///< its velocity is one that what holds it, and what it holds, allows
   /// [m/s^2] of its center of mass, and [rad/s^2] in its frame's axes, mean over the last substep: where the next one's solution
   /// starts, and what substeps that damp go on from
   Vector3 acceleration = Vector3::Zero(), angular_acceleration = Vector3::Zero();
+  /// One a frame that holds it: the mean velocity of its attachment over the last step
+  std::vector<FrameVelocity> holders;
 };
 
 }  // namespace verlet_cable

@@ -10,6 +10,8 @@ namespace {
 /// Of joints, relative to what resists beside them: what is left of a gap after an iteration.
 constexpr double holding_part = 1e7;
 constexpr int maximum_iterations = 40;
+/// Of the tolerance of cables: bodies are heavier, and what is left over works on them.
+constexpr double body_part = 1e-5;
 /// A correction that shrinks less than this from one iteration to the next calls for a new factorisation.
 constexpr double slow_convergence = 0.1;
 constexpr double least_size = 1e-3;  // [m] of a body
@@ -136,7 +138,7 @@ bool BodySystem::advance(std::vector<Participant>& participants, double toleranc
     p.result = {};
     p.stepper->begin(p.substep, *p.state, p.result);
   }
-  Convergence convergence(1e-4*tolerance, rules_.h, rules_.statics);
+  Convergence convergence(body_part * tolerance, rules_.h, rules_.statics);
   bool stale = true;
   for (int i = 0; i < maximum_iterations; ++i) {
     place_holders(participants);
@@ -179,11 +181,7 @@ void BodySystem::condense(std::vector<Participant>& participants) {
       if (!side.turns) add_turning(side.member, side.point, cables_[c].loads.forces[side.entry]);
     add_resistance(cables_[c], participants[cables_[c].participant]);
   }
-  holding_ = holding_turn_ = 0;
-  for (std::size_t m = 0; m < members_.size(); ++m) {
-    holding_ = std::max(holding_, holding_part * matrix_.block<3, 3>(6 * m, 6 * m).cwiseAbs().maxCoeff());
-    holding_turn_ = std::max(holding_turn_, holding_part * matrix_.block<3, 3>(6 * m + 3, 6 * m + 3).cwiseAbs().maxCoeff());
-  }
+  find_holding();
   for (BodyJoint& joint : joints_) add_joint(joint, true);
   solver_.compute(matrix_);
 }
@@ -307,12 +305,7 @@ void BodySystem::solve(std::vector<Participant>& participants, bool stale) {
   for (std::size_t c = 0; c < cable_count_; ++c) {
     HeldCable& cable = cables_[c];
     Participant& p = participants[cable.participant];
-    std::fill(cable.motion.displacements.begin(), cable.motion.displacements.end(), Vector3::Zero());
-    std::fill(cable.motion.rotations.begin(), cable.motion.rotations.end(), Vector3::Zero());
-    for (const Side& side : cable.sides) {
-      const Vector3 motion = motion_of(side, members_[side.member].stepper) * change_.segment<6>(6 * side.member);
-      (side.turns ? cable.motion.rotations[side.entry] : cable.motion.displacements[side.entry]) = motion;
-    }
+    move_sides(cable);
     p.stepper->solve_moved(p.substep.boundary, cable.motion);
   }
 }
@@ -344,6 +337,97 @@ double BodySystem::correct() {
     largest = size <= largest ? largest : size;  // keeps a NaN
   }
   return largest;
+}
+
+void BodySystem::project(std::vector<Participant>& participants, std::vector<SimulatedBody>& bodies) {
+  matrix_.setZero();
+  load_.setZero();
+  for (std::size_t m = 0; m < members_.size(); ++m) {
+    const Eigen::Matrix3d& end = members_[m].stepper.end();
+    matrix_.block<3, 3>(6 * m, 6 * m).diagonal().setConstant(members_[m].whole.mass);
+    matrix_.block<3, 3>(6 * m + 3, 6 * m + 3) = end * members_[m].whole.inertia * end.transpose();
+  }
+  for (std::size_t c = 0; c < cable_count_; ++c) {
+    HeldCable& cable = cables_[c];
+    Participant& p = participants[cable.participant];
+    p.stepper->begin_projection(p.substep, *p.state);
+    p.stepper->solve_linear();
+    p.stepper->read_impulses(p.substep.boundary, cable.loads);
+    for (const Side& side : cable.sides)
+      if (!side.turns)
+        load_.segment<6>(6 * side.member) +=
+            point_load(members_[side.member].stepper.end_arm(side.point)) * cable.loads.forces[side.entry];
+    add_resistance(cable, p);
+  }
+  find_holding();
+  for (const BodyJoint& joint : joints_) project_joint(joint);
+  solver_.compute(matrix_);
+  change_.noalias() = solver_.solve(load_);
+  for (std::size_t c = 0; c < cable_count_; ++c) {
+    HeldCable& cable = cables_[c];
+    Participant& p = participants[cable.participant];
+    move_sides(cable);
+    p.stepper->solve_moved(p.substep.boundary, cable.motion);
+    p.stepper->finish_projection(p.substep, *p.state);
+  }
+  for (std::size_t b = 0; b < place_.size(); ++b) {
+    if (place_[b] < 0) continue;
+    const Member& member = members_[place_[b]];
+    const Vector6 change = change_.segment<6>(6 * place_[b]);
+    bodies[b].velocity += point_motion(member.stepper.end_arm(bodies[b].center_of_mass)) * change;
+    bodies[b].angular_velocity += change.tail<3>();
+  }
+}
+
+/// Lets a joint end the velocities that it does not allow.
+void BodySystem::project_joint(const BodyJoint& joint) {
+  const RigidBodyStepper& own = members_[joint.member].stepper;
+  const Matrix36 motion = point_motion(own.end_arm(joint.at.position));
+  Vector3 gap = joint.holder_velocity.linear - own.velocity_of(joint.at.position);
+  Vector3 turning = joint.holder_velocity.angular - own.spin();
+  Eigen::Matrix3d across = Eigen::Matrix3d::Identity();
+  if (joint.type == AttachmentType::axle) {
+    const Vector3 axis = own.pose().orientation * joint.at.orientation * Vector3::UnitZ();
+    across -= axis * axis.transpose();
+  }
+  std::array<int, 2> members{joint.member, joint.other};
+  std::array<Matrix36, 2> motions{motion, motion};
+  const int count = joint.other < 0 ? 1 : 2;
+  if (count == 2) {
+    const RigidBodyStepper& other = members_[joint.other].stepper;
+    gap += other.velocity_of(joint.holder.position);
+    turning += other.spin();
+    motions[1] = -point_motion(other.end_arm(joint.holder.position));
+  }
+  const bool turns = joint.type != AttachmentType::hinge;
+  for (int i = 0; i < count; ++i) {
+    const double sign = i == 0 ? 1 : -1;
+    load_.segment<6>(6 * members[i]) += holding_ * motions[i].transpose() * gap;
+    if (turns) load_.segment<3>(6 * members[i] + 3) += sign * holding_turn_ * (across * turning);
+    for (int j = 0; j < count; ++j) {
+      auto block = matrix_.block<6, 6>(6 * members[i], 6 * members[j]);
+      block += holding_ * motions[i].transpose() * motions[j];
+      if (turns) block.bottomRightCorner<3, 3>() += (i == j ? holding_turn_ : -holding_turn_) * across;
+    }
+  }
+}
+
+/// How cables' sides move with their bodies.
+void BodySystem::move_sides(HeldCable& cable) const {
+  std::fill(cable.motion.displacements.begin(), cable.motion.displacements.end(), Vector3::Zero());
+  std::fill(cable.motion.rotations.begin(), cable.motion.rotations.end(), Vector3::Zero());
+  for (const Side& side : cable.sides) {
+    const Vector3 motion = motion_of(side, members_[side.member].stepper) * change_.segment<6>(6 * side.member);
+    (side.turns ? cable.motion.rotations[side.entry] : cable.motion.displacements[side.entry]) = motion;
+  }
+}
+
+void BodySystem::find_holding() {
+  holding_ = holding_turn_ = 0;
+  for (std::size_t m = 0; m < members_.size(); ++m) {
+    holding_ = std::max(holding_, holding_part * matrix_.block<3, 3>(6 * m, 6 * m).cwiseAbs().maxCoeff());
+    holding_turn_ = std::max(holding_turn_, holding_part * matrix_.block<3, 3>(6 * m + 3, 6 * m + 3).cwiseAbs().maxCoeff());
+  }
 }
 
 void BodySystem::place_at_end(std::vector<Participant>& participants) {

@@ -25,6 +25,7 @@ struct BodyJoint {
   int member = 0;                    ///< index of the body that is held, among the members
   Pose at;                           ///< on that body
   int other = -1;                    ///< likewise of the one that holds it; -1: a frame does
+  FrameVelocity holder_velocity;     ///< of a frame\'s attachment, at the end of the substep
   Pose holder;                       ///< of the attachment at the end of the substep, in the fixed frame or on the other body
   Vector3 force = Vector3::Zero();   ///< [N] on the body that is held
   Vector3 torque = Vector3::Zero();  ///< [N m] likewise, about the attachment's point
@@ -51,6 +52,10 @@ class BodySystem {
   void solve(std::vector<Participant>& participants, bool stale);
   /// The largest displacement of a body in parts of its size, or rotation [rad].
   double correct();
+
+  /// Impulses along inextensible segments and in joints that end all velocities that these do not allow, once bodies and cables
+  /// have finished; without them such velocities would alternate from step to step.
+  void project(std::vector<Participant>& participants, std::vector<SimulatedBody>& bodies);
 
   /// The cables' boundaries get what bodies have come to.
   void place_at_end(std::vector<Participant>& participants);
@@ -84,6 +89,9 @@ class BodySystem {
   static Eigen::Matrix<double, 6, 3> load_of(const Side& side, const RigidBodyStepper& stepper);
   void condense(std::vector<Participant>& participants);
   void add_resistance(HeldCable& cable, Participant& participant);
+  void project_joint(const BodyJoint& joint);
+  void move_sides(HeldCable& cable) const;
+  void find_holding();
   void add_turning(int member, const Vector3& point, const Vector3& force);
   void add_joint(BodyJoint& joint, bool stiffness);
   Vector3 gap_of(const BodyJoint& joint) const;

@@ -117,7 +117,7 @@ void RigidBodyStepper::finish(SimulatedBody& body, BodyProgress& progress) const
   body.pose = pose();
   body.velocity = velocity_of(body.center_of_mass);
   body.angular_velocity = end_ * end_spin();
-  progress = {};
+  progress.acceleration = progress.angular_acceleration = Vector3::Zero();
   if (rules_.statics) return;
   progress.acceleration = (body.velocity - before) / h;
   progress.angular_acceleration = (end_spin() - spin_) / h;

@@ -53,7 +53,8 @@ class RigidBodyStepper {
 
   /// Velocities at the end.
   void finish(SimulatedBody& body, BodyProgress& progress) const;
-  Vector3 velocity_of(const Vector3& point) const;  ///< [m/s] at the end
+  Vector3 velocity_of(const Vector3& point) const;    ///< [m/s] at the end
+  Vector3 spin() const { return end_ * end_spin(); }  ///< [rad/s] at the end
 
  private:
   Vector3 end_velocity() const;

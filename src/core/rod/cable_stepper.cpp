@@ -100,7 +100,10 @@ void CableStepper::finish(const Substep& s, bool struck, CableState& state, Subs
   const bool damped = !s.statics && s.scheme != Scheme::conserving;
   if (damped && s.boundary.nodes.empty()) restore_momenta(s, state.masses);
   if (!s.statics && s.boundary.nodes.empty()) restore_angular_momentum(s, state.masses);
-  if (!s.statics && (struck || damped || !s.boundary.growing.empty() || holders_accelerate(s, state))) project(s, state.masses);
+  // Where bodies give way they are projected together.
+  if (!s.statics && !s.boundary.is_on_bodies() &&
+      (struck || damped || !s.boundary.growing.empty() || holders_accelerate(s, state)))
+    project(s, state.masses);
   result.max_strain = store(s, state);
   if (rod_.active()) rod_.store(s.boundary, state);
   if (s.treatment != Treatment::none) quieten(s, state);
@@ -295,8 +298,7 @@ void CableStepper::evaluate_rigid_lengths() {
 
 /// `compliance`: what `set_loads` has set.
 inline void CableStepper::evaluate_rigid_length(int i) {
-  system_.gap[i] =
-      0.5 * (target_length_[i] * target_length_[i] - end_square_[i]) + strain_compliance_[i] * tension_density_[i];
+  system_.gap[i] = 0.5 * (target_length_[i] * target_length_[i] - end_square_[i]) + strain_compliance_[i] * tension_density_[i];
 }
 
 void CableStepper::evaluate_elastic_lengths(const Substep& sub, const std::vector<double>& rest_lengths) {
@@ -432,6 +434,48 @@ void CableStepper::respond(const Boundary& boundary, const HolderMotion& motion,
   std::swap(system_.load, kept_load_);
   std::swap(system_.gap, kept_gap_);
   std::swap(rod_.torque(), kept_torque_);
+}
+
+void CableStepper::begin_projection(const Substep& s, const CableState& state) {
+  rod_.leave_out();
+  couples_second_ = true;  // whatever bends next sets them anew
+  system_.clear_stiffness();
+  std::fill(system_.second.begin(), system_.second.end(), 0.0);
+  for (int i = 0; i <= segments_; ++i) {
+    inertia_[i] = system_.diagonal[i] = state.masses[i];
+    set(system_.load, i, Vector3::Zero());
+  }
+  for (int i = 0; i < segments_; ++i) {
+    const Vector3 d = state.positions[i + 1] - state.positions[i];
+    set(system_.direction, i, d);
+    system_.first[i] = 0;
+    const double compliance = d.squaredNorm() / (state.masses[i] + state.masses[i + 1]);
+    const bool stretches = is_elastic_at(i);
+    system_.compliance[i] = (stretches ? 1 / pivot_regularisation : pivot_regularisation) * compliance;
+    system_.gap[i] = stretches ? 0 : d.dot(state.velocities[i] - state.velocities[i + 1]);
+  }
+  for (const GrowingSegment& growing : s.boundary.growing)
+    if (!is_elastic_at(growing.segment)) system_.gap[growing.segment] += state.rest_lengths[growing.segment] * growing.growth;
+  for (const int i : both_held_) system_.gap[i] = 0;
+  solver_.factor(system_, false);
+}
+
+void CableStepper::read_impulses(const Boundary& boundary, HolderLoads& impulses) const {
+  impulses.forces.resize(boundary.nodes.size());
+  impulses.torques.assign(boundary.directions.size(), Vector3::Zero());
+  for (std::size_t k = 0; k < boundary.nodes.size(); ++k) impulses.forces[k] = corrected_load(boundary.nodes[k].node);
+}
+
+void CableStepper::finish_projection(const Substep& s, CableState& state) {
+  const VectorArray& change = solver_.displacement();
+  for (int i = 0; i <= segments_; ++i) {
+    state.velocities[i] += get(change, i);
+    state.accelerations[i] += get(change, i) / s.h;
+  }
+  for (HeldNode& held : s.boundary.nodes) {
+    held.force += corrected_load(held.node) / s.h;
+    if (held.body >= 0) held.velocity += get(change, held.node);
+  }
 }
 
 /// What holders that move do to the cable's equations.

@@ -53,6 +53,13 @@ class CableStepper {
   void solve_moved(const Boundary& boundary, const HolderMotion& motion);
   /// What the cable exerts on its holders where they move so and nothing loads it.
   void respond(const Boundary& boundary, const HolderMotion& motion, HolderLoads& loads);
+  // Of velocities, once the substep is finished: begin; solve; read; respond; solve moved; finish
+  /// The linear system is that of impulses which end all change of length of inextensible segments but that of rest lengths.
+  void begin_projection(const Substep& substep, const CableState& state);
+  /// On the holders [N s], after the last solution.
+  void read_impulses(const Boundary& boundary, HolderLoads& impulses) const;
+  /// The state's velocities take the solution.
+  void finish_projection(const Substep& substep, CableState& state);
   const VectorArray& displacement() const { return displacement_; }  ///< nodes: x' - x of the present iterate [m]
   KktSystem& system() { return system_; }
   // The solution of the linear system: of nodes [m], of segments [N/m], and of a whole rod's segments [rad]

@@ -69,9 +69,10 @@ class IslandStepper {
   void begin(const Island& island);
   bool advance(Island& island, double from, double to, bool tolerated);
   bool advance_bodies(const Island& island, double from, double to, Scheme scheme);
-  void find_body_joints(const Island& island, double to);
+  void find_body_joints(const Island& island, double from, double to);
   void finish_bodies(const Island& island, double from, double to);
   void stop_bodies(const Island& island);
+  void follow_body_holders(BodyJoint& joint, double to);
   void find_contacts(Island& island, double from, double to);
   Scheme scheme_of(int cable) const;
   Scheme find_touching_scheme(const Island& island, double h);
@@ -89,6 +90,7 @@ class IslandStepper {
   Workspace& workspace_;
   std::vector<CableOutcome>& outcomes_;
   Environment environment_;
+  bool projects_bodies_ = false;  ///< velocities of bodies and what they hold, at the end of the substep
   int lanes_;  ///< two a cable that is stepped together with others
 };
 
