@@ -134,16 +134,16 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
     local_[i] = orientation.transpose() * (state.positions[i] - moving.start.position);
     nearest_[i] = closest_point(shape, local_[i], far);
   };
-  const auto way_of_surface = [&](const Vector3& point) -> Vector3 {
-    if (!(moving.speed > 0)) return Vector3::Zero();
-    return moving.end.position - moving.start.position + moving.end.orientation * point - orientation * point;
-  };
   const double friction = moving.obstacle->friction.value_or(model.material.friction);
   const auto touch_at = [&](const CablePoint& point, std::uint64_t element, const SurfacePoint& nearest) {
     const double gap = nearest.distance - surface;
-    const Vector3 normal = orientation * nearest.normal, way = way_of_surface(nearest.point);
+    const Vector3 normal = orientation * nearest.normal;
+    // Of the centre line, as if it was joined to the obstacle: what sticks turns with it.
+    SurfaceMotion motion = surface_motion(moving, nearest.point + nearest.distance * nearest.normal);
+    // Across the surface the mean velocity: what begins to move does not throw.
+    motion.end_velocity += normal.dot(motion.displacement / h - motion.end_velocity) * normal;
     const Vector3 velocity = interpolate(state.velocities, point.segment, point.fraction);
-    if (!may_close(gap, normal, velocity - way / h, radius, h)) return;
+    if (!may_close(gap, normal, velocity - motion.displacement / h, radius, h)) return;
     if (anchored(state, *member.targets, point, *moving.obstacle, attachments)) return;
     Touch& touch = touches_.emplace_back();
     touch.key = moving.obstacle->id;
@@ -156,9 +156,12 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
     touch.friction = on_node ? friction_of_arc(friction, state, static_cast<int>(element / 2), normal) : friction;
     touch.radius = radius;
     touch.base_stiffness = stopping(cable, point.segment, rules_.time_step);
-    touch.other_displacement = way;
+    touch.velocity = velocity;
+    touch.acceleration = interpolate(state.accelerations, point.segment, point.fraction);
+    touch.other_motion = motion;
+    touch.half_turn = moving.half_turn;
     touch.position = interpolate(state.positions, point.segment, point.fraction);
-    add(touch, member, velocity, h);
+    add(touch, member, h);
   };
 
   visited_.assign(n + 1, 0);
@@ -222,13 +225,15 @@ void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, const std
     touch.friction = rules_.cable_friction;
     touch.radius = radius;
     touch.base_stiffness = std::min(stopping(a, i, rules_.time_step), stopping(b, j, rules_.time_step));
+    touch.velocity = velocity;
+    touch.acceleration =
+        interpolate(a.state.accelerations, i, closest.first) - interpolate(b.state.accelerations, j, closest.second);
     touch.position = a0 + closest.first * along_a;
-    add(touch, members[places_[pair.first.cable]], velocity, h);
+    add(touch, members[places_[pair.first.cable]], h);
   }
 }
 
-/// `velocity` [m/s] is that of the point, relative to another cable's where that is touched.
-void ContactSet::add(Touch& touch, const ContactMember& member, const Vector3& velocity, double h) {
+void ContactSet::add(Touch& touch, const ContactMember& member, double h) {
   const double gentle = gentle_gap(touch.radius, contact_time(rules_.time_step));
   const bool known = recall(member, touch);
   if (!known && touch.obstacle >= 0 && touch.gap < -deepest_arrival * touch.radius)
@@ -236,7 +241,7 @@ void ContactSet::add(Touch& touch, const ContactMember& member, const Vector3& v
   touch.inside = !known || touch.inside;
   if (touch.gap >= gentle) touch.inside = false;
   if (touch.inside) touch.gap = gentle;
-  anticipate(h, time_, velocity, touch);
+  anticipate(Scheme::conserving, h, time_, touch);
   start_touch(touch);
   touched_[places_[touch.point.cable]] = 1;
   if (touch.other.cable >= 0) touched_[places_[touch.other.cable]] = 1;
@@ -260,7 +265,7 @@ bool ContactSet::recall(const ContactMember& member, Touch& touch) {
   std::size_t& recalled = recalled_[places_[touch.point.cable]];
   while (recalled < cache.size() && keys(cache[recalled]) < keys(touch)) ++recalled;
   if (recalled == cache.size() || keys(cache[recalled]) != keys(touch)) return false;
-  touch.stuck_force = cache[recalled].force;
+  touch.stuck_force = touch.half_turn * cache[recalled].force;
   touch.mode = cache[recalled].mode;
   touch.inside = cache[recalled].inside;
   return true;

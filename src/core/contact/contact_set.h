@@ -47,7 +47,7 @@ class ContactSet {
                      const std::vector<Attachment>& attachments, double h);
   void find_pairs(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members, const SegmentPairs& found,
                   double thickest, double h);
-  void add(Touch& touch, const ContactMember& member, const Vector3& velocity, double h);
+  void add(Touch& touch, const ContactMember& member, double h);
   double reach(double speed, double radius, double h) const;
   bool may_close(double gap, const Vector3& normal, const Vector3& velocity, double radius, double h) const;
   bool recall(const ContactMember& member, Touch& touch);

@@ -240,7 +240,7 @@ auto fields(T& x, const Obstacle*) {
 // World
 template <class T>
 auto fields(T& x, const Frames*) {
-  return std::tie(x.names, x.poses, x.previous_poses, x.known);
+  return std::tie(x.names, x.poses, x.previous_poses, x.earlier_poses, x.known);
 }
 template <class T>
 auto fields(T& x, const State*) {
