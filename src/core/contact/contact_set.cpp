@@ -23,6 +23,8 @@ constexpr double stopping_stiffness = 2;
 constexpr double distance_rounding = 1e-6;
 /// Of the sine of an angle for which series do.
 constexpr double small_square = 0.01;
+/// Nodes and segments in turns: of a node, the segments and nodes next to it.
+constexpr std::uint64_t neighbouring_elements = 2;
 /// Deeper than this, in radii, nothing comes through a surface before its contact is found.
 constexpr double deepest_arrival = 0.5;
 
@@ -59,6 +61,19 @@ double friction_of_arc(double friction, const CableState& state, int node, const
   }
   const double half_angle = std::asin(sine);
   return std::tanh(friction * half_angle) / std::tan(half_angle);
+}
+
+template <typename Contact>
+auto keys(const Contact& of) {
+  return std::tie(of.key, of.other_key);
+}
+
+/// Whether a touch was this in the last substep. A cable that slides over an edge touches the obstacle with one element after the
+/// other.
+bool continues(const CachedContact& last, const Touch& touch) {
+  if (last.key != touch.key) return false;
+  const std::uint64_t reach = touch.obstacle >= 0 ? neighbouring_elements : 0;
+  return std::max(last.other_key, touch.other_key) - std::min(last.other_key, touch.other_key) <= reach;
 }
 
 bool apart(const Vector3& a, const Vector3& b, const Aabb& box, double reach) {
@@ -260,14 +275,18 @@ double ContactSet::reach(double speed, double radius, double h) const {
 
 /// What a touch was in the last substep; false if it was none. A member's touches are asked for in ascending order.
 bool ContactSet::recall(const ContactMember& member, Touch& touch) {
-  const auto keys = [](const auto& of) { return std::tie(of.key, of.other_key); };
   const ContactCache& cache = *member.cache;
   std::size_t& recalled = recalled_[places_[touch.point.cable]];
   while (recalled < cache.size() && keys(cache[recalled]) < keys(touch)) ++recalled;
-  if (recalled == cache.size() || keys(cache[recalled]) != keys(touch)) return false;
-  touch.stuck_force = touch.half_turn * cache[recalled].force;
-  touch.mode = cache[recalled].mode;
-  touch.inside = cache[recalled].inside;
+  const CachedContact* last = nullptr;
+  if (recalled < cache.size() && continues(cache[recalled], touch))
+    last = &cache[recalled];
+  else if (recalled > 0 && continues(cache[recalled - 1], touch))
+    last = &cache[recalled - 1];
+  if (last == nullptr) return false;
+  touch.stuck_force = touch.half_turn * last->force;
+  touch.mode = last->mode;
+  touch.inside = last->inside;
   return true;
 }
 
