@@ -105,6 +105,18 @@ bool joins_cables(const Touch& touch) {
 
 }  // namespace
 
+inline Participant& ContactSolver::at(std::vector<Participant>& participants, const CablePoint& point) const {
+  return participants[index_[point.cable]];
+}
+
+/// w of the present iterate [m].
+inline Vector3 ContactSolver::displacement_of(const Touch& touch, std::vector<Participant>& participants) const {
+  const CablePoint &point = touch.point, &other = touch.other;
+  const Vector3 own = between(at(participants, point).stepper->displacement(), point.segment, point.fraction);
+  if (!joins_cables(touch)) return own;
+  return own - between(at(participants, other).stepper->displacement(), other.segment, other.fraction);
+}
+
 bool ContactSolver::solve(std::vector<Participant>& participants, std::vector<Touch>& touches) {
   begin(participants);
   return iterate(participants, touches);
@@ -124,7 +136,8 @@ void ContactSolver::begin(std::vector<Participant>& participants) {
 
 void ContactSolver::finish(std::vector<Participant>& participants, std::vector<Touch>& touches) const {
   // After the last correction: what is left out at each substep would be creep.
-  for (Touch& touch : touches) touch.displacement = displacement_of(touch, participants);
+  for (Touch& touch : touches)
+    if (touch.mode != Touch::Mode::open) touch.displacement = displacement_of(touch, participants);
   for (Participant& p : participants) p.stepper->finish(p.substep, true, *p.state, p.result);
 }
 
@@ -472,18 +485,6 @@ ContactSolver::Side ContactSolver::side_at(const CablePoint& point) const {
   side.segment = point.segment;
   side.fraction = point.fraction;
   return side;
-}
-
-/// w of the present iterate [m].
-Vector3 ContactSolver::displacement_of(const Touch& touch, std::vector<Participant>& participants) const {
-  const CablePoint &point = touch.point, &other = touch.other;
-  const Vector3 own = between(at(participants, point).stepper->displacement(), point.segment, point.fraction);
-  if (!joins_cables(touch)) return own;
-  return own - between(at(participants, other).stepper->displacement(), other.segment, other.fraction);
-}
-
-Participant& ContactSolver::at(std::vector<Participant>& participants, const CablePoint& point) const {
-  return participants[index_[point.cable]];
 }
 
 }  // namespace verlet_cable

@@ -31,13 +31,14 @@ struct Touch {
   bool inside = false;                 ///< it was deep inside from the start: it is pushed out gently
   double gap = 0;                      ///< [m] between the surfaces at the start of the substep
   double friction = 0;                 ///< Coulomb coefficient
+  Vector3 lean = Vector3::Zero();      ///< along the surface: friction is bounded around this times the normal force
   double radius = 0;                   ///< [m] of the thinner cable
   double base_stiffness = 0;           ///< [N/m] at no depth
   double rate = 1;
   Vector3 offset = Vector3::Zero();              ///< [m]
   Vector3 stuck_force = Vector3::Zero();         ///< [N] friction at the start of the substep, as it is turned in the middle
+  double last_force = 0;                         ///< [N] normal force in the substep before
   Vector3 velocity = Vector3::Zero();            ///< [m/s] of the point at the start, relative to another cable that is touched
-  Vector3 acceleration = Vector3::Zero();        ///< [m/s^2] likewise
   SurfaceMotion other_motion;                    ///< of an obstacle that is touched
   Quaternion half_turn = Quaternion::Identity();  ///< likewise: MovingObstacle's
   // Of the present iterate
@@ -55,8 +56,8 @@ struct Touch {
 double contact_time(double time_step);
 
 /// Sets `rate` and `offset` for a substep of length h [s]: a contact acts on where it will be a contact time after the end of
-/// the substep if it moves on with the velocity that it then has by the scheme.
-void anticipate(Scheme scheme, double h, double contact_time, Touch& touch);
+/// the substep if it moves on with the velocity that it then has by the scheme. `acceleration` [m/s^2]: as Touch::velocity.
+void anticipate(Scheme scheme, double h, double contact_time, const Vector3& acceleration, Touch& touch);
 
 /// The gap [m] of what is pushed out at a gentle velocity: nothing deeper is taken for deeper where a cable starts inside.
 double gentle_gap(double radius, double contact_time);
@@ -70,6 +71,11 @@ bool evaluate_touch(const Vector3& w, Touch& touch);
 /// [N/m] - d force / d w of a touch that is not open, without the part of friction that follows f. Along the slip it is the
 /// secant, not the tangent, which is nothing: iterations would turn it to and fro.
 Eigen::Matrix3d slope(const Touch& touch);
+
+/// A force [N] as the obstacle that is touched turns it in half the substep.
+inline Vector3 half_turned(const Touch& touch, const Vector3& force) {
+  return touch.half_turn.w() == 1 ? force : Vector3(touch.half_turn * force);
+}
 
 /// Friction [N] that stays when the substep is done: the bristle's without what velocity adds. Of what sticks it may be beyond
 /// the cone: cut off, it would follow what still comes to rest, and that would go on for ever.

@@ -19,7 +19,6 @@ double largest_distance(const Aabb& box, const Vector3& from) {
 }  // namespace
 
 SurfaceMotion surface_motion(const MovingObstacle& moving, const Vector3& point) {
-  if (!(moving.speed > 0)) return {};
   const Vector3 start = moving.start.position + moving.start.orientation * point;
   const Vector3 end = moving.end.position + moving.end.orientation * point;
   return {end - start, moving.end_velocity.linear + moving.end_velocity.angular.cross(end - moving.frame_end)};

@@ -304,8 +304,7 @@ Scheme IslandStepper::find_touching_scheme(const Island& island, double h) {
     const Scheme own = scheme_of(island.cables[k]);
     if (own == Scheme::first_order || scheme == Scheme::conserving) scheme = own;
   }
-  if (scheme != Scheme::conserving)
-    for (Touch& touch : workspace_.contacts.touches()) anticipate(scheme, h, contact_time(state_.scene->time_step), touch);
+  if (scheme != Scheme::conserving) workspace_.contacts.follow_scheme(scheme, state_.cables, h);
   return scheme;
 }
 
