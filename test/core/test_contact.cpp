@@ -293,7 +293,7 @@ TEST(ContactLaw, StiffensWithDepthAndKeepsFrictionInItsCone) {
   touch.friction = 0.4;
   touch.base_stiffness = 100;
   touch.gap = 0;
-  anticipate(1e-3, contact_time(1e-3), Vector3::Zero(), touch);
+  anticipate(Scheme::conserving, 1e-3, contact_time(1e-3), Vector3::Zero(), touch);
   start_touch(touch);
   double last = 0, last_slope = 0;
   for (double depth = 1e-5; depth < 1e-3; depth += 1e-5) {
@@ -314,7 +314,7 @@ TEST(ContactLaw, DeepContactIsLedToTheDepthOfItsForceInOneIteration) {
     Touch touch;
     touch.radius = radius;
     touch.base_stiffness = 100;
-    anticipate(1e-3, contact_time(1e-3), Vector3::Zero(), touch);
+    anticipate(Scheme::conserving, 1e-3, contact_time(1e-3), Vector3::Zero(), touch);
     start_touch(touch);
     touch.stiffness = force / (0.3 * radius);  // by which the cables have come so deep with this force
     evaluate_touch(Vector3(0, 0, -0.3 * radius / touch.rate), touch);

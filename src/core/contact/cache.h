@@ -12,6 +12,7 @@ namespace verlet_cable {
 struct CachedContact {
   std::uint64_t key = 0, other_key = 0;  ///< of the touch
   Vector3 force = Vector3::Zero();       ///< [N] friction of what sticks
+  double normal_force = 0;               ///< [N]
   Touch::Mode mode = Touch::Mode::open;
   bool inside = false;
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "contact/friction_bound.h"
 #include "geometry/segment_geometry.h"
 #include "verlet_cable/core/cable_materials.h"
 
@@ -22,8 +23,8 @@ constexpr double anchored_length = 0.05;
 constexpr double stopping_stiffness = 2;
 /// Relative, of distances.
 constexpr double distance_rounding = 1e-6;
-/// Of the sine of an angle for which series do.
-constexpr double small_square = 0.01;
+/// Nodes and segments in turns: of a node, the segments and nodes next to it.
+constexpr std::uint64_t neighbouring_elements = 2;
 /// Deeper than this, in radii, nothing comes through a surface before its contact is found.
 constexpr double deepest_arrival = 0.5;
 
@@ -32,7 +33,7 @@ double stopping(const SimulatedCable& cable, int segment, double time_step) {
   return stopping_stiffness * mass / (time_step * time_step);
 }
 
-Vector3 interpolate(const std::vector<Vector3>& nodes, int segment, double fraction) {
+inline Vector3 interpolate(const std::vector<Vector3>& nodes, int segment, double fraction) {
   return (1 - fraction) * nodes[segment] + fraction * nodes[segment + 1];
 }
 
@@ -41,25 +42,17 @@ CablePoint node_point(int cable, int node, int segments) {
   return node < segments ? CablePoint{cable, node, 0.0} : CablePoint{cable, node - 1, 1.0};
 }
 
-/// What Coulomb's friction on the arc of a smooth cable comes to at the node that stands for it: turned around an obstacle by an
-/// angle, tension grows by exp(friction * angle) along the arc (Euler), where the node's forces alone would make it
-/// (1 + f tan(angle / 2)) / (1 - f tan(angle / 2)).
-double friction_of_arc(double friction, const CableState& state, int node, const Vector3& normal) {
-  if (node == 0 || node + 1 == static_cast<int>(state.positions.size())) return friction;
-  const Vector3 before = state.positions[node] - state.positions[node - 1];
-  const Vector3 after = state.positions[node + 1] - state.positions[node];
-  const double sine = std::min(0.5 * (normal.dot(before) / before.norm() - normal.dot(after) / after.norm()), 1.0);
-  if (!(sine > 0)) return friction;
-  const double square = sine * sine;
-  if (square < small_square && friction * friction * square < small_square) {
-    // The same in series of asin, tan and tanh, to a part in 10^9.
-    const double arc = 1 + square * (1.0 / 6 + square * (3.0 / 40 + square * (5.0 / 112)));
-    const double turned = friction * friction * square * arc * arc;
-    const double tanh = 1 - turned * (1.0 / 3 - turned * (2.0 / 15 - turned * (17.0 / 315)));
-    return friction * arc * tanh * std::sqrt(1 - square);
-  }
-  const double half_angle = std::asin(sine);
-  return std::tanh(friction * half_angle) / std::tan(half_angle);
+template <typename Contact>
+auto keys(const Contact& of) {
+  return std::tie(of.key, of.other_key);
+}
+
+/// Whether a touch was this in the last substep. A cable that slides over an edge touches the obstacle with one element after the
+/// other.
+bool continues(const CachedContact& last, const Touch& touch) {
+  if (last.key != touch.key) return false;
+  const std::uint64_t reach = touch.obstacle >= 0 ? neighbouring_elements : 0;
+  return std::max(last.other_key, touch.other_key) - std::min(last.other_key, touch.other_key) <= reach;
 }
 
 bool apart(const Vector3& a, const Vector3& b, const Aabb& box, double reach) {
@@ -140,10 +133,7 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
     local_[i] = orientation.transpose() * (state.positions[i] - moving.start.position);
     nearest_[i] = closest_point(shape, local_[i], far);
   };
-  const auto way_of_surface = [&](const Vector3& point) -> Vector3 {
-    if (!(moving.speed > 0)) return Vector3::Zero();
-    return moving.end.position - moving.start.position + moving.end.orientation * point - orientation * point;
-  };
+  bool cuts = false;  // whether segments touch, not only nodes
   const auto node_friction = [&](int i) {
     return materials.mean_at(i, [](const MaterialDesc& material) { return material.friction; });
   };
@@ -152,9 +142,16 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
     const int place = static_cast<int>(element / 2);
     const double radius = on_node ? node_radius(place) : materials[place].radius;
     const double gap = nearest.distance - (radius + moving.obstacle->padding);
-    const Vector3 normal = orientation * nearest.normal, way = way_of_surface(nearest.point);
+    const Vector3 normal = orientation * nearest.normal;
+    SurfaceMotion motion;
+    if (moving.speed > 0) {
+      // Of the centre line, as if it was joined to the obstacle: what sticks turns with it.
+      motion = surface_motion(moving, nearest.point + nearest.distance * nearest.normal);
+      // Across the surface the mean velocity: what begins to move does not throw.
+      motion.end_velocity += normal.dot(motion.displacement / h - motion.end_velocity) * normal;
+    }
     const Vector3 velocity = interpolate(state.velocities, point.segment, point.fraction);
-    if (!may_close(gap, normal, velocity - way / h, radius, h)) return;
+    if (!may_close(gap, normal, velocity - motion.displacement / h, radius, h)) return;
     if (anchored(state, *member.targets, point, *moving.obstacle, attachments)) return;
     Touch& touch = touches_.emplace_back();
     touch.key = moving.obstacle->id;
@@ -164,14 +161,20 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
     touch.normal = normal;
     touch.gap = gap;
     const double friction = moving.obstacle->friction.value_or(on_node ? node_friction(place) : materials[place].friction);
-    touch.friction = on_node ? friction_of_arc(friction, state, place, normal) : friction;
+    touch.friction = friction;
+    feet_.push_back(nearest.point);
+    cuts = cuts || element % 2 == 1;
     touch.radius = radius;
     touch.base_stiffness = stopping(cable, point.segment, rules_.time_step);
-    touch.other_displacement = way;
+    touch.velocity = velocity;
+    touch.other_motion = motion;
+    touch.half_turn = moving.half_turn;
     touch.position = interpolate(state.positions, point.segment, point.fraction);
-    add(touch, member, velocity, h);
+    add(touch, member, h);
   };
 
+  const std::size_t first_touch = touches_.size();
+  feet_.clear();
   visited_.assign(n + 1, 0);
   local_.resize(n + 1);
   nearest_.resize(n + 1);
@@ -200,6 +203,10 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
     deepest.surface.distance += bulge * radius;
     touch_at({index, i, deepest.fraction}, 2 * i + 1, deepest.surface);
   }
+  if (cuts)
+    bound_friction_at_corners(state, first_touch, feet_, touches_, pressed_);
+  else
+    bound_friction_of_nodes(state, first_touch, touches_);
 }
 
 void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members,
@@ -233,13 +240,13 @@ void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, const std
     touch.friction = rules_.cable_friction;
     touch.radius = radius;
     touch.base_stiffness = std::min(stopping(a, i, rules_.time_step), stopping(b, j, rules_.time_step));
+    touch.velocity = velocity;
     touch.position = a0 + closest.first * along_a;
-    add(touch, members[places_[pair.first.cable]], velocity, h);
+    add(touch, members[places_[pair.first.cable]], h);
   }
 }
 
-/// `velocity` [m/s] is that of the point, relative to another cable's where that is touched.
-void ContactSet::add(Touch& touch, const ContactMember& member, const Vector3& velocity, double h) {
+void ContactSet::add(Touch& touch, const ContactMember& member, double h) {
   const double gentle = gentle_gap(touch.radius, contact_time(rules_.time_step));
   const bool known = recall(member, touch);
   if (!known && touch.obstacle >= 0 && touch.gap < -deepest_arrival * touch.radius)
@@ -247,7 +254,7 @@ void ContactSet::add(Touch& touch, const ContactMember& member, const Vector3& v
   touch.inside = !known || touch.inside;
   if (touch.gap >= gentle) touch.inside = false;
   if (touch.inside) touch.gap = gentle;
-  anticipate(h, time_, velocity, touch);
+  anticipate(Scheme::conserving, h, time_, Vector3::Zero(), touch);
   start_touch(touch);
   touched_[places_[touch.point.cable]] = 1;
   if (touch.other.cable >= 0) touched_[places_[touch.other.cable]] = 1;
@@ -266,22 +273,35 @@ double ContactSet::reach(double speed, double radius, double h) const {
 
 /// What a touch was in the last substep; false if it was none. A member's touches are asked for in ascending order.
 bool ContactSet::recall(const ContactMember& member, Touch& touch) {
-  const auto keys = [](const auto& of) { return std::tie(of.key, of.other_key); };
   const ContactCache& cache = *member.cache;
   std::size_t& recalled = recalled_[places_[touch.point.cable]];
   while (recalled < cache.size() && keys(cache[recalled]) < keys(touch)) ++recalled;
-  if (recalled == cache.size() || keys(cache[recalled]) != keys(touch)) return false;
-  touch.stuck_force = cache[recalled].force;
-  touch.mode = cache[recalled].mode;
-  touch.inside = cache[recalled].inside;
+  const CachedContact* last = nullptr;
+  if (recalled < cache.size() && continues(cache[recalled], touch))
+    last = &cache[recalled];
+  else if (recalled > 0 && continues(cache[recalled - 1], touch))
+    last = &cache[recalled - 1];
+  if (last == nullptr) return false;
+  touch.stuck_force = half_turned(touch, last->force);
+  touch.mode = last->mode;
+  touch.last_force = last->normal_force;
+  touch.inside = last->inside;
   return true;
+}
+
+void ContactSet::follow_scheme(Scheme scheme, const std::vector<SimulatedCable>& cables, double h) {
+  const auto acceleration_at = [&](const CablePoint& point) -> Vector3 {
+    if (point.cable < 0) return Vector3::Zero();
+    return interpolate(cables[point.cable].state.accelerations, point.segment, point.fraction);
+  };
+  for (Touch& touch : touches_) anticipate(scheme, h, time_, acceleration_at(touch.point) - acceleration_at(touch.other), touch);
 }
 
 void ContactSet::keep(const std::vector<ContactMember>& members) const {
   for (const ContactMember& member : members) member.cache->clear();
   for (const Touch& touch : touches_)
     members[places_[touch.point.cable]].cache->push_back(
-        {touch.key, touch.other_key, remaining_friction(touch), touch.mode, touch.inside});
+        {touch.key, touch.other_key, remaining_friction(touch), touch.normal_force, touch.mode, touch.inside});
 }
 
 }  // namespace verlet_cable

@@ -33,6 +33,8 @@ class ContactSet {
   void find(const std::vector<SimulatedCable>& cables, const std::vector<int>& island, const std::vector<ContactMember>& members,
             const std::vector<MovingObstacle>& obstacles, const std::vector<Attachment>& attachments, const ContactRules& rules,
             double h, SegmentPairs& pairs);
+  /// They are those of a substep that goes by another scheme than the conserving one, which `find` takes for granted.
+  void follow_scheme(Scheme scheme, const std::vector<SimulatedCable>& cables, double h);
   /// The substep is done: the caches of the members take what sticks.
   void keep(const std::vector<ContactMember>& members) const;
 
@@ -47,7 +49,7 @@ class ContactSet {
                      const std::vector<Attachment>& attachments, double h);
   void find_pairs(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members, const SegmentPairs& found,
                   double thickest, double h);
-  void add(Touch& touch, const ContactMember& member, const Vector3& velocity, double h);
+  void add(Touch& touch, const ContactMember& member, double h);
   double reach(double speed, double radius, double h) const;
   bool may_close(double gap, const Vector3& normal, const Vector3& velocity, double radius, double h) const;
   bool recall(const ContactMember& member, Touch& touch);
@@ -64,6 +66,8 @@ class ContactSet {
   std::vector<char> held_, visited_;
   std::vector<Vector3> local_;         ///< [m] in an obstacle's frame; where visited
   std::vector<SurfacePoint> nearest_;  ///< on its surface; where visited
+  std::vector<Vector3> feet_;          ///< [m] on its surface, in its frame, of each of the touches
+  std::vector<std::size_t> pressed_;   ///< scratch
 };
 
 }  // namespace verlet_cable

@@ -106,6 +106,18 @@ bool joins_cables(const Touch& touch) {
 
 }  // namespace
 
+inline Participant& ContactSolver::at(std::vector<Participant>& participants, const CablePoint& point) const {
+  return participants[index_[point.cable]];
+}
+
+/// w of the present iterate [m].
+inline Vector3 ContactSolver::displacement_of(const Touch& touch, std::vector<Participant>& participants) const {
+  const CablePoint &point = touch.point, &other = touch.other;
+  const Vector3 own = between(at(participants, point).stepper->displacement(), point.segment, point.fraction);
+  if (!joins_cables(touch)) return own;
+  return own - between(at(participants, other).stepper->displacement(), other.segment, other.fraction);
+}
+
 bool ContactSolver::solve(std::vector<Participant>& participants, std::vector<Touch>& touches) {
   begin(participants);
   return iterate(participants, touches);
@@ -123,7 +135,10 @@ void ContactSolver::begin(std::vector<Participant>& participants) {
   largest_energy_ = 0;
 }
 
-void ContactSolver::finish(std::vector<Participant>& participants) const {
+void ContactSolver::finish(std::vector<Participant>& participants, std::vector<Touch>& touches) const {
+  // After the last correction: what is left out at each substep would be creep.
+  for (Touch& touch : touches)
+    if (touch.mode != Touch::Mode::open) touch.displacement = displacement_of(touch, participants);
   for (Participant& p : participants) p.stepper->finish(p.substep, true, *p.state, p.result);
 }
 
@@ -232,9 +247,7 @@ bool ContactSolver::press(std::vector<Participant>& participants, std::vector<To
     const CablePoint &point = touch.point, &other = touch.other;
     CableStepper& stepper = *at(participants, point).stepper;
     CableStepper* other_stepper = joins_cables(touch) ? at(participants, other).stepper : nullptr;
-    Vector3 displacement = between(stepper.displacement(), point.segment, point.fraction);
-    if (other_stepper != nullptr) displacement -= between(other_stepper->displacement(), other.segment, other.fraction);
-    changed = evaluate_touch(displacement, touch) || changed;
+    changed = evaluate_touch(displacement_of(touch, participants), touch) || changed;
     if (touch.mode == Touch::Mode::open) continue;
     share(touch.force, point.segment, point.fraction, stepper.system().load);
     if (other_stepper != nullptr) share(-touch.force, other.segment, other.fraction, other_stepper->system().load);
@@ -473,10 +486,6 @@ ContactSolver::Side ContactSolver::side_at(const CablePoint& point) const {
   side.segment = point.segment;
   side.fraction = point.fraction;
   return side;
-}
-
-Participant& ContactSolver::at(std::vector<Participant>& participants, const CablePoint& point) const {
-  return participants[index_[point.cable]];
 }
 
 }  // namespace verlet_cable

@@ -28,8 +28,8 @@ class ContactSolver {
   bool solve(std::vector<Participant>& participants, std::vector<Touch>& touches);
   /// Whether segments that touch pass through each other in what has been found.
   bool crosses(const std::vector<Participant>& participants, const std::vector<Touch>& touches) const;
-  /// The states take what has been found.
-  void finish(std::vector<Participant>& participants) const;
+  /// The states and the contacts take what has been found.
+  void finish(std::vector<Participant>& participants, std::vector<Touch>& touches) const;
 
  private:
   /// One participant, in the conjugate gradients.
@@ -91,6 +91,7 @@ class ContactSolver {
   void put_solutions(double last_step, std::vector<Participant>& participants);
   void load_residuals(std::vector<Participant>& participants) const;
   void solve_whole_rods(std::vector<Participant>& participants);
+  Vector3 displacement_of(const Touch& touch, std::vector<Participant>& participants) const;
   Participant& at(std::vector<Participant>& participants, const CablePoint& point) const;
   Side side_at(const CablePoint& point) const;
 

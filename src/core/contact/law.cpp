@@ -65,15 +65,14 @@ double contact_time(double time_step) {
   return contact_steps * time_step;
 }
 
-void anticipate(double h, double contact_time, const Vector3& velocity, Touch& touch) {
-  touch.rate = 1 + 2 * contact_time / h;
-  touch.offset = (1 + contact_time / h) * touch.other_displacement + contact_time * velocity;
-}
-
-void anticipate(const VelocityWeights& weights, double h, double contact_time, Touch& touch) {
-  const Vector3 carried = (1 + contact_time / h) * touch.other_displacement, drift = touch.offset - carried;
+void anticipate(Scheme scheme, double h, double contact_time, const Vector3& acceleration, Touch& touch) {
+  const VelocityWeights weights = velocity_weights(scheme);
+  const SurfaceMotion& other = touch.other_motion;
+  // Of first order, what is carried along has the mean velocity.
+  const Vector3 velocity = scheme == Scheme::first_order ? Vector3(other.displacement / h) : other.end_velocity;
+  const Vector3 known = weights.velocity * touch.velocity + weights.acceleration * h * acceleration;
   touch.rate = 1 + weights.displacement * contact_time / h;
-  touch.offset = carried - weights.velocity * drift;
+  touch.offset = other.displacement + contact_time * (velocity - known);
 }
 
 double gentle_gap(double radius, double contact_time) {
@@ -110,11 +109,13 @@ bool evaluate_touch(const Vector3& w, Touch& touch) {
   touch.normal_force = law.force;
   Vector3 trial = touch.stuck_force - touch.stiffness * e;
   trial -= touch.normal.dot(trial) * touch.normal;
+  const Vector3 lean = touch.normal_force * touch.lean;
+  trial -= lean;
   const double size = trial.norm(), limit = touch.friction * touch.normal_force;
   const bool sticks = size <= limit;
   touch.mode = sticks ? Touch::Mode::sticks : Touch::Mode::slides;
   touch.part = sticks ? 1 : limit / size;
-  touch.force = touch.normal_force * touch.normal + touch.part * trial;
+  touch.force = touch.normal_force * touch.normal + lean + touch.part * trial;
   return bent || before != touch.mode;
 }
 
@@ -127,11 +128,13 @@ Eigen::Matrix3d slope(const Touch& touch) {
 
 Vector3 remaining_friction(const Touch& touch) {
   if (touch.mode == Touch::Mode::open) return Vector3::Zero();
-  const Vector3 slip = touch.displacement - touch.other_displacement;
+  const Vector3 slip = touch.displacement - touch.other_motion.displacement;
   Vector3 force = touch.stuck_force - touch.stiffness * slip;
   force -= touch.normal * touch.normal.dot(force);
-  const double limit = touch.friction * touch.normal_force, size = force.norm();
-  return size <= limit ? force : Vector3(force * (limit / size));
+  const Vector3 lean = touch.normal_force * touch.lean;
+  const double limit = touch.friction * touch.normal_force, size = (force - lean).norm();
+  if (touch.mode == Touch::Mode::slides && size > limit) force = lean + limit / size * (force - lean);
+  return half_turned(touch, force);
 }
 
 }  // namespace verlet_cable

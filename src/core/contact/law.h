@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "contact/moving_obstacle.h"
 #include "rod/scheme.h"
 #include "verlet_cable/core/types.h"
 
@@ -19,7 +20,8 @@ struct CablePoint {
 ///   normal force     f = max(0, force of the depth -gap - n . e)
 ///   friction        -k (bristle + tangential part of e), at most friction * f
 /// The bristle is the tangential displacement since the contact began to stick (Cundall and Strack, A discrete numerical model
-/// for granular assemblies, 1979): a contact that sticks does not creep.
+/// for granular assemblies, 1979): a contact that sticks does not creep. It belongs to the material that is touched and turns
+/// with it.
 struct Touch {
   std::uint64_t key = 0, other_key = 0;  ///< what touches what; ascending in a list of touches
   CablePoint point, other;
@@ -29,12 +31,16 @@ struct Touch {
   bool inside = false;                 ///< it was deep inside from the start: it is pushed out gently
   double gap = 0;                      ///< [m] between the surfaces at the start of the substep
   double friction = 0;                 ///< Coulomb coefficient
+  Vector3 lean = Vector3::Zero();      ///< along the surface: friction is bounded around this times the normal force
   double radius = 0;                   ///< [m] of the thinner cable
   double base_stiffness = 0;           ///< [N/m] at no depth
   double rate = 1;
   Vector3 offset = Vector3::Zero();              ///< [m]
-  Vector3 stuck_force = Vector3::Zero();         ///< [N] friction at the start of the substep
-  Vector3 other_displacement = Vector3::Zero();  ///< [m] of what is touched, over the substep
+  Vector3 stuck_force = Vector3::Zero();         ///< [N] friction at the start of the substep, as it is turned in the middle
+  double last_force = 0;                         ///< [N] normal force in the substep before
+  Vector3 velocity = Vector3::Zero();            ///< [m/s] of the point at the start, relative to another cable that is touched
+  SurfaceMotion other_motion;                    ///< of an obstacle that is touched
+  Quaternion half_turn = Quaternion::Identity();  ///< likewise: MovingObstacle's
   // Of the present iterate
   Vector3 displacement = Vector3::Zero();                      ///< [m] w
   double depth = 0;                                            ///< [m] where the force's law is linearised
@@ -50,12 +56,8 @@ struct Touch {
 double contact_time(double time_step);
 
 /// Sets `rate` and `offset` for a substep of length h [s]: a contact acts on where it will be a contact time after the end of
-/// the substep if it moves on with the velocity that it then has. `velocity` [m/s]: of the point at the start of the substep,
-/// relative to another cable's where that is touched.
-void anticipate(double h, double contact_time, const Vector3& velocity, Touch& touch);
-
-/// The same for a substep that goes by another scheme than the conserving one, which is what `touch` was found for.
-void anticipate(const VelocityWeights& weights, double h, double contact_time, Touch& touch);
+/// the substep if it moves on with the velocity that it then has by the scheme. `acceleration` [m/s^2]: as Touch::velocity.
+void anticipate(Scheme scheme, double h, double contact_time, const Vector3& acceleration, Touch& touch);
 
 /// The gap [m] of what is pushed out at a gentle velocity: nothing deeper is taken for deeper where a cable starts inside.
 double gentle_gap(double radius, double contact_time);
@@ -70,7 +72,13 @@ bool evaluate_touch(const Vector3& w, Touch& touch);
 /// secant, not the tangent, which is nothing: iterations would turn it to and fro.
 Eigen::Matrix3d slope(const Touch& touch);
 
-/// Friction [N] that stays when the substep is done: the bristle's without what velocity adds.
+/// A force [N] as the obstacle that is touched turns it in half the substep.
+inline Vector3 half_turned(const Touch& touch, const Vector3& force) {
+  return touch.half_turn.w() == 1 ? force : Vector3(touch.half_turn * force);
+}
+
+/// Friction [N] that stays when the substep is done: the bristle's without what velocity adds. Of what sticks it may be beyond
+/// the cone: cut off, it would follow what still comes to rest, and that would go on for ever.
 Vector3 remaining_friction(const Touch& touch);
 
 }  // namespace verlet_cable

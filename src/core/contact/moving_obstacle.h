@@ -9,14 +9,31 @@ namespace verlet_cable {
 /// An obstacle during a substep.
 struct MovingObstacle {
   const Obstacle* obstacle = nullptr;
-  int index = 0;     ///< into World::obstacles()
-  Pose start, end;   ///< of its shape
-  Aabb box;          ///< around it at the start, in the fixed frame [m]
-  double speed = 0;  ///< [m/s] no point of it is faster
+  int index = 0;                                  ///< into World::obstacles()
+  Pose start, end;                                ///< of its shape
+  Aabb box;                                       ///< around it at the start, in the fixed frame [m]
+  double speed = 0;                               ///< [m/s] no point of it is faster
+  FrameVelocity end_velocity;                     ///< of its frame, seen from the fixed frame
+  Vector3 frame_end = Vector3::Zero();            ///< [m] of its frame's origin
+  Quaternion half_turn = Quaternion::Identity();  ///< of it in half the substep, seen from the fixed frame
+};
+
+/// What a point that is joined to an obstacle does in a substep, in the fixed frame.
+struct SurfaceMotion {
+  Vector3 displacement = Vector3::Zero();  ///< [m]
+  Vector3 end_velocity = Vector3::Zero();  ///< [m/s]
+};
+
+/// `point` [m]: in the axes of the shape. The velocity at the end goes on from the mean velocities of this and the last step.
+SurfaceMotion surface_motion(const MovingObstacle& moving, const Vector3& point);
+
+/// Poses of frames, by their ids, a step apart.
+struct FramePoses {
+  const std::vector<Pose>&earlier, &before, &after;
 };
 
 /// The obstacles that are there, as they move over a part of a step, 0 to 1, between two poses of their frames.
-void move_obstacles(const std::vector<Obstacle>& obstacles, const std::vector<Pose>& before, const std::vector<Pose>& after,
-                    double time_step, double from, double to, std::vector<MovingObstacle>& moving);
+void move_obstacles(const std::vector<Obstacle>& obstacles, const FramePoses& frames, double time_step, double from, double to,
+                    std::vector<MovingObstacle>& moving);
 
 }  // namespace verlet_cable

@@ -235,11 +235,13 @@ int World::add_frame(const std::string& name, const std::optional<Pose>& pose) {
     w.state.frames.names.push_back(name);
     w.state.frames.poses.emplace_back();
     w.state.frames.previous_poses.emplace_back();
+    w.state.frames.earlier_poses.emplace_back();
     w.state.frames.known.push_back(false);
     w.find_obstacle_anchors();
   }
   if (pose && is_sound(*pose) && !w.state.frames.known[frame]) {
-    w.state.frames.poses[frame] = w.state.frames.previous_poses[frame] = {pose->position, pose->orientation.normalized()};
+    const Pose sound{pose->position, pose->orientation.normalized()};
+    w.state.frames.poses[frame] = w.state.frames.previous_poses[frame] = w.state.frames.earlier_poses[frame] = sound;
     w.state.frames.known[frame] = true;
   }
   return frame;

@@ -52,7 +52,9 @@ Vector3 gravity_near(const State& state, int cable) {
 }
 
 void move_obstacles(const State& state, double from, double to, std::vector<MovingObstacle>& moving) {
-  move_obstacles(state.obstacles, state.frames.previous_poses, state.frames.poses, state.scene->time_step, from, to, moving);
+  const Frames& frames = state.frames;
+  move_obstacles(state.obstacles, {frames.earlier_poses, frames.previous_poses, frames.poses}, state.scene->time_step, from, to,
+                 moving);
 }
 
 ContactRules contact_rules(const SceneDesc& scene, bool still) {
@@ -282,7 +284,7 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     ContactSolver& solver = workspace_.contact_solver;
     converged = solver.solve(workspace_.participants, workspace_.contacts.touches()) &&
                 (tolerated || !solver.crosses(workspace_.participants, workspace_.contacts.touches()));
-    if (converged) solver.finish(workspace_.participants);
+    if (converged) solver.finish(workspace_.participants, workspace_.contacts.touches());
     for (const Participant& p : workspace_.participants) workspace_.cables[p.place].result = p.result;
   }
   if (converged) {
@@ -316,9 +318,7 @@ Scheme IslandStepper::find_touching_scheme(const Island& island, double h) {
     const Scheme own = scheme_of(island.cables[k]);
     if (own == Scheme::first_order || scheme == Scheme::conserving) scheme = own;
   }
-  if (scheme != Scheme::conserving)
-    for (Touch& touch : workspace_.contacts.touches())
-      anticipate(velocity_weights(scheme), h, contact_time(state_.scene->time_step), touch);
+  if (scheme != Scheme::conserving) workspace_.contacts.follow_scheme(scheme, state_.cables, h);
   return scheme;
 }
 

@@ -16,22 +16,38 @@ constexpr double steps_of_motion = 4;
 /// What a cable may be accelerated with besides its last acceleration [m/s^2].
 constexpr double spare_acceleration = 100;
 
-/// Where a cable may touch something in the next step.
-Aabb reach_of(const SimulatedCable& cable, const KinematicTargets& targets, double time_step) {
-  Aabb box;
+/// [m] So far from where it is a cable may touch something in the next step.
+double margin_of(const SimulatedCable& cable, const KinematicTargets& targets, double time_step) {
   double speed = 0, acceleration = 0;
   for (std::size_t i = 0; i < cable.state.positions.size(); ++i) {
-    box.extend(cable.state.positions[i]);
     speed = std::max(speed, cable.state.velocities[i].squaredNorm());
     acceleration = std::max(acceleration, cable.state.accelerations[i].squaredNorm());
   }
   for (const KinematicTarget& target : targets.nodes) {
-    box.extend(target.next_position);
     speed = std::max({speed, target.velocity.squaredNorm(), target.next_velocity.squaredNorm()});
   }
   const double motion = std::sqrt(speed) + time_step * (std::sqrt(acceleration) + spare_acceleration);
-  const double margin = (1 + still_reach) * CableMaterials(cable).largest_radius() + steps_of_motion * time_step * motion;
+  return (1 + still_reach) * CableMaterials(cable).largest_radius() + steps_of_motion * time_step * motion;
+}
+
+Aabb widened(const Aabb& box, double margin) {
   return Aabb(box.min() - Vector3::Constant(margin), box.max() + Vector3::Constant(margin));
+}
+
+Aabb reach_of(const SimulatedCable& cable, const KinematicTargets& targets, double margin) {
+  Aabb box;
+  for (const Vector3& position : cable.state.positions) box.extend(position);
+  for (const KinematicTarget& target : targets.nodes) box.extend(target.next_position);
+  return widened(box, margin);
+}
+
+/// Whether leaves of two trees of boxes overlap, below their nodes `i` and `j`. The children of k are 2 k + 1 and 2 k + 2.
+bool overlap(const std::vector<Aabb>& a, std::size_t i, const std::vector<Aabb>& b, std::size_t j) {
+  if (!a[i].intersects(b[j])) return false;
+  const bool is_first_leaf = 2 * i + 1 >= a.size(), is_second_leaf = 2 * j + 1 >= b.size();
+  if (is_first_leaf && is_second_leaf) return true;
+  if (is_second_leaf || (!is_first_leaf && i <= j)) return overlap(a, 2 * i + 1, b, j) || overlap(a, 2 * i + 2, b, j);
+  return overlap(a, i, b, 2 * j + 1) || overlap(a, i, b, 2 * j + 2);
 }
 
 /// The axis along which boxes are spread furthest.
@@ -77,12 +93,18 @@ void Islands::build(const State& state) {
   for (const SimulatedCable& cable : state.cables) segments_ += cable.state.segments();
 }
 
-/// Joins cables whose reaches overlap: a sweep along the axis on which they are spread furthest.
+/// Joins cables that come close to each other: a sweep along the axis on which they are spread furthest.
 void Islands::find_labels(const State& state) {
   const std::size_t count = state.cables.size();
   reaches_.resize(count);
-  for (std::size_t i = 0; i < count; ++i)
-    reaches_[i] = reach_of(state.cables[i], state.cable_progress[i].targets, state.scene->time_step);
+  margins_.resize(count);
+  segment_reaches_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const KinematicTargets& targets = state.cable_progress[i].targets;
+    margins_[i] = margin_of(state.cables[i], targets, state.scene->time_step);
+    reaches_[i] = reach_of(state.cables[i], targets, margins_[i]);
+    segment_reaches_[i].clear();
+  }
   const int axis = longest_axis(reaches_);
   order_.resize(count);
   std::iota(order_.begin(), order_.end(), 0);
@@ -96,7 +118,7 @@ void Islands::find_labels(const State& state) {
     open_.erase(std::remove_if(open_.begin(), open_.end(), [&](int other) { return reaches_[other].max()[axis] < start; }),
                 open_.end());
     for (const int other : open_)
-      if (reaches_[cable].intersects(reaches_[other])) join(cable, other);
+      if (reaches_[cable].intersects(reaches_[other]) && come_close(state, cable, other)) join(cable, other);
     open_.push_back(cable);
   }
   for (int cable = 0; cable < static_cast<int>(count); ++cable) labels_[cable] = root(cable);
@@ -110,6 +132,31 @@ void Islands::join_by_bodies(const State& state) {
     join(attachment.body.is_cable() ? attachment.body.index : cables + attachment.body.index, cables + holder);
   }
   for (int i = 0; i < static_cast<int>(labels_.size()); ++i) labels_[i] = root(i);
+}
+
+bool Islands::come_close(const State& state, int first, int second) {
+  return root(first) != root(second) && overlap(segment_reaches(state, first), 0, segment_reaches(state, second), 0);
+}
+
+/// Boxes around segments and what their holders aim at, in a binary tree.
+const std::vector<Aabb>& Islands::segment_reaches(const State& state, int cable) {
+  std::vector<Aabb>& boxes = segment_reaches_[cable];
+  if (!boxes.empty()) return boxes;
+  const std::vector<Vector3>& positions = state.cables[cable].state.positions;
+  const std::size_t segments = positions.size() - 1;
+  std::size_t leaves = 1;
+  while (leaves < segments) leaves *= 2;
+  boxes.assign(2 * leaves - 1, Aabb());
+  Aabb* const leaf = boxes.data() + leaves - 1;
+  for (std::size_t i = 0; i < segments; ++i) leaf[i].extend(positions[i]).extend(positions[i + 1]);
+  for (const KinematicTarget& target : state.cable_progress[cable].targets.nodes) {
+    const auto node = static_cast<std::size_t>(target.node);
+    if (node > 0) leaf[node - 1].extend(target.next_position);
+    if (node < segments) leaf[node].extend(target.next_position);
+  }
+  for (std::size_t i = 0; i < segments; ++i) leaf[i] = widened(leaf[i], margins_[cable]);
+  for (std::size_t k = leaves - 1; k-- > 0;) boxes[k] = boxes[2 * k + 1].merged(boxes[2 * k + 2]);
+  return boxes;
 }
 
 int Islands::root(int cable) {

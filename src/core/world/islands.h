@@ -36,6 +36,8 @@ class Islands {
  private:
   void find_labels(const State& state);
   void join_by_bodies(const State& state);
+  bool come_close(const State& state, int first, int second);
+  const std::vector<Aabb>& segment_reaches(const State& state, int cable);
   int root(int cable);
   void join(int first, int second);
 
@@ -44,7 +46,9 @@ class Islands {
   std::vector<int> labels_;       ///< by cable, then by body: the first one of its island
   std::vector<int> last_labels_;  ///< those of `islands_`
   // Scratch
-  std::vector<Aabb> reaches_;  ///< by cable: where it may touch something in the step
+  std::vector<double> margins_;                     ///< [m] by cable: so far from its segments it may touch something in the step
+  std::vector<Aabb> reaches_;                       ///< by cable: where that is
+  std::vector<std::vector<Aabb>> segment_reaches_;  ///< by cable: the same of its segments, halved again and again; or empty
   std::vector<int> order_, open_;
 };
 

@@ -43,6 +43,7 @@ struct Frames {
   std::vector<std::string> names;
   std::vector<Pose> poses;           ///< at the world's time
   std::vector<Pose> previous_poses;  ///< a step before; of a frame that is new to a step, its first
+  std::vector<Pose> earlier_poses;   ///< two steps before, likewise
   std::vector<char> known;           ///< whether it has been seen, or given a pose
 
   /// The index of a name, their number if it is not there.

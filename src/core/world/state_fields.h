@@ -166,7 +166,7 @@ auto fields(T& x, const LengthDrive*) {
 }
 template <class T>
 auto fields(T& x, const CachedContact*) {
-  return std::tie(x.key, x.other_key, x.force, x.mode, x.inside);
+  return std::tie(x.key, x.other_key, x.force, x.normal_force, x.mode, x.inside);
 }
 template <class T>
 auto fields(T& x, const CableProgress*) {
@@ -266,7 +266,7 @@ auto fields(T& x, const Obstacle*) {
 // World
 template <class T>
 auto fields(T& x, const Frames*) {
-  return std::tie(x.names, x.poses, x.previous_poses, x.known);
+  return std::tie(x.names, x.poses, x.previous_poses, x.earlier_poses, x.known);
 }
 template <class T>
 auto fields(T& x, const State*) {

@@ -140,6 +140,7 @@ World::World(const SceneDesc& scene) : implementation_(std::make_unique<Implemen
   w.state.frames.names = frame_names(scene);
   w.state.frames.poses.resize(w.state.frames.names.size());
   w.state.frames.previous_poses.resize(w.state.frames.names.size());
+  w.state.frames.earlier_poses.resize(w.state.frames.names.size());
   w.state.frames.known.assign(w.state.frames.names.size(), false);
   w.state.frames.known.front() = true;
   w.add_bodies();
@@ -222,6 +223,7 @@ void World::Implementation::add_bodies() {
 /// fixed frame does not move.
 int World::Implementation::update_frames(const BoundaryInputs& inputs) {
   int ignored = -1;
+  state.frames.earlier_poses.swap(state.frames.previous_poses);
   state.frames.previous_poses = state.frames.poses;
   for (std::size_t i = 1; i < std::min(state.frames.poses.size(), inputs.size()); ++i) {
     if (!inputs[i].known || state.body_of_frame(static_cast<int>(i)) >= 0) continue;
@@ -230,7 +232,7 @@ int World::Implementation::update_frames(const BoundaryInputs& inputs) {
       continue;
     }
     state.frames.poses[i] = {inputs[i].pose.position, inputs[i].pose.orientation.normalized()};
-    if (!state.frames.known[i]) state.frames.previous_poses[i] = state.frames.poses[i];
+    if (!state.frames.known[i]) state.frames.earlier_poses[i] = state.frames.previous_poses[i] = state.frames.poses[i];
     state.frames.known[i] = true;
   }
   place_bodies();
