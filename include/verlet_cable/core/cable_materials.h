@@ -15,22 +15,25 @@ inline bool is_elastic(const MaterialDesc& material) {
 /// As CableState::section_material names it; -1 if it is none of the cable's.
 int find_material(const CableModel& model, const std::string& name);
 
-/// What a cable is made of along its length; a view of its model and state.
+/// What a cable is made of along its length; a view of its model and state, as long as neither is edited.
 class CableMaterials {
  public:
-  CableMaterials(const CableModel& model, const CableState& state) : model_(model), state_(state) {}
+  CableMaterials(const CableModel& model, const CableState& state)
+      : model_(model),
+        state_(state),
+        section_material_(state.section_material.empty() ? nullptr : state.section_material.data()) {}
   explicit CableMaterials(const SimulatedCable& cable) : CableMaterials(*cable.model, cable.state) {}
 
   /// Whether it has sections. If not, all of it is of CableModel::material.
-  bool vary() const { return !state_.section_material.empty(); }
+  bool vary() const { return section_material_ != nullptr; }
 
   /// Of a segment.
   const MaterialDesc& operator[](int segment) const {
-    const int k = vary() ? state_.section_material[segment] : 0;
+    const int k = vary() ? section_material_[segment] : 0;
     return k == 0 ? model_.material : model_.section_materials[k - 1].material;
   }
   const std::string& name(int segment) const {
-    const int k = vary() ? state_.section_material[segment] : 0;
+    const int k = vary() ? section_material_[segment] : 0;
     return k == 0 ? model_.material_name : model_.section_materials[k - 1].name;
   }
 
@@ -87,6 +90,7 @@ class CableMaterials {
  private:
   const CableModel& model_;
   const CableState& state_;
+  const int* section_material_;  // of the state; nullptr: none
 };
 
 /// [1/m] Of the segments before and after an inner node, where the cable is bent by `angle` [rad]: one moment bends both halves,

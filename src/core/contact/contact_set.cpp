@@ -116,16 +116,19 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
   const CableMaterials materials(cable);
   const CableState& state = cable.state;
   const int n = state.segments();
+  const bool varies = materials.vary();
+  const double common_radius = cable.model->material.radius;
   // At a node between sections the thicker one ends.
   const auto node_radius = [&](int i) {
-    return std::max(materials[std::max(i - 1, 0)].radius, materials[std::min(i, n - 1)].radius);
+    return varies ? std::max(materials[std::max(i - 1, 0)].radius, materials[std::min(i, n - 1)].radius) : common_radius;
   };
   const Eigen::Matrix3d orientation = moving.start.orientation.toRotationMatrix();
   const Shape& shape = moving.obstacle->shape;
   const bool flat = std::holds_alternative<PlaneShape>(shape);
 
   const auto node_reach = [&](int i) {
-    return node_radius(i) + moving.obstacle->padding + reach(state.velocities[i].norm() + moving.speed, node_radius(i), h);
+    const double radius = node_radius(i);
+    return radius + moving.obstacle->padding + reach(state.velocities[i].norm() + moving.speed, radius, h);
   };
   const auto visit = [&](int i, double far) {
     if (visited_[i] != 0) return;
