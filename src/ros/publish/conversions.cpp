@@ -57,6 +57,11 @@ bool is_finite(const SimulatedParticle& particle) {
   return particle.position.allFinite() && particle.velocity.allFinite();
 }
 
+bool is_finite(const SimulatedBody& body) {
+  return body.pose.position.allFinite() && body.pose.orientation.coeffs().allFinite() && body.velocity.allFinite() &&
+         body.angular_velocity.allFinite();
+}
+
 std::vector<SimulatedContact> contacts_of_both(const World& world) {
   std::vector<SimulatedContact> contacts = world.findings().contacts;
   const auto radius = [&](int cable) { return world.cables()[cable].model->material.radius; };
@@ -137,6 +142,15 @@ Particle to_message(const SimulatedParticle& particle) {
   return message;
 }
 
+Body to_message(const SimulatedBody& body) {
+  Body message;
+  message.name = body.name;
+  message.pose = to_pose(body.pose);
+  message.twist.linear = to_vector(body.velocity);
+  message.twist.angular = to_vector(body.angular_velocity);
+  return message;
+}
+
 }  // namespace
 
 CableArray to_message(const World& world) {
@@ -146,6 +160,8 @@ CableArray to_message(const World& world) {
     if (is_finite(net)) message.nets.push_back(to_message(net));
   for (const SimulatedParticle& particle : world.particles())
     if (is_finite(particle)) message.particles.push_back(to_message(particle));
+  for (const SimulatedBody& body : world.bodies())
+    if (is_finite(body)) message.bodies.push_back(to_message(body));
   return message;
 }
 
