@@ -119,6 +119,12 @@ void add_cables(const World& world, CableArray& message) {
     cable.attachments.push_back(attachment.name);
     cable.attachment_nodes.push_back(attachment.node);
   }
+  for (const SimulatedGuide& guide : world.guides()) {
+    if (guide.cable < 0 || places[guide.cable] < 0 || !std::isfinite(guide.arc_length)) continue;
+    Cable& cable = message.cables[places[guide.cable]];
+    cable.guides.push_back(guide.name);
+    cable.guide_arc_length.push_back(guide.arc_length);
+  }
   for (const SimulatedContact& contact : contacts_of_both(world))
     if (places[contact.cable] >= 0) message.cables[places[contact.cable]].contacts.push_back(to_message(world, contact));
 }
