@@ -8,7 +8,7 @@ import rospy
 import rostest
 from geometry_msgs.msg import WrenchStamped
 from tf2_msgs.msg import TFMessage
-from visualization_msgs.msg import InteractiveMarkerInit, Marker, MarkerArray
+from visualization_msgs.msg import InteractiveMarkerInit, InteractiveMarkerUpdate, Marker, MarkerArray
 
 from cable_client import CableClient, Messages, cable, distance, node_at
 
@@ -137,7 +137,9 @@ class BodiesTest(unittest.TestCase):
             self.assert_at(body(states.next(3), 'plate').pose.position, (0.2, 0, 1.4))
 
     def test_handles(self):
-        with Messages('/robot/cable/hands/update_full', InteractiveMarkerInit) as full:
+        hands = '/robot/cable/hands'
+        # Nothing is computed for who does not follow the updates.
+        with Messages(f'{hands}/update', InteractiveMarkerUpdate), Messages(f'{hands}/update_full', InteractiveMarkerInit) as full:
             message = full.wait_for(lambda m: any(k.name == 'wheel/0' for k in m.markers), 'wheel')
             markers = {m.name: m for m in message.markers}
             self.assertIn('attachment/bolt', markers)
