@@ -57,9 +57,9 @@ bool is_finite(const SimulatedParticle& particle) {
   return particle.position.allFinite() && particle.velocity.allFinite();
 }
 
-bool is_finite(const SimulatedBody& body) {
-  return body.pose.position.allFinite() && body.pose.orientation.coeffs().allFinite() && body.velocity.allFinite() &&
-         body.angular_velocity.allFinite();
+bool is_there(const World& world, const SimulatedBody& body) {
+  return world.frame_known(body.frame) && body.pose.position.allFinite() && body.pose.orientation.coeffs().allFinite() &&
+         body.velocity.allFinite() && body.angular_velocity.allFinite();
 }
 
 std::vector<SimulatedContact> contacts_of_both(const World& world) {
@@ -167,7 +167,7 @@ CableArray to_message(const World& world) {
   for (const SimulatedParticle& particle : world.particles())
     if (is_finite(particle)) message.particles.push_back(to_message(particle));
   for (const SimulatedBody& body : world.bodies())
-    if (is_finite(body)) message.bodies.push_back(to_message(body));
+    if (is_there(world, body)) message.bodies.push_back(to_message(body));
   return message;
 }
 

@@ -21,7 +21,8 @@ bool is_finite(const SimulatedCable& cable);
 
 bool is_finite(const SimulatedNet& net);
 bool is_finite(const SimulatedParticle& particle);
-bool is_finite(const SimulatedBody& body);
+/// Whether a body is there already, and all of it finite: one whose holders' frames are not known waits.
+bool is_there(const World& world, const SimulatedBody& body);
 
 /// Contacts of cables with cables as both of them feel it: each appears twice.
 std::vector<SimulatedContact> contacts_of_both(const World& world);

@@ -114,7 +114,7 @@ void MarkerPublisher::publish(const World& world, const ros::Time& stamp) {
   for (const Attachment& attachment : world.attachments()) add_pin(world, attachment, *markers);
   for (const Obstacle& obstacle : world.obstacles()) add_obstacle(world, obstacle, *markers);
   for (const SimulatedBody& body : world.bodies())
-    if (is_finite(body)) add_body(body, *markers);
+    if (is_there(world, body)) add_body(body, *markers);
   delete_what_is_gone(*markers);
   for (Marker& marker : markers->markers) marker.header.stamp = stamp;
   publisher_.publish(markers);
@@ -195,6 +195,8 @@ void MarkerPublisher::add_particle(const SimulatedParticle& particle, MarkerArra
 }
 
 void MarkerPublisher::add_pin(const World& world, const Attachment& attachment, MarkerArray& markers) {
+  // What holds a body is there before the frame that it holds it to.
+  if (!world.frame_known(attachment.frame)) return;
   const Pose pose = world.frame_pose(attachment.frame) * attachment.pose;
   if (!pose.position.allFinite() || !pose.orientation.coeffs().allFinite()) return;
   const double size = pin_width(world, attachment.body);

@@ -198,7 +198,10 @@ Location locate_links(const CableLocation& location, const World& world, int ind
 Location locate_body(const CableLocation& location, const World& world, int index) {
   Location found;
   found.body = rigid_body_id(index);
-  if (location.mode != CableLocation::NODE)
+  if (!world.frame_known(world.bodies()[index].frame))
+    found.errors.push_back("location.cable: " + quoted(world.bodies()[index].name) +
+                           " waits for its tf frames; allowed: bodies that are simulated already");
+  else if (location.mode != CableLocation::NODE)
     found.errors.push_back("location.mode: " + std::to_string(location.mode) + " for body " + quoted(world.bodies()[index].name) +
                            "; allowed: 0 (NODE)");
   else if (location.node != 0)
