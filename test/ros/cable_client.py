@@ -199,7 +199,7 @@ def cable(state, name):
 
 def contents(state):
     """What a state says, without the number that the connection gave it."""
-    return state.header.stamp, state.header.frame_id, state.cables, state.nets, state.particles
+    return state.header.stamp, state.header.frame_id, state.cables, state.nets, state.particles, state.bodies
 
 
 def distance(point, position):
@@ -210,4 +210,5 @@ def all_finite(state):
     shapes = state.cables + state.nets
     vectors = [v for s in shapes for v in s.positions + s.velocities]
     vectors += [v for p in state.particles for v in (p.position, p.velocity)]
+    vectors += [v for b in state.bodies for v in (b.pose.position, b.twist.linear, b.twist.angular)]
     return all(math.isfinite(x) for v in vectors for x in (v.x, v.y, v.z)) and all(math.isfinite(x) for s in shapes for x in s.tension)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -30,5 +31,10 @@ struct SimulatedBody {
   Vector3 velocity = Vector3::Zero();          ///< [m/s] of its center of mass, fixed frame's axes
   Vector3 angular_velocity = Vector3::Zero();  ///< [rad/s] fixed frame's axes
 };
+
+/// [m] How large a body is: the root of the mean square distance of its mass from its center.
+inline double radius_of_gyration(const SimulatedBody& body) {
+  return std::sqrt(body.inertia.trace() / (2 * body.mass));
+}
 
 }  // namespace verlet_cable

@@ -18,7 +18,7 @@ inline std::string jump_text(const World& world, const Jump& jump) {
                 milliseconds < 10 ? " jumped by %.2g m within %.2g ms: " : " jumped by %.2g m within %.0f ms: ", jump.distance,
                 milliseconds);
   return "frame " + quoted(world.frames()[static_cast<std::size_t>(attachment.frame)]) + measure +
-         (attachment.body.is_net() ? "net " : "cable ") + quoted(name_of(world, attachment.body)) + " was carried along with it";
+         kind_and_name(world, attachment.body) + " was carried along with it";
 }
 
 }  // namespace verlet_cable

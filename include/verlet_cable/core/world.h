@@ -12,6 +12,7 @@
 #include "verlet_cable/core/cable.h"
 #include "verlet_cable/core/contact.h"
 #include "verlet_cable/core/edit.h"
+#include "verlet_cable/core/guide.h"
 #include "verlet_cable/core/net.h"
 #include "verlet_cable/core/obstacle.h"
 #include "verlet_cable/core/scene_desc.h"
@@ -177,6 +178,7 @@ class World {
   const std::vector<SimulatedParticle>& particles() const;
   const std::vector<SimulatedBody>& bodies() const;    ///< those that have started
   const std::vector<Attachment>& attachments() const;  ///< of the started cables, nets and bodies
+  const std::vector<SimulatedGuide>& guides() const;   ///< in the scene's order; of a cable they are in the order along it
   const std::vector<Obstacle>& obstacles() const;      ///< those of the scene, of its robot's links, then those that were set
   const Findings& findings() const;
 

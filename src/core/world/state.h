@@ -67,6 +67,7 @@ struct State {
   std::vector<SimulatedBody> bodies;
   std::vector<BodyProgress> body_progress;  ///< one a body
   std::vector<Attachment> attachments;
+  std::vector<SimulatedGuide> guides;
   std::vector<Obstacle> obstacles;
 
   std::uint32_t new_cable_id() const { return cable_progress.empty() ? 0 : cable_progress.back().id + 1; }

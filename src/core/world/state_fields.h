@@ -259,6 +259,10 @@ auto fields(T& x, const SimulatedBody*) {
                   x.pose, x.velocity, x.angular_velocity);
 }
 template <class T>
+auto fields(T& x, const SimulatedGuide*) {
+  return std::tie(x.name, x.type, x.frame, x.pose, x.cable, x.arc_length, x.tension);
+}
+template <class T>
 auto fields(T& x, const Obstacle*) {
   return std::tie(x.name, x.frame, x.pose, x.shape, x.friction, x.padding, x.holders, x.present, x.id);
 }
@@ -271,7 +275,7 @@ auto fields(T& x, const Frames*) {
 template <class T>
 auto fields(T& x, const State*) {
   return std::tie(x.scene, x.waiting_cables, x.waiting_nets, x.frames, x.steps, x.cables, x.cable_progress, x.nets,
-                  x.net_progress, x.particles, x.particle_integrators, x.bodies, x.body_progress, x.attachments, x.obstacles);
+                  x.net_progress, x.particles, x.particle_integrators, x.bodies, x.body_progress, x.attachments, x.guides, x.obstacles);
 }
 /// @}
 

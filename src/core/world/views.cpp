@@ -61,6 +61,9 @@ bool World::is_body_frame(int frame) const {
 const std::vector<Attachment>& World::attachments() const {
   return implementation_->state.attachments;
 }
+const std::vector<SimulatedGuide>& World::guides() const {
+  return implementation_->state.guides;
+}
 const std::vector<Obstacle>& World::obstacles() const {
   return implementation_->state.obstacles;
 }

@@ -229,7 +229,7 @@ void FrameWatch::release(int frame, Nanoseconds stamp, World& world) const {
 std::vector<WaitingAttachment> waiting_attachments(const SceneDesc& scene, const World& world, const BoundaryInputs& inputs) {
   std::set<std::string> unknown;
   for (std::size_t i = 0; i < std::min(inputs.size(), world.frames().size()); ++i) {
-    if (!inputs[i].known) unknown.insert(world.frames()[i]);
+    if (!inputs[i].known && !world.is_body_frame(static_cast<int>(i))) unknown.insert(world.frames()[i]);
   }
   const std::set<std::string> waiting(world.findings().waiting.begin(), world.findings().waiting.end());
   std::vector<WaitingAttachment> attachments;
@@ -243,6 +243,7 @@ std::vector<WaitingAttachment> waiting_attachments(const SceneDesc& scene, const
   };
   add_of(scene.cables);
   add_of(scene.nets);
+  add_of(scene.bodies);
   return attachments;
 }
 

@@ -29,11 +29,19 @@ void TfInputs::follow_scene(const SceneDesc& scene, Nanoseconds time) {
   approaches_ = scene.on_lost_frame != LostFramePolicy::release;
   inputs_ = initial_frames(scene);
   const std::vector<std::string> names = frame_names(scene);
-  scene_frames_ = static_cast<int>(names.size());
   tracks_.clear();
-  for (int i = 0; i < scene_frames_; ++i) tracks_.push_back(track_from(names[i], inputs_[i], time));
+  for (std::size_t i = 0; i < names.size(); ++i) tracks_.push_back(track_from(names[i], inputs_[i], time));
+  for (const BodyDesc& body : scene.bodies) tracks_.push_back(body_track(body.name));
+  scene_frames_ = static_cast<int>(tracks_.size());
+  inputs_.resize(tracks_.size(), FrameInput{Pose{}, false});
   tracks_.front().status = FrameStatus::ok;
   changes_.clear();
+}
+
+TfInputs::Track TfInputs::body_track(const std::string& body) const {
+  Track track(body, {Pose{}, false}, timeout_);
+  track.status = FrameStatus::computed;
+  return track;
 }
 
 /// As far back as `time`, if tf knows the frame then.
@@ -67,8 +75,10 @@ void TfInputs::insert(const ReceivedTransform& received, Nanoseconds now) {
 void TfInputs::find_followers() {
   followers_.clear();
   followers_version_ = buffer_.tree_version();
-  for (std::size_t i = 0; i < tracks_.size(); ++i)
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    if (tracks_[i].is_body()) continue;
     for (const std::string& child : buffer_.transforms_of(tracks_[i].name)) followers_[child].push_back(static_cast<int>(i));
+  }
 }
 
 void TfInputs::update_history(Track& track) const {
@@ -87,6 +97,7 @@ void TfInputs::restart(Nanoseconds now, bool forget) {
   if (forget) drop_pinned_frames();
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     Track& track = tracks_[i];
+    if (track.is_body()) continue;
     track.history.clear();
     if (forget) {
       track.status = i == 0 ? FrameStatus::ok : FrameStatus::never_seen;
@@ -105,6 +116,7 @@ void TfInputs::restart(Nanoseconds now, bool forget) {
 void TfInputs::reset(Nanoseconds time) {
   drop_pinned_frames();
   for (int i = 0; i < scene_frames_; ++i) {
+    if (tracks_[i].is_body()) continue;
     if (const auto pose = buffer_.pose(tracks_[i].name, time)) {
       if (tracks_[i].history.at(time) == Coverage::covered) place(i, *pose);
     }
@@ -142,6 +154,11 @@ void TfInputs::restore(const std::vector<SavedFrame>& saved, Nanoseconds time) {
   std::vector<Track> tracks;
   BoundaryInputs inputs;
   for (const SavedFrame& frame : saved) {
+    if (frame.status == FrameStatus::computed) {
+      tracks.push_back(body_track(frame.name));
+      inputs.push_back(frame.input);
+      continue;
+    }
     const Track* followed = find_track(frame.name);
     Track& track = tracks.emplace_back(followed ? *followed : track_from(frame.name, frame.input, time));
     FrameInput input = followed ? inputs_[followed - tracks_.data()] : frame.input;
@@ -160,6 +177,7 @@ void TfInputs::restore(const std::vector<SavedFrame>& saved, Nanoseconds time) {
 void TfInputs::rewind(const std::vector<SavedFrame>& saved, Nanoseconds time) {
   restore(saved, time);
   for (std::size_t i = 0; i < saved.size(); ++i) {
+    if (tracks_[i].is_body()) continue;
     inputs_[i] = saved[i].input;
     tracks_[i].too_fast = false;
     tracks_[i].gap = saved[i].gap;
@@ -171,7 +189,7 @@ void TfInputs::rewind(const std::vector<SavedFrame>& saved, Nanoseconds time) {
 }
 
 bool TfInputs::all_seen() const {
-  return std::all_of(tracks_.begin(), tracks_.end(), [](const Track& track) { return track.history.seen(); });
+  return std::all_of(tracks_.begin(), tracks_.end(), [](const Track& track) { return track.is_body() || track.history.seen(); });
 }
 
 Nanoseconds TfInputs::first_common_time() const {
@@ -204,6 +222,7 @@ void TfInputs::sample_frames(Nanoseconds time, Nanoseconds target, double elapse
 }
 
 bool TfInputs::must_wait(Track& track, Nanoseconds time, Nanoseconds target) const {
+  if (track.is_body()) return false;
   const bool late = track.status != FrameStatus::lost && track.history.at(time) == Coverage::ahead &&
                     target - track.history.newest() <= timeout_;
   if (late && track.status == FrameStatus::ok) track.status = FrameStatus::late;
@@ -212,6 +231,7 @@ bool TfInputs::must_wait(Track& track, Nanoseconds time, Nanoseconds target) con
 
 void TfInputs::sample_frame(int frame, Nanoseconds time, Nanoseconds target, double elapsed) {
   Track& track = tracks_[frame];
+  if (track.is_body()) return;
   const Coverage coverage = track.history.at(time);
   if (coverage == Coverage::covered) {
     if (const auto pose = buffer_.pose(track.name, time)) {

@@ -20,8 +20,9 @@ namespace verlet_cable {
 enum class FrameStatus {
   never_seen,
   ok,
-  late,  ///< tf has nothing for the simulated time yet
-  lost   ///< tf has had nothing for longer than `tf_timeout`
+  late,     ///< tf has nothing for the simulated time yet
+  lost,     ///< tf has had nothing for longer than `tf_timeout`
+  computed  ///< a body's: the world says where it is, tf is not asked
 };
 
 struct FrameChange {
@@ -48,7 +49,8 @@ struct SavedFrame {
   FrameStatus status = FrameStatus::never_seen;
 };
 
-/// The poses of frames at the times of steps, from tf. A frame's id is its index in World::frames().
+/// The poses of frames at the times of steps, from tf. A frame's id is its index in World::frames(). Those of bodies have ids,
+/// too, but no poses: nothing waits for them, and they are never lost.
 class TfInputs {
  public:
   TfInputs(const ros::NodeHandle& node, const SceneDesc& scene);
@@ -109,6 +111,8 @@ class TfInputs {
     FrameStatus status = FrameStatus::never_seen;
     bool too_fast = false;
     FrameGap gap;
+
+    bool is_body() const { return status == FrameStatus::computed; }
   };
 
   void insert(const ReceivedTransform& received, Nanoseconds now);
@@ -116,6 +120,7 @@ class TfInputs {
   void update_history(Track& track) const;
   const Track* find_track(const std::string& frame) const;
   Track track_from(const std::string& frame, const FrameInput& at, Nanoseconds time) const;
+  Track body_track(const std::string& body) const;
   bool must_wait(Track& track, Nanoseconds time, Nanoseconds target) const;
   void sample_frames(Nanoseconds time, Nanoseconds target, double elapsed);
   void sample_frame(int frame, Nanoseconds time, Nanoseconds target, double elapsed);
@@ -130,8 +135,8 @@ class TfInputs {
   std::deque<std::pair<ros::WallTime, ReceivedTransform>> recent_;  ///< with the time of arrival
   Nanoseconds timeout_ = 0;
   double max_frame_speed_ = infinity;
-  bool approaches_ = true;  ///< frames that come back
-  int scene_frames_ = 0;
+  bool approaches_ = true;                             ///< frames that come back
+  int scene_frames_ = 0;                               ///< those of bodies included
   std::vector<Track> tracks_;                          ///< by frame id; the first is the fixed frame
   std::map<std::string, std::vector<int>> followers_;  ///< by child frame of a transform: the frame ids it moves
   int followers_version_ = -1;                         ///< of the tree, for which they hold

@@ -23,6 +23,7 @@ constexpr double arm_of_cable = 0.12;    // of its length
 constexpr double arm_of_net = 3;         // of its first link's length
 constexpr double smallest_arm = 10;      // [radii]
 constexpr double sphere_in_arm = 0.25;   // a sphere is no larger than this part of the arrows
+constexpr double arm_of_body = 1.5;      // of its radius of gyration
 constexpr double smallest_node = 0.004;  // [m] radius: thinner cables cannot be hit
 
 void add_menu(const Handle& handle, InteractiveMarker& marker) {
@@ -38,7 +39,7 @@ void add_menu(const Handle& handle, InteractiveMarker& marker) {
   } else {
     add(HandleAction::release, "Release");
   }
-  if (!handle.cable.empty()) add(HandleAction::cut, "Cut here");
+  if (!handle.cable.empty() && !handle.is_body) add(HandleAction::cut, "Cut here");
   add(HandleAction::reset, "Reset all");
 }
 
@@ -101,16 +102,29 @@ Handle handle_of(const SimulatedNet& net) {
   return handle;
 }
 
+/// Of what holds a body.
+Handle handle_of(const SimulatedBody& body) {
+  Handle handle;
+  handle.arm_length = std::min(arm_of_body * radius_of_gyration(body), largest_arm);
+  handle.radius = handle.arm_length / smallest_arm;
+  return handle;
+}
+
+Handle handle_of(const World& world, const BodyId& held) {
+  const auto index = static_cast<std::size_t>(held.index);
+  if (held.is_rigid_body()) return handle_of(world.bodies()[index]);
+  return held.is_net() ? handle_of(world.nets()[index]) : handle_of(world.cables()[index]);
+}
+
 void add_attachments(const Simulation& simulation, const std::set<std::string>& grabs, std::vector<Handle>& handles) {
   const World& world = simulation.world();
   for (const Attachment& attachment : world.attachments()) {
-    if (grabs.count(attachment.name) > 0) continue;
-    Handle handle = attachment.body.is_net() ? handle_of(world.nets()[attachment.body.index])
-                                             : handle_of(world.cables()[attachment.body.index]);
+    if (grabs.count(attachment.name) > 0 || !world.frame_known(attachment.frame)) continue;
+    Handle handle = handle_of(world, attachment.body);
     handle.name = "attachment/" + attachment.name;
     handle.attachment = attachment.name;
     handle.node = attachment.node;
-    handle.turns = attachment.type == AttachmentType::clamp;
+    handle.turns = attachment.type != AttachmentType::hinge;
     handle.pose = simulation.attachment_pose(attachment);
     if (handle.pose.position.allFinite() && handle.pose.orientation.coeffs().allFinite()) handles.push_back(std::move(handle));
   }
@@ -138,6 +152,28 @@ void add_nodes(const World& world, const std::set<std::string>& grabs, std::vect
   }
 }
 
+/// Of bodies that no clamp holds, and that nothing holds there.
+void add_bodies(const World& world, const std::set<std::string>& grabs, std::vector<Handle>& handles) {
+  constexpr double same_point = 1e-9;  // [m]
+  std::set<int> held;
+  for (const Attachment& attachment : world.attachments()) {
+    if (!attachment.body.is_rigid_body() || grabs.count(attachment.name) > 0) continue;
+    if (attachment.type == AttachmentType::clamp || attachment.at.position.norm() <= same_point)
+      held.insert(attachment.body.index);
+  }
+  for (int i = 0; i < static_cast<int>(world.bodies().size()); ++i) {
+    const SimulatedBody& body = world.bodies()[i];
+    if (!is_there(world, body) || held.count(i) > 0) continue;
+    Handle handle = handle_of(body);
+    handle.name = body.name + "/0";
+    handle.cable = body.name;
+    handle.is_body = true;
+    handle.radius = radius_of_gyration(body) / node_size;
+    handle.pose.position = body.pose.position;
+    handles.push_back(std::move(handle));
+  }
+}
+
 }  // namespace
 
 bool look_alike(const Handle& a, const Handle& b) {
@@ -148,6 +184,7 @@ std::vector<Handle> find_handles(const Simulation& simulation, const std::set<st
   std::vector<Handle> handles;
   if (!simulation.started()) return handles;
   add_attachments(simulation, grabs, handles);
+  add_bodies(simulation.world(), grabs, handles);
   add_nodes(simulation.world(), grabs, handles);
   return handles;
 }

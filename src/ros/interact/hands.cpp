@@ -133,7 +133,8 @@ EditResult Hands::pin(const Handle& handle) {
 }
 
 EditResult Hands::cut(const Handle& handle) {
-  if (handle.cable.empty()) return refused({"menu_entry_id: 3; what holds a net has 2 and 4 only"});
+  if (handle.cable.empty()) return refused({"menu_entry_id: 3; what holds a net or body has 2 and 4 only"});
+  if (handle.is_body) return refused({"menu_entry_id: 3; a body has 1 and 4 only"});
   const Location location = locate_cut(location_of(handle), simulation_.world(), {});
   if (!location.errors.empty()) return refused(location.errors);
   return simulation_.cut(location.body, location.elements);

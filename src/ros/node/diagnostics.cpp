@@ -26,6 +26,8 @@ std::string text(FrameStatus status) {
       return "late";
     case FrameStatus::lost:
       return "lost";
+    case FrameStatus::computed:
+      return "a body's";
     default:
       return "ok";
   }

@@ -59,6 +59,11 @@ bool is_finite(const SimulatedParticle& particle) {
   return particle.position.allFinite() && particle.velocity.allFinite();
 }
 
+bool is_there(const World& world, const SimulatedBody& body) {
+  return world.frame_known(body.frame) && body.pose.position.allFinite() && body.pose.orientation.coeffs().allFinite() &&
+         body.velocity.allFinite() && body.angular_velocity.allFinite();
+}
+
 std::vector<SimulatedContact> contacts_of_both(const World& world) {
   std::vector<SimulatedContact> contacts = world.findings().contacts;
   const auto radius = [&](int cable, int segment) { return CableMaterials(world.cables()[cable])[segment].radius; };
@@ -116,6 +121,12 @@ void add_cables(const World& world, CableArray& message) {
     cable.attachments.push_back(attachment.name);
     cable.attachment_nodes.push_back(attachment.node);
   }
+  for (const SimulatedGuide& guide : world.guides()) {
+    if (guide.cable < 0 || places[guide.cable] < 0 || !std::isfinite(guide.arc_length)) continue;
+    Cable& cable = message.cables[places[guide.cable]];
+    cable.guides.push_back(guide.name);
+    cable.guide_arc_length.push_back(guide.arc_length);
+  }
   for (const SimulatedContact& contact : contacts_of_both(world))
     if (places[contact.cable] >= 0) message.cables[places[contact.cable]].contacts.push_back(to_message(world, contact));
 }
@@ -139,6 +150,15 @@ Particle to_message(const SimulatedParticle& particle) {
   return message;
 }
 
+Body to_message(const SimulatedBody& body) {
+  Body message;
+  message.name = body.name;
+  message.pose = to_pose(body.pose);
+  message.twist.linear = to_vector(body.velocity);
+  message.twist.angular = to_vector(body.angular_velocity);
+  return message;
+}
+
 }  // namespace
 
 CableArray to_message(const World& world) {
@@ -148,6 +168,8 @@ CableArray to_message(const World& world) {
     if (is_finite(net)) message.nets.push_back(to_message(net));
   for (const SimulatedParticle& particle : world.particles())
     if (is_finite(particle)) message.particles.push_back(to_message(particle));
+  for (const SimulatedBody& body : world.bodies())
+    if (is_there(world, body)) message.bodies.push_back(to_message(body));
   return message;
 }
 

@@ -21,14 +21,16 @@ bool is_finite(const SimulatedCable& cable);
 
 bool is_finite(const SimulatedNet& net);
 bool is_finite(const SimulatedParticle& particle);
+/// Whether a body is there already, and all of it finite: one whose holders' frames are not known waits.
+bool is_there(const World& world, const SimulatedBody& body);
 
 /// Contacts of cables with cables as both of them feel it: each appears twice.
 std::vector<SimulatedContact> contacts_of_both(const World& world);
 
-/// All cables, nets and particles of a world that are finite. The header is left to the caller.
+/// All cables, nets, particles and bodies of a world that are finite. The header is left to the caller.
 CableArray to_message(const World& world);
 
-/// What a cable or net exerts on the frame that holds it: axes of the frame, torque [N m] about the frame's origin.
+/// What a cable, net or body exerts on the frame that holds it: axes of the frame, torque [N m] about the frame's origin.
 /// `frame` is the frame's pose in the fixed frame, in whose axes the attachment's own force and torque are.
 geometry_msgs::Wrench wrench_on_frame(const Attachment& attachment, const Pose& frame);
 

@@ -21,7 +21,9 @@ constexpr int cable_marker_id = 0;
 constexpr int net_lines_id = 0, net_triangles_id = 1, particle_marker_id = 0;
 constexpr double net_line_width = 0.04;  // of the first link's length
 constexpr double net_pin_size = 0.4;     // likewise
+constexpr double body_pin_size = 0.3;    // of a body's radius of gyration
 constexpr double ambient_light = 0.35;   // of all
+constexpr std::array<double, 4> body_color{0.75, 0.55, 0.25, 1};
 const Vector3 to_light(-0.4, -0.6, 0.7);
 
 std_msgs::ColorRGBA grey(float level) {
@@ -60,6 +62,15 @@ double radius_at(const SimulatedCable& cable, int node) {
 /// [m] How long a net's links are, for the sizes of what shows it.
 double link_length(const NetModel& model) {
   return model.rest_lengths.empty() ? 0.1 : model.rest_lengths.front();
+}
+
+/// [m] The width of what shows how something is held.
+double pin_width(const World& world, const Attachment& attachment) {
+  const BodyId& held = attachment.body;
+  const auto index = static_cast<std::size_t>(held.index);
+  if (held.is_rigid_body()) return body_pin_size * radius_of_gyration(world.bodies()[index]);
+  if (held.is_net()) return net_pin_size * link_length(world.nets()[index].model);
+  return 2 * pin_size * radius_at(world.cables()[index], attachment.node);
 }
 
 /// A color in a light that falls alike on both sides: rviz lights one side only of what it lights, and of two triangles that
@@ -112,6 +123,8 @@ void MarkerPublisher::publish(const World& world, const ros::Time& stamp) {
     if (is_finite(particle)) add_particle(particle, *markers);
   for (const Attachment& attachment : world.attachments()) add_pin(world, attachment, *markers);
   for (const Obstacle& obstacle : world.obstacles()) add_obstacle(world, obstacle, *markers);
+  for (const SimulatedBody& body : world.bodies())
+    if (is_there(world, body)) add_body(body, *markers);
   delete_what_is_gone(*markers);
   for (Marker& marker : markers->markers) marker.header.stamp = stamp;
   publisher_.publish(markers);
@@ -195,16 +208,19 @@ void MarkerPublisher::add_particle(const SimulatedParticle& particle, MarkerArra
 }
 
 void MarkerPublisher::add_pin(const World& world, const Attachment& attachment, MarkerArray& markers) {
+  // What holds a body is there before the frame that it holds it to.
+  if (!world.frame_known(attachment.frame)) return;
   const Pose pose = world.frame_pose(attachment.frame) * attachment.pose;
   if (!pose.position.allFinite() || !pose.orientation.coeffs().allFinite()) return;
-  const double size = attachment.body.is_net() ? net_pin_size * link_length(world.nets()[attachment.body.index].model)
-                                               : 2 * pin_size * radius_at(world.cables()[attachment.body.index], attachment.node);
-  const bool clamp = attachment.type == AttachmentType::clamp;
-  Marker marker = make_marker("pins", id_of(attachment.name), clamp ? Marker::CUBE : Marker::SPHERE);
+  const double size = pin_width(world, attachment);
+  const bool clamp = attachment.type == AttachmentType::clamp, axle = attachment.type == AttachmentType::axle;
+  Marker marker = make_marker("pins", id_of(attachment.name), clamp ? Marker::CUBE : axle ? Marker::CYLINDER : Marker::SPHERE);
   marker.pose = to_pose(pose);
   marker.color = grey(0.8f);
   if (clamp) {
     set_scale(marker, 2 * size, size, 0.7 * size);  // three unequal edges show direction and roll
+  } else if (axle) {
+    set_scale(marker, 0.5 * size, 0.5 * size, 3 * size);
   } else {
     set_scale(marker, size, size, size);
   }
@@ -214,9 +230,22 @@ void MarkerPublisher::add_pin(const World& world, const Attachment& attachment, 
 void MarkerPublisher::add_obstacle(const World& world, const Obstacle& obstacle, MarkerArray& markers) {
   if (!obstacle.present) return;
   int part = 0;
-  for (const Marker& look : obstacle_markers(obstacle, world.frame_pose(obstacle.frame))) {
+  add_shape("obstacles", obstacle.name, part, obstacle.shape, world.frame_pose(obstacle.frame) * obstacle.pose, markers);
+}
+
+void MarkerPublisher::add_body(const SimulatedBody& body, MarkerArray& markers) {
+  const std::size_t first = markers.markers.size();
+  int part = 0;
+  for (const BodyShape& shape : body.shapes) add_shape("bodies", body.name, part, shape.shape, body.pose * shape.pose, markers);
+  for (std::size_t i = first; i < markers.markers.size(); ++i) markers.markers[i].color = to_color(body_color);
+}
+
+/// `part`: how many markers of that name there are before.
+void MarkerPublisher::add_shape(const std::string& ns, const std::string& name, int& part, const Shape& shape, const Pose& pose,
+                                MarkerArray& markers) {
+  for (const Marker& look : shape_markers(shape, pose)) {
     // No other name has a colon and a number behind it.
-    Marker marker = make_marker("obstacles", id_of(obstacle.name + ":" + std::to_string(part++)), look.type);
+    Marker marker = make_marker(ns, id_of(name + ":" + std::to_string(part++)), look.type);
     marker.pose = look.pose;
     marker.scale = look.scale;
     marker.color = look.color;

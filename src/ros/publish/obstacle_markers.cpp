@@ -120,8 +120,8 @@ std::string set_pose(const geometry_msgs::Pose& pose, Obstacle& obstacle) {
 
 }  // namespace
 
-std::vector<Marker> obstacle_markers(const Obstacle& obstacle, const Pose& frame) {
-  return std::visit([&](const auto& shape) { return markers_of(shape, frame * obstacle.pose); }, obstacle.shape);
+std::vector<Marker> shape_markers(const Shape& shape, const Pose& pose) {
+  return std::visit([&](const auto& solid) { return markers_of(solid, pose); }, shape);
 }
 
 MarkerObstacle obstacle_of(const Marker& marker) {

@@ -6,12 +6,13 @@
 #include <vector>
 
 #include "verlet_cable/core/obstacle.h"
+#include "verlet_cable/core/shape.h"
 
 namespace verlet_cable {
 
-/// How an obstacle of a world looks with its frame at `frame`: one marker, for a capsule three. Only `type`, `pose`, `scale`,
-/// `color` and `mesh_resource` are set. A plane is a large flat box below it. Padding is not shown.
-std::vector<visualization_msgs::Marker> obstacle_markers(const Obstacle& obstacle, const Pose& frame);
+/// How a shape looks at `pose`, as an obstacle: one marker, for a capsule three. Only `type`, `pose`, `scale`, `color` and
+/// `mesh_resource` are set. A plane is a large flat box below it.
+std::vector<visualization_msgs::Marker> shape_markers(const Shape& shape, const Pose& pose);
 
 /// The obstacle that a marker of the topic `obstacles` asks for, without its frame.
 struct MarkerObstacle {

@@ -1,5 +1,6 @@
 #include "publish/publishers.h"
 
+#include "publish/body_frames.h"
 #include "publish/legend_publisher.h"
 #include "publish/marker_publisher.h"
 #include "publish/point_publisher.h"
@@ -11,13 +12,15 @@ namespace verlet_cable {
 
 struct Publishers::Implementation {
   Implementation(ros::NodeHandle& private_node, const SceneDesc& scene)
-      : legend(private_node, scene),
+      : body_frames(private_node, scene),
+        legend(private_node, scene),
         markers(private_node, scene),
         points(private_node, scene),
         state(private_node, scene),
         surface(private_node, scene),
         wrenches(private_node) {}
 
+  BodyFrames body_frames;
   LegendPublisher legend;
   MarkerPublisher markers;
   PointPublisher points;
@@ -32,6 +35,7 @@ Publishers::Publishers(ros::NodeHandle& private_node, const SceneDesc& scene)
 Publishers::~Publishers() = default;
 
 void Publishers::show(const SceneDesc& scene) {
+  implementation_->body_frames.show(scene);
   implementation_->legend.show(scene);
   implementation_->markers.show(scene);
   implementation_->points.show(scene);
@@ -48,6 +52,7 @@ void Publishers::forget_steps() {
 }
 
 void Publishers::publish(const World& world, const ros::Time& stamp) {
+  implementation_->body_frames.publish(world, stamp);
   implementation_->markers.publish(world, stamp);
   implementation_->points.publish(world, stamp);
   implementation_->state.publish(world, stamp);

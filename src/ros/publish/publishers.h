@@ -10,12 +10,12 @@
 namespace verlet_cable {
 
 /// What the node shows of a world: `markers`, `points`, `surface`, `state` and `wrench/<attachment>`, in the scene's fixed frame
-/// (a wrench in its attachment's frame), and `legend`. Nothing is computed for a topic without subscribers, and no cable with a
-/// value that is not finite is published.
+/// (a wrench in its attachment's frame), `legend`, and the bodies' frames on /tf. Nothing is computed for a topic without
+/// subscribers, and no cable with a value that is not finite is published.
 class Publishers {
  public:
   /// Advertises under `private_node`. Of the scene: `frame_id`, `marker_style`, `color_by`, and what the color scale is made
-  /// from.
+  /// from, and `broadcast_tf`.
   Publishers(ros::NodeHandle& private_node, const SceneDesc& scene);
   ~Publishers();
 

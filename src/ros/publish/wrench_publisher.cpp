@@ -57,6 +57,8 @@ void WrenchPublisher::publish(const World& world, const ros::Time& stamp) {
   for (const Attachment& attachment : world.attachments()) {
     const auto topic = topics_.find(attachment.name);
     if (topic == topics_.end() || topic->second.getNumSubscribers() == 0) continue;
+    // What holds a body is there before the frame that it holds it to.
+    if (!world.frame_known(attachment.frame)) continue;
     const Attachment mean = means_.mean(attachment);
     if (!mean.force.allFinite() || !mean.torque.allFinite()) continue;
     const auto message = boost::make_shared<geometry_msgs::WrenchStamped>();

@@ -44,6 +44,35 @@ void check_reach(const CheckedPin& pin, const World& world, std::vector<std::str
   }
 }
 
+/// Why a body cannot be held at its frame's origin, too: a clamp holds it alone, and a point is held once.
+void check_held_body(const Pin::Request& request, const CheckedPin& pin, const World& world, std::vector<std::string>& errors) {
+  constexpr double same_point = 1e-9;  // [m]
+  for (const Attachment& other : world.attachments()) {
+    if (other.body != pin.body) continue;
+    const bool clamped = request.clamp || other.type == AttachmentType::clamp;
+    if (!clamped && other.at.position.norm() > same_point) continue;
+    errors.push_back("location: " + kind_and_name(world, pin.body) + " is held by " + quoted(other.name) +
+                     (clamped ? "; allowed: clamps of bodies that nothing else holds, and hinges of those that no clamp holds"
+                              : " at its origin already; allowed: bodies that are held elsewhere, or not at all"));
+  }
+}
+
+void check_held_node(const CheckedPin& pin, const World& world, std::vector<std::string>& errors) {
+  for (const Attachment& other : world.attachments()) {
+    if (other.body != pin.body || other.node != pin.node) continue;
+    errors.push_back("location: node " + std::to_string(pin.node) + " of " + kind_and_name(world, pin.body) + " is held by " +
+                     quoted(other.name) + "; allowed: nodes that nothing holds");
+  }
+}
+
+/// Of what is to be held.
+Pose pose_now(const World& world, const CheckedPin& pin) {
+  const auto index = static_cast<std::size_t>(pin.body.index);
+  if (pin.body.is_rigid_body()) return world.bodies()[index].pose;
+  if (pin.body.is_net()) return {world.nets()[index].state.positions[pin.node], Quaternion::Identity()};
+  return node_pose(world.cables()[index], pin.node);
+}
+
 }  // namespace
 
 /// Identity for all zeros; otherwise nearly of length one.
@@ -84,16 +113,16 @@ CheckedPin check_pin(const Pin::Request& request, const World& world, const Find
   }
   if (!location.errors.empty()) return pin;
   if (pin.body.is_net() && request.clamp) pin.errors.push_back("clamp: true; allowed: false, nets are held by hinges");
-  for (const Attachment& other : world.attachments()) {
-    if (other.body != pin.body || other.node != pin.node) continue;
-    pin.errors.push_back("location: node " + std::to_string(pin.node) + " of " + kind_and_name(world, pin.body) + " is held by " +
-                         quoted(other.name) + "; allowed: nodes that nothing holds");
+  if (pin.body.is_rigid_body()) {
+    if (pin.frame == world.bodies()[pin.body.index].name)
+      pin.errors.push_back("frame_id: " + verlet_cable::quoted(pin.frame) + ", the body's own; allowed: others");
+    check_held_body(request, pin, world, pin.errors);
+  } else {
+    check_held_node(pin, world, pin.errors);
   }
   if (!pin.errors.empty()) return pin;
   if (request.keep_offset) {
-    const Pose node = pin.body.is_net() ? Pose{world.nets()[pin.body.index].state.positions[pin.node], Quaternion::Identity()}
-                                        : node_pose(world.cables()[pin.body.index], pin.node);
-    pin.offset = pin.frame_pose.inverse() * node;
+    pin.offset = pin.frame_pose.inverse() * pose_now(world, pin);
   } else if (pin.body.is_cable()) {
     check_reach(pin, world, pin.errors);
     if (!pin.errors.empty()) pin.errors.back() += "; to hold it where it is: keep_offset: true";

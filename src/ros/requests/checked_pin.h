@@ -12,7 +12,7 @@ namespace verlet_cable {
 
 /// A request to pin in terms of the world, or everything that is wrong with it.
 struct CheckedPin {
-  BodyId body;  ///< a cable or a net
+  BodyId body;  ///< a cable, a net or a rigid body
   int node = 0;
   std::string frame;
   Pose frame_pose;  ///< in the fixed frame

@@ -26,7 +26,8 @@ std::string point_text(const geometry_msgs::Point& point) {
   return "(" + number_text(point.x) + ", " + number_text(point.y) + ", " + number_text(point.z) + ")";
 }
 
-void find_cable(const CableLocation& location, const World& world, PointOnCable& found) {
+/// `bodies`: whether those may be named, too.
+void find_cable(const CableLocation& location, const World& world, bool bodies, PointOnCable& found) {
   if (location.cable.empty() && location.mode == CableLocation::NEAREST) return;
   found.cable = find(world.cables(), location.cable);
   if (found.cable >= 0) return;
@@ -39,6 +40,8 @@ void find_cable(const CableLocation& location, const World& world, PointOnCable&
   std::string names;
   for (const SimulatedCable& cable : world.cables()) names += (names.empty() ? "" : ", ") + cable.model->name;
   for (const SimulatedNet& net : world.nets()) names += (names.empty() ? "" : ", ") + net.model.name;
+  if (bodies)
+    for (const SimulatedBody& body : world.bodies()) names += (names.empty() ? "" : ", ") + body.name;
   found.errors.push_back("location.cable: " + quoted(location.cable) +
                          "; allowed: " + (names.empty() ? "none, there are no cables or nets" : names));
 }
@@ -109,9 +112,9 @@ void find_nearest(const CableLocation& location, const World& world, const FindF
   }
 }
 
-PointOnCable find_point(const CableLocation& location, const World& world, const FindFrame& find_frame) {
+PointOnCable find_point(const CableLocation& location, const World& world, const FindFrame& find_frame, bool bodies) {
   PointOnCable found;
-  find_cable(location, world, found);
+  find_cable(location, world, bodies, found);
   switch (location.mode) {
     case CableLocation::NODE:
       find_node(location, world, found);
@@ -191,17 +194,33 @@ Location locate_links(const CableLocation& location, const World& world, int ind
   return found;
 }
 
+/// The origin of a body's frame.
+Location locate_body(const CableLocation& location, const World& world, int index) {
+  Location found;
+  found.body = rigid_body_id(index);
+  if (!world.frame_known(world.bodies()[index].frame))
+    found.errors.push_back("location.cable: " + quoted(world.bodies()[index].name) +
+                           " waits for its tf frames; allowed: bodies that are simulated already");
+  else if (location.mode != CableLocation::NODE)
+    found.errors.push_back("location.mode: " + std::to_string(location.mode) + " for body " + quoted(world.bodies()[index].name) +
+                           "; allowed: 0 (NODE)");
+  else if (location.node != 0)
+    found.errors.push_back("location.node: " + std::to_string(location.node) + "; allowed: 0, the origin of the body's frame");
+  return found;
+}
+
 }  // namespace
 
 Location locate_node(const CableLocation& location, const World& world, const FindFrame& find_frame) {
   if (const int net = find_net(location, world, find_frame); net >= 0) return locate_net_node(location, world, net, find_frame);
-  const PointOnCable found = find_point(location, world, find_frame);
+  if (const int body = find(world.bodies(), location.cable); body >= 0) return locate_body(location, world, body);
+  const PointOnCable found = find_point(location, world, find_frame, true);
   return {cable_id(found.cable), found.segment + (found.fraction > 0.5 ? 1 : 0), {}, found.distance, found.errors};
 }
 
 Location locate_cut(const CableLocation& location, const World& world, const FindFrame& find_frame) {
   if (const int net = find_net(location, world, find_frame); net >= 0) return locate_links(location, world, net, find_frame);
-  PointOnCable found = find_point(location, world, find_frame);
+  PointOnCable found = find_point(location, world, find_frame, false);
   if (found.errors.empty()) {
     const SimulatedCable& cable = world.cables()[found.cable];
     const int last = cable.state.segments() - 2;

@@ -14,16 +14,17 @@ namespace verlet_cable {
 /// Where a frame is in the fixed frame; none if it is not known.
 using FindFrame = std::function<std::optional<Pose>(const std::string&)>;
 
-/// A place on a cable or net of a world, or everything that is wrong with the request for it.
+/// A place on a cable or net, or a body of a world, or everything that is wrong with the request for it.
 struct Location {
-  BodyId body;                ///< the cable or net
+  BodyId body;                ///< the cable, net or rigid body
   int node = 0;               ///< that was asked for
   std::vector<int> elements;  ///< to be cut: a segment, or links of a net; ascending
   double distance = 0;        ///< [m] NEAREST: from the given point
   std::vector<std::string> errors;
 };
 
-/// The node that is meant: the given one, or the one nearest to the arc length or to the point.
+/// The node that is meant: the given one, or the one nearest to the arc length or to the point. Of a rigid body its frame's
+/// origin, node 0.
 Location locate_node(const CableLocation& location, const World& world, const FindFrame& find_frame);
 
 /// The segment that is meant: the one that starts at the node, or contains the arc length or the point of the cable that is

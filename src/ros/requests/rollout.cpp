@@ -22,7 +22,7 @@ int count_nodes(const World& world) {
   int nodes = 0;
   for (const SimulatedCable& cable : world.cables()) nodes += cable.state.nodes();
   for (const SimulatedNet& net : world.nets()) nodes += net.model.nodes();
-  nodes += static_cast<int>(world.particles().size());
+  nodes += static_cast<int>(world.particles().size() + world.bodies().size());
   return nodes;
 }
 
@@ -55,9 +55,9 @@ std::map<int, FrameTrack> read_motion(const RolloutGoal& goal, const World& worl
     if (transform.header.frame_id != names.front()) {
       errors.push_back(key + ".header.frame_id: " + verlet_cable::quoted(transform.header.frame_id) +
                        "; allowed: the fixed frame " + verlet_cable::quoted(names.front()) + ", or empty");
-    } else if (frame == names.end()) {
+    } else if (frame == names.end() || world.is_body_frame(static_cast<int>(frame - names.begin()))) {
       errors.push_back(key + ".child_frame_id: " + verlet_cable::quoted(transform.child_frame_id) +
-                       "; allowed: frames that hold something");
+                       "; allowed: frames that hold something, but those of bodies");
     } else if (!problem.empty()) {
       errors.push_back(key + ": " + problem);
     } else {

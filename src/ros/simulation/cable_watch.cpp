@@ -27,7 +27,7 @@ void CableWatch::report_status(const StepResult& result, Nanoseconds stamp, cons
         "%s is overstretched at node %d: the points that hold it are further apart than the material between them is long",
         quoted(subject).c_str(), result.node);
   }
-  if (result.status == StepResult::Status::degraded && !result.body.is_cable()) {
+  if (result.status == StepResult::Status::degraded && !result.body.is_cable() && !result.body.is_rigid_body()) {
     ROS_WARN_THROTTLE(log_period,
                       "%s is unstable and was softened or stopped: stiff springs between light nodes need a shorter time_step",
                       quoted(subject).c_str());

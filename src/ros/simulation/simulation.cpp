@@ -211,7 +211,10 @@ std::optional<Pose> Simulation::find_frame(const std::string& frame) const {
   const std::vector<std::string>& names = world_.frames();
   const auto found = std::find(names.begin(), names.end(), frame);
   const auto id = static_cast<std::size_t>(found - names.begin());
-  if (id == 0 || (id < names.size() && frames_.inputs()[id].known)) return world_.frame_pose(static_cast<int>(id));
+  const int number = static_cast<int>(id);
+  if (id < names.size() && world_.is_body_frame(number))
+    return world_.frame_known(number) ? std::optional<Pose>(world_.frame_pose(number)) : std::nullopt;
+  if (id == 0 || (id < names.size() && frames_.inputs()[id].known)) return world_.frame_pose(number);
   return frames_.find(frame, stamp_);
 }
 

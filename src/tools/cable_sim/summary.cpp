@@ -33,6 +33,13 @@ Json bodies_json(const World& world) {
   return json;
 }
 
+Json guides_json(const World& world) {
+  Json json = Json::object();
+  for (const SimulatedGuide& guide : world.guides())
+    json[guide.name] = {{"arc_length", guide.arc_length}, {"tension", guide.tension}};
+  return json;
+}
+
 Json event_json(const Event& event) {
   Json json{{"time", event.time}, {"type", event.type}};
   if (!event.cable.empty()) json["cable"] = event.cable;
@@ -111,6 +118,7 @@ std::string Summary::json(const World& world, const std::vector<Event>& events) 
       {"extremes", extremes_.json()},
       {"attachments", Json::object_t(attachments.begin(), attachments.end())},
       {"bodies", bodies_json(world)},
+      {"guides", guides_json(world)},
       {"state_hash", hash_text(world.hash())},
       {"events", std::move(listed_events)},
   };
