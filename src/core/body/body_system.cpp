@@ -286,9 +286,21 @@ void BodySystem::add_joint(BodyJoint& joint, bool stiffness) {
 void BodySystem::solve(std::vector<Participant>& participants, bool stale) {
   for (std::size_t c = 0; c < cable_count_; ++c) {
     const Participant& p = participants[cables_[c].participant];
-    p.stepper->read_holder_loads(p.substep, p.state->masses, cables_[c].loads);
+    p.stepper->read_holder_loads(p.substep, p.state->masses, true, cables_[c].loads);
   }
   if (stale) condense(participants);
+  gather_loads();
+  change_.noalias() = solver_.solve(load_);
+  for (std::size_t c = 0; c < cable_count_; ++c) {
+    HeldCable& cable = cables_[c];
+    Participant& p = participants[cable.participant];
+    move_sides(cable);
+    p.stepper->add_moved(p.substep.boundary, cable.motion);
+  }
+}
+
+/// What is out of balance at bodies.
+void BodySystem::gather_loads() {
   for (std::size_t m = 0; m < members_.size(); ++m) {
     Matrix6 unused;
     members_[m].stepper.evaluate(members_[m].load, unused);
@@ -301,12 +313,31 @@ void BodySystem::solve(std::vector<Participant>& participants, bool stale) {
                                            (side.turns ? cable.loads.torques[side.entry] : cable.loads.forces[side.entry]);
   }
   for (BodyJoint& joint : joints_) add_joint(joint, false);
-  change_.noalias() = solver_.solve(load_);
+}
+
+double BodySystem::work_along(const std::vector<Participant>& participants) {
+  double work = 0;
   for (std::size_t c = 0; c < cable_count_; ++c) {
     HeldCable& cable = cables_[c];
-    Participant& p = participants[cable.participant];
-    move_sides(cable);
-    p.stepper->solve_moved(p.substep.boundary, cable.motion);
+    CableStepper& stepper = *participants[cable.participant].stepper;
+    const Substep& substep = participants[cable.participant].substep;
+    stepper.read_holder_loads(substep, participants[cable.participant].state->masses, false, cable.loads);
+    // What the cable's own work has of nodes that move with bodies.
+    for (const Side& side : cable.sides) {
+      if (side.turns) continue;
+      const int node = substep.boundary.nodes[side.entry].node;
+      work -= get(stepper.system().load, node).dot(get(stepper.correction(), node));
+    }
+  }
+  gather_loads();
+  return work + load_.dot(change_);
+}
+
+void BodySystem::take_back(double part) {
+  for (std::size_t m = 0; m < members_.size(); ++m) members_[m].stepper.correct(-part * change_.segment<6>(6 * m));
+  for (BodyJoint& joint : joints_) {
+    joint.force -= part * joint.force_change;
+    joint.torque -= part * joint.torque_change;
   }
 }
 
@@ -320,13 +351,15 @@ double BodySystem::correct() {
       way -= point_motion(members_[joint.other].stepper.end_arm(joint.holder.position)) * other;
       turn -= other.tail<3>();
     }
-    joint.force += holding_ * (gap_of(joint) - way);
+    joint.force_change = holding_ * (gap_of(joint) - way);
+    joint.force += joint.force_change;
     if (joint.type == AttachmentType::hinge) continue;
     Vector3 torque = joint.torque + holding_turn_ * (turn_of(joint) - turn);
     if (joint.type == AttachmentType::axle) {
       const Vector3 axis = members_[joint.member].stepper.pose().orientation * joint.at.orientation * Vector3::UnitZ();
       torque -= axis * axis.dot(torque);
     }
+    joint.torque_change = torque - joint.torque;
     joint.torque = torque;
   }
   double largest = 0;
@@ -367,7 +400,7 @@ void BodySystem::project(std::vector<Participant>& participants, std::vector<Sim
     HeldCable& cable = cables_[c];
     Participant& p = participants[cable.participant];
     move_sides(cable);
-    p.stepper->solve_moved(p.substep.boundary, cable.motion);
+    p.stepper->add_moved(p.substep.boundary, cable.motion);
     p.stepper->finish_projection(p.substep, *p.state);
   }
   for (std::size_t b = 0; b < place_.size(); ++b) {

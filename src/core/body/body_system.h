@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "body/rigid_body_stepper.h"
-#include "contact/contact_solver.h"
+#include "rod/participant.h"
 #include "verlet_cable/core/world.h"
 
 namespace verlet_cable {
@@ -29,6 +29,7 @@ struct BodyJoint {
   Pose holder;                       ///< of the attachment at the end of the substep, in the fixed frame or on the other body
   Vector3 force = Vector3::Zero();   ///< [N] on the body that is held
   Vector3 torque = Vector3::Zero();  ///< [N m] likewise, about the attachment's point
+  Vector3 force_change = Vector3::Zero(), torque_change = Vector3::Zero();  ///< in the last correction
 };
 
 /// Advances bodies, and the cables that they hold, by one substep, in one system. Each cable is eliminated onto the bodies
@@ -52,6 +53,9 @@ class BodySystem {
   void solve(std::vector<Participant>& participants, bool stale);
   /// The largest displacement of a body in parts of its size, or rotation [rad].
   double correct();
+  void take_back(double part);  ///< of the last correction
+  /// [J] Of what is out of balance at bodies along the last correction.
+  double work_along(const std::vector<Participant>& participants);
 
   /// Impulses along inextensible segments and in joints that end all velocities that these do not allow, once bodies and cables
   /// have finished; without them such velocities would alternate from step to step.
@@ -87,6 +91,7 @@ class BodySystem {
   void gather_mass(const SimulatedBody& body, int member, const std::vector<Participant>& participants);
   static Eigen::Matrix<double, 3, 6> motion_of(const Side& side, const RigidBodyStepper& stepper);
   static Eigen::Matrix<double, 6, 3> load_of(const Side& side, const RigidBodyStepper& stepper);
+  void gather_loads();
   void condense(std::vector<Participant>& participants);
   void add_resistance(HeldCable& cable, Participant& participant);
   void project_joint(const BodyJoint& joint);

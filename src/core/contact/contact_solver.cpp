@@ -118,7 +118,8 @@ inline Vector3 ContactSolver::displacement_of(const Touch& touch, std::vector<Pa
   return own - between(at(participants, other).stepper->displacement(), other.segment, other.fraction);
 }
 
-bool ContactSolver::solve(std::vector<Participant>& participants, std::vector<Touch>& touches) {
+bool ContactSolver::solve(std::vector<Participant>& participants, std::vector<Touch>& touches, BodySystem* bodies) {
+  bodies_ = bodies;
   begin(participants);
   return iterate(participants, touches);
 }
@@ -139,6 +140,7 @@ void ContactSolver::finish(std::vector<Participant>& participants, std::vector<T
   // After the last correction: what is left out at each substep would be creep.
   for (Touch& touch : touches)
     if (touch.mode != Touch::Mode::open) touch.displacement = displacement_of(touch, participants);
+  if (bodies_ != nullptr) bodies_->place_at_end(participants);
   for (Participant& p : participants) p.stepper->finish(p.substep, true, *p.state, p.result);
 }
 
@@ -177,17 +179,24 @@ bool ContactSolver::iterate(std::vector<Participant>& participants, std::vector<
   bool stale = true;
   for (int i = 0; i < maximum_iterations; ++i) {
     const bool changed = i == 0 ? press(participants, touches) : shorten(participants, touches);
-    if (stale || changed) factor(participants, touches);
+    const bool factored = stale || changed;
+    if (factored) factor(participants, touches);
     for (Participant& p : participants) p.stepper->solve_linear();
     if (couplings_.empty())
       follow_friction(participants, touches);
     else
       couple(participants);
+    if (bodies_ != nullptr) bodies_->solve(participants, factored);
     work_along_ = work_along(participants);
     double largest = 0;
     for (Participant& p : participants) {
       ++p.result.iterations;
       const double size = p.stepper->correct();
+      if (!(size < largest_correction)) return false;
+      largest = std::max(largest, size);
+    }
+    if (bodies_ != nullptr) {
+      const double size = bodies_->correct();
       if (!(size < largest_correction)) return false;
       largest = std::max(largest, size);
     }
@@ -223,6 +232,7 @@ bool ContactSolver::shorten(std::vector<Participant>& participants, std::vector<
     const double share = std::clamp(low_work / (low_work - high_work), 0.1, 0.9);
     const double next = low + share * (high - low);
     for (Participant& p : participants) p.stepper->take_back(taken - next);
+    if (bodies_ != nullptr) bodies_->take_back(taken - next);
     taken = next;
     changed = press(participants, touches) || changed;
   }
@@ -236,11 +246,13 @@ double ContactSolver::work_along(std::vector<Participant>& participants) const {
     work += dot(p.stepper->system().load, p.stepper->correction(), nodes(p));
     if (p.stepper->is_whole_rod()) work += dot(p.stepper->torque(), p.stepper->twist_correction(), segments(p));
   }
+  if (bodies_ != nullptr) work += bodies_->work_along(participants);
   return work;
 }
 
 /// Evaluates the loads, with the contacts' forces. True if one has changed its way to touch.
 bool ContactSolver::press(std::vector<Participant>& participants, std::vector<Touch>& touches) {
+  if (bodies_ != nullptr) bodies_->place_holders(participants);
   for (Participant& p : participants) p.stepper->evaluate(p.substep, *p.state);
   bool changed = false;
   for (Touch& touch : touches) {

@@ -2,20 +2,11 @@
 
 #include <vector>
 
+#include "body/body_system.h"
 #include "contact/law.h"
-#include "rod/cable_stepper.h"
+#include "rod/participant.h"
 
 namespace verlet_cable {
-
-/// A cable that takes part in a substep.
-struct Participant {
-  int place = 0;  ///< in its group
-  int cable = 0;  ///< as in CablePoint
-  CableStepper* stepper = nullptr;
-  Substep substep;
-  CableState* state = nullptr;
-  SubstepResult result;
-};
 
 /// Advances cables that touch something by one substep, together. Newton's method on all of them at once: each cable's own
 /// matrix, with what contacts add to it, is solved directly; what contacts couple beyond that (segments far from each other,
@@ -25,7 +16,8 @@ struct Participant {
 class ContactSolver {
  public:
   /// If it has not converged, `converged` is false in the result of the participant that failed. The states are untouched.
-  bool solve(std::vector<Participant>& participants, std::vector<Touch>& touches);
+  /// `bodies`: that hold some of them, and have begun; none where it is null.
+  bool solve(std::vector<Participant>& participants, std::vector<Touch>& touches, BodySystem* bodies);
   /// Whether segments that touch pass through each other in what has been found.
   bool crosses(const std::vector<Participant>& participants, const std::vector<Touch>& touches) const;
   /// The states and the contacts take what has been found.
@@ -95,6 +87,7 @@ class ContactSolver {
   Participant& at(std::vector<Participant>& participants, const CablePoint& point) const;
   Side side_at(const CablePoint& point) const;
 
+  BodySystem* bodies_ = nullptr;
   std::vector<int> index_;  ///< of the participant, by cable
   std::vector<Work> work_;  ///< one a participant
   std::vector<Coupling> couplings_;

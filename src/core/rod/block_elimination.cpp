@@ -73,13 +73,32 @@ Vector3 KktSystem::added_load(int node, const VectorArray& displacement) const {
   return load;
 }
 
+void KktSolution::resize(int segments) {
+  const std::size_t nodes = segments + 2;
+  displacement.assign(nodes, 0.0);
+  multiplier.assign(nodes, 0.0);
+  force.assign(nodes, 0.0);
+  twist.assign(nodes, 0.0);
+}
+
+void KktSolution::add(const KktSolution& other) {
+  const auto sum = [](const std::vector<double>& more, std::vector<double>& all) {
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] += more[i];
+  };
+  for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) {
+    sum(other.displacement.*component, displacement.*component);
+    sum(other.force.*component, force.*component);
+  }
+  sum(other.multiplier, multiplier);
+  sum(other.twist, twist);
+}
+
 void BlockElimination::resize(int segments) {
   nodes_ = segments + 1 + (segments + 1) % 2;
   lane_ = nodes_ / 2 - 1;
   eliminations_.assign(lane_, Elimination<Pair>{});
   forward_.assign(lane_, Forward<Pair>{});
-  displacement_.assign(segments + 2, 0.0);
-  multiplier_.assign(segments + 2, 0.0);
+  solution_.resize(segments);
   load_.assign(segments + 2, 0.0);
   gap_.assign(segments + 2, 0.0);
 }
@@ -104,7 +123,7 @@ void BlockElimination::solve(const KktSystem& system) {
     solve_lanes<Couplings::bending>(load, gap);
   if (!system.moves_held) return;
   for (int i = 0; i < static_cast<int>(system.movable.size()) - 1; ++i)
-    if (system.movable[i] == 0) set(displacement_, i, get(system.held_displacement, i));
+    if (system.movable[i] == 0) set(solution_.displacement, i, get(system.held_displacement, i));
 }
 
 /// What displaced nodes do to the others stands on the right-hand sides.
@@ -130,8 +149,8 @@ void BlockElimination::load_by_held(const KktSystem& system) {
 }
 
 void BlockElimination::set_solution(const VectorArray& displacement, const std::vector<double>& multiplier) {
-  displacement_ = displacement;
-  multiplier_ = multiplier;
+  solution_.displacement = displacement;
+  solution_.multiplier = multiplier;
 }
 
 template <Couplings couplings>
@@ -160,24 +179,26 @@ void BlockElimination::solve_lanes(const VectorArray& load, const std::vector<do
   }
 
   const int m = lane_;
-  const MiddleSolution middle = solve_middle(middle_, vector(load, m) + lane_of(front.next, 0) + lane_of(front.after, 1),
-                                             vector(load, m + 1) + lane_of(front.next, 1) + lane_of(front.after, 0),
-                                             front.gap[0], gap[m], front.gap[1]);
+  const MiddleSolution middle =
+      solve_middle(middle_, vector(load, m) + lane_of(front.next, 0) + lane_of(front.after, 1),
+                   vector(load, m + 1) + lane_of(front.next, 1) + lane_of(front.after, 0), front.gap[0], gap[m], front.gap[1]);
 
-  const auto put_nodes = [this](int left, int right, const PairVector& x) {
-    displacement_.x[left] = x.x[0];
-    displacement_.y[left] = x.y[0];
-    displacement_.z[left] = x.z[0];
-    displacement_.x[right] = x.x[1];
-    displacement_.y[right] = x.y[1];
-    displacement_.z[right] = x.z[1];
+  VectorArray& displacement = solution_.displacement;
+  std::vector<double>& multiplier = solution_.multiplier;
+  const auto put_nodes = [&](int left, int right, const PairVector& x) {
+    displacement.x[left] = x.x[0];
+    displacement.y[left] = x.y[0];
+    displacement.z[left] = x.z[0];
+    displacement.x[right] = x.x[1];
+    displacement.y[right] = x.y[1];
+    displacement.z[right] = x.z[1];
   };
   Solved<Pair> solved{joined(middle.left, middle.right), joined(middle.right, middle.left), Pair{middle.before, middle.after}};
   put_nodes(m, m + 1, solved.next);
-  multiplier_[m] = middle.between;
+  multiplier[m] = middle.between;
   for (int k = lane_ - 1; k >= 0; --k) {
-    multiplier_[k] = solved.multiplier[0];
-    multiplier_[nodes_ - 2 - k] = solved.multiplier[1];
+    multiplier[k] = solved.multiplier[0];
+    multiplier[nodes_ - 2 - k] = solved.multiplier[1];
     back<couplings>(eliminations_[k], forward_[k], solved);
     put_nodes(k, nodes_ - 1 - k, solved.next);
   }

@@ -41,6 +41,18 @@ struct KktSystem {
   Vector3 added_load(int node, const VectorArray& displacement) const;
 };
 
+/// Of a KktSystem.
+struct KktSolution {
+  VectorArray displacement;        ///< N
+  std::vector<double> multiplier;  ///< n
+  // Of a rod of material frames, too
+  VectorArray force;          ///< n, on the first nodes
+  std::vector<double> twist;  ///< n
+
+  void resize(int segments);
+  void add(const KktSolution& other);
+};
+
 /// Solves a KktSystem directly, in O(n): elimination of blocks of one node and the multiplier before it, from both ends at
 /// once (a twisted factorisation). Each multiplier comes after both its nodes or with the second, so that no pivot vanishes at a
 /// held end.
@@ -55,8 +67,9 @@ class BlockElimination {
   /// Replaces the solution.
   void set_solution(const VectorArray& displacement, const std::vector<double>& multiplier);
 
-  const VectorArray& displacement() const { return displacement_; }      ///< N
-  const std::vector<double>& multiplier() const { return multiplier_; }  ///< n
+  KktSolution& solution() { return solution_; }
+  const VectorArray& displacement() const { return solution_.displacement; }      ///< N
+  const std::vector<double>& multiplier() const { return solution_.multiplier; }  ///< n
 
  private:
   template <Couplings couplings>
@@ -71,8 +84,7 @@ class BlockElimination {
   std::vector<Elimination<Pair>> eliminations_;  ///< lane_
   std::vector<Forward<Pair>> forward_;           ///< lane_
   MiddleElimination middle_;
-  VectorArray displacement_;
-  std::vector<double> multiplier_;
+  KktSolution solution_;
   // Right-hand sides with what displaced nodes add to them
   VectorArray load_;
   std::vector<double> gap_;

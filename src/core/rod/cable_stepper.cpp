@@ -48,6 +48,7 @@ void CableStepper::resize(int segments) {
   kept_load_.assign(nodes, 0.0);
   kept_gap_.assign(nodes, 0.0);
   kept_torque_.assign(nodes, 0.0);
+  kept_solution_.resize(segments_);
   bending_.resize(segments);
   twist_.resize(segments);
   rod_.resize(segments);
@@ -393,36 +394,35 @@ void CableStepper::follow_holders(const Boundary& boundary) {
   if (rod_.active()) rod_.follow_clamps(boundary);
 }
 
-void CableStepper::read_holder_loads(const Substep& s, const std::vector<double>& masses, HolderLoads& loads) const {
+void CableStepper::read_holder_loads(const Substep& s, const std::vector<double>& masses, bool corrected,
+                                     HolderLoads& loads) const {
   const Boundary& boundary = s.boundary;
   loads.forces.resize(boundary.nodes.size());
   loads.torques.assign(boundary.directions.size(), Vector3::Zero());
   for (std::size_t k = 0; k < boundary.nodes.size(); ++k) {
     const int i = boundary.nodes[k].node;
-    loads.forces[k] = corrected_load(i) + s.inertia() * masses[i] / s.h * (get(displacement_, i) / s.h - get(velocity_, i));
+    const Vector3 load = corrected ? corrected_load(i) : get(system_.load, i);
+    loads.forces[k] = load + s.inertia() * masses[i] / s.h * (get(displacement_, i) / s.h - get(velocity_, i));
   }
   if (!rod_.active()) return;
   rod_.add_clamp_torques(loads.torques);
-  rod_.add_clamp_reactions(system_, loads.torques);
+  if (corrected) rod_.add_clamp_reactions(system_, loads.torques);
 }
 
-void CableStepper::solve_moved(const Boundary& boundary, const HolderMotion& motion) {
-  move_held(boundary, motion);
-  solve_linear();
-  system_.moves_held = false;
+void CableStepper::add_moved(const Boundary& boundary, const HolderMotion& motion) {
+  solve_for_motion(boundary, motion);
+  solution().add(kept_solution_);
+  // What clamps that turn exert on the nodes beside them.
+  for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z})
+    add(system_.load.*component, segments_ + 1, kept_load_.*component);
+  exchange_loads();
 }
 
 void CableStepper::respond(const Boundary& boundary, const HolderMotion& motion, HolderLoads& loads) {
-  std::swap(system_.load, kept_load_);
-  std::swap(system_.gap, kept_gap_);
-  std::swap(rod_.torque(), kept_torque_);
-  system_.load.assign(segments_ + 2, 0.0);
-  system_.gap.assign(segments_ + 2, 0.0);
-  rod_.torque().assign(segments_ + 2, 0.0);
-  move_held(boundary, motion);
-  solve_linear();
+  solve_for_motion(boundary, motion);
   loads.forces.resize(boundary.nodes.size());
   loads.torques.assign(boundary.directions.size(), Vector3::Zero());
+  system_.moves_held = true;
   for (std::size_t k = 0; k < boundary.nodes.size(); ++k) {
     const int i = boundary.nodes[k].node;
     loads.forces[k] = corrected_load(i);
@@ -431,6 +431,26 @@ void CableStepper::respond(const Boundary& boundary, const HolderMotion& motion,
   }
   if (rod_.active()) rod_.add_clamp_reactions(system_, loads.torques);
   system_.moves_held = false;
+  std::swap(solution(), kept_solution_);
+  exchange_loads();
+}
+
+/// Leaves the loads and the solution that were there in those that are kept.
+void CableStepper::solve_for_motion(const Boundary& boundary, const HolderMotion& motion) {
+  exchange_loads();
+  std::swap(solution(), kept_solution_);
+  system_.load.assign(segments_ + 2, 0.0);
+  system_.gap.assign(segments_ + 2, 0.0);
+  rod_.torque().assign(segments_ + 2, 0.0);
+  for (std::size_t k = 0; k < boundary.nodes.size(); ++k)
+    set(system_.held_displacement, boundary.nodes[k].node, motion.displacements[k]);
+  if (rod_.active()) rod_.add_clamp_loads(motion.rotations, system_);
+  system_.moves_held = true;
+  solve_linear();
+  system_.moves_held = false;
+}
+
+void CableStepper::exchange_loads() {
   std::swap(system_.load, kept_load_);
   std::swap(system_.gap, kept_gap_);
   std::swap(rod_.torque(), kept_torque_);
@@ -476,14 +496,6 @@ void CableStepper::finish_projection(const Substep& s, CableState& state) {
     held.force += corrected_load(held.node) / s.h;
     if (held.body >= 0) held.velocity += get(change, held.node);
   }
-}
-
-/// What holders that move do to the cable's equations.
-void CableStepper::move_held(const Boundary& boundary, const HolderMotion& motion) {
-  system_.moves_held = true;
-  for (std::size_t k = 0; k < boundary.nodes.size(); ++k)
-    set(system_.held_displacement, boundary.nodes[k].node, motion.displacements[k]);
-  if (rod_.active()) rod_.add_clamp_loads(motion.rotations, system_);
 }
 
 void CableStepper::take_back(double part) {

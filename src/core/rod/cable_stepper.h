@@ -46,14 +46,14 @@ class CableStepper {
   // For holders that move as the cable lets them, between `factor` and `correct`
   /// Takes over where the holders are at the end of the substep.
   void follow_holders(const Boundary& boundary);
-  /// What the cable exerts on its holders after the last correction, to first order, without the inertia of the nodes that they
-  /// hold: where the last solution was that of `solve_linear` or `solve_moved`.
-  void read_holder_loads(const Substep& substep, const std::vector<double>& masses, HolderLoads& loads) const;
-  /// `solve_linear` where the holders move instead of staying where they are.
-  void solve_moved(const Boundary& boundary, const HolderMotion& motion);
-  /// What the cable exerts on its holders where they move so and nothing loads it.
+  /// What the cable exerts on its holders in the present iterate, without the inertia of the nodes that they hold; `corrected`:
+  /// after the last solution, to first order.
+  void read_holder_loads(const Substep& substep, const std::vector<double>& masses, bool corrected, HolderLoads& loads) const;
+  /// Adds to the solution, which had the holders stay where they are, what it is that they move.
+  void add_moved(const Boundary& boundary, const HolderMotion& motion);
+  /// What the cable exerts on its holders where they move so and nothing loads it; the solution stays as it is.
   void respond(const Boundary& boundary, const HolderMotion& motion, HolderLoads& loads);
-  // Of velocities, once the substep is finished: begin; solve; read; respond; solve moved; finish
+  // Of velocities, once the substep is finished: begin; solve; read; respond; add moved; finish
   /// The linear system is that of impulses which end all change of length of inextensible segments but that of rest lengths.
   void begin_projection(const Substep& substep, const CableState& state);
   /// On the holders [N s], after the last solution.
@@ -92,7 +92,9 @@ class CableStepper {
   void evaluate_elastic_lengths(const Substep& substep, const std::vector<double>& rest_lengths);
   void assemble_segments(double part, const std::vector<double>& density, const VectorArray& direction);
   void react(const Substep& substep, const std::vector<double>& masses);
-  void move_held(const Boundary& boundary, const HolderMotion& motion);
+  void exchange_loads();
+  void solve_for_motion(const Boundary& boundary, const HolderMotion& motion);
+  KktSolution& solution() { return rod_.active() ? rod_.elimination().solution() : solver_.solution(); }
   Vector3 corrected_load(int node) const;
   double force_along(int segment) const;
   void move(const Substep& substep);
@@ -140,6 +142,7 @@ class CableStepper {
   // Loads that wait, and none
   VectorArray kept_load_;
   std::vector<double> kept_gap_, kept_torque_;
+  KktSolution kept_solution_;
   // Velocity projection: a tridiagonal system
   std::vector<double> pivot_, off_, impulse_;  // segments
   std::vector<double> growth_;                 // segments: rate of half the square of the length [m^2/s]

@@ -109,10 +109,7 @@ void RodElimination::resize(int segments) {
   eliminations_.assign(padded_ / 2, Elimination{});
   forward_.assign(padded_ / 2, Forward{});
   held_inside_.reserve(padded_ / 2);
-  displacement_.assign(segments + 2, 0.0);
-  force_.assign(segments + 2, 0.0);
-  multiplier_.assign(segments + 2, 0.0);
-  twist_.assign(segments + 2, 0.0);
+  solution_.resize(segments);
 }
 
 namespace {
@@ -334,13 +331,13 @@ void RodElimination::solve_lanes(const KktSystem& system, const std::vector<doub
     const Forward& f = forward_[k];
     if (k + 1 < half) rotation = e.pivot * f.moment + transposed_times(e.turned_pivot, force) - e.carried * rotation;
     const PairVector node = e.give * force + e.turned * rotation + f.give;
-    put(node, left + 1, right, displacement_);  // in the middle both are one node
+    put(node, left + 1, right, solution_.displacement);  // in the middle both are one node
     force = force + f.load - inertia_times(e, node);
     if (held != held_inside_.begin() && (held - 1)->step == k) {
       --held;
       force = held->free * force - held->force - held->turned * rotation;
     }
-    put(Pair{1, -1} * force, left, right, force_);
+    put(Pair{1, -1} * force, left, right, solution_.force);
 
     Pair along = dot(e.direction, force);
     if constexpr (stiffened) along = along + dot(e.stretch_turn, rotation);
@@ -350,15 +347,15 @@ void RodElimination::solve_lanes(const KktSystem& system, const std::vector<doub
     if constexpr (stiffened) transmitted = transmitted + e.across * change;
     const Pair multiplier = e.inverse_square * dot(transmitted, e.direction) - e.force_density * stretch;
     const Pair twist = dot(e.axis, rotation);
-    multiplier_[left] = multiplier[0];
-    multiplier_[right] = multiplier[1];
-    twist_[left] = twist[0];
-    twist_[right] = twist[1];
-    if (k == 0) put(node - change, 0, padded_, displacement_);
+    solution_.multiplier[left] = multiplier[0];
+    solution_.multiplier[right] = multiplier[1];
+    solution_.twist[left] = twist[0];
+    solution_.twist[right] = twist[1];
+    if (k == 0) put(node - change, 0, padded_, solution_.displacement);
   }
   for (int i = 0; i <= segments_; ++i)
     if (system.movable[i] == 0)
-      set(displacement_, i, system.moves_held ? get(system.held_displacement, i) : Vector3(Vector3::Zero()));
+      set(solution_.displacement, i, system.moves_held ? get(system.held_displacement, i) : Vector3(Vector3::Zero()));
 }
 
 }  // namespace verlet_cable

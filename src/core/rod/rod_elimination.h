@@ -34,10 +34,11 @@ class RodElimination {
   /// Solves for `load` and `gap` of the system and `torque`, with the last factorisation.
   void solve(const KktSystem& system, const std::vector<double>& torque);
 
-  const VectorArray& displacement() const { return displacement_; }      ///< nodes
-  const std::vector<double>& multiplier() const { return multiplier_; }  ///< segments
-  const std::vector<double>& twist() const { return twist_; }            ///< segments: tau [rad]
-  const VectorArray& force() const { return force_; }  ///< segments: on the first node [N], without what the loads had
+  KktSolution& solution() { return solution_; }
+  const VectorArray& displacement() const { return solution_.displacement; }      ///< nodes
+  const std::vector<double>& multiplier() const { return solution_.multiplier; }  ///< segments
+  const std::vector<double>& twist() const { return solution_.twist; }            ///< segments: tau [rad]
+  const VectorArray& force() const { return solution_.force; }  ///< segments: on the first node [N], without what the loads had
 
  private:
   /// A segment, the node after it and the joint there, eliminated.
@@ -84,8 +85,7 @@ class RodElimination {
   std::vector<Forward> forward_;
   std::vector<HeldInside> held_inside_;
   Eigen::PartialPivLU<Middle> middle_;
-  VectorArray displacement_, force_;
-  std::vector<double> multiplier_, twist_;
+  KktSolution solution_;
 };
 
 }  // namespace verlet_cable

@@ -26,27 +26,30 @@ constexpr double noticed_jerk = 1e-9;
 
 }  // namespace
 
-/// The bodies of an island, and the cables that they hold and that touch nothing, by one substep. False if it has not converged.
-bool IslandStepper::advance_bodies(const Island& island, double from, double to, Scheme scheme) {
+/// Puts the bodies of an island where the substep begins; the cables that they hold take part.
+void IslandStepper::begin_bodies(const Island& island, double from, double to, Scheme scheme) {
   const SubstepRules rules{(to - from) * state_.scene->time_step, false, scheme};
   std::vector<BodyMember>& members = workspace_.body_members;
   members.clear();
   for (const int body : island.bodies)
     if (state_.body_progress[body].is_placed) members.push_back({body, &state_.bodies[body], &state_.body_progress[body]});
-  BodySystem& system = workspace_.body_system;
-  system.begin(members, workspace_.held_by_bodies, state_.bodies, state_.scene->gravity, rules);
-  projects_bodies_ = false;
+  workspace_.body_system.begin(members, workspace_.participants, state_.bodies, state_.scene->gravity, rules);
+  projects_bodies_ = scheme != Scheme::conserving || !workspace_.contacts.touches().empty();
   find_body_joints(island, from, to);
-  projects_bodies_ = projects_bodies_ || scheme != Scheme::conserving;
   for (const BodyMember& member : members) projects_bodies_ = projects_bodies_ || !member.progress->has_moved;
-  for (const Participant& p : workspace_.held_by_bodies)
+  for (const Participant& p : workspace_.participants)
     projects_bodies_ = projects_bodies_ || !p.substep.boundary.growing.empty() || holders_accelerate(p.substep, *p.state);
-  const bool converged = system.advance(workspace_.held_by_bodies, state_.scene->tolerance);
+}
+
+/// Those that touch nothing, by one substep. False if it has not converged.
+bool IslandStepper::advance_bodies() {
+  BodySystem& system = workspace_.body_system;
+  const bool converged = system.advance(workspace_.participants, state_.scene->tolerance);
   if (converged) {
-    system.place_at_end(workspace_.held_by_bodies);
-    for (Participant& p : workspace_.held_by_bodies) p.stepper->finish(p.substep, false, *p.state, p.result);
+    system.place_at_end(workspace_.participants);
+    for (Participant& p : workspace_.participants) p.stepper->finish(p.substep, false, *p.state, p.result);
   }
-  for (const Participant& p : workspace_.held_by_bodies) workspace_.cables[p.place].result = p.result;
+  for (const Participant& p : workspace_.participants) workspace_.cables[p.place].result = p.result;
   return converged;
 }
 
@@ -110,7 +113,7 @@ void IslandStepper::finish_bodies(const Island& island, double from, double to) 
     system.finish(static_cast<int>(m), state_.bodies[body], state_.body_progress[body]);
     state_.body_progress[body].has_moved = true;
   }
-  if (projects_bodies_) workspace_.body_system.project(workspace_.held_by_bodies, state_.bodies);
+  if (projects_bodies_) workspace_.body_system.project(workspace_.participants, state_.bodies);
   for (const BodyJoint& joint : workspace_.body_system.joints()) {
     Attachment& attachment = state_.attachments[joint.attachment];
     if (from == 0) attachment.force = attachment.torque = Vector3::Zero();

@@ -246,7 +246,6 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
   const double h = (to - from) * state_.scene->time_step;
   const bool touching = !workspace_.contacts.touches().empty(), keeps = island.cables.size() > 1;
   workspace_.participants.clear();
-  workspace_.held_by_bodies.clear();
   const Scheme touching_scheme = find_touching_scheme(island, h);
   bool converged = true;
   for (std::size_t k = 0; k < island.cables.size(); ++k) {
@@ -269,20 +268,20 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     substep.tolerance = state_.scene->tolerance;
     if (state_.scene->numerical_damping)
       substep.treatment = touches || on_bodies || to - from < 1 ? Treatment::damping : Treatment::cleaning;
-    if (touches) {
+    if (touches || on_bodies) {
       work.result = {};
       workspace_.participants.push_back({static_cast<int>(k), cable, &work.stepper, substep, &c.state, {}});
-    } else if (on_bodies) {
-      workspace_.held_by_bodies.push_back({static_cast<int>(k), cable, &work.stepper, substep, &c.state, {}});
     } else {
       work.result = work.stepper.advance(substep, c.state);
       converged = converged && work.result.converged;
     }
   }
-  if (converged && !island.bodies.empty()) converged = advance_bodies(island, from, to, touching_scheme);
+  BodySystem* const bodies = island.bodies.empty() ? nullptr : &workspace_.body_system;
+  if (bodies != nullptr) begin_bodies(island, from, to, touching_scheme);
+  if (converged && bodies != nullptr && !touching) converged = advance_bodies();
   if (converged && touching) {
     ContactSolver& solver = workspace_.contact_solver;
-    converged = solver.solve(workspace_.participants, workspace_.contacts.touches()) &&
+    converged = solver.solve(workspace_.participants, workspace_.contacts.touches(), bodies) &&
                 (tolerated || !solver.crosses(workspace_.participants, workspace_.contacts.touches()));
     if (converged) solver.finish(workspace_.participants, workspace_.contacts.touches());
     for (const Participant& p : workspace_.participants) workspace_.cables[p.place].result = p.result;

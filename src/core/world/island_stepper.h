@@ -68,7 +68,8 @@ class IslandStepper {
   void step_alone(Island& island, IslandOutcome& found, bool contacts_known);
   void begin(const Island& island);
   bool advance(Island& island, double from, double to, bool tolerated);
-  bool advance_bodies(const Island& island, double from, double to, Scheme scheme);
+  void begin_bodies(const Island& island, double from, double to, Scheme scheme);
+  bool advance_bodies();
   void find_body_joints(const Island& island, double from, double to);
   void finish_bodies(const Island& island, double from, double to);
   void stop_bodies(const Island& island);

@@ -48,11 +48,9 @@ struct Workspace {
   std::vector<MovingObstacle> obstacles;
   ContactSet contacts;
   std::vector<ContactMember> members;     ///< likewise
-  std::vector<Participant> participants;  ///< the cables that touch something
+  std::vector<Participant> participants;  ///< the cables that touch something, or that bodies hold
   ContactSolver contact_solver;
-  // Of the bodies of the island, and the cables that they hold
-  std::vector<BodyMember> body_members;
-  std::vector<Participant> held_by_bodies;
+  std::vector<BodyMember> body_members;  ///< the bodies of the island
   BodySystem body_system;
   std::vector<WaitingCables> waiting;  ///< those of one law each
   std::vector<LaneMember> lane_members;
