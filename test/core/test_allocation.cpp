@@ -41,10 +41,19 @@ TEST(Allocation, StepAllocatesNothing) {
   ribbon.segments = 41;
   ribbon.rest_curvature.type = RestCurvatureDesc::Type::constant;
   ribbon.rest_curvature.curvature = {1, 2};
-  ribbon.attachments = {
-      scenes::attachment("first", PlaceDesc::At::start, Vector3::Zero(), "", AttachmentType::clamp),
-      scenes::attachment("inside", PlaceDesc::At::arc_length, Vector3::Zero(), "hand", AttachmentType::clamp)};
+  ribbon.attachments = {scenes::attachment("first", PlaceDesc::At::start, Vector3::Zero(), "", AttachmentType::clamp),
+                        scenes::attachment("inside", PlaceDesc::At::arc_length, Vector3::Zero(), "hand", AttachmentType::clamp)};
   ribbon.attachments.back().place.arc_length = 0.7;
+  // Of three materials, one of them elastic, with limits that it is beyond.
+  scene.materials.push_back({"rubber", scene.materials[0].material});
+  scene.materials.back().material.axial_stiffness = 100;
+  scene.materials.back().material.maximum_tension = 1e-3;
+  scene.materials[1].material.minimum_bend_radius = 1;
+  CableDesc& mixed = scene.cables.emplace_back(scene.cables[0]);
+  mixed.name = "mixed";
+  mixed.sections = {{0.2, 0.5, "rubber"}, {0.5, 0.7, "ribbon"}};
+  for (AttachmentDesc& attachment : mixed.attachments) attachment.name += "_mixed";
+  for (NamedMaterial& named : scene.materials) named.material.torsional_stiffness = 0.01;
   BoundaryInputs inputs = scenes::hand_at({0.6, 0, 0});
   World world(scene, inputs);
   world.step(inputs);

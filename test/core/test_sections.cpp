@@ -327,6 +327,69 @@ TEST(Sections, TouchEachOtherAtTheirOwnRadii) {
   EXPECT_NEAR(apart, 0.025, 0.0005);
 }
 
+/// Immersed as a whole, each part loses the weight of the fluid in its place, and drags with its own coefficient.
+TEST(Sections, FloatAndDragWithTheirOwnRadii) {
+  SceneDesc scene = rope_and_wire();
+  scene.fluid.density = 500;
+  scene.fluid.velocity = {0.01, 0, 0};
+  scene.fluid.normal_drag = scene.fluid.tangential_drag = 0;
+  scene.materials[0].material.drag = 0.2;
+  scene.materials[1].material.drag = 0.7;
+  scene.cables[0].initial.type = InitialShapeDesc::Type::settled;
+  World world(scene, initial_frames(scene));
+  run(world, initial_frames(scene), 5000);
+  const Vector3 force = world.attachments()[0].force;
+  const double displaced = 500 * M_PI * 0.5 * (0.005 * 0.005 + 0.002 * 0.002);
+  EXPECT_NEAR(force.z(), -9.81 * (0.5 * (0.1 + 0.3) - displaced), 1e-6);
+  EXPECT_NEAR(force.x(), 0.01 * 0.5 * (0.2 + 0.7), 1e-6);
+}
+
+/// Any edits, one after the other: nothing is counted wrongly.
+TEST(Sections, SurviveAnyEdits) {
+  for (unsigned seed = 1; seed <= 30; ++seed) {
+    SceneDesc scene = rope_and_wire(20);
+    scene.materials[0].material.maximum_tension = 0.5;
+    scene.materials[1].material.axial_stiffness = seed % 2 == 0 ? 500 : infinity;
+    if (seed % 3 == 0) scene.materials[1].material.bending_stiffness = {0.02, 0.005};
+    scene.cables[0].sections = {{0.1, 0.3, "wire"}, {0.6, 0.75, "wire"}};
+    World world(scene, initial_frames(scene));
+    unsigned random = seed;
+    const auto any = [&](int count) {
+      random = random * 1664525u + 1013904223u;
+      return static_cast<int>((random >> 16) % static_cast<unsigned>(count));
+    };
+    for (int round = 0; round < 12; ++round) {
+      const int cables = static_cast<int>(world.cables().size()), cable = any(cables);
+      const CableState& state = world.cables()[cable].state;
+      switch (any(4)) {
+        case 0:
+          world.apply(edit::Cut{cable_id(cable), any(state.segments())});
+          break;
+        case 1:
+          world.apply(edit::Join{cable, any(2) == 0, any(cables), any(2) == 0});
+          break;
+        case 2:
+          world.apply(edit::SetLength{cable, any(2) == 0, state.length() * (0.6 + 0.1 * any(8)), 1});
+          break;
+        default:
+          world.settle();
+      }
+      for (int i = 0; i < 60; ++i) ASSERT_NE(world.step(initial_frames(scene)).status, Status::fault) << seed;
+      for (const SimulatedCable& piece : world.cables()) {
+        const std::size_t n = piece.state.rest_lengths.size();
+        ASSERT_TRUE(piece.state.section_material.empty() || piece.state.section_material.size() == n) << seed;
+        ASSERT_TRUE(piece.state.beyond_limits.empty() || piece.state.beyond_limits.size() == n + 1) << seed;
+        for (const int material : piece.state.section_material) {
+          ASSERT_GE(material, 0);
+          ASSERT_LE(material, static_cast<int>(piece.model->section_materials.size()));
+        }
+        for (const double m : piece.state.masses) ASSERT_GT(m, 0) << seed;
+        for (const Vector3& x : piece.state.positions) ASSERT_TRUE(x.allFinite()) << seed;
+      }
+    }
+  }
+}
+
 TEST(Limits, AreToldOnceAnExcursion) {
   SceneDesc scene = rope_and_wire();
   scene.materials[1].material.maximum_tension = 2;
