@@ -472,6 +472,13 @@ void BodySystem::place_at_end(std::vector<Participant>& participants) {
   }
 }
 
+double BodySystem::largest_displacement() const {
+  double largest = 0;
+  for (const Member& member : members_)
+    largest = std::max(largest, member.stepper.displacement().norm() + member.size * member.stepper.turn().norm());
+  return largest;
+}
+
 void BodySystem::finish(int member, SimulatedBody& body, BodyProgress& progress) const {
   members_[member].stepper.finish(body, progress);
 }

@@ -63,6 +63,7 @@ class BodySystem {
 
   /// The cables' boundaries get what bodies have come to.
   void place_at_end(std::vector<Participant>& participants);
+  double largest_displacement() const;  ///< [m] over the substep, of a body's center of mass or what turns with its size
   void finish(int member, SimulatedBody& body, BodyProgress& progress) const;
 
  private:

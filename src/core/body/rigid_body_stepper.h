@@ -44,7 +44,8 @@ class RigidBodyStepper {
   /// With which a force on a point acts about the center of mass.
   Vector3 force_arm(const Vector3& point) const;
   const Eigen::Matrix3d& end() const { return end_; }
-  Vector3 turn() const { return start_ * turn_; }  ///< the Cayley vector from start to end
+  const Vector3& displacement() const { return displacement_; }  ///< [m] of the center of mass
+  Vector3 turn() const { return start_ * turn_; }                ///< the Cayley vector from start to end
 
   /// Forces and torques about the center of mass that are out of balance, without those of cables and holders [N], [N m]; and the
   /// resistance against displacements of the center of mass and rotations.

@@ -62,6 +62,7 @@ struct World::Implementation {
   void add_particle(const ParticleDesc& desc);
   void add_bodies();
   void place_bodies();
+  void settle_started_bodies(const std::vector<int>& descs);
   bool place_body(int index);
   void note_placed(int index);
   bool is_held_by_cable(int index) const;

@@ -26,6 +26,32 @@ constexpr double noticed_jerk = 1e-9;
 
 }  // namespace
 
+void find_body_joints(const Island& island, const State& state, double from, double to, Workspace& workspace) {
+  std::vector<BodyJoint>& joints = workspace.body_system.joints();
+  joints.clear();
+  const auto member_of = [&](int body) {
+    const auto same = std::find_if(workspace.body_members.begin(), workspace.body_members.end(),
+                                   [&](const BodyMember& member) { return member.body == body; });
+    return same == workspace.body_members.end() ? -1 : static_cast<int>(same - workspace.body_members.begin());
+  };
+  for (int a = 0; a < static_cast<int>(state.attachments.size()); ++a) {
+    const Attachment& attachment = state.attachments[a];
+    if (!attachment.body.is_rigid_body()) continue;
+    if (!std::binary_search(island.bodies.begin(), island.bodies.end(), attachment.body.index)) continue;
+    BodyJoint joint;
+    joint.attachment = a;
+    joint.type = attachment.type;
+    joint.member = member_of(attachment.body.index);
+    joint.at = attachment.at;
+    joint.other = attachment.holder < 0 ? -1 : member_of(attachment.holder);
+    joint.holder = joint.other < 0 ? frame_at(state.frames, attachment.frame, to) * attachment.pose : attachment.pose;
+    const double share = from > 0 ? from : 1;
+    joint.force = -attachment.force / share;
+    joint.torque = -attachment.torque / share;
+    if (joint.member >= 0) joints.push_back(joint);
+  }
+}
+
 /// Puts the bodies of an island where the substep begins; the cables that they hold take part.
 void IslandStepper::begin_bodies(const Island& island, double from, double to, Scheme scheme) {
   const SubstepRules rules{(to - from) * state_.scene->time_step, false, scheme};
@@ -35,7 +61,9 @@ void IslandStepper::begin_bodies(const Island& island, double from, double to, S
     if (state_.body_progress[body].is_placed) members.push_back({body, &state_.bodies[body], &state_.body_progress[body]});
   workspace_.body_system.begin(members, workspace_.participants, state_.bodies, state_.scene->gravity, rules);
   projects_bodies_ = scheme != Scheme::conserving || !workspace_.contacts.touches().empty();
-  find_body_joints(island, from, to);
+  find_body_joints(island, state_, from, to, workspace_);
+  for (BodyJoint& joint : workspace_.body_system.joints())
+    if (joint.other < 0) follow_body_holders(joint, to);
   for (const BodyMember& member : members) projects_bodies_ = projects_bodies_ || !member.progress->has_moved;
   for (const Participant& p : workspace_.participants)
     projects_bodies_ = projects_bodies_ || !p.substep.boundary.growing.empty() || holders_accelerate(p.substep, *p.state);
@@ -51,34 +79,6 @@ bool IslandStepper::advance_bodies() {
   }
   for (const Participant& p : workspace_.participants) workspace_.cables[p.place].result = p.result;
   return converged;
-}
-
-/// Their multipliers begin with what they were in the step before, or have been in this one.
-void IslandStepper::find_body_joints(const Island& island, double from, double to) {
-  std::vector<BodyJoint>& joints = workspace_.body_system.joints();
-  joints.clear();
-  const auto member_of = [&](int body) {
-    const auto same = std::find_if(workspace_.body_members.begin(), workspace_.body_members.end(),
-                                   [&](const BodyMember& member) { return member.body == body; });
-    return same == workspace_.body_members.end() ? -1 : static_cast<int>(same - workspace_.body_members.begin());
-  };
-  for (int a = 0; a < static_cast<int>(state_.attachments.size()); ++a) {
-    const Attachment& attachment = state_.attachments[a];
-    if (!attachment.body.is_rigid_body()) continue;
-    if (!std::binary_search(island.bodies.begin(), island.bodies.end(), attachment.body.index)) continue;
-    BodyJoint joint;
-    joint.attachment = a;
-    joint.type = attachment.type;
-    joint.member = member_of(attachment.body.index);
-    joint.at = attachment.at;
-    joint.other = attachment.holder < 0 ? -1 : member_of(attachment.holder);
-    joint.holder = joint.other < 0 ? frame_at(state_.frames, attachment.frame, to) * attachment.pose : attachment.pose;
-    const double share = from > 0 ? from : 1;
-    joint.force = -attachment.force / share;
-    joint.torque = -attachment.torque / share;
-    if (joint.other < 0) follow_body_holders(joint, to);
-    if (joint.member >= 0) joints.push_back(joint);
-  }
 }
 
 /// How fast the frame that holds a body is at the end of the substep.

@@ -40,6 +40,10 @@ void add_forces(const Boundary& boundary, const KinematicTargets& targets, const
 /// Before a step's forces are added.
 void forget_forces(const KinematicTargets& targets, std::vector<Attachment>& attachments);
 
+/// What holds the bodies of an island over a part of a step, 0 to 1, for the members of the workspace. Multipliers begin with what
+/// they were in the step before, or have been in this one.
+void find_body_joints(const Island& island, const State& state, double from, double to, Workspace& workspace);
+
 /// Twist and roll of the material: from the clamps where there are any, else the first segment's is carried along in time.
 void follow_material(const CableModel& model, const std::vector<HeldDirection>& directions, const std::vector<TwistSpan>& spans,
                      CableState& state);
@@ -70,7 +74,6 @@ class IslandStepper {
   bool advance(Island& island, double from, double to, bool tolerated);
   void begin_bodies(const Island& island, double from, double to, Scheme scheme);
   bool advance_bodies();
-  void find_body_joints(const Island& island, double from, double to);
   void finish_bodies(const Island& island, double from, double to);
   void stop_bodies(const Island& island);
   void follow_body_holders(BodyJoint& joint, double to);

@@ -16,6 +16,7 @@
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/rotation.h"
 #include "verlet_cable/core/scene_fields.h"
+#include "world/body_settling.h"
 #include "world/implementation.h"
 #include "world/island_stepper.h"
 #include "world/limits.h"
@@ -109,10 +110,13 @@ bool World::settle() {
   w.findings.unsettled.clear();
   for (Attachment& attachment : w.state.attachments) attachment.force = attachment.torque = Vector3::Zero();
   for (int cable = 0; cable < static_cast<int>(w.state.cables.size()); ++cable) {
-    if (w.state.cable_progress[cable].targets.nodes.empty()) continue;
+    const std::vector<KinematicTarget>& targets = w.state.cable_progress[cable].targets.nodes;
+    const auto on_body = [&](const KinematicTarget& target) { return w.state.attachments[target.attachment].holder >= 0; };
+    if (targets.empty() || std::any_of(targets.begin(), targets.end(), on_body)) continue;
     if (!Settling(cable, w.state, w.workspaces.value.local()).settle())
       w.findings.unsettled.push_back(w.state.cables[cable].model->name);
   }
+  settle_bodies(std::vector<char>(w.state.cables.size(), 1), w.state, w.workspaces.value.local(), w.findings.unsettled);
   return w.findings.unsettled.empty();
 }
 
@@ -175,6 +179,7 @@ int World::start_waiting(const BoundaryInputs& inputs) {
   w.update_frames(inputs);
   for (const int i : cables)
     if (!w.is_cancelled()) w.start_cable(scene.cables[i], ids, inputs);
+  w.settle_started_bodies(cables);
   for (const int i : nets)
     if (!w.is_cancelled()) w.start_net(scene.nets[i], ids, inputs);
   w.name_waiting();
@@ -303,6 +308,18 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   if (settles && held && !Settling(index, state, workspaces.value.local(), cancelled).settle_start())
     findings.unsettled.push_back(desc.name);
   place_bodies_on(placing);
+}
+
+/// Bodies whose cables have just started settle with those that are to.
+void World::Implementation::settle_started_bodies(const std::vector<int>& descs) {
+  if (state.bodies.empty() || is_cancelled()) return;
+  std::vector<char> settles(state.cables.size(), 0);
+  for (const int i : descs) {
+    const CableDesc& desc = state.scene->cables[i];
+    const int cable = find(state.cables, desc.name);
+    settles[cable] = settles_at_start(desc, *state.cables[cable].model, state.cables[cable].state) ? 1 : 0;
+  }
+  settle_bodies(settles, state, workspaces.value.local(), findings.unsettled, cancelled);
 }
 
 /// After a change of what holds a cable, or of its nodes.

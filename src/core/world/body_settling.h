@@ -1,0 +1,48 @@
+#pragma once
+
+#include <atomic>
+#include <vector>
+
+#include "world/islands.h"
+#include "world/state.h"
+#include "world/workspace.h"
+
+namespace verlet_cable {
+
+/// Brings the bodies of an island, and the cables with them, into static equilibrium, their holders where they aim: Newton's
+/// method in steps that grow (see Settling). Unlike there, equilibria that do not last are not looked for.
+class BodySettling {
+ public:
+  /// Ends soon after another thread has set `cancelled`.
+  BodySettling(const Island& island, State& state, Workspace& workspace, const std::atomic<bool>* cancelled = nullptr);
+  /// From where they are. False if no equilibrium was found; they are then at rest near it.
+  bool settle();
+
+ private:
+  struct Outcome {
+    bool converged = false;
+    int iterations = 0;
+    double displacement = 0;  ///< [m] the largest
+    bool touches = false;
+  };
+
+  void hold_still();
+  Outcome advance(double h);
+  void find_joints();
+  void complete();
+
+  const std::atomic<bool>* cancelled_;
+  Island island_;
+  State& state_;
+  Workspace& workspace_;
+  double radius_ = infinity;  ///< [m] of the thinnest cable
+  std::vector<ContactCache> contacts_;
+  std::vector<CableState> before_;
+};
+
+/// Settles what bodies hold: the islands of bodies that have a cable which `settles`, a flag a cable. False if one of them found no
+/// equilibrium; `unsettled` gets the names of its cables.
+bool settle_bodies(const std::vector<char>& settles, State& state, Workspace& workspace, std::vector<std::string>& unsettled,
+                   const std::atomic<bool>* cancelled = nullptr);
+
+}  // namespace verlet_cable
