@@ -89,6 +89,23 @@ TEST(Contact, RopeSticksToAnInclineBelowTheAngleOfFriction) {
   EXPECT_LT((world.cables()[0].state.positions[0] - before).norm(), 1e-6);
 }
 
+TEST(Contact, StiffRodWithoutDampingDoesNotRingItselfDownAnIncline) {
+  const double slope = std::atan(0.8 * 0.5);
+  for (const double stiffness : {0.1, 10.0}) {
+    SceneDesc scene = incline(slope, 0.5);
+    scene.materials[0].material.bending_stiffness = stiffness;
+    const Vector3 normal{std::sin(slope), 0, std::cos(slope)};
+    scene.cables[0].initial.from += 1e-3 * normal;
+    scene.cables[0].initial.to += 1e-3 * normal;
+    World world(scene, BoundaryInputs(1));
+    run(world, 1.0);
+    const Vector3 before = world.cables()[0].state.positions[0];
+    run(world, 2.0);
+    EXPECT_LT((world.cables()[0].state.positions[0] - before).norm(), 1e-6);
+    EXPECT_LT(fastest(world), 1e-6);
+  }
+}
+
 TEST(Contact, RopeDroppedOnAFloorComesToRestAtItsRadius) {
   SceneDesc scene = straight_rope(1.0, 100);
   add_obstacle("floor", ShapeType::plane, {0, 0, 0, 0, 0, 0}, scene);

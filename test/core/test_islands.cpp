@@ -52,5 +52,36 @@ TEST(Islands, CableThatIsNowhereNearChangesNoByteOfAnother) {
   }
 }
 
+TEST(Islands, BraidWithoutRoomEndsDegradedAndWithBoundedForces) {
+  SceneDesc scene = scenes::one_cable(40);
+  scene.materials[0].material.radius = 0.01;
+  scene.contact = ContactDesc{};
+  scene.cables.clear();
+  for (int k = 0; k < 3; ++k) {
+    CableDesc cable = straight("cable" + std::to_string(k), {0, 0, 0}, {1, 0, 0}, 40);
+    cable.initial.type = InitialShapeDesc::Type::points;
+    std::vector<Vector3>& points = cable.initial.points;
+    cable.length = 0;
+    for (int i = 0; i <= 400; ++i) {
+      const double angle = 2 * M_PI * (5.0 * i / 400 + k / 3.0);
+      points.emplace_back(i / 400.0, 0.005 * std::cos(angle), 0.005 * std::sin(angle));
+      if (i > 0) cable.length += (points[i] - points[i - 1]).norm();
+    }
+    cable.attachments = {scenes::attachment(cable.name + "_start", PlaceDesc::At::start, points.front()),
+                         scenes::attachment(cable.name + "_end", PlaceDesc::At::end, points.back())};
+    scene.cables.push_back(cable);
+  }
+  World world(scene, BoundaryInputs(1));
+  int degraded = 0;
+  for (int i = 0; i < 50; ++i) {
+    const StepResult result = world.step(BoundaryInputs(1));
+    degraded += result.status == StepResult::Status::degraded ? 1 : 0;
+    EXPECT_EQ(result.substeps, 1);
+    // The law of contacts that cables have pressed into would come to 40 kN.
+    for (const Attachment& attachment : world.attachments()) EXPECT_LT(attachment.force.norm(), 2e3);
+  }
+  EXPECT_GE(degraded, 45);
+}
+
 }  // namespace
 }  // namespace verlet_cable

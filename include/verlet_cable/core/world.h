@@ -51,7 +51,8 @@ struct StepResult {
     ok,
     overstretched,  ///< held points are further apart than what is between them can be: it was lengthened
     jumped,         ///< a frame changed its velocity too much for a motion: what it holds was carried along with it
-    degraded,  ///< a substep did not converge at the smallest size: the cable's motion was taken away, and it goes on from rest
+    degraded,  ///< a substep did not converge at the smallest size: the cable's motion was taken away, and it goes on from rest;
+               ///< or cables are in each other and have no room to get apart
     fault      ///< not even that: the cable stays as it was last, finite
   };
   Status status = Status::ok;

@@ -257,6 +257,7 @@ void ContactSet::add(Touch& touch, const ContactMember& member, double h) {
   touch.inside = !known || touch.inside;
   if (touch.gap >= gentle) touch.inside = false;
   if (touch.inside) touch.gap = gentle;
+  touch.yields = touch.inside && touch.obstacle < 0;
   anticipate(Scheme::conserving, h, time_, Vector3::Zero(), touch);
   start_touch(touch);
   touched_[places_[touch.point.cable]] = 1;

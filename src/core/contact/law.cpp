@@ -31,7 +31,8 @@ struct ForceAndSlope {
 /// Of a depth [m], >= 0.
 ForceAndSlope depth_law(double depth, const Touch& touch) {
   const double x = std::min(depth / touch.radius, deepest), y = x / soft_depth, y4 = y * y * y * y;
-  const double scale = contact_modulus * touch.radius;
+  // What cannot get apart is not torn apart.
+  const double scale = touch.yields ? 0 : contact_modulus * touch.radius;
   const double slope = touch.base_stiffness + scale * x * (2 + 6 * y4);
   const double force = touch.base_stiffness * x * touch.radius + scale * touch.radius * x * x * (1 + y4);
   return {force + slope * (depth - x * touch.radius), slope};

@@ -29,6 +29,7 @@ struct Touch {
   Vector3 position = Vector3::Zero();  ///< [m] of the point
   Vector3 normal = Vector3::UnitZ();   ///< out of what is touched
   bool inside = false;                 ///< it was deep inside from the start: it is pushed out gently
+  bool yields = false;                 ///< likewise two cables: with no more than stops them within a step
   double gap = 0;                      ///< [m] between the surfaces at the start of the substep
   double friction = 0;                 ///< Coulomb coefficient
   Vector3 lean = Vector3::Zero();      ///< along the surface: friction is bounded around this times the normal force

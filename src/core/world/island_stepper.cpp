@@ -21,6 +21,13 @@ constexpr int maximum_substeps = 4096;
 constexpr int easy_iterations = 6;
 constexpr int easy_contact_iterations = 12;
 
+/// Of what starts in each other, in radii: no room to get out of each other by more in a substep.
+constexpr double least_separation = 1e-4;
+
+bool cannot_get_apart(const Touch& touch) {
+  return touch.yields && touch.normal.dot(touch.displacement) < least_separation * touch.radius;
+}
+
 bool finite(const std::vector<Vector3>& vectors) {
   return std::all_of(vectors.begin(), vectors.end(), [](const Vector3& v) { return v.allFinite(); });
 }
@@ -398,6 +405,8 @@ void IslandStepper::complete(const Island& island, int substeps, IslandOutcome& 
     complete_cable(island.cables[k], workspace_.cables[k].boundary, substeps);
   for (const Touch& touch : workspace_.contacts.touches()) {
     if (touch.mode == Touch::Mode::open) continue;
+    if (cannot_get_apart(touch))
+      note_status(Status::degraded, cable_id(touch.point.cable), touch.point.segment, outcomes_[touch.point.cable].result);
     found.contacts.push_back({touch.point.cable, touch.point.segment, touch.position, touch.normal, touch.force, touch.obstacle,
                               touch.other.cable, touch.other.segment});
   }
