@@ -229,14 +229,29 @@ void check_held_segment(const std::string& key, const SceneDesc& scene, const Ca
              "so many that a node between them is free, as the cable is inextensible (axial_stiffness .inf)");
 }
 
+/// Where a cable's attachment is held, as far as that is known.
+std::optional<Vector3> place_of(const SceneDesc& scene, const AttachmentDesc& attachment,
+                                const std::map<std::string, Pose>& frames) {
+  if (attachment.body.empty()) {
+    const auto frame = frames.find(attachment.frame);
+    if (frame == frames.end()) return std::nullopt;
+    return held_point(attachment, frame->second);
+  }
+  const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(),
+                                 [&](const BodyDesc& other) { return other.name == attachment.body; });
+  // One that something holds begins there.
+  if (body == scene.bodies.end() || !body->pose || !body->attachments.empty() || !is_sound(pose_of(*body->pose)))
+    return std::nullopt;
+  return held_point(attachment, pose_of(*body->pose));
+}
+
 void check_distances(const std::string& key, const SceneDesc& scene, const CableDesc& cable,
                      const std::map<std::string, Pose>& frames, Errors& errors) {
   std::vector<std::size_t> order(cable.attachments.size());
   std::iota(order.begin(), order.end(), 0);
   const auto node = [&](std::size_t i) { return node_at(cable, cable.attachments[i].place); };
   const auto is_unknown = [&](std::size_t i) {
-    return !cable.attachments[i].body.empty() || !frames.count(cable.attachments[i].frame) ||
-           !is_sound(cable, cable.attachments[i].place);
+    return !place_of(scene, cable.attachments[i], frames) || !is_sound(cable, cable.attachments[i].place);
   };
   order.erase(std::remove_if(order.begin(), order.end(), is_unknown), order.end());
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return node(a) < node(b); });
@@ -245,7 +260,7 @@ void check_distances(const std::string& key, const SceneDesc& scene, const Cable
     const AttachmentDesc& second = cable.attachments[order[i]];
     if (!is_rigid(scene, cable, node(order[i - 1]), node(order[i]))) continue;
     const double length = cable.length * (node(order[i]) - node(order[i - 1])) / cable.segments;
-    const double distance = (held_point(second, frames.at(second.frame)) - held_point(first, frames.at(first.frame))).norm();
+    const double distance = (*place_of(scene, second, frames) - *place_of(scene, first, frames)).norm();
     if (length > 0 && distance > length * (1 + distance_tolerance)) {
       errors.add(key + ".length",
                  rounded_text(length) + " m of cable between " + quoted(first.name) + " and " + quoted(second.name),
@@ -253,7 +268,7 @@ void check_distances(const std::string& key, const SceneDesc& scene, const Cable
                      " m, as the cable is inextensible (axial_stiffness .inf)");
       continue;
     }
-    check_held_segment(key, scene, cable, first, second, frames, errors);
+    if (first.body.empty() && second.body.empty()) check_held_segment(key, scene, cable, first, second, frames, errors);
   }
 }
 
