@@ -138,6 +138,8 @@ World::World(const SceneDesc& scene, const BoundaryInputs& inputs, const std::at
 
 World::World(const SceneDesc& scene) : implementation_(std::make_unique<Implementation>()) {
   std::vector<std::string> errors = validate(scene);
+  if (!scene.junctions.empty()) errors.push_back("junctions: " + std::to_string(scene.junctions.size()) + "; allowed: none yet");
+  if (!scene.guides.empty()) errors.push_back("guides: " + std::to_string(scene.guides.size()) + "; allowed: none yet");
   if (!errors.empty()) throw SceneError(std::move(errors));
   Implementation& w = *implementation_;
   w.state.scene = std::make_shared<const SceneDesc>(scene);
