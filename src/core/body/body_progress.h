@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "verlet_cable/core/types.h"
+#include "target/kinematic_targets.h"
 
 namespace verlet_cable {
 
@@ -14,8 +14,8 @@ struct BodyProgress {
   /// [m/s^2] of its center of mass, and [rad/s^2] in its frame's axes, mean over the last substep: where the next one's solution
   /// starts, and what substeps that damp go on from
   Vector3 acceleration = Vector3::Zero(), angular_acceleration = Vector3::Zero();
-  /// One a frame that holds it: the mean velocity of its attachment over the last step
-  std::vector<FrameVelocity> holders;
+  std::vector<KinematicTarget> holders;  ///< frames that hold it, by its attachments; `node` counts them
+  std::vector<Vector3> holder_spins;     ///< [rad/s] of each, mean over the last step; while it jumps, of the motion before
 };
 
 }  // namespace verlet_cable

@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rod/initial_shape.h"
+#include "rod/rod_frames.h"
+#include "target/jump.h"
 #include "world/island_stepper.h"
 
 namespace verlet_cable {
@@ -13,14 +16,15 @@ Pose frame_at(const Frames& frames, int frame, double part) {
   return {before.position + part * (after.position - before.position), before.orientation.slerp(part, after.orientation)};
 }
 
-/// [m/s], [rad/s] The mean over the step of an attachment to a frame.
-FrameVelocity mean_velocity(const Frames& frames, const Attachment& attachment, double time_step) {
-  const Pose before = frames.previous_poses[attachment.frame] * attachment.pose;
-  const Pose after = frames.poses[attachment.frame] * attachment.pose;
-  return {(after.position - before.position) / time_step,
-          rotation_vector(after.orientation * before.orientation.conjugate()) / time_step};
+/// [rad/s] The mean over the step of an attachment to a frame.
+Vector3 mean_spin(const Frames& frames, const Attachment& attachment, double time_step) {
+  const Quaternion turn =
+      frames.poses[attachment.frame].orientation * frames.previous_poses[attachment.frame].orientation.conjugate();
+  return rotation_vector(turn) / time_step;
 }
 
+/// [m] Nodes that are so far from where bodies hold them have been left behind.
+constexpr double carried_away = 1e-6;
 /// A change of a holder's velocity that moves a body by less in a substep, in parts of its size or rad, goes unnoticed.
 constexpr double noticed_jerk = 1e-9;
 
@@ -63,7 +67,7 @@ void IslandStepper::begin_bodies(const Island& island, double from, double to, S
   projects_bodies_ = scheme != Scheme::conserving || !workspace_.contacts.touches().empty();
   find_body_joints(island, state_, from, to, workspace_);
   for (BodyJoint& joint : workspace_.body_system.joints())
-    if (joint.other < 0) follow_body_holders(joint, to);
+    if (joint.other < 0) follow_body_holder(joint, to);
   for (const BodyMember& member : members) projects_bodies_ = projects_bodies_ || !member.progress->has_moved;
   for (const Participant& p : workspace_.participants)
     projects_bodies_ = projects_bodies_ || !p.substep.boundary.growing.empty() || holders_accelerate(p.substep, *p.state);
@@ -81,28 +85,119 @@ bool IslandStepper::advance_bodies() {
   return converged;
 }
 
-/// How fast the frame that holds a body is at the end of the substep.
-void IslandStepper::follow_body_holders(BodyJoint& joint, double to) {
-  const double time_step = state_.scene->time_step;
+/// Aims what holds bodies at where it will be at the end of the step. Where it jumps, the body is carried along with it before it
+/// is stepped, and keeps its velocities; so is a body whose cable is carried, and what else hangs on it.
+void IslandStepper::update_body_targets(const Island& island, IslandOutcome& found) {
+  carry_by_cables(island);
+  for (const int body : island.bodies)
+    if (state_.body_progress[body].is_placed) aim_body(body, found);
+  carry_cables(island);
+}
+
+void IslandStepper::aim_body(int index, IslandOutcome& found) {
+  SimulatedBody& body = state_.bodies[index];
+  BodyProgress& progress = state_.body_progress[index];
+  KinematicTargets targets;
+  targets.nodes.swap(progress.holders);
+  std::size_t count = 0;
+  for (int a = 0; a < static_cast<int>(state_.attachments.size()); ++a) {
+    const Attachment& attachment = state_.attachments[a];
+    if (attachment.body != rigid_body_id(index) || attachment.holder >= 0) continue;
+    if (targets.nodes.size() == count) {
+      KinematicTarget target;
+      target.node = static_cast<int>(count);
+      target.position = (state_.frames.previous_poses[attachment.frame] * attachment.pose).position;
+      target.starts = attachment.frame != 0;
+      target.liveliness = greatest_change;
+      targets.nodes.push_back(target);
+      progress.holder_spins.push_back(mean_spin(state_.frames, attachment, state_.scene->time_step));
+    }
+    targets.nodes[count].attachment = a;
+    targets.nodes[count].next_position = (state_.frames.poses[attachment.frame] * attachment.pose).position;
+    ++count;
+  }
+  std::vector<KinematicTarget>& nodes = targets.nodes;
+  std::vector<Vector3> before(nodes.size());
+  for (std::size_t k = 0; k < nodes.size(); ++k) before[k] = nodes[k].position;
+  const Following following = follow_aims(state_.attachments, state_.time(), state_.scene->time_step, targets, found.jumps);
+  if (following.jumping_node >= 0) {
+    const KinematicTarget& target = nodes[following.jumping_node];
+    const Attachment& attachment = state_.attachments[target.attachment];
+    Quaternion turn = Quaternion::Identity();
+    if (attachment.type != AttachmentType::hinge)
+      turn = state_.frames.poses[attachment.frame].orientation *
+             state_.frames.previous_poses[attachment.frame].orientation.conjugate();
+    const Vector3 arm = body.pose.position - before[following.jumping_node];
+    body.pose.position = target.position + turn * arm;
+    body.pose.orientation = (turn * body.pose.orientation).normalized();
+    note_status(StepResult::Status::jumped, rigid_body_id(index), 0, found.bodies);
+  }
+  progress.holders.swap(nodes);
+}
+
+/// Whether a node that a body holds is elsewhere, by more than rounding.
+bool IslandStepper::is_off_its_bodies(int index, double tolerance) const {
+  const CableState& cable = state_.cables[index].state;
+  Boundary boundary;
+  hold_at(0, 0, state_.cable_progress[index].targets, boundary);
+  hold_on_bodies(cable, state_.attachments, state_.bodies, state_.cable_progress[index].targets, boundary);
+  return std::any_of(boundary.nodes.begin(), boundary.nodes.end(), [&](const HeldNode& held) {
+    return held.body >= 0 && (held.position - cable.positions[held.node]).norm() > tolerance;
+  });
+}
+
+/// Bodies that nothing else holds follow cables that were carried along with what holds those.
+void IslandStepper::carry_by_cables(const Island& island) {
+  for (const int index : island.cables) {
+    const CableState& cable = state_.cables[index].state;
+    const KinematicTargets& targets = state_.cable_progress[index].targets;
+    const bool jumps = std::any_of(targets.nodes.begin(), targets.nodes.end(),
+                                   [](const KinematicTarget& target) { return target.jumping_steps > 0; });
+    if (!jumps) continue;
+    for (const KinematicTarget& target : targets.nodes) {
+      const Attachment& attachment = state_.attachments[target.attachment];
+      const bool is_own = target.node == attachment.node;
+      if (attachment.holder < 0 || !is_own || !state_.body_progress[attachment.holder].holders.empty()) continue;
+      SimulatedBody& body = state_.bodies[attachment.holder];
+      body.pose.position += cable.positions[target.node] - (body.pose * attachment.pose).position;
+    }
+  }
+}
+
+/// Cables are taken along by bodies that were carried.
+void IslandStepper::carry_cables(const Island& island) {
+  for (const int index : island.cables) {
+    if (!is_off_its_bodies(index, carried_away)) continue;
+    SimulatedCable& cable = state_.cables[index];
+    KinematicTargets& targets = state_.cable_progress[index].targets;
+    Boundary boundary;
+    hold_at(0, 0, targets, boundary);
+    hold_on_bodies(cable.state, state_.attachments, state_.bodies, targets, boundary);
+    carry_with_targets(*cable.model, boundary.nodes, gravity_near(state_, index), cable.state);
+    for (std::size_t k = 0; k < targets.directions.size(); ++k) targets.directions[k].orientation = boundary.directions[k].start;
+    measure_joint_twists(targets.directions, cable.state);
+  }
+}
+
+/// Where the frame that holds a body is at the end of the substep, and how fast.
+void IslandStepper::follow_body_holder(BodyJoint& joint, double to) {
   const Attachment& attachment = state_.attachments[joint.attachment];
+  BodyProgress& progress = state_.body_progress[attachment.body.index];
+  const auto holder = std::find_if(progress.holders.begin(), progress.holders.end(),
+                                   [&](const KinematicTarget& target) { return target.attachment == joint.attachment; });
+  Vector3& last_spin = progress.holder_spins[holder->node];
+  const Vector3 spin = mean_spin(state_.frames, attachment, state_.scene->time_step);
+  const bool jumps = holder->jumping_steps > 0;
+  joint.holder.position = holder->position + to * (holder->next_position - holder->position);
+  if (jumps) joint.holder.orientation = state_.frames.poses[attachment.frame].orientation * attachment.pose.orientation;
+  joint.holder_velocity.linear = holder->velocity + to * (holder->next_velocity - holder->velocity);
+  joint.holder_velocity.angular = jumps ? last_spin : Vector3(spin + (to - 0.5) * (spin - last_spin));
   const SimulatedBody& body = state_.bodies[attachment.body.index];
-  std::vector<FrameVelocity>& holders = state_.body_progress[attachment.body.index].holders;
-  const auto place =
-      static_cast<std::size_t>(std::count_if(state_.attachments.begin(), state_.attachments.begin() + joint.attachment,
-                                             [&](const Attachment& other) { return other.body == attachment.body; }));
-  const FrameVelocity mean = mean_velocity(state_.frames, attachment, time_step);
-  while (holders.size() <= place) holders.push_back(mean);
-  const FrameVelocity before = holders[place];
-  joint.holder_velocity.linear = mean.linear + (to - 0.5) * (mean.linear - before.linear);
-  joint.holder_velocity.angular = mean.angular + (to - 0.5) * (mean.angular - before.angular);
-  const Vector3 arm = body.pose.orientation * (joint.at.position - body.center_of_mass);
-  const Vector3 struck = joint.holder_velocity.linear - body.velocity - body.angular_velocity.cross(arm);
-  const double size = std::sqrt(body.inertia.trace() / body.mass);
-  const double noticed = noticed_jerk / time_step;
-  const bool accelerates = struck.norm() > noticed * size && (mean.linear - before.linear).norm() > noticed * size;
-  const bool turns = joint.type != AttachmentType::hinge && (mean.angular - before.angular).norm() > noticed;
-  projects_bodies_ = projects_bodies_ || accelerates || turns;
-  if (to == 1) holders[place] = mean;
+  const double size = std::sqrt(body.inertia.trace() / body.mass), noticed = noticed_jerk / state_.scene->time_step;
+  const bool accelerates = (holder->next_velocity - holder->velocity).norm() > noticed * size;
+  const bool turns = joint.type != AttachmentType::hinge && !jumps && (spin - last_spin).norm() > noticed;
+  projects_bodies_ = projects_bodies_ || accelerates || turns || jumps;
+  if (to == 1 && !jumps) last_spin = spin;
 }
 
 /// Takes over what a substep has found.
@@ -121,6 +216,12 @@ void IslandStepper::finish_bodies(const Island& island, double from, double to) 
     attachment.torque -= (to - from) * joint.torque;
   }
   if (to < 1) return;
+  for (const int body : island.bodies) {
+    KinematicTargets targets;
+    targets.nodes.swap(state_.body_progress[body].holders);
+    complete_step(state_.scene->time_step, targets);
+    targets.nodes.swap(state_.body_progress[body].holders);
+  }
   for (const int body : island.bodies) state_.frames.poses[state_.bodies[body].frame] = state_.bodies[body].pose;
 }
 

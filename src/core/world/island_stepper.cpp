@@ -116,6 +116,11 @@ void forget_forces(const KinematicTargets& targets, std::vector<Attachment>& att
   }
 }
 
+bool follows_bodies(const KinematicTargets& targets, const std::vector<Attachment>& attachments) {
+  return std::any_of(targets.nodes.begin(), targets.nodes.end(),
+                     [&](const KinematicTarget& target) { return attachments[target.attachment].holder >= 0; });
+}
+
 void update_targets(int index, State& state, CableOutcome& outcome) {
   SimulatedCable& cable = state.cables[index];
   KinematicTargets& targets = state.cable_progress[index].targets;
@@ -129,11 +134,15 @@ void update_targets(int index, State& state, CableOutcome& outcome) {
   Boundary boundary;
   hold_at(0, 0, targets, boundary);
   if (jumps) {
-    carry_with_targets(*cable.model, boundary.nodes, gravity_near(state, index), cable.state);
+    // Bodies are carried with the cable.
+    std::vector<HeldNode> held;
+    for (std::size_t k = 0; k < boundary.nodes.size(); ++k)
+      if (state.attachments[targets.nodes[k].attachment].holder < 0) held.push_back(boundary.nodes[k]);
+    carry_with_targets(*cable.model, held, gravity_near(state, index), cable.state);
     measure_joint_twists(targets.directions, cable.state);
     note_status(Status::jumped, cable_id(index), following.jumping_node, outcome.result);
   }
-  project_velocities(*cable.model, boundary.nodes, cable.state);
+  if (!follows_bodies(targets, state.attachments)) project_velocities(*cable.model, boundary.nodes, cable.state);
 }
 
 namespace {
@@ -188,6 +197,8 @@ IslandStepper::IslandStepper(State& state, Workspace& workspace, std::vector<Cab
 void IslandStepper::step(Island& island, IslandOutcome& found) {
   found.intrusions.clear();
   found.contacts.clear();
+  found.jumps.clear();
+  found.bodies = {};
   bool contacts_known = false;
   if (!wait_for_others(island, found, contacts_known)) step_alone(island, found, contacts_known);
 }
@@ -195,6 +206,7 @@ void IslandStepper::step(Island& island, IslandOutcome& found) {
 /// `contacts_known`: those of the whole step have been found, and it is not split yet.
 void IslandStepper::step_alone(Island& island, IslandOutcome& found, bool contacts_known) {
   begin(island);
+  if (!island.bodies.empty()) update_body_targets(island, found);
   int level = 0;
   for (const int cable : island.cables) level = std::max(level, state_.cable_progress[cable].level);
 
@@ -216,6 +228,7 @@ void IslandStepper::step_alone(Island& island, IslandOutcome& found, bool contac
         ++level;
       } else if (!stopped) {
         stop(island);
+        if (!island.bodies.empty()) note_status(Status::degraded, rigid_body_id(island.bodies.front()), 0, found.bodies);
         stopped = true;
       } else {
         for (std::size_t k = 0; k < island.cables.size(); ++k)

@@ -17,6 +17,8 @@ struct CableOutcome {
 
 /// What a step of an island finds.
 struct IslandOutcome {
+  StepResult bodies;                  ///< status and first body that is not ok
+  std::vector<Jump> jumps;            ///< of what holds bodies, that the step found to be over
   std::vector<Intrusion> intrusions;  ///< the deepest of each cable and obstacle
   std::vector<SimulatedContact> contacts;
 };
@@ -40,13 +42,16 @@ void add_forces(const Boundary& boundary, const KinematicTargets& targets, const
 /// Before a step's forces are added.
 void forget_forces(const KinematicTargets& targets, std::vector<Attachment>& attachments);
 
-/// What holds the bodies of an island over a part of a step, 0 to 1, for the members of the workspace. Multipliers begin with what
-/// they were in the step before, or have been in this one.
+/// What holds the bodies of an island over a part of a step, 0 to 1, for the members of the workspace. Multipliers begin with
+/// what they were in the step before, or have been in this one.
 void find_body_joints(const Island& island, const State& state, double from, double to, Workspace& workspace);
 
 /// Twist and roll of the material: from the clamps where there are any, else the first segment's is carried along in time.
 void follow_material(const CableModel& model, const std::vector<HeldDirection>& directions, const std::vector<TwistSpan>& spans,
                      CableState& state);
+
+/// Whether a body holds any of a cable.
+bool follows_bodies(const KinematicTargets& targets, const std::vector<Attachment>& attachments);
 
 /// Aims a cable's holders at where they will be at the end of the step. Where they jump, the cable is carried along with them
 /// before it is stepped, and keeps its velocities.
@@ -76,7 +81,12 @@ class IslandStepper {
   bool advance_bodies();
   void finish_bodies(const Island& island, double from, double to);
   void stop_bodies(const Island& island);
-  void follow_body_holders(BodyJoint& joint, double to);
+  void update_body_targets(const Island& island, IslandOutcome& found);
+  void aim_body(int body, IslandOutcome& found);
+  void carry_by_cables(const Island& island);
+  void carry_cables(const Island& island);
+  bool is_off_its_bodies(int cable, double tolerance) const;
+  void follow_body_holder(BodyJoint& joint, double to);
   void find_contacts(Island& island, double from, double to);
   Scheme scheme_of(int cable) const;
   Scheme find_touching_scheme(const Island& island, double h);
@@ -95,7 +105,7 @@ class IslandStepper {
   std::vector<CableOutcome>& outcomes_;
   Environment environment_;
   bool projects_bodies_ = false;  ///< velocities of bodies and what they hold, at the end of the substep
-  int lanes_;  ///< two a cable that is stepped together with others
+  int lanes_;                     ///< two a cable that is stepped together with others
 };
 
 /// The step of a winch or joint is done.

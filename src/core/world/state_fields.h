@@ -246,12 +246,8 @@ auto fields(T& x, const BodyShape*) {
   return std::tie(x.pose, x.shape);
 }
 template <class T>
-auto fields(T& x, const FrameVelocity*) {
-  return std::tie(x.linear, x.angular);
-}
-template <class T>
 auto fields(T& x, const BodyProgress*) {
-  return std::tie(x.is_placed, x.has_moved, x.acceleration, x.angular_acceleration, x.holders);
+  return std::tie(x.is_placed, x.has_moved, x.acceleration, x.angular_acceleration, x.holders, x.holder_spins);
 }
 template <class T>
 auto fields(T& x, const SimulatedBody*) {

@@ -114,6 +114,8 @@ void World::Implementation::collect_outcomes(StepResult& result) {
     append(outcome.jumps, findings.jumps);
   }
   for (const IslandOutcome& outcome : island_outcomes.value) {
+    note_status(outcome.bodies.status, outcome.bodies.body, outcome.bodies.node, result);
+    append(outcome.jumps, findings.jumps);
     append(outcome.intrusions, findings.intrusions);
     append(outcome.contacts, findings.contacts);
   }

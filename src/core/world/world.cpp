@@ -312,7 +312,7 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   place_bodies_on(placing);
 }
 
-/// Bodies whose cables have just started settle with those that are to.
+/// Bodies whose cables have just started settle with those that are to. They begin to move from there.
 void World::Implementation::settle_started_bodies(const std::vector<int>& descs) {
   if (state.bodies.empty() || is_cancelled()) return;
   std::vector<char> settles(state.cables.size(), 0);
@@ -321,7 +321,12 @@ void World::Implementation::settle_started_bodies(const std::vector<int>& descs)
     const int cable = find(state.cables, desc.name);
     settles[cable] = settles_at_start(desc, *state.cables[cable].model, state.cables[cable].state) ? 1 : 0;
   }
+  const std::vector<SimulatedBody> moving = state.bodies;
   settle_bodies(settles, state, workspaces.value.local(), findings.unsettled, cancelled);
+  for (std::size_t b = 0; b < moving.size(); ++b) {
+    state.bodies[b].velocity = moving[b].velocity;
+    state.bodies[b].angular_velocity = moving[b].angular_velocity;
+  }
 }
 
 /// After a change of what holds a cable, or of its nodes.
