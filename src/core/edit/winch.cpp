@@ -114,7 +114,8 @@ double World::Implementation::available_length(int index) const {
   return length - least_segment * cable.model->segment_length;
 }
 
-/// [m] That the cable between the winch and the next attachment is longer than they are apart; infinite where there are no two.
+/// [m] That the cable between the winch and the next attachment is longer than they are apart; infinite where there are no two,
+/// or where a body may follow.
 double World::Implementation::slack_at_winch(int index) const {
   const SimulatedCable& cable = state.cables[index];
   const bool from_start = state.cable_progress[index].drive->place == LengthDrive::Place::start;
@@ -128,7 +129,7 @@ double World::Implementation::slack_at_winch(int index) const {
       next = &a;
     }
   }
-  if (!winch || !next) return infinity;
+  if (!winch || !next || winch->holder != next->holder) return infinity;
   const auto place = [&](const Attachment& a) { return (state.frames.poses[a.frame] * a.pose).position; };
   return cable.state.length(std::min(end, next->node), std::max(end, next->node)) - (place(*winch) - place(*next)).norm();
 }
