@@ -79,7 +79,12 @@ std::string out_of_range(const char* what, int index) {
 
 /// Why a body has no such node to hold; empty if it has.
 std::string node_problem(const State& state, const BodyId& body, int node) {
-  if (body.is_rigid_body()) return "body: " + std::to_string(body.index) + "; bodies cannot be pinned";
+  if (body.is_rigid_body()) {
+    if (body.index < 0 || body.index >= static_cast<int>(state.bodies.size())) return out_of_range("body", body.index);
+    if (!state.body_progress[body.index].is_placed)
+      return "body: " + std::to_string(body.index) + "; is not there before the frames are that hold it";
+    return node == 0 ? "" : "node: " + std::to_string(node) + "; must be 0, the origin of the body's frame";
+  }
   const bool is_net = body.is_net();
   const int bodies = static_cast<int>(is_net ? state.nets.size() : state.cables.size());
   if (body.index < 0 || body.index >= bodies) return out_of_range(is_net ? "net" : "cable", body.index);
@@ -100,11 +105,14 @@ EditResult World::Implementation::apply(const edit::Pin& pin) {
   if (const std::string problem = node_problem(state, pin.body, pin.node); !problem.empty()) return refused(problem);
   if (pin.frame < 0 || pin.frame >= static_cast<int>(state.frames.names.size()))
     return refused("frame: " + std::to_string(pin.frame) + "; must be the id of a frame");
+  if (state.body_of_frame(pin.frame) >= 0)
+    return refused("frame: " + state.frames.names[pin.frame] + "; must not be a body's: those hold what the scene says");
   if (const std::string problem = pose_problem("offset", pin.pose); !problem.empty()) return refused(problem);
   if (!pin.name.empty() && is_attachment(pin.name)) return refused("name: " + pin.name + "; is taken by another attachment");
-  const std::string node =
-      "node: " + std::to_string(pin.node) + " of " +
-      (pin.body.is_net() ? "net " + state.nets[pin.body.index].model.name : "cable " + state.cables[pin.body.index].model->name);
+  const std::string node = "node: " + std::to_string(pin.node) + " of " +
+                           (pin.body.is_rigid_body() ? "body " + state.bodies[pin.body.index].name
+                            : pin.body.is_net()      ? "net " + state.nets[pin.body.index].model.name
+                                                     : "cable " + state.cables[pin.body.index].model->name);
   if (holds_something(state.attachments, pin.body, pin.node)) return refused(node + "; is already held by an attachment");
   if (pin.body.is_cable()) {
     const int other = joining_node(state.cable_progress[pin.body.index].drive, pin.node);
@@ -120,10 +128,8 @@ EditResult World::Implementation::apply(const edit::Pin& pin) {
   attachment.pose.position = pin.pose.position;
   if (pin.body.is_cable()) attachment.pose.orientation = pin.pose.orientation.normalized();
   state.attachments.push_back(attachment);
-  if (pin.body.is_net())
-    update_net(pin.body.index);
-  else
-    find_targets_of(pin.body.index);
+  if (pin.body.is_net()) update_net(pin.body.index);
+  if (pin.body.is_cable()) find_targets_of(pin.body.index);
   return {true, "", attachment.name};
 }
 
@@ -140,10 +146,15 @@ EditResult World::Implementation::apply(const edit::Unpin& unpin) {
     forget_attachment(index, s.targets.directions);
   }
   for (NetProgress& s : state.net_progress) forget_attachment(index, s.targets.nodes);
-  if (body.is_net())
-    update_net(body.index);
-  else
-    find_targets_of(body.index);
+  for (BodyProgress& s : state.body_progress) {
+    const auto gone = std::find_if(s.holders.begin(), s.holders.end(),
+                                   [&](const KinematicTarget& target) { return target.attachment == index; });
+    if (gone != s.holders.end()) s.holder_spins.erase(s.holder_spins.begin() + (gone - s.holders.begin()));
+    forget_attachment(index, s.holders);
+    for (std::size_t k = 0; k < s.holders.size(); ++k) s.holders[k].node = static_cast<int>(k);
+  }
+  if (body.is_net()) update_net(body.index);
+  if (body.is_cable()) find_targets_of(body.index);
   return {true, "", unpin.name};
 }
 

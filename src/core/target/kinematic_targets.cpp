@@ -58,10 +58,6 @@ void catch_material(const Eigen::Matrix3d& material, const Quaternion& wanted, D
   target.orientation = Quaternion(material);
 }
 
-void aim(const Vector3& wanted, double time, KinematicTarget& target) {
-  target.next_position = wanted + remaining(target.caught, target.gap.norm(), time) * target.gap;
-}
-
 /// Catches a node where it is.
 KinematicTarget caught(int attachment, const WantedNode& wanted, const Vector3& position, const Vector3& velocity, double time) {
   KinematicTarget target;
@@ -87,6 +83,10 @@ void add_target(int attachment, const WantedNode& wanted, const std::vector<Vect
 }
 
 }  // namespace
+
+void aim_at(const Vector3& wanted, double time, KinematicTarget& target) {
+  target.next_position = wanted + remaining(target.caught, target.gap.norm(), time) * target.gap;
+}
 
 std::vector<WantedNode> wanted_nodes(const CableModel& model, const CableState& state, const Attachment& attachment,
                                      const Pose& frame) {
@@ -171,7 +171,7 @@ void aim_targets(const CableState& state, const std::vector<Attachment>& attachm
   for (KinematicTarget& target : targets.nodes) {
     const Attachment& attachment = attachments[target.attachment];
     const Pose pose = frames[attachment.frame] * attachment.pose;
-    aim(target_position(state, attachment, pose, target.node), time, target);
+    aim_at(target_position(state, attachment, pose, target.node), time, target);
   }
   for (DirectionTarget& target : targets.directions) {
     const Attachment& attachment = attachments[target.attachment];
@@ -198,7 +198,7 @@ void aim_hinges(const std::vector<Attachment>& attachments, const std::vector<Po
                 KinematicTargets& targets) {
   for (KinematicTarget& target : targets.nodes) {
     const Attachment& attachment = attachments[target.attachment];
-    aim((frames[attachment.frame] * attachment.pose).position, time, target);
+    aim_at((frames[attachment.frame] * attachment.pose).position, time, target);
   }
 }
 

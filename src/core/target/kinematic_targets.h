@@ -90,6 +90,9 @@ void start_targets(const std::vector<Attachment>& attachments, const std::vector
 void aim_targets(const CableState& state, const std::vector<Attachment>& attachments, const std::vector<Pose>& frames,
                  double time, KinematicTargets& targets);
 
+/// The same for one node, which is wanted at a place.
+void aim_at(const Vector3& wanted, double time, KinematicTarget& target);
+
 /// The same for hinges.
 void aim_hinges(const std::vector<Attachment>& attachments, const std::vector<Pose>& frames, double time,
                 KinematicTargets& targets);

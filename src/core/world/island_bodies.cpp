@@ -106,14 +106,19 @@ void IslandStepper::aim_body(int index, IslandOutcome& found) {
     if (targets.nodes.size() == count) {
       KinematicTarget target;
       target.node = static_cast<int>(count);
-      target.position = (state_.frames.previous_poses[attachment.frame] * attachment.pose).position;
-      target.starts = attachment.frame != 0;
+      target.position = (body.pose * attachment.at).position;
+      target.gap = target.position - (state_.frames.previous_poses[attachment.frame] * attachment.pose).position;
+      target.caught = state_.time() - state_.scene->time_step;
+      const Vector3 arm = target.position - (body.pose * Pose{body.center_of_mass}).position;
+      if (progress.has_moved) target.velocity = body.velocity + body.angular_velocity.cross(arm);
+      target.mean_velocity = target.frame_velocity = target.average_velocity = target.velocity;
+      target.starts = !progress.has_moved && attachment.frame != 0;
       target.liveliness = greatest_change;
       targets.nodes.push_back(target);
       progress.holder_spins.push_back(mean_spin(state_.frames, attachment, state_.scene->time_step));
     }
     targets.nodes[count].attachment = a;
-    targets.nodes[count].next_position = (state_.frames.poses[attachment.frame] * attachment.pose).position;
+    aim_at((state_.frames.poses[attachment.frame] * attachment.pose).position, state_.time(), targets.nodes[count]);
     ++count;
   }
   std::vector<KinematicTarget>& nodes = targets.nodes;
