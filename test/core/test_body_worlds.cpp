@@ -48,6 +48,7 @@ SceneDesc hanging_load(AttachmentType type = AttachmentType::hinge) {
   rope.attachments = {scenes::attachment("top", PlaceDesc::At::start, Vector3::Zero(), "hand"),
                       on_body("hook", PlaceDesc::At::end, "load", {0, 0, 0.1}, type)};
   rope.attachments[0].initial_pose = InitialPose{};
+  if (type == AttachmentType::clamp) rope.attachments[1].rotation = {0, M_PI / 2, 0};  // downwards, as the rope comes
   return scene;
 }
 

@@ -206,13 +206,28 @@ bool is_rigid(const SceneDesc& scene, const CableDesc& cable, int first, int las
 }
 
 /// Where two attachments leave no node between them free, the one segment that is not held along its clamp has the length that it
+/// Where the frame or body is that a cable's attachment names, as far as that is known.
+std::optional<Pose> holder_of(const SceneDesc& scene, const AttachmentDesc& attachment,
+                              const std::map<std::string, Pose>& frames) {
+  if (attachment.body.empty()) {
+    const auto frame = frames.find(attachment.frame);
+    return frame == frames.end() ? std::nullopt : std::optional(frame->second);
+  }
+  const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(),
+                                 [&](const BodyDesc& other) { return other.name == attachment.body; });
+  // One that something holds begins there.
+  if (body == scene.bodies.end() || !body->pose || !body->attachments.empty() || !is_sound(pose_of(*body->pose)))
+    return std::nullopt;
+  return pose_of(*body->pose);
+}
+
 /// has at rest only if they are in the right places. Clamps of a cable without bending stiffness hold the nodes beside theirs.
 void check_held_segment(const std::string& key, const SceneDesc& scene, const CableDesc& cable, const AttachmentDesc& first,
                         const AttachmentDesc& second, const std::map<std::string, Pose>& frames, Errors& errors) {
   const double length = cable.length / cable.segments;
   int free = node_at(cable, second.place) - node_at(cable, first.place) - 1;
   const auto end_of = [&](const AttachmentDesc& attachment, double way) -> Vector3 {
-    const Pose& frame = frames.at(attachment.frame);
+    const Pose frame = *holder_of(scene, attachment, frames);
     const Vector3 point = held_point(attachment, frame);
     if (attachment.type != AttachmentType::clamp || free == 0 || bends_at(scene, cable, node_at(cable, attachment.place)))
       return point;
@@ -229,29 +244,13 @@ void check_held_segment(const std::string& key, const SceneDesc& scene, const Ca
              "so many that a node between them is free, as the cable is inextensible (axial_stiffness .inf)");
 }
 
-/// Where a cable's attachment is held, as far as that is known.
-std::optional<Vector3> place_of(const SceneDesc& scene, const AttachmentDesc& attachment,
-                                const std::map<std::string, Pose>& frames) {
-  if (attachment.body.empty()) {
-    const auto frame = frames.find(attachment.frame);
-    if (frame == frames.end()) return std::nullopt;
-    return held_point(attachment, frame->second);
-  }
-  const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(),
-                                 [&](const BodyDesc& other) { return other.name == attachment.body; });
-  // One that something holds begins there.
-  if (body == scene.bodies.end() || !body->pose || !body->attachments.empty() || !is_sound(pose_of(*body->pose)))
-    return std::nullopt;
-  return held_point(attachment, pose_of(*body->pose));
-}
-
 void check_distances(const std::string& key, const SceneDesc& scene, const CableDesc& cable,
                      const std::map<std::string, Pose>& frames, Errors& errors) {
   std::vector<std::size_t> order(cable.attachments.size());
   std::iota(order.begin(), order.end(), 0);
   const auto node = [&](std::size_t i) { return node_at(cable, cable.attachments[i].place); };
   const auto is_unknown = [&](std::size_t i) {
-    return !place_of(scene, cable.attachments[i], frames) || !is_sound(cable, cable.attachments[i].place);
+    return !holder_of(scene, cable.attachments[i], frames) || !is_sound(cable, cable.attachments[i].place);
   };
   order.erase(std::remove_if(order.begin(), order.end(), is_unknown), order.end());
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return node(a) < node(b); });
@@ -260,7 +259,8 @@ void check_distances(const std::string& key, const SceneDesc& scene, const Cable
     const AttachmentDesc& second = cable.attachments[order[i]];
     if (!is_rigid(scene, cable, node(order[i - 1]), node(order[i]))) continue;
     const double length = cable.length * (node(order[i]) - node(order[i - 1])) / cable.segments;
-    const double distance = (*place_of(scene, second, frames) - *place_of(scene, first, frames)).norm();
+    const double distance =
+        (held_point(second, *holder_of(scene, second, frames)) - held_point(first, *holder_of(scene, first, frames))).norm();
     if (length > 0 && distance > length * (1 + distance_tolerance)) {
       errors.add(key + ".length",
                  rounded_text(length) + " m of cable between " + quoted(first.name) + " and " + quoted(second.name),
@@ -268,7 +268,7 @@ void check_distances(const std::string& key, const SceneDesc& scene, const Cable
                      " m, as the cable is inextensible (axial_stiffness .inf)");
       continue;
     }
-    if (first.body.empty() && second.body.empty()) check_held_segment(key, scene, cable, first, second, frames, errors);
+    check_held_segment(key, scene, cable, first, second, frames, errors);
   }
 }
 
