@@ -18,7 +18,7 @@ constexpr double fastest_convergence = 0.03;
 /// Of the weight.
 constexpr double taut_stiffness = 1e7;
 /// Of the inertia in a substep, where bodies give way.
-constexpr double taut_inertia = 1e5;
+constexpr double taut_inertia = 1e3;
 constexpr double standard_gravity = 9.81;
 /// A holder's change of velocity that moves a node by less in a substep, in segment lengths, goes unnoticed.
 constexpr double noticed_jerk = 1e-9;

@@ -113,7 +113,6 @@ BodySettling::Outcome BodySettling::advance(double h) {
     outcome.converged = workspace_.contact_solver.solve(workspace_.participants, touches, &system);
   else
     outcome.converged = system.advance(workspace_.participants, state_.scene->tolerance);
-  for (const Participant& p : workspace_.participants) outcome.iterations = std::max(outcome.iterations, p.result.iterations);
   if (!outcome.converged) return outcome;
 
   system.place_at_end(workspace_.participants);

@@ -21,7 +21,6 @@ class BodySettling {
  private:
   struct Outcome {
     bool converged = false;
-    int iterations = 0;
     double displacement = 0;  ///< [m] the largest
     bool touches = false;
   };
