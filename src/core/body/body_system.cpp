@@ -133,6 +133,10 @@ Matrix63 BodySystem::load_of(const Side& side, const RigidBodyStepper& stepper) 
   return turn;
 }
 
+Matrix63 BodySystem::impulse_of(const Side& side, const RigidBodyStepper& stepper) {
+  return motion_of(side, stepper).transpose();
+}
+
 bool BodySystem::advance(std::vector<Participant>& participants, double tolerance) {
   for (Participant& p : participants) {
     p.result = {};
@@ -179,7 +183,7 @@ void BodySystem::condense(std::vector<Participant>& participants) {
   for (std::size_t c = 0; c < cable_count_; ++c) {
     for (const Side& side : cables_[c].sides)
       if (!side.turns) add_turning(side.member, side.point, cables_[c].loads.forces[side.entry]);
-    add_resistance(cables_[c], participants[cables_[c].participant]);
+    add_resistance(cables_[c], participants[cables_[c].participant], &BodySystem::load_of);
   }
   find_holding();
   for (BodyJoint& joint : joints_) add_joint(joint, true);
@@ -193,7 +197,7 @@ void BodySystem::add_turning(int member, const Vector3& point, const Vector3& fo
 }
 
 /// Lets the sides of a cable move one by one.
-void BodySystem::add_resistance(HeldCable& cable, Participant& p) {
+void BodySystem::add_resistance(HeldCable& cable, Participant& p, LoadOf load_of) {
   const int count = static_cast<int>(cable.sides.size());
   std::fill(cable.motion.displacements.begin(), cable.motion.displacements.end(), Vector3::Zero());
   std::fill(cable.motion.rotations.begin(), cable.motion.rotations.end(), Vector3::Zero());
@@ -372,7 +376,8 @@ double BodySystem::correct() {
   return largest;
 }
 
-void BodySystem::project(std::vector<Participant>& participants, std::vector<SimulatedBody>& bodies) {
+void BodySystem::project(std::vector<Participant>& participants, std::vector<SimulatedBody>& bodies,
+                         std::vector<BodyProgress>& progress) {
   matrix_.setZero();
   load_.setZero();
   for (std::size_t m = 0; m < members_.size(); ++m) {
@@ -389,8 +394,8 @@ void BodySystem::project(std::vector<Participant>& participants, std::vector<Sim
     for (const Side& side : cable.sides)
       if (!side.turns)
         load_.segment<6>(6 * side.member) +=
-            point_load(members_[side.member].stepper.end_arm(side.point)) * cable.loads.forces[side.entry];
-    add_resistance(cable, p);
+            impulse_of(side, members_[side.member].stepper) * cable.loads.forces[side.entry];
+    add_resistance(cable, p, &BodySystem::impulse_of);
   }
   find_holding();
   for (const BodyJoint& joint : joints_) project_joint(joint);
@@ -407,8 +412,11 @@ void BodySystem::project(std::vector<Participant>& participants, std::vector<Sim
     if (place_[b] < 0) continue;
     const Member& member = members_[place_[b]];
     const Vector6 change = change_.segment<6>(6 * place_[b]);
-    bodies[b].velocity += point_motion(member.stepper.end_arm(bodies[b].center_of_mass)) * change;
+    const Vector3 gain = point_motion(member.stepper.end_arm(bodies[b].center_of_mass)) * change;
+    bodies[b].velocity += gain;
     bodies[b].angular_velocity += change.tail<3>();
+    progress[b].acceleration += gain / rules_.h;
+    progress[b].angular_acceleration += member.stepper.end().transpose() * change.tail<3>() / rules_.h;
   }
 }
 

@@ -59,7 +59,7 @@ class BodySystem {
 
   /// Impulses along inextensible segments and in joints that end all velocities that these do not allow, once bodies and cables
   /// have finished; without them such velocities would alternate from step to step.
-  void project(std::vector<Participant>& participants, std::vector<SimulatedBody>& bodies);
+  void project(std::vector<Participant>& participants, std::vector<SimulatedBody>& bodies, std::vector<BodyProgress>& progress);
 
   /// The cables' boundaries get what bodies have come to.
   void place_at_end(std::vector<Participant>& participants);
@@ -91,10 +91,12 @@ class BodySystem {
   void find_sides(const std::vector<Participant>& participants);
   void gather_mass(const SimulatedBody& body, int member, const std::vector<Participant>& participants);
   static Eigen::Matrix<double, 3, 6> motion_of(const Side& side, const RigidBodyStepper& stepper);
-  static Eigen::Matrix<double, 6, 3> load_of(const Side& side, const RigidBodyStepper& stepper);
+  using LoadOf = Eigen::Matrix<double, 6, 3> (*)(const Side& side, const RigidBodyStepper& stepper);
+  static Eigen::Matrix<double, 6, 3> load_of(const Side& side, const RigidBodyStepper& stepper);     ///< of a force
+  static Eigen::Matrix<double, 6, 3> impulse_of(const Side& side, const RigidBodyStepper& stepper);  ///< at the end
   void gather_loads();
   void condense(std::vector<Participant>& participants);
-  void add_resistance(HeldCable& cable, Participant& participant);
+  void add_resistance(HeldCable& cable, Participant& participant, LoadOf load_of);
   void project_joint(const BodyJoint& joint);
   void move_sides(HeldCable& cable) const;
   void find_holding();

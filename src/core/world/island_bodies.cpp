@@ -213,7 +213,7 @@ void IslandStepper::finish_bodies(const Island& island, double from, double to) 
     system.finish(static_cast<int>(m), state_.bodies[body], state_.body_progress[body]);
     state_.body_progress[body].has_moved = true;
   }
-  if (projects_bodies_) workspace_.body_system.project(workspace_.participants, state_.bodies);
+  if (projects_bodies_) workspace_.body_system.project(workspace_.participants, state_.bodies, state_.body_progress);
   for (const BodyJoint& joint : workspace_.body_system.joints()) {
     Attachment& attachment = state_.attachments[joint.attachment];
     if (from == 0) attachment.force = attachment.torque = Vector3::Zero();
