@@ -65,5 +65,37 @@ TEST(Allocation, StepAllocatesNothing) {
   EXPECT_EQ(allocations - before, 0);
 }
 
+/// A load that swings on a rope and carries a link.
+TEST(Allocation, StepOfBodiesAllocatesNothing) {
+  SceneDesc scene = scenes::one_cable(20);
+  scene.cables[0].attachments = {scenes::attachment("top", PlaceDesc::At::start, Vector3::Zero(), "hand"),
+                                 scenes::attachment("hook", PlaceDesc::At::end, Vector3::Zero())};
+  scene.cables[0].attachments[1].body = "load";
+  scene.cables[0].initial.type = InitialShapeDesc::Type::straight;
+  for (const char* name : {"load", "link"}) {
+    BodyDesc& body = scene.bodies.emplace_back();
+    body.name = name;
+    body.mass = 1;
+    body.inertia = Vector3(0.01, 0.02, 0.015);
+    body.pose = InitialPose{1, 0, 0, 0, 0, 0};
+  }
+  BodyAttachmentDesc& joint = scene.bodies[1].attachments.emplace_back();
+  joint.name = "joint";
+  joint.body = "load";
+  joint.at = {-0.1, 0, 0, 0, 0, 0};
+  joint.offset = {0.1, 0, 0};
+  scene.bodies[1].pose = InitialPose{1.2, 0, 0, 0, 0, 0};
+  BoundaryInputs inputs = scenes::hand_at({0, 0, 0});
+  inputs.resize(frame_names(scene).size());
+  World world(scene, inputs);
+  for (int i = 0; i < 10; ++i) world.step(inputs);
+  const long before = allocations;
+  for (int i = 0; i < 1000; ++i) {
+    inputs[1].pose.position.z() = 1e-4 * i;
+    world.step(inputs);
+  }
+  EXPECT_EQ(allocations - before, 0);
+}
+
 }  // namespace
 }  // namespace verlet_cable

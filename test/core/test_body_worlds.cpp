@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <string>
 
 #include "../support/scenes.h"
@@ -47,6 +47,7 @@ SceneDesc hanging_load(AttachmentType type = AttachmentType::hinge) {
   CableDesc& rope = add_cable(scene, "rope", {0, 0, 0}, {0, 0, -0.5});
   rope.attachments = {scenes::attachment("top", PlaceDesc::At::start, Vector3::Zero(), "hand"),
                       on_body("hook", PlaceDesc::At::end, "load", {0, 0, 0.1}, type)};
+  rope.attachments[1].rotation = {0, M_PI / 2, 0};  // downwards
   rope.attachments[0].initial_pose = InitialPose{};
   if (type == AttachmentType::clamp) rope.attachments[1].rotation = {0, M_PI / 2, 0};  // downwards, as the rope comes
   return scene;
@@ -184,7 +185,8 @@ TEST(BodyWorlds, WaitForTheFramesThatHoldThem) {
   BoundaryInputs inputs = initial_frames(scene);
   World world(scene, inputs);
   for (int i = 0; i < 100; ++i) world.step(inputs);
-  const int hand = 1, wall = static_cast<int>(std::find(world.frames().begin(), world.frames().end(), "wall") - world.frames().begin());
+  const int hand = 1,
+            wall = static_cast<int>(std::find(world.frames().begin(), world.frames().end(), "wall") - world.frames().begin());
   inputs.resize(world.frames().size());
   EXPECT_EQ(find(world.cables(), "rope"), -1);
   inputs[hand].known = inputs[wall].known = true;

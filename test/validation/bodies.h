@@ -62,8 +62,8 @@ inline CableDesc& add_cable(SceneDesc& scene, const std::string& name, double le
   cable.initial.points = {from, to};
   for (const bool at_end : {false, true}) {
     const End& held = at_end ? end : start;
-    AttachmentDesc desc = scenes::attachment(name + (at_end ? "_end" : "_start"), at_end ? PlaceDesc::At::end : PlaceDesc::At::start,
-                                             held.offset, "", held.type);
+    AttachmentDesc desc = scenes::attachment(name + (at_end ? "_end" : "_start"),
+                                             at_end ? PlaceDesc::At::end : PlaceDesc::At::start, held.offset, "", held.type);
     desc.body = held.body;
     desc.rotation = held.rotation;
     cable.attachments.push_back(desc);

@@ -1,9 +1,10 @@
+#include "bodies.h"
+
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 
-#include "bodies.h"
 #include "validation.h"
 
 /// Oscillations and equilibria of rigid bodies against closed forms.
@@ -39,8 +40,8 @@ TEST(Body, OnATorsionWire) {
     rope(scene).bending_stiffness = 0.02;
     rope(scene).torsional_stiffness = torsional_stiffness;
     add_body(scene, "body", 1, {inertia, 0.001, 0.0015}, {0, 0, -length, 0, M_PI / 2, 0}).angular_velocity = {0, 0, 0.5};
-    add_cable(scene, "wire", length, n, {0, 0, 0}, {0, 0, -length}, {"", Vector3::Zero(), AttachmentType::clamp, {0, M_PI / 2, 0}},
-              {"body", Vector3::Zero(), AttachmentType::clamp});
+    add_cable(scene, "wire", length, n, {0, 0, 0}, {0, 0, -length},
+              {"", Vector3::Zero(), AttachmentType::clamp, {0, M_PI / 2, 0}}, {"body", Vector3::Zero(), AttachmentType::clamp});
     return period_error(scene, exact, spin(2));
   });
   report("body on a torsion wire: period", samples, 2e-3, Order::none);
@@ -58,7 +59,8 @@ TEST(Body, OnTwoThreadsTurning) {
     body.center_of_mass = Vector3(0, 0, -0.05);
     body.angular_velocity = {0, 0, small_spin};
     for (const double side : {-b, b})
-      add_cable(scene, side < 0 ? "left" : "right", d, n, {side, 0, 0}, {side, 0, -d}, {"", {side, 0, 0}}, {"body", {side, 0, 0}});
+      add_cable(scene, side < 0 ? "left" : "right", d, n, {side, 0, 0}, {side, 0, -d}, {"", {side, 0, 0}},
+                {"body", {side, 0, 0}});
     return period_error(scene, exact, spin(2));
   });
   report("body on two threads, turning: period", samples, 2e-3, Order::none);

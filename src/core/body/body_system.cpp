@@ -12,6 +12,8 @@ constexpr double holding_part = 1e7;
 constexpr int maximum_iterations = 40;
 /// Of the tolerance of cables: bodies are heavier, and what is left over works on them.
 constexpr double body_part = 1e-5;
+/// Corrections that do not shrink to less than this part are made of rounding: the tolerance of cables is enough then.
+constexpr double rounding_ratio = 0.5;
 /// A correction that shrinks less than this from one iteration to the next calls for a new factorisation.
 constexpr double slow_convergence = 0.1;
 constexpr double least_size = 1e-3;  // [m] of a body
@@ -164,7 +166,10 @@ bool BodySystem::advance(std::vector<Participant>& participants, double toleranc
     const double of_bodies = correct();
     size = of_bodies <= size ? size : of_bodies;
     if (!(size < largest_correction)) return false;
-    if (convergence.is_reached(size)) {
+    const bool reached = convergence.is_reached(size);
+    const bool rounded = !rules_.statics && i > 1 && convergence.ratio() > rounding_ratio &&
+                         size < tolerance * std::min(rules_.h, longest_tolerated);
+    if (reached || rounded) {
       for (Participant& p : participants) p.result.converged = true;
       return true;
     }
