@@ -11,8 +11,8 @@ struct BodyProgress {
   /// It is where it begins: what holds it is known, or a cable whose end it is has started. Until then nothing hangs on it.
   bool is_placed = false;
   bool has_moved = false;  ///< its velocity is one that what holds it, and what it holds, allows
-  /// [m/s^2] of its center of mass, and [rad/s^2] in its frame's axes, mean over the last substep: where the next one's solution
-  /// starts, and what substeps that damp go on from
+  /// [m/s^2] of its center of mass together with the nodes that it holds, and [rad/s^2] in its frame's axes, mean over the last
+  /// substep: where the next one's solution starts, and what substeps that damp go on from
   Vector3 acceleration = Vector3::Zero(), angular_acceleration = Vector3::Zero();
   std::vector<KinematicTarget> holders;  ///< frames that hold it, by its attachments; `node` counts them
   std::vector<Vector3> holder_spins;     ///< [rad/s] of each, mean over the last step; while it jumps, of the motion before

@@ -398,8 +398,7 @@ void BodySystem::project(std::vector<Participant>& participants, std::vector<Sim
     p.stepper->read_impulses(p.substep.boundary, cable.loads);
     for (const Side& side : cable.sides)
       if (!side.turns)
-        load_.segment<6>(6 * side.member) +=
-            impulse_of(side, members_[side.member].stepper) * cable.loads.forces[side.entry];
+        load_.segment<6>(6 * side.member) += impulse_of(side, members_[side.member].stepper) * cable.loads.forces[side.entry];
     add_resistance(cable, p, &BodySystem::impulse_of);
   }
   find_holding();
@@ -420,7 +419,7 @@ void BodySystem::project(std::vector<Participant>& participants, std::vector<Sim
     const Vector3 gain = point_motion(member.stepper.end_arm(bodies[b].center_of_mass)) * change;
     bodies[b].velocity += gain;
     bodies[b].angular_velocity += change.tail<3>();
-    progress[b].acceleration += gain / rules_.h;
+    progress[b].acceleration += change.head<3>() / rules_.h;
     progress[b].angular_acceleration += member.stepper.end().transpose() * change.tail<3>() / rules_.h;
   }
 }

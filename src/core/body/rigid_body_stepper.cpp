@@ -38,8 +38,7 @@ void RigidBodyStepper::begin(const SimulatedBody& body, const BodyProgress& prog
     spin_ = start_.transpose() * body.angular_velocity;
     spin_change_ = progress.angular_acceleration;
     velocity_ = body.velocity - body.angular_velocity.cross(arm);
-    acceleration_ = progress.acceleration - (start_ * spin_change_).cross(arm) -
-                    body.angular_velocity.cross(body.angular_velocity.cross(arm));
+    acceleration_ = progress.acceleration;
   }
   displacement_ = rules.h * (velocity_ + 0.5 * rules.h * acceleration_);
   turn_by(orientation_ * cayley(rules.h * (spin_ + 0.5 * rules.h * spin_change_)));
@@ -113,13 +112,12 @@ Vector3 RigidBodyStepper::velocity_of(const Vector3& point) const {
 
 void RigidBodyStepper::finish(SimulatedBody& body, BodyProgress& progress) const {
   const double h = rules_.h;
-  const Vector3 before = body.velocity;
   body.pose = pose();
   body.velocity = velocity_of(body.center_of_mass);
   body.angular_velocity = end_ * end_spin();
   progress.acceleration = progress.angular_acceleration = Vector3::Zero();
   if (rules_.statics) return;
-  progress.acceleration = (body.velocity - before) / h;
+  progress.acceleration = (end_velocity() - velocity_) / h;
   progress.angular_acceleration = (end_spin() - spin_) / h;
   if (rules_.scheme != Scheme::damped) return;
   progress.acceleration = (displacement_ / h - velocity_) / h + 0.5 * acceleration_;
