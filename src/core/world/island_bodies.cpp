@@ -122,8 +122,9 @@ void IslandStepper::aim_body(int index, IslandOutcome& found) {
     ++count;
   }
   std::vector<KinematicTarget>& nodes = targets.nodes;
-  std::vector<Vector3> before(nodes.size());
-  for (std::size_t k = 0; k < nodes.size(); ++k) before[k] = nodes[k].position;
+  std::vector<Vector3>& before = workspace_.holder_places;
+  before.clear();
+  for (const KinematicTarget& target : nodes) before.push_back(target.position);
   const Following following = follow_aims(state_.attachments, state_.time(), state_.scene->time_step, targets, found.jumps);
   if (following.jumping_node >= 0) {
     const KinematicTarget& target = nodes[following.jumping_node];
@@ -138,17 +139,6 @@ void IslandStepper::aim_body(int index, IslandOutcome& found) {
     note_status(StepResult::Status::jumped, rigid_body_id(index), 0, found.bodies);
   }
   progress.holders.swap(nodes);
-}
-
-/// Whether a node that a body holds is elsewhere, by more than rounding.
-bool IslandStepper::is_off_its_bodies(int index, double tolerance) const {
-  const CableState& cable = state_.cables[index].state;
-  Boundary boundary;
-  hold_at(0, 0, state_.cable_progress[index].targets, boundary);
-  hold_on_bodies(cable, state_.attachments, state_.bodies, state_.cable_progress[index].targets, boundary);
-  return std::any_of(boundary.nodes.begin(), boundary.nodes.end(), [&](const HeldNode& held) {
-    return held.body >= 0 && (held.position - cable.positions[held.node]).norm() > tolerance;
-  });
 }
 
 /// Bodies that nothing else holds follow cables that were carried along with what holds those.
@@ -171,15 +161,19 @@ void IslandStepper::carry_by_cables(const Island& island) {
 
 /// Cables are taken along by bodies that were carried.
 void IslandStepper::carry_cables(const Island& island) {
-  for (const int index : island.cables) {
-    if (!is_off_its_bodies(index, carried_away)) continue;
+  for (std::size_t k = 0; k < island.cables.size(); ++k) {
+    const int index = island.cables[k];
     SimulatedCable& cable = state_.cables[index];
     KinematicTargets& targets = state_.cable_progress[index].targets;
-    Boundary boundary;
+    Boundary& boundary = workspace_.cables[k].boundary;
     hold_at(0, 0, targets, boundary);
     hold_on_bodies(cable.state, state_.attachments, state_.bodies, targets, boundary);
+    const bool left_behind = std::any_of(boundary.nodes.begin(), boundary.nodes.end(), [&](const HeldNode& held) {
+      return held.body >= 0 && (held.position - cable.state.positions[held.node]).norm() > carried_away;
+    });
+    if (!left_behind) continue;
     carry_with_targets(*cable.model, boundary.nodes, gravity_near(state_, index), cable.state);
-    for (std::size_t k = 0; k < targets.directions.size(); ++k) targets.directions[k].orientation = boundary.directions[k].start;
+    for (std::size_t d = 0; d < targets.directions.size(); ++d) targets.directions[d].orientation = boundary.directions[d].start;
     measure_joint_twists(targets.directions, cable.state);
   }
 }

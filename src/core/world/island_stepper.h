@@ -85,7 +85,6 @@ class IslandStepper {
   void aim_body(int body, IslandOutcome& found);
   void carry_by_cables(const Island& island);
   void carry_cables(const Island& island);
-  bool is_off_its_bodies(int cable, double tolerance) const;
   void follow_body_holder(BodyJoint& joint, double to);
   void find_contacts(Island& island, double from, double to);
   Scheme scheme_of(int cable) const;

@@ -51,6 +51,7 @@ struct Workspace {
   std::vector<Participant> participants;  ///< the cables that touch something, or that bodies hold
   ContactSolver contact_solver;
   std::vector<BodyMember> body_members;  ///< the bodies of the island
+  std::vector<Vector3> holder_places;    ///< [m] of what holds a body
   BodySystem body_system;
   std::vector<WaitingCables> waiting;  ///< those of one law each
   std::vector<LaneMember> lane_members;
