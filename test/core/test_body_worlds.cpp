@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "../support/scenes.h"
 
@@ -135,6 +136,22 @@ TEST(BodyWorlds, ThreadsChangeNoByte) {
   run(parallel, inputs, 200);
   run(one_by_one, others, 200);
   EXPECT_EQ(parallel.hash(), one_by_one.hash());
+}
+
+TEST(BodyWorlds, GoOnFarFromTheOrigin) {
+  std::vector<Vector3> places;
+  for (const double far : {0.0, 1e4}) {
+    SceneDesc scene = hanging_load();
+    scene.bodies[0].angular_velocity = {3, 0, 1};
+    (*scene.bodies[0].pose)[0] += far;
+    (*scene.cables[0].attachments[0].initial_pose)[0] += far;
+    for (Vector3& point : scene.cables[0].initial.points) point.x() += far;
+    BoundaryInputs inputs = initial_frames(scene);
+    World world(scene, inputs);
+    for (int i = 0; i < 1000; ++i) ASSERT_EQ(world.step(inputs).status, StepResult::Status::ok) << far << ", " << world.time();
+    places.push_back(world.bodies()[0].pose.position - Vector3(far, 0, 0));
+  }
+  EXPECT_LT((places[1] - places[0]).norm(), 1e-5);
 }
 
 TEST(BodyWorlds, ACutRopeLetsItsLoadFall) {
