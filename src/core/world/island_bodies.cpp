@@ -230,6 +230,10 @@ void IslandStepper::stop_bodies(const Island& island) {
     state_.bodies[body].velocity = state_.bodies[body].angular_velocity = Vector3::Zero();
     state_.body_progress[body].acceleration = state_.body_progress[body].angular_acceleration = Vector3::Zero();
   }
+  for (const BodyJoint& joint : workspace_.body_system.joints()) {
+    Attachment& attachment = state_.attachments[joint.attachment];
+    attachment.force = attachment.torque = Vector3::Zero();
+  }
 }
 
 }  // namespace verlet_cable
