@@ -181,8 +181,9 @@ bool BodySystem::advance(std::vector<Participant>& participants, double toleranc
 void BodySystem::condense(std::vector<Participant>& participants) {
   matrix_.setZero();
   for (std::size_t m = 0; m < members_.size(); ++m) {
+    Vector6 unused;
     Matrix6 own;
-    members_[m].stepper.evaluate(members_[m].load, own);
+    members_[m].stepper.evaluate(unused, own);
     matrix_.block<6, 6>(6 * m, 6 * m) = own;
   }
   for (std::size_t c = 0; c < cable_count_; ++c) {
@@ -204,8 +205,7 @@ void BodySystem::add_turning(int member, const Vector3& point, const Vector3& fo
 /// Lets the sides of a cable move one by one.
 void BodySystem::add_resistance(HeldCable& cable, Participant& p, LoadOf load_of) {
   const int count = static_cast<int>(cable.sides.size());
-  std::fill(cable.motion.displacements.begin(), cable.motion.displacements.end(), Vector3::Zero());
-  std::fill(cable.motion.rotations.begin(), cable.motion.rotations.end(), Vector3::Zero());
+  cable.motion.clear();
   for (int column = 0; column < 3 * count; ++column) {
     const Side& moved = cable.sides[column / 3];
     Vector3& motion = moved.turns ? cable.motion.rotations[moved.entry] : cable.motion.displacements[moved.entry];
@@ -246,14 +246,19 @@ Vector3 BodySystem::turn_of(const BodyJoint& joint) const {
   return (turn.w() < 0 ? -2 : 2) * turn.vec();
 }
 
+/// Takes from a turn what a joint allows: an axle that about its axis.
+Eigen::Matrix3d BodySystem::held_turns_of(const BodyJoint& joint) const {
+  Eigen::Matrix3d held = Eigen::Matrix3d::Identity();
+  if (joint.type != AttachmentType::axle) return held;
+  const Vector3 axis = members_[joint.member].stepper.pose().orientation * joint.at.orientation * Vector3::UnitZ();
+  held -= axis * axis.transpose();
+  return held;
+}
+
 /// Adds what a joint exerts; or what resists, to the matrix.
 void BodySystem::add_joint(BodyJoint& joint, bool stiffness) {
   const bool turns = joint.type != AttachmentType::hinge;
-  Eigen::Matrix3d across = Eigen::Matrix3d::Identity();
-  if (joint.type == AttachmentType::axle) {
-    const Vector3 axis = members_[joint.member].stepper.pose().orientation * joint.at.orientation * Vector3::UnitZ();
-    across -= axis * axis.transpose();
-  }
+  const Eigen::Matrix3d held_turns = held_turns_of(joint);
   // On the body that is held, and with the other sign on the other one
   const auto load_on = [&](int m, const Vector3& point, double sign) {
     const Matrix63 load = sign * point_load(members_[m].stepper.force_arm(point));
@@ -275,7 +280,7 @@ void BodySystem::add_joint(BodyJoint& joint, bool stiffness) {
   if (!stiffness) {
     const Vector3 force = joint.force + holding_ * gap_of(joint);
     Vector3 torque = Vector3::Zero();
-    if (turns) torque = across * (joint.torque + holding_turn_ * turn_of(joint));
+    if (turns) torque = held_turns * (joint.torque + holding_turn_ * turn_of(joint));
     for (int i = 0; i < count; ++i) {
       load_.segment<6>(6 * ends[i].member) += ends[i].load * force;
       load_.segment<3>(6 * ends[i].member + 3) += ends[i].sign * torque;
@@ -288,7 +293,7 @@ void BodySystem::add_joint(BodyJoint& joint, bool stiffness) {
     for (int j = 0; j < count; ++j) {
       auto block = matrix_.block<6, 6>(6 * ends[i].member, 6 * ends[j].member);
       block += holding_ * ends[i].load * ends[j].motion;
-      if (turns) block.bottomRightCorner<3, 3>() += holding_turn_ * ends[i].sign * ends[j].sign * across;
+      if (turns) block.bottomRightCorner<3, 3>() += holding_turn_ * ends[i].sign * ends[j].sign * held_turns;
     }
 }
 
@@ -311,9 +316,10 @@ void BodySystem::solve(std::vector<Participant>& participants, bool stale) {
 /// What is out of balance at bodies.
 void BodySystem::gather_loads() {
   for (std::size_t m = 0; m < members_.size(); ++m) {
+    Vector6 own;
     Matrix6 unused;
-    members_[m].stepper.evaluate(members_[m].load, unused);
-    load_.segment<6>(6 * m) = members_[m].load;
+    members_[m].stepper.evaluate(own, unused);
+    load_.segment<6>(6 * m) = own;
   }
   for (std::size_t c = 0; c < cable_count_; ++c) {
     const HeldCable& cable = cables_[c];
@@ -363,11 +369,7 @@ double BodySystem::correct() {
     joint.force_change = holding_ * (gap_of(joint) - way);
     joint.force += joint.force_change;
     if (joint.type == AttachmentType::hinge) continue;
-    Vector3 torque = joint.torque + holding_turn_ * (turn_of(joint) - turn);
-    if (joint.type == AttachmentType::axle) {
-      const Vector3 axis = members_[joint.member].stepper.pose().orientation * joint.at.orientation * Vector3::UnitZ();
-      torque -= axis * axis.dot(torque);
-    }
+    const Vector3 torque = held_turns_of(joint) * (joint.torque + holding_turn_ * (turn_of(joint) - turn));
     joint.torque_change = torque - joint.torque;
     joint.torque = torque;
   }
@@ -430,11 +432,7 @@ void BodySystem::project_joint(const BodyJoint& joint) {
   const Matrix36 motion = point_motion(own.end_arm(joint.at.position));
   Vector3 gap = joint.holder_velocity.linear - own.velocity_of(joint.at.position);
   Vector3 turning = joint.holder_velocity.angular - own.spin();
-  Eigen::Matrix3d across = Eigen::Matrix3d::Identity();
-  if (joint.type == AttachmentType::axle) {
-    const Vector3 axis = own.pose().orientation * joint.at.orientation * Vector3::UnitZ();
-    across -= axis * axis.transpose();
-  }
+  const Eigen::Matrix3d held_turns = held_turns_of(joint);
   std::array<int, 2> members{joint.member, joint.other};
   std::array<Matrix36, 2> motions{motion, motion};
   const int count = joint.other < 0 ? 1 : 2;
@@ -448,19 +446,18 @@ void BodySystem::project_joint(const BodyJoint& joint) {
   for (int i = 0; i < count; ++i) {
     const double sign = i == 0 ? 1 : -1;
     load_.segment<6>(6 * members[i]) += holding_ * motions[i].transpose() * gap;
-    if (turns) load_.segment<3>(6 * members[i] + 3) += sign * holding_turn_ * (across * turning);
+    if (turns) load_.segment<3>(6 * members[i] + 3) += sign * holding_turn_ * (held_turns * turning);
     for (int j = 0; j < count; ++j) {
       auto block = matrix_.block<6, 6>(6 * members[i], 6 * members[j]);
       block += holding_ * motions[i].transpose() * motions[j];
-      if (turns) block.bottomRightCorner<3, 3>() += (i == j ? holding_turn_ : -holding_turn_) * across;
+      if (turns) block.bottomRightCorner<3, 3>() += (i == j ? holding_turn_ : -holding_turn_) * held_turns;
     }
   }
 }
 
 /// How cables' sides move with their bodies.
 void BodySystem::move_sides(HeldCable& cable) const {
-  std::fill(cable.motion.displacements.begin(), cable.motion.displacements.end(), Vector3::Zero());
-  std::fill(cable.motion.rotations.begin(), cable.motion.rotations.end(), Vector3::Zero());
+  cable.motion.clear();
   for (const Side& side : cable.sides) {
     const Vector3 motion = motion_of(side, members_[side.member].stepper) * change_.segment<6>(6 * side.member);
     (side.turns ? cable.motion.rotations[side.entry] : cable.motion.displacements[side.entry]) = motion;

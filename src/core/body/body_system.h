@@ -85,7 +85,6 @@ class BodySystem {
     RigidBodyStepper stepper;
     MassProperties whole;
     double size = 0;  ///< [m] of it
-    Vector6 load;
   };
 
   void find_sides(const std::vector<Participant>& participants);
@@ -104,6 +103,7 @@ class BodySystem {
   void add_joint(BodyJoint& joint, bool stiffness);
   Vector3 gap_of(const BodyJoint& joint) const;
   Vector3 turn_of(const BodyJoint& joint) const;
+  Eigen::Matrix3d held_turns_of(const BodyJoint& joint) const;
 
   SubstepRules rules_;
   std::vector<int> place_;  ///< of a body among the members, by its index

@@ -20,6 +20,11 @@ bool Boundary::is_on_bodies() const {
   return std::any_of(nodes.begin(), nodes.end(), [](const HeldNode& held) { return held.body >= 0; });
 }
 
+void HolderMotion::clear() {
+  std::fill(displacements.begin(), displacements.end(), Vector3::Zero());
+  std::fill(rotations.begin(), rotations.end(), Vector3::Zero());
+}
+
 int reachable_lengths(const CableModel& model, const CableState& state, const std::vector<HeldNode>& held,
                       std::vector<double>& lengths) {
   for (int i = 0; i < state.segments(); ++i) lengths[i] = state.rest_lengths[i];

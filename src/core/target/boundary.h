@@ -51,6 +51,8 @@ struct Boundary {
 struct HolderMotion {
   std::vector<Vector3> displacements;  ///< one a held node [m]
   std::vector<Vector3> rotations;      ///< one a held direction [rad]
+
+  void clear();  ///< nothing moves
 };
 
 /// What a cable exerts on the holders of a boundary.
