@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "guide/guides.h"
+#include "guide/node_passing.h"
 #include "rod/initial_shape.h"
 #include "rod/length_projection.h"
 #include "rod/rod_frames.h"
@@ -119,7 +121,9 @@ void update_targets(int index, State& state, CableOutcome& outcome) {
     measure_joint_twists(targets.directions, cable.state);
     note_status(Status::jumped, cable_id(index), following.jumping_node, outcome.result);
   }
-  project_velocities(*cable.model, boundary.nodes, cable.state);
+  load_flows(index, state, boundary);
+  project_velocities(*cable.model, boundary, cable.state);
+  keep_flows(index, boundary, state);
 }
 
 namespace {
@@ -246,6 +250,7 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     CableProgress& memory = state_.cable_progress[cable];
     CableWorkspace& work = workspace_.cables[k];
     hold_at(from, to, memory.targets, work.boundary);
+    load_flows(cable, state_, work.boundary);
     const bool touches = workspace_.contacts.touched(k);
     const Scheme scheme = touches ? touching_scheme : scheme_of(cable);
     if (memory.drive) wind_drive(cable, scheme, from, to, work.boundary);
@@ -274,8 +279,10 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     for (const Participant& p : workspace_.participants) workspace_.cables[p.place].result = p.result;
   }
   if (converged) {
-    for (std::size_t k = 0; k < island.cables.size(); ++k)
+    for (std::size_t k = 0; k < island.cables.size(); ++k) {
       keep_twist(workspace_.cables[k].boundary, state_.cable_progress[island.cables[k]].targets);
+      keep_flows(island.cables[k], workspace_.cables[k].boundary, state_);
+    }
     workspace_.contacts.keep(workspace_.members);
   } else if (keeps) {
     take_back(island);
@@ -333,6 +340,7 @@ void IslandStepper::stop(const Island& island) {
     if (workspace_.cables[k].result.converged) continue;
     CableState& state = state_.cables[island.cables[k]].state;
     bring_to_rest(state);
+    stop_flows(island.cables[k], state_);
     std::fill(state.axial_multiplier.begin(), state.axial_multiplier.end(), 0.0);
     note_status(Status::degraded, cable_id(island.cables[k]), 0, outcomes_[island.cables[k]].result);
   }

@@ -64,6 +64,7 @@ struct State {
   std::vector<PointState> particle_integrators;  ///< one a particle
   std::vector<SimulatedBody> bodies;
   std::vector<Attachment> attachments;
+  std::vector<SimulatedGuide> guides;
   std::vector<Obstacle> obstacles;
 
   std::uint32_t new_cable_id() const { return cable_progress.empty() ? 0 : cable_progress.back().id + 1; }

@@ -139,7 +139,7 @@ template <class T>
 auto fields(T& x, const KinematicTarget*) {
   return std::tie(x.attachment, x.node, x.position, x.velocity, x.mean_velocity, x.starts, x.gap, x.caught, x.next_position,
                   x.next_velocity, x.frame_velocity, x.average_velocity, x.change, x.left_velocity, x.left_for, x.liveliness,
-                  x.jumping_steps, x.jumped_from, x.carried, x.first_excess, x.last_excess, x.least_excess, x.greatest_excess);
+                  x.jumping_steps, x.jumped_from, x.carried, x.first_excess, x.last_excess, x.least_excess, x.greatest_excess, x.slides);
 }
 template <class T>
 auto fields(T& x, const DirectionTarget*) {
@@ -210,7 +210,12 @@ auto fields(T& x, const BodyId*) {
 }
 template <class T>
 auto fields(T& x, const Attachment*) {
-  return std::tie(x.name, x.body, x.node, x.frame, x.type, x.pose, x.at, x.force, x.torque);
+  return std::tie(x.name, x.body, x.node, x.frame, x.type, x.pose, x.at, x.force, x.torque, x.guide, x.tangent_points);
+}
+template <class T>
+auto fields(T& x, const SimulatedGuide*) {
+  return std::tie(x.name, x.type, x.friction, x.radius, x.inertia, x.bearing_friction, x.sense, x.retention, x.capture,
+                  x.cable, x.frame, x.pose, x.is_ready, x.flow, x.flow_acceleration, x.lost_length);
 }
 template <class T>
 auto fields(T&, const PlaneShape*) {
@@ -258,7 +263,7 @@ auto fields(T& x, const Frames*) {
 template <class T>
 auto fields(T& x, const State*) {
   return std::tie(x.scene, x.waiting_cables, x.waiting_nets, x.frames, x.steps, x.cables, x.cable_progress, x.nets,
-                  x.net_progress, x.particles, x.particle_integrators, x.bodies, x.attachments, x.obstacles);
+                  x.net_progress, x.particles, x.particle_integrators, x.bodies, x.attachments, x.guides, x.obstacles);
 }
 /// @}
 

@@ -35,6 +35,7 @@ void World::Implementation::begin_step(const BoundaryInputs& inputs, StepResult&
   count_step();
   result.ignored_frame = update_frames(inputs);
   advance_winches();
+  advance_guides();
   build_islands();
 }
 
@@ -55,6 +56,8 @@ void World::limit_lanes(int most) {
 void World::Implementation::count_step() {
   ++state.steps;
   findings.breaks.clear();
+  findings.caught.clear();
+  findings.released.clear();
   findings.jumps.clear();
   findings.intrusions.clear();
   findings.contacts.clear();

@@ -8,7 +8,7 @@ namespace verlet_cable {
 bool IslandStepper::wait_for_others(Island& island, IslandOutcome& found, bool& contacts_known) {
   const int cable = island.cables.front();
   CableProgress& memory = state_.cable_progress[cable];
-  if (island.cables.size() > 1 || memory.level > 0 || memory.drive) return false;
+  if (island.cables.size() > 1 || memory.level > 0 || memory.drive || slides(memory.targets)) return false;
   const CableState& state = state_.cables[cable].state;
   Boundary unknown;
   const Substep substep = whole_step(cable, unknown);
