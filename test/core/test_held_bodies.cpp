@@ -123,6 +123,23 @@ TEST(HeldBodies, CanBePinnedAndLetGo) {
   EXPECT_FALSE(world.apply(pin).ok);
 }
 
+TEST(HeldBodies, TakeNodesThatArePinnedToThem) {
+  World world(load_on_a_rope(), scenes::hand_at({0, 0, 0}));
+  edit::Pin pin;
+  pin.name = "pin";
+  pin.body = cable_id(0);
+  pin.node = 12;
+  pin.frame = world.bodies()[0].frame;
+  pin.pose.position = {0.1, 0.1, 0};
+  ASSERT_TRUE(world.apply(pin).ok);
+  for (int i = 0; i < 1000; ++i) ASSERT_EQ(world.step(scenes::hand_at({0, 0, 0})).status, Status::ok) << i;
+  const Vector3 there = (world.bodies()[0].pose * pin.pose).position;
+  EXPECT_NEAR((world.cables()[0].state.positions[12] - there).norm(), 0, 1e-9);
+  EXPECT_TRUE(world.apply(edit::Unpin{"pin"}).ok);
+  pin.type = AttachmentType::clamp;
+  EXPECT_FALSE(world.apply(pin).ok);
+}
+
 TEST(HeldBodies, TheirCablesTouchTheFloor) {
   SceneDesc scene = load_on_a_rope();
   scene.cables[0].length = 1.2;

@@ -105,8 +105,10 @@ EditResult World::Implementation::apply(const edit::Pin& pin) {
   if (const std::string problem = node_problem(state, pin.body, pin.node); !problem.empty()) return refused(problem);
   if (pin.frame < 0 || pin.frame >= static_cast<int>(state.frames.names.size()))
     return refused("frame: " + std::to_string(pin.frame) + "; must be the id of a frame");
-  if (state.body_of_frame(pin.frame) >= 0)
-    return refused("frame: " + state.frames.names[pin.frame] + "; must not be a body's: those hold what the scene says");
+  const int holder = state.body_of_frame(pin.frame);
+  if (holder >= 0 && (!pin.body.is_cable() || pin.type != AttachmentType::hinge))
+    return refused("frame: " + state.frames.names[pin.frame] +
+                   "; is a body's, which a pin can hold nodes of cables to, by a hinge");
   if (const std::string problem = pose_problem("offset", pin.pose); !problem.empty()) return refused(problem);
   if (!pin.name.empty() && is_attachment(pin.name)) return refused("name: " + pin.name + "; is taken by another attachment");
   const std::string node = "node: " + std::to_string(pin.node) + " of " +
@@ -124,6 +126,7 @@ EditResult World::Implementation::apply(const edit::Pin& pin) {
   attachment.body = pin.body;
   attachment.node = pin.node;
   attachment.frame = pin.frame;
+  attachment.holder = holder;
   if (pin.body.is_cable()) attachment.type = pin.type;
   attachment.pose.position = pin.pose.position;
   if (pin.body.is_cable()) attachment.pose.orientation = pin.pose.orientation.normalized();

@@ -293,15 +293,17 @@ void hold_at(double from, double to, const KinematicTargets& targets, Boundary& 
 }
 
 void hold_on_bodies(const CableState& state, const std::vector<Attachment>& attachments, const std::vector<SimulatedBody>& bodies,
-                    const KinematicTargets& targets, Boundary& boundary) {
+                    double time, const KinematicTargets& targets, Boundary& boundary) {
   for (std::size_t k = 0; k < targets.nodes.size(); ++k) {
-    const Attachment& attachment = attachments[targets.nodes[k].attachment];
+    const KinematicTarget& target = targets.nodes[k];
+    const Attachment& attachment = attachments[target.attachment];
     if (attachment.holder < 0) continue;
     HeldNode& held = boundary.nodes[k];
     const SimulatedBody& body = bodies[attachment.holder];
     held.body = attachment.holder;
     held.body_mass = body.mass;
     held.point = target_position(state, attachment, attachment.pose, held.node);
+    held.point += remaining(target.caught, target.gap.norm(), time) * target.gap;
     const Vector3 arm = body.pose.orientation * (held.point - body.center_of_mass);
     held.position = (body.pose * Pose{held.point}).position;
     held.velocity = body.velocity + body.angular_velocity.cross(arm);
@@ -313,6 +315,17 @@ void hold_on_bodies(const CableState& state, const std::vector<Attachment>& atta
     held.body = attachment.holder;
     held.on_body = attachment.pose.orientation * about_direction(targets.directions[k].roll);
     held.start = held.end = bodies[attachment.holder].pose.orientation * held.on_body;
+  }
+}
+
+void close_gaps_on_bodies(const std::vector<Attachment>& attachments, const std::vector<SimulatedBody>& bodies,
+                          const KinematicTargets& before, KinematicTargets& targets) {
+  for (KinematicTarget& target : targets.nodes) {
+    const int holder = attachments[target.attachment].holder;
+    const bool is_known = std::any_of(before.nodes.begin(), before.nodes.end(), [&](const KinematicTarget& other) {
+      return other.node == target.node && other.attachment == target.attachment;
+    });
+    if (holder >= 0 && !is_known) target.gap = bodies[holder].pose.orientation.conjugate() * target.gap;
   }
 }
 

@@ -17,7 +17,8 @@ struct KinematicTarget {
   Vector3 velocity = Vector3::Zero();       ///< [m/s] at the world's time
   Vector3 mean_velocity = Vector3::Zero();  ///< [m/s] over the last step; while it jumps, of the motion before
   bool starts = false;                      ///< its velocity is not known before its first step is
-  Vector3 gap = Vector3::Zero();            ///< [m] from its place to where it was when it was caught; closed smoothly
+  /// [m] from its place to where it was when it was caught, in the axes of the body that holds it if one does; closed smoothly
+  Vector3 gap = Vector3::Zero();
   double caught = -infinity;                ///< [s] when that was
   Vector3 next_position = Vector3::Zero();  ///< [m] at the end of the step
   Vector3 next_velocity = Vector3::Zero();  ///< [m/s]
@@ -116,9 +117,13 @@ Following follow_aims(const std::vector<Attachment>& attachments, double time, d
 /// What is held at the end of a substep that goes from one part of the step to another, 0 to 1.
 void hold_at(double from, double to, const KinematicTargets& targets, Boundary& boundary);
 
-/// Lets bodies hold what is theirs, from where they are now; `bodies` as World::bodies().
+/// Lets bodies hold what is theirs, from where they are now; `bodies` as World::bodies(), `time` at the end of the step.
 void hold_on_bodies(const CableState& state, const std::vector<Attachment>& attachments, const std::vector<SimulatedBody>& bodies,
-                    const KinematicTargets& targets, Boundary& boundary);
+                    double time, const KinematicTargets& targets, Boundary& boundary);
+
+/// Gaps of what bodies have caught, and did not hold `before`, close as seen from them.
+void close_gaps_on_bodies(const std::vector<Attachment>& attachments, const std::vector<SimulatedBody>& bodies,
+                          const KinematicTargets& before, KinematicTargets& targets);
 
 /// Takes over where bodies, which have come to the end of the step, hold a cable.
 void follow_bodies(const Boundary& boundary, KinematicTargets& targets);

@@ -89,7 +89,7 @@ BodySettling::Outcome BodySettling::advance(double h) {
     SimulatedCable& cable = state_.cables[index];
     keep_twist(work.boundary, progress.targets);
     hold_at(1, 1, progress.targets, work.boundary);
-    hold_on_bodies(cable.state, state_.attachments, state_.bodies, progress.targets, work.boundary);
+    hold_on_bodies(cable.state, state_.attachments, state_.bodies, state_.time(), progress.targets, work.boundary);
     workspace_.members.push_back({progress.id, &progress.targets, &contacts_[k]});
     Substep substep{*cable.model, environment, work.boundary, progress.spans, h, true};
     workspace_.participants.push_back({static_cast<int>(k), index, &work.stepper, substep, &cable.state, {}});

@@ -167,7 +167,7 @@ void IslandStepper::carry_cables(const Island& island) {
     KinematicTargets& targets = state_.cable_progress[index].targets;
     Boundary& boundary = workspace_.cables[k].boundary;
     hold_at(0, 0, targets, boundary);
-    hold_on_bodies(cable.state, state_.attachments, state_.bodies, targets, boundary);
+    hold_on_bodies(cable.state, state_.attachments, state_.bodies, state_.time(), targets, boundary);
     const bool left_behind = std::any_of(boundary.nodes.begin(), boundary.nodes.end(), [&](const HeldNode& held) {
       return held.body >= 0 && (held.position - cable.state.positions[held.node]).norm() > carried_away;
     });

@@ -280,7 +280,8 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     CableWorkspace& work = workspace_.cables[k];
     hold_at(from, to, memory.targets, work.boundary);
     load_flows(cable, state_, work.boundary);
-    if (!island.bodies.empty()) hold_on_bodies(c.state, state_.attachments, state_.bodies, memory.targets, work.boundary);
+    if (!island.bodies.empty())
+      hold_on_bodies(c.state, state_.attachments, state_.bodies, state_.time(), memory.targets, work.boundary);
     const bool touches = workspace_.contacts.touched(k), on_bodies = work.boundary.is_on_bodies();
     const Scheme scheme = touches || on_bodies ? touching_scheme : scheme_of(cable);
     if (memory.drive) wind_drive(cable, scheme, from, to, work.boundary);
@@ -385,7 +386,7 @@ void IslandStepper::stop(const Island& island) {
 void IslandStepper::give_up(int index, Boundary& boundary) {
   SimulatedCable& cable = state_.cables[index];
   hold_at(1, 1, state_.cable_progress[index].targets, boundary);
-  hold_on_bodies(cable.state, state_.attachments, state_.bodies, state_.cable_progress[index].targets, boundary);
+  hold_on_bodies(cable.state, state_.attachments, state_.bodies, state_.time(), state_.cable_progress[index].targets, boundary);
   const CableState before = cable.state;
   carry_along(*cable.model, boundary.nodes, gravity_near(state_, index), cable.state);
   if (finite(cable.state.positions)) return;

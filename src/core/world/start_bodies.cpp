@@ -117,7 +117,7 @@ void World::Implementation::place_bodies_on(const std::vector<Attachment>& attac
 void World::Implementation::start_with_bodies(const CableState& cable, KinematicTargets& targets) const {
   Boundary boundary;
   hold_at(1, 1, targets, boundary);
-  hold_on_bodies(cable, state.attachments, state.bodies, targets, boundary);
+  hold_on_bodies(cable, state.attachments, state.bodies, state.time(), targets, boundary);
   for (std::size_t k = 0; k < boundary.nodes.size(); ++k) {
     if (boundary.nodes[k].body < 0) continue;
     KinematicTarget& target = targets.nodes[k];

@@ -348,8 +348,10 @@ void World::Implementation::settle_started_bodies(const std::vector<int>& descs)
 void World::Implementation::find_targets_of(int index) {
   SimulatedCable& cable = state.cables[index];
   CableProgress& memory = state.cable_progress[index];
+  const KinematicTargets before = memory.targets;
   memory.targets = find_targets(*cable.model, cable.state, state.attachments, attachments_of(cable_id(index), state.attachments),
-                                state.frames.poses, memory.targets, state.time());
+                                state.frames.poses, before, state.time());
+  close_gaps_on_bodies(state.attachments, state.bodies, before, memory.targets);
   aim_targets(cable.state, state.attachments, state.frames.poses, state.time(), memory.targets);
   const Boundary boundary = boundary_now(memory.targets);
   restore_lengths(*cable.model, boundary.nodes, gravity_near(state, index), cable.state);
