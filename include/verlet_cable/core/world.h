@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
@@ -44,7 +45,16 @@ struct Attachment {
   Vector3 force =
       Vector3::Zero();  ///< [N] what the cable or body exerts on its holder, fixed frame's axes, mean over the last step
   Vector3 torque = Vector3::Zero();  ///< [N m] likewise, about the attachment's point
+  /// Index into World::guides() of the guide that it is: the cable slides through it; -1: it is none.
+  int guide = -1;
+  /// [m] of a sheave, in its axes: where the cable comes to the wheel (`node`) and leaves it (the node after that)
+  std::array<Vector3, 2> tangent_points{Vector3::Zero(), Vector3::Zero()};
 };
+
+/// Whether a cable lies on it between two nodes, instead of going through it at one.
+inline bool is_wheel(const Attachment& attachment) {
+  return attachment.guide >= 0 && attachment.tangent_points[0] != attachment.tangent_points[1];
+}
 
 struct StepResult {
   enum class Status {
@@ -127,6 +137,7 @@ struct Findings {
   // In the last step
   std::vector<Break> breaks;
   std::vector<Excursion> excursions;       ///< that have begun
+  std::vector<int> caught, released;       ///< indices into World::guides() of those that took their cable, or let it go
   std::vector<Jump> jumps;                 ///< that were found to be over, one an attachment
   std::vector<Intrusion> intrusions;       ///< one a cable and obstacle
   std::vector<SimulatedContact> contacts;  ///< where cables touched something in the last substep
@@ -178,8 +189,9 @@ class World {
   const std::vector<SimulatedNet>& nets() const;      ///< those that have started
   const std::vector<SimulatedParticle>& particles() const;
   const std::vector<SimulatedBody>& bodies() const;    ///< those that have started
-  const std::vector<Attachment>& attachments() const;  ///< of the started cables, nets and bodies
-  const std::vector<SimulatedGuide>& guides() const;   ///< in the scene's order; of a cable they are in the order along it
+  const std::vector<Attachment>& attachments() const;  ///< of the started cables, nets and bodies; guides are among them
+  const std::vector<SimulatedGuide>& guides() const;   ///< those of the started cables
+  GuideView view_guide(int guide) const;
   const std::vector<Obstacle>& obstacles() const;      ///< those of the scene, of its robot's links, then those that were set
   const Findings& findings() const;
 
@@ -203,11 +215,12 @@ class World {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Index of the cable, net, body or attachment of a name, -1 if there is none.
+/// Index of the cable, net, body, attachment or guide of a name, -1 if there is none.
 int find(const std::vector<SimulatedCable>& cables, const std::string& name);
 int find(const std::vector<SimulatedNet>& nets, const std::string& name);
 int find(const std::vector<SimulatedBody>& bodies, const std::string& name);
 int find(const std::vector<Attachment>& attachments, const std::string& name);
+int find(const std::vector<SimulatedGuide>& guides, const std::string& name);
 
 /// Whether a pose can be worked with: coordinates within 1e9 m, and an orientation whose length is from 0.5 to 2, which is
 /// brought to 1.

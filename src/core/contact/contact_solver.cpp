@@ -440,6 +440,7 @@ void ContactSolver::begin_solutions(const std::vector<Participant>& participants
       work.gap.assign(stepper.system().gap.size(), 0.0);
     }
     if (work.torque.size() != stepper.torque().size()) work.torque.assign(stepper.torque().size(), 0.0);
+    work.flow_load.assign(stepper.system().flow_load.size(), 0.0);
     if (stepper.is_whole_rod()) continue;
     work.correction = stepper.correction();
     work.multiplier = stepper.multiplier_correction();
@@ -456,6 +457,7 @@ void ContactSolver::exchange_loads(std::vector<Participant>& participants) {
     std::swap(stepper.system().load, work_[k].load);
     std::swap(stepper.system().gap, work_[k].gap);
     std::swap(stepper.torque(), work_[k].torque);
+    std::swap(stepper.system().flow_load, work_[k].flow_load);
   }
 }
 void ContactSolver::clear_loads(std::vector<Participant>& participants) const {

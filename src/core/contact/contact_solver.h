@@ -31,6 +31,7 @@ class ContactSolver {
     VectorArray load;            // nodes [N]
     std::vector<double> gap;     // segments [m^2]
     std::vector<double> torque;  // of a whole rod: segments [N m]
+    std::vector<double> flow_load;  // one a flow through a guide [N]
     VectorArray kept_load;       // nodes [N]: as it was before contacts added to it
     // The solution so far and the direction in which it is improved
     VectorArray correction, direction;                     // nodes [m]

@@ -139,6 +139,12 @@ EditResult World::Implementation::apply(const edit::Pin& pin) {
 EditResult World::Implementation::apply(const edit::Unpin& unpin) {
   const int index = find(state.attachments, unpin.name);
   if (index < 0) return refused("name: " + unpin.name + "; there is no such attachment");
+  if (state.attachments[index].guide >= 0) return refused("name: " + unpin.name + "; is a guide, which nothing unpins");
+  erase_attachment(index);
+  return {true, "", unpin.name};
+}
+
+void World::Implementation::erase_attachment(int index) {
   const BodyId body = state.attachments[index].body;
   if (body.is_cable())
     for (const DirectionTarget& clamp : state.cable_progress[body.index].targets.directions)
@@ -158,12 +164,12 @@ EditResult World::Implementation::apply(const edit::Unpin& unpin) {
   }
   if (body.is_net()) update_net(body.index);
   if (body.is_cable()) find_targets_of(body.index);
-  return {true, "", unpin.name};
 }
 
 EditResult World::Implementation::apply(const edit::MoveAttachment& move) {
   const int index = find(state.attachments, move.name);
   if (index < 0) return refused("name: " + move.name + "; there is no such attachment");
+  if (state.attachments[index].guide >= 0) return refused("name: " + move.name + "; is a guide, which only its frame moves");
   if (const std::string problem = pose_problem("offset", move.pose); !problem.empty()) return refused(problem);
   state.attachments[index].pose = {move.pose.position, move.pose.orientation.normalized()};
   return {true, "", move.name};
@@ -216,6 +222,7 @@ EditResult World::Implementation::cut_cable(int cable, int segment) {
   }
   if (drive && drive->segment >= segment) drive.reset();
   for (const int piece : {cable, new_cable}) after_remeshing(piece);
+  release_bare_guides();
   return {true, "", new_name};
 }
 

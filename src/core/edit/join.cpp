@@ -222,6 +222,15 @@ void World::Implementation::reverse_cable(int index) {
   for (Attachment& a : state.attachments) {
     if (a.body != cable_id(index)) continue;
     a.node = n - a.node;
+    if (a.guide >= 0) {
+      SimulatedGuide& guide = state.guides[a.guide];
+      guide.flow = -guide.flow;
+      guide.flow_acceleration = -guide.flow_acceleration;
+      guide.sense = -guide.sense;
+      if (is_wheel(a)) --a.node;
+      std::swap(a.tangent_points[0], a.tangent_points[1]);
+      continue;
+    }
     a.pose.orientation = a.pose.orientation * turned;
   }
   for (KinematicTarget& h : state.cable_progress[index].targets.nodes) h.node = n - h.node;

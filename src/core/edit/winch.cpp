@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "guide/node_passing.h"
 #include "rod/length_projection.h"
 #include "rod/unresolved_motion.h"
 #include "verlet_cable/core/cable_materials.h"
@@ -19,18 +20,6 @@ constexpr double winch_acceleration = 1;
 constexpr double longest_segment = 1.5, shortest_segment = 0.5, least_segment = 0.1;
 /// A joint closes when its ends are this close, of a segment's length.
 constexpr double closing_distance = 0.25;
-
-/// Whether a node carries more than its segments and what a cut left on an end weigh.
-bool carries_payload(const SimulatedCable& cable, int node) {
-  double share = 0;
-  if (node > 0) share += 0.5 * cable.state.rest_lengths[node - 1];
-  if (node < cable.state.segments()) share += 0.5 * cable.state.rest_lengths[node];
-  const double residue = 0.5 * cable.model->segment_length;
-  const CableMaterials materials(cable);
-  const auto density = [](const MaterialDesc& material) { return material.linear_density; };
-  // What a cut has left may be of any of the cable's materials.
-  return cable.state.masses[node] > materials.mean_at(node, density) * share + 1.5 * residue * materials.largest(density);
-}
 
 /// The segments beside a node that is to go become one, of the longer one's material: the other weighs as much as that from now
 /// on.
@@ -102,7 +91,7 @@ double World::Implementation::available_length(int index) const {
   const int n = cable.state.segments();
   int stop = from_start ? n : 0;
   for (const Attachment& a : state.attachments) {
-    if (a.body != cable_id(index) || a.node == (from_start ? 0 : n)) continue;
+    if (a.body != cable_id(index) || a.node == (from_start ? 0 : n) || a.guide >= 0) continue;
     stop = from_start ? std::min(stop, a.node) : std::max(stop, a.node);
   }
   const int step = from_start ? 1 : -1;
@@ -122,7 +111,7 @@ double World::Implementation::slack_at_winch(int index) const {
   const int end = from_start ? 0 : cable.state.segments();
   const Attachment *winch = nullptr, *next = nullptr;
   for (const Attachment& a : state.attachments) {
-    if (a.body != cable_id(index)) continue;
+    if (a.body != cable_id(index) || a.guide >= 0) continue;
     if (a.node == end) {
       winch = &a;
     } else if (!next || std::abs(a.node - end) < std::abs(next->node - end)) {
@@ -226,6 +215,16 @@ void World::Implementation::after_remeshing(int index) {
   begin_anew(state.cables[index].state.unresolved);
   find_targets_of(index);
   forget_contacts(index);
+}
+
+/// What of the cable has come to its guides goes through.
+void World::Implementation::pass_nodes_of(int index) {
+  if (!pass_nodes(index, state)) return;
+  findings.intrusions.erase(std::remove_if(findings.intrusions.begin(), findings.intrusions.end(),
+                                           [&](const Intrusion& intrusion) { return intrusion.cable == index; }),
+                            findings.intrusions.end());
+  after_remeshing(index);
+  move_with_guides(index, state);
 }
 
 /// What names segments of a cable names others now.

@@ -15,6 +15,11 @@ void Bending::resize(int segments) {
     a->assign(nodes, 0.0);
   for (VectorArray* a : {&start_, &change_, &moment_, &turned_}) a->assign(nodes, 0.0);
   clamps_.reserve(2 * nodes);
+  segment_.assign(nodes, 0.0);
+  rest_lengths_.assign(nodes, 0.0);
+  flexible_.assign(nodes, 1.0);
+  growing_.reserve(nodes);
+  changing_.reserve(2 * nodes);
 }
 
 void Bending::start(const CableModel& model, const CableState& state, const VectorArray& segment,
@@ -43,7 +48,95 @@ void Bending::start(const CableModel& model, const CableState& state, const Vect
   for (const HeldDirection& target : directions) stiffness_[target.node] = damping_[target.node] = 0;
   find_clamp_joints(
       model, state, directions, [&segment](int i) { return get(segment, i); }, h, part, clamps_);
+  growing_.clear();
+  changing_.clear();
+  bending_stiffness_ = stiffness;
+  is_damped_ = damping > 0;
   if (is_damped_) turn_with_material(model, state, segment, directions, h);
+}
+
+void Bending::start_flows(const CableState& state, const VectorArray& segment, const std::vector<GuidedFlow>& flows) {
+  if (!active_) return;
+  segment_ = segment;
+  for (int i = 0; i < segments_; ++i) rest_lengths_[i] = state.rest_lengths[i];
+  for (int i = 0; i <= segments_; ++i) flexible_[i] = state.bending_length(i, 1);
+  // A wheel gives the cable its shape: no moment leaves it.
+  for (const GuidedFlow& flow : flows)
+    if (flow.first != flow.last)
+      for (const int node : {flow.first, flow.last}) stiffness_[node] = damping_[node] = 0;
+}
+
+void Bending::forget_flows() {
+  for (GrowingSegment& growing : growing_) growing.end = growing.start;
+}
+
+void Bending::add_flow(int before, int after, double way) {
+  if (!active_) return;
+  grow(before, -way);
+  grow(after, way);
+  for (const int segment : {before, after})
+    for (const int node : {segment, segment + 1})
+      if (node > 0 && node < segments_) set_changing(node);
+}
+
+void Bending::grow(int segment, double growth) {
+  auto growing = std::find_if(growing_.begin(), growing_.end(), [&](const GrowingSegment& g) { return g.segment == segment; });
+  if (growing == growing_.end())
+    growing = growing_.insert(growing_.end(), {segment, rest_lengths_[segment], rest_lengths_[segment]});
+  growing->end += growth;
+  const double start = 1 / growing->start;
+  inverse_length_[segment] = start + part_ * (1 / growing->end - start);
+}
+
+void Bending::set_changing(int node) {
+  auto changing = std::find_if(changing_.begin(), changing_.end(), [&](const ChangingJoint& c) { return c.node == node; });
+  if (changing == changing_.end()) changing = changing_.insert(changing_.end(), {node, stiffness_[node], stiffness_[node]});
+  if (changing->start == 0) return;
+  double length = rest_lengths_[node - 1] + rest_lengths_[node];
+  for (const GrowingSegment& growing : growing_) {
+    if (growing.segment != node - 1 && growing.segment != node) continue;
+    length += growing.end - growing.start;
+  }
+  changing->end = bending_stiffness_ / (flexible_[node] * 0.5 * length);
+  stiffness_[node] = changing->start + part_ * (changing->end - changing->start);
+}
+
+/// What the vectorised loop over all joints does not know: the changes of direction are those of segments that grow.
+void Bending::add_growth(const VectorArray& displacement) {
+  for (const GrowingSegment& g : growing_) {
+    const int i = g.segment;
+    const Vector3 moved = get(displacement, i + 1) - get(displacement, i);
+    const double start = 1 / g.start, end = 1 / g.end;
+    const Vector3 growth = (end - inverse_length_[i]) * moved + (end - start) * get(segment_, i);
+    if (i > 0) set(change_, i, get(change_, i) + growth);
+    if (i + 1 < segments_) set(change_, i + 1, get(change_, i + 1) - growth);
+  }
+  for (const ChangingJoint& joint : changing_)
+    end_square_[joint.node] = (get(start_, joint.node) + get(change_, joint.node)).squaredNorm();
+}
+
+double Bending::flow_force(int before, int after, const VectorArray& middle) const {
+  if (!active_) return 0;
+  double force = 0;
+  const auto moment = [&](int node) -> Vector3 { return node > 0 && node < segments_ ? get(moment_, node) : Vector3::Zero(); };
+  for (const GrowingSegment& g : growing_) {
+    const int i = g.segment;
+    if (i != before && i != after) continue;
+    const double sign = i == before ? -1 : 1;
+    const double slope = part_ == 1 ? -1 / (g.end * g.end) : -1 / (g.start * g.end);
+    force -= sign * slope * get(middle, i).dot(moment(i) - moment(i + 1));
+  }
+  for (const ChangingJoint& joint : changing_) {
+    if (joint.start == 0) continue;
+    // Of the mean of the lengths of the two segments at it.
+    const double share = 0.5 * ((joint.node == after || joint.node == after + 1) - (joint.node == before || joint.node == before + 1));
+    if (share == 0) continue;
+    const double start = angle_energy(0.5 * start_square_[joint.node]), end = angle_energy(0.5 * end_square_[joint.node]);
+    const double energy = part_ == 1 ? end : 0.5 * (start + end);
+    const double slope = part_ == 1 ? joint.end * joint.end : joint.start * joint.end;
+    force += share * flexible_[joint.node] * slope / bending_stiffness_ * energy;
+  }
+  return force;
 }
 
 void Bending::resist_all_changes() {
@@ -76,6 +169,7 @@ void Bending::add_segment_forces(const VectorArray& displacement, VectorArray& p
       square[i] += end * end;
     }
   }
+  if (!growing_.empty()) add_growth(displacement);
   for (int i = 1; i < segments_; ++i) slope_[i] = stiffness_[i] * mean_slope(0.5 * start_square_[i], 0.5 * end_square_[i]);
   for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) {
     const double *w = inverse_length_.data(), *e = (start_.*component).data(), *change = (change_.*component).data();

@@ -30,6 +30,14 @@ class Bending {
   bool active() const { return active_; }
   /// Damping resists what turns with the material, too: it always takes energy then.
   void resist_all_changes();
+  /// After `start`, where material flows through guides; the segments at the start [m].
+  void start_flows(const CableState& state, const VectorArray& segment, const std::vector<GuidedFlow>& flows);
+  /// Before the ways of all flows are added: from segment `before` to segment `after`, by `way` [m] in the substep.
+  void forget_flows();
+  void add_flow(int before, int after, double way);
+  /// What of the energy drives such a flow [N], for the forces that `add_segment_forces` found last. `middle`: the segments
+  /// where forces are taken [m].
+  double flow_force(int before, int after, const VectorArray& middle) const;
   bool is_damped() const { return active_ && is_damped_; }
   double damping(int node) const { return damping_[node]; }      ///< damping / (length h) [N m]
   Vector3 turned(int node) const { return get(turned_, node); }  ///< change of e that turns with the material
@@ -55,6 +63,26 @@ class Bending {
   bool is_damped_ = false;
   int segments_ = 0;
   double part_ = 0.5;
+  /// A segment whose rest length changes in the substep [m].
+  struct GrowingSegment {
+    int segment = 0;
+    double start = 0, end = 0;
+  };
+  /// A joint beside one, whose stiffness [N m] changes.
+  struct ChangingJoint {
+    int node = 0;
+    double start = 0, end = 0;
+  };
+  void grow(int segment, double growth);
+  void set_changing(int node);
+  void add_growth(const VectorArray& displacement);
+
+  double bending_stiffness_ = 0;             // [N m^2]
+  VectorArray segment_;                      // at the start [m]; where there are flows
+  std::vector<double> rest_lengths_;         // segments, at the start [m]; where there are flows
+  std::vector<double> flexible_;             // nodes: how much of the length around them bends; likewise
+  std::vector<GrowingSegment> growing_;
+  std::vector<ChangingJoint> changing_;
   std::vector<double> inverse_length_;       // segments [1/m]
   std::vector<double> stiffness_, damping_;  // nodes: EI / l and damping / (l h) [N m]; 0 at ends and clamps
   VectorArray start_;                        // nodes: e at the start

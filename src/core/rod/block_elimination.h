@@ -27,6 +27,8 @@ struct KktSystem {
   std::vector<double> compliance;  ///< n, >= 0
   VectorArray load;                ///< N
   std::vector<double> gap;         ///< n
+  /// Where material flows through guides: what their equations lack [N], one a flow; see CableStepper::let_flow
+  std::vector<double> flow_load;
   bool moves_held = false;         ///< whether held nodes are displaced
   VectorArray held_displacement;   ///< N, read where movable is 0
   bool stiffened = false;          ///< whether there are added blocks

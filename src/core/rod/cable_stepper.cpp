@@ -80,10 +80,18 @@ SubstepResult CableStepper::advance(const Substep& s, CableState& state) {
 void CableStepper::begin(const Substep& s, const CableState& state, SubstepResult& result) {
   load(s, state);
   hold(s.boundary.nodes);
+  flows_.resize(s.boundary.flows.size());
+  for (std::size_t k = 0; k < flows_.size(); ++k) {
+    flows_[k].first = s.boundary.flows[k].first;
+    flows_[k].last = s.boundary.flows[k].last;
+    flows_[k].before = flows_[k].first - 1;
+    flows_[k].after = flows_[k].last;
+  }
   result.overstretched_node = reachable_lengths(s.model, state, s.boundary.nodes, target_length_);
   set_loads(s, state);
   set_growth(s);
   start_bending(s, state);
+  start_flows(s, state);
   if (state.directors.empty())
     rod_.leave_out();
   else
@@ -91,6 +99,7 @@ void CableStepper::begin(const Substep& s, const CableState& state, SubstepResul
   twist_.start(s.model, state, s.spans, s.damping_time(), s.part());
   fluid_.start(s.environment.fluid, s.environment.gravity, s.model, state, s.damping_time());
   predict(s.h);
+  predict_flows(s);
 }
 
 void CableStepper::finish(const Substep& s, bool struck, CableState& state, SubstepResult& result) {
@@ -98,6 +107,7 @@ void CableStepper::finish(const Substep& s, bool struck, CableState& state, Subs
     for (int i = 0; i <= segments_; ++i) result.displacement = std::max(result.displacement, get(displacement_, i).norm());
   react(s, state.masses);
   move(s);
+  finish_flows(s, state);
   const bool damped = !s.statics && s.scheme != Scheme::conserving;
   if (damped && s.boundary.nodes.empty()) restore_momenta(s, state.masses);
   if (!s.statics && s.boundary.nodes.empty()) restore_angular_momentum(s, state.masses);
@@ -183,7 +193,8 @@ void CableStepper::set_loads(const Substep& s, const CableState& state) {
   }
   both_held_.clear();
   for (std::size_t k = 0; k + 1 < held.size(); ++k)
-    if (held[k].node + 1 == held[k + 1].node && held[k].body == held[k + 1].body) both_held_.push_back(held[k].node);
+    if (held[k].node + 1 == held[k + 1].node && held[k].body == held[k + 1].body && !grows(held[k].node))
+      both_held_.push_back(held[k].node);
 }
 
 /// At a winch the material moves through the end node.
@@ -243,7 +254,7 @@ bool CableStepper::solve(const Substep& s, const CableState& state, SubstepResul
     ++result.iterations;
     const double size = correct();
     if (!(size < largest_correction)) return false;
-    if (convergence.is_reached(size)) return true;
+    if (convergence.is_reached(size) && flows_are_consistent(s)) return true;
     stale = i > 0 && convergence.ratio() > slow_convergence;
   }
   return false;
@@ -251,6 +262,7 @@ bool CableStepper::solve(const Substep& s, const CableState& state, SubstepResul
 
 /// Residuals of the equations of motion and of the tension laws at the present iterate.
 void CableStepper::evaluate(const Substep& s, const CableState& state) {
+  if (!flows_.empty()) set_flow_lengths(s);
   std::fill(end_square_.begin(), end_square_.end(), 0.0);
   for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) evaluate_segments(s.part(), component);
   if (bending_.active()) add_bending_pulls();
@@ -266,6 +278,7 @@ void CableStepper::evaluate(const Substep& s, const CableState& state) {
   }
   for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) evaluate_nodes(component);
   if (fluid_.active()) fluid_.add_loads(state.rest_lengths, middle_, position_, displacement_, system_.load);
+  if (!flows_.empty()) evaluate_flows(s);
 }
 
 void CableStepper::evaluate_segments(double part, Component component) {
@@ -303,21 +316,23 @@ inline void CableStepper::evaluate_rigid_length(int i) {
 }
 
 void CableStepper::evaluate_elastic_lengths(const Substep& sub, const std::vector<double>& rest_lengths) {
-  const double part = sub.part();
   for (int i = 0; i < segments_; ++i) {
-    if (any_rigid_ && !is_elastic_at(i)) {
+    if (any_rigid_ && !is_elastic_at(i))
       evaluate_rigid_length(i);
-      continue;
-    }
-    const double stiffness = axial_stiffness_[i];
-    const double rest = rest_lengths[i], s = std::sqrt(end_square_[i]), mean = length_[i] + part * (s - length_[i]);
-    const double damping = axial_damping_[i] / (sub.damping_time() * rest);
-    const double excess =
-        stiffness / rest * (mean - rest) + damping * (s - length_[i] - rest_growth_[i]) - tension_density_[i] * mean;
-    const double slope = part * (stiffness / rest - tension_density_[i]) + damping;
-    system_.gap[i] = -excess * s / slope;
-    system_.compliance[i] = s * mean / slope;
+    else
+      evaluate_elastic_length(sub, i, rest_lengths[i]);
   }
+}
+
+void CableStepper::evaluate_elastic_length(const Substep& sub, int i, double rest) {
+  const double stiffness = axial_stiffness_[i], part = sub.part();
+  const double s = std::sqrt(end_square_[i]), mean = length_[i] + part * (s - length_[i]);
+  const double damping = axial_damping_[i] / (sub.damping_time() * rest);
+  const double excess =
+      stiffness / rest * (mean - rest) + damping * (s - length_[i] - rest_growth_[i]) - tension_density_[i] * mean;
+  const double slope = part * (stiffness / rest - tension_density_[i]) + damping;
+  system_.gap[i] = -excess * s / slope;
+  system_.compliance[i] = s * mean / slope;
 }
 
 void CableStepper::assemble(double part) {
@@ -344,6 +359,11 @@ void CableStepper::assemble_segments(double part, const std::vector<double>& den
 }
 
 void CableStepper::factor() {
+  factor_segments();
+  if (!flows_.empty()) factor_flows();
+}
+
+void CableStepper::factor_segments() {
   if (rod_.active())
     rod_.factor(system_);
   else
@@ -351,6 +371,11 @@ void CableStepper::factor() {
 }
 
 void CableStepper::solve_linear() {
+  solve_segments();
+  if (!flows_.empty()) let_flow();
+}
+
+void CableStepper::solve_segments() {
   if (rod_.active())
     rod_.solve(system_);
   else
@@ -367,6 +392,13 @@ const std::vector<double>& CableStepper::multiplier_correction() const {
 
 void CableStepper::set_correction(const VectorArray& displacement, const std::vector<double>& multiplier) {
   solver_.set_solution(displacement, multiplier);
+  // The way is what the rows of the segments that grow lack.
+  for (Flow& flow : flows_) {
+    const int i = flow.after;
+    const Vector3 between = get(displacement, i + 1) - get(displacement, i);
+    const double lacking = get(system_.direction, i).dot(between) - system_.compliance[i] * multiplier[i] - system_.gap[i];
+    flow.correction = lacking / flow.gap[1];
+  }
 }
 
 /// Applies the solution; the largest correction, in segment lengths or angles.
@@ -375,6 +407,7 @@ double CableStepper::correct() {
   for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z})
     add(delta.*component, segments_ + 1, displacement_.*component);
   add(multiplier_correction(), segments_, tension_density_);
+  if (!flows_.empty() && !correct_flows(1)) return infinity;
   Pair largest{}, sum{};
   for (int i = 0; i <= segments_; i += 2) {
     const PairVector d = neighbours(delta, i);
@@ -454,6 +487,7 @@ void CableStepper::exchange_loads() {
   std::swap(system_.load, kept_load_);
   std::swap(system_.gap, kept_gap_);
   std::swap(rod_.torque(), kept_torque_);
+  std::swap(system_.flow_load, kept_flow_load_);
 }
 
 void CableStepper::begin_projection(const Substep& s, const CableState& state) {
@@ -502,6 +536,7 @@ void CableStepper::take_back(double part) {
   const VectorArray& delta = correction();
   for (int i = 0; i <= segments_; ++i) set(displacement_, i, get(displacement_, i) - part * get(delta, i));
   for (int i = 0; i < segments_; ++i) tension_density_[i] -= part * multiplier_correction()[i];
+  if (!flows_.empty()) correct_flows(-part);
   if (rod_.active()) rod_.correct(-part);
 }
 
@@ -571,7 +606,9 @@ void CableStepper::project(const Substep& s, const std::vector<double>& masses) 
     pivot_[i] = 1;
     off_[i] = off_[std::max(i - 1, 0)] = impulse_[i] = 0;
   }
+  if (!flows_.empty()) project_flows(s);
   solve_tridiagonal(pivot_, off_, impulse_, n);
+  if (!flows_.empty()) push_flows(s);
   for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) {
     const double *d = (segment_.*component).data(), *w = inverse_mass_.data(), *impulse = impulse_.data();
     double* v = (end_velocity_.*component).data();
@@ -646,14 +683,19 @@ void CableStepper::clean(const Substep& s, const std::vector<double>& start_mult
 
 void CableStepper::take_out_unresolved(const Substep& s, CableState& state) {
   assemble_for_velocities();
-  factor();
+  factor_segments();
   std::fill(growth_.begin(), growth_.end(), 0.0);
   for (const GrowingSegment& growing : s.boundary.growing)
     growth_[growing.segment] = target_length_[growing.segment] * growing.growth;
+  for (std::size_t k = 0; k < flows_.size(); ++k) {
+    const double rate = s.boundary.flows[k].rate;
+    growth_[flows_[k].before] -= target_length_[flows_[k].before] * rate;
+    growth_[flows_[k].after] += target_length_[flows_[k].after] * rate;
+  }
   cleaner_.load(s.h, s.model, state, inertia_, segment_, end_velocity_, growth_, system_);
   for (const int i : both_held_) system_.gap[i] = 0;
   if (rod_.active()) std::fill(rod_.torque().begin(), rod_.torque().end(), 0.0);
-  solve_linear();
+  solve_segments();
   const double share = cleaner_.take_out(s.h, s.boundary.nodes, correction(), position_, state);
   // What is taken out is what forces in the cable do: its holders feel them, too.
   for (HeldNode& target : s.boundary.nodes) target.force += 0.5 * share * s.h * corrected_load(target.node);
@@ -680,6 +722,7 @@ void CableStepper::react(const Substep& s, const std::vector<double>& masses) {
     target.force = corrected_load(i) + s.inertia() * mass / s.h * (get(displacement_, i) / s.h - get(velocity_, i));
     if (!s.statics) target.force -= mass * (target.velocity - get(velocity_, i)) / s.h;
   }
+  if (!flows_.empty()) react_to_flows(s);
   if (bending_.active()) bending_.react(displacement_, s.boundary.directions);
   if (twist_.active()) twist_.react(s.boundary);
 }
@@ -726,11 +769,17 @@ double CableStepper::store(const Substep& s, CableState& state) const {
   const bool alternates = s.treatment != Treatment::none && state.unresolved.known > 0;
   double longest = 1, shortest = 1;  // squares, relative
   for (int i = 0; i < segments_; ++i) {
+    if (!flows_.empty() && lies_on_wheel(i)) {
+      state.tension[i] = state.last_tension[i] = state.axial_multiplier[i] = 0;
+      continue;
+    }
     const double square = get(segment_, i).squaredNorm();
     const double relative = square / (state.rest_lengths[i] * state.rest_lengths[i]);
     longest = std::max(longest, relative);
     shortest = std::min(shortest, relative);
-    const double length = is_elastic_at(i) ? length_[i] + part * (std::sqrt(square) - length_[i]) : target_length_[i];
+    const bool elastic = is_elastic_at(i);
+    double length = elastic ? length_[i] + part * (std::sqrt(square) - length_[i]) : target_length_[i];
+    if (!elastic && !flows_.empty() && grows(i)) length = length_[i] + part * (target_length_[i] - length_[i]);
     state.axial_multiplier[i] = tension_density_[i] * length;
     const double tension =
         bending_.active() || rod_.active() ? state.axial_multiplier[i] + force_along(i) : state.axial_multiplier[i];

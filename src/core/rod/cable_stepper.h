@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "guide/flow.h"
 #include "rod/bending.h"
 #include "rod/block_elimination.h"
 #include "rod/fluid_forces.h"
@@ -38,7 +39,7 @@ class CableStepper {
   void evaluate(const Substep& substep, const CableState& state);
   void assemble(double part);
   void factor();
-  void solve_linear();  ///< for the loads that `evaluate` found
+  void solve_linear();  ///< for the loads that `evaluate` found; material flows through guides as it is driven
   double correct();
   void take_back(double part);  ///< of the last correction
   /// `struck`: forces from outside have changed velocities abruptly.
@@ -90,11 +91,34 @@ class CableStepper {
   void evaluate_rigid_lengths();
   void evaluate_rigid_length(int segment);
   void evaluate_elastic_lengths(const Substep& substep, const std::vector<double>& rest_lengths);
+  void evaluate_elastic_length(const Substep& substep, int segment, double rest_length);
   void assemble_segments(double part, const std::vector<double>& density, const VectorArray& direction);
   void react(const Substep& substep, const std::vector<double>& masses);
   void exchange_loads();
   void solve_for_motion(const Boundary& boundary, const HolderMotion& motion);
   KktSolution& solution() { return rod_.active() ? rod_.elimination().solution() : solver_.solution(); }
+  // Flows through guides: guide/flow_equations.cpp
+  void start_flows(const Substep& substep, const CableState& state);
+  void predict_flows(const Substep& substep);
+  void set_flow_lengths(const Substep& substep);
+  void evaluate_flows(const Substep& substep);
+  bool lies_on_wheel(int segment) const;
+  double energy_excess(const Substep& substep, int segment, double start_length) const;
+  Flow::Mode next_mode(const Substep& substep, const Flow& flow, const GuidedFlow& guided, double drive, double resistance_before,
+                       double resistance_after) const;
+  double sticking_way(const Substep& substep, const Flow& flow) const;
+  double end_rate(const Substep& substep, const Flow& flow) const;
+  void factor_flows();
+  void let_flow();
+  bool correct_flows(double part);
+  bool flows_are_consistent(const Substep& substep) const;
+  bool grows(int segment) const;
+  void react_to_flows(const Substep& substep);
+  void finish_flows(const Substep& substep, CableState& state);
+  void project_flows(const Substep& substep);
+  void push_flows(const Substep& substep);
+  void factor_segments();
+  void solve_segments();
   Vector3 corrected_load(int node) const;
   double force_along(int segment) const;
   void move(const Substep& substep);
@@ -139,9 +163,13 @@ class CableStepper {
   KktSystem system_;
   bool couples_second_ = false;  // the system's couplings to second neighbours are set
   BlockElimination solver_;
+  // Flows through guides
+  std::vector<Flow> flows_;
+  std::vector<double> flow_response_;  // for each two flows j, k: multipliers at k before and after it, of a unit of way of j
+  std::vector<double> flow_matrix_, flow_solution_, flow_gap_;
   // Loads that wait, and none
   VectorArray kept_load_;
-  std::vector<double> kept_gap_, kept_torque_;
+  std::vector<double> kept_gap_, kept_torque_, kept_flow_load_;
   KktSolution kept_solution_;
   // Velocity projection: a tridiagonal system
   std::vector<double> pivot_, off_, impulse_;  // segments

@@ -46,6 +46,8 @@ std::vector<Vector3> hanging(const CableModel& model, const CableState& state, c
   for (int i = held.front().node; i-- > 0;) nodes[i] = nodes[i + 1] + state.rest_lengths[i] * down;
   for (std::size_t k = 0; k + 1 < held.size(); ++k) {
     const int first = held[k].node, last = held[k + 1].node;
+    nodes[last] = held[k + 1].position;
+    if (held[k].slides && last == first + 1) continue;  // on a wheel, or as straight as it can be
     const std::vector<double> lengths(state.rest_lengths.begin() + first, state.rest_lengths.begin() + last);
     std::vector<double> weights;
     for (int i = first + 1; i < last; ++i) weights.push_back(weight * state.masses[i]);
@@ -172,7 +174,11 @@ void restore_lengths(const CableModel& model, const std::vector<HeldNode>& held,
   bool wrong = false;
   for (int i = 0; i < n; ++i) {
     const double length = (state.positions[i + 1] - state.positions[i]).norm();
+    const auto slides_at = [&](int node) {
+      return std::any_of(held.begin(), held.end(), [&](const HeldNode& h) { return h.slides && h.node == node; });
+    };
     if (is_elastic(materials[i])) lengths[i] = length;
+    if (slides_at(i) && slides_at(i + 1)) continue;
     wrong = wrong || std::abs(length - lengths[i]) > tolerated_length_error * lengths[i];
   }
   if (!wrong) return;

@@ -28,6 +28,13 @@ class LengthSystem {
     impulse_.resize(masses.size() - 1);
   }
 
+  /// What flows through guides has these velocities.
+  void set_flows(const CableModel& model, const CableState& state, std::vector<GuidedFlow>& flows) {
+    flows_ = &flows;
+    rest_lengths_ = &state.rest_lengths;
+    density_ = model.material.linear_density;
+  }
+
   /// Adds M^-1 J^T y to `vectors` for J M^-1 J^T y = changes, J from `positions`.
   void apply(const std::vector<Vector3>& positions, const std::vector<double>& changes, std::vector<Vector3>& vectors) {
     const std::size_t n = changes.size();
@@ -39,7 +46,9 @@ class LengthSystem {
       if (i + 1 < n) off_[i] = -mobility_[i + 1] * d.dot(positions[i + 2] - positions[i + 1]);
       if (i + 1 < n && (is_free(i) || is_free(i + 1))) off_[i] = 0;
     }
+    if (flows_) let_flow();
     solve_tridiagonal(diagonal_, off_, impulse_, static_cast<int>(n));
+    if (flows_) push_flows();
     Vector3 direction = positions[1] - positions[0];
     for (std::size_t i = 0; i < n; ++i) {
       const Vector3 impulse = impulse_[i] * direction;
@@ -55,6 +64,44 @@ class LengthSystem {
  private:
   bool is_free(std::size_t segment) const { return lengths_[segment] == 0; }
 
+  /// [kg] That moves with a flow; infinite where something holds it.
+  double mass_of(const GuidedFlow& flow) const {
+    if (flow.friction > 0 || flow.resistance > 0 || flow.is_blocked[0] || flow.is_blocked[1]) return infinity;
+    double length = 0.5 * ((*rest_lengths_)[flow.first - 1] + (*rest_lengths_)[flow.last]);
+    for (int i = flow.first; i < flow.last; ++i) length += (*rest_lengths_)[i];
+    return density_ * length + flow.inertia;
+  }
+
+  void let_flow() {
+    for (const GuidedFlow& flow : *flows_) {
+      const int i = flow.first - 1, j = flow.last;
+      const double before = (*rest_lengths_)[i], after = (*rest_lengths_)[j], mass = mass_of(flow);
+      impulse_[i] -= before * flow.rate;
+      impulse_[j] += after * flow.rate;
+      if (flow.first == flow.last) {
+        diagonal_[i] += before * before / mass;
+        diagonal_[j] += after * after / mass;
+        off_[i] = -before * after / mass;
+      } else if (mass < infinity) {
+        // The place of the segment on the wheel is that of the change of the rate.
+        diagonal_[flow.first] = -mass;
+        off_[i] = before;
+        off_[flow.first] = -after;
+      }
+    }
+  }
+
+  void push_flows() {
+    for (GuidedFlow& flow : *flows_) {
+      const int i = flow.first - 1, j = flow.last;
+      flow.rate += ((*rest_lengths_)[i] * impulse_[i] - (*rest_lengths_)[j] * impulse_[j]) / mass_of(flow);
+      if (flow.first != flow.last) impulse_[flow.first] = 0;
+    }
+  }
+
+  std::vector<GuidedFlow>* flows_ = nullptr;
+  const std::vector<double>* rest_lengths_ = nullptr;
+  double density_ = 0;
   std::vector<double> mobility_, diagonal_, off_, impulse_;
   const std::vector<double>& lengths_;
 };
@@ -121,7 +168,10 @@ bool project_lengths(const std::vector<HeldNode>& held, const std::vector<double
   return false;
 }
 
-void project_velocities(const CableModel& model, const std::vector<HeldNode>& held, CableState& state) {
+namespace {
+
+void project_velocities(const CableModel& model, const std::vector<HeldNode>& held, std::vector<GuidedFlow>* flows,
+                        CableState& state) {
   const std::vector<Vector3>& positions = state.positions;
   std::vector<Vector3>& velocities = state.velocities;
   for (const HeldNode& h : held) velocities[h.node] = h.velocity;
@@ -132,7 +182,19 @@ void project_velocities(const CableModel& model, const std::vector<HeldNode>& he
     changes[i] = -(positions[i + 1] - positions[i]).dot(velocities[i + 1] - velocities[i]);
   std::vector<double> lengths = state.rest_lengths;
   free_elastic(materials, lengths);
-  LengthSystem(state.masses, held, lengths).apply(positions, changes, velocities);
+  LengthSystem system(state.masses, held, lengths);
+  if (flows) system.set_flows(model, state, *flows);
+  system.apply(positions, changes, velocities);
+}
+
+}  // namespace
+
+void project_velocities(const CableModel& model, const std::vector<HeldNode>& held, CableState& state) {
+  project_velocities(model, held, nullptr, state);
+}
+
+void project_velocities(const CableModel& model, Boundary& boundary, CableState& state) {
+  project_velocities(model, boundary.nodes, &boundary.flows, state);
 }
 
 }  // namespace verlet_cable

@@ -169,7 +169,69 @@ class GuideChecker {
   std::map<std::string, Pose> frames_;            ///< at first, where they are known
 };
 
+/// What can be described, but is not simulated yet.
+class SimulationChecker {
+ public:
+  explicit SimulationChecker(const SceneDesc& scene) : scene_(scene) {}
+
+  std::vector<std::string> check() {
+    for (std::size_t i = 0; i < scene_.guides.size(); ++i) {
+      const GuideDesc& guide = scene_.guides[i];
+      const std::string key = indexed("guides", i);
+      if (!guide.body.empty())
+        errors_.add(key + ".body", quoted(guide.body), "none; guides are held by frames only, as yet");
+      if (guide.type == GuideDesc::Type::sheave && guide.friction_coefficient() < infinity && guide.inertia > 0)
+        errors_.add(key + ".friction", number_text(guide.friction_coefficient()),
+                    "infinity (.inf) where the wheel has inertia; a wheel that the cable slips on has none, as yet");
+      const auto cable = std::find_if(scene_.cables.begin(), scene_.cables.end(),
+                                      [&](const CableDesc& c) { return c.name == guide.cable; });
+      check_rod(key, *cable);
+      if (!cable->sections.empty())
+        errors_.add(key + ".cable", quoted(cable->name), "a cable of one material; others do not slide through guides, as yet");
+      const auto on_body = [](const AttachmentDesc& attachment) { return !attachment.body.empty(); };
+      if (std::any_of(cable->attachments.begin(), cable->attachments.end(), on_body))
+        errors_.add(key + ".cable", quoted(cable->name), "a cable that no body holds; others do not slide through guides, as yet");
+      if (guide.place) check_room(key, guide, *cable);
+    }
+    return errors_.take();
+  }
+
+ private:
+  void check_rod(const std::string& key, const CableDesc& cable) {
+    const MaterialDesc& material = *scene_.find_material(cable.material);
+    const bool bent = cable.rest_curvature.type != RestCurvatureDesc::Type::straight || cable.rest_twist != 0;
+    const double stiffness = std::max(material.bending_stiffness.largest(), material.torsional_stiffness);
+    if (!material.bending_stiffness.is_isotropic() || (bent && stiffness > 0))
+      errors_.add(key + ".cable", quoted(cable.name),
+                  "a cable that is straight unloaded and bends alike about all axes; others do not slide through guides, as yet");
+  }
+
+  /// Beside a guide there is cable on both sides, up to what else holds it.
+  void check_room(const std::string& key, const GuideDesc& guide, const CableDesc& cable) {
+    const double segment = cable.length / cable.segments, place = arc_length_of(cable, *guide.place);
+    const auto check = [&](double other, double least, const std::string& what) {
+      if (std::abs(place - other) >= least * segment * (1 - same_place)) return;
+      errors_.add(key + ".at", number_text(place),
+                  "a place at least " + rounded_bound_text(least * segment, 1) + " m from " + what + ", as yet");
+    };
+    check(0, 1, "the cable's start");
+    check(cable.length, 1, "the cable's end");
+    for (const AttachmentDesc& attachment : cable.attachments)
+      check(cable.length * node_at(cable, attachment.place) / cable.segments, 2, "attachment " + quoted(attachment.name));
+    for (const GuideDesc& other : scene_.guides)
+      if (&other < &guide && other.cable == guide.cable && other.place)
+        check(arc_length_of(cable, *other.place), 2, "guide " + quoted(other.name));
+  }
+
+  const SceneDesc& scene_;
+  Errors errors_;
+};
+
 }  // namespace
+
+std::vector<std::string> not_simulated_guides(const SceneDesc& scene) {
+  return SimulationChecker(scene).check();
+}
 
 void check_guides(const SceneDesc& scene, const SceneNames& scene_names, UniqueNames& names, Errors& errors) {
   GuideChecker(scene, scene_names, errors).check(names);

@@ -31,12 +31,20 @@ int reachable_lengths(const CableModel& model, const CableState& state, const st
   const CableMaterials materials(model, state);
   if (!materials.any_rigid()) return -1;
   int overstretched = -1;
-  for (std::size_t k = 0; k + 1 < held.size(); ++k) {
-    if (held[k].body >= 0 || held[k + 1].body >= 0) continue;  // they give way
-    const int first = held[k].node, last = held[k + 1].node;
+  std::size_t next = 0;
+  for (std::size_t k = 0; k + 1 < held.size(); k = next) {
+    // On to the next holder that the cable does not slide through.
+    bool gives_way = held[k].body >= 0 || held[k].slides;
+    double distance = 0;
+    for (next = k + 1;; ++next) {
+      distance += (held[next].position - held[next - 1].position).norm();
+      gives_way = gives_way || held[next].body >= 0;
+      if (!held[next].slides || next + 1 == held.size()) break;
+    }
+    if (gives_way || held[next].slides) continue;
+    const int first = held[k].node, last = held[next].node;
     if (materials.any_elastic_between(first, last)) continue;
     const double rest_length = state.length(first, last);
-    const double distance = (held[k + 1].position - held[k].position).norm();
     const double rounded = rounding * held[k].position.cwiseAbs().maxCoeff();
     if (distance > rest_length * (1 + reported_stretch) + rounded && overstretched < 0) overstretched = first;
     const double stretch = distance / rest_length;

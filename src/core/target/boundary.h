@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "guide/flow.h"
 #include "verlet_cable/core/cable.h"
 
 namespace verlet_cable {
@@ -17,6 +18,7 @@ struct HeldNode {
   int body = -1;
   Vector3 point = Vector3::Zero();  ///< [m] of the body that holds the node, in the axes of its frame
   double body_mass = 0;             ///< [kg]
+  bool slides = false;              ///< whether the cable's material flows through it
 };
 
 /// A clamp's direction and roll at the start and the end of a substep.
@@ -43,6 +45,7 @@ struct Boundary {
   std::vector<HeldNode> nodes;
   std::vector<HeldDirection> directions;
   std::vector<GrowingSegment> growing;
+  std::vector<GuidedFlow> flows;  ///< ascending likewise
 
   bool is_on_bodies() const;  ///< whether a body that moves freely holds any of it
 };
@@ -62,8 +65,8 @@ struct HolderLoads {
 };
 
 /// The lengths [m] that the segments can keep: their rest lengths, but longer between holders that are further apart
-/// than the cable between them is long, where none of it can stretch. Returns the first node of such a span, -1 if there is none.
-/// `held` ascends by node; `lengths`: one a segment.
+/// than the cable between them is long, by way of the guides that it slides through, where none of it can stretch. Returns the
+/// first node of such a span, -1 if there is none. `held` ascends by node; `lengths`: one a segment.
 int reachable_lengths(const CableModel& model, const CableState& state, const std::vector<HeldNode>& held,
                       std::vector<double>& lengths);
 

@@ -35,6 +35,7 @@ bool bends_at(const CableModel& model, const CableState& state, int node) {
 
 /// Where an attachment at `pose` wants its own node or one next to it.
 Vector3 target_position(const CableState& state, const Attachment& attachment, const Pose& pose, int node) {
+  if (attachment.guide >= 0) return pose.position + pose.orientation * attachment.tangent_points[node - attachment.node];
   if (node == attachment.node) return pose.position;
   const double side = node < attachment.node ? -1 : 1;
   return pose.position + side * state.rest_lengths[std::min(node, attachment.node)] * (pose.orientation * Vector3::UnitX());
@@ -92,7 +93,9 @@ std::vector<WantedNode> wanted_nodes(const CableModel& model, const CableState& 
                                      const Pose& frame) {
   const Pose pose = frame * attachment.pose;
   const int node = attachment.node;
-  std::vector<WantedNode> wanted{{node, pose.position}};
+  std::vector<WantedNode> wanted{{node, target_position(state, attachment, pose, node)}};
+  if (is_wheel(attachment))
+    wanted.push_back({node + 1, target_position(state, attachment, pose, node + 1)});
   if (attachment.type == AttachmentType::hinge || bends_at(model, state, node)) return wanted;
   if (node > 0) wanted.push_back({node - 1, target_position(state, attachment, pose, node - 1)});
   if (node < state.segments()) wanted.push_back({node + 1, target_position(state, attachment, pose, node + 1)});
@@ -144,6 +147,7 @@ KinematicTargets find_targets(const CableModel& model, const CableState& state, 
     }
   }
   const auto by_node = [](const auto& a, const auto& b) { return a.node < b.node; };
+  for (KinematicTarget& target : targets.nodes) target.slides = attachments[target.attachment].guide >= 0;
   std::sort(targets.nodes.begin(), targets.nodes.end(), by_node);
   std::sort(targets.directions.begin(), targets.directions.end(), by_node);
   return targets;
@@ -272,6 +276,7 @@ void hold_at(double from, double to, const KinematicTargets& targets, Boundary& 
     held.node = target.node;
     held.body = -1;
     held.body_mass = 0;
+    held.slides = target.slides;
     held.position = to == 1 ? target.next_position : target.position + to * (target.next_position - target.position);
     held.velocity = target.velocity + to * (target.next_velocity - target.velocity);
   }

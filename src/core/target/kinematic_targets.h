@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "target/boundary.h"
@@ -36,6 +37,7 @@ struct KinematicTarget {
   double last_excess = 0;                 ///< [m/s] in the last one
   double least_excess = 0;                ///< [m/s] of those between
   double greatest_excess = 0;             ///< [m/s] of those between
+  bool slides = false;                    ///< whether the cable's material flows through it
 };
 
 /// The motion of a direction and roll that a clamp holds, over a step.
@@ -128,6 +130,11 @@ void follow_bodies(const Boundary& boundary, KinematicTargets& targets);
 
 /// Takes over how whole rods are twisted at their clamps after a substep.
 void keep_twist(const Boundary& boundary, KinematicTargets& targets);
+
+/// Whether a cable slides through any of its holders.
+inline bool slides(const KinematicTargets& targets) {
+  return std::any_of(targets.nodes.begin(), targets.nodes.end(), [](const KinematicTarget& target) { return target.slides; });
+}
 
 /// What is held at the world's time.
 Boundary boundary_now(const KinematicTargets& targets);

@@ -35,6 +35,7 @@ struct World::Implementation {
   void count_step();
   int update_frames(const BoundaryInputs& inputs);
   void advance_winches();
+  void advance_guides();
   void build_islands();
   void advance_islands();
   void step_islands(std::size_t from, std::size_t to, IslandStepper& stepper);
@@ -82,6 +83,12 @@ struct World::Implementation {
   double available_length(int cable) const;
   double slack_at_winch(int cable) const;
   void remesh_winch(int cable);
+  void pass_nodes_of(int cable);
+  bool lets_go(int attachment) const;
+  void release_guide(int attachment);
+  void release_bare_guides();
+  void capture_cable(int guide);
+  void erase_attachment(int attachment);
   void add_winch_node(int cable);
   void take_in_winch_node(int cable);
   void close_joint(int cable);

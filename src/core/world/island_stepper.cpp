@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "guide/guides.h"
+#include "guide/node_passing.h"
 #include "rod/initial_shape.h"
 #include "rod/length_projection.h"
 #include "rod/rod_frames.h"
@@ -142,7 +144,10 @@ void update_targets(int index, State& state, CableOutcome& outcome) {
     measure_joint_twists(targets.directions, cable.state);
     note_status(Status::jumped, cable_id(index), following.jumping_node, outcome.result);
   }
-  if (!follows_bodies(targets, state.attachments)) project_velocities(*cable.model, boundary.nodes, cable.state);
+  if (follows_bodies(targets, state.attachments)) return;
+  load_flows(index, state, boundary);
+  project_velocities(*cable.model, boundary, cable.state);
+  keep_flows(index, boundary, state);
 }
 
 namespace {
@@ -274,6 +279,7 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     CableProgress& memory = state_.cable_progress[cable];
     CableWorkspace& work = workspace_.cables[k];
     hold_at(from, to, memory.targets, work.boundary);
+    load_flows(cable, state_, work.boundary);
     if (!island.bodies.empty())
       hold_on_bodies(c.state, state_.attachments, state_.bodies, state_.time(), memory.targets, work.boundary);
     const bool touches = workspace_.contacts.touched(k), on_bodies = work.boundary.is_on_bodies();
@@ -309,8 +315,10 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
   }
   if (converged) {
     if (!island.bodies.empty()) finish_bodies(island, from, to);
-    for (std::size_t k = 0; k < island.cables.size(); ++k)
+    for (std::size_t k = 0; k < island.cables.size(); ++k) {
       keep_twist(workspace_.cables[k].boundary, state_.cable_progress[island.cables[k]].targets);
+      keep_flows(island.cables[k], workspace_.cables[k].boundary, state_);
+    }
     workspace_.contacts.keep(workspace_.members);
   } else if (keeps) {
     take_back(island);
@@ -368,6 +376,7 @@ void IslandStepper::stop(const Island& island) {
     if (workspace_.cables[k].result.converged) continue;
     CableState& state = state_.cables[island.cables[k]].state;
     bring_to_rest(state);
+    stop_flows(island.cables[k], state_);
     std::fill(state.axial_multiplier.begin(), state.axial_multiplier.end(), 0.0);
     note_status(Status::degraded, cable_id(island.cables[k]), 0, outcomes_[island.cables[k]].result);
   }

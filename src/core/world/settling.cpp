@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "guide/guides.h"
+#include "guide/node_passing.h"
 #include "rod/length_projection.h"
 #include "rod/rod_frames.h"
 #include "verlet_cable/core/cable_materials.h"
@@ -155,8 +157,10 @@ bool Settling::settle_start() {
     if (!workspace_.contacts.touches().empty() || !workspace_.contacts.intrusions().empty()) {
       Approach touching(index_, true);
       touching.iterations = approach.iterations;
-      cable_.state = hanging;
-      turn_clamps(touching);
+      if (!slides(memory_.targets)) {
+        cable_.state = hanging;
+        turn_clamps(touching);
+      }
       settled = find_untwisted_equilibrium(touching);
     }
   }
@@ -171,13 +175,18 @@ void Settling::hold_still() {
   put_at_aim(memory_.targets);
   measure_joint_twists(memory_.targets.directions, cable_.state);
   hold_at(1, 1, memory_.targets, work_.boundary);
+  load_flows(index_, state_, work_.boundary);
   bring_to_rest(cable_.state);
+  stop_flows(index_, state_);
 }
 
 /// The holders move with their frames, and take along what cannot stretch.
 void Settling::complete() {
   keep_twist(work_.boundary, memory_.targets);
-  project_velocities(*cable_.model, work_.boundary.nodes, cable_.state);
+  stop_flows(index_, state_);
+  load_flows(index_, state_, work_.boundary);
+  project_velocities(*cable_.model, work_.boundary, cable_.state);
+  keep_flows(index_, work_.boundary, state_);
   add_forces(work_.boundary, memory_.targets, state_.frames.poses, 1, state_.attachments);
   follow_material();
 }
@@ -247,6 +256,7 @@ bool Settling::find_untwisted_equilibrium(Approach& approach) {
 bool Settling::find_equilibrium(Approach& approach) {
   double h = shortest_step(cable_);
   bool settled = relax(h, last_settling_step, maximum_settling_steps, approach);
+  if (slides(memory_.targets)) return settled;
   const CableState first = cable_.state;
   const std::vector<TwistSpan> first_spans = memory_.spans;
   for (int nudges = 0, trials = 0; settled;) {
@@ -276,6 +286,7 @@ bool Settling::relax(double h, double longest, int steps, Approach& approach) {
   int calm = 0;
   for (int i = 0; i < steps && approach.iterations > 0; ++i) {
     const SubstepResult substep = advance(approach, h);
+    if (substep.converged) pass_nodes_of_guides();
     // What inertia still carries of the loads.
     const double acceleration = 2 * substep.displacement / (h * h);
     const bool lies = touches(approach);
@@ -302,6 +313,22 @@ bool Settling::relax(double h, double longest, int steps, Approach& approach) {
     }
   }
   return false;
+}
+
+/// What of the cable has come to its guides goes through.
+void Settling::pass_nodes_of_guides() {
+  if (!slides(memory_.targets)) return;
+  if (pass_nodes(index_, state_)) {
+    begin_anew(cable_.state.unresolved);
+    bring_to_rest(cable_.state);
+    stop_flows(index_, state_);
+    work_.stepper.resize(cable_.state.segments());
+    keep_twist(work_.boundary, memory_.targets);
+    memory_.contacts.clear();
+    hold_at(1, 1, memory_.targets, work_.boundary);
+    memory_.spans = find_spans(cable_.state, work_.boundary.directions);
+  }
+  load_flows(index_, state_, work_.boundary);
 }
 
 /// Whether a cable that is nudged goes away from its equilibrium instead of back; it is then left on its way, which steps of `h`

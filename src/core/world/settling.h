@@ -41,6 +41,7 @@ class Settling {
   bool find_untwisted_equilibrium(Approach& approach);
   bool find_equilibrium(Approach& approach);
   bool relax(double h, double longest, int steps, Approach& approach);
+  void pass_nodes_of_guides();
   bool leaves_equilibrium(Approach& approach, double& h);
   bool leaves_when_let_go(Approach& approach, double& h);
   SubstepResult advance(Approach& approach, double h);

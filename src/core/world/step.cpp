@@ -37,6 +37,7 @@ void World::Implementation::begin_step(const BoundaryInputs& inputs, StepResult&
   count_step();
   result.ignored_frame = update_frames(inputs);
   advance_winches();
+  advance_guides();
   build_islands();
 }
 
@@ -59,6 +60,8 @@ void World::Implementation::count_step() {
   ++state.steps;
   findings.breaks.clear();
   findings.excursions.clear();
+  findings.caught.clear();
+  findings.released.clear();
   findings.jumps.clear();
   findings.intrusions.clear();
   findings.contacts.clear();

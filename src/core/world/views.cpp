@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "guide/guides.h"
 #include "rod/bending.h"
 #include "rod/joint_views.h"
 #include "rod/kirchhoff_rod.h"
@@ -64,6 +65,25 @@ const std::vector<Attachment>& World::attachments() const {
 const std::vector<SimulatedGuide>& World::guides() const {
   return implementation_->state.guides;
 }
+GuideView World::view_guide(int guide) const {
+  GuideView view;
+  for (const Attachment& attachment : attachments()) {
+    if (attachment.guide != guide) continue;
+    view.cable = attachment.body.index;
+    const CableState& cable = cables()[view.cable].state;
+    const int first = attachment.node, last = is_wheel(attachment) ? first + 1 : first;
+    view.arc_length = cable.length(0, first) + 0.5 * cable.length(first, last);
+    // Half a segment before and after it weighs, and is accelerated.
+    const double density = cables()[view.cable].model->material.linear_density;
+    const Vector3 gravity = implementation_->state.scene->gravity.at(cable.positions[first]);
+    const auto half = [&](int i) {
+      const Vector3 along = (cable.positions[i + 1] - cable.positions[i]).normalized();
+      return 0.5 * density * cable.rest_lengths[i] * (gravity.dot(along) - guides()[guide].flow_acceleration);
+    };
+    view.tension = {cable.tension[first - 1] - half(first - 1), cable.tension[last] + half(last)};
+  }
+  return view;
+}
 const std::vector<Obstacle>& World::obstacles() const {
   return implementation_->state.obstacles;
 }
@@ -85,6 +105,10 @@ int find(const std::vector<SimulatedBody>& bodies, const std::string& name) {
 
 int find(const std::vector<Attachment>& attachments, const std::string& name) {
   return index_of(attachments, [&](const Attachment& attachment) { return attachment.name == name; });
+}
+
+int find(const std::vector<SimulatedGuide>& guides, const std::string& name) {
+  return index_of(guides, [&](const SimulatedGuide& guide) { return guide.name == name; });
 }
 
 Energy World::energy() const {
@@ -110,8 +134,13 @@ Energy World::energy() const {
       const double torsion = torsional_stiffness_at(materials, i);
       energy.twist += 0.5 * torsion * cable.state.rest_lengths[i] * cable.state.twist[i] * cable.state.twist[i];
     }
+    const auto lies_on_wheel = [&](int i) {
+      return std::any_of(attachments().begin(), attachments().end(), [&](const Attachment& a) {
+        return a.body == cable_id(static_cast<int>(k)) && is_wheel(a) && a.node == i;
+      });
+    };
     for (int i = 0; i < cable.state.segments(); ++i) {
-      if (!is_elastic(materials[i])) continue;
+      if (!is_elastic(materials[i]) || (!guides().empty() && lies_on_wheel(i))) continue;
       const double e = strain(cable.state, i);
       energy.stretch += 0.5 * materials[i].axial_stiffness * cable.state.rest_lengths[i] * e * e;
     }
@@ -121,6 +150,7 @@ Energy World::energy() const {
     energy.kinetic += 0.5 * body.mass * body.velocity.squaredNorm() + 0.5 * spin.dot(body.inertia * spin);
     energy.gravity += body.mass * gravity.potential_at((body.pose * Pose{body.center_of_mass}).position);
   }
+  energy.kinetic += flow_energy(implementation_->state);
   implementation_->add_net_energy(energy);
   return energy;
 }

@@ -7,11 +7,14 @@
 #include <utility>
 
 #include "body/make_body.h"
+#include "guide/guides.h"
+#include "guide/node_passing.h"
 #include "rod/initial_shape.h"
 #include "rod/length_projection.h"
 #include "rod/rest_curvature.h"
 #include "rod/rod_frames.h"
 #include "rod/stiff_ends.h"
+#include "scene/validate_guides.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/rotation.h"
@@ -71,11 +74,20 @@ CableState make_state(const CableModel& model, const CableDesc& desc) {
   return state;
 }
 
+bool frame_known(const std::string& name, const FrameIds& ids, const BoundaryInputs& inputs) {
+  const auto frame = static_cast<std::size_t>(ids.at(name));
+  return frame == 0 || (frame < inputs.size() && inputs[frame].known && is_sound(inputs[frame].pose));
+}
+
 template <class Desc>
 bool frames_known(const Desc& desc, const FrameIds& ids, const BoundaryInputs& inputs) {
-  return std::all_of(desc.attachments.begin(), desc.attachments.end(), [&](const auto& attachment) {
-    const auto frame = static_cast<std::size_t>(ids.at(attachment.frame));
-    return frame == 0 || (frame < inputs.size() && inputs[frame].known && is_sound(inputs[frame].pose));
+  return std::all_of(desc.attachments.begin(), desc.attachments.end(),
+                     [&](const auto& attachment) { return frame_known(attachment.frame, ids, inputs); });
+}
+
+bool guides_known(const SceneDesc& scene, const CableDesc& desc, const FrameIds& ids, const BoundaryInputs& inputs) {
+  return std::all_of(scene.guides.begin(), scene.guides.end(), [&](const GuideDesc& guide) {
+    return guide.cable != desc.name || !guide.place || frame_known(guide.frame, ids, inputs);
   });
 }
 
@@ -139,7 +151,7 @@ World::World(const SceneDesc& scene, const BoundaryInputs& inputs, const std::at
 World::World(const SceneDesc& scene) : implementation_(std::make_unique<Implementation>()) {
   std::vector<std::string> errors = validate(scene);
   if (!scene.junctions.empty()) errors.push_back("junctions: " + std::to_string(scene.junctions.size()) + "; allowed: none yet");
-  if (!scene.guides.empty()) errors.push_back("guides: " + std::to_string(scene.guides.size()) + "; allowed: none yet");
+  if (errors.empty()) errors = not_simulated_guides(scene);
   if (!errors.empty()) throw SceneError(std::move(errors));
   Implementation& w = *implementation_;
   w.state.scene = std::make_shared<const SceneDesc>(scene);
@@ -174,7 +186,8 @@ int World::start_waiting(const BoundaryInputs& inputs) {
   const FrameIds ids = w.state.frames.ids();
   const SceneDesc& scene = *w.state.scene;
   const std::vector<int> cables = take_out(w.state.waiting_cables, [&](int i) {
-    return frames_known(scene.cables[i], ids, inputs) && w.has_bodies_of(scene.cables[i]);
+    return frames_known(scene.cables[i], ids, inputs) && guides_known(scene, scene.cables[i], ids, inputs) &&
+           w.has_bodies_of(scene.cables[i]);
   });
   const std::vector<int> nets = take_out(w.state.waiting_nets, [&](int i) { return frames_known(scene.nets[i], ids, inputs); });
   if (cables.empty() && nets.empty()) return 0;
@@ -270,6 +283,7 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
     own.push_back(static_cast<int>(state.attachments.size()));
     state.attachments.push_back(attachment);
   }
+  add_guides(desc, index, ids, *cable.model, cable.state, state, own);
   // The holders catch the nodes where they want them: there is no gap to close.
   CableProgress memory;
   memory.id = state.new_cable_id();
@@ -292,8 +306,8 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
     findings.misfits.push_back(desc.name);
   // Where velocities of holders are not known yet, the first step finds them, and all go together.
   const auto starts = [](const KinematicTarget& target) { return target.starts; };
-  if (std::none_of(memory.targets.nodes.begin(), memory.targets.nodes.end(), starts))
-    project_velocities(*cable.model, boundary.nodes, cable.state);
+  const bool moves = std::none_of(memory.targets.nodes.begin(), memory.targets.nodes.end(), starts);
+  if (moves) project_velocities(*cable.model, boundary.nodes, cable.state);
   cable.state.twist.assign(cable.state.segments(), 0.0);
   cable.state.reference_orientation = smallest_rotation(Vector3::UnitX(), cable.state.positions[1] - cable.state.positions[0]);
   set_stiff_ends(desc.stiff_ends, cable.state);
@@ -307,6 +321,7 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   const bool held = !memory.targets.nodes.empty();
   state.cables.push_back(std::move(cable));
   state.cable_progress.push_back(std::move(memory));
+  if (moves && slides(state.cable_progress[index].targets)) move_with_guides(index, state);
   if (settles && held && !Settling(index, state, workspaces.value.local(), cancelled).settle_start())
     findings.unsettled.push_back(desc.name);
   place_bodies_on(placing);

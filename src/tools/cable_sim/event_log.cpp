@@ -54,6 +54,7 @@ void EventLog::observe(const World& world, const StepResult& result, const std::
   add_breaks(world);
   add_excursions(world);
   add_jumps(world);
+  add_guides(world);
   add_intrusions(world);
   for (const int frame : held_back) {
     const std::string& name = world.frames()[static_cast<std::size_t>(frame)];
@@ -110,6 +111,17 @@ void EventLog::add_jumps(const World& world) {
     told->second = jump.time;
     add({jump.time, "JUMPED", name_of(world, attachment.body), attachment.node, frame, jump_text(world, jump), ""});
   }
+}
+
+void EventLog::add_guides(const World& world) {
+  const auto add_all = [&](const std::vector<int>& guides, const char* type, const char* message) {
+    for (const int guide : guides) {
+      const SimulatedGuide& g = world.guides()[static_cast<std::size_t>(guide)];
+      add({world.time(), type, g.cable, -1, world.frames()[static_cast<std::size_t>(g.frame)], g.name + message, g.name});
+    }
+  };
+  add_all(world.findings().caught, "CAUGHT", " has taken the cable");
+  add_all(world.findings().released, "RELEASED", " has let the cable go");
 }
 
 void EventLog::add_intrusions(const World& world) {

@@ -33,6 +33,7 @@ class EventLog {
 
   /// Jumps that the last step found to be over.
   void add_jumps(const World& world);
+  void add_guides(const World& world);
 
   /// Cables that hang instead of having the shape they were given, or found no equilibrium.
   void add_starts(const World& world);

@@ -35,8 +35,11 @@ Json bodies_json(const World& world) {
 
 Json guides_json(const World& world) {
   Json json = Json::object();
-  for (const SimulatedGuide& guide : world.guides())
-    json[guide.name] = {{"arc_length", guide.arc_length}, {"tension", guide.tension}};
+  for (std::size_t guide = 0; guide < world.guides().size(); ++guide) {
+    const GuideView view = world.view_guide(static_cast<int>(guide));
+    if (view.cable < 0) continue;
+    json[world.guides()[guide].name] = {{"arc_length", view.arc_length}, {"tension", {view.tension[0], view.tension[1]}}};
+  }
   return json;
 }
 
@@ -72,6 +75,7 @@ void Summary::add_step(const World& world, const StepResult& result, std::chrono
   max_strain_ = std::max(max_strain_, result.max_strain);
   extremes_.add(world);
   for (const Attachment& attachment : world.attachments()) {
+    if (attachment.guide >= 0) continue;
     std::vector<Wrench>& last = wrenches_[attachment.name];
     if (steps_ < averaged_steps_) last.emplace_back();
     last[steps_ % averaged_steps_] = {attachment.force, attachment.torque};
@@ -97,6 +101,7 @@ std::string Summary::json(const World& world, const std::vector<Event>& events) 
   // By names, which are not looked up: there may be tens of thousands.
   std::vector<std::pair<std::string, Json>> attachments;
   for (const Attachment& attachment : world.attachments()) {
+    if (attachment.guide >= 0) continue;
     const Wrench mean = mean_wrench(attachment);
     attachments.emplace_back(attachment.name, Json{{"force", array(mean.force)},
                                                    {"torque", array(mean.torque)},

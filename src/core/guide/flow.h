@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+
+#include "verlet_cable/core/types.h"
+
+namespace verlet_cable {
+
+/// What is given of a cable's way through a guide at a substep, and what the substep finds.
+struct GuidedFlow {
+  int first = 0, last = 0;  ///< the held nodes at which the cable comes to the guide and leaves it: of an eyelet the same
+  double friction = 0;      ///< Coulomb coefficient
+  double inertia = 0;       ///< [kg] that moves with the cable besides its own: of a wheel
+  double resistance = 0;    ///< [N] that does not depend on the tension: of a bearing
+  double grip = infinity;   ///< Coulomb coefficient between cable and wheel: the bearing resists no more than that holds
+  bool is_blocked[2] = {false, false};  ///< whether no more material can come from before, from after
+  double rate = 0;                      ///< [m/s] of rest length, from before to after; in: at the start, out: at the end
+  double acceleration = 0;              ///< [m/s^2] in and out: mean over the last substep
+};
+
+/// A flow while a substep is solved for it. Its way is one more unknown; the equation of motion of what flows, with the
+/// generalised forces of the cable's energy, is one more equation:
+///   mass (2 / h) (way / h - rate) = T_after - T_before + gravity + friction
+struct Flow {
+  /// Without friction, as one that resists with all it can, or with so much that nothing flows.
+  enum class Mode { free, forward, backward, sticking };
+  int first = 0, last = 0;    // held nodes
+  int before = 0, after = 0;  // the segments that shrink and grow
+  Mode mode = Mode::free;
+  bool changed = false;                      // whether the mode did in this iteration
+  int changes = 0;                           // of the mode, in the substep
+  double mass = 0;                           // [kg]
+  double drag = 0;                           // [N s/m]
+  double rate = 0;                           // [m/s] at the start
+  double acceleration = 0;                   // [m/s^2] over the substep before
+  std::array<double, 2> start_length{0, 0};  // [m] at rest, of the segments before and after
+  std::array<double, 2> stretch{1, 1};       // of target lengths
+  Vector3 velocity = Vector3::Zero();        // [m/s] of the guide, mean
+  Vector3 velocity_change = Vector3::Zero();
+  double way = 0;         // the unknown [m]
+  double correction = 0;  // of it [m]
+  // Its row of the matrix: for the multipliers of the two segments and for the way
+  std::array<double, 2> row{0, 0};
+  double diagonal = 0;
+  std::array<double, 2> gap{0, 0};  // its column: in the rows of the two segments
+};
+
+}  // namespace verlet_cable

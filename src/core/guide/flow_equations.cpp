@@ -1,0 +1,394 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "rod/cable_stepper.h"
+
+namespace verlet_cable {
+
+namespace {
+
+/// A flow may change its mode so often in a substep; then it keeps it.
+constexpr int most_changes = 8;
+/// Of the length of a segment: no flow takes so much that less is left.
+constexpr double least_left = 0.02;
+/// [m/s] Against its friction nothing flows faster.
+constexpr double turned_round = 1e-9;
+
+/// Solves a small dense system with pivots from each column; `matrix` is by rows, and both are used up.
+void solve_dense(int size, std::vector<double>& matrix, std::vector<double>& vector) {
+  const auto at = [&](int row, int column) -> double& { return matrix[row * size + column]; };
+  for (int k = 0; k < size; ++k) {
+    int pivot = k;
+    for (int i = k + 1; i < size; ++i)
+      if (std::abs(at(i, k)) > std::abs(at(pivot, k))) pivot = i;
+    if (pivot != k) {
+      for (int j = k; j < size; ++j) std::swap(at(k, j), at(pivot, j));
+      std::swap(vector[k], vector[pivot]);
+    }
+    for (int i = k + 1; i < size; ++i) {
+      const double factor = at(i, k) / at(k, k);
+      for (int j = k + 1; j < size; ++j) at(i, j) -= factor * at(k, j);
+      vector[i] -= factor * vector[k];
+    }
+  }
+  for (int k = size - 1; k >= 0; --k) {
+    for (int j = k + 1; j < size; ++j) vector[k] -= at(k, j) * vector[j];
+    vector[k] /= at(k, k);
+  }
+}
+
+bool resists(const GuidedFlow& guided) {
+  return guided.friction > 0 || guided.resistance > 0 || guided.is_blocked[0] || guided.is_blocked[1];
+}
+
+}  // namespace
+
+bool CableStepper::grows(int segment) const {
+  return std::any_of(flows_.begin(), flows_.end(), [&](const Flow& f) { return f.before == segment || f.after == segment; });
+}
+
+bool CableStepper::lies_on_wheel(int segment) const {
+  return std::any_of(flows_.begin(), flows_.end(), [&](const Flow& f) { return f.first <= segment && segment < f.last; });
+}
+
+void CableStepper::start_flows(const Substep& s, const CableState& state) {
+  if (flows_.empty()) return;
+  const double density = s.model.material.linear_density;
+  bending_.start_flows(state, segment_, s.boundary.flows);
+  system_.flow_load.assign(flows_.size(), 0.0);
+  flow_response_.resize(2 * flows_.size() * flows_.size());
+  flow_matrix_.resize(flows_.size() * flows_.size());
+  flow_solution_.resize(flows_.size());
+  for (std::size_t k = 0; k < flows_.size(); ++k) {
+    Flow& flow = flows_[k];
+    const GuidedFlow& guided = s.boundary.flows[k];
+    flow.rate = s.statics ? 0 : guided.rate;
+    flow.acceleration = s.statics ? 0 : guided.acceleration;
+    flow.changes = 0;
+    flow.way = flow.correction = 0;
+    double length = 0.5 * (state.rest_lengths[flow.before] + state.rest_lengths[flow.after]);
+    for (int i = flow.first; i < flow.last; ++i) length += state.rest_lengths[i];
+    flow.mass = density * length + guided.inertia;
+    flow.drag = s.model.material.drag / s.damping_time() * length;
+    for (const int side : {0, 1}) {
+      const int i = side == 0 ? flow.before : flow.after;
+      flow.start_length[side] = state.rest_lengths[i];
+      flow.stretch[side] = target_length_[i] / state.rest_lengths[i];
+    }
+    Vector3 start = get(velocity_, flow.first), end = start;
+    for (const HeldNode& held : s.boundary.nodes)
+      if (held.node == flow.first) end = held.velocity;
+    flow.velocity_change = s.statics ? Vector3::Zero() : Vector3(end - start);
+    flow.velocity = s.statics ? Vector3::Zero() : Vector3(get(displacement_, flow.first) / s.h);
+    flow.mode = Flow::Mode::free;
+    if (!resists(guided)) continue;
+    flow.changes = -1;
+    flow.mode = flow.rate > 0 && !guided.is_blocked[0]   ? Flow::Mode::forward
+                : flow.rate < 0 && !guided.is_blocked[1] ? Flow::Mode::backward
+                                                         : Flow::Mode::sticking;
+  }
+}
+
+void CableStepper::predict_flows(const Substep& s) {
+  for (Flow& flow : flows_)
+    flow.way = flow.mode == Flow::Mode::sticking ? sticking_way(s, flow)
+               : s.statics                       ? 0
+                                                 : s.h * (flow.rate + 0.5 * s.h * flow.acceleration);
+}
+
+/// With which the flow stands at the end of the substep [m].
+double CableStepper::sticking_way(const Substep& s, const Flow& flow) const {
+  if (s.statics) return 0;
+  const VelocityWeights weights = velocity_weights(s.scheme);
+  return -s.h * (weights.velocity * flow.rate + weights.acceleration * s.h * flow.acceleration) / weights.displacement;
+}
+
+/// [m/s]
+double CableStepper::end_rate(const Substep& s, const Flow& flow) const {
+  if (s.statics) return flow.way / s.h;
+  const VelocityWeights weights = velocity_weights(s.scheme);
+  return weights.displacement * flow.way / s.h + weights.velocity * flow.rate + weights.acceleration * s.h * flow.acceleration;
+}
+
+/// The segments beside guides have other lengths at the end of the substep.
+void CableStepper::set_flow_lengths(const Substep& s) {
+  for (const Flow& flow : flows_) {
+    target_length_[flow.before] = flow.stretch[0] * flow.start_length[0];
+    target_length_[flow.after] = flow.stretch[1] * flow.start_length[1];
+    rest_growth_[flow.before] = rest_growth_[flow.after] = 0;
+  }
+  for (const GrowingSegment& growing : s.boundary.growing) rest_growth_[growing.segment] = s.h * growing.growth;
+  bending_.forget_flows();
+  for (const Flow& flow : flows_) {
+    target_length_[flow.before] -= flow.stretch[0] * flow.way;
+    target_length_[flow.after] += flow.stretch[1] * flow.way;
+    rest_growth_[flow.before] -= flow.way;
+    rest_growth_[flow.after] += flow.way;
+    bending_.add_flow(flow.before, flow.after, flow.way);
+  }
+}
+
+/// What the derivative of an elastic segment's energy by its rest length has beyond its tension [N], the mean over the substep so
+/// that energy is conserved: with lengths s and rest lengths l at the start and (') the end it is
+///   EA / 2 ((s^2 + s'^2) / (2 l l') - 1).
+double CableStepper::energy_excess(const Substep& s, int i, double start_length) const {
+  const double stiffness = s.model.material.axial_stiffness;
+  if (stiffness == infinity) return 0;
+  const double end_length = target_length_[i], end = std::sqrt(end_square_[i]);
+  if (s.part() == 1) return 0.5 * stiffness * (end / end_length - 1) * (end / end_length - 1);
+  const double derivative =
+      0.5 * stiffness * (0.5 * (length_[i] * length_[i] + end_square_[i]) / (start_length * end_length) - 1);
+  const double tension = stiffness * (0.25 * (1 / start_length + 1 / end_length) * (length_[i] + end) - 1);
+  return derivative - tension;
+}
+
+void CableStepper::evaluate_flows(const Substep& s) {
+  const MaterialDesc& material = s.model.material;
+  const double part = s.part(), density = material.linear_density;
+  const bool elastic = material.axial_stiffness < infinity;
+  for (std::size_t k = 0; k < flows_.size(); ++k) {
+    Flow& flow = flows_[k];
+    const GuidedFlow& guided = s.boundary.flows[k];
+    const std::array<int, 2> segments{flow.before, flow.after};
+    // Friction is between tensions; without it they are equal, and so is what the energy makes of them.
+    const bool frictionless = flow.mode == Flow::Mode::free;
+    std::array<double, 2> arm, tension;
+    for (const int side : {0, 1}) {
+      const int i = segments[side];
+      const double sign = side == 0 ? -1 : 1, start = flow.start_length[side], end = target_length_[i];
+      if (elastic) {
+        const double rest = 1 / (1 / start + part * (1 / end - 1 / start)), length = std::sqrt(end_square_[i]);
+        evaluate_elastic_length(s, i, rest);
+        arm[side] = length_[i] + part * (length - length_[i]);
+        const double damping = material.axial_damping / (s.damping_time() * rest);
+        const double slope = part * (material.axial_stiffness / rest - tension_density_[i]) + damping;
+        flow.gap[side] = sign * (material.axial_stiffness * arm[side] * part / (end * end) + damping) * length / slope;
+      } else {
+        arm[side] = length_[i] + part * (end - length_[i]);
+        flow.gap[side] = sign * flow.stretch[side] * end;
+      }
+      tension[side] = tension_density_[i] * arm[side] + (frictionless ? energy_excess(s, i, start) : 0);
+    }
+
+    // What drives it: tensions, the weight of what flows, and the energy of bends beside the guide.
+    const GravityDesc& law = s.environment.gravity;
+    const Vector3 gravity = (law.type == GravityDesc::Type::uniform ? law.acceleration : law.at(get(position_, flow.first))) -
+                            (s.statics ? Vector3(Vector3::Zero()) : Vector3(flow.velocity_change / s.h));
+    Vector3 along = get(middle_, flow.before) + get(middle_, flow.after);
+    for (int i = flow.first; i < flow.last; ++i) along += 2 * get(middle_, i);
+    double drive = tension[1] - tension[0] + 0.5 * density * gravity.dot(along);
+    drive += bending_.flow_force(flow.before, flow.after, middle_);
+    if (fluid_.active()) {
+      const Vector3 direction = 0.5 * (get(middle_, flow.before).normalized() + get(middle_, flow.after).normalized());
+      drive += fluid_.force(flow.first).dot(direction);
+    }
+    // The neighbours lose and gain mass. Along the cable it comes with the velocity that it has; across it is another.
+    for (const int side : {0, 1}) {
+      const int node = side == 0 ? flow.before : flow.after + 1;
+      if (system_.movable[node] == 0) continue;
+      const double gain = (side == 0 ? -0.5 : 0.5) * density * flow.way;
+      const Vector3 u = get(displacement_, node), v = get(velocity_, node);
+      Vector3 load = 0.5 * gain * (law.type == GravityDesc::Type::uniform ? law.acceleration : law.at(get(position_, node)));
+      if (!s.statics) {
+        load -= 0.5 * gain * s.inertia() / s.h * (u / s.h - v);
+        const Vector3 direction = get(middle_, segments[side]).normalized();
+        const Vector3 mean = u / s.h - flow.velocity, start = v - (get(velocity_, flow.first));
+        const double along_it = mean.dot(direction);
+        load -= gain / s.h * (mean - along_it * direction);
+        const double sign = side == 0 ? 1 : -1;
+        drive += sign * density * (0.5 * along_it * along_it - 0.25 * start.dot(2 * mean - start));
+      }
+      set(system_.load, node, get(system_.load, node) + load);
+    }
+    drive -= flow.drag * flow.way;
+    drive -= flow.mass * s.inertia() / s.h * (flow.way / s.h - flow.rate);
+
+    // Friction, of a cable that is drawn over a round: T exp(friction angle).
+    // Between the middle of a segment and the guide is half of it, which weighs and is accelerated, too.
+    const double gain = s.statics ? 0 : (end_rate(s, flow) - flow.rate) / s.h;
+    const auto half = [&](int i) -> Vector3 {
+      const Vector3 direction = get(middle_, i).normalized();
+      return 0.5 * density * target_length_[i] * (gravity - gain * direction);
+    };
+    const Vector3 before = get(segment_force_, flow.before) - half(flow.before);
+    const Vector3 after = get(segment_force_, flow.after) + half(flow.after);
+    const double angle = std::atan2(before.cross(after).norm(), before.dot(after));
+    const std::array<double, 2> pull{before.norm(), after.norm()};
+    const double ratio = guided.friction == infinity ? infinity : std::exp(guided.friction * angle);
+    std::array<double, 2> resistance;
+    for (const int side : {0, 1}) {
+      const double on_wheel = guided.grip < infinity ? pull[side] * (std::exp(guided.grip * angle) - 1) : infinity;
+      resistance[side] = ratio == infinity ? infinity : pull[side] * (ratio - 1) + std::min(guided.resistance, on_wheel);
+      if (guided.is_blocked[side]) resistance[side] = infinity;
+    }
+    const Flow::Mode mode = next_mode(s, flow, guided, drive, resistance[0], resistance[1]);
+    // The first time tensions are those of the substep before.
+    flow.changed = mode != flow.mode || flow.changes < 0;
+    if (flow.changed) ++flow.changes;
+    flow.mode = mode;
+
+    if (mode == Flow::Mode::sticking) {
+      flow.row = {0, 0};
+      flow.diagonal = -1;
+      system_.flow_load[k] = sticking_way(s, flow) - flow.way;
+      continue;
+    }
+    const bool forward = mode == Flow::Mode::forward, backward = mode == Flow::Mode::backward;
+    flow.row = {-(forward ? ratio : 1) * arm[0], (backward ? ratio : 1) * arm[1]};
+    flow.diagonal = -flow.mass * s.inertia() / (s.h * s.h) - flow.drag;
+    if (!elastic) flow.diagonal += part * (tension_density_[flow.before] + tension_density_[flow.after]);
+    system_.flow_load[k] = drive - (forward ? resistance[0] : backward ? -resistance[1] : 0);
+  }
+}
+
+/// `drive` [N]: what the resistance to a flow from before, and from after, has to stand.
+Flow::Mode CableStepper::next_mode(const Substep& s, const Flow& flow, const GuidedFlow& guided, double drive,
+                                   double resistance_before, double resistance_after) const {
+  using Mode = Flow::Mode;
+  if (!resists(guided)) return Mode::free;
+  if (flow.changes >= most_changes) return flow.mode;
+  switch (flow.mode) {
+    case Mode::forward:
+      return end_rate(s, flow) < -turned_round ? Mode::sticking : Mode::forward;
+    case Mode::backward:
+      return end_rate(s, flow) > turned_round ? Mode::sticking : Mode::backward;
+    default:
+      return drive > resistance_before ? Mode::forward : drive < -resistance_after ? Mode::backward : Mode::sticking;
+  }
+}
+
+/// What unit ways do to the tensions beside all guides.
+void CableStepper::factor_flows() {
+  const int count = static_cast<int>(flows_.size());
+  std::swap(system_.load, kept_load_);
+  std::swap(system_.gap, kept_gap_);
+  std::swap(rod_.torque(), kept_torque_);
+  const bool moves_held = std::exchange(system_.moves_held, false);
+  system_.load.assign(segments_ + 2, 0.0);
+  rod_.torque().assign(segments_ + 2, 0.0);
+  for (int j = 0; j < count; ++j) {
+    system_.gap.assign(segments_ + 2, 0.0);
+    system_.gap[flows_[j].before] += flows_[j].gap[0];
+    system_.gap[flows_[j].after] += flows_[j].gap[1];
+    solve_segments();
+    for (int k = 0; k < count; ++k) {
+      flow_response_[2 * (j * count + k)] = multiplier_correction()[flows_[k].before];
+      flow_response_[2 * (j * count + k) + 1] = multiplier_correction()[flows_[k].after];
+    }
+  }
+  system_.moves_held = moves_held;
+  std::swap(system_.load, kept_load_);
+  std::swap(system_.gap, kept_gap_);
+  std::swap(rod_.torque(), kept_torque_);
+}
+
+/// The solution of the segments alone becomes that of segments and flows.
+void CableStepper::let_flow() {
+  const int count = static_cast<int>(flows_.size());
+  const std::vector<double>& multiplier = multiplier_correction();
+  for (int k = 0; k < count; ++k) {
+    const Flow& flow = flows_[k];
+    flow_solution_[k] = system_.flow_load[k] + flow.row[0] * multiplier[flow.before] + flow.row[1] * multiplier[flow.after];
+    for (int j = 0; j < count; ++j) {
+      const double* response = &flow_response_[2 * (j * count + k)];
+      flow_matrix_[k * count + j] = -flow.row[0] * response[0] - flow.row[1] * response[1] - (j == k ? flow.diagonal : 0);
+    }
+  }
+  solve_dense(count, flow_matrix_, flow_solution_);
+  flow_gap_ = system_.gap;
+  for (int k = 0; k < count; ++k) {
+    flows_[k].correction = flow_solution_[k];
+    system_.gap[flows_[k].before] += flows_[k].gap[0] * flow_solution_[k];
+    system_.gap[flows_[k].after] += flows_[k].gap[1] * flow_solution_[k];
+  }
+  solve_segments();
+  std::swap(system_.gap, flow_gap_);
+}
+
+/// False if so much would flow that next to nothing is left.
+bool CableStepper::correct_flows(double part) {
+  bool is_left = true;
+  for (Flow& flow : flows_) {
+    flow.way += part * flow.correction;
+    is_left =
+        is_left && flow.way < (1 - least_left) * flow.start_length[0] && -flow.way < (1 - least_left) * flow.start_length[1];
+  }
+  return is_left;
+}
+
+bool CableStepper::flows_are_consistent(const Substep& s) const {
+  return std::all_of(flows_.begin(), flows_.end(), [&](const Flow& flow) {
+    if (flow.changed) return false;
+    if (flow.changes >= most_changes) return true;
+    if (flow.mode == Flow::Mode::forward) return end_rate(s, flow) >= -turned_round;
+    return flow.mode != Flow::Mode::backward || end_rate(s, flow) <= turned_round;
+  });
+}
+
+/// What flows turns round the guide, and is accelerated there: neither is in the equations of its held nodes.
+void CableStepper::react_to_flows(const Substep& s) {
+  if (s.statics) return;
+  const double density = s.model.material.linear_density;
+  for (const Flow& flow : flows_) {
+    const Vector3 before = get(middle_, flow.before), after = get(middle_, flow.after);
+    const double speed = flow.way / s.h, gain = (end_rate(s, flow) - flow.rate) / s.h;
+    Vector3 way = 0.5 * (before + after);
+    for (int i = flow.first; i < flow.last; ++i) way += get(middle_, i);
+    const Vector3 force = density * (speed * speed * (after.normalized() - before.normalized()) + gain * way);
+    for (HeldNode& held : s.boundary.nodes)
+      if (held.node == flow.first) held.force -= force;
+  }
+}
+
+void CableStepper::finish_flows(const Substep& s, CableState& state) {
+  const double half_density = 0.5 * s.model.material.linear_density;
+  for (std::size_t k = 0; k < flows_.size(); ++k) {
+    const Flow& flow = flows_[k];
+    GuidedFlow& guided = s.boundary.flows[k];
+    double rate = s.statics || flow.mode == Flow::Mode::sticking ? 0 : end_rate(s, flow);
+    if ((flow.mode == Flow::Mode::forward && rate < 0) || (flow.mode == Flow::Mode::backward && rate > 0)) rate = 0;
+    guided.rate = rate;
+    guided.acceleration = s.statics ? 0 : (rate - flow.rate) / s.h;
+    if (s.scheme == Scheme::damped) guided.acceleration = (flow.way / s.h - flow.rate) / s.h + 0.5 * flow.acceleration;
+    state.rest_lengths[flow.before] -= flow.way;
+    state.rest_lengths[flow.after] += flow.way;
+    state.masses[flow.before] -= half_density * flow.way;
+    state.masses[flow.first] -= half_density * flow.way;
+    state.masses[flow.last] += half_density * flow.way;
+    state.masses[flow.after + 1] += half_density * flow.way;
+  }
+}
+
+/// Impulses along the segments beside a guide move what flows, too.
+void CableStepper::project_flows(const Substep& s) {
+  for (std::size_t k = 0; k < flows_.size(); ++k) {
+    const Flow& flow = flows_[k];
+    const double before = target_length_[flow.before], after = target_length_[flow.after], rate = s.boundary.flows[k].rate;
+    impulse_[flow.before] -= before * rate;
+    impulse_[flow.after] += after * rate;
+    if (flow.mode != Flow::Mode::free) continue;
+    if (flow.first == flow.last) {
+      pivot_[flow.before] += before * before / flow.mass;
+      pivot_[flow.after] += after * after / flow.mass;
+      off_[flow.before] = -before * after / flow.mass;
+    } else if (flow.first + 1 == flow.last) {
+      // The segment on the wheel has no impulse: its place is that of the change of the rate.
+      pivot_[flow.first] = -flow.mass;
+      off_[flow.before] = before;
+      off_[flow.first] = -after;
+    }
+  }
+}
+
+void CableStepper::push_flows(const Substep& s) {
+  for (std::size_t k = 0; k < flows_.size(); ++k) {
+    const Flow& flow = flows_[k];
+    if (flow.mode != Flow::Mode::free) continue;
+    s.boundary.flows[k].rate +=
+        (target_length_[flow.before] * impulse_[flow.before] - target_length_[flow.after] * impulse_[flow.after]) / flow.mass;
+    if (flow.first != flow.last) impulse_[flow.first] = 0;
+  }
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,217 @@
+#include "guide/guides.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "chain/node_arrays.h"
+#include "guide/wheel.h"
+
+namespace verlet_cable {
+
+namespace {
+
+/// Gives a node of a cable that has no shape yet another place of the material.
+void move_node(int node, double shift, const CableModel& model, CableState& cable) {
+  const double half_density = 0.5 * model.material.linear_density;
+  cable.rest_lengths[node - 1] += shift;
+  cable.rest_lengths[node] -= shift;
+  cable.masses[node - 1] += half_density * shift;
+  cable.masses[node + 1] -= half_density * shift;
+}
+
+/// The inner node, `lowest` or above, that is nearest to a place of the material, moved there.
+int put_node_at(double arc_length, int lowest, const CableModel& model, CableState& cable) {
+  int node = 0;
+  double place = 0;
+  while (node < cable.segments() && place + 0.5 * cable.rest_lengths[node] < arc_length) place += cable.rest_lengths[node++];
+  for (; node < lowest; ++node) place += cable.rest_lengths[node];
+  for (; node >= cable.segments(); --node) place -= cable.rest_lengths[node - 1];
+  move_node(node, arc_length - place, model, cable);
+  return node;
+}
+
+/// Of a segment after a guide: where the first node after it is. What comes to a guide passes it without being moved then.
+constexpr double first_node = 0.3;
+
+/// A node more, at a part of a segment.
+void split_segment(int segment, double part, const CableModel& model, CableState& cable) {
+  const double half_density = 0.5 * model.material.linear_density, whole = cable.rest_lengths[segment], first = part * whole;
+  cable.masses[segment] -= half_density * (whole - first);
+  cable.masses[segment + 1] -= half_density * first;
+  cable.masses.insert(cable.masses.begin() + segment + 1, half_density * whole);
+  cable.rest_lengths[segment] = whole - first;
+  cable.rest_lengths.insert(cable.rest_lengths.begin() + segment, first);
+  cable.positions.insert(cable.positions.begin() + segment, Vector3::Zero());
+  cable.velocities.insert(cable.velocities.begin() + segment, Vector3::Zero());
+}
+
+/// One segment instead of those between two nodes.
+void make_one_segment(int first, int last, const CableModel& model, CableState& cable) {
+  const double half_density = 0.5 * model.material.linear_density;
+  for (int count = last - first - 1; count > 0; --count) {
+    // Its mass is half of each segment beside it.
+    cable.masses[first] += half_density * cable.rest_lengths[first + 1];
+    cable.masses[first + 2] += half_density * cable.rest_lengths[first];
+    cable.rest_lengths[first] += cable.rest_lengths[first + 1];
+    cable.rest_lengths.erase(cable.rest_lengths.begin() + first + 1);
+    cable.masses.erase(cable.masses.begin() + first + 1);
+    cable.positions.erase(cable.positions.begin() + first + 1);
+    cable.velocities.erase(cable.velocities.begin() + first + 1);
+  }
+}
+
+double arc_length_of(const CableDesc& cable, const PlaceDesc& place) {
+  return place.at == PlaceDesc::At::start ? 0 : place.at == PlaceDesc::At::end ? cable.length : place.arc_length;
+}
+
+SimulatedGuide make_guide(const GuideDesc& desc, const FrameIds& ids) {
+  SimulatedGuide guide;
+  guide.name = desc.name;
+  guide.type = desc.type;
+  guide.friction = desc.friction_coefficient();
+  guide.radius = desc.radius;
+  guide.inertia = desc.inertia;
+  guide.bearing_friction = desc.bearing_friction;
+  guide.retention = desc.retention;
+  guide.capture = desc.capture;
+  guide.cable = desc.cable;
+  guide.frame = ids.at(desc.frame);
+  guide.pose = {desc.offset, quaternion_from_rpy(desc.rotation)};
+  return guide;
+}
+
+/// Where else along a cable something is that holds it [m], and where that is.
+struct HeldPlace {
+  double arc_length = 0;
+  Vector3 position = Vector3::Zero();
+};
+
+/// What is next to a place of a cable on either side: what holds it there, else far down.
+std::array<Vector3, 2> neighbours(double arc_length, const Vector3& center, const CableDesc& desc, const FrameIds& ids,
+                                  const State& state) {
+  constexpr double far = 1e6;
+  std::vector<HeldPlace> places;
+  const auto position = [&](const std::string& frame, const Vector3& offset) -> Vector3 {
+    const Pose& pose = state.frames.poses[ids.at(frame)];
+    return pose.position + pose.orientation * offset;
+  };
+  for (const AttachmentDesc& a : desc.attachments)
+    if (a.body.empty()) places.push_back({arc_length_of(desc, a.place), position(a.frame, a.offset)});
+  for (const GuideDesc& g : state.scene->guides)
+    if (g.cable == desc.name && g.place) places.push_back({arc_length_of(desc, *g.place), position(g.frame, g.offset)});
+  const Vector3 gravity = state.scene->gravity.at(center);
+  const Vector3 down = gravity.norm() > 0 ? Vector3(gravity.normalized()) : Vector3(-Vector3::UnitZ());
+  std::array<Vector3, 2> found{center + far * down, center + far * down};
+  std::array<double, 2> distance{infinity, infinity};
+  for (const HeldPlace& place : places) {
+    const double way = place.arc_length - arc_length;
+    const int side = way < 0 ? 0 : 1;
+    if (way == 0 || std::abs(way) >= distance[side]) continue;
+    distance[side] = std::abs(way);
+    found[side] = place.position;
+  }
+  return found;
+}
+
+/// A polyline's point at a part of its length, 0 to 1.
+Vector3 point_at(const std::vector<Vector3>& points, double part) {
+  double length = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
+  double left = std::clamp(part, 0.0, 1.0) * length;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const double way = (points[i] - points[i - 1]).norm();
+    if (left <= way && way > 0) return points[i - 1] + left / way * (points[i] - points[i - 1]);
+    left -= way;
+  }
+  return points.back();
+}
+
+/// How a cable lies on a sheave at first: as its shape says, else over the top.
+void wind_on_wheel(double arc_length, const CableDesc& desc, const FrameIds& ids, const State& state, const Pose& wheel,
+                   SimulatedGuide& guide, Attachment& attachment) {
+  const Vector3 axis = wheel.orientation * Vector3::UnitZ();
+  std::array<Vector3, 2> ends = neighbours(arc_length, wheel.position, desc, ids, state);
+  Vector3 middle = -state.scene->gravity.at(wheel.position);
+  Vector3 along = ends[1] - ends[0];
+  if (desc.initial.type == InitialShapeDesc::Type::points) {
+    const auto at = [&](double place) { return point_at(desc.initial.points, place / desc.length); };
+    const double aside = M_PI * guide.radius;
+    ends = {at(arc_length - aside), at(arc_length + aside)};
+    middle = at(arc_length) - wheel.position;
+    along = at(arc_length + 0.1 * aside) - at(arc_length - 0.1 * aside);
+  }
+  middle -= middle.dot(axis) * axis;
+  if (!(middle.norm() > 0)) middle = wheel.orientation * Vector3::UnitY();
+  guide.sense = along.dot(axis.cross(middle)) < 0 ? -1 : 1;
+  for (const int side : {0, 1})
+    attachment.tangent_points[side] = tangent_point(wheel, guide, side, ends[side], wheel.position + middle);
+}
+
+}  // namespace
+
+void add_guides(const CableDesc& desc, int cable, const FrameIds& ids, const CableModel& model, CableState& cable_state,
+                State& state, std::vector<int>& own) {
+  for (const GuideDesc& g : state.scene->guides) {
+    if (g.cable != desc.name) continue;
+    SimulatedGuide guide = make_guide(g, ids);
+    if (g.place) {
+      Attachment attachment;
+      attachment.name = g.name;
+      attachment.body = cable_id(cable);
+      attachment.frame = guide.frame;
+      attachment.pose = guide.pose;
+      attachment.guide = static_cast<int>(state.guides.size());
+      const double place = arc_length_of(desc, *g.place);
+      if (g.type == GuideDesc::Type::sheave) {
+        wind_on_wheel(place, desc, ids, state, state.frames.poses[guide.frame] * guide.pose, guide, attachment);
+        const double arc = arc_on_wheel(guide, attachment);
+        attachment.node = put_node_at(place - 0.5 * arc, 1, model, cable_state);
+        const int last = put_node_at(place + 0.5 * arc, attachment.node + 1, model, cable_state);
+        make_one_segment(attachment.node, last, model, cable_state);
+        for (const int a : own)
+          if (state.attachments[a].node >= last) state.attachments[a].node -= last - attachment.node - 1;
+      } else {
+        attachment.node = put_node_at(place, 1, model, cable_state);
+        split_segment(attachment.node, first_node, model, cable_state);
+        for (const int a : own)
+          if (state.attachments[a].node > attachment.node) ++state.attachments[a].node;
+      }
+      own.push_back(static_cast<int>(state.attachments.size()));
+      state.attachments.push_back(attachment);
+    }
+    state.guides.push_back(guide);
+  }
+}
+
+void stop_flows(int cable, State& state) {
+  if (state.guides.empty()) return;
+  for (const Attachment& attachment : state.attachments) {
+    if (attachment.guide < 0 || attachment.body != cable_id(cable)) continue;
+    state.guides[attachment.guide].flow = state.guides[attachment.guide].flow_acceleration = 0;
+  }
+}
+
+double flow_energy(const State& state) {
+  double energy = 0;
+  for (const Attachment& attachment : state.attachments) {
+    if (attachment.guide < 0) continue;
+    const SimulatedGuide& guide = state.guides[attachment.guide];
+    const SimulatedCable& cable = state.cables[attachment.body.index];
+    const CableState& c = cable.state;
+    const int first = attachment.node, last = is_wheel(attachment) ? first + 1 : first;
+    const auto along = [&](int i) -> Vector3 { return c.rest_lengths[i] * (c.positions[i + 1] - c.positions[i]).normalized(); };
+    double length = 0.5 * (c.rest_lengths[first - 1] + c.rest_lengths[last]);
+    Vector3 way = 0.5 * (along(first - 1) + along(last));
+    for (int i = first; i < last; ++i) {
+      length += c.rest_lengths[i];
+      way += c.positions[i + 1] - c.positions[i];
+    }
+    const double density = cable.model->material.linear_density;
+    double mass = density * length;
+    if (is_wheel(attachment)) mass += guide.inertia / (guide.radius * guide.radius);
+    energy += 0.5 * mass * guide.flow * guide.flow + density * guide.flow * way.dot(c.velocities[first]);
+  }
+  return energy;
+}
+
+}  // namespace verlet_cable

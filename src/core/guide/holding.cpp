@@ -1,0 +1,149 @@
+#include <algorithm>
+#include <cmath>
+
+#include "guide/node_passing.h"
+#include "guide/wheel.h"
+#include "target/length_drive.h"
+#include "world/implementation.h"
+
+namespace verlet_cable {
+
+namespace {
+
+/// Having let its cable go a clip takes it again after it was so far away, in capture distances.
+constexpr double ready_distance = 2;
+/// Of a segment: nearer than this to a node no other one is made for a clip that takes the cable.
+constexpr double merging_distance = 0.2;
+
+/// The cable's direction at a guide.
+Vector3 direction_at(const CableState& cable, int first, int last) {
+  const Vector3 before = (cable.positions[first] - cable.positions[first - 1]).normalized();
+  return (before + (cable.positions[last + 1] - cable.positions[last]).normalized()).normalized();
+}
+
+/// Where a wheel touches its cable now. What was straight is on the wheel then, or the other way round, with its strain.
+void follow_on_wheel(int index, State& state, Attachment& attachment) {
+  const SimulatedGuide& guide = state.guides[attachment.guide];
+  SimulatedCable& cable = state.cables[index];
+  CableState& c = cable.state;
+  const int first = attachment.node, last = first + 1;
+  const Pose wheel = state.frames.previous_poses[attachment.frame] * attachment.pose;
+  Attachment next = attachment;
+  for (const int side : {0, 1})
+    next.tangent_points[side] = tangent_point(wheel, guide, side, c.positions[side == 0 ? first - 1 : last + 1],
+                                              wheel.position + wheel.orientation * attachment.tangent_points[side]);
+  // A cable that has left the wheel is held by it all the same.
+  if (std::abs(arc_on_wheel(guide, next) - arc_on_wheel(guide, attachment)) > M_PI * guide.radius) return;
+  const double half_density = 0.5 * cable.model->material.linear_density;
+  for (const int side : {0, 1}) {
+    const int node = side == 0 ? first : last, segment = side == 0 ? first - 1 : last, beside = side == 0 ? first - 1 : last + 1;
+    const Vector3 place = wheel.position + wheel.orientation * next.tangent_points[side];
+    const double before = (c.positions[node] - c.positions[beside]).norm(), after = (place - c.positions[beside]).norm();
+    const double growth = c.rest_lengths[segment] * (after / before - 1);
+    if (c.rest_lengths[first] - growth <= 0) return;
+    attachment.tangent_points[side] = next.tangent_points[side];
+    c.positions[node] = place;
+    c.rest_lengths[segment] += growth;
+    c.rest_lengths[first] -= growth;
+    c.masses[beside] += half_density * growth;
+    c.masses[side == 0 ? last : first] -= half_density * growth;
+    for (KinematicTarget& target : state.cable_progress[index].targets.nodes)
+      if (target.node == node) target.position = place;
+  }
+}
+
+}  // namespace
+
+/// Cables that slide through guides are numbered anew; clips take them and let them go.
+void World::Implementation::advance_guides() {
+  if (state.guides.empty()) return;
+  for (int a = static_cast<int>(state.attachments.size()) - 1; a >= 0; --a)
+    if (state.attachments[a].guide >= 0 && lets_go(a)) release_guide(a);
+  for (int guide = 0; guide < static_cast<int>(state.guides.size()); ++guide)
+    if (state.guides[guide].capture > 0) capture_cable(guide);
+  for (std::size_t i = 0; i < state.cables.size(); ++i) {
+    if (!slides(state.cable_progress[i].targets)) continue;
+    for (Attachment& attachment : state.attachments)
+      if (attachment.body == cable_id(static_cast<int>(i)) && is_wheel(attachment))
+        follow_on_wheel(static_cast<int>(i), state, attachment);
+    pass_nodes_of(static_cast<int>(i));
+  }
+}
+
+/// Whether a free end runs out of a guide, or a clip is drawn off the cable.
+bool World::Implementation::lets_go(int index) const {
+  const Attachment& attachment = state.attachments[index];
+  const SimulatedGuide& guide = state.guides[attachment.guide];
+  if (runs_out(attachment, state)) return true;
+  if (!(guide.retention < infinity)) return false;
+  const int last = is_wheel(attachment) ? attachment.node + 1 : attachment.node;
+  const Vector3 along = direction_at(state.cables[attachment.body.index].state, attachment.node, last);
+  return (attachment.force - attachment.force.dot(along) * along).norm() > guide.retention;
+}
+
+/// The material goes on with the velocity that it has.
+void World::Implementation::release_guide(int index) {
+  const Attachment attachment = state.attachments[index];
+  SimulatedGuide& guide = state.guides[attachment.guide];
+  CableState& cable = state.cables[attachment.body.index].state;
+  const int first = attachment.node, last = is_wheel(attachment) ? first + 1 : first;
+  for (int node = first; node <= last; ++node) {
+    const Vector3 after = cable.positions[std::min(node + 1, cable.segments())];
+    cable.velocities[node] += guide.flow * (after - cable.positions[std::max(node - 1, 0)]).normalized();
+  }
+  guide.flow = guide.flow_acceleration = guide.lost_length = 0;
+  guide.is_ready = false;
+  erase_attachment(index);
+  after_remeshing(attachment.body.index);
+  findings.released.push_back(attachment.guide);
+}
+
+/// Guides that have no cable on one side after a cut.
+void World::Implementation::release_bare_guides() {
+  for (int a = static_cast<int>(state.attachments.size()) - 1; a >= 0; --a) {
+    const Attachment& attachment = state.attachments[a];
+    if (attachment.guide < 0) continue;
+    const int last = is_wheel(attachment) ? attachment.node + 1 : attachment.node;
+    if (attachment.node <= 0 || last >= state.cables[attachment.body.index].state.segments()) release_guide(a);
+  }
+}
+
+/// An open clip takes its cable where that comes close.
+void World::Implementation::capture_cable(int index) {
+  SimulatedGuide& guide = state.guides[index];
+  const auto holds = [&](const Attachment& a) { return a.guide == index; };
+  if (std::any_of(state.attachments.begin(), state.attachments.end(), holds)) return;
+  const int cable_index = find(state.cables, guide.cable);
+  if (cable_index < 0 || !state.frames.known[guide.frame]) return;
+  SimulatedCable& cable = state.cables[cable_index];
+  const Vector3 place = (state.frames.poses[guide.frame] * guide.pose).position;
+  const NearestPoint nearest = nearest_point(cable.state, place);
+  guide.is_ready = guide.is_ready || nearest.distance > ready_distance * guide.capture;
+  if (!guide.is_ready || !(nearest.distance <= guide.capture)) return;
+  int node = nearest.fraction < 0.5 ? nearest.segment : nearest.segment + 1;
+  const double to_node = std::abs(nearest.fraction - (node - nearest.segment)) * cable.state.rest_lengths[nearest.segment];
+  if (node == 0 || node == cable.state.segments() || state.cable_progress[cable_index].drive) return;
+  if (to_node > merging_distance * cable.model->segment_length) {
+    node = nearest.segment + 1;
+    insert_node(nearest.segment, nearest.fraction * cable.state.rest_lengths[nearest.segment], *cable.model, cable.state);
+    renumber(cable_index, node, 1);
+  } else if (!is_passable(state, cable_index, node)) {
+    return;
+  }
+  Attachment attachment;
+  attachment.name = guide.name;
+  attachment.body = cable_id(cable_index);
+  attachment.node = node;
+  attachment.frame = guide.frame;
+  attachment.pose = guide.pose;
+  attachment.guide = index;
+  guide.flow = cable.state.velocities[node].dot(direction_at(cable.state, node, node));
+  guide.flow_acceleration = 0;
+  cable.state.velocities[node] -= guide.flow * direction_at(cable.state, node, node);
+  state.attachments.push_back(attachment);
+  after_remeshing(cable_index);
+  move_with_guides(cable_index, state);
+  findings.caught.push_back(index);
+}
+
+}  // namespace verlet_cable

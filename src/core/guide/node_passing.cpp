@@ -1,0 +1,230 @@
+#include "guide/node_passing.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "rod/length_projection.h"
+#include "target/length_drive.h"
+
+namespace verlet_cable {
+
+namespace {
+
+constexpr std::array<int, 2> both_sides{0, 1};
+
+/// Of a regular segment: what is left beside a guide when the next node is taken in; one is given out on the other side then.
+constexpr double shortest = 0.1;
+/// So many steps at the speed of the flow are left, too; but no more than this of a segment.
+constexpr double steps_ahead = 3, most_ahead = 0.6;
+/// Of a regular segment: an end that cannot go through stops there.
+constexpr double stop = 0.15;
+/// Of a regular segment: shorter ones are not split.
+constexpr double least_split = 0.7;
+/// A node that is given out bends no more than this, height over length.
+constexpr double steepest = 0.5;
+
+Vector3 direction(const CableState& state, int segment) {
+  return (state.positions[segment + 1] - state.positions[segment]).normalized();
+}
+
+bool is_attached(const State& state, int cable, int node) {
+  return std::any_of(state.attachments.begin(), state.attachments.end(), [&](const Attachment& a) {
+    return a.body == cable_id(cable) && (a.node == node || (is_wheel(a) && a.node + 1 == node));
+  });
+}
+
+/// The nodes from `first` on have moved by `shift`, the segments likewise.
+void renumber(int cable, int first, int shift, State& state) {
+  const auto follow = [&](int& node) {
+    if (node >= first) node += shift;
+  };
+  CableProgress& progress = state.cable_progress[cable];
+  for (Attachment& a : state.attachments)
+    if (a.body == cable_id(cable)) follow(a.node);
+  for (KinematicTarget& h : progress.targets.nodes) follow(h.node);
+  for (DirectionTarget& h : progress.targets.directions) follow(h.node);
+  for (TwistSpan& span : progress.spans) {
+    follow(span.first_node);
+    follow(span.last_node);
+  }
+  if (progress.drive) follow(progress.drive->segment);
+}
+
+/// One side of a guide: the node that is held there, and the way along the cable away from it.
+struct Side {
+  int node = 0;
+  int away = -1;  // or 1
+  int segment() const { return away < 0 ? node - 1 : node; }
+  int neighbour() const { return node + away; }
+};
+
+Side side_of(const Attachment& attachment, int side) {
+  if (side == 0) return {attachment.node, -1};
+  return {is_wheel(attachment) ? attachment.node + 1 : attachment.node, 1};
+}
+
+/// With the velocity of the material at the guide instead of the guide's while `change` is made.
+template <class Change>
+void with_flowing_node(const SimulatedGuide& guide, Attachment& attachment, int side, CableState& state, const Change& change) {
+  const Side before = side_of(attachment, side);
+  const Vector3 held = state.velocities[before.node];
+  state.velocities[before.node] += guide.flow * direction(state, before.segment());
+  change();
+  state.velocities[side_of(attachment, side).node] = held;
+}
+
+void take_in(int index, Attachment& attachment, int side, State& state) {
+  SimulatedCable& cable = state.cables[index];
+  SimulatedGuide& guide = state.guides[attachment.guide];
+  const int node = side_of(attachment, side).neighbour();
+  with_flowing_node(guide, attachment, side, cable.state, [&] {
+    guide.lost_length += remove_node(node, cable.state);
+    renumber(index, node + 1, -1, state);
+  });
+}
+
+/// Gives a node out, at `near` [m] of rest length from the guide. It is moved in the direction `bulge`, across the cable, until
+/// lengths that were lost where others were taken in are there again: it bends as they did.
+void give_out(int index, Attachment& attachment, int side, double near, Vector3 bulge, State& state) {
+  SimulatedCable& cable = state.cables[index];
+  SimulatedGuide& guide = state.guides[attachment.guide];
+  const int segment = side_of(attachment, side).segment(), node = segment + 1;
+  const double whole = cable.state.rest_lengths[segment];
+  const Vector3 along = direction(cable.state, segment);
+  with_flowing_node(guide, attachment, side, cable.state, [&] {
+    insert_node(segment, side == 0 ? whole - near : near, *cable.model, cable.state);
+    renumber(index, node, 1, state);
+  });
+  bulge -= bulge.dot(along) * along;
+  if (is_wheel(attachment) || !(guide.lost_length > 0) || !(bulge.norm() > 0)) return;
+  CableState& c = cable.state;
+  const std::array<double, 2> lengths{(c.positions[node] - c.positions[node - 1]).norm(),
+                                      (c.positions[node + 1] - c.positions[node]).norm()};
+  const double stretch = (lengths[0] + lengths[1]) / whole;
+  const double square = 2 * stretch * guide.lost_length * lengths[0] * lengths[1] / (lengths[0] + lengths[1]);
+  const double height = std::min(std::sqrt(square), steepest * std::min(lengths[0], lengths[1]));
+  c.positions[node] += height * bulge.normalized();
+  for (const int i : both_sides) {
+    const double gained = c.rest_lengths[node - 1 + i] * (std::hypot(1, height / lengths[i]) - 1);
+    c.rest_lengths[node - 1 + i] += gained;
+    guide.lost_length -= gained;
+  }
+}
+
+}  // namespace
+
+bool carries_payload(const SimulatedCable& cable, int node) {
+  double share = 0;
+  if (node > 0) share += 0.5 * cable.state.rest_lengths[node - 1];
+  if (node < cable.state.segments()) share += 0.5 * cable.state.rest_lengths[node];
+  const double residue = 0.5 * cable.model->segment_length;
+  const CableMaterials materials(cable);
+  const auto density = [](const MaterialDesc& material) { return material.linear_density; };
+  // What a cut has left may be of any of the cable's materials.
+  return cable.state.masses[node] > materials.mean_at(node, density) * share + 1.5 * residue * materials.largest(density);
+}
+
+bool is_passable(const State& state, int cable, int node) {
+  const SimulatedCable& c = state.cables[cable];
+  const std::optional<LengthDrive>& drive = state.cable_progress[cable].drive;
+  if (node <= 0 || node >= c.state.segments() || carries_payload(c, node) || is_attached(state, cable, node)) return false;
+  const auto& directions = state.cable_progress[cable].targets.directions;
+  const auto& nodes = state.cable_progress[cable].targets.nodes;
+  const auto holds = [&](const auto& target) { return target.node == node; };
+  if (std::any_of(directions.begin(), directions.end(), holds) || std::any_of(nodes.begin(), nodes.end(), holds)) return false;
+  return !drive || (node != drive->segment && node != drive->segment + 1);
+}
+
+bool runs_out(const Attachment& attachment, const State& state) {
+  const int index = attachment.body.index;
+  const SimulatedCable& cable = state.cables[index];
+  const double flow = state.guides[attachment.guide].flow, ahead = steps_ahead * state.scene->time_step * std::abs(flow);
+  const double least = std::clamp(ahead, shortest * cable.model->segment_length, most_ahead * cable.model->segment_length);
+  return std::any_of(both_sides.begin(), both_sides.end(), [&](int side) {
+    const Side at = side_of(attachment, side);
+    const int end = at.neighbour();
+    if (end != 0 && end != cable.state.segments()) return false;
+    if (carries_payload(cable, end) || is_attached(state, index, end) || state.cable_progress[index].drive) return false;
+    return cable.state.rest_lengths[at.segment()] < least && (side == 0 ? flow > 0 : flow < 0);
+  });
+}
+
+void load_flows(int index, const State& state, Boundary& boundary) {
+  boundary.flows.clear();
+  if (state.guides.empty()) return;
+  const SimulatedCable& cable = state.cables[index];
+  for (const KinematicTarget& target : state.cable_progress[index].targets.nodes) {
+    const Attachment& attachment = state.attachments[target.attachment];
+    if (attachment.guide < 0 || target.node != attachment.node) continue;
+    const SimulatedGuide& guide = state.guides[attachment.guide];
+    GuidedFlow& flow = boundary.flows.emplace_back();
+    flow.first = attachment.node;
+    flow.last = is_wheel(attachment) ? attachment.node + 1 : attachment.node;
+    if (is_wheel(attachment)) {
+      flow.inertia = guide.inertia / (guide.radius * guide.radius);
+      flow.resistance = guide.bearing_friction / guide.radius;
+      flow.grip = guide.friction;
+    } else {
+      flow.friction = guide.friction;
+    }
+    flow.rate = guide.flow;
+    flow.acceleration = guide.flow_acceleration;
+    for (const int side : {0, 1}) {
+      const Side at = side_of(attachment, side);
+      flow.is_blocked[side] = cable.state.rest_lengths[at.segment()] < stop * cable.model->segment_length &&
+                              !is_passable(state, index, at.neighbour());
+    }
+  }
+}
+
+void keep_flows(int index, const Boundary& boundary, State& state) {
+  for (const GuidedFlow& flow : boundary.flows)
+    for (const KinematicTarget& target : state.cable_progress[index].targets.nodes) {
+      const int guide = state.attachments[target.attachment].guide;
+      if (guide < 0 || target.node != flow.first) continue;
+      state.guides[guide].flow = flow.rate;
+      state.guides[guide].flow_acceleration = flow.acceleration;
+    }
+}
+
+bool pass_nodes(int index, State& state) {
+  bool passed = false;
+  const CableState& cable = state.cables[index].state;
+  const double regular = state.cables[index].model->segment_length, little = shortest * regular;
+  for (Attachment& attachment : state.attachments) {
+    if (attachment.guide < 0 || attachment.body != cable_id(index)) continue;
+    const auto length = [&](int side) { return cable.rest_lengths[side_of(attachment, side).segment()]; };
+    const auto is_winding = [&](int side) {
+      const std::optional<LengthDrive>& drive = state.cable_progress[index].drive;
+      return drive && drive->segment == side_of(attachment, side).segment();  // its winch gives nodes out
+    };
+    const double ahead = steps_ahead * state.scene->time_step * std::abs(state.guides[attachment.guide].flow);
+    const double least = std::clamp(ahead, little, most_ahead * regular);
+    for (const int side : both_sides) {
+      while (length(side) < least && is_passable(state, index, side_of(attachment, side).neighbour())) {
+        const int joint = side_of(attachment, side).neighbour();
+        const Vector3 bulge = direction(cable, joint - 1) - direction(cable, joint);
+        take_in(index, attachment, side, state);
+        if (length(1 - side) > least_split * regular && !is_winding(1 - side))
+          give_out(index, attachment, 1 - side, std::max(length(1 - side) - regular, 2 * little), bulge, state);
+        passed = true;
+      }
+    }
+    for (const int side : both_sides)
+      while (length(side) > regular + 2.5 * little && length(side) > regular + least && !is_winding(side)) {
+        give_out(index, attachment, side, length(side) - regular, Vector3::Zero(), state);
+        passed = true;
+      }
+  }
+  return passed;
+}
+
+void move_with_guides(int index, State& state) {
+  Boundary boundary = boundary_now(state.cable_progress[index].targets);
+  load_flows(index, state, boundary);
+  project_velocities(*state.cables[index].model, boundary, state.cables[index].state);
+  keep_flows(index, boundary, state);
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "target/boundary.h"
+#include "world/state.h"
+
+namespace verlet_cable {
+
+/// Whether a node carries more than its segments and what a cut left on an end weigh.
+bool carries_payload(const SimulatedCable& cable, int node);
+
+/// Whether a node may be taken in: nothing holds it, and nothing hangs on it.
+bool is_passable(const State& state, int cable, int node);
+
+/// Whether a free end of the cable comes to a guide and is about to leave it.
+bool runs_out(const Attachment& guide, const State& state);
+
+/// Sets the flows of a boundary of a cable to what they are now; their places.
+void load_flows(int cable, const State& state, Boundary& boundary);
+/// Takes over what a substep has found of them.
+void keep_flows(int cable, const Boundary& boundary, State& state);
+
+/// Takes nodes that have come near a guide in, and gives them out on the other side: the segments beside a guide stay about as
+/// long as the others. Mass, momentum and tensions stay. Targets and attachments follow. Whether there were any.
+bool pass_nodes(int cable, State& state);
+
+/// Makes the velocities of a cable those of its guides there, its lengths kept but for what flows.
+void move_with_guides(int cable, State& state);
+
+}  // namespace verlet_cable
