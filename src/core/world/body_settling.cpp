@@ -15,7 +15,13 @@ constexpr double first_step = 1e-3, last_step = 1e5;  // [s]
 constexpr int maximum_steps = 2000;
 /// From one step to the next; the second once a step was too long.
 constexpr double fastest_growth = 2, slow_growth = 1.3;
+/// While what has begun to fall gets faster: it is followed, as longer steps would hold on to what does not last, but not for
+/// ever.
+constexpr double falling_growth = 1.02;
 constexpr int calm_steps = 3;
+/// What moves by less in a step of this length [s] stands, too: rounding may keep longer ones from converging.
+constexpr double long_step = 100;
+constexpr double settled_displacement = 1e-7;  // radii
 /// Where there is something to touch, no node goes further at a time than this, in radii.
 constexpr double settling_reach = 1;
 constexpr double settled_contact = 1e-4;       // radii
@@ -49,8 +55,10 @@ bool BodySettling::settle() {
     }
     const double acceleration = 2 * outcome.displacement / (h * h);
     const bool stands = !outcome.touches || outcome.displacement < settled_contact * radius_;
-    calm = acceleration < settled_acceleration && stands && (outcome.touches || h >= last_step) ? calm + 1 : 0;
-    if (outcome.touches || acceleration < last || h < first_step) h = std::min(growth * h, last_step);
+    const bool is_long = h >= last_step || (h >= long_step && outcome.displacement < settled_displacement * radius_);
+    calm = acceleration < settled_acceleration && stands && (outcome.touches || is_long) ? calm + 1 : 0;
+    const bool calms = outcome.touches || acceleration < last || h < first_step;
+    h = std::min((calms ? growth : falling_growth) * h, last_step);
     last = acceleration;
   }
   complete();
