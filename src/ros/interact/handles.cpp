@@ -163,7 +163,7 @@ void add_bodies(const World& world, const std::set<std::string>& grabs, std::vec
   }
   for (int i = 0; i < static_cast<int>(world.bodies().size()); ++i) {
     const SimulatedBody& body = world.bodies()[i];
-    if (!is_there(world, body) || held.count(i) > 0) continue;
+    if (body.is_junction || !is_there(world, body) || held.count(i) > 0) continue;
     Handle handle = handle_of(body);
     handle.name = body.name + "/0";
     handle.cable = body.name;

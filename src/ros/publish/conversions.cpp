@@ -169,7 +169,7 @@ CableArray to_message(const World& world) {
   for (const SimulatedParticle& particle : world.particles())
     if (is_finite(particle)) message.particles.push_back(to_message(particle));
   for (const SimulatedBody& body : world.bodies())
-    if (is_there(world, body)) message.bodies.push_back(to_message(body));
+    if (!body.is_junction && is_there(world, body)) message.bodies.push_back(to_message(body));
   return message;
 }
 

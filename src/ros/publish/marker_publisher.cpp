@@ -124,7 +124,7 @@ void MarkerPublisher::publish(const World& world, const ros::Time& stamp) {
   for (const Attachment& attachment : world.attachments()) add_pin(world, attachment, *markers);
   for (const Obstacle& obstacle : world.obstacles()) add_obstacle(world, obstacle, *markers);
   for (const SimulatedBody& body : world.bodies())
-    if (is_there(world, body)) add_body(body, *markers);
+    if (!body.is_junction && is_there(world, body)) add_body(body, *markers);
   delete_what_is_gone(*markers);
   for (Marker& marker : markers->markers) marker.header.stamp = stamp;
   publisher_.publish(markers);
