@@ -122,7 +122,8 @@ std::vector<Attachment> World::Implementation::junction_attachments(const CableD
   std::vector<Attachment> attachments;
   for (const JunctionPlace& place : junction_places(scene, desc)) {
     Attachment& attachment = attachments.emplace_back();
-    attachment.name = "junction " + scene.junctions[place.junction].name + " of " + desc.name;
+    attachment.name =
+        "junction " + scene.junctions[place.junction].name + " of " + desc.name + " at " + std::to_string(place.node);
     attachment.is_junction = true;
     attachment.body = cable_id(cable);
     attachment.node = place.node;

@@ -135,7 +135,7 @@ void add_cables(const World& world, CableArray& message) {
     if (places.back() >= 0) message.cables.push_back(to_message(cable));
   }
   for (const Attachment& attachment : world.attachments()) {
-    if (attachment.guide >= 0 || !attachment.body.is_cable() || places[attachment.body.index] < 0) continue;
+    if (!is_named(attachment) || !attachment.body.is_cable() || places[attachment.body.index] < 0) continue;
     Cable& cable = message.cables[places[attachment.body.index]];
     cable.attachments.push_back(attachment.name);
     cable.attachment_nodes.push_back(attachment.node);
