@@ -97,6 +97,16 @@ TEST(SceneFiles, templateHoldsTheDefaultsOfBodies) {
   EXPECT_EQ(attachment.rotation, BodyAttachmentDesc{}.rotation);
 }
 
+TEST(SceneFiles, templateHoldsTheDefaultsOfJunctions) {
+  const SceneDesc scene = read_scene_file(config("scene_template.yaml"));
+  ASSERT_EQ(scene.junctions.size(), 1u);
+  expect_defaults(scene.junctions[0], junction_fields);
+  EXPECT_EQ(scene.junctions[0].type, JunctionDesc{}.type);
+  ASSERT_EQ(scene.junctions[0].branches.size(), 1u);
+  EXPECT_EQ(scene.junctions[0].branches[0].end, BranchDesc{}.end);
+  EXPECT_EQ(scene.junctions[0].branches[0].rotation, BranchDesc{}.rotation);
+}
+
 TEST(SceneFiles, templateHoldsTheDefaultsOfGuides) {
   const SceneDesc scene = read_scene_file(config("scene_template.yaml"));
   ASSERT_EQ(scene.guides.size(), 3u);
@@ -147,6 +157,7 @@ TEST(SceneFiles, templateDocumentsEveryKey) {
   expect_documented(lines, grid_fields);
   expect_documented(lines, grid_integer_fields);
   expect_documented(lines, body_fields);
+  expect_documented(lines, junction_fields);
   expect_documented(lines, sheave_fields);
   expect_documented(lines, clip_fields);
   for (const char* key : {"frame_id",
@@ -201,6 +212,9 @@ TEST(SceneFiles, templateDocumentsEveryKey) {
                           "shapes",
                           "broadcast_tf",
                           "cable",
+                          "junctions",
+                          "branches",
+                          "end",
                           "guides",
                           "integrator"})
     EXPECT_TRUE(is_documented(lines, key, "")) << key;
