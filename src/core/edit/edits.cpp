@@ -14,7 +14,14 @@ namespace {
 
 bool holds_something(const std::vector<Attachment>& attachments, const BodyId& body, int node) {
   return std::any_of(attachments.begin(), attachments.end(),
-                     [&](const Attachment& a) { return a.body == body && a.node == node; });
+                     [&](const Attachment& a) { return a.body == body && a.node == node && !a.is_junction; });
+}
+
+/// Index of the body that joins a node to other cables, -1 if there is none.
+int junction_at(const std::vector<Attachment>& attachments, const BodyId& body, int node) {
+  const auto joint = std::find_if(attachments.begin(), attachments.end(),
+                                  [&](const Attachment& a) { return a.body == body && a.node == node && a.is_junction; });
+  return joint == attachments.end() ? -1 : joint->holder;
 }
 
 /// `base` followed by the lowest number for which `taken` is false.
@@ -116,6 +123,9 @@ EditResult World::Implementation::apply(const edit::Pin& pin) {
                             : pin.body.is_net()      ? "net " + state.nets[pin.body.index].model.name
                                                      : "cable " + state.cables[pin.body.index].model->name);
   if (holds_something(state.attachments, pin.body, pin.node)) return refused(node + "; is already held by an attachment");
+  const int junction = junction_at(state.attachments, pin.body, pin.node);
+  if (junction >= 0 && pin.type != AttachmentType::hinge)
+    return refused(node + "; is where cables branch, which a pin can hold by a hinge");
   if (pin.body.is_cable()) {
     const int other = joining_node(state.cable_progress[pin.body.index].drive, pin.node);
     if (other >= 0 && holds_something(state.attachments, pin.body, other))
@@ -127,6 +137,7 @@ EditResult World::Implementation::apply(const edit::Pin& pin) {
   attachment.node = pin.node;
   attachment.frame = pin.frame;
   attachment.holder = holder;
+  attachment.held_junction = junction;
   if (pin.body.is_cable()) attachment.type = pin.type;
   attachment.pose.position = pin.pose.position;
   if (pin.body.is_cable()) attachment.pose.orientation = pin.pose.orientation.normalized();

@@ -136,7 +136,8 @@ void add_nodes(const World& world, const std::set<std::string>& grabs, std::vect
   const int stride = static_cast<int>((nodes + most_nodes - 1) / most_nodes);
   std::set<std::pair<int, int>> held;
   for (const Attachment& attachment : world.attachments())
-    if (attachment.body.is_cable() && grabs.count(attachment.name) == 0) held.emplace(attachment.body.index, attachment.node);
+    if (attachment.body.is_cable() && !attachment.is_junction && grabs.count(attachment.name) == 0)
+      held.emplace(attachment.body.index, attachment.node);
   for (int i = 0; i < static_cast<int>(world.cables().size()); ++i) {
     const SimulatedCable& cable = world.cables()[i];
     if (!is_finite(cable)) continue;
