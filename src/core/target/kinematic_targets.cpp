@@ -105,7 +105,7 @@ std::vector<WantedNode> wanted_nodes(const CableModel& model, const CableState& 
 std::vector<int> attachments_of(const BodyId& body, const std::vector<Attachment>& attachments) {
   std::vector<int> own;
   for (int a = 0; a < static_cast<int>(attachments.size()); ++a)
-    if (attachments[a].body == body) own.push_back(a);
+    if (attachments[a].body == body && attachments[a].held_junction < 0) own.push_back(a);
   return own;
 }
 

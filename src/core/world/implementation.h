@@ -75,6 +75,7 @@ struct World::Implementation {
   std::vector<Attachment> junction_attachments(const CableDesc& desc, int cable) const;
   std::optional<InitialShapeDesc> shape_from_trunk(const CableDesc& desc) const;
   void weld_junctions(const std::vector<int>& descs);
+  void weld(int attachment);
   void start_with_bodies(const CableState& cable, KinematicTargets& targets) const;
   NetSolver& solver_of(int net);
   void step_net(int net, StepResult& result);

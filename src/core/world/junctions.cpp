@@ -81,12 +81,12 @@ std::vector<int> harnesses_of(const SceneDesc& scene) {
 /// Light bodies where cables branch, after those of the scene. The first cable of a junction that starts places it.
 void World::Implementation::add_junctions() {
   const SceneDesc& scene = *state.scene;
+  const std::vector<std::string> names = computed_frame_names(scene);
   for (const JunctionDesc& desc : scene.junctions) {
     SimulatedBody body;
-    body.name = "junction " + desc.name;
+    body.name = names[state.bodies.size()];
     body.is_junction = true;
     body.mass = desc.mass;
-    body.frame = static_cast<int>(state.frames.names.size());
     add_body(std::move(body));
   }
   for (const CableDesc& cable : scene.cables)
@@ -122,7 +122,8 @@ std::vector<Attachment> World::Implementation::junction_attachments(const CableD
   std::vector<Attachment> attachments;
   for (const JunctionPlace& place : junction_places(scene, desc)) {
     Attachment& attachment = attachments.emplace_back();
-    attachment.name = "junction " + scene.junctions[place.junction].name + " of " + desc.name;
+    attachment.name =
+        "junction " + scene.junctions[place.junction].name + " of " + desc.name + " at " + std::to_string(place.node);
     attachment.is_junction = true;
     attachment.body = cable_id(cable);
     attachment.node = place.node;
@@ -156,31 +157,41 @@ std::optional<InitialShapeDesc> World::Implementation::shape_from_trunk(const Ca
   return std::nullopt;
 }
 
-/// Rigid junctions hold the cables that have just started as these come to them. A cable without bending stiffness passes no
-/// moment: a point of it is held.
+/// Rigid junctions hold the cables that have just started as these come to them; what holds a cable where it branches holds the
+/// junction.
 void World::Implementation::weld_junctions(const std::vector<int>& descs) {
+  if (state.scene->junctions.empty()) return;
   for (const int i : descs) {
     const int cable = find(state.cables, state.scene->cables[i].name);
     if (cable < 0) continue;
-    std::vector<DirectionTarget>& clamps = state.cable_progress[cable].targets.directions;
-    bool welds = false;
+    bool changes = false;
     for (int a = 0; a < static_cast<int>(state.attachments.size()); ++a) {
-      Attachment& attachment = state.attachments[a];
-      if (attachment.body != cable_id(cable) || !attachment.is_junction) continue;
-      const JunctionDesc& junction = state.scene->junctions[attachment.holder - state.scene->bodies.size()];
-      attachment.type = AttachmentType::hinge;
-      if (junction.type != JunctionDesc::Type::rigid || !bends_at(state.cables[cable], attachment.node)) continue;
-      attachment.type = AttachmentType::clamp;
-      attachment.pose.orientation =
-          (state.bodies[attachment.holder].pose.orientation.conjugate() * axes_at(state.cables[cable].state, attachment.node))
-              .normalized();
-      clamps.erase(
-          std::remove_if(clamps.begin(), clamps.end(), [&](const DirectionTarget& clamp) { return clamp.attachment == a; }),
-          clamps.end());
-      welds = true;
+      if (state.attachments[a].body != cable_id(cable) || !state.attachments[a].is_junction) continue;
+      weld(a);
+      changes = true;
     }
-    if (welds) find_targets_of(cable);
+    if (changes) find_targets_of(cable);
   }
+}
+
+/// A cable without bending stiffness passes no moment: a point of it is held.
+void World::Implementation::weld(int index) {
+  Attachment& joint = state.attachments[index];
+  const SimulatedCable& cable = state.cables[joint.body.index];
+  const JunctionDesc& junction = state.scene->junctions[joint.holder - state.scene->bodies.size()];
+  joint.type = AttachmentType::hinge;
+  if (junction.type == JunctionDesc::Type::rigid && bends_at(cable, joint.node)) {
+    const Quaternion& axes = state.bodies[joint.holder].pose.orientation;
+    joint.type = AttachmentType::clamp;
+    joint.pose.orientation = (axes.conjugate() * axes_at(cable.state, joint.node)).normalized();
+  }
+  // As it comes, whatever it was held by until now
+  std::vector<DirectionTarget>& clamps = state.cable_progress[joint.body.index].targets.directions;
+  clamps.erase(
+      std::remove_if(clamps.begin(), clamps.end(), [&](const DirectionTarget& clamp) { return clamp.node == joint.node; }),
+      clamps.end());
+  for (Attachment& other : state.attachments)
+    if (other.body == joint.body && other.node == joint.node && is_named(other)) other.held_junction = joint.holder;
 }
 
 }  // namespace verlet_cable

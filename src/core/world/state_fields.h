@@ -215,7 +215,7 @@ auto fields(T& x, const BodyId*) {
 }
 template <class T>
 auto fields(T& x, const Attachment*) {
-  return std::tie(x.name, x.body, x.node, x.frame, x.holder, x.type, x.pose, x.at, x.force, x.torque, x.guide, x.is_junction,
+  return std::tie(x.name, x.body, x.node, x.frame, x.holder, x.type, x.pose, x.at, x.force, x.torque, x.guide, x.is_junction, x.held_junction,
                   x.tangent_points);
 }
 template <class T>

@@ -1,0 +1,213 @@
+#include "body/held_cable.h"
+
+#include <algorithm>
+
+#include "body/body_joints.h"
+#include "verlet_cable/core/cable_materials.h"
+
+namespace verlet_cable {
+
+namespace {
+
+/// Of point masses and a body, in the axes of its frame.
+void add_mass(double mass, const Vector3& point, MassProperties& whole) {
+  const double sum = whole.mass + mass;
+  const Vector3 way = point - whole.center_of_mass;
+  const double reduced = whole.mass * mass / sum;
+  whole.inertia += reduced * (way.squaredNorm() * Eigen::Matrix3d::Identity() - way * way.transpose());
+  whole.center_of_mass += mass / sum * way;
+  whole.mass = sum;
+}
+
+}  // namespace
+
+void HeldCable::begin(int participant, const Participant& p, const std::vector<int>& member_of) {
+  participant_ = participant;
+  const Boundary& boundary = p.substep.boundary;
+  sides_.clear();
+  std::size_t d = 0;
+  for (std::size_t k = 0; k < boundary.nodes.size(); ++k) {
+    const HeldNode& held = boundary.nodes[k];
+    Side side;
+    side.node = held.node;
+    side.entry = static_cast<int>(k);
+    side.point = held.point;
+    if (held.body >= 0) side.member = member_of[held.body];
+    if (held.body >= 0) sides_.push_back(side);
+    while (d < boundary.directions.size() && boundary.directions[d].node < held.node) ++d;
+    if (d == boundary.directions.size() || boundary.directions[d].node != held.node || boundary.directions[d].body < 0) continue;
+    side.entry = static_cast<int>(d);
+    side.turns = true;
+    side.member = member_of[boundary.directions[d].body];
+    sides_.push_back(side);
+  }
+  find_stretches(p);
+  share_turns();
+  const auto rows = static_cast<Eigen::Index>(3 * sides_.size());
+  if (resistance_.rows() != rows) resistance_.resize(rows, rows);
+  motion_.displacements.resize(boundary.nodes.size());
+  motion_.rotations.resize(boundary.directions.size());
+}
+
+/// What happens on one side of a clamp is not felt on the other; nor what happens on one side of a held node, by what does not
+/// bend. Material that flows is felt everywhere.
+void HeldCable::find_stretches(const Participant& p) {
+  const Boundary& boundary = p.substep.boundary;
+  const CableMaterials materials(p.substep.model, *p.state);
+  const bool bends = !p.state->directors.empty() || materials.any([](const MaterialDesc& material) {
+    return material.bending_stiffness.largest() > 0 || material.bending_damping > 0;
+  });
+  int stretch = 0;
+  auto side = sides_.begin();
+  for (const HeldNode& held : boundary.nodes) {
+    const bool clamped = std::any_of(boundary.directions.begin(), boundary.directions.end(),
+                                     [&](const HeldDirection& direction) { return direction.node == held.node; });
+    const bool inside = held.node > 0 && held.node < p.state->segments();
+    const bool separates = inside && (clamped || !bends) && boundary.flows.empty();
+    for (; side != sides_.end() && side->node == held.node; ++side) {
+      side->first_stretch = stretch;
+      side->last_stretch = separates ? stretch + 1 : stretch;
+    }
+    if (separates) ++stretch;
+  }
+}
+
+/// The first turn in which nothing that a side interacts with interacts with another one.
+void HeldCable::share_turns() {
+  turns_ = 0;
+  for (std::size_t i = 0; i < sides_.size(); ++i) {
+    const auto disturbs = [&](int turn) {
+      for (std::size_t j = 0; j < i; ++j) {
+        if (sides_[j].turn != turn) continue;
+        for (const Side& third : sides_)
+          if (interact(third, sides_[i]) && interact(third, sides_[j])) return true;
+      }
+      return false;
+    };
+    sides_[i].turn = 0;
+    while (disturbs(sides_[i].turn)) ++sides_[i].turn;
+    turns_ = std::max(turns_, sides_[i].turn + 1);
+  }
+}
+
+void HeldCable::couple(BodyEquations& equations) const {
+  for (const Side& a : sides_)
+    for (const Side& b : sides_)
+      if (interact(a, b)) equations.couple(a.member, b.member);
+}
+
+void HeldCable::add_masses(const Participant& p, std::vector<MovingBody>& bodies) const {
+  for (const Side& side : sides_)
+    if (!side.turns) add_mass(p.state->masses[p.substep.boundary.nodes[side.entry].node], side.point, bodies[side.member].whole);
+}
+
+void HeldCable::place_holders(const std::vector<MovingBody>& bodies, Boundary& boundary) const {
+  for (const Side& side : sides_) {
+    const RigidBodyStepper& stepper = bodies[side.member].stepper;
+    if (side.turns) {
+      HeldDirection& held = boundary.directions[side.entry];
+      held.end = stepper.pose().orientation * held.on_body;
+    } else {
+      boundary.nodes[side.entry].position = stepper.position_of(side.point);
+    }
+  }
+}
+
+void HeldCable::set_holder_velocities(const std::vector<MovingBody>& bodies, Boundary& boundary) const {
+  for (const Side& side : sides_)
+    if (!side.turns) boundary.nodes[side.entry].velocity = bodies[side.member].stepper.velocity_of(side.point);
+}
+
+void HeldCable::read_loads(const Participant& p, bool corrected) {
+  p.stepper->read_holder_loads(p.substep, p.state->masses, corrected, loads_);
+}
+
+void HeldCable::read_impulses(const Participant& p) {
+  p.stepper->read_impulses(p.substep.boundary, loads_);
+}
+
+Matrix36 HeldCable::motion_of(const Side& side, const RigidBodyStepper& body) {
+  if (!side.turns) return point_motion(body.end_arm(side.point));
+  Matrix36 turn;
+  turn << Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Identity();
+  return turn;
+}
+
+Matrix63 HeldCable::load_of(const Side& side, const RigidBodyStepper& body, BodyStage stage) {
+  if (!side.turns) return verlet_cable::load_of(body, side.point, stage);
+  Matrix63 turn;
+  turn << Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Identity();
+  return turn;
+}
+
+void HeldCable::add_loads(const std::vector<MovingBody>& bodies, BodyStage stage, BodyEquations& equations) const {
+  for (const Side& side : sides_)
+    equations.load(side.member) += load_of(side, bodies[side.member].stepper, stage) * load_of(side, loads_);
+}
+
+void HeldCable::add_turning(double part, const std::vector<MovingBody>& bodies, BodyEquations& equations) const {
+  for (const Side& side : sides_)
+    if (!side.turns)
+      verlet_cable::add_turning(part, bodies[side.member], side.member, side.point, loads_.forces[side.entry], equations);
+}
+
+/// Lets the sides move, one by one where any side would feel two of them.
+void HeldCable::find_resistance(BodyStage stage, Participant& p) {
+  motion_.clear();
+  const bool turning_acts = stage == BodyStage::substep;
+  for (int turn = 0; turn < turns_; ++turn)
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      bool any = false;
+      for (const Side& side : sides_) {
+        if (side.turn != turn || (side.turns && !turning_acts)) continue;
+        motion_of(side)[axis] = 1;
+        any = true;
+      }
+      if (!any) continue;
+      p.stepper->respond(p.substep.boundary, motion_, responses_);
+      for (std::size_t j = 0; j < sides_.size(); ++j) {
+        if (sides_[j].turn != turn || (sides_[j].turns && !turning_acts)) continue;
+        motion_of(sides_[j]).setZero();
+        for (std::size_t i = 0; i < sides_.size(); ++i)
+          if (interact(sides_[i], sides_[j]))
+            resistance_.block<3, 1>(static_cast<Eigen::Index>(3 * i), static_cast<Eigen::Index>(3 * j) + axis) =
+                -load_of(sides_[i], responses_);
+      }
+    }
+}
+
+void HeldCable::add_resistance(const std::vector<MovingBody>& bodies, BodyStage stage, Participant& p, BodyEquations& equations) {
+  find_resistance(stage, p);
+  const bool turning_acts = stage == BodyStage::substep;
+  for (std::size_t i = 0; i < sides_.size(); ++i) {
+    const Side& a = sides_[i];
+    if (a.turns && !turning_acts) continue;
+    const Matrix63 load = load_of(a, bodies[a.member].stepper, stage);
+    for (std::size_t j = 0; j < sides_.size(); ++j) {
+      const Side& b = sides_[j];
+      if (!interact(a, b) || (b.turns && !turning_acts)) continue;
+      equations.block(a.member, b.member).noalias() +=
+          load * (resistance_.block<3, 3>(static_cast<Eigen::Index>(3 * i), static_cast<Eigen::Index>(3 * j)) *
+                  motion_of(b, bodies[b.member].stepper));
+    }
+  }
+}
+
+void HeldCable::follow(const std::vector<MovingBody>& bodies, const BodyEquations& equations, Participant& p) {
+  motion_.clear();
+  for (const Side& side : sides_)
+    motion_of(side) = motion_of(side, bodies[side.member].stepper) * equations.solution(side.member);
+  p.stepper->add_moved(p.substep.boundary, motion_);
+}
+
+double HeldCable::work_of_held(const Participant& p) const {
+  double work = 0;
+  for (const Side& side : sides_) {
+    if (side.turns) continue;
+    const int node = p.substep.boundary.nodes[side.entry].node;
+    work += get(p.stepper->system().load, node).dot(get(p.stepper->correction(), node));
+  }
+  return work;
+}
+
+}  // namespace verlet_cable
