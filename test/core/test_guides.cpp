@@ -22,11 +22,14 @@ GuideDesc guide(const std::string& name, std::optional<double> at, const Vector3
   return desc;
 }
 
-/// Over an eyelet at the origin, with loads [kg] at both ends.
+/// Over an eyelet at the origin, down on both sides with loads [kg] at the ends.
 SceneDesc two_loads(double at_start, double at_end, double length = 2) {
   SceneDesc scene = scenes::one_cable(50, length);
   scene.cables[0].point_masses = {scenes::payload(at_start), scenes::payload(at_end)};
   scene.cables[0].point_masses[0].place.at = PlaceDesc::At::start;
+  const Vector3 side(0.25 * length, 0, -0.25 * std::sqrt(3.0) * length);
+  scene.cables[0].initial.type = InitialShapeDesc::Type::points;
+  scene.cables[0].initial.points = {{-side.x(), 0, side.z()}, Vector3::Zero(), side};
   scene.guides = {guide("eye", 0.5 * length, Vector3::Zero())};
   return scene;
 }
@@ -42,6 +45,7 @@ double mass_of(const SimulatedCable& cable) {
 
 TEST(Guides, areNoAttachmentsByName) {
   SceneDesc scene = two_loads(0.1, 0.1);
+  scene.cables[0].initial = {};
   scene.cables[0].point_masses.clear();
   scene.cables[0].attachments = {scenes::attachment("eye", PlaceDesc::At::start, {-0.2, 0, -0.9}),
                                  scenes::attachment("other", PlaceDesc::At::end, {0.2, 0, -0.9})};
@@ -66,16 +70,16 @@ void PrintTo(const Kind& kind, std::ostream* stream) {
 const Kind kinds[] = {
     {"chain", [](SceneDesc&) {}},
     {"elastic", [](SceneDesc& scene) { scene.materials[0].material.axial_stiffness = 1e4; }},
-    {"bending", [](SceneDesc& scene) { scene.materials[0].material.bending_stiffness = 1e-3; }},
+    {"bending", [](SceneDesc& scene) { scene.materials[0].material.bending_stiffness = 1e-4; }},
     {"ribbon",
      [](SceneDesc& scene) {
-       scene.materials[0].material.bending_stiffness = BendingStiffness(1e-3, 2e-3);
-       scene.materials[0].material.torsional_stiffness = 1e-3;
+       scene.materials[0].material.bending_stiffness = BendingStiffness(1e-4, 2e-4);
+       scene.materials[0].material.torsional_stiffness = 1e-4;
      }},
     {"coil",
      [](SceneDesc& scene) {
-       scene.materials[0].material.bending_stiffness = 1e-3;
-       scene.materials[0].material.torsional_stiffness = 1e-3;
+       scene.materials[0].material.bending_stiffness = 1e-4;
+       scene.materials[0].material.torsional_stiffness = 1e-4;
        scene.cables[0].rest_curvature.type = RestCurvatureDesc::Type::constant;
        scene.cables[0].rest_curvature.curvature = {0.5, 0};
      }},
@@ -83,7 +87,6 @@ const Kind kinds[] = {
      [](SceneDesc& scene) {
        scene.materials.push_back({"lead", scene.materials[0].material});
        scene.materials[1].material.linear_density = 0.3;
-       scene.materials[1].material.bending_stiffness = 1e-3;
        scene.cables[0].sections = {{0.6, 0.9, "lead"}};
      }},
 };
@@ -92,21 +95,21 @@ class GuidedKinds : public testing::TestWithParam<Kind> {};
 
 /// With loads so different that nodes pass all the time.
 TEST_P(GuidedKinds, keepMassLengthAndEnergyWhileNodesPass) {
-  SceneDesc scene = two_loads(1, 1.3);
+  SceneDesc scene = two_loads(1, 3);
   GetParam().make(scene);
   scene.numerical_damping = false;
   World world(scene, {});
   const double mass = mass_of(world.cables()[0]), energy = world.energy().total();
-  run(world, 0.7);
+  run(world, 0.35);
   const GuideView view = world.view_guide(0);
   EXPECT_LT(view.arc_length, 0.8);
   EXPECT_NEAR(mass_of(world.cables()[0]), mass, 1e-12);
   EXPECT_NEAR(world.cables()[0].state.length(), 2, 2e-3);
-  EXPECT_NEAR(world.energy().total(), energy, 2e-3 * world.energy().kinetic);
+  EXPECT_NEAR(world.energy().total(), energy, 5e-3 * world.energy().kinetic);
 }
 
 TEST_P(GuidedKinds, goOnFromSnapshotsInTheMiddleOfAPass) {
-  SceneDesc scene = two_loads(1, 1.3);
+  SceneDesc scene = two_loads(1, 3);
   GetParam().make(scene);
   World world(scene, {});
   const std::size_t nodes = world.cables()[0].state.masses.size();
@@ -132,7 +135,7 @@ TEST(Clips, letGoWhatIsDrawnAcrossThem) {
   scene.cables[0].attachments[1].offset.setZero();
   scene.cables[0].attachments[1].initial_pose = InitialPose{0.45, 0, 0, 0, 0, 0};
   scene.guides = {guide("clip", 0.5, Vector3::Zero(), GuideDesc::Type::clip)};
-  scene.guides[0].retention = 2;
+  scene.guides[0].retention = 5;
   scene.guides[0].capture = 0.01;
   World world(scene, initial_frames(scene));
   BoundaryInputs inputs = initial_frames(scene);
@@ -153,12 +156,12 @@ TEST(Clips, letGoWhatIsDrawnAcrossThem) {
   move_to({0.2, 0, 0.7}, 1500);
   EXPECT_EQ(released, 1);
   EXPECT_EQ(caught, 0);
-  EXPECT_NEAR(force, 2, 0.6);
+  EXPECT_NEAR(force, 5, 0.6);
   EXPECT_EQ(world.view_guide(0).cable, -1);
   EXPECT_EQ(find(world.attachments(), "clip"), -1);
   // Back again: it was away, so that the clip takes it.
-  move_to({0.45, 0, 0.05}, 1500);
-  move_to({0.45, 0, 0}, 1000);
+  const Vector3 high = inputs[1].pose.position;
+  for (int i = 1; i <= 100 && caught == 0; ++i) move_to(high + 0.01 * i * (Vector3(0.45, 0, 0.05) - high), 15);
   EXPECT_EQ(caught, 1);
   EXPECT_EQ(world.view_guide(0).cable, 0);
 }
@@ -186,6 +189,7 @@ TEST(Guides, materialComesBackWithItsSections) {
   scene.materials.push_back({"lead", scene.materials[0].material});
   scene.materials[1].material.linear_density = 0.3;
   CableDesc& cable = scene.cables[0];
+  cable.initial = {};
   cable.sections = {{0.8, 1.2, "lead"}};
   cable.point_masses.clear();
   cable.attachments = {scenes::attachment("left", PlaceDesc::At::start, Vector3::Zero(), "left"),
