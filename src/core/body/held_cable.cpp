@@ -1,5 +1,7 @@
 #include "body/held_cable.h"
 
+#include <algorithm>
+
 #include "body/body_joints.h"
 
 namespace verlet_cable {
@@ -21,6 +23,7 @@ void add_mass(double mass, const Vector3& point, MassProperties& whole) {
 void HeldCable::begin(int participant, const Boundary& boundary, const std::vector<int>& member_of) {
   participant_ = participant;
   sides_.clear();
+  contacts_.clear();
   for (std::size_t k = 0; k < boundary.nodes.size(); ++k)
     if (boundary.nodes[k].body >= 0)
       sides_.push_back({member_of[boundary.nodes[k].body], static_cast<int>(k), false, boundary.nodes[k].point});
@@ -55,8 +58,24 @@ void HeldCable::set_holder_velocities(const std::vector<MovingBody>& bodies, Bou
     if (!side.turns) boundary.nodes[side.entry].velocity = bodies[side.member].stepper.velocity_of(side.point);
 }
 
+void HeldCable::add_contact(const Touch& touch, int member) {
+  Contact& contact = contacts_.emplace_back();
+  contact.touch = &touch;
+  contact.member = member;
+  contact.stiffness = slope(touch);
+  contact.resistance = full_slope(touch);
+}
+
 void HeldCable::read_loads(const Participant& p, bool corrected) {
   p.stepper->read_holder_loads(p.substep, p.state->masses, corrected, loads_);
+  for (Contact& contact : contacts_) {
+    contact.change.setZero();
+    if (!corrected) continue;
+    const CablePoint& point = contact.touch->point;
+    const VectorArray& u = p.stepper->correction();
+    const Vector3 way = (1 - point.fraction) * get(u, point.segment) + point.fraction * get(u, point.segment + 1);
+    contact.change = contact.stiffness * way - contact.touch->followed;
+  }
 }
 
 void HeldCable::read_impulses(const Participant& p) {
@@ -80,6 +99,9 @@ Matrix63 HeldCable::load_of(const Side& side, const RigidBodyStepper& body, Body
 void HeldCable::add_loads(const std::vector<MovingBody>& bodies, BodyStage stage, BodyEquations& equations) const {
   for (const Side& side : sides_)
     equations.load(side.member) += load_of(side, bodies[side.member].stepper, stage) * load_of(side, loads_);
+  if (stage == BodyStage::projection) return;
+  for (const Contact& contact : contacts_)
+    equations.load(contact.member) += point_load(contact.touch->arm) * contact.change;
 }
 
 void HeldCable::add_turning(double part, const std::vector<MovingBody>& bodies, BodyEquations& equations) const {
@@ -90,6 +112,7 @@ void HeldCable::add_turning(double part, const std::vector<MovingBody>& bodies, 
 
 /// Lets the sides move one by one.
 void HeldCable::find_resistance(Participant& p) {
+  motion_.loads.clear();
   motion_.clear();
   for (std::size_t column = 0; column < 3 * sides_.size(); ++column) {
     Vector3& motion = motion_of(sides_[column / 3]);
@@ -103,6 +126,7 @@ void HeldCable::find_resistance(Participant& p) {
 }
 
 void HeldCable::add_resistance(const std::vector<MovingBody>& bodies, BodyStage stage, Participant& p, BodyEquations& equations) {
+  if (!contacts_.empty() && stage == BodyStage::substep) return add_touching_resistance(bodies, stage, p, equations);
   find_resistance(p);
   for (std::size_t i = 0; i < sides_.size(); ++i) {
     const Side& a = sides_[i];
@@ -116,8 +140,49 @@ void HeldCable::add_resistance(const std::vector<MovingBody>& bodies, BodyStage 
   }
 }
 
+/// Lets the bodies move one by one: contacts may be many.
+void HeldCable::add_touching_resistance(const std::vector<MovingBody>& bodies, BodyStage stage, Participant& p,
+                                        BodyEquations& equations) {
+  members_.clear();
+  for (const Side& side : sides_) members_.push_back(side.member);
+  for (const Contact& contact : contacts_) members_.push_back(contact.member);
+  std::sort(members_.begin(), members_.end());
+  members_.erase(std::unique(members_.begin(), members_.end()), members_.end());
+  motion_.loads.clear();
+  for (const Contact& contact : contacts_)
+    motion_.loads.push_back({contact.touch->point.segment, contact.touch->point.fraction, Vector3::Zero()});
+  for (const int member : members_) {
+    const RigidBodyStepper& moved = bodies[member].stepper;
+    for (int column = 0; column < 6; ++column) {
+      motion_.clear();
+      for (const Side& side : sides_)
+        if (side.member == member) motion_of(side) = motion_of(side, moved).col(column);
+      for (std::size_t k = 0; k < contacts_.size(); ++k) {
+        const Contact& contact = contacts_[k];
+        if (contact.member == member)
+          motion_.loads[k].force = contact.resistance * point_motion(contact.touch->arm).col(column);
+      }
+      p.stepper->respond(p.substep.boundary, motion_, responses_);
+      for (const Side& side : sides_)
+        equations.block(side.member, member).col(column) -=
+            load_of(side, bodies[side.member].stepper, stage) * load_of(side, responses_);
+      for (std::size_t k = 0; k < contacts_.size(); ++k) {
+        const Contact& contact = contacts_[k];
+        equations.block(contact.member, member).col(column) +=
+            point_load(contact.touch->arm) * (motion_.loads[k].force - contact.stiffness * responses_.displacements[k]);
+      }
+    }
+  }
+}
+
 void HeldCable::follow(const std::vector<MovingBody>& bodies, const BodyEquations& equations, Participant& p) {
-  motion_.clear();
+  motion_.loads.clear();
+  for (const Contact& contact : contacts_) {
+    const Vector3 way = point_motion(contact.touch->arm) * equations.solution(contact.member);
+    motion_.loads.push_back({contact.touch->point.segment, contact.touch->point.fraction, contact.resistance * way});
+  }
+  std::fill(motion_.displacements.begin(), motion_.displacements.end(), Vector3::Zero());
+  std::fill(motion_.rotations.begin(), motion_.rotations.end(), Vector3::Zero());
   for (const Side& side : sides_)
     motion_of(side) = motion_of(side, bodies[side.member].stepper) * equations.solution(side.member);
   p.stepper->add_moved(p.substep.boundary, motion_);

@@ -5,6 +5,7 @@
 
 #include "body/body_equations.h"
 #include "body/moving_body.h"
+#include "contact/law.h"
 #include "rod/participant.h"
 
 namespace verlet_cable {
@@ -22,6 +23,12 @@ class HeldCable {
 
   void place_holders(const std::vector<MovingBody>& bodies, Boundary& boundary) const;
   void set_holder_velocities(const std::vector<MovingBody>& bodies, Boundary& boundary) const;
+  bool is_held() const { return !sides_.empty(); }
+
+  // Contacts with bodies that press, as they are linearised
+  void clear_contacts() { contacts_.clear(); }
+  void add_contact(const Touch& touch, int member);
+
   /// What the cable exerts on its holders; `corrected`: after the last solution.
   void read_loads(const Participant& p, bool corrected);
   void read_impulses(const Participant& p);
@@ -45,7 +52,16 @@ class HeldCable {
   };
   static Matrix36 motion_of(const Side& side, const RigidBodyStepper& body);
   static Matrix63 load_of(const Side& side, const RigidBodyStepper& body, BodyStage stage);
+  /// A contact with a body.
+  struct Contact {
+    const Touch* touch = nullptr;
+    int member = 0;
+    Eigen::Matrix3d stiffness;   ///< [N/m] as the cable's system has it
+    Eigen::Matrix3d resistance;  ///< [N/m] against motion of the body; friction follows the normal force
+    Vector3 change = Vector3::Zero();  ///< [N] of its force on the body, in the last correction
+  };
   void find_resistance(Participant& p);
+  void add_touching_resistance(const std::vector<MovingBody>& bodies, BodyStage stage, Participant& p, BodyEquations& equations);
   Vector3& motion_of(const Side& side) { return side.turns ? motion_.rotations[side.entry] : motion_.displacements[side.entry]; }
   static const Vector3& load_of(const Side& side, const HolderLoads& loads) {
     return side.turns ? loads.torques[side.entry] : loads.forces[side.entry];
@@ -53,6 +69,8 @@ class HeldCable {
 
   int participant_ = 0;
   std::vector<Side> sides_;
+  std::vector<Contact> contacts_;
+  std::vector<int> members_;  ///< scratch: bodies that hold it or touch it
   Eigen::MatrixXd resistance_;  ///< of what the sides feel against how they move
   HolderLoads loads_, responses_;
   HolderMotion motion_;
