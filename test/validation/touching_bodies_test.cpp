@@ -158,7 +158,7 @@ TEST(TouchingBodies, CableThatStrikesASphereKeepsMomenta) {
     scene.gravity.acceleration.setZero();
     scene.numerical_damping = damped;
     CableDesc& cable = scene.cables[0];
-    cable.initial.type = InitialShapeType::points;
+    cable.initial.type = InitialShapeDesc::Type::points;
     cable.initial.points = {{-0.5, 0, 0.08}, {0.5, 0, 0.08}};
     cable.initial.velocities = {{0, 0.2, -1}, {0, 0.2, -1}};
     add_solid(scene, "ball", 0.2, sphere(0.05), {0.1, 0, 0, 0, 0, 0}).angular_velocity = {0, 0, 5};
@@ -192,7 +192,7 @@ TEST(TouchingBodies, CapstanAroundABody) {
   cable.name = "cable";
   cable.segments = 120;
   cable.material = "rope";
-  cable.initial.type = InitialShapeType::points;
+  cable.initial.type = InitialShapeDesc::Type::points;
   for (int i = 0; i <= 4; ++i) cable.initial.points.push_back({-over, 0, -0.3 + 0.075 * i});
   for (int i = 1; i < 40; ++i) cable.initial.points.push_back({-over * std::cos(M_PI * i / 40), 0, over * std::sin(M_PI * i / 40)});
   for (int i = 0; i <= 4; ++i) cable.initial.points.push_back({over, 0, -0.3 * i / 4.0});

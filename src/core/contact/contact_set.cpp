@@ -95,7 +95,7 @@ void ContactSet::find(const std::vector<SimulatedCable>& cables, const std::vect
     if (!any_solids) continue;
     set_held(cable, *members[k].targets, attachments);
     for (const MovingObstacle& obstacle : obstacles) find_obstacle(cable, island[k], members[k], obstacle, attachments, h);
-    for (const MovingObstacle& body : bodies) find_obstacle(cable, island[k], members[k], body, attachments, h);
+    if (!bodies.empty()) find_bodies(cable, island[k], members[k], bodies, attachments, h);
   }
   if (!rules.pairs.self && !rules.pairs.between_cables) return;
   double radius = 0;
@@ -110,6 +110,39 @@ void ContactSet::set_held(const SimulatedCable& cable, const KinematicTargets& t
   held_.assign(cable.state.nodes(), 0);
   for (const KinematicTarget& target : targets.nodes)
     if (attachments[target.attachment].node == target.node) held_[target.node] = 1;
+}
+
+/// `bodies`: the shapes of one after those of the other.
+void ContactSet::find_bodies(const SimulatedCable& cable, int index, const ContactMember& member,
+                             const std::vector<MovingObstacle>& bodies, const std::vector<Attachment>& attachments, double h) {
+  const MovingObstacle *first = bodies.data(), *const end = first + bodies.size();
+  while (first != end) {
+    const MovingObstacle* const last = std::find_if(first, end, [&](const MovingObstacle& other) { return other.body != first->body; });
+    set_inside(cable, *member.targets, first, last, attachments);
+    for (; first != last; ++first) find_obstacle(cable, index, member, *first, attachments, h);
+  }
+}
+
+/// A cable that a body holds inside of its shapes comes out of them as it likes.
+void ContactSet::set_inside(const SimulatedCable& cable, const KinematicTargets& targets, const MovingObstacle* first,
+                            const MovingObstacle* last, const std::vector<Attachment>& attachments) {
+  const CableState& state = cable.state;
+  const int elements = 2 * state.segments() + 1;
+  inside_.assign(elements, 0);
+  const auto is_inside = [&](int node) {
+    return std::any_of(first, last, [&](const MovingObstacle& shape) {
+      const Vector3 local = shape.start.orientation.conjugate() * (state.positions[node] - shape.start.position);
+      return closest_point(shape.obstacle->shape, local, 0).distance < 0;
+    });
+  };
+  for (const KinematicTarget& target : targets.nodes) {
+    if (attachments[target.attachment].frame != first->obstacle->holders.front() || !is_inside(target.node)) continue;
+    for (const int way : {-1, 1})
+      for (int element = 2 * target.node; element >= 0 && element < elements; element += way) {
+        if (element % 2 == 0 && !is_inside(element / 2)) break;
+        inside_[element] = 1;
+      }
+  }
 }
 
 void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const ContactMember& member, const MovingObstacle& moving,
@@ -159,6 +192,7 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
     Vector3 velocity = interpolate(state.velocities, point.segment, point.fraction);
     if (is_body) velocity -= moving.body_velocity.at(position);
     if (!may_close(gap, normal, velocity - motion.displacement / h, radius, h)) return;
+    if (is_body && inside_[element] != 0) return;
     if (anchored(state, *member.targets, point, *moving.obstacle, attachments)) return;
     Touch& touch = touches_.emplace_back();
     touch.key = is_body ? body_key | key_of(moving.body, moving.obstacle->id) : moving.obstacle->id;

@@ -46,6 +46,10 @@ class ContactSet {
 
  private:
   void set_held(const SimulatedCable& cable, const KinematicTargets& targets, const std::vector<Attachment>& attachments);
+  void find_bodies(const SimulatedCable& cable, int index, const ContactMember& member, const std::vector<MovingObstacle>& bodies,
+                   const std::vector<Attachment>& attachments, double h);
+  void set_inside(const SimulatedCable& cable, const KinematicTargets& targets, const MovingObstacle* first,
+                  const MovingObstacle* last, const std::vector<Attachment>& attachments);
   void find_obstacle(const SimulatedCable& cable, int index, const ContactMember& member, const MovingObstacle& moving,
                      const std::vector<Attachment>& attachments, double h);
   void find_pairs(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members, const SegmentPairs& found,
@@ -66,6 +70,7 @@ class ContactSet {
   std::vector<std::size_t> recalled_;  ///< by member: the first of its cache that may still be asked for
   // Nodes of one cable
   std::vector<char> held_, visited_;
+  std::vector<char> inside_;           ///< of a body, from where that holds the cable; nodes and segments in turns
   std::vector<Vector3> local_;         ///< [m] in an obstacle's frame; where visited
   std::vector<SurfacePoint> nearest_;  ///< on its surface; where visited
   std::vector<Vector3> feet_;          ///< [m] on its surface, in its frame, of each of the touches
