@@ -2,31 +2,48 @@
 
 #include <Eigen/Core>
 #include <Eigen/LU>
+#include <utility>
+#include <vector>
 
 #include "body/rigid_body_stepper.h"
 
 namespace verlet_cable {
 
 /// The linear equations of bodies that act on each other: six unknowns a body, by what its center of mass is displaced and by
-/// what it turns.
+/// what it turns. Solved directly, in blocks of 6 x 6: a tree of bodies without any fill-in, from its leaves. Which blocks there
+/// are and in which order bodies are eliminated is found anew only when other bodies act on each other.
 class BodyEquations {
  public:
-  void resize(int bodies);
-  void clear_matrix() { matrix_.setZero(); }
-  auto block(int row, int column) { return matrix_.block<6, 6>(6 * row, 6 * column); }
-  auto load(int body) { return load_.segment<6>(6 * body); }
-  auto solution(int body) const { return solution_.segment<6>(6 * body); }
+  // Which bodies act on each other: begin; couple, in any order, also again; end.
+  void begin(int bodies);
+  void couple(int a, int b);
+  void end();
+
+  void clear_matrix();
+  /// Of bodies that are the same or act on each other.
+  Matrix6& block(int row, int column);
+  Vector6& load(int body) { return loads_[body]; }
+  const Vector6& solution(int body) const { return solution_[body]; }
   /// The largest numbers beside the diagonal blocks' displacements and rotations.
   double largest_resistance() const;
   double largest_turning_resistance() const;
-  void factor() { solver_.compute(matrix_); }
-  void solve() { solution_.noalias() = solver_.solve(load_); }
-  double work() const { return load_.dot(solution_); }  ///< of the loads along the solution
+  void factor();
+  void solve();
+  double work() const;  ///< of the loads along the solution
 
  private:
-  Eigen::MatrixXd matrix_;
-  Eigen::VectorXd load_, solution_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> solver_;
+  using Couple = std::pair<int, int>;  ///< of bodies, the lower one first
+  void find_order();
+
+  std::vector<Couple> couples_, last_couples_;  ///< ascending, each once
+  int bodies_ = -1;
+  std::vector<int> order_;               ///< in which bodies are eliminated
+  std::vector<std::vector<int>> later_;  ///< by body: those that are eliminated after it and that it then acts on, ascending
+  /// By body: places in `blocks_` of the rows and columns that it and those have in common, one pair for each of these
+  std::vector<std::vector<std::pair<int, int>>> places_;
+  std::vector<Matrix6> blocks_;                         ///< the diagonal ones first
+  std::vector<Eigen::PartialPivLU<Matrix6>> pivots_;    ///< by body
+  std::vector<Vector6> loads_, solution_, eliminated_;  ///< by body
 };
 
 }  // namespace verlet_cable

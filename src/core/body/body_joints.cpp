@@ -55,6 +55,11 @@ BodyJoints::Ends BodyJoints::ends_of(const BodyJoint& joint, const std::vector<M
   return all;
 }
 
+void BodyJoints::couple(BodyEquations& equations) const {
+  for (const BodyJoint& joint : joints_)
+    if (joint.other >= 0) equations.couple(joint.member, joint.other);
+}
+
 void BodyJoints::set_holding(const BodyEquations& equations) {
   holding_ = holding_part * equations.largest_resistance();
   holding_turn_ = holding_part * equations.largest_turning_resistance();
@@ -64,7 +69,7 @@ void BodyJoints::add_resistance(const BodyJoint& joint, const Ends& ends, const 
                                 BodyEquations& equations) const {
   for (const End& a : ends)
     for (const End& b : ends) {
-      auto block = equations.block(a.member, b.member);
+      Matrix6& block = equations.block(a.member, b.member);
       block += holding_ * a.load * b.motion;
       if (holds_turns(joint)) block.bottomRightCorner<3, 3>() += holding_turn_ * a.sign * b.sign * held_turns;
     }

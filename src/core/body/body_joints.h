@@ -30,6 +30,8 @@ class BodyJoints {
   std::vector<BodyJoint>& all() { return joints_; }
   const std::vector<BodyJoint>& all() const { return joints_; }
 
+  /// Which bodies act on each other through joints.
+  void couple(BodyEquations& equations) const;
   /// Adds how joints resist, `part` of the substep being where forces are taken; all else is in the equations.
   void add_stiffness(double part, const std::vector<MovingBody>& bodies, BodyEquations& equations);
   void add_loads(const std::vector<MovingBody>& bodies, BodyEquations& equations) const;

@@ -9,7 +9,9 @@ namespace {
 
 constexpr int maximum_iterations = 40;
 /// Of the tolerance of cables: bodies are heavier, and what is left over works on them.
-constexpr double body_part = 1e-5;
+constexpr double body_part = 1e-3;
+/// The same where bodies hold bodies: a joint's multiplier follows what is left.
+constexpr double joint_part = 1e-5;
 /// Corrections that do not shrink to less than this part are made of rounding: the tolerance of cables is enough then.
 constexpr double rounding_ratio = 0.5;
 /// A correction that shrinks less than this from one iteration to the next calls for a new factorisation.
@@ -35,19 +37,25 @@ void BodySystem::begin(const std::vector<BodyMember>& members, const std::vector
     member.size = std::sqrt(member.whole.inertia.trace() / member.whole.mass);
     member.stepper.begin(*members[m].start, *members[m].progress, member.whole, gravity, rules);
   }
-  equations_.resize(static_cast<int>(members.size()));
   contacts_.begin(members_, member_of_, rules.part());
+}
+
+/// Joints are set after the rest has begun.
+void BodySystem::find_couples() {
+  equations_.begin(static_cast<int>(members_.size()));
+  for (std::size_t c = 0; c < cable_count_; ++c) cables_[c].couple(equations_);
+  joints_.couple(equations_);
+  equations_.end();
 }
 
 void BodySystem::find_cables(const std::vector<Participant>& participants) {
   cable_count_ = 0;
   cable_of_.assign(participants.size(), -1);
   for (std::size_t p = 0; p < participants.size(); ++p) {
-    const Boundary& boundary = participants[p].substep.boundary;
-    if (!boundary.is_on_bodies() && !participants[p].substep.touches_bodies) continue;
+    if (!participants[p].substep.boundary.is_on_bodies() && !participants[p].substep.touches_bodies) continue;
     cable_of_[p] = static_cast<int>(cable_count_);
     if (cables_.size() == cable_count_) cables_.emplace_back();
-    cables_[cable_count_++].begin(static_cast<int>(p), boundary, member_of_);
+    cables_[cable_count_++].begin(static_cast<int>(p), participants[p], member_of_);
   }
 }
 
@@ -72,7 +80,8 @@ bool BodySystem::advance(std::vector<Participant>& participants, double toleranc
     p.result = {};
     p.stepper->begin(p.substep, *p.state, p.result);
   }
-  Convergence convergence(body_part * tolerance, rules_.h, rules_.statics);
+  const double part = joints_.all().empty() ? body_part : joint_part;
+  Convergence convergence(part * tolerance, rules_.h, rules_.statics);
   bool stale = true;
   for (int i = 0; i < maximum_iterations; ++i) {
     place_holders(participants);
@@ -108,7 +117,10 @@ bool BodySystem::advance(std::vector<Participant>& participants, double toleranc
 
 /// What is out of balance at the bodies alone, and how they resist.
 void BodySystem::evaluate(bool stale) {
-  if (stale) equations_.clear_matrix();
+  if (stale) {
+    find_couples();
+    equations_.clear_matrix();
+  }
   for (std::size_t m = 0; m < members_.size(); ++m) {
     const int member = static_cast<int>(m);
     equations_.load(member) = members_[m].stepper.load();
@@ -173,8 +185,8 @@ double BodySystem::correct() {
 
 void BodySystem::project(std::vector<Participant>& participants, std::vector<SimulatedBody>& bodies,
                          std::vector<BodyProgress>& progress) {
-  clear_cable_contacts();
   add_inertia();
+  clear_cable_contacts();
   add_impulses(participants);
   equations_.factor();
   equations_.solve();
@@ -197,6 +209,7 @@ void BodySystem::project(std::vector<Participant>& participants, std::vector<Sim
 }
 
 void BodySystem::add_inertia() {
+  find_couples();
   equations_.clear_matrix();
   for (std::size_t m = 0; m < members_.size(); ++m) {
     const int member = static_cast<int>(m);

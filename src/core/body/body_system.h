@@ -60,6 +60,7 @@ class BodySystem {
 
  private:
   void find_cables(const std::vector<Participant>& participants);
+  void find_couples();
   void evaluate(bool stale);
   void condense(std::vector<Participant>& participants);
   void add_loads();

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "body/body_joints.h"
+#include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
 
@@ -20,20 +21,90 @@ void add_mass(double mass, const Vector3& point, MassProperties& whole) {
 
 }  // namespace
 
-void HeldCable::begin(int participant, const Boundary& boundary, const std::vector<int>& member_of) {
+void HeldCable::begin(int participant, const Participant& p, const std::vector<int>& member_of) {
   participant_ = participant;
+  const Boundary& boundary = p.substep.boundary;
   sides_.clear();
   contacts_.clear();
-  for (std::size_t k = 0; k < boundary.nodes.size(); ++k)
-    if (boundary.nodes[k].body >= 0)
-      sides_.push_back({member_of[boundary.nodes[k].body], static_cast<int>(k), false, boundary.nodes[k].point});
-  for (std::size_t k = 0; k < boundary.directions.size(); ++k)
-    if (boundary.directions[k].body >= 0)
-      sides_.push_back({member_of[boundary.directions[k].body], static_cast<int>(k), true, Vector3::Zero()});
+  std::size_t d = 0;
+  for (std::size_t k = 0; k < boundary.nodes.size(); ++k) {
+    const HeldNode& held = boundary.nodes[k];
+    Side side;
+    side.node = held.node;
+    side.entry = static_cast<int>(k);
+    side.point = held.point;
+    if (held.body >= 0) side.member = member_of[held.body];
+    if (held.body >= 0) sides_.push_back(side);
+    while (d < boundary.directions.size() && boundary.directions[d].node < held.node) ++d;
+    if (d == boundary.directions.size() || boundary.directions[d].node != held.node || boundary.directions[d].body < 0) continue;
+    side.entry = static_cast<int>(d);
+    side.turns = true;
+    side.member = member_of[boundary.directions[d].body];
+    sides_.push_back(side);
+  }
+  find_stretches(p);
+  share_turns();
   const auto rows = static_cast<Eigen::Index>(3 * sides_.size());
   if (resistance_.rows() != rows) resistance_.resize(rows, rows);
   motion_.displacements.resize(boundary.nodes.size());
   motion_.rotations.resize(boundary.directions.size());
+}
+
+/// What happens on one side of a clamp is not felt on the other; nor what happens on one side of a held node, by what does not
+/// bend. Material that flows is felt everywhere.
+void HeldCable::find_stretches(const Participant& p) {
+  const Boundary& boundary = p.substep.boundary;
+  const CableMaterials materials(p.substep.model, *p.state);
+  const bool bends = !p.state->directors.empty() || materials.any([](const MaterialDesc& material) {
+    return material.bending_stiffness.largest() > 0 || material.bending_damping > 0;
+  });
+  int stretch = 0;
+  auto side = sides_.begin();
+  for (const HeldNode& held : boundary.nodes) {
+    const bool clamped = std::any_of(boundary.directions.begin(), boundary.directions.end(),
+                                     [&](const HeldDirection& direction) { return direction.node == held.node; });
+    const bool inside = held.node > 0 && held.node < p.state->segments();
+    const bool separates = inside && (clamped || !bends) && boundary.flows.empty();
+    for (; side != sides_.end() && side->node == held.node; ++side) {
+      side->first_stretch = stretch;
+      side->last_stretch = separates ? stretch + 1 : stretch;
+    }
+    if (separates) ++stretch;
+  }
+}
+
+/// The first turn in which nothing that a side interacts with interacts with another one.
+void HeldCable::share_turns() {
+  turns_ = 0;
+  for (std::size_t i = 0; i < sides_.size(); ++i) {
+    const auto disturbs = [&](int turn) {
+      for (std::size_t j = 0; j < i; ++j) {
+        if (sides_[j].turn != turn) continue;
+        for (const Side& third : sides_)
+          if (interact(third, sides_[i]) && interact(third, sides_[j])) return true;
+      }
+      return false;
+    };
+    sides_[i].turn = 0;
+    while (disturbs(sides_[i].turn)) ++sides_[i].turn;
+    turns_ = std::max(turns_, sides_[i].turn + 1);
+  }
+}
+
+void HeldCable::couple(BodyEquations& equations) {
+  if (!contacts_.empty()) {
+    members_.clear();
+    for (const Side& side : sides_) members_.push_back(side.member);
+    for (const Contact& contact : contacts_) members_.push_back(contact.member);
+    std::sort(members_.begin(), members_.end());
+    members_.erase(std::unique(members_.begin(), members_.end()), members_.end());
+    for (const int a : members_)
+      for (const int b : members_) equations.couple(a, b);
+    return;
+  }
+  for (const Side& a : sides_)
+    for (const Side& b : sides_)
+      if (interact(a, b)) equations.couple(a.member, b.member);
 }
 
 void HeldCable::add_masses(const Participant& p, std::vector<MovingBody>& bodies) const {
@@ -110,32 +181,46 @@ void HeldCable::add_turning(double part, const std::vector<MovingBody>& bodies, 
       verlet_cable::add_turning(part, bodies[side.member], side.member, side.point, loads_.forces[side.entry], equations);
 }
 
-/// Lets the sides move one by one.
-void HeldCable::find_resistance(Participant& p) {
+/// Lets the sides move, one by one where any side would feel two of them.
+void HeldCable::find_resistance(BodyStage stage, Participant& p) {
   motion_.loads.clear();
   motion_.clear();
-  for (std::size_t column = 0; column < 3 * sides_.size(); ++column) {
-    Vector3& motion = motion_of(sides_[column / 3]);
-    motion[static_cast<Eigen::Index>(column % 3)] = 1;
-    p.stepper->respond(p.substep.boundary, motion_, responses_);
-    motion.setZero();
-    for (std::size_t row = 0; row < sides_.size(); ++row)
-      resistance_.block<3, 1>(static_cast<Eigen::Index>(3 * row), static_cast<Eigen::Index>(column)) =
-          -load_of(sides_[row], responses_);
-  }
+  const bool turning_acts = stage == BodyStage::substep;
+  for (int turn = 0; turn < turns_; ++turn)
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      bool any = false;
+      for (const Side& side : sides_) {
+        if (side.turn != turn || (side.turns && !turning_acts)) continue;
+        motion_of(side)[axis] = 1;
+        any = true;
+      }
+      if (!any) continue;
+      p.stepper->respond(p.substep.boundary, motion_, responses_);
+      for (std::size_t j = 0; j < sides_.size(); ++j) {
+        if (sides_[j].turn != turn || (sides_[j].turns && !turning_acts)) continue;
+        motion_of(sides_[j]).setZero();
+        for (std::size_t i = 0; i < sides_.size(); ++i)
+          if (interact(sides_[i], sides_[j]))
+            resistance_.block<3, 1>(static_cast<Eigen::Index>(3 * i), static_cast<Eigen::Index>(3 * j) + axis) =
+                -load_of(sides_[i], responses_);
+      }
+    }
 }
 
 void HeldCable::add_resistance(const std::vector<MovingBody>& bodies, BodyStage stage, Participant& p, BodyEquations& equations) {
   if (!contacts_.empty() && stage == BodyStage::substep) return add_touching_resistance(bodies, stage, p, equations);
-  find_resistance(p);
+  find_resistance(stage, p);
+  const bool turning_acts = stage == BodyStage::substep;
   for (std::size_t i = 0; i < sides_.size(); ++i) {
     const Side& a = sides_[i];
+    if (a.turns && !turning_acts) continue;
     const Matrix63 load = load_of(a, bodies[a.member].stepper, stage);
     for (std::size_t j = 0; j < sides_.size(); ++j) {
       const Side& b = sides_[j];
-      equations.block(a.member, b.member) +=
-          load * resistance_.block<3, 3>(static_cast<Eigen::Index>(3 * i), static_cast<Eigen::Index>(3 * j)) *
-          motion_of(b, bodies[b.member].stepper);
+      if (!interact(a, b) || (b.turns && !turning_acts)) continue;
+      equations.block(a.member, b.member).noalias() +=
+          load * (resistance_.block<3, 3>(static_cast<Eigen::Index>(3 * i), static_cast<Eigen::Index>(3 * j)) *
+                  motion_of(b, bodies[b.member].stepper));
     }
   }
 }
@@ -143,11 +228,6 @@ void HeldCable::add_resistance(const std::vector<MovingBody>& bodies, BodyStage 
 /// Lets the bodies move one by one: contacts may be many.
 void HeldCable::add_touching_resistance(const std::vector<MovingBody>& bodies, BodyStage stage, Participant& p,
                                         BodyEquations& equations) {
-  members_.clear();
-  for (const Side& side : sides_) members_.push_back(side.member);
-  for (const Contact& contact : contacts_) members_.push_back(contact.member);
-  std::sort(members_.begin(), members_.end());
-  members_.erase(std::unique(members_.begin(), members_.end()), members_.end());
   motion_.loads.clear();
   for (const Contact& contact : contacts_)
     motion_.loads.push_back({contact.touch->point.segment, contact.touch->point.fraction, Vector3::Zero()});

@@ -16,7 +16,9 @@ namespace verlet_cable {
 class HeldCable {
  public:
   /// `member_of`: of a body, by its index.
-  void begin(int participant, const Boundary& boundary, const std::vector<int>& member_of);
+  void begin(int participant, const Participant& p, const std::vector<int>& member_of);
+  /// Which bodies act on each other through the cable.
+  void couple(BodyEquations& equations);
   int participant() const { return participant_; }
   /// A body moves as one with the nodes that it holds.
   void add_masses(const Participant& p, std::vector<MovingBody>& bodies) const;
@@ -46,9 +48,13 @@ class HeldCable {
   /// A node or direction that a body holds.
   struct Side {
     int member = 0;
+    int node = 0;
     int entry = 0;  ///< of the boundary's nodes or directions
     bool turns = false;
     Vector3 point = Vector3::Zero();  ///< of a node
+    /// Of the cable, between places across which nothing is felt: those that feel how the side moves.
+    int first_stretch = 0, last_stretch = 0;
+    int turn = 0;  ///< sides of the same one are moved at once: none feels two of them
   };
   static Matrix36 motion_of(const Side& side, const RigidBodyStepper& body);
   static Matrix63 load_of(const Side& side, const RigidBodyStepper& body, BodyStage stage);
@@ -60,18 +66,24 @@ class HeldCable {
     Eigen::Matrix3d resistance;  ///< [N/m] against motion of the body; friction follows the normal force
     Vector3 change = Vector3::Zero();  ///< [N] of its force on the body, in the last correction
   };
-  void find_resistance(Participant& p);
   void add_touching_resistance(const std::vector<MovingBody>& bodies, BodyStage stage, Participant& p, BodyEquations& equations);
   Vector3& motion_of(const Side& side) { return side.turns ? motion_.rotations[side.entry] : motion_.displacements[side.entry]; }
   static const Vector3& load_of(const Side& side, const HolderLoads& loads) {
     return side.turns ? loads.torques[side.entry] : loads.forces[side.entry];
   }
+  void find_stretches(const Participant& p);
+  void share_turns();
+  bool interact(const Side& a, const Side& b) const {
+    return a.first_stretch <= b.last_stretch && b.first_stretch <= a.last_stretch;
+  }
+  void find_resistance(BodyStage stage, Participant& p);
 
   int participant_ = 0;
-  std::vector<Side> sides_;
+  std::vector<Side> sides_;  ///< ascending by node, a node before its direction
   std::vector<Contact> contacts_;
-  std::vector<int> members_;  ///< scratch: bodies that hold it or touch it
-  Eigen::MatrixXd resistance_;  ///< of what the sides feel against how they move
+  std::vector<int> members_;  ///< bodies that hold it or press on it, ascending; set by `couple`
+  int turns_ = 0;
+  Eigen::MatrixXd resistance_;  ///< of what the sides feel against how they move, where they interact
   HolderLoads loads_, responses_;
   HolderMotion motion_;
 };
