@@ -97,5 +97,26 @@ TEST(Allocation, StepOfBodiesAllocatesNothing) {
   EXPECT_EQ(allocations - before, 0);
 }
 
+/// A cable lies over a box on a floor.
+TEST(Allocation, StepOfBodiesThatTouchAllocatesNothing) {
+  SceneDesc scene = scenes::one_cable(20);
+  scene.cables[0].initial.type = InitialShapeDesc::Type::straight;
+  scene.cables[0].initial.from = {-0.5, 0.01, 0.22};
+  scene.cables[0].initial.to = {0.5, 0.01, 0.22};
+  scene.obstacles.emplace_back().name = "floor";
+  BodyDesc& body = scene.bodies.emplace_back();
+  body.name = "box";
+  body.mass = 1;
+  body.pose = InitialPose{0, 0, 0.1, 0, 0, 0};
+  body.shapes.emplace_back().type = ShapeType::box;
+  body.shapes[0].size = {0.2, 0.2, 0.2};
+  const BoundaryInputs inputs = initial_frames(scene);
+  World world(scene, inputs);
+  for (int i = 0; i < 1500; ++i) world.step(inputs);
+  const long before = allocations;
+  for (int i = 0; i < 500; ++i) world.step(inputs);
+  EXPECT_EQ(allocations - before, 0);
+}
+
 }  // namespace
 }  // namespace verlet_cable

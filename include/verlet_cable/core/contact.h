@@ -11,9 +11,10 @@ struct SimulatedContact {
   Vector3 position = Vector3::Zero();  ///< [m] on the cable's centre line
   Vector3 normal = Vector3::UnitZ();   ///< out of what is touched
   Vector3 force = Vector3::Zero();     ///< [N] on the cable
-  int obstacle = -1;                   ///< index into World::obstacles(), -1: a cable is touched
-  int other_cable = -1;                ///< index into World::cables(), -1: an obstacle is touched
+  int obstacle = -1;                   ///< index into World::obstacles(), -1: none is touched
+  int other_cable = -1;                ///< index into World::cables(), -1: none is touched
   int other_segment = -1;
+  int body = -1;                       ///< index into World::bodies(), -1: none is touched
 };
 
 }  // namespace verlet_cable

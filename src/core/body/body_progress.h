@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "contact/cache.h"
 #include "target/kinematic_targets.h"
 
 namespace verlet_cable {
@@ -15,6 +16,7 @@ struct BodyProgress {
   /// substep: where the next one's solution starts, and what substeps that damp go on from
   Vector3 acceleration = Vector3::Zero(), angular_acceleration = Vector3::Zero();
   std::vector<KinematicTarget> holders;  ///< frames that hold it, by its attachments; `node` counts them
+  ContactCache contacts;                 ///< with obstacles
   std::vector<Vector3> holder_spins;     ///< [rad/s] of each, mean over the last step; while it jumps, of the motion before
 };
 

@@ -37,6 +37,7 @@ void BodySystem::begin(const std::vector<BodyMember>& members, const std::vector
     member.size = std::sqrt(member.whole.inertia.trace() / member.whole.mass);
     member.stepper.begin(*members[m].start, *members[m].progress, member.whole, gravity, rules);
   }
+  contacts_.begin(members_, member_of_, rules.part());
 }
 
 /// Joints are set after the rest has begun.
@@ -49,11 +50,21 @@ void BodySystem::find_couples() {
 
 void BodySystem::find_cables(const std::vector<Participant>& participants) {
   cable_count_ = 0;
+  cable_of_.assign(participants.size(), -1);
   for (std::size_t p = 0; p < participants.size(); ++p) {
-    if (!participants[p].substep.boundary.is_on_bodies()) continue;
+    if (!participants[p].substep.boundary.is_on_bodies() && !participants[p].substep.touches_bodies) continue;
+    cable_of_[p] = static_cast<int>(cable_count_);
     if (cables_.size() == cable_count_) cables_.emplace_back();
     cables_[cable_count_++].begin(static_cast<int>(p), participants[p], member_of_);
   }
+}
+
+void BodySystem::clear_cable_contacts() {
+  for (std::size_t c = 0; c < cable_count_; ++c) cables_[c].clear_contacts();
+}
+
+void BodySystem::add_cable_contact(int participant, const Touch& touch) {
+  cables_[cable_of_[participant]].add_contact(touch, member_of_[touch.body]);
 }
 
 void BodySystem::place_holders(std::vector<Participant>& participants) {
@@ -125,13 +136,15 @@ void BodySystem::condense(std::vector<Participant>& participants) {
     cables_[c].add_turning(rules_.part(), members_, equations_);
     cables_[c].add_resistance(members_, BodyStage::substep, participants[cables_[c].participant()], equations_);
   }
+  contacts_.add_stiffness(equations_);
   joints_.add_stiffness(rules_.part(), members_, equations_);
   equations_.factor();
 }
 
-/// Of cables and joints.
+/// Of cables, contacts and joints.
 void BodySystem::add_loads() {
   for (std::size_t c = 0; c < cable_count_; ++c) cables_[c].add_loads(members_, BodyStage::substep, equations_);
+  contacts_.add_loads(equations_);
   joints_.add_loads(members_, equations_);
 }
 
@@ -176,10 +189,12 @@ double BodySystem::correct() {
 void BodySystem::project(std::vector<Participant>& participants, std::vector<SimulatedBody>& bodies,
                          std::vector<BodyProgress>& progress) {
   add_inertia();
+  clear_cable_contacts();
   add_impulses(participants);
   equations_.factor();
   equations_.solve();
   for (std::size_t c = 0; c < cable_count_; ++c) {
+    if (!cables_[c].is_held()) continue;
     Participant& p = participants[cables_[c].participant()];
     cables_[c].follow(members_, equations_, p);
     p.stepper->finish_projection(p.substep, *p.state);
@@ -211,6 +226,7 @@ void BodySystem::add_inertia() {
 /// Along inextensible segments and in joints.
 void BodySystem::add_impulses(std::vector<Participant>& participants) {
   for (std::size_t c = 0; c < cable_count_; ++c) {
+    if (!cables_[c].is_held()) continue;
     Participant& p = participants[cables_[c].participant()];
     p.stepper->begin_projection(p.substep, *p.state);
     p.stepper->solve_linear();

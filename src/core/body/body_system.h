@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "body/body_contacts.h"
 #include "body/body_equations.h"
 #include "body/body_joints.h"
 #include "body/held_cable.h"
@@ -25,11 +26,18 @@ class BodySystem {
              const std::vector<SimulatedBody>& bodies, const GravityDesc& gravity, const SubstepRules& rules);
   std::vector<BodyJoint>& joints() { return joints_.all(); }
   const std::vector<BodyJoint>& joints() const { return joints_.all(); }
+  BodyContacts& contacts() { return contacts_; }
+  const BodyContacts& contacts() const { return contacts_; }
+  double substep() const { return rules_.h; }  ///< [s]
   /// Index among the members of a body, by its own; -1: it is none.
   int member_of(int body) const { return member_of_[body]; }
 
   /// If it has not converged, states are untouched, and nothing is to be finished.
   bool advance(std::vector<Participant>& participants, double tolerance);
+
+  // Contacts of a body with the cable of a participant that touches it, as they are linearised
+  void clear_cable_contacts();
+  void add_cable_contact(int participant, const Touch& touch);
 
   // The stages of an iteration
   void place_holders(std::vector<Participant>& participants);  ///< before cables are evaluated
@@ -64,7 +72,9 @@ class BodySystem {
   std::vector<MovingBody> members_;
   std::vector<HeldCable> cables_;  ///< as many of them as there are
   std::size_t cable_count_ = 0;
+  std::vector<int> cable_of_;  ///< by participant; -1: no body has to do with it
   BodyJoints joints_;
+  BodyContacts contacts_;
   BodyEquations equations_;
 };
 

@@ -25,6 +25,7 @@ void HeldCable::begin(int participant, const Participant& p, const std::vector<i
   participant_ = participant;
   const Boundary& boundary = p.substep.boundary;
   sides_.clear();
+  contacts_.clear();
   std::size_t d = 0;
   for (std::size_t k = 0; k < boundary.nodes.size(); ++k) {
     const HeldNode& held = boundary.nodes[k];
@@ -90,7 +91,17 @@ void HeldCable::share_turns() {
   }
 }
 
-void HeldCable::couple(BodyEquations& equations) const {
+void HeldCable::couple(BodyEquations& equations) {
+  if (!contacts_.empty()) {
+    members_.clear();
+    for (const Side& side : sides_) members_.push_back(side.member);
+    for (const Contact& contact : contacts_) members_.push_back(contact.member);
+    std::sort(members_.begin(), members_.end());
+    members_.erase(std::unique(members_.begin(), members_.end()), members_.end());
+    for (const int a : members_)
+      for (const int b : members_) equations.couple(a, b);
+    return;
+  }
   for (const Side& a : sides_)
     for (const Side& b : sides_)
       if (interact(a, b)) equations.couple(a.member, b.member);
@@ -118,8 +129,24 @@ void HeldCable::set_holder_velocities(const std::vector<MovingBody>& bodies, Bou
     if (!side.turns) boundary.nodes[side.entry].velocity = bodies[side.member].stepper.velocity_of(side.point);
 }
 
+void HeldCable::add_contact(const Touch& touch, int member) {
+  Contact& contact = contacts_.emplace_back();
+  contact.touch = &touch;
+  contact.member = member;
+  contact.stiffness = slope(touch);
+  contact.resistance = full_slope(touch);
+}
+
 void HeldCable::read_loads(const Participant& p, bool corrected) {
   p.stepper->read_holder_loads(p.substep, p.state->masses, corrected, loads_);
+  for (Contact& contact : contacts_) {
+    contact.change.setZero();
+    if (!corrected) continue;
+    const CablePoint& point = contact.touch->point;
+    const VectorArray& u = p.stepper->correction();
+    const Vector3 way = (1 - point.fraction) * get(u, point.segment) + point.fraction * get(u, point.segment + 1);
+    contact.change = contact.stiffness * way - contact.touch->followed;
+  }
 }
 
 void HeldCable::read_impulses(const Participant& p) {
@@ -143,6 +170,9 @@ Matrix63 HeldCable::load_of(const Side& side, const RigidBodyStepper& body, Body
 void HeldCable::add_loads(const std::vector<MovingBody>& bodies, BodyStage stage, BodyEquations& equations) const {
   for (const Side& side : sides_)
     equations.load(side.member) += load_of(side, bodies[side.member].stepper, stage) * load_of(side, loads_);
+  if (stage == BodyStage::projection) return;
+  for (const Contact& contact : contacts_)
+    equations.load(contact.member) += point_load(contact.touch->arm) * contact.change;
 }
 
 void HeldCable::add_turning(double part, const std::vector<MovingBody>& bodies, BodyEquations& equations) const {
@@ -153,6 +183,7 @@ void HeldCable::add_turning(double part, const std::vector<MovingBody>& bodies, 
 
 /// Lets the sides move, one by one where any side would feel two of them.
 void HeldCable::find_resistance(BodyStage stage, Participant& p) {
+  motion_.loads.clear();
   motion_.clear();
   const bool turning_acts = stage == BodyStage::substep;
   for (int turn = 0; turn < turns_; ++turn)
@@ -177,6 +208,7 @@ void HeldCable::find_resistance(BodyStage stage, Participant& p) {
 }
 
 void HeldCable::add_resistance(const std::vector<MovingBody>& bodies, BodyStage stage, Participant& p, BodyEquations& equations) {
+  if (!contacts_.empty() && stage == BodyStage::substep) return add_touching_resistance(bodies, stage, p, equations);
   find_resistance(stage, p);
   const bool turning_acts = stage == BodyStage::substep;
   for (std::size_t i = 0; i < sides_.size(); ++i) {
@@ -193,8 +225,44 @@ void HeldCable::add_resistance(const std::vector<MovingBody>& bodies, BodyStage 
   }
 }
 
+/// Lets the bodies move one by one: contacts may be many.
+void HeldCable::add_touching_resistance(const std::vector<MovingBody>& bodies, BodyStage stage, Participant& p,
+                                        BodyEquations& equations) {
+  motion_.loads.clear();
+  for (const Contact& contact : contacts_)
+    motion_.loads.push_back({contact.touch->point.segment, contact.touch->point.fraction, Vector3::Zero()});
+  for (const int member : members_) {
+    const RigidBodyStepper& moved = bodies[member].stepper;
+    for (int column = 0; column < 6; ++column) {
+      motion_.clear();
+      for (const Side& side : sides_)
+        if (side.member == member) motion_of(side) = motion_of(side, moved).col(column);
+      for (std::size_t k = 0; k < contacts_.size(); ++k) {
+        const Contact& contact = contacts_[k];
+        if (contact.member == member)
+          motion_.loads[k].force = contact.resistance * point_motion(contact.touch->arm).col(column);
+      }
+      p.stepper->respond(p.substep.boundary, motion_, responses_);
+      for (const Side& side : sides_)
+        equations.block(side.member, member).col(column) -=
+            load_of(side, bodies[side.member].stepper, stage) * load_of(side, responses_);
+      for (std::size_t k = 0; k < contacts_.size(); ++k) {
+        const Contact& contact = contacts_[k];
+        equations.block(contact.member, member).col(column) +=
+            point_load(contact.touch->arm) * (motion_.loads[k].force - contact.stiffness * responses_.displacements[k]);
+      }
+    }
+  }
+}
+
 void HeldCable::follow(const std::vector<MovingBody>& bodies, const BodyEquations& equations, Participant& p) {
-  motion_.clear();
+  motion_.loads.clear();
+  for (const Contact& contact : contacts_) {
+    const Vector3 way = point_motion(contact.touch->arm) * equations.solution(contact.member);
+    motion_.loads.push_back({contact.touch->point.segment, contact.touch->point.fraction, contact.resistance * way});
+  }
+  std::fill(motion_.displacements.begin(), motion_.displacements.end(), Vector3::Zero());
+  std::fill(motion_.rotations.begin(), motion_.rotations.end(), Vector3::Zero());
   for (const Side& side : sides_)
     motion_of(side) = motion_of(side, bodies[side.member].stepper) * equations.solution(side.member);
   p.stepper->add_moved(p.substep.boundary, motion_);

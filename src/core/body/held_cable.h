@@ -5,6 +5,7 @@
 
 #include "body/body_equations.h"
 #include "body/moving_body.h"
+#include "contact/law.h"
 #include "rod/participant.h"
 
 namespace verlet_cable {
@@ -17,13 +18,19 @@ class HeldCable {
   /// `member_of`: of a body, by its index.
   void begin(int participant, const Participant& p, const std::vector<int>& member_of);
   /// Which bodies act on each other through the cable.
-  void couple(BodyEquations& equations) const;
+  void couple(BodyEquations& equations);
   int participant() const { return participant_; }
   /// A body moves as one with the nodes that it holds.
   void add_masses(const Participant& p, std::vector<MovingBody>& bodies) const;
 
   void place_holders(const std::vector<MovingBody>& bodies, Boundary& boundary) const;
   void set_holder_velocities(const std::vector<MovingBody>& bodies, Boundary& boundary) const;
+  bool is_held() const { return !sides_.empty(); }
+
+  // Contacts with bodies that press, as they are linearised
+  void clear_contacts() { contacts_.clear(); }
+  void add_contact(const Touch& touch, int member);
+
   /// What the cable exerts on its holders; `corrected`: after the last solution.
   void read_loads(const Participant& p, bool corrected);
   void read_impulses(const Participant& p);
@@ -51,6 +58,15 @@ class HeldCable {
   };
   static Matrix36 motion_of(const Side& side, const RigidBodyStepper& body);
   static Matrix63 load_of(const Side& side, const RigidBodyStepper& body, BodyStage stage);
+  /// A contact with a body.
+  struct Contact {
+    const Touch* touch = nullptr;
+    int member = 0;
+    Eigen::Matrix3d stiffness;   ///< [N/m] as the cable's system has it
+    Eigen::Matrix3d resistance;  ///< [N/m] against motion of the body; friction follows the normal force
+    Vector3 change = Vector3::Zero();  ///< [N] of its force on the body, in the last correction
+  };
+  void add_touching_resistance(const std::vector<MovingBody>& bodies, BodyStage stage, Participant& p, BodyEquations& equations);
   Vector3& motion_of(const Side& side) { return side.turns ? motion_.rotations[side.entry] : motion_.displacements[side.entry]; }
   static const Vector3& load_of(const Side& side, const HolderLoads& loads) {
     return side.turns ? loads.torques[side.entry] : loads.forces[side.entry];
@@ -64,6 +80,8 @@ class HeldCable {
 
   int participant_ = 0;
   std::vector<Side> sides_;  ///< ascending by node, a node before its direction
+  std::vector<Contact> contacts_;
+  std::vector<int> members_;  ///< bodies that hold it or press on it, ascending; set by `couple`
   int turns_ = 0;
   Eigen::MatrixXd resistance_;  ///< of what the sides feel against how they move, where they interact
   HolderLoads loads_, responses_;

@@ -46,6 +46,7 @@ class RigidBodyStepper {
   /// With which a force on a point acts about the center of mass.
   Vector3 force_arm(const Vector3& point) const;
   const Eigen::Matrix3d& end() const { return end_; }
+  const Vector3& start_center() const { return center_; }        ///< [m]
   const Vector3& displacement() const { return displacement_; }  ///< [m] of the center of mass
   Vector3 turn() const { return start_ * turn_; }                ///< the Cayley vector from start to end
 

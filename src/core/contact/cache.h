@@ -21,7 +21,8 @@ struct CachedContact {
 using ContactCache = std::vector<CachedContact>;
 
 /// Keys of touches: cables and obstacles by their ids, which no edit changes.
-constexpr std::uint64_t pair_key = std::uint64_t{1} << 63;  // pairs come after obstacles
+constexpr std::uint64_t body_key = std::uint64_t{1} << 62;  // bodies come after obstacles,
+constexpr std::uint64_t pair_key = std::uint64_t{1} << 63;  // pairs after those
 inline std::uint64_t key_of(std::uint32_t high, std::uint32_t low) {
   return static_cast<std::uint64_t>(high) << 32 | low;
 }

@@ -19,8 +19,6 @@ constexpr double spare_reach = 0.1;
 constexpr double bulge = 0.08;
 /// So far from an attachment to what holds the cable it is not pushed by it [m]: the first few centimetres.
 constexpr double anchored_length = 0.05;
-/// Stiffness of a contact without load, relative to what stops a segment within a step.
-constexpr double stopping_stiffness = 2;
 /// Relative, of distances.
 constexpr double distance_rounding = 1e-6;
 /// Nodes and segments in turns: of a node, the segments and nodes next to it.
@@ -29,8 +27,7 @@ constexpr std::uint64_t neighbouring_elements = 2;
 constexpr double deepest_arrival = 0.5;
 
 double stopping(const SimulatedCable& cable, int segment, double time_step) {
-  const double mass = cable.state.rest_lengths[segment] * CableMaterials(cable)[segment].linear_density;
-  return stopping_stiffness * mass / (time_step * time_step);
+  return stopping_stiffness(cable.state.rest_lengths[segment] * CableMaterials(cable)[segment].linear_density, time_step);
 }
 
 inline Vector3 interpolate(const std::vector<Vector3>& nodes, int segment, double fraction) {
@@ -51,7 +48,7 @@ auto keys(const Contact& of) {
 /// other.
 bool continues(const CachedContact& last, const Touch& touch) {
   if (last.key != touch.key) return false;
-  const std::uint64_t reach = touch.obstacle >= 0 ? neighbouring_elements : 0;
+  const std::uint64_t reach = touch.other.cable < 0 ? neighbouring_elements : 0;
   return std::max(last.other_key, touch.other_key) - std::min(last.other_key, touch.other_key) <= reach;
 }
 
@@ -80,21 +77,25 @@ bool anchored(const CableState& state, const KinematicTargets& targets, const Ca
 
 void ContactSet::find(const std::vector<SimulatedCable>& cables, const std::vector<int>& island,
                       const std::vector<ContactMember>& members, const std::vector<MovingObstacle>& obstacles,
-                      const std::vector<Attachment>& attachments, const ContactRules& rules, double h, SegmentPairs& pairs) {
+                      const std::vector<MovingObstacle>& bodies, const std::vector<Attachment>& attachments,
+                      const ContactRules& rules, double h, SegmentPairs& pairs) {
   rules_ = rules;
   time_ = rules.still ? 0 : contact_time(rules.time_step);
   touches_.clear();
   intrusions_.clear();
   touched_.assign(members.size(), 0);
+  touches_body_.assign(members.size(), 0);
   recalled_.assign(members.size(), 0);
-  if (obstacles.empty() && !rules.pairs.self && !rules.pairs.between_cables) return;
+  const bool any_solids = !obstacles.empty() || !bodies.empty();
+  if (!any_solids && !rules.pairs.self && !rules.pairs.between_cables) return;
   if (places_.size() < cables.size()) places_.resize(cables.size());
   for (std::size_t k = 0; k < island.size(); ++k) {
     const SimulatedCable& cable = cables[island[k]];
     places_[island[k]] = static_cast<int>(k);
-    if (obstacles.empty()) continue;
+    if (!any_solids) continue;
     set_held(cable, *members[k].targets, attachments);
     for (const MovingObstacle& obstacle : obstacles) find_obstacle(cable, island[k], members[k], obstacle, attachments, h);
+    if (!bodies.empty()) find_bodies(cable, island[k], members[k], bodies, attachments, h);
   }
   if (!rules.pairs.self && !rules.pairs.between_cables) return;
   double radius = 0;
@@ -109,6 +110,39 @@ void ContactSet::set_held(const SimulatedCable& cable, const KinematicTargets& t
   held_.assign(cable.state.nodes(), 0);
   for (const KinematicTarget& target : targets.nodes)
     if (attachments[target.attachment].node == target.node) held_[target.node] = 1;
+}
+
+/// `bodies`: the shapes of one after those of the other.
+void ContactSet::find_bodies(const SimulatedCable& cable, int index, const ContactMember& member,
+                             const std::vector<MovingObstacle>& bodies, const std::vector<Attachment>& attachments, double h) {
+  const MovingObstacle *first = bodies.data(), *const end = first + bodies.size();
+  while (first != end) {
+    const MovingObstacle* const last = std::find_if(first, end, [&](const MovingObstacle& other) { return other.body != first->body; });
+    set_inside(cable, *member.targets, first, last, attachments);
+    for (; first != last; ++first) find_obstacle(cable, index, member, *first, attachments, h);
+  }
+}
+
+/// A cable that a body holds inside of its shapes comes out of them as it likes.
+void ContactSet::set_inside(const SimulatedCable& cable, const KinematicTargets& targets, const MovingObstacle* first,
+                            const MovingObstacle* last, const std::vector<Attachment>& attachments) {
+  const CableState& state = cable.state;
+  const int elements = 2 * state.segments() + 1;
+  inside_.assign(elements, 0);
+  const auto is_inside = [&](int node) {
+    return std::any_of(first, last, [&](const MovingObstacle& shape) {
+      const Vector3 local = shape.start.orientation.conjugate() * (state.positions[node] - shape.start.position);
+      return closest_point(shape.obstacle->shape, local, 0).distance < 0;
+    });
+  };
+  for (const KinematicTarget& target : targets.nodes) {
+    if (attachments[target.attachment].frame != first->obstacle->holders.front() || !is_inside(target.node)) continue;
+    for (const int way : {-1, 1})
+      for (int element = 2 * target.node; element >= 0 && element < elements; element += way) {
+        if (element % 2 == 0 && !is_inside(element / 2)) break;
+        inside_[element] = 1;
+      }
+  }
 }
 
 void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const ContactMember& member, const MovingObstacle& moving,
@@ -147,20 +181,25 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
     const double gap = nearest.distance - (radius + moving.obstacle->padding);
     const Vector3 normal = orientation * nearest.normal;
     SurfaceMotion motion;
-    if (moving.speed > 0) {
+    const bool is_body = moving.body >= 0;
+    if (moving.speed > 0 && !is_body) {
       // Of the centre line, as if it was joined to the obstacle: what sticks turns with it.
       motion = surface_motion(moving, nearest.point + nearest.distance * nearest.normal);
       // Across the surface the mean velocity: what begins to move does not throw.
       motion.end_velocity += normal.dot(motion.displacement / h - motion.end_velocity) * normal;
     }
-    const Vector3 velocity = interpolate(state.velocities, point.segment, point.fraction);
+    const Vector3 position = interpolate(state.positions, point.segment, point.fraction);
+    Vector3 velocity = interpolate(state.velocities, point.segment, point.fraction);
+    if (is_body) velocity -= moving.body_velocity.at(position);
     if (!may_close(gap, normal, velocity - motion.displacement / h, radius, h)) return;
+    if (is_body && inside_[element] != 0) return;
     if (anchored(state, *member.targets, point, *moving.obstacle, attachments)) return;
     Touch& touch = touches_.emplace_back();
-    touch.key = moving.obstacle->id;
+    touch.key = is_body ? body_key | key_of(moving.body, moving.obstacle->id) : moving.obstacle->id;
     touch.other_key = element;
     touch.point = point;
     touch.obstacle = moving.index;
+    touch.body = moving.body;
     touch.normal = normal;
     touch.gap = gap;
     const double friction = moving.obstacle->friction.value_or(on_node ? node_friction(place) : materials[place].friction);
@@ -172,7 +211,12 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
     touch.velocity = velocity;
     touch.other_motion = motion;
     touch.half_turn = moving.half_turn;
-    touch.position = interpolate(state.positions, point.segment, point.fraction);
+    touch.position = position;
+    if (is_body) {
+      touch.base_stiffness = std::min(touch.base_stiffness, stopping_stiffness(moving.body_mass, rules_.time_step));
+      touch.body_acceleration = moving.body_acceleration.at(position);
+      touches_body_[places_[index]] = 1;
+    }
     add(touch, member, h);
   };
 
@@ -257,7 +301,7 @@ void ContactSet::add(Touch& touch, const ContactMember& member, double h) {
   touch.inside = !known || touch.inside;
   if (touch.gap >= gentle) touch.inside = false;
   if (touch.inside) touch.gap = gentle;
-  touch.yields = touch.inside && touch.obstacle < 0;
+  touch.yields = touch.inside && touch.other.cable >= 0;
   anticipate(Scheme::conserving, h, time_, Vector3::Zero(), touch);
   start_touch(touch);
   touched_[places_[touch.point.cable]] = 1;
@@ -298,7 +342,8 @@ void ContactSet::follow_scheme(Scheme scheme, const std::vector<SimulatedCable>&
     if (point.cable < 0) return Vector3::Zero();
     return interpolate(cables[point.cable].state.accelerations, point.segment, point.fraction);
   };
-  for (Touch& touch : touches_) anticipate(scheme, h, time_, acceleration_at(touch.point) - acceleration_at(touch.other), touch);
+  for (Touch& touch : touches_)
+    anticipate(scheme, h, time_, acceleration_at(touch.point) - acceleration_at(touch.other) - touch.body_acceleration, touch);
 }
 
 void ContactSet::keep(const std::vector<ContactMember>& members) const {

@@ -28,11 +28,11 @@ struct ContactMember {
 /// The contacts of cables that are stepped together: found anew for every substep, but for what their caches keep.
 class ContactSet {
  public:
-  /// Finds what may touch in the next h [s]. `island`: ascending indices into `cables`; `members`: the same cables; `pairs`: of
-  /// their segments, as the last call for them left it, or empty.
+  /// Finds what may touch in the next h [s]. `island`: ascending indices into `cables`; `members`: the same cables; `bodies`:
+  /// shapes of bodies, likewise ascending; `pairs`: of the cables' segments, as the last call for them left it, or empty.
   void find(const std::vector<SimulatedCable>& cables, const std::vector<int>& island, const std::vector<ContactMember>& members,
-            const std::vector<MovingObstacle>& obstacles, const std::vector<Attachment>& attachments, const ContactRules& rules,
-            double h, SegmentPairs& pairs);
+            const std::vector<MovingObstacle>& obstacles, const std::vector<MovingObstacle>& bodies,
+            const std::vector<Attachment>& attachments, const ContactRules& rules, double h, SegmentPairs& pairs);
   /// They are those of a substep that goes by another scheme than the conserving one, which `find` takes for granted.
   void follow_scheme(Scheme scheme, const std::vector<SimulatedCable>& cables, double h);
   /// The substep is done: the caches of the members take what sticks.
@@ -41,10 +41,15 @@ class ContactSet {
   std::vector<Touch>& touches() { return touches_; }
   const std::vector<Touch>& touches() const { return touches_; }
   bool touched(std::size_t member) const { return touched_[member] != 0; }  ///< whether it is part of a touch
+  bool touches_body(std::size_t member) const { return touches_body_[member] != 0; }
   const std::vector<Intrusion>& intrusions() const { return intrusions_; }  ///< that `find` came upon
 
  private:
   void set_held(const SimulatedCable& cable, const KinematicTargets& targets, const std::vector<Attachment>& attachments);
+  void find_bodies(const SimulatedCable& cable, int index, const ContactMember& member, const std::vector<MovingObstacle>& bodies,
+                   const std::vector<Attachment>& attachments, double h);
+  void set_inside(const SimulatedCable& cable, const KinematicTargets& targets, const MovingObstacle* first,
+                  const MovingObstacle* last, const std::vector<Attachment>& attachments);
   void find_obstacle(const SimulatedCable& cable, int index, const ContactMember& member, const MovingObstacle& moving,
                      const std::vector<Attachment>& attachments, double h);
   void find_pairs(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members, const SegmentPairs& found,
@@ -61,9 +66,11 @@ class ContactSet {
   std::vector<Intrusion> intrusions_;
   std::vector<int> places_;            ///< among the members, by cable; set for these only
   std::vector<char> touched_;          ///< by member
+  std::vector<char> touches_body_;     ///< likewise
   std::vector<std::size_t> recalled_;  ///< by member: the first of its cache that may still be asked for
   // Nodes of one cable
   std::vector<char> held_, visited_;
+  std::vector<char> inside_;           ///< of a body, from where that holds the cable; nodes and segments in turns
   std::vector<Vector3> local_;         ///< [m] in an obstacle's frame; where visited
   std::vector<SurfacePoint> nearest_;  ///< on its surface; where visited
   std::vector<Vector3> feet_;          ///< [m] on its surface, in its frame, of each of the touches

@@ -13,6 +13,8 @@ namespace {
 constexpr int maximum_iterations = 60;
 /// Error of a node's velocity at which an iteration ends, in segment lengths per second.
 constexpr double velocity_tolerance = 4e-3;
+/// Bodies are as much more accurate, in parts of their sizes.
+constexpr double body_accuracy = 30;
 constexpr double fastest_convergence = 0.1;
 constexpr double slow_convergence = 0.2;
 /// Where friction turns round slowly, a larger error is as good after so many iterations.
@@ -111,9 +113,10 @@ inline Participant& ContactSolver::at(std::vector<Participant>& participants, co
 }
 
 /// w of the present iterate [m].
-inline Vector3 ContactSolver::displacement_of(const Touch& touch, std::vector<Participant>& participants) const {
+inline Vector3 ContactSolver::displacement_of(Touch& touch, std::vector<Participant>& participants) const {
   const CablePoint &point = touch.point, &other = touch.other;
   const Vector3 own = between(at(participants, point).stepper->displacement(), point.segment, point.fraction);
+  if (touch.body >= 0) return bodies_->contacts().follow(own, touch);
   if (!joins_cables(touch)) return own;
   return own - between(at(participants, other).stepper->displacement(), other.segment, other.fraction);
 }
@@ -140,7 +143,10 @@ void ContactSolver::finish(std::vector<Participant>& participants, std::vector<T
   // After the last correction: what is left out at each substep would be creep.
   for (Touch& touch : touches)
     if (touch.mode != Touch::Mode::open) touch.displacement = displacement_of(touch, participants);
-  if (bodies_ != nullptr) bodies_->place_at_end(participants);
+  if (bodies_ != nullptr) {
+    bodies_->contacts().follow_obstacles();
+    bodies_->place_at_end(participants);
+  }
   for (Participant& p : participants) p.stepper->finish(p.substep, true, *p.state, p.result);
 }
 
@@ -166,14 +172,14 @@ bool ContactSolver::crosses(const std::vector<Participant>& participants, const 
 /// whole corrections may jump to and fro between them: each is shortened until the forces along it have no more than half turned
 /// round.
 bool ContactSolver::iterate(std::vector<Participant>& participants, std::vector<Touch>& touches) {
-  const Substep& first = participants.front().substep;
-  const double tolerance = velocity_tolerance * std::min(first.h, longest_tolerated);
+  const double h = participants.empty() ? bodies_->substep() : participants.front().substep.h;
+  const double tolerance = velocity_tolerance * std::min(h, longest_tolerated);
   negligible_energy_ = tolerated_ = infinity;
   for (const Participant& p : participants) {
     const double moved = tolerance * p.state->rest_lengths.front();
     tolerated_ = std::min(tolerated_, moved);
     const double mass = p.state->rest_lengths.front() * CableMaterials(p.substep.model, *p.state)[0].linear_density;
-    negligible_energy_ = std::min(negligible_energy_, negligible_part * mass * moved * moved / (first.h * first.h));
+    negligible_energy_ = std::min(negligible_energy_, negligible_part * mass * moved * moved / (h * h));
   }
   double last = 0;
   bool stale = true;
@@ -196,7 +202,7 @@ bool ContactSolver::iterate(std::vector<Participant>& participants, std::vector<
       largest = std::max(largest, size);
     }
     if (bodies_ != nullptr) {
-      const double size = bodies_->correct();
+      const double size = body_accuracy * bodies_->correct();
       if (!(size < largest_correction)) return false;
       largest = std::max(largest, size);
     }
@@ -257,13 +263,15 @@ double ContactSolver::work_along(std::vector<Participant>& participants) const {
 bool ContactSolver::press(std::vector<Participant>& participants, std::vector<Touch>& touches) {
   if (bodies_ != nullptr) bodies_->place_holders(participants);
   for (Participant& p : participants) p.stepper->evaluate(p.substep, *p.state);
-  bool changed = false;
+  bool changed = bodies_ != nullptr && bodies_->contacts().press();
   for (Touch& touch : touches) {
     const CablePoint &point = touch.point, &other = touch.other;
     CableStepper& stepper = *at(participants, point).stepper;
     CableStepper* other_stepper = joins_cables(touch) ? at(participants, other).stepper : nullptr;
     changed = evaluate_touch(displacement_of(touch, participants), touch) || changed;
+    touch.followed.setZero();
     if (touch.mode == Touch::Mode::open) continue;
+    if (touch.body >= 0) bodies_->contacts().add_load(touch);
     share(touch.force, point.segment, point.fraction, stepper.system().load);
     if (other_stepper != nullptr) share(-touch.force, other.segment, other.fraction, other_stepper->system().load);
   }
@@ -273,10 +281,12 @@ bool ContactSolver::press(std::vector<Participant>& participants, std::vector<To
 void ContactSolver::factor(std::vector<Participant>& participants, std::vector<Touch>& touches) {
   for (Participant& p : participants) p.stepper->assemble(p.substep.part());
   couplings_.clear();
+  if (bodies_ != nullptr) bodies_->clear_cable_contacts();
   for (const Touch& touch : touches) {
     if (touch.mode == Touch::Mode::open) continue;
     const Eigen::Matrix3d stiffness = slope(touch);
     at(participants, touch.point).stepper->system().add_stiffness(touch.point.segment, touch.point.fraction, stiffness);
+    if (touch.body >= 0) bodies_->add_cable_contact(index_[touch.point.cable], touch);
     if (!joins_cables(touch)) continue;
     at(participants, touch.other).stepper->system().add_stiffness(touch.other.segment, touch.other.fraction, stiffness);
     couplings_.push_back({side_at(touch.point), side_at(touch.other), stiffness});
@@ -286,12 +296,13 @@ void ContactSolver::factor(std::vector<Participant>& participants, std::vector<T
 
 /// The matrix has no part of the friction that follows the normal force of what slides, since that is not symmetric. Improves the
 /// solutions until it follows all the same: along a capstan it takes as many times as the cable's tension has to be handed on.
-void ContactSolver::follow_friction(std::vector<Participant>& participants, const std::vector<Touch>& touches) {
+void ContactSolver::follow_friction(std::vector<Participant>& participants, std::vector<Touch>& touches) {
   slips_.clear();
   for (std::size_t k = 0; k < participants.size(); ++k) work_[k].slips = false;
-  for (const Touch& touch : touches) {
+  for (Touch& touch : touches) {
     if (touch.mode != Touch::Mode::slides || !(touch.friction > 0)) continue;
     Slip slip;
+    slip.touch = &touch;
     slip.participant = index_[touch.point.cable];
     slip.segment = touch.point.segment;
     slip.fraction = touch.point.fraction;
@@ -316,8 +327,10 @@ void ContactSolver::follow_friction(std::vector<Participant>& participants, cons
   }
   for (std::size_t k = 0; k < participants.size(); ++k)
     if (work_[k].slips) std::swap(participants[k].stepper->system().load, work_[k].kept_load);
+  if (follows) return;
   // Where it gets away from them, without.
-  if (!follows) solve_slipping(participants);
+  solve_slipping(participants);
+  for (const Slip& slip : slips_) slip.touch->followed.setZero();
 }
 
 /// Adds to the loads what friction changes with the normal forces in the present solution. How far that has come since the last
@@ -341,6 +354,7 @@ double ContactSolver::follow_slips(std::vector<Participant>& participants) {
 void ContactSolver::solve_slipping(std::vector<Participant>& participants) {
   for (std::size_t k = 0; k < participants.size(); ++k)
     if (work_[k].slips) participants[k].stepper->solve_linear();
+  for (const Slip& slip : slips_) slip.touch->followed = slip.change * slip.friction;
 }
 
 /// Improves the solutions that the cables have found alone until they heed each other. The matrix differs from the cables' own by

@@ -16,7 +16,7 @@ namespace verlet_cable {
 class ContactSolver {
  public:
   /// If it has not converged, `converged` is false in the result of the participant that failed. The states are untouched.
-  /// `bodies`: that hold some of them, and have begun; none where it is null.
+  /// `bodies`: that hold or touch some of them, and have begun; none where it is null.
   bool solve(std::vector<Participant>& participants, std::vector<Touch>& touches, BodySystem* bodies);
   /// Whether segments that touch pass through each other in what has been found.
   bool crosses(const std::vector<Participant>& participants, const std::vector<Touch>& touches) const;
@@ -58,6 +58,7 @@ class ContactSolver {
 
   /// A contact that slides on an obstacle.
   struct Slip {
+    Touch* touch = nullptr;
     int participant = 0, segment = 0;
     double fraction = 0;
     Vector3 normal, friction;                ///< the second: over the normal force
@@ -73,7 +74,7 @@ class ContactSolver {
   double work_along(std::vector<Participant>& participants) const;
   void factor(std::vector<Participant>& participants, std::vector<Touch>& touches);
   void couple(std::vector<Participant>& participants);
-  void follow_friction(std::vector<Participant>& participants, const std::vector<Touch>& touches);
+  void follow_friction(std::vector<Participant>& participants, std::vector<Touch>& touches);
   double follow_slips(std::vector<Participant>& participants);
   void solve_slipping(std::vector<Participant>& participants);
   void exchange_loads(std::vector<Participant>& participants);
@@ -84,7 +85,7 @@ class ContactSolver {
   void put_solutions(double last_step, std::vector<Participant>& participants);
   void load_residuals(std::vector<Participant>& participants) const;
   void solve_whole_rods(std::vector<Participant>& participants);
-  Vector3 displacement_of(const Touch& touch, std::vector<Participant>& participants) const;
+  Vector3 displacement_of(Touch& touch, std::vector<Participant>& participants) const;
   Participant& at(std::vector<Participant>& participants, const CablePoint& point) const;
   Side side_at(const CablePoint& point) const;
 

@@ -15,6 +15,8 @@ constexpr double soft_depth = 0.06;
 constexpr double deepest = 0.18;
 /// What is inside an obstacle is pushed out at no more than about this.
 constexpr double gentle_velocity = 0.5;  // [m/s]
+/// Stiffness of a contact without load, relative to what stops a mass within a step.
+constexpr double stopping_part = 2;
 /// Steps within which a contact comes to rest.
 constexpr double contact_steps = 2;
 /// A linearisation is as good as the law if the forces differ by no more than this, relatively.
@@ -61,6 +63,10 @@ double secant(double depth, const ForceAndSlope& law, double pressing_force, con
 }
 
 }  // namespace
+
+double stopping_stiffness(double mass, double time_step) {
+  return stopping_part * mass / (time_step * time_step);
+}
 
 double contact_time(double time_step) {
   return contact_steps * time_step;
@@ -125,6 +131,12 @@ Eigen::Matrix3d slope(const Touch& touch) {
   Eigen::Matrix3d slope = stiffness * (1 - touch.part) * touch.normal * touch.normal.transpose();
   slope.diagonal().array() += stiffness * touch.part;
   return slope;
+}
+
+Eigen::Matrix3d full_slope(const Touch& touch) {
+  if (touch.mode != Touch::Mode::slides) return slope(touch);
+  const Vector3 friction = touch.force / touch.normal_force - touch.normal;
+  return slope(touch) + touch.rate * touch.stiffness * friction * touch.normal.transpose();
 }
 
 Vector3 remaining_friction(const Touch& touch) {

@@ -26,6 +26,7 @@ struct Touch {
   std::uint64_t key = 0, other_key = 0;  ///< what touches what; ascending in a list of touches
   CablePoint point, other;
   int obstacle = -1;
+  int body = -1;                       ///< what touches the obstacle, or is touched; index into World::bodies()
   Vector3 position = Vector3::Zero();  ///< [m] of the point
   Vector3 normal = Vector3::UnitZ();   ///< out of what is touched
   bool inside = false;                 ///< it was deep inside from the start: it is pushed out gently
@@ -40,6 +41,8 @@ struct Touch {
   Vector3 stuck_force = Vector3::Zero();         ///< [N] friction at the start of the substep, as it is turned in the middle
   double last_force = 0;                         ///< [N] normal force in the substep before
   Vector3 velocity = Vector3::Zero();            ///< [m/s] of the point at the start, relative to another cable that is touched
+  Vector3 body_acceleration = Vector3::Zero();   ///< [m/s^2] of a body's point, at the start
+  Vector3 start_arm = Vector3::Zero();           ///< [m] to it from the center of mass of the body with what it holds
   SurfaceMotion other_motion;                    ///< of an obstacle that is touched
   Quaternion half_turn = Quaternion::Identity();  ///< likewise: MovingObstacle's
   // Of the present iterate
@@ -49,9 +52,14 @@ struct Touch {
   double stiffness = 0;                                        ///< [N/m] there
   double normal_force = 0;                                     ///< [N]
   Vector3 force = Vector3::Zero();                             ///< [N] on the point
+  Vector3 arm = Vector3::Zero();                               ///< [m] with which the force acts on a body
+  Vector3 followed = Vector3::Zero();                          ///< [N] friction that follows the correction's normal force
   double part = 1;                                             ///< of the friction that sticking would take
   enum class Mode { open, sticks, slides } mode = Mode::open;  ///< at first that of the substep before
 };
+
+/// [N/m] Of a contact without load, with a mass [kg] that it stops within about a step [s].
+double stopping_stiffness(double mass, double time_step);
 
 /// How long contacts take to come to rest [s], for a world's time step [s].
 double contact_time(double time_step);
@@ -72,6 +80,9 @@ bool evaluate_touch(const Vector3& w, Touch& touch);
 /// [N/m] - d force / d w of a touch that is not open, without the part of friction that follows f. Along the slip it is the
 /// secant, not the tangent, which is nothing: iterations would turn it to and fro.
 Eigen::Matrix3d slope(const Touch& touch);
+
+/// The same with the part of friction that follows f.
+Eigen::Matrix3d full_slope(const Touch& touch);
 
 /// A force [N] as the obstacle that is touched turns it in half the substep.
 inline Vector3 half_turned(const Touch& touch, const Vector3& force) {

@@ -6,6 +6,14 @@
 
 namespace verlet_cable {
 
+/// How the points of a rigid body move: first or second derivatives of their places.
+struct PointMotion {
+  Vector3 center = Vector3::Zero();  ///< [m] of mass
+  Vector3 linear = Vector3::Zero(), angular = Vector3::Zero();
+
+  Vector3 at(const Vector3& point) const { return linear + angular.cross(point - center); }
+};
+
 /// An obstacle during a substep.
 struct MovingObstacle {
   const Obstacle* obstacle = nullptr;
@@ -16,6 +24,10 @@ struct MovingObstacle {
   FrameVelocity end_velocity;                     ///< of its frame, seen from the fixed frame
   Vector3 frame_end = Vector3::Zero();            ///< [m] of its frame's origin
   Quaternion half_turn = Quaternion::Identity();  ///< of it in half the substep, seen from the fixed frame
+  int body = -1;                                  ///< whose shape it is, which moves as contacts let it; index into World::bodies()
+  PointMotion body_velocity;                      ///< [m/s], [rad/s]
+  PointMotion body_acceleration;                  ///< [m/s^2], [rad/s^2]
+  double body_mass = 0;                           ///< [kg]
 };
 
 /// What a point that is joined to an obstacle does in a substep, in the fixed frame.

@@ -88,6 +88,7 @@ EditResult World::Implementation::apply(const edit::RemoveObstacle& remove) {
   if (found == state.obstacles.end()) return refused("obstacle: " + quoted(name) + "; there is no such obstacle");
   const int index = static_cast<int>(found - state.obstacles.begin());
   for (CableProgress& progress : state.cable_progress) forget_obstacle(found->id, progress.contacts);
+  for (BodyProgress& progress : state.body_progress) forget_obstacle(found->id, progress.contacts);
   state.obstacles.erase(found);
   const auto names_it = [&](const Intrusion& intrusion) { return intrusion.obstacle == index; };
   findings.intrusions.erase(std::remove_if(findings.intrusions.begin(), findings.intrusions.end(), names_it),

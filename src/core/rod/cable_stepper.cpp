@@ -109,7 +109,7 @@ void CableStepper::finish(const Substep& s, bool struck, CableState& state, Subs
   move(s);
   finish_flows(s, state);
   const bool damped = !s.statics && s.scheme != Scheme::conserving;
-  if (damped && s.boundary.nodes.empty()) restore_momenta(s, state.masses);
+  if (damped && s.boundary.nodes.empty() && !s.touches_bodies) restore_momenta(s, state.masses);
   if (!s.statics && s.boundary.nodes.empty()) restore_angular_momentum(s, state.masses);
   // Where bodies give way they are projected together.
   if (!s.statics && !s.boundary.is_on_bodies() &&
@@ -466,6 +466,11 @@ void CableStepper::respond(const Boundary& boundary, const HolderMotion& motion,
     if (system_.stiffened) loads.forces[k] -= get(system_.added, i) * motion.displacements[k];
   }
   if (rod_.active()) rod_.add_clamp_reactions(system_, loads.torques);
+  loads.displacements.resize(motion.loads.size());
+  for (std::size_t k = 0; k < motion.loads.size(); ++k) {
+    const PointLoad& load = motion.loads[k];
+    loads.displacements[k] = (1 - load.fraction) * get(correction(), load.segment) + load.fraction * get(correction(), load.segment + 1);
+  }
   system_.moves_held = false;
   std::swap(solution(), kept_solution_);
   for (std::size_t k = 0; k < flows_.size(); ++k) flows_[k].correction = kept_ways_[k];
@@ -485,6 +490,11 @@ void CableStepper::solve_for_motion(const Boundary& boundary, const HolderMotion
   for (std::size_t k = 0; k < boundary.nodes.size(); ++k)
     set(system_.held_displacement, boundary.nodes[k].node, motion.displacements[k]);
   if (rod_.active()) rod_.add_clamp_loads(motion.rotations, system_);
+  for (const PointLoad& load : motion.loads) {
+    const Vector3 next = load.fraction * load.force;
+    set(system_.load, load.segment, get(system_.load, load.segment) + load.force - next);
+    set(system_.load, load.segment + 1, get(system_.load, load.segment + 1) + next);
+  }
   system_.moves_held = true;
   solve_linear();
   system_.moves_held = false;

@@ -54,7 +54,7 @@ class CableStepper {
   void read_holder_loads(const Substep& substep, const std::vector<double>& masses, bool corrected, HolderLoads& loads) const;
   /// Adds to the solution, which had the holders stay where they are, what it is that they move.
   void add_moved(const Boundary& boundary, const HolderMotion& motion);
-  /// What the cable exerts on its holders where they move so and nothing loads it; the solution stays as it is.
+  /// What the cable exerts on its holders where they move so and nothing else loads it; the solution stays as it is.
   void respond(const Boundary& boundary, const HolderMotion& motion, HolderLoads& loads);
   // Of velocities, once the substep is finished: begin; solve; read; respond; add moved; finish
   /// The linear system is that of impulses which end all change of length of inextensible segments but that of rest lengths.

@@ -34,6 +34,7 @@ struct Substep {
   bool statics = false;           ///< a step towards equilibrium: inertia only slows it, nothing moves or is damped
   Scheme scheme = Scheme::conserving;
   Treatment treatment = Treatment::none;  ///< of motion that is found not to be resolved
+  bool touches_bodies = false;            ///< which take over momentum
   double tolerance = 1e-5;                ///< [1/s] of velocities, as SceneDesc's
 
   /// Where in the substep forces are taken.

@@ -23,6 +23,7 @@ bool Boundary::is_on_bodies() const {
 void HolderMotion::clear() {
   std::fill(displacements.begin(), displacements.end(), Vector3::Zero());
   std::fill(rotations.begin(), rotations.end(), Vector3::Zero());
+  for (PointLoad& load : loads) load.force.setZero();
 }
 
 int reachable_lengths(const CableModel& model, const CableState& state, const std::vector<HeldNode>& held,

@@ -50,10 +50,18 @@ struct Boundary {
   bool is_on_bodies() const;  ///< whether a body that moves freely holds any of it
 };
 
+/// A force on a point of a segment.
+struct PointLoad {
+  int segment = 0;
+  double fraction = 0;               ///< along it, 0 to 1
+  Vector3 force = Vector3::Zero();   ///< [N]
+};
+
 /// By what the holders of a boundary move from one iterate to the next.
 struct HolderMotion {
   std::vector<Vector3> displacements;  ///< one a held node [m]
   std::vector<Vector3> rotations;      ///< one a held direction [rad]
+  std::vector<PointLoad> loads;        ///< that come with it
 
   void clear();  ///< nothing moves
 };
@@ -62,6 +70,7 @@ struct HolderMotion {
 struct HolderLoads {
   std::vector<Vector3> forces;   ///< one a held node [N]
   std::vector<Vector3> torques;  ///< one a held direction [N m]
+  std::vector<Vector3> displacements;  ///< [m] of what is loaded, one a load of the motion
 };
 
 /// The lengths [m] that the segments can keep: their rest lengths, but longer between holders that are further apart

@@ -104,12 +104,12 @@ BodySettling::Outcome BodySettling::advance(double h) {
     workspace_.members.push_back({progress.id, &progress.targets, &contacts_[k]});
     load_flows(index, state_, work.boundary);
     Substep substep{*cable.model, environment, work.boundary, progress.spans, h, true};
+    substep.touches_bodies = true;
     workspace_.participants.push_back({static_cast<int>(k), index, &work.stepper, substep, &cable.state, {}});
     before_[k] = cable.state;
   }
   move_obstacles(state_, 1, 1, workspace_.obstacles);
-  workspace_.contacts.find(state_.cables, island_.cables, workspace_.members, workspace_.obstacles, state_.attachments,
-                           contact_rules(*state_.scene, true), h, island_.pairs);
+  find_contacts_of(island_, state_, contact_rules(*state_.scene, true), h, workspace_);
   workspace_.body_members.clear();
   for (const int body : island_.bodies)
     if (state_.body_progress[body].is_placed)
@@ -120,13 +120,14 @@ BodySettling::Outcome BodySettling::advance(double h) {
 
   Outcome outcome;
   std::vector<Touch>& touches = workspace_.contacts.touches();
-  outcome.touches = !touches.empty();
+  outcome.touches = !touches.empty() || !system.contacts().touches().empty();
   if (outcome.touches)
     outcome.converged = workspace_.contact_solver.solve(workspace_.participants, touches, &system);
   else
     outcome.converged = system.advance(workspace_.participants, state_.scene->tolerance);
   if (!outcome.converged) return outcome;
 
+  system.contacts().follow_obstacles();
   system.place_at_end(workspace_.participants);
   for (Participant& p : workspace_.participants) {
     p.stepper->finish(p.substep, false, *p.state, p.result);
@@ -148,6 +149,8 @@ BodySettling::Outcome BodySettling::advance(double h) {
     state_.attachments[joint.attachment].torque = -joint.torque;
   }
   workspace_.contacts.keep(workspace_.members);
+  for (const BodyMember& member : workspace_.body_members)
+    BodyTouches::keep(member.body, system.contacts().touches(), state_.body_progress[member.body].contacts);
   pass_nodes_of_guides();
   return outcome;
 }

@@ -58,7 +58,7 @@ void IslandStepper::begin_bodies(const Island& island, double from, double to, S
   for (const int body : island.bodies)
     if (state_.body_progress[body].is_placed) members.push_back({body, &state_.bodies[body], &state_.body_progress[body]});
   workspace_.body_system.begin(members, workspace_.participants, state_.bodies, state_.scene->gravity, rules);
-  projects_bodies_ = scheme != Scheme::conserving || !workspace_.contacts.touches().empty();
+  projects_bodies_ = scheme != Scheme::conserving || touches();
   find_body_joints(island, state_, from, to, workspace_);
   for (BodyJoint& joint : workspace_.body_system.joints())
     if (joint.other < 0) follow_body_holder(joint, to);

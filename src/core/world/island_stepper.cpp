@@ -77,6 +77,22 @@ ContactRules contact_rules(const SceneDesc& scene, bool still) {
   return rules;
 }
 
+void find_contacts_of(Island& island, const State& state, const ContactRules& rules, double h, Workspace& workspace) {
+  std::vector<Touch>& on_obstacles = workspace.body_system.contacts().touches();
+  on_obstacles.clear();
+  workspace.surfaces.clear();
+  for (const int index : island.bodies) {
+    const SimulatedBody& body = state.bodies[index];
+    const BodyProgress& progress = state.body_progress[index];
+    if (body.shapes.empty() || !progress.is_placed) continue;
+    workspace.surfaces.add(index, body, progress, h);
+    workspace.body_touches.find({index, &body, &progress}, island.held, state.attachments, workspace.obstacles, rules, h,
+                                on_obstacles);
+  }
+  workspace.contacts.find(state.cables, island.cables, workspace.members, workspace.obstacles, workspace.surfaces.all(),
+                          state.attachments, rules, h, island.pairs);
+}
+
 void note_status(Status status, const BodyId& body, int node, StepResult& result) {
   if (status <= result.status) return;
   result.status = status;
@@ -269,7 +285,7 @@ void IslandStepper::begin(const Island& island) {
 /// have passed through each other (where that is not `tolerated`); the states are then as before.
 bool IslandStepper::advance(Island& island, double from, double to, bool tolerated) {
   const double h = (to - from) * state_.scene->time_step;
-  const bool touching = !workspace_.contacts.touches().empty(), keeps = island.cables.size() > 1;
+  const bool touching = touches(), keeps = island.cables.size() > 1;
   workspace_.participants.clear();
   const Scheme touching_scheme = find_touching_scheme(island, h);
   bool converged = true;
@@ -293,6 +309,7 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     Substep substep{*c.model, environment_, work.boundary, memory.spans, h};
     substep.scheme = scheme;
     substep.tolerance = state_.scene->tolerance;
+    substep.touches_bodies = workspace_.contacts.touches_body(k);
     if (state_.scene->numerical_damping)
       substep.treatment = touches || on_bodies || to - from < 1 ? Treatment::damping : Treatment::cleaning;
     if (touches || on_bodies) {
@@ -320,6 +337,9 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
       keep_flows(island.cables[k], workspace_.cables[k].boundary, state_);
     }
     workspace_.contacts.keep(workspace_.members);
+    for (const BodyMember& member : workspace_.body_members)
+      if (!member.start->shapes.empty())
+        BodyTouches::keep(member.body, workspace_.body_system.contacts().touches(), state_.body_progress[member.body].contacts);
   } else if (keeps) {
     take_back(island);
   }
@@ -328,8 +348,11 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
 
 void IslandStepper::find_contacts(Island& island, double from, double to) {
   move_obstacles(state_, from, to, workspace_.obstacles);
-  workspace_.contacts.find(state_.cables, island.cables, workspace_.members, workspace_.obstacles, state_.attachments,
-                           contact_rules(*state_.scene, false), (to - from) * state_.scene->time_step, island.pairs);
+  find_contacts_of(island, state_, contact_rules(*state_.scene, false), (to - from) * state_.scene->time_step, workspace_);
+}
+
+bool IslandStepper::touches() const {
+  return !workspace_.contacts.touches().empty() || !workspace_.body_system.contacts().touches().empty();
 }
 
 Scheme IslandStepper::scheme_of(int cable) const {
@@ -346,7 +369,9 @@ Scheme IslandStepper::find_touching_scheme(const Island& island, double h) {
     const Scheme own = scheme_of(island.cables[k]);
     if (own == Scheme::first_order || scheme == Scheme::conserving) scheme = own;
   }
-  if (scheme != Scheme::conserving) workspace_.contacts.follow_scheme(scheme, state_.cables, h);
+  if (scheme == Scheme::conserving) return scheme;
+  workspace_.contacts.follow_scheme(scheme, state_.cables, h);
+  BodyTouches::follow_scheme(scheme, contact_rules(*state_.scene, false), h, workspace_.body_system.contacts().touches());
   return scheme;
 }
 
@@ -431,7 +456,7 @@ void IslandStepper::complete(const Island& island, int substeps, IslandOutcome& 
     if (cannot_get_apart(touch))
       note_status(Status::degraded, cable_id(touch.point.cable), touch.point.segment, outcomes_[touch.point.cable].result);
     found.contacts.push_back({touch.point.cable, touch.point.segment, touch.position, touch.normal, touch.force, touch.obstacle,
-                              touch.other.cable, touch.other.segment});
+                              touch.other.cable, touch.other.segment, touch.obstacle < 0 ? touch.body : -1});
   }
 }
 

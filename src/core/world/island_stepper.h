@@ -32,6 +32,9 @@ void move_obstacles(const State& state, double from, double to, std::vector<Movi
 /// How contacts of a world are found: `still`, where nothing moves but towards equilibrium.
 ContactRules contact_rules(const SceneDesc& scene, bool still);
 
+/// What may touch in the next h [s], of an island whose cables are the members of the workspace.
+void find_contacts_of(Island& island, const State& state, const ContactRules& rules, double h, Workspace& workspace);
+
 /// Keeps the worst status, and of equals the first body's.
 void note_status(StepResult::Status status, const BodyId& body, int node, StepResult& result);
 
@@ -87,6 +90,7 @@ class IslandStepper {
   void carry_cables(const Island& island);
   void follow_body_holder(BodyJoint& joint, double to);
   void find_contacts(Island& island, double from, double to);
+  bool touches() const;
   Scheme scheme_of(int cable) const;
   Scheme find_touching_scheme(const Island& island, double h);
   void wind_drive(int cable, Scheme scheme, double from, double to, Boundary& boundary);

@@ -41,6 +41,15 @@ Aabb reach_of(const SimulatedCable& cable, const KinematicTargets& targets, doub
   return widened(box, margin);
 }
 
+Aabb reach_of(const SimulatedBody& body, const BodyProgress& progress, double time_step) {
+  Aabb box;
+  for (const BodyShape& shape : body.shapes) box.extend(bounds(shape.shape, body.pose * shape.pose));
+  const double size = box.diagonal().norm();
+  const double speed = body.velocity.norm() + size * body.angular_velocity.norm();
+  const double acceleration = progress.acceleration.norm() + size * progress.angular_acceleration.norm() + spare_acceleration;
+  return widened(box, steps_of_motion * time_step * (speed + time_step * acceleration));
+}
+
 /// Whether leaves of two trees of boxes overlap, below their nodes `i` and `j`. The children of k are 2 k + 1 and 2 k + 2.
 bool overlap(const std::vector<Aabb>& a, std::size_t i, const std::vector<Aabb>& b, std::size_t j) {
   if (!a[i].intersects(b[j])) return false;
@@ -64,8 +73,12 @@ int longest_axis(const std::vector<Aabb>& boxes) {
 void Islands::build(const State& state) {
   labels_.resize(state.cables.size() + state.bodies.size());
   std::iota(labels_.begin(), labels_.end(), 0);
-  if (are_islands_of_many(*state.scene)) find_labels(state);
-  if (!state.bodies.empty()) join_by_bodies(state);
+  if (are_islands_of_many(*state.scene)) find_reaches(state);
+  if (cables_touch(*state.scene)) find_labels(state);
+  if (!state.bodies.empty()) {
+    if (are_islands_of_many(*state.scene)) join_touching_bodies(state);
+    join_by_bodies(state);
+  }
   if (islands_.empty() || labels_ != last_labels_) sort_into_islands(state);
   if (!state.bodies.empty()) find_held(state);
 }
@@ -99,8 +112,7 @@ void Islands::sort_into_islands(const State& state) {
   for (const SimulatedCable& cable : state.cables) segments_ += cable.state.segments();
 }
 
-/// Joins cables that come close to each other: a sweep along the axis on which they are spread furthest.
-void Islands::find_labels(const State& state) {
+void Islands::find_reaches(const State& state) {
   const std::size_t count = state.cables.size();
   reaches_.resize(count);
   margins_.resize(count);
@@ -111,6 +123,11 @@ void Islands::find_labels(const State& state) {
     reaches_[i] = reach_of(state.cables[i], targets, margins_[i]);
     segment_reaches_[i].clear();
   }
+}
+
+/// Joins cables that come close to each other: a sweep along the axis on which they are spread furthest.
+void Islands::find_labels(const State& state) {
+  const std::size_t count = state.cables.size();
   const int axis = longest_axis(reaches_);
   order_.resize(count);
   std::iota(order_.begin(), order_.end(), 0);
@@ -152,6 +169,19 @@ void Islands::find_held(const State& state) {
       const int first = held_body(state.attachments[a]), second = held_body(state.attachments[b]);
       return first < second || (first == second && a < b);
     });
+}
+
+/// Joins bodies with the cables that they may touch.
+void Islands::join_touching_bodies(const State& state) {
+  const int cables = static_cast<int>(state.cables.size());
+  for (int i = 0; i < static_cast<int>(state.bodies.size()); ++i) {
+    if (state.bodies[i].shapes.empty() || !state.body_progress[i].is_placed) continue;
+    body_reach_.assign(1, reach_of(state.bodies[i], state.body_progress[i], state.scene->time_step));
+    for (int cable = 0; cable < cables; ++cable)
+      if (body_reach_.front().intersects(reaches_[cable]) && root(cable) != root(cables + i) &&
+          overlap(segment_reaches(state, cable), 0, body_reach_, 0))
+        join(cable, cables + i);
+  }
 }
 
 bool Islands::come_close(const State& state, int first, int second) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "contact/segment_grid.h"
@@ -17,9 +18,15 @@ struct Island {
   SegmentPairs pairs;       ///< of their segments
 };
 
-/// Whether islands may be of more than one cable.
-inline bool are_islands_of_many(const SceneDesc& scene) {
+/// Whether cables may touch each other.
+inline bool cables_touch(const SceneDesc& scene) {
   return scene.contact && scene.contact->between_cables;
+}
+
+/// Whether islands may be of more than one cable, or of cables and bodies that do not hold them.
+inline bool are_islands_of_many(const SceneDesc& scene) {
+  return cables_touch(scene) ||
+         std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const BodyDesc& body) { return !body.shapes.empty(); });
 }
 
 /// What cables are stepped together with. Follows from the state; islands whose cables stay the same keep their pairs.
@@ -36,7 +43,9 @@ class Islands {
 
  private:
   void find_labels(const State& state);
+  void find_reaches(const State& state);
   void join_by_bodies(const State& state);
+  void join_touching_bodies(const State& state);
   void sort_into_islands(const State& state);
   void find_held(const State& state);
   bool come_close(const State& state, int first, int second);
@@ -54,6 +63,7 @@ class Islands {
   std::vector<Aabb> reaches_;                       ///< by cable: where that is
   std::vector<std::vector<Aabb>> segment_reaches_;  ///< by cable: the same of its segments, halved again and again; or empty
   std::vector<int> order_, open_;
+  std::vector<Aabb> body_reach_;  ///< of one body
 };
 
 }  // namespace verlet_cable

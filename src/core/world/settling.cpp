@@ -433,7 +433,7 @@ SubstepResult Settling::advance(Approach& approach, double h) {
 
 void Settling::find_contacts(Approach& approach, bool still, double h) {
   workspace_.contacts.find(state_.cables, approach.island.cables, {{memory_.id, &memory_.targets, &approach.contacts}},
-                           workspace_.obstacles, state_.attachments, contact_rules(*state_.scene, still), h,
+                           workspace_.obstacles, {}, state_.attachments, contact_rules(*state_.scene, still), h,
                            approach.island.pairs);
 }
 

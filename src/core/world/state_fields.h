@@ -253,7 +253,7 @@ auto fields(T& x, const BodyShape*) {
 }
 template <class T>
 auto fields(T& x, const BodyProgress*) {
-  return std::tie(x.is_placed, x.has_moved, x.acceleration, x.angular_acceleration, x.holders, x.holder_spins);
+  return std::tie(x.is_placed, x.has_moved, x.acceleration, x.angular_acceleration, x.holders, x.contacts, x.holder_spins);
 }
 template <class T>
 auto fields(T& x, const SimulatedBody*) {

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "body/body_system.h"
+#include "contact/body_surfaces.h"
+#include "contact/body_touches.h"
 #include "contact/contact_set.h"
 #include "contact/contact_solver.h"
 #include "lanes/lane_stepper.h"
@@ -46,7 +48,9 @@ struct WaitingCables {
 struct Workspace {
   std::vector<CableWorkspace> cables;  ///< one a cable of the island
   std::vector<MovingObstacle> obstacles;
+  BodySurfaces surfaces;  ///< of the bodies of the island
   ContactSet contacts;
+  BodyTouches body_touches;
   std::vector<ContactMember> members;     ///< likewise
   std::vector<Participant> participants;  ///< the cables that touch something, or that bodies hold
   ContactSolver contact_solver;

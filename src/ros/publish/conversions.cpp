@@ -73,7 +73,7 @@ std::vector<SimulatedContact> contacts_of_both(const World& world) {
     const SimulatedContact c = contacts[i];
     if (c.other_cable < 0) continue;
     const Vector3 across = (radius(c.cable, c.segment) + radius(c.other_cable, c.other_segment)) * c.normal;
-    contacts.push_back({c.other_cable, c.other_segment, c.position - across, -c.normal, -c.force, -1, c.cable, c.segment});
+    contacts.push_back({c.other_cable, c.other_segment, c.position - across, -c.normal, -c.force, -1, c.cable, c.segment, -1});
   }
   return contacts;
 }
@@ -86,8 +86,9 @@ Contact to_message(const World& world, const SimulatedContact& contact) {
   message.position = to_point(contact.position);
   message.normal = to_vector(contact.normal);
   message.force = to_vector(contact.force);
-  message.other =
-      contact.obstacle >= 0 ? world.obstacles()[contact.obstacle].name : world.cables()[contact.other_cable].model->name;
+  message.other = contact.obstacle >= 0 ? world.obstacles()[contact.obstacle].name
+                  : contact.body >= 0   ? world.bodies()[contact.body].name
+                                        : world.cables()[contact.other_cable].model->name;
   return message;
 }
 

@@ -1,0 +1,60 @@
+#include "body/body_contacts.h"
+
+namespace verlet_cable {
+
+void BodyContacts::begin(const std::vector<MovingBody>& bodies, const std::vector<int>& member_of, double part) {
+  bodies_ = &bodies;
+  member_of_ = &member_of;
+  part_ = part;
+  loads_.assign(bodies.size(), Vector6::Zero());
+  for (Touch& touch : touches_)
+    touch.arm = touch.start_arm = touch.position - bodies[member_of[touch.body]].stepper.start_center();
+}
+
+Vector3 BodyContacts::follow(const Vector3& displacement, Touch& touch) const {
+  const RigidBodyStepper& body = (*bodies_)[member_of(touch)].stepper;
+  // Of the cable's point, where forces are taken: both have the same line of action.
+  const Vector3 way = displacement - body.displacement();
+  touch.start_arm = touch.position - body.start_center();
+  touch.arm = touch.start_arm + part_ * way;
+  return way - body.turn().cross(touch.arm);
+}
+
+/// Of the point of the body that touches, as if it stayed there: what is round may roll.
+Vector3 BodyContacts::displacement_of(const Touch& touch) const {
+  const RigidBodyStepper& body = (*bodies_)[member_of(touch)].stepper;
+  return body.displacement() + body.turn().cross(touch.arm);
+}
+
+bool BodyContacts::press() {
+  for (Vector6& load : loads_) load.setZero();
+  bool changed = false;
+  for (Touch& touch : touches_) {
+    changed = evaluate_touch(displacement_of(touch), touch) || changed;
+    if (touch.mode != Touch::Mode::open) load_on(touch, touch.force);
+  }
+  return changed;
+}
+
+void BodyContacts::load_on(const Touch& touch, const Vector3& force) {
+  loads_[member_of(touch)] += point_load(touch.arm) * force;
+}
+
+void BodyContacts::follow_obstacles() {
+  for (Touch& touch : touches_)
+    if (touch.mode != Touch::Mode::open) touch.displacement = displacement_of(touch);
+}
+
+void BodyContacts::add_loads(BodyEquations& equations) const {
+  for (std::size_t m = 0; m < loads_.size(); ++m) equations.load(static_cast<int>(m)) += loads_[m];
+}
+
+void BodyContacts::add_stiffness(BodyEquations& equations) const {
+  for (const Touch& touch : touches_) {
+    if (touch.mode == Touch::Mode::open) continue;
+    const int member = member_of(touch);
+    equations.block(member, member) += point_load(touch.arm) * full_slope(touch) * point_motion(touch.arm);
+  }
+}
+
+}  // namespace verlet_cable

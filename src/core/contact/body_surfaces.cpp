@@ -1,0 +1,55 @@
+#include "contact/body_surfaces.h"
+
+#include <algorithm>
+
+#include "contact/cache.h"
+
+namespace verlet_cable {
+
+namespace {
+
+/// Without where a display finds it, which takes memory.
+Shape solid_of(const Shape& shape) {
+  const auto* mesh = std::get_if<MeshShape>(&shape);
+  return mesh == nullptr ? shape : Shape(MeshShape{mesh->mesh});
+}
+
+}  // namespace
+
+void BodySurfaces::add(int index, const SimulatedBody& body, const BodyProgress& progress, double h) {
+  for (std::size_t i = 0; i < body.shapes.size(); ++i) {
+    const std::size_t place = moving_.size();
+    if (obstacles_.size() <= place) obstacles_.emplace_back();
+    Obstacle& obstacle = obstacles_[place];
+    obstacle.shape = solid_of(body.shapes[i].shape);
+    obstacle.friction = body.friction;
+    obstacle.holders.assign(1, body.frame);
+    obstacle.id = static_cast<std::uint32_t>(i);
+    MovingObstacle& moving = moving_.emplace_back();
+    moving.body = index;
+    moving.index = -1;
+    moving.start = moving.end = body.pose * body.shapes[i].pose;
+    moving.box = bounds(obstacle.shape, moving.start);
+    const Vector3 center = body.pose.position + body.pose.orientation * body.center_of_mass;
+    moving.body_velocity = {center, body.velocity, body.angular_velocity};
+    moving.body_acceleration = {center, progress.acceleration, body.pose.orientation * progress.angular_acceleration};
+    const double size = (moving.box.max() - center).cwiseAbs().cwiseMax((moving.box.min() - center).cwiseAbs()).norm();
+    moving.speed = body.velocity.norm() + size * body.angular_velocity.norm();
+    moving.body_mass = body.mass;
+    const Vector3 turn = 0.5 * h * body.angular_velocity;
+    if (!turn.isZero(0)) moving.half_turn = Quaternion(1, 0.5 * turn.x(), 0.5 * turn.y(), 0.5 * turn.z()).normalized();
+  }
+}
+
+const std::vector<MovingObstacle>& BodySurfaces::all() {
+  for (std::size_t i = 0; i < moving_.size(); ++i) moving_[i].obstacle = &obstacles_[i];
+  return moving_;
+}
+
+double mass_at(const SimulatedBody& body, const Vector3& point, const Vector3& direction) {
+  const Vector3 arm = body.pose.orientation.conjugate() * (point - body.pose.position) - body.center_of_mass;
+  const Vector3 along = body.pose.orientation.conjugate() * direction, turning = arm.cross(along);
+  return 1 / (1 / body.mass + turning.dot(body.inertia.llt().solve(turning)));
+}
+
+}  // namespace verlet_cable

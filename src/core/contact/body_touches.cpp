@@ -1,0 +1,146 @@
+#include "contact/body_touches.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "contact/body_surfaces.h"
+
+namespace verlet_cable {
+
+namespace {
+
+/// [m/s] What starts inside an obstacle is pushed out at about this.
+constexpr double gentle_velocity = 0.2;
+/// What has come further into an obstacle than these many substeps at its speed, and roundings, was there from the start.
+constexpr double arrival_substeps = 2, arrival_roundings = 4;
+/// [m/s^2] That bodies may be accelerated with besides their last acceleration.
+constexpr double spare_acceleration = 100;
+constexpr std::uint64_t obstacle_feature = std::uint64_t{1} << 31;
+
+Vector3 at(const Pose& pose, const Vector3& point) {
+  return pose.position + pose.orientation * point;
+}
+
+bool is_held_by(int body, const Obstacle& obstacle, const std::vector<int>& held, const std::vector<Attachment>& attachments) {
+  return std::any_of(held.begin(), held.end(), [&](int a) {
+    return attachments[a].body == rigid_body_id(body) &&
+           std::binary_search(obstacle.holders.begin(), obstacle.holders.end(), attachments[a].frame);
+  });
+}
+
+const CachedContact* find_cached(const ContactCache& cache, const Touch& touch) {
+  const auto keys = [](const auto& of) { return std::tie(of.key, of.other_key); };
+  const auto same = std::lower_bound(cache.begin(), cache.end(), touch,
+                                     [&](const CachedContact& a, const Touch& b) { return keys(a) < keys(b); });
+  return same != cache.end() && keys(*same) == keys(touch) ? &*same : nullptr;
+}
+
+}  // namespace
+
+void BodyTouches::find(const TouchingBody& body, const std::vector<int>& held, const std::vector<Attachment>& attachments,
+                       const std::vector<MovingObstacle>& obstacles, const ContactRules& rules, double h,
+                       std::vector<Touch>& touches) {
+  if (body.body->shapes.empty()) return;
+  for (const MovingObstacle& moving : obstacles) {
+    if (is_held_by(body.index, *moving.obstacle, held, attachments)) continue;
+    for (std::size_t shape = 0; shape < body.body->shapes.size(); ++shape)
+      find_shape(body, static_cast<int>(shape), moving, rules, h, touches);
+  }
+}
+
+void BodyTouches::find_shape(const TouchingBody& touching, int index, const MovingObstacle& moving, const ContactRules& rules,
+                             double h, std::vector<Touch>& touches) {
+  const SimulatedBody& body = *touching.body;
+  const Shape &shape = body.shapes[index].shape, &solid = moving.obstacle->shape;
+  const Pose pose = body.pose * body.shapes[index].pose;
+  const Aabb box = bounds(shape, pose);
+  const Vector3 center = at(body.pose, body.center_of_mass);
+  const double size = (box.max() - center).cwiseAbs().cwiseMax((box.min() - center).cwiseAbs()).norm();
+  const double time = rules.still ? 0 : contact_time(rules.time_step), rounding = rounding_of(shape);
+  const double speed = rules.still ? 0 : body.velocity.norm() + size * body.angular_velocity.norm() + moving.speed;
+  const double acceleration =
+      touching.progress->acceleration.norm() + size * touching.progress->angular_acceleration.norm() + spare_acceleration;
+  const auto reach_at = [&](double approach) {
+    if (rules.still) return rounding;
+    return std::min((h + time) * approach, rounding + h * approach) + rounding + rules.time_step * h * acceleration;
+  };
+  const double padding = moving.obstacle->padding, reach = reach_at(speed) + padding;
+  const double radius = 0.5 * box.diagonal().norm();
+  const Vector3 far(reach, reach, reach);
+  if (!Aabb(box.min() - far, box.max() + far).intersects(moving.box)) return;
+  const Pose in_obstacle = moving.start.inverse() * pose;
+  const Vector3 middle = at(moving.start.inverse(), box.center());
+  if (closest_point(solid, middle, radius + reach).distance >= radius + reach) return;
+
+  const PointMotion velocity{center, body.velocity, body.angular_velocity};
+  const PointMotion accelerating{center, touching.progress->acceleration,
+                                 body.pose.orientation * touching.progress->angular_acceleration};
+  // `touch`: its normal, position and gap; `surface` [m]: of the obstacle, in its axes.
+  const auto add = [&](const Vector3& position, const Vector3& normal, const Vector3& surface, double gap, std::uint64_t feature) {
+    SurfaceMotion motion;
+    if (moving.speed > 0) {
+      motion = surface_motion(moving, surface);
+      motion.end_velocity += normal.dot(motion.displacement / h - motion.end_velocity) * normal;
+    }
+    Touch touch;
+    touch.velocity = rules.still ? Vector3::Zero() : velocity.at(position);
+    const double approach = std::max(0.0, normal.dot(motion.displacement / h - touch.velocity));
+    if (!(gap < reach_at(approach))) return;
+    touch.key = moving.obstacle->id;
+    touch.other_key = static_cast<std::uint64_t>(index) << 32 | feature;
+    touch.obstacle = moving.index;
+    touch.body = touching.index;
+    touch.position = position;
+    touch.normal = normal;
+    touch.gap = gap;
+    touch.friction = moving.obstacle->friction.value_or(body.friction);
+    touch.radius = rounding;
+    touch.base_stiffness = stopping_stiffness(mass_at(body, position, normal), rules.time_step);
+    touch.body_acceleration = accelerating.at(position);
+    touch.other_motion = motion;
+    touch.half_turn = moving.half_turn;
+    if (const CachedContact* last = find_cached(touching.progress->contacts, touch)) {
+      touch.stuck_force = half_turned(touch, last->force);
+      touch.mode = last->mode;
+      touch.last_force = last->normal_force;
+      touch.inside = last->inside;
+    } else {
+      touch.inside = gap < -(arrival_roundings * rounding + arrival_substeps * h * (speed + h * acceleration));
+    }
+    const double gentle = -gentle_velocity * contact_time(rules.time_step);
+    if (gap >= gentle) touch.inside = false;
+    if (touch.inside) touch.gap = gentle;
+    anticipate(Scheme::conserving, h, time, Vector3::Zero(), touch);
+    start_touch(touch);
+    touches.push_back(touch);
+  };
+
+  const Eigen::Matrix3d axes = moving.start.orientation.toRotationMatrix();
+  found_.clear();
+  const bool is_sphere = std::holds_alternative<SphereShape>(shape), on_sphere = std::holds_alternative<SphereShape>(solid);
+  if (is_sphere || !on_sphere) find_feature_contacts(shape, rounding, in_obstacle, solid, 0, reach, found_);
+  for (const FeatureContact& found : found_)
+    add(at(moving.start, found.point), axes * found.normal, found.foot + padding * found.normal, found.distance - padding,
+        found.feature);
+  if (is_sphere) return;
+  found_.clear();
+  find_feature_contacts(solid, 0, in_obstacle.inverse(), shape, rounding, reach, found_);
+  for (const FeatureContact& found : found_) {
+    const Vector3 position = at(pose, found.foot), normal = pose.orientation * -found.normal;
+    add(position, normal, at(moving.start.inverse(), position - found.distance * normal), found.distance - padding,
+        obstacle_feature | found.feature);
+  }
+}
+
+void BodyTouches::follow_scheme(Scheme scheme, const ContactRules& rules, double h, std::vector<Touch>& touches) {
+  for (Touch& touch : touches) anticipate(scheme, h, contact_time(rules.time_step), touch.body_acceleration, touch);
+}
+
+void BodyTouches::keep(int body, const std::vector<Touch>& touches, ContactCache& cache) {
+  cache.clear();
+  for (const Touch& touch : touches)
+    if (touch.body == body)
+      cache.push_back({touch.key, touch.other_key, remaining_friction(touch), touch.normal_force, touch.mode, touch.inside});
+}
+
+}  // namespace verlet_cable
