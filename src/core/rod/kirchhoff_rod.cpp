@@ -316,6 +316,7 @@ void KirchhoffRod::add_clamp_loads(const std::vector<Vector3>& rotations, KktSys
     ClampJoint& clamp = clamps_[k];
     const int i = clamp.segment;
     clamp.rotation = rotations[clamp.target];
+    if (clamp.rotation.isZero(0)) continue;
     const Vector3 moment = turned_by_clamp(clamp, static_cast<int>(k), clamp.rotation);
     const Vector3 direction = get(system.direction, i);
     const Vector3 force = direction.cross(moment) / direction.squaredNorm();
