@@ -185,7 +185,9 @@ void CableStepper::set_loads(const Substep& s, const CableState& state) {
     for (std::size_t k = 0; k + 1 < held.size(); ++k) {
       // What can stretch has a tension.
       if (materials.any_elastic_between(held[k].node, held[k + 1].node)) continue;
-      const bool gives_way = held[k].body >= 0 || held[k + 1].body >= 0;
+      // What is pulled straight from a junction to a frame may have no room to give way.
+      const auto moves_freely = [](const HeldNode& node) { return node.body >= 0 && !node.at_junction; };
+      const bool gives_way = moves_freely(held[k]) || moves_freely(held[k + 1]);
       for (int i = held[k].node; i < held[k + 1].node; ++i) {
         system_.compliance[i] = target_length_[i] * target_length_[i] * target_length_[i] / stiffness;
         if (!gives_way) strain_compliance_[i] = system_.compliance[i];

@@ -18,6 +18,7 @@ struct HeldNode {
   int body = -1;
   Vector3 point = Vector3::Zero();  ///< [m] of the body that holds the node, in the axes of its frame
   double body_mass = 0;             ///< [kg]
+  bool at_junction = false;         ///< the body is one that joins cables
   bool slides = false;              ///< whether the cable's material flows through it
 };
 
