@@ -45,6 +45,7 @@ class ContactSet {
 
  private:
   void set_held(const SimulatedCable& cable, const KinematicTargets& targets, const std::vector<Attachment>& attachments);
+  void find_joined(const std::vector<Attachment>& attachments, const std::vector<ContactMember>& members);
   void find_obstacle(const SimulatedCable& cable, int index, const ContactMember& member, const MovingObstacle& moving,
                      const std::vector<Attachment>& attachments, double h);
   void find_pairs(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members, const SegmentPairs& found,
@@ -55,6 +56,7 @@ class ContactSet {
   bool recall(const ContactMember& member, Touch& touch);
 
   SegmentGrid grid_;
+  std::vector<SegmentGrid::JoinedNode> joined_;
   ContactRules rules_;
   double time_ = 0;  ///< [s] in which contacts come to rest
   std::vector<Touch> touches_;

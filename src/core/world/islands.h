@@ -17,6 +17,9 @@ struct Island {
   SegmentPairs pairs;       ///< of their segments
 };
 
+/// [kg] Of all its cables and bodies.
+double mass_of(const Island& island, const State& state);
+
 /// Whether islands may be of more than one cable.
 inline bool are_islands_of_many(const SceneDesc& scene) {
   return scene.contact && scene.contact->between_cables;
