@@ -44,8 +44,7 @@ inline PlaceDesc at_arc_length(double arc_length) {
 }
 
 inline JunctionDesc& add_junction(SceneDesc& scene, const std::string& trunk, const PlaceDesc& place,
-                                  const std::vector<BranchDesc>& branches,
-                                  JunctionDesc::Type type = JunctionDesc::Type::rigid) {
+                                  const std::vector<BranchDesc>& branches, JunctionDesc::Type type = JunctionDesc::Type::rigid) {
   JunctionDesc& junction = scene.junctions.emplace_back();
   junction.name = "knot" + std::to_string(scene.junctions.size());
   junction.cable = trunk;

@@ -172,8 +172,7 @@ TEST_P(RigidYTurned, IsKirchhoffs) {
   }
   std::vector<Sample> of_forces;
   const auto samples = sample({20, 40, 80}, [&](int n) {
-    SceneDesc scene =
-        rigid_y({rigid_y_directions[0], rigid_y_directions[1], rigid_y_directions[2]}, n);
+    SceneDesc scene = rigid_y({rigid_y_directions[0], rigid_y_directions[1], rigid_y_directions[2]}, n);
     scene.time_step = 0.01;
     rope(scene).drag = 1;
     Simulation run(scene);
@@ -263,10 +262,8 @@ struct Frame {
     const Eigen::Matrix3d turn = Quaternion::FromTwoVectors(Vector3::UnitX(), way).toRotationMatrix();
     Eigen::Matrix<double, 12, 12> axes = Eigen::Matrix<double, 12, 12>::Zero();
     for (int i = 0; i < 4; ++i) axes.block<3, 3>(3 * i, 3 * i) = turn.transpose();
-    const Eigen::Matrix<double, 12, 12> k = axes.transpose() *
-                                            beam_stiffness(way.norm(), material.bending_stiffness[0],
-                                                           material.torsional_stiffness, axial) *
-                                            axes;
+    const Eigen::Matrix<double, 12, 12> k =
+        axes.transpose() * beam_stiffness(way.norm(), material.bending_stiffness[0], material.torsional_stiffness, axial) * axes;
     const Eigen::Matrix<double, 12, 12> m =
         axes.transpose() * beam_mass(way.norm(), material.linear_density, 0.5 * material.radius * material.radius) * axes;
     const std::array<int, 2> nodes{from, to};
@@ -328,7 +325,8 @@ void PrintTo(const BranchedMode& mode, std::ostream* stream) {
 
 class TrunkWithABranch : public testing::TestWithParam<BranchedMode> {};
 
-/// A cantilever with a branch that is half as long, at 60 degrees, struck at rest. Every second mode leaves its plane, and twists it.
+/// A cantilever with a branch that is half as long, at 60 degrees, struck at rest. Every second mode leaves its plane, and twists
+/// it.
 TEST_P(TrunkWithABranch, SwingsAsAFrameOfBeams) {
   const BranchedMode& wanted = GetParam();
   constexpr double at = 0.6, size = 2e-4;
@@ -422,9 +420,14 @@ TEST_P(TrunkWithABranch, SwingsAsAFrameOfBeams) {
 }
 
 const BranchedMode branched_modes[] = {
-    {"mode 1", 1, 0, false},          {"mode 2", 2, 0, false},           {"mode 3", 3, 0, false},
-    {"mode 4", 4, 0, false},          {"mode 1, heavy fork", 1, 0.02, false}, {"mode 4, heavy fork", 4, 0.02, false},
-    {"mode 1, trunk in two", 1, 0, true}, {"mode 2, trunk in two", 2, 0, true},
+    {"mode 1", 1, 0, false},
+    {"mode 2", 2, 0, false},
+    {"mode 3", 3, 0, false},
+    {"mode 4", 4, 0, false},
+    {"mode 1, heavy fork", 1, 0.02, false},
+    {"mode 4, heavy fork", 4, 0.02, false},
+    {"mode 1, trunk in two", 1, 0, true},
+    {"mode 2, trunk in two", 2, 0, true},
 };
 INSTANTIATE_TEST_SUITE_P(Modes, TrunkWithABranch, testing::ValuesIn(branched_modes));
 

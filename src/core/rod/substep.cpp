@@ -17,8 +17,6 @@ constexpr double static_velocity_tolerance = 1e-8;
 constexpr double fastest_convergence = 0.03;
 /// Of the weight.
 constexpr double taut_stiffness = 1e7;
-/// Likewise of what hangs at junctions, which may be heavier than the cable.
-constexpr double taut_stiffness_at_junctions = 1e11;
 /// Of the inertia in a substep, where bodies give way.
 constexpr double taut_inertia = 1e3;
 constexpr double standard_gravity = 9.81;
@@ -41,16 +39,13 @@ bool Convergence::is_reached(double size) {
 }
 
 double stiffness_of_taut(const Substep& s, const CableState& state) {
-  double mass = std::accumulate(state.masses.begin(), state.masses.end(), 0.0);
-  for (const HeldNode& held : s.boundary.nodes) mass += held.body_mass;
+  const double own = std::accumulate(state.masses.begin(), state.masses.end(), 0.0);
+  const double mass = s.boundary.is_on_bodies() ? s.boundary.joined_mass : own;
   const double length = state.length();
   const double weight = std::max(s.environment.gravity.at(state.positions[0]).norm(), standard_gravity) * mass;
-  const bool branches =
-      std::any_of(s.boundary.nodes.begin(), s.boundary.nodes.end(), [](const HeldNode& n) { return n.at_junction; });
-  const double times = branches ? taut_stiffness_at_junctions : taut_stiffness;
   double inertia = 0;
   if (s.boundary.is_on_bodies()) inertia = taut_inertia * s.inertia() * mass * length / (s.h * s.h);
-  return inertia + times * (weight + CableMaterials(s.model, state).largest_bending_stiffness() / (length * length));
+  return inertia + taut_stiffness * (weight + CableMaterials(s.model, state).largest_bending_stiffness() / (length * length));
 }
 
 bool holders_accelerate(const Substep& s, const CableState& state) {

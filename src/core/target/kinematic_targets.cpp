@@ -275,7 +275,6 @@ void hold_at(double from, double to, const KinematicTargets& targets, Boundary& 
     HeldNode& held = boundary.nodes[k];
     held.node = target.node;
     held.body = -1;
-    held.body_mass = 0;
     held.at_junction = false;
     held.slides = target.slides;
     held.position = to == 1 ? target.next_position : target.position + to * (target.next_position - target.position);
@@ -302,7 +301,6 @@ void hold_on_bodies(const CableState& state, const std::vector<Attachment>& atta
     HeldNode& held = boundary.nodes[k];
     const SimulatedBody& body = bodies[attachment.holder];
     held.body = attachment.holder;
-    held.body_mass = body.mass;
     held.at_junction = body.is_junction;
     held.point = target_position(state, attachment, attachment.pose, held.node);
     held.point += remaining(target.caught, target.gap.norm(), time) * target.gap;

@@ -37,6 +37,7 @@ BodySettling::BodySettling(const Island& island, State& state, Workspace& worksp
   if (workspace_.cables.size() < island_.cables.size()) workspace_.cables.resize(island_.cables.size());
   contacts_.resize(island_.cables.size());
   before_.resize(island_.cables.size());
+  joined_mass_ = mass_of(island_, state_);
   for (const int cable : island_.cables)
     radius_ = std::min(
         radius_, CableMaterials(state_.cables[cable]).smallest([](const MaterialDesc& material) { return material.radius; }));
@@ -101,6 +102,7 @@ BodySettling::Outcome BodySettling::advance(double h) {
     keep_twist(work.boundary, progress.targets);
     hold_at(1, 1, progress.targets, work.boundary);
     hold_on_bodies(cable.state, state_.attachments, state_.bodies, state_.time(), progress.targets, work.boundary);
+    work.boundary.joined_mass = joined_mass_;
     workspace_.members.push_back({progress.id, &progress.targets, &contacts_[k]});
     load_flows(index, state_, work.boundary);
     Substep substep{*cable.model, environment, work.boundary, progress.spans, h, true};

@@ -36,6 +36,7 @@ class BodySettling {
   State& state_;
   Workspace& workspace_;
   double radius_ = infinity;  ///< [m] of the thinnest cable
+  double joined_mass_ = 0;    ///< [kg] of the island
   std::vector<ContactCache> contacts_;
   std::vector<CableState> before_;
 };

@@ -70,6 +70,14 @@ int longest_axis(const std::vector<Aabb>& boxes) {
 
 }  // namespace
 
+double mass_of(const Island& island, const State& state) {
+  double mass = 0;
+  for (const int cable : island.cables)
+    for (const double of_node : state.cables[cable].state.masses) mass += of_node;
+  for (const int body : island.bodies) mass += state.bodies[body].mass;
+  return mass;
+}
+
 void Islands::build(const State& state) {
   labels_.resize(state.cables.size() + state.bodies.size());
   std::iota(labels_.begin(), labels_.end(), 0);
