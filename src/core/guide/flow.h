@@ -18,6 +18,9 @@ struct GuidedFlow {
   double acceleration = 0;              ///< [m/s^2] in and out: mean over the last substep
 };
 
+/// Changes of the loads on the nodes around a guide, from that before the segment before it on [N].
+using FlowColumn = std::array<Vector3, 6>;
+
 /// A flow while a substep is solved for it. Its way is one more unknown; the equation of motion of what flows, with the
 /// generalised forces of the cable's energy, is one more equation:
 ///   mass (2 / h) (way / h - rate) = T_after - T_before + gravity + friction
@@ -45,6 +48,9 @@ struct Flow {
   std::array<double, 2> row{0, 0};
   double diagonal = 0;
   std::array<double, 2> gap{0, 0};  // its column: in the rows of the two segments
+  /// Of the nodes, where the cable bends; but for friction the same in its row
+  FlowColumn column{};
+  int first_node() const { return before - 1; }
 };
 
 }  // namespace verlet_cable

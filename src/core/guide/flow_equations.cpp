@@ -77,7 +77,7 @@ void CableStepper::start_flows(const Substep& s, const CableState& state) {
   const CableMaterials materials(s.model, state);
   bending_.start_flows(state, segment_, s.boundary.flows);
   system_.flow_load.assign(flows_.size(), 0.0);
-  flow_response_.resize(2 * flows_.size() * flows_.size());
+  flow_response_.resize(3 * flows_.size() * flows_.size());
   flow_matrix_.resize(flows_.size() * flows_.size());
   flow_solution_.resize(flows_.size());
   for (std::size_t k = 0; k < flows_.size(); ++k) {
@@ -233,6 +233,7 @@ void CableStepper::evaluate_flows(const Substep& s) {
       }
       set(system_.load, node, get(system_.load, node) + load);
     }
+    const double bends = bending_.flow_column(flow.before, flow.after, middle_, flow.column);
     drive -= flow.drag * flow.way;
     drive -= flow.mass * s.inertia() / s.h * (flow.way / s.h - flow.rate);
 
@@ -268,7 +269,7 @@ void CableStepper::evaluate_flows(const Substep& s) {
     }
     const bool forward = mode == Flow::Mode::forward, backward = mode == Flow::Mode::backward;
     flow.row = {-(forward ? ratio : 1) * arm[0], (backward ? ratio : 1) * arm[1]};
-    flow.diagonal = -flow.mass * s.inertia() / (s.h * s.h) - flow.drag;
+    flow.diagonal = -flow.mass * s.inertia() / (s.h * s.h) - flow.drag + bends;
     if (!elastic) flow.diagonal += part * (tension_density_[flow.before] + tension_density_[flow.after]);
     system_.flow_load[k] = drive - (forward ? resistance[0] : backward ? -resistance[1] : 0);
   }
@@ -303,11 +304,15 @@ void CableStepper::factor_flows() {
     system_.gap.assign(segments_ + 2, 0.0);
     system_.gap[flows_[j].before] += flows_[j].gap[0];
     system_.gap[flows_[j].after] += flows_[j].gap[1];
+    add_column(flows_[j], 1);
     solve_segments();
     for (int k = 0; k < count; ++k) {
-      flow_response_[2 * (j * count + k)] = multiplier_correction()[flows_[k].before];
-      flow_response_[2 * (j * count + k) + 1] = multiplier_correction()[flows_[k].after];
+      double* const response = &flow_response_[3 * (j * count + k)];
+      response[0] = multiplier_correction()[flows_[k].before];
+      response[1] = multiplier_correction()[flows_[k].after];
+      response[2] = along_column(flows_[k]);
     }
+    add_column(flows_[j], -1);
   }
   system_.moves_held = moves_held;
   std::swap(system_.load, kept_load_);
@@ -321,10 +326,13 @@ void CableStepper::let_flow() {
   const std::vector<double>& multiplier = multiplier_correction();
   for (int k = 0; k < count; ++k) {
     const Flow& flow = flows_[k];
-    flow_solution_[k] = system_.flow_load[k] + flow.row[0] * multiplier[flow.before] + flow.row[1] * multiplier[flow.after];
+    const double bends = flow.mode == Flow::Mode::sticking ? 0 : 1;
+    flow_solution_[k] = system_.flow_load[k] + flow.row[0] * multiplier[flow.before] + flow.row[1] * multiplier[flow.after] +
+                        bends * along_column(flow);
     for (int j = 0; j < count; ++j) {
-      const double* response = &flow_response_[2 * (j * count + k)];
-      flow_matrix_[k * count + j] = -flow.row[0] * response[0] - flow.row[1] * response[1] - (j == k ? flow.diagonal : 0);
+      const double* response = &flow_response_[3 * (j * count + k)];
+      flow_matrix_[k * count + j] =
+          -flow.row[0] * response[0] - flow.row[1] * response[1] - bends * response[2] - (j == k ? flow.diagonal : 0);
     }
   }
   solve_dense(count, flow_matrix_, flow_solution_);
@@ -334,8 +342,35 @@ void CableStepper::let_flow() {
     system_.gap[flows_[k].before] += flows_[k].gap[0] * flow_solution_[k];
     system_.gap[flows_[k].after] += flows_[k].gap[1] * flow_solution_[k];
   }
-  solve_segments();
+  if (!bending_.active()) {
+    solve_segments();
+  } else {
+    flow_node_load_ = system_.load;
+    for (const Flow& flow : flows_) add_column(flow, flow.correction);
+    solve_segments();
+    std::swap(system_.load, flow_node_load_);
+  }
   std::swap(system_.gap, flow_gap_);
+}
+
+/// Adds what a way changes of the loads on nodes.
+void CableStepper::add_column(const Flow& flow, double way) {
+  for (std::size_t i = 0; i < flow.column.size(); ++i) {
+    const int node = flow.first_node() + static_cast<int>(i);
+    if (node < 0 || node > segments_) continue;
+    set(system_.load, node, get(system_.load, node) + way * flow.column[i]);
+  }
+}
+
+/// What the last solution moves along what a flow changes of the loads [N].
+double CableStepper::along_column(const Flow& flow) const {
+  if (!bending_.active()) return 0;
+  double sum = 0;
+  for (std::size_t i = 0; i < flow.column.size(); ++i) {
+    const int node = flow.first_node() + static_cast<int>(i);
+    if (node >= 0 && node <= segments_) sum += flow.column[i].dot(get(correction(), node));
+  }
+  return sum;
 }
 
 /// False if so much would flow that next to nothing is left.
@@ -398,6 +433,7 @@ void CableStepper::begin_flow_projection(const Substep& s, const CableState& sta
     const bool is_free = flow.mode == Flow::Mode::free;
     const double rate = s.boundary.flows[k].rate;
     flow.row = flow.gap = {0, 0};
+    flow.column.fill(Vector3::Zero());
     flow.diagonal = is_free ? -flow.mass : -1;
     for (const int side : {0, 1}) {
       const int i = side == 0 ? flow.before : flow.after;

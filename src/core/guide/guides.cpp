@@ -150,7 +150,10 @@ Vector3 point_at(const std::vector<Vector3>& points, double part) {
   return points.back();
 }
 
-/// How a cable lies on a sheave at first: as its shape says, else over the top.
+/// [rad] More than that is on no wheel that a cable goes over.
+constexpr double half_turn = M_PI + 1e-3;
+
+/// How a cable lies on a sheave at first: as its shape says, else over the top; but under one that hangs in it.
 void wind_on_wheel(double arc_length, const CableDesc& desc, const FrameIds& ids, const State& state, const Pose& wheel,
                    SimulatedGuide& guide, Attachment& attachment) {
   const Vector3 axis = wheel.orientation * Vector3::UnitZ();
@@ -166,9 +169,15 @@ void wind_on_wheel(double arc_length, const CableDesc& desc, const FrameIds& ids
   }
   middle -= middle.dot(axis) * axis;
   if (!(middle.norm() > 0)) middle = wheel.orientation * Vector3::UnitY();
-  guide.sense = along.dot(axis.cross(middle)) < 0 ? -1 : 1;
-  for (const int side : {0, 1})
-    attachment.tangent_points[side] = tangent_point(wheel, guide, side, ends[side], wheel.position + middle);
+  const auto wind = [&](double sense, const Vector3& near) {
+    guide.sense = sense;
+    for (const int side : {0, 1})
+      attachment.tangent_points[side] = tangent_point(wheel, guide, side, ends[side], wheel.position + near);
+    return arc_on_wheel(guide, attachment) / guide.radius;
+  };
+  const double sense = along.dot(axis.cross(middle)) < 0 ? -1 : 1, angle = wind(sense, middle);
+  const bool is_given = desc.initial.type == InitialShapeDesc::Type::points;
+  if (!is_given && angle > half_turn && wind(-sense, -middle) > angle) wind(sense, middle);
 }
 
 }  // namespace

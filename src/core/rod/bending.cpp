@@ -137,6 +137,29 @@ double Bending::flow_force(int before, int after, const VectorArray& middle) con
   return force;
 }
 
+double Bending::flow_column(int before, int after, const VectorArray& middle, FlowColumn& column) const {
+  column.fill(Vector3::Zero());
+  if (!active_) return 0;
+  // Directions change with the lengths that they are divided by, until the segments have these.
+  const auto change = [&](int i) -> Vector3 {
+    const double sign = i == before ? 1 : i == after ? -1 : 0;
+    return sign * inverse_length_[i] * inverse_length_[i] * get(middle, i);
+  };
+  const auto pull = [&](int i, const Vector3& force) {
+    column[i - before + 1] += force;
+    column[i - before + 2] -= force;
+  };
+  double own = 0;
+  for (int node = std::max(before, 1); node <= std::min(after + 1, segments_ - 1); ++node) {
+    const Vector3 turned = change(node) - change(node - 1);
+    const Vector3 moment = (part_ * slope_[node] + damping_[node]) * turned;
+    own -= moment.dot(turned);
+    pull(node, inverse_length_[node] * moment);
+    pull(node - 1, -inverse_length_[node - 1] * moment);
+  }
+  return own;
+}
+
 void Bending::resist_all_changes() {
   turned_.assign(segments_ + 1, 0.0);
 }

@@ -772,6 +772,10 @@ Vector3 CableStepper::corrected_load(int i) const {
   if (i < segments_) load -= system_.first[i] * get(delta, i + 1) - multiplier[i] * get(system_.direction, i);
   if (system_.stiffened) load -= system_.added_load(i, delta);
   if (!bending_.active()) return load;
+  for (const Flow& flow : flows_) {
+    const int place = i - flow.first_node();
+    if (place >= 0 && place < static_cast<int>(flow.column.size())) load += flow.correction * flow.column[place];
+  }
   if (i > 1) load -= system_.second[i - 2] * get(delta, i - 2);
   if (i + 1 < segments_) load -= system_.second[i] * get(delta, i + 2);
   return load;

@@ -112,6 +112,8 @@ class CableStepper {
   double end_rate(const Substep& substep, const Flow& flow) const;
   void factor_flows();
   void let_flow();
+  void add_column(const Flow& flow, double way);
+  double along_column(const Flow& flow) const;
   bool correct_flows(double part);
   bool grows(int segment) const;
   Vector3 flow_reaction(const Substep& substep, int node) const;
@@ -168,7 +170,9 @@ class CableStepper {
   BlockElimination solver_;
   // Flows through guides
   std::vector<Flow> flows_;
-  std::vector<double> flow_response_;  // for each two flows j, k: multipliers at k before and after it, of a unit of way of j
+  /// For each two flows j, k, of a unit of way of j: multipliers at k before and after it, and what moves along its column
+  std::vector<double> flow_response_;
+  VectorArray flow_node_load_;
   std::vector<double> flow_matrix_, flow_solution_, flow_gap_;
   // Loads that wait, and none
   VectorArray kept_load_;
