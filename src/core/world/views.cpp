@@ -104,7 +104,12 @@ int find(const std::vector<SimulatedBody>& bodies, const std::string& name) {
 }
 
 int find(const std::vector<Attachment>& attachments, const std::string& name) {
-  return index_of(attachments, [&](const Attachment& attachment) { return attachment.name == name; });
+  // Guides have names of their own, which attachments may have, too.
+  const auto find_among = [&](bool guides) {
+    return index_of(attachments, [&](const Attachment& a) { return a.name == name && (a.guide >= 0) == guides; });
+  };
+  const int attachment = find_among(false);
+  return attachment >= 0 ? attachment : find_among(true);
 }
 
 int find(const std::vector<SimulatedGuide>& guides, const std::string& name) {

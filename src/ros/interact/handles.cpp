@@ -119,7 +119,7 @@ Handle handle_of(const World& world, const BodyId& held) {
 void add_attachments(const Simulation& simulation, const std::set<std::string>& grabs, std::vector<Handle>& handles) {
   const World& world = simulation.world();
   for (const Attachment& attachment : world.attachments()) {
-    if (grabs.count(attachment.name) > 0 || !world.frame_known(attachment.frame)) continue;
+    if (attachment.guide >= 0 || grabs.count(attachment.name) > 0 || !world.frame_known(attachment.frame)) continue;
     Handle handle = handle_of(world, attachment.body);
     handle.name = "attachment/" + attachment.name;
     handle.attachment = attachment.name;
