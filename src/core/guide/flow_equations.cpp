@@ -78,7 +78,10 @@ void CableStepper::start_flows(const Substep& s, const CableState& state) {
     }
     Vector3 start = get(velocity_, flow.first), end = start;
     for (const HeldNode& held : s.boundary.nodes)
-      if (held.node == flow.first) end = held.velocity;
+      if (held.node == flow.first) {
+        end = held.velocity;
+        flow.moves = held.body >= 0;
+      }
     flow.velocity_change = s.statics ? Vector3::Zero() : Vector3(end - start);
     flow.velocity = s.statics ? Vector3::Zero() : Vector3(get(displacement_, flow.first) / s.h);
     flow.mode = Flow::Mode::free;
@@ -169,6 +172,12 @@ void CableStepper::evaluate_flows(const Substep& s) {
         flow.gap[side] = sign * flow.stretch[side] * end;
       }
       tension[side] = tension_density_[i] * arm[side] + (frictionless ? energy_excess(s, i, start) : 0);
+    }
+
+    if (flow.moves && !s.statics) {
+      const Vector3 u = get(displacement_, flow.first), v = get(velocity_, flow.first);
+      flow.velocity = u / s.h;
+      flow.velocity_change = s.inertia() * (u / s.h - v);
     }
 
     // What drives it: tensions, the weight of what flows, and the energy of bends beside the guide.
@@ -326,19 +335,17 @@ bool CableStepper::flows_are_consistent(const Substep& s) const {
   });
 }
 
-/// What flows turns round the guide, and is accelerated there: neither is in the equations of its held nodes.
-void CableStepper::react_to_flows(const Substep& s) {
-  if (s.statics) return;
-  const double density = s.model.material.linear_density;
-  for (const Flow& flow : flows_) {
-    const Vector3 before = get(middle_, flow.before), after = get(middle_, flow.after);
-    const double speed = flow.way / s.h, gain = (end_rate(s, flow) - flow.rate) / s.h;
-    Vector3 way = 0.5 * (before + after);
-    for (int i = flow.first; i < flow.last; ++i) way += get(middle_, i);
-    const Vector3 force = density * (speed * speed * (after.normalized() - before.normalized()) + gain * way);
-    for (HeldNode& held : s.boundary.nodes)
-      if (held.node == flow.first) held.force -= force;
-  }
+/// On the holder of a node: what flows turns round the guide, and is accelerated there; neither is in the equations of its held
+/// nodes.
+Vector3 CableStepper::flow_reaction(const Substep& s, int node) const {
+  if (s.statics) return Vector3::Zero();
+  const auto flow = std::find_if(flows_.begin(), flows_.end(), [node](const Flow& f) { return f.first == node; });
+  if (flow == flows_.end()) return Vector3::Zero();
+  const Vector3 before = get(middle_, flow->before), after = get(middle_, flow->after);
+  const double speed = flow->way / s.h, gain = (end_rate(s, *flow) - flow->rate) / s.h;
+  Vector3 way = 0.5 * (before + after);
+  for (int i = flow->first; i < flow->last; ++i) way += get(middle_, i);
+  return -s.model.material.linear_density * (speed * speed * (after.normalized() - before.normalized()) + gain * way);
 }
 
 void CableStepper::finish_flows(const Substep& s, CableState& state) {
@@ -357,6 +364,26 @@ void CableStepper::finish_flows(const Substep& s, CableState& state) {
     state.masses[flow.first] -= half_density * flow.way;
     state.masses[flow.last] += half_density * flow.way;
     state.masses[flow.after + 1] += half_density * flow.way;
+  }
+}
+
+/// The same in the linear system of impulses, whose unknowns for flows are the changes of their rates.
+void CableStepper::begin_flow_projection(const Substep& s, const CableState& state) {
+  system_.flow_load.assign(flows_.size(), 0.0);
+  for (std::size_t k = 0; k < flows_.size(); ++k) {
+    Flow& flow = flows_[k];
+    const bool is_free = flow.mode == Flow::Mode::free;
+    const double rate = s.boundary.flows[k].rate;
+    flow.row = flow.gap = {0, 0};
+    flow.diagonal = is_free ? -flow.mass : -1;
+    for (const int side : {0, 1}) {
+      const int i = side == 0 ? flow.before : flow.after;
+      if (is_elastic_at(i)) continue;
+      const double length = side == 0 ? -state.rest_lengths[i] : state.rest_lengths[i];
+      system_.gap[i] += length * rate;
+      flow.gap[side] = length;
+      if (is_free) flow.row[side] = length;
+    }
   }
 }
 

@@ -64,7 +64,13 @@ double arc_length_of(const CableDesc& cable, const PlaceDesc& place) {
   return place.at == PlaceDesc::At::start ? 0 : place.at == PlaceDesc::At::end ? cable.length : place.arc_length;
 }
 
-SimulatedGuide make_guide(const GuideDesc& desc, const FrameIds& ids) {
+/// Index into World::frames() of what holds an attachment or a guide.
+template <class Desc>
+int frame_of(const Desc& desc, const FrameIds& ids, const State& state) {
+  return desc.body.empty() ? ids.at(desc.frame) : state.bodies[find(state.bodies, desc.body)].frame;
+}
+
+SimulatedGuide make_guide(const GuideDesc& desc, int frame) {
   SimulatedGuide guide;
   guide.name = desc.name;
   guide.type = desc.type;
@@ -75,7 +81,7 @@ SimulatedGuide make_guide(const GuideDesc& desc, const FrameIds& ids) {
   guide.retention = desc.retention;
   guide.capture = desc.capture;
   guide.cable = desc.cable;
-  guide.frame = ids.at(desc.frame);
+  guide.frame = frame;
   guide.pose = {desc.offset, quaternion_from_rpy(desc.rotation)};
   return guide;
 }
@@ -91,14 +97,15 @@ std::array<Vector3, 2> neighbours(double arc_length, const Vector3& center, cons
                                   const State& state) {
   constexpr double far = 1e6;
   std::vector<HeldPlace> places;
-  const auto position = [&](const std::string& frame, const Vector3& offset) -> Vector3 {
-    const Pose& pose = state.frames.poses[ids.at(frame)];
-    return pose.position + pose.orientation * offset;
+  const auto add = [&](const auto& holder, const PlaceDesc& place) {
+    const int frame = frame_of(holder, ids, state);
+    if (!state.frames.known[frame]) return;
+    const Pose& pose = state.frames.poses[frame];
+    places.push_back({arc_length_of(desc, place), pose.position + pose.orientation * holder.offset});
   };
-  for (const AttachmentDesc& a : desc.attachments)
-    if (a.body.empty()) places.push_back({arc_length_of(desc, a.place), position(a.frame, a.offset)});
+  for (const AttachmentDesc& a : desc.attachments) add(a, a.place);
   for (const GuideDesc& g : state.scene->guides)
-    if (g.cable == desc.name && g.place) places.push_back({arc_length_of(desc, *g.place), position(g.frame, g.offset)});
+    if (g.cable == desc.name && g.place) add(g, *g.place);
   const Vector3 gravity = state.scene->gravity.at(center);
   const Vector3 down = gravity.norm() > 0 ? Vector3(gravity.normalized()) : Vector3(-Vector3::UnitZ());
   std::array<Vector3, 2> found{center + far * down, center + far * down};
@@ -153,12 +160,13 @@ void add_guides(const CableDesc& desc, int cable, const FrameIds& ids, const Cab
                 State& state, std::vector<int>& own) {
   for (const GuideDesc& g : state.scene->guides) {
     if (g.cable != desc.name) continue;
-    SimulatedGuide guide = make_guide(g, ids);
+    SimulatedGuide guide = make_guide(g, frame_of(g, ids, state));
     if (g.place) {
       Attachment attachment;
       attachment.name = g.name;
       attachment.body = cable_id(cable);
       attachment.frame = guide.frame;
+      attachment.holder = g.body.empty() ? -1 : find(state.bodies, g.body);
       attachment.pose = guide.pose;
       attachment.guide = static_cast<int>(state.guides.size());
       const double place = arc_length_of(desc, *g.place);

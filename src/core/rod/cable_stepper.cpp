@@ -436,6 +436,7 @@ void CableStepper::read_holder_loads(const Substep& s, const std::vector<double>
     const int i = boundary.nodes[k].node;
     const Vector3 load = corrected ? corrected_load(i) : get(system_.load, i);
     loads.forces[k] = load + s.inertia() * masses[i] / s.h * (get(displacement_, i) / s.h - get(velocity_, i));
+    if (!flows_.empty()) loads.forces[k] += flow_reaction(s, i);
   }
   if (!rod_.active()) return;
   rod_.add_clamp_torques(loads.torques);
@@ -445,6 +446,7 @@ void CableStepper::read_holder_loads(const Substep& s, const std::vector<double>
 void CableStepper::add_moved(const Boundary& boundary, const HolderMotion& motion) {
   solve_for_motion(boundary, motion);
   solution().add(kept_solution_);
+  for (std::size_t k = 0; k < flows_.size(); ++k) flows_[k].correction += kept_ways_[k];
   // What clamps that turn exert on the nodes beside them.
   for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z})
     add(system_.load.*component, segments_ + 1, kept_load_.*component);
@@ -465,6 +467,7 @@ void CableStepper::respond(const Boundary& boundary, const HolderMotion& motion,
   if (rod_.active()) rod_.add_clamp_reactions(system_, loads.torques);
   system_.moves_held = false;
   std::swap(solution(), kept_solution_);
+  for (std::size_t k = 0; k < flows_.size(); ++k) flows_[k].correction = kept_ways_[k];
   exchange_loads();
 }
 
@@ -472,6 +475,9 @@ void CableStepper::respond(const Boundary& boundary, const HolderMotion& motion,
 void CableStepper::solve_for_motion(const Boundary& boundary, const HolderMotion& motion) {
   exchange_loads();
   std::swap(solution(), kept_solution_);
+  kept_ways_.resize(flows_.size());
+  for (std::size_t k = 0; k < flows_.size(); ++k) kept_ways_[k] = flows_[k].correction;
+  system_.flow_load.assign(flows_.size(), 0.0);
   system_.load.assign(segments_ + 2, 0.0);
   system_.gap.assign(segments_ + 2, 0.0);
   rod_.torque().assign(segments_ + 2, 0.0);
@@ -510,8 +516,10 @@ void CableStepper::begin_projection(const Substep& s, const CableState& state) {
   }
   for (const GrowingSegment& growing : s.boundary.growing)
     if (!is_elastic_at(growing.segment)) system_.gap[growing.segment] += state.rest_lengths[growing.segment] * growing.growth;
+  if (!flows_.empty()) begin_flow_projection(s, state);
   for (const int i : both_held_) system_.gap[i] = 0;
   solver_.factor(system_, false);
+  if (!flows_.empty()) factor_flows();
 }
 
 void CableStepper::read_impulses(const Boundary& boundary, HolderLoads& impulses) const {
@@ -530,6 +538,7 @@ void CableStepper::finish_projection(const Substep& s, CableState& state) {
     held.force += corrected_load(held.node) / s.h;
     if (held.body >= 0) held.velocity += get(change, held.node);
   }
+  for (std::size_t k = 0; k < flows_.size(); ++k) s.boundary.flows[k].rate += flows_[k].correction;
 }
 
 void CableStepper::take_back(double part) {
@@ -721,8 +730,8 @@ void CableStepper::react(const Substep& s, const std::vector<double>& masses) {
     const double mass = masses[i];
     target.force = corrected_load(i) + s.inertia() * mass / s.h * (get(displacement_, i) / s.h - get(velocity_, i));
     if (!s.statics) target.force -= mass * (target.velocity - get(velocity_, i)) / s.h;
+    if (!flows_.empty()) target.force += flow_reaction(s, i);
   }
-  if (!flows_.empty()) react_to_flows(s);
   if (bending_.active()) bending_.react(displacement_, s.boundary.directions);
   if (twist_.active()) twist_.react(s.boundary);
 }

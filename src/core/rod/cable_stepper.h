@@ -41,6 +41,8 @@ class CableStepper {
   void factor();
   void solve_linear();  ///< for the loads that `evaluate` found; material flows through guides as it is driven
   double correct();
+  /// Whether the guides' frictions act as the flows that were found last call for.
+  bool flows_are_consistent(const Substep& substep) const;
   void take_back(double part);  ///< of the last correction
   /// `struck`: forces from outside have changed velocities abruptly.
   void finish(const Substep& substep, bool struck, CableState& state, SubstepResult& result);
@@ -111,9 +113,9 @@ class CableStepper {
   void factor_flows();
   void let_flow();
   bool correct_flows(double part);
-  bool flows_are_consistent(const Substep& substep) const;
   bool grows(int segment) const;
-  void react_to_flows(const Substep& substep);
+  Vector3 flow_reaction(const Substep& substep, int node) const;
+  void begin_flow_projection(const Substep& substep, const CableState& state);
   void finish_flows(const Substep& substep, CableState& state);
   void project_flows(const Substep& substep);
   void push_flows(const Substep& substep);
@@ -169,7 +171,7 @@ class CableStepper {
   std::vector<double> flow_matrix_, flow_solution_, flow_gap_;
   // Loads that wait, and none
   VectorArray kept_load_;
-  std::vector<double> kept_gap_, kept_torque_, kept_flow_load_;
+  std::vector<double> kept_gap_, kept_torque_, kept_flow_load_, kept_ways_;
   KktSolution kept_solution_;
   // Velocity projection: a tridiagonal system
   std::vector<double> pivot_, off_, impulse_;  // segments

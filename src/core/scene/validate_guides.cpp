@@ -188,9 +188,9 @@ class SimulationChecker {
       check_rod(key, *cable);
       if (!cable->sections.empty())
         errors_.add(key + ".cable", quoted(cable->name), "a cable of one material; others do not slide through guides, as yet");
-      const auto on_body = [](const AttachmentDesc& attachment) { return !attachment.body.empty(); };
-      if (std::any_of(cable->attachments.begin(), cable->attachments.end(), on_body))
-        errors_.add(key + ".cable", quoted(cable->name), "a cable that no body holds; others do not slide through guides, as yet");
+      const auto turns_body = [](const AttachmentDesc& a) { return !a.body.empty() && a.type == AttachmentType::clamp; };
+      if (std::any_of(cable->attachments.begin(), cable->attachments.end(), turns_body))
+        errors_.add(key + ".cable", quoted(cable->name), "a cable that no body is clamped to; others do not slide through guides, as yet");
       if (guide.place) check_room(key, guide, *cable);
     }
     return errors_.take();

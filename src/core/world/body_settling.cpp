@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "guide/guides.h"
+#include "guide/node_passing.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "world/flush_denormals.h"
 #include "world/island_stepper.h"
@@ -81,6 +83,7 @@ void BodySettling::hold_still() {
     work.boundary.growing.clear();
     hold_at(1, 1, targets, work.boundary);
     bring_to_rest(cable.state);
+    stop_flows(island_.cables[k], state_);
   }
 }
 
@@ -99,6 +102,7 @@ BodySettling::Outcome BodySettling::advance(double h) {
     hold_at(1, 1, progress.targets, work.boundary);
     hold_on_bodies(cable.state, state_.attachments, state_.bodies, state_.time(), progress.targets, work.boundary);
     workspace_.members.push_back({progress.id, &progress.targets, &contacts_[k]});
+    load_flows(index, state_, work.boundary);
     Substep substep{*cable.model, environment, work.boundary, progress.spans, h, true};
     workspace_.participants.push_back({static_cast<int>(k), index, &work.stepper, substep, &cable.state, {}});
     before_[k] = cable.state;
@@ -144,7 +148,25 @@ BodySettling::Outcome BodySettling::advance(double h) {
     state_.attachments[joint.attachment].torque = -joint.torque;
   }
   workspace_.contacts.keep(workspace_.members);
+  pass_nodes_of_guides();
   return outcome;
+}
+
+/// What of the cables has come to their guides goes through.
+void BodySettling::pass_nodes_of_guides() {
+  for (std::size_t k = 0; k < island_.cables.size(); ++k) {
+    const int index = island_.cables[k];
+    CableProgress& progress = state_.cable_progress[index];
+    if (!slides(progress.targets) || !pass_nodes(index, state_)) continue;
+    CableWorkspace& work = workspace_.cables[k];
+    bring_to_rest(state_.cables[index].state);
+    work.stepper.resize(state_.cables[index].state.segments());
+    for (std::size_t n = 0; n < work.boundary.nodes.size(); ++n) work.boundary.nodes[n].node = progress.targets.nodes[n].node;
+    for (std::size_t d = 0; d < work.boundary.directions.size(); ++d)
+      work.boundary.directions[d].node = progress.targets.directions[d].node;
+    contacts_[k].clear();
+    progress.spans = find_spans(state_.cables[index].state, work.boundary.directions);
+  }
 }
 
 /// The cables' targets follow the bodies.

@@ -28,6 +28,7 @@ class BodySettling {
   void hold_still();
   Outcome advance(double h);
   void find_joints();
+  void pass_nodes_of_guides();
   void complete();
 
   const std::atomic<bool>* cancelled_;
