@@ -18,6 +18,7 @@ import node_thread  # noqa: E402
 
 FIXED_FRAME = 'world'
 RATE = 100.0  # [Hz]
+PERIODS = {'harness': 22.0}  # [s] after which an example begins again
 
 
 def swing(t, period, phase=0.0):
@@ -64,6 +65,33 @@ def gripper_load(t):
                             pitch=0.4 * swing(t, 6), yaw=math.pi)}
 
 
+def drones_with_bar(t):
+    x, y, yaw = 0.5 * swing(t, 11), 0.3 * swing(t, 9), 0.5 * swing(t, 17)
+    apart = 0.75 + 0.12 * swing(t, 8)  # [m] half the distance of the drones
+    rise = 0.2 * swing(t, 7)           # [m] of the left one above the right one, half of it
+    along, across = apart * math.cos(yaw), apart * math.sin(yaw)
+    roll, pitch = 0.06 * swing(t, 4), 0.08 * swing(t, 5)
+    return {'left_drone': pose(x - along, y - across, 1.9 + rise, roll, pitch, yaw),
+            'right_drone': pose(x + along, y + across, 1.9 - rise, -roll, pitch, yaw)}
+
+
+def ramp(t, begin, end):
+    """0 before `begin` [s], 1 after `end`, smoothly between."""
+    u = min(max((t - begin) / (end - begin), 0.0), 1.0)
+    return u * u * (3 - 2 * u)
+
+
+def harness(t):
+    t %= PERIODS['harness']
+    z = 0.3 - 0.294 * ramp(t, 1, 6) + 0.294 * ramp(t, 8, 10)
+    tilt = 1.1 * (ramp(t, 11, 14) - ramp(t, 17, 20))  # [rad]
+    return {'left_hand': pose(-0.247, 0, z), 'right_hand': pose(0.247, 0, z), 'board': pose(0, 0, 0, roll=tilt)}
+
+
+def block_and_tackle(t):
+    return {'jib': pose(0, 0, 3.0, yaw=0.35 * swing(t, 16))}
+
+
 # The frames over time, and texts [what, x, y, z, height: m].
 EXAMPLES = {
     'hose_between_arms': (hose_between_arms, [
@@ -81,6 +109,12 @@ EXAMPLES = {
     'gripper_load': (gripper_load, [
         ('the load of a cable on a gripper', 0.3, 0, 1.5, 0.06), ('orange: force, purple: torque', 0.3, 0, 1.42, 0.045),
         ('wall', -0.05, 0, 1.25, 0.05)]),
+    'harness': (harness, [
+        ('two hands lay a wire harness on a board', 0, 0, 0.62, 0.05)]),
+    'block_and_tackle': (block_and_tackle, [
+        ('four parts of one rope: a quarter of the load, four times the way', 0.8, 0, 3.6, 0.12)]),
+    'drones_with_bar': (drones_with_bar, [
+        ('two drones carry a bar of 1.2 kg on ropes', 0, 0, 2.55, 0.12), ('orange: what each bears', 0, 0, 2.38, 0.09)]),
 }
 
 

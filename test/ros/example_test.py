@@ -13,13 +13,14 @@ from sensor_msgs.msg import PointCloud2
 from visualization_msgs.msg import InteractiveMarkerInit, InteractiveMarkerUpdate, MarkerArray
 
 from cable_client import CableClient, Messages, all_finite
+from example_physics import PHYSICS
 
 EXAMPLE = sys.argv[1]
 PACKAGE = sys.argv[0].partition('/test/ros/')[0]
 SECONDS = 3
 # Obstacles whose frames move are shown as soon as tf has them; a capsule is three markers.
-OBSTACLES = {'arm_dress_pack': 6, 'crane': 5, 'gripper_load': 5, 'hose_between_arms': 8, 'rov_tether': 4, 'tethered_drone': 5,
-             'tracker': 0}[EXAMPLE]
+OBSTACLES = {'arm_dress_pack': 6, 'crane': 5, 'drones_with_bar': 7, 'gripper_load': 5, 'hose_between_arms': 8, 'rov_tether': 4,
+             'tethered_drone': 5, 'tracker': 0}[EXAMPLE]
 
 
 def is_finite(marker):
@@ -28,7 +29,7 @@ def is_finite(marker):
     return all(math.isfinite(x) for x in numbers)
 
 
-class ExampleTest(unittest.TestCase):
+class ExampleTest(PHYSICS.get(EXAMPLE, object), unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         rospy.init_node('example_test')
