@@ -233,7 +233,9 @@ int find(const std::vector<SimulatedGuide>& guides, const std::string& name);
 bool is_sound(const Pose& pose);
 /// Frames that a scene names, by id: the fixed frame first, then in order of appearance, each once.
 std::vector<std::string> frame_names(const SceneDesc& scene);
-/// Their initial poses, by id; `known` is false where the scene gives none.
+/// Frames whose poses are results, which follow those: of the scene's bodies, then of its junctions.
+std::vector<std::string> computed_frame_names(const SceneDesc& scene);
+/// Initial poses of the scene's frames, by id; `known` is false where the scene gives none.
 BoundaryInputs initial_frames(const SceneDesc& scene);
 /// Inextensible cables that are shorter than the distance of two neighbouring attachments with the frames at `frames` (by id;
 /// unknown ones are left out): one line each, like `validate`, which does this at the initial poses.

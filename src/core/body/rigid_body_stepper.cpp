@@ -20,6 +20,10 @@ Eigen::Matrix3d cross_matrix(const Vector3& v) {
   return m;
 }
 
+Eigen::Matrix3d turned_torque(const Vector3& arm, const Vector3& force) {
+  return arm * force.transpose() - arm.dot(force) * Eigen::Matrix3d::Identity();
+}
+
 void RigidBodyStepper::begin(const SimulatedBody& body, const BodyProgress& progress, const MassProperties& whole,
                              const GravityDesc& gravity, const SubstepRules& rules) {
   rules_ = rules;
@@ -64,28 +68,38 @@ Vector3 RigidBodyStepper::force_arm(const Vector3& point) const {
   return (1 - part) * (start_ * arm) + part * (end_ * arm);
 }
 
-void RigidBodyStepper::evaluate(Vector6& load, Matrix6& stiffness) const {
-  const double h = rules_.h, inertia = rules_.inertia(), part = rules_.part();
-  const double damping = rules_.statics ? 0 : 1 / h;
+Vector3 RigidBodyStepper::weight() const {
+  return mass_ * gravity_->at(center_ + 0.5 * rules_.h * velocity_ + start_ * own_);
+}
+
+/// At the end, with the mean spin over the substep, or of which that is the mean.
+Vector3 RigidBodyStepper::end_momentum() const {
+  const double inertia = rules_.inertia();
+  return end_ * (whole_.inertia * (inertia / rules_.h * turn_ - (inertia - 1) * spin_));
+}
+
+Vector6 RigidBodyStepper::load() const {
+  const double h = rules_.h, part = rules_.part(), damping = damping_rate();
   const Vector3 arm = (1 - part) * (start_ * own_) + part * (end_ * own_);
-  const Vector3 weight = mass_ * gravity_->at(center_ + 0.5 * h * velocity_ + start_ * own_);
   const Vector3 drag = -linear_damping_ * damping * (displacement_ + (end_ - start_) * own_);
+  const Vector3 force = weight() + drag, start_momentum = start_ * (whole_.inertia * spin_);
+  Vector6 load;
+  load << force - rules_.inertia() * whole_.mass / h * (displacement_ / h - velocity_),
+      arm.cross(force) - angular_damping_ * damping * turn() - (end_momentum() - start_momentum) / h;
+  return load;
+}
+
+Matrix6 RigidBodyStepper::stiffness() const {
+  const double h = rules_.h, inertia = rules_.inertia(), damping = damping_rate();
   const Vector3 w = turn();
-  load.head<3>() = weight + drag - inertia * whole_.mass / h * (displacement_ / h - velocity_);
-
-  // Angular momenta with the mean spin over the substep, or of which that is the mean
-  const Vector3 spin = inertia / h * turn_ - (inertia - 1) * spin_;
-  const Vector3 before = start_ * (whole_.inertia * spin_), after = end_ * (whole_.inertia * spin);
-  load.tail<3>() = arm.cross(weight + drag) - angular_damping_ * damping * w - (after - before) / h;
-
   // The Cayley vector changes by (1 + w w^T / 4 - [w] / 2) times a rotation of the end.
   const Eigen::Matrix3d along = Eigen::Matrix3d::Identity() + 0.25 * w * w.transpose() - 0.5 * cross_matrix(w);
-  stiffness.setZero();
+  Matrix6 stiffness = Matrix6::Zero();
   stiffness.topLeftCorner<3, 3>().diagonal().setConstant(inertia * whole_.mass / (h * h) + linear_damping_ * damping);
-  stiffness.bottomRightCorner<3, 3>() =
-      inertia / (h * h) * end_ * whole_.inertia * start_.transpose() * along - cross_matrix(after) / h +
-      angular_damping_ * damping * along -
-      part * ((end_ * own_) * weight.transpose() - (end_ * own_).dot(weight) * Eigen::Matrix3d::Identity());
+  stiffness.bottomRightCorner<3, 3>() = inertia / (h * h) * end_ * whole_.inertia * start_.transpose() * along -
+                                        cross_matrix(end_momentum()) / h + angular_damping_ * damping * along -
+                                        rules_.part() * turned_torque(end_ * own_, weight());
+  return stiffness;
 }
 
 void RigidBodyStepper::correct(const Vector6& change) {

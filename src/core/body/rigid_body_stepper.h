@@ -24,6 +24,8 @@ struct SubstepRules {
 
 /// The skew matrix of a cross product with v on the left.
 Eigen::Matrix3d cross_matrix(const Vector3& v);
+/// By what the torque of a force that stays as it is changes as its arm turns.
+Eigen::Matrix3d turned_torque(const Vector3& arm, const Vector3& force);
 
 /// Advances one rigid body by one substep, together with the cables that it holds: stages for a solver that has both. The scheme
 /// is that of the cables (see CableStepper); for the rotation, with the Cayley vector w from start to end, W = R^T omega and
@@ -47,9 +49,10 @@ class RigidBodyStepper {
   const Vector3& displacement() const { return displacement_; }  ///< [m] of the center of mass
   Vector3 turn() const { return start_ * turn_; }                ///< the Cayley vector from start to end
 
-  /// Forces and torques about the center of mass that are out of balance, without those of cables and holders [N], [N m]; and the
-  /// resistance against displacements of the center of mass and rotations.
-  void evaluate(Vector6& load, Matrix6& stiffness) const;
+  /// Forces and torques about the center of mass that are out of balance, without those of cables and holders [N], [N m].
+  Vector6 load() const;
+  /// The resistance against displacements of the center of mass and rotations.
+  Matrix6 stiffness() const;
   void correct(const Vector6& change);
 
   /// Velocities at the end.
@@ -58,6 +61,9 @@ class RigidBodyStepper {
   Vector3 spin() const { return end_ * end_spin(); }  ///< [rad/s] at the end
 
  private:
+  double damping_rate() const { return rules_.statics ? 0 : 1 / rules_.h; }
+  Vector3 weight() const;
+  Vector3 end_momentum() const;
   Vector3 end_velocity() const;
   Vector3 end_spin() const;
   void turn_by(const Quaternion& turn);

@@ -140,6 +140,7 @@ EditResult World::Implementation::apply(const edit::Unpin& unpin) {
   const int index = find(state.attachments, unpin.name);
   if (index < 0) return refused("name: " + unpin.name + "; there is no such attachment");
   if (state.attachments[index].guide >= 0) return refused("name: " + unpin.name + "; is a guide, which nothing unpins");
+  if (state.attachments[index].is_junction) return refused("name: " + unpin.name + "; is a junction, which nothing unpins");
   erase_attachment(index);
   return {true, "", unpin.name};
 }
@@ -170,6 +171,7 @@ EditResult World::Implementation::apply(const edit::MoveAttachment& move) {
   const int index = find(state.attachments, move.name);
   if (index < 0) return refused("name: " + move.name + "; there is no such attachment");
   if (state.attachments[index].guide >= 0) return refused("name: " + move.name + "; is a guide, which only its frame moves");
+  if (state.attachments[index].is_junction) return refused("name: " + move.name + "; is a junction, which only its cables move");
   if (const std::string problem = pose_problem("offset", move.pose); !problem.empty()) return refused(problem);
   state.attachments[index].pose = {move.pose.position, move.pose.orientation.normalized()};
   return {true, "", move.name};

@@ -31,28 +31,21 @@ constexpr double noticed_jerk = 1e-9;
 }  // namespace
 
 void find_body_joints(const Island& island, const State& state, double from, double to, Workspace& workspace) {
-  std::vector<BodyJoint>& joints = workspace.body_system.joints();
-  joints.clear();
-  const auto member_of = [&](int body) {
-    const auto same = std::find_if(workspace.body_members.begin(), workspace.body_members.end(),
-                                   [&](const BodyMember& member) { return member.body == body; });
-    return same == workspace.body_members.end() ? -1 : static_cast<int>(same - workspace.body_members.begin());
-  };
-  for (int a = 0; a < static_cast<int>(state.attachments.size()); ++a) {
+  BodySystem& system = workspace.body_system;
+  system.joints().clear();
+  for (const int a : island.held) {
     const Attachment& attachment = state.attachments[a];
-    if (!attachment.body.is_rigid_body()) continue;
-    if (!std::binary_search(island.bodies.begin(), island.bodies.end(), attachment.body.index)) continue;
     BodyJoint joint;
     joint.attachment = a;
     joint.type = attachment.type;
-    joint.member = member_of(attachment.body.index);
+    joint.member = system.member_of(attachment.body.index);
     joint.at = attachment.at;
-    joint.other = attachment.holder < 0 ? -1 : member_of(attachment.holder);
+    joint.other = attachment.holder < 0 ? -1 : system.member_of(attachment.holder);
     joint.holder = joint.other < 0 ? frame_at(state.frames, attachment.frame, to) * attachment.pose : attachment.pose;
     const double share = from > 0 ? from : 1;
     joint.force = -attachment.force / share;
     joint.torque = -attachment.torque / share;
-    if (joint.member >= 0) joints.push_back(joint);
+    if (joint.member >= 0) system.joints().push_back(joint);
   }
 }
 
@@ -89,20 +82,26 @@ bool IslandStepper::advance_bodies() {
 /// is stepped, and keeps its velocities; so is a body whose cable is carried, and what else hangs on it.
 void IslandStepper::update_body_targets(const Island& island, IslandOutcome& found) {
   carry_by_cables(island);
-  for (const int body : island.bodies)
-    if (state_.body_progress[body].is_placed) aim_body(body, found);
+  auto holders = island.held.begin();
+  for (const int body : island.bodies) {
+    const auto first = holders;
+    while (holders != island.held.end() && state_.attachments[*holders].body.index == body) ++holders;
+    if (state_.body_progress[body].is_placed) aim_body(body, first, holders, found);
+  }
   carry_cables(island);
 }
 
-void IslandStepper::aim_body(int index, IslandOutcome& found) {
+/// `first` to `last`: the attachments that hold it.
+void IslandStepper::aim_body(int index, std::vector<int>::const_iterator first, std::vector<int>::const_iterator last,
+                             IslandOutcome& found) {
   SimulatedBody& body = state_.bodies[index];
   BodyProgress& progress = state_.body_progress[index];
   KinematicTargets targets;
   targets.nodes.swap(progress.holders);
   std::size_t count = 0;
-  for (int a = 0; a < static_cast<int>(state_.attachments.size()); ++a) {
-    const Attachment& attachment = state_.attachments[a];
-    if (attachment.body != rigid_body_id(index) || attachment.holder >= 0) continue;
+  for (; first != last; ++first) {
+    const Attachment& attachment = state_.attachments[*first];
+    if (attachment.holder >= 0) continue;
     if (targets.nodes.size() == count) {
       KinematicTarget target;
       target.node = static_cast<int>(count);
@@ -117,7 +116,7 @@ void IslandStepper::aim_body(int index, IslandOutcome& found) {
       targets.nodes.push_back(target);
       progress.holder_spins.push_back(mean_spin(state_.frames, attachment, state_.scene->time_step));
     }
-    targets.nodes[count].attachment = a;
+    targets.nodes[count].attachment = *first;
     aim_at((state_.frames.poses[attachment.frame] * attachment.pose).position, state_.time(), targets.nodes[count]);
     ++count;
   }

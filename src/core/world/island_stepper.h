@@ -82,7 +82,7 @@ class IslandStepper {
   void finish_bodies(const Island& island, double from, double to);
   void stop_bodies(const Island& island);
   void update_body_targets(const Island& island, IslandOutcome& found);
-  void aim_body(int body, IslandOutcome& found);
+  void aim_body(int body, std::vector<int>::const_iterator first, std::vector<int>::const_iterator last, IslandOutcome& found);
   void carry_by_cables(const Island& island);
   void carry_cables(const Island& island);
   void follow_body_holder(BodyJoint& joint, double to);

@@ -62,22 +62,28 @@ int longest_axis(const std::vector<Aabb>& boxes) {
 }  // namespace
 
 void Islands::build(const State& state) {
-  const int cables = static_cast<int>(state.cables.size());
   labels_.resize(state.cables.size() + state.bodies.size());
   std::iota(labels_.begin(), labels_.end(), 0);
   if (are_islands_of_many(*state.scene)) find_labels(state);
   if (!state.bodies.empty()) join_by_bodies(state);
-  if (!islands_.empty() && labels_ == last_labels_) return;
+  if (islands_.empty() || labels_ != last_labels_) sort_into_islands(state);
+  if (!state.bodies.empty()) find_held(state);
+}
+
+/// By their labels.
+void Islands::sort_into_islands(const State& state) {
+  const int cables = static_cast<int>(state.cables.size());
   std::vector<Island> before;
   before.swap(islands_);
   auto same = before.begin();
-  std::vector<int> place(labels_.size());
+  place_.resize(labels_.size());
   for (int i = 0; i < static_cast<int>(labels_.size()); ++i) {
     if (labels_[i] == i) {
-      place[i] = static_cast<int>(islands_.size());
+      place_[i] = static_cast<int>(islands_.size());
       islands_.emplace_back();
     }
-    Island& island = islands_[place[labels_[i]]];
+    place_[i] = place_[labels_[i]];
+    Island& island = islands_[place_[i]];
     if (i < cables)
       island.cables.push_back(i);
     else
@@ -132,6 +138,20 @@ void Islands::join_by_bodies(const State& state) {
     join(attachment.body.is_cable() ? attachment.body.index : cables + attachment.body.index, cables + holder);
   }
   for (int i = 0; i < static_cast<int>(labels_.size()); ++i) labels_[i] = root(i);
+}
+
+/// Attachments may be others from step to step.
+void Islands::find_held(const State& state) {
+  for (Island& island : islands_) island.held.clear();
+  for (int a = 0; a < static_cast<int>(state.attachments.size()); ++a) {
+    const BodyId& held = state.attachments[a].body;
+    if (held.is_rigid_body()) islands_[place_[state.cables.size() + held.index]].held.push_back(a);
+  }
+  for (Island& island : islands_)
+    std::sort(island.held.begin(), island.held.end(), [&](int a, int b) {
+      const int first = state.attachments[a].body.index, second = state.attachments[b].body.index;
+      return first < second || (first == second && a < b);
+    });
 }
 
 bool Islands::come_close(const State& state, int first, int second) {

@@ -13,6 +13,7 @@ namespace verlet_cable {
 struct Island {
   std::vector<int> cables;  ///< indices into State::cables, ascending
   std::vector<int> bodies;  ///< that hold them, or each other; indices into State::bodies, ascending
+  std::vector<int> held;    ///< attachments that hold those bodies, one body after the other; indices into State::attachments
   SegmentPairs pairs;       ///< of their segments
 };
 
@@ -36,6 +37,8 @@ class Islands {
  private:
   void find_labels(const State& state);
   void join_by_bodies(const State& state);
+  void sort_into_islands(const State& state);
+  void find_held(const State& state);
   bool come_close(const State& state, int first, int second);
   const std::vector<Aabb>& segment_reaches(const State& state, int cable);
   int root(int cable);
@@ -43,6 +46,7 @@ class Islands {
 
   std::vector<Island> islands_;
   std::size_t segments_ = 0;
+  std::vector<int> place_;        ///< by cable, then by body: which island it is in
   std::vector<int> labels_;       ///< by cable, then by body: the first one of its island
   std::vector<int> last_labels_;  ///< those of `islands_`
   // Scratch

@@ -81,12 +81,12 @@ std::vector<int> harnesses_of(const SceneDesc& scene) {
 /// Light bodies where cables branch, after those of the scene. The first cable of a junction that starts places it.
 void World::Implementation::add_junctions() {
   const SceneDesc& scene = *state.scene;
+  const std::vector<std::string> names = computed_frame_names(scene);
   for (const JunctionDesc& desc : scene.junctions) {
     SimulatedBody body;
-    body.name = "junction " + desc.name;
+    body.name = names[state.bodies.size()];
     body.is_junction = true;
     body.mass = desc.mass;
-    body.frame = static_cast<int>(state.frames.names.size());
     add_body(std::move(body));
   }
   for (const CableDesc& cable : scene.cables)
@@ -122,7 +122,8 @@ std::vector<Attachment> World::Implementation::junction_attachments(const CableD
   std::vector<Attachment> attachments;
   for (const JunctionPlace& place : junction_places(scene, desc)) {
     Attachment& attachment = attachments.emplace_back();
-    attachment.name = "junction " + scene.junctions[place.junction].name + " of " + desc.name;
+    attachment.name =
+        "junction " + scene.junctions[place.junction].name + " of " + desc.name + " at " + std::to_string(place.node);
     attachment.is_junction = true;
     attachment.body = cable_id(cable);
     attachment.node = place.node;

@@ -100,7 +100,7 @@ int find(const std::vector<SimulatedNet>& nets, const std::string& name) {
 }
 
 int find(const std::vector<SimulatedBody>& bodies, const std::string& name) {
-  return index_of(bodies, [&](const SimulatedBody& body) { return body.name == name; });
+  return index_of(bodies, [&](const SimulatedBody& body) { return !body.is_junction && body.name == name; });
 }
 
 int find(const std::vector<Attachment>& attachments, const std::string& name) {

@@ -215,7 +215,9 @@ void World::Implementation::name_waiting() {
   for (const int i : state.waiting_nets) findings.waiting.push_back(state.scene->nets[i].name);
 }
 
+/// With the next one of the frames that are computed.
 void World::Implementation::add_body(SimulatedBody body) {
+  body.frame = static_cast<int>(state.frames.names.size());
   state.frames.names.push_back(body.name);
   state.frames.poses.push_back(body.pose);
   state.frames.previous_poses.push_back(body.pose);
@@ -229,7 +231,7 @@ void World::Implementation::add_bodies() {
   const FrameIds ids = state.frames.ids();
   for (const BodyDesc& desc : state.scene->bodies) {
     const int index = static_cast<int>(state.bodies.size());
-    add_body(make_body(desc, static_cast<int>(state.frames.names.size())));
+    add_body(make_body(desc));
     for (const BodyAttachmentDesc& a : desc.attachments) {
       Attachment attachment;
       attachment.name = a.name;

@@ -119,7 +119,7 @@ Handle handle_of(const World& world, const BodyId& held) {
 void add_attachments(const Simulation& simulation, const std::set<std::string>& grabs, std::vector<Handle>& handles) {
   const World& world = simulation.world();
   for (const Attachment& attachment : world.attachments()) {
-    if (attachment.guide >= 0 || grabs.count(attachment.name) > 0 || !world.frame_known(attachment.frame)) continue;
+    if (!is_named(attachment) || grabs.count(attachment.name) > 0 || !world.frame_known(attachment.frame)) continue;
     Handle handle = handle_of(world, attachment.body);
     handle.name = "attachment/" + attachment.name;
     handle.attachment = attachment.name;
@@ -163,7 +163,7 @@ void add_bodies(const World& world, const std::set<std::string>& grabs, std::vec
   }
   for (int i = 0; i < static_cast<int>(world.bodies().size()); ++i) {
     const SimulatedBody& body = world.bodies()[i];
-    if (!is_there(world, body) || held.count(i) > 0) continue;
+    if (body.is_junction || !is_there(world, body) || held.count(i) > 0) continue;
     Handle handle = handle_of(body);
     handle.name = body.name + "/0";
     handle.cable = body.name;

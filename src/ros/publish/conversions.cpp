@@ -135,7 +135,7 @@ void add_cables(const World& world, CableArray& message) {
     if (places.back() >= 0) message.cables.push_back(to_message(cable));
   }
   for (const Attachment& attachment : world.attachments()) {
-    if (attachment.guide >= 0 || !attachment.body.is_cable() || places[attachment.body.index] < 0) continue;
+    if (!is_named(attachment) || !attachment.body.is_cable() || places[attachment.body.index] < 0) continue;
     Cable& cable = message.cables[places[attachment.body.index]];
     cable.attachments.push_back(attachment.name);
     cable.attachment_nodes.push_back(attachment.node);
@@ -183,7 +183,7 @@ CableArray to_message(const World& world) {
   for (const SimulatedParticle& particle : world.particles())
     if (is_finite(particle)) message.particles.push_back(to_message(particle));
   for (const SimulatedBody& body : world.bodies())
-    if (is_there(world, body)) message.bodies.push_back(to_message(body));
+    if (!body.is_junction && is_there(world, body)) message.bodies.push_back(to_message(body));
   return message;
 }
 

@@ -123,11 +123,11 @@ void MarkerPublisher::publish(const World& world, const ros::Time& stamp) {
   for (const SimulatedParticle& particle : world.particles())
     if (is_finite(particle)) add_particle(particle, *markers);
   for (const Attachment& attachment : world.attachments())
-    if (attachment.guide < 0) add_pin(world, attachment, *markers);
+    if (is_named(attachment)) add_pin(world, attachment, *markers);
   for (int guide = 0; guide < static_cast<int>(world.guides().size()); ++guide) add_guide(world, guide, *markers);
   for (const Obstacle& obstacle : world.obstacles()) add_obstacle(world, obstacle, *markers);
   for (const SimulatedBody& body : world.bodies())
-    if (is_there(world, body)) add_body(body, *markers);
+    if (!body.is_junction && is_there(world, body)) add_body(body, *markers);
   delete_what_is_gone(*markers);
   for (Marker& marker : markers->markers) marker.header.stamp = stamp;
   publisher_.publish(markers);

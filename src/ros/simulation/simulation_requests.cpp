@@ -73,7 +73,7 @@ EditResult Simulation::move_attachment(const std::string& name, const Pose& offs
 EditResult Simulation::refused_attachment(const std::string& name) const {
   std::string names;
   for (const Attachment& attachment : world_.attachments())
-    if (attachment.guide < 0) names += (names.empty() ? "" : ", ") + attachment.name;
+    if (is_named(attachment)) names += (names.empty() ? "" : ", ") + attachment.name;
   return refused("name: " + quoted(name) +
                  " is no attachment; allowed: " + (names.empty() ? "none, nothing is attached" : names));
 }

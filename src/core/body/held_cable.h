@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "body/body_equations.h"
+#include "body/moving_body.h"
+#include "rod/participant.h"
+
+namespace verlet_cable {
+
+/// A cable that bodies hold, eliminated onto those (substructuring; Przemieniecki, Matrix Structural Analysis of Substructures,
+/// 1963): it tells what it exerts on them, and how that changes as they move; then they are solved for together, and the cable
+/// follows them.
+class HeldCable {
+ public:
+  /// `member_of`: of a body, by its index.
+  void begin(int participant, const Boundary& boundary, const std::vector<int>& member_of);
+  int participant() const { return participant_; }
+  /// A body moves as one with the nodes that it holds.
+  void add_masses(const Participant& p, std::vector<MovingBody>& bodies) const;
+
+  void place_holders(const std::vector<MovingBody>& bodies, Boundary& boundary) const;
+  void set_holder_velocities(const std::vector<MovingBody>& bodies, Boundary& boundary) const;
+  /// What the cable exerts on its holders; `corrected`: after the last solution.
+  void read_loads(const Participant& p, bool corrected);
+  void read_impulses(const Participant& p);
+  void add_loads(const std::vector<MovingBody>& bodies, BodyStage stage, BodyEquations& equations) const;
+  /// The torques of what it exerts change as bodies turn.
+  void add_turning(double part, const std::vector<MovingBody>& bodies, BodyEquations& equations) const;
+  /// And what it exerts as they move.
+  void add_resistance(const std::vector<MovingBody>& bodies, BodyStage stage, Participant& p, BodyEquations& equations);
+  /// The cable follows what has been solved for.
+  void follow(const std::vector<MovingBody>& bodies, const BodyEquations& equations, Participant& p);
+  /// [J] Of its loads along its own solution, what nodes that move with bodies have of that.
+  double work_of_held(const Participant& p) const;
+
+ private:
+  /// A node or direction that a body holds.
+  struct Side {
+    int member = 0;
+    int entry = 0;  ///< of the boundary's nodes or directions
+    bool turns = false;
+    Vector3 point = Vector3::Zero();  ///< of a node
+  };
+  static Matrix36 motion_of(const Side& side, const RigidBodyStepper& body);
+  static Matrix63 load_of(const Side& side, const RigidBodyStepper& body, BodyStage stage);
+  void find_resistance(Participant& p);
+  Vector3& motion_of(const Side& side) { return side.turns ? motion_.rotations[side.entry] : motion_.displacements[side.entry]; }
+  static const Vector3& load_of(const Side& side, const HolderLoads& loads) {
+    return side.turns ? loads.torques[side.entry] : loads.forces[side.entry];
+  }
+
+  int participant_ = 0;
+  std::vector<Side> sides_;
+  Eigen::MatrixXd resistance_;  ///< of what the sides feel against how they move
+  HolderLoads loads_, responses_;
+  HolderMotion motion_;
+};
+
+}  // namespace verlet_cable
