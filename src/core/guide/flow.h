@@ -29,6 +29,7 @@ struct Flow {
   Mode mode = Mode::free;
   bool changed = false;                      // whether the mode did in this iteration
   int changes = 0;                           // of the mode, in the substep
+  double density = 0;                        // [kg/m] of what flows: the segments beside a guide are of one material
   double mass = 0;                           // [kg]
   double drag = 0;                           // [N s/m]
   double rate = 0;                           // [m/s] at the start

@@ -3,6 +3,8 @@
 #include <utility>
 
 #include "rod/cable_stepper.h"
+#include "rod/rod_frames.h"
+#include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
 
@@ -38,6 +40,24 @@ void solve_dense(int size, std::vector<double>& matrix, std::vector<double>& vec
   }
 }
 
+double mean(double a, double b, double part) {
+  return a + part * (b - a);
+}
+std::array<double, 2> mean(const std::array<double, 2>& a, const std::array<double, 2>& b, double part) {
+  return {mean(a[0], b[0], part), mean(a[1], b[1], part)};
+}
+
+/// What the material at the guide's nodes has: where it comes from, there it was.
+template <class T>
+void flow_on(const Flow& flow, const std::vector<double>& rest_lengths, std::vector<T>& values) {
+  for (const int node : {flow.first, flow.last}) {
+    const int from = flow.way > 0 ? node - 1 : node + 1;
+    const double length = rest_lengths[std::min(from, node)];
+    values[node] = mean(values[node], values[from], std::min(std::abs(flow.way) / length, 1.0));
+    if (flow.first == flow.last) break;
+  }
+}
+
 bool resists(const GuidedFlow& guided) {
   return guided.friction > 0 || guided.resistance > 0 || guided.is_blocked[0] || guided.is_blocked[1];
 }
@@ -54,7 +74,7 @@ bool CableStepper::lies_on_wheel(int segment) const {
 
 void CableStepper::start_flows(const Substep& s, const CableState& state) {
   if (flows_.empty()) return;
-  const double density = s.model.material.linear_density;
+  const CableMaterials materials(s.model, state);
   bending_.start_flows(state, segment_, s.boundary.flows);
   system_.flow_load.assign(flows_.size(), 0.0);
   flow_response_.resize(2 * flows_.size() * flows_.size());
@@ -69,8 +89,9 @@ void CableStepper::start_flows(const Substep& s, const CableState& state) {
     flow.way = flow.correction = 0;
     double length = 0.5 * (state.rest_lengths[flow.before] + state.rest_lengths[flow.after]);
     for (int i = flow.first; i < flow.last; ++i) length += state.rest_lengths[i];
-    flow.mass = density * length + guided.inertia;
-    flow.drag = s.model.material.drag / s.damping_time() * length;
+    flow.density = materials[flow.before].linear_density;
+    flow.mass = flow.density * length + guided.inertia;
+    flow.drag = materials[flow.before].drag / s.damping_time() * length;
     for (const int side : {0, 1}) {
       const int i = side == 0 ? flow.before : flow.after;
       flow.start_length[side] = state.rest_lengths[i];
@@ -123,12 +144,14 @@ void CableStepper::set_flow_lengths(const Substep& s) {
   }
   for (const GrowingSegment& growing : s.boundary.growing) rest_growth_[growing.segment] = s.h * growing.growth;
   bending_.forget_flows();
+  if (rod_.active()) rod_.forget_flows();
   for (const Flow& flow : flows_) {
     target_length_[flow.before] -= flow.stretch[0] * flow.way;
     target_length_[flow.after] += flow.stretch[1] * flow.way;
     rest_growth_[flow.before] -= flow.way;
     rest_growth_[flow.after] += flow.way;
     bending_.add_flow(flow.before, flow.after, flow.way);
+    if (rod_.active()) rod_.add_flow(flow.before, flow.after, flow.way);
   }
 }
 
@@ -136,8 +159,8 @@ void CableStepper::set_flow_lengths(const Substep& s) {
 /// that energy is conserved: with lengths s and rest lengths l at the start and (') the end it is
 ///   EA / 2 ((s^2 + s'^2) / (2 l l') - 1).
 double CableStepper::energy_excess(const Substep& s, int i, double start_length) const {
-  const double stiffness = s.model.material.axial_stiffness;
-  if (stiffness == infinity) return 0;
+  if (!is_elastic_at(i)) return 0;
+  const double stiffness = axial_stiffness_[i];
   const double end_length = target_length_[i], end = std::sqrt(end_square_[i]);
   if (s.part() == 1) return 0.5 * stiffness * (end / end_length - 1) * (end / end_length - 1);
   const double derivative =
@@ -147,12 +170,12 @@ double CableStepper::energy_excess(const Substep& s, int i, double start_length)
 }
 
 void CableStepper::evaluate_flows(const Substep& s) {
-  const MaterialDesc& material = s.model.material;
-  const double part = s.part(), density = material.linear_density;
-  const bool elastic = material.axial_stiffness < infinity;
+  const double part = s.part();
   for (std::size_t k = 0; k < flows_.size(); ++k) {
     Flow& flow = flows_[k];
     const GuidedFlow& guided = s.boundary.flows[k];
+    const double density = flow.density;
+    const bool elastic = is_elastic_at(flow.before);
     const std::array<int, 2> segments{flow.before, flow.after};
     // Friction is between tensions; without it they are equal, and so is what the energy makes of them.
     const bool frictionless = flow.mode == Flow::Mode::free;
@@ -164,9 +187,9 @@ void CableStepper::evaluate_flows(const Substep& s) {
         const double rest = 1 / (1 / start + part * (1 / end - 1 / start)), length = std::sqrt(end_square_[i]);
         evaluate_elastic_length(s, i, rest);
         arm[side] = length_[i] + part * (length - length_[i]);
-        const double damping = material.axial_damping / (s.damping_time() * rest);
-        const double slope = part * (material.axial_stiffness / rest - tension_density_[i]) + damping;
-        flow.gap[side] = sign * (material.axial_stiffness * arm[side] * part / (end * end) + damping) * length / slope;
+        const double damping = axial_damping_[i] / (s.damping_time() * rest);
+        const double slope = part * (axial_stiffness_[i] / rest - tension_density_[i]) + damping;
+        flow.gap[side] = sign * (axial_stiffness_[i] * arm[side] * part / (end * end) + damping) * length / slope;
       } else {
         arm[side] = length_[i] + part * (end - length_[i]);
         flow.gap[side] = sign * flow.stretch[side] * end;
@@ -187,7 +210,7 @@ void CableStepper::evaluate_flows(const Substep& s) {
     Vector3 along = get(middle_, flow.before) + get(middle_, flow.after);
     for (int i = flow.first; i < flow.last; ++i) along += 2 * get(middle_, i);
     double drive = tension[1] - tension[0] + 0.5 * density * gravity.dot(along);
-    drive += bending_.flow_force(flow.before, flow.after, middle_);
+    drive += rod_.active() ? rod_.flow_force(flow.before, flow.after) : bending_.flow_force(flow.before, flow.after, middle_);
     if (fluid_.active()) {
       const Vector3 direction = 0.5 * (get(middle_, flow.before).normalized() + get(middle_, flow.after).normalized());
       drive += fluid_.force(flow.first).dot(direction);
@@ -345,13 +368,13 @@ Vector3 CableStepper::flow_reaction(const Substep& s, int node) const {
   const double speed = flow->way / s.h, gain = (end_rate(s, *flow) - flow->rate) / s.h;
   Vector3 way = 0.5 * (before + after);
   for (int i = flow->first; i < flow->last; ++i) way += get(middle_, i);
-  return -s.model.material.linear_density * (speed * speed * (after.normalized() - before.normalized()) + gain * way);
+  return -flow->density * (speed * speed * (after.normalized() - before.normalized()) + gain * way);
 }
 
 void CableStepper::finish_flows(const Substep& s, CableState& state) {
-  const double half_density = 0.5 * s.model.material.linear_density;
   for (std::size_t k = 0; k < flows_.size(); ++k) {
     const Flow& flow = flows_[k];
+    const double half_density = 0.5 * flow.density;
     GuidedFlow& guided = s.boundary.flows[k];
     double rate = s.statics || flow.mode == Flow::Mode::sticking ? 0 : end_rate(s, flow);
     if ((flow.mode == Flow::Mode::forward && rate < 0) || (flow.mode == Flow::Mode::backward && rate > 0)) rate = 0;
@@ -387,10 +410,34 @@ void CableStepper::begin_flow_projection(const Substep& s, const CableState& sta
   }
 }
 
+/// The frame of a segment that flows on is that of other material then, in its middle.
+void CableStepper::carry_frames_with_flows(CableState& state) const {
+  const auto twist_rate = [&](int node) {
+    if (node < 0 || node > segments_) return 0.0;
+    const double around = node == 0 || node == segments_ ? 0.5 * state.rest_lengths[std::min(node, segments_ - 1)] : joint_length(state, node);
+    return state.joint_twist[node] / around;
+  };
+  for (const Flow& flow : flows_) {
+    // Where what comes to the middle is now
+    const std::array<double, 2> rates = flow.way > 0 ? std::array{twist_rate(flow.before), twist_rate(flow.last)}
+                                                     : std::array{twist_rate(flow.first), twist_rate(flow.after + 1)};
+    for (const int side : {0, 1}) {
+      const int segment = side == 0 ? flow.before : flow.after;
+      const double turn = -0.5 * flow.way * rates[side];
+      turn_segment(segment, turn, state);
+      state.joint_twist[segment] += turn;
+      state.joint_twist[segment + 1] -= turn;
+    }
+    if (!state.rest_curvature.empty()) flow_on(flow, state.rest_lengths, state.rest_curvature);
+    if (!state.rest_twist.empty()) flow_on(flow, state.rest_lengths, state.rest_twist);
+  }
+}
+
 /// Impulses along the segments beside a guide move what flows, too.
 void CableStepper::project_flows(const Substep& s) {
   for (std::size_t k = 0; k < flows_.size(); ++k) {
     const Flow& flow = flows_[k];
+    if (is_elastic_at(flow.before)) continue;
     const double before = target_length_[flow.before], after = target_length_[flow.after], rate = s.boundary.flows[k].rate;
     impulse_[flow.before] -= before * rate;
     impulse_[flow.after] += after * rate;
@@ -411,7 +458,7 @@ void CableStepper::project_flows(const Substep& s) {
 void CableStepper::push_flows(const Substep& s) {
   for (std::size_t k = 0; k < flows_.size(); ++k) {
     const Flow& flow = flows_[k];
-    if (flow.mode != Flow::Mode::free) continue;
+    if (flow.mode != Flow::Mode::free || is_elastic_at(flow.before)) continue;
     s.boundary.flows[k].rate +=
         (target_length_[flow.before] * impulse_[flow.before] - target_length_[flow.after] * impulse_[flow.after]) / flow.mass;
     if (flow.first != flow.last) impulse_[flow.first] = 0;

@@ -5,18 +5,25 @@
 
 #include "chain/node_arrays.h"
 #include "guide/wheel.h"
+#include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
 
 namespace {
 
+/// Adds the weight of so much of a segment's material to a node, or takes it.
+void weigh(double length, int segment, int node, const CableModel& model, CableState& cable) {
+  cable.masses[node] += 0.5 * CableMaterials(model, cable)[segment].linear_density * length;
+}
+
 /// Gives a node of a cable that has no shape yet another place of the material.
 void move_node(int node, double shift, const CableModel& model, CableState& cable) {
-  const double half_density = 0.5 * model.material.linear_density;
   cable.rest_lengths[node - 1] += shift;
   cable.rest_lengths[node] -= shift;
-  cable.masses[node - 1] += half_density * shift;
-  cable.masses[node + 1] -= half_density * shift;
+  for (const int beside : {node - 1, node}) {
+    weigh(shift, node - 1, beside, model, cable);
+    weigh(-shift, node, beside + 1, model, cable);
+  }
 }
 
 /// The inner node, `lowest` or above, that is nearest to a place of the material, moved there.
@@ -35,23 +42,33 @@ constexpr double first_node = 0.3;
 
 /// A node more, at a part of a segment.
 void split_segment(int segment, double part, const CableModel& model, CableState& cable) {
-  const double half_density = 0.5 * model.material.linear_density, whole = cable.rest_lengths[segment], first = part * whole;
-  cable.masses[segment] -= half_density * (whole - first);
-  cable.masses[segment + 1] -= half_density * first;
-  cable.masses.insert(cable.masses.begin() + segment + 1, half_density * whole);
+  const double whole = cable.rest_lengths[segment], first = part * whole;
+  weigh(first - whole, segment, segment, model, cable);
+  weigh(-first, segment, segment + 1, model, cable);
+  cable.masses.insert(cable.masses.begin() + segment + 1, 0.0);
   cable.rest_lengths[segment] = whole - first;
   cable.rest_lengths.insert(cable.rest_lengths.begin() + segment, first);
+  if (!cable.section_material.empty())
+    cable.section_material.insert(cable.section_material.begin() + segment, cable.section_material[segment]);
+  weigh(whole, segment, segment + 1, model, cable);
   cable.positions.insert(cable.positions.begin() + segment, Vector3::Zero());
   cable.velocities.insert(cable.velocities.begin() + segment, Vector3::Zero());
 }
 
-/// One segment instead of those between two nodes.
+/// Beside a guide the cable is of one material: what flows through is.
+void continue_material(int segment, const CableModel& model, CableState& cable) {
+  if (cable.section_material.empty()) return;
+  for (const int node : {segment, segment + 1}) weigh(-cable.rest_lengths[segment], segment, node, model, cable);
+  cable.section_material[segment] = cable.section_material[segment - 1];
+  for (const int node : {segment, segment + 1}) weigh(cable.rest_lengths[segment], segment, node, model, cable);
+}
+
+/// One segment instead of those between two nodes of a cable of one material.
 void make_one_segment(int first, int last, const CableModel& model, CableState& cable) {
-  const double half_density = 0.5 * model.material.linear_density;
   for (int count = last - first - 1; count > 0; --count) {
     // Its mass is half of each segment beside it.
-    cable.masses[first] += half_density * cable.rest_lengths[first + 1];
-    cable.masses[first + 2] += half_density * cable.rest_lengths[first];
+    weigh(cable.rest_lengths[first + 1], first, first, model, cable);
+    weigh(cable.rest_lengths[first], first, first + 2, model, cable);
     cable.rest_lengths[first] += cable.rest_lengths[first + 1];
     cable.rest_lengths.erase(cable.rest_lengths.begin() + first + 1);
     cable.masses.erase(cable.masses.begin() + first + 1);
@@ -181,6 +198,7 @@ void add_guides(const CableDesc& desc, int cable, const FrameIds& ids, const Cab
       } else {
         attachment.node = put_node_at(place, 1, model, cable_state);
         split_segment(attachment.node, first_node, model, cable_state);
+        continue_material(attachment.node, model, cable_state);
         for (const int a : own)
           if (state.attachments[a].node > attachment.node) ++state.attachments[a].node;
       }
@@ -214,7 +232,7 @@ double flow_energy(const State& state) {
       length += c.rest_lengths[i];
       way += c.positions[i + 1] - c.positions[i];
     }
-    const double density = cable.model->material.linear_density;
+    const double density = CableMaterials(cable)[first].linear_density;
     double mass = density * length;
     if (is_wheel(attachment)) mass += guide.inertia / (guide.radius * guide.radius);
     energy += 0.5 * mass * guide.flow * guide.flow + density * guide.flow * way.dot(c.velocities[first]);

@@ -72,15 +72,14 @@ class Bending {
   struct ChangingJoint {
     int node = 0;
     double start = 0, end = 0;
+    double length = 0;  ///< [m] of the cable that it stands for, at the start
   };
   void grow(int segment, double growth);
   void set_changing(int node);
   void add_growth(const VectorArray& displacement);
 
-  double bending_stiffness_ = 0;             // [N m^2]
   VectorArray segment_;                      // at the start [m]; where there are flows
   std::vector<double> rest_lengths_;         // segments, at the start [m]; where there are flows
-  std::vector<double> flexible_;             // nodes: how much of the length around them bends; likewise
   std::vector<GrowingSegment> growing_;
   std::vector<ChangingJoint> changing_;
   std::vector<double> inverse_length_;       // segments [1/m]

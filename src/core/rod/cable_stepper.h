@@ -117,6 +117,7 @@ class CableStepper {
   Vector3 flow_reaction(const Substep& substep, int node) const;
   void begin_flow_projection(const Substep& substep, const CableState& state);
   void finish_flows(const Substep& substep, CableState& state);
+  void carry_frames_with_flows(CableState& state) const;
   void project_flows(const Substep& substep);
   void push_flows(const Substep& substep);
   void factor_segments();

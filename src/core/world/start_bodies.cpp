@@ -83,6 +83,10 @@ bool World::Implementation::is_held_by_cable(int index) const {
 
 /// Whether the bodies that hold a cable are where they begin, or begin where it ends.
 bool World::Implementation::has_bodies_of(const CableDesc& cable) const {
+  for (const GuideDesc& guide : state.scene->guides)
+    if (guide.cable == cable.name && guide.place && !guide.body.empty() &&
+        !state.body_progress[find(state.bodies, guide.body)].is_placed)
+      return false;
   return std::all_of(cable.attachments.begin(), cable.attachments.end(), [&](const AttachmentDesc& attachment) {
     if (attachment.body.empty()) return true;
     const int body = find(state.bodies, attachment.body);

@@ -74,7 +74,7 @@ GuideView World::view_guide(int guide) const {
     const int first = attachment.node, last = is_wheel(attachment) ? first + 1 : first;
     view.arc_length = cable.length(0, first) + 0.5 * cable.length(first, last);
     // Half a segment before and after it weighs, and is accelerated.
-    const double density = cables()[view.cable].model->material.linear_density;
+    const double density = CableMaterials(cables()[view.cable])[first].linear_density;
     const Vector3 gravity = implementation_->state.scene->gravity.at(cable.positions[first]);
     const auto half = [&](int i) {
       const Vector3 along = (cable.positions[i + 1] - cable.positions[i]).normalized();

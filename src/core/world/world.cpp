@@ -89,7 +89,7 @@ bool frames_known(const Desc& desc, const FrameIds& ids, const BoundaryInputs& i
 
 bool guides_known(const SceneDesc& scene, const CableDesc& desc, const FrameIds& ids, const BoundaryInputs& inputs) {
   return std::all_of(scene.guides.begin(), scene.guides.end(), [&](const GuideDesc& guide) {
-    return guide.cable != desc.name || !guide.place || frame_known(guide.frame, ids, inputs);
+    return guide.cable != desc.name || !guide.place || !guide.body.empty() || frame_known(guide.frame, ids, inputs);
   });
 }
 
