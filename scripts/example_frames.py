@@ -26,7 +26,7 @@ import node_thread  # noqa: E402
 FIXED_FRAME = 'world'
 RATE = 100.0  # [Hz]
 PERIODS = {'harness': 22.0, 'plug': 16.5}  # [s] after which an example begins again
-RELEASES = {'harness': (7.0, ['left_hand', 'right_hand']), 'plug': (6.5, ['grip'])}  # [s] from its beginning, and what is let go of
+RELEASES = {'harness': (7.5, ['left_hand', 'right_hand']), 'plug': (6.5, ['grip'])}  # [s] from its beginning, and what is let go of
 
 
 def swing(t, period, phase=0.0):
@@ -91,9 +91,10 @@ def ramp(t, begin, end):
 
 def harness(t):
     t %= PERIODS['harness']
-    z = 0.3 - 0.294 * ramp(t, 1, 6) + 0.294 * ramp(t, 8, 10)
+    z = 0.3 - 0.294 * ramp(t, 1, 6) + 0.294 * ramp(t, 8.5, 10.5)
+    x = 0.247 + 0.0028 * (ramp(t, 6, 7) - ramp(t, 11, 12))  # stretched when it lies
     tilt = 1.1 * (ramp(t, 11, 14) - ramp(t, 17, 20))  # [rad]
-    return {'left_hand': pose(-0.247, 0, z), 'right_hand': pose(0.247, 0, z), 'board': pose(0, 0, 0, roll=tilt)}
+    return {'left_hand': pose(-x, 0, z), 'right_hand': pose(x, 0, z), 'board': pose(0, 0, 0, roll=tilt)}
 
 
 def block_and_tackle(t):

@@ -19,6 +19,8 @@ constexpr double spare_reach = 0.1;
 constexpr double bulge = 0.08;
 /// So far from an attachment to what holds the cable it is not pushed by it [m]: the first few centimetres.
 constexpr double anchored_length = 0.05;
+/// A cable on a body that leans more has the friction of a smooth surface.
+constexpr double smallest_lean = 0.05;
 /// Relative, of distances.
 constexpr double distance_rounding = 1e-6;
 /// Nodes and segments in turns: of a node, the segments and nodes next to it.
@@ -264,6 +266,13 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
     bound_friction_at_corners(state, first_touch, feet_, touches_, pressed_);
   else
     bound_friction_of_nodes(state, first_touch, touches_);
+  if (moving.body < 0) return;
+  // What leans may do work on what gives way.
+  const double friction = *moving.obstacle->friction;
+  for (std::size_t k = first_touch; k < touches_.size(); ++k) {
+    touches_[k].friction = touches_[k].lean.norm() > smallest_lean ? friction : std::min(friction, touches_[k].friction);
+    touches_[k].lean.setZero();
+  }
 }
 
 void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members,
