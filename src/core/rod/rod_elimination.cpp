@@ -7,8 +7,9 @@ namespace verlet_cable {
 
 namespace {
 
-/// Between held nodes that are next to each other, relative to what is beside them, nothing gives way: so much does.
-constexpr double held_compliance = 1e-10;
+/// Where what is held does not give way, so much does, relative to what is beside it. Between held nodes next to each other
+/// nothing else does: less would leave nothing but rounding of how the segment between them turns.
+constexpr double held_compliance = 1e-10, neighbours_compliance = 1e-6;
 /// Where a stretch would meet less resistance than this, relative to what it meets where nothing is added, the matrix is replaced
 /// by one that is as good.
 constexpr double least_resistance = 1e-3;
@@ -114,13 +115,13 @@ void RodElimination::resize(int segments) {
 
 namespace {
 
-/// Of a node inside, in a direction in which nothing else gives way [m/N].
-double least_compliance(const KktSystem& system, const RodStiffness& stiffness, const RodJoints& joints, int node) {
+/// Of a node inside, in a direction in which nothing else gives way [m/N]; `before`: the node that the elimination comes from.
+double least_compliance(const KktSystem& system, const RodStiffness& stiffness, const RodJoints& joints, int before, int node) {
   double beside = system.diagonal[node];
   for (const int i : {node - 1, node})
     beside += std::abs(stiffness.force_density[i]) +
               (get(stiffness.segment, i).trace() + get(joints.stiffness, i).trace()) / get(system.direction, i).squaredNorm();
-  return held_compliance / beside;
+  return (system.movable[before] == 0 ? neighbours_compliance : held_compliance) / beside;
 }
 
 }  // namespace
@@ -228,8 +229,8 @@ bool RodElimination::factor_lanes(const KktSystem& system, const RodStiffness& s
     if (free[0] == 0 || free[1] == 0) {
       // x = 0: the force is what makes it so, -A^-1 (B w + a).
       Pair floor = both(1);
-      if (free[0] == 0) floor[0] = least_compliance(system, stiffness, joints, left + 1);
-      if (free[1] == 0) floor[1] = least_compliance(system, stiffness, joints, right);
+      if (free[0] == 0) floor[0] = least_compliance(system, stiffness, joints, left, left + 1);
+      if (free[1] == 0) floor[1] = least_compliance(system, stiffness, joints, std::min(right + 1, segments_), right);
       HeldInside held{k, free, scaled_inverse(plus_diagonal(give, floor), 1.0 - free), {}, {}};
       held.turned = held.stiffness * turned;
       held_inside_.push_back(held);
