@@ -431,5 +431,142 @@ const BranchedMode branched_modes[] = {
 };
 INSTANTIATE_TEST_SUITE_P(Modes, TrunkWithABranch, testing::ValuesIn(branched_modes));
 
+// --- Invariances ------------------------------------------------------------------------------------------------------------
+
+struct CutRod {
+  const char* name;
+  BendingStiffness bending;
+  std::array<double, 2> curvature;  ///< [1/m] at rest
+  double rest_twist;                ///< [rad/m]
+};
+
+void PrintTo(const CutRod& rod, std::ostream* stream) {
+  *stream << rod.name;
+}
+
+class RodInTwo : public testing::TestWithParam<CutRod> {};
+
+/// A rod between two clamps, the end bent down and twisted by 1 rad, as a whole and in two pieces that are welded, the second the
+/// other way round where that is `reversed`.
+SceneDesc bent_rod(const CutRod& rod, int segments, bool in_two, bool reversed) {
+  SceneDesc scene = no_cables();
+  scene.time_step = 0.01;
+  scene.gravity.acceleration *= 2;
+  MaterialDesc& material = rope(scene);
+  material.linear_density = 0.1;
+  material.bending_stiffness = rod.bending;
+  material.torsional_stiffness = 0.75;
+  material.drag = 1;
+  constexpr double at = 0.4;
+  for (const bool second : {false, true}) {
+    if (second && !in_two) break;
+    const double from = second ? at : 0, to = second || !in_two ? 1 : at;
+    const bool turned = second && reversed;
+    CableDesc& cable = add_straight(scene, second ? "rest" : "rod", static_cast<int>(std::lround(segments * (to - from))),
+                                    {turned ? to : from, 0, 0}, {turned ? from : to, 0, 0});
+    cable.rest_curvature.type = RestCurvatureDesc::Type::constant;
+    cable.rest_curvature.curvature = rod.curvature;
+    cable.rest_twist = rod.rest_twist;
+    if (rod.curvature == std::array<double, 2>{0, 0}) cable.rest_curvature = {};
+    // Turned about the material's z the rod bends to the other side of y.
+    if (turned) cable.rest_curvature.curvature[1] *= -1;
+    if (!second) hold_end(cable, PlaceDesc::At::start, Vector3::Zero(), AttachmentType::clamp).name = "first";
+    if (to < 1) continue;
+    AttachmentDesc& clamp = hold_end(cable, turned ? PlaceDesc::At::start : PlaceDesc::At::end, Vector3::Zero(),
+                                     AttachmentType::clamp, {0, 0, turned ? M_PI : 0});
+    clamp.name = "last";
+    clamp.frame = "hand";
+    clamp.initial_pose = InitialPose{1, 0, 0, 0, 0, 0};
+  }
+  if (in_two) add_junction(scene, "rod", at_end(), {branch("rest", reversed ? End::end : End::start)});
+  return scene;
+}
+
+TEST_P(RodInTwo, IsAsTheWholeRod) {
+  for (const bool reversed : {false, true}) {
+    const auto samples = sample({10, 20, 40}, [&](int n) {
+      const auto settled = [&](bool in_two) {
+        Simulation run(bent_rod(GetParam(), n, in_two, reversed));
+        const int steps = 100;
+        for (int i = 1; i <= steps; ++i) {
+          const double part = static_cast<double>(i) / steps;
+          run.inputs[1].pose.position = Vector3(1 - 0.2 * part, 0.05 * part, -0.1 * part);
+          run.inputs[1].pose.orientation = Eigen::AngleAxisd(part, Vector3::UnitX());
+          run.step();
+        }
+        EXPECT_TRUE(run.world.settle());
+        return run;
+      };
+      const Simulation whole = settled(false), pieces = settled(true);
+      const auto difference = [](const Vector3& a, const Vector3& b) { return (a - b).norm() / b.norm(); };
+      const double place = (cable_of(pieces.world, "rest").positions[reversed ? cable_of(pieces.world, "rest").segments() : 0] -
+                            cable_of(whole.world, "rod").positions[static_cast<int>(std::lround(0.4 * n))])
+                               .norm();
+      return std::max({place, difference(pieces.force("first"), whole.force("first")),
+                       difference(pieces.torque("first"), whole.torque("first")),
+                       difference(pieces.force("last"), whole.force("last")),
+                       difference(pieces.torque("last"), whole.torque("last"))});
+    });
+    report(
+        std::string("rod in two, ") + GetParam().name + (reversed ? ", the second reversed" : "") + ": places, forces, moments",
+        samples, 5e-3, Order::none);
+  }
+}
+
+const CutRod cut_rods[] = {{"straight", 1, {0, 0}, 0}, {"ribbon", {1, 2}, {0, 0}, 0}, {"curved ribbon", {1, 2}, {0.5, 1}, 0.5}};
+INSTANTIATE_TEST_SUITE_P(Rods, RodInTwo, testing::ValuesIn(cut_rods));
+
+/// A junction in the middle of a trunk with a branch that is next to nothing.
+TEST(Junction, OfNothingChangesNothing) {
+  const auto tip_after = [](bool branches) {
+    SceneDesc scene = no_cables();
+    rope(scene).bending_stiffness = 0.02;
+    rope(scene).torsional_stiffness = 0.015;
+    scene.materials.push_back({"thread", {}});
+    scene.materials[1].material.linear_density = 1e-9;
+    scene.materials[1].material.radius = 1e-4;
+    CableDesc& trunk = add_straight(scene, "trunk", 40, {0, 0, 0}, {1, 0, 0});
+    hold_end(trunk, PlaceDesc::At::start, Vector3::Zero(), AttachmentType::clamp);
+    if (branches) {
+      add_straight(scene, "nothing", 1, {0.5, 0, 0}, {0.5, 0.01, 0}).material = "thread";
+      add_junction(scene, "trunk", at_arc_length(0.5), {branch("nothing")});
+    }
+    Simulation run(scene);
+    run.run(0.5);
+    return cable_of(run.world, "trunk").positions.back();
+  };
+  const double way = (tip_after(true) - tip_after(false)).norm();
+  report("a junction of nothing on a falling cantilever: way of the tip [m]", {{40, way}}, 1e-3, Order::none);
+}
+
+/// A harness that tumbles freely, with trunk, two branches and a twig, for 10 s.
+TEST(FreeHarness, KeepsItsMomentaAndEnergy) {
+  SceneDesc scene = no_cables();
+  scene.numerical_damping = false;
+  scene.gravity.acceleration.setZero();
+  rope(scene).bending_stiffness = 0.02;
+  rope(scene).torsional_stiffness = 0.015;
+  add_straight(scene, "trunk", 10, {0, 0, 0}, {1, 0, 0});
+  add_straight(scene, "left", 5, {0.4, 0, 0}, {0.4, 0.5, 0});
+  add_straight(scene, "right", 5, {0.7, -0.3, 0.4}, {0.7, 0, 0});
+  add_straight(scene, "twig", 3, {0.4, 0.3, 0}, {0.4, 0.3, 0.3});
+  add_junction(scene, "trunk", at_arc_length(0.4), {branch("left")});
+  add_junction(scene, "trunk", at_arc_length(0.7), {branch("right", End::end)}).mass = 0.02;
+  add_junction(scene, "left", at_arc_length(0.3), {branch("twig")});
+  const Vector3 spin(0.5, 1, 2), velocity(0.1, 0.2, 0.3);
+  for (CableDesc& cable : scene.cables)
+    for (const Vector3& point : cable.initial.points)
+      cable.initial.velocities.push_back(velocity + spin.cross(point) + Vector3(0, 0, 0.5 * point.x() * point.x()));
+  Simulation run(scene);
+  const Momenta before = momenta_of(run.world);
+  const double error = energy_error(run, 10);
+  const Momenta after = momenta_of(run.world);
+  report("free harness: linear momentum over 10 s", {{10, (after.linear - before.linear).norm() / before.linear.norm()}}, 1e-9,
+         Order::none);
+  report("free harness: angular momentum over 10 s", {{10, (after.angular - before.angular).norm() / before.angular.norm()}},
+         1e-6, Order::none);
+  report("free harness: energy over 10 s", {{10, error}}, 1e-5, Order::none);
+}
+
 }  // namespace
 }  // namespace verlet_cable::validation

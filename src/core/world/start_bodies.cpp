@@ -113,7 +113,15 @@ void World::Implementation::place_bodies_on(const std::vector<Attachment>& attac
     }
     state.attachments.push_back(attachment);
   }
-  if (!attachments.empty()) find_targets_of(attachments.front().body.index);
+  if (attachments.empty()) return;
+  const int index = attachments.front().body.index;
+  find_targets_of(index);
+  // A cable that is joined with itself closes at once, as cables that are joined with others do.
+  for (KinematicTarget& target : state.cable_progress[index].targets.nodes) {
+    if (!state.attachments[target.attachment].is_junction) continue;
+    target.gap.setZero();
+    target.caught = -infinity;
+  }
 }
 
 /// The nodes that bodies hold begin to move with them.
