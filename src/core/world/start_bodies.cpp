@@ -40,14 +40,15 @@ Quaternion axes_at(const CableState& state, int node) {
 /// Bodies whose holders are known begin where those hold them; one that nothing but cables hold, without a pose of its own, waits
 /// for the first of them.
 void World::Implementation::place_bodies() {
-  bool more = true;
+  bool more = true, any = false;
   while (more) {
     more = false;
     for (int b = 0; b < static_cast<int>(state.bodies.size()); ++b) {
       if (state.body_progress[b].is_placed || !place_body(b)) continue;
-      more = true;
+      more = any = true;
     }
   }
+  if (any) name_waiting();
 }
 
 bool World::Implementation::place_body(int index) {
