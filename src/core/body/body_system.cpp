@@ -25,6 +25,7 @@ void BodySystem::begin(const std::vector<BodyMember>& members, const std::vector
   rules_ = rules;
   member_of_.assign(bodies.size(), -1);
   members_.resize(members.size());
+  momenta_.resize(members.size());
   for (std::size_t m = 0; m < members.size(); ++m) {
     const SimulatedBody& body = *members[m].start;
     member_of_[members[m].body] = static_cast<int>(m);
@@ -219,7 +220,6 @@ void BodySystem::add_impulses(std::vector<Participant>& participants) {
 }
 
 void BodySystem::expect_momenta(const std::vector<Participant>& participants) {
-  momenta_.resize(members_.size());
   for (GroupMomenta& group : momenta_) group.begin();
   for (const BodyJoint& joint : joints_.all())
     if (joint.other < 0) group_of(joint.member).hold();
