@@ -40,15 +40,20 @@ Quaternion axes_at(const CableState& state, int node) {
 /// Bodies whose holders are known begin where those hold them; one that nothing but cables hold, without a pose of its own, waits
 /// for the first of them.
 void World::Implementation::place_bodies() {
-  bool more = true, any = false;
+  const auto count_placed = [&] {
+    return std::count_if(state.body_progress.begin(), state.body_progress.end(),
+                         [](const BodyProgress& body) { return body.is_placed; });
+  };
+  const auto before = count_placed();
+  bool more = true;
   while (more) {
     more = false;
     for (int b = 0; b < static_cast<int>(state.bodies.size()); ++b) {
       if (state.body_progress[b].is_placed || !place_body(b)) continue;
-      more = any = true;
+      more = true;
     }
   }
-  if (any) name_waiting();
+  if (count_placed() != before) name_waiting();
 }
 
 bool World::Implementation::place_body(int index) {
