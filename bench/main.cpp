@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
                                    {"contact", contact},
                                    {"many", many},
                                    {"net", net},
+                                   {"harness", harness},
                                    {"driven", driven_against_bullet},
                                    {"bullet", released_against_bullet},
                                    {"simbody", released_against_simbody}};

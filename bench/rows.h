@@ -14,5 +14,6 @@ void cantilever(Report& report, bool quick);
 void contact(Report& report, bool quick);
 void many(Report& report, bool quick);
 void net(Report& report, bool quick);
+void harness(Report& report, bool quick);
 
 }  // namespace verlet_cable::bench

@@ -66,6 +66,24 @@ TEST(HeldBodies, ARopeTooShortForItsBodyIsAnError) {
   EXPECT_EQ(errors[0].rfind("cables[0].length: ", 0), 0u) << errors[0];
 }
 
+/// What does not bend has its clamps hold the segments beside them: those leave less of it for the way between.
+TEST(HeldBodies, ARopeTooShortForItsClampIsAnError) {
+  SceneDesc scene = load_on_a_rope();
+  AttachmentDesc& hook = scene.cables[0].attachments[1];
+  hook.type = AttachmentType::clamp;
+  hook.offset.setZero();
+  scene.bodies[0].pose = InitialPose{0, 0, -0.5, 0, 0, 0};
+  hook.rotation = {0, M_PI / 2, 0};  // downwards, as the rope comes
+  EXPECT_TRUE(validate(scene).empty());
+  hook.rotation = {0, M_PI / 2 + 0.7, 0};
+  const std::vector<std::string> errors = validate(scene);
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_EQ(errors[0].rfind("cables[0].length: 0.5 m of cable between \"top\" and \"hook\"; allowed: at least 0.506", 0), 0u)
+      << errors[0];
+  scene.bodies[0].pose = InitialPose{0, 0, -0.49, 0, 0, 0};
+  EXPECT_TRUE(validate(scene).empty());
+}
+
 TEST(HeldBodies, FollowHandsThatJump) {
   for (const AttachmentType type : {AttachmentType::hinge, AttachmentType::clamp, AttachmentType::axle}) {
     const SceneDesc scene = held_load(type);

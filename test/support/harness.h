@@ -7,8 +7,9 @@
 
 namespace verlet_cable::scenes {
 
-/// A wire harness: a trunk of 0.6 m, clamped to the frames "left_hand" and "right_hand" at its ends, and branches with a plug each,
-/// which leave it sideways, at nodes along it, from small bodies that the trunk runs through. All cables have as many segments.
+/// A wire harness: a trunk of 0.6 m, clamped to the frames "left_hand" and "right_hand" at its ends, and branches with a plug
+/// each, which leave it sideways, at nodes along it, from small bodies that the trunk runs through. All cables have as many
+/// segments.
 inline SceneDesc harness(int branches, int segments, const BendingStiffness& stiffness = {0.002, 0.002}) {
   constexpr double trunk_length = 0.6, branch_length = 0.3, joint_mass = 1e-4, joint_inertia = 1e-9;
   SceneDesc scene = one_cable(segments, trunk_length);

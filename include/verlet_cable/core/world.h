@@ -73,8 +73,8 @@ struct StepResult {
     ok,
     overstretched,  ///< held points are further apart than what is between them can be: it was lengthened
     jumped,         ///< a frame changed its velocity too much for a motion: what it holds was carried along with it
-    degraded,  ///< a substep did not converge at the smallest size: the cable's motion was taken away, and it goes on from rest;
-               ///< or cables are in each other and have no room to get apart
+    degraded,  ///< a substep did not converge at the smallest size: the motion of the cable, or of bodies and what hangs on
+               ///< them, was taken away, and it goes on from rest; or cables are in each other and have no room to get apart
     fault      ///< not even that: the cable stays as it was last, finite
   };
   Status status = Status::ok;
@@ -140,7 +140,7 @@ struct Intrusion {
 
 /// What the last step, start or settling found.
 struct Findings {
-  std::vector<std::string> waiting;  ///< names of cables and nets that wait for a frame
+  std::vector<std::string> waiting;  ///< names of cables, nets and bodies that wait for a frame, or for what holds them
   /// Names of cables that found no equilibrium when they were to be settled, at their start or by `settle`.
   std::vector<std::string> unsettled;
   /// Names of cables whose given initial shape could not be brought to their lengths between their attachments: they hang

@@ -57,6 +57,13 @@ void BodyEquations::find_order() {
     }
   }
   blocks_.resize(count);
+  groups_.resize(bodies_);
+  const auto place_of = [&](int body) { return std::find(order_.begin(), order_.end(), body); };
+  for (auto next = order_.rbegin(); next != order_.rend(); ++next) {
+    const std::vector<int>& later = later_[*next];
+    const auto first = std::min_element(later.begin(), later.end(), [&](int a, int b) { return place_of(a) < place_of(b); });
+    groups_[*next] = first == later.end() ? *next : groups_[*first];
+  }
 }
 
 void BodyEquations::clear_matrix() {

@@ -19,6 +19,9 @@ class BodyEquations {
   void couple(int a, int b);
   void end();
 
+  /// The same of all bodies that act on each other, by way of others, too.
+  int group_of(int body) const { return groups_[body]; }
+
   void clear_matrix();
   /// Of bodies that are the same or act on each other.
   Matrix6& block(int row, int column);
@@ -37,6 +40,7 @@ class BodyEquations {
 
   std::vector<Couple> couples_, last_couples_;  ///< ascending, each once
   int bodies_ = -1;
+  std::vector<int> groups_;              ///< by body: the last one of its group in that order
   std::vector<int> order_;               ///< in which bodies are eliminated
   std::vector<std::vector<int>> later_;  ///< by body: those that are eliminated after it and that it then acts on, ascending
   /// By body: places in `blocks_` of the rows and columns that it and those have in common, one pair for each of these

@@ -25,6 +25,7 @@ void BodySystem::begin(const std::vector<BodyMember>& members, const std::vector
   rules_ = rules;
   member_of_.assign(bodies.size(), -1);
   members_.resize(members.size());
+  momenta_.resize(members.size());
   for (std::size_t m = 0; m < members.size(); ++m) {
     const SimulatedBody& body = *members[m].start;
     member_of_[members[m].body] = static_cast<int>(m);
@@ -237,8 +238,35 @@ void BodySystem::add_impulses(std::vector<Participant>& participants) {
   joints_.add_impulses(members_, equations_);
 }
 
+void BodySystem::expect_momenta(const std::vector<Participant>& participants) {
+  for (GroupMomenta& group : momenta_) group.begin();
+  for (const BodyJoint& joint : joints_.all())
+    if (joint.other < 0) group_of(joint.member).hold();
+  for (std::size_t m = 0; m < members_.size(); ++m) members_[m].stepper.expect_momenta(group_of(static_cast<int>(m)));
+  for (std::size_t c = 0; c < cable_count_; ++c)
+    HeldCable::expect_momenta(participants[cables_[c].participant()], group_of(cables_[c].first_member()));
+}
+
+void BodySystem::restore_momenta(std::vector<Participant>& participants, std::vector<SimulatedBody>& bodies) {
+  if (!keeps_momenta()) return;
+  for (std::size_t m = 0; m < members_.size(); ++m) members_[m].stepper.add_momenta(group_of(static_cast<int>(m)));
+  for (std::size_t c = 0; c < cable_count_; ++c)
+    HeldCable::add_momenta(participants[cables_[c].participant()], group_of(cables_[c].first_member()));
+  for (std::size_t b = 0; b < member_of_.size(); ++b) {
+    if (member_of_[b] < 0 || !group_of(member_of_[b]).is_free()) continue;
+    const RigidMotion missing = group_of(member_of_[b]).missing();
+    bodies[b].velocity += missing.at((bodies[b].pose * Pose{bodies[b].center_of_mass}).position);
+    bodies[b].angular_velocity += missing.rate;
+  }
+  for (std::size_t c = 0; c < cable_count_; ++c) {
+    const GroupMomenta& group = group_of(cables_[c].first_member());
+    if (group.is_free()) HeldCable::add_motion(group.missing(), participants[cables_[c].participant()]);
+  }
+}
+
 void BodySystem::place_at_end(std::vector<Participant>& participants) {
   place_holders(participants);
+  if (keeps_momenta()) expect_momenta(participants);
   for (std::size_t c = 0; c < cable_count_; ++c)
     cables_[c].set_holder_velocities(members_, participants[cables_[c].participant()].substep.boundary);
 }

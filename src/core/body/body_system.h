@@ -55,12 +55,18 @@ class BodySystem {
 
   /// The cables' boundaries get what bodies have come to.
   void place_at_end(std::vector<Participant>& participants);
+  /// Substeps that damp keep the momenta of what no frame holds to second order; once bodies and cables have finished, what is
+  /// missing is given back as a rigid body's motion.
+  void restore_momenta(std::vector<Participant>& participants, std::vector<SimulatedBody>& bodies);
   double largest_displacement() const;  ///< [m] over the substep, of a body's center of mass or what turns with its size
   void finish(int member, SimulatedBody& body, BodyProgress& progress) const;
 
  private:
   void find_cables(const std::vector<Participant>& participants);
   void find_couples();
+  bool keeps_momenta() const { return !rules_.statics && rules_.scheme != Scheme::conserving; }
+  void expect_momenta(const std::vector<Participant>& participants);
+  GroupMomenta& group_of(int member) { return momenta_[equations_.group_of(member)]; }
   void evaluate(bool stale);
   void condense(std::vector<Participant>& participants);
   void add_loads();
@@ -76,6 +82,7 @@ class BodySystem {
   BodyJoints joints_;
   BodyContacts contacts_;
   BodyEquations equations_;
+  std::vector<GroupMomenta> momenta_;  ///< by BodyEquations::group_of
 };
 
 }  // namespace verlet_cable

@@ -268,6 +268,46 @@ void HeldCable::follow(const std::vector<MovingBody>& bodies, const BodyEquation
   p.stepper->add_moved(p.substep.boundary, motion_);
 }
 
+namespace {
+
+/// Calls visitor(node) for those that nothing holds.
+template <class Visitor>
+void visit_free_nodes(const Participant& p, const Visitor& visitor) {
+  auto held = p.substep.boundary.nodes.begin();
+  for (int i = 0; i < p.state->nodes(); ++i) {
+    if (held != p.substep.boundary.nodes.end() && held->node == i)
+      ++held;
+    else
+      visitor(i);
+  }
+}
+
+}  // namespace
+
+void HeldCable::expect_momenta(const Participant& p, GroupMomenta& group) {
+  const CableState& state = *p.state;
+  for (const HeldNode& held : p.substep.boundary.nodes)
+    if (held.body < 0) group.hold();
+  visit_free_nodes(p, [&](int i) {
+    const Vector3 way = get(p.stepper->displacement(), i);
+    const Vector3 gain = p.substep.inertia() * (way / p.substep.h - state.velocities[i]);
+    group.expect(state.masses[i], state.positions[i], way, state.velocities[i], gain);
+  });
+}
+
+void HeldCable::add_momenta(const Participant& p, GroupMomenta& group) {
+  visit_free_nodes(p, [&](int i) { group.add(p.state->masses[i], p.state->positions[i], p.state->velocities[i]); });
+}
+
+void HeldCable::add_motion(const RigidMotion& motion, Participant& p) {
+  visit_free_nodes(p, [&](int i) { p.state->velocities[i] += motion.at(p.state->positions[i]); });
+  for (HeldNode& held : p.substep.boundary.nodes) {
+    const Vector3 gain = motion.at(p.state->positions[held.node]);
+    held.velocity += gain;
+    p.state->velocities[held.node] += gain;
+  }
+}
+
 double HeldCable::work_of_held(const Participant& p) const {
   double work = 0;
   for (const Side& side : sides_) {

@@ -20,6 +20,7 @@ class HeldCable {
   /// Which bodies act on each other through the cable.
   void couple(BodyEquations& equations);
   int participant() const { return participant_; }
+  int first_member() const { return sides_.front().member; }
   /// A body moves as one with the nodes that it holds.
   void add_masses(const Participant& p, std::vector<MovingBody>& bodies) const;
 
@@ -41,6 +42,10 @@ class HeldCable {
   void add_resistance(const std::vector<MovingBody>& bodies, BodyStage stage, Participant& p, BodyEquations& equations);
   /// The cable follows what has been solved for.
   void follow(const std::vector<MovingBody>& bodies, const BodyEquations& equations, Participant& p);
+  /// Of the nodes that bodies do not hold: what forces leave of their momenta, and what they have at the end.
+  static void expect_momenta(const Participant& p, GroupMomenta& group);
+  static void add_momenta(const Participant& p, GroupMomenta& group);
+  static void add_motion(const RigidMotion& motion, Participant& p);
   /// [J] Of its loads along its own solution, what nodes that move with bodies have of that.
   double work_of_held(const Participant& p) const;
 

@@ -120,6 +120,16 @@ Vector3 RigidBodyStepper::end_spin() const {
   return weights.displacement / rules_.h * turn_ + weights.velocity * spin_ + weights.acceleration * rules_.h * spin_change_;
 }
 
+void RigidBodyStepper::expect_momenta(GroupMomenta& group) const {
+  group.expect(whole_.mass, center_, displacement_, velocity_, rules_.inertia() * (displacement_ / rules_.h - velocity_));
+  group.expect_spin(end_momentum());
+}
+
+void RigidBodyStepper::add_momenta(GroupMomenta& group) const {
+  group.add(whole_.mass, center_ + displacement_, end_velocity());
+  group.add_spin(end_ * whole_.inertia * end_.transpose(), end_ * (whole_.inertia * end_spin()));
+}
+
 Vector3 RigidBodyStepper::velocity_of(const Vector3& point) const {
   return end_velocity() + (end_ * end_spin()).cross(end_arm(point));
 }

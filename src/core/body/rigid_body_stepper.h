@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "body/body_progress.h"
+#include "body/group_momenta.h"
 #include "body/mass_properties.h"
 #include "rod/substep.h"
 #include "verlet_cable/core/body.h"
@@ -55,6 +56,10 @@ class RigidBodyStepper {
   /// The resistance against displacements of the center of mass and rotations.
   Matrix6 stiffness() const;
   void correct(const Vector6& change);
+
+  /// What its forces leave of its momenta, and what it has at the end.
+  void expect_momenta(GroupMomenta& group) const;
+  void add_momenta(GroupMomenta& group) const;
 
   /// Velocities at the end.
   void finish(SimulatedBody& body, BodyProgress& progress) const;

@@ -190,7 +190,7 @@ void CableStepper::set_loads(const Substep& s, const CableState& state) {
       const bool gives_way = moves_freely(held[k]) || moves_freely(held[k + 1]);
       for (int i = held[k].node; i < held[k + 1].node; ++i) {
         system_.compliance[i] = target_length_[i] * target_length_[i] * target_length_[i] / stiffness;
-        if (!gives_way) strain_compliance_[i] = system_.compliance[i];
+        if (!gives_way || s.strains_on_bodies) strain_compliance_[i] = system_.compliance[i];
       }
     }
   }

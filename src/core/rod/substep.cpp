@@ -19,6 +19,8 @@ constexpr double fastest_convergence = 0.03;
 constexpr double taut_stiffness = 1e7;
 /// Of the inertia in a substep, where bodies give way.
 constexpr double taut_inertia = 1e3;
+/// Less of its length is as good as straight.
+constexpr double straight_slack = 1e-4;
 constexpr double standard_gravity = 9.81;
 /// A holder's change of velocity that moves a node by less in a substep, in segment lengths, goes unnoticed.
 constexpr double noticed_jerk = 1e-9;
@@ -46,6 +48,18 @@ double stiffness_of_taut(const Substep& s, const CableState& state) {
   double inertia = 0;
   if (s.boundary.is_on_bodies()) inertia = taut_inertia * s.inertia() * mass * length / (s.h * s.h);
   return inertia + taut_stiffness * (weight + CableMaterials(s.model, state).largest_bending_stiffness() / (length * length));
+}
+
+bool is_straight_on_bodies(const Substep& s, const CableState& state) {
+  const CableMaterials materials(s.model, state);
+  const std::vector<HeldNode>& held = s.boundary.nodes;
+  for (std::size_t k = 0; k + 1 < held.size(); ++k) {
+    const int first = held[k].node, last = held[k + 1].node;
+    if ((held[k].body < 0 && held[k + 1].body < 0) || materials.any_elastic_between(first, last)) continue;
+    const double distance = (state.positions[last] - state.positions[first]).norm();
+    if (distance > (1 - straight_slack) * state.length(first, last)) return true;
+  }
+  return false;
 }
 
 bool holders_accelerate(const Substep& s, const CableState& state) {

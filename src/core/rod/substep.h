@@ -36,6 +36,9 @@ struct Substep {
   Treatment treatment = Treatment::none;  ///< of motion that is found not to be resolved
   bool touches_bodies = false;            ///< which take over momentum
   double tolerance = 1e-5;                ///< [1/s] of velocities, as SceneDesc's
+  /// What bodies pull straight strains, too, by as little as what is straight between frames: bodies in line between two frames
+  /// have no other solution.
+  bool strains_on_bodies = false;
 
   /// Where in the substep forces are taken.
   double part() const { return statics || scheme != Scheme::conserving ? 1 : 0.5; }
@@ -72,6 +75,10 @@ class Convergence {
 /// motion. So much axial stiffness, relative to the weight of the cable, or of all that is joined to it by bodies, gives it both: that weight
 /// strains it by a part in ten million.
 double stiffness_of_taut(const Substep& substep, const CableState& state);
+
+/// Whether bodies hold a part of the cable, of what cannot stretch, as good as straight. `state` is that at the start of the
+/// substep.
+bool is_straight_on_bodies(const Substep& substep, const CableState& state);
 
 /// Whether the velocity of a holder that is no body changes: only then do velocities along the segments appear that the equations do not damp. `state`
 /// is that at the start of the substep.

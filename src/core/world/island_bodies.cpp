@@ -79,6 +79,18 @@ bool IslandStepper::advance_bodies() {
   return converged;
 }
 
+/// Bodies in line, on what is pulled straight and cannot stretch, had no solution: they have one if that strains a little.
+bool IslandStepper::advance_straight_bodies(const Island& island, double from, double to, Scheme scheme) {
+  std::vector<Participant>& participants = workspace_.participants;
+  const bool straight = std::any_of(participants.begin(), participants.end(), [](const Participant& p) {
+    return is_straight_on_bodies(p.substep, *p.state);
+  });
+  if (!straight) return false;
+  for (Participant& p : participants) p.substep.strains_on_bodies = true;
+  begin_bodies(island, from, to, scheme);
+  return advance_bodies();
+}
+
 /// Aims what holds bodies at where it will be at the end of the step. Where it jumps, the body is carried along with it before it
 /// is stepped, and keeps its velocities; so is a body whose cable is carried, and what else hangs on it.
 void IslandStepper::update_body_targets(const Island& island, IslandOutcome& found) {
@@ -207,6 +219,7 @@ void IslandStepper::finish_bodies(const Island& island, double from, double to) 
     system.finish(static_cast<int>(m), state_.bodies[body], state_.body_progress[body]);
     state_.body_progress[body].has_moved = true;
   }
+  workspace_.body_system.restore_momenta(workspace_.participants, state_.bodies);
   if (projects_bodies_) workspace_.body_system.project(workspace_.participants, state_.bodies, state_.body_progress);
   for (const BodyJoint& joint : workspace_.body_system.joints()) {
     Attachment& attachment = state_.attachments[joint.attachment];

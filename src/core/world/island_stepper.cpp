@@ -324,7 +324,8 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
   }
   BodySystem* const bodies = island.bodies.empty() ? nullptr : &workspace_.body_system;
   if (bodies != nullptr) begin_bodies(island, from, to, touching_scheme);
-  if (converged && bodies != nullptr && !touching) converged = advance_bodies();
+  if (converged && bodies != nullptr && !touching)
+    converged = advance_bodies() || advance_straight_bodies(island, from, to, touching_scheme);
   if (converged && touching) {
     ContactSolver& solver = workspace_.contact_solver;
     converged = solver.solve(workspace_.participants, workspace_.contacts.touches(), bodies) &&

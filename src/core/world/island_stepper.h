@@ -82,6 +82,7 @@ class IslandStepper {
   bool advance(Island& island, double from, double to, bool tolerated);
   void begin_bodies(const Island& island, double from, double to, Scheme scheme);
   bool advance_bodies();
+  bool advance_straight_bodies(const Island& island, double from, double to, Scheme scheme);
   void finish_bodies(const Island& island, double from, double to);
   void stop_bodies(const Island& island);
   void update_body_targets(const Island& island, IslandOutcome& found);

@@ -35,6 +35,11 @@ Pose on_axle(const SimulatedBody& body, const Attachment& attachment, const Pose
 /// Bodies whose holders are known begin where those hold them; one that nothing but cables hold, without a pose of its own, waits
 /// for the first of them.
 void World::Implementation::place_bodies() {
+  const auto count_placed = [&] {
+    return std::count_if(state.body_progress.begin(), state.body_progress.end(),
+                         [](const BodyProgress& body) { return body.is_placed; });
+  };
+  const auto before = count_placed();
   bool more = true;
   while (more) {
     more = false;
@@ -43,6 +48,7 @@ void World::Implementation::place_bodies() {
       more = true;
     }
   }
+  if (count_placed() != before) name_waiting();
 }
 
 bool World::Implementation::place_body(int index) {

@@ -213,6 +213,8 @@ void World::Implementation::name_waiting() {
   findings.waiting.clear();
   for (const int i : state.waiting_cables) findings.waiting.push_back(state.scene->cables[i].name);
   for (const int i : state.waiting_nets) findings.waiting.push_back(state.scene->nets[i].name);
+  for (std::size_t b = 0; b < state.scene->bodies.size(); ++b)
+    if (!state.body_progress[b].is_placed) findings.waiting.push_back(state.bodies[b].name);
 }
 
 /// With the next one of the frames that are computed.
