@@ -237,7 +237,8 @@ TEST_P(Harnesses, copiesGoOnWithTheSameBytes) {
 /// Cuts beside junctions, on every side of them; pins next to them; winches at ends that are free.
 TEST_P(Harnesses, areEditedNextToTheirJunctions) {
   const SceneDesc scene = GetParam().scene();
-  const World start(scene, initial_frames(scene));
+  World start(scene, initial_frames(scene));
+  ASSERT_TRUE(start.settle());
   const std::vector<Attachment> attachments = start.attachments();
   for (const Attachment& attachment : attachments) {
     if (!attachment.is_junction) continue;
@@ -248,7 +249,7 @@ TEST_P(Harnesses, areEditedNextToTheirJunctions) {
       BoundaryInputs inputs = initial_frames(scene);
       const EditResult result = world.apply(edit::Cut{attachment.body, segment});
       SCOPED_TRACE(attachment.name + ", segment " + std::to_string(segment) + ": " + result.message);
-      run(world, inputs, 0.2, 0.05);
+      run(world, inputs, 0.05, 0.05);
       EXPECT_LT(largest_gap(world), 1e-9);
       EXPECT_EQ(std::count_if(world.attachments().begin(), world.attachments().end(),
                               [](const Attachment& a) { return a.is_junction; }),
@@ -268,10 +269,10 @@ TEST_P(Harnesses, areEditedNextToTheirJunctions) {
       pin.type = AttachmentType::clamp;
       SCOPED_TRACE(attachment.name + ", pinned node " + std::to_string(node));
       const EditResult result = world.apply(pin);
-      run(world, inputs, 0.2);
+      run(world, inputs, 0.05);
       if (result.ok) {
         EXPECT_TRUE(world.apply(edit::Unpin{"pin"}).ok);
-        run(world, inputs, 0.1);
+        run(world, inputs, 0.02);
       }
       EXPECT_LT(largest_gap(world), 1e-9);
     }
