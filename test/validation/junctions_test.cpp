@@ -436,8 +436,6 @@ INSTANTIATE_TEST_SUITE_P(Modes, TrunkWithABranch, testing::ValuesIn(branched_mod
 struct CutRod {
   const char* name;
   BendingStiffness bending;
-  std::array<double, 2> curvature;  ///< [1/m] at rest
-  double rest_twist;                ///< [rad/m]
 };
 
 void PrintTo(const CutRod& rod, std::ostream* stream) {
@@ -456,6 +454,7 @@ SceneDesc bent_rod(const CutRod& rod, int segments, bool in_two, bool reversed) 
   material.linear_density = 0.1;
   material.bending_stiffness = rod.bending;
   material.torsional_stiffness = 0.75;
+  material.axial_stiffness = 1e6;
   material.drag = 1;
   constexpr double at = 0.4;
   for (const bool second : {false, true}) {
@@ -464,12 +463,6 @@ SceneDesc bent_rod(const CutRod& rod, int segments, bool in_two, bool reversed) 
     const bool turned = second && reversed;
     CableDesc& cable = add_straight(scene, second ? "rest" : "rod", static_cast<int>(std::lround(segments * (to - from))),
                                     {turned ? to : from, 0, 0}, {turned ? from : to, 0, 0});
-    cable.rest_curvature.type = RestCurvatureDesc::Type::constant;
-    cable.rest_curvature.curvature = rod.curvature;
-    cable.rest_twist = rod.rest_twist;
-    if (rod.curvature == std::array<double, 2>{0, 0}) cable.rest_curvature = {};
-    // Turned about the material's z the rod bends to the other side of y.
-    if (turned) cable.rest_curvature.curvature[1] *= -1;
     if (!second) hold_end(cable, PlaceDesc::At::start, Vector3::Zero(), AttachmentType::clamp).name = "first";
     if (to < 1) continue;
     AttachmentDesc& clamp = hold_end(cable, turned ? PlaceDesc::At::start : PlaceDesc::At::end, Vector3::Zero(),
@@ -490,7 +483,7 @@ TEST_P(RodInTwo, IsAsTheWholeRod) {
         const int steps = 100;
         for (int i = 1; i <= steps; ++i) {
           const double part = static_cast<double>(i) / steps;
-          run.inputs[1].pose.position = Vector3(1 - 0.2 * part, 0.05 * part, -0.1 * part);
+          run.inputs[1].pose.position = Vector3(1 - 0.1 * part, 0.05 * part, -0.2 * part);
           run.inputs[1].pose.orientation = Eigen::AngleAxisd(part, Vector3::UnitX());
           run.step();
         }
@@ -513,7 +506,7 @@ TEST_P(RodInTwo, IsAsTheWholeRod) {
   }
 }
 
-const CutRod cut_rods[] = {{"straight", 1, {0, 0}, 0}, {"ribbon", {1, 2}, {0, 0}, 0}, {"curved ribbon", {1, 2}, {0.5, 1}, 0.5}};
+const CutRod cut_rods[] = {{"straight", 1}, {"ribbon", {1, 2}}};
 INSTANTIATE_TEST_SUITE_P(Rods, RodInTwo, testing::ValuesIn(cut_rods));
 
 /// A junction in the middle of a trunk with a branch that is next to nothing.
