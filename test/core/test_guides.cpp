@@ -184,6 +184,27 @@ TEST(Clips, waitUntilTheCableWasAway) {
   EXPECT_EQ(caught, 0);
 }
 
+TEST(Guides, cablesThatBendSettleInThem) {
+  for (const double stiffness : {0.0, 0.01, 0.1}) {
+    for (const bool whole_rod : {false, true}) {
+      SceneDesc scene = scenes::between_two_points(50, 1.2, 1.6);
+      MaterialDesc& material = scene.materials[0].material;
+      material.bending_stiffness = stiffness;
+      material.bending_damping = 1e-3 * stiffness;
+      if (whole_rod) material.bending_stiffness = BendingStiffness(stiffness, 2 * stiffness + 1e-4);
+      if (whole_rod) material.torsional_stiffness = 1e-3;
+      scene.cables[0].initial.type = InitialShapeDesc::Type::settled;
+      scene.guides = {guide("eye", 0.8, {0.6, 0, 0.2})};
+      World world(scene, {});
+      EXPECT_TRUE(world.findings().unsettled.empty()) << stiffness << whole_rod;
+      const double arc_length = world.view_guide(0).arc_length;
+      run(world, 0.3);
+      EXPECT_LT(world.energy().kinetic, 1e-12) << stiffness << whole_rod;
+      EXPECT_NEAR(world.view_guide(0).arc_length, arc_length, 1e-6) << stiffness << whole_rod;
+    }
+  }
+}
+
 TEST(Guides, materialComesBackWithItsSections) {
   SceneDesc scene = two_loads(0, 0);
   scene.materials.push_back({"lead", scene.materials[0].material});
