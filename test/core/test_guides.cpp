@@ -161,7 +161,7 @@ TEST(Clips, letGoWhatIsDrawnAcrossThem) {
   EXPECT_EQ(find(world.attachments(), "clip"), -1);
   // Back again: it was away, so that the clip takes it.
   const Vector3 high = inputs[1].pose.position;
-  for (int i = 1; i <= 100 && caught == 0; ++i) move_to(high + 0.01 * i * (Vector3(0.45, 0, 0.05) - high), 15);
+  for (int i = 1; i <= 1500 && caught == 0; ++i) move_to(high + i / 1500.0 * (Vector3(0.45, 0, 0.05) - high), 1);
   EXPECT_EQ(caught, 1);
   EXPECT_EQ(world.view_guide(0).cable, 0);
 }
