@@ -234,6 +234,11 @@ void CableStepper::evaluate_flows(const Substep& s) {
       set(system_.load, node, get(system_.load, node) + load);
     }
     const double bends = bending_.flow_column(flow.before, flow.after, middle_, flow.column);
+    // The weight of what flows hangs on other nodes then.
+    for (const int side : {0, 1}) {
+      const int node = side == 0 ? flow.before : flow.after + 1;
+      flow.column[node - flow.first_node()] += (side == 0 ? -0.5 : 0.5) * part * density * gravity;
+    }
     drive -= flow.drag * flow.way;
     drive -= flow.mass * s.inertia() / s.h * (flow.way / s.h - flow.rate);
 
@@ -342,14 +347,10 @@ void CableStepper::let_flow() {
     system_.gap[flows_[k].before] += flows_[k].gap[0] * flow_solution_[k];
     system_.gap[flows_[k].after] += flows_[k].gap[1] * flow_solution_[k];
   }
-  if (!bending_.active()) {
-    solve_segments();
-  } else {
-    flow_node_load_ = system_.load;
-    for (const Flow& flow : flows_) add_column(flow, flow.correction);
-    solve_segments();
-    std::swap(system_.load, flow_node_load_);
-  }
+  flow_node_load_ = system_.load;
+  for (const Flow& flow : flows_) add_column(flow, flow.correction);
+  solve_segments();
+  std::swap(system_.load, flow_node_load_);
   std::swap(system_.gap, flow_gap_);
 }
 
@@ -364,7 +365,6 @@ void CableStepper::add_column(const Flow& flow, double way) {
 
 /// What the last solution moves along what a flow changes of the loads [N].
 double CableStepper::along_column(const Flow& flow) const {
-  if (!bending_.active()) return 0;
   double sum = 0;
   for (std::size_t i = 0; i < flow.column.size(); ++i) {
     const int node = flow.first_node() + static_cast<int>(i);

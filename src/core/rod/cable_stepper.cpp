@@ -758,24 +758,23 @@ double CableStepper::force_along(int i) const {
 
 /// The load on a node after the last correction, to first order: its row of the matrix times the solution is gone.
 Vector3 CableStepper::corrected_load(int i) const {
+  Vector3 load = get(system_.load, i);
+  for (const Flow& flow : flows_) {
+    const int place = i - flow.first_node();
+    if (place >= 0 && place < static_cast<int>(flow.column.size())) load += flow.correction * flow.column[place];
+  }
   if (rod_.active()) {
     const VectorArray& force = rod_.elimination().force();
-    Vector3 load = get(system_.load, i);
     if (i > 0) load -= get(force, i - 1);
     if (i < segments_) load += get(force, i);
     return load;
   }
   const VectorArray& delta = solver_.displacement();
   const std::vector<double>& multiplier = solver_.multiplier();
-  Vector3 load = get(system_.load, i);
   if (i > 0) load -= system_.first[i - 1] * get(delta, i - 1) + multiplier[i - 1] * get(system_.direction, i - 1);
   if (i < segments_) load -= system_.first[i] * get(delta, i + 1) - multiplier[i] * get(system_.direction, i);
   if (system_.stiffened) load -= system_.added_load(i, delta);
   if (!bending_.active()) return load;
-  for (const Flow& flow : flows_) {
-    const int place = i - flow.first_node();
-    if (place >= 0 && place < static_cast<int>(flow.column.size())) load += flow.correction * flow.column[place];
-  }
   if (i > 1) load -= system_.second[i - 2] * get(delta, i - 2);
   if (i + 1 < segments_) load -= system_.second[i] * get(delta, i + 2);
   return load;

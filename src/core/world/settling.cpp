@@ -23,6 +23,8 @@ constexpr int maximum_settling_steps = 2000;
 constexpr double fastest_growth = 4, slow_growth = 1.5;
 constexpr int easy_iterations = 5;
 constexpr int calm_steps = 50;
+/// So often nodes go back through guides; then they stay where they are: a guide may be in equilibrium just where one passes.
+constexpr int most_returns = 3;
 /// Where there is something to touch, no node goes further at a time than this, in radii.
 constexpr double settling_reach = 1;
 constexpr double settled_contact = 1e-4;       // radii
@@ -85,6 +87,14 @@ double fastest(const CableState& state) {
   double fastest = 0;
   for (const Vector3& velocity : state.velocities) fastest = std::max(fastest, velocity.norm());
   return fastest;
+}
+
+/// Sum of the nodes at which a cable is in guides.
+int places_of_guides(int cable, const std::vector<Attachment>& attachments) {
+  int sum = 0;
+  for (const Attachment& attachment : attachments)
+    if (attachment.guide >= 0 && attachment.body == cable_id(cable)) sum += attachment.node;
+  return sum;
 }
 
 /// In no special direction.
@@ -283,10 +293,16 @@ bool Settling::relax(double h, double longest, int steps, Approach& approach) {
   const double radius = smallest_radius(cable_);
   double last = infinity, growth = fastest_growth;
   bool failed = false;
-  int calm = 0;
+  int calm = 0, returns = 0, last_way = 0;
   for (int i = 0; i < steps && approach.iterations > 0; ++i) {
     const SubstepResult substep = advance(approach, h);
-    if (substep.converged) pass_nodes_of_guides();
+    if (substep.converged && returns < most_returns) {
+      const int before = places_of_guides(index_, state_.attachments);
+      pass_nodes_of_guides();
+      const int way = places_of_guides(index_, state_.attachments) - before;
+      if (way * last_way < 0) ++returns;
+      if (way != 0) last_way = way;
+    }
     // What inertia still carries of the loads.
     const double acceleration = 2 * substep.displacement / (h * h);
     const bool lies = touches(approach);
