@@ -13,6 +13,8 @@ namespace {
 constexpr int maximum_iterations = 60;
 /// Error of a node's velocity at which an iteration ends, in segment lengths per second.
 constexpr double velocity_tolerance = 4e-3;
+/// Less where cables and bodies exchange momentum.
+constexpr double passing_part = 1e-2;
 /// Bodies are as much more accurate, in parts of their sizes.
 constexpr double body_accuracy = 30;
 constexpr double fastest_convergence = 0.1;
@@ -173,7 +175,8 @@ bool ContactSolver::crosses(const std::vector<Participant>& participants, const 
 /// round.
 bool ContactSolver::iterate(std::vector<Participant>& participants, std::vector<Touch>& touches) {
   const double h = participants.empty() ? bodies_->substep() : participants.front().substep.h;
-  const double tolerance = velocity_tolerance * std::min(h, longest_tolerated);
+  const bool passes_momentum = std::any_of(touches.begin(), touches.end(), [](const Touch& touch) { return touch.body >= 0; });
+  const double tolerance = (passes_momentum ? passing_part : 1) * velocity_tolerance * std::min(h, longest_tolerated);
   negligible_energy_ = tolerated_ = infinity;
   for (const Participant& p : participants) {
     const double moved = tolerance * p.state->rest_lengths.front();
