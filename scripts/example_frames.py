@@ -1,23 +1,32 @@
 #!/usr/bin/python3
 """example_frames.py: moves the frames of one of config/examples, and says in rviz what there is to see.
 
-Publishes tf at 100 Hz and example/labels. `~example` names the example.
+Publishes tf at 100 Hz and example/labels. `~example` names the example. Where hands let go of something it asks the node for that,
+and for a reset when it begins again.
 """
+import itertools
 import math
 import os
 import sys
+import threading
 
 import rospy
 import tf2_ros
 from geometry_msgs.msg import Point, Quaternion, TransformStamped, Vector3
 from std_msgs.msg import ColorRGBA
+from std_srvs.srv import Trigger
 from visualization_msgs.msg import Marker, MarkerArray
+
+from verlet_cable.msg import CableArray
+from verlet_cable.srv import Unpin
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import node_thread  # noqa: E402
 
 FIXED_FRAME = 'world'
 RATE = 100.0  # [Hz]
+PERIODS = {'harness': 22.0, 'plug': 16.5}  # [s] after which an example begins again
+RELEASES = {'harness': (7.5, ['left_hand', 'right_hand']), 'plug': (6.5, ['grip'])}  # [s] from its beginning, and what is let go of
 
 
 def swing(t, period, phase=0.0):
@@ -64,6 +73,46 @@ def gripper_load(t):
                             pitch=0.4 * swing(t, 6), yaw=math.pi)}
 
 
+def drones_with_bar(t):
+    x, y, yaw = 0.5 * swing(t, 11), 0.3 * swing(t, 9), 0.5 * swing(t, 17)
+    apart = 0.75 + 0.12 * swing(t, 8)  # [m] half the distance of the drones
+    rise = 0.2 * swing(t, 7)           # [m] of the left one above the right one, half of it
+    along, across = apart * math.cos(yaw), apart * math.sin(yaw)
+    roll, pitch = 0.06 * swing(t, 4), 0.08 * swing(t, 5)
+    return {'left_drone': pose(x - along, y - across, 1.9 + rise, roll, pitch, yaw),
+            'right_drone': pose(x + along, y + across, 1.9 - rise, -roll, pitch, yaw)}
+
+
+def ramp(t, begin, end):
+    """0 before `begin` [s], 1 after `end`, smoothly between."""
+    u = min(max((t - begin) / (end - begin), 0.0), 1.0)
+    return u * u * (3 - 2 * u)
+
+
+def harness(t):
+    t %= PERIODS['harness']
+    z = 0.3 - 0.294 * ramp(t, 1, 6) + 0.294 * ramp(t, 8.5, 10.5)
+    x = 0.247 + 0.0028 * (ramp(t, 6, 7) - ramp(t, 11, 12))  # stretched when it lies
+    tilt = 1.1 * (ramp(t, 11, 14) - ramp(t, 17, 20))  # [rad]
+    return {'left_hand': pose(-x, 0, z), 'right_hand': pose(x, 0, z), 'board': pose(0, 0, 0, roll=tilt)}
+
+
+def block_and_tackle(t):
+    return {'jib': pose(0, 0, 3.0, yaw=0.35 * swing(t, 16))}
+
+
+def plug(t):
+    t %= PERIODS['plug']
+    there, pushed, away, pulled = ramp(t, 1, 4), ramp(t, 4, 6), ramp(t, 7, 8.5) - ramp(t, 13, 14.5), ramp(t, 9, 11) - ramp(t, 12, 13)
+    back = ramp(t, 14.5, 16)
+    return {'hand': pose(-0.18 + 0.1 * (there - back) + 0.09 * (pushed - back), 0.12 * away, 0.2 - 0.1 * (there - back)),
+            'far_hand': pose(-0.5 - 0.13 * pulled, 0, 0.2 - 0.1 * pulled)}
+
+
+def finger(t):
+    return {'palm': pose(0, 0, 0.15, pitch=0.3 * swing(t, 9))}
+
+
 # The frames over time, and texts [what, x, y, z, height: m].
 EXAMPLES = {
     'hose_between_arms': (hose_between_arms, [
@@ -81,6 +130,16 @@ EXAMPLES = {
     'gripper_load': (gripper_load, [
         ('the load of a cable on a gripper', 0.3, 0, 1.5, 0.06), ('orange: force, purple: torque', 0.3, 0, 1.42, 0.045),
         ('wall', -0.05, 0, 1.25, 0.05)]),
+    'harness': (harness, [
+        ('two hands lay a wire harness on a board', 0, 0, 0.62, 0.05)]),
+    'block_and_tackle': (block_and_tackle, [
+        ('four parts of one rope: a quarter of the load, four times the way', 0.8, 0, 3.6, 0.12)]),
+    'plug': (plug, [
+        ('a clip takes the cable behind a plug that a hand pushes into a socket', -0.25, 0, 0.33, 0.025)]),
+    'finger': (finger, [
+        ('a tendon bends a finger, rubber bands over sheaves straighten it', 0.01, 0, 0.215, 0.008)]),
+    'drones_with_bar': (drones_with_bar, [
+        ('two drones carry a bar of 1.2 kg on ropes', 0, 0, 2.55, 0.12), ('orange: what each bears', 0, 0, 2.38, 0.09)]),
 }
 
 
@@ -102,21 +161,49 @@ def label(number, text, x, y, z, height):
     return marker
 
 
+def handle(example, started):
+    """Lets go of what the example's hands hold, and resets the cables when it begins again."""
+    unpin, reset = rospy.ServiceProxy('cable/unpin', Unpin), rospy.ServiceProxy('cable/reset', Trigger)
+    seconds, names = RELEASES[example]
+    try:
+        for begin in itertools.count(started.to_sec(), PERIODS[example]):
+            rospy.sleep(begin + seconds - rospy.get_time())
+            for name in names:
+                unpin(name)
+            rospy.sleep(begin + PERIODS[example] - rospy.get_time())
+            reset()
+    except (rospy.ROSException, rospy.ServiceException) as problem:
+        if not rospy.core.is_shutdown_requested():
+            rospy.logwarn('%s', problem)
+
+
 def main():
     node_thread.run('example_frames', move_frames)
 
 
 def move_frames():
-    motion, texts = EXAMPLES[rospy.get_param('~example')]
+    example = rospy.get_param('~example')
+    motion, texts = EXAMPLES[example]
     labels = rospy.Publisher('example/labels', MarkerArray, queue_size=1, latch=True)
     labels.publish([label(number, *text) for number, text in enumerate(texts)])
     broadcaster = tf2_ros.TransformBroadcaster()
     rate = rospy.Rate(RATE)
+
+    def send(now, seconds):
+        broadcaster.sendTransform([transform(name, at, now) for name, at in motion(seconds).items()])
+        rate.sleep()
+
+    if example in RELEASES:
+        there = threading.Event()
+        state = rospy.Subscriber('cable/state', CableArray, lambda message: there.set() if message.cables else None)
+        while not there.is_set() and not rospy.is_shutdown():
+            send(rospy.Time.now(), 0)
+        state.unregister()
+        threading.Thread(target=handle, args=[example, rospy.Time.now()], daemon=True).start()
     started = rospy.Time.now()
     while not rospy.is_shutdown():
         now = rospy.Time.now()
-        broadcaster.sendTransform([transform(name, at, now) for name, at in motion((now - started).to_sec()).items()])
-        rate.sleep()
+        send(now, (now - started).to_sec())
 
 
 if __name__ == '__main__':

@@ -19,9 +19,14 @@ SIZE = (800, 600)            # [pixels] of the window
 WIDE = (1100, 700)           # with panels
 EXAMPLES = {  # [s] until the picture
     'arm_dress_pack': 8,
+    'block_and_tackle': 6,
     'crane': 4,
+    'drones_with_bar': 5,
+    'finger': 3,
     'gripper_load': 5,
+    'harness': 14,
     'hose_between_arms': 7,
+    'plug': 10,
     'rov_tether': 8,
     'tethered_drone': 5,
     'tracker': 4,

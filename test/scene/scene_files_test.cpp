@@ -97,6 +97,30 @@ TEST(SceneFiles, templateHoldsTheDefaultsOfBodies) {
   EXPECT_EQ(attachment.rotation, BodyAttachmentDesc{}.rotation);
 }
 
+TEST(SceneFiles, templateHoldsTheDefaultsOfJunctions) {
+  const SceneDesc scene = read_scene_file(config("scene_template.yaml"));
+  ASSERT_EQ(scene.junctions.size(), 1u);
+  expect_defaults(scene.junctions[0], junction_fields);
+  EXPECT_EQ(scene.junctions[0].type, JunctionDesc{}.type);
+  ASSERT_EQ(scene.junctions[0].branches.size(), 1u);
+  EXPECT_EQ(scene.junctions[0].branches[0].end, BranchDesc{}.end);
+  EXPECT_EQ(scene.junctions[0].branches[0].rotation, BranchDesc{}.rotation);
+}
+
+TEST(SceneFiles, templateHoldsTheDefaultsOfGuides) {
+  const SceneDesc scene = read_scene_file(config("scene_template.yaml"));
+  ASSERT_EQ(scene.guides.size(), 3u);
+  const GuideDesc &eyelet = scene.guides[0], &sheave = scene.guides[1], &clip = scene.guides[2];
+  EXPECT_EQ(eyelet.type, GuideDesc{}.type);
+  EXPECT_EQ(eyelet.rotation, GuideDesc{}.rotation);
+  EXPECT_EQ(eyelet.friction, GuideDesc{}.friction_coefficient());
+  EXPECT_EQ(sheave.friction_coefficient(), infinity);
+  EXPECT_EQ(sheave.inertia, GuideDesc{}.inertia);
+  EXPECT_EQ(sheave.bearing_friction, GuideDesc{}.bearing_friction);
+  EXPECT_FALSE(clip.place);
+  expect_defaults(clip, clip_fields);
+}
+
 /// Whether the template has the key somewhere with a comment above it that has the unit.
 bool is_documented(const std::vector<std::string>& lines, const std::string& key, const std::string& unit) {
   for (std::size_t i = 1; i < lines.size(); ++i) {
@@ -133,6 +157,9 @@ TEST(SceneFiles, templateDocumentsEveryKey) {
   expect_documented(lines, grid_fields);
   expect_documented(lines, grid_integer_fields);
   expect_documented(lines, body_fields);
+  expect_documented(lines, junction_fields);
+  expect_documented(lines, sheave_fields);
+  expect_documented(lines, clip_fields);
   for (const char* key : {"frame_id",
                           "numerical_damping",
                           "gravity",
@@ -184,6 +211,11 @@ TEST(SceneFiles, templateDocumentsEveryKey) {
                           "angular_velocity",
                           "shapes",
                           "broadcast_tf",
+                          "cable",
+                          "junctions",
+                          "branches",
+                          "end",
+                          "guides",
                           "integrator"})
     EXPECT_TRUE(is_documented(lines, key, "")) << key;
 }

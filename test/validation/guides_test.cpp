@@ -293,8 +293,10 @@ TEST(Guides, WhatIsNotSimulatedIsRefused) {
   EXPECT_THROW(World{scene}, SceneError);
   scene.guides.pop_back();
   EXPECT_NO_THROW(World{scene});
-  scene.materials[0].material.bending_stiffness = {0.02, 0.005};
-  scene.materials[0].material.torsional_stiffness = 0.01;
+  scene.guides[0].type = GuideDesc::Type::sheave;
+  scene.guides[0].radius = 0.05;
+  scene.guides[0].inertia = 1e-3;
+  scene.guides[0].friction = 0.5;
   EXPECT_THROW(World{scene}, SceneError);
 }
 

@@ -23,6 +23,7 @@ struct SimulatedBody {
   Vector3 center_of_mass = Vector3::Zero();           ///< [m] in its frame
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< [kg m^2] about the center of mass, in its frame's axes
   std::vector<BodyShape> shapes;
+  bool is_junction = false;                    ///< it joins cables where they branch, light and without size: nobody sees it
   double friction = 0;                         ///< Coulomb coefficient
   double linear_damping = 0;                   ///< [N s/m]
   double angular_damping = 0;                  ///< [N m s]

@@ -47,6 +47,8 @@ struct Attachment {
   Vector3 torque = Vector3::Zero();  ///< [N m] likewise, about the attachment's point
   /// Index into World::guides() of the guide that it is: the cable slides through it; -1: it is none.
   int guide = -1;
+  bool is_junction = false;  ///< the holder is what joins the cable to others where they branch
+  int held_junction = -1;    ///< index into World::bodies() of the one at the node, which is held in its place; -1: there is none
   /// [m] of a sheave, in its axes: where the cable comes to the wheel (`node`) and leaves it (the node after that)
   std::array<Vector3, 2> tangent_points{Vector3::Zero(), Vector3::Zero()};
 };
@@ -54,6 +56,16 @@ struct Attachment {
 /// Whether a cable lies on it between two nodes, instead of going through it at one.
 inline bool is_wheel(const Attachment& attachment) {
   return attachment.guide >= 0 && attachment.tangent_points[0] != attachment.tangent_points[1];
+}
+
+/// Index into World::bodies() of the body that it holds, -1: it holds a node.
+inline int held_body(const Attachment& attachment) {
+  return attachment.body.is_rigid_body() ? attachment.body.index : attachment.held_junction;
+}
+
+/// Whether it is one that the scene or a pin names as such: guides and what joins cables at junctions are not.
+inline bool is_named(const Attachment& attachment) {
+  return attachment.guide < 0 && !attachment.is_junction;
 }
 
 struct StepResult {
@@ -188,11 +200,11 @@ class World {
   const std::vector<SimulatedCable>& cables() const;  ///< those that have started, pieces of cuts included
   const std::vector<SimulatedNet>& nets() const;      ///< those that have started
   const std::vector<SimulatedParticle>& particles() const;
-  const std::vector<SimulatedBody>& bodies() const;    ///< those that have started
+  const std::vector<SimulatedBody>& bodies() const;    ///< those of the scene, then those that join cables at its junctions
   const std::vector<Attachment>& attachments() const;  ///< of the started cables, nets and bodies; guides are among them
   const std::vector<SimulatedGuide>& guides() const;   ///< those of the started cables
   GuideView view_guide(int guide) const;
-  const std::vector<Obstacle>& obstacles() const;      ///< those of the scene, of its robot's links, then those that were set
+  const std::vector<Obstacle>& obstacles() const;  ///< those of the scene, of its robot's links, then those that were set
   const Findings& findings() const;
 
   /// Starts the waiting cables and nets whose frames are known now, at their default or given shapes. How many.
@@ -227,7 +239,9 @@ int find(const std::vector<SimulatedGuide>& guides, const std::string& name);
 bool is_sound(const Pose& pose);
 /// Frames that a scene names, by id: the fixed frame first, then in order of appearance, each once.
 std::vector<std::string> frame_names(const SceneDesc& scene);
-/// Their initial poses, by id; `known` is false where the scene gives none.
+/// Frames whose poses are results, which follow those: of the scene's bodies, then of its junctions.
+std::vector<std::string> computed_frame_names(const SceneDesc& scene);
+/// Initial poses of the scene's frames, by id; `known` is false where the scene gives none.
 BoundaryInputs initial_frames(const SceneDesc& scene);
 /// Inextensible cables that are shorter than the distance of two neighbouring attachments with the frames at `frames` (by id;
 /// unknown ones are left out): one line each, like `validate`, which does this at the initial poses.

@@ -5,7 +5,7 @@
 
 namespace verlet_cable {
 
-SimulatedBody make_body(const BodyDesc& desc, int frame) {
+SimulatedBody make_body(const BodyDesc& desc) {
   const MassProperties properties = *mass_properties(desc);
   SimulatedBody body;
   body.name = desc.name;
@@ -16,7 +16,6 @@ SimulatedBody make_body(const BodyDesc& desc, int frame) {
   body.friction = desc.friction;
   body.linear_damping = desc.linear_damping;
   body.angular_damping = desc.angular_damping;
-  body.frame = frame;
   if (desc.pose) body.pose = pose_of(*desc.pose);
   body.velocity = desc.velocity;
   body.angular_velocity = desc.angular_velocity;

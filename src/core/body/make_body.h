@@ -5,7 +5,7 @@
 
 namespace verlet_cable {
 
-/// A body of a sound scene, whose frame has that index. Without a pose of its own it is at the fixed frame's.
-SimulatedBody make_body(const BodyDesc& desc, int frame);
+/// A body of a sound scene; it has no frame yet. Without a pose of its own it is at the fixed frame's.
+SimulatedBody make_body(const BodyDesc& desc);
 
 }  // namespace verlet_cable

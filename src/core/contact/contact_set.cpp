@@ -102,16 +102,26 @@ void ContactSet::find(const std::vector<SimulatedCable>& cables, const std::vect
   if (!rules.pairs.self && !rules.pairs.between_cables) return;
   double radius = 0;
   for (const int cable : island) radius = std::max(radius, CableMaterials(cables[cable]).largest_radius());
-  grid_.update(cables, island, rules.pairs, reach(0, radius, h) + radius, h, pairs);
+  find_joined(attachments, members);
+  grid_.update(cables, island, rules.pairs, joined_, reach(0, radius, h) + radius, h, pairs);
   find_pairs(cables, members, pairs, radius, h);
 }
 
-/// Which nodes are attached: nothing but their holders moves them.
+void ContactSet::find_joined(const std::vector<Attachment>& attachments, const std::vector<ContactMember>& members) {
+  joined_.clear();
+  for (const ContactMember& member : members)
+    for (const KinematicTarget& target : member.targets->nodes) {
+      const Attachment& attachment = attachments[target.attachment];
+      if (attachment.is_junction) joined_.push_back({attachment.body.index, attachment.node, attachment.holder});
+    }
+}
+
+/// Which nodes are attached: nothing but their holders moves them. What joins cables is moved by them.
 void ContactSet::set_held(const SimulatedCable& cable, const KinematicTargets& targets,
                           const std::vector<Attachment>& attachments) {
   held_.assign(cable.state.nodes(), 0);
   for (const KinematicTarget& target : targets.nodes)
-    if (attachments[target.attachment].node == target.node) held_[target.node] = 1;
+    if (attachments[target.attachment].node == target.node && !attachments[target.attachment].is_junction) held_[target.node] = 1;
 }
 
 /// `bodies`: the shapes of one after those of the other.

@@ -50,6 +50,7 @@ class ContactSet {
                    const std::vector<Attachment>& attachments, double h);
   void set_inside(const SimulatedCable& cable, const KinematicTargets& targets, const MovingObstacle* first,
                   const MovingObstacle* last, const std::vector<Attachment>& attachments);
+  void find_joined(const std::vector<Attachment>& attachments, const std::vector<ContactMember>& members);
   void find_obstacle(const SimulatedCable& cable, int index, const ContactMember& member, const MovingObstacle& moving,
                      const std::vector<Attachment>& attachments, double h);
   void find_pairs(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members, const SegmentPairs& found,
@@ -60,6 +61,7 @@ class ContactSet {
   bool recall(const ContactMember& member, Touch& touch);
 
   SegmentGrid grid_;
+  std::vector<SegmentGrid::JoinedNode> joined_;
   ContactRules rules_;
   double time_ = 0;  ///< [s] in which contacts come to rest
   std::vector<Touch> touches_;

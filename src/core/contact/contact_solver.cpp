@@ -176,7 +176,7 @@ bool ContactSolver::crosses(const std::vector<Participant>& participants, const 
 bool ContactSolver::iterate(std::vector<Participant>& participants, std::vector<Touch>& touches) {
   const double h = participants.empty() ? bodies_->substep() : participants.front().substep.h;
   const bool passes_momentum = std::any_of(touches.begin(), touches.end(), [](const Touch& touch) { return touch.body >= 0; });
-  const double tolerance = (passes_momentum ? passing_part : 1) * velocity_tolerance * std::min(h, longest_tolerated);
+  const double tolerance = velocity_tolerance * std::min(h, longest_tolerated);
   negligible_energy_ = tolerated_ = infinity;
   for (const Participant& p : participants) {
     const double moved = tolerance * p.state->rest_lengths.front();
@@ -211,8 +211,12 @@ bool ContactSolver::iterate(std::vector<Participant>& participants, std::vector<
     }
     // After a change the next correction may be as large as this one; else it is about that much smaller.
     const double ratio = i == 0 || changed ? 1 : largest / last;
-    const double enough = i < patient_iterations ? tolerance : impatience * tolerance;
-    if (largest * std::clamp(ratio, fastest_convergence, 1.0) < enough) {
+    const double strict = passes_momentum ? passing_part * tolerance : tolerance;
+    const double enough = i < patient_iterations ? strict : impatience * tolerance;
+    const bool consistent = std::all_of(participants.begin(), participants.end(), [](const Participant& p) {
+      return p.stepper->flows_are_consistent(p.substep);
+    });
+    if (largest * std::clamp(ratio, fastest_convergence, 1.0) < enough && consistent) {
       for (Participant& p : participants) p.result.converged = true;
       return true;
     }

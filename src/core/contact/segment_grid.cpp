@@ -12,6 +12,9 @@ namespace {
 
 /// Segments of one cable touch only where the cable between them is longer than this, in radii: it cannot bend more sharply.
 constexpr double bend_radii = 2.5;
+/// Those that a junction joins only where the way between them through it is longer than this, in radii: branches come off at
+/// angles, and are in each other there.
+constexpr double junction_radii = 12;
 /// A margin lets nodes move for so many substeps until the pairs have to be found anew,
 constexpr double margin_substeps = 20;
 /// by no more than so many segment lengths, or a radius, and no less than this part of a radius.
@@ -30,6 +33,26 @@ bool longer(const CableState& state, int first, int last, double length) {
   for (int i = first; i < last; ++i) {
     length -= state.rest_lengths[i];
     if (length < 0) return true;
+  }
+  return false;
+}
+
+/// [m] Along the cable at rest, from a segment to a node.
+double way_to(const CableState& state, int segment, int node) {
+  return node <= segment ? state.length(node, segment) : state.length(segment + 1, node);
+}
+
+/// Whether the way from one segment to another through a junction is no longer than `length` [m].
+bool close_at_junction(const std::vector<SimulatedCable>& cables, const std::vector<SegmentGrid::JoinedNode>& joined,
+                       const SegmentId& first, const SegmentId& second, double length) {
+  for (const SegmentGrid::JoinedNode& a : joined) {
+    if (a.cable != first.cable) continue;
+    const double way = way_to(cables[a.cable].state, first.segment, a.node);
+    if (way > length) continue;
+    for (const SegmentGrid::JoinedNode& b : joined)
+      if (b.junction == a.junction && b.cable == second.cable &&
+          way + way_to(cables[b.cable].state, second.segment, b.node) <= length)
+        return true;
   }
   return false;
 }
@@ -71,7 +94,7 @@ double find_margin(const std::vector<SimulatedCable>& cables, const std::vector<
 }  // namespace
 
 void SegmentGrid::update(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, const Rules& rules,
-                         double reach, double h, SegmentPairs& found) {
+                         const std::vector<JoinedNode>& joined, double reach, double h, SegmentPairs& found) {
   if (follow_nodes(cables, group, h, found)) return;
   found.margin = find_margin(cables, group, h);
   found.places.clear();
@@ -82,7 +105,7 @@ void SegmentGrid::update(const std::vector<SimulatedCable>& cables, const std::v
   found.moved.resize(found.places.size());
   found.speeds.resize(found.places.size());
   fill(cables, group, reach, found.margin);
-  collect(cables, rules, reach, found);
+  collect(cables, rules, joined, reach, found);
   follow_nodes(cables, group, h, found);
 }
 
@@ -113,7 +136,8 @@ void SegmentGrid::fill(const std::vector<SimulatedCable>& cables, const std::vec
     }
 }
 
-void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules& rules, double reach, SegmentPairs& found) {
+void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules& rules, const std::vector<JoinedNode>& joined,
+                          double reach, SegmentPairs& found) {
   found.pairs.clear();
   std::size_t buckets = 1;
   while (buckets < 2 * entries_.size()) buckets *= 2;
@@ -136,8 +160,9 @@ void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules
             const bool same = first.id.cable == second.id.cable;
             if (same ? !rules.self : !rules.between_cables) continue;
             const double other_radius = CableMaterials(cables[second.id.cable])[second.id.segment].radius;
-            const double bend = bend_radii * std::max(radius, other_radius);
-            if (same && !longer(cable.state, first.id.segment + 1, second.id.segment, bend)) continue;
+            const double thicker = std::max(radius, other_radius);
+            if (same && !longer(cable.state, first.id.segment + 1, second.id.segment, bend_radii * thicker)) continue;
+            if (!joined.empty() && close_at_junction(cables, joined, first.id, second.id, junction_radii * thicker)) continue;
             near_.push_back(b);
           }
         }

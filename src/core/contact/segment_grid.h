@@ -39,12 +39,17 @@ class SegmentGrid {
     bool self = false;            ///< segments of one cable
     bool between_cables = false;  ///< segments of two
   };
+  /// A node of a cable that is joined with others at a junction.
+  struct JoinedNode {
+    int cable = 0, node = 0;
+    int junction = 0;  ///< the body that it is
+  };
 
   /// Brings `found` up to date: those of `group`, ascending indices into `cables`, whose centre lines may come closer in the
   /// next h [s] than the sum of the radii and `reach` [m]. No centre lines of a pair are closer now than its distance less what
-  /// its two segments have moved.
-  void update(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, const Rules& rules, double reach,
-              double h, SegmentPairs& found);
+  /// its two segments have moved. `joined`: pairs that are close to each other by way of a junction do not count.
+  void update(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, const Rules& rules,
+              const std::vector<JoinedNode>& joined, double reach, double h, SegmentPairs& found);
 
  private:
   struct Entry {
@@ -57,7 +62,8 @@ class SegmentGrid {
   };
 
   void fill(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, double reach, double margin);
-  void collect(const std::vector<SimulatedCable>& cables, const Rules& rules, double reach, SegmentPairs& found);
+  void collect(const std::vector<SimulatedCable>& cables, const Rules& rules, const std::vector<JoinedNode>& joined, double reach,
+               SegmentPairs& found);
   std::size_t bucket(const std::array<std::int32_t, 3>& cell) const;
 
   std::vector<Entry> entries_;

@@ -14,7 +14,14 @@ namespace {
 
 bool holds_something(const std::vector<Attachment>& attachments, const BodyId& body, int node) {
   return std::any_of(attachments.begin(), attachments.end(),
-                     [&](const Attachment& a) { return a.body == body && a.node == node; });
+                     [&](const Attachment& a) { return a.body == body && a.node == node && !a.is_junction; });
+}
+
+/// Index of the body that joins a node to other cables, -1 if there is none.
+int junction_at(const std::vector<Attachment>& attachments, const BodyId& body, int node) {
+  const auto joint = std::find_if(attachments.begin(), attachments.end(),
+                                  [&](const Attachment& a) { return a.body == body && a.node == node && a.is_junction; });
+  return joint == attachments.end() ? -1 : joint->holder;
 }
 
 /// `base` followed by the lowest number for which `taken` is false.
@@ -116,6 +123,9 @@ EditResult World::Implementation::apply(const edit::Pin& pin) {
                             : pin.body.is_net()      ? "net " + state.nets[pin.body.index].model.name
                                                      : "cable " + state.cables[pin.body.index].model->name);
   if (holds_something(state.attachments, pin.body, pin.node)) return refused(node + "; is already held by an attachment");
+  const int junction = junction_at(state.attachments, pin.body, pin.node);
+  if (junction >= 0 && pin.type != AttachmentType::hinge)
+    return refused(node + "; is where cables branch, which a pin can hold by a hinge");
   if (pin.body.is_cable()) {
     const int other = joining_node(state.cable_progress[pin.body.index].drive, pin.node);
     if (other >= 0 && holds_something(state.attachments, pin.body, other))
@@ -127,6 +137,7 @@ EditResult World::Implementation::apply(const edit::Pin& pin) {
   attachment.node = pin.node;
   attachment.frame = pin.frame;
   attachment.holder = holder;
+  attachment.held_junction = junction;
   if (pin.body.is_cable()) attachment.type = pin.type;
   attachment.pose.position = pin.pose.position;
   if (pin.body.is_cable()) attachment.pose.orientation = pin.pose.orientation.normalized();
@@ -140,6 +151,7 @@ EditResult World::Implementation::apply(const edit::Unpin& unpin) {
   const int index = find(state.attachments, unpin.name);
   if (index < 0) return refused("name: " + unpin.name + "; there is no such attachment");
   if (state.attachments[index].guide >= 0) return refused("name: " + unpin.name + "; is a guide, which nothing unpins");
+  if (state.attachments[index].is_junction) return refused("name: " + unpin.name + "; is a junction, which nothing unpins");
   erase_attachment(index);
   return {true, "", unpin.name};
 }
@@ -170,6 +182,7 @@ EditResult World::Implementation::apply(const edit::MoveAttachment& move) {
   const int index = find(state.attachments, move.name);
   if (index < 0) return refused("name: " + move.name + "; there is no such attachment");
   if (state.attachments[index].guide >= 0) return refused("name: " + move.name + "; is a guide, which only its frame moves");
+  if (state.attachments[index].is_junction) return refused("name: " + move.name + "; is a junction, which only its cables move");
   if (const std::string problem = pose_problem("offset", move.pose); !problem.empty()) return refused(problem);
   state.attachments[index].pose = {move.pose.position, move.pose.orientation.normalized()};
   return {true, "", move.name};

@@ -231,7 +231,7 @@ void World::Implementation::reverse_cable(int index) {
       std::swap(a.tangent_points[0], a.tangent_points[1]);
       continue;
     }
-    a.pose.orientation = a.pose.orientation * turned;
+    if (a.held_junction < 0) a.pose.orientation = a.pose.orientation * turned;
   }
   for (KinematicTarget& h : state.cable_progress[index].targets.nodes) h.node = n - h.node;
   for (DirectionTarget& h : state.cable_progress[index].targets.directions) {

@@ -18,6 +18,9 @@ struct GuidedFlow {
   double acceleration = 0;              ///< [m/s^2] in and out: mean over the last substep
 };
 
+/// Changes of the loads on the nodes around a guide, from that before the segment before it on [N].
+using FlowColumn = std::array<Vector3, 6>;
+
 /// A flow while a substep is solved for it. Its way is one more unknown; the equation of motion of what flows, with the
 /// generalised forces of the cable's energy, is one more equation:
 ///   mass (2 / h) (way / h - rate) = T_after - T_before + gravity + friction
@@ -29,6 +32,7 @@ struct Flow {
   Mode mode = Mode::free;
   bool changed = false;                      // whether the mode did in this iteration
   int changes = 0;                           // of the mode, in the substep
+  double density = 0;                        // [kg/m] of what flows: the segments beside a guide are of one material
   double mass = 0;                           // [kg]
   double drag = 0;                           // [N s/m]
   double rate = 0;                           // [m/s] at the start
@@ -37,12 +41,16 @@ struct Flow {
   std::array<double, 2> stretch{1, 1};       // of target lengths
   Vector3 velocity = Vector3::Zero();        // [m/s] of the guide, mean
   Vector3 velocity_change = Vector3::Zero();
+  bool moves = false;  // whether a body holds the guide, whose motion is found with the cable's
   double way = 0;         // the unknown [m]
   double correction = 0;  // of it [m]
   // Its row of the matrix: for the multipliers of the two segments and for the way
   std::array<double, 2> row{0, 0};
   double diagonal = 0;
   std::array<double, 2> gap{0, 0};  // its column: in the rows of the two segments
+  /// Of the nodes, where the cable bends; but for friction the same in its row
+  FlowColumn column{};
+  int first_node() const { return before - 1; }
 };
 
 }  // namespace verlet_cable

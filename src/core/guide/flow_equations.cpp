@@ -3,6 +3,8 @@
 #include <utility>
 
 #include "rod/cable_stepper.h"
+#include "rod/rod_frames.h"
+#include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
 
@@ -38,6 +40,24 @@ void solve_dense(int size, std::vector<double>& matrix, std::vector<double>& vec
   }
 }
 
+double mean(double a, double b, double part) {
+  return a + part * (b - a);
+}
+std::array<double, 2> mean(const std::array<double, 2>& a, const std::array<double, 2>& b, double part) {
+  return {mean(a[0], b[0], part), mean(a[1], b[1], part)};
+}
+
+/// What the material at the guide's nodes has: where it comes from, there it was.
+template <class T>
+void flow_on(const Flow& flow, const std::vector<double>& rest_lengths, std::vector<T>& values) {
+  for (const int node : {flow.first, flow.last}) {
+    const int from = flow.way > 0 ? node - 1 : node + 1;
+    const double length = rest_lengths[std::min(from, node)];
+    values[node] = mean(values[node], values[from], std::min(std::abs(flow.way) / length, 1.0));
+    if (flow.first == flow.last) break;
+  }
+}
+
 bool resists(const GuidedFlow& guided) {
   return guided.friction > 0 || guided.resistance > 0 || guided.is_blocked[0] || guided.is_blocked[1];
 }
@@ -54,10 +74,10 @@ bool CableStepper::lies_on_wheel(int segment) const {
 
 void CableStepper::start_flows(const Substep& s, const CableState& state) {
   if (flows_.empty()) return;
-  const double density = s.model.material.linear_density;
+  const CableMaterials materials(s.model, state);
   bending_.start_flows(state, segment_, s.boundary.flows);
   system_.flow_load.assign(flows_.size(), 0.0);
-  flow_response_.resize(2 * flows_.size() * flows_.size());
+  flow_response_.resize(3 * flows_.size() * flows_.size());
   flow_matrix_.resize(flows_.size() * flows_.size());
   flow_solution_.resize(flows_.size());
   for (std::size_t k = 0; k < flows_.size(); ++k) {
@@ -69,8 +89,9 @@ void CableStepper::start_flows(const Substep& s, const CableState& state) {
     flow.way = flow.correction = 0;
     double length = 0.5 * (state.rest_lengths[flow.before] + state.rest_lengths[flow.after]);
     for (int i = flow.first; i < flow.last; ++i) length += state.rest_lengths[i];
-    flow.mass = density * length + guided.inertia;
-    flow.drag = s.model.material.drag / s.damping_time() * length;
+    flow.density = materials[flow.before].linear_density;
+    flow.mass = flow.density * length + guided.inertia;
+    flow.drag = materials[flow.before].drag / s.damping_time() * length;
     for (const int side : {0, 1}) {
       const int i = side == 0 ? flow.before : flow.after;
       flow.start_length[side] = state.rest_lengths[i];
@@ -78,7 +99,10 @@ void CableStepper::start_flows(const Substep& s, const CableState& state) {
     }
     Vector3 start = get(velocity_, flow.first), end = start;
     for (const HeldNode& held : s.boundary.nodes)
-      if (held.node == flow.first) end = held.velocity;
+      if (held.node == flow.first) {
+        end = held.velocity;
+        flow.moves = held.body >= 0;
+      }
     flow.velocity_change = s.statics ? Vector3::Zero() : Vector3(end - start);
     flow.velocity = s.statics ? Vector3::Zero() : Vector3(get(displacement_, flow.first) / s.h);
     flow.mode = Flow::Mode::free;
@@ -120,12 +144,14 @@ void CableStepper::set_flow_lengths(const Substep& s) {
   }
   for (const GrowingSegment& growing : s.boundary.growing) rest_growth_[growing.segment] = s.h * growing.growth;
   bending_.forget_flows();
+  if (rod_.active()) rod_.forget_flows();
   for (const Flow& flow : flows_) {
     target_length_[flow.before] -= flow.stretch[0] * flow.way;
     target_length_[flow.after] += flow.stretch[1] * flow.way;
     rest_growth_[flow.before] -= flow.way;
     rest_growth_[flow.after] += flow.way;
     bending_.add_flow(flow.before, flow.after, flow.way);
+    if (rod_.active()) rod_.add_flow(flow.before, flow.after, flow.way);
   }
 }
 
@@ -133,8 +159,8 @@ void CableStepper::set_flow_lengths(const Substep& s) {
 /// that energy is conserved: with lengths s and rest lengths l at the start and (') the end it is
 ///   EA / 2 ((s^2 + s'^2) / (2 l l') - 1).
 double CableStepper::energy_excess(const Substep& s, int i, double start_length) const {
-  const double stiffness = s.model.material.axial_stiffness;
-  if (stiffness == infinity) return 0;
+  if (!is_elastic_at(i)) return 0;
+  const double stiffness = axial_stiffness_[i];
   const double end_length = target_length_[i], end = std::sqrt(end_square_[i]);
   if (s.part() == 1) return 0.5 * stiffness * (end / end_length - 1) * (end / end_length - 1);
   const double derivative =
@@ -144,12 +170,12 @@ double CableStepper::energy_excess(const Substep& s, int i, double start_length)
 }
 
 void CableStepper::evaluate_flows(const Substep& s) {
-  const MaterialDesc& material = s.model.material;
-  const double part = s.part(), density = material.linear_density;
-  const bool elastic = material.axial_stiffness < infinity;
+  const double part = s.part();
   for (std::size_t k = 0; k < flows_.size(); ++k) {
     Flow& flow = flows_[k];
     const GuidedFlow& guided = s.boundary.flows[k];
+    const double density = flow.density;
+    const bool elastic = is_elastic_at(flow.before);
     const std::array<int, 2> segments{flow.before, flow.after};
     // Friction is between tensions; without it they are equal, and so is what the energy makes of them.
     const bool frictionless = flow.mode == Flow::Mode::free;
@@ -161,14 +187,20 @@ void CableStepper::evaluate_flows(const Substep& s) {
         const double rest = 1 / (1 / start + part * (1 / end - 1 / start)), length = std::sqrt(end_square_[i]);
         evaluate_elastic_length(s, i, rest);
         arm[side] = length_[i] + part * (length - length_[i]);
-        const double damping = material.axial_damping / (s.damping_time() * rest);
-        const double slope = part * (material.axial_stiffness / rest - tension_density_[i]) + damping;
-        flow.gap[side] = sign * (material.axial_stiffness * arm[side] * part / (end * end) + damping) * length / slope;
+        const double damping = axial_damping_[i] / (s.damping_time() * rest);
+        const double slope = part * (axial_stiffness_[i] / rest - tension_density_[i]) + damping;
+        flow.gap[side] = sign * (axial_stiffness_[i] * arm[side] * part / (end * end) + damping) * length / slope;
       } else {
         arm[side] = length_[i] + part * (end - length_[i]);
         flow.gap[side] = sign * flow.stretch[side] * end;
       }
       tension[side] = tension_density_[i] * arm[side] + (frictionless ? energy_excess(s, i, start) : 0);
+    }
+
+    if (flow.moves && !s.statics) {
+      const Vector3 u = get(displacement_, flow.first), v = get(velocity_, flow.first);
+      flow.velocity = u / s.h;
+      flow.velocity_change = s.inertia() * (u / s.h - v);
     }
 
     // What drives it: tensions, the weight of what flows, and the energy of bends beside the guide.
@@ -178,7 +210,7 @@ void CableStepper::evaluate_flows(const Substep& s) {
     Vector3 along = get(middle_, flow.before) + get(middle_, flow.after);
     for (int i = flow.first; i < flow.last; ++i) along += 2 * get(middle_, i);
     double drive = tension[1] - tension[0] + 0.5 * density * gravity.dot(along);
-    drive += bending_.flow_force(flow.before, flow.after, middle_);
+    drive += rod_.active() ? rod_.flow_force(flow.before, flow.after) : bending_.flow_force(flow.before, flow.after, middle_);
     if (fluid_.active()) {
       const Vector3 direction = 0.5 * (get(middle_, flow.before).normalized() + get(middle_, flow.after).normalized());
       drive += fluid_.force(flow.first).dot(direction);
@@ -201,6 +233,7 @@ void CableStepper::evaluate_flows(const Substep& s) {
       }
       set(system_.load, node, get(system_.load, node) + load);
     }
+    const double bends = bending_.flow_column(flow.before, flow.after, middle_, flow.column);
     drive -= flow.drag * flow.way;
     drive -= flow.mass * s.inertia() / s.h * (flow.way / s.h - flow.rate);
 
@@ -236,7 +269,7 @@ void CableStepper::evaluate_flows(const Substep& s) {
     }
     const bool forward = mode == Flow::Mode::forward, backward = mode == Flow::Mode::backward;
     flow.row = {-(forward ? ratio : 1) * arm[0], (backward ? ratio : 1) * arm[1]};
-    flow.diagonal = -flow.mass * s.inertia() / (s.h * s.h) - flow.drag;
+    flow.diagonal = -flow.mass * s.inertia() / (s.h * s.h) - flow.drag + bends;
     if (!elastic) flow.diagonal += part * (tension_density_[flow.before] + tension_density_[flow.after]);
     system_.flow_load[k] = drive - (forward ? resistance[0] : backward ? -resistance[1] : 0);
   }
@@ -271,11 +304,15 @@ void CableStepper::factor_flows() {
     system_.gap.assign(segments_ + 2, 0.0);
     system_.gap[flows_[j].before] += flows_[j].gap[0];
     system_.gap[flows_[j].after] += flows_[j].gap[1];
+    add_column(flows_[j], 1);
     solve_segments();
     for (int k = 0; k < count; ++k) {
-      flow_response_[2 * (j * count + k)] = multiplier_correction()[flows_[k].before];
-      flow_response_[2 * (j * count + k) + 1] = multiplier_correction()[flows_[k].after];
+      double* const response = &flow_response_[3 * (j * count + k)];
+      response[0] = multiplier_correction()[flows_[k].before];
+      response[1] = multiplier_correction()[flows_[k].after];
+      response[2] = along_column(flows_[k]);
     }
+    add_column(flows_[j], -1);
   }
   system_.moves_held = moves_held;
   std::swap(system_.load, kept_load_);
@@ -289,10 +326,13 @@ void CableStepper::let_flow() {
   const std::vector<double>& multiplier = multiplier_correction();
   for (int k = 0; k < count; ++k) {
     const Flow& flow = flows_[k];
-    flow_solution_[k] = system_.flow_load[k] + flow.row[0] * multiplier[flow.before] + flow.row[1] * multiplier[flow.after];
+    const double bends = flow.mode == Flow::Mode::sticking ? 0 : 1;
+    flow_solution_[k] = system_.flow_load[k] + flow.row[0] * multiplier[flow.before] + flow.row[1] * multiplier[flow.after] +
+                        bends * along_column(flow);
     for (int j = 0; j < count; ++j) {
-      const double* response = &flow_response_[2 * (j * count + k)];
-      flow_matrix_[k * count + j] = -flow.row[0] * response[0] - flow.row[1] * response[1] - (j == k ? flow.diagonal : 0);
+      const double* response = &flow_response_[3 * (j * count + k)];
+      flow_matrix_[k * count + j] =
+          -flow.row[0] * response[0] - flow.row[1] * response[1] - bends * response[2] - (j == k ? flow.diagonal : 0);
     }
   }
   solve_dense(count, flow_matrix_, flow_solution_);
@@ -302,8 +342,35 @@ void CableStepper::let_flow() {
     system_.gap[flows_[k].before] += flows_[k].gap[0] * flow_solution_[k];
     system_.gap[flows_[k].after] += flows_[k].gap[1] * flow_solution_[k];
   }
-  solve_segments();
+  if (!bending_.active()) {
+    solve_segments();
+  } else {
+    flow_node_load_ = system_.load;
+    for (const Flow& flow : flows_) add_column(flow, flow.correction);
+    solve_segments();
+    std::swap(system_.load, flow_node_load_);
+  }
   std::swap(system_.gap, flow_gap_);
+}
+
+/// Adds what a way changes of the loads on nodes.
+void CableStepper::add_column(const Flow& flow, double way) {
+  for (std::size_t i = 0; i < flow.column.size(); ++i) {
+    const int node = flow.first_node() + static_cast<int>(i);
+    if (node < 0 || node > segments_) continue;
+    set(system_.load, node, get(system_.load, node) + way * flow.column[i]);
+  }
+}
+
+/// What the last solution moves along what a flow changes of the loads [N].
+double CableStepper::along_column(const Flow& flow) const {
+  if (!bending_.active()) return 0;
+  double sum = 0;
+  for (std::size_t i = 0; i < flow.column.size(); ++i) {
+    const int node = flow.first_node() + static_cast<int>(i);
+    if (node >= 0 && node <= segments_) sum += flow.column[i].dot(get(correction(), node));
+  }
+  return sum;
 }
 
 /// False if so much would flow that next to nothing is left.
@@ -326,25 +393,23 @@ bool CableStepper::flows_are_consistent(const Substep& s) const {
   });
 }
 
-/// What flows turns round the guide, and is accelerated there: neither is in the equations of its held nodes.
-void CableStepper::react_to_flows(const Substep& s) {
-  if (s.statics) return;
-  const double density = s.model.material.linear_density;
-  for (const Flow& flow : flows_) {
-    const Vector3 before = get(middle_, flow.before), after = get(middle_, flow.after);
-    const double speed = flow.way / s.h, gain = (end_rate(s, flow) - flow.rate) / s.h;
-    Vector3 way = 0.5 * (before + after);
-    for (int i = flow.first; i < flow.last; ++i) way += get(middle_, i);
-    const Vector3 force = density * (speed * speed * (after.normalized() - before.normalized()) + gain * way);
-    for (HeldNode& held : s.boundary.nodes)
-      if (held.node == flow.first) held.force -= force;
-  }
+/// On the holder of a node: what flows turns round the guide, and is accelerated there; neither is in the equations of its held
+/// nodes.
+Vector3 CableStepper::flow_reaction(const Substep& s, int node) const {
+  if (s.statics) return Vector3::Zero();
+  const auto flow = std::find_if(flows_.begin(), flows_.end(), [node](const Flow& f) { return f.first == node; });
+  if (flow == flows_.end()) return Vector3::Zero();
+  const Vector3 before = get(middle_, flow->before), after = get(middle_, flow->after);
+  const double speed = flow->way / s.h, gain = (end_rate(s, *flow) - flow->rate) / s.h;
+  Vector3 way = 0.5 * (before + after);
+  for (int i = flow->first; i < flow->last; ++i) way += get(middle_, i);
+  return -flow->density * (speed * speed * (after.normalized() - before.normalized()) + gain * way);
 }
 
 void CableStepper::finish_flows(const Substep& s, CableState& state) {
-  const double half_density = 0.5 * s.model.material.linear_density;
   for (std::size_t k = 0; k < flows_.size(); ++k) {
     const Flow& flow = flows_[k];
+    const double half_density = 0.5 * flow.density;
     GuidedFlow& guided = s.boundary.flows[k];
     double rate = s.statics || flow.mode == Flow::Mode::sticking ? 0 : end_rate(s, flow);
     if ((flow.mode == Flow::Mode::forward && rate < 0) || (flow.mode == Flow::Mode::backward && rate > 0)) rate = 0;
@@ -360,10 +425,55 @@ void CableStepper::finish_flows(const Substep& s, CableState& state) {
   }
 }
 
+/// The same in the linear system of impulses, whose unknowns for flows are the changes of their rates.
+void CableStepper::begin_flow_projection(const Substep& s, const CableState& state) {
+  system_.flow_load.assign(flows_.size(), 0.0);
+  for (std::size_t k = 0; k < flows_.size(); ++k) {
+    Flow& flow = flows_[k];
+    const bool is_free = flow.mode == Flow::Mode::free;
+    const double rate = s.boundary.flows[k].rate;
+    flow.row = flow.gap = {0, 0};
+    flow.column.fill(Vector3::Zero());
+    flow.diagonal = is_free ? -flow.mass : -1;
+    for (const int side : {0, 1}) {
+      const int i = side == 0 ? flow.before : flow.after;
+      if (is_elastic_at(i)) continue;
+      const double length = side == 0 ? -state.rest_lengths[i] : state.rest_lengths[i];
+      system_.gap[i] += length * rate;
+      flow.gap[side] = length;
+      if (is_free) flow.row[side] = length;
+    }
+  }
+}
+
+/// The frame of a segment that flows on is that of other material then, in its middle.
+void CableStepper::carry_frames_with_flows(CableState& state) const {
+  const auto twist_rate = [&](int node) {
+    if (node < 0 || node > segments_) return 0.0;
+    const double around = node == 0 || node == segments_ ? 0.5 * state.rest_lengths[std::min(node, segments_ - 1)] : joint_length(state, node);
+    return state.joint_twist[node] / around;
+  };
+  for (const Flow& flow : flows_) {
+    // Where what comes to the middle is now
+    const std::array<double, 2> rates = flow.way > 0 ? std::array{twist_rate(flow.before), twist_rate(flow.last)}
+                                                     : std::array{twist_rate(flow.first), twist_rate(flow.after + 1)};
+    for (const int side : {0, 1}) {
+      const int segment = side == 0 ? flow.before : flow.after;
+      const double turn = -0.5 * flow.way * rates[side];
+      turn_segment(segment, turn, state);
+      state.joint_twist[segment] += turn;
+      state.joint_twist[segment + 1] -= turn;
+    }
+    if (!state.rest_curvature.empty()) flow_on(flow, state.rest_lengths, state.rest_curvature);
+    if (!state.rest_twist.empty()) flow_on(flow, state.rest_lengths, state.rest_twist);
+  }
+}
+
 /// Impulses along the segments beside a guide move what flows, too.
 void CableStepper::project_flows(const Substep& s) {
   for (std::size_t k = 0; k < flows_.size(); ++k) {
     const Flow& flow = flows_[k];
+    if (is_elastic_at(flow.before)) continue;
     const double before = target_length_[flow.before], after = target_length_[flow.after], rate = s.boundary.flows[k].rate;
     impulse_[flow.before] -= before * rate;
     impulse_[flow.after] += after * rate;
@@ -384,7 +494,7 @@ void CableStepper::project_flows(const Substep& s) {
 void CableStepper::push_flows(const Substep& s) {
   for (std::size_t k = 0; k < flows_.size(); ++k) {
     const Flow& flow = flows_[k];
-    if (flow.mode != Flow::Mode::free) continue;
+    if (flow.mode != Flow::Mode::free || is_elastic_at(flow.before)) continue;
     s.boundary.flows[k].rate +=
         (target_length_[flow.before] * impulse_[flow.before] - target_length_[flow.after] * impulse_[flow.after]) / flow.mass;
     if (flow.first != flow.last) impulse_[flow.first] = 0;

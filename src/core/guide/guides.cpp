@@ -5,18 +5,25 @@
 
 #include "chain/node_arrays.h"
 #include "guide/wheel.h"
+#include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
 
 namespace {
 
+/// Adds the weight of so much of a segment's material to a node, or takes it.
+void weigh(double length, int segment, int node, const CableModel& model, CableState& cable) {
+  cable.masses[node] += 0.5 * CableMaterials(model, cable)[segment].linear_density * length;
+}
+
 /// Gives a node of a cable that has no shape yet another place of the material.
 void move_node(int node, double shift, const CableModel& model, CableState& cable) {
-  const double half_density = 0.5 * model.material.linear_density;
   cable.rest_lengths[node - 1] += shift;
   cable.rest_lengths[node] -= shift;
-  cable.masses[node - 1] += half_density * shift;
-  cable.masses[node + 1] -= half_density * shift;
+  for (const int beside : {node - 1, node}) {
+    weigh(shift, node - 1, beside, model, cable);
+    weigh(-shift, node, beside + 1, model, cable);
+  }
 }
 
 /// The inner node, `lowest` or above, that is nearest to a place of the material, moved there.
@@ -35,23 +42,33 @@ constexpr double first_node = 0.3;
 
 /// A node more, at a part of a segment.
 void split_segment(int segment, double part, const CableModel& model, CableState& cable) {
-  const double half_density = 0.5 * model.material.linear_density, whole = cable.rest_lengths[segment], first = part * whole;
-  cable.masses[segment] -= half_density * (whole - first);
-  cable.masses[segment + 1] -= half_density * first;
-  cable.masses.insert(cable.masses.begin() + segment + 1, half_density * whole);
+  const double whole = cable.rest_lengths[segment], first = part * whole;
+  weigh(first - whole, segment, segment, model, cable);
+  weigh(-first, segment, segment + 1, model, cable);
+  cable.masses.insert(cable.masses.begin() + segment + 1, 0.0);
   cable.rest_lengths[segment] = whole - first;
   cable.rest_lengths.insert(cable.rest_lengths.begin() + segment, first);
+  if (!cable.section_material.empty())
+    cable.section_material.insert(cable.section_material.begin() + segment, cable.section_material[segment]);
+  weigh(whole, segment, segment + 1, model, cable);
   cable.positions.insert(cable.positions.begin() + segment, Vector3::Zero());
   cable.velocities.insert(cable.velocities.begin() + segment, Vector3::Zero());
 }
 
-/// One segment instead of those between two nodes.
+/// Beside a guide the cable is of one material: what flows through is.
+void continue_material(int segment, const CableModel& model, CableState& cable) {
+  if (cable.section_material.empty()) return;
+  for (const int node : {segment, segment + 1}) weigh(-cable.rest_lengths[segment], segment, node, model, cable);
+  cable.section_material[segment] = cable.section_material[segment - 1];
+  for (const int node : {segment, segment + 1}) weigh(cable.rest_lengths[segment], segment, node, model, cable);
+}
+
+/// One segment instead of those between two nodes of a cable of one material.
 void make_one_segment(int first, int last, const CableModel& model, CableState& cable) {
-  const double half_density = 0.5 * model.material.linear_density;
   for (int count = last - first - 1; count > 0; --count) {
     // Its mass is half of each segment beside it.
-    cable.masses[first] += half_density * cable.rest_lengths[first + 1];
-    cable.masses[first + 2] += half_density * cable.rest_lengths[first];
+    weigh(cable.rest_lengths[first + 1], first, first, model, cable);
+    weigh(cable.rest_lengths[first], first, first + 2, model, cable);
     cable.rest_lengths[first] += cable.rest_lengths[first + 1];
     cable.rest_lengths.erase(cable.rest_lengths.begin() + first + 1);
     cable.masses.erase(cable.masses.begin() + first + 1);
@@ -64,7 +81,13 @@ double arc_length_of(const CableDesc& cable, const PlaceDesc& place) {
   return place.at == PlaceDesc::At::start ? 0 : place.at == PlaceDesc::At::end ? cable.length : place.arc_length;
 }
 
-SimulatedGuide make_guide(const GuideDesc& desc, const FrameIds& ids) {
+/// Index into World::frames() of what holds an attachment or a guide.
+template <class Desc>
+int frame_of(const Desc& desc, const FrameIds& ids, const State& state) {
+  return desc.body.empty() ? ids.at(desc.frame) : state.bodies[find(state.bodies, desc.body)].frame;
+}
+
+SimulatedGuide make_guide(const GuideDesc& desc, int frame) {
   SimulatedGuide guide;
   guide.name = desc.name;
   guide.type = desc.type;
@@ -75,7 +98,7 @@ SimulatedGuide make_guide(const GuideDesc& desc, const FrameIds& ids) {
   guide.retention = desc.retention;
   guide.capture = desc.capture;
   guide.cable = desc.cable;
-  guide.frame = ids.at(desc.frame);
+  guide.frame = frame;
   guide.pose = {desc.offset, quaternion_from_rpy(desc.rotation)};
   return guide;
 }
@@ -91,14 +114,15 @@ std::array<Vector3, 2> neighbours(double arc_length, const Vector3& center, cons
                                   const State& state) {
   constexpr double far = 1e6;
   std::vector<HeldPlace> places;
-  const auto position = [&](const std::string& frame, const Vector3& offset) -> Vector3 {
-    const Pose& pose = state.frames.poses[ids.at(frame)];
-    return pose.position + pose.orientation * offset;
+  const auto add = [&](const auto& holder, const PlaceDesc& place) {
+    const int frame = frame_of(holder, ids, state);
+    if (!state.frames.known[frame]) return;
+    const Pose& pose = state.frames.poses[frame];
+    places.push_back({arc_length_of(desc, place), pose.position + pose.orientation * holder.offset});
   };
-  for (const AttachmentDesc& a : desc.attachments)
-    if (a.body.empty()) places.push_back({arc_length_of(desc, a.place), position(a.frame, a.offset)});
+  for (const AttachmentDesc& a : desc.attachments) add(a, a.place);
   for (const GuideDesc& g : state.scene->guides)
-    if (g.cable == desc.name && g.place) places.push_back({arc_length_of(desc, *g.place), position(g.frame, g.offset)});
+    if (g.cable == desc.name && g.place) add(g, *g.place);
   const Vector3 gravity = state.scene->gravity.at(center);
   const Vector3 down = gravity.norm() > 0 ? Vector3(gravity.normalized()) : Vector3(-Vector3::UnitZ());
   std::array<Vector3, 2> found{center + far * down, center + far * down};
@@ -126,7 +150,10 @@ Vector3 point_at(const std::vector<Vector3>& points, double part) {
   return points.back();
 }
 
-/// How a cable lies on a sheave at first: as its shape says, else over the top.
+/// [rad] More than that is on no wheel that a cable goes over.
+constexpr double half_turn = M_PI + 1e-3;
+
+/// How a cable lies on a sheave at first: as its shape says, else over the top; but under one that hangs in it.
 void wind_on_wheel(double arc_length, const CableDesc& desc, const FrameIds& ids, const State& state, const Pose& wheel,
                    SimulatedGuide& guide, Attachment& attachment) {
   const Vector3 axis = wheel.orientation * Vector3::UnitZ();
@@ -142,9 +169,15 @@ void wind_on_wheel(double arc_length, const CableDesc& desc, const FrameIds& ids
   }
   middle -= middle.dot(axis) * axis;
   if (!(middle.norm() > 0)) middle = wheel.orientation * Vector3::UnitY();
-  guide.sense = along.dot(axis.cross(middle)) < 0 ? -1 : 1;
-  for (const int side : {0, 1})
-    attachment.tangent_points[side] = tangent_point(wheel, guide, side, ends[side], wheel.position + middle);
+  const auto wind = [&](double sense, const Vector3& near) {
+    guide.sense = sense;
+    for (const int side : {0, 1})
+      attachment.tangent_points[side] = tangent_point(wheel, guide, side, ends[side], wheel.position + near);
+    return arc_on_wheel(guide, attachment) / guide.radius;
+  };
+  const double sense = along.dot(axis.cross(middle)) < 0 ? -1 : 1, angle = wind(sense, middle);
+  const bool is_given = desc.initial.type == InitialShapeDesc::Type::points;
+  if (!is_given && angle > half_turn && wind(-sense, -middle) > angle) wind(sense, middle);
 }
 
 }  // namespace
@@ -153,12 +186,13 @@ void add_guides(const CableDesc& desc, int cable, const FrameIds& ids, const Cab
                 State& state, std::vector<int>& own) {
   for (const GuideDesc& g : state.scene->guides) {
     if (g.cable != desc.name) continue;
-    SimulatedGuide guide = make_guide(g, ids);
+    SimulatedGuide guide = make_guide(g, frame_of(g, ids, state));
     if (g.place) {
       Attachment attachment;
       attachment.name = g.name;
       attachment.body = cable_id(cable);
       attachment.frame = guide.frame;
+      attachment.holder = g.body.empty() ? -1 : find(state.bodies, g.body);
       attachment.pose = guide.pose;
       attachment.guide = static_cast<int>(state.guides.size());
       const double place = arc_length_of(desc, *g.place);
@@ -173,6 +207,7 @@ void add_guides(const CableDesc& desc, int cable, const FrameIds& ids, const Cab
       } else {
         attachment.node = put_node_at(place, 1, model, cable_state);
         split_segment(attachment.node, first_node, model, cable_state);
+        continue_material(attachment.node, model, cable_state);
         for (const int a : own)
           if (state.attachments[a].node > attachment.node) ++state.attachments[a].node;
       }
@@ -206,7 +241,7 @@ double flow_energy(const State& state) {
       length += c.rest_lengths[i];
       way += c.positions[i + 1] - c.positions[i];
     }
-    const double density = cable.model->material.linear_density;
+    const double density = CableMaterials(cable)[first].linear_density;
     double mass = density * length;
     if (is_wheel(attachment)) mass += guide.inertia / (guide.radius * guide.radius);
     energy += 0.5 * mass * guide.flow * guide.flow + density * guide.flow * way.dot(c.velocities[first]);

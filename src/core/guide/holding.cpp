@@ -4,6 +4,7 @@
 #include "guide/node_passing.h"
 #include "guide/wheel.h"
 #include "target/length_drive.h"
+#include "verlet_cable/core/cable_materials.h"
 #include "world/implementation.h"
 
 namespace verlet_cable {
@@ -34,7 +35,7 @@ void follow_on_wheel(int index, State& state, Attachment& attachment) {
                                               wheel.position + wheel.orientation * attachment.tangent_points[side]);
   // A cable that has left the wheel is held by it all the same.
   if (std::abs(arc_on_wheel(guide, next) - arc_on_wheel(guide, attachment)) > M_PI * guide.radius) return;
-  const double half_density = 0.5 * cable.model->material.linear_density;
+  const double half_density = 0.5 * CableMaterials(cable)[first].linear_density;
   for (const int side : {0, 1}) {
     const int node = side == 0 ? first : last, segment = side == 0 ? first - 1 : last, beside = side == 0 ? first - 1 : last + 1;
     const Vector3 place = wheel.position + wheel.orientation * next.tangent_points[side];
@@ -135,6 +136,7 @@ void World::Implementation::capture_cable(int index) {
   attachment.body = cable_id(cable_index);
   attachment.node = node;
   attachment.frame = guide.frame;
+  attachment.holder = state.body_of_frame(guide.frame);
   attachment.pose = guide.pose;
   attachment.guide = index;
   guide.flow = cable.state.velocities[node].dot(direction_at(cable.state, node, node));

@@ -112,6 +112,12 @@ void give_out(int index, Attachment& attachment, int side, double near, Vector3 
   }
 }
 
+/// What has come to a guide flows through it: the cable is of one material on both sides, each node with the weight that it has.
+void continue_material(const Attachment& attachment, int from, CableState& state) {
+  if (state.section_material.empty()) return;
+  state.section_material[side_of(attachment, 1 - from).segment()] = state.section_material[side_of(attachment, from).segment()];
+}
+
 }  // namespace
 
 bool carries_payload(const SimulatedCable& cable, int node) {
@@ -208,6 +214,7 @@ bool pass_nodes(int index, State& state) {
         take_in(index, attachment, side, state);
         if (length(1 - side) > least_split * regular && !is_winding(1 - side))
           give_out(index, attachment, 1 - side, std::max(length(1 - side) - regular, 2 * little), bulge, state);
+        continue_material(attachment, side, state.cables[index].state);
         passed = true;
       }
     }

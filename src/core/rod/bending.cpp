@@ -17,7 +17,6 @@ void Bending::resize(int segments) {
   clamps_.reserve(2 * nodes);
   segment_.assign(nodes, 0.0);
   rest_lengths_.assign(nodes, 0.0);
-  flexible_.assign(nodes, 1.0);
   growing_.reserve(nodes);
   changing_.reserve(2 * nodes);
 }
@@ -50,7 +49,6 @@ void Bending::start(const CableModel& model, const CableState& state, const Vect
       model, state, directions, [&segment](int i) { return get(segment, i); }, h, part, clamps_);
   growing_.clear();
   changing_.clear();
-  bending_stiffness_ = stiffness;
   is_damped_ = damping > 0;
   if (is_damped_) turn_with_material(model, state, segment, directions, h);
 }
@@ -59,7 +57,6 @@ void Bending::start_flows(const CableState& state, const VectorArray& segment, c
   if (!active_) return;
   segment_ = segment;
   for (int i = 0; i < segments_; ++i) rest_lengths_[i] = state.rest_lengths[i];
-  for (int i = 0; i <= segments_; ++i) flexible_[i] = state.bending_length(i, 1);
   // A wheel gives the cable its shape: no moment leaves it.
   for (const GuidedFlow& flow : flows)
     if (flow.first != flow.last)
@@ -90,14 +87,16 @@ void Bending::grow(int segment, double growth) {
 
 void Bending::set_changing(int node) {
   auto changing = std::find_if(changing_.begin(), changing_.end(), [&](const ChangingJoint& c) { return c.node == node; });
-  if (changing == changing_.end()) changing = changing_.insert(changing_.end(), {node, stiffness_[node], stiffness_[node]});
+  const double start_length = 0.5 * (rest_lengths_[node - 1] + rest_lengths_[node]);
+  if (changing == changing_.end())
+    changing = changing_.insert(changing_.end(), {node, stiffness_[node], stiffness_[node], start_length});
   if (changing->start == 0) return;
-  double length = rest_lengths_[node - 1] + rest_lengths_[node];
+  double length = changing->length;
   for (const GrowingSegment& growing : growing_) {
     if (growing.segment != node - 1 && growing.segment != node) continue;
-    length += growing.end - growing.start;
+    length += 0.5 * (growing.end - growing.start);
   }
-  changing->end = bending_stiffness_ / (flexible_[node] * 0.5 * length);
+  changing->end = changing->start * changing->length / length;
   stiffness_[node] = changing->start + part_ * (changing->end - changing->start);
 }
 
@@ -133,10 +132,32 @@ double Bending::flow_force(int before, int after, const VectorArray& middle) con
     if (share == 0) continue;
     const double start = angle_energy(0.5 * start_square_[joint.node]), end = angle_energy(0.5 * end_square_[joint.node]);
     const double energy = part_ == 1 ? end : 0.5 * (start + end);
-    const double slope = part_ == 1 ? joint.end * joint.end : joint.start * joint.end;
-    force += share * flexible_[joint.node] * slope / bending_stiffness_ * energy;
+    force += share * joint.end / joint.length * (part_ == 1 ? joint.end / joint.start : 1) * energy;
   }
   return force;
+}
+
+double Bending::flow_column(int before, int after, const VectorArray& middle, FlowColumn& column) const {
+  column.fill(Vector3::Zero());
+  if (!active_) return 0;
+  // Directions change with the lengths that they are divided by, until the segments have these.
+  const auto change = [&](int i) -> Vector3 {
+    const double sign = i == before ? 1 : i == after ? -1 : 0;
+    return sign * inverse_length_[i] * inverse_length_[i] * get(middle, i);
+  };
+  const auto pull = [&](int i, const Vector3& force) {
+    column[i - before + 1] += force;
+    column[i - before + 2] -= force;
+  };
+  double own = 0;
+  for (int node = std::max(before, 1); node <= std::min(after + 1, segments_ - 1); ++node) {
+    const Vector3 turned = change(node) - change(node - 1);
+    const Vector3 moment = (part_ * slope_[node] + damping_[node]) * turned;
+    own -= moment.dot(turned);
+    pull(node, inverse_length_[node] * moment);
+    pull(node - 1, -inverse_length_[node - 1] * moment);
+  }
+  return own;
 }
 
 void Bending::resist_all_changes() {

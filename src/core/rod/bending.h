@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "guide/flow.h"
 #include "rod/block_elimination.h"
 #include "rod/clamp_joint.h"
 #include "target/boundary.h"
@@ -38,6 +39,8 @@ class Bending {
   /// What of the energy drives such a flow [N], for the forces that `add_segment_forces` found last. `middle`: the segments
   /// where forces are taken [m].
   double flow_force(int before, int after, const VectorArray& middle) const;
+  /// By what a unit of such a flow changes the loads on nodes. Returns by what it changes what drives it [N/m].
+  double flow_column(int before, int after, const VectorArray& middle, FlowColumn& column) const;
   bool is_damped() const { return active_ && is_damped_; }
   double damping(int node) const { return damping_[node]; }      ///< damping / (length h) [N m]
   Vector3 turned(int node) const { return get(turned_, node); }  ///< change of e that turns with the material
@@ -72,15 +75,14 @@ class Bending {
   struct ChangingJoint {
     int node = 0;
     double start = 0, end = 0;
+    double length = 0;  ///< [m] of the cable that it stands for, at the start
   };
   void grow(int segment, double growth);
   void set_changing(int node);
   void add_growth(const VectorArray& displacement);
 
-  double bending_stiffness_ = 0;             // [N m^2]
   VectorArray segment_;                      // at the start [m]; where there are flows
   std::vector<double> rest_lengths_;         // segments, at the start [m]; where there are flows
-  std::vector<double> flexible_;             // nodes: how much of the length around them bends; likewise
   std::vector<GrowingSegment> growing_;
   std::vector<ChangingJoint> changing_;
   std::vector<double> inverse_length_;       // segments [1/m]

@@ -117,6 +117,7 @@ void CableStepper::finish(const Substep& s, bool struck, CableState& state, Subs
     project(s, state.masses);
   result.max_strain = store(s, state);
   if (rod_.active()) rod_.store(s.boundary, state);
+  if (rod_.active() && !flows_.empty()) carry_frames_with_flows(state);
   if (s.treatment != Treatment::none) quieten(s, state);
   if (twist_.active()) twist_.follow(s.boundary.directions, state.positions, s.spans);
 }
@@ -184,7 +185,9 @@ void CableStepper::set_loads(const Substep& s, const CableState& state) {
     for (std::size_t k = 0; k + 1 < held.size(); ++k) {
       // What can stretch has a tension.
       if (materials.any_elastic_between(held[k].node, held[k + 1].node)) continue;
-      const bool gives_way = held[k].body >= 0 || held[k + 1].body >= 0;
+      // What is pulled straight from a junction to a frame may have no room to give way.
+      const auto moves_freely = [](const HeldNode& node) { return node.body >= 0 && !node.at_junction; };
+      const bool gives_way = moves_freely(held[k]) || moves_freely(held[k + 1]);
       for (int i = held[k].node; i < held[k + 1].node; ++i) {
         system_.compliance[i] = target_length_[i] * target_length_[i] * target_length_[i] / stiffness;
         if (!gives_way) strain_compliance_[i] = system_.compliance[i];
@@ -436,6 +439,7 @@ void CableStepper::read_holder_loads(const Substep& s, const std::vector<double>
     const int i = boundary.nodes[k].node;
     const Vector3 load = corrected ? corrected_load(i) : get(system_.load, i);
     loads.forces[k] = load + s.inertia() * masses[i] / s.h * (get(displacement_, i) / s.h - get(velocity_, i));
+    if (!flows_.empty()) loads.forces[k] += flow_reaction(s, i);
   }
   if (!rod_.active()) return;
   rod_.add_clamp_torques(loads.torques);
@@ -445,6 +449,7 @@ void CableStepper::read_holder_loads(const Substep& s, const std::vector<double>
 void CableStepper::add_moved(const Boundary& boundary, const HolderMotion& motion) {
   solve_for_motion(boundary, motion);
   solution().add(kept_solution_);
+  for (std::size_t k = 0; k < flows_.size(); ++k) flows_[k].correction += kept_ways_[k];
   // What clamps that turn exert on the nodes beside them.
   for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z})
     add(system_.load.*component, segments_ + 1, kept_load_.*component);
@@ -470,6 +475,7 @@ void CableStepper::respond(const Boundary& boundary, const HolderMotion& motion,
   }
   system_.moves_held = false;
   std::swap(solution(), kept_solution_);
+  for (std::size_t k = 0; k < flows_.size(); ++k) flows_[k].correction = kept_ways_[k];
   exchange_loads();
 }
 
@@ -477,6 +483,9 @@ void CableStepper::respond(const Boundary& boundary, const HolderMotion& motion,
 void CableStepper::solve_for_motion(const Boundary& boundary, const HolderMotion& motion) {
   exchange_loads();
   std::swap(solution(), kept_solution_);
+  kept_ways_.resize(flows_.size());
+  for (std::size_t k = 0; k < flows_.size(); ++k) kept_ways_[k] = flows_[k].correction;
+  system_.flow_load.assign(flows_.size(), 0.0);
   system_.load.assign(segments_ + 2, 0.0);
   system_.gap.assign(segments_ + 2, 0.0);
   rod_.torque().assign(segments_ + 2, 0.0);
@@ -520,8 +529,10 @@ void CableStepper::begin_projection(const Substep& s, const CableState& state) {
   }
   for (const GrowingSegment& growing : s.boundary.growing)
     if (!is_elastic_at(growing.segment)) system_.gap[growing.segment] += state.rest_lengths[growing.segment] * growing.growth;
+  if (!flows_.empty()) begin_flow_projection(s, state);
   for (const int i : both_held_) system_.gap[i] = 0;
   solver_.factor(system_, false);
+  if (!flows_.empty()) factor_flows();
 }
 
 void CableStepper::read_impulses(const Boundary& boundary, HolderLoads& impulses) const {
@@ -540,6 +551,7 @@ void CableStepper::finish_projection(const Substep& s, CableState& state) {
     held.force += corrected_load(held.node) / s.h;
     if (held.body >= 0) held.velocity += get(change, held.node);
   }
+  for (std::size_t k = 0; k < flows_.size(); ++k) s.boundary.flows[k].rate += flows_[k].correction;
 }
 
 void CableStepper::take_back(double part) {
@@ -731,8 +743,8 @@ void CableStepper::react(const Substep& s, const std::vector<double>& masses) {
     const double mass = masses[i];
     target.force = corrected_load(i) + s.inertia() * mass / s.h * (get(displacement_, i) / s.h - get(velocity_, i));
     if (!s.statics) target.force -= mass * (target.velocity - get(velocity_, i)) / s.h;
+    if (!flows_.empty()) target.force += flow_reaction(s, i);
   }
-  if (!flows_.empty()) react_to_flows(s);
   if (bending_.active()) bending_.react(displacement_, s.boundary.directions);
   if (twist_.active()) twist_.react(s.boundary);
 }
@@ -760,6 +772,10 @@ Vector3 CableStepper::corrected_load(int i) const {
   if (i < segments_) load -= system_.first[i] * get(delta, i + 1) - multiplier[i] * get(system_.direction, i);
   if (system_.stiffened) load -= system_.added_load(i, delta);
   if (!bending_.active()) return load;
+  for (const Flow& flow : flows_) {
+    const int place = i - flow.first_node();
+    if (place >= 0 && place < static_cast<int>(flow.column.size())) load += flow.correction * flow.column[place];
+  }
   if (i > 1) load -= system_.second[i - 2] * get(delta, i - 2);
   if (i + 1 < segments_) load -= system_.second[i] * get(delta, i + 2);
   return load;

@@ -41,6 +41,8 @@ class CableStepper {
   void factor();
   void solve_linear();  ///< for the loads that `evaluate` found; material flows through guides as it is driven
   double correct();
+  /// Whether the guides' frictions act as the flows that were found last call for.
+  bool flows_are_consistent(const Substep& substep) const;
   void take_back(double part);  ///< of the last correction
   /// `struck`: forces from outside have changed velocities abruptly.
   void finish(const Substep& substep, bool struck, CableState& state, SubstepResult& result);
@@ -110,11 +112,14 @@ class CableStepper {
   double end_rate(const Substep& substep, const Flow& flow) const;
   void factor_flows();
   void let_flow();
+  void add_column(const Flow& flow, double way);
+  double along_column(const Flow& flow) const;
   bool correct_flows(double part);
-  bool flows_are_consistent(const Substep& substep) const;
   bool grows(int segment) const;
-  void react_to_flows(const Substep& substep);
+  Vector3 flow_reaction(const Substep& substep, int node) const;
+  void begin_flow_projection(const Substep& substep, const CableState& state);
   void finish_flows(const Substep& substep, CableState& state);
+  void carry_frames_with_flows(CableState& state) const;
   void project_flows(const Substep& substep);
   void push_flows(const Substep& substep);
   void factor_segments();
@@ -165,11 +170,13 @@ class CableStepper {
   BlockElimination solver_;
   // Flows through guides
   std::vector<Flow> flows_;
-  std::vector<double> flow_response_;  // for each two flows j, k: multipliers at k before and after it, of a unit of way of j
+  /// For each two flows j, k, of a unit of way of j: multipliers at k before and after it, and what moves along its column
+  std::vector<double> flow_response_;
+  VectorArray flow_node_load_;
   std::vector<double> flow_matrix_, flow_solution_, flow_gap_;
   // Loads that wait, and none
   VectorArray kept_load_;
-  std::vector<double> kept_gap_, kept_torque_, kept_flow_load_;
+  std::vector<double> kept_gap_, kept_torque_, kept_flow_load_, kept_ways_;
   KktSolution kept_solution_;
   // Velocity projection: a tridiagonal system
   std::vector<double> pivot_, off_, impulse_;  // segments

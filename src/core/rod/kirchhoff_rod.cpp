@@ -46,6 +46,22 @@ JointStiffness joint_stiffness(const JointMaterial& material, const CableState& 
   return stiffness;
 }
 
+/// How much of the way of a flow from segment `before` to segment `after` the joint at a node gains.
+double share_of_flow(int before, int after, int node) {
+  return 0.5 * ((node == after || node == after + 1) - (node == before || node == before + 1));
+}
+
+/// [N] By what the energy of a joint grows with the length that it stands for, from `start` to `end` [m]; `stiffness` is that at
+/// the start.
+double energy_slope(const JointStiffness& stiffness, const JointAngles& angles, double start, double end) {
+  const auto slope = [&](double resistance, double angle, double rest) {
+    const double scale = end / start, strained = angle - scale * rest;
+    return -0.5 * resistance / end * strained * (strained + 2 * scale * rest);
+  };
+  return slope(stiffness.twist, angles.twist, stiffness.rest.twist) + slope(stiffness.bend_y, angles.y, stiffness.rest.y) +
+         slope(stiffness.bend_z, angles.z, stiffness.rest.z);
+}
+
 }  // namespace
 
 void KirchhoffRod::resize(int segments) {
@@ -56,6 +72,7 @@ void KirchhoffRod::resize(int segments) {
   net_moment_.assign(nodes, 0.0);
   joints_.resize(segments_ + 1);
   clamps_.clear();
+  changing_.reserve(segments_ + 1);
   stiffness_.resize(segments_);
   elimination_.resize(segments_);
 }
@@ -70,7 +87,7 @@ void KirchhoffRod::start(const CableModel& model, const CableState& state, const
   is_static_ = damping_time == infinity;
   spin_rate_ = part == 1 ? 1 : 2;
   start_segments(model, state, segment);
-  start_joints(model, state, boundary.directions, damping_time);
+  start_joints(model, state, boundary, damping_time);
   start_clamps(model, state, boundary.directions, damping_time);
 }
 
@@ -100,17 +117,31 @@ void KirchhoffRod::start_segments(const CableModel& model, const CableState& sta
   set(frames_.start, segments_, get(frames_.start, segments_ - 1));
 }
 
-void KirchhoffRod::start_joints(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions,
+void KirchhoffRod::start_joints(const CableModel& model, const CableState& state, const Boundary& boundary,
                                 double damping_time) {
   const int n = segments_;
   const CableMaterials materials(model, state);
   JointMaterial material(model.material);
+  changing_.clear();
   for (int i = 1; i < n; ++i) {
     if (materials.vary()) material = joint_material(materials, state, i);
-    joints_.set(i, joint_stiffness(material, state, i, joint_length(state, i), damping_time), state.joint_twist[i]);
+    const double length = joint_length(state, i);
+    JointStiffness stiffness = joint_stiffness(material, state, i, length, damping_time);
+    // A wheel gives the cable its shape: no bending moment leaves it.
+    for (const GuidedFlow& flow : boundary.flows)
+      if (flow.first != flow.last && (i == flow.first || i == flow.last))
+        stiffness.bend_y = stiffness.bend_z = stiffness.bend_damping = 0;
+    joints_.set(i, stiffness, state.joint_twist[i]);
+    for (const GuidedFlow& flow : boundary.flows)
+      if (flow.first - 1 <= i && i <= flow.last + 1 && (changing_.empty() || changing_.back().node != i))
+        changing_.push_back({i, length, length, stiffness});
   }
-  for (const HeldDirection& direction : directions)
-    if (direction.node > 0 && direction.node < n) joints_.set(direction.node, {}, 0);
+  for (const HeldDirection& direction : boundary.directions) {
+    if (direction.node <= 0 || direction.node >= n) continue;
+    joints_.set(direction.node, {}, 0);
+    for (ChangingJoint& joint : changing_)
+      if (joint.node == direction.node) joint.stiffness = {};
+  }
   joints_.start(frames_.start, 0, frames_.start, 1, 1, n);
 }
 
@@ -153,6 +184,42 @@ void KirchhoffRod::follow_clamps(const Boundary& boundary) {
     set(of_clamp.end, joint, end);
     set(of_clamp.middle, joint, start + part_ * (end - start));
   }
+}
+
+void KirchhoffRod::forget_flows() {
+  for (ChangingJoint& joint : changing_) joint.end = joint.start;
+}
+
+void KirchhoffRod::add_flow(int before, int after, double way) {
+  for (ChangingJoint& joint : changing_) {
+    const double share = share_of_flow(before, after, joint.node);
+    if (share == 0) continue;
+    joint.end += share * way;
+    const double scale = part_ == 1 ? joint.start / joint.end : 0.5 * (1 + joint.start / joint.end);
+    JointStiffness stiffness = joint.stiffness;
+    for (double* value : {&stiffness.twist, &stiffness.bend_y, &stiffness.bend_z}) *value *= scale;
+    for (double* value : {&stiffness.rest.twist, &stiffness.rest.y, &stiffness.rest.z}) *value /= scale;
+    joints_.set_stiffness(joint.node, stiffness);
+  }
+}
+
+double KirchhoffRod::flow_force(int before, int after) const {
+  double force = 0;
+  for (const ChangingJoint& joint : changing_) {
+    const double share = share_of_flow(before, after, joint.node);
+    if (share == 0) continue;
+    const int i = joint.node;
+    const double start_twist = joints_.start_twist(i);
+    const JointAngles end = joint_angles(get(frames_.end, i - 1), get(frames_.end, i), start_twist);
+    const double at_end = energy_slope(joint.stiffness, end, joint.start, joint.end);
+    if (part_ == 1) {
+      force -= share * at_end;
+      continue;
+    }
+    const JointAngles start = joint_angles(get(frames_.start, i - 1), get(frames_.start, i), start_twist);
+    force -= share * 0.5 * (energy_slope(joint.stiffness, start, joint.start, joint.end) + at_end);
+  }
+  return force;
 }
 
 /// The frames at the end of the present iterate.
@@ -249,6 +316,7 @@ void KirchhoffRod::add_clamp_loads(const std::vector<Vector3>& rotations, KktSys
     ClampJoint& clamp = clamps_[k];
     const int i = clamp.segment;
     clamp.rotation = rotations[clamp.target];
+    if (clamp.rotation.isZero(0)) continue;
     const Vector3 moment = turned_by_clamp(clamp, static_cast<int>(k), clamp.rotation);
     const Vector3 direction = get(system.direction, i);
     const Vector3 force = direction.cross(moment) / direction.squaredNorm();

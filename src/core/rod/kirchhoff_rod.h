@@ -33,6 +33,12 @@ class KirchhoffRod {
   /// Takes over where the clamps are at the end of the substep, which bodies decide in its course.
   void follow_clamps(const Boundary& boundary);
 
+  // Where material flows through guides; see Bending
+  void forget_flows();
+  void add_flow(int before, int after, double way);
+  /// What of the energy drives such a flow [N], for the frames that `add_segment_forces` found last.
+  double flow_force(int before, int after) const;
+
   /// Adds the forces of the segments on their first nodes [N]. `segment`: at the start, `middle`: where forces are taken [m].
   void add_segment_forces(const VectorArray& displacement, const VectorArray& segment, const VectorArray& middle,
                           VectorArray& segment_force);
@@ -72,9 +78,15 @@ class KirchhoffRod {
     Vector3 rotation = Vector3::Zero();  ///< [rad] in the last solution for moved clamps
   };
 
+  /// A joint beside a segment whose rest length changes in the substep.
+  struct ChangingJoint {
+    int node = 0;
+    double start = 0, end = 0;  ///< [m] that it stands for
+    JointStiffness stiffness;   ///< at the start
+  };
+
   void start_segments(const CableModel& model, const CableState& state, const VectorArray& segment);
-  void start_joints(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions,
-                    double damping_time);
+  void start_joints(const CableModel& model, const CableState& state, const Boundary& boundary, double damping_time);
   void start_clamps(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions,
                     double damping_time);
   void turn_frames(const VectorArray& displacement, const VectorArray& segment);
@@ -96,6 +108,7 @@ class KirchhoffRod {
   FrameMotion frames_;
   VectorArray net_moment_;  // of its joints [N m]
   RodJoints joints_;        // nodes: that between segments i - 1 and i
+  std::vector<ChangingJoint> changing_;
   // Joints of clamps with segments
   std::vector<ClampJoint> clamps_;
   FrameMotion clamp_before_, clamp_after_;

@@ -32,7 +32,8 @@ class LengthSystem {
   void set_flows(const CableModel& model, const CableState& state, std::vector<GuidedFlow>& flows) {
     flows_ = &flows;
     rest_lengths_ = &state.rest_lengths;
-    density_ = model.material.linear_density;
+    densities_.clear();
+    for (const GuidedFlow& flow : flows) densities_.push_back(CableMaterials(model, state)[flow.first].linear_density);
   }
 
   /// Adds M^-1 J^T y to `vectors` for J M^-1 J^T y = changes, J from `positions`.
@@ -66,15 +67,17 @@ class LengthSystem {
 
   /// [kg] That moves with a flow; infinite where something holds it.
   double mass_of(const GuidedFlow& flow) const {
+    const double density = densities_[&flow - flows_->data()];
     if (flow.friction > 0 || flow.resistance > 0 || flow.is_blocked[0] || flow.is_blocked[1]) return infinity;
     double length = 0.5 * ((*rest_lengths_)[flow.first - 1] + (*rest_lengths_)[flow.last]);
     for (int i = flow.first; i < flow.last; ++i) length += (*rest_lengths_)[i];
-    return density_ * length + flow.inertia;
+    return density * length + flow.inertia;
   }
 
   void let_flow() {
     for (const GuidedFlow& flow : *flows_) {
       const int i = flow.first - 1, j = flow.last;
+      if (is_free(i)) continue;
       const double before = (*rest_lengths_)[i], after = (*rest_lengths_)[j], mass = mass_of(flow);
       impulse_[i] -= before * flow.rate;
       impulse_[j] += after * flow.rate;
@@ -94,6 +97,7 @@ class LengthSystem {
   void push_flows() {
     for (GuidedFlow& flow : *flows_) {
       const int i = flow.first - 1, j = flow.last;
+      if (is_free(i)) continue;
       flow.rate += ((*rest_lengths_)[i] * impulse_[i] - (*rest_lengths_)[j] * impulse_[j]) / mass_of(flow);
       if (flow.first != flow.last) impulse_[flow.first] = 0;
     }
@@ -101,7 +105,7 @@ class LengthSystem {
 
   std::vector<GuidedFlow>* flows_ = nullptr;
   const std::vector<double>* rest_lengths_ = nullptr;
-  double density_ = 0;
+  std::vector<double> densities_;  // of what flows [kg/m]
   std::vector<double> mobility_, diagonal_, off_, impulse_;
   const std::vector<double>& lengths_;
 };

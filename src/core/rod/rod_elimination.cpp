@@ -7,8 +7,9 @@ namespace verlet_cable {
 
 namespace {
 
-/// Between held nodes that are next to each other, relative to what is beside them, nothing gives way: so much does.
-constexpr double held_compliance = 1e-10;
+/// Where what is held does not give way, so much does, relative to what is beside it. Between held nodes next to each other
+/// nothing else does: less would leave nothing but rounding of how the segment between them turns.
+constexpr double held_compliance = 1e-10, neighbours_compliance = 1e-6;
 /// Where a stretch would meet less resistance than this, relative to what it meets where nothing is added, the matrix is replaced
 /// by one that is as good.
 constexpr double least_resistance = 1e-3;
@@ -114,13 +115,13 @@ void RodElimination::resize(int segments) {
 
 namespace {
 
-/// Of a node inside, in a direction in which nothing else gives way [m/N].
-double least_compliance(const KktSystem& system, const RodStiffness& stiffness, const RodJoints& joints, int node) {
+/// Of a node inside, in a direction in which nothing else gives way [m/N]; `before`: the node that the elimination comes from.
+double least_compliance(const KktSystem& system, const RodStiffness& stiffness, const RodJoints& joints, int before, int node) {
   double beside = system.diagonal[node];
   for (const int i : {node - 1, node})
     beside += std::abs(stiffness.force_density[i]) +
               (get(stiffness.segment, i).trace() + get(joints.stiffness, i).trace()) / get(system.direction, i).squaredNorm();
-  return held_compliance / beside;
+  return (system.movable[before] == 0 ? neighbours_compliance : held_compliance) / beside;
 }
 
 }  // namespace
@@ -228,8 +229,8 @@ bool RodElimination::factor_lanes(const KktSystem& system, const RodStiffness& s
     if (free[0] == 0 || free[1] == 0) {
       // x = 0: the force is what makes it so, -A^-1 (B w + a).
       Pair floor = both(1);
-      if (free[0] == 0) floor[0] = least_compliance(system, stiffness, joints, left + 1);
-      if (free[1] == 0) floor[1] = least_compliance(system, stiffness, joints, right);
+      if (free[0] == 0) floor[0] = least_compliance(system, stiffness, joints, left, left + 1);
+      if (free[1] == 0) floor[1] = least_compliance(system, stiffness, joints, std::min(right + 1, segments_), right);
       HeldInside held{k, free, scaled_inverse(plus_diagonal(give, floor), 1.0 - free), {}, {}};
       held.turned = held.stiffness * turned;
       held_inside_.push_back(held);
@@ -267,6 +268,20 @@ bool RodElimination::factor_lanes(const KktSystem& system, const RodStiffness& s
   a.block<3, 3>(6, 3) = -turning - joint;
   middle_.compute(a);
   return !judged || (positive && middle_.determinant() > 0);
+}
+
+/// As Eigen's solution, which goes through loops of any size.
+RodElimination::MiddleVector RodElimination::solve_middle(const MiddleVector& right_side) const {
+  const Middle& lu = middle_.matrixLU();
+  constexpr int size = Middle::RowsAtCompileTime;
+  MiddleVector x = middle_.permutationP() * right_side;
+  for (int k = 0; k < size; ++k)
+    for (int i = k + 1; i < size; ++i) x[i] -= lu(i, k) * x[k];
+  for (int k = size - 1; k >= 0; --k) {
+    x[k] /= lu(k, k);
+    for (int i = 0; i < k; ++i) x[i] -= lu(i, k) * x[k];
+  }
+  return x;
 }
 
 template <bool stiffened>
@@ -314,7 +329,7 @@ void RodElimination::solve_lanes(const KktSystem& system, const std::vector<doub
 
   MiddleVector right_side;
   right_side << lane(give, 1) - lane(give, 0), lane(moment, 0), lane(moment, 1);
-  const MiddleVector middle = middle_.solve(right_side);
+  const MiddleVector middle = solve_middle(right_side);
   PairVector force{Pair{middle[0], -middle[0]}, Pair{middle[1], -middle[1]}, Pair{middle[2], -middle[2]}};
   PairVector rotation{Pair{middle[3], middle[6]}, Pair{middle[4], middle[7]}, Pair{middle[5], middle[8]}};
   const auto put = [](const PairVector& v, int left, int right, VectorArray& array) {

@@ -129,6 +129,11 @@ Eigen::Matrix3d node_frame(const CableState& state, int node) {
   return node == 0 ? Eigen::Matrix3d(frame * to_node.transpose()) : Eigen::Matrix3d(frame * to_node);
 }
 
+Quaternion axes_at(const CableState& state, int node) {
+  if (!state.directors.empty()) return Quaternion(node_frame(state, node));
+  return segment_orientations(state)[std::min(node, state.segments() - 1)];
+}
+
 void start_frames(std::vector<DirectionTarget>& clamps, CableState& state) {
   const int n = state.segments();
   state.directors.assign(n, Vector3::Zero());

@@ -27,6 +27,9 @@ Eigen::Matrix3d joint_rotation(const JointAngles& angles);
 /// unloaded shape goes on from the segment.
 Eigen::Matrix3d node_frame(const CableState& state, int node);
 
+/// Axes of the cable at a node, also of one without frames: x along it.
+Quaternion axes_at(const CableState& state, int node);
+
 /// Gives a cable that needs them frames, in its rest twist: carried from the first clamp along it; without a clamp from the
 /// smallest rotation that takes the fixed frame's x to the first segment. The other clamps hold the material as it comes to them,
 /// whatever their frames' roll.

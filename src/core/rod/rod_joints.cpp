@@ -128,6 +128,11 @@ void RodJoints::resize(int count) {
 }
 
 void RodJoints::set(int joint, const JointStiffness& stiffness, double twist) {
+  set_stiffness(joint, stiffness);
+  twist_[joint] = twist;
+}
+
+void RodJoints::set_stiffness(int joint, const JointStiffness& stiffness) {
   twist_stiffness_[joint] = stiffness.twist;
   y_stiffness_[joint] = stiffness.bend_y;
   z_stiffness_[joint] = stiffness.bend_z;
@@ -136,7 +141,6 @@ void RodJoints::set(int joint, const JointStiffness& stiffness, double twist) {
   rest_twist_[joint] = stiffness.rest.twist;
   rest_y_[joint] = stiffness.rest.y;
   rest_z_[joint] = stiffness.rest.z;
-  twist_[joint] = twist;
 }
 
 void RodJoints::start(const FrameArrays& frames_before, int before, const FrameArrays& frames_after, int after, int first,

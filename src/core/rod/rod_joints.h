@@ -82,6 +82,7 @@ class RodJoints {
  public:
   void resize(int count);
   void set(int joint, const JointStiffness& stiffness, double twist);
+  void set_stiffness(int joint, const JointStiffness& stiffness);
   /// Finds the angles at the start. `before`, `after`: index of the first joint's frames; joints `first` to `last` (exclusive).
   /// Twist that is not what the frames have is corrected.
   void start(const FrameArrays& frames_before, int before, const FrameArrays& frames_after, int after, int first, int last);
@@ -90,6 +91,7 @@ class RodJoints {
                 int last);
   /// Finds the twist at the end alone.
   void follow(const FrameArrays& frames_before, int before, const FrameArrays& frames_after, int after, int first, int last);
+  double start_twist(int joint) const { return twist_[joint]; }    ///< [rad]
   double end_twist(int joint) const { return end_twist_[joint]; }  ///< [rad]
 
   VectorArray moment;        ///< [N m] on the frame before

@@ -39,8 +39,8 @@ bool Convergence::is_reached(double size) {
 }
 
 double stiffness_of_taut(const Substep& s, const CableState& state) {
-  double mass = std::accumulate(state.masses.begin(), state.masses.end(), 0.0);
-  for (const HeldNode& held : s.boundary.nodes) mass += held.body_mass;
+  const double own = std::accumulate(state.masses.begin(), state.masses.end(), 0.0);
+  const double mass = s.boundary.is_on_bodies() ? s.boundary.joined_mass : own;
   const double length = state.length();
   const double weight = std::max(s.environment.gravity.at(state.positions[0]).norm(), standard_gravity) * mass;
   double inertia = 0;

@@ -69,7 +69,7 @@ class Convergence {
 };
 
 /// [N] Between two holders a rigid chain that is pulled straight has no unique tension, and one that is pushed together has no
-/// motion. So much axial stiffness, relative to the weight of the cable and of bodies that hold it, gives it both: that weight
+/// motion. So much axial stiffness, relative to the weight of the cable, or of all that is joined to it by bodies, gives it both: that weight
 /// strains it by a part in ten million.
 double stiffness_of_taut(const Substep& substep, const CableState& state);
 

@@ -114,6 +114,14 @@ std::vector<std::string> frame_names(const SceneDesc& scene) {
   return names;
 }
 
+std::vector<std::string> computed_frame_names(const SceneDesc& scene) {
+  std::vector<std::string> names;
+  for (const BodyDesc& body : scene.bodies) names.push_back(body.name);
+  // With a space, which no name of a scene has.
+  for (const JunctionDesc& junction : scene.junctions) names.push_back("junction " + junction.name);
+  return names;
+}
+
 BoundaryInputs initial_frames(const SceneDesc& scene) {
   std::map<std::string, InitialPose> poses;
   const auto add = [&](const auto& user) {

@@ -13,6 +13,9 @@ namespace {
 
 /// Of a cable's length: places that are closer are one.
 constexpr double same_place = 1e-9;
+/// Linear densities of sections that slide through a guide. What is next to it counts as one material, so that for a fraction of a
+/// segment mass is missing or left over there.
+constexpr double most_uneven = 10;
 
 double arc_length_of(const CableDesc& cable, const PlaceDesc& place) {
   switch (place.at) {
@@ -178,32 +181,44 @@ class SimulationChecker {
     for (std::size_t i = 0; i < scene_.guides.size(); ++i) {
       const GuideDesc& guide = scene_.guides[i];
       const std::string key = indexed("guides", i);
-      if (!guide.body.empty())
-        errors_.add(key + ".body", quoted(guide.body), "none; guides are held by frames only, as yet");
-      if (guide.type == GuideDesc::Type::sheave && guide.friction_coefficient() < infinity && guide.inertia > 0)
+      if (!guide.body.empty()) check_body(key, guide);
+      const bool is_sheave = guide.type == GuideDesc::Type::sheave;
+      if (is_sheave && guide.friction_coefficient() < infinity && guide.inertia > 0)
         errors_.add(key + ".friction", number_text(guide.friction_coefficient()),
                     "infinity (.inf) where the wheel has inertia; a wheel that the cable slips on has none, as yet");
       const auto cable = std::find_if(scene_.cables.begin(), scene_.cables.end(),
                                       [&](const CableDesc& c) { return c.name == guide.cable; });
-      check_rod(key, *cable);
-      if (!cable->sections.empty())
-        errors_.add(key + ".cable", quoted(cable->name), "a cable of one material; others do not slide through guides, as yet");
-      const auto on_body = [](const AttachmentDesc& attachment) { return !attachment.body.empty(); };
-      if (std::any_of(cable->attachments.begin(), cable->attachments.end(), on_body))
-        errors_.add(key + ".cable", quoted(cable->name), "a cable that no body holds; others do not slide through guides, as yet");
+      if (!cable->sections.empty()) check_sections(key, is_sheave, *cable);
       if (guide.place) check_room(key, guide, *cable);
     }
     return errors_.take();
   }
 
  private:
-  void check_rod(const std::string& key, const CableDesc& cable) {
-    const MaterialDesc& material = *scene_.find_material(cable.material);
-    const bool bent = cable.rest_curvature.type != RestCurvatureDesc::Type::straight || cable.rest_twist != 0;
-    const double stiffness = std::max(material.bending_stiffness.largest(), material.torsional_stiffness);
-    if (!material.bending_stiffness.is_isotropic() || (bent && stiffness > 0))
+  void check_body(const std::string& key, const GuideDesc& guide) {
+    const auto body = std::find_if(scene_.bodies.begin(), scene_.bodies.end(),
+                                   [&](const BodyDesc& b) { return b.name == guide.body; });
+    const bool is_placed = body->pose || !body->attachments.empty();
+    if (guide.place && !is_placed)
+      errors_.add(key + ".body", quoted(guide.body), "a body with a `pose`, or that its own attachments place, as yet");
+    if (guide.inertia > 0)
+      errors_.add(key + ".inertia", number_text(guide.inertia), "0 on a body; wheels with inertia are held by frames, as yet");
+  }
+
+  void check_sections(const std::string& key, bool is_sheave, const CableDesc& cable) {
+    if (is_sheave)
+      errors_.add(key + ".cable", quoted(cable.name), "a cable without sections; others do not run over sheaves, as yet");
+    double lightest = infinity, heaviest = 0;
+    const auto weigh = [&](const std::string& name) {
+      const double density = scene_.find_material(name)->linear_density;
+      lightest = std::min(lightest, density);
+      heaviest = std::max(heaviest, density);
+    };
+    weigh(cable.material);
+    for (const SectionDesc& section : cable.sections) weigh(section.material);
+    if (heaviest > most_uneven * lightest)
       errors_.add(key + ".cable", quoted(cable.name),
-                  "a cable that is straight unloaded and bends alike about all axes; others do not slide through guides, as yet");
+                  "a cable whose sections' linear densities differ by a factor of at most " + number_text(most_uneven) + ", as yet");
   }
 
   /// Beside a guide there is cable on both sides, up to what else holds it.

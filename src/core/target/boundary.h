@@ -17,7 +17,7 @@ struct HeldNode {
   /// begins.
   int body = -1;
   Vector3 point = Vector3::Zero();  ///< [m] of the body that holds the node, in the axes of its frame
-  double body_mass = 0;             ///< [kg]
+  bool at_junction = false;         ///< the body is one that joins cables
   bool slides = false;              ///< whether the cable's material flows through it
 };
 
@@ -46,6 +46,9 @@ struct Boundary {
   std::vector<HeldDirection> directions;
   std::vector<GrowingSegment> growing;
   std::vector<GuidedFlow> flows;  ///< ascending likewise
+  /// [kg] Of all cables and bodies that are found together with it, where bodies that move freely hold it: what pulls at it may
+  /// hang behind these.
+  double joined_mass = 0;
 
   bool is_on_bodies() const;  ///< whether a body that moves freely holds any of it
 };

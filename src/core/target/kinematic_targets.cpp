@@ -105,7 +105,7 @@ std::vector<WantedNode> wanted_nodes(const CableModel& model, const CableState& 
 std::vector<int> attachments_of(const BodyId& body, const std::vector<Attachment>& attachments) {
   std::vector<int> own;
   for (int a = 0; a < static_cast<int>(attachments.size()); ++a)
-    if (attachments[a].body == body) own.push_back(a);
+    if (attachments[a].body == body && attachments[a].held_junction < 0) own.push_back(a);
   return own;
 }
 
@@ -275,7 +275,7 @@ void hold_at(double from, double to, const KinematicTargets& targets, Boundary& 
     HeldNode& held = boundary.nodes[k];
     held.node = target.node;
     held.body = -1;
-    held.body_mass = 0;
+    held.at_junction = false;
     held.slides = target.slides;
     held.position = to == 1 ? target.next_position : target.position + to * (target.next_position - target.position);
     held.velocity = target.velocity + to * (target.next_velocity - target.velocity);
@@ -301,7 +301,7 @@ void hold_on_bodies(const CableState& state, const std::vector<Attachment>& atta
     HeldNode& held = boundary.nodes[k];
     const SimulatedBody& body = bodies[attachment.holder];
     held.body = attachment.holder;
-    held.body_mass = body.mass;
+    held.at_junction = body.is_junction;
     held.point = target_position(state, attachment, attachment.pose, held.node);
     held.point += remaining(target.caught, target.gap.norm(), time) * target.gap;
     const Vector3 arm = body.pose.orientation * (held.point - body.center_of_mass);

@@ -70,7 +70,7 @@ struct WantedNode {
 std::vector<WantedNode> wanted_nodes(const CableModel& model, const CableState& state, const Attachment& attachment,
                                      const Pose& frame);
 
-/// Indices of the attachments of a body, ascending.
+/// Indices of the attachments of a cable's or net's nodes, ascending.
 std::vector<int> attachments_of(const BodyId& body, const std::vector<Attachment>& attachments);
 
 /// The holders of a cable whose attachments are `own`, ascending by node; a node that two attachments want belongs to the one

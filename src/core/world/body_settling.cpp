@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "guide/guides.h"
+#include "guide/node_passing.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "world/flush_denormals.h"
 #include "world/island_stepper.h"
@@ -15,7 +17,13 @@ constexpr double first_step = 1e-3, last_step = 1e5;  // [s]
 constexpr int maximum_steps = 2000;
 /// From one step to the next; the second once a step was too long.
 constexpr double fastest_growth = 2, slow_growth = 1.3;
+/// While what has begun to fall gets faster: it is followed, as longer steps would hold on to what does not last, but not for
+/// ever.
+constexpr double falling_growth = 1.02;
 constexpr int calm_steps = 3;
+/// What moves by less in a step of this length [s] stands, too: rounding may keep longer ones from converging.
+constexpr double long_step = 100;
+constexpr double settled_displacement = 1e-7;  // radii
 /// Where there is something to touch, no node goes further at a time than this, in radii.
 constexpr double settling_reach = 1;
 constexpr double settled_contact = 1e-4;       // radii
@@ -29,6 +37,7 @@ BodySettling::BodySettling(const Island& island, State& state, Workspace& worksp
   if (workspace_.cables.size() < island_.cables.size()) workspace_.cables.resize(island_.cables.size());
   contacts_.resize(island_.cables.size());
   before_.resize(island_.cables.size());
+  joined_mass_ = mass_of(island_, state_);
   for (const int cable : island_.cables)
     radius_ = std::min(
         radius_, CableMaterials(state_.cables[cable]).smallest([](const MaterialDesc& material) { return material.radius; }));
@@ -49,8 +58,10 @@ bool BodySettling::settle() {
     }
     const double acceleration = 2 * outcome.displacement / (h * h);
     const bool stands = !outcome.touches || outcome.displacement < settled_contact * radius_;
-    calm = acceleration < settled_acceleration && stands && (outcome.touches || h >= last_step) ? calm + 1 : 0;
-    if (outcome.touches || acceleration < last || h < first_step) h = std::min(growth * h, last_step);
+    const bool is_long = h >= last_step || (h >= long_step && outcome.displacement < settled_displacement * radius_);
+    calm = acceleration < settled_acceleration && stands && (outcome.touches || is_long) ? calm + 1 : 0;
+    const bool calms = outcome.touches || acceleration < last || h < first_step;
+    h = std::min((calms ? growth : falling_growth) * h, last_step);
     last = acceleration;
   }
   complete();
@@ -73,6 +84,7 @@ void BodySettling::hold_still() {
     work.boundary.growing.clear();
     hold_at(1, 1, targets, work.boundary);
     bring_to_rest(cable.state);
+    stop_flows(island_.cables[k], state_);
   }
 }
 
@@ -90,7 +102,9 @@ BodySettling::Outcome BodySettling::advance(double h) {
     keep_twist(work.boundary, progress.targets);
     hold_at(1, 1, progress.targets, work.boundary);
     hold_on_bodies(cable.state, state_.attachments, state_.bodies, state_.time(), progress.targets, work.boundary);
+    work.boundary.joined_mass = joined_mass_;
     workspace_.members.push_back({progress.id, &progress.targets, &contacts_[k]});
+    load_flows(index, state_, work.boundary);
     Substep substep{*cable.model, environment, work.boundary, progress.spans, h, true};
     substep.touches_bodies = true;
     workspace_.participants.push_back({static_cast<int>(k), index, &work.stepper, substep, &cable.state, {}});
@@ -139,7 +153,25 @@ BodySettling::Outcome BodySettling::advance(double h) {
   workspace_.contacts.keep(workspace_.members);
   for (const BodyMember& member : workspace_.body_members)
     BodyTouches::keep(member.body, system.contacts().touches(), state_.body_progress[member.body].contacts);
+  pass_nodes_of_guides();
   return outcome;
+}
+
+/// What of the cables has come to their guides goes through.
+void BodySettling::pass_nodes_of_guides() {
+  for (std::size_t k = 0; k < island_.cables.size(); ++k) {
+    const int index = island_.cables[k];
+    CableProgress& progress = state_.cable_progress[index];
+    if (!slides(progress.targets) || !pass_nodes(index, state_)) continue;
+    CableWorkspace& work = workspace_.cables[k];
+    bring_to_rest(state_.cables[index].state);
+    work.stepper.resize(state_.cables[index].state.segments());
+    for (std::size_t n = 0; n < work.boundary.nodes.size(); ++n) work.boundary.nodes[n].node = progress.targets.nodes[n].node;
+    for (std::size_t d = 0; d < work.boundary.directions.size(); ++d)
+      work.boundary.directions[d].node = progress.targets.directions[d].node;
+    contacts_[k].clear();
+    progress.spans = find_spans(state_.cables[index].state, work.boundary.directions);
+  }
 }
 
 /// The cables' targets follow the bodies.

@@ -28,6 +28,7 @@ class BodySettling {
   void hold_still();
   Outcome advance(double h);
   void find_joints();
+  void pass_nodes_of_guides();
   void complete();
 
   const std::atomic<bool>* cancelled_;
@@ -35,6 +36,7 @@ class BodySettling {
   State& state_;
   Workspace& workspace_;
   double radius_ = infinity;  ///< [m] of the thinnest cable
+  double joined_mass_ = 0;    ///< [kg] of the island
   std::vector<ContactCache> contacts_;
   std::vector<CableState> before_;
 };

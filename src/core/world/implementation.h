@@ -62,6 +62,8 @@ struct World::Implementation {
   void update_net(int net);
   void add_particle(const ParticleDesc& desc);
   void add_bodies();
+  void add_body(SimulatedBody body);
+  void add_junctions();
   void place_bodies();
   void settle_started_bodies(const std::vector<int>& descs);
   bool place_body(int index);
@@ -69,6 +71,11 @@ struct World::Implementation {
   bool is_held_by_cable(int index) const;
   bool has_bodies_of(const CableDesc& cable) const;
   void place_bodies_on(const std::vector<Attachment>& attachments);
+  std::vector<int> with_trunks_first(const std::vector<int>& cables) const;
+  std::vector<Attachment> junction_attachments(const CableDesc& desc, int cable) const;
+  std::optional<InitialShapeDesc> shape_from_trunk(const CableDesc& desc) const;
+  void weld_junctions(const std::vector<int>& descs);
+  void weld(int attachment);
   void start_with_bodies(const CableState& cable, KinematicTargets& targets) const;
   NetSolver& solver_of(int net);
   void step_net(int net, StepResult& result);

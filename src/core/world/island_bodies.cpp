@@ -25,6 +25,7 @@ Vector3 mean_spin(const Frames& frames, const Attachment& attachment, double tim
 
 /// [m] Nodes that are so far from where bodies hold them have been left behind.
 constexpr double carried_away = 1e-6;
+constexpr double least_size = 1e-3;  // [m] of what has none
 /// A change of a holder's velocity that moves a body by less in a substep, in parts of its size or rad, goes unnoticed.
 constexpr double noticed_jerk = 1e-9;
 
@@ -38,7 +39,7 @@ void find_body_joints(const Island& island, const State& state, double from, dou
     BodyJoint joint;
     joint.attachment = a;
     joint.type = attachment.type;
-    joint.member = system.member_of(attachment.body.index);
+    joint.member = system.member_of(held_body(attachment));
     joint.at = attachment.at;
     joint.other = attachment.holder < 0 ? -1 : system.member_of(attachment.holder);
     joint.holder = joint.other < 0 ? frame_at(state.frames, attachment.frame, to) * attachment.pose : attachment.pose;
@@ -85,7 +86,7 @@ void IslandStepper::update_body_targets(const Island& island, IslandOutcome& fou
   auto holders = island.held.begin();
   for (const int body : island.bodies) {
     const auto first = holders;
-    while (holders != island.held.end() && state_.attachments[*holders].body.index == body) ++holders;
+    while (holders != island.held.end() && held_body(state_.attachments[*holders]) == body) ++holders;
     if (state_.body_progress[body].is_placed) aim_body(body, first, holders, found);
   }
   carry_cables(island);
@@ -180,7 +181,8 @@ void IslandStepper::carry_cables(const Island& island) {
 /// Where the frame that holds a body is at the end of the substep, and how fast.
 void IslandStepper::follow_body_holder(BodyJoint& joint, double to) {
   const Attachment& attachment = state_.attachments[joint.attachment];
-  BodyProgress& progress = state_.body_progress[attachment.body.index];
+  const SimulatedBody& body = state_.bodies[held_body(attachment)];
+  BodyProgress& progress = state_.body_progress[held_body(attachment)];
   const auto holder = std::find_if(progress.holders.begin(), progress.holders.end(),
                                    [&](const KinematicTarget& target) { return target.attachment == joint.attachment; });
   Vector3& last_spin = progress.holder_spins[holder->node];
@@ -190,8 +192,7 @@ void IslandStepper::follow_body_holder(BodyJoint& joint, double to) {
   if (jumps) joint.holder.orientation = state_.frames.poses[attachment.frame].orientation * attachment.pose.orientation;
   joint.holder_velocity.linear = holder->velocity + to * (holder->next_velocity - holder->velocity);
   joint.holder_velocity.angular = jumps ? last_spin : Vector3(spin + (to - 0.5) * (spin - last_spin));
-  const SimulatedBody& body = state_.bodies[attachment.body.index];
-  const double size = std::sqrt(body.inertia.trace() / body.mass), noticed = noticed_jerk / state_.scene->time_step;
+  const double size = body.is_junction ? least_size : std::sqrt(body.inertia.trace() / body.mass), noticed = noticed_jerk / state_.scene->time_step;
   const bool accelerates = (holder->next_velocity - holder->velocity).norm() > noticed * size;
   const bool turns = joint.type != AttachmentType::hinge && !jumps && (spin - last_spin).norm() > noticed;
   projects_bodies_ = projects_bodies_ || accelerates || turns || jumps;

@@ -273,6 +273,7 @@ void IslandStepper::step_alone(Island& island, IslandOutcome& found, bool contac
 void IslandStepper::begin(const Island& island) {
   if (workspace_.cables.size() < island.cables.size()) workspace_.cables.resize(island.cables.size());
   workspace_.members.clear();
+  if (!island.bodies.empty()) joined_mass_ = mass_of(island, state_);
   for (std::size_t k = 0; k < island.cables.size(); ++k) {
     CableProgress& memory = state_.cable_progress[island.cables[k]];
     workspace_.members.push_back({memory.id, &memory.targets, &memory.contacts});
@@ -298,6 +299,7 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     load_flows(cable, state_, work.boundary);
     if (!island.bodies.empty())
       hold_on_bodies(c.state, state_.attachments, state_.bodies, state_.time(), memory.targets, work.boundary);
+    work.boundary.joined_mass = joined_mass_;
     const bool touches = workspace_.contacts.touched(k), on_bodies = work.boundary.is_on_bodies();
     const Scheme scheme = touches || on_bodies ? touching_scheme : scheme_of(cable);
     if (memory.drive) wind_drive(cable, scheme, from, to, work.boundary);

@@ -108,6 +108,7 @@ class IslandStepper {
   std::vector<CableOutcome>& outcomes_;
   Environment environment_;
   bool projects_bodies_ = false;  ///< velocities of bodies and what they hold, at the end of the substep
+  double joined_mass_ = 0;        ///< [kg] of the island, where there are bodies
   int lanes_;                     ///< two a cable that is stepped together with others
 };
 

@@ -70,6 +70,14 @@ int longest_axis(const std::vector<Aabb>& boxes) {
 
 }  // namespace
 
+double mass_of(const Island& island, const State& state) {
+  double mass = 0;
+  for (const int cable : island.cables)
+    for (const double of_node : state.cables[cable].state.masses) mass += of_node;
+  for (const int body : island.bodies) mass += state.bodies[body].mass;
+  return mass;
+}
+
 void Islands::build(const State& state) {
   labels_.resize(state.cables.size() + state.bodies.size());
   std::iota(labels_.begin(), labels_.end(), 0);
@@ -161,12 +169,12 @@ void Islands::join_by_bodies(const State& state) {
 void Islands::find_held(const State& state) {
   for (Island& island : islands_) island.held.clear();
   for (int a = 0; a < static_cast<int>(state.attachments.size()); ++a) {
-    const BodyId& held = state.attachments[a].body;
-    if (held.is_rigid_body()) islands_[place_[state.cables.size() + held.index]].held.push_back(a);
+    const int held = held_body(state.attachments[a]);
+    if (held >= 0) islands_[place_[state.cables.size() + held]].held.push_back(a);
   }
   for (Island& island : islands_)
     std::sort(island.held.begin(), island.held.end(), [&](int a, int b) {
-      const int first = state.attachments[a].body.index, second = state.attachments[b].body.index;
+      const int first = held_body(state.attachments[a]), second = held_body(state.attachments[b]);
       return first < second || (first == second && a < b);
     });
 }

@@ -18,6 +18,9 @@ struct Island {
   SegmentPairs pairs;       ///< of their segments
 };
 
+/// [kg] Of all its cables and bodies.
+double mass_of(const Island& island, const State& state);
+
 /// Whether cables may touch each other.
 inline bool cables_touch(const SceneDesc& scene) {
   return scene.contact && scene.contact->between_cables;

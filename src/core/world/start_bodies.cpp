@@ -2,6 +2,7 @@
 
 #include "rod/rod_frames.h"
 #include "world/implementation.h"
+#include "world/junctions.h"
 
 namespace verlet_cable {
 
@@ -29,12 +30,6 @@ Pose on_axle(const SimulatedBody& body, const Attachment& attachment, const Pose
   return held_pose(turned, point, holder);
 }
 
-/// Axes of the cable at a node: x along it.
-Quaternion axes_at(const CableState& state, int node) {
-  if (!state.directors.empty()) return Quaternion(node_frame(state, node));
-  return segment_orientations(state)[std::min(node, state.segments() - 1)];
-}
-
 }  // namespace
 
 /// Bodies whose holders are known begin where those hold them; one that nothing but cables hold, without a pose of its own, waits
@@ -44,7 +39,7 @@ void World::Implementation::place_bodies() {
   while (more) {
     more = false;
     for (int b = 0; b < static_cast<int>(state.bodies.size()); ++b) {
-      if (state.body_progress[b].is_placed || !place_body(b)) continue;
+      if (state.body_progress[b].is_placed || state.bodies[b].is_junction || !place_body(b)) continue;
       more = true;
     }
   }
@@ -88,6 +83,10 @@ bool World::Implementation::is_held_by_cable(int index) const {
 
 /// Whether the bodies that hold a cable are where they begin, or begin where it ends.
 bool World::Implementation::has_bodies_of(const CableDesc& cable) const {
+  for (const GuideDesc& guide : state.scene->guides)
+    if (guide.cable == cable.name && guide.place && !guide.body.empty() &&
+        !state.body_progress[find(state.bodies, guide.body)].is_placed)
+      return false;
   return std::all_of(cable.attachments.begin(), cable.attachments.end(), [&](const AttachmentDesc& attachment) {
     if (attachment.body.empty()) return true;
     const int body = find(state.bodies, attachment.body);
@@ -102,7 +101,11 @@ void World::Implementation::place_bodies_on(const std::vector<Attachment>& attac
     const CableState& cable = state.cables[attachment.body.index].state;
     if (!state.body_progress[attachment.holder].is_placed) {
       const Vector3& place = cable.positions[attachment.node];
-      if (attachment.type == AttachmentType::clamp)
+      if (body.is_junction) {
+        body.velocity = cable.velocities[attachment.node];
+        body.angular_velocity = spin_at(cable, attachment.node);
+      }
+      if (attachment.type == AttachmentType::clamp || body.is_junction)
         body.pose = Pose{place, axes_at(cable, attachment.node)} * attachment.pose.inverse();
       else
         body.pose.position = place - body.pose.orientation * attachment.pose.position;
@@ -110,7 +113,15 @@ void World::Implementation::place_bodies_on(const std::vector<Attachment>& attac
     }
     state.attachments.push_back(attachment);
   }
-  if (!attachments.empty()) find_targets_of(attachments.front().body.index);
+  if (attachments.empty()) return;
+  const int index = attachments.front().body.index;
+  find_targets_of(index);
+  // A cable that is joined with itself closes at once, as cables that are joined with others do.
+  for (KinematicTarget& target : state.cable_progress[index].targets.nodes) {
+    if (!state.attachments[target.attachment].is_junction) continue;
+    target.gap.setZero();
+    target.caught = -infinity;
+  }
 }
 
 /// The nodes that bodies hold begin to move with them.

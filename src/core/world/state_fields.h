@@ -215,7 +215,8 @@ auto fields(T& x, const BodyId*) {
 }
 template <class T>
 auto fields(T& x, const Attachment*) {
-  return std::tie(x.name, x.body, x.node, x.frame, x.holder, x.type, x.pose, x.at, x.force, x.torque, x.guide, x.tangent_points);
+  return std::tie(x.name, x.body, x.node, x.frame, x.holder, x.type, x.pose, x.at, x.force, x.torque, x.guide, x.is_junction, x.held_junction,
+                  x.tangent_points);
 }
 template <class T>
 auto fields(T& x, const SimulatedGuide*) {
@@ -256,7 +257,7 @@ auto fields(T& x, const BodyProgress*) {
 }
 template <class T>
 auto fields(T& x, const SimulatedBody*) {
-  return std::tie(x.name, x.mass, x.center_of_mass, x.inertia, x.shapes, x.friction, x.linear_damping, x.angular_damping, x.frame,
+  return std::tie(x.name, x.mass, x.center_of_mass, x.inertia, x.shapes, x.is_junction, x.friction, x.linear_damping, x.angular_damping, x.frame,
                   x.pose, x.velocity, x.angular_velocity);
 }
 template <class T>

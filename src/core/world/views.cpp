@@ -74,7 +74,7 @@ GuideView World::view_guide(int guide) const {
     const int first = attachment.node, last = is_wheel(attachment) ? first + 1 : first;
     view.arc_length = cable.length(0, first) + 0.5 * cable.length(first, last);
     // Half a segment before and after it weighs, and is accelerated.
-    const double density = cables()[view.cable].model->material.linear_density;
+    const double density = CableMaterials(cables()[view.cable])[first].linear_density;
     const Vector3 gravity = implementation_->state.scene->gravity.at(cable.positions[first]);
     const auto half = [&](int i) {
       const Vector3 along = (cable.positions[i + 1] - cable.positions[i]).normalized();
@@ -100,11 +100,16 @@ int find(const std::vector<SimulatedNet>& nets, const std::string& name) {
 }
 
 int find(const std::vector<SimulatedBody>& bodies, const std::string& name) {
-  return index_of(bodies, [&](const SimulatedBody& body) { return body.name == name; });
+  return index_of(bodies, [&](const SimulatedBody& body) { return !body.is_junction && body.name == name; });
 }
 
 int find(const std::vector<Attachment>& attachments, const std::string& name) {
-  return index_of(attachments, [&](const Attachment& attachment) { return attachment.name == name; });
+  // Guides have names of their own, which attachments may have, too.
+  const auto find_among = [&](bool guides) {
+    return index_of(attachments, [&](const Attachment& a) { return a.name == name && (a.guide >= 0) == guides; });
+  };
+  const int attachment = find_among(false);
+  return attachment >= 0 ? attachment : find_among(true);
 }
 
 int find(const std::vector<SimulatedGuide>& guides, const std::string& name) {

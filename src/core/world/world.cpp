@@ -22,6 +22,7 @@
 #include "world/body_settling.h"
 #include "world/implementation.h"
 #include "world/island_stepper.h"
+#include "world/junctions.h"
 #include "world/limits.h"
 #include "world/settling.h"
 
@@ -50,7 +51,8 @@ CableModel make_model(const SceneDesc& scene, const CableDesc& desc) {
   model.color = desc.color;
   model.segment_length = desc.length / desc.segments;
   model.turns_bodies = std::any_of(desc.attachments.begin(), desc.attachments.end(),
-                                   [](const AttachmentDesc& a) { return !a.body.empty() && a.type == AttachmentType::clamp; });
+                                   [](const AttachmentDesc& a) { return !a.body.empty() && a.type == AttachmentType::clamp; }) ||
+                       is_welded(scene, desc.name);
   return model;
 }
 
@@ -87,7 +89,7 @@ bool frames_known(const Desc& desc, const FrameIds& ids, const BoundaryInputs& i
 
 bool guides_known(const SceneDesc& scene, const CableDesc& desc, const FrameIds& ids, const BoundaryInputs& inputs) {
   return std::all_of(scene.guides.begin(), scene.guides.end(), [&](const GuideDesc& guide) {
-    return guide.cable != desc.name || !guide.place || frame_known(guide.frame, ids, inputs);
+    return guide.cable != desc.name || !guide.place || !guide.body.empty() || frame_known(guide.frame, ids, inputs);
   });
 }
 
@@ -150,7 +152,6 @@ World::World(const SceneDesc& scene, const BoundaryInputs& inputs, const std::at
 
 World::World(const SceneDesc& scene) : implementation_(std::make_unique<Implementation>()) {
   std::vector<std::string> errors = validate(scene);
-  if (!scene.junctions.empty()) errors.push_back("junctions: " + std::to_string(scene.junctions.size()) + "; allowed: none yet");
   if (errors.empty()) errors = not_simulated_guides(scene);
   if (!errors.empty()) throw SceneError(std::move(errors));
   Implementation& w = *implementation_;
@@ -162,6 +163,7 @@ World::World(const SceneDesc& scene) : implementation_(std::make_unique<Implemen
   w.state.frames.known.assign(w.state.frames.names.size(), false);
   w.state.frames.known.front() = true;
   w.add_bodies();
+  w.add_junctions();
   w.add_scene_obstacles();
   for (int i = 0; i < static_cast<int>(scene.cables.size()); ++i) w.state.waiting_cables.push_back(i);
   for (int i = 0; i < static_cast<int>(scene.nets.size()); ++i) w.state.waiting_nets.push_back(i);
@@ -185,15 +187,21 @@ int World::start_waiting(const BoundaryInputs& inputs) {
   if (w.is_cancelled()) return 0;
   const FrameIds ids = w.state.frames.ids();
   const SceneDesc& scene = *w.state.scene;
-  const std::vector<int> cables = take_out(w.state.waiting_cables, [&](int i) {
-    return frames_known(scene.cables[i], ids, inputs) && guides_known(scene, scene.cables[i], ids, inputs) &&
-           w.has_bodies_of(scene.cables[i]);
-  });
+  // Those of a harness start together.
+  const std::vector<int> harnesses = harnesses_of(scene);
+  std::vector<char> waits(scene.cables.size(), 0);
+  for (const int i : w.state.waiting_cables)
+    if (!frames_known(scene.cables[i], ids, inputs) || !guides_known(scene, scene.cables[i], ids, inputs) ||
+        !w.has_bodies_of(scene.cables[i]))
+      waits[harnesses[i]] = 1;
+  const std::vector<int> cables =
+      w.with_trunks_first(take_out(w.state.waiting_cables, [&](int i) { return waits[harnesses[i]] == 0; }));
   const std::vector<int> nets = take_out(w.state.waiting_nets, [&](int i) { return frames_known(scene.nets[i], ids, inputs); });
   if (cables.empty() && nets.empty()) return 0;
   w.update_frames(inputs);
   for (const int i : cables)
     if (!w.is_cancelled()) w.start_cable(scene.cables[i], ids, inputs);
+  w.weld_junctions(cables);
   w.settle_started_bodies(cables);
   for (const int i : nets)
     if (!w.is_cancelled()) w.start_net(scene.nets[i], ids, inputs);
@@ -207,17 +215,23 @@ void World::Implementation::name_waiting() {
   for (const int i : state.waiting_nets) findings.waiting.push_back(state.scene->nets[i].name);
 }
 
+/// With the next one of the frames that are computed.
+void World::Implementation::add_body(SimulatedBody body) {
+  body.frame = static_cast<int>(state.frames.names.size());
+  state.frames.names.push_back(body.name);
+  state.frames.poses.push_back(body.pose);
+  state.frames.previous_poses.push_back(body.pose);
+  state.frames.known.push_back(false);
+  state.body_progress.emplace_back();
+  state.bodies.push_back(std::move(body));
+}
+
 /// With their frames, after those of the scene, and with what holds them.
 void World::Implementation::add_bodies() {
   const FrameIds ids = state.frames.ids();
   for (const BodyDesc& desc : state.scene->bodies) {
     const int index = static_cast<int>(state.bodies.size());
-    const SimulatedBody& body = state.bodies.emplace_back(make_body(desc, static_cast<int>(state.frames.names.size())));
-    state.frames.names.push_back(body.name);
-    state.frames.poses.push_back(body.pose);
-    state.frames.previous_poses.push_back(body.pose);
-    state.frames.known.push_back(false);
-    state.body_progress.emplace_back();
+    add_body(make_body(desc));
     for (const BodyAttachmentDesc& a : desc.attachments) {
       Attachment attachment;
       attachment.name = a.name;
@@ -265,10 +279,10 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   SimulatedCable cable;
   cable.model = std::make_shared<const CableModel>(make_model(*state.scene, desc));
   cable.state = make_state(*cable.model, desc);
-  std::vector<int> own;
-  std::vector<Attachment> placing;  // bodies that begin where the cable ends
+  std::vector<Attachment> holding = junction_attachments(desc, index);
+  const bool branches = !holding.empty();
   for (const AttachmentDesc& a : desc.attachments) {
-    Attachment attachment;
+    Attachment& attachment = holding.emplace_back();
     attachment.name = a.name;
     attachment.body = cable_id(index);
     attachment.node = node_at(desc, a.place);
@@ -276,6 +290,10 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
     attachment.frame = attachment.holder < 0 ? ids.at(a.frame) : state.bodies[attachment.holder].frame;
     attachment.type = a.type;
     attachment.pose = {a.offset, quaternion_from_rpy(a.rotation)};
+  }
+  std::vector<int> own;
+  std::vector<Attachment> placing;  // bodies that begin where the cable ends
+  for (const Attachment& attachment : holding) {
     if (attachment.holder >= 0 && !state.body_progress[attachment.holder].is_placed) {
       placing.push_back(attachment);
       continue;
@@ -302,7 +320,9 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   const Vector3 gravity =
       state.scene->gravity.at(boundary.nodes.empty() ? Vector3(Vector3::Zero()) : boundary.nodes.front().position);
   const bool settles = settles_at_start(desc, *cable.model, cable.state);
-  if (!set_initial_state(desc.initial, settles, *cable.model, boundary.nodes, gravity, cable.state))
+  const std::optional<InitialShapeDesc> from_trunk = shape_from_trunk(desc);
+  if (!set_initial_state(from_trunk.value_or(desc.initial), settles, *cable.model, boundary.nodes, gravity, cable.state) &&
+      !from_trunk)
     findings.misfits.push_back(desc.name);
   // Where velocities of holders are not known yet, the first step finds them, and all go together.
   const auto starts = [](const KinematicTarget& target) { return target.starts; };
@@ -322,7 +342,8 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   state.cables.push_back(std::move(cable));
   state.cable_progress.push_back(std::move(memory));
   if (moves && slides(state.cable_progress[index].targets)) move_with_guides(index, state);
-  if (settles && held && !Settling(index, state, workspaces.value.local(), cancelled).settle_start())
+  // What is joined settles together.
+  if (settles && held && !branches && !Settling(index, state, workspaces.value.local(), cancelled).settle_start())
     findings.unsettled.push_back(desc.name);
   place_bodies_on(placing);
 }

@@ -219,6 +219,7 @@ void FrameWatch::report_back(const FrameChange& change, Nanoseconds stamp, const
 
 void FrameWatch::release(int frame, Nanoseconds stamp, World& world) const {
   for (const Attachment& attachment : attachments_of(frame, world)) {
+    if (attachment.guide >= 0) continue;  // the cable goes on through it
     const EventSubject subject = subject_of(world, attachment);
     world.apply(edit::Unpin{attachment.name});
     events_.publish(CableEvent::UNPINNED, stamp, subject,
@@ -250,6 +251,7 @@ std::vector<WaitingAttachment> waiting_attachments(const SceneDesc& scene, const
 std::vector<bool> awaited_frames(const World& world) {
   std::vector<bool> awaited = needed_frames(world);
   for (const Obstacle& obstacle : world.obstacles()) awaited[obstacle.frame] = true;
+  for (const SimulatedGuide& guide : world.guides()) awaited[guide.frame] = true;  // open clips, too
   return awaited;
 }
 

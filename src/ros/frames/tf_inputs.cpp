@@ -31,15 +31,15 @@ void TfInputs::follow_scene(const SceneDesc& scene, Nanoseconds time) {
   const std::vector<std::string> names = frame_names(scene);
   tracks_.clear();
   for (std::size_t i = 0; i < names.size(); ++i) tracks_.push_back(track_from(names[i], inputs_[i], time));
-  for (const BodyDesc& body : scene.bodies) tracks_.push_back(body_track(body.name));
+  for (const std::string& name : computed_frame_names(scene)) tracks_.push_back(computed_track(name));
   scene_frames_ = static_cast<int>(tracks_.size());
   inputs_.resize(tracks_.size(), FrameInput{Pose{}, false});
   tracks_.front().status = FrameStatus::ok;
   changes_.clear();
 }
 
-TfInputs::Track TfInputs::body_track(const std::string& body) const {
-  Track track(body, {Pose{}, false}, timeout_);
+TfInputs::Track TfInputs::computed_track(const std::string& frame) const {
+  Track track(frame, {Pose{}, false}, timeout_);
   track.status = FrameStatus::computed;
   return track;
 }
@@ -155,7 +155,7 @@ void TfInputs::restore(const std::vector<SavedFrame>& saved, Nanoseconds time) {
   BoundaryInputs inputs;
   for (const SavedFrame& frame : saved) {
     if (frame.status == FrameStatus::computed) {
-      tracks.push_back(body_track(frame.name));
+      tracks.push_back(computed_track(frame.name));
       inputs.push_back(frame.input);
       continue;
     }

@@ -120,7 +120,7 @@ class TfInputs {
   void update_history(Track& track) const;
   const Track* find_track(const std::string& frame) const;
   Track track_from(const std::string& frame, const FrameInput& at, Nanoseconds time) const;
-  Track body_track(const std::string& body) const;
+  Track computed_track(const std::string& frame) const;
   bool must_wait(Track& track, Nanoseconds time, Nanoseconds target) const;
   void sample_frames(Nanoseconds time, Nanoseconds target, double elapsed);
   void sample_frame(int frame, Nanoseconds time, Nanoseconds target, double elapsed);

@@ -119,7 +119,7 @@ Handle handle_of(const World& world, const BodyId& held) {
 void add_attachments(const Simulation& simulation, const std::set<std::string>& grabs, std::vector<Handle>& handles) {
   const World& world = simulation.world();
   for (const Attachment& attachment : world.attachments()) {
-    if (grabs.count(attachment.name) > 0 || !world.frame_known(attachment.frame)) continue;
+    if (!is_named(attachment) || grabs.count(attachment.name) > 0 || !world.frame_known(attachment.frame)) continue;
     Handle handle = handle_of(world, attachment.body);
     handle.name = "attachment/" + attachment.name;
     handle.attachment = attachment.name;
@@ -136,7 +136,8 @@ void add_nodes(const World& world, const std::set<std::string>& grabs, std::vect
   const int stride = static_cast<int>((nodes + most_nodes - 1) / most_nodes);
   std::set<std::pair<int, int>> held;
   for (const Attachment& attachment : world.attachments())
-    if (attachment.body.is_cable() && grabs.count(attachment.name) == 0) held.emplace(attachment.body.index, attachment.node);
+    if (attachment.body.is_cable() && !attachment.is_junction && grabs.count(attachment.name) == 0)
+      held.emplace(attachment.body.index, attachment.node);
   for (int i = 0; i < static_cast<int>(world.cables().size()); ++i) {
     const SimulatedCable& cable = world.cables()[i];
     if (!is_finite(cable)) continue;
@@ -163,7 +164,7 @@ void add_bodies(const World& world, const std::set<std::string>& grabs, std::vec
   }
   for (int i = 0; i < static_cast<int>(world.bodies().size()); ++i) {
     const SimulatedBody& body = world.bodies()[i];
-    if (!is_there(world, body) || held.count(i) > 0) continue;
+    if (body.is_junction || !is_there(world, body) || held.count(i) > 0) continue;
     Handle handle = handle_of(body);
     handle.name = body.name + "/0";
     handle.cable = body.name;

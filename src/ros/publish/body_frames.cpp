@@ -23,7 +23,7 @@ void BodyFrames::publish(const World& world, const ros::Time& stamp) {
   if (!publisher_) publisher_ = node_.advertise<tf2_msgs::TFMessage>("/tf", queue_size);
   const auto message = boost::make_shared<tf2_msgs::TFMessage>();
   for (const SimulatedBody& body : world.bodies()) {
-    if (!is_there(world, body)) continue;
+    if (body.is_junction || !is_there(world, body)) continue;
     geometry_msgs::TransformStamped& transform = message->transforms.emplace_back();
     transform.header.stamp = stamp;
     transform.header.frame_id = frame_id_;

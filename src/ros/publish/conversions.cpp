@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "verlet_cable/core/cable_materials.h"
 
@@ -110,6 +112,23 @@ Cable to_message(const SimulatedCable& cable) {
   return message;
 }
 
+/// `places`: in the message, of each cable; -1: it is left out.
+void add_guides(const World& world, const std::vector<int>& places, CableArray& message) {
+  std::vector<std::pair<GuideView, int>> views;
+  for (std::size_t i = 0; i < world.guides().size(); ++i) {
+    const GuideView view = world.view_guide(static_cast<int>(i));
+    if (view.cable >= 0 && places[view.cable] >= 0) views.emplace_back(view, static_cast<int>(i));
+  }
+  // Those that have caught their cable may be anywhere among the others.
+  std::stable_sort(views.begin(), views.end(),
+                   [](const auto& a, const auto& b) { return a.first.arc_length < b.first.arc_length; });
+  for (const auto& [view, guide] : views) {
+    Cable& cable = message.cables[places[view.cable]];
+    cable.guides.push_back(world.guides()[guide].name);
+    cable.guide_arc_length.push_back(view.arc_length);
+  }
+}
+
 void add_cables(const World& world, CableArray& message) {
   std::vector<int> places;  // in the message, of each cable; -1: it is left out
   for (const SimulatedCable& cable : world.cables()) {
@@ -117,17 +136,12 @@ void add_cables(const World& world, CableArray& message) {
     if (places.back() >= 0) message.cables.push_back(to_message(cable));
   }
   for (const Attachment& attachment : world.attachments()) {
-    if (!attachment.body.is_cable() || places[attachment.body.index] < 0) continue;
+    if (!is_named(attachment) || !attachment.body.is_cable() || places[attachment.body.index] < 0) continue;
     Cable& cable = message.cables[places[attachment.body.index]];
     cable.attachments.push_back(attachment.name);
     cable.attachment_nodes.push_back(attachment.node);
   }
-  for (const SimulatedGuide& guide : world.guides()) {
-    if (guide.cable < 0 || places[guide.cable] < 0 || !std::isfinite(guide.arc_length)) continue;
-    Cable& cable = message.cables[places[guide.cable]];
-    cable.guides.push_back(guide.name);
-    cable.guide_arc_length.push_back(guide.arc_length);
-  }
+  add_guides(world, places, message);
   for (const SimulatedContact& contact : contacts_of_both(world))
     if (places[contact.cable] >= 0) message.cables[places[contact.cable]].contacts.push_back(to_message(world, contact));
 }
@@ -170,7 +184,7 @@ CableArray to_message(const World& world) {
   for (const SimulatedParticle& particle : world.particles())
     if (is_finite(particle)) message.particles.push_back(to_message(particle));
   for (const SimulatedBody& body : world.bodies())
-    if (is_there(world, body)) message.bodies.push_back(to_message(body));
+    if (!body.is_junction && is_there(world, body)) message.bodies.push_back(to_message(body));
   return message;
 }
 

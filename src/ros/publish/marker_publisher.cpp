@@ -5,6 +5,7 @@
 
 #include "publish/cable_markers.h"
 #include "publish/conversions.h"
+#include "publish/guide_markers.h"
 #include "publish/obstacle_markers.h"
 #include "publish/queue_size.h"
 #include "verlet_cable/core/cable_materials.h"
@@ -121,10 +122,12 @@ void MarkerPublisher::publish(const World& world, const ros::Time& stamp) {
     if (is_finite(net)) add_net(net, *markers);
   for (const SimulatedParticle& particle : world.particles())
     if (is_finite(particle)) add_particle(particle, *markers);
-  for (const Attachment& attachment : world.attachments()) add_pin(world, attachment, *markers);
+  for (const Attachment& attachment : world.attachments())
+    if (is_named(attachment)) add_pin(world, attachment, *markers);
+  for (int guide = 0; guide < static_cast<int>(world.guides().size()); ++guide) add_guide(world, guide, *markers);
   for (const Obstacle& obstacle : world.obstacles()) add_obstacle(world, obstacle, *markers);
   for (const SimulatedBody& body : world.bodies())
-    if (is_there(world, body)) add_body(body, *markers);
+    if (!body.is_junction && is_there(world, body)) add_body(body, *markers);
   delete_what_is_gone(*markers);
   for (Marker& marker : markers->markers) marker.header.stamp = stamp;
   publisher_.publish(markers);
@@ -227,6 +230,12 @@ void MarkerPublisher::add_pin(const World& world, const Attachment& attachment, 
   markers.markers.push_back(std::move(marker));
 }
 
+void MarkerPublisher::add_guide(const World& world, int guide, MarkerArray& markers) {
+  int part = 0;
+  for (Marker& look : guide_markers(world, guide))
+    add_look("guides", world.guides()[guide].name, part, std::move(look), markers);
+}
+
 void MarkerPublisher::add_obstacle(const World& world, const Obstacle& obstacle, MarkerArray& markers) {
   if (!obstacle.present) return;
   int part = 0;
@@ -243,15 +252,15 @@ void MarkerPublisher::add_body(const SimulatedBody& body, MarkerArray& markers) 
 /// `part`: how many markers of that name there are before.
 void MarkerPublisher::add_shape(const std::string& ns, const std::string& name, int& part, const Shape& shape, const Pose& pose,
                                 MarkerArray& markers) {
-  for (const Marker& look : shape_markers(shape, pose)) {
-    // No other name has a colon and a number behind it.
-    Marker marker = make_marker(ns, id_of(name + ":" + std::to_string(part++)), look.type);
-    marker.pose = look.pose;
-    marker.scale = look.scale;
-    marker.color = look.color;
-    marker.mesh_resource = look.mesh_resource;
-    markers.markers.push_back(std::move(marker));
-  }
+  for (Marker& look : shape_markers(shape, pose)) add_look(ns, name, part, std::move(look), markers);
+}
+
+void MarkerPublisher::add_look(const std::string& ns, const std::string& name, int& part, Marker look, MarkerArray& markers) {
+  look.header.frame_id = frame_id_;
+  look.ns = ns;
+  // No other name has a colon and a number behind it.
+  look.id = id_of(name + ":" + std::to_string(part++));
+  markers.markers.push_back(std::move(look));
 }
 
 void MarkerPublisher::delete_what_is_gone(MarkerArray& markers) {

@@ -20,6 +20,7 @@ namespace verlet_cable {
 ///  * namespace = name of a particle, id 0: a sphere;
 ///  * namespace "pins", ids from 1: what holds cables, nets and bodies: hinges are spheres, clamps are boxes, long along the
 ///  cable's +x, axles are cylinders;
+///  * namespace "guides", ids from 1: what cables slide through (guide_markers.h);
 ///  * namespace "obstacles", ids from 1: those that are there; a capsule is three markers;
 ///  * namespace "bodies", ids from 1: the shapes of bodies, likewise;
 ///  * namespace "payloads", ids from 1: point masses, as balls of aluminium would be.
@@ -38,10 +39,13 @@ class MarkerPublisher {
   void add_net(const SimulatedNet& net, visualization_msgs::MarkerArray& markers) const;
   void add_particle(const SimulatedParticle& particle, visualization_msgs::MarkerArray& markers) const;
   void add_pin(const World& world, const Attachment& attachment, visualization_msgs::MarkerArray& markers);
+  void add_guide(const World& world, int guide, visualization_msgs::MarkerArray& markers);
   void add_obstacle(const World& world, const Obstacle& obstacle, visualization_msgs::MarkerArray& markers);
   void add_body(const SimulatedBody& body, visualization_msgs::MarkerArray& markers);
   void add_shape(const std::string& ns, const std::string& name, int& part, const Shape& shape, const Pose& pose,
                  visualization_msgs::MarkerArray& markers);
+  void add_look(const std::string& ns, const std::string& name, int& part, visualization_msgs::Marker look,
+                visualization_msgs::MarkerArray& markers);
   void delete_what_is_gone(visualization_msgs::MarkerArray& markers);
   int id_of(const std::string& name);
 
@@ -49,7 +53,7 @@ class MarkerPublisher {
   std::string frame_id_;
   MarkerStyle style_;
   ColorScale colors_;
-  std::map<std::string, int> ids_;  // of pins, payloads, obstacles and bodies, by name; never given twice
+  std::map<std::string, int> ids_;  // of pins, payloads, guides, obstacles and bodies, by name; never given twice
   std::set<Key> shown_;             // at the last tick with subscribers
 };
 

@@ -29,7 +29,8 @@ void WrenchPublisher::follow_attachments(const World& world) {
     topics_.merge(new_topics_.get());
   }
   std::unordered_set<std::string_view> names;
-  for (const Attachment& attachment : world.attachments()) names.insert(attachment.name);
+  for (const Attachment& attachment : world.attachments())
+    if (is_named(attachment)) names.insert(attachment.name);
   Topics gone;
   for (auto topic = topics_.begin(); topic != topics_.end() && gone.size() < most_at_once;) {
     const auto next = std::next(topic);
@@ -39,7 +40,7 @@ void WrenchPublisher::follow_attachments(const World& world) {
   std::vector<std::string> missing;
   for (const Attachment& attachment : world.attachments()) {
     if (missing.size() >= most_at_once) break;
-    if (topics_.count(attachment.name) == 0) missing.push_back(attachment.name);
+    if (is_named(attachment) && topics_.count(attachment.name) == 0) missing.push_back(attachment.name);
   }
   if (gone.empty() && missing.empty()) return;
   new_topics_ = std::async(std::launch::async, [node = node_, gone = std::move(gone), missing = std::move(missing)]() mutable {
@@ -55,6 +56,7 @@ void WrenchPublisher::follow_attachments(const World& world) {
 void WrenchPublisher::publish(const World& world, const ros::Time& stamp) {
   follow_attachments(world);
   for (const Attachment& attachment : world.attachments()) {
+    if (!is_named(attachment)) continue;
     const auto topic = topics_.find(attachment.name);
     if (topic == topics_.end() || topic->second.getNumSubscribers() == 0) continue;
     // What holds a body is there before the frame that it holds it to.

@@ -59,7 +59,7 @@ void check_held_body(const Pin::Request& request, const CheckedPin& pin, const W
 
 void check_held_node(const CheckedPin& pin, const World& world, std::vector<std::string>& errors) {
   for (const Attachment& other : world.attachments()) {
-    if (other.body != pin.body || other.node != pin.node) continue;
+    if (other.body != pin.body || other.node != pin.node || other.is_junction) continue;
     errors.push_back("location: node " + std::to_string(pin.node) + " of " + kind_and_name(world, pin.body) + " is held by " +
                      quoted(other.name) + "; allowed: nodes that nothing holds");
   }

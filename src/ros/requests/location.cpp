@@ -41,7 +41,8 @@ void find_cable(const CableLocation& location, const World& world, bool bodies, 
   for (const SimulatedCable& cable : world.cables()) names += (names.empty() ? "" : ", ") + cable.model->name;
   for (const SimulatedNet& net : world.nets()) names += (names.empty() ? "" : ", ") + net.model.name;
   if (bodies)
-    for (const SimulatedBody& body : world.bodies()) names += (names.empty() ? "" : ", ") + body.name;
+    for (const SimulatedBody& body : world.bodies())
+      if (!body.is_junction) names += (names.empty() ? "" : ", ") + body.name;
   found.errors.push_back("location.cable: " + quoted(location.cable) +
                          "; allowed: " + (names.empty() ? "none, there are no cables or nets" : names));
 }

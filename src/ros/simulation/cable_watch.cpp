@@ -1,5 +1,7 @@
 #include "simulation/cable_watch.h"
 
+#include <algorithm>
+
 #include "verlet_cable/core/body_name.h"
 #include "verlet_cable/core/excursion_text.h"
 #include "verlet_cable/core/number_text.h"
@@ -51,6 +53,21 @@ void CableWatch::report_excursions(Nanoseconds stamp, const World& world) const 
     events_.publish(CableEvent::LIMIT, stamp, {cable, {}, excursion.node, {}},
                     "cable " + quoted(cable) + " at node " + std::to_string(excursion.node) + ": " + excursion_text(excursion));
   }
+}
+
+void CableWatch::report_guides(Nanoseconds stamp, const World& world) const {
+  const auto report = [&](const std::vector<int>& guides, std::uint8_t type, const char* what) {
+    for (const int index : guides) {
+      const SimulatedGuide& guide = world.guides()[index];
+      const auto holds = [&](const Attachment& attachment) { return attachment.guide == index; };
+      const auto attachment = std::find_if(world.attachments().begin(), world.attachments().end(), holds);
+      const int node = attachment == world.attachments().end() ? 0 : attachment->node;
+      events_.publish(type, stamp, {guide.cable, guide.name, node, {}},
+                      "guide " + quoted(guide.name) + what + quoted(guide.cable) + (type == CableEvent::CAUGHT ? "" : " go"));
+    }
+  };
+  report(world.findings().caught, CableEvent::CAUGHT, " has taken cable ");
+  report(world.findings().released, CableEvent::RELEASED, " has let cable ");
 }
 
 void CableWatch::report_intrusions(const World& world) {

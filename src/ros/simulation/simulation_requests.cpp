@@ -72,7 +72,8 @@ EditResult Simulation::move_attachment(const std::string& name, const Pose& offs
 
 EditResult Simulation::refused_attachment(const std::string& name) const {
   std::string names;
-  for (const Attachment& attachment : world_.attachments()) names += (names.empty() ? "" : ", ") + attachment.name;
+  for (const Attachment& attachment : world_.attachments())
+    if (is_named(attachment)) names += (names.empty() ? "" : ", ") + attachment.name;
   return refused("name: " + quoted(name) +
                  " is no attachment; allowed: " + (names.empty() ? "none, nothing is attached" : names));
 }

@@ -78,6 +78,7 @@ void write_nodes(const World& world, CsvWriter& csv) {
 void write_bodies(const World& world, CsvWriter& csv) {
   const std::string time = number_text(world.time());
   for (const SimulatedBody& body : world.bodies()) {
+    if (body.is_junction) continue;
     csv.begin_row(time + ',' + body.name);
     csv.append_all(body.pose.position);
     csv.append_all(body.pose.orientation.coeffs());  // x, y, z, w

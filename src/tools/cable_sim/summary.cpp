@@ -27,6 +27,7 @@ Json array(const Vector3& vector) {
 Json bodies_json(const World& world) {
   Json json = Json::object();
   for (const SimulatedBody& body : world.bodies()) {
+    if (body.is_junction) continue;
     const Quaternion& q = body.pose.orientation;
     json[body.name] = {{"position", array(body.pose.position)}, {"orientation", {q.x(), q.y(), q.z(), q.w()}}};
   }
@@ -65,7 +66,9 @@ Summary::Summary(const World& world, std::int64_t averaged_steps)
   for (const SimulatedCable& cable : world.cables()) segments_ += cable.state.segments();
   for (const SimulatedNet& net : world.nets())
     segments_ += static_cast<std::int64_t>(std::max(net.model.links.size(), net.model.masses.size()));
-  segments_ += static_cast<std::int64_t>(world.particles().size() + world.bodies().size());
+  segments_ += static_cast<std::int64_t>(world.particles().size());
+  segments_ +=
+      std::count_if(world.bodies().begin(), world.bodies().end(), [](const SimulatedBody& body) { return !body.is_junction; });
   extremes_.add(world);
 }
 
@@ -75,7 +78,7 @@ void Summary::add_step(const World& world, const StepResult& result, std::chrono
   max_strain_ = std::max(max_strain_, result.max_strain);
   extremes_.add(world);
   for (const Attachment& attachment : world.attachments()) {
-    if (attachment.guide >= 0) continue;
+    if (!is_named(attachment)) continue;
     std::vector<Wrench>& last = wrenches_[attachment.name];
     if (steps_ < averaged_steps_) last.emplace_back();
     last[steps_ % averaged_steps_] = {attachment.force, attachment.torque};
@@ -101,7 +104,7 @@ std::string Summary::json(const World& world, const std::vector<Event>& events) 
   // By names, which are not looked up: there may be tens of thousands.
   std::vector<std::pair<std::string, Json>> attachments;
   for (const Attachment& attachment : world.attachments()) {
-    if (attachment.guide >= 0) continue;
+    if (!is_named(attachment)) continue;
     const Wrench mean = mean_wrench(attachment);
     attachments.emplace_back(attachment.name, Json{{"force", array(mean.force)},
                                                    {"torque", array(mean.torque)},

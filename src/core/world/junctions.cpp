@@ -1,0 +1,197 @@
+#include "world/junctions.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "rod/rod_frames.h"
+#include "verlet_cable/core/cable_materials.h"
+#include "verlet_cable/core/rotation.h"
+#include "world/implementation.h"
+
+namespace verlet_cable {
+
+namespace {
+
+/// A branch whose end is joined comes from the other side: its material's x goes towards the junction.
+const Quaternion reversed(0, 0, 0, 1);
+
+double linear_density_at(const SceneDesc& scene, const CableDesc& cable, int segment) {
+  const int section = cable.sections.empty() ? -1 : section_at(cable, segment);
+  return scene.find_material(section < 0 ? cable.material : cable.sections[section].material)->linear_density;
+}
+
+/// [kg m^2] Of the halves of the segments beside a node about that node. A junction has no inertia of its own: it turns with
+/// these, which is less the shorter the segments are, of second order as all that they leave out.
+double inertia_around(const SceneDesc& scene, const CableDesc& cable, int node) {
+  const double half = 0.5 * cable.length / cable.segments;
+  double inertia = 0;
+  for (const int segment : {node - 1, node})
+    if (segment >= 0 && segment < cable.segments) inertia += linear_density_at(scene, cable, segment) * half * half * half / 3;
+  return inertia;
+}
+
+bool bends_at(const SimulatedCable& cable, int node) {
+  const CableMaterials materials(cable);
+  return std::max(materials[std::max(node - 1, 0)].bending_stiffness.largest(),
+                  materials[std::min(node, cable.state.segments() - 1)].bending_stiffness.largest()) > 0;
+}
+
+}  // namespace
+
+Vector3 spin_at(const CableState& state, int node) {
+  const int before = std::max(node - 1, 0), after = std::min(node + 1, state.segments());
+  const Vector3 way = state.positions[after] - state.positions[before];
+  return way.cross(state.velocities[after] - state.velocities[before]) / way.squaredNorm();
+}
+
+std::vector<JunctionPlace> junction_places(const SceneDesc& scene, const CableDesc& cable) {
+  std::vector<JunctionPlace> places;
+  for (int j = 0; j < static_cast<int>(scene.junctions.size()); ++j) {
+    const JunctionDesc& junction = scene.junctions[j];
+    if (junction.cable == cable.name) places.push_back({j, node_at(cable, junction.place), nullptr});
+    for (const BranchDesc& branch : junction.branches)
+      if (branch.cable == cable.name) places.push_back({j, branch.end == BranchDesc::End::start ? 0 : cable.segments, &branch});
+  }
+  return places;
+}
+
+bool is_welded(const SceneDesc& scene, const std::string& cable) {
+  return std::any_of(scene.junctions.begin(), scene.junctions.end(), [&](const JunctionDesc& junction) {
+    return junction.type == JunctionDesc::Type::rigid &&
+           (junction.cable == cable || std::any_of(junction.branches.begin(), junction.branches.end(),
+                                                   [&](const BranchDesc& branch) { return branch.cable == cable; }));
+  });
+}
+
+std::vector<int> harnesses_of(const SceneDesc& scene) {
+  std::vector<int> labels(scene.cables.size());
+  std::iota(labels.begin(), labels.end(), 0);
+  const auto index_of = [&](const std::string& name) {
+    return std::find_if(scene.cables.begin(), scene.cables.end(), [&](const CableDesc& cable) { return cable.name == name; }) -
+           scene.cables.begin();
+  };
+  for (const JunctionDesc& junction : scene.junctions)
+    for (const BranchDesc& branch : junction.branches) {
+      const int a = labels[index_of(junction.cable)], b = labels[index_of(branch.cable)];
+      std::replace(labels.begin(), labels.end(), std::max(a, b), std::min(a, b));
+    }
+  return labels;
+}
+
+/// Light bodies where cables branch, after those of the scene. The first cable of a junction that starts places it.
+void World::Implementation::add_junctions() {
+  const SceneDesc& scene = *state.scene;
+  const std::vector<std::string> names = computed_frame_names(scene);
+  for (const JunctionDesc& desc : scene.junctions) {
+    SimulatedBody body;
+    body.name = names[state.bodies.size()];
+    body.is_junction = true;
+    body.mass = desc.mass;
+    add_body(std::move(body));
+  }
+  for (const CableDesc& cable : scene.cables)
+    for (const JunctionPlace& place : junction_places(scene, cable))
+      state.bodies[scene.bodies.size() + place.junction].inertia.diagonal().array() += inertia_around(scene, cable, place.node);
+}
+
+/// The same cables in an order in which branches follow what they come off, where there is one.
+std::vector<int> World::Implementation::with_trunks_first(const std::vector<int>& cables) const {
+  const SceneDesc& scene = *state.scene;
+  if (scene.junctions.empty()) return cables;
+  std::vector<int> left = cables, ordered;
+  const auto waits = [&](int cable) {
+    const std::vector<JunctionPlace> places = junction_places(scene, scene.cables[cable]);
+    return std::any_of(places.begin(), places.end(), [&](const JunctionPlace& place) {
+      const std::string& trunk = scene.junctions[place.junction].cable;
+      return place.branch != nullptr &&
+             std::any_of(left.begin(), left.end(), [&](int other) { return scene.cables[other].name == trunk; });
+    });
+  };
+  while (!left.empty()) {
+    auto next = std::find_if_not(left.begin(), left.end(), waits);
+    if (next == left.end()) next = left.begin();  // cables that come off each other
+    ordered.push_back(*next);
+    left.erase(next);
+  }
+  return ordered;
+}
+
+/// What holds a cable at junctions, as if they held points alone; `weld_junctions` does the rest.
+std::vector<Attachment> World::Implementation::junction_attachments(const CableDesc& desc, int cable) const {
+  const SceneDesc& scene = *state.scene;
+  std::vector<Attachment> attachments;
+  for (const JunctionPlace& place : junction_places(scene, desc)) {
+    Attachment& attachment = attachments.emplace_back();
+    attachment.name =
+        "junction " + scene.junctions[place.junction].name + " of " + desc.name + " at " + std::to_string(place.node);
+    attachment.is_junction = true;
+    attachment.body = cable_id(cable);
+    attachment.node = place.node;
+    attachment.holder = static_cast<int>(scene.bodies.size()) + place.junction;
+    attachment.frame = state.bodies[attachment.holder].frame;
+    // The material of a branch that goes on along its trunk is turned as that's.
+    if (place.branch == nullptr || !state.body_progress[attachment.holder].is_placed || !is_welded(scene, desc.name)) continue;
+    if (desc.initial.type != InitialShapeDesc::Type::automatic) continue;
+    attachment.type = AttachmentType::clamp;
+    attachment.pose.orientation = quaternion_from_rpy(place.branch->rotation);
+    if (place.branch->end == BranchDesc::End::end) attachment.pose.orientation *= reversed;
+  }
+  return attachments;
+}
+
+/// Of a branch without one: straight on along the cable that it comes off.
+std::optional<InitialShapeDesc> World::Implementation::shape_from_trunk(const CableDesc& desc) const {
+  if (desc.initial.type != InitialShapeDesc::Type::automatic) return std::nullopt;
+  for (const JunctionPlace& place : junction_places(*state.scene, desc)) {
+    const auto body = state.scene->bodies.size() + place.junction;
+    if (place.branch == nullptr || !state.body_progress[body].is_placed) continue;
+    const Pose& junction = state.bodies[body].pose;
+    const Vector3 way = desc.length * (junction.orientation * quaternion_from_rpy(place.branch->rotation) * Vector3::UnitX());
+    InitialShapeDesc shape;
+    shape.type = InitialShapeDesc::Type::straight;
+    const bool from_start = place.branch->end == BranchDesc::End::start;
+    shape.from = from_start ? junction.position : Vector3(junction.position + way);
+    shape.to = from_start ? Vector3(junction.position + way) : junction.position;
+    return shape;
+  }
+  return std::nullopt;
+}
+
+/// Rigid junctions hold the cables that have just started as these come to them; what holds a cable where it branches holds the
+/// junction.
+void World::Implementation::weld_junctions(const std::vector<int>& descs) {
+  if (state.scene->junctions.empty()) return;
+  for (const int i : descs) {
+    const int cable = find(state.cables, state.scene->cables[i].name);
+    if (cable < 0) continue;
+    bool changes = false;
+    for (int a = 0; a < static_cast<int>(state.attachments.size()); ++a) {
+      if (state.attachments[a].body != cable_id(cable) || !state.attachments[a].is_junction) continue;
+      weld(a);
+      changes = true;
+    }
+    if (changes) find_targets_of(cable);
+  }
+}
+
+/// A cable without bending stiffness passes no moment: a point of it is held.
+void World::Implementation::weld(int index) {
+  Attachment& joint = state.attachments[index];
+  const SimulatedCable& cable = state.cables[joint.body.index];
+  const JunctionDesc& junction = state.scene->junctions[joint.holder - state.scene->bodies.size()];
+  joint.type = AttachmentType::hinge;
+  if (junction.type == JunctionDesc::Type::rigid && bends_at(cable, joint.node)) {
+    const Quaternion& axes = state.bodies[joint.holder].pose.orientation;
+    joint.type = AttachmentType::clamp;
+    joint.pose.orientation = (axes.conjugate() * axes_at(cable.state, joint.node)).normalized();
+  }
+  // As it comes, whatever it was held by until now
+  std::vector<DirectionTarget>& clamps = state.cable_progress[joint.body.index].targets.directions;
+  clamps.erase(
+      std::remove_if(clamps.begin(), clamps.end(), [&](const DirectionTarget& clamp) { return clamp.node == joint.node; }),
+      clamps.end());
+  for (Attachment& other : state.attachments)
+    if (other.body == joint.body && other.node == joint.node && is_named(other)) other.held_junction = joint.holder;
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "verlet_cable/core/cable.h"
+#include "verlet_cable/core/scene_desc.h"
+
+namespace verlet_cable {
+
+/// Of the material around a node, from the motion of the nodes next to it [rad/s].
+Vector3 spin_at(const CableState& state, int node);
+
+/// Where a cable takes part in a junction: as its trunk, or with an end.
+struct JunctionPlace {
+  int junction = 0;                    ///< index into the scene's junctions
+  int node = 0;                        ///< of the cable
+  const BranchDesc* branch = nullptr;  ///< none: it is the trunk
+};
+std::vector<JunctionPlace> junction_places(const SceneDesc& scene, const CableDesc& cable);
+
+/// Whether a rigid junction holds the cable.
+bool is_welded(const SceneDesc& scene, const std::string& cable);
+
+/// For each cable of the scene the first one that junctions join it to, directly or by others; itself if there is none.
+std::vector<int> harnesses_of(const SceneDesc& scene);
+
+}  // namespace verlet_cable

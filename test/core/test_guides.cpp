@@ -1,0 +1,225 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "../support/scenes.h"
+
+namespace verlet_cable {
+namespace {
+
+using Status = StepResult::Status;
+
+GuideDesc guide(const std::string& name, std::optional<double> at, const Vector3& offset,
+                GuideDesc::Type type = GuideDesc::Type::eyelet) {
+  GuideDesc desc;
+  desc.name = name;
+  desc.cable = "cable";
+  if (at) desc.place = PlaceDesc{PlaceDesc::At::arc_length, *at};
+  desc.offset = offset;
+  desc.type = type;
+  if (type == GuideDesc::Type::sheave) desc.rotation = {0.5 * M_PI, 0, 0};
+  return desc;
+}
+
+/// Over an eyelet at the origin, down on both sides with loads [kg] at the ends.
+SceneDesc two_loads(double at_start, double at_end, double length = 2) {
+  SceneDesc scene = scenes::one_cable(50, length);
+  scene.cables[0].point_masses = {scenes::payload(at_start), scenes::payload(at_end)};
+  scene.cables[0].point_masses[0].place.at = PlaceDesc::At::start;
+  const Vector3 side(0.25 * length, 0, -0.25 * std::sqrt(3.0) * length);
+  scene.cables[0].initial.type = InitialShapeDesc::Type::points;
+  scene.cables[0].initial.points = {{-side.x(), 0, side.z()}, Vector3::Zero(), side};
+  scene.guides = {guide("eye", 0.5 * length, Vector3::Zero())};
+  return scene;
+}
+
+void run(World& world, double duration, const BoundaryInputs& inputs = {}) {
+  const int steps = static_cast<int>(std::lround(duration / world.time_step()));
+  for (int i = 0; i < steps; ++i) ASSERT_EQ(world.step(inputs).status, Status::ok) << "at " << world.time() << " s";
+}
+
+double mass_of(const SimulatedCable& cable) {
+  return std::accumulate(cable.state.masses.begin(), cable.state.masses.end(), 0.0);
+}
+
+TEST(Guides, areNoAttachmentsByName) {
+  SceneDesc scene = two_loads(0.1, 0.1);
+  scene.cables[0].initial = {};
+  scene.cables[0].point_masses.clear();
+  scene.cables[0].attachments = {scenes::attachment("eye", PlaceDesc::At::start, {-0.2, 0, -0.9}),
+                                 scenes::attachment("other", PlaceDesc::At::end, {0.2, 0, -0.9})};
+  World world(scene, {});
+  EXPECT_LT(world.attachments()[find(world.attachments(), "eye")].guide, 0);
+  EXPECT_TRUE(world.apply(edit::Unpin{"eye"}).ok);
+  const EditResult refused = world.apply(edit::Unpin{"eye"});
+  EXPECT_FALSE(refused.ok);
+  EXPECT_NE(refused.message.find("is a guide, which nothing unpins"), std::string::npos) << refused.message;
+}
+
+/// Whatever the cable is: its law of motion is another where it bends, twists or is of several materials.
+struct Kind {
+  const char* name;
+  void (*make)(SceneDesc&);
+};
+
+void PrintTo(const Kind& kind, std::ostream* stream) {
+  *stream << kind.name;
+}
+
+const Kind kinds[] = {
+    {"chain", [](SceneDesc&) {}},
+    {"elastic", [](SceneDesc& scene) { scene.materials[0].material.axial_stiffness = 1e4; }},
+    {"bending", [](SceneDesc& scene) { scene.materials[0].material.bending_stiffness = 1e-4; }},
+    {"ribbon",
+     [](SceneDesc& scene) {
+       scene.materials[0].material.bending_stiffness = BendingStiffness(1e-4, 2e-4);
+       scene.materials[0].material.torsional_stiffness = 1e-4;
+     }},
+    {"coil",
+     [](SceneDesc& scene) {
+       scene.materials[0].material.bending_stiffness = 1e-4;
+       scene.materials[0].material.torsional_stiffness = 1e-4;
+       scene.cables[0].rest_curvature.type = RestCurvatureDesc::Type::constant;
+       scene.cables[0].rest_curvature.curvature = {0.5, 0};
+     }},
+    {"sections",
+     [](SceneDesc& scene) {
+       scene.materials.push_back({"lead", scene.materials[0].material});
+       scene.materials[1].material.linear_density = 0.3;
+       scene.cables[0].sections = {{0.6, 0.9, "lead"}};
+     }},
+};
+
+class GuidedKinds : public testing::TestWithParam<Kind> {};
+
+/// With loads so different that nodes pass all the time.
+TEST_P(GuidedKinds, keepMassLengthAndEnergyWhileNodesPass) {
+  SceneDesc scene = two_loads(1, 3);
+  GetParam().make(scene);
+  scene.numerical_damping = false;
+  World world(scene, {});
+  const double mass = mass_of(world.cables()[0]), energy = world.energy().total();
+  run(world, 0.35);
+  const GuideView view = world.view_guide(0);
+  EXPECT_LT(view.arc_length, 0.8);
+  EXPECT_NEAR(mass_of(world.cables()[0]), mass, 1e-12);
+  EXPECT_NEAR(world.cables()[0].state.length(), 2, 2e-3);
+  EXPECT_NEAR(world.energy().total(), energy, 5e-3 * world.energy().kinetic);
+}
+
+TEST_P(GuidedKinds, goOnFromSnapshotsInTheMiddleOfAPass) {
+  SceneDesc scene = two_loads(1, 3);
+  GetParam().make(scene);
+  World world(scene, {});
+  const std::size_t nodes = world.cables()[0].state.masses.size();
+  // Until a node has just been taken in, or given out.
+  run(world, 0.2);
+  for (int i = 0; i < 200 && world.cables()[0].state.masses.size() == nodes; ++i) run(world, world.time_step());
+  World copy = world;
+  EXPECT_EQ(copy.hash(), world.hash());
+  run(world, 0.2);
+  run(copy, 0.2);
+  EXPECT_EQ(copy.hash(), world.hash());
+  World again(scene, {});
+  run(again, world.time());
+  EXPECT_EQ(again.hash(), world.hash());
+}
+
+INSTANTIATE_TEST_SUITE_P(All, GuidedKinds, testing::ValuesIn(kinds), [](const auto& info) { return info.param.name; });
+
+TEST(Clips, letGoWhatIsDrawnAcrossThem) {
+  SceneDesc scene = scenes::one_cable(40, 1);
+  scene.cables[0].attachments = {scenes::attachment("left", PlaceDesc::At::start, {-0.45, 0, 0}),
+                                 scenes::attachment("right", PlaceDesc::At::end, {0.45, 0, 0}, "hand")};
+  scene.cables[0].attachments[1].offset.setZero();
+  scene.cables[0].attachments[1].initial_pose = InitialPose{0.45, 0, 0, 0, 0, 0};
+  scene.guides = {guide("clip", 0.5, Vector3::Zero(), GuideDesc::Type::clip)};
+  scene.guides[0].retention = 5;
+  scene.guides[0].capture = 0.01;
+  World world(scene, initial_frames(scene));
+  BoundaryInputs inputs = initial_frames(scene);
+  // The hand goes up, and draws the cable out of the clip.
+  int released = 0, caught = 0;
+  double force = 0;
+  const auto move_to = [&](const Vector3& place, int steps) {
+    const Vector3 from = inputs[1].pose.position;
+    for (int i = 1; i <= steps; ++i) {
+      const double part = static_cast<double>(i) / steps;
+      inputs[1].pose.position = from + part * part * (3 - 2 * part) * (place - from);
+      if (world.view_guide(0).cable >= 0) force = world.attachments()[find(world.attachments(), "clip")].force.norm();
+      world.step(inputs);
+      released += static_cast<int>(world.findings().released.size());
+      caught += static_cast<int>(world.findings().caught.size());
+    }
+  };
+  move_to({0.2, 0, 0.7}, 1500);
+  EXPECT_EQ(released, 1);
+  EXPECT_EQ(caught, 0);
+  EXPECT_NEAR(force, 5, 0.6);
+  EXPECT_EQ(world.view_guide(0).cable, -1);
+  EXPECT_EQ(find(world.attachments(), "clip"), -1);
+  // Back again: it was away, so that the clip takes it.
+  const Vector3 high = inputs[1].pose.position;
+  for (int i = 1; i <= 100 && caught == 0; ++i) move_to(high + 0.01 * i * (Vector3(0.45, 0, 0.05) - high), 15);
+  EXPECT_EQ(caught, 1);
+  EXPECT_EQ(world.view_guide(0).cable, 0);
+}
+
+TEST(Clips, waitUntilTheCableWasAway) {
+  SceneDesc scene = scenes::between_two_points(40, 0.9);
+  scene.guides = {guide("clip", 0.5, {0, 0, 0}, GuideDesc::Type::clip)};
+  scene.guides[0].offset = {0.45, 0, -0.15};
+  scene.guides[0].retention = 1e-3;
+  scene.guides[0].capture = 0.5;
+  World world(scene, {});
+  int released = 0, caught = 0;
+  for (int i = 0; i < 500; ++i) {
+    world.step({});
+    released += static_cast<int>(world.findings().released.size());
+    caught += static_cast<int>(world.findings().caught.size());
+  }
+  // Never 2 * 0.5 m away.
+  EXPECT_EQ(released, 1);
+  EXPECT_EQ(caught, 0);
+}
+
+TEST(Guides, materialComesBackWithItsSections) {
+  SceneDesc scene = two_loads(0, 0);
+  scene.materials.push_back({"lead", scene.materials[0].material});
+  scene.materials[1].material.linear_density = 0.3;
+  CableDesc& cable = scene.cables[0];
+  cable.initial = {};
+  cable.sections = {{0.8, 1.2, "lead"}};
+  cable.point_masses.clear();
+  cable.attachments = {scenes::attachment("left", PlaceDesc::At::start, Vector3::Zero(), "left"),
+                       scenes::attachment("right", PlaceDesc::At::end, Vector3::Zero(), "right")};
+  cable.attachments[0].initial_pose = InitialPose{-0.9, 0, 0, 0, 0, 0};
+  cable.attachments[1].initial_pose = InitialPose{0.9, 0, 0, 0, 0, 0};
+  World world(scene, initial_frames(scene));
+  BoundaryInputs inputs = initial_frames(scene);
+  const auto lead = [&] {
+    const CableState& state = world.cables()[0].state;
+    std::array<double, 2> found{2, 0};
+    double at = 0;
+    for (int i = 0; i < state.segments(); ++i) {
+      if (state.section_material[i] == 1) found = {std::min(found[0], at), std::max(found[1], at + state.rest_lengths[i])};
+      at += state.rest_lengths[i];
+    }
+    return found;
+  };
+  const double mass = mass_of(world.cables()[0]);
+  for (int i = 1; i <= 4000; ++i) {
+    const double shift = 0.5 * std::sin(M_PI * i / 2000);
+    inputs[1].pose.position.x() = -0.9 + shift;
+    inputs[2].pose.position.x() = 0.9 + shift;
+    ASSERT_EQ(world.step(inputs).status, Status::ok);
+    EXPECT_NEAR(lead()[0], 0.8, 0.05) << i;
+    EXPECT_NEAR(lead()[1], 1.2, 0.05) << i;
+  }
+  EXPECT_NEAR(mass_of(world.cables()[0]), mass, 1e-12);
+  EXPECT_NEAR(world.view_guide(0).arc_length, 1, 0.02);
+}
+
+}  // namespace
+}  // namespace verlet_cable

@@ -1,0 +1,381 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "../support/scenes.h"
+
+// Cables that branch: trees and loops, edited, copied, touching.
+
+namespace verlet_cable {
+namespace {
+
+using End = BranchDesc::End;
+
+CableDesc& add_cable(SceneDesc& scene, const std::string& name, double length, int segments) {
+  CableDesc& cable = scene.cables.emplace_back();
+  cable.name = name;
+  cable.length = length;
+  cable.segments = segments;
+  cable.material = "rope";
+  return cable;
+}
+
+CableDesc& add_straight(SceneDesc& scene, const std::string& name, int segments, const Vector3& from, const Vector3& to) {
+  CableDesc& cable = add_cable(scene, name, (to - from).norm(), segments);
+  cable.initial.type = InitialShapeDesc::Type::points;
+  cable.initial.points = {from, to};
+  return cable;
+}
+
+BranchDesc branch(const std::string& cable, End end = End::start, const Vector3& rotation = Vector3::Zero()) {
+  BranchDesc desc;
+  desc.cable = cable;
+  desc.end = end;
+  desc.rotation = rotation;
+  return desc;
+}
+
+JunctionDesc& add_junction(SceneDesc& scene, const std::string& cable, double at, const std::vector<BranchDesc>& branches) {
+  JunctionDesc& junction = scene.junctions.emplace_back();
+  junction.name = "fork" + std::to_string(scene.junctions.size());
+  junction.cable = cable;
+  junction.place.at = PlaceDesc::At::arc_length;
+  junction.place.arc_length = at;
+  junction.branches = branches;
+  return junction;
+}
+
+SceneDesc nothing() {
+  SceneDesc scene = scenes::one_cable(1);
+  scene.cables.clear();
+  MaterialDesc& material = scene.materials[0].material;
+  material.bending_stiffness = 0.02;
+  material.torsional_stiffness = 0.015;
+  material.bending_damping = material.torsional_damping = 0.001;
+  material.drag = 0.1;
+  return scene;
+}
+
+/// A trunk from the frame "hand" with two branches, of which one ends at it and has a twig of its own; the twig is listed first.
+SceneDesc tree() {
+  SceneDesc scene = nothing();
+  add_cable(scene, "twig", 0.2, 6);
+  add_cable(scene, "left", 0.4, 10);
+  add_cable(scene, "right", 0.4, 10);
+  CableDesc& trunk = add_cable(scene, "trunk", 1, 20);
+  trunk.attachments = {scenes::attachment("grip", PlaceDesc::At::start, Vector3::Zero(), "hand", AttachmentType::clamp)};
+  trunk.attachments[0].initial_pose = InitialPose{};
+  trunk.initial.type = InitialShapeDesc::Type::settled;
+  add_junction(scene, "trunk", 0.6, {branch("left", End::start, {0, 0, 0.6}), branch("right", End::end, {0, 0.3, -0.8})});
+  add_junction(scene, "right", 0.2, {branch("twig", End::start, {0, 0, 0.5})});
+  return scene;
+}
+
+/// Two trunks between frames with three rungs.
+SceneDesc ladder() {
+  SceneDesc scene = nothing();
+  for (const double side : {-0.1, 0.1}) {
+    const std::string name = side < 0 ? "left" : "right";
+    CableDesc& trunk = add_straight(scene, name, 16, {0, side, 0}, {0.8, side, 0});
+    trunk.initial.points = {{0, side, 0}, {0.39, side, -0.05}, {0.78, side, 0}};
+    trunk.attachments = {scenes::attachment(name + "_start", PlaceDesc::At::start, {0, side, 0}, "", AttachmentType::clamp),
+                         scenes::attachment(name + "_end", PlaceDesc::At::end, {0.78, side, 0})};
+  }
+  for (int i = 1; i <= 3; ++i) {
+    const std::string name = "rung" + std::to_string(i);
+    add_straight(scene, name, 4, {0.2 * i, -0.1, 0}, {0.2 * i, 0.1, 0});
+    add_junction(scene, "left", 0.2 * i, {branch(name)});
+    add_junction(scene, "right", 0.2 * i, {branch(name, End::end)});
+  }
+  return scene;
+}
+
+/// A cable that hangs on one end; the other one is joined to its own middle.
+SceneDesc noose() {
+  SceneDesc scene = nothing();
+  CableDesc& cable = add_cable(scene, "noose", 1, 40);
+  cable.initial.type = InitialShapeDesc::Type::points;
+  const double radius = 0.6 / (2 * M_PI);
+  cable.initial.points = {{0, 0, 0}};
+  for (int i = 0; i <= 60; ++i) {
+    const double angle = 2 * M_PI * i / 60;
+    cable.initial.points.emplace_back(radius * std::sin(angle), 0, -0.4 - radius * (1 - std::cos(angle)));
+  }
+  cable.attachments = {scenes::attachment("top", PlaceDesc::At::start, Vector3::Zero())};
+  add_junction(scene, "noose", 0.4, {branch("noose", End::end)});
+  return scene;
+}
+
+/// A ribbon with a branch whose other end is held, too.
+SceneDesc held_ribbon() {
+  SceneDesc scene = nothing();
+  scene.materials[0].material.bending_stiffness = {0.02, 0.005};
+  CableDesc& trunk = add_straight(scene, "trunk", 20, {0, 0, 0}, {0.8, 0, 0});
+  trunk.attachments = {scenes::attachment("start", PlaceDesc::At::start, {0, 0, 0}, "", AttachmentType::clamp),
+                       scenes::attachment("end", PlaceDesc::At::end, {0.75, 0, 0})};
+  trunk.attachments[0].rotation = {0.4, 0, 0};
+  trunk.initial.points = {{0, 0, 0}, {0.375, 0, -0.1}, {0.75, 0, 0}};
+  CableDesc& arm = add_straight(scene, "arm", 10, {0.4, 0, 0}, {0.4, 0.4, 0});
+  arm.initial.points = {{0.38, 0, -0.1}, {0.4, 0.18, -0.2}, {0.4, 0.35, -0.1}};
+  arm.attachments = {scenes::attachment("tip", PlaceDesc::At::end, {0.4, 0.35, -0.1}, "", AttachmentType::clamp)};
+  arm.attachments[0].rotation = {0, 0, M_PI / 2};
+  add_junction(scene, "trunk", 0.4, {branch("arm")}).mass = 0.01;
+  return scene;
+}
+
+struct Harness {
+  const char* name;
+  SceneDesc (*scene)();
+};
+
+void PrintTo(const Harness& harness, std::ostream* stream) {
+  *stream << harness.name;
+}
+
+/// [m] The largest between a junction and a node that it joins.
+double largest_gap(const World& world) {
+  double gap = 0;
+  for (const Attachment& attachment : world.attachments())
+    if (attachment.is_junction)
+      gap = std::max(gap, (world.cables()[attachment.body.index].state.positions[attachment.node] -
+                           (world.bodies()[attachment.holder].pose * attachment.pose).position)
+                              .norm());
+  return gap;
+}
+
+void run(World& world, BoundaryInputs& inputs, double duration, double amplitude = 0) {
+  for (long steps = std::lround(duration / world.time_step()); steps > 0; --steps) {
+    const double t = world.time() + world.time_step();
+    if (amplitude > 0 && inputs.size() > 1)
+      inputs[1].pose.position = amplitude * Vector3(std::sin(4 * t), 0.5 * (1 - std::cos(7 * t)), 0);
+    ASSERT_EQ(world.step(inputs).status, StepResult::Status::ok) << world.time();
+  }
+}
+
+class Harnesses : public testing::TestWithParam<Harness> {};
+
+TEST_P(Harnesses, settleAndStand) {
+  for (const JunctionDesc::Type type : {JunctionDesc::Type::rigid, JunctionDesc::Type::hinge}) {
+    SceneDesc scene = GetParam().scene();
+    for (JunctionDesc& junction : scene.junctions) junction.type = type;
+    BoundaryInputs inputs = initial_frames(scene);
+    World world(scene, inputs);
+    EXPECT_TRUE(world.findings().waiting.empty());
+    EXPECT_TRUE(world.findings().unsettled.empty());
+    EXPECT_TRUE(world.findings().misfits.empty());
+    EXPECT_TRUE(world.settle());
+    EXPECT_LT(largest_gap(world), 1e-9);
+    const std::vector<Vector3> before = world.cables().back().state.positions;
+    // What rests exerts the same from step to step.
+    run(world, inputs, 0.1);
+    double noise = 0, weight = 0;
+    for (const SimulatedCable& cable : world.cables())
+      for (const double mass : cable.state.masses) weight += 9.81 * mass;
+    for (int i = 0; i < 100 && !testing::Test::HasFatalFailure(); ++i) {
+      const std::vector<Attachment> last = world.attachments();
+      run(world, inputs, world.time_step());
+      for (std::size_t a = 0; a < last.size(); ++a)
+        if (!last[a].is_junction) noise = std::max(noise, (world.attachments()[a].force - last[a].force).norm());
+    }
+    EXPECT_LT(noise, 1e-5 * weight) << (type == JunctionDesc::Type::rigid ? "rigid" : "hinge");
+    double moved = 0;
+    for (std::size_t i = 0; i < before.size(); ++i)
+      moved = std::max(moved, (world.cables().back().state.positions[i] - before[i]).norm());
+    EXPECT_LT(moved, 1e-6);
+    std::printf("%s: steps of forces at rest %.1e of the weight, way in 0.2 s %.1e m\n", GetParam().name, noise / weight, moved);
+  }
+}
+
+TEST_P(Harnesses, moveWithoutRinging) {
+  SceneDesc scene = GetParam().scene();
+  BoundaryInputs inputs = initial_frames(scene);
+  World world(scene, inputs);
+  world.settle();
+  run(world, inputs, 0.3, 0.05);
+  // Third differences of forces: smooth motion has none to speak of.
+  std::vector<std::vector<Vector3>> forces;
+  double weight = 0, rough = 0;
+  for (const SimulatedCable& cable : world.cables())
+    for (const double mass : cable.state.masses) weight += 9.81 * mass;
+  for (int i = 0; i < 300 && !testing::Test::HasFatalFailure(); ++i) {
+    run(world, inputs, world.time_step(), 0.05);
+    std::vector<Vector3>& now = forces.emplace_back();
+    for (const Attachment& attachment : world.attachments())
+      if (!attachment.is_junction) now.push_back(attachment.force);
+    if (i < 3) continue;
+    for (std::size_t a = 0; a < now.size(); ++a)
+      rough = std::max(rough, (now[a] - 3 * forces[i - 1][a] + 3 * forces[i - 2][a] - forces[i - 3][a]).norm());
+  }
+  std::printf("%s: third differences of forces %.1e of the weight\n", GetParam().name, rough / weight);
+  EXPECT_LT(rough, 1e-3 * weight);
+  EXPECT_LT(largest_gap(world), 1e-9);
+}
+
+TEST_P(Harnesses, copiesGoOnWithTheSameBytes) {
+  const SceneDesc scene = GetParam().scene();
+  BoundaryInputs inputs = initial_frames(scene);
+  World world(scene, inputs);
+  run(world, inputs, 0.1, 0.05);
+  World copy = world, alone = world;
+  alone.step_one_by_one(true);
+  alone.limit_lanes(1);
+  BoundaryInputs of_copy = inputs, of_alone = inputs;
+  run(world, inputs, 0.1, 0.05);
+  run(copy, of_copy, 0.1, 0.05);
+  run(alone, of_alone, 0.1, 0.05);
+  EXPECT_EQ(world.hash(), copy.hash());
+  EXPECT_EQ(world.hash(), alone.hash());
+  World again(scene, initial_frames(scene));
+  BoundaryInputs of_again = initial_frames(scene);
+  run(again, of_again, 0.2, 0.05);
+  EXPECT_EQ(world.hash(), again.hash());
+}
+
+/// Cuts beside junctions, on every side of them; pins next to them; winches at ends that are free.
+TEST_P(Harnesses, areEditedNextToTheirJunctions) {
+  const SceneDesc scene = GetParam().scene();
+  const World start(scene, initial_frames(scene));
+  const std::vector<Attachment> attachments = start.attachments();
+  for (const Attachment& attachment : attachments) {
+    if (!attachment.is_junction) continue;
+    const int segments = start.cables()[attachment.body.index].state.segments();
+    for (const int segment : {attachment.node - 2, attachment.node - 1, attachment.node, attachment.node + 1}) {
+      if (segment < 0 || segment >= segments) continue;
+      World world = start;
+      BoundaryInputs inputs = initial_frames(scene);
+      const EditResult result = world.apply(edit::Cut{attachment.body, segment});
+      SCOPED_TRACE(attachment.name + ", segment " + std::to_string(segment) + ": " + result.message);
+      run(world, inputs, 0.2, 0.05);
+      EXPECT_LT(largest_gap(world), 1e-9);
+      EXPECT_EQ(std::count_if(world.attachments().begin(), world.attachments().end(),
+                              [](const Attachment& a) { return a.is_junction; }),
+                std::count_if(attachments.begin(), attachments.end(), [](const Attachment& a) { return a.is_junction; }));
+    }
+    for (const int node : {attachment.node - 1, attachment.node + 1}) {
+      if (node < 0 || node > segments) continue;
+      World world = start;
+      BoundaryInputs inputs = initial_frames(scene);
+      edit::Pin pin;
+      pin.name = "pin";
+      pin.body = attachment.body;
+      pin.node = node;
+      pin.pose.position = world.cables()[attachment.body.index].state.positions[node];
+      const std::vector<Quaternion> material = segment_orientations(world.cables()[attachment.body.index].state);
+      pin.pose.orientation = material[std::min<std::size_t>(node, material.size() - 1)];
+      pin.type = AttachmentType::clamp;
+      SCOPED_TRACE(attachment.name + ", pinned node " + std::to_string(node));
+      const EditResult result = world.apply(pin);
+      run(world, inputs, 0.2);
+      if (result.ok) {
+        EXPECT_TRUE(world.apply(edit::Unpin{"pin"}).ok);
+        run(world, inputs, 0.1);
+      }
+      EXPECT_LT(largest_gap(world), 1e-9);
+    }
+  }
+}
+
+const Harness harnesses[] = {{"tree", tree}, {"ladder", ladder}, {"noose", noose}, {"ribbon", held_ribbon}};
+INSTANTIATE_TEST_SUITE_P(All, Harnesses, testing::ValuesIn(harnesses));
+
+TEST(Junctions, branchesPayOutAndTakeIn) {
+  const SceneDesc scene = tree();
+  for (const bool at_end : {false, true}) {
+    World world(scene, initial_frames(scene));
+    BoundaryInputs inputs = initial_frames(scene);
+    const int left = find(world.cables(), "left");
+    for (const double length : {0.6, 0.3}) {
+      const EditResult result = world.apply(edit::SetLength{left, at_end, length, 0.3});
+      ASSERT_TRUE(result.ok) << result.message;
+      run(world, inputs, 2.5);
+      EXPECT_NEAR(world.cables()[left].state.length(), length, 1e-9) << at_end;
+      EXPECT_LT(largest_gap(world), 1e-9);
+    }
+  }
+}
+
+TEST(Junctions, waitForEveryFrameOfTheHarness) {
+  SceneDesc scene = tree();
+  scene.cables[0].attachments = {scenes::attachment("held", PlaceDesc::At::end, Vector3::Zero(), "late")};
+  scene.cables[3].attachments[0].initial_pose.reset();
+  const SceneDesc free = tree();
+  const World hanging(free, initial_frames(free));
+  const Vector3 within_reach = hanging.cables()[find(hanging.cables(), "twig")].state.positions.back();
+  BoundaryInputs inputs = initial_frames(scene);
+  for (FrameInput& input : inputs) input.known = &input == &inputs[0];
+  World world(scene, inputs);
+  EXPECT_EQ(world.findings().waiting.size(), 4u);
+  for (std::size_t i = 1; i < inputs.size(); ++i) {
+    inputs[i].known = true;
+    if (world.frames()[i] == "late") inputs[i].pose.position = within_reach + Vector3(0.02, 0.02, 0.05);
+    EXPECT_EQ(world.start_waiting(inputs), i + 1 < inputs.size() ? 0 : 4);
+  }
+  EXPECT_TRUE(world.findings().waiting.empty());
+  EXPECT_TRUE(world.findings().unsettled.empty());
+  EXPECT_TRUE(world.findings().misfits.empty());
+  EXPECT_LT(largest_gap(world), 1e-9);
+  run(world, inputs, 0.2);
+}
+
+/// By default a branch goes on along its trunk, turned by its rotation in the trunk's material axes.
+TEST(Junctions, branchesBeginAlongTheirTrunkTurned) {
+  SceneDesc scene = nothing();
+  scene.materials[0].material.bending_stiffness = {0.02, 0.01};
+  scene.gravity.acceleration.setZero();
+  CableDesc& trunk = add_straight(scene, "trunk", 10, {0, 0, 0}, {1, 0, 0});
+  trunk.attachments = {scenes::attachment("start", PlaceDesc::At::start, {0, 0, 0}, "", AttachmentType::clamp)};
+  trunk.attachments[0].rotation = {M_PI / 2, 0, 0};  // the material's y is the fixed frame's z
+  add_cable(scene, "off", 0.5, 5);
+  add_cable(scene, "back", 0.5, 5);
+  add_junction(scene, "trunk", 0.5, {branch("off", End::start, {0, 0, M_PI / 2}), branch("back", End::end, {0.3, 0, M_PI / 2})});
+  World world(scene, initial_frames(scene));
+  BoundaryInputs inputs = initial_frames(scene);
+  const CableState &off = world.cables()[find(world.cables(), "off")].state,
+                   &back = world.cables()[find(world.cables(), "back")].state;
+  EXPECT_LT((off.positions.back() - Vector3(0.5, 0, 0.5)).norm(), 1e-9);
+  EXPECT_LT((back.positions.front() - Vector3(0.5, 0, 0.5)).norm(), 1e-9);
+  // With the trunk's roll: there is nothing to turn or bend back.
+  run(world, inputs, 0.5);
+  EXPECT_LT((world.cables()[find(world.cables(), "off")].state.positions.back() - Vector3(0.5, 0, 0.5)).norm(), 1e-7);
+  EXPECT_LT((world.cables()[find(world.cables(), "back")].state.positions.front() - Vector3(0.5, 0, 0.5)).norm(), 1e-7);
+}
+
+/// Where cables touch each other, those that a junction joins do not push each other apart beside it.
+TEST(Junctions, branchesDoNotPushTheirTrunk) {
+  SceneDesc scene = tree();
+  const SceneDesc without = scene;
+  scene.contact = ContactDesc{};
+  World world(scene, initial_frames(scene)), other(without, initial_frames(without));
+  BoundaryInputs inputs = initial_frames(scene), of_other = inputs;
+  run(world, inputs, 0.3, 0.02);
+  run(other, of_other, 0.3, 0.02);
+  EXPECT_TRUE(world.findings().contacts.empty());
+  for (std::size_t k = 0; k < world.cables().size(); ++k)
+    for (int i = 0; i < world.cables()[k].state.nodes(); ++i)
+      EXPECT_LT((world.cables()[k].state.positions[i] - other.cables()[k].state.positions[i]).norm(), 1e-9);
+}
+
+/// A harness that falls onto a floor comes to rest on it, its junctions, too.
+TEST(Junctions, lieOnAFloor) {
+  SceneDesc scene = nothing();
+  add_straight(scene, "trunk", 20, {0, 0, 0.03}, {0.8, 0, 0.03});
+  add_straight(scene, "arm", 10, {0.4, 0, 0.03}, {0.4, 0.4, 0.03});
+  add_straight(scene, "leg", 10, {0.6, -0.4, 0.03}, {0.6, 0, 0.03});
+  add_junction(scene, "trunk", 0.4, {branch("arm")}).mass = 0.05;
+  add_junction(scene, "trunk", 0.6, {branch("leg", End::end)});
+  ObstacleDesc& floor = scene.obstacles.emplace_back();
+  floor.name = "floor";
+  World world(scene, initial_frames(scene));
+  BoundaryInputs inputs = initial_frames(scene);
+  run(world, inputs, 1);
+  EXPECT_LT(world.energy().kinetic, 1e-6);
+  const double radius = scene.materials[0].material.radius;
+  for (const SimulatedCable& cable : world.cables())
+    for (const Vector3& position : cable.state.positions) EXPECT_NEAR(position.z(), radius, 0.1 * radius);
+}
+
+}  // namespace
+}  // namespace verlet_cable
