@@ -168,9 +168,8 @@ TEST(TouchingBodies, CableThatStrikesASphereKeepsMomenta) {
     const Momenta after = momenta_of(run.world);
     EXPECT_LT(body_of(run, "ball").velocity.z(), -0.1);
     const std::string name = std::string("cable strikes a sphere") + (damped ? ", damped" : "");
-    report(name + ": linear momentum", {{20, (after.linear - before.linear).norm() / before.linear.norm()}}, 1e-9, Order::none);
-    report(name + ": angular momentum", {{20, (after.angular - before.angular).norm() / before.angular.norm()}},
-           damped ? 0.05 : 1e-6, Order::none);
+    report(name + ": linear momentum", {{20, (after.linear - before.linear).norm() / before.linear.norm()}}, 1e-11, Order::none);
+    report(name + ": angular momentum", {{20, (after.angular - before.angular).norm() / before.angular.norm()}}, 1e-7, Order::none);
   }
 }
 

@@ -13,6 +13,8 @@ namespace {
 constexpr int maximum_iterations = 60;
 /// Error of a node's velocity at which an iteration ends, in segment lengths per second.
 constexpr double velocity_tolerance = 4e-3;
+/// Less where cables and bodies exchange momentum.
+constexpr double passing_part = 1e-2;
 /// Bodies are as much more accurate, in parts of their sizes.
 constexpr double body_accuracy = 30;
 constexpr double fastest_convergence = 0.1;
@@ -173,6 +175,7 @@ bool ContactSolver::crosses(const std::vector<Participant>& participants, const 
 /// round.
 bool ContactSolver::iterate(std::vector<Participant>& participants, std::vector<Touch>& touches) {
   const double h = participants.empty() ? bodies_->substep() : participants.front().substep.h;
+  const bool passes_momentum = std::any_of(touches.begin(), touches.end(), [](const Touch& touch) { return touch.body >= 0; });
   const double tolerance = velocity_tolerance * std::min(h, longest_tolerated);
   negligible_energy_ = tolerated_ = infinity;
   for (const Participant& p : participants) {
@@ -208,7 +211,8 @@ bool ContactSolver::iterate(std::vector<Participant>& participants, std::vector<
     }
     // After a change the next correction may be as large as this one; else it is about that much smaller.
     const double ratio = i == 0 || changed ? 1 : largest / last;
-    const double enough = i < patient_iterations ? tolerance : impatience * tolerance;
+    const double strict = passes_momentum ? passing_part * tolerance : tolerance;
+    const double enough = i < patient_iterations ? strict : impatience * tolerance;
     const bool consistent = std::all_of(participants.begin(), participants.end(), [](const Participant& p) {
       return p.stepper->flows_are_consistent(p.substep);
     });
