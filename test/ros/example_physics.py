@@ -151,8 +151,7 @@ class Plug:
             caught = events.wait_for(lambda e: e.type == CableEvent.CAUGHT, 'clip that takes the cable', STARTING)
             self.assertEqual(caught.attachment, 'clip')
             let_go = events.wait_for(lambda e: e.type == CableEvent.UNPINNED and e.header.stamp > caught.header.stamp, 'hand that lets go', STARTING)
-            pull = loads.wait_for(lambda w: w.header.stamp > let_go.header.stamp and np.linalg.norm(vector(w.wrench.force)) > 1.0,
-                                  'pull of 1 N', STARTING)
+            pull = loads.wait_for(lambda w: w.header.stamp > let_go.header.stamp and w.wrench.force.x > 0.3, 'pull of 0.3 N', STARTING)
             state = states.wait_for(lambda s: s.header.stamp >= pull.header.stamp, 'state')
             self.assertFalse([e for e in events.all() if e.type == CableEvent.RELEASED and e.header.stamp <= state.header.stamp])
         plug = body(state, 'plug').pose
