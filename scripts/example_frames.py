@@ -25,8 +25,9 @@ import node_thread  # noqa: E402
 
 FIXED_FRAME = 'world'
 RATE = 100.0  # [Hz]
-PERIODS = {'harness': 22.0, 'plug': 16.5}  # [s] after which an example begins again
-RELEASES = {'harness': (7.5, ['left_hand', 'right_hand']), 'plug': (6.5, ['grip'])}  # [s] from its beginning, and what is let go of
+# [s] After which an example begins again; when in it its hands let go [s], and of what.
+PERIODS = {'harness': 22.0, 'plug': 16.5}
+RELEASES = {'harness': (7.5, ['left_hand', 'right_hand']), 'plug': (6.5, ['grip'])}
 
 
 def swing(t, period, phase=0.0):
@@ -103,8 +104,8 @@ def block_and_tackle(t):
 
 def plug(t):
     t %= PERIODS['plug']
-    there, pushed, away, pulled = ramp(t, 1, 4), ramp(t, 4, 6), ramp(t, 7, 8.5) - ramp(t, 13, 14.5), ramp(t, 9, 11) - ramp(t, 12, 13)
-    back = ramp(t, 14.5, 16)
+    there, pushed, back = ramp(t, 1, 4), ramp(t, 4, 6), ramp(t, 14.5, 16)
+    away, pulled = ramp(t, 7, 8.5) - ramp(t, 13, 14.5), ramp(t, 9, 11) - ramp(t, 12, 13)
     return {'hand': pose(-0.18 + 0.1 * (there - back) + 0.09 * (pushed - back), 0.12 * away, 0.2 - 0.1 * (there - back)),
             'far_hand': pose(-0.5 - 0.1325 * pulled, 0, 0.2 - 0.1 * pulled)}
 

@@ -53,7 +53,8 @@ class ExampleTest(PHYSICS.get(EXAMPLE, object), unittest.TestCase):
             self.assertTrue(all(is_finite(m) for message in markers.all() for m in message.markers))
             for first in seen[0].cables:
                 # Where hands pause, so do the cables.
-                last = cable(states.wait_for(lambda s: farthest(first, cable(s, first.name)) > 0.01, f'{first.name} that moved', PAUSE), first.name)
+                moved = states.wait_for(lambda s: farthest(first, cable(s, first.name)) > 0.01, f'{first.name} that moved', PAUSE)
+                last = cable(moved, first.name)
                 # No cable is torn at: what holds it is never further apart than it is long.
                 lengths = [math.dist((p.x, p.y, p.z), (q.x, q.y, q.z)) for p, q in zip(last.positions, last.positions[1:])]
                 self.assertAlmostEqual(sum(lengths), last.rest_length, delta=STRETCH.get(EXAMPLE, 0.01) * last.rest_length)
