@@ -133,7 +133,7 @@ class BlockAndTackle:
     def test_the_hook_rises_by_a_quarter_of_what_the_winch_takes_in(self):
         ways, lengths = [], []
         with self.node.states() as states, in_frames() as frames:
-            for wanted in (6.3, 4.0):
+            for wanted in (6.3, 5.0):
                 state = states.wait_for(lambda s: abs(cable(s, 'hoist_rope').rest_length - wanted) < 1e-3, f'{wanted} m of rope',
                                         STARTING)
                 jib = frames.lookup_transform('world', 'jib', state.header.stamp, rospy.Duration(PATIENCE)).transform
