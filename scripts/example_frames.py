@@ -25,8 +25,9 @@ import node_thread  # noqa: E402
 
 FIXED_FRAME = 'world'
 RATE = 100.0  # [Hz]
-PERIODS = {'harness': 22.0, 'plug': 16.5}  # [s] after which an example begins again
-RELEASES = {'harness': (7.5, ['left_hand', 'right_hand']), 'plug': (6.5, ['grip'])}  # [s] from its beginning, and what is let go of
+# [s] After which an example begins again; when in it its hands let go [s], and of what.
+PERIODS = {'harness': 22.0, 'plug': 16.5}
+RELEASES = {'harness': (7.5, ['left_hand', 'right_hand']), 'plug': (6.5, ['grip'])}
 
 
 def swing(t, period, phase=0.0):
@@ -103,10 +104,10 @@ def block_and_tackle(t):
 
 def plug(t):
     t %= PERIODS['plug']
-    there, pushed, away, pulled = ramp(t, 1, 4), ramp(t, 4, 6), ramp(t, 7, 8.5) - ramp(t, 13, 14.5), ramp(t, 9, 11) - ramp(t, 12, 13)
-    back = ramp(t, 14.5, 16)
+    there, pushed, back = ramp(t, 1, 4), ramp(t, 4, 6), ramp(t, 14.5, 16)
+    away, pulled = ramp(t, 7, 8.5) - ramp(t, 13, 14.5), ramp(t, 9, 11) - ramp(t, 12, 13)
     return {'hand': pose(-0.18 + 0.1 * (there - back) + 0.09 * (pushed - back), 0.12 * away, 0.2 - 0.1 * (there - back)),
-            'far_hand': pose(-0.5 - 0.13 * pulled, 0, 0.2 - 0.1 * pulled)}
+            'far_hand': pose(-0.5 - 0.1325 * pulled, 0, 0.2 - 0.1 * pulled)}
 
 
 def finger(t):
@@ -131,7 +132,7 @@ EXAMPLES = {
         ('the load of a cable on a gripper', 0.3, 0, 1.5, 0.06), ('orange: force, purple: torque', 0.3, 0, 1.42, 0.045),
         ('wall', -0.05, 0, 1.25, 0.05)]),
     'harness': (harness, [
-        ('two hands lay a wire harness on a board', 0, 0, 0.62, 0.05)]),
+        ('two hands lay a wire harness on a board, whose clips hold it', 0, 0, 0.52, 0.04)]),
     'block_and_tackle': (block_and_tackle, [
         ('four parts of one rope: a quarter of the load, four times the way', 0.8, 0, 3.6, 0.12)]),
     'plug': (plug, [
