@@ -184,7 +184,8 @@ void CableStepper::set_loads(const Substep& s, const CableState& state) {
     for (std::size_t k = 0; k + 1 < held.size(); ++k) {
       // What can stretch has a tension.
       if (materials.any_elastic_between(held[k].node, held[k + 1].node)) continue;
-      const bool gives_way = held[k].body >= 0 || held[k + 1].body >= 0;
+      const auto gives = [](const HeldNode& node) { return node.body >= 0 && !node.joins; };
+      const bool gives_way = gives(held[k]) || gives(held[k + 1]);
       for (int i = held[k].node; i < held[k + 1].node; ++i) {
         system_.compliance[i] = target_length_[i] * target_length_[i] * target_length_[i] / stiffness;
         if (!gives_way) strain_compliance_[i] = system_.compliance[i];

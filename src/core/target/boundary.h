@@ -17,6 +17,7 @@ struct HeldNode {
   /// begins.
   int body = -1;
   Vector3 point = Vector3::Zero();  ///< [m] of the body that holds the node, in the axes of its frame
+  bool joins = false;               ///< whether that only joins cables, and what holds these holds it
   bool slides = false;              ///< whether the cable's material flows through it
 };
 

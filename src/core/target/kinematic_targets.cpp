@@ -275,6 +275,7 @@ void hold_at(double from, double to, const KinematicTargets& targets, Boundary& 
     HeldNode& held = boundary.nodes[k];
     held.node = target.node;
     held.body = -1;
+    held.joins = false;
     held.slides = target.slides;
     held.position = to == 1 ? target.next_position : target.position + to * (target.next_position - target.position);
     held.velocity = target.velocity + to * (target.next_velocity - target.velocity);
@@ -300,6 +301,7 @@ void hold_on_bodies(const CableState& state, const std::vector<Attachment>& atta
     HeldNode& held = boundary.nodes[k];
     const SimulatedBody& body = bodies[attachment.holder];
     held.body = attachment.holder;
+    held.joins = attachment.is_junction;
     held.point = target_position(state, attachment, attachment.pose, held.node);
     held.point += remaining(target.caught, target.gap.norm(), time) * target.gap;
     const Vector3 arm = body.pose.orientation * (held.point - body.center_of_mass);
