@@ -315,6 +315,27 @@ TEST(Junctions, waitForEveryFrameOfTheHarness) {
   run(world, inputs, 0.2);
 }
 
+/// A trunk as long as its frames are apart has no room to sag between them, with a junction inside or without one.
+TEST(Junctions, betweenFramesMayBePulledStraight) {
+  for (const AttachmentType type : {AttachmentType::hinge, AttachmentType::clamp}) {
+    SceneDesc scene = nothing();
+    CableDesc& trunk = add_straight(scene, "trunk", 10, {0, 0, 0}, {1, 0, 0});
+    trunk.attachments = {scenes::attachment("start", PlaceDesc::At::start, Vector3::Zero(), "", type),
+                         scenes::attachment("end", PlaceDesc::At::end, Vector3::Zero(), "hand", type)};
+    trunk.attachments[1].initial_pose = InitialPose{1, 0, 0, 0, 0, 0};
+    add_straight(scene, "arm", 5, {0.5, 0, 0}, {0.5, 0.4, 0});
+    add_junction(scene, "trunk", 0.5, {branch("arm")});
+    BoundaryInputs inputs = initial_frames(scene);
+    World world(scene, inputs);
+    run(world, inputs, 0.1);
+    for (int i = 1; i <= 200; ++i) {
+      inputs[1].pose.position.x() = 1 - 0.0005 * i;
+      ASSERT_EQ(world.step(inputs).status, StepResult::Status::ok) << i;
+    }
+    EXPECT_LT(largest_gap(world), 1e-9);
+  }
+}
+
 /// By default a branch goes on along its trunk, turned by its rotation in the trunk's material axes.
 TEST(Junctions, branchesBeginAlongTheirTrunkTurned) {
   SceneDesc scene = nothing();

@@ -72,16 +72,16 @@ class Convergence {
 };
 
 /// [N] Between two holders a rigid chain that is pulled straight has no unique tension, and one that is pushed together has no
-/// motion. So much axial stiffness, relative to the weight of the cable, or of all that is joined to it by bodies, gives it both: that weight
-/// strains it by a part in ten million.
+/// motion. So much axial stiffness, relative to the weight of the cable, or of all that is joined to it by bodies, gives it both:
+/// that weight strains it by a part in ten million.
 double stiffness_of_taut(const Substep& substep, const CableState& state);
 
 /// Whether bodies hold a part of the cable, of what cannot stretch, as good as straight. `state` is that at the start of the
 /// substep.
 bool is_straight_on_bodies(const Substep& substep, const CableState& state);
 
-/// Whether the velocity of a holder that is no body changes: only then do velocities along the segments appear that the equations do not damp. `state`
-/// is that at the start of the substep.
+/// Whether the velocity of a holder that is no body changes: only then do velocities along the segments appear that the equations
+/// do not damp. `state` is that at the start of the substep.
 bool holders_accelerate(const Substep& substep, const CableState& state);
 
 }  // namespace verlet_cable
