@@ -90,8 +90,8 @@ TEST(TouchingBodies, BoxSlidesWithTheFrictionOfCoulomb) {
   const double before = speed_down(run, angle);
   run.run(0.5);
   const double expected = gravity * (std::sin(angle) - friction * std::cos(angle));
-  report("box slides down an incline: acceleration", {{1, std::abs((speed_down(run, angle) - before) / 0.5 / expected - 1)}}, 1e-3,
-         Order::none);
+  report("box slides down an incline: acceleration", {{1, std::abs((speed_down(run, angle) - before) / 0.5 / expected - 1)}},
+         1e-3, Order::none);
 }
 
 TEST(TouchingBodies, BoxIsSlowedDownByFriction) {
@@ -103,8 +103,8 @@ TEST(TouchingBodies, BoxIsSlowedDownByFriction) {
   run.run(0.1);
   const double before = speed_down(run, 0);
   run.run(0.4);
-  report("box slides to rest: deceleration", {{1, std::abs((before - speed_down(run, 0)) / 0.4 / (friction * gravity) - 1)}}, 1e-3,
-         Order::none);
+  report("box slides to rest: deceleration", {{1, std::abs((before - speed_down(run, 0)) / 0.4 / (friction * gravity) - 1)}},
+         1e-3, Order::none);
   run.run(1);
   EXPECT_LT(speed_down(run, 0), 1e-6);
 }
@@ -169,7 +169,8 @@ TEST(TouchingBodies, CableThatStrikesASphereKeepsMomenta) {
     EXPECT_LT(body_of(run, "ball").velocity.z(), -0.1);
     const std::string name = std::string("cable strikes a sphere") + (damped ? ", damped" : "");
     report(name + ": linear momentum", {{20, (after.linear - before.linear).norm() / before.linear.norm()}}, 1e-11, Order::none);
-    report(name + ": angular momentum", {{20, (after.angular - before.angular).norm() / before.angular.norm()}}, 1e-7, Order::none);
+    report(name + ": angular momentum", {{20, (after.angular - before.angular).norm() / before.angular.norm()}}, 1e-7,
+           Order::none);
   }
 }
 
@@ -193,7 +194,8 @@ TEST(TouchingBodies, CapstanAroundABody) {
   cable.material = "rope";
   cable.initial.type = InitialShapeDesc::Type::points;
   for (int i = 0; i <= 4; ++i) cable.initial.points.push_back({-over, 0, -0.3 + 0.075 * i});
-  for (int i = 1; i < 40; ++i) cable.initial.points.push_back({-over * std::cos(M_PI * i / 40), 0, over * std::sin(M_PI * i / 40)});
+  for (int i = 1; i < 40; ++i)
+    cable.initial.points.push_back({-over * std::cos(M_PI * i / 40), 0, over * std::sin(M_PI * i / 40)});
   for (int i = 0; i <= 4; ++i) cable.initial.points.push_back({over, 0, -0.3 * i / 4.0});
   cable.length = 0.6 + M_PI * over;
   cable.point_masses = {scenes::payload(2)};

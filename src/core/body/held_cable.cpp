@@ -171,8 +171,7 @@ void HeldCable::add_loads(const std::vector<MovingBody>& bodies, BodyStage stage
   for (const Side& side : sides_)
     equations.load(side.member) += load_of(side, bodies[side.member].stepper, stage) * load_of(side, loads_);
   if (stage == BodyStage::projection) return;
-  for (const Contact& contact : contacts_)
-    equations.load(contact.member) += point_load(contact.touch->arm) * contact.change;
+  for (const Contact& contact : contacts_) equations.load(contact.member) += point_load(contact.touch->arm) * contact.change;
 }
 
 void HeldCable::add_turning(double part, const std::vector<MovingBody>& bodies, BodyEquations& equations) const {
@@ -239,8 +238,7 @@ void HeldCable::add_touching_resistance(const std::vector<MovingBody>& bodies, B
         if (side.member == member) motion_of(side) = motion_of(side, moved).col(column);
       for (std::size_t k = 0; k < contacts_.size(); ++k) {
         const Contact& contact = contacts_[k];
-        if (contact.member == member)
-          motion_.loads[k].force = contact.resistance * point_motion(contact.touch->arm).col(column);
+        if (contact.member == member) motion_.loads[k].force = contact.resistance * point_motion(contact.touch->arm).col(column);
       }
       p.stepper->respond(p.substep.boundary, motion_, responses_);
       for (const Side& side : sides_)

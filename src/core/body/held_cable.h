@@ -67,8 +67,8 @@ class HeldCable {
   struct Contact {
     const Touch* touch = nullptr;
     int member = 0;
-    Eigen::Matrix3d stiffness;   ///< [N/m] as the cable's system has it
-    Eigen::Matrix3d resistance;  ///< [N/m] against motion of the body; friction follows the normal force
+    Eigen::Matrix3d stiffness;         ///< [N/m] as the cable's system has it
+    Eigen::Matrix3d resistance;        ///< [N/m] against motion of the body; friction follows the normal force
     Vector3 change = Vector3::Zero();  ///< [N] of its force on the body, in the last correction
   };
   void add_touching_resistance(const std::vector<MovingBody>& bodies, BodyStage stage, Participant& p, BodyEquations& equations);

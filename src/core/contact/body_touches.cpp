@@ -76,7 +76,8 @@ void BodyTouches::find_shape(const TouchingBody& touching, int index, const Movi
   const PointMotion accelerating{center, touching.progress->acceleration,
                                  body.pose.orientation * touching.progress->angular_acceleration};
   // `touch`: its normal, position and gap; `surface` [m]: of the obstacle, in its axes.
-  const auto add = [&](const Vector3& position, const Vector3& normal, const Vector3& surface, double gap, std::uint64_t feature) {
+  const auto add = [&](const Vector3& position, const Vector3& normal, const Vector3& surface, double gap,
+                       std::uint64_t feature) {
     SurfaceMotion motion;
     if (moving.speed > 0) {
       motion = surface_motion(moving, surface);

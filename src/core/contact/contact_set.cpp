@@ -129,7 +129,8 @@ void ContactSet::find_bodies(const SimulatedCable& cable, int index, const Conta
                              const std::vector<MovingObstacle>& bodies, const std::vector<Attachment>& attachments, double h) {
   const MovingObstacle *first = bodies.data(), *const end = first + bodies.size();
   while (first != end) {
-    const MovingObstacle* const last = std::find_if(first, end, [&](const MovingObstacle& other) { return other.body != first->body; });
+    const MovingObstacle* const last =
+        std::find_if(first, end, [&](const MovingObstacle& other) { return other.body != first->body; });
     set_inside(cable, *member.targets, first, last, attachments);
     for (; first != last; ++first) find_obstacle(cable, index, member, *first, attachments, h);
   }

@@ -37,13 +37,13 @@ struct Touch {
   double radius = 0;                   ///< [m] of the thinner cable
   double base_stiffness = 0;           ///< [N/m] at no depth
   double rate = 1;
-  Vector3 offset = Vector3::Zero();              ///< [m]
-  Vector3 stuck_force = Vector3::Zero();         ///< [N] friction at the start of the substep, as it is turned in the middle
-  double last_force = 0;                         ///< [N] normal force in the substep before
-  Vector3 velocity = Vector3::Zero();            ///< [m/s] of the point at the start, relative to another cable that is touched
-  Vector3 body_acceleration = Vector3::Zero();   ///< [m/s^2] of a body's point, at the start
-  Vector3 start_arm = Vector3::Zero();           ///< [m] to it from the center of mass of the body with what it holds
-  SurfaceMotion other_motion;                    ///< of an obstacle that is touched
+  Vector3 offset = Vector3::Zero();               ///< [m]
+  Vector3 stuck_force = Vector3::Zero();          ///< [N] friction at the start of the substep, as it is turned in the middle
+  double last_force = 0;                          ///< [N] normal force in the substep before
+  Vector3 velocity = Vector3::Zero();             ///< [m/s] of the point at the start, relative to another cable that is touched
+  Vector3 body_acceleration = Vector3::Zero();    ///< [m/s^2] of a body's point, at the start
+  Vector3 start_arm = Vector3::Zero();            ///< [m] to it from the center of mass of the body with what it holds
+  SurfaceMotion other_motion;                     ///< of an obstacle that is touched
   Quaternion half_turn = Quaternion::Identity();  ///< likewise: MovingObstacle's
   // Of the present iterate
   Vector3 displacement = Vector3::Zero();                      ///< [m] w

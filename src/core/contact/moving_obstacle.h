@@ -24,10 +24,10 @@ struct MovingObstacle {
   FrameVelocity end_velocity;                     ///< of its frame, seen from the fixed frame
   Vector3 frame_end = Vector3::Zero();            ///< [m] of its frame's origin
   Quaternion half_turn = Quaternion::Identity();  ///< of it in half the substep, seen from the fixed frame
-  int body = -1;                                  ///< whose shape it is, which moves as contacts let it; index into World::bodies()
-  PointMotion body_velocity;                      ///< [m/s], [rad/s]
-  PointMotion body_acceleration;                  ///< [m/s^2], [rad/s^2]
-  double body_mass = 0;                           ///< [kg]
+  int body = -1;                  ///< whose shape it is, which moves as contacts let it; index into World::bodies()
+  PointMotion body_velocity;      ///< [m/s], [rad/s]
+  PointMotion body_acceleration;  ///< [m/s^2], [rad/s^2]
+  double body_mass = 0;           ///< [kg]
 };
 
 /// What a point that is joined to an obstacle does in a substep, in the fixed frame.

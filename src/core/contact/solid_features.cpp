@@ -50,7 +50,8 @@ class Finder {
   void find(const BoxShape& box) {
     const Vector3 half = 0.5 * box.size - Vector3::Constant(rounding_);
     const auto corner = [&](int i) -> Vector3 {
-      return position_ + turn_ * Vector3(i & 1 ? half.x() : -half.x(), i & 2 ? half.y() : -half.y(), i & 4 ? half.z() : -half.z());
+      return position_ +
+             turn_ * Vector3(i & 1 ? half.x() : -half.x(), i & 2 ? half.y() : -half.y(), i & 4 ? half.z() : -half.z());
     };
     for (int i = 0; i < 8; ++i) add(i, corner(i), rounding_);
     if (is_plane_) return;
@@ -104,8 +105,8 @@ class Finder {
   void add_near(std::uint32_t feature, const Vector3& place, const SurfacePoint& nearest, double radius) {
     const double distance = nearest.distance - radius - other_rounding_;
     if (!(distance < reach_)) return;
-    found_.push_back({feature, place - radius * nearest.normal, nearest.point + other_rounding_ * nearest.normal, nearest.normal,
-                      distance});
+    found_.push_back(
+        {feature, place - radius * nearest.normal, nearest.point + other_rounding_ * nearest.normal, nearest.normal, distance});
   }
 
   /// Where an edge is deeper than at its ends.

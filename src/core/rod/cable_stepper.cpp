@@ -471,7 +471,8 @@ void CableStepper::respond(const Boundary& boundary, const HolderMotion& motion,
   loads.displacements.resize(motion.loads.size());
   for (std::size_t k = 0; k < motion.loads.size(); ++k) {
     const PointLoad& load = motion.loads[k];
-    loads.displacements[k] = (1 - load.fraction) * get(correction(), load.segment) + load.fraction * get(correction(), load.segment + 1);
+    loads.displacements[k] =
+        (1 - load.fraction) * get(correction(), load.segment) + load.fraction * get(correction(), load.segment + 1);
   }
   system_.moves_held = false;
   std::swap(solution(), kept_solution_);

@@ -56,8 +56,8 @@ struct Boundary {
 /// A force on a point of a segment.
 struct PointLoad {
   int segment = 0;
-  double fraction = 0;               ///< along it, 0 to 1
-  Vector3 force = Vector3::Zero();   ///< [N]
+  double fraction = 0;              ///< along it, 0 to 1
+  Vector3 force = Vector3::Zero();  ///< [N]
 };
 
 /// By what the holders of a boundary move from one iterate to the next.
@@ -71,8 +71,8 @@ struct HolderMotion {
 
 /// What a cable exerts on the holders of a boundary.
 struct HolderLoads {
-  std::vector<Vector3> forces;   ///< one a held node [N]
-  std::vector<Vector3> torques;  ///< one a held direction [N m]
+  std::vector<Vector3> forces;         ///< one a held node [N]
+  std::vector<Vector3> torques;        ///< one a held direction [N m]
   std::vector<Vector3> displacements;  ///< [m] of what is loaded, one a load of the motion
 };
 
