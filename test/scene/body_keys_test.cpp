@@ -20,7 +20,7 @@ materials:
   m: {linear_density: 0.1, radius: 0.005}
 broadcast_tf: true
 cables:
-  - {name: rope, length: 1, segments: 10, material: m, attachments: [
+  - {name: rope, length: 1.1, segments: 11, material: m, attachments: [
       {name: top, at: start, offset: [0, 0, 2]},
       {name: hanging, at: end, body: hook, offset: [0, 0, 0.1], rotation: [0, 0, 1], type: clamp}]}
 bodies:
