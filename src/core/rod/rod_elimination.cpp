@@ -270,20 +270,6 @@ bool RodElimination::factor_lanes(const KktSystem& system, const RodStiffness& s
   return !judged || (positive && middle_.determinant() > 0);
 }
 
-/// As Eigen's solution, which goes through loops of any size.
-RodElimination::MiddleVector RodElimination::solve_middle(const MiddleVector& right_side) const {
-  const Middle& lu = middle_.matrixLU();
-  constexpr int size = Middle::RowsAtCompileTime;
-  MiddleVector x = middle_.permutationP() * right_side;
-  for (int k = 0; k < size; ++k)
-    for (int i = k + 1; i < size; ++i) x[i] -= lu(i, k) * x[k];
-  for (int k = size - 1; k >= 0; --k) {
-    x[k] /= lu(k, k);
-    for (int i = 0; i < k; ++i) x[i] -= lu(i, k) * x[k];
-  }
-  return x;
-}
-
 template <bool stiffened>
 void RodElimination::solve_lanes(const KktSystem& system, const std::vector<double>& torque) {
   const int half = padded_ / 2;
@@ -329,7 +315,7 @@ void RodElimination::solve_lanes(const KktSystem& system, const std::vector<doub
 
   MiddleVector right_side;
   right_side << lane(give, 1) - lane(give, 0), lane(moment, 0), lane(moment, 1);
-  const MiddleVector middle = solve_middle(right_side);
+  const MiddleVector middle = middle_.solve(right_side);
   PairVector force{Pair{middle[0], -middle[0]}, Pair{middle[1], -middle[1]}, Pair{middle[2], -middle[2]}};
   PairVector rotation{Pair{middle[3], middle[6]}, Pair{middle[4], middle[7]}, Pair{middle[5], middle[8]}};
   const auto put = [](const PairVector& v, int left, int right, VectorArray& array) {

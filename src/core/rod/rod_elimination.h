@@ -73,7 +73,6 @@ class RodElimination {
   PairVector held_ends(const KktSystem& system) const;
   template <bool stiffened>
   bool factor_lanes(const KktSystem& system, const RodStiffness& stiffness, const RodJoints& joints);
-  MiddleVector solve_middle(const MiddleVector& right_side) const;
   template <bool stiffened>
   void solve_lanes(const KktSystem& system, const std::vector<double>& torque);
 
