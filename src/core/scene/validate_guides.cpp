@@ -189,6 +189,7 @@ class SimulationChecker {
       const auto cable = std::find_if(scene_.cables.begin(), scene_.cables.end(),
                                       [&](const CableDesc& c) { return c.name == guide.cable; });
       if (!cable->sections.empty()) check_sections(key, is_sheave, *cable);
+      if (is_sheave) check_other_sheaves(key, guide, *cable);
       if (guide.place) check_room(key, guide, *cable);
     }
     return errors_.take();
@@ -219,6 +220,28 @@ class SimulationChecker {
     if (heaviest > most_uneven * lightest)
       errors_.add(key + ".cable", quoted(cable.name),
                   "a cable whose sections' linear densities differ by a factor of at most " + number_text(most_uneven) + ", as yet");
+  }
+
+  /// Whether the cable is a rod of material frames; see is_whole_rod().
+  bool is_whole_rod(const CableDesc& cable) const {
+    const MaterialDesc& material = *scene_.find_material(cable.material);
+    const bool bends = material.bending_stiffness.largest() > 0;
+    const bool is_bent = cable.rest_curvature.type != RestCurvatureDesc::Type::straight;
+    const bool turns_body = std::any_of(cable.attachments.begin(), cable.attachments.end(), [](const AttachmentDesc& a) {
+      return !a.body.empty() && a.type == AttachmentType::clamp;
+    });
+    return !material.bending_stiffness.is_isotropic() || (bends && (is_bent || turns_body)) ||
+           (material.torsional_stiffness > 0 && cable.rest_twist != 0);
+  }
+
+  void check_other_sheaves(const std::string& key, const GuideDesc& guide, const CableDesc& cable) {
+    if (!is_whole_rod(cable)) return;
+    for (const GuideDesc& other : scene_.guides)
+      if (&other < &guide && other.cable == guide.cable && other.type == GuideDesc::Type::sheave)
+        errors_.add(key + ".cable", quoted(cable.name),
+                    "a cable that no other sheave holds, as " + quoted(other.name) +
+                        " does; several only hold cables that bend alike about all axes, are straight unloaded and are not "
+                        "clamped to bodies, as yet");
   }
 
   /// Beside a guide there is cable on both sides, up to what else holds it.

@@ -1,0 +1,115 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "../support/scenes.h"
+
+namespace verlet_cable {
+namespace {
+
+using Status = StepResult::Status;
+
+GuideDesc guide(const std::string& name, double at, const Vector3& offset) {
+  GuideDesc desc;
+  desc.name = name;
+  desc.cable = "cable";
+  desc.place = PlaceDesc{PlaceDesc::At::arc_length, at};
+  desc.offset = offset;
+  return desc;
+}
+
+void run(World& world, double duration) {
+  const int steps = static_cast<int>(std::lround(duration / world.time_step()));
+  for (int i = 0; i < steps; ++i) ASSERT_EQ(world.step({}).status, Status::ok) << "at " << world.time() << " s";
+}
+
+/// A crane: from a winch up to a sheave, along to another, and down to a load.
+SceneDesc crane(bool load_is_clamped) {
+  SceneDesc scene = scenes::one_cable(90, 3.6);
+  scene.materials[0].material.linear_density = 0.05;
+  if (load_is_clamped) {
+    scene.materials[0].material.bending_stiffness = 1e-3;
+    scene.materials[0].material.torsional_stiffness = 1e-3;
+  }
+  BodyDesc& load = scene.bodies.emplace_back();
+  load.name = "load";
+  load.mass = 2;
+  load.inertia = Vector3::Constant(2e-3);
+  CableDesc& cable = scene.cables[0];
+  cable.attachments = {scenes::attachment("winch", PlaceDesc::At::start, Vector3::Zero()),
+                       scenes::attachment("hook", PlaceDesc::At::end, {0, 0, 0.05}, "",
+                                          load_is_clamped ? AttachmentType::clamp : AttachmentType::hinge)};
+  cable.attachments[1].body = "load";
+  // The cable's +x goes into the load.
+  if (load_is_clamped) cable.attachments[1].rotation = {0, 0.5 * M_PI, 0};
+  cable.initial.type = InitialShapeDesc::Type::points;
+  cable.initial.points = {{0, 0, 0}, {0, 0, 1.5}, {1, 0, 1.5}, {1, 0, 0.4}};
+  load.pose = InitialPose{1, 0, 0.35, 0, 0, 0};
+  scene.guides = {guide("back", 1.5, {0.05, 0, 1.45}), guide("front", 2.5, {0.95, 0, 1.45})};
+  for (GuideDesc& wheel : scene.guides) {
+    wheel.type = GuideDesc::Type::sheave;
+    wheel.rotation = {0.5 * M_PI, 0, 0};
+    wheel.radius = 0.05;
+    wheel.inertia = 1e-5;
+  }
+  return scene;
+}
+
+TEST(GuidedWinch, liftsABodyBehindSheaves) {
+  World world(crane(false), {});
+  run(world, 1);
+  const double start = world.bodies()[0].pose.position.z(), length = world.cables()[0].state.length();
+  ASSERT_TRUE(world.apply(edit::SetLength{0, false, length - 0.6, 0.5}).ok);
+  run(world, 3);
+  EXPECT_NEAR(world.cables()[0].state.length(), length - 0.6, 1e-3);
+  EXPECT_NEAR(world.bodies()[0].pose.position.z() - start, 0.6, 0.02);
+  EXPECT_NEAR(world.view_guide(0).arc_length, 1.5, 0.05);
+  EXPECT_GT(world.view_guide(1).tension[1], 15);
+}
+
+TEST(GuidedWinch, aRodRunsOverOneSheaveOnly) {
+  try {
+    World world(crane(true), {});
+    FAIL();
+  } catch (const SceneError& error) {
+    ASSERT_EQ(error.errors().size(), 1u);
+    EXPECT_EQ(error.errors()[0].find("guides[1].cable: \"cable\"; allowed: a cable that no other sheave holds, as \"back\" does"), 0u)
+        << error.errors()[0];
+  }
+}
+
+TEST(GuidedCables, areCutBetweenTheirGuides) {
+  SceneDesc scene = scenes::between_two_points(60, 1.5, 2);
+  scene.guides = {guide("first", 0.6, {0.5, 0, 0}), guide("second", 1.4, {1.0, 0, 0})};
+  World world(scene, {});
+  run(world, 0.1);
+  ASSERT_TRUE(world.apply(edit::Cut{cable_id(0), world.cables()[0].state.segments() / 2}).ok);
+  ASSERT_EQ(world.cables().size(), 2u);
+  EXPECT_EQ(world.view_guide(0).cable, 0);
+  EXPECT_EQ(world.view_guide(1).cable, 1);
+  run(world, 0.2);
+}
+
+TEST(GuidedCables, stopAtPinsBesideTheirGuides) {
+  SceneDesc scene = scenes::one_cable(50, 2);
+  scene.cables[0].point_masses = {scenes::payload(0.5), scenes::payload(1)};
+  scene.cables[0].point_masses[0].place.at = PlaceDesc::At::start;
+  scene.cables[0].initial.type = InitialShapeDesc::Type::points;
+  scene.cables[0].initial.points = {{-0.5, 0, -0.866}, {0, 0, 0}, {0.5, 0, -0.866}};
+  scene.guides = {guide("eye", 1, Vector3::Zero())};
+  World world(scene, {});
+  run(world, 0.05);
+  // A node on the light side, where it is: the eyelet cannot draw it in.
+  const int node = 12;
+  const edit::Pin pin{"pin", cable_id(0), node, 0, Pose{world.cables()[0].state.positions[node]}, AttachmentType::hinge};
+  ASSERT_TRUE(world.apply(pin).ok);
+  run(world, 1);
+  EXPECT_EQ(world.view_guide(0).cable, 0);
+  const Attachment& held = world.attachments()[find(world.attachments(), "pin")];
+  const std::vector<double> arc_length = world.cables()[0].state.arc_length();
+  EXPECT_GT(world.view_guide(0).arc_length, arc_length[held.node]);
+  EXPECT_LT((world.cables()[0].state.positions[held.node] - pin.pose.position).norm(), 1e-9);
+}
+
+}  // namespace
+}  // namespace verlet_cable
