@@ -136,9 +136,9 @@ EXAMPLES = {
     'block_and_tackle': (block_and_tackle, [
         ('four parts of one rope: a quarter of the load, four times the way', 0.8, 0, 3.6, 0.12)]),
     'plug': (plug, [
-        ('a clip takes the cable behind a plug that a hand pushes into a socket', -0.25, 0, 0.33, 0.025)]),
+        ('a clip takes the cable behind a plug that a hand pushes into a socket', -0.12, 0, 0.22, 0.013)]),
     'finger': (finger, [
-        ('a tendon bends a finger, rubber bands over sheaves straighten it', 0.01, 0, 0.215, 0.008)]),
+        ('a tendon bends a finger, rubber bands over sheaves straighten it', 0.01, 0, 0.2, 0.008)]),
     'drones_with_bar': (drones_with_bar, [
         ('two drones carry a bar of 1.2 kg on ropes', 0, 0, 2.55, 0.12), ('orange: what each bears', 0, 0, 2.38, 0.09)]),
 }
