@@ -109,7 +109,7 @@ void CableStepper::finish(const Substep& s, bool struck, CableState& state, Subs
   move(s);
   finish_flows(s, state);
   const bool damped = !s.statics && s.scheme != Scheme::conserving;
-  if (damped && s.boundary.nodes.empty() && !s.touches_bodies) restore_momenta(s, state.masses);
+  if (damped && s.boundary.nodes.empty()) restore_momenta(s, state.masses);
   if (!s.statics && s.boundary.nodes.empty()) restore_angular_momentum(s, state.masses);
   // Where bodies give way they are projected together.
   if (!s.statics && !s.boundary.is_on_bodies() &&

@@ -34,7 +34,7 @@ struct Substep {
   bool statics = false;           ///< a step towards equilibrium: inertia only slows it, nothing moves or is damped
   Scheme scheme = Scheme::conserving;
   Treatment treatment = Treatment::none;  ///< of motion that is found not to be resolved
-  bool touches_bodies = false;            ///< which take over momentum
+  bool touches_bodies = false;            ///< whether contacts with bodies are looked at
   double tolerance = 1e-5;                ///< [1/s] of velocities, as SceneDesc's
   /// What bodies pull straight strains, too, by as little as what is straight between frames: bodies in line between two frames
   /// have no other solution.
