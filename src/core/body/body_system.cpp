@@ -169,8 +169,9 @@ bool BodySystem::advance(std::vector<Participant>& participants, double toleranc
     const bool reached = convergence.is_reached(size);
     const bool rounded = !rules_.statics && i > 1 && convergence.ratio() > rounding_ratio &&
                          size < tolerance * std::min(rules_.h, longest_tolerated);
-    const bool consistent = std::all_of(participants.begin(), participants.end(),
-                                        [](const Participant& p) { return p.stepper->flows_are_consistent(p.substep); });
+    const bool consistent = std::all_of(participants.begin(), participants.end(), [](const Participant& p) {
+      return p.stepper->flows_are_consistent(p.substep);
+    });
     if ((reached || rounded) && consistent) {
       for (Participant& p : participants) p.result.converged = true;
       return true;
