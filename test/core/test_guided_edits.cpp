@@ -73,7 +73,8 @@ TEST(GuidedWinch, aRodRunsOverOneSheaveOnly) {
     FAIL();
   } catch (const SceneError& error) {
     ASSERT_EQ(error.errors().size(), 1u);
-    EXPECT_EQ(error.errors()[0].find("guides[1].cable: \"cable\"; allowed: a cable that no other sheave holds, as \"back\" does"), 0u)
+    EXPECT_EQ(error.errors()[0].find("guides[1].cable: \"cable\"; allowed: a cable that no other sheave holds, as \"back\" does"),
+              0u)
         << error.errors()[0];
   }
 }

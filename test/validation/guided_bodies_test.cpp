@@ -93,8 +93,8 @@ TEST(GuidedBodies, MovingBlockHalvesForceAndWay) {
   }
 }
 
-/// Two phalanges that hang from a palm, with a rope in front of both joints, through eyelets on the first one and to the second one:
-/// as it is drawn the weights are lifted until its tension is in equilibrium with them about both axles.
+/// Two phalanges that hang from a palm, with a rope in front of both joints, through eyelets on the first one and to the second
+/// one: as it is drawn the weights are lifted until its tension is in equilibrium with them about both axles.
 TEST(GuidedBodies, FingerIsBentByItsRope) {
   constexpr double length = 0.06, radius = 0.008, mass = 0.03, pull = 0.02;
   SceneDesc scene = no_cables();

@@ -41,7 +41,7 @@ struct Flow {
   std::array<double, 2> stretch{1, 1};       // of target lengths
   Vector3 velocity = Vector3::Zero();        // [m/s] of the guide, mean
   Vector3 velocity_change = Vector3::Zero();
-  bool moves = false;  // whether a body holds the guide, whose motion is found with the cable's
+  bool moves = false;     // whether a body holds the guide, whose motion is found with the cable's
   double way = 0;         // the unknown [m]
   double correction = 0;  // of it [m]
   // Its row of the matrix: for the multipliers of the two segments and for the way

@@ -450,7 +450,8 @@ void CableStepper::begin_flow_projection(const Substep& s, const CableState& sta
 void CableStepper::carry_frames_with_flows(CableState& state) const {
   const auto twist_rate = [&](int node) {
     if (node < 0 || node > segments_) return 0.0;
-    const double around = node == 0 || node == segments_ ? 0.5 * state.rest_lengths[std::min(node, segments_ - 1)] : joint_length(state, node);
+    const double around =
+        node == 0 || node == segments_ ? 0.5 * state.rest_lengths[std::min(node, segments_ - 1)] : joint_length(state, node);
     return state.joint_twist[node] / around;
   };
   for (const Flow& flow : flows_) {

@@ -16,8 +16,8 @@ constexpr std::array<int, 2> both_sides{0, 1};
 
 /// Of a regular segment: what is left beside a guide when the next node is taken in; one is given out on the other side then.
 constexpr double shortest = 0.1;
-/// Of a regular segment: where the node that is given out for it is where the cable bends, about as near as what was left: the bend
-/// at the guide stands for as much of the cable then.
+/// Of a regular segment: where the node that is given out for it is where the cable bends, about as near as what was left: the
+/// bend at the guide stands for as much of the cable then.
 constexpr double behind = 0.125;
 /// So many steps at the speed of the flow are left, too; but no more than this of a segment.
 constexpr double steps_ahead = 3, most_ahead = 0.6;
@@ -218,8 +218,8 @@ bool pass_nodes(int index, State& state) {
         const Vector3 bulge = direction(cable, joint - 1) - direction(cable, joint);
         take_in(index, attachment, side, state);
         if (length(1 - side) > least_split * regular && !is_winding(1 - side))
-          give_out(index, attachment, 1 - side, bends ? behind * regular : std::max(length(1 - side) - regular, 2 * little), bulge,
-                   state);
+          give_out(index, attachment, 1 - side, bends ? behind * regular : std::max(length(1 - side) - regular, 2 * little),
+                   bulge, state);
         continue_material(attachment, side, state.cables[index].state);
         passed = true;
       }

@@ -117,8 +117,7 @@ void KirchhoffRod::start_segments(const CableModel& model, const CableState& sta
   set(frames_.start, segments_, get(frames_.start, segments_ - 1));
 }
 
-void KirchhoffRod::start_joints(const CableModel& model, const CableState& state, const Boundary& boundary,
-                                double damping_time) {
+void KirchhoffRod::start_joints(const CableModel& model, const CableState& state, const Boundary& boundary, double damping_time) {
   const int n = segments_;
   const CableMaterials materials(model, state);
   JointMaterial material(model.material);

@@ -13,8 +13,8 @@ namespace {
 
 /// Of a cable's length: places that are closer are one.
 constexpr double same_place = 1e-9;
-/// Linear densities of sections that slide through a guide. What is next to it counts as one material, so that for a fraction of a
-/// segment mass is missing or left over there.
+/// Linear densities of sections that slide through a guide. What is next to it counts as one material, so that for a fraction of
+/// a segment mass is missing or left over there.
 constexpr double most_uneven = 10;
 
 double arc_length_of(const CableDesc& cable, const PlaceDesc& place) {
@@ -197,8 +197,8 @@ class SimulationChecker {
 
  private:
   void check_body(const std::string& key, const GuideDesc& guide) {
-    const auto body = std::find_if(scene_.bodies.begin(), scene_.bodies.end(),
-                                   [&](const BodyDesc& b) { return b.name == guide.body; });
+    const auto body =
+        std::find_if(scene_.bodies.begin(), scene_.bodies.end(), [&](const BodyDesc& b) { return b.name == guide.body; });
     const bool is_placed = body->pose || !body->attachments.empty();
     if (guide.place && !is_placed)
       errors_.add(key + ".body", quoted(guide.body), "a body with a `pose`, or that its own attachments place, as yet");
@@ -218,8 +218,9 @@ class SimulationChecker {
     weigh(cable.material);
     for (const SectionDesc& section : cable.sections) weigh(section.material);
     if (heaviest > most_uneven * lightest)
-      errors_.add(key + ".cable", quoted(cable.name),
-                  "a cable whose sections' linear densities differ by a factor of at most " + number_text(most_uneven) + ", as yet");
+      errors_.add(
+          key + ".cable", quoted(cable.name),
+          "a cable whose sections' linear densities differ by a factor of at most " + number_text(most_uneven) + ", as yet");
   }
 
   /// Whether the cable is a rod of material frames; see is_whole_rod().

@@ -11,7 +11,7 @@ namespace {
 
 using visualization_msgs::Marker;
 
-constexpr double ring_size = 3, ring_width = 1.2;  // of a ring's radius and its width to the cable's radius
+constexpr double ring_size = 3, ring_width = 1.2;   // of a ring's radius and its width to the cable's radius
 constexpr double closed_gap = 0.6, open_gap = 2.4;  // [rad] of a clip's ring
 constexpr int ring_points = 24;
 constexpr double groove_width = 2.5, rim_height = 2, rim_width = 0.6;  // of a wheel, to the cable's radius
@@ -61,8 +61,11 @@ std::vector<Marker> guide_markers(const World& world, int index) {
   Pose pose = world.frame_pose(guide.frame) * guide.pose;
   if (guide.type == GuideDesc::Type::sheave) {
     const double side = 0.5 * (groove_width + rim_width) * radius;
-    const auto rim = [&](double height) { return make_disc(pose, height, guide.radius + rim_height * radius, rim_width * radius); };
-    return {make_disc(pose, 0, std::max(guide.radius - radius, 0.5 * guide.radius), groove_width * radius), rim(-side), rim(side)};
+    const auto rim = [&](double height) {
+      return make_disc(pose, height, guide.radius + rim_height * radius, rim_width * radius);
+    };
+    return {make_disc(pose, 0, std::max(guide.radius - radius, 0.5 * guide.radius), groove_width * radius), rim(-side),
+            rim(side)};
   }
   double gap = guide.type == GuideDesc::Type::clip ? open_gap : 0;
   for (const Attachment& attachment : world.attachments()) {

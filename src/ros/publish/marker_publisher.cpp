@@ -232,8 +232,7 @@ void MarkerPublisher::add_pin(const World& world, const Attachment& attachment, 
 
 void MarkerPublisher::add_guide(const World& world, int guide, MarkerArray& markers) {
   int part = 0;
-  for (Marker& look : guide_markers(world, guide))
-    add_look("guides", world.guides()[guide].name, part, std::move(look), markers);
+  for (Marker& look : guide_markers(world, guide)) add_look("guides", world.guides()[guide].name, part, std::move(look), markers);
 }
 
 void MarkerPublisher::add_obstacle(const World& world, const Obstacle& obstacle, MarkerArray& markers) {
