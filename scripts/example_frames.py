@@ -99,7 +99,7 @@ def harness(t):
 
 
 def block_and_tackle(t):
-    return {'jib': pose(0, 0, 3.0, yaw=0.35 * swing(t, 16))}
+    return {'jib': pose(0, 0, 3.0, yaw=0.3 * swing(t, 20))}
 
 
 def plug(t):
@@ -134,7 +134,7 @@ EXAMPLES = {
     'harness': (harness, [
         ('two hands lay a wire harness on a board, whose clips hold it', 0, 0, 0.52, 0.04)]),
     'block_and_tackle': (block_and_tackle, [
-        ('four parts of one rope: a quarter of the load, four times the way', 0.8, 0, 3.6, 0.12)]),
+        ('four parts of one rope: a quarter of the load, four times the way', 0.8, 0, 3.7, 0.12)]),
     'plug': (plug, [
         ('a clip takes the cable behind a plug that a hand pushes into a socket', -0.12, 0, 0.22, 0.013)]),
     'finger': (finger, [

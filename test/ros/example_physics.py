@@ -135,7 +135,7 @@ class BlockAndTackle:
         with self.node.states() as states, in_frames() as frames:
             for wanted in (6.3, 5.0):
                 state = states.wait_for(lambda s: s.header.stamp > since and abs(cable(s, 'hoist_rope').rest_length - wanted) < 1e-3,
-                                        f'{wanted} m of rope', STARTING)
+                                        f'{wanted} m of rope', 2 * STARTING)
                 since = state.header.stamp
                 jib = frames.lookup_transform('world', 'jib', state.header.stamp, rospy.Duration(PATIENCE)).transform
                 top = vector(jib.translation) + rotate(jib.rotation, self.TOP)
@@ -196,9 +196,9 @@ class Finger:
 
     def test_bands_are_stretched_by_what_their_joints_turn(self):
         with self.node.states() as states, in_frames() as frames:
-            bent = states.wait_for(lambda s: cable(s, 'tendon').rest_length < 0.0971, 'bent finger', STARTING)
+            bent = states.wait_for(lambda s: cable(s, 'tendon').rest_length < 0.0971, 'bent finger', 2 * STARTING)
             straight = states.wait_for(lambda s: s.header.stamp > bent.header.stamp and cable(s, 'tendon').rest_length > 0.1199,
-                                       'straight finger', STARTING)
+                                       'straight finger', 2 * STARTING)
             for state in (bent, straight):
                 palm = frames.lookup_transform('world', 'palm', state.header.stamp, rospy.Duration(PATIENCE)).transform
                 turns = {'palm': pitch(palm.rotation), **{b.name: pitch(b.pose.orientation) for b in state.bodies}}
