@@ -98,10 +98,6 @@ def harness(t):
     return {'left_hand': pose(-x, 0, z), 'right_hand': pose(x, 0, z), 'board': pose(0, 0, 0, roll=tilt)}
 
 
-def block_and_tackle(t):
-    return {'jib': pose(0, 0, 3.0, yaw=0.3 * swing(t, 20))}
-
-
 def plug(t):
     t %= PERIODS['plug']
     there, pushed, back = ramp(t, 1, 4), ramp(t, 4, 6), ramp(t, 14.5, 16)
@@ -133,8 +129,6 @@ EXAMPLES = {
         ('wall', -0.05, 0, 1.25, 0.05)]),
     'harness': (harness, [
         ('two hands lay a wire harness on a board, whose clips hold it', 0, 0, 0.52, 0.04)]),
-    'block_and_tackle': (block_and_tackle, [
-        ('four parts of one rope: a quarter of the load, four times the way', 0.8, 0, 3.7, 0.12)]),
     'plug': (plug, [
         ('a clip takes the cable behind a plug that a hand pushes into a socket', -0.12, 0, 0.22, 0.013)]),
     'finger': (finger, [

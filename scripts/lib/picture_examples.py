@@ -19,7 +19,6 @@ SIZE = (800, 600)            # [pixels] of the window
 WIDE = (1100, 700)           # with panels
 EXAMPLES = {  # [s] until the picture
     'arm_dress_pack': 8,
-    'block_and_tackle': 6,
     'crane': 4,
     'drones_with_bar': 5,
     'finger': 3,

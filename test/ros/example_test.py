@@ -19,7 +19,7 @@ EXAMPLE = sys.argv[1]
 PACKAGE = sys.argv[0].partition('/test/ros/')[0]
 SECONDS = 3
 # Obstacles whose frames move are shown as soon as tf has them; a capsule is three markers.
-OBSTACLES = {'arm_dress_pack': 6, 'block_and_tackle': 3, 'crane': 5, 'drones_with_bar': 7, 'finger': 1, 'gripper_load': 5, 'harness': 7,
+OBSTACLES = {'arm_dress_pack': 6, 'crane': 5, 'drones_with_bar': 7, 'finger': 1, 'gripper_load': 5, 'harness': 7,
              'hose_between_arms': 8, 'plug': 11, 'rov_tether': 4, 'tethered_drone': 5, 'tracker': 0}[EXAMPLE]
 PAUSE = 10.0  # [s] more than any hand's
 STRETCH = {'finger': 0.4}  # its rubber bands
