@@ -14,7 +14,7 @@ struct SimulatedContact {
   int obstacle = -1;                   ///< index into World::obstacles(), -1: none is touched
   int other_cable = -1;                ///< index into World::cables(), -1: none is touched
   int other_segment = -1;
-  int body = -1;                       ///< index into World::bodies(), -1: none is touched
+  int body = -1;  ///< index into World::bodies(), -1: none is touched
 };
 
 }  // namespace verlet_cable

@@ -251,8 +251,7 @@ void BodySystem::restore_momenta(std::vector<Participant>& participants, std::ve
   if (!keeps_momenta()) return;
   for (std::size_t m = 0; m < members_.size(); ++m) members_[m].stepper.add_momenta(group_of(static_cast<int>(m)));
   for (std::size_t c = 0; c < cable_count_; ++c)
-    if (cables_[c].is_held())
-      HeldCable::add_momenta(participants[cables_[c].participant()], group_of(cables_[c].first_member()));
+    if (cables_[c].is_held()) HeldCable::add_momenta(participants[cables_[c].participant()], group_of(cables_[c].first_member()));
   for (std::size_t b = 0; b < member_of_.size(); ++b) {
     if (member_of_[b] < 0 || !group_of(member_of_[b]).is_free()) continue;
     const RigidMotion missing = group_of(member_of_[b]).missing();

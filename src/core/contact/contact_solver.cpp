@@ -213,9 +213,8 @@ bool ContactSolver::iterate(std::vector<Participant>& participants, std::vector<
     const double ratio = i == 0 || changed ? 1 : largest / last;
     const double strict = passes_momentum ? passing_part * tolerance : tolerance;
     const double enough = i < patient_iterations ? strict : impatience * tolerance;
-    const bool consistent = std::all_of(participants.begin(), participants.end(), [](const Participant& p) {
-      return p.stepper->flows_are_consistent(p.substep);
-    });
+    const bool consistent = std::all_of(participants.begin(), participants.end(),
+                                        [](const Participant& p) { return p.stepper->flows_are_consistent(p.substep); });
     if (largest * std::clamp(ratio, fastest_convergence, 1.0) < enough && consistent) {
       for (Participant& p : participants) p.result.converged = true;
       return true;

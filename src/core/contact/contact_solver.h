@@ -28,11 +28,11 @@ class ContactSolver {
   struct Work {
     bool coupled = false, slips = false;
     // Its own loads meanwhile, and none while it has its own
-    VectorArray load;            // nodes [N]
-    std::vector<double> gap;     // segments [m^2]
-    std::vector<double> torque;  // of a whole rod: segments [N m]
+    VectorArray load;               // nodes [N]
+    std::vector<double> gap;        // segments [m^2]
+    std::vector<double> torque;     // of a whole rod: segments [N m]
     std::vector<double> flow_load;  // one a flow through a guide [N]
-    VectorArray kept_load;       // nodes [N]: as it was before contacts added to it
+    VectorArray kept_load;          // nodes [N]: as it was before contacts added to it
     // The solution so far and the direction in which it is improved
     VectorArray correction, direction;                     // nodes [m]
     std::vector<double> multiplier, multiplier_direction;  // segments [N/m]

@@ -128,7 +128,8 @@ double Bending::flow_force(int before, int after, const VectorArray& middle) con
   for (const ChangingJoint& joint : changing_) {
     if (joint.start == 0) continue;
     // Of the mean of the lengths of the two segments at it.
-    const double share = 0.5 * ((joint.node == after || joint.node == after + 1) - (joint.node == before || joint.node == before + 1));
+    const double share =
+        0.5 * ((joint.node == after || joint.node == after + 1) - (joint.node == before || joint.node == before + 1));
     if (share == 0) continue;
     const double start = angle_energy(0.5 * start_square_[joint.node]), end = angle_energy(0.5 * end_square_[joint.node]);
     const double energy = part_ == 1 ? end : 0.5 * (start + end);

@@ -81,8 +81,8 @@ class Bending {
   void set_changing(int node);
   void add_growth(const VectorArray& displacement);
 
-  VectorArray segment_;                      // at the start [m]; where there are flows
-  std::vector<double> rest_lengths_;         // segments, at the start [m]; where there are flows
+  VectorArray segment_;               // at the start [m]; where there are flows
+  std::vector<double> rest_lengths_;  // segments, at the start [m]; where there are flows
   std::vector<GrowingSegment> growing_;
   std::vector<ChangingJoint> changing_;
   std::vector<double> inverse_length_;       // segments [1/m]

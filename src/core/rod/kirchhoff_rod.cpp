@@ -331,12 +331,11 @@ void KirchhoffRod::add_clamp_reactions(const KktSystem& system, std::vector<Vect
     const ClampJoint& clamp = clamps_[k];
     const int i = clamp.segment, joint = static_cast<int>(k);
     const Vector3 direction = get(system.direction, i), change = get(displacement, i + 1) - get(displacement, i);
-    const Vector3 turn =
-        direction.cross(change) / direction.squaredNorm() + elimination_.twist()[i] * direction.normalized();
+    const Vector3 turn = direction.cross(change) / direction.squaredNorm() + elimination_.twist()[i] * direction.normalized();
     const Vector3 clamp_turn = system.moves_held ? clamp.rotation : Vector3(Vector3::Zero());
     const Vector3 moment = stiffness_.turning_part * get(clamp_joints_.moment, joint);
-    torques[clamp.target] += get(clamp_joints_.stiffness, joint) * (turn - clamp_turn) +
-                             (clamp.after ? -1 : 1) * moment.cross(turn);
+    torques[clamp.target] +=
+        get(clamp_joints_.stiffness, joint) * (turn - clamp_turn) + (clamp.after ? -1 : 1) * moment.cross(turn);
   }
 }
 

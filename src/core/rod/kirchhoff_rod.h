@@ -72,9 +72,9 @@ class KirchhoffRod {
 
  private:
   struct ClampJoint {
-    int target = 0;     ///< index of the held direction
-    int segment = 0;    ///< the segment next to the clamp
-    bool after = true;  ///< the segment comes after the clamp
+    int target = 0;                      ///< index of the held direction
+    int segment = 0;                     ///< the segment next to the clamp
+    bool after = true;                   ///< the segment comes after the clamp
     Vector3 rotation = Vector3::Zero();  ///< [rad] in the last solution for moved clamps
   };
 

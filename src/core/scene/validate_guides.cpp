@@ -186,8 +186,8 @@ class SimulationChecker {
       if (is_sheave && guide.friction_coefficient() < infinity && guide.inertia > 0)
         errors_.add(key + ".friction", number_text(guide.friction_coefficient()),
                     "infinity (.inf) where the wheel has inertia; a wheel that the cable slips on has none, as yet");
-      const auto cable = std::find_if(scene_.cables.begin(), scene_.cables.end(),
-                                      [&](const CableDesc& c) { return c.name == guide.cable; });
+      const auto cable =
+          std::find_if(scene_.cables.begin(), scene_.cables.end(), [&](const CableDesc& c) { return c.name == guide.cable; });
       if (!cable->sections.empty()) check_sections(key, is_sheave, *cable);
       if (is_sheave) check_other_sheaves(key, guide, *cable);
       if (guide.place) check_room(key, guide, *cable);

@@ -240,11 +240,12 @@ void check_held_segment(const std::string& key, const SceneDesc& scene, const Ca
   const double distance = (end - start).norm(), held = length * (segments - 1 - free);
   const bool on_bodies = !first.body.empty() || !second.body.empty();
   if (on_bodies && free > 0 && distance > length * (free + 1) * (1 + distance_tolerance))
-    return errors.add(key + ".length",
-                      rounded_text(length * segments) + " m of cable between " + quoted(first.name) + " and " + quoted(second.name),
-                      "at least " + rounded_bound_text(distance + held, 1) +
-                          " m, as clamps hold the segment beside them of a cable that does not bend, and it is inextensible "
-                          "(axial_stiffness .inf)");
+    return errors.add(
+        key + ".length",
+        rounded_text(length * segments) + " m of cable between " + quoted(first.name) + " and " + quoted(second.name),
+        "at least " + rounded_bound_text(distance + held, 1) +
+            " m, as clamps hold the segment beside them of a cable that does not bend, and it is inextensible "
+            "(axial_stiffness .inf)");
   if (free > 0 || std::abs(distance - length) <= held_tolerance * length) return;
   errors.add(key + ".segments",
              std::to_string(cable.segments) + ", no node between " + quoted(first.name) + " and " + quoted(second.name) +

@@ -94,8 +94,7 @@ std::vector<WantedNode> wanted_nodes(const CableModel& model, const CableState& 
   const Pose pose = frame * attachment.pose;
   const int node = attachment.node;
   std::vector<WantedNode> wanted{{node, target_position(state, attachment, pose, node)}};
-  if (is_wheel(attachment))
-    wanted.push_back({node + 1, target_position(state, attachment, pose, node + 1)});
+  if (is_wheel(attachment)) wanted.push_back({node + 1, target_position(state, attachment, pose, node + 1)});
   if (attachment.type == AttachmentType::hinge || bends_at(model, state, node)) return wanted;
   if (node > 0) wanted.push_back({node - 1, target_position(state, attachment, pose, node - 1)});
   if (node < state.segments()) wanted.push_back({node + 1, target_position(state, attachment, pose, node + 1)});

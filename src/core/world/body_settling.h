@@ -41,8 +41,8 @@ class BodySettling {
   std::vector<CableState> before_;
 };
 
-/// Settles what bodies hold: the islands of bodies that have a cable which `settles`, a flag a cable. False if one of them found no
-/// equilibrium; `unsettled` gets the names of its cables.
+/// Settles what bodies hold: the islands of bodies that have a cable which `settles`, a flag a cable. False if one of them found
+/// no equilibrium; `unsettled` gets the names of its cables.
 bool settle_bodies(const std::vector<char>& settles, State& state, Workspace& workspace, std::vector<std::string>& unsettled,
                    const std::atomic<bool>* cancelled = nullptr);
 

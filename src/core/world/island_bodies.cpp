@@ -82,9 +82,8 @@ bool IslandStepper::advance_bodies() {
 /// Bodies in line, on what is pulled straight and cannot stretch, had no solution: they have one if that strains a little.
 bool IslandStepper::advance_straight_bodies(const Island& island, double from, double to, Scheme scheme) {
   std::vector<Participant>& participants = workspace_.participants;
-  const bool straight = std::any_of(participants.begin(), participants.end(), [](const Participant& p) {
-    return is_straight_on_bodies(p.substep, *p.state);
-  });
+  const bool straight = std::any_of(participants.begin(), participants.end(),
+                                    [](const Participant& p) { return is_straight_on_bodies(p.substep, *p.state); });
   if (!straight) return false;
   for (Participant& p : participants) p.substep.strains_on_bodies = true;
   begin_bodies(island, from, to, scheme);
@@ -204,7 +203,8 @@ void IslandStepper::follow_body_holder(BodyJoint& joint, double to) {
   if (jumps) joint.holder.orientation = state_.frames.poses[attachment.frame].orientation * attachment.pose.orientation;
   joint.holder_velocity.linear = holder->velocity + to * (holder->next_velocity - holder->velocity);
   joint.holder_velocity.angular = jumps ? last_spin : Vector3(spin + (to - 0.5) * (spin - last_spin));
-  const double size = body.is_junction ? least_size : std::sqrt(body.inertia.trace() / body.mass), noticed = noticed_jerk / state_.scene->time_step;
+  const double size = body.is_junction ? least_size : std::sqrt(body.inertia.trace() / body.mass),
+               noticed = noticed_jerk / state_.scene->time_step;
   const bool accelerates = (holder->next_velocity - holder->velocity).norm() > noticed * size;
   const bool turns = joint.type != AttachmentType::hinge && !jumps && (spin - last_spin).norm() > noticed;
   projects_bodies_ = projects_bodies_ || accelerates || turns || jumps;

@@ -144,7 +144,8 @@ template <class T>
 auto fields(T& x, const KinematicTarget*) {
   return std::tie(x.attachment, x.node, x.position, x.velocity, x.mean_velocity, x.starts, x.gap, x.caught, x.next_position,
                   x.next_velocity, x.frame_velocity, x.average_velocity, x.change, x.left_velocity, x.left_for, x.liveliness,
-                  x.jumping_steps, x.jumped_from, x.carried, x.first_excess, x.last_excess, x.least_excess, x.greatest_excess, x.slides);
+                  x.jumping_steps, x.jumped_from, x.carried, x.first_excess, x.last_excess, x.least_excess, x.greatest_excess,
+                  x.slides);
 }
 template <class T>
 auto fields(T& x, const DirectionTarget*) {
@@ -215,13 +216,13 @@ auto fields(T& x, const BodyId*) {
 }
 template <class T>
 auto fields(T& x, const Attachment*) {
-  return std::tie(x.name, x.body, x.node, x.frame, x.holder, x.type, x.pose, x.at, x.force, x.torque, x.guide, x.is_junction, x.held_junction,
-                  x.tangent_points);
+  return std::tie(x.name, x.body, x.node, x.frame, x.holder, x.type, x.pose, x.at, x.force, x.torque, x.guide, x.is_junction,
+                  x.held_junction, x.tangent_points);
 }
 template <class T>
 auto fields(T& x, const SimulatedGuide*) {
-  return std::tie(x.name, x.type, x.friction, x.radius, x.inertia, x.bearing_friction, x.sense, x.retention, x.capture,
-                  x.cable, x.frame, x.pose, x.is_ready, x.flow, x.flow_acceleration, x.lost_length);
+  return std::tie(x.name, x.type, x.friction, x.radius, x.inertia, x.bearing_friction, x.sense, x.retention, x.capture, x.cable,
+                  x.frame, x.pose, x.is_ready, x.flow, x.flow_acceleration, x.lost_length);
 }
 template <class T>
 auto fields(T&, const PlaneShape*) {
@@ -257,8 +258,8 @@ auto fields(T& x, const BodyProgress*) {
 }
 template <class T>
 auto fields(T& x, const SimulatedBody*) {
-  return std::tie(x.name, x.mass, x.center_of_mass, x.inertia, x.shapes, x.is_junction, x.friction, x.linear_damping, x.angular_damping, x.frame,
-                  x.pose, x.velocity, x.angular_velocity);
+  return std::tie(x.name, x.mass, x.center_of_mass, x.inertia, x.shapes, x.is_junction, x.friction, x.linear_damping,
+                  x.angular_damping, x.frame, x.pose, x.velocity, x.angular_velocity);
 }
 template <class T>
 auto fields(T& x, const Obstacle*) {
@@ -273,7 +274,8 @@ auto fields(T& x, const Frames*) {
 template <class T>
 auto fields(T& x, const State*) {
   return std::tie(x.scene, x.waiting_cables, x.waiting_nets, x.frames, x.steps, x.cables, x.cable_progress, x.nets,
-                  x.net_progress, x.particles, x.particle_integrators, x.bodies, x.body_progress, x.attachments, x.guides, x.obstacles);
+                  x.net_progress, x.particles, x.particle_integrators, x.bodies, x.body_progress, x.attachments, x.guides,
+                  x.obstacles);
 }
 /// @}
 

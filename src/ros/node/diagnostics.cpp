@@ -106,7 +106,9 @@ void Diagnostics::report_simulation(Status& status) {
   if (step_time > time_step) status.mergeSummary(DiagnosticStatus::WARN, "slower than real time");
   if (s.overstretched > 0)
     status.mergeSummary(DiagnosticStatus::WARN, "overstretched: what holds a cable or net is further apart than it is long");
-  if (s.degraded > 0) status.mergeSummary(DiagnosticStatus::WARN, "steps without a solution: the motion of cables, or of bodies and what hangs on them, was taken away");
+  if (s.degraded > 0)
+    status.mergeSummary(DiagnosticStatus::WARN,
+                        "steps without a solution: the motion of cables, or of bodies and what hangs on them, was taken away");
   if (!simulation_.world().findings().unsettled.empty())
     status.mergeSummary(DiagnosticStatus::WARN, "no static equilibrium was found to start from");
   if (!report.intrusions.empty()) status.mergeSummary(DiagnosticStatus::WARN, "cables were found inside obstacles");
