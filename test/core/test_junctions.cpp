@@ -333,6 +333,18 @@ TEST(Junctions, betweenFramesMayBePulledStraight) {
       ASSERT_EQ(world.step(inputs).status, StepResult::Status::ok) << i;
     }
     EXPECT_LT(largest_gap(world), 1e-9);
+    // Drawn beyond its length it is lengthened, as without a junction, and comes back.
+    const auto draw = [&](double speed) {
+      inputs[1].pose.position.x() += speed * world.time_step();
+      return world.step(inputs).status;
+    };
+    for (int i = 0; i < 300; ++i) {
+      const StepResult::Status status = draw(0.5);
+      const bool is_beyond = inputs[1].pose.position.x() > 1 + 1e-6;
+      ASSERT_EQ(status, is_beyond ? StepResult::Status::overstretched : StepResult::Status::ok) << i;
+    }
+    for (int i = 0; i < 300; ++i) draw(-0.5);
+    for (int i = 0; i < 100; ++i) ASSERT_EQ(world.step(inputs).status, StepResult::Status::ok) << i;
   }
 }
 

@@ -34,15 +34,20 @@ int reachable_lengths(const CableModel& model, const CableState& state, const st
   int overstretched = -1;
   std::size_t next = 0;
   for (std::size_t k = 0; k + 1 < held.size(); k = next) {
-    // On to the next holder that the cable does not slide through.
+    // On to the next holder that the cable does not slide through; junctions are drawn along.
     bool gives_way = held[k].body >= 0 || held[k].slides;
     double distance = 0;
+    const HeldNode* last_place = &held[k];
     for (next = k + 1;; ++next) {
-      distance += (held[next].position - held[next - 1].position).norm();
-      gives_way = gives_way || held[next].body >= 0;
-      if (!held[next].slides || next + 1 == held.size()) break;
+      const HeldNode& node = held[next];
+      if (!node.at_junction) {
+        distance += (node.position - last_place->position).norm();
+        last_place = &node;
+        gives_way = gives_way || node.body >= 0;
+      }
+      if (!(node.slides || node.at_junction) || next + 1 == held.size()) break;
     }
-    if (gives_way || held[next].slides) continue;
+    if (gives_way || held[next].slides || held[next].at_junction) continue;
     const int first = held[k].node, last = held[next].node;
     if (materials.any_elastic_between(first, last)) continue;
     const double rest_length = state.length(first, last);
