@@ -183,7 +183,11 @@ void wind_on_wheel(double arc_length, const CableDesc& desc, const FrameIds& ids
 }  // namespace
 
 void add_guides(const CableDesc& desc, int cable, const FrameIds& ids, const CableModel& model, CableState& cable_state,
-                State& state, std::vector<int>& own) {
+                State& state, std::vector<int>& own, std::vector<Attachment>& later) {
+  const auto visit_attachments = [&](const auto& visitor) {
+    for (const int a : own) visitor(state.attachments[a]);
+    for (Attachment& attachment : later) visitor(attachment);
+  };
   for (const GuideDesc& g : state.scene->guides) {
     if (g.cable != desc.name) continue;
     SimulatedGuide guide = make_guide(g, frame_of(g, ids, state));
@@ -202,14 +206,16 @@ void add_guides(const CableDesc& desc, int cable, const FrameIds& ids, const Cab
         attachment.node = put_node_at(place - 0.5 * arc, 1, model, cable_state);
         const int last = put_node_at(place + 0.5 * arc, attachment.node + 1, model, cable_state);
         make_one_segment(attachment.node, last, model, cable_state);
-        for (const int a : own)
-          if (state.attachments[a].node >= last) state.attachments[a].node -= last - attachment.node - 1;
+        visit_attachments([&](Attachment& a) {
+          if (a.node >= last) a.node -= last - attachment.node - 1;
+        });
       } else {
         attachment.node = put_node_at(place, 1, model, cable_state);
         split_segment(attachment.node, first_node, model, cable_state);
         continue_material(attachment.node, model, cable_state);
-        for (const int a : own)
-          if (state.attachments[a].node > attachment.node) ++state.attachments[a].node;
+        visit_attachments([&](Attachment& a) {
+          if (a.node > attachment.node) ++a.node;
+        });
       }
       own.push_back(static_cast<int>(state.attachments.size()));
       state.attachments.push_back(attachment);

@@ -69,6 +69,7 @@ struct World::Implementation {
   bool place_body(int index);
   void note_placed(int index);
   bool is_held_by_cable(int index) const;
+  bool waits_for_cable(int index) const;
   bool has_bodies_of(const CableDesc& cable) const;
   void place_bodies_on(const std::vector<Attachment>& attachments);
   std::vector<int> with_trunks_first(const std::vector<int>& cables) const;

@@ -70,12 +70,26 @@ std::vector<int> harnesses_of(const SceneDesc& scene) {
     return std::find_if(scene.cables.begin(), scene.cables.end(), [&](const CableDesc& cable) { return cable.name == name; }) -
            scene.cables.begin();
   };
+  const auto join = [&](int a, int b) { std::replace(labels.begin(), labels.end(), std::max(a, b), std::min(a, b)); };
   for (const JunctionDesc& junction : scene.junctions)
-    for (const BranchDesc& branch : junction.branches) {
-      const int a = labels[index_of(junction.cable)], b = labels[index_of(branch.cable)];
-      std::replace(labels.begin(), labels.end(), std::max(a, b), std::min(a, b));
+    for (const BranchDesc& branch : junction.branches) join(labels[index_of(junction.cable)], labels[index_of(branch.cable)]);
+  for (const BodyDesc& body : scene.bodies) {
+    int first = -1;
+    for (std::size_t i = 0; i < scene.cables.size(); ++i) {
+      if (!hangs_on(scene, body, scene.cables[i])) continue;
+      if (first >= 0) join(labels[first], labels[i]);
+      first = static_cast<int>(i);
     }
+  }
   return labels;
+}
+
+bool hangs_on(const SceneDesc& scene, const BodyDesc& body, const CableDesc& cable) {
+  return std::any_of(cable.attachments.begin(), cable.attachments.end(),
+                     [&](const AttachmentDesc& attachment) { return attachment.body == body.name; }) ||
+         std::any_of(scene.guides.begin(), scene.guides.end(), [&](const GuideDesc& guide) {
+           return guide.place && guide.cable == cable.name && guide.body == body.name;
+         });
 }
 
 /// Light bodies where cables branch, after those of the scene. The first cable of a junction that starts places it.

@@ -22,7 +22,10 @@ std::vector<JunctionPlace> junction_places(const SceneDesc& scene, const CableDe
 /// Whether a rigid junction holds the cable.
 bool is_welded(const SceneDesc& scene, const std::string& cable);
 
-/// For each cable of the scene the first one that junctions join it to, directly or by others; itself if there is none.
+/// Whether an attachment or a guide of a cable is on the body.
+bool hangs_on(const SceneDesc& scene, const BodyDesc& body, const CableDesc& cable);
+
+/// For each cable of the scene the first one that junctions or bodies join it to, directly or by others; itself if there is none.
 std::vector<int> harnesses_of(const SceneDesc& scene);
 
 }  // namespace verlet_cable

@@ -65,7 +65,7 @@ bool World::Implementation::place_body(int index) {
     const Pose& holder = state.frames.poses[first->frame];
     body.pose =
         desc.pose && first->type == AttachmentType::axle ? on_axle(body, *first, holder) : held_pose(body, *first, holder);
-  } else if (!desc.pose && is_held_by_cable(index)) {
+  } else if (waits_for_cable(index) || (!desc.pose && is_held_by_cable(index))) {
     return false;
   }
   note_placed(index);
@@ -79,6 +79,12 @@ void World::Implementation::note_placed(int index) {
   state.frames.poses[body.frame] = state.frames.previous_poses[body.frame] = body.pose;
 }
 
+/// Whether it hangs on a cable that has not started yet.
+bool World::Implementation::waits_for_cable(int index) const {
+  return std::any_of(state.waiting_cables.begin(), state.waiting_cables.end(),
+                     [&](int i) { return hangs_on(*state.scene, state.scene->bodies[index], state.scene->cables[i]); });
+}
+
 bool World::Implementation::is_held_by_cable(int index) const {
   const std::string& name = state.bodies[index].name;
   return std::any_of(state.scene->cables.begin(), state.scene->cables.end(), [&](const CableDesc& cable) {
@@ -90,9 +96,11 @@ bool World::Implementation::is_held_by_cable(int index) const {
 /// Whether the bodies that hold a cable are where they begin, or begin where it ends.
 bool World::Implementation::has_bodies_of(const CableDesc& cable) const {
   for (const GuideDesc& guide : state.scene->guides)
-    if (guide.cable == cable.name && guide.place && !guide.body.empty() &&
-        !state.body_progress[find(state.bodies, guide.body)].is_placed)
-      return false;
+    if (guide.cable == cable.name && guide.place && !guide.body.empty()) {
+      const int body = find(state.bodies, guide.body);
+      const BodyDesc& desc = state.scene->bodies[body];
+      if (!state.body_progress[body].is_placed && !(desc.pose && desc.attachments.empty())) return false;
+    }
   return std::all_of(cable.attachments.begin(), cable.attachments.end(), [&](const AttachmentDesc& attachment) {
     if (attachment.body.empty()) return true;
     const int body = find(state.bodies, attachment.body);

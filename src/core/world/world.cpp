@@ -303,7 +303,7 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
     own.push_back(static_cast<int>(state.attachments.size()));
     state.attachments.push_back(attachment);
   }
-  add_guides(desc, index, ids, *cable.model, cable.state, state, own);
+  add_guides(desc, index, ids, *cable.model, cable.state, state, own, placing);
   // The holders catch the nodes where they want them: there is no gap to close.
   CableProgress memory;
   memory.id = state.new_cable_id();
