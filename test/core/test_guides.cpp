@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -240,6 +241,42 @@ TEST(Guides, materialComesBackWithItsSections) {
   }
   EXPECT_NEAR(mass_of(world.cables()[0]), mass, 1e-12);
   EXPECT_NEAR(world.view_guide(0).arc_length, 1, 0.02);
+}
+
+/// Nodes on a wheel are taken out: the end has another number then.
+TEST(Guides, leaveABodyAtTheEndThatItPlaces) {
+  SceneDesc scene = two_loads(1, 1);
+  scene.cables[0].point_masses.clear();
+  scene.cables[0].attachments = {scenes::attachment("top", PlaceDesc::At::start, {-0.5, 0, -0.8}),
+                                 scenes::attachment("hook", PlaceDesc::At::end, Vector3::Zero())};
+  scene.cables[0].attachments[1].body = "load";
+  scene.guides = {guide("wheel", 1, {0, 0, -0.05}, GuideDesc::Type::sheave)};
+  scene.guides[0].radius = 0.05;
+  BodyDesc& load = scene.bodies.emplace_back();
+  load.name = "load";
+  load.mass = 1;
+  load.inertia = Vector3::Constant(1e-3);
+  World world(scene, {});
+  const CableState& cable = world.cables()[0].state;
+  EXPECT_LT(cable.segments(), 50);
+  EXPECT_LT((world.bodies()[0].pose.position - cable.positions.back()).norm(), 1e-12);
+  run(world, 0.1);
+}
+
+TEST(Guides, thatAShapeWindsAroundMoreThanOnceAreRefused) {
+  SceneDesc scene = two_loads(1, 1);
+  scene.guides = {guide("wheel", 1, {0, 0, -0.05}, GuideDesc::Type::sheave)};
+  scene.guides[0].radius = 0.05;
+  std::vector<Vector3>& points = scene.cables[0].initial.points;
+  points.clear();
+  for (int i = 0; i <= 60; ++i) {
+    const double angle = 3 * M_PI * i / 60;
+    points.emplace_back(-0.05 * std::cos(angle), 0, 0.05 * std::sin(angle) - 0.05);
+  }
+  const std::vector<std::string> errors = validate(scene);
+  const std::string wound =
+      "guides[0]: the initial shape of \"cable\" winds around it 1.5 times; allowed: less than one turn, as yet";
+  EXPECT_EQ(std::count(errors.begin(), errors.end(), wound), 1);
 }
 
 }  // namespace

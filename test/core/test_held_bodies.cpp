@@ -57,6 +57,22 @@ TEST(HeldBodies, SettleWithWhatTheyHangOn) {
   EXPECT_NEAR(world.attachments()[0].force.z(), -weight, 1e-6 * weight);
 }
 
+TEST(HeldBodies, WaitForTheCablesThatTheyHangOn) {
+  SceneDesc scene = load_on_a_rope();
+  scene.cables[0].attachments[0].initial_pose.reset();
+  BoundaryInputs inputs = scenes::hand_at({0, 0, 0});
+  inputs[1].known = false;
+  World world(scene, inputs);
+  for (int i = 0; i < 100; ++i) world.step(inputs);
+  EXPECT_TRUE(world.cables().empty());
+  EXPECT_EQ(world.bodies()[0].velocity.norm(), 0);
+  EXPECT_EQ((world.bodies()[0].pose.position - Vector3(0.1, 0, -0.3)).norm(), 0);
+  inputs[1].known = true;
+  EXPECT_EQ(world.start_waiting(inputs), 1);
+  for (int i = 0; i < 100; ++i) ASSERT_EQ(world.step(inputs).status, Status::ok);
+  EXPECT_GT(speed(world), 0.1);
+}
+
 TEST(HeldBodies, ARopeTooShortForItsBodyIsAnError) {
   SceneDesc scene = load_on_a_rope();
   EXPECT_TRUE(validate(scene).empty());

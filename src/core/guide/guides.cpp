@@ -160,8 +160,12 @@ void wind_on_wheel(double arc_length, const CableDesc& desc, const FrameIds& ids
   std::array<Vector3, 2> ends = neighbours(arc_length, wheel.position, desc, ids, state);
   Vector3 middle = -state.scene->gravity.at(wheel.position);
   Vector3 along = ends[1] - ends[0];
-  if (desc.initial.type == InitialShapeDesc::Type::points) {
-    const auto at = [&](double place) { return point_at(desc.initial.points, place / desc.length); };
+  using Type = InitialShapeDesc::Type;
+  const bool is_given = desc.initial.type == Type::points || desc.initial.type == Type::straight;
+  if (is_given) {
+    const std::vector<Vector3> straight{desc.initial.from, desc.initial.to};
+    const std::vector<Vector3>& shape = desc.initial.type == Type::points ? desc.initial.points : straight;
+    const auto at = [&](double place) { return point_at(shape, place / desc.length); };
     const double aside = M_PI * guide.radius;
     ends = {at(arc_length - aside), at(arc_length + aside)};
     middle = at(arc_length) - wheel.position;
@@ -176,7 +180,6 @@ void wind_on_wheel(double arc_length, const CableDesc& desc, const FrameIds& ids
     return arc_on_wheel(guide, attachment) / guide.radius;
   };
   const double sense = along.dot(axis.cross(middle)) < 0 ? -1 : 1, angle = wind(sense, middle);
-  const bool is_given = desc.initial.type == InitialShapeDesc::Type::points;
   if (!is_given && angle > half_turn && wind(-sense, -middle) > angle) wind(sense, middle);
 }
 

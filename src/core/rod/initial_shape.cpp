@@ -109,7 +109,14 @@ bool set_initial_state(const InitialShapeDesc& initial, bool settles, const Cabl
       project_positions(model, held, state);
       break;
   }
-  return fits;
+  // What holds it may leave no shape at all, as a wheel does that is wound more than once.
+  const auto is_finite = [](const Vector3& v) { return v.allFinite(); };
+  if (std::all_of(state.positions.begin(), state.positions.end(), is_finite) &&
+      std::all_of(state.velocities.begin(), state.velocities.end(), is_finite))
+    return fits;
+  state.positions = straight_line(held.empty() ? Vector3(Vector3::Zero()) : held.front().position, Vector3::UnitX(), state);
+  state.velocities.assign(state.nodes(), Vector3::Zero());
+  return false;
 }
 
 bool settles_at_start(const CableDesc& desc, const CableModel& model, const CableState& state) {

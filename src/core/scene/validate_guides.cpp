@@ -154,10 +154,30 @@ class GuideChecker {
     const auto seen = [&](const Vector3& point) -> Vector3 { return inverse.position + inverse.orientation * point; };
     for (std::size_t i = 1; i < shape.size(); ++i)
       distance = std::min(distance, distance_from_guide(guide, seen(shape[i - 1]), seen(shape[i])));
+    if (is_sheave) check_winding(key, guide, cable, shape, *pose);
     const double segment = cable.length / cable.segments;
     if (distance <= segment || !std::isfinite(distance)) return;
     errors_.add(key, "the initial shape of " + quoted(cable.name) + " misses it by " + rounded_text(distance) + " m",
                 "a shape in numbers that passes within a segment's length, " + rounded_bound_text(segment, -1) + " m");
+  }
+
+  /// By how much the shape turns about the wheel while it is close to it.
+  void check_winding(const std::string& key, const GuideDesc& guide, const CableDesc& cable, const std::vector<Vector3>& shape,
+                     const Pose& wheel) {
+    constexpr double close = 1.5;  // radii
+    const Pose inverse = wheel.inverse();
+    double turned = 0;
+    for (std::size_t i = 1; i < shape.size(); ++i) {
+      const Vector3 from = inverse.position + inverse.orientation * shape[i - 1];
+      const Vector3 to = inverse.position + inverse.orientation * shape[i];
+      if (std::max(from.head<2>().norm(), to.head<2>().norm()) > close * guide.radius) continue;
+      turned += std::atan2(from.x() * to.y() - from.y() * to.x(), from.head<2>().dot(to.head<2>()));
+    }
+    if (std::abs(turned) < 2 * M_PI) return;
+    errors_.add(key,
+                "the initial shape of " + quoted(cable.name) + " winds around it " + rounded_text(std::abs(turned) / (2 * M_PI)) +
+                    " times",
+                "less than one turn, as yet");
   }
 
   struct LastPlace {

@@ -87,9 +87,8 @@ std::vector<int> harnesses_of(const SceneDesc& scene) {
 bool hangs_on(const SceneDesc& scene, const BodyDesc& body, const CableDesc& cable) {
   return std::any_of(cable.attachments.begin(), cable.attachments.end(),
                      [&](const AttachmentDesc& attachment) { return attachment.body == body.name; }) ||
-         std::any_of(scene.guides.begin(), scene.guides.end(), [&](const GuideDesc& guide) {
-           return guide.place && guide.cable == cable.name && guide.body == body.name;
-         });
+         std::any_of(scene.guides.begin(), scene.guides.end(),
+                     [&](const GuideDesc& guide) { return guide.place && guide.cable == cable.name && guide.body == body.name; });
 }
 
 /// Light bodies where cables branch, after those of the scene. The first cable of a junction that starts places it.
@@ -156,7 +155,10 @@ std::vector<Attachment> World::Implementation::junction_attachments(const CableD
 /// Of a branch without one: straight on along the cable that it comes off.
 std::optional<InitialShapeDesc> World::Implementation::shape_from_trunk(const CableDesc& desc) const {
   if (desc.initial.type != InitialShapeDesc::Type::automatic) return std::nullopt;
-  for (const JunctionPlace& place : junction_places(*state.scene, desc)) {
+  const std::vector<JunctionPlace> places = junction_places(*state.scene, desc);
+  // One that comes back to where it comes off hangs as a loop.
+  if (places.size() == 2 && places[0].junction == places[1].junction) return std::nullopt;
+  for (const JunctionPlace& place : places) {
     const auto body = state.scene->bodies.size() + place.junction;
     if (place.branch == nullptr || !state.body_progress[body].is_placed) continue;
     const Pose& junction = state.bodies[body].pose;

@@ -202,6 +202,7 @@ int World::start_waiting(const BoundaryInputs& inputs) {
   for (const int i : cables)
     if (!w.is_cancelled()) w.start_cable(scene.cables[i], ids, inputs);
   w.weld_junctions(cables);
+  w.place_bodies();  // that others hold which cables have placed
   w.settle_started_bodies(cables);
   for (const int i : nets)
     if (!w.is_cancelled()) w.start_net(scene.nets[i], ids, inputs);
