@@ -36,7 +36,7 @@ def is_finite(marker):
     return all(math.isfinite(x) for x in numbers)
 
 
-class ExampleTest(PHYSICS.get(EXAMPLE, object), unittest.TestCase):
+class ExampleTest(*([PHYSICS[EXAMPLE]] if EXAMPLE in PHYSICS else []), unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         rospy.init_node('example_test')
