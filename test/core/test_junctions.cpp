@@ -348,6 +348,31 @@ TEST(Junctions, betweenFramesMayBePulledStraight) {
   }
 }
 
+/// By default a trunk that one frame holds hangs straight down, out of the reach of a branch whose end is held elsewhere.
+TEST(Junctions, branchesReachWhatHoldsThem) {
+  for (const double bending_stiffness : {0.0, 0.02})
+    for (const AttachmentType type : {AttachmentType::hinge, AttachmentType::clamp}) {
+      SceneDesc scene = nothing();
+      scene.materials[0].material.bending_stiffness = bending_stiffness;
+      add_cable(scene, "trunk", 0.5, 10).attachments = {
+          scenes::attachment("start", PlaceDesc::At::start, Vector3::Zero(), "", type)};
+      add_cable(scene, "arm", 0.4, 8).attachments = {scenes::attachment("end", PlaceDesc::At::end, {0.6, 0, 0}, "", type)};
+      add_junction(scene, "trunk", 0.4, {branch("arm")});
+      World world(scene, {});
+      EXPECT_LT(largest_gap(world), 1e-6);
+      ASSERT_TRUE(world.settle());
+      BoundaryInputs inputs;
+      run(world, inputs, 0.1);
+      Vector3 force = Vector3::Zero();
+      double mass = 0;
+      for (const Attachment& attachment : world.attachments())
+        if (is_named(attachment)) force += attachment.force;
+      for (const SimulatedCable& cable : world.cables())
+        for (const double part : cable.state.masses) mass += part;
+      EXPECT_LT((force - scene.gravity.acceleration * mass).norm(), 1e-3 * mass * scene.gravity.acceleration.norm());
+    }
+}
+
 /// By default a branch goes on along its trunk, turned by its rotation in the trunk's material axes.
 TEST(Junctions, branchesBeginAlongTheirTrunkTurned) {
   SceneDesc scene = nothing();

@@ -75,6 +75,7 @@ struct World::Implementation {
   std::vector<int> with_trunks_first(const std::vector<int>& cables) const;
   std::vector<Attachment> junction_attachments(const CableDesc& desc, int cable) const;
   std::optional<InitialShapeDesc> shape_from_trunk(const CableDesc& desc) const;
+  void draw_together(const std::vector<int>& descs);
   void weld_junctions(const std::vector<int>& descs);
   void weld(int attachment);
   void start_with_bodies(const CableState& cable, KinematicTargets& targets) const;

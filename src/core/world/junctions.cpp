@@ -15,9 +15,14 @@ namespace {
 /// A branch whose end is joined comes from the other side: its material's x goes towards the junction.
 const Quaternion reversed(0, 0, 0, 1);
 
-double linear_density_at(const SceneDesc& scene, const CableDesc& cable, int segment) {
+const MaterialDesc& material_at(const SceneDesc& scene, const CableDesc& cable, int segment) {
   const int section = cable.sections.empty() ? -1 : section_at(cable, segment);
-  return scene.find_material(section < 0 ? cable.material : cable.sections[section].material)->linear_density;
+  return *scene.find_material(section < 0 ? cable.material : cable.sections[section].material);
+}
+
+bool bends_at(const SceneDesc& scene, const CableDesc& cable, int node) {
+  const auto bends = [&](int segment) { return material_at(scene, cable, segment).bending_stiffness.largest() > 0; };
+  return (node > 0 && bends(node - 1)) || (node < cable.segments && bends(node));
 }
 
 /// [kg m^2] Of the halves of the segments beside a node about that node. A junction has no inertia of its own: it turns with
@@ -26,7 +31,8 @@ double inertia_around(const SceneDesc& scene, const CableDesc& cable, int node) 
   const double half = 0.5 * cable.length / cable.segments;
   double inertia = 0;
   for (const int segment : {node - 1, node})
-    if (segment >= 0 && segment < cable.segments) inertia += linear_density_at(scene, cable, segment) * half * half * half / 3;
+    if (segment >= 0 && segment < cable.segments)
+      inertia += material_at(scene, cable, segment).linear_density * half * half * half / 3;
   return inertia;
 }
 
@@ -144,7 +150,7 @@ std::vector<Attachment> World::Implementation::junction_attachments(const CableD
     attachment.frame = state.bodies[attachment.holder].frame;
     // The material of a branch that goes on along its trunk is turned as that's.
     if (place.branch == nullptr || !state.body_progress[attachment.holder].is_placed || !is_welded(scene, desc.name)) continue;
-    if (desc.initial.type != InitialShapeDesc::Type::automatic) continue;
+    if (desc.initial.type != InitialShapeDesc::Type::automatic || !bends_at(scene, desc, place.node)) continue;
     attachment.type = AttachmentType::clamp;
     attachment.pose.orientation = quaternion_from_rpy(place.branch->rotation);
     if (place.branch->end == BranchDesc::End::end) attachment.pose.orientation *= reversed;

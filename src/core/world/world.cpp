@@ -201,6 +201,7 @@ int World::start_waiting(const BoundaryInputs& inputs) {
   w.update_frames(inputs);
   for (const int i : cables)
     if (!w.is_cancelled()) w.start_cable(scene.cables[i], ids, inputs);
+  w.draw_together(cables);
   w.weld_junctions(cables);
   w.place_bodies();  // that others hold which cables have placed
   w.settle_started_bodies(cables);
