@@ -131,15 +131,16 @@ EditResult World::Implementation::apply(const edit::Join& join) {
   const JointEnd end = find_end(state.cables[first].state, first, first_at_end, state.attachments);
   const JointEnd other_end = find_end(state.cables[second].state, second, second_at_end, state.attachments);
   if (end.next && other_end.next) {
+    const auto name = [&](const Attachment& a) { return a.is_junction ? state.bodies[a.holder].name : a.name; };
     const auto place = [&](const Attachment& a) { return (state.frames.poses[a.frame] * a.pose).position; };
     if (end.next->node == end.node && other_end.next->node == other_end.node)
-      return refused("first, second: both ends are held, by " + end.next->name + " and " + other_end.next->name +
-                     "; one of them must be unpinned");
+      return refused("first, second: both ends are held, by " + name(*end.next) + " and " + name(*other_end.next) +
+                     "; one of them must be an end that nothing holds");
     const double distance = (place(*end.next) - place(*other_end.next)).norm(), length = end.length + other_end.length;
     const bool is_rigid =
         !CableMaterials(state.cables[first]).any_elastic() && !CableMaterials(state.cables[second]).any_elastic();
     if (is_rigid && distance > length * (1 + rounding))
-      return refused("first, second: the ends cannot meet: " + end.next->name + " and " + other_end.next->name + " are " +
+      return refused("first, second: the ends cannot meet: " + name(*end.next) + " and " + name(*other_end.next) + " are " +
                      rounded_text(distance) + " m apart, the cable between them would be " + rounded_text(length) + " m long");
   }
 
