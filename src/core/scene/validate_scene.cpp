@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "scene/scene_errors.h"
+#include "scene/scene_materials.h"
 #include "scene/validate_bodies.h"
 #include "scene/validate_guides.h"
 #include "scene/validate_holders.h"
@@ -184,17 +185,6 @@ void check_initial_poses(const SceneDesc& scene, Errors& errors) {
 /// Where an attachment's point is held with its frame at `frame`.
 Vector3 held_point(const AttachmentDesc& attachment, const Pose& frame) {
   return frame.position + frame.orientation * attachment.offset;
-}
-
-/// What a segment is made of, in a scene that has all materials.
-const MaterialDesc& material_at(const SceneDesc& scene, const CableDesc& cable, int segment) {
-  const int section = section_at(cable, segment);
-  return *scene.find_material(section < 0 ? cable.material : cable.sections[section].material);
-}
-
-bool bends_at(const SceneDesc& scene, const CableDesc& cable, int node) {
-  const auto bends = [&](int segment) { return material_at(scene, cable, segment).bending_stiffness.largest() > 0; };
-  return bends(std::max(node - 1, 0)) || bends(std::min(node, cable.segments - 1));
 }
 
 /// Whether none of the cable between two nodes can stretch.

@@ -26,13 +26,6 @@ double remaining(double caught, double distance, double time) {
   return 1 - part * part * (3 - 2 * part);
 }
 
-/// Whether the cable resists bending on a side of a node.
-bool bends_at(const CableModel& model, const CableState& state, int node) {
-  const CableMaterials materials(model, state);
-  return std::max(materials[std::max(node - 1, 0)].bending_stiffness.largest(),
-                  materials[std::min(node, state.segments() - 1)].bending_stiffness.largest()) > 0;
-}
-
 /// Where an attachment at `pose` wants its own node or one next to it.
 Vector3 target_position(const CableState& state, const Attachment& attachment, const Pose& pose, int node) {
   if (attachment.guide >= 0) return pose.position + pose.orientation * attachment.tangent_points[node - attachment.node];
@@ -84,6 +77,12 @@ void add_target(int attachment, const WantedNode& wanted, const std::vector<Vect
 }
 
 }  // namespace
+
+bool bends_at(const CableModel& model, const CableState& state, int node) {
+  const CableMaterials materials(model, state);
+  return std::max(materials[std::max(node - 1, 0)].bending_stiffness.largest(),
+                  materials[std::min(node, state.segments() - 1)].bending_stiffness.largest()) > 0;
+}
 
 void aim_at(const Vector3& wanted, double time, KinematicTarget& target) {
   target.next_position = wanted + remaining(target.caught, target.gap.norm(), time) * target.gap;

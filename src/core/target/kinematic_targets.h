@@ -61,6 +61,9 @@ struct KinematicTargets {
   std::vector<DirectionTarget> directions;
 };
 
+/// Whether the cable resists bending on a side of a node.
+bool bends_at(const CableModel& model, const CableState& state, int node);
+
 /// Where an attachment wants nodes to be: its own, and for a clamp of a cable without bending stiffness the neighbours, too, so
 /// that the direction is held.
 struct WantedNode {

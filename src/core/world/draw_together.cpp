@@ -48,10 +48,7 @@ void World::Implementation::draw_together(const std::vector<int>& descs) {
     const int cable = find(state.cables, state.scene->cables[i].name);
     if (cable < 0) continue;
     const KinematicTargets& targets = state.cable_progress[cable].targets;
-    const bool is_joined = std::any_of(targets.nodes.begin(), targets.nodes.end(), [&](const KinematicTarget& target) {
-      return state.attachments[target.attachment].holder >= 0;
-    });
-    if (is_joined && !slides(targets)) started.push_back(cable);
+    if (follows_bodies(targets, state.attachments) && !slides(targets)) started.push_back(cable);
   }
   const auto is_loose = [&](int cable) { return misfit(state.cables[cable]) > loose; };
   if (std::none_of(started.begin(), started.end(), is_loose)) return;

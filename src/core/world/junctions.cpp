@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "rod/rod_frames.h"
-#include "verlet_cable/core/cable_materials.h"
+#include "scene/scene_materials.h"
 #include "verlet_cable/core/rotation.h"
 #include "world/implementation.h"
 
@@ -15,16 +15,6 @@ namespace {
 /// A branch whose end is joined comes from the other side: its material's x goes towards the junction.
 const Quaternion reversed(0, 0, 0, 1);
 
-const MaterialDesc& material_at(const SceneDesc& scene, const CableDesc& cable, int segment) {
-  const int section = cable.sections.empty() ? -1 : section_at(cable, segment);
-  return *scene.find_material(section < 0 ? cable.material : cable.sections[section].material);
-}
-
-bool bends_at(const SceneDesc& scene, const CableDesc& cable, int node) {
-  const auto bends = [&](int segment) { return material_at(scene, cable, segment).bending_stiffness.largest() > 0; };
-  return (node > 0 && bends(node - 1)) || (node < cable.segments && bends(node));
-}
-
 /// [kg m^2] Of the halves of the segments beside a node about that node. A junction has no inertia of its own: it turns with
 /// these, which is less the shorter the segments are, of second order as all that they leave out.
 double inertia_around(const SceneDesc& scene, const CableDesc& cable, int node) {
@@ -34,12 +24,6 @@ double inertia_around(const SceneDesc& scene, const CableDesc& cable, int node) 
     if (segment >= 0 && segment < cable.segments)
       inertia += material_at(scene, cable, segment).linear_density * half * half * half / 3;
   return inertia;
-}
-
-bool bends_at(const SimulatedCable& cable, int node) {
-  const CableMaterials materials(cable);
-  return std::max(materials[std::max(node - 1, 0)].bending_stiffness.largest(),
-                  materials[std::min(node, cable.state.segments() - 1)].bending_stiffness.largest()) > 0;
 }
 
 }  // namespace
@@ -202,7 +186,7 @@ void World::Implementation::weld(int index) {
   const SimulatedCable& cable = state.cables[joint.body.index];
   const JunctionDesc& junction = state.scene->junctions[joint.holder - state.scene->bodies.size()];
   joint.type = AttachmentType::hinge;
-  if (junction.type == JunctionDesc::Type::rigid && bends_at(cable, joint.node)) {
+  if (junction.type == JunctionDesc::Type::rigid && bends_at(*cable.model, cable.state, joint.node)) {
     const Quaternion& axes = state.bodies[joint.holder].pose.orientation;
     joint.type = AttachmentType::clamp;
     joint.pose.orientation = (axes.conjugate() * axes_at(cable.state, joint.node)).normalized();

@@ -124,9 +124,8 @@ bool World::settle() {
   w.findings.unsettled.clear();
   for (Attachment& attachment : w.state.attachments) attachment.force = attachment.torque = Vector3::Zero();
   for (int cable = 0; cable < static_cast<int>(w.state.cables.size()); ++cable) {
-    const std::vector<KinematicTarget>& targets = w.state.cable_progress[cable].targets.nodes;
-    const auto on_body = [&](const KinematicTarget& target) { return w.state.attachments[target.attachment].holder >= 0; };
-    if (targets.empty() || std::any_of(targets.begin(), targets.end(), on_body)) continue;
+    const KinematicTargets& targets = w.state.cable_progress[cable].targets;
+    if (targets.nodes.empty() || follows_bodies(targets, w.state.attachments)) continue;
     if (!Settling(cable, w.state, w.workspaces.value.local()).settle())
       w.findings.unsettled.push_back(w.state.cables[cable].model->name);
   }
@@ -184,7 +183,7 @@ World& World::operator=(World&&) noexcept = default;
 
 int World::start_waiting(const BoundaryInputs& inputs) {
   Implementation& w = *implementation_;
-  if (w.is_cancelled()) return 0;
+  if (w.is_cancelled() || (w.state.waiting_cables.empty() && w.state.waiting_nets.empty())) return 0;
   const FrameIds ids = w.state.frames.ids();
   const SceneDesc& scene = *w.state.scene;
   // Those of a harness start together.
