@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cable_fit/prediction.h"
-#include "cable_sim/frame_source.h"
+#include "scene/frame_source.h"
 #include "verlet_cable/core/world.h"
 
 namespace verlet_cable::cable_fit {
@@ -61,7 +61,7 @@ inline Recording synthetic_recording(const SceneDesc& known, int take, double du
   clamp.place.at = PlaceDesc::At::end;
   cable.attachments.push_back(clamp);
   cable.initial.type = InitialShapeDesc::Type::settled;
-  const cable_sim::FrameSource frames(scene, {{"start_hand", start}, {"end_hand", end}});
+  const FrameSource frames(scene, {{"start_hand", start}, {"end_hand", end}});
   World world(scene, frames.at(0));
 
   Recording recording;

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "cable_sim/event_log.h"
-#include "cable_sim/frame_source.h"
+#include "scene/frame_source.h"
 #include "cable_sim/job.h"
 #include "cable_sim/options.h"
 #include "scene_text.h"

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "../support/meshes.h"
-#include "cable_sim/frame_source.h"
+#include "scene/frame_source.h"
 #include "scene_text.h"
 #include "verlet_cable/core/world.h"
 
@@ -116,7 +116,7 @@ TEST_F(Robot, linksOfCableSimAreAtZeroOrWhereTheMotionHasTheirParents) {
   scene.cables[0].attachments[1].initial_pose.reset();
   const auto at = [&](const Motion& motion, const std::string& name) {
     const std::vector<std::string> names = frame_names(scene);
-    return cable_sim::FrameSource(scene, motion).at(0)[std::find(names.begin(), names.end(), name) - names.begin()].pose;
+    return FrameSource(scene, motion).at(0)[std::find(names.begin(), names.end(), name) - names.begin()].pose;
   };
   // The joint turns the arm's x into the base's y.
   EXPECT_LT((at({}, "tool").position - Vector3(0, 0.4, 0.5)).norm(), 1e-12);
@@ -126,7 +126,7 @@ TEST_F(Robot, linksOfCableSimAreAtZeroOrWhereTheMotionHasTheirParents) {
   EXPECT_LT((at({{"base", moved}}, "tool").position - Vector3(1, 0.4, 0.5)).norm(), 1e-12);
   EXPECT_LT((at({{"arm", moved}}, "tool").position - Vector3(1.4, 0, 0)).norm(), 1e-12);
   EXPECT_EQ(at({{"tool", moved}}, "tool").position, Vector3(1, 0, 0));
-  EXPECT_TRUE(cable_sim::unused_frames(scene, {{"base", moved}}).empty());
+  EXPECT_TRUE(unused_frames(scene, {{"base", moved}}).empty());
 }
 
 TEST_F(Robot, aParameterComesBeforeTheFile) {

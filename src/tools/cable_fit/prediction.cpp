@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cable_sim/frame_source.h"
+#include "scene/frame_source.h"
 #include "start.h"
 #include "verlet_cable/core/world.h"
 
@@ -47,7 +47,7 @@ Prediction predict(const SceneDesc& cable, const Markers& markers, const Recordi
   SceneDesc scene = cable;
   scene.cables.front().attachments = clamps(markers);
   const HeldEnds ends = markers.offsets.empty() ? held_ends(recording) : held_ends(recording, markers.usual_directions);
-  const cable_sim::FrameSource frames(scene, {{start_frame, ends.start}, {end_frame, ends.end}});
+  const FrameSource frames(scene, {{start_frame, ends.start}, {end_frame, ends.end}});
   start_along(markers, recording, frames.at(0), scene);
   World world(scene, frames.at(0));
 

@@ -4,7 +4,7 @@
 
 #include "common/messages.h"
 #include "common/output_file.h"
-#include "frame_source.h"
+#include "scene/frame_source.h"
 #include "scene/text.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/scene/scene_reader.h"

@@ -4,7 +4,7 @@
 #include "common/progress_bar.h"
 #include "csv_writer.h"
 #include "event_log.h"
-#include "frame_source.h"
+#include "scene/frame_source.h"
 #include "job.h"
 #include "summary.h"
 

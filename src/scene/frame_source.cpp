@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-namespace verlet_cable::cable_sim {
+namespace verlet_cable {
 namespace {
 
 /// A velocity that has changed by more [m/s] in this time [s] was a jump's, see Jump.
@@ -48,6 +48,10 @@ int FrameSource::add_frame(const std::string& name, const FrameInput& resting, c
 
 BoundaryInputs FrameSource::at(double time) const {
   return at(time, 0);
+}
+
+bool FrameSource::rests() const {
+  return std::all_of(frames_.begin(), frames_.end(), [](const Frame& frame) { return frame.track.empty(); });
 }
 
 BoundaryInputs FrameSource::at_start() const {
@@ -100,4 +104,4 @@ std::vector<std::string> unplaced_frames(const SceneDesc& scene, const Motion& m
   return unplaced;
 }
 
-}  // namespace verlet_cable::cable_sim
+}  // namespace verlet_cable

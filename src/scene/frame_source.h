@@ -6,7 +6,7 @@
 #include "verlet_cable/core/world.h"
 #include "verlet_cable/scene/motion.h"
 
-namespace verlet_cable::cable_sim {
+namespace verlet_cable {
 
 /// Where a scene's frames are over time: by the motion, else at their `initial_pose`; else a robot's link is where its parent has it
 /// with the joint at zero; else at the origin.
@@ -16,6 +16,8 @@ class FrameSource {
 
   /// One entry a frame id, all known, with the velocities of the motions that begin then.
   BoundaryInputs at(double time) const;
+  /// Whether no frame moves: they are everywhere as at(0).
+  bool rests() const;
   /// Those that a run begins with: a motion that does not go on for longer than a jump (5 ms) is one, and no velocity to begin
   /// with.
   BoundaryInputs at_start() const;
@@ -48,4 +50,4 @@ std::vector<std::string> unused_frames(const SceneDesc& scene, const Motion& mot
 /// Names of the scene's frames that nothing gives a place: they stand at the origin.
 std::vector<std::string> unplaced_frames(const SceneDesc& scene, const Motion& motion);
 
-}  // namespace verlet_cable::cable_sim
+}  // namespace verlet_cable
