@@ -1,9 +1,10 @@
 #include <gtest/gtest.h>
 
-#include "requests/checked_pin.h"
-#include "requests/location.h"
+#include "edit_requests/checked_pin.h"
+#include "edit_requests/error_text.h"
+#include "edit_requests/location.h"
+#include "requests/requested.h"
 #include "requests/rollout.h"
-#include "simulation/error_text.h"
 
 namespace verlet_cable {
 namespace {
@@ -47,26 +48,27 @@ Pin::Request pin_request(const std::string& body, const std::string& frame, bool
 }
 
 std::string pin_errors(const Pin::Request& request) {
-  return join(check_pin(request, three_bodies(), find_frame).errors);
+  return join(check_pin(requested_pin(request), three_bodies(), find_frame).errors);
 }
 
 TEST(BodyRequests, aBodyHasItsOriginOnly) {
   const World world = three_bodies();
   CableLocation location = pin_request("wheel", "", false).location;
-  EXPECT_EQ(locate_node(location, world, find_frame).body, rigid_body_id(1));
+  EXPECT_EQ(locate_node(requested_place(location), world, find_frame).body, rigid_body_id(1));
   location.node = 3;
-  EXPECT_EQ(join(locate_node(location, world, find_frame).errors),
+  EXPECT_EQ(join(locate_node(requested_place(location), world, find_frame).errors),
             "location.node: 3; allowed: 0, the origin of the body's frame");
   location.mode = CableLocation::ARC_LENGTH;
-  EXPECT_EQ(join(locate_node(location, world, find_frame).errors), "location.mode: 1 for body \"wheel\"; allowed: 0 (NODE)");
-  EXPECT_EQ(join(locate_cut(location, world, find_frame).errors),
+  EXPECT_EQ(join(locate_node(requested_place(location), world, find_frame).errors),
+            "location.mode: 1 for body \"wheel\"; allowed: 0 (NODE)");
+  EXPECT_EQ(join(locate_cut(requested_place(location), world, find_frame).errors),
             "location.cable: \"wheel\"; allowed: none, there are no cables or nets");
 }
 
 TEST(BodyRequests, aBodyIsPinnedWhereItIs) {
   Pin::Request request = pin_request("load", "hand", true);
   request.keep_offset = true;
-  const CheckedPin pin = check_pin(request, three_bodies(), find_frame);
+  const CheckedPin pin = check_pin(requested_pin(request), three_bodies(), find_frame);
   EXPECT_TRUE(pin.errors.empty()) << join(pin.errors);
   EXPECT_EQ(pin.body, rigid_body_id(0));
   EXPECT_EQ(pin.node, 0);

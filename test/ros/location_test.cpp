@@ -1,11 +1,12 @@
-#include "requests/location.h"
+#include "edit_requests/location.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "requests/checked_pin.h"
-#include "simulation/error_text.h"
+#include "edit_requests/checked_pin.h"
+#include "edit_requests/error_text.h"
+#include "requests/requested.h"
 
 namespace verlet_cable {
 namespace {
@@ -70,17 +71,17 @@ CableLocation nearest(const std::string& cable, const std::string& frame, double
 }
 
 int node(const CableLocation& location) {
-  const Location found = locate_node(location, two_cables(), find_frame);
+  const Location found = locate_node(requested_place(location), two_cables(), find_frame);
   return found.errors.empty() ? found.node : -1;
 }
 
 int segment(const CableLocation& location) {
-  const Location found = locate_cut(location, two_cables(), find_frame);
+  const Location found = locate_cut(requested_place(location), two_cables(), find_frame);
   return found.errors.empty() ? found.node : -1;
 }
 
 std::string node_errors(const CableLocation& location) {
-  return join(locate_node(location, two_cables(), find_frame).errors);
+  return join(locate_node(requested_place(location), two_cables(), find_frame).errors);
 }
 
 TEST(Location, NodesByNumber) {
@@ -103,8 +104,12 @@ TEST(Location, NearestPointInAnyFrameOnAnyCable) {
   EXPECT_EQ(node(nearest("lower", "hand", -1.24, 0.3, 0.2)), 8);
   EXPECT_EQ(segment(nearest("lower", "hand", -1.24, 0.3, 0.2)), 7);
   const World world = two_cables();
-  EXPECT_EQ(world.cables()[locate_node(nearest("", "world", 0.5, 0, 0.4), world, find_frame).body.index].model->name, "lower");
-  EXPECT_EQ(world.cables()[locate_node(nearest("", "world", 0.5, 0, 0.6), world, find_frame).body.index].model->name, "upper");
+  EXPECT_EQ(
+      world.cables()[locate_node(requested_place(nearest("", "world", 0.5, 0, 0.4)), world, find_frame).body.index].model->name,
+      "lower");
+  EXPECT_EQ(
+      world.cables()[locate_node(requested_place(nearest("", "world", 0.5, 0, 0.6)), world, find_frame).body.index].model->name,
+      "upper");
 }
 
 TEST(Location, PointsThatAreTooFarAwayAreRefused) {
@@ -116,7 +121,7 @@ TEST(Location, PointsThatAreTooFarAwayAreRefused) {
 TEST(Location, FramesThatAreTooFarAwayHaveANearestCableAllTheSame) {
   const FindFrame far_away = [](const std::string&) { return Pose{Vector3(1e200, 0, 0), Quaternion::Identity()}; };
   const World world = two_cables();
-  const Location found = locate_cut(nearest("", "far", 0.5, 0, 0), world, far_away);
+  const Location found = locate_cut(requested_place(nearest("", "far", 0.5, 0, 0)), world, far_away);
   EXPECT_GE(found.body.index, 0);
   EXPECT_NE(join(found.errors), "") << "its segment 0 cannot be cut";
 }
@@ -145,7 +150,7 @@ TEST(Location, ACutLeavesEachPieceASegment) {
   for (const std::uint32_t bad : {0U, 9U, 10U}) EXPECT_EQ(segment(at_node("lower", bad)), -1) << bad;
   EXPECT_EQ(segment(at_arc_length("lower", 0.05)), -1);
   EXPECT_EQ(segment(nearest("lower", "", 2, 0, 0)), -1);
-  EXPECT_EQ(join(locate_cut(at_node("lower", 0), two_cables(), find_frame).errors),
+  EXPECT_EQ(join(locate_cut(requested_place(at_node("lower", 0)), two_cables(), find_frame).errors),
             "location.node: 0 means segment 0 of cable \"lower\"; allowed: segments 1 to 8, so that each piece keeps one");
 }
 
@@ -157,11 +162,11 @@ Pin::Request pin_request() {
 }
 
 std::string pin_errors(const Pin::Request& request) {
-  return join(check_pin(request, two_cables(), find_frame).errors);
+  return join(check_pin(requested_pin(request), two_cables(), find_frame).errors);
 }
 
 TEST(CheckedPin, AGoodRequest) {
-  const CheckedPin pin = check_pin(pin_request(), two_cables(), find_frame);
+  const CheckedPin pin = check_pin(requested_pin(pin_request()), two_cables(), find_frame);
   EXPECT_EQ(join(pin.errors), "");
   EXPECT_EQ(pin.node, 10);
   EXPECT_EQ(pin.frame, "world");
@@ -173,7 +178,7 @@ TEST(CheckedPin, KeepsTheNodeWhereItIsRelativeToTheFrame) {
   Pin::Request request = pin_request();
   request.keep_offset = true;
   request.frame_id = "hand";
-  const CheckedPin pin = check_pin(request, two_cables(), find_frame);
+  const CheckedPin pin = check_pin(requested_pin(request), two_cables(), find_frame);
   EXPECT_EQ(join(pin.errors), "");
   // Rounding of positions around 2 m.
   EXPECT_LT((pin.offset.position - Vector3(-1, 0, 0)).norm(), 1e-12);

@@ -2,12 +2,13 @@
 
 #include <utility>
 
+#include "edit_requests/checked_pin.h"
+#include "edit_requests/error_text.h"
+#include "edit_requests/location.h"
 #include "interact/reach.h"
 #include "publish/conversions.h"
 #include "publish/queue_size.h"
-#include "requests/checked_pin.h"
-#include "requests/location.h"
-#include "simulation/error_text.h"
+#include "requests/requested.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/core/scene_fields.h"
@@ -23,12 +24,12 @@ const ros::WallDuration longest_silence(2);
 constexpr std::size_t most_requests = 200;  // between two updates
 constexpr double log_period = 1;            // [s]
 
-CableLocation location_of(const Handle& handle) {
-  CableLocation location;
-  location.cable = handle.cable;
-  location.mode = CableLocation::NODE;
-  location.node = static_cast<std::uint32_t>(handle.node);
-  return location;
+RequestedPlace place_of(const Handle& handle) {
+  RequestedPlace place;
+  place.cable = handle.cable;
+  place.mode = RequestedPlace::at_node;
+  place.node = handle.node;
+  return place;
 }
 
 bool is_same(const Pose& a, const Pose& b) {
@@ -85,7 +86,7 @@ void Hands::apply(const Request& request) {
 
 EditResult Hands::drag(const Handle& handle, const Request& request) {
   std::vector<std::string> errors;
-  const Pose pose = read_pose("pose", request.pose, errors);
+  const Pose pose = read_pose("pose", requested_pose(request.pose), errors);
   const std::string& fixed_frame = simulation_.scene().frame_id;
   const std::optional<Pose> frame = simulation_.find_frame(request.frame.empty() ? fixed_frame : request.frame);
   if (!frame) errors.push_back("header.frame_id: " + quoted(request.frame) + "; allowed: frames that tf knows, or empty");
@@ -123,8 +124,8 @@ EditResult Hands::select(const Handle& handle, std::uint32_t menu_entry) {
 
 /// Where it is now, in the fixed frame.
 EditResult Hands::pin(const Handle& handle) {
-  verlet_cable::Pin::Request request;
-  request.location = location_of(handle);
+  RequestedPin request;
+  request.place = place_of(handle);
   request.keep_offset = true;
   const CheckedPin pin =
       check_pin(request, simulation_.world(), [this](const std::string& frame) { return simulation_.find_frame(frame); });
@@ -135,7 +136,7 @@ EditResult Hands::pin(const Handle& handle) {
 EditResult Hands::cut(const Handle& handle) {
   if (handle.cable.empty()) return refused({"menu_entry_id: 3; what holds a net or body has 2 and 4 only"});
   if (handle.is_body) return refused({"menu_entry_id: 3; a body has 1 and 4 only"});
-  const Location location = locate_cut(location_of(handle), simulation_.world(), {});
+  const Location location = locate_cut(place_of(handle), simulation_.world(), {});
   if (!location.errors.empty()) return refused(location.errors);
   return simulation_.cut(location.body, location.elements);
 }

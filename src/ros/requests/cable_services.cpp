@@ -17,10 +17,11 @@
 #include <memory>
 #include <string>
 
-#include "requests/checked_pin.h"
-#include "requests/location.h"
+#include "edit_requests/checked_pin.h"
+#include "edit_requests/error_text.h"
+#include "edit_requests/location.h"
+#include "requests/requested.h"
 #include "scene_sources/scene_files.h"
-#include "simulation/error_text.h"
 #include "verlet_cable/core/body_name.h"
 #include "verlet_cable/core/number_text.h"
 
@@ -51,7 +52,7 @@ EditResult with_distance(EditResult result, const CableLocation& location, doubl
 
 bool pin(Simulation& simulation, const Pin::Request& request, Pin::Response& response) {
   if (!simulation.started()) return answer(simulation.refused_before_start(), response);
-  const CheckedPin pin = check_pin(request, simulation.world(), find_frame_in(simulation));
+  const CheckedPin pin = check_pin(requested_pin(request), simulation.world(), find_frame_in(simulation));
   if (!pin.errors.empty()) return answer(refused(pin.errors), response);
   const AttachmentType type = request.clamp ? AttachmentType::clamp : AttachmentType::hinge;
   const EditResult result = simulation.pin(request.name, pin, type);
@@ -62,7 +63,7 @@ bool pin(Simulation& simulation, const Pin::Request& request, Pin::Response& res
 
 bool cut(Simulation& simulation, const Cut::Request& request, Cut::Response& response) {
   if (!simulation.started()) return answer(simulation.refused_before_start(), response);
-  const Location location = locate_cut(request.location, simulation.world(), find_frame_in(simulation));
+  const Location location = locate_cut(requested_place(request.location), simulation.world(), find_frame_in(simulation));
   if (!location.errors.empty()) return answer(refused(location.errors), response);
   const EditResult result = simulation.cut(location.body, location.elements);
   if (result.ok) response.first = name_of(simulation.world(), location.body);

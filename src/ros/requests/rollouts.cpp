@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "simulation/error_text.h"
+#include "edit_requests/error_text.h"
 #include "threads/guarded_queue.h"
 #include "verlet_cable/core/quoted_text.h"
 

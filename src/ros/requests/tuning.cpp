@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "simulation/error_text.h"
+#include "edit_requests/error_text.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 

@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "edit_requests/checked_pin.h"
 #include "frames/frame_watch.h"
 #include "frames/tf_inputs.h"
 #include "publish/event_publisher.h"
 #include "publish/publishers.h"
-#include "requests/checked_pin.h"
 #include "simulation/attachment_moves.h"
 #include "simulation/cable_watch.h"
 #include "simulation/simulation_report.h"
@@ -159,8 +159,6 @@ class Simulation {
   void skip_to(Nanoseconds time);
   void publish();
   void announce(std::uint8_t type, const EventSubject& subject, const std::string& message) const;
-  EditResult refused_attachment(const std::string& name) const;
-  std::optional<EditResult> refused_cable(const std::string& field, const std::string& cable) const;
   std::optional<EditResult> refused_frame(const std::string& frame) const;
   EditResult place(const AddedObstacle& added);
   void place_added_obstacles();

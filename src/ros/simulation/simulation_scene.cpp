@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "simulation/error_text.h"
+#include "edit_requests/error_text.h"
 #include "simulation/simulation.h"
 
 namespace verlet_cable {

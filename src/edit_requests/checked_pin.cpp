@@ -1,4 +1,4 @@
-#include "requests/checked_pin.h"
+#include "edit_requests/checked_pin.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,7 +45,7 @@ void check_reach(const CheckedPin& pin, const World& world, std::vector<std::str
 }
 
 /// Why a body cannot be held at its frame's origin, too: a clamp holds it alone, and a point is held once.
-void check_held_body(const Pin::Request& request, const CheckedPin& pin, const World& world, std::vector<std::string>& errors) {
+void check_held_body(const RequestedPin& request, const CheckedPin& pin, const World& world, std::vector<std::string>& errors) {
   constexpr double same_point = 1e-9;  // [m]
   for (const Attachment& other : world.attachments()) {
     if (other.body != pin.body) continue;
@@ -76,12 +76,12 @@ Pose pose_now(const World& world, const CheckedPin& pin) {
 }  // namespace
 
 /// Identity for all zeros; otherwise nearly of length one.
-Pose read_pose(const std::string& field, const geometry_msgs::Pose& pose, std::vector<std::string>& errors) {
+Pose read_pose(const std::string& field, const Pose& given, std::vector<std::string>& errors) {
   constexpr double tolerance = 0.01;
-  const Vector3 position(pose.position.x, pose.position.y, pose.position.z);
+  const Vector3& position = given.position;
   if (!(position.cwiseAbs().array() <= coordinate.highest).all())
     errors.push_back(field + ".position: " + text(position) + "; allowed: " + coordinate.text("m"));
-  const Quaternion q(pose.orientation.w, pose.orientation.x, pose.orientation.y, pose.orientation.z);
+  const Quaternion& q = given.orientation;
   if ((q.coeffs().array() == 0).all()) return {position, Quaternion::Identity()};
   if (!(std::abs(q.norm() - 1) <= tolerance)) {
     errors.push_back(field + ".orientation: (" + number_text(q.x()) + ", " + number_text(q.y()) + ", " + number_text(q.z()) +
@@ -91,9 +91,9 @@ Pose read_pose(const std::string& field, const geometry_msgs::Pose& pose, std::v
   return {position, q.normalized()};
 }
 
-CheckedPin check_pin(const Pin::Request& request, const World& world, const FindFrame& find_frame) {
+CheckedPin check_pin(const RequestedPin& request, const World& world, const FindFrame& find_frame) {
   CheckedPin pin;
-  const Location location = locate_node(request.location, world, find_frame);
+  const Location location = locate_node(request.place, world, find_frame);
   pin.errors = location.errors;
   pin.body = location.body;
   pin.node = location.node;

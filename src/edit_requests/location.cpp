@@ -1,4 +1,4 @@
-#include "requests/location.h"
+#include "edit_requests/location.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,18 +22,18 @@ struct PointOnCable {
   std::vector<std::string> errors;
 };
 
-std::string point_text(const geometry_msgs::Point& point) {
-  return "(" + number_text(point.x) + ", " + number_text(point.y) + ", " + number_text(point.z) + ")";
+std::string point_text(const Vector3& point) {
+  return "(" + number_text(point.x()) + ", " + number_text(point.y()) + ", " + number_text(point.z()) + ")";
 }
 
 /// `bodies`: whether those may be named, too.
-void find_cable(const CableLocation& location, const World& world, bool bodies, PointOnCable& found) {
-  if (location.cable.empty() && location.mode == CableLocation::NEAREST) return;
-  found.cable = find(world.cables(), location.cable);
+void find_cable(const RequestedPlace& place, const World& world, bool bodies, PointOnCable& found) {
+  if (place.cable.empty() && place.mode == RequestedPlace::nearest) return;
+  found.cable = find(world.cables(), place.cable);
   if (found.cable >= 0) return;
   const std::vector<std::string>& waiting = world.findings().waiting;
-  if (std::find(waiting.begin(), waiting.end(), location.cable) != waiting.end()) {
-    found.errors.push_back("location.cable: " + quoted(location.cable) +
+  if (std::find(waiting.begin(), waiting.end(), place.cable) != waiting.end()) {
+    found.errors.push_back("location.cable: " + quoted(place.cable) +
                            " waits for its tf frames; allowed: cables that are simulated already");
     return;
   }
@@ -43,58 +43,58 @@ void find_cable(const CableLocation& location, const World& world, bool bodies, 
   if (bodies)
     for (const SimulatedBody& body : world.bodies())
       if (!body.is_junction) names += (names.empty() ? "" : ", ") + body.name;
-  found.errors.push_back("location.cable: " + quoted(location.cable) +
+  found.errors.push_back("location.cable: " + quoted(place.cable) +
                          "; allowed: " + (names.empty() ? "none, there are no cables or nets" : names));
 }
 
-void find_node(const CableLocation& location, const World& world, PointOnCable& found) {
-  found.field = "location.node: " + std::to_string(location.node);
+void find_node(const RequestedPlace& place, const World& world, PointOnCable& found) {
+  found.field = "location.node: " + std::to_string(place.node);
   if (found.cable < 0) return;
-  const auto segments = static_cast<std::uint32_t>(world.cables()[found.cable].state.segments());
-  if (location.node > segments) {
+  const std::int64_t segments = world.cables()[found.cable].state.segments();
+  if (place.node < 0 || place.node > segments) {
     found.errors.push_back(found.field + "; allowed: 0 to " + std::to_string(segments));
     return;
   }
-  found.segment = static_cast<int>(std::min(location.node, segments - 1));
-  found.fraction = location.node == segments ? 1 : 0;
+  found.segment = static_cast<int>(std::min(place.node, segments - 1));
+  found.fraction = place.node == segments ? 1 : 0;
 }
 
-void find_arc_length(const CableLocation& location, const World& world, PointOnCable& found) {
-  found.field = "location.arc_length: " + number_text(location.arc_length);
+void find_arc_length(const RequestedPlace& place, const World& world, PointOnCable& found) {
+  found.field = "location.arc_length: " + number_text(place.arc_length);
   if (found.cable < 0) {
-    if (!std::isfinite(location.arc_length)) found.errors.push_back(found.field + "; allowed: finite numbers [m]");
+    if (!std::isfinite(place.arc_length)) found.errors.push_back(found.field + "; allowed: finite numbers [m]");
     return;
   }
   const CableState& state = world.cables()[found.cable].state;
   const std::vector<double> arc_length = state.arc_length();
   // The end is a sum, rounded.
   constexpr double rounding = 1e-9;
-  if (!(location.arc_length >= 0 && location.arc_length <= arc_length.back() * (1 + rounding))) {
+  if (!(place.arc_length >= 0 && place.arc_length <= arc_length.back() * (1 + rounding))) {
     found.errors.push_back(found.field + "; allowed: 0 to " + rounded_text(arc_length.back()) + " m");
     return;
   }
-  const auto after = std::upper_bound(arc_length.begin(), arc_length.end(), location.arc_length);
+  const auto after = std::upper_bound(arc_length.begin(), arc_length.end(), place.arc_length);
   found.segment = std::min(static_cast<int>(std::distance(arc_length.begin(), after)), state.segments()) - 1;
-  found.fraction = (location.arc_length - arc_length[found.segment]) / state.rest_lengths[found.segment];
+  found.fraction = (place.arc_length - arc_length[found.segment]) / state.rest_lengths[found.segment];
 }
 
-/// The point of NEAREST in the fixed frame; what is wrong with it is added to `errors`.
-std::optional<Vector3> read_point(const CableLocation& location, const FindFrame& find_frame, std::vector<std::string>& errors) {
-  const geometry_msgs::Point& point = location.point.point;
+/// The point of `nearest` in the fixed frame; what is wrong with it is added to `errors`.
+std::optional<Vector3> read_point(const RequestedPlace& place, const FindFrame& find_frame, std::vector<std::string>& errors) {
+  const Vector3& point = place.point;
   const std::size_t before = errors.size();
-  if (!coordinate.contains(point.x) || !coordinate.contains(point.y) || !coordinate.contains(point.z)) {
+  if (!coordinate.contains(point.x()) || !coordinate.contains(point.y()) || !coordinate.contains(point.z())) {
     errors.push_back("location.point.point: " + point_text(point) + "; allowed: " + coordinate.text("m"));
   }
-  const std::string& frame = location.point.header.frame_id;
+  const std::string& frame = place.point_frame;
   const std::optional<Pose> pose = frame.empty() ? Pose{} : find_frame(frame);
   if (!pose) errors.push_back("location.point.header.frame_id: " + quoted(frame) + "; allowed: frames that tf knows");
   if (errors.size() > before) return std::nullopt;
-  return (*pose * Pose{Vector3(point.x, point.y, point.z), Quaternion::Identity()}).position;
+  return (*pose * Pose{point, Quaternion::Identity()}).position;
 }
 
-void find_nearest(const CableLocation& location, const World& world, const FindFrame& find_frame, PointOnCable& found) {
-  found.field = "location.point: " + point_text(location.point.point);
-  const std::optional<Vector3> position = read_point(location, find_frame, found.errors);
+void find_nearest(const RequestedPlace& place, const World& world, const FindFrame& find_frame, PointOnCable& found) {
+  found.field = "location.point: " + point_text(place.point);
+  const std::optional<Vector3> position = read_point(place, find_frame, found.errors);
   if (!found.errors.empty()) return;
   if (world.cables().empty()) found.errors.push_back("location.cable: \"\"; allowed: none, there are no cables");
 
@@ -113,22 +113,21 @@ void find_nearest(const CableLocation& location, const World& world, const FindF
   }
 }
 
-PointOnCable find_point(const CableLocation& location, const World& world, const FindFrame& find_frame, bool bodies) {
+PointOnCable find_point(const RequestedPlace& place, const World& world, const FindFrame& find_frame, bool bodies) {
   PointOnCable found;
-  find_cable(location, world, bodies, found);
-  switch (location.mode) {
-    case CableLocation::NODE:
-      find_node(location, world, found);
+  find_cable(place, world, bodies, found);
+  switch (place.mode) {
+    case RequestedPlace::at_node:
+      find_node(place, world, found);
       break;
-    case CableLocation::ARC_LENGTH:
-      find_arc_length(location, world, found);
+    case RequestedPlace::at_arc_length:
+      find_arc_length(place, world, found);
       break;
-    case CableLocation::NEAREST:
-      find_nearest(location, world, find_frame, found);
+    case RequestedPlace::nearest:
+      find_nearest(place, world, find_frame, found);
       break;
     default:
-      found.errors.push_back("location.mode: " + std::to_string(location.mode) +
-                             "; allowed: 0 (NODE), 1 (ARC_LENGTH), 2 (NEAREST)");
+      found.errors.push_back("location.mode: " + std::to_string(place.mode) + "; allowed: 0 (NODE), 1 (ARC_LENGTH), 2 (NEAREST)");
   }
   return found;
 }
@@ -139,10 +138,10 @@ double distance(const SimulatedNet& net, const Vector3& point) {
 }
 
 /// The net that a location means, -1 if it means a cable: by its name, or as what is nearest of all.
-int find_net(const CableLocation& location, const World& world, const FindFrame& find_frame) {
-  if (!location.cable.empty() || location.mode != CableLocation::NEAREST) return find(world.nets(), location.cable);
+int find_net(const RequestedPlace& place, const World& world, const FindFrame& find_frame) {
+  if (!place.cable.empty() || place.mode != RequestedPlace::nearest) return find(world.nets(), place.cable);
   std::vector<std::string> errors;
-  const std::optional<Vector3> point = read_point(location, find_frame, errors);
+  const std::optional<Vector3> point = read_point(place, find_frame, errors);
   if (!point) return -1;
   double least = infinity;
   for (const SimulatedCable& cable : world.cables()) least = std::min(least, nearest_point(cable.state, *point).distance);
@@ -156,34 +155,36 @@ int find_net(const CableLocation& location, const World& world, const FindFrame&
 }
 
 /// The node of a net that a location means. Other than for cables there is no arc length.
-Location locate_net_node(const CableLocation& location, const World& world, int index, const FindFrame& find_frame) {
+Location locate_net_node(const RequestedPlace& place, const World& world, int index, const FindFrame& find_frame) {
   const SimulatedNet& net = world.nets()[index];
   Location found;
   found.body = net_id(index);
-  if (location.mode == CableLocation::NODE) {
-    found.node = static_cast<int>(std::min<std::uint32_t>(location.node, net.model.nodes()));
-    if (found.node == net.model.nodes())
-      found.errors.push_back("location.node: " + std::to_string(location.node) + "; allowed: 0 to " +
+  if (place.mode == RequestedPlace::at_node) {
+    const bool exists = place.node >= 0 && place.node < net.model.nodes();
+    if (exists)
+      found.node = static_cast<int>(place.node);
+    else
+      found.errors.push_back("location.node: " + std::to_string(place.node) + "; allowed: 0 to " +
                              std::to_string(net.model.nodes() - 1));
-  } else if (location.mode == CableLocation::NEAREST) {
-    const std::optional<Vector3> point = read_point(location, find_frame, found.errors);
+  } else if (place.mode == RequestedPlace::nearest) {
+    const std::optional<Vector3> point = read_point(place, find_frame, found.errors);
     if (point) {
       found.node = nearest_node(net, *point);
       found.distance = distance(net, *point);
     }
   } else {
-    found.errors.push_back("location.mode: " + std::to_string(location.mode) + " for net " + quoted(net.model.name) +
+    found.errors.push_back("location.mode: " + std::to_string(place.mode) + " for net " + quoted(net.model.name) +
                            "; allowed: 0 (NODE), 2 (NEAREST)");
   }
   return found;
 }
 
-Location locate_links(const CableLocation& location, const World& world, int index, const FindFrame& find_frame) {
+Location locate_links(const RequestedPlace& place, const World& world, int index, const FindFrame& find_frame) {
   const SimulatedNet& net = world.nets()[index];
-  Location found = locate_net_node(location, world, index, find_frame);
+  Location found = locate_net_node(place, world, index, find_frame);
   if (!found.errors.empty()) return found;
-  if (location.mode == CableLocation::NEAREST) {
-    const NearestPoint nearest = nearest_link(net, *read_point(location, find_frame, found.errors));
+  if (place.mode == RequestedPlace::nearest) {
+    const NearestPoint nearest = nearest_link(net, *read_point(place, find_frame, found.errors));
     if (nearest.segment >= 0) found.elements.push_back(nearest.segment);
     found.distance = nearest.distance;
   } else {
@@ -196,36 +197,36 @@ Location locate_links(const CableLocation& location, const World& world, int ind
 }
 
 /// The origin of a body's frame.
-Location locate_body(const CableLocation& location, const World& world, int index) {
+Location locate_body(const RequestedPlace& place, const World& world, int index) {
   Location found;
   found.body = rigid_body_id(index);
   if (!world.frame_known(world.bodies()[index].frame))
     found.errors.push_back("location.cable: " + quoted(world.bodies()[index].name) +
                            " waits for its tf frames; allowed: bodies that are simulated already");
-  else if (location.mode != CableLocation::NODE)
-    found.errors.push_back("location.mode: " + std::to_string(location.mode) + " for body " + quoted(world.bodies()[index].name) +
+  else if (place.mode != RequestedPlace::at_node)
+    found.errors.push_back("location.mode: " + std::to_string(place.mode) + " for body " + quoted(world.bodies()[index].name) +
                            "; allowed: 0 (NODE)");
-  else if (location.node != 0)
-    found.errors.push_back("location.node: " + std::to_string(location.node) + "; allowed: 0, the origin of the body's frame");
+  else if (place.node != 0)
+    found.errors.push_back("location.node: " + std::to_string(place.node) + "; allowed: 0, the origin of the body's frame");
   return found;
 }
 
 }  // namespace
 
-Location locate_node(const CableLocation& location, const World& world, const FindFrame& find_frame) {
-  if (const int net = find_net(location, world, find_frame); net >= 0) return locate_net_node(location, world, net, find_frame);
-  if (const int body = find(world.bodies(), location.cable); body >= 0) return locate_body(location, world, body);
-  const PointOnCable found = find_point(location, world, find_frame, true);
+Location locate_node(const RequestedPlace& place, const World& world, const FindFrame& find_frame) {
+  if (const int net = find_net(place, world, find_frame); net >= 0) return locate_net_node(place, world, net, find_frame);
+  if (const int body = find(world.bodies(), place.cable); body >= 0) return locate_body(place, world, body);
+  const PointOnCable found = find_point(place, world, find_frame, true);
   return {cable_id(found.cable), found.segment + (found.fraction > 0.5 ? 1 : 0), {}, found.distance, found.errors};
 }
 
-Location locate_cut(const CableLocation& location, const World& world, const FindFrame& find_frame) {
-  if (const int net = find_net(location, world, find_frame); net >= 0) return locate_links(location, world, net, find_frame);
-  PointOnCable found = find_point(location, world, find_frame, false);
+Location locate_cut(const RequestedPlace& place, const World& world, const FindFrame& find_frame) {
+  if (const int net = find_net(place, world, find_frame); net >= 0) return locate_links(place, world, net, find_frame);
+  PointOnCable found = find_point(place, world, find_frame, false);
   if (found.errors.empty()) {
     const SimulatedCable& cable = world.cables()[found.cable];
     const int last = cable.state.segments() - 2;
-    const bool behind_the_end = location.mode == CableLocation::NODE && found.fraction > 0;
+    const bool behind_the_end = place.mode == RequestedPlace::at_node && found.fraction > 0;
     if (last < 1) {
       found.errors.push_back("location.cable: " + quoted(cable.model->name) + " of " + std::to_string(cable.state.segments()) +
                              " segments; allowed: cables of at least 3, so that each piece keeps one");

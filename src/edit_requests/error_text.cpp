@@ -1,4 +1,4 @@
-#include "simulation/error_text.h"
+#include "edit_requests/error_text.h"
 
 #include <algorithm>
 

@@ -1,0 +1,94 @@
+#include "edit_requests/named_edits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "edit_requests/error_text.h"
+#include "verlet_cable/core/body_name.h"
+#include "verlet_cable/core/number_text.h"
+#include "verlet_cable/core/quoted_text.h"
+
+namespace verlet_cable {
+namespace {
+
+/// Why there is no such cable; nothing if there is.
+std::optional<EditResult> refused_cable(const World& world, const std::string& field, const std::string& cable) {
+  if (find(world.cables(), cable) >= 0) return std::nullopt;
+  const std::vector<std::string>& waiting = world.findings().waiting;
+  if (std::find(waiting.begin(), waiting.end(), cable) != waiting.end())
+    return refused({field + ": " + quoted(cable) + " waits for its tf frames; allowed: cables that are simulated already"});
+  std::string names;
+  for (const SimulatedCable& other : world.cables()) names += (names.empty() ? "" : ", ") + other.model->name;
+  return refused({field + ": " + quoted(cable) + "; allowed: " + (names.empty() ? "none, there are no cables" : names)});
+}
+
+}  // namespace
+
+EditResult apply_pin(World& world, const std::string& name, const CheckedPin& pin, AttachmentType type) {
+  World trial = world;  // a frame cannot be taken back
+  const EditResult result =
+      trial.apply(edit::Pin{name, pin.body, pin.node, trial.add_frame(pin.frame, pin.frame_pose), pin.offset, type});
+  if (!result.ok) return result;
+  world = std::move(trial);
+  return {true,
+          "node " + std::to_string(pin.node) + " of " + kind_and_name(world, pin.body) + " is pinned to frame " +
+              quoted(pin.frame) + " as " + quoted(result.name),
+          result.name};
+}
+
+EditResult apply_unpin(World& world, const std::string& name) {
+  if (find(world.attachments(), name) < 0) return refused_attachment(world, name);
+  const EditResult result = world.apply(edit::Unpin{name});
+  if (!result.ok) return result;
+  return {true, "attachment " + quoted(name) + " is released", {}};
+}
+
+PlacedEdit apply_cut(World& world, const BodyId& body, const std::vector<int>& elements) {
+  const std::string what = kind_and_name(world, body);
+  const int node = body.is_net() ? world.nets()[body.index].model.links[elements.front()][0] : elements.front();
+  EditResult result;
+  for (auto element = elements.rbegin(); element != elements.rend(); ++element) {
+    result = world.apply(edit::Cut{body, *element});
+    if (!result.ok) return {result, node};
+  }
+  result.message = body.is_net()
+                       ? std::to_string(elements.size()) + (elements.size() == 1 ? " link" : " links") + " of " + what + " cut"
+                       : "segment " + std::to_string(node) + " of " + what +
+                             " is cut out: the part from there to its end is now cable " + verlet_cable::quoted(result.name);
+  return {result, node};
+}
+
+EditResult apply_set_length(World& world, const std::string& cable, bool at_end, double length, double speed) {
+  if (const auto reason = refused_cable(world, "cable", cable)) return *reason;
+  const int index = find(world.cables(), cable);
+  const double before = world.cables()[index].state.length();
+  const EditResult result = world.apply(edit::SetLength{index, at_end, length, speed});
+  if (!result.ok) return result;
+  return {true,
+          "cable " + quoted(cable) + (length < before ? " is taken in from " : " is paid out from ") + rounded_text(before) +
+              " m to " + number_text(length) + " m, which takes at least " + rounded_text(std::abs(length - before) / speed, 3) +
+              " s",
+          {}};
+}
+
+PlacedEdit apply_join(World& world, const std::string& first, bool first_at_end, const std::string& second, bool second_at_end) {
+  if (const auto reason = refused_cable(world, "first", first)) return {*reason};
+  if (const auto reason = refused_cable(world, "second", second)) return {*reason};
+  const int node = world.cables()[find(world.cables(), first_at_end ? first : second)].state.nodes() - 1;
+  const EditResult result =
+      world.apply(edit::Join{find(world.cables(), first), first_at_end, find(world.cables(), second), second_at_end});
+  if (!result.ok) return {result, node};
+  return {{true, "cable " + quoted(second) + " is joined to " + quoted(first), result.name}, node};
+}
+
+EditResult refused_attachment(const World& world, const std::string& name) {
+  std::string names;
+  for (const Attachment& attachment : world.attachments())
+    if (is_named(attachment)) names += (names.empty() ? "" : ", ") + attachment.name;
+  return refused(
+      {"name: " + quoted(name) + " is no attachment; allowed: " + (names.empty() ? "none, nothing is attached" : names)});
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "edit_requests/checked_pin.h"
+#include "verlet_cable/core/world.h"
+
+namespace verlet_cable {
+
+// Edits of what requests name. Those that are refused change nothing, and say why; those that are done say what they did.
+
+/// An edit, and where it was.
+struct PlacedEdit {
+  EditResult result;
+  int node = 0;  ///< cut: the segment of a cable, or a node of a net's first link; join: where the cables meet
+};
+
+/// The frame is added where the world does not know it. No name: one is made.
+EditResult apply_pin(World& world, const std::string& name, const CheckedPin& pin, AttachmentType type);
+
+EditResult apply_unpin(World& world, const std::string& name);
+
+/// Removes a segment of a cable, or links of a net: `elements`, at least one and ascending, as `locate_cut` finds them.
+PlacedEdit apply_cut(World& world, const BodyId& body, const std::vector<int>& elements);
+
+/// The length in m, the speed in m/s.
+EditResult apply_set_length(World& world, const std::string& cable, bool at_end, double length, double speed);
+
+PlacedEdit apply_join(World& world, const std::string& first, bool first_at_end, const std::string& second, bool second_at_end);
+
+/// The refusal of a name that no attachment has.
+EditResult refused_attachment(const World& world, const std::string& name);
+
+}  // namespace verlet_cable

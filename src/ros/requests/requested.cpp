@@ -1,0 +1,28 @@
+#include "requests/requested.h"
+
+namespace verlet_cable {
+
+static_assert(CableLocation::NODE == RequestedPlace::at_node && CableLocation::ARC_LENGTH == RequestedPlace::at_arc_length &&
+              CableLocation::NEAREST == RequestedPlace::nearest);
+
+RequestedPlace requested_place(const CableLocation& location) {
+  const geometry_msgs::Point& point = location.point.point;
+  return {location.cable,
+          location.mode,
+          location.node,
+          location.arc_length,
+          {point.x, point.y, point.z},
+          location.point.header.frame_id};
+}
+
+RequestedPin requested_pin(const Pin::Request& request) {
+  return {requested_place(request.location), request.name,       request.frame_id,
+          requested_pose(request.offset),    request.clamp != 0, request.keep_offset != 0};
+}
+
+Pose requested_pose(const geometry_msgs::Pose& pose) {
+  const geometry_msgs::Quaternion& q = pose.orientation;
+  return {{pose.position.x, pose.position.y, pose.position.z}, {q.w, q.x, q.y, q.z}};
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,165 @@
+#include "edit_requests/named_edits.h"
+
+#include <gtest/gtest.h>
+
+#include "../support/nets.h"
+#include "edit_requests/error_text.h"
+#include "edit_requests/location.h"
+
+namespace verlet_cable {
+namespace {
+
+/// Straight cables along x, of ten segments of 0.1 m: `lower`, held at its start in the fixed frame, and `upper` behind its end;
+/// `late` waits for a frame. A net of three nodes.
+World cables_and_net() {
+  SceneDesc scene;
+  scene.materials.resize(1);
+  scene.materials[0].name = "rope";
+  scene.materials[0].material.linear_density = 0.1;
+  scene.materials[0].material.radius = 0.01;
+  for (const char* name : {"lower", "upper", "late"}) {
+    CableDesc& cable = scene.cables.emplace_back();
+    cable.name = name;
+    cable.length = 1;
+    cable.segments = 10;
+    cable.material = "rope";
+    if (cable.name == "late") {
+      AttachmentDesc& attachment = cable.attachments.emplace_back();
+      attachment.name = "late_start";
+      attachment.frame = "unseen";
+      continue;
+    }
+    cable.initial.type = InitialShapeDesc::Type::straight;
+    cable.initial.from = cable.name == "lower" ? Vector3(0, 0, 0) : Vector3(1.01, 0, 0);
+    cable.initial.to = cable.initial.from + Vector3::UnitX();
+  }
+  scene.cables[0].attachments.emplace_back().name = "lower_start";
+  scene.nets = {scenes::chain({{0, 5, 0}, {1, 5, 0}, {2, 5, 0}}, LinkType::spring)};
+  return World(scene, initial_frames(scene));
+}
+
+std::optional<Pose> only_the_fixed_frame(const std::string& frame) {
+  return frame == "world" ? std::optional<Pose>(Pose{}) : std::nullopt;
+}
+
+RequestedPlace at_node(const std::string& cable, std::int64_t node) {
+  RequestedPlace place;
+  place.cable = cable;
+  place.node = node;
+  return place;
+}
+
+Location cut_place(const World& world, const std::string& cable, int node) {
+  return locate_cut(at_node(cable, node), world, only_the_fixed_frame);
+}
+
+TEST(RequestedPlace, NumbersThatNoMessageCanHoldAreRefusedLikeOthers) {
+  const World world = cables_and_net();
+  const auto errors = [&](const RequestedPlace& place) { return join(locate_node(place, world, only_the_fixed_frame).errors); };
+  EXPECT_EQ(errors(at_node("lower", -1)), "location.node: -1; allowed: 0 to 10");
+  EXPECT_EQ(errors(at_node("lower", std::int64_t{1} << 32)), "location.node: 4294967296; allowed: 0 to 10");
+  EXPECT_EQ(errors(at_node("chain", -1)), "location.node: -1; allowed: 0 to 2");
+  EXPECT_EQ(errors(at_node("chain", std::int64_t{1} << 32)), "location.node: 4294967296; allowed: 0 to 2");
+  EXPECT_EQ(join(cut_place(world, "chain", 3).errors), "location.node: 3; allowed: 0 to 2");
+  RequestedPlace place = at_node("lower", 3);
+  place.mode = -1;
+  EXPECT_EQ(errors(place), "location.mode: -1; allowed: 0 (NODE), 1 (ARC_LENGTH), 2 (NEAREST)");
+}
+
+TEST(NamedEdits, APinAddsItsFrameAndIsReleased) {
+  World world = cables_and_net();
+  RequestedPin request;
+  request.place = at_node("lower", 10);
+  request.keep_offset = true;
+  request.frame_id = "hand";
+  const CheckedPin pin = check_pin(request, world, [](const std::string&) {
+    return Pose{Vector3(2, 0, 0), Quaternion::Identity()};
+  });
+  ASSERT_EQ(join(pin.errors), "");
+  EXPECT_LT((pin.offset.position + Vector3::UnitX()).norm(), 1e-12);
+  const EditResult pinned = apply_pin(world, "", pin, AttachmentType::hinge);
+  ASSERT_TRUE(pinned.ok) << pinned.message;
+  EXPECT_EQ(pinned.name, "pin1");
+  EXPECT_EQ(pinned.message, "node 10 of cable \"lower\" is pinned to frame \"hand\" as \"pin1\"");
+  EXPECT_EQ(world.frames().back(), "hand");
+  const EditResult released = apply_unpin(world, "pin1");
+  EXPECT_TRUE(released.ok);
+  EXPECT_EQ(released.message, "attachment \"pin1\" is released");
+  EXPECT_EQ(apply_unpin(world, "pin1").message, "name: \"pin1\" is no attachment; allowed: lower_start");
+}
+
+TEST(NamedEdits, APinThatTheWorldRefusesAddsNoFrame) {
+  World world = cables_and_net();
+  CheckedPin pin;
+  pin.body = cable_id(0);
+  pin.frame = "hand";
+  const std::uint64_t before = world.hash();
+  const std::size_t frames = world.frames().size();
+  EXPECT_FALSE(apply_pin(world, "second", pin, AttachmentType::hinge).ok) << "node 0 is held";
+  EXPECT_EQ(world.frames().size(), frames);
+  EXPECT_EQ(world.hash(), before);
+}
+
+TEST(NamedEdits, ACutSaysWhatIsGone) {
+  World world = cables_and_net();
+  const Location place = cut_place(world, "lower", 4);
+  const PlacedEdit cut = apply_cut(world, place.body, place.elements);
+  EXPECT_TRUE(cut.result.ok);
+  EXPECT_EQ(cut.node, 4);
+  EXPECT_EQ(cut.result.name, "lower_2");
+  EXPECT_EQ(cut.result.message,
+            "segment 4 of cable \"lower\" is cut out: the part from there to its end is now cable \"lower_2\"");
+}
+
+TEST(NamedEdits, ACutAtANodeOfANetRemovesAllItsLinks) {
+  World world = cables_and_net();
+  const Location middle = cut_place(world, "chain", 1);
+  EXPECT_EQ(middle.elements, (std::vector<int>{0, 1}));
+  const PlacedEdit cut = apply_cut(world, middle.body, middle.elements);
+  EXPECT_TRUE(cut.result.ok);
+  EXPECT_EQ(cut.node, 0);
+  EXPECT_EQ(cut.result.message, "2 links of net \"chain\" cut");
+  EXPECT_TRUE(world.nets()[0].model.links.empty());
+  EXPECT_EQ(join(cut_place(world, "chain", 1).errors),
+            "location: net \"chain\" has no link there; allowed: nodes that links join");
+}
+
+TEST(NamedEdits, AWinchTellsHowLongItTakes) {
+  World world = cables_and_net();
+  EXPECT_EQ(apply_set_length(world, "lower", true, 1.5, 0.25).message,
+            "cable \"lower\" is paid out from 1 m to 1.5 m, which takes at least 2 s");
+  EXPECT_EQ(apply_set_length(world, "upper", true, 0.75, 0.25).message,
+            "cable \"upper\" is taken in from 1 m to 0.75 m, which takes at least 1 s");
+}
+
+TEST(NamedEdits, CablesAreJoinedByName) {
+  for (const bool lower_first : {true, false}) {
+    World world = cables_and_net();
+    const PlacedEdit joined =
+        lower_first ? apply_join(world, "lower", true, "upper", false) : apply_join(world, "upper", false, "lower", true);
+    ASSERT_TRUE(joined.result.ok) << joined.result.message;
+    EXPECT_EQ(joined.node, 10);
+    EXPECT_EQ(joined.result.name, lower_first ? "lower" : "upper");
+    EXPECT_EQ(joined.result.message,
+              lower_first ? "cable \"upper\" is joined to \"lower\"" : "cable \"lower\" is joined to \"upper\"");
+  }
+}
+
+TEST(NamedEdits, CablesThatAreNotThereAreRefused) {
+  World world = cables_and_net();
+  const std::uint64_t before = world.hash();
+  EXPECT_EQ(apply_set_length(world, "hose", true, 1, 1).message, "cable: \"hose\"; allowed: lower, upper");
+  EXPECT_EQ(apply_set_length(world, "late", true, 1, 1).message,
+            "cable: \"late\" waits for its tf frames; allowed: cables that are simulated already");
+  EXPECT_EQ(apply_join(world, "hose", true, "late", true).result.message, "first: \"hose\"; allowed: lower, upper");
+  EXPECT_EQ(apply_join(world, "lower", true, "late", true).result.message,
+            "second: \"late\" waits for its tf frames; allowed: cables that are simulated already");
+  EXPECT_FALSE(apply_join(world, "lower", true, "lower", false).result.ok);
+  EXPECT_EQ(world.hash(), before);
+  World empty{SceneDesc{}};
+  EXPECT_EQ(apply_set_length(empty, "hose", true, 1, 1).message, "cable: \"hose\"; allowed: none, there are no cables");
+  EXPECT_EQ(apply_unpin(empty, "pin1").message, "name: \"pin1\" is no attachment; allowed: none, nothing is attached");
+}
+
+}  // namespace
+}  // namespace verlet_cable
