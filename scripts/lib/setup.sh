@@ -33,7 +33,7 @@ source_setup() {
 # The only list of system packages: to build, to run and to test; and, with a display only, to look at it.
 packages=(
   build-essential cmake iproute2 libassimp-dev libceres-dev libcli11-dev libconsole-bridge-dev libeigen3-dev libgtest-dev libtbb-dev
-  liburdfdom-dev libyaml-cpp-dev nlohmann-json3-dev python3-numpy python3-yaml
+  liburdfdom-dev libyaml-cpp-dev nlohmann-json3-dev pybind11-dev python3-dev python3-numpy python3-pytest python3-setuptools python3-yaml
 )
 if [[ -f /opt/ros/noetic/setup.bash ]]; then
   source_setup /opt/ros/noetic/setup.bash
@@ -55,6 +55,9 @@ else
   )
   rviz_packages=(rviz librviz-dev qtbase5-dev libgl1-mesa-dri)
 fi
+
+# Besides these, for cable_sweep: the node and the other programs need none of them.
+sweep_packages=(python3-dask python3-distributed python3-zarr)
 
 # as_root COMMAND...: needs sudo where the user is not root.
 as_root() {

@@ -1,0 +1,119 @@
+#include "binding/arguments.h"
+
+#include <cinttypes>
+#include <cstdio>
+
+#include "verlet_cable/core/number_text.h"
+#include "verlet_cable/core/quoted_text.h"
+#include "verlet_cable/core/world.h"
+
+namespace verlet_cable {
+namespace {
+
+std::string numbers_text(const double* numbers, int count) {
+  std::string text;
+  for (int i = 0; i < count; ++i) text += (i == 0 ? "" : ", ") + number_text(numbers[i]);
+  return "(" + text + ")";
+}
+
+/// `position` and `orientation`: names for messages.
+Pose read_pose(const double* position, const std::string& position_name, const double* orientation,
+               const std::string& orientation_name) {
+  Pose pose{{position[0], position[1], position[2]}, Quaternion(orientation[3], orientation[0], orientation[1], orientation[2])};
+  if (!is_sound({pose.position, Quaternion::Identity()}))
+    throw py::value_error(position_name + ": " + numbers_text(position, 3) +
+                          "; allowed: finite numbers [m] (from -1e+09 to 1e+09)");
+  if (!is_sound({Vector3::Zero(), pose.orientation}))
+    throw py::value_error(orientation_name + ": " + numbers_text(orientation, 4) +
+                          "; allowed: quaternions x, y, z, w of length 1");
+  pose.orientation.normalize();
+  return pose;
+}
+
+void check_size(const char* name, const Numbers& numbers, py::ssize_t size) {
+  if (numbers.ndim() != 1 || numbers.shape(0) != size)
+    throw py::value_error(std::string(name) + ": shape " + shape_text(numbers) + "; allowed: (" + std::to_string(size) + ",)");
+}
+
+}  // namespace
+
+std::string shape_text(const py::array& array) {
+  std::string text;
+  for (py::ssize_t i = 0; i < array.ndim(); ++i) text += (i == 0 ? "" : ", ") + std::to_string(array.shape(i));
+  return "(" + text + (array.ndim() == 1 ? ",)" : ")");
+}
+
+Pose read_pose(const double* numbers, const std::string& name) {
+  return read_pose(numbers, name, numbers + 3, name);
+}
+
+Pose read_pose(const Numbers& position, const Numbers& quaternion_xyzw) {
+  check_size("position", position, 3);
+  check_size("quaternion_xyzw", quaternion_xyzw, 4);
+  return read_pose(position.data(), "position", quaternion_xyzw.data(), "quaternion_xyzw");
+}
+
+std::int64_t read_count(const char* name, std::int64_t count, std::int64_t least) {
+  if (count < least)
+    throw py::value_error(std::string(name) + ": " + std::to_string(count) + "; allowed: " + std::to_string(least) + " or above");
+  return count;
+}
+
+std::vector<Quantity> read_quantities(const std::vector<std::string>& names) {
+  std::vector<Quantity> quantities;
+  for (const std::string& name : names) {
+    std::size_t i = 0;
+    while (i < quantity_names.size() && name != quantity_names[i]) ++i;
+    if (i == quantity_names.size()) {
+      std::string allowed;
+      for (const char* other : quantity_names) allowed += (allowed.empty() ? "" : ", ") + std::string(other);
+      throw py::value_error("fields: " + quoted(name) + "; allowed: " + allowed);
+    }
+    quantities.push_back(static_cast<Quantity>(i));
+  }
+  return quantities;
+}
+
+py::array_t<double> array_of(const World& world, Quantity quantity, const std::string& name) {
+  const QuantityShape shape = shape_of(world, quantity, name);
+  std::vector<std::size_t> sizes{shape.rows};
+  if (shape.columns > 0) sizes.push_back(shape.columns);
+  py::array_t<double> array(sizes);
+  copy_quantity(world, quantity, name, array.mutable_data());
+  return array;
+}
+
+std::string hash_text(std::uint64_t hash) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016" PRIx64, hash);
+  return text;
+}
+
+py::dict energy_dict(const Energy& energy) {
+  py::dict dict;
+  dict["kinetic"] = energy.kinetic;
+  dict["gravity"] = energy.gravity;
+  dict["stretch"] = energy.stretch;
+  dict["bend"] = energy.bend;
+  dict["twist"] = energy.twist;
+  dict["total"] = energy.total();
+  return dict;
+}
+
+const char* status_text(StepResult::Status status) {
+  switch (status) {
+    case StepResult::Status::ok:
+      return "ok";
+    case StepResult::Status::overstretched:
+      return "overstretched";
+    case StepResult::Status::jumped:
+      return "jumped";
+    case StepResult::Status::degraded:
+      return "degraded";
+    case StepResult::Status::fault:
+      return "fault";
+  }
+  return "";
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "simulation/quantity.h"
+#include "verlet_cable/core/types.h"
+
+namespace verlet_cable {
+
+namespace py = pybind11;
+
+/// Numbers of any type and layout, read as doubles.
+using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// "(3, 7)", as NumPy writes shapes.
+std::string shape_text(const py::array& array);
+
+/// From the last axis of an array: x, y, z, qx, qy, qz, qw. `name`: of the argument, with the index. Throws ValueError.
+Pose read_pose(const double* numbers, const std::string& name);
+Pose read_pose(const Numbers& position, const Numbers& quaternion_xyzw);
+
+/// A count that is not negative. Throws ValueError.
+std::int64_t read_count(const char* name, std::int64_t count, std::int64_t least);
+
+/// "positions", ...; throws ValueError.
+std::vector<Quantity> read_quantities(const std::vector<std::string>& names);
+
+/// A new array, and what it is of.
+py::array_t<double> array_of(const World& world, Quantity quantity, const std::string& name);
+
+/// 16 hexadecimal digits, as in a summary.
+std::string hash_text(std::uint64_t hash);
+
+py::dict energy_dict(const Energy& energy);
+
+const char* status_text(StepResult::Status status);
+
+}  // namespace verlet_cable

@@ -1,0 +1,46 @@
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include "binding/batch_class.h"
+#include "binding/scene_class.h"
+#include "binding/world_class.h"
+#include "simulation/quantity.h"
+
+namespace {
+
+namespace py = pybind11;
+using verlet_cable::SceneError;
+using verlet_cable::UnknownName;
+
+/// Made once and never freed: exceptions may come until the interpreter's end.
+PyObject* scene_error = nullptr;
+
+void translate(std::exception_ptr thrown) {
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const SceneError& error) {
+    py::object instance = py::reinterpret_borrow<py::object>(scene_error)(error.what());
+    instance.attr("errors") = error.errors();
+    PyErr_SetObject(scene_error, instance.ptr());
+  } catch (const UnknownName& error) {
+    PyErr_SetString(PyExc_KeyError, error.what());
+  }
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_simulation, module) {
+  module.doc() = "The compiled part of verlet_cable.sim.";
+  scene_error =
+      PyErr_NewExceptionWithDoc("verlet_cable.sim.SceneError",
+                                "Everything that is wrong with a scene or a motion: a line for each error, which are in the list "
+                                "`errors`.",
+                                PyExc_ValueError, nullptr);
+  if (!scene_error) throw py::error_already_set();
+  module.attr("SceneError") = py::handle(scene_error);
+  py::register_exception_translator(translate);
+  verlet_cable::add_scene_class(module);
+  verlet_cable::add_world_class(module);
+  verlet_cable::add_batch_class(module);
+  for (const char* name : {"Scene", "World", "Batch"}) module.attr(name).attr("__module__") = "verlet_cable.sim";
+}

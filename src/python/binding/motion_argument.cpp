@@ -1,0 +1,71 @@
+#include "binding/motion_argument.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "binding/arguments.h"
+#include "scene/frame_source.h"
+#include "verlet_cable/core/number_text.h"
+#include "verlet_cable/core/quoted_text.h"
+
+namespace verlet_cable {
+namespace {
+
+FrameTrack read_track(const std::string& name, const py::handle& value) {
+  const py::sequence pair =
+      py::isinstance<py::sequence>(value) ? py::reinterpret_borrow<py::sequence>(value) : py::sequence(py::list());
+  if (pair.size() != 2) throw py::value_error(name + ": allowed: (times, poses)");
+  const Numbers times(pair[0]), poses(pair[1]);
+  if (times.ndim() != 1 || times.shape(0) == 0)
+    throw py::value_error(name + "[0], times: shape " + shape_text(times) + "; allowed: (k,), k at least 1");
+  if (poses.ndim() != 2 || poses.shape(0) != times.shape(0) || poses.shape(1) != 7)
+    throw py::value_error(name + "[1], poses: shape " + shape_text(poses) + "; allowed: (" + std::to_string(times.shape(0)) +
+                          ", 7)");
+  FrameTrack track;
+  for (py::ssize_t row = 0; row < times.shape(0); ++row) {
+    const double time = times.at(row);
+    if (!(std::abs(time) <= 1e9) || (!track.empty() && time <= track.last_time()))
+      throw py::value_error(name + "[0][" + std::to_string(row) + "], times: " + number_text(time) +
+                            "; allowed: finite numbers [s] that ascend");
+    track.add(time, read_pose(poses.data(row, 0), name + "[1][" + std::to_string(row) + "], poses"));
+  }
+  return track;
+}
+
+Motion read_tracks(const py::dict& tracks, const SceneDesc& scene) {
+  Motion motion;
+  for (const auto& [key, value] : tracks) {
+    const std::string frame = py::str(key);
+    motion[frame] = read_track("motion[" + quoted(frame) + "]", value);
+  }
+  const std::vector<std::string> unused = unused_frames(scene, motion);
+  if (unused.empty()) return motion;
+  std::string allowed;
+  const std::vector<std::string> names = frame_names(scene);
+  for (std::size_t i = 1; i < names.size(); ++i) allowed += (i == 1 ? "" : ", ") + names[i];
+  throw py::key_error("motion: " + quoted(unused.front()) +
+                      "; allowed: " + (allowed.empty() ? "none, the scene has no frames" : allowed));
+}
+
+std::string path_of(const py::object& motion) {
+  return py::str(py::module_::import("os").attr("fspath")(motion));
+}
+
+}  // namespace
+
+Motion read_motion(const py::object& given, const SceneDesc& scene) {
+  if (given.is_none()) return {};
+  const bool tracks = py::isinstance<py::dict>(given);
+  const Motion motion = tracks ? read_tracks(given, scene) : read_motion_file(path_of(given));
+  std::vector<std::string> errors;
+  if (motion.count(scene.frame_id) > 0)
+    errors.push_back("motion: frame " + quoted(scene.frame_id) + " moves; allowed: any but the fixed frame");
+  for (const std::string& line : validate_distances(scene, FrameSource(scene, motion).at(0)))
+    errors.push_back("motion at t = 0: " + line);
+  if (!errors.empty()) throw SceneError(errors);
+  return motion;
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,105 @@
+#include "binding/scene_class.h"
+
+#include <pybind11/stl.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "binding/yaml_of.h"
+#include "verlet_cable/core/world.h"
+#include "verlet_cable/scene/scene_reader.h"
+
+namespace verlet_cable {
+namespace {
+
+namespace py = pybind11;
+
+PythonScene load(const py::object& path) {
+  const std::string file = py::str(py::module_::import("os").attr("fspath")(path));
+  const py::gil_scoped_release release;
+  return {std::make_shared<SceneDesc>(read_scene_file(file))};
+}
+
+/// Files that a scene names without a directory start at `directory`, by default at the current one.
+SceneSources sources_of(const py::object& directory) {
+  const py::module_ os = py::module_::import("os");
+  const py::object start = directory.is_none() ? os.attr("getcwd")() : os.attr("fspath")(directory);
+  return {FileAccess{true, py::str(os.attr("path").attr("abspath")(start))}, {}};
+}
+
+PythonScene from_yaml(const std::string& text, const py::object& directory) {
+  const SceneSources sources = sources_of(directory);
+  const py::gil_scoped_release release;
+  return {std::make_shared<SceneDesc>(read_scene_text(text, sources))};
+}
+
+PythonScene from_dict(const py::dict& keys, const py::object& directory) {
+  const SceneSources sources = sources_of(directory);
+  const YAML::Node root = yaml_of(keys);
+  const py::gil_scoped_release release;
+  return {std::make_shared<SceneDesc>(read_scene(root, {}, sources))};
+}
+
+template <class Items>
+std::vector<std::string> names_of(const Items& items) {
+  std::vector<std::string> names;
+  for (const auto& item : items) names.push_back(item.name);
+  return names;
+}
+
+template <class Items>
+void append_names(const Items& items, std::vector<std::string>& names) {
+  for (const auto& item : items) names.push_back(item.name);
+}
+
+std::vector<std::string> attachment_names(const SceneDesc& scene) {
+  std::vector<std::string> names;
+  for (const CableDesc& cable : scene.cables) append_names(cable.attachments, names);
+  for (const NetDesc& net : scene.nets) append_names(net.attachments, names);
+  for (const BodyDesc& body : scene.bodies) append_names(body.attachments, names);
+  return names;
+}
+
+std::vector<std::string> moving_frame_names(const SceneDesc& scene) {
+  std::vector<std::string> names = frame_names(scene);
+  names.erase(names.begin());
+  return names;
+}
+
+}  // namespace
+
+void add_scene_class(py::module_& module) {
+  py::class_<PythonScene>(module, "Scene", "A scene that was read and checked. It does not change; worlds are made from it.")
+      .def_static("load", load, py::arg("path"),
+                  "Reads a YAML file. Paths in it start at its directory. Raises SceneError with every error at once.")
+      .def_static("from_yaml", from_yaml, py::arg("text"), py::arg("directory") = py::none(),
+                  "Reads YAML text. Paths in it start at `directory`, by default the current one. Raises SceneError.")
+      .def_static("from_dict", from_dict, py::arg("keys"), py::arg("directory") = py::none(),
+                  "Reads a scene from dicts and lists with the keys of a scene file. Raises SceneError.")
+      .def_property_readonly(
+          "frame_id", [](const PythonScene& scene) { return scene.desc->frame_id; }, "Name of the fixed frame.")
+      .def_property_readonly(
+          "frame_names", [](const PythonScene& scene) { return moving_frame_names(*scene.desc); },
+          "Names of the frames that hold something, but the fixed one, in order of appearance.")
+      .def_property_readonly(
+          "cable_names", [](const PythonScene& scene) { return names_of(scene.desc->cables); }, "Names of the cables.")
+      .def_property_readonly(
+          "net_names", [](const PythonScene& scene) { return names_of(scene.desc->nets); }, "Names of the nets.")
+      .def_property_readonly(
+          "particle_names", [](const PythonScene& scene) { return names_of(scene.desc->particles); }, "Names of the particles.")
+      .def_property_readonly(
+          "body_names", [](const PythonScene& scene) { return names_of(scene.desc->bodies); }, "Names of the rigid bodies.")
+      .def_property_readonly(
+          "guide_names", [](const PythonScene& scene) { return names_of(scene.desc->guides); }, "Names of the guides.")
+      .def_property_readonly(
+          "material_names", [](const PythonScene& scene) { return names_of(scene.desc->materials); },
+          "Names of the materials that the cables are of.")
+      .def_property_readonly(
+          "attachment_names", [](const PythonScene& scene) { return attachment_names(*scene.desc); },
+          "Names of the attachments of cables, nets and bodies.")
+      .def_property_readonly(
+          "time_step", [](const PythonScene& scene) { return scene.desc->time_step; }, "[s] of a step.");
+}
+
+}  // namespace verlet_cable

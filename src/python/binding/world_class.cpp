@@ -1,0 +1,111 @@
+#include "binding/world_class.h"
+
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "binding/arguments.h"
+#include "binding/motion_argument.h"
+#include "binding/run_steps.h"
+#include "binding/scene_class.h"
+
+namespace verlet_cable {
+namespace {
+
+const World& use(const PythonWorld& world) {
+  InUse::check(world.busy, "world");
+  return world.driven.world();
+}
+
+std::unique_ptr<PythonWorld> make(const PythonScene& scene, const py::object& motion) {
+  auto frames = std::make_shared<FrameSource>(*scene.desc, read_motion(motion, *scene.desc));
+  const py::gil_scoped_release release;
+  return std::make_unique<PythonWorld>(DrivenWorld(scene.desc, std::move(frames)));
+}
+
+std::unique_ptr<PythonWorld> copy(const PythonWorld& world) {
+  use(world);
+  return std::make_unique<PythonWorld>(world.driven);
+}
+
+void set_frame(PythonWorld& world, const std::string& name, const Numbers& position, const Numbers& quaternion_xyzw) {
+  use(world);
+  world.driven.set_frame(world.driven.find_frame(name), {read_pose(position, quaternion_xyzw)});
+}
+
+const char* step(PythonWorld& world, std::int64_t steps) {
+  read_count("steps", steps, 0);
+  const InUse in_use(world.busy, "world");
+  StepResult::Status worst = StepResult::Status::ok;
+  run_steps(steps, [&](std::int64_t some) {
+    for (std::int64_t i = 0; i < some; ++i) worst = std::max(worst, world.driven.step().status);
+  });
+  return status_text(worst);
+}
+
+bool settle(PythonWorld& world) {
+  const InUse in_use(world.busy, "world");
+  const py::gil_scoped_release release;
+  return world.driven.world().settle();
+}
+
+/// The method that reads a quantity.
+template <Quantity quantity>
+py::array_t<double> read(const PythonWorld& world, const std::string& name) {
+  return array_of(use(world), quantity, name);
+}
+
+}  // namespace
+
+void add_world_class(py::module_& module) {
+  py::class_<PythonWorld>(
+      module, "World",
+      "A simulated scene. Frames follow the motion, and those that it does not name rest as in cable_sim, until "
+      "set_frame. Every array is a new one. One thread at a time may use a world; others run while it steps.")
+      .def(py::init(&make), py::arg("scene"), py::arg("motion") = py::none(),
+           "motion: path of a CSV file as of cable_sim --motion, or {frame: (times (k,) [s], poses (k, 7))}; poses are x, y, z "
+           "[m], "
+           "qx, qy, qz, qw in the fixed frame.\n\nRaises SceneError, ValueError, KeyError.")
+      .def("set_frame", set_frame, py::arg("name"), py::arg("position"), py::arg("quaternion_xyzw"),
+           "Where a frame is at the end of the next step, and from then on: (3,) [m] and (4,), in the fixed frame. It no longer "
+           "follows "
+           "a motion.\n\nRaises KeyError for a name that the scene does not have, ValueError.")
+      .def("step", step, py::arg("steps") = 1,
+           "Advances by so many time steps. Returns the worst that came up: 'ok', 'overstretched', 'jumped', 'degraded' or "
+           "'fault'. Other threads run meanwhile; Ctrl-C ends it between two steps.")
+      .def("settle", settle,
+           "Puts the cables that are held into static equilibrium, their frames where they are. False if one of them found none.")
+      .def("copy", copy, "A world that goes on from here by itself, with the same bytes.")
+      .def("__copy__", copy)
+      .def(
+          "__deepcopy__", [](const PythonWorld& world, const py::dict&) { return copy(world); }, py::arg("memo"))
+      .def("positions", read<Quantity::positions>, py::arg("name"),
+           "(n + 1, 3) [m] of a cable's nodes; of a net, or of a particle.")
+      .def("velocities", read<Quantity::velocities>, py::arg("name"),
+           "(n + 1, 3) [m/s] of a cable's nodes; of a net, or of a particle.")
+      .def("tension", read<Quantity::tension>, py::arg("name"),
+           "(n,) [N] of a cable's segments or a net's links, mean over the last step; above 0 it pulls.")
+      .def("curvature", read<Quantity::curvature>, py::arg("name"), "(n - 1,) [1/m] at a cable's inner nodes.")
+      .def("twist", read<Quantity::twist>, py::arg("name"), "(n - 1,) [rad/m] at a cable's inner nodes.")
+      .def("orientations", read<Quantity::orientations>, py::arg("name"),
+           "(n, 4) x, y, z, w of a cable's segments: x along the segment, roll of the material.")
+      .def("wrench", read<Quantity::wrench>, py::arg("attachment"),
+           "(6,) force [N] and torque [N m] on the holder, fixed frame's axes, mean over the last step; about the attachment's "
+           "point.")
+      .def("body_pose", read<Quantity::body_pose>, py::arg("name"), "(7,) x, y, z [m], qx, qy, qz, qw of a body's frame.")
+      .def("body_twist", read<Quantity::body_twist>, py::arg("name"),
+           "(6,) velocity [m/s] of a body's center of mass and angular velocity [rad/s], fixed frame's axes.")
+      .def(
+          "energy", [](const PythonWorld& world) { return energy_dict(use(world).energy()); },
+          "kinetic, gravity, stretch, bend, twist and total [J], as in a summary of cable_sim.")
+      .def_property_readonly(
+          "time", [](const PythonWorld& world) { return use(world).time(); }, "[s] simulated.")
+      .def_property_readonly(
+          "state_hash", [](const PythonWorld& world) { return hash_text(use(world).hash()); },
+          "Text of 16 digits, of all that the future depends on, as in a summary of cable_sim.");
+}
+
+}  // namespace verlet_cable

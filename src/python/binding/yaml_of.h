@@ -1,0 +1,12 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+#include <yaml-cpp/yaml.h>
+
+namespace verlet_cable {
+
+/// The tree of keys that dicts, lists, tuples, arrays, text, numbers, booleans and None mean. Throws TypeError for anything else,
+/// ValueError where it is nested too deeply.
+YAML::Node yaml_of(const pybind11::handle& value);
+
+}  // namespace verlet_cable

@@ -1,0 +1,166 @@
+#include "simulation/quantity.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "verlet_cable/core/quoted_text.h"
+
+namespace verlet_cable {
+namespace {
+
+/// What a name means, where cables, nets and particles share them: an index into one of the three, -1 in the others.
+struct Nodes {
+  int cable = -1, net = -1, particle = -1;
+};
+
+int find_particle(const World& world, const std::string& name) {
+  for (std::size_t i = 0; i < world.particles().size(); ++i)
+    if (world.particles()[i].desc.name == name) return static_cast<int>(i);
+  return -1;
+}
+
+class Names {
+ public:
+  void add(const std::string& name) { text_ += (text_.empty() ? "" : ", ") + name; }
+  [[noreturn]] void refuse(const char* what, const std::string& name) const {
+    throw UnknownName(std::string(what) + ": " + quoted(name) + "; allowed: " + (text_.empty() ? "none, there is none" : text_));
+  }
+
+ private:
+  std::string text_;
+};
+
+Nodes find_nodes(const World& world, const std::string& name) {
+  Nodes found;
+  if ((found.cable = find(world.cables(), name)) >= 0) return found;
+  if ((found.net = find(world.nets(), name)) >= 0) return found;
+  if ((found.particle = find_particle(world, name)) >= 0) return found;
+  Names names;
+  for (const SimulatedCable& cable : world.cables()) names.add(cable.model->name);
+  for (const SimulatedNet& net : world.nets()) names.add(net.model.name);
+  for (const SimulatedParticle& particle : world.particles()) names.add(particle.desc.name);
+  names.refuse("cable", name);
+}
+
+const SimulatedCable& find_cable(const World& world, const std::string& name) {
+  if (const int cable = find(world.cables(), name); cable >= 0) return world.cables()[cable];
+  Names names;
+  for (const SimulatedCable& cable : world.cables()) names.add(cable.model->name);
+  names.refuse("cable", name);
+}
+
+const SimulatedBody& find_body(const World& world, const std::string& name) {
+  const int body = find(world.bodies(), name);
+  if (body >= 0 && !world.bodies()[body].is_junction) return world.bodies()[body];
+  Names names;
+  for (const SimulatedBody& other : world.bodies())
+    if (!other.is_junction) names.add(other.name);
+  names.refuse("body", name);
+}
+
+const Attachment& find_attachment(const World& world, const std::string& name) {
+  const int attachment = find(world.attachments(), name);
+  if (attachment >= 0 && is_named(world.attachments()[attachment])) return world.attachments()[attachment];
+  Names names;
+  for (const Attachment& other : world.attachments())
+    if (is_named(other)) names.add(other.name);
+  names.refuse("attachment", name);
+}
+
+double* write(const Vector3& vector, double* to) {
+  return std::copy_n(vector.data(), 3, to);
+}
+
+/// x, y, z, w
+double* write(const Quaternion& q, double* to) {
+  return std::copy_n(q.coeffs().data(), 4, to);
+}
+
+template <class Element>
+void write(const std::vector<Element>& elements, double* to) {
+  for (const Element& element : elements) to = write(element, to);
+}
+
+void write(const std::vector<double>& numbers, double* to) {
+  std::copy(numbers.begin(), numbers.end(), to);
+}
+
+std::size_t count_nodes(const World& world, const Nodes& nodes) {
+  if (nodes.cable >= 0) return world.cables()[nodes.cable].state.positions.size();
+  return nodes.net >= 0 ? world.nets()[nodes.net].state.positions.size() : 1;
+}
+
+}  // namespace
+
+QuantityShape shape_of(const World& world, Quantity quantity, const std::string& name) {
+  switch (quantity) {
+    case Quantity::positions:
+    case Quantity::velocities:
+      return {count_nodes(world, find_nodes(world, name)), 3};
+    case Quantity::tension:
+      if (const int net = find(world.nets(), name); net >= 0) return {world.nets()[net].state.tension.size(), 0};
+      return {find_cable(world, name).state.tension.size(), 0};
+    case Quantity::curvature:
+    case Quantity::twist:
+      return {static_cast<std::size_t>(find_cable(world, name).state.segments() - 1), 0};
+    case Quantity::orientations:
+      return {static_cast<std::size_t>(find_cable(world, name).state.segments()), 4};
+    case Quantity::wrench:
+      find_attachment(world, name);
+      return {6, 0};
+    case Quantity::body_pose:
+      find_body(world, name);
+      return {7, 0};
+    case Quantity::body_twist:
+      find_body(world, name);
+      return {6, 0};
+  }
+  return {};
+}
+
+void copy_quantity(const World& world, Quantity quantity, const std::string& name, double* to) {
+  switch (quantity) {
+    case Quantity::positions:
+    case Quantity::velocities: {
+      const Nodes nodes = find_nodes(world, name);
+      const bool places = quantity == Quantity::positions;
+      if (nodes.cable >= 0) {
+        const CableState& state = world.cables()[nodes.cable].state;
+        return write(places ? state.positions : state.velocities, to);
+      }
+      if (nodes.net >= 0) {
+        const NetState& state = world.nets()[nodes.net].state;
+        return write(places ? state.positions : state.velocities, to);
+      }
+      const SimulatedParticle& particle = world.particles()[nodes.particle];
+      write(places ? particle.position : particle.velocity, to);
+      return;
+    }
+    case Quantity::tension:
+      if (const int net = find(world.nets(), name); net >= 0) return write(world.nets()[net].state.tension, to);
+      return write(find_cable(world, name).state.tension, to);
+    case Quantity::curvature:
+      return write(node_curvature(find_cable(world, name).state), to);
+    case Quantity::twist:
+      return write(node_twist(find_cable(world, name).state), to);
+    case Quantity::orientations:
+      return write(segment_orientations(find_cable(world, name).state), to);
+    case Quantity::wrench: {
+      const Attachment& attachment = find_attachment(world, name);
+      write(attachment.torque, write(attachment.force, to));
+      return;
+    }
+    case Quantity::body_pose: {
+      const Pose& pose = find_body(world, name).pose;
+      write(pose.orientation, write(pose.position, to));
+      return;
+    }
+    case Quantity::body_twist: {
+      const SimulatedBody& body = find_body(world, name);
+      write(body.angular_velocity, write(body.velocity, to));
+      return;
+    }
+  }
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,5 @@
+"""Deformable cables: `verlet_cable.sim` simulates them, `verlet_cable.msg` and `verlet_cable.srv` are the node's messages."""
+from pkgutil import extend_path
+
+# In a devel space what is built and generated lies in another directory than this file.
+__path__ = extend_path(__path__, __name__)

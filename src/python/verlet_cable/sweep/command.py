@@ -1,0 +1,104 @@
+"""cable_sweep SWEEP.yaml --output DIR [--workers N | --scheduler tcp://HOST:PORT] [--resume]"""
+import argparse
+import os
+import signal
+import sys
+
+from .errors import SweepError, SweepStopped
+
+_BAD_INPUT, _STOPPED = 2, 3
+
+
+def main(arguments=None):
+    """The exit status: 0 when every sample is in the store, also those that failed; 2 for bad input; 3 when it had to stop."""
+    options = _options(arguments)
+    try:
+        return _sweep(options)
+    except SweepError as error:
+        for text in error.errors:
+            print(f'cable_sweep: {text}', file=sys.stderr)
+        return _BAD_INPUT
+
+
+def _options(arguments):
+    parser = argparse.ArgumentParser(
+        prog='cable_sweep', description='Simulates many variations of a scene with Dask and writes them to one Zarr store.',
+        epilog='Exit status: 0 when every sample is in the store, 2 for bad input, 3 when the sweep had to stop: --resume goes on.')
+    parser.add_argument('sweep', metavar='SWEEP.yaml', help='what to simulate: doc/sweeps.md')
+    parser.add_argument('--output', metavar='DIR', required=True, help='the store; must not exist, but with --resume')
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument('--workers', metavar='N', type=_workers, default=len(os.sched_getaffinity(0)),
+                       help='processes on this machine (default: its cores, %(default)s)')
+    where.add_argument('--scheduler', metavar='tcp://HOST:PORT', help='a running dask-scheduler, whose workers do the work')
+    parser.add_argument('--resume', action='store_true', help='go on with a store that was begun; begin it if it is not there')
+    return parser.parse_args(arguments)
+
+
+def _workers(text):
+    if not text.isdigit() or not 1 <= int(text) <= 4096:
+        raise argparse.ArgumentTypeError(f'{text}; allowed: an integer from 1 to 4096')
+    return int(text)
+
+
+def _sweep(options):
+    from . import store
+    from .description import read_sweep
+    from .layout import plan_layout
+    path = os.path.abspath(options.output)
+    errors = []
+    if os.path.lexists(path) and not options.resume:
+        errors.append(f'--output: {options.output}: is there; allowed: a new one, or --resume to go on with it')
+    try:
+        sweep, scene = read_sweep(options.sweep)
+    except SweepError as error:
+        raise SweepError(errors + error.errors) from error
+    if errors:
+        raise SweepError(errors)
+    layout = plan_layout(sweep, scene)
+    if os.path.lexists(path):
+        store.check_same(path, sweep, layout)
+    return _run(options, path, sweep, layout)
+
+
+def _run(options, path, sweep, layout):
+    from . import schedule, store
+    from .report import Report
+    signal.signal(signal.SIGTERM, _interrupt)
+    report = Report(layout)
+    reason = None
+    try:
+        if not store.is_complete(path, layout):
+            with schedule.cluster(options.workers, options.scheduler) as client:
+                if not os.path.lexists(path):
+                    store.begin(path, sweep, layout)
+                with store.locked(path):
+                    _do_the_rest(client, path, sweep, layout, report)
+    except SweepStopped as stopped:
+        reason = str(stopped)
+    except KeyboardInterrupt:
+        reason = 'interrupted'
+    report.clear()
+    if reason is not None:
+        print(f'cable_sweep: {reason}\n{report.done} of {layout.samples} samples are in {options.output}; '
+              '--resume goes on with the others', file=sys.stderr)
+        return _STOPPED
+    failures = store.count_failures(path)
+    print(f'{layout.samples} samples in {options.output}, {report.new} simulated now in {report.seconds:.1f} s; '
+          f'failed: {failures[store.WRONG_SCENE]} scenes, {failures[store.FAULT]} simulations')
+    return 0
+
+
+def _do_the_rest(client, path, sweep, layout, report):
+    from . import schedule, store
+    complete = store.complete_chunks(path)
+    report.begin(sum(len(layout.samples_of(chunk)) for chunk in complete))
+    store.remove_remains(path)
+    try:
+        schedule.run_chunks(client, (path, sweep.folder, store.identity(path)),
+                            (chunk for chunk in range(layout.chunks) if chunk not in complete), report)
+    finally:
+        store.remove_remains(path)
+
+
+def _interrupt(number, frame):
+    raise KeyboardInterrupt

@@ -1,0 +1,261 @@
+"""SWEEP.yaml: what is to be simulated, how often, and what is kept of it. Every error is found before anything is simulated."""
+import hashlib
+import math
+import os
+
+from verlet_cable.sim import Scene, SceneError
+
+from . import text_yaml
+from .errors import SweepError, rejected
+from .paths import parse_path, why_absent
+from .text_yaml import number, shown
+from .variations import Variation, read_variation
+
+# Fields of World and Batch, and their units.
+FIELDS = {
+    'positions': 'm', 'velocities': 'm/s', 'tension': 'N', 'curvature': '1/m', 'twist': '1/m', 'orientations': 'quaternion x, y, z, w',
+    'wrench': 'N, N m', 'body_pose': 'm, quaternion x, y, z, w', 'body_twist': 'm/s, rad/s',
+}
+MOTION = 'motion'  # the key of the varied values under which the motion is that was drawn
+_KEYS = ('scene', 'motion', 'motions', 'duration', 'record', 'samples', 'seed', 'vary')
+_NOT_VARIED = {
+    'segments': 'all samples have as many nodes', 'rows': 'all samples have as many nodes', 'columns': 'all samples have as many nodes',
+    'name': 'the arrays of the store have the names of the scene',
+}
+_MOST_SAMPLES = 10**9
+_MOST_STEPS = 2**53
+_LARGEST_SEED = 2**63 - 1
+_DEFAULT_RATE = 100.0
+_TOLERANCE = 1e-6  # of a step, of a row: as cable_sim's
+
+
+class Sweep:
+    """A checked description.
+
+    scene_text, scene_name, tree: the scene's file, and what is in it (scalars are texts); folder: where paths start, absolute.
+    motions: files as they were given, none or one or more; motion_digests: {file: SHA-256}. duration [s], rate [Hz], fields, samples, seed.
+    variations: {path: Variation}, with one of MOTION where there are several.
+    """
+
+    def to_attributes(self):
+        """The description as the store keeps it; from_attributes reads it again."""
+        return {
+            'scene': self.scene_name, 'motions': self.motions, 'motion_digests': self.motion_digests,
+            'duration': self.duration, 'record': {'rate': self.rate, 'fields': self.fields}, 'samples': self.samples, 'seed': self.seed,
+            'vary': {key: {variation.kind: variation.parameters} for key, variation in self.variations.items()},
+        }
+
+    @staticmethod
+    def from_attributes(attributes, scene_text, folder):
+        sweep = Sweep()
+        sweep.scene_name, sweep.motions, sweep.motion_digests = attributes['scene'], attributes['motions'], attributes['motion_digests']
+        sweep.duration, sweep.samples, sweep.seed = attributes['duration'], attributes['samples'], attributes['seed']
+        sweep.rate, sweep.fields = attributes['record']['rate'], attributes['record']['fields']
+        sweep.variations = {key: Variation(*next(iter(value.items()))) for key, value in attributes['vary'].items()}
+        sweep.scene_text, sweep.folder = scene_text, folder
+        sweep.tree = text_yaml.parse(scene_text, sweep.scene_name, [])
+        return sweep
+
+    @property
+    def scene_folder(self):
+        return os.path.dirname(os.path.join(self.folder, self.scene_name))
+
+    def motion_path(self, file):
+        return os.path.join(self.folder, file)
+
+    @property
+    def rows(self):
+        return 1 + math.floor(self.duration * self.rate + _TOLERANCE)
+
+    def steps(self, time_step):
+        """How many steps a sample takes, and the step that each row belongs to."""
+        steps_a_row = 1 / (self.rate * time_step)
+        of_rows = [math.ceil(row * steps_a_row - _TOLERANCE) for row in range(self.rows)]
+        return max(math.ceil(self.duration / time_step - _TOLERANCE), of_rows[-1]), of_rows
+
+    def rate_error(self, time_step):
+        """None, or that rows are closer than this step."""
+        if self.rate * time_step <= 1 + _TOLERANCE:
+            return None
+        return rejected('record.rate', f'{self.rate:g}', f'at most 1 / time_step = {1 / time_step:g} Hz')
+
+
+def read_sweep(path):
+    """The Sweep that a file describes, and its Scene as it stands, without variations. Raises SweepError with all that is wrong."""
+    errors = []
+    name = os.path.basename(path)
+    values = text_yaml.parse(_text_of(path, path, errors), name, errors)
+    if errors:
+        raise SweepError(errors)
+    if not isinstance(values, dict):
+        raise SweepError([rejected(name, shown(values), 'keys ' + ', '.join(_KEYS))])
+    sweep = Sweep()
+    sweep.folder = os.path.dirname(os.path.abspath(path))
+    for key in values:
+        if key not in _KEYS:
+            errors.append(rejected(key, shown(values[key]), 'no such key; the keys are ' + ', '.join(_KEYS)))
+    scene = _read_scene(sweep, values, errors)
+    _read_numbers(sweep, values, errors)
+    _read_record(sweep, values.get('record'), errors)
+    if scene is not None and sweep.rate is not None:
+        rate_error = sweep.rate_error(scene.time_step)
+        errors += [] if rate_error is None else [rate_error]
+        if sweep.duration is not None and sweep.duration / scene.time_step > _MOST_STEPS:
+            errors.append(rejected('duration', f'{sweep.duration:g}', f'at most {_MOST_STEPS} steps of {scene.time_step:g} s'))
+    sweep.variations = {}
+    _read_variations(sweep, values, errors)
+    _read_motions(sweep, values, errors)
+    if errors:
+        raise SweepError(errors)
+    return sweep, scene
+
+
+def _text_of(path, key, errors):
+    try:
+        with open(path, encoding='utf-8', newline='') as file:
+            return file.read()
+    except (OSError, UnicodeDecodeError) as error:
+        reason = error.strerror if isinstance(error, OSError) else 'not UTF-8'
+        errors.append(rejected(key, reason, 'a file that can be read'))
+        return ''
+
+
+def _read_scene(sweep, values, errors):
+    sweep.scene_name = values.get('scene')
+    sweep.tree = None
+    if not isinstance(sweep.scene_name, str) or not sweep.scene_name:
+        errors.append(rejected('scene', shown(sweep.scene_name), 'the name of a scene file; required'))
+        return None
+    path = os.path.join(sweep.folder, sweep.scene_name)
+    before = len(errors)
+    sweep.scene_text = _text_of(path, f'scene: {sweep.scene_name}', errors)
+    if len(errors) > before:
+        return None
+    try:
+        scene = Scene.load(path)
+    except SceneError as error:
+        errors += [f'{sweep.scene_name}: {text}' for text in error.errors]
+        return None
+    sweep.tree = text_yaml.parse(sweep.scene_text, sweep.scene_name, errors)
+    return scene
+
+
+def _read_number(key, values, default, is_allowed, allowed, errors):
+    name = key.rpartition('.')[2]
+    if name not in values and default is not None:
+        return default
+    value = number(values.get(name))
+    if value is None or not is_allowed(value):
+        errors.append(rejected(key, shown(values.get(name)), allowed + ('' if default is not None else '; required')))
+        return None
+    return value
+
+
+def _read_integer(key, values, default, smallest, largest, errors):
+    text = values.get(key)
+    if key not in values and default is not None:
+        return default
+    # Not by way of a double, which has no room for every seed.
+    if isinstance(text, str) and text.isascii() and text.isdigit() and smallest <= int(text) <= largest:
+        return int(text)
+    value = number(text)
+    if value is not None and value.is_integer() and smallest <= value <= min(largest, 2**53):
+        return int(value)
+    errors.append(rejected(key, shown(text), f'an integer from {smallest} to {largest}' + ('' if default is not None else '; required')))
+    return None
+
+
+def _is_positive(value):
+    return 0 < value < math.inf
+
+
+def _read_numbers(sweep, values, errors):
+    sweep.duration = _read_number('duration', values, None, _is_positive, 'a finite number of seconds, more than 0', errors)
+    sweep.samples = _read_integer('samples', values, None, 1, _MOST_SAMPLES, errors)
+    sweep.seed = _read_integer('seed', values, 0, 0, _LARGEST_SEED, errors)
+
+
+def _read_record(sweep, record, errors):
+    sweep.rate = sweep.fields = None
+    if not isinstance(record, dict):
+        errors.append(rejected('record', shown(record), '{rate: HZ, fields: [...]}; required'))
+        return
+    for key in record:
+        if key not in ('rate', 'fields'):
+            errors.append(rejected(f'record.{key}', shown(record[key]), 'no such key; the keys are rate, fields'))
+    sweep.rate = _read_number('record.rate', record, _DEFAULT_RATE, _is_positive, 'a finite number of Hz, more than 0', errors)
+    sweep.fields = record.get('fields')
+    if not isinstance(sweep.fields, list) or not sweep.fields:
+        errors.append(rejected('record.fields', shown(sweep.fields), 'a list of ' + ', '.join(FIELDS) + '; required'))
+        return
+    for index, field in enumerate(sweep.fields):
+        if not isinstance(field, str) or field not in FIELDS:
+            errors.append(rejected(f'record.fields[{index}]', shown(field), 'one of ' + ', '.join(FIELDS)))
+        elif field in sweep.fields[:index]:
+            errors.append(rejected(f'record.fields[{index}]', field, 'each field once'))
+
+
+def _read_variations(sweep, values, errors):
+    vary = values.get('vary')
+    if vary is None:
+        return
+    if not isinstance(vary, dict):
+        errors.append(rejected('vary', shown(vary), 'keys of the scene, and how each varies'))
+        return
+    paths = {}
+    for text, value in vary.items():
+        key = f'vary.{text}'
+        variation = read_variation(key, value, errors)
+        parts = parse_path(text)
+        if parts is None:
+            errors.append(f'{key}: no key of a scene; allowed: names and indices such as materials.my_hose.radius, cables[0].length')
+            continue
+        if parts[-1] in _NOT_VARIED:
+            errors.append(f'{key}: cannot vary; {_NOT_VARIED[parts[-1]]}')
+        if sweep.tree is not None:
+            reason = why_absent(sweep.tree, parts)
+            if reason:
+                errors.append(f'{key}: not in {sweep.scene_name}; {reason}')
+        for other in paths:
+            if parts[:len(other)] == other or other[:len(parts)] == parts:
+                errors.append(f'{key}: varies with {paths[other]}, too; allowed: each value of the scene once')
+        paths[parts] = key
+        if variation is not None:
+            sweep.variations[text] = variation
+
+
+def _read_motions(sweep, values, errors):
+    sweep.motions = []
+    sweep.motion_digests = {}
+    if 'motion' in values and 'motions' in values:
+        errors.append(rejected('motions', shown(values['motions']), 'motion or motions, not both'))
+        return
+    if 'motion' in values:
+        files = {'motion': values['motion']}
+    elif 'motions' in values:
+        if not isinstance(values['motions'], list) or not values['motions']:
+            errors.append(rejected('motions', shown(values['motions']), 'a list of names of files'))
+            return
+        files = {f'motions[{index}]': file for index, file in enumerate(values['motions'])}
+    else:
+        return
+    for key, file in files.items():
+        if not isinstance(file, str) or not file:
+            errors.append(rejected(key, shown(file), 'the name of a motion file'))
+            continue
+        try:
+            sweep.motion_digests[file] = digest_of(sweep.motion_path(file))
+            sweep.motions.append(file)
+        except OSError as error:
+            errors.append(rejected(f'{key}: {file}', error.strerror, 'a file that can be read'))
+    if 'motions' in values:
+        sweep.variations[MOTION] = Variation('choice', sweep.motions)
+
+
+def digest_of(path):
+    """SHA-256 of a file."""
+    digest = hashlib.sha256()
+    with open(path, 'rb') as file:
+        for block in iter(lambda: file.read(1 << 20), b''):
+            digest.update(block)
+    return digest.hexdigest()

@@ -1,0 +1,205 @@
+"""The Zarr store of a sweep. DIR is the store.
+
+<name>/<field>   (samples, rows, ...) float64; 0 where a sample failed
+time             (rows) [s] k / rate; row k is the first step at or after it
+vary/<key>       (samples) what was drawn
+status           (samples) int8: COMPLETE, WRONG_SCENE, FAULT; MISSING where a sample was not simulated yet
+message          (samples) UTF-8 of fixed length: what failed
+
+All are cut along the samples at the same places. A chunk's piece of `status` is written last, and all files are written aside and renamed:
+where it is there, the others are whole. A chunk's bytes are the same whoever writes them, however often.
+"""
+import contextlib
+import errno
+import fcntl
+import hashlib
+import os
+import shutil
+
+import numpy as np
+
+from .errors import SweepError, missing_package
+from .layout import Layout, units_of
+from .version import package_version
+
+try:
+    import numcodecs
+    import zarr
+except ImportError as error:
+    raise missing_package(error) from error
+
+COMPLETE, WRONG_SCENE, FAULT, MISSING = 0, 1, 2, -1
+MESSAGE_LENGTH = 256
+
+# What several threads compress would be in the order in which they came to an end.
+numcodecs.blosc.use_threads = False
+_COMPRESSOR = numcodecs.Blosc(cname='lz4', clevel=5, shuffle=numcodecs.Blosc.SHUFFLE)
+
+
+def versions():
+    """What the bytes of a store depend on, besides the description."""
+    return {'verlet_cable': package_version(), 'numpy': np.__version__, 'zarr': zarr.__version__,
+            'numcodecs': numcodecs.__version__}
+
+
+def begin(path, sweep, layout):
+    """Makes the store, with nothing in it. It appears at `path` when it is whole."""
+    aside = path + '.partial'
+    shutil.rmtree(aside, ignore_errors=True)
+    try:
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        _write_arrays(zarr.open_group(zarr.DirectoryStore(aside), mode='w'), sweep, layout)
+        os.rename(aside, path)
+    except OSError as error:
+        shutil.rmtree(aside, ignore_errors=True)
+        raise SweepError([f'--output: {path}: {error.strerror}']) from error
+
+
+def _attributes(sweep, layout):
+    return {'scene': sweep.scene_text, 'sweep': sweep.to_attributes(), 'seed': sweep.seed, 'units': units_of(layout),
+            'versions': versions()}
+
+
+def _write_arrays(root, sweep, layout):
+    root.attrs.put(_attributes(sweep, layout))
+
+    def create(name, shape, chunks, dtype, fill, **attributes):
+        array = root.create_dataset(name, shape=shape, chunks=chunks, dtype=dtype, fill_value=fill, compressor=_COMPRESSOR, order='C')
+        if attributes:
+            array.attrs.put(attributes)
+        return array
+
+    samples, chunk = (layout.samples,), (layout.chunk,)
+    for (name, field), shape in sorted(layout.shapes.items()):
+        create(f'{name}/{field}', samples + (layout.rows,) + shape, chunk + (layout.row_chunk(shape),) + shape, '<f8', 0.0,
+               unit=units_of(layout)[field])
+    time = create('time', (layout.rows,), (layout.rows,), '<f8', 0.0, unit='s')
+    time[:] = np.arange(layout.rows) / sweep.rate
+    for key, variation in sorted(sweep.variations.items()):
+        if variation.is_choice and not variation.is_numeric:
+            create(f'vary/{key}', samples, chunk, '<i4', 0, choices=variation.parameters)
+        else:
+            create(f'vary/{key}', samples, chunk, '<f8', 0.0)
+    create('message', samples, chunk, f'|S{MESSAGE_LENGTH}', b'')
+    create('status', samples, chunk, '|i1', MISSING,
+           meanings={str(COMPLETE): 'complete', str(WRONG_SCENE): 'scene refused', str(FAULT): 'simulation failed',
+                     str(MISSING): 'not simulated yet'})
+
+
+def check_same(path, sweep, layout):
+    """Raises SweepError if the store at `path` is not of this sweep, or of other versions."""
+    attributes = _open(path).attrs.asdict()
+    wanted = _attributes(sweep, layout)
+    errors = []
+    for key in ('scene', 'sweep', 'versions'):
+        found = attributes.get(key)
+        if found == wanted[key]:
+            continue
+        if isinstance(found, dict):
+            differing = sorted(name for name in {*found, *wanted[key]} if found.get(name) != wanted[key].get(name))
+            errors += [f'--resume: {path}: {key}.{name} was {found.get(name)}, is {wanted[key].get(name)}; allowed: the same'
+                       for name in differing]
+        else:
+            errors.append(f'--resume: {path}: the {key} is not the one that the store was begun with; allowed: the same text')
+    if errors:
+        raise SweepError(errors)
+
+
+def _open(path):
+    try:
+        return zarr.open_group(zarr.DirectoryStore(path), mode='r')
+    except (zarr.errors.GroupNotFoundError, zarr.errors.FSPathExistNotDir, ValueError) as error:
+        raise SweepError([f'--resume: {path}: no store of cable_sweep']) from error
+
+
+def identity(path):
+    """A digest of what the store at `path` is of."""
+    with open(os.path.join(path, '.zattrs'), 'rb') as file:
+        return hashlib.sha256(file.read()).hexdigest()
+
+
+def layout_of(root):
+    """The Layout of a store that was begun."""
+    shapes = {}
+    for name, group in root.groups():
+        if name != 'vary':
+            shapes.update({(name, field): array.shape[2:] for field, array in group.arrays()})
+    return Layout(shapes, root['time'].shape[0], root['status'].shape[0], root['status'].chunks[0])
+
+
+def arrays_of(root):
+    """{path in the store: array}, opened once: each opening reads a file."""
+    return {array.path: array for _, array in root.arrays(recurse=True)}
+
+
+def complete_chunks(path):
+    """The numbers of the chunks that are there."""
+    return {int(name) for name in os.listdir(os.path.join(path, 'status')) if name.isdigit()}
+
+
+def is_complete(path, layout):
+    """Whether there is a store, with every chunk."""
+    return os.path.lexists(path) and len(complete_chunks(path)) == layout.chunks
+
+
+def write_chunk(arrays, layout, chunk, result):
+    """Writes a chunk of all arrays; `result`: as simulation.simulate returns it."""
+    samples = layout.samples_of(chunk)
+    rows = slice(samples.start, samples.stop)
+    for (name, field), data in sorted(result.fields.items()):
+        arrays[f'{name}/{field}'][rows] = data
+    for key, values in sorted(result.drawn.items()):
+        arrays[f'vary/{key}'][rows] = values
+    arrays['message'][rows] = np.array([_fixed(message) for message in result.messages], dtype=f'S{MESSAGE_LENGTH}')
+    arrays['status'][rows] = np.array(result.status, dtype=np.int8)
+
+
+def _fixed(message):
+    return message.encode()[:MESSAGE_LENGTH].decode(errors='ignore').encode()
+
+
+def failures_of(arrays, samples):
+    """[(sample, status, message)] of those among `samples` that failed."""
+    rows = slice(samples.start, samples.stop)
+    status = arrays['status'][rows]
+    failed = np.flatnonzero(status > COMPLETE)
+    if not len(failed):
+        return []
+    messages = arrays['message'][rows]
+    return [(samples.start + int(index), int(status[index]), messages[index].decode()) for index in failed]
+
+
+def count_failures(path):
+    """{status: how many samples} of those that failed, in the whole store."""
+    status = _open(path)['status']
+    counts = {WRONG_SCENE: 0, FAULT: 0}
+    for chunk in sorted(complete_chunks(path)):
+        values = status[chunk * status.chunks[0]:(chunk + 1) * status.chunks[0]]
+        for code in counts:
+            counts[code] += int(np.count_nonzero(values == code))
+    return counts
+
+
+def remove_remains(path):
+    """Removes what killed workers had begun to write aside."""
+    for folder, _, files in os.walk(path):
+        for file in files:
+            if file.endswith('.partial'):
+                with contextlib.suppress(FileNotFoundError):
+                    os.remove(os.path.join(folder, file))
+
+
+@contextlib.contextmanager
+def locked(path):
+    """Keeps a second cable_sweep out of the store, where the file system can lock a directory; the lock ends with the process."""
+    descriptor = os.open(path, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as error:
+        if error.errno in (errno.EWOULDBLOCK, errno.EAGAIN, errno.EACCES):
+            os.close(descriptor)
+            raise SweepError([f'--output: {path}: another cable_sweep is at work there']) from error
+    try:
+        yield
+    finally:
+        os.close(descriptor)

@@ -1,0 +1,64 @@
+"""YAML whose scalars stay text, as the package's own reader takes them: `1e-5` is a number for both, `on` is a name."""
+import math
+import re
+
+import yaml
+
+_NULL = ('', '~', 'null', 'Null', 'NULL')
+_NUMBER = re.compile(r'[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?')
+_SPECIAL = {'.inf': math.inf, '+.inf': math.inf, '-.inf': -math.inf}
+
+
+def parse(text, name, errors):
+    """`text` as dicts, lists, texts and None; None, with what is wrong in `errors`, if it cannot be read. `name`: the file's."""
+    try:
+        node = yaml.compose(text, Loader=yaml.SafeLoader)
+    except (yaml.YAMLError, RecursionError) as error:
+        errors.append(f'{name}: not YAML: ' + ' '.join(str(error).split()))
+        return None
+    return None if node is None else _value(node, '', name, errors)
+
+
+def number(value):
+    """The number that a scalar is, or None."""
+    if isinstance(value, bool) or value is None:
+        return None
+    if isinstance(value, (int, float)):
+        return float(value)
+    if not isinstance(value, str):
+        return None
+    if value.lower() in _SPECIAL:
+        return _SPECIAL[value.lower()]
+    return float(value) if _NUMBER.fullmatch(value) else None
+
+
+def shown(value):
+    """A value as errors show it: short, on one line."""
+    if value is None:
+        return 'nothing'
+    if isinstance(value, str) and number(value) is None:
+        text = repr(value)
+    elif isinstance(value, dict):
+        text = '{' + ', '.join(f'{key}: {shown(entry)}' for key, entry in value.items()) + '}'
+    elif isinstance(value, list):
+        text = '[' + ', '.join(shown(entry) for entry in value) + ']'
+    else:
+        text = str(value)
+    return text if len(text) <= 80 else text[:77] + '...'
+
+
+def _value(node, key, name, errors):
+    if isinstance(node, yaml.ScalarNode):
+        return None if node.style is None and node.value in _NULL else node.value
+    if isinstance(node, yaml.SequenceNode):
+        return [_value(entry, f'{key}[{index}]', name, errors) for index, entry in enumerate(node.value)]
+    values = {}
+    for key_node, value_node in node.value:
+        if not isinstance(key_node, yaml.ScalarNode):
+            errors.append(f'{name}: a key of {key or "the file"} is no text')
+            continue
+        child = f'{key}.{key_node.value}' if key else key_node.value
+        if key_node.value in values:
+            errors.append(f'{name}: {child}: given twice; allowed: each key once')
+        values[key_node.value] = _value(value_node, child, name, errors)
+    return values

@@ -1,0 +1,39 @@
+"""What a Dask worker does: one chunk of the samples, from the drawing to the files."""
+import functools
+
+import zarr
+
+from . import store
+from .description import Sweep, digest_of
+from .simulation import simulate
+
+
+class WrongWorker(RuntimeError):
+    """A worker that cannot do what the sweep was begun with."""
+
+
+def run_chunk(path, folder, identity, chunk):
+    """Simulates and writes a chunk of the store at `path`, unless it is there. folder: of SWEEP.yaml. identity: store.identity(path).
+
+    Returns [(sample, status, message)] of the samples that failed.
+    """
+    arrays, sweep, layout = _plan(path, folder, identity)
+    samples = layout.samples_of(chunk)
+    if f'status/{chunk}' not in arrays['status'].store:
+        store.write_chunk(arrays, layout, chunk, simulate(sweep, layout, samples))
+    return store.failures_of(arrays, samples)
+
+
+@functools.lru_cache(maxsize=4)
+def _plan(path, folder, identity):
+    root = zarr.open_group(zarr.DirectoryStore(path), mode='r+')
+    if store.identity(path) != identity:
+        raise WrongWorker(f'{path}: not the store of this sweep')
+    attributes = root.attrs.asdict()
+    if store.versions() != attributes['versions']:
+        raise WrongWorker(f'this worker has {store.versions()}, the store was begun with {attributes["versions"]}')
+    sweep = Sweep.from_attributes(attributes['sweep'], attributes['scene'], folder)
+    for motion, digest in sweep.motion_digests.items():
+        if digest_of(sweep.motion_path(motion)) != digest:
+            raise WrongWorker(f'{sweep.motion_path(motion)}: changed since the sweep was begun')
+    return store.arrays_of(root), sweep, store.layout_of(root)

@@ -1,0 +1,342 @@
+#!/usr/bin/python3
+"""cable_sweep: the store's bytes whatever happens to workers and program, wrong samples, wrong descriptions, rows."""
+import filecmp
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+zarr = pytest.importorskip('zarr')
+pytest.importorskip('distributed')
+
+PROGRAM = pathlib.Path(__file__).resolve().parents[2] / 'scripts' / 'cable_sweep'
+ENVIRONMENT = dict(os.environ)
+if 'VERLET_CABLE_DEVEL' in os.environ:
+    ENVIRONMENT['PYTHONPATH'] = os.pathsep.join(
+        [os.environ['VERLET_CABLE_DEVEL'] + '/lib/python3/dist-packages', *filter(None, [os.environ.get('PYTHONPATH')])])
+TIMEOUT = 300  # [s] for what takes a few on an idle machine
+
+SCENE = """
+time_step: 0.005
+materials: {m: {linear_density: 0.1, radius: 0.005, drag: 0.1}}
+cables:
+  - {name: hose, length: 1.0, segments: 20, material: m, attachments: [
+      {name: left, at: start}, {name: right, at: end, frame: hand, initial_pose: [0.7, 0, 0, 0, 0, 0]}]}
+"""
+SWEEP = """
+scene: scene.yaml
+duration: 1.0
+record: {rate: 50, fields: [positions, tension, wrench]}
+samples: 40
+seed: 1
+vary:
+  materials.m.linear_density: {log_uniform: [0.05, 0.2]}
+  cables[0].length: {uniform: [0.95, 1.1]}
+  materials.m.radius: {choice: [0.004, 5e-3]}
+"""
+# Some seconds of work, in 64 chunks and more: there is time to kill somebody.
+LONG = SWEEP.replace('samples: 40', 'samples: 2000').replace('duration: 1.0', 'duration: 5.0').replace('rate: 50', 'rate: 10')
+
+
+def write(folder, sweep=SWEEP, scene=SCENE):
+    (folder / 'scene.yaml').write_text(scene)
+    (folder / 'sweep.yaml').write_text(sweep)
+    return folder
+
+
+def start(folder, output, *options, sweep='sweep.yaml'):
+    return subprocess.Popen([sys.executable, str(PROGRAM), str(folder / sweep), '--output', str(output), *options],
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
+
+
+def finish(process):
+    """(exit status, all that was printed)"""
+    output, errors = process.communicate(timeout=TIMEOUT)
+    return process.returncode, output + errors
+
+
+def run(folder, output, *options, **keywords):
+    return finish(start(folder, output, *options, **keywords))
+
+
+def chunks(output):
+    status = output / 'status'
+    return sum(entry.name.isdigit() for entry in status.iterdir()) if status.is_dir() else 0
+
+
+def wait_until(condition, process):
+    deadline = time.monotonic() + TIMEOUT
+    while not condition():
+        assert process.poll() is None, f'came to its end too early: {process.communicate()}'
+        assert time.monotonic() < deadline
+        time.sleep(0.005)
+
+
+def workers_of(process):
+    children = []
+    for task in pathlib.Path(f'/proc/{process.pid}/task').iterdir():
+        children += (task / 'children').read_text().split()
+    return [int(child) for child in children if b'spawn_main' in pathlib.Path(f'/proc/{child}/cmdline').read_bytes()]
+
+
+def has_ended(pid):
+    try:
+        return pathlib.Path(f'/proc/{pid}/stat').read_text().rpartition(')')[2].split()[0] == 'Z'
+    except (FileNotFoundError, ProcessLookupError):
+        return True
+
+
+def files_of(store):
+    return sorted(str(path.relative_to(store)) for path in store.rglob('*'))
+
+
+def assert_same_bytes(one, other):
+    assert files_of(one) == files_of(other)
+    files = [name for name in files_of(one) if (one / name).is_file()]
+    _, differing, unreadable = filecmp.cmpfiles(one, other, files, shallow=False)
+    assert not differing and not unreadable
+
+
+@pytest.fixture(scope='module')
+def undisturbed(tmp_path_factory):
+    """A long sweep and its store, of one worker that nothing happened to."""
+    folder = write(tmp_path_factory.mktemp('long'), LONG)
+    status, text = run(folder, folder / 'undisturbed', '--workers', '1')
+    assert status == 0, text
+    return folder, folder / 'undisturbed'
+
+
+def test_same_bytes_on_one_and_two_workers(undisturbed, tmp_path):
+    folder, reference = undisturbed
+    status, text = run(folder, tmp_path / 'store', '--workers', '2')
+    assert status == 0, text
+    assert_same_bytes(reference, tmp_path / 'store')
+
+
+def test_killed_worker(undisturbed, tmp_path):
+    folder, reference = undisturbed
+    store = tmp_path / 'store'
+    process = start(folder, store, '--workers', '2')
+    wait_until(lambda: chunks(store) >= 3, process)
+    os.kill(workers_of(process)[0], signal.SIGKILL)
+    assert chunks(store) < chunks(reference)
+    status, text = finish(process)
+    assert status == 0, text
+    assert_same_bytes(reference, store)
+
+
+def test_killed_program_and_resume(undisturbed, tmp_path):
+    folder, reference = undisturbed
+    store = tmp_path / 'store'
+    process = start(folder, store, '--workers', '2', '--resume')
+    wait_until(lambda: chunks(store) >= 3, process)
+    workers = workers_of(process)
+    process.kill()
+    process.communicate()
+    deadline = time.monotonic() + TIMEOUT
+    while not all(has_ended(worker) for worker in workers):
+        assert time.monotonic() < deadline, 'workers outlive the program'
+        time.sleep(0.01)
+    assert chunks(store) < chunks(reference)
+    (store / 'message' / '0.0123.partial').write_bytes(b'half')
+    status, text = run(folder, store, '--workers', '2')
+    assert status == 2 and '--resume' in text
+    status, text = run(folder, store, '--workers', '2', '--resume')
+    assert status == 0, text
+    assert_same_bytes(reference, store)
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_interrupt_keeps_what_is_done(undisturbed, tmp_path, number):
+    folder, reference = undisturbed
+    store = tmp_path / 'store'
+    process = start(folder, store, '--workers', '1')
+    wait_until(lambda: chunks(store) >= 2, process)
+    process.send_signal(number)
+    status, text = finish(process)
+    assert status == 3 and '--resume' in text, text
+    assert 2 <= chunks(store) < chunks(reference)
+    assert not list(store.rglob('*.partial'))
+    status, text = run(folder, store, '--workers', '2', '--resume')
+    assert status == 0, text
+    assert_same_bytes(reference, store)
+
+
+def test_external_scheduler(undisturbed, tmp_path):
+    folder, reference = undisturbed
+    file = tmp_path / 'scheduler.json'
+    log = open(tmp_path / 'dask.log', 'w')
+    commands = [['distributed.cli.dask_scheduler', '--host', '127.0.0.1', '--port', '0', '--no-dashboard', '--scheduler-file', str(file)]]
+    commands += 2 * [['distributed.cli.dask_worker', '--scheduler-file', str(file), '--nthreads', '1', '--host', '127.0.0.1', '--no-dashboard',
+                      '--local-directory', str(tmp_path)]]
+    processes = []
+    try:
+        for command in commands:
+            processes.append(subprocess.Popen([sys.executable, '-m', *command], stdout=log, stderr=log, cwd=tmp_path, env=ENVIRONMENT))
+            wait_until(file.exists, processes[0])
+        deadline = time.monotonic() + TIMEOUT
+        address = None
+        while address is None:
+            assert time.monotonic() < deadline
+            try:
+                address = json.loads(file.read_text())['address']
+            except ValueError:  # is being written
+                time.sleep(0.05)
+        status, text = run(folder, tmp_path / 'store', '--scheduler', address)
+        assert status == 0, text
+    finally:
+        for process in reversed(processes):
+            process.terminate()
+        for process in processes:
+            process.wait(timeout=TIMEOUT)
+    assert_same_bytes(reference, tmp_path / 'store')
+
+
+def test_rows_are_those_of_cable_sim(tmp_path):
+    """Each sample is the scene with its values, as World simulates it: with rates that divide the steps' and such that do not."""
+    from verlet_cable.sim import Scene, World
+    for rate in (50, 60):
+        folder = write(tmp_path, SWEEP.replace('rate: 50', f'rate: {rate}').replace('samples: 40', 'samples: 3').replace('1.0\n', '0.5\n'))
+        store = tmp_path / f'store{rate}'
+        status, text = run(folder, store, '--workers', '1')
+        assert status == 0, text
+        root = zarr.open_group(str(store), mode='r')
+        assert root['hose/positions'].shape == (3, 1 + rate // 2, 21, 3)
+        assert root['left/wrench'].shape == (3, 1 + rate // 2, 6)
+        assert list(root['status'][:]) == [0, 0, 0]
+        assert set(root['vary/materials.m.radius'][:]) <= {0.004, 0.005}
+        for sample in range(3):
+            text = SCENE.replace('length: 1.0', f'length: {float(root["vary/cables[0].length"][sample])!r}')
+            text = text.replace('0.1, radius', f'{float(root["vary/materials.m.linear_density"][sample])!r}, radius')
+            text = text.replace('radius: 0.005', f'radius: {float(root["vary/materials.m.radius"][sample])!r}')
+            world = World(Scene.from_yaml(text))
+            done = 0
+            for row in range(1 + rate // 2):
+                step = int(np.ceil(row / (rate * 0.005) - 1e-6))
+                world.step(step - done)
+                done = step
+                assert np.array_equal(root['hose/positions'][sample, row], world.positions('hose'))
+                assert np.array_equal(root['hose/tension'][sample, row], world.tension('hose'))
+
+
+def test_sample_depends_on_seed_and_number_only(tmp_path):
+    folder = write(tmp_path, SWEEP)
+    (folder / 'fewer.yaml').write_text(SWEEP.replace('samples: 40', 'samples: 7'))
+    (folder / 'other.yaml').write_text(SWEEP.replace('samples: 40', 'samples: 7').replace('seed: 1', 'seed: 2'))
+    for name in ('sweep', 'fewer', 'other'):
+        status, text = run(folder, tmp_path / name, '--workers', '2', sweep=f'{name}.yaml')
+        assert status == 0, text
+    sweep, fewer, other = (zarr.open_group(str(tmp_path / name), mode='r') for name in ('sweep', 'fewer', 'other'))
+    for key in ('vary/cables[0].length', 'vary/materials.m.linear_density', 'hose/positions'):
+        assert np.array_equal(sweep[key][:7], fewer[key][:])
+        assert not np.array_equal(other[key][:], fewer[key][:])
+    lengths = sweep['vary/cables[0].length'][:]
+    assert len(set(lengths)) == 40 and lengths.min() >= 0.95 and lengths.max() <= 1.1
+    assert sweep.attrs['seed'] == 1 and sweep.attrs['units']['tension'] == 'N' and sweep.attrs['scene'] == SCENE
+
+
+def test_wrong_samples_are_recorded(tmp_path):
+    scene = SCENE.replace('radius: 0.005', 'axial_stiffness: 100, breaking_tension: 1.0e+9, radius: 0.005')
+    sweep = SWEEP.replace('{uniform: [0.95, 1.1]}', '{choice: [1.0, -1.0]}')
+    sweep += '  materials.m.breaking_tension: {choice: [1.0e-3, 1.0e+9]}\n'
+    folder = write(tmp_path, sweep, scene)
+    status, text = run(folder, tmp_path / 'store', '--workers', '2')
+    assert status == 0, text
+    assert 'cables[0].length' in text and 'failed:' in text
+    root = zarr.open_group(str(tmp_path / 'store'), mode='r')
+    status = root['status'][:]
+    is_wrong = root['vary/cables[0].length'][:] < 0
+    is_weak = root['vary/materials.m.breaking_tension'][:] < 1
+    assert {0, 1, 2} == set(status)
+    assert np.array_equal(status, np.where(is_wrong, 1, np.where(is_weak, 2, 0)))
+    for sample in range(40):
+        message = root['message'][sample].decode()
+        assert ('cables[0].length' in message) == (status[sample] == 1)
+        assert bool(message) == (status[sample] != 0)
+        assert np.any(root['hose/positions'][sample]) == (status[sample] == 0)
+
+
+def test_motions_are_drawn_from(tmp_path):
+    header = 't,frame,x,y,z,qx,qy,qz,qw\n'
+    (tmp_path / 'up.csv').write_text(header + '0,hand,0.7,0,0,0,0,0,1\n1,hand,0.7,0,0.2,0,0,0,1\n')
+    (tmp_path / 'down.csv').write_text(header + '0,hand,0.7,0,0,0,0,0,1\n1,hand,0.7,0,-0.2,0,0,0,1\n')
+    folder = write(tmp_path, SWEEP + '\nmotions: [up.csv, down.csv]\n')
+    status, text = run(folder, tmp_path / 'store', '--workers', '2')
+    assert status == 0, text
+    root = zarr.open_group(str(tmp_path / 'store'), mode='r')
+    drawn = root['vary/motion'][:]
+    assert root['vary/motion'].attrs['choices'] == ['up.csv', 'down.csv'] and set(drawn) == {0, 1}
+    assert np.allclose(root['hose/positions'][:, -1, -1, 2], np.where(drawn == 0, 0.2, -0.2), atol=1e-3)
+
+
+def test_all_errors_of_a_description_at_once(tmp_path):
+    folder = write(tmp_path, """
+scene: scene.yaml
+motion: nowhere.csv
+duration: -1
+record: {rate: 1000, fields: [positions, colour]}
+samples: 0
+seed: 1.5
+wokers: 3
+vary:
+  materials.m.linear_density: {log_uniform: [0.0, 0.2]}
+  materials.n.radius: {uniform: [0.1, 0.2]}
+  cables[1].length: {uniform: [2, 1]}
+  cables[0].segments: {choice: [10, 20]}
+  cables[0].length: {gaussian: [1, 2]}
+""")
+    (tmp_path / 'store').mkdir()
+    status, text = run(folder, tmp_path / 'store')
+    assert status == 2
+    for word in ('nowhere.csv', 'duration: -1', 'record.rate: 1000', 'at most 1 / time_step = 200', 'record.fields[1]', 'colour', 'samples: 0',
+                 'seed: 1.5', 'wokers', 'vary.materials.m.linear_density.log_uniform: [0.0, 0.2]', 'vary.materials.n.radius',
+                 'vary.cables[1].length', 'vary.cables[1].length.uniform: [2, 1]', 'vary.cables[0].segments: cannot vary',
+                 'vary.cables[0].length', 'gaussian', '--output'):
+        assert word in text, f'{word} is not in\n{text}'
+    assert not list((tmp_path / 'store').iterdir())
+
+
+def test_errors_of_the_scene_are_named(tmp_path):
+    folder = write(tmp_path, SWEEP, SCENE.replace('length: 1.0', 'length: -1').replace('linear_density: 0.1', 'linear_density: none'))
+    status, text = run(folder, tmp_path / 'store')
+    assert status == 2 and 'scene.yaml: ' in text and 'cables[0].length' in text and 'linear_density' in text
+    assert not (tmp_path / 'store').exists()
+
+
+def test_fields_that_the_scene_does_not_have(tmp_path):
+    folder = write(tmp_path, SWEEP.replace('wrench', 'body_pose'))
+    status, text = run(folder, tmp_path / 'store')
+    assert status == 2 and 'record.fields[2]: body_pose' in text, text
+
+
+def test_resume_refuses_another_sweep(tmp_path):
+    folder = write(tmp_path)
+    assert run(folder, tmp_path / 'store', '--workers', '1')[0] == 0
+    before = {name: (tmp_path / 'store' / name).stat().st_mtime_ns for name in files_of(tmp_path / 'store')}
+    (folder / 'sweep.yaml').write_text(SWEEP.replace('seed: 1', 'seed: 3'))
+    status, text = run(folder, tmp_path / 'store', '--resume')
+    assert status == 2 and 'sweep.seed was 1, is 3' in text, text
+    write(folder, SWEEP, SCENE.replace('drag: 0.1', 'drag: 0.2'))
+    status, text = run(folder, tmp_path / 'store', '--resume')
+    assert status == 2 and 'scene' in text, text
+    (folder / 'other').mkdir()
+    status, text = run(folder, folder / 'other', '--resume')
+    assert status == 2 and 'no store of cable_sweep' in text, text
+    assert before == {name: (tmp_path / 'store' / name).stat().st_mtime_ns for name in files_of(tmp_path / 'store')}
+
+
+def test_no_scheduler(tmp_path):
+    folder = write(tmp_path)
+    status, text = run(folder, tmp_path / 'store', '--scheduler', 'nonsense://here')
+    assert status == 2 and '--scheduler: nonsense://here' in text, text
+    assert not (tmp_path / 'store').exists()
+
+
+if __name__ == '__main__':
+    sys.exit(pytest.main([__file__, '-v', *sys.argv[1:]]))
