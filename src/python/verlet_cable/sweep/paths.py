@@ -42,10 +42,8 @@ def why_absent(tree, parts):
     return None
 
 
-def with_value(tree, parts, value):
-    """A copy of the scene with `value` at this path. What is not on the path is shared with `tree`."""
-    if not parts:
-        return value
-    copy = tree.copy()
-    copy[parts[0]] = with_value(tree.get(parts[0]) if isinstance(tree, dict) else tree[parts[0]], parts[1:], value)
-    return copy
+def holder_of(tree, parts):
+    """The dict or list that the last key of a path is in, or is to be put into."""
+    for part in parts[:-1]:
+        tree = tree[part]
+    return tree
