@@ -112,9 +112,9 @@ def undisturbed(tmp_path_factory):
     return folder, folder / 'undisturbed'
 
 
-def test_same_bytes_on_one_and_two_workers(undisturbed, tmp_path):
+def test_same_bytes_on_one_and_four_workers(undisturbed, tmp_path):
     folder, reference = undisturbed
-    status, text = run(folder, tmp_path / 'store', '--workers', '2')
+    status, text = run(folder, tmp_path / 'store', '--workers', '4')
     assert status == 0, text
     assert_same_bytes(reference, tmp_path / 'store')
 

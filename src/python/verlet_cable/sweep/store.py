@@ -15,6 +15,7 @@ import fcntl
 import hashlib
 import os
 import shutil
+import socket
 
 import numpy as np
 
@@ -44,7 +45,7 @@ def versions():
 
 def begin(path, sweep, layout):
     """Makes the store, with nothing in it. It appears at `path` when it is whole."""
-    aside = path + '.partial'
+    aside = f'{path}.{socket.gethostname()}-{os.getpid()}.partial'  # another cable_sweep may be about to begin the same
     shutil.rmtree(aside, ignore_errors=True)
     try:
         os.makedirs(os.path.dirname(path), exist_ok=True)
@@ -52,7 +53,8 @@ def begin(path, sweep, layout):
         os.rename(aside, path)
     except OSError as error:
         shutil.rmtree(aside, ignore_errors=True)
-        raise SweepError([f'--output: {path}: {error.strerror}']) from error
+        reason = 'another cable_sweep has begun it' if error.errno in (errno.ENOTEMPTY, errno.EEXIST) else error.strerror
+        raise SweepError([f'--output: {path}: {reason}; allowed: a place that can be written to, which nothing else is at']) from error
 
 
 def _attributes(sweep, layout):
