@@ -26,7 +26,8 @@ scene: scene.yaml
 duration: 0.1
 record: {rate: 10, fields: [positions]}
 samples: 2
-vary: {cables[0].length: {uniform: [0.9, 1.1]}}
+vary:
+  cables[0].length: {uniform: [0.9, 1.1]}
 '''
 
 

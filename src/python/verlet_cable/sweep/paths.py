@@ -26,7 +26,7 @@ def path_text(parts):
 
 
 def why_absent(tree, parts):
-    """None if a value can be put at this path of the scene, else why not. The last key may be one that the scene leaves to its default."""
+    """None if there is something at this path of the scene, or a dict that its last key can be put into; else what is not there."""
     for depth, part in enumerate(parts):
         here = path_text(parts[:depth]) or 'the scene'
         if isinstance(part, int):
@@ -37,7 +37,7 @@ def why_absent(tree, parts):
         elif not isinstance(tree, dict):
             return f'{here} has no keys'
         elif part not in tree:
-            return None if depth + 1 == len(parts) and depth > 0 else f'{here} has {", ".join(tree) or "no keys"}'
+            return None if depth + 1 == len(parts) else f'{here} has {", ".join(tree) or "no keys"}'
         tree = tree[part]
     return None
 
