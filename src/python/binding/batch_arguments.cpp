@@ -40,10 +40,13 @@ std::vector<std::vector<Pose>> read_poses(const Numbers& poses, std::size_t coun
                           std::to_string(worlds) + ", steps, 7)");
   const py::ssize_t steps = rollout ? poses.shape(1) : 1;
   std::vector<std::vector<Pose>> read(count);
+  const double* numbers = poses.data();
   for (py::ssize_t i = 0; i < worlds; ++i) {
-    for (py::ssize_t k = 0; k < steps; ++k) {
-      const std::string index = "poses[" + std::to_string(i) + (rollout ? ", " + std::to_string(k) : "") + "]";
-      read[i].push_back(read_pose(poses.data() + (i * steps + k) * 7, index));
+    read[i].reserve(static_cast<std::size_t>(steps));
+    for (py::ssize_t k = 0; k < steps; ++k, numbers += 7) {
+      const std::optional<Pose> pose = sound_pose(numbers);
+      read[i].push_back(
+          pose ? *pose : read_pose(numbers, "poses[" + std::to_string(i) + (rollout ? ", " + std::to_string(k) : "") + "]"));
     }
   }
   return read;

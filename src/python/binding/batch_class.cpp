@@ -115,7 +115,7 @@ py::array_t<double> read(PythonBatch& batch, const std::string& name) {
   return array_of(batch.batch, quantity, name);
 }
 
-py::array_t<double> observe(PythonBatch& batch, const std::vector<std::pair<std::string, std::string>>& parts) {
+py::array_t<double> observe(PythonBatch& batch, const std::vector<GivenPart>& parts) {
   const InUse in_use(batch.busy, "batch");
   return observations(batch.batch, parts);
 }
@@ -203,9 +203,13 @@ void add_batch_class(py::module_& module) {
       .def("observations", observe, py::arg("parts"),
            "(count, k) float64: of each world the numbers of all `parts` as they are now, flattened, side by side. parts: "
            "[(quantity, name), ...], quantities being the methods that read arrays: [('positions', 'rope'), ('wrench', 'left')]; "
-           "units and order as theirs. A new array, in C order.\n\nRaises KeyError for names, ValueError for quantities, and "
-           "where a "
-           "world has not as many nodes as the others.")
+           "units and order as theirs. ('positions', 'rope', 20), or velocities likewise, reads 20 points instead of nodes, at "
+           "even "
+           "distances along what is now the cable of that name, from end to end: also where cables differ in their nodes, since "
+           "they "
+           "slide through guides, were cut or given another length, or broke. A new array, in C order.\n\nRaises KeyError for "
+           "names, "
+           "ValueError for quantities and numbers of points, and where a world has not as many nodes as the others.")
       .def(
           "energy", [](const PythonBatch& batch) { return energies(use(batch)); }, "Energies [J] as of World, (count,) each.")
       .def_property_readonly(
