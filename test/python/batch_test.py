@@ -152,6 +152,9 @@ def test_a_copy_of_a_batch_knows_nothing_of_the_other(scene, moved):
     batch.step(4)
     other = batch.copy()
     before = other.state_hash
+    for one in (copy.copy(batch), copy.deepcopy(batch)):
+        one.step(1)
+        assert one.state_hash != before == batch.state_hash
     batch.set_world([0, 2], moved)
     batch.set_frames('hand', held_at(0.61, 0.62, 0.63))
     batch.step(5)
@@ -296,10 +299,12 @@ def test_a_scene_of_another_kind_is_refused(hang, scene):
 
 @pytest.mark.parametrize('wrong, kind, text', [
     (lambda b, w: Batch(w, 0), ValueError, 'count: 0'),
+    (lambda b, w: Batch(w, 2 ** 62), ValueError, 'count: 4611686018427387904; allowed: 1 to 1000000'),
+    (lambda b, w: b.set_world([[1], [1, 2]], w), ValueError, r'index: \[\[1\], \[1, 2\]\]; allowed'),
     (lambda b, w: Batch(w, 2, threads=-1), ValueError, 'threads: -1'),
     (lambda b, w: b.set_world(3, w), IndexError, 'index: 3; allowed: -3 to 2'),
     (lambda b, w: b.set_world([0, -4], w), IndexError, 'index: -4'),
-    (lambda b, w: b.set_world(numpy.array([2 ** 64 - 1], numpy.uint64), w), IndexError, 'index'),
+    (lambda b, w: b.set_world(numpy.array([2 ** 64 - 1], numpy.uint64), w), IndexError, 'index: 18446744073709551615; allowed: -3 to 2'),
     (lambda b, w: b.set_world(2 ** 70, w), ValueError, 'index'),
     (lambda b, w: b.set_world(0.0, w), ValueError, r'index: shape \(\) of float64'),
     (lambda b, w: b.set_world([0.0], w), ValueError, 'float64'),
