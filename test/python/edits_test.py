@@ -1,6 +1,7 @@
 """Edits of worlds from Python: what they do, what they refuse, and that they are those of cable_sim and of the node's services."""
 import copy
 import pickle
+import threading
 
 import numpy
 import pytest
@@ -508,3 +509,30 @@ def test_names_are_those_that_there_are(ropes):
     assert (world.cable_names, world.attachment_names) == (['first', 'second', 'first_2'], ['left', 'pin1'])
     assert world.frame_names == ['hand']
     assert world.obstacle_names == ['floor']
+
+
+def test_a_world_that_another_thread_steps_is_not_edited(ropes):
+    world = world_of(ropes)
+    same = world.copy()
+    calls = [lambda: world.pin('second', node=0, keep_offset=True), lambda: world.cut('first', node=3), world.events,
+             lambda: world.set_obstacle('ball', type='sphere', radius=0.1), lambda: world.tune(gravity=[0, 0, 0]),
+             lambda: world.remove_obstacle('floor'), lambda: world.frame_names, lambda: world.obstacle_names]
+    thread = threading.Thread(target=world.step, args=(20000,))
+    thread.start()
+    while True:
+        try:
+            world.cable_names
+            if not thread.is_alive():
+                return  # this one did not run meanwhile: the machine is busy
+        except RuntimeError:
+            break
+    for call in calls:
+        try:
+            call()
+        except RuntimeError as error:
+            assert 'in use by another thread' in str(error)
+        else:
+            return thread.join()  # it had ended
+    thread.join()
+    same.step(20000)
+    assert world.state_hash == same.state_hash

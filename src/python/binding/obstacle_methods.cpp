@@ -30,7 +30,8 @@ void add_obstacle_methods(py::class_<PythonWorld>& world) {
       "set_obstacle", set_from_keys, py::arg("name"), py::kw_only(), py::arg("directory") = py::none(),
       "Adds an obstacle, or replaces the one of that name, which is how one is moved: what lies on it goes on lying. The "
       "other arguments are the keys of a scene's obstacles: type='sphere', pose=[x, y, z, roll, pitch, yaw] [m, rad], "
-      "radius=..., ...\n\nA frame that the world does not have begins at initial_pose, else at the origin; of a robot's "
+      "radius=..., ...\n\nIt has no velocity from being set: one that carries or pushes what it touches moves with its frame. A "
+      "frame that the world does not have begins at initial_pose, else at the origin; of a robot's "
       "link where that is. set_frame moves it. directory: where a mesh's path starts, by default the current one.\n\nRaises "
       "SceneError with every error at once; then nothing is changed.");
   world.def("remove_obstacle", remove_by_name, py::arg("name"),

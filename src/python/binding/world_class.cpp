@@ -120,8 +120,8 @@ void add_world_class(py::module_& module) {
            "qx, qy, qz, qw in the fixed frame.\n\nRaises SceneError, ValueError, KeyError.")
       .def("set_frame", set_frame, py::arg("name"), py::arg("position"), py::arg("quaternion_xyzw"),
            "Where a frame is at the end of the next step, and from then on: (3,) [m] and (4,), in the fixed frame. It no longer "
-           "follows "
-           "a motion.\n\nRaises KeyError for a name that the scene does not have, ValueError.")
+           "follows a motion. Links of a robot whose parents it is follow it, where they are not given a pose themselves.\n\n"
+           "Raises KeyError for a name that is not in frame_names, ValueError.")
       .def("step", step, py::arg("steps") = 1,
            "Advances by so many time steps. Returns the worst that came up: 'ok', 'overstretched', 'jumped', 'degraded' or "
            "'fault'. Other threads run meanwhile; Ctrl-C ends it between two steps.")
