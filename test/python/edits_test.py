@@ -276,6 +276,18 @@ def test_events_are_those_of_cable_sim(ropes, cable_sim):
     assert world.events() == []
 
 
+def test_a_guide_that_lets_go_is_an_event(ropes, cable_sim):
+    ropes['cables'][1]['initial'] = {'type': 'straight', 'from': [2, 0, 0], 'to': [2, 0, -1]}
+    ropes['guides'] = [{'name': 'eye', 'cable': 'second', 'at': 0.2, 'frame': 'mast', 'offset': [2, 0, -0.2], 'type': 'eyelet'}]
+    summary, _ = cable_sim(ropes, '--duration', '0.5')
+    world = world_of(ropes)
+    assert world.guide_names == ['eye']
+    world.step(100)
+    released, = world.events()
+    assert released[1:4] == ('RELEASED', 'second', 'eye') and released.message == 'guide "eye" has let cable "second" go'
+    assert [e['time'] for e in summary['events'] if e['type'] == 'RELEASED'] == [released.time]
+
+
 # Obstacles
 
 def test_an_obstacle_is_moved_and_removed(hang):
