@@ -64,7 +64,7 @@ BoundaryInputs FrameSource::at(double time) const {
   return at(time, 0, {});
 }
 
-BoundaryInputs FrameSource::at(double time, const GivenPoses& given) const {
+BoundaryInputs FrameSource::at(double time, const PosesById& given) const {
   return at(time, 0, given);
 }
 
@@ -80,7 +80,7 @@ BoundaryInputs FrameSource::at_start() const {
   return inputs;
 }
 
-BoundaryInputs FrameSource::at(double time, double lead, const GivenPoses& given) const {
+BoundaryInputs FrameSource::at(double time, double lead, const PosesById& given) const {
   BoundaryInputs placed;  // one a frame
   BoundaryInputs inputs(ids_, FrameInput{{}, false, FrameVelocity{}});
   for (const Frame& frame : frames_) {

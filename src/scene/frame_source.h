@@ -9,8 +9,8 @@
 
 namespace verlet_cable {
 
-/// Poses that go before a motion, by frame id.
-using GivenPoses = std::map<int, Pose>;
+/// Of frames, by their ids.
+using PosesById = std::map<int, Pose>;
 
 /// Where a scene's frames are over time: by the motion, else at their `initial_pose`; else a robot's link is where its parent has
 /// it with the joint at zero; else at the origin.
@@ -22,7 +22,7 @@ class FrameSource {
   /// frames.
   BoundaryInputs at(double time) const;
   /// The same, with frames that are given a pose instead, and what robots' links there carry.
-  BoundaryInputs at(double time, const GivenPoses& given) const;
+  BoundaryInputs at(double time, const PosesById& given) const;
   /// Whether no frame moves: they are everywhere as at(0).
   bool rests() const;
   /// Whether there is a robot: its links carry others.
@@ -36,7 +36,7 @@ class FrameSource {
 
  private:
   /// `lead` [s]: how much later the velocities are of.
-  BoundaryInputs at(double time, double lead, const GivenPoses& given) const;
+  BoundaryInputs at(double time, double lead, const PosesById& given) const;
 
   struct Frame {
     int id = -1;       ///< -1: nothing but a link uses it

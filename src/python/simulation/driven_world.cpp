@@ -85,15 +85,15 @@ std::shared_ptr<const FrameSource> DrivenWorld::frames_with(const std::string& n
   return frames;
 }
 
-GivenPoses DrivenWorld::given_now() const {
-  GivenPoses given;
-  for (const GivenFrame& frame : given_) given.emplace(frame.frame, world_.frame_pose(frame.frame));
+PosesById DrivenWorld::given_now() const {
+  PosesById given;
+  for (const GivenPoses& frame : given_) given.emplace(frame.frame, world_.frame_pose(frame.frame));
   return given;
 }
 
 void DrivenWorld::set_frame(int frame, std::vector<Pose> poses) {
   const auto given =
-      std::find_if(given_.begin(), given_.end(), [frame](const GivenFrame& other) { return other.frame == frame; });
+      std::find_if(given_.begin(), given_.end(), [frame](const GivenPoses& other) { return other.frame == frame; });
   if (given == given_.end())
     given_.push_back({frame, std::move(poses), 0});
   else
@@ -108,14 +108,14 @@ void DrivenWorld::tune(std::shared_ptr<const SceneDesc> scene) {
 const BoundaryInputs& DrivenWorld::next_inputs() {
   const double time = static_cast<double>(world_.steps() + 1) * scene_->time_step;
   if (frames_->has_links() && !given_.empty()) {
-    GivenPoses poses;
-    for (const GivenFrame& given : given_) poses.emplace(given.frame, given.poses[given.next]);
+    PosesById poses;
+    for (const GivenPoses& given : given_) poses.emplace(given.frame, given.poses[given.next]);
     targets_ = frames_->at(time, poses);
   } else {
     if (!frames_->rests()) targets_ = frames_->at(time);
-    for (const GivenFrame& given : given_) targets_[given.frame].pose = given.poses[given.next];
+    for (const GivenPoses& given : given_) targets_[given.frame].pose = given.poses[given.next];
   }
-  for (GivenFrame& given : given_)
+  for (GivenPoses& given : given_)
     if (given.next + 1 < given.poses.size()) ++given.next;
   inputs_.swap(targets_);
   if (scene_->max_frame_speed < infinity) limit_frame_motion(targets_, scene_->max_frame_speed * scene_->time_step, inputs_);

@@ -49,9 +49,9 @@ class DrivenWorld {
  private:
   std::shared_ptr<const FrameSource> frames_with(const std::string& name, std::size_t id, const Pose& resting) const;
   /// Of the frames that were given poses, now.
-  GivenPoses given_now() const;
+  PosesById given_now() const;
 
-  struct GivenFrame {
+  struct GivenPoses {
     int frame = 0;
     std::vector<Pose> poses;
     std::size_t next = 0;
@@ -62,7 +62,7 @@ class DrivenWorld {
   BoundaryInputs inputs_;   ///< of the last step, at first those of the start
   BoundaryInputs targets_;  ///< where the motion has the frames
   World world_;
-  std::vector<GivenFrame> given_;
+  std::vector<GivenPoses> given_;
 };
 
 }  // namespace verlet_cable
