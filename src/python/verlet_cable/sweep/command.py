@@ -1,5 +1,6 @@
 """cable_sweep SWEEP.yaml --output DIR [--workers N | --scheduler tcp://HOST:PORT] [--resume]"""
 import argparse
+import contextlib
 import os
 import signal
 import sys
@@ -68,11 +69,15 @@ def _run(options, path, sweep, layout):
     reason = None
     try:
         if not store.is_complete(path, layout):
-            with schedule.cluster(options.workers, options.scheduler) as client:
-                if not os.path.lexists(path):
+            with contextlib.ExitStack() as stack:
+                is_begun = os.path.lexists(path)
+                if is_begun:
+                    stack.enter_context(store.locked(path))
+                client = stack.enter_context(schedule.cluster(options.workers, options.scheduler))
+                if not is_begun:
                     store.begin(path, sweep, layout)
-                with store.locked(path):
-                    _do_the_rest(client, path, sweep, layout, report)
+                    stack.enter_context(store.locked(path))
+                _do_the_rest(client, path, sweep, layout, report)
     except SweepStopped as stopped:
         reason = str(stopped)
     except KeyboardInterrupt:

@@ -24,6 +24,20 @@ _CONNECT = 10          # [s] for a scheduler to answer
 _PATIENCE = 5          # [s] without any worker after which the user is told
 _RECOUNT = 5           # [s] after which workers are counted again
 
+# Logs of bounded length, so that memory is flat; and nothing that looks at the processes many times a second: on few cores that
+# would take what samples need.
+_OWN_CLUSTER = {
+    'distributed.scheduler.transition-log-length': 1000, 'distributed.scheduler.events-log-length': 1000,
+    'distributed.scheduler.active-memory-manager.start': False, 'distributed.scheduler.work-stealing-interval': '1s',
+    'distributed.worker.use-file-locking': False, 'distributed.worker.profile.enabled': False,
+    'distributed.admin.log-length': 100, 'distributed.admin.tick.interval': '1s', 'distributed.admin.tick.limit': '1h',
+    'distributed.admin.system-monitor.interval': '10s',
+    'distributed.nanny.pre-spawn-environ': {'MALLOC_TRIM_THRESHOLD_': 1 << 28, 'MALLOC_MMAP_THRESHOLD_': 1 << 28, 'OMP_NUM_THREADS': 1},
+}
+
+# Dask would look for the source text around every call of submit(), to show it on its dashboard.
+_SUBMIT = {'distributed.diagnostics.computations.ignore-modules': ['.*']}
+
 
 @contextlib.contextmanager
 def cluster(workers, scheduler):
@@ -38,28 +52,25 @@ def cluster(workers, scheduler):
             yield client
         return
     scratch = tempfile.mkdtemp(prefix='cable_sweep-')
-    settings = {
-        'distributed.scheduler.transition-log-length': 1000, 'distributed.scheduler.events-log-length': 1000,
-        'distributed.worker.use-file-locking': False, 'distributed.admin.log-length': 100,
-        'distributed.worker.profile.enabled': False,
-    }
     try:
-        with dask.config.set(settings), distributed.LocalCluster(
+        with dask.config.set(_OWN_CLUSTER), distributed.LocalCluster(
                 n_workers=workers, threads_per_worker=1, processes=True, host='127.0.0.1', dashboard_address=None,
                 memory_limit=0, local_directory=scratch, silence_logs=logging.CRITICAL) as own, distributed.Client(
                 own, set_as_default=False) as client:
-            client.register_worker_plugin(_Uninterrupted(), name='uninterrupted')
+            client.register_worker_plugin(_OwnWorker(), name='own')
             yield client
     finally:
         shutil.rmtree(scratch, ignore_errors=True)
 
 
-class _Uninterrupted(distributed.WorkerPlugin):
-    """Ctrl-C on a terminal reaches all processes; the workers of the own cluster are ended by the program."""
+class _OwnWorker(distributed.WorkerPlugin):
+    """Ctrl-C on a terminal reaches all processes; the workers of the own cluster are ended by the program. What they need is imported
+    while the cluster starts."""
 
     def setup(self, worker):
         import signal
         import threading
+        from . import worker as _  # noqa: F401
         if threading.current_thread() is threading.main_thread():
             signal.signal(signal.SIGINT, signal.SIG_IGN)
 
@@ -83,7 +94,8 @@ def run_chunks(client, arguments, chunks, report):
                 chunk = next(pending, None)
                 if chunk is None:
                     break
-                future = client.submit(run_chunk, *arguments, chunk, key=f'{name}-{chunk}', pure=False)
+                with dask.config.set(_SUBMIT):
+                    future = client.submit(run_chunk, *arguments, chunk, key=f'{name}-{chunk}', pure=False)
                 running[future] = chunk
                 done.add(future)
             if not running:
