@@ -1,0 +1,18 @@
+"""Tasks with cables to learn, in Gymnasium's interface: https://gymnasium.farama.org. Gymnasium need not be installed.
+
+    from verlet_cable.environments import ShapeRope
+
+    environment = ShapeRope()
+    observation, info = environment.reset(seed=1)
+    observation, reward, terminated, truncated, info = environment.step(environment.action_space.sample())
+
+ShapeRope and LayCable have one world; ShapeRopeVector and LayCableVector have many that step together. Where Gymnasium 1.1 or newer is
+installed, they are a gymnasium.Env and a gymnasium.vector.VectorEnv, and their spaces are gymnasium.spaces.Box.
+
+The same seed and actions give the same bytes, in one world or among many, on any number of threads.
+"""
+from verlet_cable.environments.interface import AutoresetMode, Box
+from verlet_cable.environments.lay_cable import LayCable, LayCableVector
+from verlet_cable.environments.shape_rope import ShapeRope, ShapeRopeVector
+
+__all__ = ['AutoresetMode', 'Box', 'LayCable', 'LayCableVector', 'ShapeRope', 'ShapeRopeVector']
