@@ -6,40 +6,42 @@ import numpy
 from verlet_cable.environments import arguments
 from verlet_cable.environments.drawing import View
 from verlet_cable.environments.environment import Environment, VectorEnvironment
-from verlet_cable.environments.task import STEP_TIME, Seen, Task, chain, lengths, side_by_side
+from verlet_cable.environments.task import STEP_TIME, Seen, Task, chain, give_way, lengths, side_by_side
 from verlet_cable.sim import Batch, Scene
 
-LENGTH = 1.0       # [m]
+LENGTH = 0.6       # [m]
 SEGMENTS = 50
-RADIUS = 0.00225   # [m]
+RADIUS = 0.002     # [m]
 TIME_STEP = 0.005  # [s]
-# usb_cable of config/materials.yaml; but it does not break, whatever a hand does.
-MATERIAL = {'linear_density': 0.026, 'radius': RADIUS, 'axial_stiffness': 8.4e4, 'bending_stiffness': 3.7e-4,
-            'torsional_stiffness': 2.7e-4, 'axial_damping': 8.4, 'bending_damping': 3.7e-6, 'torsional_damping': 2.7e-6}
+# A tube for compressed air of polyurethane, 4 mm outside and 2.5 mm inside: 7.7 mm^2, 1200 kg/m^3, 21 MPa (90 Shore A, see
+# config/materials.yaml, and there for damping), Poisson's ratio 0.48.
+MATERIAL = {'linear_density': 0.0092, 'radius': RADIUS, 'axial_stiffness': 161.0, 'bending_stiffness': 2.2e-4,
+            'torsional_stiffness': 1.5e-4, 'axial_damping': 0.016, 'bending_damping': 2.2e-6, 'torsional_damping': 1.5e-6}
 
-# A clip is two posts that stand on the table; the cable goes between them.
+# A clip is two posts that stand on the table; the cable goes between them. Segments are so short, and hands stay so far from
+# posts, that a post does not get between a hand and the node next to it.
 CLIPS = 3
-GAP = 0.010                                # [m] between the posts
-POST = 0.004                               # [m] their radius,
+GAP = 0.008                                # [m] between the posts
+POST = 0.005                               # [m] their radius,
 HEIGHT = 0.020                             # [m] and how high they are
-PLACES = numpy.array([0.20, 0.37, 0.54])   # [m] of the clips along x
-ASIDE = 0.04                               # [m] how far from the x axis they are at most,
+PLACES = numpy.array([0.12, 0.22, 0.32])   # [m] of the clips along x
+ASIDE = 0.025                              # [m] how far from the x axis they are at most,
 TURNED = 0.3                               # [rad] and how much they are turned
 
-SPEED = 0.4                                # [m/s] of the hand along each axis at an action of 1
-LOW = numpy.array([-0.6, -0.4, RADIUS])    # [m] between which the hand stays,
-HIGH = numpy.array([0.95, 0.4, 0.2])
-REACH = 0.97 * LENGTH                      # [m] and how far it goes, along the clips that hold the cable
-STRENGTH = 20.0                            # [N] a hand that is pulled by more
-YIELDING = 0.1                             # [m/s] gives way
+SPEED = 0.25                               # [m/s] of the hand along each axis at an action of 1
+LOW = numpy.array([-0.35, -0.25, 3.2 * RADIUS])  # [m] between which the hand stays: above a cable that lies there,
+HIGH = numpy.array([0.57, 0.25, 0.1])
+REACH = 0.97 * LENGTH                      # [m] how far it goes, along the clips that hold the cable,
+CLEARANCE = POST + RADIUS                  # [m] and how near to the axis of a post
+STRENGTH = 5.0                             # [N] that a hand holds against
 
-FOLD = 0.06                                # [m] radius; the cable begins folded, its ends side by side
-END = 0.08                                 # [m] the hand is so far ahead of the plug at first
+FOLD = 0.05                                # [m] radius; the cable begins folded, its ends side by side
+END = 0.03                                 # [m] the hand is so far ahead of the other end at first
 REST_STEPS = 100                           # time steps in which the cable comes to rest before an episode
 
 LAYOUT_SEED = 21
 LAYOUTS = 32
-DEMONSTRATED_SPEED = 0.3                   # [m/s]
+DEMONSTRATED_SPEED = 0.2                   # [m/s]
 
 
 def folded():
@@ -49,7 +51,7 @@ def folded():
     return chain(numpy.pi - numpy.clip((passed - straight) / FOLD, 0, numpy.pi), LENGTH, RADIUS)
 
 
-def posts(name, clip):
+def make_posts(name, clip):
     """The obstacles that make a clip: x, y [m], and the unit vector along which it leads the cable."""
     x, y, along_x, along_y = clip.tolist()
     across = GAP / 2 + POST
@@ -71,7 +73,7 @@ def scene(clips):
                             {'name': 'hand', 'at': 'end', 'frame': 'hand', 'initial_pose': nodes[-1] + [0, 0, 0]}],
         }],
         'obstacles': [{'name': 'table', 'type': 'plane', 'friction': 0.5}]
-        + [post for i, clip in enumerate(clips) for post in posts(f'clip_{i}', clip)],
+        + [post for i, clip in enumerate(clips) for post in make_posts(f'clip_{i}', clip)],
         'contact': {},
     }
 
@@ -116,15 +118,17 @@ class LayCableTask(Task):
 
     def __init__(self):
         self.layouts = draw_layouts()
+        self.posts = numpy.array([[post['pose'][:2] for i, clip in enumerate(clips) for post in make_posts(f'clip_{i}', clip)]
+                                  for clips in self.layouts])
         hand = folded()[-1]
         super().__init__(begin_worlds(self.layouts), numpy.arange(LAYOUTS), numpy.tile(hand, (LAYOUTS, 1)), actions=3,
                          observations=6 * self.nodes + 6 + 5 * CLIPS)
         self.demonstrations = demonstrate(self.layouts, hand)
 
     def move(self, hand, actions, seen):
-        way = give_way(actions * SPEED, seen.force) * STEP_TIME
+        way = give_way(actions * SPEED, seen.force, STRENGTH) * STEP_TIME
         fixed, free = self._free_length(seen.info['held'], seen.info['layout'])
-        away = numpy.clip(hand + way, LOW, HIGH) - fixed
+        away = self._beside_posts(numpy.clip(hand + way, LOW, HIGH), seen.info['layout']) - fixed
         distance = lengths(away)
         # A clip that begins to hold the cable does not move the hand.
         allowed = numpy.maximum(free, lengths(hand - fixed))
@@ -141,6 +145,17 @@ class LayCableTask(Task):
             fixed = numpy.where(held[:, i, None], clip, fixed)
         return fixed, free
 
+    def _beside_posts(self, hand, layout):
+        """Hands (count, 3), those that are within posts moved out of them."""
+        moved = hand.copy()
+        low = hand[:, 2] < HEIGHT
+        for post in self.posts[layout].swapaxes(0, 1):
+            away = moved[:, :2] - post
+            distance = lengths(away)
+            inside = low & (distance < CLEARANCE)
+            moved[:, :2] += numpy.where(inside, CLEARANCE / numpy.maximum(distance, 1e-9) - 1, 0.0)[:, None] * away
+        return moved
+
     def poses(self, hand):
         poses = numpy.zeros((*hand.shape[:-1], 7))
         poses[..., :3] = hand
@@ -154,23 +169,14 @@ class LayCableTask(Task):
         return Seen(observation, force, held.sum(axis=1).astype(float), {'held': held, 'layout': variants.copy()})
 
     def draw(self, positions, hand, variant):
-        view = View((-0.5, -0.3), (1.0, 0.3), width=640)
+        view = View((-0.35, -0.2), (0.6, 0.2), width=640)
         for x, y, *direction in self.layouts[variant]:
             across = numpy.array([-direction[1], direction[0]]) * (GAP / 2 + POST)
             for sign in (1, -1):
                 view.disc((x, y) + sign * across, POST, (150, 60, 40))
         view.polyline(positions[:, :2], 2 * RADIUS, (30, 30, 30))
-        view.disc(hand[:2], 0.015, (40, 80, 160))
+        view.disc(hand[:2], 0.008, (40, 80, 160))
         return view.pixels
-
-
-def give_way(velocity, force):
-    """The velocity [m/s] of hands that are pulled by a force [N], (count, 3) each: those that are pulled by more than they are
-    strong do not go against it, but give way."""
-    pull = lengths(force)
-    along = force / numpy.maximum(pull, 1e-9)[:, None]
-    against = numpy.minimum((velocity * along).sum(axis=1), 0.0)
-    return numpy.where((pull > STRENGTH)[:, None], velocity + (YIELDING - against)[:, None] * along, velocity)
 
 
 def demonstrate(layouts, hand):
@@ -193,7 +199,7 @@ def demonstrate(layouts, hand):
 
 def waypoints(clips):
     """Where the hand passes: down before the first clip, through all, and a little up behind the last."""
-    before, behind, low, high = 0.05, 0.06, 0.006, 0.05
+    before, behind, low, high = 0.035, 0.035, LOW[2], 0.03
     first, along = clips[0, :2], clips[0, 2:]
     points = [[*(first - before * along), high]]
     for clip in clips:
@@ -207,9 +213,15 @@ def make_task():
 
 
 class LayCable(Environment):
-    """Lay a cable, plugged in at one end, into three clips on a table by leading its other end.
+    """Lay a cable, tied down at one end, into three clips on a table with a hand that leads the other one.
 
-    Action (3,), each from -1 to 1: velocity of the hand along x, y, z [0.4 m/s].
+    Action (3,), each from -1 to 1: velocity of the hand along x, y and z, in 0.25 m/s. The hand stays between -0.35 m and 0.57 m in
+    x, within 0.25 m in y, between 6.4 mm and 0.1 m in z, beside the posts, and where the cable reaches; it gives way to more than 5 N.
+    Observation (327,) float64: nodes (51, 3) [m] from the tied end on, their velocities (51, 3) [m/s], the hand (3,) [m], the force
+    on it (3,) [N], the clips (3, 4): x, y [m] and the direction in which they lead the cable, and whether they hold it (3,), 0 or 1.
+    Reward: how many clips hold the cable, 0 to 3: its center line passes between their posts, below their tops.
+    Info: `held` (3,) bool, `layout`, the index of the clips' places. Options of reset: `layout`, below 32; else one is drawn.
+    Episodes are truncated after `max_episode_steps` steps of 0.02 s, and terminated where the simulation had to stop.
     """
 
     def __init__(self, render_mode=None, max_episode_steps=400):

@@ -6,6 +6,7 @@ import numpy
 from verlet_cable.environments.interface import Box
 
 STEP_TIME = 0.02  # [s] of an environment's step
+YIELDING = 0.1    # [m/s] at which hands give way that are not strong enough
 
 
 class Seen(NamedTuple):
@@ -65,6 +66,15 @@ def lengths(vectors):
     for i in range(1, vectors.shape[-1]):
         squares = squares + vectors[..., i] ** 2
     return numpy.sqrt(squares)
+
+
+def give_way(velocity, force, strength):
+    """The velocity [m/s] of hands that are pulled by a force [N], (count, 3) each: those that are pulled by more than
+    their strength [N] do not go against it, but give way."""
+    pull = lengths(force)
+    along = force / numpy.maximum(pull, 1e-9)[:, None]
+    against = numpy.minimum((velocity * along).sum(axis=1), 0.0)
+    return numpy.where((pull > strength)[:, None], velocity + (YIELDING - against)[:, None] * along, velocity)
 
 
 def chain(headings, length, height):
