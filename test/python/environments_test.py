@@ -1,12 +1,12 @@
 """The environments: Gymnasium's interface, the same bytes whatever steps beside, and what is rewarded."""
 import inspect
-import os
 import subprocess
 import sys
-from pathlib import Path
+import textwrap
 
 import numpy
 import pytest
+from conftest import DEVEL
 
 from verlet_cable.environments import AutoresetMode, LayCable, LayCableVector, ShapeRope, ShapeRopeVector
 
@@ -264,3 +264,103 @@ def test_violent_actions_leave_numbers_finite(vector):
         assert abs(observation[:, :153]).max() < 1.2  # [m] no part flies away
         assert abs(observation[:, 309:312]).max() < 300  # [N] nor is torn
     assert not terminated.any()
+
+
+def test_a_world_that_had_to_stop_is_terminated_and_begins_anew(monkeypatch):
+    monkeypatch.setattr('verlet_cable.environments.worlds.FAULT', 0)  # every world's, which are all well
+    many = ShapeRopeVector(2, goals=2)
+    first, _ = many.reset(options={'goal': 1})
+    _, _, terminated, truncated, _ = many.step(numpy.ones((2, 3)))
+    assert terminated.all() and not truncated.any()
+    observation, reward, terminated, truncated, _ = many.step(numpy.ones((2, 3)))
+    assert not terminated.any() and not truncated.any() and (reward == 0).all()
+    assert same(observation[:, :312], first[:, :312])
+
+
+def test_what_is_returned_is_the_callers_to_change():
+    kept, changed = LayCableVector(2), LayCableVector(2)
+    kept.reset(seed=1)
+    observation, infos = changed.reset(seed=1)
+    for actions in actions_of(kept.action_space, 1, 5):
+        observation[:] = 7
+        for value in infos.values():
+            value[:] = 1
+        expected = kept.step(actions)
+        observation, _, _, _, infos = given = changed.step(actions)
+        assert same(expected, given)
+
+
+# With Gymnasium. It is no Debian package: what of it these environments use is written here, in a few lines.
+
+GYMNASIUM = {
+    '__init__.py': '''
+        import numpy
+        known = {}
+        def register(id, entry_point, vector_entry_point):
+            known[id] = (entry_point, vector_entry_point)
+        class Env:
+            spec = None
+            def reset(self, *, seed=None, options=None):
+                if seed is not None:
+                    self.np_random = numpy.random.default_rng(seed)
+            @property
+            def unwrapped(self):
+                return self
+        ''',
+    'spaces.py': '''
+        import numpy
+        class Box:
+            def __init__(self, low, high, shape=None, dtype=numpy.float32):
+                self.shape = numpy.shape(low) if shape is None else shape
+                self.low, self.high = numpy.full(self.shape, low, dtype), numpy.full(self.shape, high, dtype)
+                self.dtype = numpy.dtype(dtype)
+        ''',
+    'vector.py': '''
+        import enum
+        class AutoresetMode(enum.Enum):
+            NEXT_STEP = 'NextStep'
+        class VectorEnv:
+            closed = False
+            def close(self):
+                self.close_extras()
+                self.closed = True
+        ''',
+}
+USE = '''
+import hashlib, sys
+import numpy
+from verlet_cable.environments import LayCable, LayCableVector
+results = []
+for environment, shape in ((LayCable(), (3,)), (LayCableVector(2, threads=1), (2, 3))):
+    results.append(environment.reset(seed=3)[0])
+    results += [environment.step(numpy.full(shape, 0.5))[0] for _ in range(5)]
+print(hashlib.sha256(b''.join(result.tobytes() for result in results)).hexdigest())
+if 'gymnasium' in sys.modules:
+    import gymnasium, gymnasium.spaces, gymnasium.vector
+    one, many = LayCable(), LayCableVector(2)
+    assert isinstance(one, gymnasium.Env) and isinstance(many, gymnasium.vector.VectorEnv)
+    for box, shape in ((one.observation_space, (327,)), (one.action_space, (3,)), (many.observation_space, (2, 327)),
+                       (many.action_space, (2, 3)), (many.single_action_space, (3,))):
+        assert type(box) is gymnasium.spaces.Box and box.shape == shape and box.dtype == numpy.float64
+    assert many.metadata['autoreset_mode'] is gymnasium.vector.AutoresetMode.NEXT_STEP
+    many.close()
+    assert many.closed
+    assert gymnasium.known['verlet_cable/ShapeRope-v0'] == (
+        'verlet_cable.environments:ShapeRope', 'verlet_cable.environments:ShapeRopeVector')
+    print('with Gymnasium')
+'''
+
+
+def run_beside(path):
+    script = f'import sys; sys.path[:0] = {[str(path), str(DEVEL / "lib/python3/dist-packages")]}\n{USE}'
+    return subprocess.run([sys.executable, '-c', script], check=True, stdout=subprocess.PIPE, text=True).stdout.split('\n')
+
+
+def test_gymnasium_is_used_where_it_is_installed(tmp_path):
+    without = run_beside(tmp_path / 'nothing')
+    (tmp_path / 'gymnasium').mkdir()
+    for name, text in GYMNASIUM.items():
+        (tmp_path / 'gymnasium' / name).write_text(textwrap.dedent(text))
+    with_it = run_beside(tmp_path)
+    assert with_it[1] == 'with Gymnasium' and without[1] == ''
+    assert with_it[0] == without[0]

@@ -130,6 +130,11 @@ class VectorEnvironment(VectorEnv):
         """Nodes of the cables, (num_envs, n + 1, 3) [m]."""
         return self._open('positions').worlds.positions()
 
+    @property
+    def np_random(self):
+        """The worlds' random number generators, a tuple; None where none was begun yet."""
+        return tuple(self._generators)
+
     def _open(self, call):
         if self._episodes is None:
             refuse(call, 'the environment is closed')
@@ -144,6 +149,6 @@ class VectorEnvironment(VectorEnv):
     def _infos(seen, mask):
         infos = {}
         for key, value in seen.info.items():
-            infos[key] = value
+            infos[key] = value.copy()
             infos[f'_{key}'] = mask.copy()
         return infos
