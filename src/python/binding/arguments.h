@@ -4,6 +4,7 @@
 #include <pybind11/pybind11.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,8 @@ std::string shape_text(const py::array& array);
 
 /// From the last axis of an array: x, y, z, qx, qy, qz, qw. `name`: of the argument, with the index. Throws ValueError.
 Pose read_pose(const double* numbers, const std::string& name);
+/// Likewise, where it is one.
+std::optional<Pose> sound_pose(const double* numbers);
 Pose read_pose(const Numbers& position, const Numbers& quaternion_xyzw);
 
 /// A count that is not negative. Throws ValueError.
