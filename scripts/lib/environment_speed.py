@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""environment_speed.py [WORLDS [STEPS]]: how many steps of 0.02 s the environments of verlet_cable.environments do in a minute, with
-actions drawn at random, in so many worlds (default 1024) on all cores.
+"""environment_speed.py [WORLDS [STEPS]]: how many steps of 0.02 s the environments of verlet_cable.environments do in a minute,
+with actions drawn at random, in so many worlds (default 1024) on all cores.
 
 Needs the workspace's setup sourced.
 """

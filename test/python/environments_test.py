@@ -134,7 +134,8 @@ def test_wrong_arguments():
     with pytest.raises(ValueError, match='num_envs: -1'):
         LayCableVector(-1)
     environment = ShapeRope(goals=4)
-    for wrong, text in (({'seed': -1}, 'seed: -1'), ({'seed': 1.5}, 'seed: 1.5'), ({'options': {'gaol': 1}}, "'gaol'; allowed: 'goal'"),
+    for wrong, text in (({'seed': -1}, 'seed: -1'), ({'seed': 1.5}, 'seed: 1.5'),
+                        ({'options': {'gaol': 1}}, "'gaol'; allowed: 'goal'"),
                         ({'options': {'goal': 4}}, r"options\['goal'\]: 4; allowed: whole numbers from 0 to 3"),
                         ({'options': 3}, 'options: 3')):
         with pytest.raises(ValueError, match=text):
@@ -173,7 +174,8 @@ def test_each_of_many_worlds_is_the_one_with_its_seed(single, vector, threads):
                 expected = (*one.reset()[:1], 0.0, False, False)
             else:
                 *expected, info = one.step(each[world])
-                assert all(numpy.array_equal(result[4][key][world], value) and result[4]['_' + key][world] for key, value in info.items())
+                for key, value in info.items():
+                    assert numpy.array_equal(result[4][key][world], value) and result[4]['_' + key][world]
             ended = expected[3]
             assert all(numpy.array_equal(given[world], value) for given, value in zip(result, expected))
 

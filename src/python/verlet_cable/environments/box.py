@@ -18,7 +18,7 @@ class Box:
         return seed
 
     def sample(self):
-        """An array, evenly between the bounds; where both are infinite, normally distributed; where one is, exponentially from the other."""
+        """An array: evenly between the bounds, exponentially from the only finite one, or normally distributed."""
         below, above = numpy.isfinite(self.low), numpy.isfinite(self.high)
         both = below & above
         drawn = self._np_random.normal(size=self.shape)

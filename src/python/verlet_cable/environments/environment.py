@@ -90,8 +90,8 @@ class VectorEnvironment(VectorEnv):
         self._episodes = Episodes(task, self.num_envs, threads, max_episode_steps)
 
     def reset(self, *, seed=None, options=None):
-        """Begins episodes in all worlds, or in those that options['reset_mask'], (num_envs,) bool, names. seed: None; a number, that
-        of the first world, the second has the next one, and so on; or a sequence of such, one a world."""
+        """Begins episodes in all worlds, or in those that options['reset_mask'], (num_envs,) bool, names. seed: None; a number,
+        which is that of the first world, the second has the next one, and so on; or a sequence of such, one a world."""
         episodes = self._open('reset')
         options = arguments.read_options(options, ['reset_mask', self.task.option])
         mask = numpy.ones(self.num_envs, dtype=bool)

@@ -3,7 +3,6 @@ import functools
 
 import numpy
 
-from verlet_cable.environments import arguments
 from verlet_cable.environments.drawing import View
 from verlet_cable.environments.environment import Environment, VectorEnvironment
 from verlet_cable.environments.task import STEP_TIME, Seen, Task, chain, give_way, lengths, side_by_side
@@ -135,7 +134,7 @@ class LayCableTask(Task):
         return fixed + away * (numpy.minimum(distance, allowed) / numpy.maximum(distance, RADIUS))[:, None]
 
     def _free_length(self, held, layout):
-        """Where the last clip that holds a cable is, or where it is tied, (count, 3), and how far from there its hand may be, (count,) [m]."""
+        """Where a cable is held by the last clip, or tied, (count, 3), and how far from there its hand may be, (count,) [m]."""
         fixed = numpy.zeros((len(held), 3))
         free = numpy.full(len(held), REACH)
         for i in range(CLIPS):
@@ -216,9 +215,11 @@ class LayCable(Environment):
     """Lay a cable, tied down at one end, into three clips on a table with a hand that leads the other one.
 
     Action (3,), each from -1 to 1: velocity of the hand along x, y and z, in 0.25 m/s. The hand stays between -0.35 m and 0.57 m in
-    x, within 0.25 m in y, between 6.4 mm and 0.1 m in z, beside the posts, and where the cable reaches; it gives way to more than 5 N.
+    x, within 0.25 m in y, between 6.4 mm and 0.1 m in z, beside the posts, and where the cable reaches; it gives way to more than
+    5 N.
     Observation (327,) float64: nodes (51, 3) [m] from the tied end on, their velocities (51, 3) [m/s], the hand (3,) [m], the force
-    on it (3,) [N], the clips (3, 4): x, y [m] and the direction in which they lead the cable, and whether they hold it (3,), 0 or 1.
+    on it (3,) [N], the clips (3, 4): x, y [m] and the direction in which they lead the cable; and whether they hold it (3,), 0 or
+    1.
     Reward: how many clips hold the cable, 0 to 3: its center line passes between their posts, below their tops.
     Info: `held` (3,) bool, `layout`, the index of the clips' places. Options of reset: `layout`, below 32; else one is drawn.
     Episodes are truncated after `max_episode_steps` steps of 0.02 s, and terminated where the simulation had to stop.

@@ -21,6 +21,7 @@ class Task:
     """A scene with a cable and a frame `hand` that moves one of its ends, in variants that an episode draws from.
 
     Where a hand is, its coordinates, is for the task to say: `poses` makes poses of them.
+    `demonstrations` (variants, steps, actions): actions that do it, from the beginning of an episode.
     """
     cable = None       # its name
     nodes = None       # how many it has
@@ -47,7 +48,8 @@ class Task:
         raise NotImplementedError
 
     def look(self, positions, velocities, force, hand, variants):
-        """What is seen of worlds: nodes (count, n + 1, 3) [m], [m/s], forces on the hands (count, 3) [N], hands (count, coordinates), variants (count,)."""
+        """What is seen of worlds: nodes (count, n + 1, 3) [m], their velocities [m/s], forces on the hands (count, 3) [N], hands
+        (count, coordinates), variants (count,)."""
         raise NotImplementedError
 
     def draw(self, positions, hand, variant):
@@ -78,7 +80,7 @@ def give_way(velocity, force, strength):
 
 
 def chain(headings, length, height):
-    """Nodes (n + 1, 3) of a chain from the z axis, at one height [m], of links that point along headings (n,) [rad] in the x-y plane."""
+    """Nodes (n + 1, 3) of a chain from the z axis on, at one height [m]; its links point along headings (n,) [rad]."""
     links = length / len(headings) * numpy.stack([numpy.cos(headings), numpy.sin(headings)], axis=1)
     nodes = numpy.full((len(headings) + 1, 3), height)
     nodes[:, :2] = numpy.concatenate([numpy.zeros((1, 2)), numpy.cumsum(links, axis=0)])

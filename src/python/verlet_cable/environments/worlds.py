@@ -25,7 +25,7 @@ class Worlds:
             self.batch.set_world(mask & (starts == start), self.task.starts[start])
 
     def move(self, actions):
-        """Moves the hands by actions (count, k) of the task during one step of it; returns the worlds that had to stop, (count,)."""
+        """Moves the hands by actions (count, k) during a step of the task; returns the worlds that had to stop, (count,)."""
         steps = self.task.time_steps
         way = self.task.move(self.hand, actions, self.seen) - self.hand
         path = self.hand[:, None] + numpy.linspace(1 / steps, 1, steps)[:, None] * way[:, None]
