@@ -1,8 +1,10 @@
 """The environments: Gymnasium's interface, the same bytes whatever steps beside, and what is rewarded."""
+import copy
 import inspect
 import subprocess
 import sys
 import textwrap
+import threading
 
 import numpy
 import pytest
@@ -131,8 +133,9 @@ def test_wrong_arguments():
                         ({'render_mode': 'human'}, "render_mode: 'human'; allowed: None, 'rgb_array'")):
         with pytest.raises(ValueError, match=text):
             ShapeRope(**wrong)
-    with pytest.raises(ValueError, match='num_envs: -1'):
-        LayCableVector(-1)
+    for count in (-1, 0, True, 2.0, 10**9, 10**30, None):
+        with pytest.raises(ValueError, match=f'num_envs: {count}; allowed: whole numbers from 1 to 1000000'):
+            LayCableVector(count)
     environment = ShapeRope(goals=4)
     for wrong, text in (({'seed': -1}, 'seed: -1'), ({'seed': 1.5}, 'seed: 1.5'),
                         ({'options': {'gaol': 1}}, "'gaol'; allowed: 'goal'"),
@@ -290,6 +293,41 @@ def test_what_is_returned_is_the_callers_to_change():
         expected = kept.step(actions)
         observation, _, _, _, infos = given = changed.step(actions)
         assert same(expected, given)
+
+
+def test_a_copy_goes_on_by_itself(environment):
+    environment.reset(seed=1)
+    environment.step(numpy.ones(3))
+    other = copy.deepcopy(environment)
+    for _ in range(10):
+        assert same(environment.step(numpy.full(3, -0.5)), other.step(numpy.full(3, -0.5)))
+    other.close()
+    assert same(environment.reset()[0].shape, environment.observation_space.shape)
+
+
+def test_environments_have_nothing_in_common(environment):
+    other = type(environment)()
+    assert other.action_space is not environment.action_space
+    for array in (other.task.demonstrations, other.task.hand_of, other.task.start_of):
+        with pytest.raises(ValueError, match='read-only'):
+            array[:] = 0
+    errors = []
+
+    def use():
+        try:
+            each = type(environment)(max_episode_steps=1)
+            for _ in range(20):
+                each.reset()
+                each.step(numpy.zeros(3))
+        except Exception as error:
+            errors.append(error)
+
+    threads = [threading.Thread(target=use) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert errors == []
 
 
 # With Gymnasium. It is no Debian package: what of it these environments use is written here, in a few lines.

@@ -4,12 +4,12 @@ import numbers
 import numpy
 
 SHOWN = 5  # wrong numbers of one array
+MOST = 1000000  # of anything that is counted, as sim.Batch has it of worlds
 
 
 def read_count(name, value):
-    """A whole number above 0."""
-    if isinstance(value, bool) or not isinstance(value, numbers.Integral) or value < 1:
-        raise ValueError(f'{name}: {value!r}; allowed: whole numbers from 1')
+    if isinstance(value, bool) or not isinstance(value, numbers.Integral) or not 1 <= value <= MOST:
+        raise ValueError(f'{name}: {value!r}; allowed: whole numbers from 1 to {MOST}')
     return int(value)
 
 

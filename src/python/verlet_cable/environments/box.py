@@ -8,8 +8,8 @@ class Box:
     def __init__(self, low, high, shape=None, dtype=numpy.float64, seed=None):
         self.dtype = numpy.dtype(dtype)
         self.shape = tuple(shape) if shape is not None else numpy.broadcast(low, high).shape
-        self.low = numpy.broadcast_to(low, self.shape).astype(self.dtype)
-        self.high = numpy.broadcast_to(high, self.shape).astype(self.dtype)
+        self.low = numpy.broadcast_to(numpy.asarray(low, dtype=self.dtype), self.shape)
+        self.high = numpy.broadcast_to(numpy.asarray(high, dtype=self.dtype), self.shape)
         self.seed(seed)
 
     def seed(self, seed=None):

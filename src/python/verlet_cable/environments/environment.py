@@ -21,8 +21,8 @@ class Environment(Env):
     def __init__(self, task, max_episode_steps, render_mode):
         self.render_mode = arguments.read_render_mode(render_mode, RENDER_MODES)
         self.task = task
-        self.observation_space = task.observation_space
-        self.action_space = task.action_space
+        self.observation_space = task.make_observation_space()
+        self.action_space = task.make_action_space()
         self._episodes = Episodes(task, 1, 1, max_episode_steps)
 
     def reset(self, *, seed=None, options=None):
@@ -82,12 +82,12 @@ class VectorEnvironment(VectorEnv):
         self.render_mode = arguments.read_render_mode(render_mode, RENDER_MODES)
         self.task = task
         self.num_envs = arguments.read_count('num_envs', num_envs)
-        self.single_observation_space = task.observation_space
-        self.single_action_space = task.action_space
-        self.observation_space = batch_box(task.observation_space, self.num_envs)
-        self.action_space = batch_box(task.action_space, self.num_envs)
-        self._generators = [None] * self.num_envs
         self._episodes = Episodes(task, self.num_envs, threads, max_episode_steps)
+        self._generators = [None] * self.num_envs
+        self.single_observation_space = task.make_observation_space()
+        self.single_action_space = task.make_action_space()
+        self.observation_space = batch_box(self.single_observation_space, self.num_envs)
+        self.action_space = batch_box(self.single_action_space, self.num_envs)
 
     def reset(self, *, seed=None, options=None):
         """Begins episodes in all worlds, or in those that options['reset_mask'], (num_envs,) bool, names. seed: None; a number,

@@ -5,7 +5,7 @@ import numpy
 
 from verlet_cable.environments.drawing import View
 from verlet_cable.environments.environment import Environment, VectorEnvironment
-from verlet_cable.environments.task import STEP_TIME, Seen, Task, chain, give_way, lengths, side_by_side
+from verlet_cable.environments.task import STEP_TIME, Seen, Task, chain, constant, give_way, lengths, side_by_side
 from verlet_cable.sim import Batch, Scene
 
 LENGTH = 0.6       # [m]
@@ -116,13 +116,13 @@ class LayCableTask(Task):
     time_steps = round(STEP_TIME / TIME_STEP)
 
     def __init__(self):
-        self.layouts = draw_layouts()
-        self.posts = numpy.array([[post['pose'][:2] for i, clip in enumerate(clips) for post in make_posts(f'clip_{i}', clip)]
-                                  for clips in self.layouts])
+        self.layouts = constant(draw_layouts())
+        self.posts = constant(numpy.array([[post['pose'][:2] for i, clip in enumerate(clips) for post in make_posts(f'clip_{i}', clip)]
+                                           for clips in self.layouts]))
         hand = folded()[-1]
         super().__init__(begin_worlds(self.layouts), numpy.arange(LAYOUTS), numpy.tile(hand, (LAYOUTS, 1)), actions=3,
                          observations=6 * self.nodes + 6 + 5 * CLIPS)
-        self.demonstrations = demonstrate(self.layouts, hand)
+        self.demonstrations = constant(demonstrate(self.layouts, hand))
 
     def move(self, hand, actions, seen):
         way = give_way(actions * SPEED, seen.force, STRENGTH) * STEP_TIME

@@ -6,7 +6,7 @@ import numpy
 from verlet_cable.environments import arguments
 from verlet_cable.environments.drawing import View
 from verlet_cable.environments.environment import Environment, VectorEnvironment
-from verlet_cable.environments.task import STEP_TIME, Seen, Task, chain, give_way, lengths, side_by_side
+from verlet_cable.environments.task import STEP_TIME, Seen, Task, chain, constant, give_way, lengths, side_by_side
 from verlet_cable.environments.worlds import Worlds
 from verlet_cable.sim import Scene, World
 
@@ -69,9 +69,9 @@ class ShapeRopeTask(Task):
         numbers = 3 * self.nodes
         super().__init__([World(Scene.from_dict(scene()))], numpy.zeros(goals, dtype=int),
                          numpy.tile([*first[-1, :2], -BOW], (goals, 1)), actions=3, observations=3 * numbers + 6)
-        self.demonstrations = self._draw_actions(goals)
+        self.demonstrations = constant(self._draw_actions(goals))
         self.goals = numpy.zeros((goals, self.nodes, 3))
-        self.goals = self._simulate_goals()
+        self.goals = constant(self._simulate_goals())
 
     def _draw_actions(self, goals):
         """(goals, steps, 3): goal k is the same however many there are."""

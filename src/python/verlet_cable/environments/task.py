@@ -1,4 +1,5 @@
 """What an environment needs to know of what is to be done in it."""
+import threading
 from typing import Dict, NamedTuple
 
 import numpy
@@ -22,6 +23,7 @@ class Task:
 
     Where a hand is, its coordinates, is for the task to say: `poses` makes poses of them.
     `demonstrations` (variants, steps, actions): actions that do it, from the beginning of an episode.
+    Tasks are constant: environments share them.
     """
     cable = None       # its name
     nodes = None       # how many it has
@@ -29,11 +31,26 @@ class Task:
     time_steps = None  # of the scene, in a step
 
     def __init__(self, starts, start_of, hand_of, actions, observations):
-        self.starts = starts      # Worlds to begin with
-        self.start_of = start_of  # (variants,) which of them each variant begins with
-        self.hand_of = hand_of    # (variants, coordinates) where the hand is then
-        self.action_space = Box(-1.0, 1.0, (actions,), dtype=numpy.float64)
-        self.observation_space = Box(-numpy.inf, numpy.inf, (observations,), dtype=numpy.float64)
+        self.start_of = constant(start_of)  # (variants,) which of the starts each variant begins with
+        self.hand_of = constant(hand_of)    # (variants, coordinates) where the hand is then
+        self._starts = starts               # Worlds
+        self._lock = threading.Lock()       # of the starts: one thread at a time may copy them
+        self._actions = actions
+        self._observations = observations
+
+    def __deepcopy__(self, memo):
+        return self
+
+    def copy_starts(self):
+        """Worlds to begin with."""
+        with self._lock:
+            return [world.copy() for world in self._starts]
+
+    def make_action_space(self):
+        return Box(-1.0, 1.0, (self._actions,), dtype=numpy.float64)
+
+    def make_observation_space(self):
+        return Box(-numpy.inf, numpy.inf, (self._observations,), dtype=numpy.float64)
 
     @property
     def variants(self):
@@ -55,6 +72,12 @@ class Task:
     def draw(self, positions, hand, variant):
         """A picture of one world, (rows, columns, 3) uint8."""
         raise NotImplementedError
+
+
+def constant(array):
+    """The array, which nobody may change from now on."""
+    array.setflags(write=False)
+    return array
 
 
 def side_by_side(*arrays):

@@ -11,7 +11,8 @@ class Worlds:
 
     def __init__(self, task, count, threads=0):
         self.task = task
-        self.batch = Batch(task.starts[0], count, threads=threads)
+        self.starts = task.copy_starts()
+        self.batch = Batch(self.starts[0], count, threads=threads)
         self.variants = numpy.zeros(count, dtype=int)
         self.hand = task.hand_of[self.variants]
         self.seen = None
@@ -22,7 +23,7 @@ class Worlds:
         self.hand = numpy.where(mask[:, None], self.task.hand_of[self.variants], self.hand)
         starts = self.task.start_of[self.variants]
         for start in numpy.unique(starts[mask]):
-            self.batch.set_world(mask & (starts == start), self.task.starts[start])
+            self.batch.set_world(mask & (starts == start), self.starts[start])
 
     def move(self, actions):
         """Moves the hands by actions (count, k) during a step of the task; returns the worlds that had to stop, (count,)."""
