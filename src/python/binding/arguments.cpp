@@ -59,7 +59,7 @@ std::int64_t read_count(const char* name, std::int64_t count, std::int64_t least
   return count;
 }
 
-std::vector<Quantity> read_quantities(const std::vector<std::string>& names) {
+std::vector<Quantity> read_quantities(const char* argument, const std::vector<std::string>& names) {
   std::vector<Quantity> quantities;
   for (const std::string& name : names) {
     std::size_t i = 0;
@@ -67,7 +67,7 @@ std::vector<Quantity> read_quantities(const std::vector<std::string>& names) {
     if (i == quantity_names.size()) {
       std::string allowed;
       for (const char* other : quantity_names) allowed += (allowed.empty() ? "" : ", ") + std::string(other);
-      throw py::value_error("fields: " + quoted(name) + "; allowed: " + allowed);
+      throw py::value_error(std::string(argument) + ": " + quoted(name) + "; allowed: " + allowed);
     }
     quantities.push_back(static_cast<Quantity>(i));
   }

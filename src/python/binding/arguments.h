@@ -27,8 +27,8 @@ Pose read_pose(const Numbers& position, const Numbers& quaternion_xyzw);
 /// A count that is not negative. Throws ValueError.
 std::int64_t read_count(const char* name, std::int64_t count, std::int64_t least);
 
-/// "positions", ...; throws ValueError.
-std::vector<Quantity> read_quantities(const std::vector<std::string>& names);
+/// "positions", ...; `argument`: of which they are. Throws ValueError.
+std::vector<Quantity> read_quantities(const char* argument, const std::vector<std::string>& names);
 
 /// A new array, and what it is of.
 py::array_t<double> array_of(const World& world, Quantity quantity, const std::string& name);

@@ -23,7 +23,8 @@ DrivenWorld::DrivenWorld(std::shared_ptr<const SceneDesc> scene, std::shared_ptr
       frames_(std::move(frames)),
       inputs_(frames_->at(0)),
       targets_(inputs_),
-      world_(begin(*scene_, *frames_)) {}
+      world_(begin(*scene_, *frames_)),
+      hash_of_start_(world_.hash()) {}
 
 int DrivenWorld::find_frame(const std::string& name) const {
   const std::vector<std::string>& names = world_.frames();
@@ -44,6 +45,12 @@ void DrivenWorld::set_frame(int frame, std::vector<Pose> poses) {
     given_.push_back({frame, std::move(poses), 0});
   else
     *given = {frame, std::move(poses), 0};
+}
+
+void DrivenWorld::begin_anew(std::shared_ptr<const SceneDesc> scene) {
+  DrivenWorld anew(std::move(scene), frames_);
+  anew.given_ = std::move(given_);
+  *this = std::move(anew);
 }
 
 void DrivenWorld::tune(std::shared_ptr<const SceneDesc> scene) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -25,8 +26,10 @@ class DrivenWorld {
   /// Where a frame is at the end of each of the next steps, at least one; it stays at the last one.
   void set_frame(int frame, std::vector<Pose> poses);
 
-  /// Takes over the poses that another world was given.
-  void take_given_poses(const DrivenWorld& other) { given_ = other.given_; }
+  /// Whether nothing was done to it: no step, no settling, no edit.
+  bool is_as_it_began() const { return world_.hash() == hash_of_start_; }
+  /// Begins at t = 0 with another scene, which differs in materials only; motion and given poses stay. Throws SceneError.
+  void begin_anew(std::shared_ptr<const SceneDesc> scene);
   /// See World::tune.
   void tune(std::shared_ptr<const SceneDesc> scene);
 
@@ -46,6 +49,7 @@ class DrivenWorld {
   BoundaryInputs inputs_;   ///< of the last step, at first those of the start
   BoundaryInputs targets_;  ///< where the motion has the frames
   World world_;
+  std::uint64_t hash_of_start_;
   std::vector<GivenPoses> given_;
 };
 

@@ -163,4 +163,14 @@ void copy_quantity(const World& world, Quantity quantity, const std::string& nam
   }
 }
 
+bool try_copy_quantity(const World& world, Quantity quantity, const std::string& name, const QuantityShape& shape, double* to) {
+  try {
+    if (shape_of(world, quantity, name) != shape) return false;
+  } catch (const UnknownName&) {
+    return false;
+  }
+  copy_quantity(world, quantity, name, to);
+  return true;
+}
+
 }  // namespace verlet_cable

@@ -48,4 +48,7 @@ QuantityShape shape_of(const World& world, Quantity quantity, const std::string&
 /// Writes as many numbers as `shape_of` says, row by row.
 void copy_quantity(const World& world, Quantity quantity, const std::string& name, double* to);
 
+/// Likewise where it has this shape; false, and nothing is written, where it has another one, or the world no such name.
+bool try_copy_quantity(const World& world, Quantity quantity, const std::string& name, const QuantityShape& shape, double* to);
+
 }  // namespace verlet_cable
