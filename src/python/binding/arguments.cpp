@@ -30,12 +30,12 @@ Pose read_pose(const double* position, const std::string& position_name, const d
   return pose;
 }
 
+}  // namespace
+
 void check_size(const char* name, const Numbers& numbers, py::ssize_t size) {
   if (numbers.ndim() != 1 || numbers.shape(0) != size)
     throw py::value_error(std::string(name) + ": shape " + shape_text(numbers) + "; allowed: (" + std::to_string(size) + ",)");
 }
-
-}  // namespace
 
 std::string shape_text(const py::array& array) {
   std::string text;

@@ -20,6 +20,9 @@ using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 /// "(3, 7)", as NumPy writes shapes.
 std::string shape_text(const py::array& array);
 
+/// Throws ValueError where the shape is not (size,).
+void check_size(const char* name, const Numbers& numbers, py::ssize_t size);
+
 /// From the last axis of an array: x, y, z, qx, qy, qz, qw. `name`: of the argument, with the index. Throws ValueError.
 Pose read_pose(const double* numbers, const std::string& name);
 Pose read_pose(const Numbers& position, const Numbers& quaternion_xyzw);
