@@ -221,6 +221,14 @@ def test_a_material_keeps_the_motion_of_a_world_that_was_set(hang, scene):
     assert batch.state_hash[1] == hash_after(World(Scene.from_dict(hang), MOTION), 20)
 
 
+def test_a_material_keeps_the_poses_that_were_given(scene):
+    batch = Batch(scene, 2)
+    batch.set_frames('hand', held_at(0.61, 0.62))
+    batch.set_material('wire', linear_density=0.2)
+    batch.step()
+    assert abs(batch.positions('hose')[:, 0, 0] - [0.61, 0.62]).max() < 1e-12
+
+
 def test_observations_are_the_arrays_side_by_side(scene, moved):
     batch = Batch(scene, 37, threads=2)
     batch.set_world([3, 4], moved)
