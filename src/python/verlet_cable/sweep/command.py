@@ -84,7 +84,7 @@ def _run(options, path, sweep, layout):
         reason = 'interrupted'
     report.clear()
     if reason is not None:
-        print(f'cable_sweep: {reason}\n{report.done} of {layout.samples} samples are in {options.output}; '
+        print(f'cable_sweep: {reason}\n{store.count_samples(path, layout)} of {layout.samples} samples are in {options.output}; '
               '--resume goes on with the others', file=sys.stderr)
         return _STOPPED
     failures = store.count_failures(path)
@@ -96,11 +96,11 @@ def _run(options, path, sweep, layout):
 def _do_the_rest(client, path, sweep, layout, report):
     from . import schedule, store
     complete = store.complete_chunks(path)
-    report.begin(sum(len(layout.samples_of(chunk)) for chunk in complete))
+    report.begin(store.count_samples(path, layout))
     store.remove_remains(path)
     try:
         schedule.run_chunks(client, (path, sweep.folder, store.identity(path)),
-                            (chunk for chunk in range(layout.chunks) if chunk not in complete), report)
+                            (chunk for chunk in range(layout.chunks) if chunk not in complete), layout.chunks - len(complete), report)
     finally:
         store.remove_remains(path)
 

@@ -151,6 +151,11 @@ def complete_chunks(path):
     return {int(name) for name in os.listdir(os.path.join(path, 'status')) if name.isdigit()}
 
 
+def count_samples(path, layout):
+    """How many samples are in a store that may not have been begun."""
+    return sum(len(layout.samples_of(chunk)) for chunk in complete_chunks(path)) if os.path.lexists(path) else 0
+
+
 def is_complete(path, layout):
     """Whether there is a store, with every chunk."""
     return os.path.lexists(path) and len(complete_chunks(path)) == layout.chunks
