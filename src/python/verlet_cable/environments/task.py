@@ -6,8 +6,9 @@ import numpy
 
 from verlet_cable.environments.interface import Box
 
-STEP_TIME = 0.02  # [s] of an environment's step
-YIELDING = 0.1    # [m/s] at which hands give way that are not strong enough
+STEP_TIME = 0.02   # [s] of an environment's step
+REST_STEPS = 100  # time steps in which a cable comes to rest before an episode
+YIELDING = 0.1     # [m/s] at which hands give way that are not strong enough
 
 
 class Seen(NamedTuple):
