@@ -10,7 +10,8 @@ import numpy
 import pytest
 from conftest import DEVEL
 
-from verlet_cable.environments import AutoresetMode, LayCable, LayCableVector, ShapeRope, ShapeRopeVector
+from verlet_cable.environments import AutoresetMode, LayCable, LayCableVector, ShapeRope, ShapeRopeVector, lay_cable
+from verlet_cable.environments.task import YIELDING, give_way
 
 PAIRS = [(ShapeRope, ShapeRopeVector), (LayCable, LayCableVector)]
 
@@ -254,6 +255,63 @@ def test_a_cable_that_is_not_led_through_clips_earns_nothing():
     for _ in range(100):
         _, reward, *_ = environment.step(numpy.array([0.0, 0.0, 0.2]))
     assert reward == 0
+
+
+def test_a_clip_holds_what_passes_between_its_posts():
+    clips = numpy.array([[[0.5, 0.1, 0.6, 0.8]]])  # x, y, and the direction
+    straight = numpy.outer(numpy.linspace(-0.105, 0.1, 21), [0.6, 0.8, 0]) + [0.5, 0.1, 0.002]
+    across = numpy.array([-0.8, 0.6, 0])
+    for nodes, held in ((straight, True), (straight[::-1], True), (straight + 0.0039 * across, True), (straight + [0, 0, 0.017], True),
+                        (straight + 0.0041 * across, False), (straight - 0.0041 * across, False), (straight + [0, 0, 0.019], False),
+                        (straight[:10], False), (straight[12:], False), (straight - 0.1 * straight[0], False)):
+        assert lay_cable.held_by_clips(nodes[None], clips).tolist() == [[held]]
+
+
+def nothing_held(layout):
+    return lay_cable.Seen(None, numpy.zeros((1, 3)), None, {'held': numpy.zeros((1, 3), dtype=bool), 'layout': numpy.array([layout])})
+
+
+def test_hands_stay_where_they_can_be():
+    task = LayCable().task
+    generator = numpy.random.default_rng(1)
+    hand = task.hand_of[:1]
+    for step in range(1000):
+        if step % 40 == 0:
+            action = generator.choice([-1.0, 1.0], size=(1, 3))
+        hand = task.move(hand, action, nothing_held(0))
+        assert (hand >= lay_cable.LOW - 1e-12).all() and (hand <= lay_cable.HIGH + 1e-12).all()
+        assert (hand ** 2).sum() <= lay_cable.REACH ** 2 + 1e-12
+
+
+def test_hands_do_not_go_further_than_the_cable_that_clips_leave_them():
+    task = LayCable().task
+    seen = lay_cable.Seen(None, numpy.zeros((1, 3)), None, {'held': numpy.array([[True, True, True]]), 'layout': numpy.array([0])})
+    hand = numpy.array([[0.4, 0.0, 0.01]])
+    for _ in range(200):
+        hand = task.move(hand, numpy.array([[1.0, 0.3, 0.1]]), seen)
+    places = numpy.zeros((5, 3))
+    places[1:4, :2] = task.layouts[0, :, :2]
+    places[4] = hand[0]
+    length = numpy.sqrt((numpy.diff(places, axis=0) ** 2).sum(axis=1)).sum()
+    assert length == pytest.approx(lay_cable.REACH) or (hand[0] == lay_cable.HIGH).any()
+
+
+def test_hands_do_not_enter_posts():
+    task = LayCable().task
+    post = task.posts[3, 2]
+    seen = nothing_held(3)
+    low, high = numpy.array([[*post - [0.02, 0.001], 0.01]]), numpy.array([[*post - [0.02, 0.001], 0.05]])
+    for step in range(8):
+        low, high = task.move(low, numpy.array([[1.0, 0, 0]]), seen), task.move(high, numpy.array([[1.0, 0, 0]]), seen)
+        assert ((low[0, :2] - task.posts[3]) ** 2).sum(axis=1).min() >= 0.999 * lay_cable.CLEARANCE ** 2
+    assert abs(high[0] - [*post + [0.02, -0.001], 0.05]).max() < 1e-12
+
+
+def test_hands_give_way_to_what_is_stronger():
+    velocity = numpy.array([[0.2, 0.1, 0.0], [0.2, 0.1, 0.0], [-0.2, 0.1, 0.0]])
+    force = numpy.array([[-4.9, 0, 0], [-5.1, 0, 0], [-5.1, 0, 0]])  # [N]
+    expected = numpy.array([[0.2, 0.1, 0], [-YIELDING, 0.1, 0], [-0.2 - YIELDING, 0.1, 0]])
+    assert give_way(velocity, force, 5.0) == pytest.approx(expected, abs=1e-15)
 
 
 @pytest.mark.parametrize('vector', [ShapeRopeVector, LayCableVector])

@@ -5,7 +5,7 @@ import numpy
 
 from verlet_cable.environments.drawing import View
 from verlet_cable.environments.environment import Environment, VectorEnvironment
-from verlet_cable.environments.task import STEP_TIME, Seen, Task, chain, constant, give_way, lengths, side_by_side
+from verlet_cable.environments.task import REST_STEPS, STEP_TIME, Seen, Task, chain, constant, give_way, lengths, side_by_side
 from verlet_cable.sim import Batch, Scene
 
 LENGTH = 0.6       # [m]
@@ -36,7 +36,6 @@ STRENGTH = 5.0                             # [N] that a hand holds against
 
 FOLD = 0.05                                # [m] radius; the cable begins folded, its ends side by side
 END = 0.03                                 # [m] the hand is so far ahead of the other end at first
-REST_STEPS = 100                           # time steps in which the cable comes to rest before an episode
 
 LAYOUT_SEED = 21
 LAYOUTS = 32
@@ -69,7 +68,7 @@ def scene(clips):
             'name': 'cable', 'length': LENGTH, 'segments': SEGMENTS, 'material': 'cable',
             'initial': {'type': 'points', 'points': nodes},
             'attachments': [{'name': 'tie', 'at': 'start', 'offset': nodes[0]},
-                            {'name': 'hand', 'at': 'end', 'frame': 'hand', 'initial_pose': nodes[-1] + [0, 0, 0]}],
+                            {'name': 'hand', 'at': 'end', 'frame': 'hand', 'initial_pose': [*nodes[-1][:2], LOW[2], 0, 0, 0]}],
         }],
         'obstacles': [{'name': 'table', 'type': 'plane', 'friction': 0.5}]
         + [post for i, clip in enumerate(clips) for post in make_posts(f'clip_{i}', clip)],
@@ -119,7 +118,7 @@ class LayCableTask(Task):
         self.layouts = constant(draw_layouts())
         self.posts = constant(numpy.array([[post['pose'][:2] for i, clip in enumerate(clips) for post in make_posts(f'clip_{i}', clip)]
                                            for clips in self.layouts]))
-        hand = folded()[-1]
+        hand = numpy.append(folded()[-1, :2], LOW[2])
         super().__init__(begin_worlds(self.layouts), numpy.arange(LAYOUTS), numpy.tile(hand, (LAYOUTS, 1)), actions=3,
                          observations=6 * self.nodes + 6 + 5 * CLIPS)
         self.demonstrations = constant(demonstrate(self.layouts, hand))
@@ -197,7 +196,7 @@ def demonstrate(layouts, hand):
 
 
 def waypoints(clips):
-    """Where the hand passes: down before the first clip, through all, and a little up behind the last."""
+    """Where the hand passes, (k, 3) [m]: down before the first clip, and through all."""
     before, behind, low, high = 0.035, 0.035, LOW[2], 0.03
     first, along = clips[0, :2], clips[0, 2:]
     points = [[*(first - before * along), high]]

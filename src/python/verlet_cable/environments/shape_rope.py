@@ -6,7 +6,7 @@ import numpy
 from verlet_cable.environments import arguments
 from verlet_cable.environments.drawing import View
 from verlet_cable.environments.environment import Environment, VectorEnvironment
-from verlet_cable.environments.task import STEP_TIME, Seen, Task, chain, constant, give_way, lengths, side_by_side
+from verlet_cable.environments.task import REST_STEPS, STEP_TIME, Seen, Task, chain, constant, give_way, lengths, side_by_side
 from verlet_cable.environments.worlds import Worlds
 from verlet_cable.sim import Scene, World
 
@@ -65,10 +65,11 @@ class ShapeRopeTask(Task):
     time_steps = round(STEP_TIME / TIME_STEP)
 
     def __init__(self, goals):
-        first = bow()
         numbers = 3 * self.nodes
-        super().__init__([World(Scene.from_dict(scene()))], numpy.zeros(goals, dtype=int),
-                         numpy.tile([*first[-1, :2], -BOW], (goals, 1)), actions=3, observations=3 * numbers + 6)
+        world = World(Scene.from_dict(scene()))
+        world.step(REST_STEPS)
+        super().__init__([world], numpy.zeros(goals, dtype=int), numpy.tile([*bow()[-1, :2], -BOW], (goals, 1)), actions=3,
+                         observations=3 * numbers + 6)
         self.demonstrations = constant(self._draw_actions(goals))
         self.goals = numpy.zeros((goals, self.nodes, 3))
         self.goals = constant(self._simulate_goals())

@@ -6,8 +6,9 @@ import numpy
 
 from verlet_cable.environments.interface import Box
 
-STEP_TIME = 0.02  # [s] of an environment's step
-YIELDING = 0.1    # [m/s] at which hands give way that are not strong enough
+STEP_TIME = 0.02   # [s] of an environment's step
+REST_STEPS = 100  # time steps in which a cable comes to rest before an episode
+YIELDING = 0.1     # [m/s] at which hands give way that are not strong enough
 
 
 class Seen(NamedTuple):
@@ -85,12 +86,18 @@ def side_by_side(*arrays):
     return numpy.concatenate([array.reshape(len(array), -1) for array in arrays], axis=1)
 
 
+def dots(a, b):
+    """Scalar products of vectors (..., 2 or 3) -> (...), by the same operations for any number of worlds."""
+    products = a * b
+    total = products[..., 0]
+    for i in range(1, products.shape[-1]):
+        total = total + products[..., i]
+    return total
+
+
 def lengths(vectors):
-    """(..., 2 or 3) -> (...), by the same operations for any number of worlds."""
-    squares = vectors[..., 0] ** 2
-    for i in range(1, vectors.shape[-1]):
-        squares = squares + vectors[..., i] ** 2
-    return numpy.sqrt(squares)
+    """(..., 2 or 3) -> (...)."""
+    return numpy.sqrt(dots(vectors, vectors))
 
 
 def give_way(velocity, force, strength):
@@ -98,7 +105,7 @@ def give_way(velocity, force, strength):
     their strength [N] do not go against it, but give way."""
     pull = lengths(force)
     along = force / numpy.maximum(pull, 1e-9)[:, None]
-    against = numpy.minimum((velocity * along).sum(axis=1), 0.0)
+    against = numpy.minimum(dots(velocity, along), 0.0)
     return numpy.where((pull > strength)[:, None], velocity + (YIELDING - against)[:, None] * along, velocity)
 
 
