@@ -152,6 +152,9 @@ def test_a_copy_of_a_batch_knows_nothing_of_the_other(scene, moved):
     batch.step(4)
     other = batch.copy()
     before = other.state_hash
+    for one in (copy.copy(batch), copy.deepcopy(batch)):
+        one.step(1)
+        assert one.state_hash != before == batch.state_hash
     batch.set_world([0, 2], moved)
     batch.set_frames('hand', held_at(0.61, 0.62, 0.63))
     batch.step(5)
@@ -236,6 +239,40 @@ def test_observations_are_the_arrays_side_by_side(scene, moved):
     assert (batch.observations((('wrench', 'left'),)) == batch.wrench('left')).all()
 
 
+def test_points_are_read_of_cables_at_even_distances(scene, moved):
+    batch = Batch(scene, 20)
+    batch.set_world(7, moved)
+    nodes, velocities = batch.positions('hose'), batch.velocities('hose')
+    for points, every in ((21, 1), (11, 2), (6, 4), (2, 20)):
+        observed = batch.observations([('wrench', 'left'), ('positions', 'hose', points), ('velocities', 'hose', points)])
+        assert observed.shape == (20, 6 + 6 * points)
+        positions = observed[:, 6:6 + 3 * points].reshape(20, points, 3)
+        assert abs(positions - nodes[:, ::every]).max() < 1e-12
+        assert abs(observed[:, 6 + 3 * points:].reshape(20, points, 3) - velocities[:, ::every]).max() < 1e-10
+    between = batch.observations([('positions', 'hose', 41)]).reshape(20, 41, 3)[:, 1::2]
+    assert abs(between - (nodes[:, 1:] + nodes[:, :-1]) / 2).max() < 1e-12
+
+
+def test_points_are_read_whatever_guides_do_to_nodes(hang):
+    """The hand draws the cable through an eyelet in one of two worlds."""
+    hang['cables'][0]['attachments'].pop()
+    hang['cables'][0]['initial'] = {'type': 'straight', 'from': [0.6, 0, 0], 'to': [-0.4, 0, 0]}
+    hang['guides'] = [{'name': 'eye', 'cable': 'hose', 'at': 0.3, 'type': 'eyelet', 'offset': [0.3, 0, 0]}]
+    batch = Batch(Scene.from_dict(hang), 2)
+    poses = numpy.tile(held_at(0.6)[:, None], (2, 200, 1))
+    poses[1, :, 0] += numpy.linspace(0, 0.21, 200)
+    batch.set_frames('hand', poses)
+    batch.step(200)
+    nodes = [batch.world(i).positions('hose') for i in (0, 1)]
+    assert len(nodes[0]) != len(nodes[1])
+    with pytest.raises(ValueError, match=r'positions of hose: world 1 has none of shape \(\d+, 3\).*slide through'):
+        batch.positions('hose')
+    points = batch.observations([('positions', 'hose', 9)]).reshape(2, 9, 3)
+    for i in (0, 1):
+        assert abs(points[i][[0, -1]] - nodes[i][[0, -1]]).max() < 1e-12
+        assert numpy.linalg.norm(numpy.diff(points[i], axis=0), axis=1).max() < 1.01 / 8
+
+
 def test_a_scene_of_another_kind_is_refused(hang, scene):
     batch = Batch(scene, 2)
     before = batch.state_hash
@@ -262,10 +299,12 @@ def test_a_scene_of_another_kind_is_refused(hang, scene):
 
 @pytest.mark.parametrize('wrong, kind, text', [
     (lambda b, w: Batch(w, 0), ValueError, 'count: 0'),
+    (lambda b, w: Batch(w, 2 ** 62), ValueError, 'count: 4611686018427387904; allowed: 1 to 1000000'),
+    (lambda b, w: b.set_world([[1], [1, 2]], w), ValueError, r'index: \[\[1\], \[1, 2\]\]; allowed'),
     (lambda b, w: Batch(w, 2, threads=-1), ValueError, 'threads: -1'),
     (lambda b, w: b.set_world(3, w), IndexError, 'index: 3; allowed: -3 to 2'),
     (lambda b, w: b.set_world([0, -4], w), IndexError, 'index: -4'),
-    (lambda b, w: b.set_world(numpy.array([2 ** 64 - 1], numpy.uint64), w), IndexError, 'index'),
+    (lambda b, w: b.set_world(numpy.array([2 ** 64 - 1], numpy.uint64), w), IndexError, 'index: 18446744073709551615; allowed: -3 to 2'),
     (lambda b, w: b.set_world(2 ** 70, w), ValueError, 'index'),
     (lambda b, w: b.set_world(0.0, w), ValueError, r'index: shape \(\) of float64'),
     (lambda b, w: b.set_world([0.0], w), ValueError, 'float64'),
@@ -281,6 +320,11 @@ def test_a_scene_of_another_kind_is_refused(hang, scene):
     (lambda b, w: b.observations([('positions', 'nope')]), KeyError, 'nope.*hose'),
     (lambda b, w: b.observations([('wrench', 'hose')]), KeyError, 'hose.*left, right'),
     (lambda b, w: b.observations(['positions']), TypeError, ''),
+    (lambda b, w: b.observations([('positions', 'hose', 1)]), ValueError, 'parts: 1 points of hose; allowed: 2 to'),
+    (lambda b, w: b.observations([('positions', 'hose', 10 ** 9)]), ValueError, 'points of hose'),
+    (lambda b, w: b.observations([('positions', 'hose', 2.5)]), TypeError, ''),
+    (lambda b, w: b.observations([('tension', 'hose', 5)]), ValueError, 'parts: points of tension of hose'),
+    (lambda b, w: b.observations([('positions', 'nope', 5)]), KeyError, 'nope.*hose'),
     (lambda b, w: b.observations('positions'), TypeError, ''),
 ])
 def test_what_is_refused_changes_nothing(scene, moved, wrong, kind, text):
@@ -303,6 +347,7 @@ def test_a_broken_cable_is_named_and_can_be_set_back(hang):
     for read in (lambda: batch.positions('hose'), lambda: batch.observations([('wrench', 'left'), ('tension', 'hose')])):
         with pytest.raises(ValueError, match=r'of hose: world \d has none.*world\(\d\) has its own'):
             read()
+    assert batch.observations([('positions', 'hose', 5)]).shape == (3, 15)
     batch.step(10, record_every=5)  # of worlds that do not have the names of world 0's pieces
     batch.set_world(0, World(scene))
     assert batch.positions('hose').shape == (3, 21, 3)

@@ -16,10 +16,14 @@ std::string numbers_text(const double* numbers, int count) {
   return "(" + text + ")";
 }
 
+Pose pose_of(const double* position, const double* orientation) {
+  return {{position[0], position[1], position[2]}, Quaternion(orientation[3], orientation[0], orientation[1], orientation[2])};
+}
+
 /// `position` and `orientation`: names for messages.
 Pose read_pose(const double* position, const std::string& position_name, const double* orientation,
                const std::string& orientation_name) {
-  Pose pose{{position[0], position[1], position[2]}, Quaternion(orientation[3], orientation[0], orientation[1], orientation[2])};
+  Pose pose = pose_of(position, orientation);
   if (!is_sound({pose.position, Quaternion::Identity()}))
     throw py::value_error(position_name + ": " + numbers_text(position, 3) +
                           "; allowed: finite numbers [m] (from -1e+09 to 1e+09)");
@@ -45,6 +49,13 @@ std::string shape_text(const py::array& array) {
 
 Pose read_pose(const double* numbers, const std::string& name) {
   return read_pose(numbers, name, numbers + 3, name);
+}
+
+std::optional<Pose> sound_pose(const double* numbers) {
+  Pose pose = pose_of(numbers, numbers + 3);
+  if (!is_sound(pose)) return std::nullopt;
+  pose.orientation.normalize();
+  return pose;
 }
 
 Pose read_pose(const Numbers& position, const Numbers& quaternion_xyzw) {

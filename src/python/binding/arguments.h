@@ -4,6 +4,7 @@
 #include <pybind11/pybind11.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,8 @@ void check_size(const char* name, const Numbers& numbers, py::ssize_t size);
 
 /// From the last axis of an array: x, y, z, qx, qy, qz, qw. `name`: of the argument, with the index. Throws ValueError.
 Pose read_pose(const double* numbers, const std::string& name);
+/// Likewise, where it is one.
+std::optional<Pose> sound_pose(const double* numbers);
 Pose read_pose(const Numbers& position, const Numbers& quaternion_xyzw);
 
 /// A count that is not negative. Throws ValueError.

@@ -6,11 +6,15 @@
 namespace verlet_cable {
 namespace {
 
-/// Integers of any kind as 64 bits; those that do not fit become ones that no batch has.
-py::array_t<std::int64_t> read_integers(const py::array& integers) {
-  if (integers.dtype().kind() != 'u') return py::array_t<std::int64_t>(integers);
-  const py::module_ numpy = py::module_::import("numpy");
-  return py::array_t<std::int64_t>(numpy.attr("minimum")(integers, py::int_(INT32_MAX)));
+std::string indices_text(std::size_t count) {
+  return "; allowed: -" + std::to_string(count) + " to " + std::to_string(count - 1);
+}
+
+/// Unsigned ones may be too large for what they are read as.
+void check_unsigned(const py::array& integers, std::size_t count) {
+  if (integers.dtype().kind() != 'u' || integers.size() == 0) return;
+  const auto largest = integers.attr("max")().cast<std::uint64_t>();
+  if (largest >= count) throw py::index_error("index: " + std::to_string(largest) + indices_text(count));
 }
 
 }  // namespace
@@ -40,10 +44,13 @@ std::vector<std::vector<Pose>> read_poses(const Numbers& poses, std::size_t coun
                           std::to_string(worlds) + ", steps, 7)");
   const py::ssize_t steps = rollout ? poses.shape(1) : 1;
   std::vector<std::vector<Pose>> read(count);
+  const double* numbers = poses.data();
   for (py::ssize_t i = 0; i < worlds; ++i) {
-    for (py::ssize_t k = 0; k < steps; ++k) {
-      const std::string index = "poses[" + std::to_string(i) + (rollout ? ", " + std::to_string(k) : "") + "]";
-      read[i].push_back(read_pose(poses.data() + (i * steps + k) * 7, index));
+    read[i].reserve(static_cast<std::size_t>(steps));
+    for (py::ssize_t k = 0; k < steps; ++k, numbers += 7) {
+      const std::optional<Pose> pose = sound_pose(numbers);
+      read[i].push_back(
+          pose ? *pose : read_pose(numbers, "poses[" + std::to_string(i) + (rollout ? ", " + std::to_string(k) : "") + "]"));
     }
   }
   return read;
@@ -51,14 +58,14 @@ std::vector<std::vector<Pose>> read_poses(const Numbers& poses, std::size_t coun
 
 std::size_t read_world_index(std::int64_t index, std::size_t count) {
   const auto size = static_cast<std::int64_t>(count);
-  if (index < -size || index >= size)
-    throw py::index_error("index: " + std::to_string(index) + "; allowed: " + std::to_string(-size) + " to " +
-                          std::to_string(size - 1));
+  if (index < -size || index >= size) throw py::index_error("index: " + std::to_string(index) + indices_text(count));
   return static_cast<std::size_t>(index < 0 ? index + size : index);
 }
 
 std::vector<std::size_t> read_world_indices(const py::object& index, std::size_t count) {
-  const py::array given(index);
+  const std::string allowed = "; allowed: an integer, a sequence of integers, or a bool mask (" + std::to_string(count) + ",)";
+  const py::array given = py::array::ensure(index);
+  if (!given) throw py::value_error("index: " + py::repr(index).cast<std::string>() + allowed);
   const char kind = given.dtype().kind();
   std::vector<std::size_t> indices;
   if (kind == 'b' && given.ndim() == 1 && given.shape(0) == static_cast<py::ssize_t>(count)) {
@@ -66,13 +73,13 @@ std::vector<std::size_t> read_world_indices(const py::object& index, std::size_t
     for (std::size_t i = 0; i < count; ++i)
       if (mask.at(i)) indices.push_back(i);
   } else if ((kind == 'i' || kind == 'u') && given.ndim() <= 1) {
-    const py::array_t<std::int64_t> integers = read_integers(given);
+    check_unsigned(given, count);
+    const py::array_t<std::int64_t> integers(given);
     for (py::ssize_t i = 0; i < integers.size(); ++i) indices.push_back(read_world_index(integers.data()[i], count));
     std::sort(indices.begin(), indices.end());
     indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
   } else if (given.ndim() != 1 || given.size() != 0 || kind == 'b') {
-    throw py::value_error("index: shape " + shape_text(given) + " of " + std::string(py::str(given.dtype())) +
-                          "; allowed: an integer, a sequence of integers, or a bool mask (" + std::to_string(count) + ",)");
+    throw py::value_error("index: shape " + shape_text(given) + " of " + py::str(given.dtype()).cast<std::string>() + allowed);
   }
   return indices;
 }

@@ -1,9 +1,13 @@
 #include "binding/batch_arrays.h"
 
 #include <memory>
+#include <optional>
+#include <utility>
 
 namespace verlet_cable {
 namespace {
+
+constexpr std::int64_t most_points = 100000;
 
 std::string text_of(const QuantityShape& shape) {
   return "(" + std::to_string(shape.rows) + (shape.columns > 0 ? ", " + std::to_string(shape.columns) + ")" : ",)");
@@ -14,7 +18,8 @@ std::string text_of(const QuantityShape& shape) {
   throw py::value_error(std::string(name_of(quantity)) + " of " + name + ": world " + index + " has none of shape " +
                         text_of(shape) +
                         " as the others, since cables were cut, joined or given another length, broke, or slide " +
-                        "through guides; allowed: worlds of like shapes; world(" + index + ") has its own");
+                        "through guides; allowed: worlds of like shapes; world(" + index +
+                        ") has its own, and observations() reads points of cables with any number of nodes");
 }
 
 std::vector<std::size_t> sizes_of(const QuantityShape& shape, std::vector<std::size_t> first) {
@@ -51,6 +56,24 @@ py::array_t<double> array_of_now(const Batch& batch, Quantity quantity, const st
   return array;
 }
 
+Part read_part(const World& world, const std::tuple<std::string, std::string>& given) {
+  const auto& [quantity_name, name] = given;
+  const Quantity quantity = read_quantities("parts", {quantity_name}).front();
+  return {quantity, name, shape_of(world, quantity, name)};
+}
+
+Part read_part(const World& world, const std::tuple<std::string, std::string, std::int64_t>& given) {
+  const auto& [quantity_name, name, points] = given;
+  const Part nodes = read_part(world, {quantity_name, name});
+  if (find(world.cables(), name) < 0 || nodes.shape.columns != 3)
+    throw py::value_error("parts: points of " + quantity_name + " of " + name +
+                          "; allowed: points of positions and velocities of cables");
+  if (points < 2 || points > most_points)
+    throw py::value_error("parts: " + std::to_string(points) + " points of " + name + "; allowed: 2 to " +
+                          std::to_string(most_points));
+  return {nodes.quantity, name, {static_cast<std::size_t>(points), 3}, true};
+}
+
 /// One number of each world.
 template <class Number, class Read>
 py::array_t<Number> array_of_numbers(const Batch& batch, const Read& read) {
@@ -71,18 +94,15 @@ py::array_t<double> array_of(const Batch& batch, Quantity quantity, const std::s
   return recorded_array(*record, batch.size(), records.count());
 }
 
-py::array_t<double> observations(const Batch& batch, const std::vector<std::pair<std::string, std::string>>& parts) {
-  std::vector<std::string> quantities;
-  for (const auto& [quantity, name] : parts) quantities.push_back(quantity);
-  const std::vector<Quantity> read = read_quantities("parts", quantities);
-  std::vector<Part> wanted;
+py::array_t<double> observations(const Batch& batch, const std::vector<GivenPart>& given) {
+  std::vector<Part> parts;
   std::size_t row = 0;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    wanted.push_back({read[i], parts[i].second, shape_of(batch[0].world(), read[i], parts[i].second)});
-    row += wanted.back().shape.size();
+  for (const GivenPart& one : given) {
+    parts.push_back(std::visit([&](const auto& items) { return read_part(batch[0].world(), items); }, one));
+    row += parts.back().shape.size();
   }
   py::array_t<double> array(std::vector<std::size_t>{batch.size(), row});
-  copy(batch, wanted, array.mutable_data());
+  copy(batch, parts, array.mutable_data());
   return array;
 }
 

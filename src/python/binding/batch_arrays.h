@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
-#include <utility>
+#include <tuple>
+#include <variant>
 #include <vector>
 
 #include "binding/arguments.h"
@@ -12,8 +14,11 @@ namespace verlet_cable {
 /// A quantity of all worlds, with an axis of records where the last step recorded. Throws UnknownName, ValueError.
 py::array_t<double> array_of(const Batch& batch, Quantity quantity, const std::string& name);
 
-/// (count, k): of each world the numbers of all these quantities and names, one after the other. Throws UnknownName, ValueError.
-py::array_t<double> observations(const Batch& batch, const std::vector<std::pair<std::string, std::string>>& parts);
+/// A quantity and a name; and how many points of a cable, where it is not its nodes.
+using GivenPart = std::variant<std::tuple<std::string, std::string>, std::tuple<std::string, std::string, std::int64_t>>;
+
+/// (count, k): of each world the numbers of all parts, one after the other. Throws UnknownName, ValueError.
+py::array_t<double> observations(const Batch& batch, const std::vector<GivenPart>& parts);
 
 /// (count,)
 py::array_t<double> times(const Batch& batch);

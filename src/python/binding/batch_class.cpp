@@ -21,6 +21,7 @@ namespace verlet_cable {
 namespace {
 
 constexpr int most_threads = 1024;
+constexpr std::int64_t most_worlds = 1000000;
 
 /// What Python calls a Batch.
 struct PythonBatch {
@@ -35,7 +36,9 @@ const Batch& use(const PythonBatch& batch) {
   return batch.batch;
 }
 
-void check_threads(int threads) {
+void check_size(std::int64_t count, int threads) {
+  if (count < 1 || count > most_worlds)
+    throw py::value_error("count: " + std::to_string(count) + "; allowed: 1 to " + std::to_string(most_worlds));
   if (threads < 0 || threads > most_threads)
     throw py::value_error("threads: " + std::to_string(threads) + "; allowed: 0, as many as there are cores, to " +
                           std::to_string(most_threads));
@@ -43,27 +46,26 @@ void check_threads(int threads) {
 
 std::unique_ptr<PythonBatch> make_of(const std::vector<std::shared_ptr<const SceneDesc>>& scenes, const py::object& motion,
                                      int threads) {
-  check_threads(threads);
   const Motion tracks = read_motion(motion, *scenes.front());
   const py::gil_scoped_release release;
   return std::make_unique<PythonBatch>(Batch(scenes, tracks, threads));
 }
 
 std::unique_ptr<PythonBatch> make(const PythonScene& scene, std::int64_t count, const py::object& motion, int threads) {
-  read_count("count", count, 1);
+  check_size(count, threads);
   return make_of(std::vector<std::shared_ptr<const SceneDesc>>(static_cast<std::size_t>(count), scene.desc), motion, threads);
 }
 
 std::unique_ptr<PythonBatch> make_from_list(const std::vector<PythonScene>& scenes, const py::object& motion, int threads) {
   if (scenes.empty()) throw py::value_error("scenes: none; allowed: at least one");
+  check_size(static_cast<std::int64_t>(scenes.size()), threads);
   std::vector<std::shared_ptr<const SceneDesc>> descs;
   for (const PythonScene& scene : scenes) descs.push_back(scene.desc);
   return make_of(descs, motion, threads);
 }
 
 std::unique_ptr<PythonBatch> make_of_world(PythonWorld& world, std::int64_t count, int threads) {
-  read_count("count", count, 1);
-  check_threads(threads);
+  check_size(count, threads);
   const InUse in_use(world.busy, "world");
   const py::gil_scoped_release release;
   return std::make_unique<PythonBatch>(Batch(world.driven, static_cast<std::size_t>(count), threads));
@@ -115,7 +117,7 @@ py::array_t<double> read(PythonBatch& batch, const std::string& name) {
   return array_of(batch.batch, quantity, name);
 }
 
-py::array_t<double> observe(PythonBatch& batch, const std::vector<std::pair<std::string, std::string>>& parts) {
+py::array_t<double> observe(PythonBatch& batch, const std::vector<GivenPart>& parts) {
   const InUse in_use(batch.busy, "batch");
   return observations(batch.batch, parts);
 }
@@ -125,6 +127,10 @@ std::unique_ptr<PythonWorld> world_at(const PythonBatch& batch, std::int64_t ind
   auto world = std::make_unique<PythonWorld>(worlds[read_world_index(index, worlds.size())]);
   world->driven.world().step_one_by_one(false);
   return world;
+}
+
+std::unique_ptr<PythonBatch> copy(const PythonBatch& batch) {
+  return std::make_unique<PythonBatch>(use(batch));
 }
 
 py::array_t<bool> settle(PythonBatch& batch) {
@@ -183,13 +189,10 @@ void add_batch_class(py::module_& module) {
           "which "
           "must divide `steps`. Other threads run meanwhile; Ctrl-C ends it between two steps, without records.")
       .def("settle", settle, "As of World, (count,) bool.")
+      .def("copy", copy, "A batch that goes on from here by itself, with the same bytes.")
+      .def("__copy__", copy)
       .def(
-          "copy",
-          [](const PythonBatch& batch) {
-            use(batch);
-            return std::make_unique<PythonBatch>(batch.batch);
-          },
-          "A batch that goes on from here by itself, with the same bytes.")
+          "__deepcopy__", [](const PythonBatch& batch, const py::dict&) { return copy(batch); }, py::arg("memo"))
       .def("world", world_at, py::arg("index"), "A copy of one of the worlds.")
       .def("positions", read<Quantity::positions>, py::arg("name"), "(count, n + 1, 3) or (count, records, n + 1, 3) [m].")
       .def("velocities", read<Quantity::velocities>, py::arg("name"), "(count, n + 1, 3) or (count, records, n + 1, 3) [m/s].")
@@ -203,9 +206,13 @@ void add_batch_class(py::module_& module) {
       .def("observations", observe, py::arg("parts"),
            "(count, k) float64: of each world the numbers of all `parts` as they are now, flattened, side by side. parts: "
            "[(quantity, name), ...], quantities being the methods that read arrays: [('positions', 'rope'), ('wrench', 'left')]; "
-           "units and order as theirs. A new array, in C order.\n\nRaises KeyError for names, ValueError for quantities, and "
-           "where a "
-           "world has not as many nodes as the others.")
+           "units and order as theirs. ('positions', 'rope', 20), or velocities likewise, reads 20 points instead of nodes, at "
+           "even "
+           "distances along what is now the cable of that name, from end to end: also where cables differ in their nodes, since "
+           "they "
+           "slide through guides, were cut or given another length, or broke. A new array, in C order.\n\nRaises KeyError for "
+           "names, "
+           "ValueError for quantities and numbers of points, and where a world has not as many nodes as the others.")
       .def(
           "energy", [](const PythonBatch& batch) { return energies(use(batch)); }, "Energies [J] as of World, (count,) each.")
       .def_property_readonly(

@@ -17,6 +17,14 @@ namespace {
 /// Worlds that a thread steps together: enough for the widest lanes, and few enough to stay in its cache.
 constexpr std::size_t share = 16;
 
+/// False where the world has no such part.
+bool try_copy(const World& world, const Part& part, double* to) {
+  if (!part.at_points) return try_copy_quantity(world, part.quantity, part.name, part.shape, to);
+  if (find(world.cables(), part.name) < 0) return false;
+  copy_points(world, part.quantity, part.name, part.shape.rows, to);
+  return true;
+}
+
 }  // namespace
 
 /// The threads that step, and what each needs for it.
@@ -110,7 +118,7 @@ std::optional<OddWorld> Batch::copy(const std::vector<Part>& parts, double* to) 
     for (std::size_t i = first; i < last; ++i) {
       double* next = to + i * row;
       for (const Part& part : parts) {
-        if (!try_copy_quantity(worlds_[i].world(), part.quantity, part.name, part.shape, next)) break;
+        if (!try_copy(worlds_[i].world(), part, next)) break;
         next += part.shape.size();
         ++copied[i];
       }

@@ -19,6 +19,7 @@ struct Part {
   Quantity quantity = Quantity::positions;
   std::string name;
   QuantityShape shape;
+  bool at_points = false;  ///< rows are points of a cable, see copy_points; else what the world has
 };
 
 /// A world that does not have a part, or has another shape of it.
