@@ -16,7 +16,7 @@ namespace {
 
 constexpr int segments = 50;
 constexpr int worlds = 1024;
-constexpr int steps = 2000;
+constexpr int steps = 200;
 
 /// The least of some turns [s].
 struct Cost {
@@ -34,7 +34,7 @@ struct Cost {
 double time_a_step() {
   const World start = start_of({1, segments});
   double least = 1e300;
-  for (int run = 0; run < 5; ++run) {
+  for (int run = 0; run < 50; ++run) {
     World world = start;
     const BoundaryInputs inputs = scenes::hand_at(world.frame_pose(1).position);
     const double begin = seconds_now();

@@ -45,5 +45,5 @@ def time_rollouts(world, count):
 
 count, segments, times = map(int, sys.argv[1:])
 start = start_of(segments)
-step = min(time_a_step(start.copy(), times) for _ in range(5))
+step = min(time_a_step(start.copy(), times) for _ in range(50))
 print(importing, step, *time_rollouts(start, count))

@@ -64,8 +64,9 @@ def test_a_batch_of_a_world_has_its_given_poses(scene):
 
 
 @pytest.mark.parametrize('index, places', [
-    (2, [2]), (-1, [6]), (numpy.int8(-7), [0]), ([1, 3, 1, -4], [1, 3]), (range(2), [0, 1]), (numpy.array([5], numpy.uint64), [5]),
-    (numpy.arange(7) % 2 == 0, [0, 2, 4, 6]), ([True] + [False] * 6, [0]), ([], []), (numpy.zeros(7, bool), []), (slice(1, 3), None),
+    (2, [2]), (-1, [6]), (numpy.int8(-7), [0]), ([1, 3, 1, -4], [1, 3]), (range(2), [0, 1]),
+    (numpy.array([5], numpy.uint64), [5]), (numpy.arange(7) % 2 == 0, [0, 2, 4, 6]),
+    ([True] + [False] * 6, [0]), ([], []), (numpy.zeros(7, bool), []), (slice(1, 3), None),
 ])
 def test_set_world_sets_the_worlds_of_an_index(scene, moved, index, places):
     batch = Batch(scene, 7)
@@ -220,6 +221,14 @@ def test_a_material_keeps_the_motion_of_a_world_that_was_set(hang, scene):
     assert batch.state_hash[1] == hash_after(World(Scene.from_dict(hang), MOTION), 20)
 
 
+def test_a_material_keeps_the_poses_that_were_given(scene):
+    batch = Batch(scene, 2)
+    batch.set_frames('hand', held_at(0.61, 0.62))
+    batch.set_material('wire', linear_density=0.2)
+    batch.step()
+    assert abs(batch.positions('hose')[:, 0, 0] - [0.61, 0.62]).max() < 1e-12
+
+
 def test_observations_are_the_arrays_side_by_side(scene, moved):
     batch = Batch(scene, 37, threads=2)
     batch.set_world([3, 4], moved)
@@ -265,7 +274,7 @@ def test_points_are_read_whatever_guides_do_to_nodes(hang):
     batch.step(200)
     nodes = [batch.world(i).positions('hose') for i in (0, 1)]
     assert len(nodes[0]) != len(nodes[1])
-    with pytest.raises(ValueError, match=r'positions of hose: world 1 has none of shape \(\d+, 3\).*slide through'):
+    with pytest.raises(ValueError, match=r'positions of hose: world 1 has none of shape \(\d+, 3\) as world 0.*guides'):
         batch.positions('hose')
     points = batch.observations([('positions', 'hose', 9)]).reshape(2, 9, 3)
     for i in (0, 1):
@@ -288,7 +297,8 @@ def test_a_scene_of_another_kind_is_refused(hang, scene):
         return other
 
     for other, text in ((cable(segments=21), r'world.cables: hose of 21 segments; allowed: .*hose of 20'),
-                        (cable(name='pipe'), 'world.cables: pipe'), (changed(time_step=0.002), 'world.time_step: 0.002 s'),
+                        (cable(name='pipe'), 'world.cables: pipe'),
+                        (changed(time_step=0.002), 'world.time_step: 0.002 s'),
                         (cable(name='pipe', segments=7), 'world.cables: pipe of 7 segments')):
         with pytest.raises(ValueError, match=text):
             batch.set_world([0, 1], World(Scene.from_dict(other)))
@@ -304,7 +314,7 @@ def test_a_scene_of_another_kind_is_refused(hang, scene):
     (lambda b, w: Batch(w, 2, threads=-1), ValueError, 'threads: -1'),
     (lambda b, w: b.set_world(3, w), IndexError, 'index: 3; allowed: -3 to 2'),
     (lambda b, w: b.set_world([0, -4], w), IndexError, 'index: -4'),
-    (lambda b, w: b.set_world(numpy.array([2 ** 64 - 1], numpy.uint64), w), IndexError, 'index: 18446744073709551615; allowed: -3 to 2'),
+    (lambda b, w: b.set_world(numpy.array([2 ** 64 - 1], numpy.uint64), w), IndexError, 'index: 18446744073709551615; allowed'),
     (lambda b, w: b.set_world(2 ** 70, w), ValueError, 'index'),
     (lambda b, w: b.set_world(0.0, w), ValueError, r'index: shape \(\) of float64'),
     (lambda b, w: b.set_world([0.0], w), ValueError, 'float64'),
@@ -372,7 +382,8 @@ except KeyboardInterrupt:
     steps = round(batch.time[0] / scene.time_step)
     alone = World(scene)
     alone.step(steps)
-    print(abs(apart[[1, 5]] - 3 * scene.time_step).max() < 1e-9, batch.positions('hose').shape, batch.state_hash[0] == alone.state_hash)
+    print(abs(apart[[1, 5]] - 3 * scene.time_step).max() < 1e-9, batch.positions('hose').shape)
+    print(batch.state_hash[0] == alone.state_hash)
     batch.set_world(range(20), world)
     print(batch.state_hash == [world.state_hash] * 20, flush=True)
 '''
@@ -381,6 +392,6 @@ except KeyboardInterrupt:
         assert process.stdout.readline() == 'begins\n'
         time.sleep(0.2)
         process.send_signal(signal.SIGINT)
-        assert process.communicate(timeout=60)[0] == 'True (20, 21, 3) True\nTrue\n'
+        assert process.communicate(timeout=60)[0] == 'True (20, 21, 3)\nTrue\nTrue\n'
     finally:
         process.kill()

@@ -17,8 +17,8 @@ std::string text_of(const QuantityShape& shape) {
   const std::string index = std::to_string(world);
   throw py::value_error(std::string(name_of(quantity)) + " of " + name + ": world " + index + " has none of shape " +
                         text_of(shape) +
-                        " as the others, since cables were cut, joined or given another length, broke, or slide " +
-                        "through guides; allowed: worlds of like shapes; world(" + index +
+                        " as world 0: it was edited otherwise, a cable of one of them broke, or slides through " +
+                        "guides; allowed: what all worlds have alike; world(" + index +
                         ") has its own, and observations() reads points of cables with any number of nodes");
 }
 

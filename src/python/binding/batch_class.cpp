@@ -164,15 +164,14 @@ void add_batch_class(py::module_& module) {
            "So many copies of a world as it is: its time, motion, given poses and edits. Each goes on with the bytes with which "
            "the world would.")
       .def("__len__", [](const PythonBatch& batch) { return use(batch).size(); })
-      .def("set_world", set_world, py::arg("index"), py::arg("world"),
-           "Worlds go on as copies of `world`, with its time, motion and given poses: to begin some of them anew, or to give all "
-           "a "
-           "common start. index: an integer, negative ones count from the end, a sequence of integers, or a bool mask (count,). "
-           "Copying takes about as long as a few steps, whatever the world took to be made. Drops what the last step recorded; "
-           "`status` of these worlds is 0.\n\nRaises IndexError, and ValueError for another kind of index, or where the world's "
-           "scene "
-           "differs from the batch's in more than numbers: names, numbers of segments and time step are to be the same. Then "
-           "nothing is changed.")
+      .def(
+          "set_world", set_world, py::arg("index"), py::arg("world"),
+          "Worlds go on as copies of `world`, with its time, motion and given poses: to begin some of them anew, or to give all "
+          "a common start. index: an integer, negative ones count from the end, a sequence of integers, or a bool mask (count,). "
+          "A copy takes less time than a step, whatever the world took to be made. Drops what the last step recorded; `status` "
+          "of these worlds is 0.\n\nRaises IndexError, and ValueError for another kind of index, or where the world's scene "
+          "differs from the batch's in more than numbers: names, numbers of segments and time step are to be the same. Then "
+          "nothing is changed.")
       .def("set_material", set_material, py::arg("name"),
            "Changes keys of a material: linear_density=..., bending_stiffness=...; a number, or (count,), or for "
            "bending_stiffness (count, 2). Worlds that were not stepped, settled or edited begin anew with it; of others all but "
@@ -180,14 +179,12 @@ void add_batch_class(py::module_& module) {
            "changed.")
       .def("set_frames", set_frames, py::arg("name"), py::arg("poses"),
            "(count, 7): where a frame is at the end of the next step, and from then on; (count, steps, 7): at the end of each of "
-           "the next "
-           "steps, then as at the last. x, y, z [m], qx, qy, qz, qw in the fixed frame.\n\nRaises KeyError, ValueError.")
+           "the next steps, then as at the last. x, y, z [m], qx, qy, qz, qw in the fixed frame.\n\nRaises KeyError, ValueError.")
       .def(
           "step", step, py::arg("steps") = 1, py::arg("record_every") = 0,
           py::arg("fields") = std::vector<std::string>{"positions", "velocities", "tension", "wrench", "body_pose", "body_twist"},
           "Advances all worlds by so many time steps. record_every: what `fields` names is recorded after every so many of them, "
-          "which "
-          "must divide `steps`. Other threads run meanwhile; Ctrl-C ends it between two steps, without records.")
+          "which must divide `steps`. Other threads run meanwhile; Ctrl-C ends it between two steps, without records.")
       .def("settle", settle, "As of World, (count,) bool.")
       .def("copy", copy, "A batch that goes on from here by itself, with the same bytes.")
       .def("__copy__", copy)
@@ -207,12 +204,10 @@ void add_batch_class(py::module_& module) {
            "(count, k) float64: of each world the numbers of all `parts` as they are now, flattened, side by side. parts: "
            "[(quantity, name), ...], quantities being the methods that read arrays: [('positions', 'rope'), ('wrench', 'left')]; "
            "units and order as theirs. ('positions', 'rope', 20), or velocities likewise, reads 20 points instead of nodes, at "
-           "even "
-           "distances along what is now the cable of that name, from end to end: also where cables differ in their nodes, since "
-           "they "
-           "slide through guides, were cut or given another length, or broke. A new array, in C order.\n\nRaises KeyError for "
-           "names, "
-           "ValueError for quantities and numbers of points, and where a world has not as many nodes as the others.")
+           "even distances along what is now the cable of that name, from end to end: also where cables differ in their nodes, "
+           "since they slide through guides, were cut or given another length, or broke. A new array, in C order.\n\nRaises "
+           "KeyError for names, ValueError for quantities and numbers of points, and where a world has not as many nodes as the "
+           "others.")
       .def(
           "energy", [](const PythonBatch& batch) { return energies(use(batch)); }, "Energies [J] as of World, (count,) each.")
       .def_property_readonly(
