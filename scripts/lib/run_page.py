@@ -20,7 +20,7 @@ import tempfile
 
 CONFIG = pathlib.Path(__file__).resolve().parents[2] / 'config'
 DPI = 80
-FENCE = re.compile(r'```(\w*)(?: tolerance=([\d.e-]+))?\s*$')
+TOLERANCE = re.compile(r'text tolerance=([\d.e-]+)$')
 NUMBER = re.compile(r'([-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?)')
 PICTURE = re.compile(r'!\[[^\]]*\]\(([^)]+)\)')
 
@@ -48,20 +48,24 @@ class Block:
 
 def read_blocks(lines, folder):
     """The blocks of Python among the lines of a page whose pictures lie in a folder."""
-    blocks, opened = [], None
+    blocks, begin, kind = [], None, None
     for k, line in enumerate(lines):
-        fence = FENCE.match(line)
-        if opened is None and fence:
-            opened = (k + 1, *fence.groups())
-        elif opened is not None and line.rstrip() == '```':
-            begin, kind, tolerance = opened
-            opened = None
+        if begin is None:
+            if line.startswith('```'):
+                begin, kind = k + 1, line[3:].strip()
+            elif blocks:
+                blocks[-1].pictures += [path for path in PICTURE.findall(line) if path.startswith(folder + '/')]
+        elif line.rstrip() == '```':
+            tolerance = TOLERANCE.match(kind)
             if kind == 'python':
                 blocks.append(Block(begin + 1, ''.join(lines[begin:k])))
-            elif kind == 'text' and blocks:
-                blocks[-1].texts.append(Text(begin, k, float(tolerance or 0)))
-        elif opened is None and blocks:
-            blocks[-1].pictures += [path for path in PICTURE.findall(line) if path.startswith(folder + '/')]
+            elif blocks and (kind == 'text' or tolerance):
+                blocks[-1].texts.append(Text(begin, k, float(tolerance[1]) if tolerance else 0.0))
+            begin = None
+    if begin is not None:
+        raise PageError(f'line {begin}: the block does not end')
+    if not blocks:
+        raise PageError('has no block of Python')
     return blocks
 
 
@@ -76,6 +80,8 @@ def check_pasting(block):
                 pending = []
         except SyntaxError as error:
             raise PageError(f'line {block.line + k}: {error.msg}, when it is pasted into python3') from error
+    if pending:
+        raise PageError(f'line {block.line}: is not a whole statement, when it is pasted into python3')
 
 
 def same_text(shown, printed, tolerance):
@@ -119,8 +125,6 @@ def run_page(page, rewrite):
     """Runs a page. Raises PageError, and what the page's code raises."""
     lines = page.read_text().splitlines(keepends=True)
     blocks = read_blocks(lines, page.stem)
-    if not blocks:
-        raise PageError('has no block of Python')
 
     def keep(path, figure):
         if rewrite:
