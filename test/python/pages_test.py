@@ -52,6 +52,12 @@ def test_all_pages_are_in_the_index():
     assert len(PAGES) >= 4 and all(f'({page.name})' in index for page in PAGES)
 
 
+def test_every_picture_is_on_its_page():
+    for picture in PACKAGE.glob('doc/python/*/*.png'):
+        page = picture.parent.with_suffix('.md')
+        assert f'({picture.relative_to(page.parent)})' in page.read_text(), picture
+
+
 def test_blocks_go_on_where_the_one_before_ended(write):
     page = write(python('x = 1'), 'Some words.', '```\nthis is not Python\n```', python('print(x + 1)\nprint("two")'), text('2\ntwo'))
     assert run_page(page).returncode == 0
