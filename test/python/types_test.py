@@ -86,7 +86,7 @@ def compiled_members(owner):
     members = {}
     for name, value in vars(owner).items():
         is_special = name.endswith('__') and callable(value) and not isinstance(value, WrapperDescriptorType)
-        if name.startswith('_') and (not is_special or name in INHERITED):
+        if name.startswith('_') and name != '__version__' and (not is_special or name in INHERITED):
             continue
         if isinstance(value, type):
             members[name] = 'class'

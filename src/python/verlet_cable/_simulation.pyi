@@ -5,6 +5,8 @@ from typing import Any, Literal, NamedTuple, Union, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+__version__: str
+
 _Motion = Union[None, str, PathLike[str], Mapping[str, tuple[ArrayLike, ArrayLike]]]
 _Status = Literal['ok', 'overstretched', 'jumped', 'degraded', 'fault']
 

@@ -58,9 +58,9 @@ def cluster(workers, scheduler):
     scratch = tempfile.mkdtemp(prefix='cable_sweep-')
     try:
         with dask.config.set(_OWN_CLUSTER), distributed.LocalCluster(
-                n_workers=workers, threads_per_worker=1, processes=True, host='127.0.0.1', dashboard_address=None,
-                memory_limit=0, local_directory=scratch, silence_logs=logging.CRITICAL) as own, distributed.Client(
-                own, set_as_default=False) as client:
+                n_workers=workers, threads_per_worker=1, processes=True, memory_limit=0, local_directory=scratch,
+                host='127.0.0.1', dashboard_address='127.0.0.1:0', scheduler_kwargs={'dashboard': False},
+                silence_logs=logging.CRITICAL) as own, distributed.Client(own, set_as_default=False) as client:
             client.register_worker_plugin(_OwnWorker(), name='own')
             yield client
     finally:

@@ -19,9 +19,10 @@ import socket
 
 import numpy as np
 
+from verlet_cable import _simulation
+
 from .errors import SweepError, missing_package
 from .layout import Layout, units_of
-from .version import package_version
 
 try:
     import numcodecs
@@ -39,7 +40,7 @@ _COMPRESSOR = numcodecs.Blosc(cname='lz4', clevel=5, shuffle=numcodecs.Blosc.SHU
 
 def versions():
     """What the bytes of a store depend on, besides the description."""
-    return {'verlet_cable': package_version(), 'numpy': np.__version__, 'zarr': zarr.__version__,
+    return {'verlet_cable': _simulation.__version__, 'numpy': np.__version__, 'zarr': zarr.__version__,
             'numcodecs': numcodecs.__version__}
 
 
