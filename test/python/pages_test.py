@@ -86,6 +86,7 @@ def test_text_is_compared(write, printed, shown, tolerance, same):
 @pytest.mark.parametrize('parts, message', [
     ([python('print(1)')], 'line 3: the block has 0 blocks of text after it, and prints:\n1'),
     ([python('x = 1'), text('1')], 'line 3: the block has 1 blocks of text after it, and prints:\n'),
+    ([python('print(1, end="")'), text('1')], 'line 3: the last line that the block prints does not end:\n1'),
     ([python('for k in range(2):\n    x = k\nx = 3')], 'line 5: invalid syntax, when it is pasted'),
     ([python('def f():\n    x = 1\n\n    return x')], 'line 6: unexpected indent, when it is pasted'),
     ([python('x = (1,')], 'line 3: is not a whole statement'),
