@@ -112,13 +112,13 @@ def run_block(block, page, namespace):
 
 def take_figures(block, keep):
     """Closes the figures that a block drew; keep(path, figure) is called with each."""
-    import matplotlib.pyplot as plt
-    numbers = plt.get_fignums()
+    plt = sys.modules.get('matplotlib.pyplot')  # what draws nothing need not have it
+    numbers = plt.get_fignums() if plt else []
     if len(numbers) != len(block.pictures):
         raise PageError(f'line {block.line}: the block draws {len(numbers)} figures; the page shows {len(block.pictures)}')
     for path, number in zip(block.pictures, numbers):
         keep(path, plt.figure(number))
-    plt.close('all')
+        plt.close(number)
 
 
 def run_page(page, rewrite):
@@ -142,6 +142,8 @@ def run_page(page, rewrite):
         take_figures(block, keep)
         if len(block.texts) != bool(printed):
             raise PageError(f'line {block.line}: the block has {len(block.texts)} blocks of text after it, and prints:\n{printed}')
+        if not printed.endswith('\n') and printed:
+            raise PageError(f'line {block.line}: the last line that the block prints does not end:\n{printed}')
         for text in block.texts:
             printed_texts.append((text, printed))
             shown = ''.join(lines[text.begin:text.end])

@@ -52,6 +52,12 @@ def test_all_pages_are_in_the_index():
     assert len(PAGES) >= 4 and all(f'({page.name})' in index for page in PAGES)
 
 
+def test_every_picture_is_on_its_page():
+    for picture in PACKAGE.glob('doc/python/*/*.png'):
+        page = picture.parent.with_suffix('.md')
+        assert f'({picture.relative_to(page.parent)})' in page.read_text(), picture
+
+
 def test_blocks_go_on_where_the_one_before_ended(write):
     page = write(python('x = 1'), 'Some words.', '```\nthis is not Python\n```', python('print(x + 1)\nprint("two")'), text('2\ntwo'))
     assert run_page(page).returncode == 0
@@ -80,6 +86,7 @@ def test_text_is_compared(write, printed, shown, tolerance, same):
 @pytest.mark.parametrize('parts, message', [
     ([python('print(1)')], 'line 3: the block has 0 blocks of text after it, and prints:\n1'),
     ([python('x = 1'), text('1')], 'line 3: the block has 1 blocks of text after it, and prints:\n'),
+    ([python('print(1, end="")'), text('1')], 'line 3: the last line that the block prints does not end:\n1'),
     ([python('for k in range(2):\n    x = k\nx = 3')], 'line 5: invalid syntax, when it is pasted'),
     ([python('def f():\n    x = 1\n\n    return x')], 'line 6: unexpected indent, when it is pasted'),
     ([python('x = (1,')], 'line 3: is not a whole statement'),
