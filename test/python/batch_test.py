@@ -65,6 +65,7 @@ def test_a_batch_of_a_world_has_its_given_poses(scene):
 
 @pytest.mark.parametrize('index, places', [
     (2, [2]), (-1, [6]), (numpy.int8(-7), [0]), ([1, 3, 1, -4], [1, 3]), (range(2), [0, 1]),
+    (numpy.arange(7)[::-3], [0, 3, 6]), (numpy.array([[5, 0], [4, 1]])[:, 0], [4, 5]), (numpy.broadcast_to(numpy.int64(2), 3), [2]),
     (numpy.array([5], numpy.uint64), [5]), (numpy.arange(7) % 2 == 0, [0, 2, 4, 6]),
     ([True] + [False] * 6, [0]), ([], []), (numpy.zeros(7, bool), []), (slice(1, 3), None),
 ])
@@ -363,6 +364,30 @@ def test_a_broken_cable_is_named_and_can_be_set_back(hang):
     assert batch.positions('hose').shape == (3, 21, 3)
     batch.step(10, record_every=5)
     assert batch.positions('hose').shape == (3, 2, 21, 3)
+
+
+def test_no_steps_have_no_records(scene):
+    batch = Batch(scene, 2)
+    batch.step(0, record_every=1)
+    assert batch.positions('hose').shape == (2, 0, 21, 3)
+    batch.step(0)
+    assert batch.positions('hose').shape == (2, 21, 3)
+
+
+def test_the_interpreter_may_end_while_a_thread_steps(hang):
+    program = '''
+import json, sys, threading, time
+from verlet_cable.sim import Batch, Scene
+batch = Batch(Scene.from_dict(json.loads(sys.argv[1])), 3)
+def step():
+    while True:
+        batch.step()
+threading.Thread(target=step, daemon=True).start()
+time.sleep(0.1)
+'''
+    for _ in range(3):
+        done = subprocess.run([sys.executable, '-c', program, json.dumps(hang)], stderr=subprocess.PIPE, text=True, timeout=60)
+        assert (done.returncode, done.stderr) == (0, '')
 
 
 def test_ctrl_c_between_two_steps_leaves_worlds_that_go_on(hang):

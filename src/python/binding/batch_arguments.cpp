@@ -74,7 +74,7 @@ std::vector<std::size_t> read_world_indices(const py::object& index, std::size_t
       if (mask.at(i)) indices.push_back(i);
   } else if ((kind == 'i' || kind == 'u') && given.ndim() <= 1) {
     check_unsigned(given, count);
-    const py::array_t<std::int64_t> integers(given);
+    const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> integers(given);
     for (py::ssize_t i = 0; i < integers.size(); ++i) indices.push_back(read_world_index(integers.data()[i], count));
     std::sort(indices.begin(), indices.end());
     indices.erase(std::unique(indices.begin(), indices.end()), indices.end());

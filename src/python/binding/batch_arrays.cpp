@@ -13,12 +13,13 @@ std::string text_of(const QuantityShape& shape) {
   return "(" + std::to_string(shape.rows) + (shape.columns > 0 ? ", " + std::to_string(shape.columns) + ")" : ",)");
 }
 
-[[noreturn]] void refuse_odd_world(std::size_t world, Quantity quantity, const std::string& name, const QuantityShape& shape) {
+/// `like`: what has that shape.
+[[noreturn]] void refuse_odd_world(std::size_t world, Quantity quantity, const std::string& name, const QuantityShape& shape,
+                                   const std::string& like) {
   const std::string index = std::to_string(world);
   throw py::value_error(std::string(name_of(quantity)) + " of " + name + ": world " + index + " has none of shape " +
-                        text_of(shape) +
-                        " as world 0: it was edited otherwise, a cable of one of them broke, or slides through " +
-                        "guides; allowed: what all worlds have alike; world(" + index +
+                        text_of(shape) + " as " + like + ": it was edited, or a cable broke, or slides through " +
+                        "guides; allowed: what has one shape; world(" + index +
                         ") has its own, and observations() reads points of cables with any number of nodes");
 }
 
@@ -30,7 +31,7 @@ std::vector<std::size_t> sizes_of(const QuantityShape& shape, std::vector<std::s
 
 py::array_t<double> recorded_array(const Record& record, std::size_t worlds, std::size_t records) {
   for (std::size_t i = 0; i < worlds; ++i)
-    if (record.changed[i]) refuse_odd_world(i, record.quantity, record.name, record.shape);
+    if (record.changed[i]) refuse_odd_world(i, record.quantity, record.name, record.shape, "at first in every record");
   auto* owner = new std::shared_ptr<double>(record.numbers);
   const py::capsule capsule(owner, [](void* pointer) { delete static_cast<std::shared_ptr<double>*>(pointer); });
   py::array_t<double> array(sizes_of(record.shape, {worlds, records}), record.numbers.get(), capsule);
@@ -46,7 +47,7 @@ void copy(const Batch& batch, const std::vector<Part>& parts, double* to) {
   }
   if (!odd) return;
   const Part& part = parts[odd->part];
-  refuse_odd_world(odd->world, part.quantity, part.name, part.shape);
+  refuse_odd_world(odd->world, part.quantity, part.name, part.shape, "world 0");
 }
 
 py::array_t<double> array_of_now(const Batch& batch, Quantity quantity, const std::string& name) {
@@ -85,13 +86,13 @@ py::array_t<Number> array_of_numbers(const Batch& batch, const Read& read) {
 }  // namespace
 
 py::array_t<double> array_of(const Batch& batch, Quantity quantity, const std::string& name) {
-  const Records& records = batch.records();
-  if (records.count() == 0) return array_of_now(batch, quantity, name);
+  const Records* const records = batch.records();
+  if (!records) return array_of_now(batch, quantity, name);
   shape_of(batch[0].world(), quantity, name);  // throws for an unknown name
-  const Record* record = records.find(quantity, name);
+  const Record* record = records->find(quantity, name);
   if (!record)
     throw py::value_error(std::string(name_of(quantity)) + ": not recorded; allowed: what `fields` of the last step named");
-  return recorded_array(*record, batch.size(), records.count());
+  return recorded_array(*record, batch.size(), records->count());
 }
 
 py::array_t<double> observations(const Batch& batch, const std::vector<GivenPart>& given) {

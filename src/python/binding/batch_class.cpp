@@ -154,7 +154,7 @@ void add_batch_class(py::module_& module) {
       "Worlds that are alike but for numbers, stepped together: sooner than one after another, with the same bytes "
       "as each alone, whatever the number of threads. One thread at a time may use a batch; others run while it "
       "steps.\n\nArrays begin with an axis of the worlds. After a step with `record_every` they have an axis of "
-      "records next, and are read-only views; else they are new ones.")
+      "records next, and are read-only views; else they are new ones. A batch keeps no events.")
       .def(py::init(&make), py::arg("scene"), py::arg("count"), py::arg("motion") = py::none(), py::arg("threads") = 0,
            "So many worlds of a scene. motion: as of World, of all of them. threads: 0 is one a core.")
       .def(py::init(&make_from_list), py::arg("scenes"), py::arg("motion") = py::none(), py::arg("threads") = 0,
@@ -179,7 +179,9 @@ void add_batch_class(py::module_& module) {
            "changed.")
       .def("set_frames", set_frames, py::arg("name"), py::arg("poses"),
            "(count, 7): where a frame is at the end of the next step, and from then on; (count, steps, 7): at the end of each of "
-           "the next steps, then as at the last. x, y, z [m], qx, qy, qz, qw in the fixed frame.\n\nRaises KeyError, ValueError.")
+           "the next steps, then as at the last. x, y, z [m], qx, qy, qz, qw in the fixed frame; quaternions of a length from "
+           "0.5 to "
+           "2 are normalised.\n\nRaises KeyError, ValueError.")
       .def(
           "step", step, py::arg("steps") = 1, py::arg("record_every") = 0,
           py::arg("fields") = std::vector<std::string>{"positions", "velocities", "tension", "wrench", "body_pose", "body_twist"},
@@ -190,7 +192,7 @@ void add_batch_class(py::module_& module) {
       .def("__copy__", copy)
       .def(
           "__deepcopy__", [](const PythonBatch& batch, const py::dict&) { return copy(batch); }, py::arg("memo"))
-      .def("world", world_at, py::arg("index"), "A copy of one of the worlds.")
+      .def("world", world_at, py::arg("index"), "A copy of one of the worlds, without events of the time before.")
       .def("positions", read<Quantity::positions>, py::arg("name"), "(count, n + 1, 3) or (count, records, n + 1, 3) [m].")
       .def("velocities", read<Quantity::velocities>, py::arg("name"), "(count, n + 1, 3) or (count, records, n + 1, 3) [m/s].")
       .def("tension", read<Quantity::tension>, py::arg("name"), "(count, n) or (count, records, n) [N].")

@@ -29,6 +29,20 @@ class InUse {
   bool& busy_;
 };
 
+/// Runs `work` without the interpreter's lock. Where the interpreter ends before it has the lock again, it ends this thread by
+/// unwinding it: out of a function, which it could not out of a destructor.
+template <class Work>
+void without_lock(const Work& work) {
+  PyThreadState* const thread = PyEval_SaveThread();
+  try {
+    work();
+  } catch (...) {
+    PyEval_RestoreThread(thread);
+    throw;
+  }
+  PyEval_RestoreThread(thread);
+}
+
 /// Runs `work(n)` for all of `steps`, some at a time and without the interpreter's lock, so that Ctrl-C ends it in between: then
 /// it throws.
 template <class Work>
@@ -39,12 +53,11 @@ void run_steps(std::int64_t steps, const Work& work) {
   while (steps > 0) {
     some = std::min(some, steps);
     Clock::duration taken;
-    {
-      const pybind11::gil_scoped_release release;
+    without_lock([&] {
       const Clock::time_point start = Clock::now();
       work(some);
       taken = Clock::now() - start;
-    }
+    });
     steps -= some;
     if (steps > 0 && PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
     if (taken < short_time)

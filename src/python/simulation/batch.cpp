@@ -80,6 +80,7 @@ Batch::Batch(const DrivenWorld& world, std::size_t count, int threads)
 
 void Batch::set_worlds(const std::vector<std::size_t>& indices, const DrivenWorld& world) {
   check_alike(worlds_.front().scene(), world.scene(), "world");
+  if (indices.empty()) return;
   threads_->share_out(indices.size(), [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       DrivenWorld& copy = worlds_[indices[i]];
@@ -130,9 +131,9 @@ std::optional<OddWorld> Batch::copy(const std::vector<Part>& parts, double* to) 
 }
 
 void Batch::begin_steps(std::int64_t steps, std::int64_t record_every, const std::vector<Quantity>& quantities) {
-  Records records;
+  std::optional<Records> records;
   if (record_every > 0)
-    records = Records(worlds_.front().world(), quantities, worlds_.size(), static_cast<std::size_t>(steps / record_every));
+    records.emplace(worlds_.front().world(), quantities, worlds_.size(), static_cast<std::size_t>(steps / record_every));
   records_ = std::move(records);
   record_every_ = record_every;
   steps_done_ = 0;
@@ -153,7 +154,7 @@ void Batch::advance(std::size_t first, std::size_t last, std::int64_t steps) {
     for (std::size_t i = first; i < last; ++i) status_[i] = std::max(status_[i], buffers.steps[i - first].result.status);
     if (record_every_ == 0 || done % record_every_ != 0) continue;
     for (std::size_t i = first; i < last; ++i)
-      records_.add(worlds_[i].world(), i, static_cast<std::size_t>(done / record_every_ - 1));
+      records_->add(worlds_[i].world(), i, static_cast<std::size_t>(done / record_every_ - 1));
   }
 }
 

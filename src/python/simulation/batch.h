@@ -60,9 +60,10 @@ class Batch {
   void advance(std::int64_t steps);
 
   /// What was recorded since `begin_steps` is not there: the steps were not finished.
-  void drop_records() { records_ = {}; }
+  void drop_records() { records_.reset(); }
 
-  const Records& records() const { return records_; }
+  /// Null where the last step recorded nothing.
+  const Records* records() const { return records_ ? &*records_ : nullptr; }
   /// The worst of each world since `begin_steps`.
   const std::vector<StepResult::Status>& status() const { return status_; }
 
@@ -77,7 +78,7 @@ class Batch {
   std::shared_ptr<Threads> threads_;  ///< of copies, too: nobody steps two at once
   std::vector<DrivenWorld> worlds_;
   std::vector<StepResult::Status> status_;
-  Records records_;
+  std::optional<Records> records_;
   std::int64_t record_every_ = 0;
   std::int64_t steps_done_ = 0;  ///< since begin_steps
 };
