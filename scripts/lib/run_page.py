@@ -5,9 +5,13 @@ What a block prints is what the ```text block after it shows, exactly, or, where
 that differ by so much of themselves and by one of the last digit. Figures that a block draws are the pictures after it that lie in the
 folder named like the page. Exits with 1 and says what differs; with --rewrite it makes printed text and pictures anew instead.
 
+python3 also echoes the value of a statement that is an expression, and pages do not show that: it may only be what Matplotlib
+returns, and no more of that than ECHOED_LINES and ECHOED_LENGTH for each statement.
+
 The page runs in an empty folder that has the package's config. Needs the workspace's setup sourced.
 """
 import argparse
+import ast
 import codeop
 import contextlib
 import dataclasses
@@ -15,11 +19,13 @@ import io
 import os
 import pathlib
 import re
+import reprlib
 import sys
 import tempfile
 
 CONFIG = pathlib.Path(__file__).resolve().parents[2] / 'config'
 DPI = 80
+ECHOED_LINES, ECHOED_LENGTH = 20, 1000
 TOLERANCE = re.compile(r'text tolerance=([\d.e-]+)$')
 NUMBER = re.compile(r'([-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?)')
 PICTURE = re.compile(r'!\[[^\]]*\]\(([^)]+)\)')
@@ -101,13 +107,31 @@ def last_digit(number):
 
 
 def run_block(block, page, namespace):
-    """Runs a block; returns what it printed."""
+    """Runs a block as an interpreter does; returns what it printed, without what it echoed."""
     # Tracebacks name the page and its lines.
-    code = compile('\n' * (block.line - 1) + block.code, str(page), 'exec')
+    tree = ast.parse('\n' * (block.line - 1) + block.code, str(page))
     output = io.StringIO()
     with contextlib.redirect_stdout(output):
-        exec(code, namespace)
+        for statement in tree.body:
+            echoed = []
+            sys.displayhook = echoed.append
+            try:
+                exec(compile(ast.Interactive([statement]), str(page), 'single'), namespace)
+            finally:
+                sys.displayhook = sys.__displayhook__
+            check_echo(statement.lineno, [value for value in echoed if value is not None])
     return output.getvalue()
+
+
+def check_echo(line, values):
+    """Refuses values that a statement echoes, unless they are a few of Matplotlib's."""
+    for value in values:
+        # Methods that make or set several things at once return a list.
+        if not (isinstance(value, list) or type(value).__module__.startswith('matplotlib.')):
+            raise PageError(f'line {line}: echoes {reprlib.repr(value)}, when it is pasted into python3: give it a name')
+    length = sum(len(repr(value)) for value in values)
+    if len(values) > ECHOED_LINES or length > ECHOED_LENGTH:
+        raise PageError(f'line {line}: echoes {len(values)} lines with {length} characters, when it is pasted into python3')
 
 
 def take_figures(block, keep):

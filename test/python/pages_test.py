@@ -1,7 +1,10 @@
 """The pages of doc/python and the README: their code does what they show; and run_page.py, which finds out."""
+import ast
 import os
+import re
 import subprocess
 import sys
+import textwrap
 from pathlib import Path
 
 import pytest
@@ -47,6 +50,13 @@ def test_a_page_shows_what_its_code_does(page):
     assert done.returncode == 0, done.stdout
 
 
+def test_the_example_in_the_help_runs_well(write):
+    module = (PACKAGE / 'src/python/verlet_cable/sim/__init__.py').read_text()
+    example = re.search(r'(?:(?:    .*)?\n)+', ast.get_docstring(ast.parse(module)).partition('\n')[2])[0]
+    done = run_page(write(python(textwrap.dedent(example) + 'print(status, world.time)'), text('ok 1.1', ' tolerance=1e-9')))
+    assert done.returncode == 0, done.stdout
+
+
 def test_all_pages_are_in_the_index():
     index = (PACKAGE / 'doc/python/README.md').read_text()
     assert len(PAGES) >= 4 and all(f'({page.name})' in index for page in PAGES)
@@ -61,6 +71,12 @@ def test_every_picture_is_on_its_page():
 def test_blocks_go_on_where_the_one_before_ended(write):
     page = write(python('x = 1'), 'Some words.', '```\nthis is not Python\n```', python('print(x + 1)\nprint("two")'), text('2\ntwo'))
     assert run_page(page).returncode == 0
+
+
+def test_what_is_named_or_within_a_function_is_not_echoed(write):
+    page = write(python('def f():\n    "odd"\n    return 1\n\nx = f()\nfor k in range(20):\n    x = f()\n    None\n\nprint(x)'), text('1'))
+    done = run_page(page)
+    assert done.returncode == 0, done.stdout
 
 
 @pytest.mark.parametrize('printed, shown, tolerance, same', [
@@ -94,6 +110,10 @@ def test_text_is_compared(write, printed, shown, tolerance, same):
     ([python('import matplotlib.pyplot as plt\nplt.figure()'), '![A figure](page/figure.png)'], 'page/figure.png is not there'),
     ([python('x = 1'), '![A figure](page/figure.png)'], 'draws 0 figures; the page shows 1'),
     ([python('x = 1\nraise ValueError("odd")')], 'line 4'),
+    ([python('x = 1\n"odd"')], "line 4: echoes 'odd', when it is pasted"),
+    ([python('for k in range(2):\n    k')], 'line 3: echoes 0, when it is pasted'),
+    ([python('for k in range(21):\n    [k]')], 'line 3: echoes 21 lines with'),
+    ([python('[0.5] * 1000')], 'line 3: echoes 1 lines with 5000 characters'),
     (['```python', 'x = 1'], 'line 2: the block does not end'),
     (['No code.'], 'no block of Python'),
 ])
