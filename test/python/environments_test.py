@@ -280,7 +280,16 @@ def test_hands_stay_where_they_can_be():
             action = generator.choice([-1.0, 1.0], size=(1, 3))
         hand = task.move(hand, action, nothing_held(0))
         assert (hand >= lay_cable.LOW - 1e-12).all() and (hand <= lay_cable.HIGH + 1e-12).all()
-        assert (hand ** 2).sum() <= lay_cable.REACH ** 2 + 1e-12
+        assert ((hand - [0, 0, lay_cable.LOW[2]]) ** 2).sum() <= lay_cable.REACH ** 2 + 1e-12
+
+
+def test_hands_do_not_sink_where_the_cable_reaches_no_further():
+    task = LayCable().task
+    for action in ([1.0, 1, 0], [1.0, 0.4, -1]):
+        hand = numpy.array([[0.4, 0.2, lay_cable.LOW[2]]])
+        for _ in range(60):
+            hand = task.move(hand, numpy.array([action]), nothing_held(0))
+            assert hand[0, 2] >= lay_cable.LOW[2] - 1e-15
 
 
 def test_hands_do_not_go_further_than_the_cable_that_clips_leave_them():
@@ -289,7 +298,7 @@ def test_hands_do_not_go_further_than_the_cable_that_clips_leave_them():
     hand = numpy.array([[0.4, 0.0, 0.01]])
     for _ in range(200):
         hand = task.move(hand, numpy.array([[1.0, 0.3, 0.1]]), seen)
-    places = numpy.zeros((5, 3))
+    places = numpy.zeros((5, 3)) + [0, 0, lay_cable.LOW[2]]
     places[1:4, :2] = task.layouts[0, :, :2]
     places[4] = hand[0]
     length = numpy.sqrt((numpy.diff(places, axis=0) ** 2).sum(axis=1)).sum()
@@ -305,6 +314,61 @@ def test_hands_do_not_enter_posts():
         low, high = task.move(low, numpy.array([[1.0, 0, 0]]), seen), task.move(high, numpy.array([[1.0, 0, 0]]), seen)
         assert ((low[0, :2] - task.posts[3]) ** 2).sum(axis=1).min() >= 0.999 * lay_cable.CLEARANCE ** 2
     assert abs(high[0] - [*post + [0.02, -0.001], 0.05]).max() < 1e-12
+
+
+def test_hands_stop_at_posts_they_are_aimed_at():
+    task = LayCable().task
+    layouts, aim = numpy.arange(task.variants), numpy.array([1.0, -1.0, 0]) / numpy.sqrt(2)
+    seen = lay_cable.Seen(None, numpy.zeros((task.variants, 3)), None,
+                          {'held': numpy.zeros((task.variants, 3), dtype=bool), 'layout': layouts})
+    for post in (0, 1):
+        for away in (0.0071, 0.0098, 0.012):  # [m] from the middle, and a step is 0.0071 m long
+            hand = numpy.full((task.variants, 3), 0.01)
+            hand[:, :2] = task.posts[:, post] - away * aim[:2]
+            for _ in range(5):
+                hand = task.move(hand, numpy.tile([1.0, -1.0, 0], (task.variants, 1)), seen)
+            middle = numpy.append(task.posts[:, post], numpy.full((task.variants, 1), 0.01), axis=1)
+            assert hand == pytest.approx(middle - lay_cable.CLEARANCE * aim, abs=1e-6)
+
+
+@pytest.mark.parametrize('held', [False, True])
+def test_hands_go_beside_and_over_posts_no_faster_than_they_can(held):
+    task, count = LayCable().task, 2000
+    generator = numpy.random.default_rng(6)
+    layouts = generator.integers(task.variants, size=count)
+    posts = task.posts[layouts]
+    seen = lay_cable.Seen(None, numpy.zeros((count, 3)), None, {'held': numpy.full((count, 3), held), 'layout': layouts})
+    hand = numpy.zeros((count, 3))
+    hand[:, :2] = posts.mean(axis=1) + generator.choice([-0.09, -0.01, 0.05], size=(count, 1))
+    hand[:, 2] = generator.uniform(lay_cable.LOW[2], 0.04, count)
+    hand[:, 2] = numpy.where(in_posts(hand, posts), 0.04, hand[:, 2])
+    for step in range(60):
+        if step % 5 == 0:  # to or past some post, up or down
+            actions = generator.uniform(-1, 1, (count, 3))
+            aim = posts[numpy.arange(count), generator.integers(6, size=count)] + generator.normal(0, 0.004, (count, 2)) - hand[:, :2]
+            actions[:, :2] = aim / abs(aim).max(axis=1)[:, None]
+        moved = task.move(hand, actions, seen)
+        way = lay_cable.SPEED * lay_cable.STEP_TIME * numpy.sqrt((actions ** 2).sum(axis=1))
+        assert (numpy.sqrt(((moved - hand) ** 2).sum(axis=1)) <= way + 1e-8).all()
+        for part in numpy.linspace(0, 1, 9):
+            assert not in_posts(hand + part * (moved - hand), posts).any()
+        hand = moved
+
+
+def in_posts(hand, posts):
+    """Whether hands (count, 3) are in posts (count, k, 2), (count,)."""
+    distance = numpy.sqrt(((hand[:, None, :2] - posts) ** 2).sum(axis=2)).min(axis=1)
+    return (distance < lay_cable.CLEARANCE - 1e-12) & (hand[:, 2] < lay_cable.TOP - 1e-12)
+
+
+def test_a_hand_that_slides_around_a_post_is_not_torn():
+    environment = LayCable()
+    observation, _ = environment.reset(options={'layout': 13})
+    for _ in range(80):
+        hand = observation[306:309]
+        observation, *_ = environment.step(numpy.array([1.0, -1.0, 0]))
+        assert numpy.linalg.norm(observation[306:309] - hand) <= 0.0071
+        assert numpy.linalg.norm(observation[309:312]) < 10
 
 
 def test_hands_give_way_to_what_is_stronger():

@@ -129,7 +129,8 @@ class ShapeRope(Environment):
     """Shape a rope that lies on a table, pinned at one end, with a hand that holds the other one.
 
     Action (3,), each from -1 to 1: velocity of the hand along x and y, in 0.4 m/s, and its turning, in 2 rad/s. The hand stays
-    between 0.25 m and 0.95 m in x, within 0.5 m in y and 2.5 rad, and within 0.95 m of the pin; it gives way to more than 20 N.
+    between 0.25 m and 0.95 m in x, within 0.5 m in y and 2.5 rad, and within 0.95 m of the pin. When a step ends with more than
+    20 N on it, it gives way in the next one; within a step nothing limits the force.
     Observation (465,) float64: nodes (51, 3) [m] from the pin on, their velocities (51, 3) [m/s], the hand's x, y [m] and angle
     [rad], the force on the hand (3,) [N], and the nodes of the goal (51, 3) [m].
     Reward: minus the mean distance of the nodes from those of the goal [m].
