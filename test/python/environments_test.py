@@ -200,6 +200,23 @@ def test_reset_of_some_worlds_leaves_the_others_as_they_are(vector):
         assert k < 10 or not same(expected[0][mask], given[0][mask])
 
 
+def test_worlds_tell_their_seeds():
+    many, one = ShapeRopeVector(2, goals=4), ShapeRope(goals=4)
+    drawn = many.np_random_seed
+    assert len(set(drawn)) == 2 and all(type(seed) is int for seed in drawn) and len(many.np_random) == 2
+    many.reset()
+    assert many.np_random_seed == drawn
+    again = ShapeRopeVector(2, goals=4)
+    assert same(many.reset()[0], (again.reset(seed=drawn), again.reset())[1][0])
+    many.reset(seed=3)
+    one.reset(seed=3)
+    assert many.np_random_seed == (3, 4) and one.np_random_seed == 3
+    many.reset(seed=[8, numpy.int64(9)], options={'reset_mask': numpy.array([False, True])})
+    assert many.np_random_seed == (3, 9)
+    many.reset(seed=[None, 7])
+    assert many.np_random_seed == (3, 7)
+
+
 def test_worlds_ask_for_what_is_to_be_done():
     vector = ShapeRopeVector(3, goals=5)
     assert vector.reset(options={'goal': [4, 0, 2]})[1]['goal'].tolist() == [4, 0, 2]
