@@ -117,8 +117,12 @@ def test_what_is_closed_or_has_not_begun_does_not_step(environment):
     (numpy.zeros((1, 3)), r'action: shape \(1, 3\); allowed: \(3,\)'),
     ([0, numpy.nan, 0], r'action\[1\]: nan; allowed: -1.0 to 1.0'),
     ([0, 2, -numpy.inf], r'action\[1\]: 2.0, action\[2\]: -inf; allowed: -1.0 to 1.0'),
-    ('left', r"action: 'left'; allowed: numbers, of shape \(3,\)"),
+    ('left', r"action: 'left'; allowed: real numbers, of shape \(3,\)"),
+    (['0', '0', '0'], 'action: '),
     (None, 'action: '),
+    (numpy.zeros(3, dtype=complex), r'action: array\(.*\); allowed: real numbers, of shape \(3,\)'),
+    ([0, 1j, 0], r'action: \[0, 1j, 0\]; allowed: real numbers'),
+    ([0, [1, 2], 0], r'action: \[0, \[1, 2\], 0\]; allowed: real numbers'),
 ])
 def test_a_wrong_action_changes_nothing(environment, action, text):
     environment.reset(seed=5)
@@ -137,6 +141,9 @@ def test_wrong_arguments():
     for count in (-1, 0, True, 2.0, 10**9, 10**30, None):
         with pytest.raises(ValueError, match=f'num_envs: {count}; allowed: whole numbers from 1 to 1000000'):
             LayCableVector(count)
+    for threads in (-1, 1025, 1.5, True, None, 10**30, 'all'):
+        with pytest.raises(ValueError, match=f'threads: {threads!r}; allowed: 0, as many as there are cores, to 1024'):
+            LayCableVector(2, threads=threads)
     environment = ShapeRope(goals=4)
     for wrong, text in (({'seed': -1}, 'seed: -1'), ({'seed': 1.5}, 'seed: 1.5'),
                         ({'options': {'gaol': 1}}, "'gaol'; allowed: 'goal'"),
@@ -145,7 +152,10 @@ def test_wrong_arguments():
         with pytest.raises(ValueError, match=text):
             environment.reset(**wrong)
     vector = ShapeRopeVector(3, goals=4)
-    for wrong, text in (({'seed': [1, 2]}, 'seed: 2 numbers'), ({'seed': [1, 2, -3]}, r'seed\[2\]: -3'),
+    for seed in (1.5, 'one', float('nan'), b'123', numpy.array(1.5)):
+        with pytest.raises(ValueError, match=r'seed: .*; allowed: None, a whole number from 0, or 3 of them, one a world'):
+            vector.reset(seed=seed)
+    for wrong, text in (({'seed': [1, 2]}, 'seed: 2 numbers'), ({'seed': True}, 'seed: True'), ({'seed': [1, 2, -3]}, r'seed\[2\]: -3'),
                         ({'options': {'reset_mask': [True]}}, r"options\['reset_mask'\]: \[True\]"),
                         ({'options': {'reset_mask': numpy.zeros(3, bool)}}, 'at least one'),
                         ({'options': {'goal': [0, 1, 9]}}, r"options\['goal'\]\[2\]: 9")):

@@ -82,7 +82,7 @@ class VectorEnvironment(VectorEnv):
         self.render_mode = arguments.read_render_mode(render_mode, RENDER_MODES)
         self.task = task
         self.num_envs = arguments.read_count('num_envs', num_envs)
-        self._episodes = Episodes(task, self.num_envs, threads, max_episode_steps)
+        self._episodes = Episodes(task, self.num_envs, arguments.read_threads(threads), max_episode_steps)
         self._generators = [None] * self.num_envs
         self._seeds = [None] * self.num_envs
         self._begin_generators(self._seeds, numpy.ones(self.num_envs, dtype=bool))
