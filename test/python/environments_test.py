@@ -66,6 +66,17 @@ def test_a_seed_decides_what_is_drawn(environment):
     assert any(not same(starts[0], start) for start in starts)
 
 
+@pytest.mark.parametrize('single, vector', PAIRS)
+def test_episodes_last_as_long_as_is_asked_for(single, vector):
+    for limit in (1, 3, None):
+        one, many = single(max_episode_steps=limit), vector(2, max_episode_steps=limit)
+        one.reset()
+        many.reset()
+        for step in range(1, 4 if limit is None else limit + 1):
+            truncated = one.step(numpy.zeros(3))[3]
+            assert truncated == (step == limit) and (many.step(numpy.zeros((2, 3)))[3] == truncated).all()
+
+
 def test_a_step_draws_nothing(environment):
     environment.reset(seed=1)
     generator = environment.np_random.bit_generator.state
@@ -134,7 +145,7 @@ def test_a_wrong_action_changes_nothing(environment, action, text):
 
 
 def test_wrong_arguments():
-    for wrong, text in (({'max_episode_steps': 0}, 'max_episode_steps: 0'), ({'goals': 1.5}, 'goals: 1.5'),
+    for wrong, text in (({'max_episode_steps': 0}, 'max_episode_steps: 0; allowed: whole numbers from 1 to 1000000, or None'), ({'goals': 1.5}, 'goals: 1.5'),
                         ({'render_mode': 'human'}, "render_mode: 'human'; allowed: None, 'rgb_array'")):
         with pytest.raises(ValueError, match=text):
             ShapeRope(**wrong)
@@ -485,8 +496,8 @@ GYMNASIUM = {
     '__init__.py': '''
         import numpy
         known = {}
-        def register(id, entry_point, vector_entry_point):
-            known[id] = (entry_point, vector_entry_point)
+        def register(id, **spec):
+            known[id] = spec
         class Env:
             spec = None
             def reset(self, *, seed=None, options=None):
@@ -516,7 +527,7 @@ GYMNASIUM = {
         ''',
 }
 USE = '''
-import hashlib, sys
+import hashlib, importlib, sys
 import numpy
 from verlet_cable.environments import LayCable, LayCableVector
 results = []
@@ -534,8 +545,16 @@ if 'gymnasium' in sys.modules:
     assert many.metadata['autoreset_mode'] is gymnasium.vector.AutoresetMode.NEXT_STEP
     many.close()
     assert many.closed
-    assert gymnasium.known['verlet_cable/ShapeRope-v0'] == (
-        'verlet_cable.environments:ShapeRope', 'verlet_cable.environments:ShapeRopeVector')
+    for name, limit in (('ShapeRope', 250), ('LayCable', 400)):
+        spec = gymnasium.known[f'verlet_cable/{name}-v0']
+        assert spec['max_episode_steps'] == limit and spec['vector_entry_point'] == f'verlet_cable.environments:{name}Vector'
+        module, function = spec['entry_point'].split(':')
+        make = getattr(importlib.import_module(module), function)
+        assert make.metadata['render_modes'] == ['rgb_array']
+        environment = make(render_mode='rgb_array')
+        assert type(environment).__name__ == name and environment.render_mode == 'rgb_array'
+        environment.reset(seed=1)
+        assert not any(environment.step(numpy.zeros(3))[3] for _ in range(limit + 2))  # that is for gymnasium.make to say
     print('with Gymnasium')
 '''
 

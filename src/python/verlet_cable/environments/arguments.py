@@ -1,4 +1,5 @@
 """Reads arguments; what is wrong is a ValueError that names the argument, the value given and what is allowed."""
+import math
 import numbers
 
 import numpy
@@ -12,6 +13,16 @@ def read_count(name, value):
     if isinstance(value, bool) or not isinstance(value, numbers.Integral) or not 1 <= value <= MOST:
         raise ValueError(f'{name}: {value!r}; allowed: whole numbers from 1 to {MOST}')
     return int(value)
+
+
+def read_limit(name, value):
+    """None, which is infinity, or a count."""
+    if value is None:
+        return math.inf
+    try:
+        return read_count(name, value)
+    except ValueError as error:
+        raise ValueError(f'{error}, or None') from None
 
 
 def read_threads(value):

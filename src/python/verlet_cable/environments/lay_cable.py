@@ -39,6 +39,8 @@ STRENGTH = 5.0                             # [N] that a hand holds against
 FOLD = 0.05                                # [m] radius; the cable begins folded, its ends side by side
 END = 0.03                                 # [m] the hand is so far ahead of the other end at first
 
+EPISODE_STEPS = 400
+
 LAYOUT_SEED = 21
 LAYOUTS = 32
 DEMONSTRATED_SPEED = 0.2                   # [m/s]
@@ -216,15 +218,16 @@ class LayCable(Environment):
     1.
     Reward: how many clips hold the cable, 0 to 3: its center line passes between their posts, below their tops.
     Info: `held` (3,) bool, `layout`, the index of the clips' places. Options of reset: `layout`, below 32; else one is drawn.
-    Episodes are truncated after `max_episode_steps` steps of 0.02 s, and terminated where the simulation had to stop.
+    Episodes are truncated after `max_episode_steps` steps of 0.02 s, never where it is None, and terminated where the simulation
+    had to stop.
     """
 
-    def __init__(self, render_mode=None, max_episode_steps=400):
+    def __init__(self, render_mode=None, max_episode_steps=EPISODE_STEPS):
         super().__init__(make_task(), max_episode_steps, render_mode)
 
 
 class LayCableVector(VectorEnvironment):
     """`num_envs` worlds of LayCable, on `threads` threads; 0: as many as there are cores."""
 
-    def __init__(self, num_envs=1, render_mode=None, max_episode_steps=400, threads=0):
+    def __init__(self, num_envs=1, render_mode=None, max_episode_steps=EPISODE_STEPS, threads=0):
         super().__init__(make_task(), num_envs, max_episode_steps, render_mode, threads)

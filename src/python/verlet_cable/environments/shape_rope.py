@@ -25,6 +25,8 @@ REACH = 0.95 * LENGTH                  # [m] and how far from the anchor;
 LIFT = 3.2 * RADIUS                    # [m] its height, above a rope that lies there
 STRENGTH = 20.0                        # [N] that a hand holds against
 
+EPISODE_STEPS = 250
+
 BOW = 1.2  # [rad] the rope begins as an arc of a circle that turns by twice as much
 
 GOAL_SEED = 20
@@ -135,15 +137,16 @@ class ShapeRope(Environment):
     [rad], the force on the hand (3,) [N], and the nodes of the goal (51, 3) [m].
     Reward: minus the mean distance of the nodes from those of the goal [m].
     Info: `distance` [m], `goal`, its index. Options of reset: `goal`, an index below `goals`; else one is drawn.
-    Episodes are truncated after `max_episode_steps` steps of 0.02 s, and terminated where the simulation had to stop.
+    Episodes are truncated after `max_episode_steps` steps of 0.02 s, never where it is None, and terminated where the simulation
+    had to stop.
     """
 
-    def __init__(self, render_mode=None, max_episode_steps=250, goals=64):
+    def __init__(self, render_mode=None, max_episode_steps=EPISODE_STEPS, goals=64):
         super().__init__(make_task(arguments.read_count('goals', goals)), max_episode_steps, render_mode)
 
 
 class ShapeRopeVector(VectorEnvironment):
     """`num_envs` worlds of ShapeRope, on `threads` threads; 0: as many as there are cores."""
 
-    def __init__(self, num_envs=1, render_mode=None, max_episode_steps=250, goals=64, threads=0):
+    def __init__(self, num_envs=1, render_mode=None, max_episode_steps=EPISODE_STEPS, goals=64, threads=0):
         super().__init__(make_task(arguments.read_count('goals', goals)), num_envs, max_episode_steps, render_mode, threads)
