@@ -66,6 +66,17 @@ def test_a_seed_decides_what_is_drawn(environment):
     assert any(not same(starts[0], start) for start in starts)
 
 
+@pytest.mark.parametrize('single, vector', PAIRS)
+def test_episodes_last_as_long_as_is_asked_for(single, vector):
+    for limit in (1, 3, None):
+        one, many = single(max_episode_steps=limit), vector(2, max_episode_steps=limit)
+        one.reset()
+        many.reset()
+        for step in range(1, 4 if limit is None else limit + 1):
+            truncated = one.step(numpy.zeros(3))[3]
+            assert truncated == (step == limit) and (many.step(numpy.zeros((2, 3)))[3] == truncated).all()
+
+
 def test_a_step_draws_nothing(environment):
     environment.reset(seed=1)
     generator = environment.np_random.bit_generator.state
@@ -117,8 +128,12 @@ def test_what_is_closed_or_has_not_begun_does_not_step(environment):
     (numpy.zeros((1, 3)), r'action: shape \(1, 3\); allowed: \(3,\)'),
     ([0, numpy.nan, 0], r'action\[1\]: nan; allowed: -1.0 to 1.0'),
     ([0, 2, -numpy.inf], r'action\[1\]: 2.0, action\[2\]: -inf; allowed: -1.0 to 1.0'),
-    ('left', r"action: 'left'; allowed: numbers, of shape \(3,\)"),
+    ('left', r"action: 'left'; allowed: real numbers, of shape \(3,\)"),
+    (['0', '0', '0'], 'action: '),
     (None, 'action: '),
+    (numpy.zeros(3, dtype=complex), r'action: array\(.*\); allowed: real numbers, of shape \(3,\)'),
+    ([0, 1j, 0], r'action: \[0, 1j, 0\]; allowed: real numbers'),
+    ([0, [1, 2], 0], r'action: \[0, \[1, 2\], 0\]; allowed: real numbers'),
 ])
 def test_a_wrong_action_changes_nothing(environment, action, text):
     environment.reset(seed=5)
@@ -130,13 +145,16 @@ def test_a_wrong_action_changes_nothing(environment, action, text):
 
 
 def test_wrong_arguments():
-    for wrong, text in (({'max_episode_steps': 0}, 'max_episode_steps: 0'), ({'goals': 1.5}, 'goals: 1.5'),
+    for wrong, text in (({'max_episode_steps': 0}, 'max_episode_steps: 0; allowed: whole numbers from 1 to 1000000, or None'), ({'goals': 1.5}, 'goals: 1.5'),
                         ({'render_mode': 'human'}, "render_mode: 'human'; allowed: None, 'rgb_array'")):
         with pytest.raises(ValueError, match=text):
             ShapeRope(**wrong)
     for count in (-1, 0, True, 2.0, 10**9, 10**30, None):
         with pytest.raises(ValueError, match=f'num_envs: {count}; allowed: whole numbers from 1 to 1000000'):
             LayCableVector(count)
+    for threads in (-1, 1025, 1.5, True, None, 10**30, 'all'):
+        with pytest.raises(ValueError, match=f'threads: {threads!r}; allowed: 0, as many as there are cores, to 1024'):
+            LayCableVector(2, threads=threads)
     environment = ShapeRope(goals=4)
     for wrong, text in (({'seed': -1}, 'seed: -1'), ({'seed': 1.5}, 'seed: 1.5'),
                         ({'options': {'gaol': 1}}, "'gaol'; allowed: 'goal'"),
@@ -145,7 +163,10 @@ def test_wrong_arguments():
         with pytest.raises(ValueError, match=text):
             environment.reset(**wrong)
     vector = ShapeRopeVector(3, goals=4)
-    for wrong, text in (({'seed': [1, 2]}, 'seed: 2 numbers'), ({'seed': [1, 2, -3]}, r'seed\[2\]: -3'),
+    for seed in (1.5, 'one', float('nan'), b'123', numpy.array(1.5)):
+        with pytest.raises(ValueError, match=r'seed: .*; allowed: None, a whole number from 0, or 3 of them, one a world'):
+            vector.reset(seed=seed)
+    for wrong, text in (({'seed': [1, 2]}, 'seed: 2 numbers'), ({'seed': True}, 'seed: True'), ({'seed': [1, 2, -3]}, r'seed\[2\]: -3'),
                         ({'options': {'reset_mask': [True]}}, r"options\['reset_mask'\]: \[True\]"),
                         ({'options': {'reset_mask': numpy.zeros(3, bool)}}, 'at least one'),
                         ({'options': {'goal': [0, 1, 9]}}, r"options\['goal'\]\[2\]: 9")):
@@ -198,6 +219,23 @@ def test_reset_of_some_worlds_leaves_the_others_as_they_are(vector):
         expected, given = kept.step(actions), disturbed.step(actions)
         assert all(same(a[~mask], b[~mask]) for a, b in zip(expected[:4], given[:4]))
         assert k < 10 or not same(expected[0][mask], given[0][mask])
+
+
+def test_worlds_tell_their_seeds():
+    many, one = ShapeRopeVector(2, goals=4), ShapeRope(goals=4)
+    drawn = many.np_random_seed
+    assert len(set(drawn)) == 2 and all(type(seed) is int for seed in drawn) and len(many.np_random) == 2
+    many.reset()
+    assert many.np_random_seed == drawn
+    again = ShapeRopeVector(2, goals=4)
+    assert same(many.reset()[0], (again.reset(seed=drawn), again.reset())[1][0])
+    many.reset(seed=3)
+    one.reset(seed=3)
+    assert many.np_random_seed == (3, 4) and one.np_random_seed == 3
+    many.reset(seed=[8, numpy.int64(9)], options={'reset_mask': numpy.array([False, True])})
+    assert many.np_random_seed == (3, 9)
+    many.reset(seed=[None, 7])
+    assert many.np_random_seed == (3, 7)
 
 
 def test_worlds_ask_for_what_is_to_be_done():
@@ -280,7 +318,16 @@ def test_hands_stay_where_they_can_be():
             action = generator.choice([-1.0, 1.0], size=(1, 3))
         hand = task.move(hand, action, nothing_held(0))
         assert (hand >= lay_cable.LOW - 1e-12).all() and (hand <= lay_cable.HIGH + 1e-12).all()
-        assert (hand ** 2).sum() <= lay_cable.REACH ** 2 + 1e-12
+        assert ((hand - [0, 0, lay_cable.LOW[2]]) ** 2).sum() <= lay_cable.REACH ** 2 + 1e-12
+
+
+def test_hands_do_not_sink_where_the_cable_reaches_no_further():
+    task = LayCable().task
+    for action in ([1.0, 1, 0], [1.0, 0.4, -1]):
+        hand = numpy.array([[0.4, 0.2, lay_cable.LOW[2]]])
+        for _ in range(60):
+            hand = task.move(hand, numpy.array([action]), nothing_held(0))
+            assert hand[0, 2] >= lay_cable.LOW[2] - 1e-15
 
 
 def test_hands_do_not_go_further_than_the_cable_that_clips_leave_them():
@@ -289,7 +336,7 @@ def test_hands_do_not_go_further_than_the_cable_that_clips_leave_them():
     hand = numpy.array([[0.4, 0.0, 0.01]])
     for _ in range(200):
         hand = task.move(hand, numpy.array([[1.0, 0.3, 0.1]]), seen)
-    places = numpy.zeros((5, 3))
+    places = numpy.zeros((5, 3)) + [0, 0, lay_cable.LOW[2]]
     places[1:4, :2] = task.layouts[0, :, :2]
     places[4] = hand[0]
     length = numpy.sqrt((numpy.diff(places, axis=0) ** 2).sum(axis=1)).sum()
@@ -305,6 +352,61 @@ def test_hands_do_not_enter_posts():
         low, high = task.move(low, numpy.array([[1.0, 0, 0]]), seen), task.move(high, numpy.array([[1.0, 0, 0]]), seen)
         assert ((low[0, :2] - task.posts[3]) ** 2).sum(axis=1).min() >= 0.999 * lay_cable.CLEARANCE ** 2
     assert abs(high[0] - [*post + [0.02, -0.001], 0.05]).max() < 1e-12
+
+
+def test_hands_stop_at_posts_they_are_aimed_at():
+    task = LayCable().task
+    layouts, aim = numpy.arange(task.variants), numpy.array([1.0, -1.0, 0]) / numpy.sqrt(2)
+    seen = lay_cable.Seen(None, numpy.zeros((task.variants, 3)), None,
+                          {'held': numpy.zeros((task.variants, 3), dtype=bool), 'layout': layouts})
+    for post in (0, 1):
+        for away in (0.0071, 0.0098, 0.012):  # [m] from the middle, and a step is 0.0071 m long
+            hand = numpy.full((task.variants, 3), 0.01)
+            hand[:, :2] = task.posts[:, post] - away * aim[:2]
+            for _ in range(5):
+                hand = task.move(hand, numpy.tile([1.0, -1.0, 0], (task.variants, 1)), seen)
+            middle = numpy.append(task.posts[:, post], numpy.full((task.variants, 1), 0.01), axis=1)
+            assert hand == pytest.approx(middle - lay_cable.CLEARANCE * aim, abs=1e-6)
+
+
+@pytest.mark.parametrize('held', [False, True])
+def test_hands_go_beside_and_over_posts_no_faster_than_they_can(held):
+    task, count = LayCable().task, 2000
+    generator = numpy.random.default_rng(6)
+    layouts = generator.integers(task.variants, size=count)
+    posts = task.posts[layouts]
+    seen = lay_cable.Seen(None, numpy.zeros((count, 3)), None, {'held': numpy.full((count, 3), held), 'layout': layouts})
+    hand = numpy.zeros((count, 3))
+    hand[:, :2] = posts.mean(axis=1) + generator.choice([-0.09, -0.01, 0.05], size=(count, 1))
+    hand[:, 2] = generator.uniform(lay_cable.LOW[2], 0.04, count)
+    hand[:, 2] = numpy.where(in_posts(hand, posts), 0.04, hand[:, 2])
+    for step in range(60):
+        if step % 5 == 0:  # to or past some post, up or down
+            actions = generator.uniform(-1, 1, (count, 3))
+            aim = posts[numpy.arange(count), generator.integers(6, size=count)] + generator.normal(0, 0.004, (count, 2)) - hand[:, :2]
+            actions[:, :2] = aim / abs(aim).max(axis=1)[:, None]
+        moved = task.move(hand, actions, seen)
+        way = lay_cable.SPEED * lay_cable.STEP_TIME * numpy.sqrt((actions ** 2).sum(axis=1))
+        assert (numpy.sqrt(((moved - hand) ** 2).sum(axis=1)) <= way + 1e-8).all()
+        for part in numpy.linspace(0, 1, 9):
+            assert not in_posts(hand + part * (moved - hand), posts).any()
+        hand = moved
+
+
+def in_posts(hand, posts):
+    """Whether hands (count, 3) are in posts (count, k, 2), (count,)."""
+    distance = numpy.sqrt(((hand[:, None, :2] - posts) ** 2).sum(axis=2)).min(axis=1)
+    return (distance < lay_cable.CLEARANCE - 1e-12) & (hand[:, 2] < lay_cable.TOP - 1e-12)
+
+
+def test_a_hand_that_slides_around_a_post_is_not_torn():
+    environment = LayCable()
+    observation, _ = environment.reset(options={'layout': 13})
+    for _ in range(80):
+        hand = observation[306:309]
+        observation, *_ = environment.step(numpy.array([1.0, -1.0, 0]))
+        assert numpy.linalg.norm(observation[306:309] - hand) <= 0.0071
+        assert numpy.linalg.norm(observation[309:312]) < 10
 
 
 def test_hands_give_way_to_what_is_stronger():
@@ -394,8 +496,8 @@ GYMNASIUM = {
     '__init__.py': '''
         import numpy
         known = {}
-        def register(id, entry_point, vector_entry_point):
-            known[id] = (entry_point, vector_entry_point)
+        def register(id, **spec):
+            known[id] = spec
         class Env:
             spec = None
             def reset(self, *, seed=None, options=None):
@@ -425,7 +527,7 @@ GYMNASIUM = {
         ''',
 }
 USE = '''
-import hashlib, sys
+import hashlib, importlib, sys
 import numpy
 from verlet_cable.environments import LayCable, LayCableVector
 results = []
@@ -443,8 +545,16 @@ if 'gymnasium' in sys.modules:
     assert many.metadata['autoreset_mode'] is gymnasium.vector.AutoresetMode.NEXT_STEP
     many.close()
     assert many.closed
-    assert gymnasium.known['verlet_cable/ShapeRope-v0'] == (
-        'verlet_cable.environments:ShapeRope', 'verlet_cable.environments:ShapeRopeVector')
+    for name, limit in (('ShapeRope', 250), ('LayCable', 400)):
+        spec = gymnasium.known[f'verlet_cable/{name}-v0']
+        assert spec['max_episode_steps'] == limit and spec['vector_entry_point'] == f'verlet_cable.environments:{name}Vector'
+        module, function = spec['entry_point'].split(':')
+        make = getattr(importlib.import_module(module), function)
+        assert make.metadata['render_modes'] == ['rgb_array']
+        environment = make(render_mode='rgb_array')
+        assert type(environment).__name__ == name and environment.render_mode == 'rgb_array'
+        environment.reset(seed=1)
+        assert not any(environment.step(numpy.zeros(3))[3] for _ in range(limit + 2))  # that is for gymnasium.make to say
     print('with Gymnasium')
 '''
 

@@ -14,11 +14,10 @@ The same seed and actions give the same bytes, in one world or among many, on an
 """
 from verlet_cable.environments.interface import AutoresetMode, Box, gymnasium
 from verlet_cable.environments.lay_cable import LayCable, LayCableVector
+from verlet_cable.environments.registration import register
 from verlet_cable.environments.shape_rope import ShapeRope, ShapeRopeVector
 
 __all__ = ['AutoresetMode', 'Box', 'LayCable', 'LayCableVector', 'ShapeRope', 'ShapeRopeVector']
 
 if gymnasium is not None:
-    for _name in ('ShapeRope', 'LayCable'):
-        gymnasium.register(f'verlet_cable/{_name}-v0', entry_point=f'{__name__}:{_name}',
-                           vector_entry_point=f'{__name__}:{_name}Vector')
+    register(gymnasium)

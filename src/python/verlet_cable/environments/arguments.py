@@ -1,15 +1,33 @@
 """Reads arguments; what is wrong is a ValueError that names the argument, the value given and what is allowed."""
+import math
 import numbers
 
 import numpy
 
 SHOWN = 5  # wrong numbers of one array
 MOST = 1000000  # of anything that is counted, as sim.Batch has it of worlds
+MOST_THREADS = 1024  # likewise
 
 
 def read_count(name, value):
     if isinstance(value, bool) or not isinstance(value, numbers.Integral) or not 1 <= value <= MOST:
         raise ValueError(f'{name}: {value!r}; allowed: whole numbers from 1 to {MOST}')
+    return int(value)
+
+
+def read_limit(name, value):
+    """None, which is infinity, or a count."""
+    if value is None:
+        return math.inf
+    try:
+        return read_count(name, value)
+    except ValueError as error:
+        raise ValueError(f'{error}, or None') from None
+
+
+def read_threads(value):
+    if isinstance(value, bool) or not isinstance(value, numbers.Integral) or not 0 <= value <= MOST_THREADS:
+        raise ValueError(f'threads: {value!r}; allowed: 0, as many as there are cores, to {MOST_THREADS}')
     return int(value)
 
 
@@ -27,9 +45,12 @@ def read_seeds(value, count):
     if value is None or isinstance(value, numbers.Integral):
         first = read_seed('seed', value)
         return [first if first is None else first + i for i in range(count)]
+    allowed = f'None, a whole number from 0, or {count} of them, one a world'
+    if isinstance(value, (str, bytes)) or not numpy.iterable(value):
+        raise ValueError(f'seed: {value!r}; allowed: {allowed}')
     seeds = list(value)
     if len(seeds) != count:
-        raise ValueError(f'seed: {len(seeds)} numbers; allowed: None, a number, or {count} numbers, one a world')
+        raise ValueError(f'seed: {len(seeds)} numbers; allowed: {allowed}')
     return [read_seed(f'seed[{i}]', seed) for i, seed in enumerate(seeds)]
 
 
@@ -41,10 +62,14 @@ def read_render_mode(value, modes):
 
 def read_action(name, value, space):
     """An array of a space, as float64."""
+    allowed = f'real numbers, of shape {space.shape}'
     try:
-        array = numpy.asarray(value, dtype=float)
+        array = numpy.asarray(value)
     except (TypeError, ValueError):
-        raise ValueError(f'{name}: {value!r}; allowed: numbers, of shape {space.shape}') from None
+        raise ValueError(f'{name}: {value!r}; allowed: {allowed}') from None
+    if array.dtype.kind not in 'biuf':
+        raise ValueError(f'{name}: {value!r}; allowed: {allowed}')
+    array = array.astype(float)
     if array.shape != space.shape:
         raise ValueError(f'{name}: shape {array.shape}; allowed: {space.shape}')
     wrong = numpy.argwhere(~((array >= space.low) & (array <= space.high)))

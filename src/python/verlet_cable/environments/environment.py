@@ -82,8 +82,10 @@ class VectorEnvironment(VectorEnv):
         self.render_mode = arguments.read_render_mode(render_mode, RENDER_MODES)
         self.task = task
         self.num_envs = arguments.read_count('num_envs', num_envs)
-        self._episodes = Episodes(task, self.num_envs, threads, max_episode_steps)
+        self._episodes = Episodes(task, self.num_envs, arguments.read_threads(threads), max_episode_steps)
         self._generators = [None] * self.num_envs
+        self._seeds = [None] * self.num_envs
+        self._begin_generators(self._seeds, numpy.ones(self.num_envs, dtype=bool))
         self.single_observation_space = task.make_observation_space()
         self.single_action_space = task.make_action_space()
         self.observation_space = batch_box(self.single_observation_space, self.num_envs)
@@ -100,7 +102,7 @@ class VectorEnvironment(VectorEnv):
         chosen = options.get(self.task.option)
         if chosen is not None:
             chosen = arguments.read_indices(f'options[{self.task.option!r}]', chosen, self.num_envs, self.task.variants)
-        self._seed(arguments.read_seeds(seed, self.num_envs), mask)
+        self._begin_generators(arguments.read_seeds(seed, self.num_envs), mask)
         seen = episodes.begin(mask, self._generators, chosen)
         return seen.observation, self._infos(seen, mask)
 
@@ -132,18 +134,24 @@ class VectorEnvironment(VectorEnv):
 
     @property
     def np_random(self):
-        """The worlds' random number generators, a tuple; None where none was begun yet."""
+        """The worlds' random number generators, a tuple."""
         return tuple(self._generators)
+
+    @property
+    def np_random_seed(self):
+        """The seeds of the worlds' random number generators, a tuple; drawn from what the system has at random where none was given."""
+        return tuple(self._seeds)
 
     def _open(self, call):
         if self._episodes is None:
             refuse(call, 'the environment is closed')
         return self._episodes
 
-    def _seed(self, seeds, mask):
+    def _begin_generators(self, seeds, mask):
         for world in numpy.flatnonzero(mask):
             if seeds[world] is not None or self._generators[world] is None:
-                self._generators[world] = numpy.random.default_rng(seeds[world])
+                sequence = numpy.random.SeedSequence(seeds[world])
+                self._generators[world], self._seeds[world] = numpy.random.default_rng(sequence), sequence.entropy
 
     @staticmethod
     def _infos(seen, mask):

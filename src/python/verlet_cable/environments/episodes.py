@@ -11,7 +11,7 @@ class Episodes:
     def __init__(self, task, count, threads, max_episode_steps):
         self.task = task
         self.worlds = Worlds(task, count, threads)
-        self.max_episode_steps = arguments.read_count('max_episode_steps', max_episode_steps)
+        self.max_episode_steps = arguments.read_limit('max_episode_steps', max_episode_steps)
         self.steps = numpy.zeros(count, dtype=int)
         self.begun = numpy.zeros(count, dtype=bool)
         self.over = numpy.ones(count, dtype=bool)

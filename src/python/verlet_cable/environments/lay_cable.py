@@ -5,6 +5,7 @@ import numpy
 
 from verlet_cable.environments.drawing import View
 from verlet_cable.environments.environment import Environment, VectorEnvironment
+from verlet_cable.environments.posts import move_beside
 from verlet_cable.environments.task import REST_STEPS, STEP_TIME, Seen, Task, chain, constant, give_way, lengths, side_by_side
 from verlet_cable.sim import Batch, Scene
 
@@ -31,11 +32,14 @@ SPEED = 0.25                               # [m/s] of the hand along each axis a
 LOW = numpy.array([-0.35, -0.25, 3.2 * RADIUS])  # [m] between which the hand stays: above a cable that lies there,
 HIGH = numpy.array([0.57, 0.25, 0.1])
 REACH = 0.97 * LENGTH                      # [m] how far it goes, along the clips that hold the cable,
-CLEARANCE = POST + RADIUS                  # [m] and how near to the axis of a post
+CLEARANCE = POST + RADIUS                  # [m] and how near to the axis of a post,
+TOP = HEIGHT + RADIUS                      # [m] unless it is so high
 STRENGTH = 5.0                             # [N] that a hand holds against
 
 FOLD = 0.05                                # [m] radius; the cable begins folded, its ends side by side
 END = 0.03                                 # [m] the hand is so far ahead of the other end at first
+
+EPISODE_STEPS = 400
 
 LAYOUT_SEED = 21
 LAYOUTS = 32
@@ -126,33 +130,26 @@ class LayCableTask(Task):
     def move(self, hand, actions, seen):
         way = give_way(actions * SPEED, seen.force, STRENGTH) * STEP_TIME
         fixed, free = self._free_length(seen.info['held'], seen.info['layout'])
-        away = self._beside_posts(numpy.clip(hand + way, LOW, HIGH), seen.info['layout']) - fixed
-        distance = lengths(away)
         # A clip that begins to hold the cable does not move the hand.
         allowed = numpy.maximum(free, lengths(hand - fixed))
-        return fixed + away * (numpy.minimum(distance, allowed) / numpy.maximum(distance, RADIUS))[:, None]
+
+        def limit(places):
+            away = numpy.clip(places, LOW, HIGH) - fixed
+            return fixed + away * (allowed / numpy.maximum(lengths(away), allowed))[:, None]
+
+        return move_beside(hand, limit(hand + way) - hand, self.posts[seen.info['layout']], CLEARANCE, TOP, limit)
 
     def _free_length(self, held, layout):
-        """Where a cable is held by the last clip, or tied, (count, 3), and how far from there its hand may be, (count,) [m]."""
-        fixed = numpy.zeros((len(held), 3))
+        """Where a cable is held by the last clip, or tied, (count, 3), at the lowest height of a hand, and how far from there its
+        hand may be, (count,) [m]."""
+        fixed = numpy.tile([0, 0, LOW[2]], (len(held), 1))
         free = numpy.full(len(held), REACH)
         for i in range(CLIPS):
-            clip = numpy.zeros_like(fixed)
+            clip = fixed.copy()
             clip[:, :2] = self.layouts[layout, i, :2]
             free = free - numpy.where(held[:, i], lengths(clip - fixed), 0.0)
             fixed = numpy.where(held[:, i, None], clip, fixed)
         return fixed, free
-
-    def _beside_posts(self, hand, layout):
-        """Hands (count, 3), those that are within posts moved out of them."""
-        moved = hand.copy()
-        low = hand[:, 2] < HEIGHT
-        for post in self.posts[layout].swapaxes(0, 1):
-            away = moved[:, :2] - post
-            distance = lengths(away)
-            inside = low & (distance < CLEARANCE)
-            moved[:, :2] += numpy.where(inside, CLEARANCE / numpy.maximum(distance, 1e-9) - 1, 0.0)[:, None] * away
-        return moved
 
     def poses(self, hand):
         poses = numpy.zeros((*hand.shape[:-1], 7))
@@ -214,22 +211,23 @@ class LayCable(Environment):
     """Lay a cable, tied down at one end, into three clips on a table with a hand that leads the other one.
 
     Action (3,), each from -1 to 1: velocity of the hand along x, y and z, in 0.25 m/s. The hand stays between -0.35 m and 0.57 m in
-    x, within 0.25 m in y, between 6.4 mm and 0.1 m in z, beside the posts, and where the cable reaches; it gives way to more than
-    5 N.
+    x, within 0.25 m in y, between 6.4 mm and 0.1 m in z, and where the cable reaches. It stops at posts, slides along them, or goes
+    over them. When a step ends with more than 5 N on it, it gives way in the next one; within a step nothing limits the force.
     Observation (327,) float64: nodes (51, 3) [m] from the tied end on, their velocities (51, 3) [m/s], the hand (3,) [m], the force
     on it (3,) [N], the clips (3, 4): x, y [m] and the direction in which they lead the cable; and whether they hold it (3,), 0 or
     1.
     Reward: how many clips hold the cable, 0 to 3: its center line passes between their posts, below their tops.
     Info: `held` (3,) bool, `layout`, the index of the clips' places. Options of reset: `layout`, below 32; else one is drawn.
-    Episodes are truncated after `max_episode_steps` steps of 0.02 s, and terminated where the simulation had to stop.
+    Episodes are truncated after `max_episode_steps` steps of 0.02 s, never where it is None, and terminated where the simulation
+    had to stop.
     """
 
-    def __init__(self, render_mode=None, max_episode_steps=400):
+    def __init__(self, render_mode=None, max_episode_steps=EPISODE_STEPS):
         super().__init__(make_task(), max_episode_steps, render_mode)
 
 
 class LayCableVector(VectorEnvironment):
     """`num_envs` worlds of LayCable, on `threads` threads; 0: as many as there are cores."""
 
-    def __init__(self, num_envs=1, render_mode=None, max_episode_steps=400, threads=0):
+    def __init__(self, num_envs=1, render_mode=None, max_episode_steps=EPISODE_STEPS, threads=0):
         super().__init__(make_task(), num_envs, max_episode_steps, render_mode, threads)

@@ -25,6 +25,8 @@ REACH = 0.95 * LENGTH                  # [m] and how far from the anchor;
 LIFT = 3.2 * RADIUS                    # [m] its height, above a rope that lies there
 STRENGTH = 20.0                        # [N] that a hand holds against
 
+EPISODE_STEPS = 250
+
 BOW = 1.2  # [rad] the rope begins as an arc of a circle that turns by twice as much
 
 GOAL_SEED = 20
@@ -129,20 +131,22 @@ class ShapeRope(Environment):
     """Shape a rope that lies on a table, pinned at one end, with a hand that holds the other one.
 
     Action (3,), each from -1 to 1: velocity of the hand along x and y, in 0.4 m/s, and its turning, in 2 rad/s. The hand stays
-    between 0.25 m and 0.95 m in x, within 0.5 m in y and 2.5 rad, and within 0.95 m of the pin; it gives way to more than 20 N.
+    between 0.25 m and 0.95 m in x, within 0.5 m in y and 2.5 rad, and within 0.95 m of the pin. When a step ends with more than
+    20 N on it, it gives way in the next one; within a step nothing limits the force.
     Observation (465,) float64: nodes (51, 3) [m] from the pin on, their velocities (51, 3) [m/s], the hand's x, y [m] and angle
     [rad], the force on the hand (3,) [N], and the nodes of the goal (51, 3) [m].
     Reward: minus the mean distance of the nodes from those of the goal [m].
     Info: `distance` [m], `goal`, its index. Options of reset: `goal`, an index below `goals`; else one is drawn.
-    Episodes are truncated after `max_episode_steps` steps of 0.02 s, and terminated where the simulation had to stop.
+    Episodes are truncated after `max_episode_steps` steps of 0.02 s, never where it is None, and terminated where the simulation
+    had to stop.
     """
 
-    def __init__(self, render_mode=None, max_episode_steps=250, goals=64):
+    def __init__(self, render_mode=None, max_episode_steps=EPISODE_STEPS, goals=64):
         super().__init__(make_task(arguments.read_count('goals', goals)), max_episode_steps, render_mode)
 
 
 class ShapeRopeVector(VectorEnvironment):
     """`num_envs` worlds of ShapeRope, on `threads` threads; 0: as many as there are cores."""
 
-    def __init__(self, num_envs=1, render_mode=None, max_episode_steps=250, goals=64, threads=0):
+    def __init__(self, num_envs=1, render_mode=None, max_episode_steps=EPISODE_STEPS, goals=64, threads=0):
         super().__init__(make_task(arguments.read_count('goals', goals)), num_envs, max_episode_steps, render_mode, threads)
