@@ -91,6 +91,23 @@ def workers_of(process):
     return [int(child) for child in children if b'spawn_main' in pathlib.Path(f'/proc/{child}/cmdline').read_bytes()]
 
 
+def listening_addresses(pids):
+    """The local addresses, as /proc writes them, of all sockets of these processes that listen."""
+    sockets, addresses = set(), set()
+    for pid in pids:
+        for descriptor in pathlib.Path(f'/proc/{pid}/fd').iterdir():
+            try:
+                sockets.add(os.readlink(descriptor))
+            except FileNotFoundError:  # closed in the meantime
+                continue
+    for table in ('tcp', 'tcp6'):
+        for line in pathlib.Path(f'/proc/net/{table}').read_text().splitlines()[1:]:
+            _, local, _, state, *rest = line.split()
+            if state == '0A' and f'socket:[{rest[5]}]' in sockets:
+                addresses.add(local.partition(':')[0])
+    return addresses
+
+
 def has_ended(pid):
     try:
         return pathlib.Path(f'/proc/{pid}/stat').read_text().rpartition(')')[2].split()[0] == 'Z'
@@ -130,7 +147,9 @@ def test_killed_worker(undisturbed, tmp_path):
     store = tmp_path / 'store'
     process = start(folder, store, '--workers', '2')
     wait_until(lambda: chunks(store) >= 3, process)
-    os.kill(workers_of(process)[0], signal.SIGKILL)
+    workers = workers_of(process)
+    assert listening_addresses([process.pid, *workers]) <= {'0100007F', f'{1 << 24:032X}'}, 'others than this machine can connect'
+    os.kill(workers[0], signal.SIGKILL)
     assert chunks(store) < chunks(reference)
     status, text = finish(process)
     assert status == 0, text
@@ -291,11 +310,51 @@ def test_wrong_samples_are_recorded(tmp_path):
     is_weak = root['vary/materials.m.breaking_tension'][:] < 1
     assert {0, 1, 2} == set(status)
     assert np.array_equal(status, np.where(is_wrong, 1, np.where(is_weak, 2, 0)))
+    assert np.array_equal(root['worst'][:] == -1, is_wrong)
     for sample in range(40):
         message = root['message'][sample].decode()
         assert ('cables[0].length' in message) == (status[sample] == 1)
         assert bool(message) == (status[sample] != 0)
         assert np.any(root['hose/positions'][sample]) == (status[sample] == 0)
+
+
+PULL = 't,frame,x,y,z,qx,qy,qz,qw\n0,hand,0.7,0,0,0,0,0,1\n0.5,hand,1.5,0,0,0,0,0,1\n'
+
+
+@pytest.mark.parametrize('fields, rate', [('[wrench]', 20), ('[positions]', 20), ('[positions, wrench]', 30)])
+def test_a_cable_that_breaks_fails_whatever_is_recorded(tmp_path, fields, rate):
+    scene = SCENE.replace('radius: 0.005', 'axial_stiffness: 100, breaking_tension: 1.0e+9, radius: 0.005')
+    folder = write(tmp_path, f"""
+scene: scene.yaml
+motion: pull.csv
+duration: 0.5
+record: {{rate: {rate}, fields: {fields}}}
+samples: 8
+vary:
+  materials.m.breaking_tension: {{choice: [5.0, 1.0e+9]}}
+""", scene)
+    (tmp_path / 'pull.csv').write_text(PULL)
+    status, text = run(folder, tmp_path / 'store', '--workers', '1')
+    assert status == 0, text
+    root = zarr.open_group(str(tmp_path / 'store'), mode='r')
+    is_weak = root['vary/materials.m.breaking_tension'][:] < 6
+    assert {False, True} == set(is_weak)
+    assert np.array_equal(root['status'][:], np.where(is_weak, 2, 0))
+    for sample in range(8):
+        assert ('s: cable "hose" broke at segment ' in root['message'][sample].decode()) == is_weak[sample]
+        assert np.any(root['left/wrench' if 'wrench' in fields else 'hose/positions'][sample]) != is_weak[sample]
+
+
+def test_worst_status_of_the_steps(tmp_path):
+    """A cable that is pulled beyond its length within the time, between two rows or at the end."""
+    for rate in (2, 60):
+        folder = write(tmp_path, SWEEP.replace('samples: 40', 'samples: 3').replace('rate: 50', f'rate: {rate}').replace('1.0\n', '0.75\n')
+                       + 'motion: pull.csv\n')
+        (tmp_path / 'pull.csv').write_text(PULL)
+        status, text = run(folder, tmp_path / f'store{rate}', '--workers', '1')
+        assert status == 0, text
+        root = zarr.open_group(str(tmp_path / f'store{rate}'), mode='r')
+        assert list(root['status'][:]) == [0, 0, 0] and list(root['worst'][:]) == [1, 1, 1]
 
 
 def test_motions_are_drawn_from(tmp_path):

@@ -16,7 +16,7 @@ SAMPLE_BYTES = 4 << 30      # of all fields of one sample, which a worker holds
 _CHUNK_NODE_STEPS = 2e9     # about a minute of one core: what a worker's death may cost
 _LANES = 8                  # samples that are stepped at once
 _FEWEST_CHUNKS = 64         # of a sweep that has samples enough, for the workers to share evenly
-_RESERVED = ('status', 'message', 'time', 'vary')
+_RESERVED = ('status', 'worst', 'message', 'time', 'vary')
 
 
 class Layout:

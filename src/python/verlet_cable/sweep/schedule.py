@@ -29,8 +29,9 @@ _PATIENCE = 5          # [s] without any worker after which the user is told
 _RECOUNT = 5           # [s] after which workers are counted again
 
 # Logs of bounded length, so that memory is flat; and nothing that looks at the processes many times a second: on few cores that
-# would take what samples need.
+# would take what samples need. Dask's HTTP servers cannot be left out: they have no pages, and only this machine reaches them.
 _OWN_CLUSTER = {
+    'distributed.scheduler.http.routes': [], 'distributed.worker.http.routes': [],
     'distributed.scheduler.transition-log-length': 1000, 'distributed.scheduler.events-log-length': 1000,
     'distributed.scheduler.active-memory-manager.start': False, 'distributed.scheduler.work-stealing-interval': '1s',
     'distributed.worker.use-file-locking': False, 'distributed.worker.profile.enabled': False,
@@ -59,7 +60,8 @@ def cluster(workers, scheduler):
     try:
         with dask.config.set(_OWN_CLUSTER), distributed.LocalCluster(
                 n_workers=workers, threads_per_worker=1, processes=True, memory_limit=0, local_directory=scratch,
-                host='127.0.0.1', dashboard_address='127.0.0.1:0', scheduler_kwargs={'dashboard': False},
+                host='127.0.0.1', dashboard_address='127.0.0.1:0', worker_dashboard_address='127.0.0.1:0',
+                scheduler_kwargs={'dashboard': False},
                 silence_logs=logging.CRITICAL) as own, distributed.Client(own, set_as_default=False) as client:
             client.register_worker_plugin(_OwnWorker(), name='own')
             yield client

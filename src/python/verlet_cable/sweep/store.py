@@ -4,6 +4,7 @@
 time             (rows) [s] k / rate; row k is the first step at or after it
 vary/<key>       (samples) what was drawn
 status           (samples) int8: COMPLETE, WRONG_SCENE, FAULT; MISSING where a sample was not simulated yet
+worst            (samples) int8: the worst status that its steps had, an index into STATUSES; MISSING where none was simulated
 message          (samples) UTF-8 of fixed length: what failed
 
 All are cut along the samples at the same places. A chunk's piece of `status` is written last, and all files are written aside and renamed:
@@ -31,6 +32,7 @@ except ImportError as error:
     raise missing_package(error) from error
 
 COMPLETE, WRONG_SCENE, FAULT, MISSING = 0, 1, 2, -1
+STATUSES = ('ok', 'overstretched', 'jumped', 'degraded', 'fault')  # of a step, as Batch.status numbers them
 MESSAGE_LENGTH = 256
 
 # What several threads compress would be in the order in which they came to an end.
@@ -84,6 +86,8 @@ def _write_arrays(root, sweep, layout):
         else:
             create(f'vary/{key}', samples, chunk, '<f8', 0.0)
     create('message', samples, chunk, f'|S{MESSAGE_LENGTH}', b'')
+    create('worst', samples, chunk, '|i1', MISSING, meanings={**{str(index): name for index, name in enumerate(STATUSES)},
+                                                               str(MISSING): 'nothing simulated'})
     create('status', samples, chunk, '|i1', MISSING,
            meanings={str(COMPLETE): 'complete', str(WRONG_SCENE): 'scene refused', str(FAULT): 'simulation failed',
                      str(MISSING): 'not simulated yet'})
@@ -104,7 +108,7 @@ def check_same(path, sweep, layout):
                        for name in differing]
         else:
             errors.append(f'--resume: {path}: not what the store was begun with: {key}; allowed: the same')
-    wanted_arrays = {'status', 'message', 'time', *(f'{name}/{field}' for name, field in layout.shapes),
+    wanted_arrays = {'status', 'message', 'worst', 'time', *(f'{name}/{field}' for name, field in layout.shapes),
                      *(f'vary/{key}' for key in sweep.variations)}
     if not errors and not wanted_arrays <= arrays:
         errors.append(f'--resume: {path}: without ' + ', '.join(sorted(wanted_arrays - arrays)) + '; allowed: a whole store')
@@ -171,6 +175,7 @@ def write_chunk(arrays, layout, chunk, result):
     for key, values in sorted(result.drawn.items()):
         arrays[f'vary/{key}'][rows] = values
     arrays['message'][rows] = np.array([_fixed(message) for message in result.messages], dtype=f'S{MESSAGE_LENGTH}')
+    arrays['worst'][rows] = np.array(result.worst, dtype=np.int8)
     arrays['status'][rows] = np.array(result.status, dtype=np.int8)
 
 
