@@ -431,9 +431,24 @@ def test_resume_refuses_another_sweep(tmp_path):
     write(folder)
     shutil.copytree(tmp_path / 'store', tmp_path / 'part')
     shutil.rmtree(tmp_path / 'part/hose/tension')
+    metadata = tmp_path / 'part/hose/positions/.zarray'
+    metadata.write_text(metadata.read_text().replace('"<f8"', '"<f4"'))
     status, text = run(folder, tmp_path / 'part', '--resume')
-    assert status == 2 and 'without hose/tension' in text, text
+    assert status == 2 and 'without hose/tension' in text and 'hose/positions/.zarray: not as cable_sweep wrote it' in text, text
     assert before == {name: (tmp_path / 'store' / name).stat().st_mtime_ns for name in files_of(tmp_path / 'store')}
+
+
+def test_resume_simulates_again_what_was_lost(tmp_path):
+    folder = write(tmp_path)
+    assert run(folder, tmp_path / 'reference', '--workers', '1')[0] == 0
+    shutil.copytree(tmp_path / 'reference', tmp_path / 'store')
+    (tmp_path / 'store/hose/positions/0.0.0.0').unlink()
+    (tmp_path / 'store/hose/tension/1.0.0').write_bytes(b'')
+    os.truncate(tmp_path / 'store/left/wrench/2.0.0', 100)
+    os.truncate(tmp_path / 'store/status/3', 17)
+    status, text = run(folder, tmp_path / 'store', '--workers', '1', '--resume')
+    assert status == 0 and 'files of 4 chunks' in text and '32 simulated now' in text, text
+    assert_same_bytes(tmp_path / 'reference', tmp_path / 'store')
 
 
 def test_no_scheduler(tmp_path):

@@ -68,11 +68,15 @@ def _run(options, path, sweep, layout):
     report = Report(layout)
     reason = None
     try:
-        if not store.is_complete(path, layout):
+        is_begun = os.path.lexists(path)
+        damaged = store.damaged_chunks(path) if is_begun else []
+        if damaged or store.count_samples(path, layout) < layout.samples:
             with contextlib.ExitStack() as stack:
-                is_begun = os.path.lexists(path)
                 if is_begun:
                     stack.enter_context(store.locked(path))
+                    if damaged:
+                        report.line(f'{options.output}: files of {len(damaged)} chunks are not there or not whole: simulated again')
+                    store.forget(path, damaged)
                 client = stack.enter_context(schedule.cluster(options.workers, options.scheduler))
                 if not is_begun:
                     store.begin(path, sweep, layout)
