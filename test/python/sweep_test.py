@@ -409,6 +409,40 @@ def test_errors_of_the_scene_are_named(tmp_path):
     assert not (tmp_path / 'store').exists()
 
 
+def test_errors_of_scene_motions_and_values_come_together(tmp_path):
+    sweep = SWEEP + '  cables[0].lenght: {uniform: [1, 2]}\n  gravity: {uniform: [1, 2]}\nmotions: [nan.csv, header.csv, empty.csv]\n'
+    folder = write(tmp_path, sweep, SCENE.replace('length: 1.0', 'length: -1'))
+    (tmp_path / 'nan.csv').write_text('t,frame,x,y,z,qx,qy,qz,qw\n0,hand,nan,0,0,0,0,0,1\n')
+    (tmp_path / 'header.csv').write_text('t,frame,x\n')
+    (tmp_path / 'empty.csv').write_text('')
+    words = ['vary.cables[0].lenght: not in scene.yaml', 'motions[0]: nan.csv: line 2: x', 'motions[1]: header.csv: line 1',
+             'motions[2]: empty.csv: empty']
+    status, text = run(folder, tmp_path / 'store')
+    assert status == 2 and all(word in text for word in [*words, 'scene.yaml: cables[0].length: -1']), text
+    write(tmp_path, sweep.replace('wrench', 'body_pose'))
+    status, text = run(folder, tmp_path / 'store')
+    assert status == 2 and all(word in text for word in [*words, 'vary.gravity.uniform: [1.0, 2.0]: the scene refuses', 'body_pose']), text
+    assert not (tmp_path / 'store').exists()
+
+
+def test_notes_of_what_may_not_be_meant(tmp_path):
+    from verlet_cable.sweep.description import read_sweep
+    from verlet_cable.sweep.trial import notes
+    header = 't,frame,x,y,z,qx,qy,qz,qw\n'
+    (tmp_path / 'hand.csv').write_text(header + '0,hand,0.7,0,0,0,0,0,1\n')
+    (tmp_path / 'hamd.csv').write_text(header + '0,hamd,0.7,0,0,0,0,0,1\n')
+    write(tmp_path, SWEEP + 'motions: [hand.csv, hamd.csv]\n')
+    assert notes(*read_sweep(str(tmp_path / 'sweep.yaml'))) == ['hamd.csv: the scene does not use frames hamd']
+    guide = 'guides:\n  - {name: eye, cable: hose, at: 0.5, frame: mast, type: eyelet}\n'
+    write(tmp_path, SWEEP + 'motions: [hand.csv, hamd.csv]\n', SCENE.replace(', initial_pose: [0.7, 0, 0, 0, 0, 0]', '') + guide)
+    assert notes(*read_sweep(str(tmp_path / 'sweep.yaml'))) == [
+        'hand.csv: nothing places frames mast: at the origin',
+        'hamd.csv: the scene does not use frames hamd',
+        'hamd.csv: nothing places frames hand, mast: at the origin',
+        'guides (eye) change the number of nodes of a cable that slides through them; '
+        'samples in which they do fail, since they have no positions, tension of one shape']
+
+
 def test_fields_that_the_scene_does_not_have(tmp_path):
     folder = write(tmp_path, SWEEP.replace('wrench', 'body_pose'))
     status, text = run(folder, tmp_path / 'store')

@@ -42,7 +42,7 @@ def _workers(text):
 
 
 def _sweep(options):
-    from . import store
+    from . import store, trial
     from .description import read_sweep
     from .layout import plan_layout
     path = os.path.abspath(options.output)
@@ -58,6 +58,8 @@ def _sweep(options):
     layout = plan_layout(sweep, scene)
     if os.path.lexists(path):
         store.check_same(path, sweep, layout)
+    for text in trial.notes(sweep, scene):
+        print(f'cable_sweep: note: {text}', file=sys.stderr)
     return _run(options, path, sweep, layout)
 
 

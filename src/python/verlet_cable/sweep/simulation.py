@@ -13,6 +13,8 @@ from .variations import draw_sample
 
 _FAULTY = STATUSES.index('fault')
 
+_GUIDED = 'the number of nodes of a cable changed, which slides through a guide; allowed for such ones: fields that do not belong to nodes'
+
 
 class Result:
     """Of some samples, in their order: status, worst, messages (lists); fields {(name, field): (samples, rows, ...)}, 0 where a sample
@@ -110,7 +112,7 @@ def _simulate_parted(sweep, layout, motion, time_step, members, result, broken, 
     if broken and others:
         _simulate_group(sweep, layout, motion, time_step, others, result)
     elif not broken and len(members) == 1:
-        result.fail(members[0][0], FAULT, str(error))
+        result.fail(members[0][0], FAULT, _GUIDED if members[0][1].guide_names else str(error))
     elif not broken:
         for member in members:
             _simulate_group(sweep, layout, motion, time_step, [member], result)
