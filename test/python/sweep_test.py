@@ -425,6 +425,37 @@ def test_errors_of_scene_motions_and_values_come_together(tmp_path):
     assert not (tmp_path / 'store').exists()
 
 
+def test_example():
+    from verlet_cable.sweep.description import read_sweep
+    from verlet_cable.sweep.trial import notes
+    sweep, scene = read_sweep(str(PROGRAM.parents[1] / 'config' / 'sweep.yaml'))
+    assert sweep.samples == 200 and scene.cable_names == ['hose'] and len(sweep.variations) == 4
+    assert notes(sweep, scene) == []
+
+
+def test_numbers_of_choices_are_numbers(tmp_path):
+    folder = write(tmp_path, """
+scene: scene.yaml
+duration: 0.1
+record: {rate: 10, fields: [wrench]}
+samples: 16
+vary:
+  gravity: {choice: [[0, 0, -9.81], [0, 0, 1.62e0]]}
+  materials.m.radius: {choice: [4e-3, 5e-3]}
+""")
+    status, text = run(folder, tmp_path / 'store', '--workers', '1')
+    assert status == 0, text
+    root = zarr.open_group(str(tmp_path / 'store'), mode='r')
+    choices = root['vary/gravity'].attrs['choices']
+    assert choices == [[0, 0, -9.81], [0, 0, 1.62]] and isinstance(choices[0][0], int)
+    assert root.attrs['sweep']['vary']['materials.m.radius'] == {'choice': [0.004, 0.005]}
+    assert set(root['vary/materials.m.radius'][:]) == {0.004, 0.005} and not root['status'][:].any()
+    is_up = root['vary/gravity'][:] == 1
+    assert {False, True} == set(is_up)
+    assert len(set(np.sign(root['left/wrench'][:, -1, 2])[is_up])) == 1
+    assert set(np.sign(root['left/wrench'][:, -1, 2])[is_up]) != set(np.sign(root['left/wrench'][:, -1, 2])[~is_up])
+
+
 def test_notes_of_what_may_not_be_meant(tmp_path):
     from verlet_cable.sweep.description import read_sweep
     from verlet_cable.sweep.trial import notes

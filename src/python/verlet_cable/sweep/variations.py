@@ -5,7 +5,7 @@ from statistics import NormalDist
 import numpy as np
 
 from .errors import rejected
-from .text_yaml import number, shown
+from .text_yaml import number, shown, with_numbers
 
 DISTRIBUTIONS = ('uniform', 'log_uniform', 'normal', 'choice')
 
@@ -68,7 +68,7 @@ def read_variation(key, value, errors):
         if not isinstance(parameters, list) or not parameters:
             errors.append(rejected(key, shown(parameters), 'a list of at least one value'))
             return None
-        return Variation(kind, parameters)
+        return Variation(kind, with_numbers(parameters))
     numbers = [number(entry) for entry in parameters] if isinstance(parameters, list) else []
     allowed, is_allowed = {
         'uniform': ('[low, high], finite, low < high', lambda low, high: low < high and math.isfinite(high - low)),
