@@ -245,6 +245,11 @@ def test_external_scheduler(undisturbed, tmp_path):
                 time.sleep(0.05)
         status, text = run(folder, tmp_path / 'store', '--scheduler', address)
         assert status == 0, text
+        process = start(folder, tmp_path / 'part', '--scheduler', address)
+        wait_until(lambda: chunks(tmp_path / 'part') >= 1, process)
+        processes[0].kill()
+        status, text = finish(process)
+        assert status == 3 and f'the scheduler at {address} is gone\n' in text and 'Traceback' not in text, text
     finally:
         for process in reversed(processes):
             process.terminate()
@@ -520,6 +525,10 @@ def test_no_scheduler(tmp_path):
     folder = write(tmp_path)
     status, text = run(folder, tmp_path / 'store', '--scheduler', 'nonsense://here')
     assert status == 2 and '--scheduler: nonsense://here' in text, text
+    status, text = run(folder, tmp_path / 'store', '--scheduler', 'tcp://127.0.0.1:1', '--workers', str(len(os.sched_getaffinity(0))))
+    assert status == 2 and 'not allowed with argument --scheduler' in text, text
+    status, text = run(folder, '')
+    assert status == 2 and "--output: ''; allowed: the name of a directory" in text, text
     assert not (tmp_path / 'store').exists()
 
 

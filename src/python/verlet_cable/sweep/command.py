@@ -26,13 +26,22 @@ def _options(arguments):
         prog='cable_sweep', description='Simulates many variations of a scene with Dask and writes them to one Zarr store.',
         epilog='Exit status: 0 when every sample is in the store, 2 for bad input, 3 when the sweep had to stop: --resume goes on.')
     parser.add_argument('sweep', metavar='SWEEP.yaml', help='what to simulate: doc/sweeps.md')
-    parser.add_argument('--output', metavar='DIR', required=True, help='the store; must not exist, but with --resume')
+    parser.add_argument('--output', metavar='DIR', required=True, type=_output, help='the store; must not exist, but with --resume')
     where = parser.add_mutually_exclusive_group()
-    where.add_argument('--workers', metavar='N', type=_workers, default=len(os.sched_getaffinity(0)),
-                       help='processes on this machine (default: its cores, %(default)s)')
+    # No default here: argparse takes a value that is the default for none.
+    cores = len(os.sched_getaffinity(0))
+    where.add_argument('--workers', metavar='N', type=_workers, help=f'processes on this machine (default: its cores, {cores})')
     where.add_argument('--scheduler', metavar='tcp://HOST:PORT', help='a running dask-scheduler, whose workers do the work')
     parser.add_argument('--resume', action='store_true', help='go on with a store that was begun; begin it if it is not there')
-    return parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
+    options.workers = options.workers or cores
+    return options
+
+
+def _output(text):
+    if not text.strip():
+        raise argparse.ArgumentTypeError(f'{text!r}; allowed: the name of a directory')
+    return text
 
 
 def _workers(text):

@@ -53,8 +53,15 @@ def cluster(workers, scheduler):
             client = distributed.Client(scheduler, timeout=_CONNECT, set_as_default=False)
         except (OSError, ValueError, TypeError) as error:
             raise SweepError([f'--scheduler: {scheduler}: {error}; allowed: the address of a running dask-scheduler']) from error
+        for name in ('distributed', 'distributed.client'):  # which would tell of a lost connection in many tracebacks
+            logging.getLogger(name).setLevel(logging.CRITICAL)
         with client:
-            yield client
+            try:
+                yield client
+            except Exception as error:
+                if client.status == 'running':
+                    raise
+                raise SweepStopped(f'the scheduler at {scheduler} is gone') from error
         return
     scratch = tempfile.mkdtemp(prefix='cable_sweep-')
     try:
