@@ -91,6 +91,23 @@ def workers_of(process):
     return [int(child) for child in children if b'spawn_main' in pathlib.Path(f'/proc/{child}/cmdline').read_bytes()]
 
 
+def listening_addresses(pids):
+    """The local addresses, as /proc writes them, of all sockets of these processes that listen."""
+    sockets, addresses = set(), set()
+    for pid in pids:
+        for descriptor in pathlib.Path(f'/proc/{pid}/fd').iterdir():
+            try:
+                sockets.add(os.readlink(descriptor))
+            except FileNotFoundError:  # closed in the meantime
+                continue
+    for table in ('tcp', 'tcp6'):
+        for line in pathlib.Path(f'/proc/net/{table}').read_text().splitlines()[1:]:
+            _, local, _, state, *rest = line.split()
+            if state == '0A' and f'socket:[{rest[5]}]' in sockets:
+                addresses.add(local.partition(':')[0])
+    return addresses
+
+
 def has_ended(pid):
     try:
         return pathlib.Path(f'/proc/{pid}/stat').read_text().rpartition(')')[2].split()[0] == 'Z'
@@ -130,7 +147,9 @@ def test_killed_worker(undisturbed, tmp_path):
     store = tmp_path / 'store'
     process = start(folder, store, '--workers', '2')
     wait_until(lambda: chunks(store) >= 3, process)
-    os.kill(workers_of(process)[0], signal.SIGKILL)
+    workers = workers_of(process)
+    assert listening_addresses([process.pid, *workers]) <= {'0100007F', f'{1 << 24:032X}'}, 'others than this machine can connect'
+    os.kill(workers[0], signal.SIGKILL)
     assert chunks(store) < chunks(reference)
     status, text = finish(process)
     assert status == 0, text
@@ -226,6 +245,11 @@ def test_external_scheduler(undisturbed, tmp_path):
                 time.sleep(0.05)
         status, text = run(folder, tmp_path / 'store', '--scheduler', address)
         assert status == 0, text
+        process = start(folder, tmp_path / 'part', '--scheduler', address)
+        wait_until(lambda: chunks(tmp_path / 'part') >= 1, process)
+        processes[0].kill()
+        status, text = finish(process)
+        assert status == 3 and f'the scheduler at {address} is gone\n' in text and 'Traceback' not in text, text
     finally:
         for process in reversed(processes):
             process.terminate()
@@ -291,11 +315,51 @@ def test_wrong_samples_are_recorded(tmp_path):
     is_weak = root['vary/materials.m.breaking_tension'][:] < 1
     assert {0, 1, 2} == set(status)
     assert np.array_equal(status, np.where(is_wrong, 1, np.where(is_weak, 2, 0)))
+    assert np.array_equal(root['worst'][:] == -1, is_wrong)
     for sample in range(40):
         message = root['message'][sample].decode()
         assert ('cables[0].length' in message) == (status[sample] == 1)
         assert bool(message) == (status[sample] != 0)
         assert np.any(root['hose/positions'][sample]) == (status[sample] == 0)
+
+
+PULL = 't,frame,x,y,z,qx,qy,qz,qw\n0,hand,0.7,0,0,0,0,0,1\n0.5,hand,1.5,0,0,0,0,0,1\n'
+
+
+@pytest.mark.parametrize('fields, rate', [('[wrench]', 20), ('[positions]', 20), ('[positions, wrench]', 30)])
+def test_a_cable_that_breaks_fails_whatever_is_recorded(tmp_path, fields, rate):
+    scene = SCENE.replace('radius: 0.005', 'axial_stiffness: 100, breaking_tension: 1.0e+9, radius: 0.005')
+    folder = write(tmp_path, f"""
+scene: scene.yaml
+motion: pull.csv
+duration: 0.5
+record: {{rate: {rate}, fields: {fields}}}
+samples: 8
+vary:
+  materials.m.breaking_tension: {{choice: [5.0, 1.0e+9]}}
+""", scene)
+    (tmp_path / 'pull.csv').write_text(PULL)
+    status, text = run(folder, tmp_path / 'store', '--workers', '1')
+    assert status == 0, text
+    root = zarr.open_group(str(tmp_path / 'store'), mode='r')
+    is_weak = root['vary/materials.m.breaking_tension'][:] < 6
+    assert {False, True} == set(is_weak)
+    assert np.array_equal(root['status'][:], np.where(is_weak, 2, 0))
+    for sample in range(8):
+        assert ('s: cable "hose" broke at segment ' in root['message'][sample].decode()) == is_weak[sample]
+        assert np.any(root['left/wrench' if 'wrench' in fields else 'hose/positions'][sample]) != is_weak[sample]
+
+
+def test_worst_status_of_the_steps(tmp_path):
+    """A cable that is pulled beyond its length within the time, between two rows or at the end."""
+    for rate in (2, 60):
+        folder = write(tmp_path, SWEEP.replace('samples: 40', 'samples: 3').replace('rate: 50', f'rate: {rate}').replace('1.0\n', '0.75\n')
+                       + 'motion: pull.csv\n')
+        (tmp_path / 'pull.csv').write_text(PULL)
+        status, text = run(folder, tmp_path / f'store{rate}', '--workers', '1')
+        assert status == 0, text
+        root = zarr.open_group(str(tmp_path / f'store{rate}'), mode='r')
+        assert list(root['status'][:]) == [0, 0, 0] and list(root['worst'][:]) == [1, 1, 1]
 
 
 def test_motions_are_drawn_from(tmp_path):
@@ -350,6 +414,71 @@ def test_errors_of_the_scene_are_named(tmp_path):
     assert not (tmp_path / 'store').exists()
 
 
+def test_errors_of_scene_motions_and_values_come_together(tmp_path):
+    sweep = SWEEP + '  cables[0].lenght: {uniform: [1, 2]}\n  gravity: {uniform: [1, 2]}\nmotions: [nan.csv, header.csv, empty.csv]\n'
+    folder = write(tmp_path, sweep, SCENE.replace('length: 1.0', 'length: -1'))
+    (tmp_path / 'nan.csv').write_text('t,frame,x,y,z,qx,qy,qz,qw\n0,hand,nan,0,0,0,0,0,1\n')
+    (tmp_path / 'header.csv').write_text('t,frame,x\n')
+    (tmp_path / 'empty.csv').write_text('')
+    words = ['vary.cables[0].lenght: not in scene.yaml', 'motions[0]: nan.csv: line 2: x', 'motions[1]: header.csv: line 1',
+             'motions[2]: empty.csv: empty']
+    status, text = run(folder, tmp_path / 'store')
+    assert status == 2 and all(word in text for word in [*words, 'scene.yaml: cables[0].length: -1']), text
+    write(tmp_path, sweep.replace('wrench', 'body_pose'))
+    status, text = run(folder, tmp_path / 'store')
+    assert status == 2 and all(word in text for word in [*words, 'vary.gravity.uniform: [1.0, 2.0]: the scene refuses', 'body_pose']), text
+    assert not (tmp_path / 'store').exists()
+
+
+def test_example():
+    from verlet_cable.sweep.description import read_sweep
+    from verlet_cable.sweep.trial import notes
+    sweep, scene = read_sweep(str(PROGRAM.parents[1] / 'config' / 'sweep.yaml'))
+    assert sweep.samples == 200 and scene.cable_names == ['hose'] and len(sweep.variations) == 4
+    assert notes(sweep, scene) == []
+
+
+def test_numbers_of_choices_are_numbers(tmp_path):
+    folder = write(tmp_path, """
+scene: scene.yaml
+duration: 0.1
+record: {rate: 10, fields: [wrench]}
+samples: 16
+vary:
+  gravity: {choice: [[0, 0, -9.81], [0, 0, 1.62e0]]}
+  materials.m.radius: {choice: [4e-3, 5e-3]}
+""")
+    status, text = run(folder, tmp_path / 'store', '--workers', '1')
+    assert status == 0, text
+    root = zarr.open_group(str(tmp_path / 'store'), mode='r')
+    choices = root['vary/gravity'].attrs['choices']
+    assert choices == [[0, 0, -9.81], [0, 0, 1.62]] and isinstance(choices[0][0], int)
+    assert root.attrs['sweep']['vary']['materials.m.radius'] == {'choice': [0.004, 0.005]}
+    assert set(root['vary/materials.m.radius'][:]) == {0.004, 0.005} and not root['status'][:].any()
+    is_up = root['vary/gravity'][:] == 1
+    assert {False, True} == set(is_up)
+    assert len(set(np.sign(root['left/wrench'][:, -1, 2])[is_up])) == 1
+    assert set(np.sign(root['left/wrench'][:, -1, 2])[is_up]) != set(np.sign(root['left/wrench'][:, -1, 2])[~is_up])
+
+
+def test_notes_of_what_may_not_be_meant(tmp_path):
+    from verlet_cable.sweep.description import read_sweep
+    from verlet_cable.sweep.trial import notes
+    header = 't,frame,x,y,z,qx,qy,qz,qw\n'
+    (tmp_path / 'hand.csv').write_text(header + '0,hand,0.7,0,0,0,0,0,1\n')
+    (tmp_path / 'hamd.csv').write_text(header + '0,hamd,0.7,0,0,0,0,0,1\n')
+    write(tmp_path, SWEEP + 'motions: [hand.csv, hamd.csv]\n')
+    assert notes(*read_sweep(str(tmp_path / 'sweep.yaml'))) == ['hamd.csv: the scene does not use frames hamd']
+    guide = 'guides:\n  - {name: eye, cable: hose, at: 0.5, frame: mast, type: eyelet}\n'
+    write(tmp_path, SWEEP + 'motions: [hand.csv, hamd.csv]\n', SCENE.replace(', initial_pose: [0.7, 0, 0, 0, 0, 0]', '') + guide)
+    assert notes(*read_sweep(str(tmp_path / 'sweep.yaml'))) == [
+        'hand.csv: nothing places frames mast: at the origin',
+        'hamd.csv: the scene does not use frames hamd',
+        'hamd.csv: nothing places frames hand, mast: at the origin',
+        'guides (eye) change the number of nodes of a cable that slides through them; '
+        'samples in which they do fail, since they have no positions, tension of one shape']
+
+
 def test_fields_that_the_scene_does_not_have(tmp_path):
     folder = write(tmp_path, SWEEP.replace('wrench', 'body_pose'))
     status, text = run(folder, tmp_path / 'store')
@@ -372,15 +501,34 @@ def test_resume_refuses_another_sweep(tmp_path):
     write(folder)
     shutil.copytree(tmp_path / 'store', tmp_path / 'part')
     shutil.rmtree(tmp_path / 'part/hose/tension')
+    metadata = tmp_path / 'part/hose/positions/.zarray'
+    metadata.write_text(metadata.read_text().replace('"<f8"', '"<f4"'))
     status, text = run(folder, tmp_path / 'part', '--resume')
-    assert status == 2 and 'without hose/tension' in text, text
+    assert status == 2 and 'without hose/tension' in text and 'hose/positions/.zarray: not as cable_sweep wrote it' in text, text
     assert before == {name: (tmp_path / 'store' / name).stat().st_mtime_ns for name in files_of(tmp_path / 'store')}
+
+
+def test_resume_simulates_again_what_was_lost(tmp_path):
+    folder = write(tmp_path)
+    assert run(folder, tmp_path / 'reference', '--workers', '1')[0] == 0
+    shutil.copytree(tmp_path / 'reference', tmp_path / 'store')
+    (tmp_path / 'store/hose/positions/0.0.0.0').unlink()
+    (tmp_path / 'store/hose/tension/1.0.0').write_bytes(b'')
+    os.truncate(tmp_path / 'store/left/wrench/2.0.0', 100)
+    os.truncate(tmp_path / 'store/status/3', 17)
+    status, text = run(folder, tmp_path / 'store', '--workers', '1', '--resume')
+    assert status == 0 and 'files of 4 chunks' in text and '32 simulated now' in text, text
+    assert_same_bytes(tmp_path / 'reference', tmp_path / 'store')
 
 
 def test_no_scheduler(tmp_path):
     folder = write(tmp_path)
     status, text = run(folder, tmp_path / 'store', '--scheduler', 'nonsense://here')
     assert status == 2 and '--scheduler: nonsense://here' in text, text
+    status, text = run(folder, tmp_path / 'store', '--scheduler', 'tcp://127.0.0.1:1', '--workers', str(len(os.sched_getaffinity(0))))
+    assert status == 2 and 'not allowed with argument --scheduler' in text, text
+    status, text = run(folder, '')
+    assert status == 2 and "--output: ''; allowed: the name of a directory" in text, text
     assert not (tmp_path / 'store').exists()
 
 

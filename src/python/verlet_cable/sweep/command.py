@@ -26,13 +26,22 @@ def _options(arguments):
         prog='cable_sweep', description='Simulates many variations of a scene with Dask and writes them to one Zarr store.',
         epilog='Exit status: 0 when every sample is in the store, 2 for bad input, 3 when the sweep had to stop: --resume goes on.')
     parser.add_argument('sweep', metavar='SWEEP.yaml', help='what to simulate: doc/sweeps.md')
-    parser.add_argument('--output', metavar='DIR', required=True, help='the store; must not exist, but with --resume')
+    parser.add_argument('--output', metavar='DIR', required=True, type=_output, help='the store; must not exist, but with --resume')
     where = parser.add_mutually_exclusive_group()
-    where.add_argument('--workers', metavar='N', type=_workers, default=len(os.sched_getaffinity(0)),
-                       help='processes on this machine (default: its cores, %(default)s)')
+    # No default here: argparse takes a value that is the default for none.
+    cores = len(os.sched_getaffinity(0))
+    where.add_argument('--workers', metavar='N', type=_workers, help=f'processes on this machine (default: its cores, {cores})')
     where.add_argument('--scheduler', metavar='tcp://HOST:PORT', help='a running dask-scheduler, whose workers do the work')
     parser.add_argument('--resume', action='store_true', help='go on with a store that was begun; begin it if it is not there')
-    return parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
+    options.workers = options.workers or cores
+    return options
+
+
+def _output(text):
+    if not text.strip():
+        raise argparse.ArgumentTypeError(f'{text!r}; allowed: the name of a directory')
+    return text
 
 
 def _workers(text):
@@ -42,7 +51,7 @@ def _workers(text):
 
 
 def _sweep(options):
-    from . import store
+    from . import store, trial
     from .description import read_sweep
     from .layout import plan_layout
     path = os.path.abspath(options.output)
@@ -58,6 +67,8 @@ def _sweep(options):
     layout = plan_layout(sweep, scene)
     if os.path.lexists(path):
         store.check_same(path, sweep, layout)
+    for text in trial.notes(sweep, scene):
+        print(f'cable_sweep: note: {text}', file=sys.stderr)
     return _run(options, path, sweep, layout)
 
 
@@ -68,11 +79,15 @@ def _run(options, path, sweep, layout):
     report = Report(layout)
     reason = None
     try:
-        if not store.is_complete(path, layout):
+        is_begun = os.path.lexists(path)
+        damaged = store.damaged_chunks(path) if is_begun else []
+        if damaged or store.count_samples(path, layout) < layout.samples:
             with contextlib.ExitStack() as stack:
-                is_begun = os.path.lexists(path)
                 if is_begun:
                     stack.enter_context(store.locked(path))
+                    if damaged:
+                        report.line(f'{options.output}: files of {len(damaged)} chunks are not there or not whole: simulated again')
+                    store.forget(path, damaged)
                 client = stack.enter_context(schedule.cluster(options.workers, options.scheduler))
                 if not is_begun:
                     store.begin(path, sweep, layout)

@@ -6,7 +6,7 @@ import os
 
 from verlet_cable.sim import Scene, SceneError
 
-from . import text_yaml
+from . import text_yaml, trial
 from .errors import SweepError, rejected
 from .paths import holder_of, parse_path, path_text, why_absent
 from .text_yaml import number, shown
@@ -105,6 +105,9 @@ def read_sweep(path):
             errors.append(rejected('duration', f'{sweep.duration:g}', f'at most {_MOST_STEPS} steps of {scene.time_step:g} s'))
     sweep.variations = {}
     _read_variations(sweep, values, errors)
+    if scene is not None:
+        errors += trial.value_errors(sweep, sweep.variations)
+        errors += trial.field_errors(sweep, scene, {index: field for index, field in enumerate(sweep.fields or []) if field in FIELDS})
     _read_motions(sweep, values, errors)
     if errors:
         raise SweepError(errors)
@@ -132,12 +135,14 @@ def _read_scene(sweep, values, errors):
     sweep.scene_text = _text_of(path, f'scene: {sweep.scene_name}', errors)
     if len(errors) > before:
         return None
+    yaml_errors = []
+    sweep.tree = text_yaml.parse(sweep.scene_text, sweep.scene_name, yaml_errors)
     try:
         scene = Scene.load(path)
     except SceneError as error:
         errors += [f'{sweep.scene_name}: {text}' for text in error.errors]
         return None
-    sweep.tree = text_yaml.parse(sweep.scene_text, sweep.scene_name, errors)
+    errors += yaml_errors
     return scene
 
 
@@ -211,6 +216,7 @@ def _read_variations(sweep, values, errors):
         if parts is None:
             errors.append(f'{key}: no key of a scene; allowed: names and indices such as materials.my_hose.radius, cables[0].length')
             continue
+        before = len(errors)
         if parts[-1] in _NOT_VARIED:
             errors.append(f'{key}: cannot vary; {_NOT_VARIED[parts[-1]]}')
         if sweep.tree is not None:
@@ -221,7 +227,7 @@ def _read_variations(sweep, values, errors):
             if parts[:len(other)] == other or other[:len(parts)] == parts:
                 errors.append(f'{key}: varies with {paths[other]}, too; allowed: each value of the scene once')
         paths[parts] = key
-        if variation is not None:
+        if variation is not None and len(errors) == before:
             sweep.variations[text] = variation
 
 
@@ -261,6 +267,7 @@ def _read_motions(sweep, values, errors):
         try:
             sweep.motion_digests[file] = digest_of(sweep.motion_path(file))
             sweep.motions.append(file)
+            errors += [f'{key}: {file}: {text}' for text in trial.motion_errors(sweep.motion_path(file))]
         except OSError as error:
             errors.append(rejected(f'{key}: {file}', error.strerror, 'a file that can be read'))
     if 'motions' in values:

@@ -10,13 +10,14 @@ from verlet_cable.sim import Batch
 
 from .description import FIELDS
 from .errors import SweepError, rejected
+from .trial import rows_of
 
 CHUNK_BYTES = 8 << 20       # of one file, before compression: large for a file system, small for memory
 SAMPLE_BYTES = 4 << 30      # of all fields of one sample, which a worker holds
 _CHUNK_NODE_STEPS = 2e9     # about a minute of one core: what a worker's death may cost
 _LANES = 8                  # samples that are stepped at once
 _FEWEST_CHUNKS = 64         # of a sweep that has samples enough, for the workers to share evenly
-_RESERVED = ('status', 'message', 'time', 'vary')
+_RESERVED = ('status', 'worst', 'message', 'time', 'vary')
 
 
 class Layout:
@@ -41,7 +42,7 @@ class Layout:
 
 
 def plan_layout(sweep, scene):
-    """The Layout for a sweep of `scene`. Raises SweepError for fields that the scene does not have, motions that do not fit it."""
+    """The Layout for a sweep of `scene`. Raises SweepError for motions that do not fit it, and samples that are too large."""
     errors = []
     shapes = {}
     for motion in sweep.motions or [None]:
@@ -51,11 +52,8 @@ def plan_layout(sweep, scene):
             errors += [f'{motion or sweep.scene_name}: {text}' for text in getattr(error, 'errors', None) or [str(error)]]
     if errors:
         raise SweepError(errors)
-    for index, field in enumerate(sweep.fields):
-        found = {(name, field): shape for name, shape in _rows_of(batch, scene, field)}
-        if not found:
-            errors.append(rejected(f'record.fields[{index}]', field, f'fields of what {sweep.scene_name} has'))
-        shapes.update(found)
+    for field in sweep.fields:
+        shapes.update({(name, field): shape for name, shape in rows_of(batch, scene, field)})
     for name in sorted({name for name, field in shapes} & set(_RESERVED)):
         errors.append(f'{sweep.scene_name}: {name}: a name that the store uses itself; allowed: any but ' + ', '.join(_RESERVED))
     sample_bytes = sum(8 * _size(shape) for shape in shapes.values()) * sweep.rows
@@ -66,21 +64,6 @@ def plan_layout(sweep, scene):
         raise SweepError(errors)
     largest = max(8 * _size(shape) for shape in shapes.values()) * sweep.rows
     return Layout(shapes, sweep.rows, sweep.samples, _chunk(sweep, scene, batch, largest))
-
-
-def _rows_of(batch, scene, field):
-    """(name, shape) of everything in the scene that has the field."""
-    if field == 'wrench':
-        names = scene.attachment_names
-    elif field in ('body_pose', 'body_twist'):
-        names = scene.body_names
-    else:
-        names = [*scene.cable_names, *scene.net_names, *scene.particle_names]
-    for name in names:
-        try:
-            yield name, tuple(np.shape(getattr(batch, field)(name))[1:])
-        except (KeyError, ValueError):
-            continue
 
 
 def _chunk(sweep, scene, batch, largest):

@@ -29,8 +29,9 @@ _PATIENCE = 5          # [s] without any worker after which the user is told
 _RECOUNT = 5           # [s] after which workers are counted again
 
 # Logs of bounded length, so that memory is flat; and nothing that looks at the processes many times a second: on few cores that
-# would take what samples need.
+# would take what samples need. Dask's HTTP servers cannot be left out: they have no pages, and only this machine reaches them.
 _OWN_CLUSTER = {
+    'distributed.scheduler.http.routes': [], 'distributed.worker.http.routes': [],
     'distributed.scheduler.transition-log-length': 1000, 'distributed.scheduler.events-log-length': 1000,
     'distributed.scheduler.active-memory-manager.start': False, 'distributed.scheduler.work-stealing-interval': '1s',
     'distributed.worker.use-file-locking': False, 'distributed.worker.profile.enabled': False,
@@ -52,14 +53,22 @@ def cluster(workers, scheduler):
             client = distributed.Client(scheduler, timeout=_CONNECT, set_as_default=False)
         except (OSError, ValueError, TypeError) as error:
             raise SweepError([f'--scheduler: {scheduler}: {error}; allowed: the address of a running dask-scheduler']) from error
+        for name in ('distributed', 'distributed.client'):  # which would tell of a lost connection in many tracebacks
+            logging.getLogger(name).setLevel(logging.CRITICAL)
         with client:
-            yield client
+            try:
+                yield client
+            except Exception as error:
+                if client.status == 'running':
+                    raise
+                raise SweepStopped(f'the scheduler at {scheduler} is gone') from error
         return
     scratch = tempfile.mkdtemp(prefix='cable_sweep-')
     try:
         with dask.config.set(_OWN_CLUSTER), distributed.LocalCluster(
                 n_workers=workers, threads_per_worker=1, processes=True, memory_limit=0, local_directory=scratch,
-                host='127.0.0.1', dashboard_address='127.0.0.1:0', scheduler_kwargs={'dashboard': False},
+                host='127.0.0.1', dashboard_address='127.0.0.1:0', worker_dashboard_address='127.0.0.1:0',
+                scheduler_kwargs={'dashboard': False},
                 silence_logs=logging.CRITICAL) as own, distributed.Client(own, set_as_default=False) as client:
             client.register_worker_plugin(_OwnWorker(), name='own')
             yield client

@@ -3,23 +3,26 @@ import copy
 
 import numpy as np
 
-from verlet_cable.sim import Batch, Scene, SceneError
+from verlet_cable.sim import Batch, Scene, SceneError, World
 
 from .description import MOTION
 from .errors import rejected
 from .paths import holder_of, parse_path
-from .store import COMPLETE, FAULT, WRONG_SCENE
+from .store import COMPLETE, FAULT, MISSING, STATUSES, WRONG_SCENE
 from .variations import draw_sample
 
-_FAULTY = 4  # of Batch.status: the world could not be stepped
+_FAULTY = STATUSES.index('fault')
+
+_GUIDED = 'the number of nodes of a cable changed, which slides through a guide; allowed for such ones: fields that do not belong to nodes'
 
 
 class Result:
-    """Of some samples, in their order: status, messages (lists); fields {(name, field): (samples, rows, ...)}, 0 where a sample failed;
-    drawn {key: (samples)}."""
+    """Of some samples, in their order: status, worst, messages (lists); fields {(name, field): (samples, rows, ...)}, 0 where a sample
+    failed; drawn {key: (samples)}. worst: index into STATUSES, MISSING where nothing was simulated."""
 
     def __init__(self, count, layout):
         self.status = [COMPLETE] * count
+        self.worst = [MISSING] * count
         self.messages = [''] * count
         self.fields = {key: np.zeros((count, layout.rows) + shape) for key, shape in layout.shapes.items()}
         self.drawn = {}
@@ -87,17 +90,60 @@ def _simulate_group(sweep, layout, motion, time_step, members, result):
         for member in members:
             _simulate_group(sweep, layout, motion, time_step, [member], result)
         return
+    cables = batch.world(0).cable_names
     try:
-        faulty = _run(sweep, layout, batch, time_step, positions, result)
+        worst = _run(sweep, layout, batch, time_step, positions, result)
     except (ValueError, KeyError, RuntimeError) as error:
-        if len(members) == 1:
-            result.fail(positions[0], FAULT, str(error))
-            return
+        _simulate_parted(sweep, layout, motion, time_step, members, result, _broken(sweep, batch, time_step, cables), error)
+        return
+    for index, position in enumerate(positions):
+        result.worst[position] = worst[index]
+        if worst[index] == _FAULTY:
+            result.fail(position, FAULT, f'the simulation failed within {sweep.duration:g} s')
+    for index in _broken(sweep, batch, time_step, cables):
+        _fail_broken(sweep, motion, time_step, members[index], result)
+
+
+def _simulate_parted(sweep, layout, motion, time_step, members, result, broken, error):
+    """Where not all of the members have the same arrays at the end: the broken ones fail, the others are simulated without them."""
+    for index in broken:
+        _fail_broken(sweep, motion, time_step, members[index], result)
+    others = [member for index, member in enumerate(members) if index not in broken]
+    if broken and others:
+        _simulate_group(sweep, layout, motion, time_step, others, result)
+    elif not broken and len(members) == 1:
+        result.fail(members[0][0], FAULT, _GUIDED if members[0][1].guide_names else str(error))
+    elif not broken:
         for member in members:
             _simulate_group(sweep, layout, motion, time_step, [member], result)
-        return
-    for index in np.flatnonzero(faulty):
-        result.fail(positions[index], FAULT, f'the simulation failed within {sweep.duration:g} s')
+
+
+def _broken(sweep, batch, time_step, cables):
+    """Indices of the worlds in which a cable has broken by the end, which has a name of its own then."""
+    left = sweep.steps(time_step)[0] - round(batch.time.max() / time_step)
+    if left > 0:
+        batch.step(left)
+    try:
+        for name in cables:
+            batch.positions(name)  # of worlds that are alike, as nearly all are, in a moment
+        return []
+    except ValueError:
+        return [index for index in range(len(batch)) if len(batch.world(index).cable_names) > len(cables)]
+
+
+def _fail_broken(sweep, motion, time_step, member, result):
+    """Simulates a sample again, alone, for what World says of it that Batch does not."""
+    position, scene = member
+    world = World(scene, motion)
+    steps, of_rows = sweep.steps(time_step)
+    worst, breaks = 0, []
+    for start, stop in zip(of_rows, of_rows[1:] + [steps]):
+        worst = max(worst, STATUSES.index(world.step(stop - start)))
+        breaks = [event for event in world.events() if event.type == 'BROKE']
+        if breaks:
+            break
+    result.worst[position] = worst
+    result.fail(position, FAULT, f'at {breaks[0].time:g} s: {breaks[0].message}' if breaks else 'a cable broke')
 
 
 def _check_shapes(batch, layout):
@@ -108,25 +154,25 @@ def _check_shapes(batch, layout):
 
 
 def _run(sweep, layout, batch, time_step, positions, result):
-    """Steps the batch to its end, with its rows put into the result. Returns which worlds failed."""
+    """Steps the batch to its end, with its rows put into the result. Returns the worst status of each world."""
     steps, of_rows = sweep.steps(time_step)
     _read(batch, layout, positions, result, slice(0, 1), is_record=False)
-    faulty = np.zeros(len(positions), dtype=bool)
+    worst = np.zeros(len(positions), dtype=np.int8)
     strides = set(np.diff(of_rows))
     if len(strides) == 1:
         stride = int(strides.pop())
         batch.step(of_rows[-1], record_every=stride, fields=sorted({field for name, field in layout.shapes}))
-        faulty |= batch.status == _FAULTY
+        worst = np.maximum(worst, batch.status)
         _read(batch, layout, positions, result, slice(1, layout.rows), is_record=True)
     else:
         for row in range(1, layout.rows):
             batch.step(of_rows[row] - of_rows[row - 1])
-            faulty |= batch.status == _FAULTY
+            worst = np.maximum(worst, batch.status)
             _read(batch, layout, positions, result, slice(row, row + 1), is_record=False)
     if steps > of_rows[-1]:
         batch.step(steps - of_rows[-1])
-        faulty |= batch.status == _FAULTY
-    return faulty
+        worst = np.maximum(worst, batch.status)
+    return worst
 
 
 def _read(batch, layout, positions, result, rows, is_record):

@@ -4,6 +4,7 @@
 time             (rows) [s] k / rate; row k is the first step at or after it
 vary/<key>       (samples) what was drawn
 status           (samples) int8: COMPLETE, WRONG_SCENE, FAULT; MISSING where a sample was not simulated yet
+worst            (samples) int8: the worst status that its steps had, an index into STATUSES; MISSING where none was simulated
 message          (samples) UTF-8 of fixed length: what failed
 
 All are cut along the samples at the same places. A chunk's piece of `status` is written last, and all files are written aside and renamed:
@@ -13,9 +14,13 @@ import contextlib
 import errno
 import fcntl
 import hashlib
+import itertools
+import math
 import os
+import pathlib
 import shutil
 import socket
+import struct
 
 import numpy as np
 
@@ -31,6 +36,7 @@ except ImportError as error:
     raise missing_package(error) from error
 
 COMPLETE, WRONG_SCENE, FAULT, MISSING = 0, 1, 2, -1
+STATUSES = ('ok', 'overstretched', 'jumped', 'degraded', 'fault')  # of a step, as Batch.status numbers them
 MESSAGE_LENGTH = 256
 
 # What several threads compress would be in the order in which they came to an end.
@@ -84,6 +90,8 @@ def _write_arrays(root, sweep, layout):
         else:
             create(f'vary/{key}', samples, chunk, '<f8', 0.0)
     create('message', samples, chunk, f'|S{MESSAGE_LENGTH}', b'')
+    create('worst', samples, chunk, '|i1', MISSING, meanings={**{str(index): name for index, name in enumerate(STATUSES)},
+                                                               str(MISSING): 'nothing simulated'})
     create('status', samples, chunk, '|i1', MISSING,
            meanings={str(COMPLETE): 'complete', str(WRONG_SCENE): 'scene refused', str(FAULT): 'simulation failed',
                      str(MISSING): 'not simulated yet'})
@@ -91,7 +99,7 @@ def _write_arrays(root, sweep, layout):
 
 def check_same(path, sweep, layout):
     """Raises SweepError if the store at `path` is not of this sweep, or of other versions."""
-    attributes, arrays = _read(path)
+    attributes = _read(path)
     wanted = _attributes(sweep, layout)
     errors = []
     for key in ('scene', 'sweep', 'versions'):
@@ -104,19 +112,32 @@ def check_same(path, sweep, layout):
                        for name in differing]
         else:
             errors.append(f'--resume: {path}: not what the store was begun with: {key}; allowed: the same')
-    wanted_arrays = {'status', 'message', 'time', *(f'{name}/{field}' for name, field in layout.shapes),
-                     *(f'vary/{key}' for key in sweep.variations)}
-    if not errors and not wanted_arrays <= arrays:
-        errors.append(f'--resume: {path}: without ' + ', '.join(sorted(wanted_arrays - arrays)) + '; allowed: a whole store')
+    if not errors:
+        errors = _foreign_files(path, sweep, layout)
     if errors:
         raise SweepError(errors)
 
 
+def _foreign_files(path, sweep, layout):
+    """What is wrong with the files that were there before any sample: a sweep begins with the same ones every time."""
+    files = {}
+    _write_arrays(zarr.open_group(files, mode='w'), sweep, layout)
+    absent, errors = set(), []
+    for name, wanted in sorted(files.items()):
+        try:
+            if pathlib.Path(path, name).read_bytes() != bytes(wanted) and name != '.zattrs':
+                errors.append(f'--resume: {path}: {name}: not as cable_sweep wrote it; allowed: a whole store')
+        except FileNotFoundError:
+            absent.add(os.path.dirname(name) or name)
+        except OSError as error:
+            errors.append(f'--resume: {path}: {name}: {error.strerror}; allowed: a store that can be read')
+    return errors + ([f'--resume: {path}: without ' + ', '.join(sorted(absent)) + '; allowed: a whole store'] if absent else [])
+
+
 def _read(path):
-    """The attributes of a store, and the paths of its arrays. Raises SweepError."""
+    """The attributes of a store. Raises SweepError."""
     try:
-        root = _open(path)
-        return root.attrs.asdict(), set(arrays_of(root))
+        return _open(path).attrs.asdict()
     except OSError as error:
         raise SweepError([f'--resume: {path}: {error.strerror}; allowed: a store that can be read']) from error
     except (KeyError, ValueError, zarr.errors.GroupNotFoundError, zarr.errors.FSPathExistNotDir) as error:
@@ -157,9 +178,32 @@ def count_samples(path, layout):
     return sum(len(layout.samples_of(chunk)) for chunk in complete_chunks(path)) if os.path.lexists(path) else 0
 
 
-def is_complete(path, layout):
-    """Whether there is a store, with every chunk."""
-    return os.path.lexists(path) and len(complete_chunks(path)) == layout.chunks
+def damaged_chunks(path):
+    """The numbers of the chunks that were there, files of which are no longer there, or not whole."""
+    arrays = [array for name, array in arrays_of(_open(path)).items() if name != 'time']
+    return [chunk for chunk in sorted(complete_chunks(path)) if not all(_is_whole(path, array, chunk) for array in arrays)]
+
+
+def _is_whole(path, array, chunk):
+    """Whether the files of an array's chunk have the lengths that they say they have: Blosc's are in its header."""
+    for rest in itertools.product(*map(range, array.cdata_shape[1:])):
+        name = '.'.join(map(str, (chunk, *rest)))
+        try:
+            with open(os.path.join(path, array.path, name), 'rb') as file:
+                header = file.read(16)
+                size = os.fstat(file.fileno()).st_size
+        except OSError:
+            return False
+        if len(header) < 16 or struct.unpack('<4xI4xI', header) != (math.prod(array.chunks) * array.dtype.itemsize, size):
+            return False
+    return True
+
+
+def forget(path, chunks):
+    """These are to be simulated again."""
+    for chunk in chunks:
+        with contextlib.suppress(FileNotFoundError):
+            os.remove(os.path.join(path, 'status', str(chunk)))
 
 
 def write_chunk(arrays, layout, chunk, result):
@@ -171,6 +215,7 @@ def write_chunk(arrays, layout, chunk, result):
     for key, values in sorted(result.drawn.items()):
         arrays[f'vary/{key}'][rows] = values
     arrays['message'][rows] = np.array([_fixed(message) for message in result.messages], dtype=f'S{MESSAGE_LENGTH}')
+    arrays['worst'][rows] = np.array(result.worst, dtype=np.int8)
     arrays['status'][rows] = np.array(result.status, dtype=np.int8)
 
 

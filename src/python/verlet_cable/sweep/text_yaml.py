@@ -6,6 +6,7 @@ import yaml
 
 _NULL = ('', '~', 'null', 'Null', 'NULL')
 _NUMBER = re.compile(r'[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?')
+_INTEGER = re.compile(r'[-+]?(0|[1-9]\d*)')
 _SPECIAL = {'.inf': math.inf, '+.inf': math.inf, '-.inf': -math.inf}
 
 
@@ -30,6 +31,18 @@ def number(value):
     if value.lower() in _SPECIAL:
         return _SPECIAL[value.lower()]
     return float(value) if _NUMBER.fullmatch(value) else None
+
+
+def with_numbers(value):
+    """A value whose texts that are finite numbers are numbers, as YAML has them: integers where they are written so."""
+    if isinstance(value, dict):
+        return {key: with_numbers(entry) for key, entry in value.items()}
+    if isinstance(value, list):
+        return [with_numbers(entry) for entry in value]
+    found = number(value)
+    if found is None or not math.isfinite(found):
+        return value
+    return int(value) if _INTEGER.fullmatch(value) else found
 
 
 def shown(value):

@@ -5,7 +5,7 @@ from statistics import NormalDist
 import numpy as np
 
 from .errors import rejected
-from .text_yaml import number, shown
+from .text_yaml import number, shown, with_numbers
 
 DISTRIBUTIONS = ('uniform', 'log_uniform', 'normal', 'choice')
 
@@ -40,6 +40,14 @@ class Variation:
             return min(low + fraction * (high - low), high)
         return min(max(math.exp(math.log(low) + fraction * (math.log(high) - math.log(low))), low), high)
 
+    def examples(self):
+        """Values for the scene from the whole of what may be drawn: the ends, or all to choose from."""
+        if self.is_choice:
+            return self.parameters
+        first, second = self.parameters
+        middle = math.sqrt(first) * math.sqrt(second) if self.kind == 'log_uniform' else first + (second - first) / 2
+        return [repr(value) for value in ([first] if self.kind == 'normal' else [first, second, middle])]
+
     def scene_value(self, drawn):
         """What is put into the scene for a draw."""
         return self.parameters[drawn] if self.is_choice else repr(drawn)
@@ -60,7 +68,7 @@ def read_variation(key, value, errors):
         if not isinstance(parameters, list) or not parameters:
             errors.append(rejected(key, shown(parameters), 'a list of at least one value'))
             return None
-        return Variation(kind, parameters)
+        return Variation(kind, with_numbers(parameters))
     numbers = [number(entry) for entry in parameters] if isinstance(parameters, list) else []
     allowed, is_allowed = {
         'uniform': ('[low, high], finite, low < high', lambda low, high: low < high and math.isfinite(high - low)),
