@@ -6,6 +6,7 @@
 #include "verlet_cable/core/body_name.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/number_text.h"
+#include "verlet_cable/core/pin_rules.h"
 #include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/core/scene_fields.h"
 
@@ -58,11 +59,18 @@ void check_held_body(const RequestedPin& request, const CheckedPin& pin, const W
 }
 
 void check_held_node(const CheckedPin& pin, const World& world, std::vector<std::string>& errors) {
-  for (const Attachment& other : world.attachments()) {
-    if (other.body != pin.body || other.node != pin.node || other.is_junction) continue;
-    errors.push_back("location: node " + std::to_string(pin.node) + " of " + kind_and_name(world, pin.body) + " is held by " +
-                     quoted(other.name) + "; allowed: nodes that nothing holds");
+  const std::string node = "location: node " + std::to_string(pin.node) + " of " + kind_and_name(world, pin.body);
+  const std::vector<Attachment>& attachments = world.attachments();
+  if (const int holder = holder_of(pin.body, pin.node, attachments); holder >= 0) {
+    errors.push_back(node + " is held by " + quoted(attachments[holder].name) + "; allowed: nodes that nothing holds");
+    return;
   }
+  if (!pin.body.is_cable()) return;
+  const SimulatedCable& cable = world.cables()[pin.body.index];
+  if (const NearGuide near = guide_near(pin.body, pin.node, cable, attachments); near.attachment >= 0)
+    errors.push_back(node + " is " + rounded_text(near.distance) + " m of cable from guide " +
+                     quoted(attachments[near.attachment].name) + "; allowed: nodes at least " +
+                     rounded_bound_text(guide_room * cable.model->segment_length, 1) + " m from it");
 }
 
 /// Of what is to be held.

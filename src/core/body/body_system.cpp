@@ -97,12 +97,8 @@ bool BodySystem::advance(std::vector<Participant>& participants, double toleranc
     }
     solve(participants, stale);
     double size = 0;
-    for (Participant& p : participants) {
-      const double of_cable = p.stepper->correct();
-      size = of_cable <= size ? size : of_cable;
-    }
-    const double of_bodies = correct();
-    size = of_bodies <= size ? size : of_bodies;
+    for (Participant& p : participants) size = larger(size, p.stepper->correct());
+    size = larger(size, correct());
     if (!(size < largest_correction)) return false;
     const bool reached = convergence.is_reached(size);
     const bool rounded = !rules_.statics && i > 1 && convergence.ratio() > rounding_ratio &&
@@ -180,8 +176,8 @@ double BodySystem::correct() {
   for (std::size_t m = 0; m < members_.size(); ++m) {
     const Vector6 change = equations_.solution(static_cast<int>(m));
     members_[m].stepper.correct(change);
-    const double size = std::max(change.head<3>().norm() / std::max(members_[m].size, least_size), change.tail<3>().norm());
-    largest = size <= largest ? largest : size;  // keeps a NaN
+    largest = larger(largest, change.head<3>().norm() / std::max(members_[m].size, least_size));
+    largest = larger(largest, change.tail<3>().norm());
   }
   return largest;
 }

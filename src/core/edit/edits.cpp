@@ -5,17 +5,14 @@
 
 #include "chain/node_arrays.h"
 #include "rod/rod_frames.h"
+#include "verlet_cable/core/number_text.h"
+#include "verlet_cable/core/pin_rules.h"
 #include "verlet_cable/core/world.h"
 #include "world/implementation.h"
 
 namespace verlet_cable {
 
 namespace {
-
-bool holds_something(const std::vector<Attachment>& attachments, const BodyId& body, int node) {
-  return std::any_of(attachments.begin(), attachments.end(),
-                     [&](const Attachment& a) { return a.body == body && a.node == node && !a.is_junction; });
-}
 
 /// Index of the body that joins a node to other cables, -1 if there is none.
 int junction_at(const std::vector<Attachment>& attachments, const BodyId& body, int node) {
@@ -122,14 +119,20 @@ EditResult World::Implementation::apply(const edit::Pin& pin) {
                            (pin.body.is_rigid_body() ? "body " + state.bodies[pin.body.index].name
                             : pin.body.is_net()      ? "net " + state.nets[pin.body.index].model.name
                                                      : "cable " + state.cables[pin.body.index].model->name);
-  if (holds_something(state.attachments, pin.body, pin.node)) return refused(node + "; is already held by an attachment");
+  if (const int other = holder_of(pin.body, pin.node, state.attachments); other >= 0)
+    return refused(node + "; is already held by " + state.attachments[other].name);
   const int junction = junction_at(state.attachments, pin.body, pin.node);
   if (junction >= 0 && pin.type != AttachmentType::hinge)
     return refused(node + "; is where cables branch, which a pin can hold by a hinge");
   if (pin.body.is_cable()) {
     const int other = joining_node(state.cable_progress[pin.body.index].drive, pin.node);
-    if (other >= 0 && holds_something(state.attachments, pin.body, other))
+    if (other >= 0 && holder_of(pin.body, other, state.attachments) >= 0)
       return refused(node + "; is being joined to node " + std::to_string(other) + ", which is held by an attachment");
+    const SimulatedCable& cable = state.cables[pin.body.index];
+    if (const NearGuide near = guide_near(pin.body, pin.node, cable, state.attachments); near.attachment >= 0)
+      return refused(node + "; is " + rounded_text(near.distance) + " m of cable from guide " +
+                     state.attachments[near.attachment].name + ", must be at least " +
+                     rounded_bound_text(guide_room * cable.model->segment_length, 1) + " m from it");
   }
   Attachment attachment;
   attachment.name = pin.name.empty() ? numbered("pin", 1, [&](const std::string& n) { return is_attachment(n); }) : pin.name;

@@ -16,6 +16,8 @@ constexpr int most_changes = 8;
 constexpr double least_left = 0.02;
 /// [m/s] Against its friction nothing flows faster.
 constexpr double turned_round = 1e-9;
+/// Relative, of impulses beside wheels that nothing else takes up.
+constexpr double flow_regularisation = 1e-9;
 
 /// Solves a small dense system with pivots from each column; `matrix` is by rows, and both are used up.
 void solve_dense(int size, std::vector<double>& matrix, std::vector<double>& vector) {
@@ -488,8 +490,18 @@ void CableStepper::project_flows(const Substep& s) {
       pivot_[flow.first] = -flow.mass;
       off_[flow.before] = before;
       off_[flow.first] = -after;
+      // Beside another holder nothing but the flow changes a segment's length.
+      if (pivot_[flow.before] == 0) pivot_[flow.before] = flow_regularisation * before * before / flow.mass;
+      if (pivot_[flow.after] == 0) pivot_[flow.after] = flow_regularisation * after * after / flow.mass;
     }
   }
+  // What friction keeps from flowing between two holders no impulse moves.
+  for (const Flow& flow : flows_)
+    for (const int i : {flow.before, flow.after}) {
+      if (pivot_[i] != 0) continue;
+      pivot_[i] = 1;
+      impulse_[i] = 0;
+    }
 }
 
 void CableStepper::push_flows(const Substep& s) {

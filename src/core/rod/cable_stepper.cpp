@@ -421,8 +421,7 @@ double CableStepper::correct() {
   // A NaN may be lost among squares, but not in their sum.
   const double size = std::sqrt(std::max(largest[0], largest[1])) / target_length_[0] + 0 * (sum[0] + sum[1]);
   if (!rod_.active()) return size;
-  const double turn = rod_.correct(1);
-  return turn <= size ? size : turn;  // keeps a NaN
+  return larger(size, rod_.correct(1));
 }
 
 void CableStepper::follow_holders(const Boundary& boundary) {

@@ -5,6 +5,7 @@
 
 #include "rod/joint_material.h"
 #include "rod/rod_frames.h"
+#include "rod/substep.h"
 
 namespace verlet_cable {
 
@@ -349,7 +350,7 @@ double KirchhoffRod::correct(double part) {
   for (int i = 0; i < segments_; ++i) {
     const double change = part * elimination_.twist()[i];
     tau_[i] += change;
-    largest = std::abs(change) <= largest ? largest : std::abs(change);  // keeps a NaN
+    largest = larger(largest, std::abs(change));
   }
   return largest;
 }

@@ -75,6 +75,13 @@ class LengthSystem {
   }
 
   void let_flow() {
+    // Beside another holder nothing but the flow changes a segment's length.
+    for (const GuidedFlow& flow : *flows_)
+      for (const int i : {flow.first - 1, flow.last}) {
+        const double length = (*rest_lengths_)[i];
+        if (!movable(i) && !is_free(i) && mass_of(flow) < infinity)
+          diagonal_[i] = regularisation * length * length / mass_of(flow);
+      }
     for (const GuidedFlow& flow : *flows_) {
       const int i = flow.first - 1, j = flow.last;
       if (is_free(i)) continue;

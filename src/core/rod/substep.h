@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "rod/scheme.h"
@@ -54,6 +55,11 @@ struct SubstepResult {
   double max_strain = 0;    ///< largest |l / l0 - 1| at the end
   double displacement = 0;  ///< largest of a node [m]; in statics only
 };
+
+/// The larger of two sizes; no number if either is none.
+inline double larger(double a, double b) {
+  return b <= a || std::isnan(a) ? a : b;
+}
 
 /// When the corrections of a substep's iterations are small enough.
 class Convergence {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "scene/validate_place.h"
+#include "verlet_cable/core/pin_rules.h"
 #include "verlet_cable/core/world.h"
 
 namespace verlet_cable {
@@ -268,18 +269,23 @@ class SimulationChecker {
   /// Beside a guide there is cable on both sides, up to what else holds it.
   void check_room(const std::string& key, const GuideDesc& guide, const CableDesc& cable) {
     const double segment = cable.length / cable.segments, place = arc_length_of(cable, *guide.place);
-    const auto check = [&](double other, double least, const std::string& what) {
-      if (std::abs(place - other) >= least * segment * (1 - same_place)) return;
+    const auto refuse = [&](double least, const std::string& what) {
       errors_.add(key + ".at", number_text(place),
                   "a place at least " + rounded_bound_text(least * segment, 1) + " m from " + what + ", as yet");
     };
-    check(0, 1, "the cable's start");
-    check(cable.length, 1, "the cable's end");
+    const auto check_end = [&](double end, const std::string& what) {
+      if (std::abs(place - end) < segment * (1 - same_place)) refuse(1, what);
+    };
+    const auto check_holder = [&](double other, const std::string& what) {
+      if (!has_guide_room(std::abs(place - other), segment)) refuse(guide_room, what);
+    };
+    check_end(0, "the cable's start");
+    check_end(cable.length, "the cable's end");
     for (const AttachmentDesc& attachment : cable.attachments)
-      check(cable.length * node_at(cable, attachment.place) / cable.segments, 2, "attachment " + quoted(attachment.name));
+      check_holder(cable.length * node_at(cable, attachment.place) / cable.segments, "attachment " + quoted(attachment.name));
     for (const GuideDesc& other : scene_.guides)
       if (&other < &guide && other.cable == guide.cable && other.place)
-        check(arc_length_of(cable, *other.place), 2, "guide " + quoted(other.name));
+        check_holder(arc_length_of(cable, *other.place), "guide " + quoted(other.name));
   }
 
   const SceneDesc& scene_;

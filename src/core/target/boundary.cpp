@@ -9,8 +9,8 @@ namespace verlet_cable {
 
 namespace {
 
-/// Further apart than this is worth a report [relative].
-constexpr double reported_stretch = 1e-9;
+/// Further apart than this is worth a report [relative]: cables that are taut may be strained by a tenth of it.
+constexpr double reported_stretch = 1e-6;
 /// Of places far from the origin, which is no stretch [relative].
 constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
 

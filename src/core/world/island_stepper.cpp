@@ -286,7 +286,7 @@ void IslandStepper::begin(const Island& island) {
 /// have passed through each other (where that is not `tolerated`); the states are then as before.
 bool IslandStepper::advance(Island& island, double from, double to, bool tolerated) {
   const double h = (to - from) * state_.scene->time_step;
-  const bool touching = touches(), keeps = island.cables.size() > 1;
+  const bool touching = touches();
   workspace_.participants.clear();
   const Scheme touching_scheme = find_touching_scheme(island, h);
   bool converged = true;
@@ -303,11 +303,8 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     const bool touches = workspace_.contacts.touched(k), on_bodies = work.boundary.is_on_bodies();
     const Scheme scheme = touches || on_bodies ? touching_scheme : scheme_of(cable);
     if (memory.drive) wind_drive(cable, scheme, from, to, work.boundary);
-    // What touches is left as it is until all have converged.
-    if (keeps && !touches && !on_bodies) {
-      work.before = c.state;
-      work.spans_before = memory.spans;
-    }
+    work.before = c.state;
+    work.spans_before = memory.spans;
     Substep substep{*c.model, environment_, work.boundary, memory.spans, h};
     substep.scheme = scheme;
     substep.tolerance = state_.scene->tolerance;
@@ -333,6 +330,7 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     if (converged) solver.finish(workspace_.participants, workspace_.contacts.touches());
     for (const Participant& p : workspace_.participants) workspace_.cables[p.place].result = p.result;
   }
+  converged = converged && is_finite(island);
   if (converged) {
     if (!island.bodies.empty()) finish_bodies(island, from, to);
     for (std::size_t k = 0; k < island.cables.size(); ++k) {
@@ -343,7 +341,7 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     for (const BodyMember& member : workspace_.body_members)
       if (!member.start->shapes.empty())
         BodyTouches::keep(member.body, workspace_.body_system.contacts().touches(), state_.body_progress[member.body].contacts);
-  } else if (keeps) {
+  } else {
     take_back(island);
   }
   return converged;
@@ -389,9 +387,19 @@ void IslandStepper::wind_drive(int index, Scheme scheme, double from, double to,
   boundary.growing.assign(1, {drive.segment, growth_at(drive, to)});
 }
 
+/// Of cables; those that are not have not converged.
+bool IslandStepper::is_finite(const Island& island) {
+  bool all = true;
+  for (std::size_t k = 0; k < island.cables.size(); ++k) {
+    const CableState& state = state_.cables[island.cables[k]].state;
+    if (finite(state.positions) && finite(state.velocities)) continue;
+    workspace_.cables[k].result.converged = all = false;
+  }
+  return all;
+}
+
 void IslandStepper::take_back(const Island& island) {
   for (std::size_t k = 0; k < island.cables.size(); ++k) {
-    if (workspace_.contacts.touched(k) || workspace_.cables[k].boundary.is_on_bodies()) continue;
     state_.cables[island.cables[k]].state = workspace_.cables[k].before;
     state_.cable_progress[island.cables[k]].spans = workspace_.cables[k].spans_before;
   }

@@ -95,6 +95,7 @@ class IslandStepper {
   Scheme scheme_of(int cable) const;
   Scheme find_touching_scheme(const Island& island, double h);
   void wind_drive(int cable, Scheme scheme, double from, double to, Boundary& boundary);
+  bool is_finite(const Island& island);
   void take_back(const Island& island);
   void stop(const Island& island);
   void give_up(int cable, Boundary& boundary);
