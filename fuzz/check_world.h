@@ -1,0 +1,16 @@
+#pragma once
+
+#include "verlet_cable/core/world.h"
+
+namespace verlet_cable::fuzz {
+
+/// Ends the process where a number of a world is not finite, or arrays that belong together differ in size.
+void check_world(const World& world);
+
+/// [kg] of all cables, nets and bodies.
+double mass(const World& world);
+
+/// [kg] that the cables' rest lengths weigh: less than their masses by payloads, and by what cuts took out.
+double mass_of_length(const World& world);
+
+}  // namespace verlet_cable::fuzz

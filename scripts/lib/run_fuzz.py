@@ -1,0 +1,84 @@
+"""Runs fuzz targets, as many at once as there are cores, and says what each found: run_fuzz.py WORKSPACE CHECKOUT SECONDS TARGET..."""
+import concurrent.futures
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+LONGEST_INPUT_SECONDS = 60
+MEMORY_MB = 4096
+FIGURE = re.compile(r'^stat::number_of_executed_units:\s*(\d+)', re.MULTILINE)
+COVERAGE = re.compile(r'cov: (\d+)')
+
+
+def seeds(target, checkout):
+    """Files that a target's first inputs are, and what goes before their content."""
+    config = checkout / 'config'
+    if target == 'scene':
+        return [(path, b'') for path in sorted(config.rglob('*.yaml')) + sorted((checkout / 'fuzz' / 'worlds').glob('*.yaml'))]
+    if target == 'motion':
+        return [(path, b'') for path in sorted(config.rglob('*.csv'))]
+    if target == 'recording':
+        return [(path, b'') for path in sorted((config / 'recordings').glob('*.csv'))]
+    if target == 'robot':
+        return [(path, b'') for path in sorted(config.rglob('*.urdf'))]
+    return []
+
+
+def shorter(content, most=20000):
+    """Whole lines of long files: what is large is slow, and no other code."""
+    return content if len(content) <= most else content[:content.rfind(b'\n', 0, most) + 1]
+
+
+def fill_corpus(target, checkout, corpus):
+    corpus.mkdir(parents=True, exist_ok=True)
+    for path, prefix in seeds(target, checkout):
+        (corpus / ('seed_' + path.name)).write_bytes(prefix + shorter(path.read_bytes()))
+    kept = checkout / 'fuzz' / 'inputs' / target
+    for path in sorted(kept.glob('*')) if kept.is_dir() else []:
+        shutil.copy(path, corpus / ('kept_' + path.name))
+
+
+def run(target, workspace, checkout, seconds):
+    """(executions, covered edges, paths of what was found)"""
+    corpus, findings = workspace / 'corpus' / target, workspace / 'findings' / target
+    fill_corpus(target, checkout, corpus)
+    findings.mkdir(parents=True, exist_ok=True)
+    before = set(findings.iterdir())
+    program = workspace / 'devel' / 'lib' / 'verlet_cable' / f'fuzz_{target}'
+    options = [f'-max_total_time={seconds}', f'-timeout={LONGEST_INPUT_SECONDS}', f'-rss_limit_mb={MEMORY_MB}', '-print_final_stats=1',
+               f'-artifact_prefix={findings}/', '-max_len=20000']
+    dictionary = checkout / 'fuzz' / 'dictionaries' / f'{target}.dict'
+    if dictionary.exists():
+        options.append(f'-dict={dictionary}')
+    environment = dict(os.environ, ASAN_OPTIONS='allocator_may_return_null=1', UBSAN_OPTIONS='print_stacktrace=1')
+    log = workspace / f'fuzz_{target}.log'
+    with open(log, 'wb') as output:
+        status = subprocess.run([str(program), *options, str(corpus)], stdout=output, stderr=subprocess.STDOUT,
+                                stdin=subprocess.DEVNULL, env=environment, check=False).returncode
+    text = log.read_text(errors='replace')
+    found = sorted(set(findings.iterdir()) - before)
+    if status != 0 and not found:
+        found = [log]
+    executed, covered = FIGURE.search(text), COVERAGE.findall(text)
+    return int(executed.group(1)) if executed else 0, int(covered[-1]) if covered else 0, found
+
+
+def main():
+    workspace, checkout, seconds = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), int(sys.argv[3])
+    targets = sys.argv[4:]
+    failed = False
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        runs = {target: pool.submit(run, target, workspace, checkout, seconds) for target in targets}
+        for target, result in runs.items():
+            executions, edges, found = result.result()
+            failed = failed or bool(found) or executions == 0
+            text = ', '.join(map(str, found)) if found else 'nothing'
+            print(f'{target}: {executions} executions, {edges} edges covered, found: {text}', flush=True)
+    sys.exit(1 if failed else 0)
+
+
+if __name__ == '__main__':
+    main()
