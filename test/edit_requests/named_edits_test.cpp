@@ -5,48 +5,25 @@
 #include "../support/nets.h"
 #include "edit_requests/error_text.h"
 #include "edit_requests/location.h"
+#include "straight_cables.h"
 
 namespace verlet_cable {
 namespace {
 
-/// Straight cables along x, of ten segments of 0.1 m: `lower`, held at its start in the fixed frame, and `upper` behind its end;
-/// `late` waits for a frame. A net of three nodes.
+/// `upper` begins behind the end of `lower`; `late` waits for a frame. A net of three nodes.
 World cables_and_net() {
-  SceneDesc scene;
-  scene.materials.resize(1);
-  scene.materials[0].name = "rope";
-  scene.materials[0].material.linear_density = 0.1;
-  scene.materials[0].material.radius = 0.01;
-  for (const char* name : {"lower", "upper", "late"}) {
-    CableDesc& cable = scene.cables.emplace_back();
-    cable.name = name;
-    cable.length = 1;
-    cable.segments = 10;
-    cable.material = "rope";
-    if (cable.name == "late") {
-      AttachmentDesc& attachment = cable.attachments.emplace_back();
-      attachment.name = "late_start";
-      attachment.frame = "unseen";
-      continue;
-    }
-    cable.initial.type = InitialShapeDesc::Type::straight;
-    cable.initial.from = cable.name == "lower" ? Vector3(0, 0, 0) : Vector3(1.01, 0, 0);
-    cable.initial.to = cable.initial.from + Vector3::UnitX();
-  }
-  scene.cables[0].attachments.emplace_back().name = "lower_start";
+  SceneDesc scene = straight_cables({{"lower", {0, 0, 0}}, {"upper", {1.01, 0, 0}}, {"late", {0, 0, 1}}});
+  CableDesc& late = scene.cables.back();
+  late.initial = {};
+  AttachmentDesc& attachment = late.attachments.emplace_back();
+  attachment.name = "late_start";
+  attachment.frame = "unseen";
   scene.nets = {scenes::chain({{0, 5, 0}, {1, 5, 0}, {2, 5, 0}}, LinkType::spring)};
   return World(scene, initial_frames(scene));
 }
 
 std::optional<Pose> only_the_fixed_frame(const std::string& frame) {
   return frame == "world" ? std::optional<Pose>(Pose{}) : std::nullopt;
-}
-
-RequestedPlace at_node(const std::string& cable, std::int64_t node) {
-  RequestedPlace place;
-  place.cable = cable;
-  place.node = node;
-  return place;
 }
 
 Location cut_place(const World& world, const std::string& cable, int node) {

@@ -6,82 +6,52 @@
 
 #include "edit_requests/checked_pin.h"
 #include "edit_requests/error_text.h"
-#include "requests/requested.h"
+#include "straight_cables.h"
 
 namespace verlet_cable {
 namespace {
 
-/// A straight cable of ten segments of 0.1 m along +x from the origin, held at its start, and another one 1 m above.
 World two_cables() {
-  SceneDesc scene;
-  scene.materials.resize(1);
-  scene.materials[0].name = "rope";
-  scene.materials[0].material.linear_density = 0.1;
-  scene.materials[0].material.radius = 0.01;
-  for (const double height : {0.0, 1.0}) {
-    CableDesc cable;
-    cable.name = height > 0 ? "upper" : "lower";
-    cable.length = 1;
-    cable.segments = 10;
-    cable.material = "rope";
-    cable.initial.type = InitialShapeDesc::Type::straight;
-    cable.initial.from = Vector3(0, 0, height);
-    cable.initial.to = Vector3(1, 0, height);
-    AttachmentDesc attachment;
-    attachment.name = cable.name + "_start";
-    attachment.offset = cable.initial.from;
-    cable.attachments = {attachment};
-    scene.cables.push_back(cable);
-  }
+  const SceneDesc scene = straight_cables({{"lower", {0, 0, 0}}, {"upper", {0, 0, 1}}});
   return World(scene, initial_frames(scene));
 }
 
-/// tf knows the fixed frame and a `hand` 2 m along +x from it.
+/// Known are the fixed frame and a `hand` 2 m along +x from it.
 std::optional<Pose> find_frame(const std::string& frame) {
   if (frame == "world") return Pose{};
   if (frame == "hand") return Pose{Vector3(2, 0, 0), Quaternion::Identity()};
   return std::nullopt;
 }
 
-CableLocation at_node(const std::string& cable, std::uint32_t node) {
-  CableLocation location;
-  location.cable = cable;
-  location.mode = CableLocation::NODE;
-  location.node = node;
-  return location;
+RequestedPlace at_arc_length(const std::string& cable, double arc_length) {
+  RequestedPlace place;
+  place.cable = cable;
+  place.mode = RequestedPlace::at_arc_length;
+  place.arc_length = arc_length;
+  return place;
 }
 
-CableLocation at_arc_length(const std::string& cable, double arc_length) {
-  CableLocation location;
-  location.cable = cable;
-  location.mode = CableLocation::ARC_LENGTH;
-  location.arc_length = arc_length;
-  return location;
+RequestedPlace nearest(const std::string& cable, const std::string& frame, double x, double y, double z) {
+  RequestedPlace place;
+  place.cable = cable;
+  place.mode = RequestedPlace::nearest;
+  place.point_frame = frame;
+  place.point = Vector3(x, y, z);
+  return place;
 }
 
-CableLocation nearest(const std::string& cable, const std::string& frame, double x, double y, double z) {
-  CableLocation location;
-  location.cable = cable;
-  location.mode = CableLocation::NEAREST;
-  location.point.header.frame_id = frame;
-  location.point.point.x = x;
-  location.point.point.y = y;
-  location.point.point.z = z;
-  return location;
-}
-
-int node(const CableLocation& location) {
-  const Location found = locate_node(requested_place(location), two_cables(), find_frame);
+int node(const RequestedPlace& place) {
+  const Location found = locate_node(place, two_cables(), find_frame);
   return found.errors.empty() ? found.node : -1;
 }
 
-int segment(const CableLocation& location) {
-  const Location found = locate_cut(requested_place(location), two_cables(), find_frame);
+int segment(const RequestedPlace& place) {
+  const Location found = locate_cut(place, two_cables(), find_frame);
   return found.errors.empty() ? found.node : -1;
 }
 
-std::string node_errors(const CableLocation& location) {
-  return join(locate_node(requested_place(location), two_cables(), find_frame).errors);
+std::string node_errors(const RequestedPlace& place) {
+  return join(locate_node(place, two_cables(), find_frame).errors);
 }
 
 TEST(Location, NodesByNumber) {
@@ -104,12 +74,8 @@ TEST(Location, NearestPointInAnyFrameOnAnyCable) {
   EXPECT_EQ(node(nearest("lower", "hand", -1.24, 0.3, 0.2)), 8);
   EXPECT_EQ(segment(nearest("lower", "hand", -1.24, 0.3, 0.2)), 7);
   const World world = two_cables();
-  EXPECT_EQ(
-      world.cables()[locate_node(requested_place(nearest("", "world", 0.5, 0, 0.4)), world, find_frame).body.index].model->name,
-      "lower");
-  EXPECT_EQ(
-      world.cables()[locate_node(requested_place(nearest("", "world", 0.5, 0, 0.6)), world, find_frame).body.index].model->name,
-      "upper");
+  EXPECT_EQ(world.cables()[locate_node(nearest("", "world", 0.5, 0, 0.4), world, find_frame).body.index].model->name, "lower");
+  EXPECT_EQ(world.cables()[locate_node(nearest("", "world", 0.5, 0, 0.6), world, find_frame).body.index].model->name, "upper");
 }
 
 TEST(Location, PointsThatAreTooFarAwayAreRefused) {
@@ -121,7 +87,7 @@ TEST(Location, PointsThatAreTooFarAwayAreRefused) {
 TEST(Location, FramesThatAreTooFarAwayHaveANearestCableAllTheSame) {
   const FindFrame far_away = [](const std::string&) { return Pose{Vector3(1e200, 0, 0), Quaternion::Identity()}; };
   const World world = two_cables();
-  const Location found = locate_cut(requested_place(nearest("", "far", 0.5, 0, 0)), world, far_away);
+  const Location found = locate_cut(nearest("", "far", 0.5, 0, 0), world, far_away);
   EXPECT_GE(found.body.index, 0);
   EXPECT_NE(join(found.errors), "") << "its segment 0 cannot be cut";
 }
@@ -133,9 +99,9 @@ TEST(Location, ErrorsNameFieldValueAndWhatIsAllowed) {
   for (const double bad : {-0.1, 1.1, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     EXPECT_NE(node_errors(at_arc_length("lower", bad)).find("location.arc_length: "), std::string::npos) << bad;
   }
-  CableLocation location = at_node("lower", 3);
-  location.mode = 9;
-  EXPECT_EQ(node_errors(location), "location.mode: 9; allowed: 0 (NODE), 1 (ARC_LENGTH), 2 (NEAREST)");
+  RequestedPlace place = at_node("lower", 3);
+  place.mode = 9;
+  EXPECT_EQ(node_errors(place), "location.mode: 9; allowed: 0 (NODE), 1 (ARC_LENGTH), 2 (NEAREST)");
 }
 
 TEST(Location, AllErrorsAtOnce) {
@@ -147,26 +113,27 @@ TEST(Location, AllErrorsAtOnce) {
 }
 
 TEST(Location, ACutLeavesEachPieceASegment) {
-  for (const std::uint32_t bad : {0U, 9U, 10U}) EXPECT_EQ(segment(at_node("lower", bad)), -1) << bad;
+  for (const int bad : {0, 9, 10}) EXPECT_EQ(segment(at_node("lower", bad)), -1) << bad;
   EXPECT_EQ(segment(at_arc_length("lower", 0.05)), -1);
   EXPECT_EQ(segment(nearest("lower", "", 2, 0, 0)), -1);
-  EXPECT_EQ(join(locate_cut(requested_place(at_node("lower", 0)), two_cables(), find_frame).errors),
+  EXPECT_EQ(join(locate_cut(at_node("lower", 0), two_cables(), find_frame).errors),
             "location.node: 0 means segment 0 of cable \"lower\"; allowed: segments 1 to 8, so that each piece keeps one");
 }
 
-Pin::Request pin_request() {
-  Pin::Request request;
-  request.location = at_node("lower", 10);
-  request.offset.position.x = 0.9;
+RequestedPin pin_request() {
+  RequestedPin request;
+  request.place = at_node("lower", 10);
+  request.offset.orientation.coeffs().setZero();
+  request.offset.position.x() = 0.9;
   return request;
 }
 
-std::string pin_errors(const Pin::Request& request) {
-  return join(check_pin(requested_pin(request), two_cables(), find_frame).errors);
+std::string pin_errors(const RequestedPin& request) {
+  return join(check_pin(request, two_cables(), find_frame).errors);
 }
 
 TEST(CheckedPin, AGoodRequest) {
-  const CheckedPin pin = check_pin(requested_pin(pin_request()), two_cables(), find_frame);
+  const CheckedPin pin = check_pin(pin_request(), two_cables(), find_frame);
   EXPECT_EQ(join(pin.errors), "");
   EXPECT_EQ(pin.node, 10);
   EXPECT_EQ(pin.frame, "world");
@@ -175,10 +142,10 @@ TEST(CheckedPin, AGoodRequest) {
 }
 
 TEST(CheckedPin, KeepsTheNodeWhereItIsRelativeToTheFrame) {
-  Pin::Request request = pin_request();
+  RequestedPin request = pin_request();
   request.keep_offset = true;
   request.frame_id = "hand";
-  const CheckedPin pin = check_pin(requested_pin(request), two_cables(), find_frame);
+  const CheckedPin pin = check_pin(request, two_cables(), find_frame);
   EXPECT_EQ(join(pin.errors), "");
   // Rounding of positions around 2 m.
   EXPECT_LT((pin.offset.position - Vector3(-1, 0, 0)).norm(), 1e-12);
@@ -187,15 +154,15 @@ TEST(CheckedPin, KeepsTheNodeWhereItIsRelativeToTheFrame) {
 
 TEST(CheckedPin, RefusesWithFieldAndValue) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  Pin::Request request = pin_request();
-  request.offset.position.z = nan;
+  RequestedPin request = pin_request();
+  request.offset.position.z() = nan;
   EXPECT_NE(pin_errors(request).find("offset.position: (0.9, 0, nan)"), std::string::npos) << pin_errors(request);
-  request.offset.position.z = 1e300;
+  request.offset.position.z() = 1e300;
   EXPECT_NE(pin_errors(request).find("offset.position: (0.9, 0, 1e+300)"), std::string::npos) << pin_errors(request);
   request = pin_request();
-  request.offset.orientation.w = 1e-9;
+  request.offset.orientation.w() = 1e-9;
   EXPECT_NE(pin_errors(request).find("offset.orientation"), std::string::npos);
-  request.offset.orientation.w = nan;
+  request.offset.orientation.w() = nan;
   EXPECT_NE(pin_errors(request).find("offset.orientation"), std::string::npos);
   request = pin_request();
   request.name = "lower_start";
@@ -208,10 +175,10 @@ TEST(CheckedPin, RefusesWithFieldAndValue) {
   request.frame_id = "/world";
   EXPECT_NE(pin_errors(request).find("frame_id: \"/world\""), std::string::npos);
   request = pin_request();
-  request.location.node = 0;
+  request.place.node = 0;
   EXPECT_NE(pin_errors(request).find("held by \"lower_start\""), std::string::npos);
   request = pin_request();
-  request.offset.position.x = 1.01;
+  request.offset.position.x() = 1.01;
   EXPECT_NE(pin_errors(request).find("is 1.01 m from \"lower_start\""), std::string::npos) << pin_errors(request);
   const std::string advice = "; to hold it where it is: keep_offset: true";
   EXPECT_EQ(pin_errors(request).find(advice), pin_errors(request).size() - advice.size()) << pin_errors(request);
