@@ -27,6 +27,7 @@ int main(int argc, char** argv) {
                                    {"many", many},
                                    {"net", net},
                                    {"harness", harness},
+                                   {"python", python},
                                    {"driven", driven_against_bullet},
                                    {"bullet", released_against_bullet},
                                    {"simbody", released_against_simbody}};

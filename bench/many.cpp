@@ -1,14 +1,14 @@
 #include <malloc.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include "rollouts.h"
 #include "rows.h"
 #include "scenes.h"
-#include "verlet_cable/core/world_stepper.h"
+#include "stopwatch.h"
 
 namespace verlet_cable::bench {
 
@@ -16,10 +16,6 @@ namespace {
 
 constexpr int segments = 50;
 constexpr double spacing = 2;  // [m] between cables that are apart; they are 1 m long
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 double allocated() {
   return static_cast<double>(mallinfo2().uordblks);
@@ -58,12 +54,12 @@ double seconds(const Work& work) {
   double least = 1e300;
   for (int run = 0; run < 5; ++run) {
     int times = 0;
-    const double start = now();
+    const double start = seconds_now();
     do {
       work();
       ++times;
-    } while (now() - start < 0.1);
-    least = std::min(least, (now() - start) / times);
+    } while (seconds_now() - start < 0.1);
+    least = std::min(least, (seconds_now() - start) / times);
   }
   return least;
 }
@@ -72,9 +68,9 @@ Cost measure(int count, bool contact) {
   const SceneDesc scene = many_cables(count, contact);
   const BoundaryInputs inputs = initial_frames(scene);
   Cost cost;
-  const double bytes = allocated(), start = now();
+  const double bytes = allocated(), start = seconds_now();
   World world(scene, inputs);
-  cost.construction = now() - start;
+  cost.construction = seconds_now() - start;
   world.step_one_by_one(true);
   // Blown at from the side, so that they are not at rest.
   SceneDesc windy = scene;
@@ -103,40 +99,6 @@ double real_time_factor(SceneDesc scene) {
   return scene.time_step / seconds([&] { world.step(inputs); });
 }
 
-/// Of copies of a world, each with its own motion of a hand, one second long.
-double real_time_factor_of_rollouts(int count, bool bends, bool at_once) {
-  constexpr double duration = 1;
-  SceneDesc scene = scenes::held_by_a_hand(100, bends ? AttachmentType::clamp : AttachmentType::hinge);
-  scene.time_step = 0.005;
-  if (bends) scene.materials[0].material.bending_stiffness = 0.01;
-  const Vector3 hand(0.6, 0, 0);
-  World world(scene, scenes::hand_at(hand));
-  world.settle();
-  world.step_one_by_one(true);
-  std::vector<World> worlds(count, world);
-  std::vector<BoundaryInputs> inputs(count, scenes::hand_at(hand));
-  std::vector<WorldStep> steps(count);
-  for (int i = 0; i < count; ++i) {
-    steps[i].world = &worlds[i];
-    steps[i].inputs = &inputs[i];
-  }
-  WorldStepper stepper;
-  const double start = now();
-  const int ends = static_cast<int>(std::lround(duration / scene.time_step));
-  for (int k = 1; k <= ends; ++k) {
-    const double t = k * scene.time_step;
-    for (int i = 0; i < count; ++i) {
-      const double frequency = 1 + 0.5 * i / count;
-      inputs[i][1].pose.position.x() = hand.x() + 0.1 * (1 - std::cos(2 * M_PI * frequency * t));
-    }
-    if (at_once)
-      stepper.step(steps, true);
-    else
-      for (const WorldStep& step : steps) step.world->step(*step.inputs);
-  }
-  return duration / (now() - start);
-}
-
 void in_real_time(Report& report, bool quick) {
   report.table("Many cables in real time, on all cores", {"", "real-time factor", "target", "verdict"});
   const int cables = quick ? 1000 : 10000;
@@ -149,11 +111,11 @@ void in_real_time(Report& report, bool quick) {
   }
   const int rollouts = quick ? 200 : 1000;
   for (const bool bends : {false, true}) {
-    const double factor = real_time_factor_of_rollouts(rollouts, bends, true) * rollouts / 1000;
+    const double factor = rollouts / 1000.0 / run({rollouts, 100, bends, true}).seconds;
     report.row({std::string("1000 rollouts of 100 segments, driven, 5 ms, ") + (bends ? "clamped, EI = 0.01 N m^2" : "hinged"),
                 figure(factor), "2.5", report.at_least(factor, 2.5)});
   }
-  const double apart = real_time_factor_of_rollouts(rollouts / 10, false, false) * (rollouts / 10) / 1000;
+  const double apart = (rollouts / 10) / 1000.0 / run({rollouts / 10, 100, false, false}).seconds;
   report.note("hinged, world after world on one core: " + figure(apart));
 }
 

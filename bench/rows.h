@@ -15,5 +15,6 @@ void contact(Report& report, bool quick);
 void many(Report& report, bool quick);
 void net(Report& report, bool quick);
 void harness(Report& report, bool quick);
+void python(Report& report, bool quick);
 
 }  // namespace verlet_cable::bench

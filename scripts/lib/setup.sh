@@ -59,6 +59,12 @@ fi
 # Besides these, for cable_sweep: the node and the other programs need none of them.
 sweep_packages=(python3-dask python3-distributed python3-zarr)
 
+# Besides those, for the pages of doc/python, which scripts/test and scripts/pictures run.
+page_packages=(python3-matplotlib python3-scipy)
+
+# And for scripts/test only.
+test_packages=(mypy)
+
 # as_root COMMAND...: needs sudo where the user is not root.
 as_root() {
   if [[ $(id -u) == 0 ]]; then

@@ -109,7 +109,7 @@ CheckedPin check_pin(const RequestedPin& request, const World& world, const Find
     pin.frame_pose = *pose;
   } else {
     pin.errors.push_back("frame_id: " + verlet_cable::quoted(pin.frame) +
-                         "; allowed: frames that tf knows, without a leading /; or empty");
+                         "; allowed: known frames, without a leading /; or empty");
   }
   if (!location.errors.empty()) return pin;
   if (pin.body.is_net() && request.clamp) pin.errors.push_back("clamp: true; allowed: false, nets are held by hinges");

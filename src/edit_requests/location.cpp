@@ -87,7 +87,7 @@ std::optional<Vector3> read_point(const RequestedPlace& place, const FindFrame& 
   }
   const std::string& frame = place.point_frame;
   const std::optional<Pose> pose = frame.empty() ? Pose{} : find_frame(frame);
-  if (!pose) errors.push_back("location.point.header.frame_id: " + quoted(frame) + "; allowed: frames that tf knows");
+  if (!pose) errors.push_back("location.point.header.frame_id: " + quoted(frame) + "; allowed: known frames");
   if (errors.size() > before) return std::nullopt;
   return (*pose * Pose{point, Quaternion::Identity()}).position;
 }

@@ -45,6 +45,16 @@ EditResult apply_unpin(World& world, const std::string& name) {
   return {true, "attachment " + quoted(name) + " is released", {}};
 }
 
+EditResult apply_move(World& world, const std::string& name, const Pose& offset) {
+  if (find(world.attachments(), name) < 0) return refused_attachment(world, name);
+  std::vector<std::string> errors;
+  const Pose pose = read_pose("offset", offset, errors);
+  if (!errors.empty()) return refused(errors);
+  const EditResult result = world.apply(edit::MoveAttachment{name, pose});
+  if (!result.ok) return result;
+  return {true, "attachment " + quoted(name) + " is moved in its frame", {}};
+}
+
 PlacedEdit apply_cut(World& world, const BodyId& body, const std::vector<int>& elements) {
   const std::string what = kind_and_name(world, body);
   const int node = body.is_net() ? world.nets()[body.index].model.links[elements.front()][0] : elements.front();

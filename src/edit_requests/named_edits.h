@@ -21,6 +21,9 @@ EditResult apply_pin(World& world, const std::string& name, const CheckedPin& pi
 
 EditResult apply_unpin(World& world, const std::string& name);
 
+/// The attachment's new pose in its frame, a quaternion of zeros for no rotation: the next step takes what it holds there.
+EditResult apply_move(World& world, const std::string& name, const Pose& offset);
+
 /// Removes a segment of a cable, or links of a net: `elements`, at least one and ascending, as `locate_cut` finds them.
 PlacedEdit apply_cut(World& world, const BodyId& body, const std::vector<int>& elements);
 

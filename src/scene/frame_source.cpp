@@ -22,32 +22,50 @@ FrameInput carried(const FrameInput& parent, const Pose& origin) {
 FrameSource::FrameSource(const SceneDesc& scene, const Motion& motion) {
   const std::vector<std::string> names = frame_names(scene);
   const BoundaryInputs initial = initial_frames(scene);
-  for (std::size_t i = 0; i < names.size(); ++i) add_frame(names[i], initial[i], motion);
   ids_ = static_cast<int>(names.size());
+  for (int id = 0; id < ids_; ++id) add_frame(id, names[id], initial[id], motion);
   if (!scene.robot) return;
   for (const LinkDesc& desc : scene.robot->tree) {
     Link link;
+    link.name = desc.name;
     link.parent = desc.parent;
     link.origin = pose_of(desc.origin);
     const auto id = static_cast<std::size_t>(std::find(names.begin(), names.end(), desc.name) - names.begin());
     const bool used = id < names.size();
-    if (motion.count(desc.name) || (used && initial[id].known)) {
-      link.frame = used ? static_cast<int>(id) : add_frame(desc.name, {}, motion);
-    } else if (used) {
-      link.id = static_cast<int>(id);
-    }
+    if (used) link.id = static_cast<int>(id);
+    if (motion.count(desc.name) || (used && initial[id].known))
+      link.frame = used ? static_cast<int>(id) : add_frame(-1, desc.name, {}, motion);
     links_.push_back(link);
   }
 }
 
-int FrameSource::add_frame(const std::string& name, const FrameInput& resting, const Motion& motion) {
+int FrameSource::add_frame(int id, const std::string& name, const FrameInput& resting, const Motion& motion) {
   const auto track = motion.find(name);
-  frames_.push_back({track == motion.end() ? FrameTrack{} : track->second, resting.pose});
+  frames_.push_back({id, track == motion.end() ? FrameTrack{} : track->second, resting.pose});
   return static_cast<int>(frames_.size()) - 1;
 }
 
+bool FrameSource::is_link(const std::string& name) const {
+  return std::any_of(links_.begin(), links_.end(), [&](const Link& link) { return link.name == name; });
+}
+
+void FrameSource::add(const std::string& name, int id, const Pose& resting) {
+  ids_ = std::max(ids_, id + 1);
+  const auto link = std::find_if(links_.begin(), links_.end(), [&](const Link& other) { return other.name == name; });
+  if (link == links_.end()) {
+    frames_.push_back({id, {}, resting});
+    return;
+  }
+  link->id = id;
+  if (link->frame >= 0) frames_[link->frame].id = id;
+}
+
 BoundaryInputs FrameSource::at(double time) const {
-  return at(time, 0);
+  return at(time, 0, {});
+}
+
+BoundaryInputs FrameSource::at(double time, const PosesById& given) const {
+  return at(time, 0, given);
 }
 
 bool FrameSource::rests() const {
@@ -56,27 +74,30 @@ bool FrameSource::rests() const {
 
 BoundaryInputs FrameSource::at_start() const {
   BoundaryInputs inputs = at(0);
-  const BoundaryInputs later = at(0, longest_jump);
+  const BoundaryInputs later = at(0, longest_jump, {});
   for (std::size_t i = 0; i < inputs.size(); ++i)
     if ((later[i].velocity->linear - inputs[i].velocity->linear).norm() > greatest_change) inputs[i].velocity = later[i].velocity;
   return inputs;
 }
 
-BoundaryInputs FrameSource::at(double time, double lead) const {
-  BoundaryInputs inputs;
+BoundaryInputs FrameSource::at(double time, double lead, const PosesById& given) const {
+  BoundaryInputs placed;  // one a frame
+  BoundaryInputs inputs(ids_, FrameInput{{}, false, FrameVelocity{}});
   for (const Frame& frame : frames_) {
-    inputs.push_back({frame.resting, true, FrameVelocity{}});
-    if (!frame.track.empty()) inputs.back() = {frame.track.at(time), true, frame.track.velocity_from(time + lead)};
+    placed.push_back({frame.resting, true, FrameVelocity{}});
+    if (!frame.track.empty()) placed.back() = {frame.track.at(time), true, frame.track.velocity_from(time + lead)};
+    if (frame.id >= 0) inputs[frame.id] = placed.back();
   }
+  for (const auto& [id, pose] : given) inputs[id] = {pose, true, FrameVelocity{}};
   const FrameInput fixed{{}, true, FrameVelocity{}};
   BoundaryInputs links;
   links.reserve(links_.size());
   for (const Link& link : links_) {
     const FrameInput& parent = link.parent < 0 ? fixed : links[link.parent];
-    links.push_back(link.frame < 0 ? carried(parent, link.origin) : inputs[link.frame]);
+    const bool is_given = given.count(link.id) > 0;
+    links.push_back(is_given ? inputs[link.id] : link.frame < 0 ? carried(parent, link.origin) : placed[link.frame]);
     if (link.id >= 0) inputs[link.id] = links.back();
   }
-  inputs.resize(ids_);
   return inputs;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -8,40 +9,53 @@
 
 namespace verlet_cable {
 
-/// Where a scene's frames are over time: by the motion, else at their `initial_pose`; else a robot's link is where its parent has it
-/// with the joint at zero; else at the origin.
+/// Of frames, by their ids.
+using PosesById = std::map<int, Pose>;
+
+/// Where a scene's frames are over time: by the motion, else at their `initial_pose`; else a robot's link is where its parent has
+/// it with the joint at zero; else at the origin.
 class FrameSource {
  public:
   FrameSource(const SceneDesc& scene, const Motion& motion);
 
-  /// One entry a frame id, all known, with the velocities of the motions that begin then.
+  /// One entry a frame id, with the velocities of the motions that begin then; all known, but for ids that are not of these
+  /// frames.
   BoundaryInputs at(double time) const;
+  /// The same, with frames that are given a pose instead, and what robots' links there carry.
+  BoundaryInputs at(double time, const PosesById& given) const;
   /// Whether no frame moves: they are everywhere as at(0).
   bool rests() const;
+  /// Whether there is a robot: its links carry others.
+  bool has_links() const { return !links_.empty(); }
+  bool is_link(const std::string& name) const;
+  /// Follows one more frame, of a world that names more than its scene does: a link of the robot, or one that rests at `resting`.
+  void add(const std::string& name, int id, const Pose& resting);
   /// Those that a run begins with: a motion that does not go on for longer than a jump (5 ms) is one, and no velocity to begin
   /// with.
   BoundaryInputs at_start() const;
 
  private:
   /// `lead` [s]: how much later the velocities are of.
-  BoundaryInputs at(double time, double lead) const;
+  BoundaryInputs at(double time, double lead, const PosesById& given) const;
 
   struct Frame {
+    int id = -1;       ///< -1: nothing but a link uses it
     FrameTrack track;  ///< empty where it rests
     Pose resting;
   };
   struct Link {
+    std::string name;
     int frame = -1;   ///< what places it, index into frames_; -1: its parent does
     int parent = -1;  ///< index into links_
     Pose origin;      ///< in the parent
-    int id = -1;      ///< of the frame that it places, -1 if it places none
+    int id = -1;      ///< of its frame, -1 if nothing uses it
   };
 
-  int add_frame(const std::string& name, const FrameInput& resting, const Motion& motion);
+  int add_frame(int id, const std::string& name, const FrameInput& resting, const Motion& motion);
 
-  std::vector<Frame> frames_;  ///< by id, then those of links that nothing else uses
-  int ids_ = 0;                ///< how many of them have ids
-  std::vector<Link> links_;    ///< parents first
+  std::vector<Frame> frames_;
+  int ids_ = 0;              ///< one more than the last of them
+  std::vector<Link> links_;  ///< parents first
 };
 
 /// Names of the motion's frames that nothing in the scene uses.

@@ -132,6 +132,30 @@ SceneDesc read_all(const YAML::Node& root, const std::vector<std::string>& ignor
 
 }  // namespace
 
+ObstacleDesc read_obstacle(const YAML::Node& keys, const SceneSources& sources) {
+  return within_memory([&] {
+    YAML::Node root;
+    root["obstacles"].push_back(keys);
+    SceneDesc scene;
+    ErrorList errors;
+    const Value value{root, "", &errors};
+    static const Keys<SceneDesc> obstacle_keys = [] {
+      Keys<SceneDesc> all;
+      append_obstacle_keys(all);
+      return all;
+    }();
+    read_map(value, obstacle_keys, scene);
+    read_scene_files(value, sources, scene);
+    errors.add_validation(validate(scene));
+    if (errors.empty()) return scene.obstacles.front();
+    const std::string key = value.child("obstacles", {}).element(0, {}).key + ".";
+    std::vector<std::string> lines = errors.take();
+    for (std::string& line : lines)
+      if (line.compare(0, key.size(), key) == 0) line.erase(0, key.size());
+    throw SceneError(lines);
+  });
+}
+
 SceneDesc read_scene(const YAML::Node& root, const std::vector<std::string>& ignored, const SceneSources& sources) {
   return within_memory([&] { return read_all(root, ignored, sources); });
 }

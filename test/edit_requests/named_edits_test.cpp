@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "../support/nets.h"
 #include "edit_requests/error_text.h"
 #include "edit_requests/location.h"
+#include "edit_requests/tunable_numbers.h"
 #include "straight_cables.h"
 
 namespace verlet_cable {
@@ -75,6 +78,36 @@ TEST(NamedEdits, APinThatTheWorldRefusesAddsNoFrame) {
   EXPECT_FALSE(apply_pin(world, "second", pin, AttachmentType::hinge).ok) << "node 0 is held";
   EXPECT_EQ(world.frames().size(), frames);
   EXPECT_EQ(world.hash(), before);
+}
+
+TEST(NamedEdits, AnAttachmentIsMovedInItsFrame) {
+  World world = cables_and_net();
+  const std::uint64_t before = world.hash();
+  EXPECT_EQ(apply_move(world, "pin1", {}).message, "name: \"pin1\" is no attachment; allowed: lower_start");
+  const Pose turned{Vector3::Zero(), Quaternion(2, 0, 0, 0)};
+  EXPECT_EQ(apply_move(world, "lower_start", turned).message,
+            "offset.orientation: (0, 0, 0, 2); allowed: quaternions of length 1, or all zero for no rotation");
+  EXPECT_EQ(world.hash(), before);
+  const EditResult moved = apply_move(world, "lower_start", {Vector3(0, 0, 0.1), Quaternion(0, 0, 0, 0)});
+  ASSERT_TRUE(moved.ok) << moved.message;
+  EXPECT_EQ(world.attachments()[0].pose.position, Vector3(0, 0, 0.1));
+}
+
+TEST(Tuning, EveryErrorIsToldAtOnce) {
+  SceneDesc scene;
+  scene.materials.resize(1);
+  scene.materials[0].name = "rope";
+  const std::vector<TunableNumber> numbers = tunable_numbers(scene);
+  try {
+    tuned_scene(scene, numbers, {{"wind_x", NAN}, {"rope_mass", 1}, {"rope_friction", -1}}, {"an earlier one"});
+    FAIL();
+  } catch (const SceneError& error) {
+    ASSERT_EQ(error.errors().size(), 4u);
+    EXPECT_EQ(error.errors()[0], "an earlier one");
+    EXPECT_EQ(error.errors()[1].find("tuning.wind_x: nan; allowed: "), 0u);
+    EXPECT_EQ(error.errors()[2].find("tuning: unknown parameter \"rope_mass\"; allowed: gravity_x, gravity_y, "), 0u);
+    EXPECT_EQ(error.errors()[3].find("tuning.rope_friction: -1; allowed: "), 0u);
+  }
 }
 
 TEST(NamedEdits, ACutSaysWhatIsGone) {

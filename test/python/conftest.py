@@ -28,6 +28,20 @@ def hang():
 
 
 @pytest.fixture
+def ropes(hang):
+    """Two straight ropes along x, `first` held at its start and `second` behind its end, and a plug in the air."""
+    hang['materials']['wire']['bending_stiffness'] = 0
+    hang['cables'] = [
+        {'name': 'first', 'length': 1.0, 'segments': 10, 'material': 'wire',
+         'initial': {'type': 'straight', 'from': [0, 0, 0], 'to': [1, 0, 0]}, 'attachments': [{'name': 'left', 'at': 'start'}]},
+        {'name': 'second', 'length': 1.0, 'segments': 10, 'material': 'wire',
+         'initial': {'type': 'straight', 'from': [1.01, 0, 0], 'to': [2, 0, 0]}}]
+    hang['bodies'] = [{'name': 'plug', 'mass': 0.1, 'inertia': [1e-4, 1e-4, 1e-4], 'pose': [0, 0, 1, 0, 0, 0]}]
+    hang['obstacles'] = [{'name': 'floor', 'type': 'plane', 'pose': [0, 0, -3, 0, 0, 0]}]
+    return hang
+
+
+@pytest.fixture
 def cable_sim(tmp_path):
     """Runs cable_sim on a scene; returns its summary and its rows as an array (t, node, x, y, z, vx, vy, vz, tension)."""
     import json

@@ -224,7 +224,7 @@ def test_a_broken_cable_has_no_array_of_the_batch(hang):
     poses[1, :, 0] = numpy.linspace(0.6, 1.02, 100)
     batch.set_frames('hand', poses)
     batch.step(100, record_every=50)
-    with pytest.raises(ValueError, match='world 1 has not as many nodes'):
+    with pytest.raises(ValueError, match='world 1 has none'):
         batch.positions('hose')
     assert batch.world(0).positions('hose').shape == (21, 3)
 
@@ -333,7 +333,7 @@ def test_other_threads_run_while_a_world_steps(hang):
 
 def test_ctrl_c_ends_a_long_step(hang):
     program = '''
-import json, sys
+import json, sys, numpy
 from verlet_cable.sim import Batch, Scene, World
 scene = Scene.from_dict(json.loads(sys.argv[1]))
 one = World(scene) if sys.argv[2] == 'world' else Batch(scene, 20)
@@ -341,9 +341,9 @@ print('begins', flush=True)
 try:
     one.step(10 ** 12)
 except KeyboardInterrupt:
-    before = one.time
+    before = numpy.max(one.time)
     one.step(3)
-    print('ended', one.time > before > 0, flush=True)
+    print('ended', numpy.min(one.time) > before > 0, flush=True)
 '''
     for what in ('world', 'batch'):
         process = subprocess.Popen([sys.executable, '-c', program, json.dumps(hang), what], stdout=subprocess.PIPE, text=True)

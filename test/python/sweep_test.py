@@ -4,6 +4,8 @@ import filecmp
 import json
 import os
 import pathlib
+import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -50,9 +52,13 @@ def write(folder, sweep=SWEEP, scene=SCENE):
     return folder
 
 
-def start(folder, output, *options, sweep='sweep.yaml'):
+def start(folder, output, *options, sweep='sweep.yaml', largest_file=None):
+    def limit():
+        if largest_file is not None:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (largest_file, largest_file))
+
     return subprocess.Popen([sys.executable, str(PROGRAM), str(folder / sweep), '--output', str(output), *options],
-                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT, preexec_fn=limit)
 
 
 def finish(process):
@@ -112,9 +118,9 @@ def undisturbed(tmp_path_factory):
     return folder, folder / 'undisturbed'
 
 
-def test_same_bytes_on_one_and_two_workers(undisturbed, tmp_path):
+def test_same_bytes_on_one_and_four_workers(undisturbed, tmp_path):
     folder, reference = undisturbed
-    status, text = run(folder, tmp_path / 'store', '--workers', '2')
+    status, text = run(folder, tmp_path / 'store', '--workers', '4')
     assert status == 0, text
     assert_same_bytes(reference, tmp_path / 'store')
 
@@ -166,6 +172,36 @@ def test_interrupt_keeps_what_is_done(undisturbed, tmp_path, number):
     status, text = run(folder, store, '--workers', '2', '--resume')
     assert status == 0, text
     assert_same_bytes(reference, store)
+
+
+def test_what_cannot_be_written_stops_a_sweep(undisturbed, tmp_path):
+    """As where a disk is full: a file cannot grow."""
+    folder, reference = undisturbed
+    store = tmp_path / 'store'
+    largest = max(path.stat().st_size for path in (reference / 'hose/positions').iterdir())
+    status, text = run(folder, store, '--workers', '1', largest_file=largest // 2)
+    assert status == 3 and 'OSError' in text and '0 of 2000 samples' in text and '--resume' in text, text
+    assert chunks(store) == 0 and not list(store.rglob('*.partial'))
+    (tmp_path / 'file').write_text('')
+    status, text = run(folder, tmp_path / 'file' / 'store', '--workers', '1')
+    assert status == 2 and '--output' in text and 'Not a directory' in text, text
+    status, text = run(folder, store, '--workers', '2', '--resume')
+    assert status == 0, text
+    assert_same_bytes(reference, store)
+
+
+def test_one_program_at_a_time(undisturbed, tmp_path):
+    folder, reference = undisturbed
+    store = tmp_path / 'store'
+    process = start(folder, store, '--workers', '1')
+    wait_until(lambda: chunks(store) >= 1, process)
+    process.send_signal(signal.SIGSTOP)
+    status, text = run(folder, store, '--workers', '1', '--resume')
+    process.send_signal(signal.SIGCONT)
+    assert status == 2 and 'another cable_sweep is at work there' in text, text
+    assert finish(process)[0] == 0
+    assert_same_bytes(reference, store)
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ['store']
 
 
 def test_external_scheduler(undisturbed, tmp_path):
@@ -290,6 +326,10 @@ vary:
   cables[1].length: {uniform: [2, 1]}
   cables[0].segments: {choice: [10, 20]}
   cables[0].length: {gaussian: [1, 2]}
+  cables[0].lenght: {uniform: [1, 2]}
+  cables[99].length: {uniform: [1, 2]}
+  time_stp: {uniform: [.nan, 2]}
+  materials.m.drag: {normal: [0.1, -0.01]}
 """)
     (tmp_path / 'store').mkdir()
     status, text = run(folder, tmp_path / 'store')
@@ -297,7 +337,8 @@ vary:
     for word in ('nowhere.csv', 'duration: -1', 'record.rate: 1000', 'at most 1 / time_step = 200', 'record.fields[1]', 'colour', 'samples: 0',
                  'seed: 1.5', 'wokers', 'vary.materials.m.linear_density.log_uniform: [0.0, 0.2]', 'vary.materials.n.radius',
                  'vary.cables[1].length', 'vary.cables[1].length.uniform: [2, 1]', 'vary.cables[0].segments: cannot vary',
-                 'vary.cables[0].length', 'gaussian', '--output'):
+                 'vary.cables[0].length', 'gaussian', 'vary.cables[0].lenght: not in scene.yaml', 'did you mean length?',
+                 'vary.cables[99].length: not in scene.yaml', 'vary.time_stp.uniform', 'did you mean time_step?', 'normal: [0.1, -0.01]', '--output'):
         assert word in text, f'{word} is not in\n{text}'
     assert not list((tmp_path / 'store').iterdir())
 
@@ -328,6 +369,11 @@ def test_resume_refuses_another_sweep(tmp_path):
     (folder / 'other').mkdir()
     status, text = run(folder, folder / 'other', '--resume')
     assert status == 2 and 'no store of cable_sweep' in text, text
+    write(folder)
+    shutil.copytree(tmp_path / 'store', tmp_path / 'part')
+    shutil.rmtree(tmp_path / 'part/hose/tension')
+    status, text = run(folder, tmp_path / 'part', '--resume')
+    assert status == 2 and 'without hose/tension' in text, text
     assert before == {name: (tmp_path / 'store' / name).stat().st_mtime_ns for name in files_of(tmp_path / 'store')}
 
 

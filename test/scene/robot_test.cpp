@@ -129,6 +129,26 @@ TEST_F(Robot, linksOfCableSimAreAtZeroOrWhereTheMotionHasTheirParents) {
   EXPECT_TRUE(unused_frames(scene, {{"base", moved}}).empty());
 }
 
+TEST_F(Robot, aLinkWithAGivenPoseCarriesThoseAfterIt) {
+  SceneDesc scene = read("{" + file() + "}", "hand");
+  scene.cables[0].attachments[1].frame = "tool";
+  scene.cables[0].attachments[1].initial_pose.reset();
+  const std::vector<std::string> names = frame_names(scene);
+  const auto id = [&](const std::string& name) {
+    return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
+  };
+  FrameSource frames(scene, {});
+  const Pose given{{1, 0, 0}, Quaternion::Identity()};
+  EXPECT_LT((frames.at(0, {{id("arm"), given}})[id("tool")].pose.position - Vector3(1.4, 0, 0)).norm(), 1e-12);
+  EXPECT_EQ(frames.at(0, {{id("tool"), given}})[id("tool")].pose.position, given.position);
+  const int later = static_cast<int>(names.size()) + 2;
+  frames.add("camera", later, given);
+  const BoundaryInputs inputs = frames.at(0);
+  ASSERT_EQ(inputs.size(), names.size() + 3);
+  EXPECT_EQ(inputs[later].pose.position, given.position);
+  EXPECT_FALSE(inputs[later - 1].known) << "another's";
+}
+
 TEST_F(Robot, aParameterComesBeforeTheFile) {
   SceneSources sources;
   std::string asked;

@@ -35,4 +35,7 @@ SceneDesc read_scene_file(const std::string& path);
 /// The same, and what it names from `sources` only.
 SceneDesc read_scene_file(const std::string& path, const SceneSources& sources);
 
+/// Reads one obstacle by the keys that a scene's have. Throws SceneError likewise; its lines begin with the key.
+ObstacleDesc read_obstacle(const YAML::Node& keys, const SceneSources& sources = {});
+
 }  // namespace verlet_cable

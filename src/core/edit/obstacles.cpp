@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "verlet_cable/core/number_text.h"
+#include "verlet_cable/core/obstacle_of.h"
 #include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/core/scene_fields.h"
 #include "verlet_cable/core/world.h"
@@ -101,13 +102,8 @@ EditResult World::Implementation::apply(const edit::RemoveObstacle& remove) {
 
 void World::Implementation::add_scene_obstacles() {
   for (const ObstacleDesc& desc : all_obstacles(*state.scene)) {
-    Obstacle obstacle;
-    obstacle.name = desc.name;
+    Obstacle obstacle = obstacle_of(desc);
     obstacle.frame = desc.frame.empty() ? 0 : state.frames.find(desc.frame);
-    obstacle.pose = pose_of(desc.pose);
-    obstacle.shape = shape_of(desc);
-    obstacle.friction = desc.friction;
-    obstacle.padding = desc.padding;
     obstacle.present = state.frames.known[obstacle.frame];
     obstacle.id = state.new_obstacle_id();
     state.obstacles.push_back(std::move(obstacle));

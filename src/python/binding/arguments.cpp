@@ -16,10 +16,14 @@ std::string numbers_text(const double* numbers, int count) {
   return "(" + text + ")";
 }
 
+Pose pose_of(const double* position, const double* orientation) {
+  return {{position[0], position[1], position[2]}, Quaternion(orientation[3], orientation[0], orientation[1], orientation[2])};
+}
+
 /// `position` and `orientation`: names for messages.
 Pose read_pose(const double* position, const std::string& position_name, const double* orientation,
                const std::string& orientation_name) {
-  Pose pose{{position[0], position[1], position[2]}, Quaternion(orientation[3], orientation[0], orientation[1], orientation[2])};
+  Pose pose = pose_of(position, orientation);
   if (!is_sound({pose.position, Quaternion::Identity()}))
     throw py::value_error(position_name + ": " + numbers_text(position, 3) +
                           "; allowed: finite numbers [m] (from -1e+09 to 1e+09)");
@@ -30,12 +34,12 @@ Pose read_pose(const double* position, const std::string& position_name, const d
   return pose;
 }
 
+}  // namespace
+
 void check_size(const char* name, const Numbers& numbers, py::ssize_t size) {
   if (numbers.ndim() != 1 || numbers.shape(0) != size)
     throw py::value_error(std::string(name) + ": shape " + shape_text(numbers) + "; allowed: (" + std::to_string(size) + ",)");
 }
-
-}  // namespace
 
 std::string shape_text(const py::array& array) {
   std::string text;
@@ -45,6 +49,13 @@ std::string shape_text(const py::array& array) {
 
 Pose read_pose(const double* numbers, const std::string& name) {
   return read_pose(numbers, name, numbers + 3, name);
+}
+
+std::optional<Pose> sound_pose(const double* numbers) {
+  Pose pose = pose_of(numbers, numbers + 3);
+  if (!is_sound(pose)) return std::nullopt;
+  pose.orientation.normalize();
+  return pose;
 }
 
 Pose read_pose(const Numbers& position, const Numbers& quaternion_xyzw) {
@@ -59,7 +70,7 @@ std::int64_t read_count(const char* name, std::int64_t count, std::int64_t least
   return count;
 }
 
-std::vector<Quantity> read_quantities(const std::vector<std::string>& names) {
+std::vector<Quantity> read_quantities(const char* argument, const std::vector<std::string>& names) {
   std::vector<Quantity> quantities;
   for (const std::string& name : names) {
     std::size_t i = 0;
@@ -67,7 +78,7 @@ std::vector<Quantity> read_quantities(const std::vector<std::string>& names) {
     if (i == quantity_names.size()) {
       std::string allowed;
       for (const char* other : quantity_names) allowed += (allowed.empty() ? "" : ", ") + std::string(other);
-      throw py::value_error("fields: " + quoted(name) + "; allowed: " + allowed);
+      throw py::value_error(std::string(argument) + ": " + quoted(name) + "; allowed: " + allowed);
     }
     quantities.push_back(static_cast<Quantity>(i));
   }

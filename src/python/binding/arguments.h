@@ -4,6 +4,7 @@
 #include <pybind11/pybind11.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,15 +21,20 @@ using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 /// "(3, 7)", as NumPy writes shapes.
 std::string shape_text(const py::array& array);
 
+/// Throws ValueError where the shape is not (size,).
+void check_size(const char* name, const Numbers& numbers, py::ssize_t size);
+
 /// From the last axis of an array: x, y, z, qx, qy, qz, qw. `name`: of the argument, with the index. Throws ValueError.
 Pose read_pose(const double* numbers, const std::string& name);
+/// Likewise, where it is one.
+std::optional<Pose> sound_pose(const double* numbers);
 Pose read_pose(const Numbers& position, const Numbers& quaternion_xyzw);
 
 /// A count that is not negative. Throws ValueError.
 std::int64_t read_count(const char* name, std::int64_t count, std::int64_t least);
 
-/// "positions", ...; throws ValueError.
-std::vector<Quantity> read_quantities(const std::vector<std::string>& names);
+/// "positions", ...; `argument`: of which they are. Throws ValueError.
+std::vector<Quantity> read_quantities(const char* argument, const std::vector<std::string>& names);
 
 /// A new array, and what it is of.
 py::array_t<double> array_of(const World& world, Quantity quantity, const std::string& name);

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "binding/arguments.h"
+#include "binding/batch_arguments.h"
+#include "binding/batch_arrays.h"
 #include "binding/motion_argument.h"
 #include "binding/run_steps.h"
 #include "binding/scene_class.h"
@@ -19,6 +21,7 @@ namespace verlet_cable {
 namespace {
 
 constexpr int most_threads = 1024;
+constexpr std::int64_t most_worlds = 1000000;
 
 /// What Python calls a Batch.
 struct PythonBatch {
@@ -33,43 +36,39 @@ const Batch& use(const PythonBatch& batch) {
   return batch.batch;
 }
 
-std::unique_ptr<PythonBatch> make_of(std::vector<std::shared_ptr<const SceneDesc>> scenes, const py::object& motion,
-                                     int threads) {
+void check_size(std::int64_t count, int threads) {
+  if (count < 1 || count > most_worlds)
+    throw py::value_error("count: " + std::to_string(count) + "; allowed: 1 to " + std::to_string(most_worlds));
   if (threads < 0 || threads > most_threads)
     throw py::value_error("threads: " + std::to_string(threads) + "; allowed: 0, as many as there are cores, to " +
                           std::to_string(most_threads));
+}
+
+std::unique_ptr<PythonBatch> make_of(const std::vector<std::shared_ptr<const SceneDesc>>& scenes, const py::object& motion,
+                                     int threads) {
   const Motion tracks = read_motion(motion, *scenes.front());
   const py::gil_scoped_release release;
-  return std::make_unique<PythonBatch>(Batch(std::move(scenes), tracks, threads));
+  return std::make_unique<PythonBatch>(Batch(scenes, tracks, threads));
 }
 
 std::unique_ptr<PythonBatch> make(const PythonScene& scene, std::int64_t count, const py::object& motion, int threads) {
-  read_count("count", count, 1);
+  check_size(count, threads);
   return make_of(std::vector<std::shared_ptr<const SceneDesc>>(static_cast<std::size_t>(count), scene.desc), motion, threads);
 }
 
 std::unique_ptr<PythonBatch> make_from_list(const std::vector<PythonScene>& scenes, const py::object& motion, int threads) {
   if (scenes.empty()) throw py::value_error("scenes: none; allowed: at least one");
+  check_size(static_cast<std::int64_t>(scenes.size()), threads);
   std::vector<std::shared_ptr<const SceneDesc>> descs;
   for (const PythonScene& scene : scenes) descs.push_back(scene.desc);
-  return make_of(std::move(descs), motion, threads);
+  return make_of(descs, motion, threads);
 }
 
-/// A number for all worlds, one a world, or of a stiffness two a world.
-std::vector<BendingStiffness> read_values(const std::string& name, const Numbers& numbers, std::size_t count) {
-  const auto worlds = static_cast<py::ssize_t>(count);
-  std::vector<BendingStiffness> values;
-  if (numbers.ndim() == 0) {
-    values.assign(count, BendingStiffness(*numbers.data()));
-  } else if (numbers.ndim() == 1 && numbers.shape(0) == worlds) {
-    for (py::ssize_t i = 0; i < worlds; ++i) values.emplace_back(numbers.at(i));
-  } else if (name == "bending_stiffness" && numbers.ndim() == 2 && numbers.shape(0) == worlds && numbers.shape(1) == 2) {
-    for (py::ssize_t i = 0; i < worlds; ++i) values.emplace_back(numbers.at(i, 0), numbers.at(i, 1));
-  } else {
-    throw py::value_error(name + ": shape " + shape_text(numbers) + "; allowed: (" + std::to_string(count) + ",)" +
-                          (name == "bending_stiffness" ? ", (" + std::to_string(count) + ", 2)" : "") + " or a number");
-  }
-  return values;
+std::unique_ptr<PythonBatch> make_of_world(PythonWorld& world, std::int64_t count, int threads) {
+  check_size(count, threads);
+  const InUse in_use(world.busy, "world");
+  const py::gil_scoped_release release;
+  return std::make_unique<PythonBatch>(Batch(world.driven, static_cast<std::size_t>(count), threads));
 }
 
 void set_material(PythonBatch& batch, const std::string& name, const py::kwargs& fields) {
@@ -84,22 +83,14 @@ void set_material(PythonBatch& batch, const std::string& name, const py::kwargs&
 }
 
 void set_frames(PythonBatch& batch, const std::string& name, const Numbers& poses) {
-  const auto worlds = static_cast<py::ssize_t>(use(batch).size());
-  const bool rollout = poses.ndim() == 3;
-  if ((poses.ndim() != 2 && !rollout) || poses.shape(0) != worlds || poses.shape(poses.ndim() - 1) != 7 ||
-      (rollout && poses.shape(1) == 0))
-    throw py::value_error("poses: shape " + shape_text(poses) + "; allowed: (" + std::to_string(worlds) + ", 7) or (" +
-                          std::to_string(worlds) + ", steps, 7)");
-  const int frame = batch.batch[0].find_frame(name);
-  const py::ssize_t steps = rollout ? poses.shape(1) : 1;
-  std::vector<std::vector<Pose>> read(static_cast<std::size_t>(worlds));
-  for (py::ssize_t i = 0; i < worlds; ++i) {
-    for (py::ssize_t k = 0; k < steps; ++k) {
-      const std::string index = "poses[" + std::to_string(i) + (rollout ? ", " + std::to_string(k) : "") + "]";
-      read[i].push_back(read_pose(poses.data() + (i * steps + k) * 7, index));
-    }
-  }
-  for (std::size_t i = 0; i < read.size(); ++i) batch.batch[i].set_frame(frame, std::move(read[i]));
+  batch.batch.set_frame(name, read_poses(poses, use(batch).size()));
+}
+
+void set_world(PythonBatch& batch, const py::object& index, PythonWorld& world) {
+  const std::vector<std::size_t> indices = read_world_indices(index, use(batch).size());
+  const InUse in_use(batch.busy, "batch"), world_in_use(world.busy, "world");
+  const py::gil_scoped_release release;
+  batch.batch.set_worlds(indices, world.driven);
 }
 
 void step(PythonBatch& batch, std::int64_t steps, std::int64_t record_every, const std::vector<std::string>& fields) {
@@ -108,7 +99,7 @@ void step(PythonBatch& batch, std::int64_t steps, std::int64_t record_every, con
   if (record_every > 0 && steps % record_every != 0)
     throw py::value_error("record_every: " + std::to_string(record_every) + "; allowed: what divides steps, " +
                           std::to_string(steps));
-  const std::vector<Quantity> quantities = read_quantities(fields);
+  const std::vector<Quantity> quantities = read_quantities("fields", fields);
   const InUse in_use(batch.busy, "batch");
   batch.batch.begin_steps(steps, record_every, quantities);
   try {
@@ -119,63 +110,27 @@ void step(PythonBatch& batch, std::int64_t steps, std::int64_t record_every, con
   }
 }
 
-py::array_t<double> read_records(const Record& record, std::size_t worlds, std::size_t records) {
-  for (std::size_t i = 0; i < worlds; ++i)
-    if (record.changed[i])
-      throw py::value_error(
-          std::string(name_of(record.quantity)) + " of " + record.name + ": world " + std::to_string(i) +
-          " has not as many nodes as at its start, since cable broke, or slides through a guide; allowed: worlds whose "
-          "cables keep their nodes");
-  std::vector<std::size_t> sizes{worlds, records, record.shape.rows};
-  if (record.shape.columns > 0) sizes.push_back(record.shape.columns);
-  auto* owner = new std::shared_ptr<double>(record.numbers);
-  const py::capsule capsule(owner, [](void* pointer) { delete static_cast<std::shared_ptr<double>*>(pointer); });
-  py::array_t<double> array(sizes, record.numbers.get(), capsule);
-  array.attr("setflags")(py::arg("write") = false);
-  return array;
-}
-
-py::array_t<double> read_now(const Batch& batch, Quantity quantity, const std::string& name) {
-  const QuantityShape shape = shape_of(batch[0].world(), quantity, name);
-  std::vector<std::size_t> sizes{batch.size(), shape.rows};
-  if (shape.columns > 0) sizes.push_back(shape.columns);
-  py::array_t<double> array(sizes);
-  for (std::size_t i = 0; i < batch.size(); ++i) {
-    if (shape_of(batch[i].world(), quantity, name) != shape)
-      throw py::value_error(std::string(name_of(quantity)) + " of " + name + ": world " + std::to_string(i) +
-                            " has not as many nodes as world 0; allowed: worlds whose cables keep their nodes");
-    copy_quantity(batch[i].world(), quantity, name, array.mutable_data() + i * shape.size());
-  }
-  return array;
-}
-
-/// The method that reads a quantity: its records where the last call recorded.
+/// The method that reads a quantity.
 template <Quantity quantity>
-py::array_t<double> read(const PythonBatch& python, const std::string& name) {
-  const Batch& batch = use(python);
-  const Records& records = batch.records();
-  if (records.count() == 0) return read_now(batch, quantity, name);
-  shape_of(batch[0].world(), quantity, name);  // throws for an unknown name
-  const Record* record = records.find(quantity, name);
-  if (!record)
-    throw py::value_error(std::string(name_of(quantity)) + ": not recorded; allowed: what `fields` of the last step named");
-  return read_records(*record, batch.size(), records.count());
+py::array_t<double> read(PythonBatch& batch, const std::string& name) {
+  const InUse in_use(batch.busy, "batch");
+  return array_of(batch.batch, quantity, name);
+}
+
+py::array_t<double> observe(PythonBatch& batch, const std::vector<GivenPart>& parts) {
+  const InUse in_use(batch.busy, "batch");
+  return observations(batch.batch, parts);
 }
 
 std::unique_ptr<PythonWorld> world_at(const PythonBatch& batch, std::int64_t index) {
-  const auto size = static_cast<std::int64_t>(use(batch).size());
-  if (index < -size || index >= size)
-    throw py::index_error("index: " + std::to_string(index) + "; allowed: 0 to " + std::to_string(size - 1));
-  auto world = std::make_unique<PythonWorld>(batch.batch[static_cast<std::size_t>(index < 0 ? index + size : index)]);
+  const Batch& worlds = use(batch);
+  auto world = std::make_unique<PythonWorld>(worlds[read_world_index(index, worlds.size())]);
   world->driven.world().step_one_by_one(false);
   return world;
 }
 
-py::array_t<std::int8_t> status(const PythonBatch& batch) {
-  const auto& all = use(batch).status();
-  py::array_t<std::int8_t> array(static_cast<py::ssize_t>(all.size()));
-  for (std::size_t i = 0; i < all.size(); ++i) array.mutable_at(i) = static_cast<std::int8_t>(all[i]);
-  return array;
+std::unique_ptr<PythonBatch> copy(const PythonBatch& batch) {
+  return std::make_unique<PythonBatch>(use(batch));
 }
 
 py::array_t<bool> settle(PythonBatch& batch) {
@@ -189,24 +144,6 @@ py::array_t<bool> settle(PythonBatch& batch) {
   py::array_t<bool> array(static_cast<py::ssize_t>(found.size()));
   for (std::size_t i = 0; i < found.size(); ++i) array.mutable_at(i) = found[i] != 0;
   return array;
-}
-
-py::dict energy(const PythonBatch& batch) {
-  const Batch& worlds = use(batch);
-  py::dict all;
-  for (std::size_t i = 0; i < worlds.size(); ++i)
-    for (const auto& [key, value] : energy_dict(worlds[i].world().energy())) {
-      if (!all.contains(key)) all[key] = py::array_t<double>(static_cast<py::ssize_t>(worlds.size()));
-      py::array_t<double>(py::reinterpret_borrow<py::object>(all[key])).mutable_at(i) = value.cast<double>();
-    }
-  return all;
-}
-
-std::vector<std::string> state_hashes(const PythonBatch& batch) {
-  const Batch& worlds = use(batch);
-  std::vector<std::string> hashes;
-  for (std::size_t i = 0; i < worlds.size(); ++i) hashes.push_back(hash_text(worlds[i].world().hash()));
-  return hashes;
 }
 
 }  // namespace
@@ -223,31 +160,36 @@ void add_batch_class(py::module_& module) {
       .def(py::init(&make_from_list), py::arg("scenes"), py::arg("motion") = py::none(), py::arg("threads") = 0,
            "A world for each of a list of scenes, which differ in numbers only: names, numbers of segments and time step are the "
            "same.")
+      .def(py::init(&make_of_world), py::arg("world"), py::arg("count"), py::arg("threads") = 0,
+           "So many copies of a world as it is: its time, motion, given poses and edits. Each goes on with the bytes with which "
+           "the world would.")
       .def("__len__", [](const PythonBatch& batch) { return use(batch).size(); })
+      .def(
+          "set_world", set_world, py::arg("index"), py::arg("world"),
+          "Worlds go on as copies of `world`, with its time, motion and given poses: to begin some of them anew, or to give all "
+          "a common start. index: an integer, negative ones count from the end, a sequence of integers, or a bool mask (count,). "
+          "A copy takes less time than a step, whatever the world took to be made. Drops what the last step recorded; `status` "
+          "of these worlds is 0.\n\nRaises IndexError, and ValueError for another kind of index, or where the world's scene "
+          "differs from the batch's in more than numbers: names, numbers of segments and time step are to be the same. Then "
+          "nothing is changed.")
       .def("set_material", set_material, py::arg("name"),
            "Changes keys of a material: linear_density=..., bending_stiffness=...; a number, or (count,), or for "
-           "bending_stiffness "
-           "(count, 2). Before the first step the worlds begin anew with it; later all but linear_density can be "
-           "changed.\n\nRaises "
-           "SceneError with every error at once, ValueError, KeyError; then nothing is changed.")
+           "bending_stiffness (count, 2). Worlds that were not stepped, settled or edited begin anew with it; of others all but "
+           "linear_density can be changed.\n\nRaises SceneError with every error at once, ValueError, KeyError; then nothing is "
+           "changed.")
       .def("set_frames", set_frames, py::arg("name"), py::arg("poses"),
            "(count, 7): where a frame is at the end of the next step, and from then on; (count, steps, 7): at the end of each of "
-           "the next "
-           "steps, then as at the last. x, y, z [m], qx, qy, qz, qw in the fixed frame.\n\nRaises KeyError, ValueError.")
+           "the next steps, then as at the last. x, y, z [m], qx, qy, qz, qw in the fixed frame.\n\nRaises KeyError, ValueError.")
       .def(
           "step", step, py::arg("steps") = 1, py::arg("record_every") = 0,
           py::arg("fields") = std::vector<std::string>{"positions", "velocities", "tension", "wrench", "body_pose", "body_twist"},
           "Advances all worlds by so many time steps. record_every: what `fields` names is recorded after every so many of them, "
-          "which "
-          "must divide `steps`. Other threads run meanwhile; Ctrl-C ends it between two steps, without records.")
+          "which must divide `steps`. Other threads run meanwhile; Ctrl-C ends it between two steps, without records.")
       .def("settle", settle, "As of World, (count,) bool.")
+      .def("copy", copy, "A batch that goes on from here by itself, with the same bytes.")
+      .def("__copy__", copy)
       .def(
-          "copy",
-          [](const PythonBatch& batch) {
-            use(batch);
-            return std::make_unique<PythonBatch>(batch.batch);
-          },
-          "A batch that goes on from here by itself, with the same bytes.")
+          "__deepcopy__", [](const PythonBatch& batch, const py::dict&) { return copy(batch); }, py::arg("memo"))
       .def("world", world_at, py::arg("index"), "A copy of one of the worlds.")
       .def("positions", read<Quantity::positions>, py::arg("name"), "(count, n + 1, 3) or (count, records, n + 1, 3) [m].")
       .def("velocities", read<Quantity::velocities>, py::arg("name"), "(count, n + 1, 3) or (count, records, n + 1, 3) [m/s].")
@@ -258,12 +200,25 @@ void add_batch_class(py::module_& module) {
       .def("wrench", read<Quantity::wrench>, py::arg("attachment"), "(count, 6) or (count, records, 6) [N, N m].")
       .def("body_pose", read<Quantity::body_pose>, py::arg("name"), "(count, 7) or (count, records, 7).")
       .def("body_twist", read<Quantity::body_twist>, py::arg("name"), "(count, 6) or (count, records, 6) [m/s, rad/s].")
-      .def("energy", energy, "Energies [J] as of World, (count,) each.")
-      .def_property_readonly("status", status,
-                             "(count,) int8, the worst of the last step(): 0 ok, 1 overstretched, 2 jumped, 3 degraded, 4 fault.")
+      .def("observations", observe, py::arg("parts"),
+           "(count, k) float64: of each world the numbers of all `parts` as they are now, flattened, side by side. parts: "
+           "[(quantity, name), ...], quantities being the methods that read arrays: [('positions', 'rope'), ('wrench', 'left')]; "
+           "units and order as theirs. ('positions', 'rope', 20), or velocities likewise, reads 20 points instead of nodes, at "
+           "even distances along what is now the cable of that name, from end to end: also where cables differ in their nodes, "
+           "since they slide through guides, were cut or given another length, or broke. A new array, in C order.\n\nRaises "
+           "KeyError for names, ValueError for quantities and numbers of points, and where a world has not as many nodes as the "
+           "others.")
+      .def(
+          "energy", [](const PythonBatch& batch) { return energies(use(batch)); }, "Energies [J] as of World, (count,) each.")
       .def_property_readonly(
-          "time", [](const PythonBatch& batch) { return use(batch)[0].world().time(); }, "[s] simulated.")
-      .def_property_readonly("state_hash", state_hashes, "List of the worlds' hashes, as of World.");
+          "status", [](const PythonBatch& batch) { return statuses(use(batch)); },
+          "(count,) int8, the worst of the last step(): 0 ok, 1 overstretched, 2 jumped, 3 degraded, 4 fault.")
+      .def_property_readonly(
+          "time", [](const PythonBatch& batch) { return times(use(batch)); },
+          "(count,) [s] simulated; worlds may differ in it after set_world.")
+      .def_property_readonly(
+          "state_hash", [](const PythonBatch& batch) { return state_hashes(use(batch)); },
+          "List of the worlds' hashes, as of World.");
 }
 
 }  // namespace verlet_cable

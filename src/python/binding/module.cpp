@@ -31,6 +31,7 @@ void translate(std::exception_ptr thrown) {
 
 PYBIND11_MODULE(_simulation, module) {
   module.doc() = "The compiled part of verlet_cable.sim.";
+  module.attr("__version__") = VERLET_CABLE_VERSION;
   scene_error =
       PyErr_NewExceptionWithDoc("verlet_cable.sim.SceneError",
                                 "Everything that is wrong with a scene or a motion: a line for each error, which are in the list "

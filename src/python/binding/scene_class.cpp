@@ -8,7 +8,6 @@
 
 #include "binding/yaml_of.h"
 #include "verlet_cable/core/world.h"
-#include "verlet_cable/scene/scene_reader.h"
 
 namespace verlet_cable {
 namespace {
@@ -21,13 +20,6 @@ PythonScene load(const py::object& path) {
   return {std::make_shared<SceneDesc>(read_scene_file(file))};
 }
 
-/// Files that a scene names without a directory start at `directory`, by default at the current one.
-SceneSources sources_of(const py::object& directory) {
-  const py::module_ os = py::module_::import("os");
-  const py::object start = directory.is_none() ? os.attr("getcwd")() : os.attr("fspath")(directory);
-  return {FileAccess{true, py::str(os.attr("path").attr("abspath")(start))}, {}};
-}
-
 PythonScene from_yaml(const std::string& text, const py::object& directory) {
   const SceneSources sources = sources_of(directory);
   const py::gil_scoped_release release;
@@ -36,7 +28,7 @@ PythonScene from_yaml(const std::string& text, const py::object& directory) {
 
 PythonScene from_dict(const py::dict& keys, const py::object& directory) {
   const SceneSources sources = sources_of(directory);
-  const YAML::Node root = yaml_of(keys);
+  const YAML::Node root = yaml_of(keys, "scene");
   const py::gil_scoped_release release;
   return {std::make_shared<SceneDesc>(read_scene(root, {}, sources))};
 }
@@ -68,6 +60,12 @@ std::vector<std::string> moving_frame_names(const SceneDesc& scene) {
 }
 
 }  // namespace
+
+SceneSources sources_of(const py::object& directory) {
+  const py::module_ os = py::module_::import("os");
+  const py::object start = directory.is_none() ? os.attr("getcwd")() : os.attr("fspath")(directory);
+  return {FileAccess{true, py::str(os.attr("path").attr("abspath")(start))}, {}};
+}
 
 void add_scene_class(py::module_& module) {
   py::class_<PythonScene>(module, "Scene", "A scene that was read and checked. It does not change; worlds are made from it.")

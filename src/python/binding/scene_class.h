@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "verlet_cable/core/scene_desc.h"
+#include "verlet_cable/scene/scene_reader.h"
 
 namespace verlet_cable {
 
@@ -12,6 +13,9 @@ namespace verlet_cable {
 struct PythonScene {
   std::shared_ptr<const SceneDesc> desc;
 };
+
+/// Files that a scene names without a directory start at `directory`, with None at the current one.
+SceneSources sources_of(const pybind11::object& directory);
 
 void add_scene_class(pybind11::module_& module);
 

@@ -6,8 +6,10 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "binding/arguments.h"
+#include "binding/edit_methods.h"
 #include "binding/motion_argument.h"
 #include "binding/run_steps.h"
 #include "binding/scene_class.h"
@@ -28,7 +30,7 @@ std::unique_ptr<PythonWorld> make(const PythonScene& scene, const py::object& mo
 
 std::unique_ptr<PythonWorld> copy(const PythonWorld& world) {
   use(world);
-  return std::make_unique<PythonWorld>(world.driven);
+  return std::make_unique<PythonWorld>(world.driven, world.events);
 }
 
 void set_frame(PythonWorld& world, const std::string& name, const Numbers& position, const Numbers& quaternion_xyzw) {
@@ -41,7 +43,11 @@ const char* step(PythonWorld& world, std::int64_t steps) {
   const InUse in_use(world.busy, "world");
   StepResult::Status worst = StepResult::Status::ok;
   run_steps(steps, [&](std::int64_t some) {
-    for (std::int64_t i = 0; i < some; ++i) worst = std::max(worst, world.driven.step().status);
+    for (std::int64_t i = 0; i < some; ++i) {
+      const StepResult result = world.driven.step();
+      worst = std::max(worst, result.status);
+      world.events.observe(world.driven.world(), result);
+    }
   });
   return status_text(worst);
 }
@@ -58,21 +64,64 @@ py::array_t<double> read(const PythonWorld& world, const std::string& name) {
   return array_of(use(world), quantity, name);
 }
 
+/// An attribute with the names of all items; an empty one is left out.
+template <class Items, class Name>
+auto names_of(const Items& items, const Name& name) {
+  return [=](const PythonWorld& world) {
+    std::vector<std::string> names;
+    for (const auto& item : (use(world).*items)())
+      if (const std::string& text = name(item); !text.empty()) names.push_back(text);
+    return names;
+  };
+}
+
+void add_names(py::class_<PythonWorld>& world) {
+  world
+      .def_property_readonly("cable_names", names_of(&World::cables, [](const SimulatedCable& c) { return c.model->name; }),
+                             "Names of the cables that there are now: those of the scene, then pieces of cuts and breaks.")
+      .def_property_readonly("net_names", names_of(&World::nets, [](const SimulatedNet& net) { return net.model.name; }),
+                             "Names of the nets.")
+      .def_property_readonly("particle_names",
+                             names_of(&World::particles, [](const SimulatedParticle& particle) { return particle.desc.name; }),
+                             "Names of the particles.")
+      .def_property_readonly(
+          "body_names",
+          names_of(&World::bodies, [](const SimulatedBody& body) { return body.is_junction ? std::string() : body.name; }),
+          "Names of the rigid bodies.")
+      .def_property_readonly("guide_names", names_of(&World::guides, [](const SimulatedGuide& guide) { return guide.name; }),
+                             "Names of the guides.")
+      .def_property_readonly(
+          "attachment_names",
+          names_of(&World::attachments, [](const Attachment& a) { return is_named(a) ? a.name : std::string(); }),
+          "Names of what holds cables, nets and bodies now, pins included.")
+      .def_property_readonly("obstacle_names",
+                             names_of(&World::obstacles, [](const Obstacle& obstacle) { return obstacle.name; }),
+                             "Names of the obstacles that there are now, links of a robot included.")
+      .def_property_readonly(
+          "frame_names",
+          [](const PythonWorld& world) {
+            use(world);
+            return world.driven.frame_names();
+          },
+          "Names of the frames that set_frame moves, those that pins and obstacles added included.");
+}
+
 }  // namespace
 
 void add_world_class(py::module_& module) {
-  py::class_<PythonWorld>(
+  py::class_<PythonWorld> world(
       module, "World",
       "A simulated scene. Frames follow the motion, and those that it does not name rest as in cable_sim, until "
-      "set_frame. Every array is a new one. One thread at a time may use a world; others run while it steps.")
+      "set_frame. Every array is a new one. One thread at a time may use a world; others run while it steps.");
+  world
       .def(py::init(&make), py::arg("scene"), py::arg("motion") = py::none(),
            "motion: path of a CSV file as of cable_sim --motion, or {frame: (times (k,) [s], poses (k, 7))}; poses are x, y, z "
            "[m], "
            "qx, qy, qz, qw in the fixed frame.\n\nRaises SceneError, ValueError, KeyError.")
       .def("set_frame", set_frame, py::arg("name"), py::arg("position"), py::arg("quaternion_xyzw"),
            "Where a frame is at the end of the next step, and from then on: (3,) [m] and (4,), in the fixed frame. It no longer "
-           "follows "
-           "a motion.\n\nRaises KeyError for a name that the scene does not have, ValueError.")
+           "follows a motion. Links of a robot whose parents it is follow it, where they are not given a pose themselves.\n\n"
+           "Raises KeyError for a name that is not in frame_names, ValueError.")
       .def("step", step, py::arg("steps") = 1,
            "Advances by so many time steps. Returns the worst that came up: 'ok', 'overstretched', 'jumped', 'degraded' or "
            "'fault'. Other threads run meanwhile; Ctrl-C ends it between two steps.")
@@ -106,6 +155,9 @@ void add_world_class(py::module_& module) {
       .def_property_readonly(
           "state_hash", [](const PythonWorld& world) { return hash_text(use(world).hash()); },
           "Text of 16 digits, of all that the future depends on, as in a summary of cable_sim.");
+  add_names(world);
+  add_edit_methods(module, world);
+  add_obstacle_methods(world);
 }
 
 }  // namespace verlet_cable

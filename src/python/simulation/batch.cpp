@@ -9,9 +9,7 @@
 #include <map>
 #include <utility>
 
-#include "verlet_cable/core/number_text.h"
-#include "verlet_cable/core/quoted_text.h"
-#include "verlet_cable/core/scene_fields.h"
+#include "simulation/batch_scenes.h"
 
 namespace verlet_cable {
 namespace {
@@ -19,93 +17,12 @@ namespace {
 /// Worlds that a thread steps together: enough for the widest lanes, and few enough to stay in its cache.
 constexpr std::size_t share = 16;
 
-template <class Items, class Name>
-std::vector<std::string> names_of(const Items& items, const Name& name) {
-  std::vector<std::string> names;
-  for (const auto& item : items) names.push_back(name(item));
-  return names;
-}
-
-/// What scenes of a batch have in common, as text: the names of all things, and how many numbers they have.
-std::vector<std::pair<std::string, std::vector<std::string>>> structure_of(const SceneDesc& scene) {
-  const auto name = [](const auto& item) { return item.name; };
-  std::vector<std::string> attachments;
-  for (const CableDesc& cable : scene.cables)
-    for (const AttachmentDesc& attachment : cable.attachments) attachments.push_back(attachment.name);
-  for (const BodyDesc& body : scene.bodies)
-    for (const auto& attachment : body.attachments) attachments.push_back(attachment.name);
-  return {
-      {"frames", frame_names(scene)},
-      {"materials", names_of(scene.materials, name)},
-      {"cables",
-       names_of(scene.cables,
-                [](const CableDesc& cable) { return cable.name + " of " + std::to_string(cable.segments) + " segments"; })},
-      {"nets", names_of(scene.nets, name)},
-      {"particles", names_of(scene.particles, name)},
-      {"bodies", names_of(scene.bodies, name)},
-      {"junctions", names_of(scene.junctions, name)},
-      {"guides", names_of(scene.guides, name)},
-      {"attachments", attachments},
-      {"obstacles", names_of(scene.obstacles, name)},
-      {"time_step", {number_text(scene.time_step) + " s"}},
-  };
-}
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text.empty() ? "none" : text;
-}
-
-void check_alike(const std::vector<std::shared_ptr<const SceneDesc>>& scenes) {
-  const auto first = structure_of(*scenes.front());
-  for (std::size_t i = 1; i < scenes.size(); ++i) {
-    if (scenes[i] == scenes.front()) continue;
-    const auto other = structure_of(*scenes[i]);
-    for (std::size_t k = 0; k < first.size(); ++k)
-      if (other[k].second != first[k].second)
-        throw SceneError({"scenes[" + std::to_string(i) + "]." + first[k].first + ": " + joined(other[k].second) +
-                          "; allowed: scenes that differ in numbers only, the first has " + joined(first[k].second)});
-  }
-}
-
-void change(const Field<MaterialDesc>& field, MaterialDesc& material, const BendingStiffness& value) {
-  material.*field.member = value.front();
-}
-
-std::string material_keys() {
-  std::string text = bending_stiffness_field.key;
-  for (const auto& field : material_fields) text += std::string(", ") + field.key;
-  return text;
-}
-
-/// Changes a material of the scene of world `index`; what is wrong is added to `errors`.
-void change(const std::string& path, const MaterialChange& wanted, std::size_t index, MaterialDesc& material,
-            std::vector<std::string>& errors) {
-  const BendingStiffness& value = wanted.values[index];
-  const auto check = [&](const auto& field) {
-    for (const double number : value)
-      if (!field.range.contains(number)) {
-        errors.push_back(path + "." + wanted.field + "[" + std::to_string(index) + "]: " + number_text(number) +
-                         "; allowed: " + field.range.text(field.unit));
-        return;
-      }
-  };
-  if (wanted.field == bending_stiffness_field.key) {
-    check(bending_stiffness_field);
-    material.bending_stiffness = value;
-    return;
-  }
-  for (const auto& field : material_fields) {
-    if (wanted.field != field.key) continue;
-    check(field);
-    change(field, material, value);
-  }
-}
-
-bool is_material_field(const std::string& name) {
-  return name == bending_stiffness_field.key ||
-         std::any_of(material_fields.begin(), material_fields.end(), [&](const auto& field) { return name == field.key; });
+/// False where the world has no such part.
+bool try_copy(const World& world, const Part& part, double* to) {
+  if (!part.at_points) return try_copy_quantity(world, part.quantity, part.name, part.shape, to);
+  if (find(world.cables(), part.name) < 0) return false;
+  copy_points(world, part.quantity, part.name, part.shape.rows, to);
+  return true;
 }
 
 }  // namespace
@@ -120,10 +37,10 @@ class Batch::Threads {
 
   explicit Threads(int count) : arena_(count == 0 ? tbb::task_arena::automatic : count), alone_(count == 1) {}
 
-  /// Calls `work(first, last)` for shares of so many items, on all threads.
+  /// Calls `work(first, last)` for shares of so many items, on all threads; on this one where it is one share.
   template <class Work>
   void share_out(std::size_t items, const Work& work) {
-    if (alone_) {
+    if (alone_ || items <= share) {
       for (std::size_t first = 0; first < items; first += share) work(first, std::min(items, first + share));
       return;
     }
@@ -141,61 +58,75 @@ class Batch::Threads {
   tbb::enumerable_thread_specific<Buffers> buffers_;
 };
 
-Batch::Batch(std::vector<std::shared_ptr<const SceneDesc>> scenes, const Motion& motion, int threads)
-    : motion_(motion), threads_(std::make_shared<Threads>(threads)) {
-  check_alike(scenes);
-  worlds_ = make_worlds(scenes);
-  status_.assign(worlds_.size(), StepResult::Status::ok);
-}
-
-std::vector<DrivenWorld> Batch::make_worlds(const std::vector<std::shared_ptr<const SceneDesc>>& scenes) const {
-  std::vector<DrivenWorld> worlds;
-  worlds.reserve(scenes.size());
+Batch::Batch(const std::vector<std::shared_ptr<const SceneDesc>>& scenes, const Motion& motion, int threads)
+    : threads_(std::make_shared<Threads>(threads)), status_(scenes.size(), StepResult::Status::ok) {
+  for (std::size_t i = 1; i < scenes.size(); ++i) check_alike(*scenes.front(), *scenes[i], "scenes[" + std::to_string(i) + "]");
+  worlds_.reserve(scenes.size());
   std::map<const SceneDesc*, std::size_t> known;  // looked up only: its order does not matter
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     const auto [same, is_new] = known.emplace(scenes[i].get(), i);
     if (is_new)
-      worlds.emplace_back(scenes[i], std::make_shared<FrameSource>(*scenes[i], motion_));
+      worlds_.emplace_back(scenes[i], std::make_shared<FrameSource>(*scenes[i], motion));
     else
-      worlds.push_back(worlds[same->second]);
-    worlds.back().world().step_one_by_one(true);
+      worlds_.push_back(worlds_[same->second]);
+    worlds_.back().world().step_one_by_one(true);
   }
-  return worlds;
+}
+
+Batch::Batch(const DrivenWorld& world, std::size_t count, int threads)
+    : threads_(std::make_shared<Threads>(threads)), worlds_(count, world), status_(count, StepResult::Status::ok) {
+  for (DrivenWorld& copy : worlds_) copy.world().step_one_by_one(true);
+}
+
+void Batch::set_worlds(const std::vector<std::size_t>& indices, const DrivenWorld& world) {
+  check_alike(worlds_.front().scene(), world.scene(), "world");
+  threads_->share_out(indices.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      DrivenWorld& copy = worlds_[indices[i]];
+      copy = world;
+      copy.world().step_one_by_one(true);
+      status_[indices[i]] = StepResult::Status::ok;
+    }
+  });
+  drop_records();
 }
 
 void Batch::set_material(const std::string& name, const std::vector<MaterialChange>& changes) {
-  const SceneDesc& first = worlds_.front().scene();
-  if (!first.find_material(name))
-    throw UnknownName("material: " + quoted(name) + "; allowed: " + material_names(first.materials));
-  const bool started = worlds_.front().world().steps() > 0;
-  std::vector<std::string> errors;
-  for (const MaterialChange& wanted : changes) {
-    if (!is_material_field(wanted.field))
-      throw UnknownName("materials." + name + "." + escaped(wanted.field) + ": no such key; allowed: " + material_keys());
-    if (started && wanted.field == "linear_density")
-      errors.push_back("materials." + name + ".linear_density: given after the first step; allowed: before it");
+  const std::vector<std::shared_ptr<const SceneDesc>> scenes = scenes_with(name, changes, worlds_);
+  std::vector<DrivenWorld> changed = worlds_;
+  for (std::size_t i = 0; i < changed.size(); ++i) {
+    if (changed[i].is_as_it_began())
+      changed[i].begin_anew(scenes[i]);
+    else
+      changed[i].tune(scenes[i]);
+    changed[i].world().step_one_by_one(true);
   }
-  std::vector<std::shared_ptr<const SceneDesc>> scenes;
-  for (std::size_t i = 0; i < worlds_.size() && errors.size() < 100; ++i) {
-    SceneDesc scene = worlds_[i].scene();
-    for (NamedMaterial& material : scene.materials) {
-      if (material.name != name) continue;
-      for (const MaterialChange& wanted : changes) change("materials." + name, wanted, i, material.material, errors);
+  worlds_ = std::move(changed);
+}
+
+void Batch::set_frame(const std::string& name, std::vector<std::vector<Pose>> poses) {
+  std::vector<int> frames;
+  for (const DrivenWorld& world : worlds_) frames.push_back(world.find_frame(name));
+  for (std::size_t i = 0; i < worlds_.size(); ++i) worlds_[i].set_frame(frames[i], std::move(poses[i]));
+}
+
+std::optional<OddWorld> Batch::copy(const std::vector<Part>& parts, double* to) const {
+  std::size_t row = 0;
+  for (const Part& part : parts) row += part.shape.size();
+  std::vector<std::size_t> copied(worlds_.size(), 0);  // parts of each world
+  threads_->share_out(worlds_.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      double* next = to + i * row;
+      for (const Part& part : parts) {
+        if (!try_copy(worlds_[i].world(), part, next)) break;
+        next += part.shape.size();
+        ++copied[i];
+      }
     }
-    scenes.push_back(std::make_shared<SceneDesc>(std::move(scene)));
-  }
-  for (std::size_t i = 0; i < scenes.size() && errors.empty(); ++i)
-    for (const std::string& line : validate(*scenes[i])) errors.push_back("world " + std::to_string(i) + ": " + line);
-  if (!errors.empty()) throw SceneError(std::move(errors));
-  if (!started) {
-    std::vector<DrivenWorld> worlds = make_worlds(scenes);
-    for (std::size_t i = 0; i < worlds.size(); ++i) worlds[i].take_given_poses(worlds_[i]);
-    worlds_ = std::move(worlds);
-    return;
-  }
-  std::vector<DrivenWorld> tuned = worlds_;
-  for (std::size_t i = 0; i < tuned.size(); ++i) tuned[i].tune(scenes[i]);
-  worlds_ = std::move(tuned);
+  });
+  for (std::size_t i = 0; i < copied.size(); ++i)
+    if (copied[i] < parts.size()) return OddWorld{i, copied[i]};
+  return std::nullopt;
 }
 
 void Batch::begin_steps(std::int64_t steps, std::int64_t record_every, const std::vector<Quantity>& quantities) {

@@ -1,11 +1,12 @@
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "simulation/batch_materials.h"
 #include "simulation/driven_world.h"
 #include "simulation/records.h"
 #include "verlet_cable/core/world_stepper.h"
@@ -13,10 +14,17 @@
 
 namespace verlet_cable {
 
-/// A number of a material, for each world.
-struct MaterialChange {
-  std::string field;                     ///< a key of materials
-  std::vector<BendingStiffness> values;  ///< one a world; but for bending_stiffness both numbers are the same
+/// What is read of each world, the name being looked up in it, and the shape that it should have.
+struct Part {
+  Quantity quantity = Quantity::positions;
+  std::string name;
+  QuantityShape shape;
+  bool at_points = false;  ///< rows are points of a cable, see copy_points; else what the world has
+};
+
+/// A world that does not have a part, or has another shape of it.
+struct OddWorld {
+  std::size_t world = 0, part = 0;
 };
 
 /// Many worlds that are alike but for numbers, stepped together. What comes out does not depend on the number of threads, and is
@@ -25,15 +33,26 @@ class Batch {
  public:
   /// A world a scene; `threads`: how many step them, 0: as many as there are cores. Throws SceneError where a scene is wrong, or
   /// differs from the first in more than numbers.
-  Batch(std::vector<std::shared_ptr<const SceneDesc>> scenes, const Motion& motion, int threads);
+  Batch(const std::vector<std::shared_ptr<const SceneDesc>>& scenes, const Motion& motion, int threads);
+  /// So many copies of a world as it is.
+  Batch(const DrivenWorld& world, std::size_t count, int threads);
 
   std::size_t size() const { return worlds_.size(); }
   const DrivenWorld& operator[](std::size_t index) const { return worlds_[index]; }
-  DrivenWorld& operator[](std::size_t index) { return worlds_[index]; }
 
-  /// Changes a material of the scenes. At t = 0 the worlds start anew from them; later what tuning takes over is changed, which
-  /// linear_density is not. Throws SceneError with all that is wrong, and UnknownName.
+  /// These worlds, each named once, go on as copies of another. Throws SceneError where its scene differs from theirs in more
+  /// than numbers. Drops the records.
+  void set_worlds(const std::vector<std::size_t>& indices, const DrivenWorld& world);
+
+  /// Changes a material of the scenes. Worlds that are as they began begin anew with them; of others what tuning takes over is
+  /// changed, which linear_density is not. Throws SceneError with all that is wrong, and UnknownName.
   void set_material(const std::string& name, const std::vector<MaterialChange>& changes);
+
+  /// See DrivenWorld::set_frame; for each world. Throws UnknownName.
+  void set_frame(const std::string& name, std::vector<std::vector<Pose>> poses);
+
+  /// Writes the parts of world after world, side by side, or returns the first that does not have them all.
+  std::optional<OddWorld> copy(const std::vector<Part>& parts, double* to) const;
 
   /// Begins a call: what the steps until the next one record, after every `record_every` of them; 0: nothing.
   void begin_steps(std::int64_t steps, std::int64_t record_every, const std::vector<Quantity>& quantities);
@@ -54,9 +73,7 @@ class Batch {
   class Threads;
 
   void advance(std::size_t first, std::size_t last, std::int64_t steps);
-  std::vector<DrivenWorld> make_worlds(const std::vector<std::shared_ptr<const SceneDesc>>& scenes) const;
 
-  Motion motion_;
   std::shared_ptr<Threads> threads_;  ///< of copies, too: nobody steps two at once
   std::vector<DrivenWorld> worlds_;
   std::vector<StepResult::Status> status_;

@@ -1,11 +1,13 @@
 #include "simulation/driven_world.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "scene/frame_speed.h"
 #include "simulation/quantity.h"
 #include "verlet_cable/core/quoted_text.h"
+#include "verlet_cable/core/scene_fields.h"
 
 namespace verlet_cable {
 namespace {
@@ -20,10 +22,12 @@ World begin(const SceneDesc& scene, const FrameSource& frames) {
 
 DrivenWorld::DrivenWorld(std::shared_ptr<const SceneDesc> scene, std::shared_ptr<const FrameSource> frames)
     : scene_(std::move(scene)),
+      scene_at_first_(scene_),
       frames_(std::move(frames)),
       inputs_(frames_->at(0)),
       targets_(inputs_),
-      world_(begin(*scene_, *frames_)) {}
+      world_(begin(*scene_, *frames_)),
+      hash_of_start_(world_.hash()) {}
 
 int DrivenWorld::find_frame(const std::string& name) const {
   const std::vector<std::string>& names = world_.frames();
@@ -37,6 +41,57 @@ int DrivenWorld::find_frame(const std::string& name) const {
                     "; allowed: " + (allowed.empty() ? "none, the scene has none that moves" : allowed));
 }
 
+std::vector<std::string> DrivenWorld::frame_names() const {
+  std::vector<std::string> names;
+  for (int frame = 1; frame < static_cast<int>(world_.frames().size()); ++frame)
+    if (!world_.is_body_frame(frame)) names.push_back(world_.frames()[frame]);
+  return names;
+}
+
+std::optional<Pose> DrivenWorld::frame_pose(const std::string& name) const {
+  const std::vector<std::string>& names = world_.frames();
+  const auto found = std::find(names.begin(), names.end(), name);
+  const int frame = static_cast<int>(found - names.begin());
+  if (found != names.end()) return world_.frame_known(frame) ? std::optional<Pose>(world_.frame_pose(frame)) : std::nullopt;
+  if (!frames_->is_link(name)) return std::nullopt;
+  return frames_with(name, names.size(), {})->at(world_.time(), given_now())[names.size()].pose;
+}
+
+void DrivenWorld::add_frame(const std::string& name, const Pose& pose) {
+  const std::vector<std::string>& names = world_.frames();
+  if (!is_frame_name(name)) throw std::invalid_argument("name: " + quoted(name) + "; allowed: " + frame_words);
+  if (std::find(names.begin(), names.end(), name) != names.end())
+    throw std::invalid_argument("name: " + quoted(name) + "; allowed: names that no frame has");
+  const std::size_t frame = names.size();
+  world_.add_frame(name, pose);
+  follow_frames_from(frame);
+  set_frame(static_cast<int>(frame), {pose});
+}
+
+void DrivenWorld::follow_frames_from(std::size_t first) {
+  const std::size_t count = world_.frames().size();
+  if (first == count) return;
+  inputs_.resize(count, {{}, false});
+  for (std::size_t id = first; id < count; ++id) {
+    const Pose& pose = world_.frame_pose(static_cast<int>(id));
+    frames_ = frames_with(world_.frames()[id], id, pose);
+    inputs_[id] = {pose, true};
+  }
+  targets_ = inputs_;
+}
+
+std::shared_ptr<const FrameSource> DrivenWorld::frames_with(const std::string& name, std::size_t id, const Pose& resting) const {
+  auto frames = std::make_shared<FrameSource>(*frames_);
+  frames->add(name, static_cast<int>(id), resting);
+  return frames;
+}
+
+PosesById DrivenWorld::given_now() const {
+  PosesById given;
+  for (const GivenPoses& frame : given_) given.emplace(frame.frame, world_.frame_pose(frame.frame));
+  return given;
+}
+
 void DrivenWorld::set_frame(int frame, std::vector<Pose> poses) {
   const auto given =
       std::find_if(given_.begin(), given_.end(), [frame](const GivenPoses& other) { return other.frame == frame; });
@@ -46,17 +101,29 @@ void DrivenWorld::set_frame(int frame, std::vector<Pose> poses) {
     *given = {frame, std::move(poses), 0};
 }
 
+void DrivenWorld::begin_anew(std::shared_ptr<const SceneDesc> scene) {
+  DrivenWorld anew(std::move(scene), frames_);
+  anew.given_ = std::move(given_);
+  *this = std::move(anew);
+}
+
 void DrivenWorld::tune(std::shared_ptr<const SceneDesc> scene) {
   world_.tune(*scene);
   scene_ = std::move(scene);
 }
 
 const BoundaryInputs& DrivenWorld::next_inputs() {
-  if (!frames_->rests()) targets_ = frames_->at(static_cast<double>(world_.steps() + 1) * scene_->time_step);
-  for (GivenPoses& given : given_) {
-    targets_[given.frame].pose = given.poses[given.next];
-    if (given.next + 1 < given.poses.size()) ++given.next;
+  const double time = static_cast<double>(world_.steps() + 1) * scene_->time_step;
+  if (frames_->has_links() && !given_.empty()) {
+    PosesById poses;
+    for (const GivenPoses& given : given_) poses.emplace(given.frame, given.poses[given.next]);
+    targets_ = frames_->at(time, poses);
+  } else {
+    if (!frames_->rests()) targets_ = frames_->at(time);
+    for (const GivenPoses& given : given_) targets_[given.frame].pose = given.poses[given.next];
   }
+  for (GivenPoses& given : given_)
+    if (given.next + 1 < given.poses.size()) ++given.next;
   inputs_.swap(targets_);
   if (scene_->max_frame_speed < infinity) limit_frame_motion(targets_, scene_->max_frame_speed * scene_->time_step, inputs_);
   if (!frames_->rests() || !given_.empty()) targets_ = inputs_;

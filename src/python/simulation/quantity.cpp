@@ -163,4 +163,28 @@ void copy_quantity(const World& world, Quantity quantity, const std::string& nam
   }
 }
 
+bool try_copy_quantity(const World& world, Quantity quantity, const std::string& name, const QuantityShape& shape, double* to) {
+  try {
+    if (shape_of(world, quantity, name) != shape) return false;
+  } catch (const UnknownName&) {
+    return false;
+  }
+  copy_quantity(world, quantity, name, to);
+  return true;
+}
+
+void copy_points(const World& world, Quantity quantity, const std::string& name, std::size_t points, double* to) {
+  const CableState& state = find_cable(world, name).state;
+  const std::vector<Vector3>& nodes = quantity == Quantity::positions ? state.positions : state.velocities;
+  const double distance = state.length() / static_cast<double>(points - 1);
+  int segment = 0;
+  double start = 0;  // [m] of the segment
+  for (std::size_t i = 0; i < points; ++i) {
+    const double place = static_cast<double>(i) * distance;
+    while (segment + 1 < state.segments() && start + state.rest_lengths[segment] <= place) start += state.rest_lengths[segment++];
+    const double fraction = std::min(1.0, (place - start) / state.rest_lengths[segment]);
+    to = write(Vector3((1 - fraction) * nodes[segment] + fraction * nodes[segment + 1]), to);
+  }
+}
+
 }  // namespace verlet_cable

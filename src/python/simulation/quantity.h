@@ -48,4 +48,11 @@ QuantityShape shape_of(const World& world, Quantity quantity, const std::string&
 /// Writes as many numbers as `shape_of` says, row by row.
 void copy_quantity(const World& world, Quantity quantity, const std::string& name, double* to);
 
+/// Likewise where it has this shape; false, and nothing is written, where it has another one, or the world no such name.
+bool try_copy_quantity(const World& world, Quantity quantity, const std::string& name, const QuantityShape& shape, double* to);
+
+/// Of a cable, whose nodes may be any number: positions or velocities of so many points, at least 2, at even distances along it
+/// at rest, from end to end; linear between nodes. Throws UnknownName.
+void copy_points(const World& world, Quantity quantity, const std::string& name, std::size_t points, double* to);
+
 }  // namespace verlet_cable

@@ -54,12 +54,9 @@ void Records::add(const World& world, std::size_t index, std::size_t record) {
   for (Record& one : all_) {
     const std::size_t size = one.shape.size();
     double* to = one.numbers.get() + (index * records_ + record) * size;
-    if (shape_of(world, one.quantity, one.name) == one.shape) {
-      copy_quantity(world, one.quantity, one.name, to);
-    } else {
-      std::fill_n(to, size, 0.0);
-      one.changed[index] = 1;
-    }
+    if (try_copy_quantity(world, one.quantity, one.name, one.shape, to)) continue;
+    std::fill_n(to, size, 0.0);
+    one.changed[index] = 1;
   }
 }
 

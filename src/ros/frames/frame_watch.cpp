@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <string>
 
-#include "verlet_cable/core/jump_text.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/core/scene_fields.h"
@@ -151,7 +150,7 @@ void FrameWatch::report_jumps(Nanoseconds stamp, const World& world) {
     const auto [reported, is_new] = jumped_.emplace(attachment.frame, stamp);
     if (!is_new && stamp > reported->second && stamp - reported->second < jump_period) continue;
     reported->second = stamp;
-    events_.publish(CableEvent::JUMPED, stamp, subject_of(world, attachment), jump_text(world, jump));
+    events_.publish(jump_event(world, jump), stamp);
   }
 }
 

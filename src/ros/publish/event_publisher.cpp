@@ -4,13 +4,23 @@
 
 #include "publish/queue_size.h"
 #include "time/ros_time.h"
-#include "verlet_cable/core/body_name.h"
 
 namespace verlet_cable {
+namespace {
 
-EventSubject subject_of(const World& world, const Attachment& attachment) {
-  return {name_of(world, attachment.body), attachment.name, attachment.node, world.frames()[attachment.frame]};
+/// Whether the constants of the message are the types' numbers.
+constexpr bool is(EventType type, std::uint8_t constant) {
+  return static_cast<std::uint8_t>(type) == constant;
 }
+static_assert(is(EventType::cut, CableEvent::CUT) && is(EventType::broke, CableEvent::BROKE) &&
+              is(EventType::pinned, CableEvent::PINNED) && is(EventType::unpinned, CableEvent::UNPINNED) &&
+              is(EventType::frame_lost, CableEvent::FRAME_LOST) && is(EventType::frame_back, CableEvent::FRAME_BACK) &&
+              is(EventType::reset, CableEvent::RESET) && is(EventType::time_jump, CableEvent::TIME_JUMP) &&
+              is(EventType::fault, CableEvent::FAULT) && is(EventType::joined, CableEvent::JOINED) &&
+              is(EventType::limit, CableEvent::LIMIT) && is(EventType::caught, CableEvent::CAUGHT) &&
+              is(EventType::released, CableEvent::RELEASED) && is(EventType::jumped, CableEvent::JUMPED));
+
+}  // namespace
 
 EventPublisher::EventPublisher(ros::NodeHandle& private_node, std::string frame_id)
     : publisher_(private_node.advertise<CableEvent>("events", publisher_queue_size)), frame_id_(std::move(frame_id)) {}
@@ -18,6 +28,10 @@ EventPublisher::EventPublisher(ros::NodeHandle& private_node, std::string frame_
 void EventPublisher::publish(std::uint8_t type, Nanoseconds stamp, const EventSubject& subject,
                              const std::string& message) const {
   publish_each(type, stamp, {subject}, message);
+}
+
+void EventPublisher::publish(const WorldEvent& event, Nanoseconds stamp) const {
+  publish(static_cast<std::uint8_t>(event.type), stamp, event.subject, event.message);
 }
 
 void EventPublisher::publish_each(std::uint8_t type, Nanoseconds stamp, const std::vector<EventSubject>& subjects,

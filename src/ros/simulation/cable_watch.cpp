@@ -1,9 +1,6 @@
 #include "simulation/cable_watch.h"
 
-#include <algorithm>
-
 #include "verlet_cable/core/body_name.h"
-#include "verlet_cable/core/excursion_text.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 
@@ -36,38 +33,8 @@ void CableWatch::report_status(const StepResult& result, Nanoseconds stamp, cons
   }
 }
 
-void CableWatch::report_breaks(Nanoseconds stamp, const World& world) const {
-  for (const Break& broken : world.findings().breaks) {
-    const CableModel& first = *world.cables()[broken.cable].model;
-    const std::string& second = world.cables()[broken.new_cable].model->name;
-    events_.publish(CableEvent::BROKE, stamp, {first.name, {}, broken.segment, second},
-                    "cable " + quoted(first.name) + " broke at segment " + std::to_string(broken.segment) +
-                        ", where its tension was above breaking_tension, " + number_text(broken.limit) +
-                        " N; the part behind it is now cable " + quoted(second));
-  }
-}
-
-void CableWatch::report_excursions(Nanoseconds stamp, const World& world) const {
-  for (const Excursion& excursion : world.findings().excursions) {
-    const std::string& cable = world.cables()[excursion.cable].model->name;
-    events_.publish(CableEvent::LIMIT, stamp, {cable, {}, excursion.node, {}},
-                    "cable " + quoted(cable) + " at node " + std::to_string(excursion.node) + ": " + excursion_text(excursion));
-  }
-}
-
-void CableWatch::report_guides(Nanoseconds stamp, const World& world) const {
-  const auto report = [&](const std::vector<int>& guides, std::uint8_t type, const char* what) {
-    for (const int index : guides) {
-      const SimulatedGuide& guide = world.guides()[index];
-      const auto holds = [&](const Attachment& attachment) { return attachment.guide == index; };
-      const auto attachment = std::find_if(world.attachments().begin(), world.attachments().end(), holds);
-      const int node = attachment == world.attachments().end() ? 0 : attachment->node;
-      events_.publish(type, stamp, {guide.cable, guide.name, node, {}},
-                      "guide " + quoted(guide.name) + what + quoted(guide.cable) + (type == CableEvent::CAUGHT ? "" : " go"));
-    }
-  };
-  report(world.findings().caught, CableEvent::CAUGHT, " has taken cable ");
-  report(world.findings().released, CableEvent::RELEASED, " has let cable ");
+void CableWatch::report_events(Nanoseconds stamp, const World& world) const {
+  for (const WorldEvent& event : events_of_step(world)) events_.publish(event, stamp);
 }
 
 void CableWatch::report_intrusions(const World& world) {

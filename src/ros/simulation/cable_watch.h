@@ -17,12 +17,8 @@ class CableWatch {
 
   /// Reports how a step went that began at the simulated time `stamp`.
   void report_status(const StepResult& result, Nanoseconds stamp, const World& world);
-  /// Reports the cables that broke in the step that led to `stamp`.
-  void report_breaks(Nanoseconds stamp, const World& world) const;
-  /// Reports where cables came beyond their materials' limits in the step that led to `stamp`.
-  void report_excursions(Nanoseconds stamp, const World& world) const;
-  /// Reports the guides that took their cables, or let them go, in the step that led to `stamp`.
-  void report_guides(Nanoseconds stamp, const World& world) const;
+  /// Reports what happened to cables in the step that led to `stamp`: see `events_of_step`.
+  void report_events(Nanoseconds stamp, const World& world) const;
   /// Warns of cables that the last step found inside obstacles, of each pair once until `restart`.
   void report_intrusions(const World& world);
   /// Warns of cables that could not start as the scene says, from these of World::unsettled() and World::misfits() on.

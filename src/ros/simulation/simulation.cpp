@@ -171,9 +171,7 @@ bool Simulation::step_world(Nanoseconds time) {
   const Nanoseconds before = std::exchange(stamp_, time);
   stepped_to_ = stamp_;
   frame_watch_.report_jumps(stamp_, world_);
-  cable_watch_.report_breaks(stamp_, world_);
-  cable_watch_.report_excursions(stamp_, world_);
-  cable_watch_.report_guides(stamp_, world_);
+  cable_watch_.report_events(stamp_, world_);
   cable_watch_.report_intrusions(world_);
   if (!world_.findings().waiting.empty() && !frames_.changes().empty()) {
     const std::size_t unsettled = world_.findings().unsettled.size(), misfits = world_.findings().misfits.size();

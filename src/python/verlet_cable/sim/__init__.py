@@ -9,6 +9,6 @@
 
 SI units everywhere. Poses are x, y, z, qx, qy, qz, qw in the scene's fixed frame.
 """
-from verlet_cable._simulation import Batch, Scene, SceneError, World
+from verlet_cable._simulation import Batch, Event, Pieces, Pinned, Scene, SceneError, World
 
-__all__ = ['Batch', 'Scene', 'SceneError', 'World']
+__all__ = ['Batch', 'Event', 'Pieces', 'Pinned', 'Scene', 'SceneError', 'World']

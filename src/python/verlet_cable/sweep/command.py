@@ -1,5 +1,6 @@
 """cable_sweep SWEEP.yaml --output DIR [--workers N | --scheduler tcp://HOST:PORT] [--resume]"""
 import argparse
+import contextlib
 import os
 import signal
 import sys
@@ -68,18 +69,22 @@ def _run(options, path, sweep, layout):
     reason = None
     try:
         if not store.is_complete(path, layout):
-            with schedule.cluster(options.workers, options.scheduler) as client:
-                if not os.path.lexists(path):
+            with contextlib.ExitStack() as stack:
+                is_begun = os.path.lexists(path)
+                if is_begun:
+                    stack.enter_context(store.locked(path))
+                client = stack.enter_context(schedule.cluster(options.workers, options.scheduler))
+                if not is_begun:
                     store.begin(path, sweep, layout)
-                with store.locked(path):
-                    _do_the_rest(client, path, sweep, layout, report)
+                    stack.enter_context(store.locked(path))
+                _do_the_rest(client, path, sweep, layout, report)
     except SweepStopped as stopped:
         reason = str(stopped)
     except KeyboardInterrupt:
         reason = 'interrupted'
     report.clear()
     if reason is not None:
-        print(f'cable_sweep: {reason}\n{report.done} of {layout.samples} samples are in {options.output}; '
+        print(f'cable_sweep: {reason}\n{store.count_samples(path, layout)} of {layout.samples} samples are in {options.output}; '
               '--resume goes on with the others', file=sys.stderr)
         return _STOPPED
     failures = store.count_failures(path)
@@ -91,11 +96,11 @@ def _run(options, path, sweep, layout):
 def _do_the_rest(client, path, sweep, layout, report):
     from . import schedule, store
     complete = store.complete_chunks(path)
-    report.begin(sum(len(layout.samples_of(chunk)) for chunk in complete))
+    report.begin(store.count_samples(path, layout))
     store.remove_remains(path)
     try:
         schedule.run_chunks(client, (path, sweep.folder, store.identity(path)),
-                            (chunk for chunk in range(layout.chunks) if chunk not in complete), report)
+                            (chunk for chunk in range(layout.chunks) if chunk not in complete), layout.chunks - len(complete), report)
     finally:
         store.remove_remains(path)
 

@@ -1,4 +1,5 @@
 """SWEEP.yaml: what is to be simulated, how often, and what is kept of it. Every error is found before anything is simulated."""
+import copy
 import hashlib
 import math
 import os
@@ -7,13 +8,13 @@ from verlet_cable.sim import Scene, SceneError
 
 from . import text_yaml
 from .errors import SweepError, rejected
-from .paths import parse_path, why_absent
+from .paths import holder_of, parse_path, path_text, why_absent
 from .text_yaml import number, shown
 from .variations import Variation, read_variation
 
 # Fields of World and Batch, and their units.
 FIELDS = {
-    'positions': 'm', 'velocities': 'm/s', 'tension': 'N', 'curvature': '1/m', 'twist': '1/m', 'orientations': 'quaternion x, y, z, w',
+    'positions': 'm', 'velocities': 'm/s', 'tension': 'N', 'curvature': '1/m', 'twist': 'rad/m', 'orientations': 'quaternion x, y, z, w',
     'wrench': 'N, N m', 'body_pose': 'm, quaternion x, y, z, w', 'body_twist': 'm/s, rad/s',
 }
 MOTION = 'motion'  # the key of the varied values under which the motion is that was drawn
@@ -213,7 +214,7 @@ def _read_variations(sweep, values, errors):
         if parts[-1] in _NOT_VARIED:
             errors.append(f'{key}: cannot vary; {_NOT_VARIED[parts[-1]]}')
         if sweep.tree is not None:
-            reason = why_absent(sweep.tree, parts)
+            reason = why_absent(sweep.tree, parts) or _why_unknown(sweep, parts, value)
             if reason:
                 errors.append(f'{key}: not in {sweep.scene_name}; {reason}')
         for other in paths:
@@ -222,6 +223,20 @@ def _read_variations(sweep, values, errors):
         paths[parts] = key
         if variation is not None:
             sweep.variations[text] = variation
+
+
+def _why_unknown(sweep, parts, value):
+    """None if a scene can have this key, else what the scene's reader says of it."""
+    if isinstance(parts[-1], int) or parts[-1] in holder_of(sweep.tree, parts):
+        return None
+    tree = copy.deepcopy(sweep.tree)
+    holder_of(tree, parts)[parts[-1]] = value
+    try:
+        Scene.from_dict(tree, directory=sweep.scene_folder)
+    except SceneError as error:
+        unknown = f'{path_text(parts)}: unknown key'
+        return next((text for text in error.errors if text.startswith(unknown)), None)
+    return None
 
 
 def _read_motions(sweep, values, errors):

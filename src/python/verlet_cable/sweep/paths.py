@@ -26,7 +26,7 @@ def path_text(parts):
 
 
 def why_absent(tree, parts):
-    """None if a value can be put at this path of the scene, else why not. The last key may be one that the scene leaves to its default."""
+    """None if there is something at this path of the scene, or a dict that its last key can be put into; else what is not there."""
     for depth, part in enumerate(parts):
         here = path_text(parts[:depth]) or 'the scene'
         if isinstance(part, int):
@@ -37,15 +37,13 @@ def why_absent(tree, parts):
         elif not isinstance(tree, dict):
             return f'{here} has no keys'
         elif part not in tree:
-            return None if depth + 1 == len(parts) and depth > 0 else f'{here} has {", ".join(tree) or "no keys"}'
+            return None if depth + 1 == len(parts) else f'{here} has {", ".join(tree) or "no keys"}'
         tree = tree[part]
     return None
 
 
-def with_value(tree, parts, value):
-    """A copy of the scene with `value` at this path. What is not on the path is shared with `tree`."""
-    if not parts:
-        return value
-    copy = tree.copy()
-    copy[parts[0]] = with_value(tree.get(parts[0]) if isinstance(tree, dict) else tree[parts[0]], parts[1:], value)
-    return copy
+def holder_of(tree, parts):
+    """The dict or list that the last key of a path is in, or is to be put into."""
+    for part in parts[:-1]:
+        tree = tree[part]
+    return tree

@@ -1,11 +1,13 @@
 """Simulates some samples of a sweep, as many at once as have a motion and a time step in common."""
+import copy
+
 import numpy as np
 
 from verlet_cable.sim import Batch, Scene, SceneError
 
 from .description import MOTION
 from .errors import rejected
-from .paths import parse_path, with_value
+from .paths import holder_of, parse_path
 from .store import COMPLETE, FAULT, WRONG_SCENE
 from .variations import draw_sample
 
@@ -36,9 +38,10 @@ def simulate(sweep, layout, samples):
     for key, variation in sweep.variations.items():
         result.drawn[key] = np.array([variation.stored_value(draw[key]) for draw in draws])
     groups = {}
+    scenes = _Scenes(sweep)
     for position, draw in enumerate(draws):
         try:
-            scene = _scene(sweep, draw)
+            scene = scenes.of(draw)
         except SceneError as error:
             result.fail(position, WRONG_SCENE, '; '.join(error.errors))
             continue
@@ -53,12 +56,22 @@ def simulate(sweep, layout, samples):
     return result
 
 
-def _scene(sweep, draw):
-    tree = sweep.tree
-    for key, variation in sweep.variations.items():
-        if key != MOTION:
-            tree = with_value(tree, parse_path(key), variation.scene_value(draw[key]))
-    return Scene.from_dict(tree, directory=sweep.scene_folder)
+class _Scenes:
+    """The scenes of draws: one tree, into which their values are put in turn."""
+
+    def __init__(self, sweep):
+        self._folder = sweep.scene_folder
+        self._tree = copy.deepcopy(sweep.tree)
+        self._places = []
+        for key, variation in sweep.variations.items():
+            if key != MOTION:
+                parts = parse_path(key)
+                self._places.append((holder_of(self._tree, parts), parts[-1], key, variation))
+
+    def of(self, draw):
+        for holder, part, key, variation in self._places:
+            holder[part] = variation.scene_value(draw[key])
+        return Scene.from_dict(self._tree, directory=self._folder)
 
 
 def _simulate_group(sweep, layout, motion, time_step, members, result):

@@ -15,12 +15,14 @@ import fcntl
 import hashlib
 import os
 import shutil
+import socket
 
 import numpy as np
 
+from verlet_cable import _simulation
+
 from .errors import SweepError, missing_package
 from .layout import Layout, units_of
-from .version import package_version
 
 try:
     import numcodecs
@@ -38,21 +40,22 @@ _COMPRESSOR = numcodecs.Blosc(cname='lz4', clevel=5, shuffle=numcodecs.Blosc.SHU
 
 def versions():
     """What the bytes of a store depend on, besides the description."""
-    return {'verlet_cable': package_version(), 'numpy': np.__version__, 'zarr': zarr.__version__,
+    return {'verlet_cable': _simulation.__version__, 'numpy': np.__version__, 'zarr': zarr.__version__,
             'numcodecs': numcodecs.__version__}
 
 
 def begin(path, sweep, layout):
     """Makes the store, with nothing in it. It appears at `path` when it is whole."""
-    aside = path + '.partial'
+    aside = f'{path}.{socket.gethostname()}-{os.getpid()}.partial'  # another cable_sweep may be about to begin the same
     shutil.rmtree(aside, ignore_errors=True)
     try:
-        os.makedirs(os.path.dirname(path), exist_ok=True)
+        os.makedirs(aside)  # Zarr would not say why it cannot
         _write_arrays(zarr.open_group(zarr.DirectoryStore(aside), mode='w'), sweep, layout)
         os.rename(aside, path)
     except OSError as error:
         shutil.rmtree(aside, ignore_errors=True)
-        raise SweepError([f'--output: {path}: {error.strerror}']) from error
+        reason = 'another cable_sweep has begun it' if error.errno in (errno.ENOTEMPTY, errno.EEXIST) else error.strerror
+        raise SweepError([f'--output: {path}: {reason}; allowed: a place that can be written to, which nothing else is at']) from error
 
 
 def _attributes(sweep, layout):
@@ -88,7 +91,7 @@ def _write_arrays(root, sweep, layout):
 
 def check_same(path, sweep, layout):
     """Raises SweepError if the store at `path` is not of this sweep, or of other versions."""
-    attributes = _open(path).attrs.asdict()
+    attributes, arrays = _read(path)
     wanted = _attributes(sweep, layout)
     errors = []
     for key in ('scene', 'sweep', 'versions'):
@@ -100,16 +103,28 @@ def check_same(path, sweep, layout):
             errors += [f'--resume: {path}: {key}.{name} was {found.get(name)}, is {wanted[key].get(name)}; allowed: the same'
                        for name in differing]
         else:
-            errors.append(f'--resume: {path}: the {key} is not the one that the store was begun with; allowed: the same text')
+            errors.append(f'--resume: {path}: not what the store was begun with: {key}; allowed: the same')
+    wanted_arrays = {'status', 'message', 'time', *(f'{name}/{field}' for name, field in layout.shapes),
+                     *(f'vary/{key}' for key in sweep.variations)}
+    if not errors and not wanted_arrays <= arrays:
+        errors.append(f'--resume: {path}: without ' + ', '.join(sorted(wanted_arrays - arrays)) + '; allowed: a whole store')
     if errors:
         raise SweepError(errors)
 
 
-def _open(path):
+def _read(path):
+    """The attributes of a store, and the paths of its arrays. Raises SweepError."""
     try:
-        return zarr.open_group(zarr.DirectoryStore(path), mode='r')
-    except (zarr.errors.GroupNotFoundError, zarr.errors.FSPathExistNotDir, ValueError) as error:
+        root = _open(path)
+        return root.attrs.asdict(), set(arrays_of(root))
+    except OSError as error:
+        raise SweepError([f'--resume: {path}: {error.strerror}; allowed: a store that can be read']) from error
+    except (KeyError, ValueError, zarr.errors.GroupNotFoundError, zarr.errors.FSPathExistNotDir) as error:
         raise SweepError([f'--resume: {path}: no store of cable_sweep']) from error
+
+
+def _open(path):
+    return zarr.open_group(zarr.DirectoryStore(path), mode='r')
 
 
 def identity(path):
@@ -135,6 +150,11 @@ def arrays_of(root):
 def complete_chunks(path):
     """The numbers of the chunks that are there."""
     return {int(name) for name in os.listdir(os.path.join(path, 'status')) if name.isdigit()}
+
+
+def count_samples(path, layout):
+    """How many samples are in a store that may not have been begun."""
+    return sum(len(layout.samples_of(chunk)) for chunk in complete_chunks(path)) if os.path.lexists(path) else 0
 
 
 def is_complete(path, layout):
@@ -181,11 +201,11 @@ def count_failures(path):
 
 
 def remove_remains(path):
-    """Removes what killed workers had begun to write aside."""
+    """Removes what killed workers had begun to write aside, as far as it can."""
     for folder, _, files in os.walk(path):
         for file in files:
             if file.endswith('.partial'):
-                with contextlib.suppress(FileNotFoundError):
+                with contextlib.suppress(OSError):
                     os.remove(os.path.join(folder, file))
 
 

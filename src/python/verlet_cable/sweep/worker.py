@@ -1,5 +1,6 @@
-"""What a Dask worker does: one chunk of the samples, from the drawing to the files."""
+"""What a Dask worker does: chunks of the samples, from the drawing to the files."""
 import functools
+import time
 
 import zarr
 
@@ -12,16 +13,18 @@ class WrongWorker(RuntimeError):
     """A worker that cannot do what the sweep was begun with."""
 
 
-def run_chunk(path, folder, identity, chunk):
-    """Simulates and writes a chunk of the store at `path`, unless it is there. folder: of SWEEP.yaml. identity: store.identity(path).
+def run_chunks(path, folder, identity, chunks):
+    """Simulates and writes chunks of the store at `path`, but those that are there. folder: of SWEEP.yaml. identity: store.identity(path).
 
-    Returns [(sample, status, message)] of the samples that failed.
+    Returns the seconds that it took, and for each chunk [(sample, status, message)] of the samples that failed.
     """
+    start = time.monotonic()
     arrays, sweep, layout = _plan(path, folder, identity)
-    samples = layout.samples_of(chunk)
-    if f'status/{chunk}' not in arrays['status'].store:
-        store.write_chunk(arrays, layout, chunk, simulate(sweep, layout, samples))
-    return store.failures_of(arrays, samples)
+    for chunk in chunks:
+        if f'status/{chunk}' not in arrays['status'].store:
+            store.write_chunk(arrays, layout, chunk, simulate(sweep, layout, layout.samples_of(chunk)))
+    failures = [store.failures_of(arrays, layout.samples_of(chunk)) for chunk in chunks]
+    return time.monotonic() - start, failures
 
 
 @functools.lru_cache(maxsize=4)

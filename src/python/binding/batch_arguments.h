@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "binding/arguments.h"
+#include "simulation/batch.h"
+
+namespace verlet_cable {
+
+/// A number for all worlds, one a world, or of a stiffness two a world. Throws ValueError.
+std::vector<BendingStiffness> read_values(const std::string& name, const Numbers& numbers, std::size_t count);
+
+/// Poses of all worlds, (count, 7) or (count, steps, 7). Throws ValueError.
+std::vector<std::vector<Pose>> read_poses(const Numbers& poses, std::size_t count);
+
+/// The index of a world, from the end where it is negative. Throws IndexError.
+std::size_t read_world_index(std::int64_t index, std::size_t count);
+
+/// Which worlds are meant, each once, ascending: an integer, a sequence of them, or a mask (count,). Throws IndexError,
+/// ValueError.
+std::vector<std::size_t> read_world_indices(const py::object& index, std::size_t count);
+
+}  // namespace verlet_cable

@@ -1,0 +1,133 @@
+#include "binding/batch_arrays.h"
+
+#include <memory>
+#include <optional>
+#include <utility>
+
+namespace verlet_cable {
+namespace {
+
+constexpr std::int64_t most_points = 100000;
+
+std::string text_of(const QuantityShape& shape) {
+  return "(" + std::to_string(shape.rows) + (shape.columns > 0 ? ", " + std::to_string(shape.columns) + ")" : ",)");
+}
+
+[[noreturn]] void refuse_odd_world(std::size_t world, Quantity quantity, const std::string& name, const QuantityShape& shape) {
+  const std::string index = std::to_string(world);
+  throw py::value_error(std::string(name_of(quantity)) + " of " + name + ": world " + index + " has none of shape " +
+                        text_of(shape) +
+                        " as world 0: it was edited otherwise, a cable of one of them broke, or slides through " +
+                        "guides; allowed: what all worlds have alike; world(" + index +
+                        ") has its own, and observations() reads points of cables with any number of nodes");
+}
+
+std::vector<std::size_t> sizes_of(const QuantityShape& shape, std::vector<std::size_t> first) {
+  first.push_back(shape.rows);
+  if (shape.columns > 0) first.push_back(shape.columns);
+  return first;
+}
+
+py::array_t<double> recorded_array(const Record& record, std::size_t worlds, std::size_t records) {
+  for (std::size_t i = 0; i < worlds; ++i)
+    if (record.changed[i]) refuse_odd_world(i, record.quantity, record.name, record.shape);
+  auto* owner = new std::shared_ptr<double>(record.numbers);
+  const py::capsule capsule(owner, [](void* pointer) { delete static_cast<std::shared_ptr<double>*>(pointer); });
+  py::array_t<double> array(sizes_of(record.shape, {worlds, records}), record.numbers.get(), capsule);
+  array.attr("setflags")(py::arg("write") = false);
+  return array;
+}
+
+void copy(const Batch& batch, const std::vector<Part>& parts, double* to) {
+  std::optional<OddWorld> odd;
+  {
+    const py::gil_scoped_release release;
+    odd = batch.copy(parts, to);
+  }
+  if (!odd) return;
+  const Part& part = parts[odd->part];
+  refuse_odd_world(odd->world, part.quantity, part.name, part.shape);
+}
+
+py::array_t<double> array_of_now(const Batch& batch, Quantity quantity, const std::string& name) {
+  const QuantityShape shape = shape_of(batch[0].world(), quantity, name);
+  py::array_t<double> array(sizes_of(shape, {batch.size()}));
+  copy(batch, {{quantity, name, shape}}, array.mutable_data());
+  return array;
+}
+
+Part read_part(const World& world, const std::tuple<std::string, std::string>& given) {
+  const auto& [quantity_name, name] = given;
+  const Quantity quantity = read_quantities("parts", {quantity_name}).front();
+  return {quantity, name, shape_of(world, quantity, name)};
+}
+
+Part read_part(const World& world, const std::tuple<std::string, std::string, std::int64_t>& given) {
+  const auto& [quantity_name, name, points] = given;
+  const Part nodes = read_part(world, {quantity_name, name});
+  if (find(world.cables(), name) < 0 || nodes.shape.columns != 3)
+    throw py::value_error("parts: points of " + quantity_name + " of " + name +
+                          "; allowed: points of positions and velocities of cables");
+  if (points < 2 || points > most_points)
+    throw py::value_error("parts: " + std::to_string(points) + " points of " + name + "; allowed: 2 to " +
+                          std::to_string(most_points));
+  return {nodes.quantity, name, {static_cast<std::size_t>(points), 3}, true};
+}
+
+/// One number of each world.
+template <class Number, class Read>
+py::array_t<Number> array_of_numbers(const Batch& batch, const Read& read) {
+  py::array_t<Number> array(static_cast<py::ssize_t>(batch.size()));
+  for (std::size_t i = 0; i < batch.size(); ++i) array.mutable_data()[i] = read(i);
+  return array;
+}
+
+}  // namespace
+
+py::array_t<double> array_of(const Batch& batch, Quantity quantity, const std::string& name) {
+  const Records& records = batch.records();
+  if (records.count() == 0) return array_of_now(batch, quantity, name);
+  shape_of(batch[0].world(), quantity, name);  // throws for an unknown name
+  const Record* record = records.find(quantity, name);
+  if (!record)
+    throw py::value_error(std::string(name_of(quantity)) + ": not recorded; allowed: what `fields` of the last step named");
+  return recorded_array(*record, batch.size(), records.count());
+}
+
+py::array_t<double> observations(const Batch& batch, const std::vector<GivenPart>& given) {
+  std::vector<Part> parts;
+  std::size_t row = 0;
+  for (const GivenPart& one : given) {
+    parts.push_back(std::visit([&](const auto& items) { return read_part(batch[0].world(), items); }, one));
+    row += parts.back().shape.size();
+  }
+  py::array_t<double> array(std::vector<std::size_t>{batch.size(), row});
+  copy(batch, parts, array.mutable_data());
+  return array;
+}
+
+py::array_t<double> times(const Batch& batch) {
+  return array_of_numbers<double>(batch, [&](std::size_t i) { return batch[i].world().time(); });
+}
+
+py::array_t<std::int8_t> statuses(const Batch& batch) {
+  return array_of_numbers<std::int8_t>(batch, [&](std::size_t i) { return static_cast<std::int8_t>(batch.status()[i]); });
+}
+
+py::dict energies(const Batch& batch) {
+  py::dict all;
+  for (std::size_t i = 0; i < batch.size(); ++i)
+    for (const auto& [key, value] : energy_dict(batch[i].world().energy())) {
+      if (!all.contains(key)) all[key] = py::array_t<double>(static_cast<py::ssize_t>(batch.size()));
+      py::array_t<double>(py::reinterpret_borrow<py::object>(all[key])).mutable_at(i) = value.cast<double>();
+    }
+  return all;
+}
+
+std::vector<std::string> state_hashes(const Batch& batch) {
+  std::vector<std::string> hashes;
+  for (std::size_t i = 0; i < batch.size(); ++i) hashes.push_back(hash_text(batch[i].world().hash()));
+  return hashes;
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,241 @@
+#include "binding/edit_methods.h"
+
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "binding/arguments.h"
+#include "binding/run_steps.h"
+#include "simulation/edits.h"
+#include "verlet_cable/core/quoted_text.h"
+
+namespace verlet_cable {
+namespace {
+
+using OptionalNumbers = std::optional<Numbers>;
+
+DrivenWorld& use(PythonWorld& world) {
+  InUse::check(world.busy, "world");
+  return world.driven;
+}
+
+/// What is wrong with its numbers is said where they are used.
+Pose read_offset(const OptionalNumbers& offset) {
+  if (!offset) return {};
+  check_size("offset", *offset, 7);
+  const double* p = offset->data();
+  return {{p[0], p[1], p[2]}, Quaternion(p[6], p[3], p[4], p[5])};
+}
+
+RequestedPlace read_place(const std::string& cable, std::optional<std::int64_t> node, std::optional<double> arc_length,
+                          const OptionalNumbers& point, const std::string& point_frame) {
+  const int given = (node ? 1 : 0) + (arc_length ? 1 : 0) + (point ? 1 : 0);
+  if (given != 1)
+    throw py::value_error("node, arc_length, point: " + std::to_string(given) + " of them given; allowed: exactly one");
+  if (!point && !point_frame.empty())
+    throw py::value_error("point_frame: " + quoted(point_frame) + " without a point; allowed: together with one");
+  RequestedPlace place;
+  place.cable = cable;
+  place.point_frame = point_frame;
+  if (node) place.node = *node;
+  if (arc_length) {
+    place.mode = RequestedPlace::at_arc_length;
+    place.arc_length = *arc_length;
+  }
+  if (point) {
+    check_size("point", *point, 3);
+    place.mode = RequestedPlace::nearest;
+    place.point = {point->at(0), point->at(1), point->at(2)};
+  }
+  return place;
+}
+
+void add_axes(const char* name, const OptionalNumbers& vector, std::vector<NumberChange>& changes) {
+  if (!vector) return;
+  check_size(name, *vector, 3);
+  const char* axes[] = {"_x", "_y", "_z"};
+  for (int axis = 0; axis < 3; ++axis) changes.push_back({std::string(name) + axes[axis], vector->at(axis)});
+}
+
+/// A number, or of a bending stiffness two.
+void add_material_number(const NamedMaterial& material, const std::string& key, const Numbers& numbers,
+                         std::vector<NumberChange>& changes) {
+  const std::string name = material.name + "_" + key;
+  const bool bends = key == bending_stiffness_field.key;
+  const bool pair = bends && numbers.ndim() == 1 && numbers.shape(0) == 2;
+  if (numbers.ndim() != 0 && !pair)
+    throw py::value_error("materials[" + quoted(material.name) + "][" + quoted(key) + "]: shape " + shape_text(numbers) +
+                          "; allowed: a number" + (bends ? ", or (2,)" : ""));
+  if (!pair && (!bends || material.material.bending_stiffness.is_isotropic())) {
+    changes.push_back({name, *numbers.data()});
+    return;
+  }
+  changes.push_back({name + "_y", numbers.data()[0]});
+  changes.push_back({name + "_z", numbers.data()[pair ? 1 : 0]});
+}
+
+void add_materials(const SceneDesc& scene, const std::map<std::string, std::map<std::string, Numbers>>& materials,
+                   std::vector<NumberChange>& changes) {
+  for (const auto& [name, keys] : materials) {
+    const auto is_it = [&name = name](const NamedMaterial& material) { return material.name == name; };
+    const auto material = std::find_if(scene.materials.begin(), scene.materials.end(), is_it);
+    if (material == scene.materials.end())
+      throw UnknownName("materials: " + quoted(name) + "; allowed: " + material_names(scene.materials));
+    for (const auto& [key, numbers] : keys) add_material_number(*material, key, numbers, changes);
+  }
+}
+
+void add_frame(PythonWorld& world, const std::string& name, const Numbers& position, const Numbers& quaternion_xyzw) {
+  use(world).add_frame(name, read_pose(position, quaternion_xyzw));
+}
+
+void tune_world(PythonWorld& world, const OptionalNumbers& gravity, const OptionalNumbers& wind,
+                std::optional<double> contact_friction, const std::map<std::string, std::map<std::string, Numbers>>& materials) {
+  DrivenWorld& driven = use(world);
+  std::vector<NumberChange> changes;
+  add_axes("gravity", gravity, changes);
+  add_axes("wind", wind, changes);
+  if (contact_friction) changes.push_back({"contact_friction", *contact_friction});
+  add_materials(driven.scene_at_first(), materials, changes);
+  tune(changes, driven);
+}
+
+py::list events(PythonWorld& world, const py::object& event_type) {
+  use(world);
+  const EventRecord::Taken taken = world.events.take();
+  py::list list;
+  for (const auto& [time, event] : taken.events) {
+    const EventSubject& subject = event.subject;
+    list.append(
+        event_type(time, name_of(event.type), subject.cable, subject.attachment, subject.node, subject.other, event.message));
+  }
+  if (taken.left_out > 0)
+    list.append(event_type(taken.last_time, "more", "", "", 0, "", std::to_string(taken.left_out) + " more events"));
+  return list;
+}
+
+/// A class of named tuples, in the module.
+py::object add_tuple(py::module_& module, const char* name, const std::vector<std::string>& fields, const char* doc) {
+  using namespace py::literals;
+  const py::object tuple = py::module_::import("collections").attr("namedtuple")(name, fields, "module"_a = "verlet_cable.sim");
+  tuple.attr("__doc__") = doc;
+  module.attr(name) = tuple;
+  return tuple;
+}
+
+void add_cable_edits(py::module_& module, py::class_<PythonWorld>& world) {
+  const py::object pinned =
+      add_tuple(module, "Pinned", {"name", "node"}, "What World.pin returns: the attachment's name, and the node.");
+  const py::object pieces = add_tuple(module, "Pieces", {"first", "second"},
+                                      "What World.cut returns: the names of the pieces. The second is '' where a net was cut.");
+  world.def(
+      "pin",
+      [pinned](PythonWorld& self, const std::string& cable, std::optional<std::int64_t> node, std::optional<double> arc_length,
+               const OptionalNumbers& point, const std::string& point_frame, const std::string& name, const std::string& frame_id,
+               const OptionalNumbers& offset, bool clamp, bool keep_offset) {
+        DrivenWorld& driven = use(self);
+        const RequestedPin request{
+            read_place(cable, node, arc_length, point, point_frame), name, frame_id, read_offset(offset), clamp, keep_offset};
+        const PinAnswer answer = pin(request, driven, self.events);
+        return pinned(answer.name, answer.node);
+      },
+      py::arg("cable") = "", py::kw_only(), py::arg("node") = py::none(), py::arg("arc_length") = py::none(),
+      py::arg("point") = py::none(), py::arg("point_frame") = "", py::arg("name") = "", py::arg("frame_id") = "",
+      py::arg("offset") = py::none(), py::arg("clamp") = false, py::arg("keep_offset") = false,
+      "Holds a node of a cable or net, or a body's origin (node=0), to a frame, as the service `pin` does. The node goes there "
+      "smoothly.\n\n"
+      "cable: a cable, net or body; '' with `point`: what is nearest of all.\n"
+      "node, arc_length [m], point (3,) [m]: exactly one; the node itself, or the one nearest to it. point_frame: the frame that "
+      "the point is in, '' the fixed one.\n"
+      "name: of the new attachment; '': one is made.\n"
+      "frame_id: '' is the fixed frame. One that the world does not have begins at the origin, or is a robot's link where that "
+      "is; set_frame moves it.\n"
+      "offset: (7,) x, y, z [m], qx, qy, qz, qw in the frame, four zeros for no rotation; None: its origin.\n"
+      "clamp: holds direction and roll, too. keep_offset: holds it where it is relative to the frame now; then offset does not "
+      "count.\n\n"
+      "Returns Pinned(name, node). Raises ValueError, or KeyError for the name of a cable or frame that is not there; then "
+      "nothing "
+      "is changed.");
+  world.def(
+      "cut",
+      [pieces](PythonWorld& self, const std::string& cable, std::optional<std::int64_t> node, std::optional<double> arc_length,
+               const OptionalNumbers& point, const std::string& point_frame) {
+        DrivenWorld& driven = use(self);
+        const CutAnswer answer = cut(read_place(cable, node, arc_length, point, point_frame), driven, self.events);
+        return pieces(answer.first, answer.second);
+      },
+      py::arg("cable") = "", py::kw_only(), py::arg("node") = py::none(), py::arg("arc_length") = py::none(),
+      py::arg("point") = py::none(), py::arg("point_frame") = "",
+      "Removes the segment that starts at the node, or contains the arc length or the nearest point, as the service `cut` does; "
+      "of "
+      "a net the links at the node, or the nearest one. Its mass stays on its nodes, and each piece keeps at least one segment. "
+      "Arguments as of `pin`.\n\n"
+      "Returns Pieces(first, second): the first keeps the name. Raises ValueError, KeyError; then nothing is changed.");
+}
+
+}  // namespace
+
+void add_edit_methods(py::module_& module, py::class_<PythonWorld>& world) {
+  add_cable_edits(module, world);
+  world.def(
+      "unpin", [](PythonWorld& self, const std::string& name) { unpin(name, use(self), self.events); }, py::arg("name"),
+      "Releases what an attachment holds, one of the scene or a pin. Raises KeyError, ValueError; then nothing is changed.");
+  world.def(
+      "join",
+      [](PythonWorld& self, const std::string& first, bool first_at_end, const std::string& second, bool second_at_end) {
+        DrivenWorld& driven = use(self);
+        return join(first, first_at_end, second, second_at_end, driven, self.events);
+      },
+      py::arg("first"), py::arg("first_at_end"), py::arg("second"), py::arg("second_at_end"),
+      "Welds two ends of cables of one material, as the service `join` does; ends that are apart are drawn together.\n\n"
+      "Returns the name of the cable that they are now, the first's. Raises ValueError, KeyError; then nothing is changed.");
+  world.def(
+      "set_length",
+      [](PythonWorld& self, const std::string& cable, bool at_end, double length, double speed) {
+        set_length(cable, at_end, length, speed, use(self));
+      },
+      py::arg("cable"), py::arg("at_end"), py::arg("length"), py::arg("speed"),
+      "A winch at the cable's end (at_end) or start pays out or takes in cable, to the length [m] at the speed [m/s], as the "
+      "service `set_length` does; the number of nodes changes. Raises ValueError, KeyError; then nothing is changed.");
+  world.def(
+      "move_attachment",
+      [](PythonWorld& self, const std::string& name, const Numbers& offset) {
+        DrivenWorld& driven = use(self);
+        move_attachment(name, read_offset(offset), driven);
+      },
+      py::arg("name"), py::arg("offset"),
+      "Gives an attachment another pose in its frame: (7,) x, y, z [m], qx, qy, qz, qw, four zeros for no rotation. The next "
+      "step "
+      "takes what it holds there, as with set_frame: move it little by little. Raises ValueError, KeyError; then nothing is "
+      "changed.");
+  world.def(
+      "add_frame", add_frame, py::arg("name"), py::arg("position"), py::arg("quaternion_xyzw"),
+      "A frame for pins and obstacles, at (3,) [m] and (4,) in the fixed frame until set_frame moves it. Raises ValueError, "
+      "also for a name that a frame has.");
+  world.def("tune", tune_world, py::kw_only(), py::arg("gravity") = py::none(), py::arg("wind") = py::none(),
+            py::arg("contact_friction") = py::none(),
+            py::arg("materials") = std::map<std::string, std::map<std::string, Numbers>>{},
+            "Changes what can be tuned while it runs, as the node's `~tuning` does: gravity (3,) [m/s^2], wind (3,) [m/s], the "
+            "velocity of the fluid; the friction of cables with cables; and {material: {key: number}} of dampings, finite "
+            "stiffnesses (bending_stiffness also as (2,) of a material that bends unequally), drag and friction.\n\n"
+            "Raises SceneError with every error at once, by the names that `~tuning` has; ValueError, KeyError; then nothing is "
+            "changed.");
+  const py::object event_type = add_tuple(module, "Event", {"time", "type", "cable", "attachment", "node", "other", "message"},
+                                          "What happened to a world: the fields of CableEvent.msg, `time` [s] simulated, and "
+                                          "`type` the constant's name. What does not "
+                                          "apply is '' or 0.");
+  world.def(
+      "events", [event_type](PythonWorld& self) { return events(self, event_type); },
+      "List of Event(time, type, cable, attachment, node, other, message) since the last call: 'CUT', 'BROKE', 'PINNED', "
+      "'UNPINNED', 'FAULT', 'JOINED', 'LIMIT', 'CAUGHT', 'RELEASED' and 'JUMPED', of a frame once a second at most. The first "
+      "1000; then one of "
+      "type 'more' says how many were left out. A copy of a world has those that were not asked for yet.");
+}
+
+}  // namespace verlet_cable

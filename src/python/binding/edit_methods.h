@@ -1,0 +1,13 @@
+#pragma once
+
+#include "binding/world_class.h"
+
+namespace verlet_cable {
+
+/// pin, unpin, cut, join, set_length, move_attachment, tune, events, add_frame; and in the module what these return.
+void add_edit_methods(pybind11::module_& module, pybind11::class_<PythonWorld>& world);
+
+/// set_obstacle and remove_obstacle.
+void add_obstacle_methods(pybind11::class_<PythonWorld>& world);
+
+}  // namespace verlet_cable

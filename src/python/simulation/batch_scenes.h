@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "verlet_cable/core/scene_desc.h"
+
+namespace verlet_cable {
+
+/// Throws SceneError where scenes differ in more than numbers: in the names of things, how many segments they have, or the time
+/// step. `name`: what messages call `other`.
+void check_alike(const SceneDesc& first, const SceneDesc& other, const std::string& name);
+
+}  // namespace verlet_cable

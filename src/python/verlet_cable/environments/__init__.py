@@ -1,0 +1,24 @@
+"""Tasks with cables to learn, in Gymnasium's interface: https://gymnasium.farama.org. Gymnasium need not be installed.
+
+    from verlet_cable.environments import ShapeRope
+
+    environment = ShapeRope()
+    observation, info = environment.reset(seed=1)
+    observation, reward, terminated, truncated, info = environment.step(environment.action_space.sample())
+
+ShapeRope and LayCable have one world; ShapeRopeVector and LayCableVector have many that step together. Where Gymnasium 1.1 or newer
+is installed, they are a gymnasium.Env and a gymnasium.vector.VectorEnv, their spaces are gymnasium.spaces.Box, and gymnasium.make
+and make_vec know them as verlet_cable/ShapeRope-v0 and verlet_cable/LayCable-v0.
+
+The same seed and actions give the same bytes, in one world or among many, on any number of threads.
+"""
+from verlet_cable.environments.interface import AutoresetMode, Box, gymnasium
+from verlet_cable.environments.lay_cable import LayCable, LayCableVector
+from verlet_cable.environments.shape_rope import ShapeRope, ShapeRopeVector
+
+__all__ = ['AutoresetMode', 'Box', 'LayCable', 'LayCableVector', 'ShapeRope', 'ShapeRopeVector']
+
+if gymnasium is not None:
+    for _name in ('ShapeRope', 'LayCable'):
+        gymnasium.register(f'verlet_cable/{_name}-v0', entry_point=f'{__name__}:{_name}',
+                           vector_entry_point=f'{__name__}:{_name}Vector')

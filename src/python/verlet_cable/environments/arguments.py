@@ -1,0 +1,92 @@
+"""Reads arguments; what is wrong is a ValueError that names the argument, the value given and what is allowed."""
+import numbers
+
+import numpy
+
+SHOWN = 5  # wrong numbers of one array
+MOST = 1000000  # of anything that is counted, as sim.Batch has it of worlds
+
+
+def read_count(name, value):
+    if isinstance(value, bool) or not isinstance(value, numbers.Integral) or not 1 <= value <= MOST:
+        raise ValueError(f'{name}: {value!r}; allowed: whole numbers from 1 to {MOST}')
+    return int(value)
+
+
+def read_seed(name, value):
+    """None, or a whole number from 0."""
+    if value is None:
+        return None
+    if isinstance(value, bool) or not isinstance(value, numbers.Integral) or value < 0:
+        raise ValueError(f'{name}: {value!r}; allowed: None or whole numbers from 0')
+    return int(value)
+
+
+def read_seeds(value, count):
+    """One a world: given so, or all None, or counted up from a number."""
+    if value is None or isinstance(value, numbers.Integral):
+        first = read_seed('seed', value)
+        return [first if first is None else first + i for i in range(count)]
+    seeds = list(value)
+    if len(seeds) != count:
+        raise ValueError(f'seed: {len(seeds)} numbers; allowed: None, a number, or {count} numbers, one a world')
+    return [read_seed(f'seed[{i}]', seed) for i, seed in enumerate(seeds)]
+
+
+def read_render_mode(value, modes):
+    if value is not None and value not in modes:
+        raise ValueError(f'render_mode: {value!r}; allowed: None, {", ".join(map(repr, modes))}')
+    return value
+
+
+def read_action(name, value, space):
+    """An array of a space, as float64."""
+    try:
+        array = numpy.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        raise ValueError(f'{name}: {value!r}; allowed: numbers, of shape {space.shape}') from None
+    if array.shape != space.shape:
+        raise ValueError(f'{name}: shape {array.shape}; allowed: {space.shape}')
+    wrong = numpy.argwhere(~((array >= space.low) & (array <= space.high)))
+    if len(wrong) > 0:
+        texts = [f'{name}[{", ".join(map(str, index))}]: {array[tuple(index)]}' for index in wrong[:SHOWN]]
+        more = f', and {len(wrong) - SHOWN} more' if len(wrong) > SHOWN else ''
+        raise ValueError(f'{", ".join(texts)}{more}; allowed: {space.low.min()} to {space.high.max()}')
+    return array
+
+
+def read_options(value, allowed):
+    """A dict with none but the keys that are allowed."""
+    if value is None:
+        return {}
+    if not isinstance(value, dict):
+        raise ValueError(f'options: {value!r}; allowed: None or a dict')
+    unknown = [key for key in value if key not in allowed]
+    if unknown:
+        raise ValueError(f'options: {", ".join(map(repr, unknown))}; allowed: {", ".join(map(repr, allowed))}')
+    return value
+
+
+def read_index(name, value, count):
+    """A whole number from 0 to below `count`."""
+    if isinstance(value, bool) or not isinstance(value, numbers.Integral) or not 0 <= value < count:
+        raise ValueError(f'{name}: {value!r}; allowed: whole numbers from 0 to {count - 1}')
+    return int(value)
+
+
+def read_indices(name, value, worlds, count):
+    """One for all worlds, or one a world, (worlds,)."""
+    if isinstance(value, numbers.Integral):
+        return numpy.full(worlds, read_index(name, value, count))
+    values = list(value) if numpy.iterable(value) else [value]
+    if len(values) != worlds:
+        raise ValueError(f'{name}: {value!r}; allowed: a number, or {worlds} numbers, one a world')
+    return numpy.array([read_index(f'{name}[{i}]', each, count) for i, each in enumerate(values)])
+
+
+def read_mask(name, value, worlds):
+    """Some of the worlds, (worlds,) bool."""
+    mask = numpy.asarray(value)
+    if mask.dtype != bool or mask.shape != (worlds,) or not mask.any():
+        raise ValueError(f'{name}: {value!r}; allowed: bool of shape ({worlds},), at least one of them True')
+    return mask.copy()
