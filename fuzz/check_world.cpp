@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "require.h"
-#include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable::fuzz {
 namespace {
@@ -107,16 +106,6 @@ double mass(const World& world) {
   for (const SimulatedNet& net : world.nets())
     for (const double mass : net.model.masses) sum += mass;
   for (const SimulatedBody& body : world.bodies()) sum += body.mass;
-  return sum;
-}
-
-double mass_of_length(const World& world) {
-  double sum = 0;
-  for (const SimulatedCable& cable : world.cables()) {
-    const CableMaterials materials(cable);
-    for (int segment = 0; segment < cable.state.segments(); ++segment)
-      sum += materials[segment].linear_density * cable.state.rest_lengths[segment];
-  }
   return sum;
 }
 

@@ -10,7 +10,4 @@ void check_world(const World& world);
 /// [kg] of all cables, nets and bodies.
 double mass(const World& world);
 
-/// [kg] that the cables' rest lengths weigh: less than their masses by payloads, and by what cuts took out.
-double mass_of_length(const World& world);
-
 }  // namespace verlet_cable::fuzz

@@ -20,7 +20,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const mesh_reader::Mesh mesh = mesh_reader::import(format, content);
     for (const auto& triangle : mesh.triangles)
       for (const std::int32_t vertex : triangle)
-        fuzz::require(vertex >= 0 && static_cast<std::size_t>(vertex) < mesh.vertices.size(), "the corners of triangles are there");
+        fuzz::require(vertex >= 0 && static_cast<std::size_t>(vertex) < mesh.vertices.size(),
+                      "the corners of triangles are there");
   } catch (const mesh_reader::Refused&) {
     // With its reason.
   }

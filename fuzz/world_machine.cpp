@@ -1,26 +1,18 @@
 #include "world_machine.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
 #include <limits>
+#include <type_traits>
 
 #include "check_world.h"
 #include "require.h"
+#include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable::fuzz {
-namespace {
 
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-
-bool has_winch_or_break(const World& before, const World& after) {
-  return before.cables().size() != after.cables().size() || !after.findings().breaks.empty();
-}
-
-}  // namespace
-
-WorldMachine::WorldMachine(const SceneDesc& scene, FuzzedDataProvider& input)
+WorldMachine::WorldMachine(const SceneDesc& scene, Arbitrary& input)
     : input_(input),
       scene_(scene),
       frames_(initial_frames(scene)),
@@ -31,112 +23,144 @@ WorldMachine::WorldMachine(const SceneDesc& scene, FuzzedDataProvider& input)
 }
 
 void WorldMachine::act() {
-  switch (input_.ConsumeIntegralInRange(0, 15)) {
-    case 0:
-    case 1:
-      move_frames();
-      break;
-    case 2:
-    case 3:
-      step(input_.ConsumeIntegralInRange(1, 5));
-      break;
-    case 4:
-      step_copy_alike();
-      break;
-    case 5:
-      pin();
-      break;
-    case 6:
-      apply(edit::Unpin{any_name(attachment_names())});
-      break;
-    case 7:
-      apply(edit::MoveAttachment{any_name(attachment_names()), any_pose()});
-      break;
-    case 8: {
-      const BodyId body = any_body();
-      apply(edit::Cut{body, any_node(body)});
-      break;
-    }
-    case 9:
-      apply(edit::SetLength{any_body().index, input_.ConsumeBool(), std::abs(any_number()), std::abs(any_number())});
-      break;
-    case 10: {
-      const int first = any_body().index;
-      apply(edit::Join{first, input_.ConsumeBool(), any_body().index, input_.ConsumeBool()});
-      break;
-    }
-    case 11:
-      set_obstacle();
-      break;
-    case 12:
-      apply(edit::RemoveObstacle{any_name(obstacle_names())});
-      break;
-    case 13:
-      tune();
-      break;
-    case 14:
-      world_.settle();
-      break;
-    default:
-      put_back();
-  }
+  using Machine = WorldMachine;
+  // What is to happen more often is there more often.
+  void (Machine::*const acts[])() = {
+      &Machine::step_some,
+      &Machine::step_some,
+      &Machine::step_some,
+      &Machine::step_some,
+      &Machine::step_some,
+      &Machine::move_frame,
+      &Machine::move_frame,
+      &Machine::move_frame,
+      &Machine::disturb_frame,
+      &Machine::start_waiting,
+      &Machine::settle,
+      &Machine::copy,
+      &Machine::save_or_restore,
+      &Machine::pin,
+      &Machine::pin,
+      &Machine::unpin,
+      &Machine::move_attachment,
+      &Machine::cut,
+      &Machine::cut,
+      &Machine::set_length,
+      &Machine::set_length,
+      &Machine::join,
+      &Machine::join,
+      &Machine::join,
+      &Machine::set_obstacle,
+      &Machine::remove_obstacle,
+      &Machine::tune,
+  };
+  (this->*input_.one_of(acts))();
   check_world(world_);
 }
 
-void WorldMachine::move_frames() {
+template <class Call>
+auto WorldMachine::on_both(const Call& call) {
+  const auto and_compare = [&] {
+    if (!copy_) return;
+    call(*copy_);
+    require(copy_->hash() == world_.hash(), "a copy goes on with the same bytes");
+  };
+  if constexpr (std::is_void_v<decltype(call(world_))>) {
+    call(world_);
+    and_compare();
+  } else {
+    const auto result = call(world_);
+    and_compare();
+    return result;
+  }
+}
+
+/// As a hand does, until it is told otherwise.
+void WorldMachine::move_frame() {
   if (frames_.empty()) return;
-  FrameInput& frame = frames_[input_.ConsumeIntegralInRange<std::size_t>(0, frames_.size() - 1)];
-  switch (input_.ConsumeIntegralInRange(0, 5)) {
+  moving_frame_ = input_.below(static_cast<int>(frames_.size()));
+  velocity_ = input_.vector(input_.one_of({0.0, 0.2, 1.0, 4.0}));
+}
+
+void WorldMachine::disturb_frame() {
+  if (frames_.empty()) return;
+  FrameInput& frame = frames_[input_.below(static_cast<int>(frames_.size()))];
+  switch (input_.below(4)) {
     case 0:
-    case 1:  // a hand
-      frame.pose.position += 1e-3 * any_vector();
+      frame.pose = input_.pose(frame.pose.position, 2);
       break;
-    case 2:  // a jump
-      frame.pose = any_pose();
+    case 1:
+      frame.pose.position[input_.below(3)] = input_.flip() ? std::numeric_limits<double>::quiet_NaN() : infinity;
       break;
-    case 3:
-      frame.pose.position[input_.ConsumeIntegralInRange(0, 2)] = input_.ConsumeBool() ? not_a_number : infinity;
-      break;
-    case 4:
-      frame.known = !frame.known;
+    case 2:
+      frame.pose.orientation = Quaternion(input_.between(-2, 2), input_.between(-2, 2), 0, 0);
       break;
     default:
-      frame.pose.orientation = Quaternion(any_number(), any_number(), any_number(), any_number());
+      frame.known = !frame.known;
   }
 }
 
-void WorldMachine::step(int steps) {
-  for (int i = 0; i < steps; ++i) {
-    const double others = mass(world_) - mass_of_length(world_), all = mass(world_);
-    const World before = world_;
-    world_.start_waiting(frames_);
-    const bool began = before.cables().size() != world_.cables().size() || before.nets().size() != world_.nets().size();
-    frames_.resize(world_.frames().size());
-    const StepResult result = world_.step(frames_);
-    require(std::isfinite(result.max_strain), "strain is finite");
+void WorldMachine::step_some() {
+  for (int steps = input_.one_of({1, 2, 5, 15}); steps > 0; --steps) {
+    step();
     check_world(world_);
-    if (began || has_winch_or_break(before, world_)) continue;
-    require(std::abs(mass(world_) - mass_of_length(world_) - others) < 1e-6 * all, "a step keeps mass, but for winches");
   }
 }
 
-void WorldMachine::step_copy_alike() {
-  World copy = world_;
-  require(copy.hash() == world_.hash(), "a copy has the same bytes");
-  copy.step_one_by_one(input_.ConsumeBool());
-  copy.limit_lanes(1 << input_.ConsumeIntegralInRange(0, 3));
-  for (int i = 0; i < 2; ++i) {
-    frames_.resize(world_.frames().size());
-    copy.step(frames_);
-    world_.step(frames_);
-    require(copy.hash() == world_.hash(), "a copy goes on with the same bytes");
+void WorldMachine::step() {
+  for (int i = static_cast<int>(frames_.size()); i < static_cast<int>(world_.frames().size()); ++i)
+    frames_.push_back({world_.frame_pose(i), world_.frame_known(i)});
+  if (moving_frame_ < frames_.size()) frames_[moving_frame_].pose.position += world_.time_step() * velocity_;
+  const double before = mass(world_), wound = most_wound();
+  const StepResult result = on_both([&](World& world) { return world.step(frames_); });
+  require(std::isfinite(result.max_strain), "strain is finite");
+  require(std::abs(mass(world_) - before) <= wound + 1e-9 * before, "a step keeps mass, but for winches");
+}
+
+double WorldMachine::most_wound() const {
+  if (winch_speed_ == 0) return 0;
+  double most = 0;
+  for (const SimulatedCable& cable : world_.cables()) {
+    const CableMaterials materials(cable);
+    const double density = materials.largest([](const MaterialDesc& material) { return material.linear_density; });
+    // Twice the speed, as it gives back what bent places lost; and segments that are taken in become of their neighbour's
+    // material.
+    const double length = 2 * winch_speed_ * world_.time_step() + (materials.vary() ? 1.5 * cable.model->segment_length : 0);
+    most += density * length;
+  }
+  return most;
+}
+
+void WorldMachine::start_waiting() {
+  on_both([&](World& world) { return world.start_waiting(frames_); });
+}
+
+void WorldMachine::settle() {
+  on_both([&](World& world) { return world.settle(); });
+}
+
+void WorldMachine::copy() {
+  copy_ = world_;
+  require(copy_->hash() == world_.hash(), "a copy has the same bytes");
+  copy_->step_one_by_one(input_.flip());
+  copy_->limit_lanes(input_.one_of({1, 2, 4, 8}));
+}
+
+void WorldMachine::save_or_restore() {
+  if (input_.flip()) {
+    saved_ = world_;
+    saved_frames_ = frames_;
+  } else {
+    world_ = saved_;
+    frames_ = saved_frames_;
+    copy_.reset();
   }
 }
 
 void WorldMachine::apply(const Edit& edit) {
   const std::uint64_t before = world_.hash();
   const double mass_before = mass(world_);
-  const EditResult result = world_.apply(edit);
+  const EditResult result = on_both([&](World& world) { return world.apply(edit); });
   if (!result.ok) {
     require(world_.hash() == before, "a refused edit changes nothing: " + result.message);
     require(!result.message.empty(), "a refused edit says why");
@@ -146,23 +170,79 @@ void WorldMachine::apply(const Edit& edit) {
 
 void WorldMachine::pin() {
   edit::Pin pin;
-  if (input_.ConsumeBool()) pin.name = "grip";
+  if (input_.below(4) == 0) pin.name = "grip";
   pin.body = any_body();
   pin.node = any_node(pin.body);
-  pin.type = input_.PickValueInArray({AttachmentType::hinge, AttachmentType::clamp, AttachmentType::axle});
-  pin.pose = any_pose();
-  pin.frame = input_.ConsumeBool() ? world_.add_frame("added", any_pose())
-                                   : input_.ConsumeIntegralInRange(-1, static_cast<int>(world_.frames().size()));
+  pin.type = input_.one_of({AttachmentType::hinge, AttachmentType::clamp, AttachmentType::axle});
+  const Pose in_world = input_.pose(place_of(pin.body, pin.node), input_.one_of({0.0, 0.02, 0.5}));
+  if (input_.below(4) == 0) {
+    pin.frame = on_both([&](World& world) { return world.add_frame("added", in_world); });
+  } else {
+    pin.frame = any_frame();
+  }
+  const bool has_pose = pin.frame >= 0 && pin.frame < static_cast<int>(world_.frames().size()) && world_.frame_known(pin.frame);
+  pin.pose = has_pose ? world_.frame_pose(pin.frame).inverse() * in_world : in_world;
   apply(pin);
+}
+
+void WorldMachine::unpin() {
+  apply(edit::Unpin{input_.one_of(attachment_names())});
+}
+
+void WorldMachine::move_attachment() {
+  edit::MoveAttachment move;
+  move.name = input_.one_of(attachment_names());
+  const int index = find(world_.attachments(), move.name);
+  const Vector3 now = index < 0 ? Vector3::Zero() : world_.attachments()[index].pose.position;
+  move.pose = input_.pose(now, input_.one_of({0.01, 0.1, 1.0}));
+  apply(move);
+}
+
+void WorldMachine::cut() {
+  edit::Cut cut;
+  cut.body = any_body();
+  if (cut.body.is_rigid_body()) cut.body = cable_id(any_cable());
+  cut.element = any_node(cut.body);
+  apply(cut);
+}
+
+void WorldMachine::set_length() {
+  edit::SetLength change;
+  change.cable = any_cable();
+  change.at_end = input_.flip();
+  const bool is_there = change.cable >= 0 && change.cable < static_cast<int>(world_.cables().size());
+  const double length = is_there ? world_.cables()[change.cable].state.length() : 1;
+  change.length = input_.positive(0.5 * length, 2 * length);
+  change.speed = input_.positive(0.01, 4);
+  const double speed = change.speed;
+  const EditResult result = on_both([&](World& world) { return world.apply(change); });
+  if (result.ok) winch_speed_ = std::max(winch_speed_, speed);
+}
+
+void WorldMachine::join() {
+  edit::Join join;
+  join.first = any_cable();
+  // Of one material, where there is one: the others are refused.
+  std::vector<int> alike;
+  const std::vector<SimulatedCable>& cables = world_.cables();
+  if (join.first >= 0 && join.first < static_cast<int>(cables.size()))
+    for (int i = 0; i < static_cast<int>(cables.size()); ++i)
+      if (i != join.first && cables[i].model->material_name == cables[join.first].model->material_name) alike.push_back(i);
+  join.second = alike.empty() || input_.is_odd() ? any_cable() : alike[input_.below(static_cast<int>(alike.size()))];
+  join.first_at_end = input_.flip();
+  join.second_at_end = input_.flip();
+  apply(join);
 }
 
 void WorldMachine::set_obstacle() {
   Obstacle obstacle;
-  obstacle.name = input_.PickValueInArray({"block", "ball", "floor"});
-  obstacle.frame = input_.ConsumeIntegralInRange(0, static_cast<int>(world_.frames().size()) - 1);
-  obstacle.pose = any_pose();
-  const double radius = input_.ConsumeFloatingPointInRange(1e-3, 1.0), length = input_.ConsumeFloatingPointInRange(1e-3, 1.0);
-  switch (input_.ConsumeIntegralInRange(0, 4)) {
+  obstacle.name = input_.one_of({"block", "ball", "floor"});
+  obstacle.frame = any_frame();
+  obstacle.pose = input_.pose(Vector3::Zero(), input_.one_of({0.1, 1.0}));
+  if (input_.flip()) obstacle.friction = input_.positive(0.01, 2);
+  if (input_.flip()) obstacle.padding = input_.positive(1e-4, 0.1);
+  const double radius = input_.positive(0.01, 0.5), length = input_.positive(0.01, 1);
+  switch (input_.below(5)) {
     case 0:
       obstacle.shape = PlaneShape{};
       break;
@@ -181,94 +261,94 @@ void WorldMachine::set_obstacle() {
   apply(edit::SetObstacle{obstacle});
 }
 
+void WorldMachine::remove_obstacle() {
+  std::vector<std::string> names;
+  for (const Obstacle& obstacle : world_.obstacles()) names.push_back(obstacle.name);
+  apply(edit::RemoveObstacle{input_.one_of(names)});
+}
+
 void WorldMachine::tune() {
   SceneDesc tuned = scene_;
-  tuned.gravity.acceleration = any_vector();
-  tuned.fluid.velocity = any_vector();
-  tuned.fluid.density = std::abs(any_number());
-  for (NamedMaterial& material : tuned.materials) {
-    material.material.bending_stiffness = BendingStiffness(std::abs(any_number()));
-    material.material.bending_damping = std::abs(any_number());
-    material.material.torsional_stiffness = std::abs(any_number());
-    material.material.friction = std::abs(any_number());
-    material.material.drag = std::abs(any_number());
+  if (input_.flip()) tuned.gravity.acceleration = input_.vector(15);
+  if (input_.flip()) tuned.fluid.velocity = input_.vector(2);
+  if (input_.flip()) tuned.fluid.density = input_.positive(0.1, 1500);
+  for (NamedMaterial& named : tuned.materials) {
+    MaterialDesc& material = named.material;
+    const double stiffness = input_.positive(1e-5, 0.1);
+    switch (input_.below(6)) {
+      case 0:
+        material.bending_stiffness = BendingStiffness(stiffness);
+        break;
+      case 1:
+        material.torsional_stiffness = stiffness;
+        break;
+      case 2:
+        material.bending_damping = 0.01 * stiffness;
+        break;
+      case 3:
+        material.friction = 10 * stiffness;
+        break;
+      case 4:
+        material.drag = 10 * stiffness;
+        break;
+      default:
+        material.radius = 0.1 * stiffness;
+    }
   }
   if (!validate(tuned).empty()) return;
   const std::uint64_t before = world_.hash();
-  try {
-    world_.tune(tuned);
-    scene_ = tuned;
-  } catch (const SceneError&) {
-    require(world_.hash() == before, "refused tuning changes nothing");
-  }
-}
-
-void WorldMachine::put_back() {
-  if (input_.ConsumeBool()) {
-    saved_ = world_;
-    saved_frames_ = frames_;
-  } else {
-    world_ = saved_;
-    frames_ = saved_frames_;
-  }
+  const auto is_taken_over = [&](World& world) {
+    try {
+      world.tune(tuned);
+      return true;
+    } catch (const SceneError&) {
+      return false;
+    }
+  };
+  if (!on_both(is_taken_over)) require(world_.hash() == before, "refused tuning changes nothing");
 }
 
 BodyId WorldMachine::any_body() {
-  const int index = input_.ConsumeIntegralInRange(-1, 6);
-  switch (input_.ConsumeIntegralInRange(0, 5)) {
-    case 0:
-      return net_id(index);
-    case 1:
-      return rigid_body_id(index);
-    case 2:
-      return particle_id(index);
-    default:
-      return cable_id(std::min(index, static_cast<int>(world_.cables().size()) - 1));
-  }
+  const int kind = input_.below(8);
+  if (kind == 0 && !world_.nets().empty()) return net_id(input_.index(world_.nets().size()));
+  if (kind == 1 && !world_.bodies().empty()) return rigid_body_id(input_.index(world_.bodies().size()));
+  if (input_.is_odd()) return particle_id(input_.index(world_.particles().size()));
+  return world_.cables().empty() && !world_.nets().empty() ? net_id(input_.index(world_.nets().size())) : cable_id(any_cable());
+}
+
+int WorldMachine::any_cable() {
+  return input_.index(world_.cables().size());
+}
+
+int WorldMachine::any_frame() {
+  return input_.flip() ? 0 : input_.index(world_.frames().size());
 }
 
 int WorldMachine::any_node(const BodyId& body) {
-  if (input_.ConsumeProbability<float>() < 0.05F) return input_.ConsumeIntegral<int>();
-  int most = 12;
-  if (body.is_cable() && body.index >= 0) most = world_.cables()[body.index].state.segments();
-  return input_.ConsumeIntegralInRange(0, most);
+  const auto is_in = [&](std::size_t size) { return body.index >= 0 && body.index < static_cast<int>(size); };
+  if (body.is_cable() && is_in(world_.cables().size())) return input_.index(world_.cables()[body.index].state.nodes());
+  if (body.is_net() && is_in(world_.nets().size())) return input_.index(world_.nets()[body.index].state.positions.size());
+  return input_.index(1);
 }
 
-std::string WorldMachine::any_name(const std::vector<std::string>& names) {
-  const std::size_t index = input_.ConsumeIntegralInRange<std::size_t>(0, names.size());
-  return index < names.size() ? names[index] : "nobody";
+Vector3 WorldMachine::place_of(const BodyId& body, int node) const {
+  const auto is_in = [](int index, std::size_t size) { return index >= 0 && index < static_cast<int>(size); };
+  if (body.is_cable() && is_in(body.index, world_.cables().size())) {
+    const std::vector<Vector3>& positions = world_.cables()[body.index].state.positions;
+    if (is_in(node, positions.size())) return positions[node];
+  }
+  if (body.is_net() && is_in(body.index, world_.nets().size())) {
+    const std::vector<Vector3>& positions = world_.nets()[body.index].state.positions;
+    if (is_in(node, positions.size())) return positions[node];
+  }
+  if (body.is_rigid_body() && is_in(body.index, world_.bodies().size())) return world_.bodies()[body.index].pose.position;
+  return Vector3::Zero();
 }
 
 std::vector<std::string> WorldMachine::attachment_names() const {
   std::vector<std::string> names;
   for (const Attachment& attachment : world_.attachments()) names.push_back(attachment.name);
   return names;
-}
-
-std::vector<std::string> WorldMachine::obstacle_names() const {
-  std::vector<std::string> names;
-  for (const Obstacle& obstacle : world_.obstacles()) names.push_back(obstacle.name);
-  return names;
-}
-
-/// Mostly of the size of what is simulated, sometimes none that any program should be given.
-double WorldMachine::any_number() {
-  constexpr std::array<double, 8> odd{0, not_a_number, infinity, -infinity, 1e300, -1e9, 1e-300, 1e12};
-  if (input_.ConsumeIntegralInRange(0, 15) == 0) return input_.PickValueInArray(odd);
-  return input_.ConsumeFloatingPointInRange(-4.0, 4.0);
-}
-
-double WorldMachine::any_coordinate() {
-  return input_.ConsumeFloatingPointInRange(-3.0, 3.0);
-}
-
-Vector3 WorldMachine::any_vector() {
-  if (input_.ConsumeIntegralInRange(0, 15) == 0) return {any_number(), any_number(), any_number()};
-  return {any_coordinate(), any_coordinate(), any_coordinate()};
-}
-
-Pose WorldMachine::any_pose() {
-  return {any_vector(), quaternion_from_rpy({any_coordinate(), any_coordinate(), any_coordinate()})};
 }
 
 }  // namespace verlet_cable::fuzz
