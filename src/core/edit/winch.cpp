@@ -8,6 +8,7 @@
 #include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/number_text.h"
 #include "world/implementation.h"
+#include "world/island_stepper.h"
 
 namespace verlet_cable {
 
@@ -220,6 +221,7 @@ void World::Implementation::after_remeshing(int index) {
 /// What of the cable has come to its guides goes through.
 void World::Implementation::pass_nodes_of(int index) {
   if (!pass_nodes(index, state)) return;
+  keep_flow_at_drive(index, 1, state);  // as the step is planned already
   findings.intrusions.erase(std::remove_if(findings.intrusions.begin(), findings.intrusions.end(),
                                            [&](const Intrusion& intrusion) { return intrusion.cable == index; }),
                             findings.intrusions.end());
