@@ -1,29 +1,35 @@
-"""Runs fuzz targets, as many at once as there are cores, and says what each found: run_fuzz.py WORKSPACE CHECKOUT SECONDS TARGET..."""
+"""Runs fuzz targets, as many at once as there are cores, and says what each found: run_fuzz.py WORKSPACE CHECKOUT SECONDS
+RESULTS TARGET..., where RESULTS is a JUnit file to write, or empty."""
 import concurrent.futures
 import os
 import pathlib
+import random
 import re
 import shutil
 import subprocess
 import sys
+from xml.etree import ElementTree
 
 LONGEST_INPUT_SECONDS = 60
 MEMORY_MB = 4096
+# Of worlds, whose inputs have no format: enough for some tens of calls.
+WORLD_SEEDS = 60
+WORLD_SEED_BYTES = 600
 FIGURE = re.compile(r'^stat::number_of_executed_units:\s*(\d+)', re.MULTILINE)
 COVERAGE = re.compile(r'cov: (\d+)')
 
 
 def seeds(target, checkout):
-    """Files that a target's first inputs are, and what goes before their content."""
+    """Files that a target's first inputs are."""
     config = checkout / 'config'
     if target == 'scene':
-        return [(path, b'') for path in sorted(config.rglob('*.yaml')) + sorted((checkout / 'fuzz' / 'worlds').glob('*.yaml'))]
+        return sorted(config.rglob('*.yaml')) + sorted((checkout / 'fuzz' / 'worlds').glob('*.yaml'))
     if target == 'motion':
-        return [(path, b'') for path in sorted(config.rglob('*.csv'))]
+        return sorted(config.rglob('*.csv'))
     if target == 'recording':
-        return [(path, b'') for path in sorted((config / 'recordings').glob('*.csv'))]
+        return sorted((config / 'recordings').glob('*.csv'))
     if target == 'robot':
-        return [(path, b'') for path in sorted(config.rglob('*.urdf'))]
+        return sorted(config.rglob('*.urdf'))
     return []
 
 
@@ -34,8 +40,11 @@ def shorter(content, most=20000):
 
 def fill_corpus(target, checkout, corpus):
     corpus.mkdir(parents=True, exist_ok=True)
-    for path, prefix in seeds(target, checkout):
-        (corpus / ('seed_' + path.name)).write_bytes(prefix + shorter(path.read_bytes()))
+    for path in seeds(target, checkout):
+        (corpus / ('seed_' + path.name)).write_bytes(shorter(path.read_bytes()))
+    if target == 'world':
+        for seed in range(WORLD_SEEDS):
+            (corpus / f'seed_{seed}').write_bytes(random.Random(seed).getrandbits(8 * WORLD_SEED_BYTES).to_bytes(WORLD_SEED_BYTES, 'big'))
     kept = checkout / 'fuzz' / 'inputs' / target
     for path in sorted(kept.glob('*')) if kept.is_dir() else []:
         shutil.copy(path, corpus / ('kept_' + path.name))
@@ -66,18 +75,32 @@ def run(target, workspace, checkout, seconds):
     return int(executed.group(1)) if executed else 0, int(covered[-1]) if covered else 0, found
 
 
+def write_results(path, failures, targets):
+    """`failures`: text by target."""
+    suite = ElementTree.Element('testsuite', name='fuzz', tests=str(len(targets)), failures=str(len(failures)))
+    for target in targets:
+        case = ElementTree.SubElement(suite, 'testcase', classname='fuzz', name=target)
+        if target in failures:
+            ElementTree.SubElement(case, 'failure', message=failures[target])
+    path.parent.mkdir(parents=True, exist_ok=True)
+    ElementTree.ElementTree(suite).write(path, encoding='utf-8', xml_declaration=True)
+
+
 def main():
-    workspace, checkout, seconds = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), int(sys.argv[3])
-    targets = sys.argv[4:]
-    failed = False
+    workspace, checkout, seconds, results = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), int(sys.argv[3]), sys.argv[4]
+    targets = sys.argv[5:]
+    failures = {}
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         runs = {target: pool.submit(run, target, workspace, checkout, seconds) for target in targets}
         for target, result in runs.items():
             executions, edges, found = result.result()
-            failed = failed or bool(found) or executions == 0
             text = ', '.join(map(str, found)) if found else 'nothing'
+            if found or executions == 0:
+                failures[target] = f'{executions} executions, found: {text}'
             print(f'{target}: {executions} executions, {edges} edges covered, found: {text}', flush=True)
-    sys.exit(1 if failed else 0)
+    if results:
+        write_results(pathlib.Path(results), failures, targets)
+    sys.exit(1 if failures else 0)
 
 
 if __name__ == '__main__':

@@ -19,6 +19,8 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 TIME_LIMIT = 300.0  # [s] for a program that registers none; rostest has its own, 60 s for each of its tests
+FUZZ_SECONDS = 60  # for each target
+FUZZ_TIME_LIMIT = 5400.0  # [s] to compile everything once more, with clang and its sanitizers, and to run
 GRACE = 20.0  # [s] for a program that was interrupted to end its own children
 PR_SET_CHILD_SUBREAPER = 36
 BUILD_ERROR = re.compile(r'\berror:|CMake Error|No rule to make|undefined reference')
@@ -199,9 +201,11 @@ def main():
     try:
         if shutil.which('catkin_lint'):
             finished.append(check_package(package))
-        for program in programs:
+        results = workspace / 'build/test_results'
+        fuzz = [str(package / 'scripts/fuzz'), '--seconds', str(FUZZ_SECONDS), '--results', str(results / 'fuzz.xml')]
+        for program in [*programs, Program('fuzz', fuzz, FUZZ_TIME_LIMIT)]:
             finished.append(program)
-            run(program, workspace / 'build/test_results', log_directory)
+            run(program, results, log_directory)
     except KeyboardInterrupt:
         finished[-1].failures.append('interrupted')
     print()
