@@ -101,7 +101,7 @@ void WorldMachine::disturb_frame() {
 }
 
 void WorldMachine::step_some() {
-  for (int steps = input_.one_of({1, 2, 5, 15}); steps > 0; --steps) {
+  for (int steps = input_.one_of({1, 3, 10, 30}); steps > 0; --steps) {
     step();
     check_world(world_);
   }
@@ -212,8 +212,8 @@ void WorldMachine::set_length() {
   change.at_end = input_.flip();
   const bool is_there = change.cable >= 0 && change.cable < static_cast<int>(world_.cables().size());
   const double length = is_there ? world_.cables()[change.cable].state.length() : 1;
-  change.length = input_.positive(0.5 * length, 2 * length);
-  change.speed = input_.positive(0.01, 4);
+  change.length = input_.positive(0.7 * length, 1.5 * length);
+  change.speed = input_.positive(0.1, 4);
   const double speed = change.speed;
   const EditResult result = on_both([&](World& world) { return world.apply(change); });
   if (result.ok) winch_speed_ = std::max(winch_speed_, speed);

@@ -104,6 +104,19 @@ TEST(GuidedWinch, windsThroughAnEyeletBesideIt) {
     }
 }
 
+TEST(GuidedWinch, stallsWhereAnEyeletLetsNothingThrough) {
+  SceneDesc scene = fairlead(0.1);
+  scene.guides[0].friction = infinity;
+  World world(scene, {});
+  const double length = world.cables()[0].state.length();
+  ASSERT_TRUE(world.apply(edit::SetLength{0, false, length - 1, 0.4}).ok);
+  for (int i = 0; i < 1000; ++i) {
+    world.step({});
+    ASSERT_GT(world.cables()[0].state.rest_lengths[0], 0.009) << world.time() << " s";
+  }
+  EXPECT_GT(world.cables()[0].state.length(), length - 0.1);
+}
+
 TEST(GuidedWinch, aRodRunsOverOneSheaveOnly) {
   try {
     World world(crane(true), {});
