@@ -43,6 +43,7 @@ if [[ -f /opt/ros/noetic/setup.bash ]]; then
     ros-noetic-{actionlib,diagnostic-updater,dynamic-reconfigure,nodelet,pluginlib,robot-state-publisher,roslib,tf2,tf2-msgs,tf2-ros}
   )
   rviz_packages=(ros-noetic-rviz qtbase5-dev)
+  fuzz_packages=(clang)  # with its sanitizers
 else
   packages+=(
     catkin catkin-lint ros-message-generation ros-message-runtime ros-environment ros-robot-state-publisher rosbash roslang rospack-tools rosout tf2-tools
@@ -54,6 +55,7 @@ else
     python3-{actionlib,dynamic-reconfigure,rospy,tf2-ros,roslaunch,rostest,rosbag,rosservice,rostopic}
   )
   rviz_packages=(rviz librviz-dev qtbase5-dev libgl1-mesa-dri)
+  fuzz_packages=(clang libclang-rt-dev)
 fi
 
 # Besides these, for cable_sweep: the node and the other programs need none of them.

@@ -1,7 +1,9 @@
 #include "file_checks.h"
 
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
+#include <limits>
 
 #include "scene/mesh_protocol.h"
 #include "scene/xml_outline.h"
@@ -12,6 +14,7 @@ namespace {
 constexpr std::size_t stl_header = 84;    ///< [byte]
 constexpr std::size_t stl_triangle = 50;  ///< [byte]
 constexpr std::size_t deepest_level = 256;
+constexpr std::size_t most_digits = 20;  // of a number in a message
 
 bool is_text(const std::string& content) {
   return content.find('\0') == std::string::npos;
@@ -35,6 +38,35 @@ void check_stl(const std::string& content) {
     throw Refused("no mesh: neither binary STL nor text that starts with \"solid\"");
 }
 
+/// Assimp does not get past what is no index.
+void check_indices(const std::string& content, const std::string& element) {
+  const std::string tag = "<" + element;
+  for (std::size_t at = content.find(tag); at != std::string::npos; at = content.find(tag, at + 1)) {
+    if (content.find_first_of(" \t\r\n/>", at + tag.size()) != at + tag.size()) continue;  // another element
+    const std::size_t text = content.find('>', at) + 1;
+    if (text == 0 || content[text - 2] == '/') continue;
+    const std::size_t end = content.find_first_not_of("0123456789 \t\r\n", text);
+    if (end == std::string::npos || content.compare(end, 2, "</") == 0) continue;
+    throw Refused("no mesh: <" + element + "> at byte " + std::to_string(at) + " has other content than indices");
+  }
+}
+
+/// Assimp takes memory for as many numbers as an attribute says, before it has seen one.
+void check_counts(const std::string& content) {
+  const std::string attribute = "count", between = " \t\r\n=\"'";
+  for (std::size_t at = content.find(attribute); at != std::string::npos; at = content.find(attribute, at + 1)) {
+    const std::size_t first = content.find_first_not_of(between, at + attribute.size());
+    if (first == std::string::npos || first == at + attribute.size()) continue;
+    const std::size_t last = content.find_first_not_of("0123456789", first);
+    const std::string digits = content.substr(first, last == std::string::npos ? last : last - first);
+    if (digits.size() < std::numeric_limits<std::size_t>::digits10 &&
+        std::strtoull(digits.c_str(), nullptr, 10) <= content.size())
+      continue;
+    throw Refused("no mesh: count " + digits.substr(0, most_digits) + " at byte " + std::to_string(at) + ", in a file of " +
+                  std::to_string(content.size()) + " bytes");
+  }
+}
+
 void check_dae(const std::string& content) {
   if (content.find("<COLLADA") == std::string::npos || !is_text(content))
     throw Refused("no mesh: a .dae without an element COLLADA");
@@ -42,6 +74,8 @@ void check_dae(const std::string& content) {
   if (levels > deepest_level)
     throw Refused("its elements are nested " + std::to_string(levels) + " levels deep, more than " +
                   std::to_string(deepest_level));
+  check_counts(content);
+  for (const char* const element : {"p", "vcount"}) check_indices(content, element);
 }
 
 }  // namespace

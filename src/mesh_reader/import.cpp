@@ -1,5 +1,6 @@
 #include "import.h"
 
+#include <assimp/BaseImporter.h>
 #include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
@@ -44,8 +45,12 @@ class OneFile : public Assimp::IOSystem {
 void keep_importer(const std::string& format, Assimp::Importer& importer) {
   const Assimp::BaseImporter* kept = importer.GetImporter(format.c_str());
   if (!kept) throw Refused("this machine's Assimp reads no " + format);
-  for (std::size_t i = importer.GetImporterCount(); i-- > 0;)
-    if (importer.GetImporter(i) != kept) importer.UnregisterLoader(importer.GetImporter(i));
+  for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+    Assimp::BaseImporter* const other = importer.GetImporter(i);
+    if (other == kept) continue;
+    importer.UnregisterLoader(other);
+    delete other;  // ours from then on
+  }
 }
 
 [[noreturn]] void refuse(const Assimp::Importer& importer) {

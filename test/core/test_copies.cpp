@@ -5,6 +5,7 @@
 
 #include "../support/nets.h"
 #include "../support/scenes.h"
+#include "target/kinematic_targets.h"
 
 // Copies of worlds, and obstacles of nets, in every order.
 
@@ -107,6 +108,20 @@ TEST(Copies, GoOnAsTheirOriginalWhenRadiiAreTuned) {
     ASSERT_EQ(world.hash(), copy.hash()) << i;
     ASSERT_EQ(world.findings().contacts.size(), copy.findings().contacts.size()) << i;
   }
+}
+
+/// What a copy's workspace has not seen must not be in the loads of what finds no solution.
+TEST(Copies, HoldersBeginEachSubstepWithoutLoads) {
+  KinematicTargets targets;
+  targets.nodes.resize(1);
+  targets.directions.resize(1);
+  Boundary used;
+  used.nodes.resize(2);
+  used.directions.resize(2);
+  used.nodes[0].force = used.directions[0].torque = {1, 2, 3};
+  hold_at(0, 1, targets, used);
+  EXPECT_EQ(used.nodes[0].force, Vector3::Zero());
+  EXPECT_EQ(used.directions[0].torque, Vector3::Zero());
 }
 
 TEST(Copies, PinOnACableLeavesANetOnItsFloor) {

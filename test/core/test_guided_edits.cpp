@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "../support/scenes.h"
 
@@ -73,6 +75,47 @@ TEST(GuidedWinch, liftsABodyBehindSheaves) {
   }
   const double hanging = world.cables()[0].state.length() - world.view_guide(1).arc_length;
   EXPECT_NEAR(tension, 9.81 * (2 + 0.05 * hanging), 0.03 * 9.81 * 2);
+}
+
+/// From a winch through an eyelet a segment away, behind which the cable hangs down.
+SceneDesc fairlead(double eyelet) {
+  SceneDesc scene = scenes::one_cable(20, 2);
+  scene.cables[0].attachments = {scenes::attachment("winch", PlaceDesc::At::start, Vector3::Zero())};
+  scene.cables[0].initial.type = InitialShapeDesc::Type::points;
+  scene.cables[0].initial.points = {{0, 0, 0}, {eyelet, 0, 0}, {eyelet, 0, eyelet - 2}};
+  scene.guides = {guide("eye", eyelet, {eyelet, 0, 0})};
+  return scene;
+}
+
+TEST(GuidedWinch, windsThroughAnEyeletBesideIt) {
+  for (const double eyelet : {0.2, 0.3})
+    for (const double goal : {1.5, 2.5}) {
+      World world(fairlead(eyelet), {});
+      ASSERT_TRUE(world.apply(edit::SetLength{0, false, goal, 0.4}).ok);
+      const CableState& cable = world.cables()[0].state;
+      for (int i = 0; i < 3000; ++i) {
+        world.step({});
+        const double mass = std::accumulate(cable.masses.begin(), cable.masses.end(), 0.0);
+        // But for what the bend in the eyelet has lost of its length.
+        ASSERT_NEAR(mass, 0.1 * cable.length(), 3e-3) << eyelet << " m, to " << goal << " m, at " << world.time() << " s";
+        ASSERT_GT(*std::min_element(cable.rest_lengths.begin(), cable.rest_lengths.end()), 0);
+      }
+      EXPECT_NEAR(cable.length(), goal, 5e-3) << eyelet;
+      EXPECT_EQ(world.view_guide(0).cable, 0);
+    }
+}
+
+TEST(GuidedWinch, stallsWhereAnEyeletLetsNothingThrough) {
+  SceneDesc scene = fairlead(0.2);
+  scene.guides[0].friction = infinity;
+  World world(scene, {});
+  const double length = world.cables()[0].state.length();
+  ASSERT_TRUE(world.apply(edit::SetLength{0, false, length - 1, 0.4}).ok);
+  for (int i = 0; i < 1000; ++i) {
+    world.step({});
+    ASSERT_GT(world.cables()[0].state.rest_lengths[0], 0.009) << world.time() << " s";
+  }
+  EXPECT_GT(world.cables()[0].state.length(), length - 0.2);
 }
 
 TEST(GuidedWinch, aRodRunsOverOneSheaveOnly) {

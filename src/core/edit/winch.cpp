@@ -8,6 +8,7 @@
 #include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/number_text.h"
 #include "world/implementation.h"
+#include "world/island_stepper.h"
 
 namespace verlet_cable {
 
@@ -18,6 +19,8 @@ constexpr double winch_acceleration = 1;
 /// Of a segment's length: the segment at a winch is split when longer, takes in its neighbour when shorter, and no segment gets
 /// shorter than the last.
 constexpr double longest_segment = 1.5, shortest_segment = 0.5, least_segment = 0.1;
+/// [m] More than rounding.
+constexpr double stalling_excess = 1e-9;
 /// A joint closes when its ends are this close, of a segment's length.
 constexpr double closing_distance = 0.25;
 
@@ -31,6 +34,16 @@ void take_on_material(int node, SimulatedCable& cable) {
   const double change = materials[kept].linear_density - materials[going].linear_density;
   if (change == 0) return;
   for (const int side : {0, 1}) state.masses[going + side] += 0.5 * change * state.rest_lengths[going];
+}
+
+/// Takes in no more than `most` [m] in this step: what is beside the winch may be in a guide that lets nothing through.
+void stall(double most, LengthDrive& drive) {
+  const double excess = -drive.change - std::max(most, 0.0);
+  if (!(excess > stalling_excess)) return;
+  drive.change += excess;
+  drive.wound += excess;
+  drive.next_rate = 0;
+  drive.arrives = false;
 }
 
 /// At a winch the material moves through the end node. Adds (`side` 1) this motion to the node's velocity, or takes it away (-1).
@@ -133,6 +146,7 @@ void World::Implementation::plan_drive_step(int index) {
   plan_drive(s.drive->is_winch() ? available_length(index) : infinity, state.scene->time_step, *s.drive);
   if (s.drive->is_winch()) remesh_winch(index);
   LengthDrive& drive = *s.drive;
+  if (drive.is_winch()) stall(cable.state.rest_lengths[drive.segment] - least_segment * cable.model->segment_length, drive);
   drive.start_length = cable.state.rest_lengths[drive.segment];
   for (const int side : {0, 1}) drive.start_masses[side] = cable.state.masses[drive.segment + side];
   wind(drive, 1, state.scene->time_step, *cable.model, cable.state);
@@ -220,6 +234,7 @@ void World::Implementation::after_remeshing(int index) {
 /// What of the cable has come to its guides goes through.
 void World::Implementation::pass_nodes_of(int index) {
   if (!pass_nodes(index, state)) return;
+  keep_flow_at_drive(index, 1, state);  // as the step is planned already
   findings.intrusions.erase(std::remove_if(findings.intrusions.begin(), findings.intrusions.end(),
                                            [&](const Intrusion& intrusion) { return intrusion.cable == index; }),
                             findings.intrusions.end());

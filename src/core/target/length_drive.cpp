@@ -23,6 +23,18 @@ struct Overloaded : Functions... {
 template <class... Functions>
 Overloaded(Functions...) -> Overloaded<Functions...>;
 
+/// [m] The segment's rest length at a part of the step.
+double length_at(const LengthDrive& drive, double part, double time_step) {
+  const double uniform = drive.change - 0.5 * time_step * (drive.growth() + drive.next_growth());
+  const double accelerated = time_step * (drive.growth() + 0.5 * part * (drive.next_growth() - drive.growth()));
+  return drive.start_length + (part == 1 ? drive.change : part * (uniform + accelerated));
+}
+
+/// [kg] By which each of the segment's nodes has become heavier.
+double mass_at(const LengthDrive& drive, double part, const CableModel& model, const CableState& state) {
+  return drive.is_winch() ? 0.5 * CableMaterials(model, state)[drive.segment].linear_density * part * drive.wound : 0;
+}
+
 }  // namespace
 
 void plan_drive(double available, double time_step, LengthDrive& drive) {
@@ -50,12 +62,9 @@ void plan_drive(double available, double time_step, LengthDrive& drive) {
 }
 
 void wind(const LengthDrive& drive, double part, double time_step, const CableModel& model, CableState& state) {
-  const double uniform = drive.change - 0.5 * time_step * (drive.growth() + drive.next_growth());
-  const double accelerated = time_step * (drive.growth() + 0.5 * part * (drive.next_growth() - drive.growth()));
-  const double change = part == 1 ? drive.change : part * (uniform + accelerated);
   const auto lengths = [&] { return std::array{joint_length(state, drive.segment), joint_length(state, drive.segment + 1)}; };
   const std::array<double, 2> before = lengths();
-  state.rest_lengths[drive.segment] = drive.start_length + change;
+  state.rest_lengths[drive.segment] = length_at(drive, part, time_step);
   if (!drive.is_winch()) {
     // The two that are welded stay turned against each other as they are.
     if (state.rest_twist.empty()) return;
@@ -63,8 +72,15 @@ void wind(const LengthDrive& drive, double part, double time_step, const CableMo
     for (const int side : {0, 1}) state.rest_twist[drive.segment + side] *= before[side] / after[side];
     return;
   }
-  const double half_density = 0.5 * CableMaterials(model, state)[drive.segment].linear_density;
-  for (const int side : {0, 1}) state.masses[drive.segment + side] = drive.start_masses[side] + half_density * part * drive.wound;
+  const double mass = mass_at(drive, part, model, state);
+  for (const int side : {0, 1}) state.masses[drive.segment + side] = drive.start_masses[side] + mass;
+}
+
+void keep_flow(double part, double time_step, const CableModel& model, const CableState& state, LengthDrive& drive) {
+  drive.start_length += state.rest_lengths[drive.segment] - length_at(drive, part, time_step);
+  const double mass = mass_at(drive, part, model, state);
+  for (const int side : {0, 1})
+    drive.start_masses[side] += state.masses[drive.segment + side] - (drive.start_masses[side] + mass);
 }
 
 double growth_at(const LengthDrive& drive, double part) {

@@ -38,6 +38,9 @@ void plan_drive(double available, double time_step, LengthDrive& drive);
 
 /// Gives the segment the rest length, and its nodes the masses, that it has at a part of the step, 0 to 1.
 void wind(const LengthDrive& drive, double part, double time_step, const CableModel& model, CableState& state);
+/// What else has changed the rest length and the masses since they were wound to a part of the step stays: guides let material
+/// flow into the segment or out of it.
+void keep_flow(double part, double time_step, const CableModel& model, const CableState& state, LengthDrive& drive);
 /// [m/s] growth of the rest length at a part of the step.
 double growth_at(const LengthDrive& drive, double part);
 

@@ -208,6 +208,12 @@ void complete_drive_step(int index, State& state) {
   if (!complete_drive(drive)) memory.drive.reset();
 }
 
+void keep_flow_at_drive(int index, double part, State& state) {
+  const SimulatedCable& cable = state.cables[index];
+  std::optional<LengthDrive>& drive = state.cable_progress[index].drive;
+  if (drive) keep_flow(part, state.scene->time_step, *cable.model, cable.state, *drive);
+}
+
 IslandStepper::IslandStepper(State& state, Workspace& workspace, std::vector<CableOutcome>& outcomes, int lanes)
     : state_(state),
       workspace_(workspace),
@@ -302,9 +308,18 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     work.boundary.joined_mass = joined_mass_;
     const bool touches = workspace_.contacts.touched(k), on_bodies = work.boundary.is_on_bodies();
     const Scheme scheme = touches || on_bodies ? touching_scheme : scheme_of(cable);
+<<<<<<< HEAD
     if (memory.drive) wind_drive(cable, scheme, from, to, work.boundary);
     work.before = c.state;
     work.spans_before = memory.spans;
+=======
+    if (memory.drive) work.wound = wind_drive(cable, scheme, from, to, work.boundary);
+    // What touches is left as it is until all have converged.
+    if (keeps && !touches && !on_bodies) {
+      work.before = c.state;
+      work.spans_before = memory.spans;
+    }
+>>>>>>> fuzz
     Substep substep{*c.model, environment_, work.boundary, memory.spans, h};
     substep.scheme = scheme;
     substep.tolerance = state_.scene->tolerance;
@@ -336,6 +351,7 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     for (std::size_t k = 0; k < island.cables.size(); ++k) {
       keep_twist(workspace_.cables[k].boundary, state_.cable_progress[island.cables[k]].targets);
       keep_flows(island.cables[k], workspace_.cables[k].boundary, state_);
+      keep_flow_at_drive(island.cables[k], workspace_.cables[k].wound, state_);
     }
     workspace_.contacts.keep(workspace_.members);
     for (const BodyMember& member : workspace_.body_members)
@@ -376,15 +392,17 @@ Scheme IslandStepper::find_touching_scheme(const Island& island, double h) {
   return scheme;
 }
 
-void IslandStepper::wind_drive(int index, Scheme scheme, double from, double to, Boundary& boundary) {
+double IslandStepper::wind_drive(int index, Scheme scheme, double from, double to, Boundary& boundary) {
   const LengthDrive& drive = *state_.cable_progress[index].drive;
   SimulatedCable& cable = state_.cables[index];
   // An inextensible segment has its length at the end of the substep, an elastic one strains about that where its forces are
   // taken.
   const bool elastic = is_elastic(CableMaterials(cable)[drive.segment]);
   const bool in_the_middle = elastic && scheme == Scheme::conserving;
-  wind(drive, in_the_middle ? 0.5 * (from + to) : to, state_.scene->time_step, *cable.model, cable.state);
+  const double part = in_the_middle ? 0.5 * (from + to) : to;
+  wind(drive, part, state_.scene->time_step, *cable.model, cable.state);
   boundary.growing.assign(1, {drive.segment, growth_at(drive, to)});
+  return part;
 }
 
 /// Of cables; those that are not have not converged.

@@ -94,7 +94,8 @@ class IslandStepper {
   bool touches() const;
   Scheme scheme_of(int cable) const;
   Scheme find_touching_scheme(const Island& island, double h);
-  void wind_drive(int cable, Scheme scheme, double from, double to, Boundary& boundary);
+  /// Returns the part of the step that it has wound.
+  double wind_drive(int cable, Scheme scheme, double from, double to, Boundary& boundary);
   bool is_finite(const Island& island);
   void take_back(const Island& island);
   void stop(const Island& island);
@@ -116,5 +117,7 @@ class IslandStepper {
 
 /// The step of a winch or joint is done.
 void complete_drive_step(int cable, State& state);
+/// What flows through guides beside a cable's drive, see `keep_flow`.
+void keep_flow_at_drive(int cable, double part, State& state);
 
 }  // namespace verlet_cable

@@ -24,6 +24,7 @@ struct CableWorkspace {
   CableState before;
   std::vector<TwistSpan> spans_before;
   SubstepResult result;
+  double wound = 0;  ///< the part of the step that its drive has wound
 };
 
 struct IslandOutcome;

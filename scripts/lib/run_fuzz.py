@@ -1,0 +1,110 @@
+"""Runs fuzz targets, as many at once as there are cores, and says what each found: run_fuzz.py WORKSPACE CHECKOUT SECONDS
+RESULTS TARGET..., where RESULTS is a JUnit file to write, or empty."""
+import concurrent.futures
+import os
+import pathlib
+import random
+import re
+import shutil
+import subprocess
+import sys
+from xml.etree import ElementTree
+
+LONGEST_INPUT_SECONDS = 60
+MEMORY_MB = 4096
+# Of worlds, whose inputs have no format: enough for some tens of calls.
+WORLD_SEEDS = 60
+WORLD_SEED_BYTES = 600
+FIGURE = re.compile(r'^stat::number_of_executed_units:\s*(\d+)', re.MULTILINE)
+COVERAGE = re.compile(r'cov: (\d+)')
+
+
+def seeds(target, checkout):
+    """Files that a target's first inputs are."""
+    config = checkout / 'config'
+    if target == 'scene':
+        return sorted(config.rglob('*.yaml')) + sorted((checkout / 'fuzz' / 'worlds').glob('*.yaml'))
+    if target == 'motion':
+        return sorted(config.rglob('*.csv'))
+    if target == 'recording':
+        return sorted((config / 'recordings').glob('*.csv'))
+    if target == 'robot':
+        return sorted(config.rglob('*.urdf'))
+    return []
+
+
+def shorter(content, most=20000):
+    """Whole lines of long files: what is large is slow, and no other code."""
+    return content if len(content) <= most else content[:content.rfind(b'\n', 0, most) + 1]
+
+
+def fill_corpus(target, checkout, corpus):
+    corpus.mkdir(parents=True, exist_ok=True)
+    for path in seeds(target, checkout):
+        (corpus / ('seed_' + path.name)).write_bytes(shorter(path.read_bytes()))
+    if target == 'world':
+        for seed in range(WORLD_SEEDS):
+            (corpus / f'seed_{seed}').write_bytes(random.Random(seed).getrandbits(8 * WORLD_SEED_BYTES).to_bytes(WORLD_SEED_BYTES, 'big'))
+    kept = checkout / 'fuzz' / 'inputs' / target
+    for path in sorted(kept.glob('*')) if kept.is_dir() else []:
+        shutil.copy(path, corpus / ('kept_' + path.name))
+
+
+def run(target, workspace, checkout, seconds):
+    """(executions, covered edges, paths of what was found)"""
+    corpus, findings = workspace / 'corpus' / target, workspace / 'findings' / target
+    fill_corpus(target, checkout, corpus)
+    findings.mkdir(parents=True, exist_ok=True)
+    before = set(findings.iterdir())
+    program = workspace / 'devel' / 'lib' / 'verlet_cable' / f'fuzz_{target}'
+    options = [f'-max_total_time={seconds}', f'-timeout={LONGEST_INPUT_SECONDS}', f'-rss_limit_mb={MEMORY_MB}', '-print_final_stats=1',
+               f'-artifact_prefix={findings}/', '-max_len=20000']
+    dictionary = checkout / 'fuzz' / 'dictionaries' / f'{target}.dict'
+    if dictionary.exists():
+        options.append(f'-dict={dictionary}')
+    # Assimp leaks what it has begun of a text STL that it refuses; the package reads in a process that ends then.
+    leaks = 0 if target == 'mesh' else 1
+    environment = dict(os.environ, ASAN_OPTIONS=f'allocator_may_return_null=1:detect_leaks={leaks}',
+                       UBSAN_OPTIONS='print_stacktrace=1')
+    log = workspace / f'fuzz_{target}.log'
+    with open(log, 'wb') as output:
+        status = subprocess.run([str(program), *options, str(corpus)], stdout=output, stderr=subprocess.STDOUT,
+                                stdin=subprocess.DEVNULL, env=environment, check=False).returncode
+    text = log.read_text(errors='replace')
+    found = sorted(set(findings.iterdir()) - before)
+    if status != 0 and not found:
+        found = [log]
+    executed, covered = FIGURE.search(text), COVERAGE.findall(text)
+    return int(executed.group(1)) if executed else 0, int(covered[-1]) if covered else 0, found
+
+
+def write_results(path, failures, targets):
+    """`failures`: text by target."""
+    suite = ElementTree.Element('testsuite', name='fuzz', tests=str(len(targets)), failures=str(len(failures)))
+    for target in targets:
+        case = ElementTree.SubElement(suite, 'testcase', classname='fuzz', name=target)
+        if target in failures:
+            ElementTree.SubElement(case, 'failure', message=failures[target])
+    path.parent.mkdir(parents=True, exist_ok=True)
+    ElementTree.ElementTree(suite).write(path, encoding='utf-8', xml_declaration=True)
+
+
+def main():
+    workspace, checkout, seconds, results = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), int(sys.argv[3]), sys.argv[4]
+    targets = sys.argv[5:]
+    failures = {}
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        runs = {target: pool.submit(run, target, workspace, checkout, seconds) for target in targets}
+        for target, result in runs.items():
+            executions, edges, found = result.result()
+            text = ', '.join(map(str, found)) if found else 'nothing'
+            if found or executions == 0:
+                failures[target] = f'{executions} executions, found: {text}'
+            print(f'{target}: {executions} executions, {edges} edges covered, found: {text}', flush=True)
+    if results:
+        write_results(pathlib.Path(results), failures, targets)
+    sys.exit(1 if failures else 0)
+
+
+if __name__ == '__main__':
+    main()
