@@ -308,18 +308,11 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     work.boundary.joined_mass = joined_mass_;
     const bool touches = workspace_.contacts.touched(k), on_bodies = work.boundary.is_on_bodies();
     const Scheme scheme = touches || on_bodies ? touching_scheme : scheme_of(cable);
-<<<<<<< HEAD
-    if (memory.drive) wind_drive(cable, scheme, from, to, work.boundary);
-    work.before = c.state;
-    work.spans_before = memory.spans;
-=======
     if (memory.drive) work.wound = wind_drive(cable, scheme, from, to, work.boundary);
-    // What touches is left as it is until all have converged.
-    if (keeps && !touches && !on_bodies) {
+    if (is_kept(island, k)) {
       work.before = c.state;
       work.spans_before = memory.spans;
     }
->>>>>>> fuzz
     Substep substep{*c.model, environment_, work.boundary, memory.spans, h};
     substep.scheme = scheme;
     substep.tolerance = state_.scene->tolerance;
@@ -405,10 +398,17 @@ double IslandStepper::wind_drive(int index, Scheme scheme, double from, double t
   return part;
 }
 
-/// Of cables; those that are not have not converged.
+/// What touches is left as it is until all have converged, but for what slides through guides.
+bool IslandStepper::is_kept(const Island& island, std::size_t k) const {
+  const Boundary& boundary = workspace_.cables[k].boundary;
+  return !boundary.flows.empty() || (island.cables.size() > 1 && !workspace_.contacts.touched(k) && !boundary.is_on_bodies());
+}
+
+/// Of cables that slide through guides; those that are not have not converged.
 bool IslandStepper::is_finite(const Island& island) {
   bool all = true;
   for (std::size_t k = 0; k < island.cables.size(); ++k) {
+    if (workspace_.cables[k].boundary.flows.empty()) continue;
     const CableState& state = state_.cables[island.cables[k]].state;
     if (finite(state.positions) && finite(state.velocities)) continue;
     workspace_.cables[k].result.converged = all = false;
@@ -418,6 +418,7 @@ bool IslandStepper::is_finite(const Island& island) {
 
 void IslandStepper::take_back(const Island& island) {
   for (std::size_t k = 0; k < island.cables.size(); ++k) {
+    if (!is_kept(island, k)) continue;
     state_.cables[island.cables[k]].state = workspace_.cables[k].before;
     state_.cable_progress[island.cables[k]].spans = workspace_.cables[k].spans_before;
   }
