@@ -333,7 +333,7 @@ def test_hands_do_not_sink_where_the_cable_reaches_no_further():
 def test_hands_do_not_go_further_than_the_cable_that_clips_leave_them():
     task = LayCable().task
     seen = lay_cable.Seen(None, numpy.zeros((1, 3)), None, {'held': numpy.array([[True, True, True]]), 'layout': numpy.array([0])})
-    hand = numpy.array([[0.4, 0.0, 0.01]])
+    hand = numpy.array([[0.4, 0.0, 0.012]])
     for _ in range(200):
         hand = task.move(hand, numpy.array([[1.0, 0.3, 0.1]]), seen)
     places = numpy.zeros((5, 3)) + [0, 0, lay_cable.LOW[2]]
@@ -347,7 +347,7 @@ def test_hands_do_not_enter_posts():
     task = LayCable().task
     post = task.posts[3, 2]
     seen = nothing_held(3)
-    low, high = numpy.array([[*post - [0.02, 0.001], 0.01]]), numpy.array([[*post - [0.02, 0.001], 0.05]])
+    low, high = numpy.array([[*post - [0.02, 0.001], 0.012]]), numpy.array([[*post - [0.02, 0.001], 0.05]])
     for step in range(8):
         low, high = task.move(low, numpy.array([[1.0, 0, 0]]), seen), task.move(high, numpy.array([[1.0, 0, 0]]), seen)
         assert ((low[0, :2] - task.posts[3]) ** 2).sum(axis=1).min() >= 0.999 * lay_cable.CLEARANCE ** 2
@@ -361,11 +361,11 @@ def test_hands_stop_at_posts_they_are_aimed_at():
                           {'held': numpy.zeros((task.variants, 3), dtype=bool), 'layout': layouts})
     for post in (0, 1):
         for away in (0.0071, 0.0098, 0.012):  # [m] from the middle, and a step is 0.0071 m long
-            hand = numpy.full((task.variants, 3), 0.01)
+            hand = numpy.full((task.variants, 3), 0.012)
             hand[:, :2] = task.posts[:, post] - away * aim[:2]
             for _ in range(5):
                 hand = task.move(hand, numpy.tile([1.0, -1.0, 0], (task.variants, 1)), seen)
-            middle = numpy.append(task.posts[:, post], numpy.full((task.variants, 1), 0.01), axis=1)
+            middle = numpy.append(task.posts[:, post], numpy.full((task.variants, 1), 0.012), axis=1)
             assert hand == pytest.approx(middle - lay_cable.CLEARANCE * aim, abs=1e-6)
 
 
@@ -407,6 +407,14 @@ def test_a_hand_that_slides_around_a_post_is_not_torn():
         observation, *_ = environment.step(numpy.array([1.0, -1.0, 0]))
         assert numpy.linalg.norm(observation[306:309] - hand) <= 0.0071
         assert numpy.linalg.norm(observation[309:312]) < 10
+
+
+def test_a_hand_goes_over_the_cable_where_it_lies():
+    environment = LayCable()
+    observation, _ = environment.reset(options={'layout': 0})
+    for _ in range(40):
+        observation, *_ = environment.step(numpy.array([-1.0, -1.0, -1.0]))
+        assert numpy.linalg.norm(observation[309:312]) < 6
 
 
 def test_hands_give_way_to_what_is_stronger():

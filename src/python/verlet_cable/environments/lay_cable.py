@@ -29,7 +29,7 @@ ASIDE = 0.025                              # [m] how far from the x axis they ar
 TURNED = 0.3                               # [rad] and how much they are turned
 
 SPEED = 0.25                               # [m/s] of the hand along each axis at an action of 1
-LOW = numpy.array([-0.35, -0.25, 3.2 * RADIUS])  # [m] between which the hand stays: above a cable that lies there,
+LOW = numpy.array([-0.35, -0.25, 5.2 * RADIUS])  # [m] between which the hand stays: above a cable that lies across itself,
 HIGH = numpy.array([0.57, 0.25, 0.1])
 REACH = 0.97 * LENGTH                      # [m] how far it goes, along the clips that hold the cable,
 CLEARANCE = POST + RADIUS                  # [m] and how near to the axis of a post,
@@ -211,7 +211,7 @@ class LayCable(Environment):
     """Lay a cable, tied down at one end, into three clips on a table with a hand that leads the other one.
 
     Action (3,), each from -1 to 1: velocity of the hand along x, y and z, in 0.25 m/s. The hand stays between -0.35 m and 0.57 m in
-    x, within 0.25 m in y, between 6.4 mm and 0.1 m in z, and where the cable reaches. It stops at posts, slides along them, or goes
+    x, within 0.25 m in y, between 10.4 mm and 0.1 m in z, and where the cable reaches. It stops at posts, slides along them, or goes
     over them. When a step ends with more than 5 N on it, it gives way in the next one; within a step nothing limits the force.
     Observation (327,) float64: nodes (51, 3) [m] from the tied end on, their velocities (51, 3) [m/s], the hand (3,) [m], the force
     on it (3,) [N], the clips (3, 4): x, y [m] and the direction in which they lead the cable; and whether they hold it (3,), 0 or
