@@ -170,7 +170,8 @@ def arrays_of(root):
 
 def complete_chunks(path):
     """The numbers of the chunks that are there."""
-    return {int(name) for name in os.listdir(os.path.join(path, 'status')) if name.isdigit()}
+    with os.scandir(os.path.join(path, 'status')) as entries:
+        return {int(entry.name) for entry in entries if entry.name.isdigit() and entry.is_file()}
 
 
 def count_samples(path, layout):
