@@ -14,7 +14,7 @@ using namespace verlet_cable;
 
 constexpr int steps = 20;
 /// Larger scenes are read, but not simulated: that is slow, and no other code.
-constexpr int most_segments = 200;
+constexpr int most_segments = 60;
 
 bool is_small(const SceneDesc& scene) {
   std::size_t elements = scene.particles.size() + scene.bodies.size() + scene.obstacles.size();

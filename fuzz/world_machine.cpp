@@ -101,7 +101,7 @@ void WorldMachine::disturb_frame() {
 }
 
 void WorldMachine::step_some() {
-  for (int steps = input_.one_of({1, 3, 10, 30}); steps > 0; --steps) {
+  for (int steps = input_.one_of({1, 3, 10, 30}); steps > 0 && !is_tired(); --steps) {
     step();
     check_world(world_);
   }
@@ -113,6 +113,7 @@ void WorldMachine::step() {
   if (moving_frame_ < frames_.size()) frames_[moving_frame_].pose.position += world_.time_step() * velocity_;
   const double before = mass(world_), wound = most_wound();
   const StepResult result = on_both([&](World& world) { return world.step(frames_); });
+  substeps_ += result.substeps;
   require(std::isfinite(result.max_strain), "strain is finite");
   require(std::abs(mass(world_) - before) <= wound + 1e-9 * before, "a step keeps mass, but for winches");
 }

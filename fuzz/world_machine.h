@@ -17,8 +17,12 @@ class WorldMachine {
 
   /// Does one thing.
   void act();
+  /// Whether it has taken so many substeps that more of them would take too long.
+  bool is_tired() const { return substeps_ > most_substeps; }
 
  private:
+  static constexpr int most_substeps = 10000;
+
   // What is done.
   void move_frame();
   void disturb_frame();
@@ -59,6 +63,7 @@ class WorldMachine {
   Vector3 velocity_ = Vector3::Zero();  ///< [m/s] of the frame that moves
   std::size_t moving_frame_ = 0;
   double winch_speed_ = 0;  ///< [m/s] the most that a winch was given
+  int substeps_ = 0;
   World world_;
   std::optional<World> copy_;  ///< that is to go on like the world, with other lanes
   World saved_;

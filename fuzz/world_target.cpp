@@ -15,6 +15,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   SceneDesc scene = scenes[input.below(static_cast<int>(scenes.size()))];
   scene.time_step = input.one_of({0.001, 0.005, 0.02});
   fuzz::WorldMachine machine(scene, input);
-  for (int i = 0; i < most_calls && !input.is_used_up(); ++i) machine.act();
+  for (int i = 0; i < most_calls && !input.is_used_up() && !machine.is_tired(); ++i) machine.act();
   return 0;
 }
