@@ -81,7 +81,7 @@ void BodySettling::hold_still() {
     put_at_aim(targets);
     CableWorkspace& work = workspace_.cables[k];
     work.stepper.resize(cable.state.segments());
-    work.boundary.growing.clear();
+    work.boundary = {};
     hold_at(1, 1, targets, work.boundary);
     bring_to_rest(cable.state);
     stop_flows(island_.cables[k], state_);

@@ -133,7 +133,7 @@ Settling::Settling(int cable, State& state, Workspace& workspace, const std::ato
       memory_(state.cable_progress[cable]),
       work_(workspace.cables.empty() ? workspace.cables.emplace_back() : workspace.cables.front()) {
   work_.stepper.resize(cable_.state.segments());
-  work_.boundary.growing.clear();
+  work_.boundary = {};  // a settling in which nothing converges would tell the forces of what was there before
 }
 
 void Settling::find_obstacles() {
@@ -389,7 +389,7 @@ bool Settling::leaves_when_let_go(Approach& approach, double& h) {
       if (leaves && largest_distance(cable_.state.positions, before.positions) > far) break;
       time += step;
       step *= trial_growth;
-      step = std::min(step, workspace_.contacts.touches().empty() ? longest_trial_step : longest_touching_step);
+      step = std::min(step, touches(trial) ? longest_touching_step : longest_trial_step);
     } else {
       step *= 0.5;
       leaves = leaves || step < shortest_trial_step;
