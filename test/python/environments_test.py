@@ -145,7 +145,8 @@ def test_a_wrong_action_changes_nothing(environment, action, text):
 
 
 def test_wrong_arguments():
-    for wrong, text in (({'max_episode_steps': 0}, 'max_episode_steps: 0; allowed: whole numbers from 1 to 1000000, or None'), ({'goals': 1.5}, 'goals: 1.5'),
+    for wrong, text in (({'max_episode_steps': 0}, 'max_episode_steps: 0; allowed: whole numbers from 1 to 1000000, or None'),
+                        ({'goals': 1.5}, 'goals: 1.5'),
                         ({'render_mode': 'human'}, "render_mode: 'human'; allowed: None, 'rgb_array'")):
         with pytest.raises(ValueError, match=text):
             ShapeRope(**wrong)
@@ -383,7 +384,8 @@ def test_hands_go_beside_and_over_posts_no_faster_than_they_can(held):
     for step in range(60):
         if step % 5 == 0:  # to or past some post, up or down
             actions = generator.uniform(-1, 1, (count, 3))
-            aim = posts[numpy.arange(count), generator.integers(6, size=count)] + generator.normal(0, 0.004, (count, 2)) - hand[:, :2]
+            aim = posts[numpy.arange(count), generator.integers(6, size=count)] - hand[:, :2]
+            aim += generator.normal(0, 0.004, (count, 2))
             actions[:, :2] = aim / abs(aim).max(axis=1)[:, None]
         moved = task.move(hand, actions, seen)
         way = lay_cable.SPEED * lay_cable.STEP_TIME * numpy.sqrt((actions ** 2).sum(axis=1))

@@ -139,7 +139,7 @@ class VectorEnvironment(VectorEnv):
 
     @property
     def np_random_seed(self):
-        """The seeds of the worlds' random number generators, a tuple; drawn from what the system has at random where none was given."""
+        """The seeds of the worlds' random number generators, a tuple; those that nobody gave are drawn at random."""
         return tuple(self._seeds)
 
     def _open(self, call):

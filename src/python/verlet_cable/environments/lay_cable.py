@@ -210,9 +210,9 @@ def make_task():
 class LayCable(Environment):
     """Lay a cable, tied down at one end, into three clips on a table with a hand that leads the other one.
 
-    Action (3,), each from -1 to 1: velocity of the hand along x, y and z, in 0.25 m/s. The hand stays between -0.35 m and 0.57 m in
-    x, within 0.25 m in y, between 10.4 mm and 0.1 m in z, and where the cable reaches. It stops at posts, slides along them, or goes
-    over them. When a step ends with more than 5 N on it, it gives way in the next one; within a step nothing limits the force.
+    Action (3,), each from -1 to 1: velocity of the hand along x, y and z, in 0.25 m/s. The hand stays between -0.35 m and 0.57 m
+    in x, within 0.25 m in y, between 10.4 mm and 0.1 m in z, and where the cable reaches. It stops at posts, slides along them, or
+    goes over them. When a step ends with more than 5 N on it, it gives way in the next one; within a step nothing limits the force.
     Observation (327,) float64: nodes (51, 3) [m] from the tied end on, their velocities (51, 3) [m/s], the hand (3,) [m], the force
     on it (3,) [N], the clips (3, 4): x, y [m] and the direction in which they lead the cable; and whether they hold it (3,), 0 or
     1.

@@ -8,8 +8,8 @@ SKIN = 1e-9   # [m] hands stay so far from a post that they touch: rounding does
 
 
 def move_beside(hand, way, posts, radius, top, limit):
-    """Where hands (count, 3) [m] come to that want to go a way (count, 3): to the first post, and with the rest of the way along it,
-    until the next one. No hand goes further than its way is long, and the straight line to where it comes to is free of posts.
+    """Where hands (count, 3) [m] come to that want to go a way (count, 3): to the first post, and with the rest of the way along
+    it, until the next one. No hand goes further than its way is long, and the straight line to where it comes to is free of posts.
 
     posts: their axes, (count, k, 2) [m], all of one radius [m] and with their tops at one height [m].
     limit: of places (count, 3), gives those nearest to them where hands may be, posts aside.
