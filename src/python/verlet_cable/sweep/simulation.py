@@ -90,17 +90,17 @@ def _simulate_group(sweep, layout, motion, time_step, members, result):
         for member in members:
             _simulate_group(sweep, layout, motion, time_step, [member], result)
         return
-    cables = batch.world(0).cable_names
+    nodes = _Nodes(batch)
     try:
         worst = _run(sweep, layout, batch, time_step, positions, result)
     except (ValueError, KeyError, RuntimeError) as error:
-        _simulate_parted(sweep, layout, motion, time_step, members, result, _broken(sweep, batch, time_step, cables), error)
+        _simulate_parted(sweep, layout, motion, time_step, members, result, _broken(sweep, batch, time_step, nodes), error)
         return
     for index, position in enumerate(positions):
         result.worst[position] = worst[index]
         if worst[index] == _FAULTY:
             result.fail(position, FAULT, f'the simulation failed within {sweep.duration:g} s')
-    for index in _broken(sweep, batch, time_step, cables):
+    for index in _broken(sweep, batch, time_step, nodes):
         _fail_broken(sweep, motion, time_step, members[index], result)
 
 
@@ -118,17 +118,29 @@ def _simulate_parted(sweep, layout, motion, time_step, members, result, broken, 
             _simulate_group(sweep, layout, motion, time_step, [member], result)
 
 
-def _broken(sweep, batch, time_step, cables):
-    """Indices of the worlds in which a cable has broken by the end, which has a name of its own then."""
+def _broken(sweep, batch, time_step, nodes):
+    """Indices of the worlds in which a cable has broken by the end."""
     left = sweep.steps(time_step)[0] - round(batch.time.max() / time_step)
     if left > 0:
         batch.step(left)
-    try:
-        for name in cables:
-            batch.positions(name)  # of worlds that are alike, as nearly all are, in a moment
+    if nodes.are_as_they_were(batch):
         return []
-    except ValueError:
-        return [index for index in range(len(batch)) if len(batch.world(index).cable_names) > len(cables)]
+    return [index for index in range(len(batch)) if len(batch.world(index).cable_names) > len(nodes.cables)]
+
+
+class _Nodes:
+    """How many nodes the cables of a batch have: what breaks off is a cable of its own."""
+
+    def __init__(self, batch):
+        self.cables = batch.world(0).cable_names
+        self._parts = [('positions', name) for name in self.cables]
+        self._shape = batch.observations(self._parts).shape
+
+    def are_as_they_were(self, batch):
+        try:
+            return batch.observations(self._parts).shape == self._shape
+        except ValueError:  # the worlds are no longer alike
+            return False
 
 
 def _fail_broken(sweep, motion, time_step, member, result):
