@@ -52,14 +52,14 @@ void check_held_body(const RequestedPin& request, const CheckedPin& pin, const W
     if (other.body != pin.body) continue;
     const bool clamped = request.clamp || other.type == AttachmentType::clamp;
     if (!clamped && other.at.position.norm() > same_point) continue;
-    errors.push_back("location: " + kind_and_name(world, pin.body) + " is held by " + quoted(other.name) +
+    errors.push_back(place_text(request.place) + ": " + kind_and_name(world, pin.body) + " is held by " + quoted(other.name) +
                      (clamped ? "; allowed: clamps of bodies that nothing else holds, and hinges of those that no clamp holds"
                               : " at its origin already; allowed: bodies that are held elsewhere, or not at all"));
   }
 }
 
-void check_held_node(const CheckedPin& pin, const World& world, std::vector<std::string>& errors) {
-  const std::string node = "location: node " + std::to_string(pin.node) + " of " + kind_and_name(world, pin.body);
+void check_held_node(const RequestedPin& request, const CheckedPin& pin, const World& world, std::vector<std::string>& errors) {
+  const std::string node = place_text(request.place) + ": node " + std::to_string(pin.node) + " of " + kind_and_name(world, pin.body);
   const std::vector<Attachment>& attachments = world.attachments();
   if (const int holder = holder_of(pin.body, pin.node, attachments); holder >= 0) {
     errors.push_back(node + " is held by " + quoted(attachments[holder].name) + "; allowed: nodes that nothing holds");
@@ -106,7 +106,7 @@ CheckedPin check_pin(const RequestedPin& request, const World& world, const Find
   pin.body = location.body;
   pin.node = location.node;
   pin.frame = request.frame_id.empty() ? world.frames().front() : request.frame_id;
-  pin.offset = read_pose("offset", request.offset, pin.errors);
+  if (!request.keep_offset) pin.offset = read_pose("offset", request.offset, pin.errors);
   if (!request.name.empty() && !is_name(request.name)) {
     pin.errors.push_back("name: " + quoted(request.name) + "; allowed: " + name_words + "; or empty");
   }
@@ -126,7 +126,7 @@ CheckedPin check_pin(const RequestedPin& request, const World& world, const Find
       pin.errors.push_back("frame_id: " + verlet_cable::quoted(pin.frame) + ", the body's own; allowed: others");
     check_held_body(request, pin, world, pin.errors);
   } else {
-    check_held_node(pin, world, pin.errors);
+    check_held_node(request, pin, world, pin.errors);
   }
   if (!pin.errors.empty()) return pin;
   if (request.keep_offset) {

@@ -8,7 +8,8 @@
 
 namespace verlet_cable {
 
-/// What is to be held, and where, as requests give it. Nothing of it is checked; errors name the fields as Pin.srv does.
+/// What is to be held, and where, as requests give it. Nothing of it is checked; errors name the fields as Pin.srv does, and
+/// those of the place with its words.
 struct RequestedPin {
   RequestedPlace place;
   std::string name;          ///< of the attachment; empty: one is made

@@ -26,6 +26,17 @@ std::string point_text(const Vector3& point) {
   return "(" + number_text(point.x()) + ", " + number_text(point.y()) + ", " + number_text(point.z()) + ")";
 }
 
+/// "location.mode: 1", or the argument that says so.
+std::string mode_text(const RequestedPlace& place) {
+  const RequestWords& words = *place.words;
+  return words.mode.empty() ? words.mode_names.at(static_cast<std::size_t>(place.mode))
+                            : words.mode + ": " + std::to_string(place.mode);
+}
+
+std::string waits_for_frames(const std::string& cable, const RequestWords& words) {
+  return words.cable + ": " + quoted(cable) + " waits for its " + words.frames;
+}
+
 /// `bodies`: whether those may be named, too.
 void find_cable(const RequestedPlace& place, const World& world, bool bodies, PointOnCable& found) {
   if (place.cable.empty() && place.mode == RequestedPlace::nearest) return;
@@ -33,8 +44,7 @@ void find_cable(const RequestedPlace& place, const World& world, bool bodies, Po
   if (found.cable >= 0) return;
   const std::vector<std::string>& waiting = world.findings().waiting;
   if (std::find(waiting.begin(), waiting.end(), place.cable) != waiting.end()) {
-    found.errors.push_back("location.cable: " + quoted(place.cable) +
-                           " waits for its tf frames; allowed: cables that are simulated already");
+    found.errors.push_back(waits_for_frames(place.cable, *place.words) + "; allowed: cables that are simulated already");
     return;
   }
   std::string names;
@@ -43,12 +53,12 @@ void find_cable(const RequestedPlace& place, const World& world, bool bodies, Po
   if (bodies)
     for (const SimulatedBody& body : world.bodies())
       if (!body.is_junction) names += (names.empty() ? "" : ", ") + body.name;
-  found.errors.push_back("location.cable: " + quoted(place.cable) +
+  found.errors.push_back(place.words->cable + ": " + quoted(place.cable) +
                          "; allowed: " + (names.empty() ? "none, there are no cables or nets" : names));
 }
 
 void find_node(const RequestedPlace& place, const World& world, PointOnCable& found) {
-  found.field = "location.node: " + std::to_string(place.node);
+  found.field = place.words->node + ": " + std::to_string(place.node);
   if (found.cable < 0) return;
   const std::int64_t segments = world.cables()[found.cable].state.segments();
   if (place.node < 0 || place.node > segments) {
@@ -60,7 +70,7 @@ void find_node(const RequestedPlace& place, const World& world, PointOnCable& fo
 }
 
 void find_arc_length(const RequestedPlace& place, const World& world, PointOnCable& found) {
-  found.field = "location.arc_length: " + number_text(place.arc_length);
+  found.field = place.words->arc_length + ": " + number_text(place.arc_length);
   if (found.cable < 0) {
     if (!std::isfinite(place.arc_length)) found.errors.push_back(found.field + "; allowed: finite numbers [m]");
     return;
@@ -83,20 +93,20 @@ std::optional<Vector3> read_point(const RequestedPlace& place, const FindFrame& 
   const Vector3& point = place.point;
   const std::size_t before = errors.size();
   if (!coordinate.contains(point.x()) || !coordinate.contains(point.y()) || !coordinate.contains(point.z())) {
-    errors.push_back("location.point.point: " + point_text(point) + "; allowed: " + coordinate.text("m"));
+    errors.push_back(place.words->point_numbers + ": " + point_text(point) + "; allowed: " + coordinate.text("m"));
   }
   const std::string& frame = place.point_frame;
   const std::optional<Pose> pose = frame.empty() ? Pose{} : find_frame(frame);
-  if (!pose) errors.push_back("location.point.header.frame_id: " + quoted(frame) + "; allowed: known frames");
+  if (!pose) errors.push_back(place.words->point_frame + ": " + quoted(frame) + "; allowed: known frames");
   if (errors.size() > before) return std::nullopt;
   return (*pose * Pose{point, Quaternion::Identity()}).position;
 }
 
 void find_nearest(const RequestedPlace& place, const World& world, const FindFrame& find_frame, PointOnCable& found) {
-  found.field = "location.point: " + point_text(place.point);
+  found.field = place.words->point + ": " + point_text(place.point);
   const std::optional<Vector3> position = read_point(place, find_frame, found.errors);
   if (!found.errors.empty()) return;
-  if (world.cables().empty()) found.errors.push_back("location.cable: \"\"; allowed: none, there are no cables");
+  if (world.cables().empty()) found.errors.push_back(place.words->cable + ": \"\"; allowed: none, there are no cables");
 
   double least = infinity;
   const bool any = found.cable < 0;
@@ -115,6 +125,7 @@ void find_nearest(const RequestedPlace& place, const World& world, const FindFra
 
 PointOnCable find_point(const RequestedPlace& place, const World& world, const FindFrame& find_frame, bool bodies) {
   PointOnCable found;
+  const std::array<std::string, 3>& mode_names = place.words->mode_names;
   find_cable(place, world, bodies, found);
   switch (place.mode) {
     case RequestedPlace::at_node:
@@ -127,7 +138,7 @@ PointOnCable find_point(const RequestedPlace& place, const World& world, const F
       find_nearest(place, world, find_frame, found);
       break;
     default:
-      found.errors.push_back("location.mode: " + std::to_string(place.mode) + "; allowed: 0 (NODE), 1 (ARC_LENGTH), 2 (NEAREST)");
+      found.errors.push_back(mode_text(place) + "; allowed: " + mode_names[0] + ", " + mode_names[1] + ", " + mode_names[2]);
   }
   return found;
 }
@@ -164,7 +175,7 @@ Location locate_net_node(const RequestedPlace& place, const World& world, int in
     if (exists)
       found.node = static_cast<int>(place.node);
     else
-      found.errors.push_back("location.node: " + std::to_string(place.node) + "; allowed: 0 to " +
+      found.errors.push_back(place.words->node + ": " + std::to_string(place.node) + "; allowed: 0 to " +
                              std::to_string(net.model.nodes() - 1));
   } else if (place.mode == RequestedPlace::nearest) {
     const std::optional<Vector3> point = read_point(place, find_frame, found.errors);
@@ -173,8 +184,9 @@ Location locate_net_node(const RequestedPlace& place, const World& world, int in
       found.distance = distance(net, *point);
     }
   } else {
-    found.errors.push_back("location.mode: " + std::to_string(place.mode) + " for net " + quoted(net.model.name) +
-                           "; allowed: 0 (NODE), 2 (NEAREST)");
+    found.errors.push_back(mode_text(place) + " for net " + quoted(net.model.name) +
+                           "; allowed: " + place.words->mode_names[RequestedPlace::at_node] + ", " +
+                           place.words->mode_names[RequestedPlace::nearest]);
   }
   return found;
 }
@@ -185,14 +197,18 @@ Location locate_links(const RequestedPlace& place, const World& world, int index
   if (!found.errors.empty()) return found;
   if (place.mode == RequestedPlace::nearest) {
     const NearestPoint nearest = nearest_link(net, *read_point(place, find_frame, found.errors));
-    if (nearest.segment >= 0) found.elements.push_back(nearest.segment);
+    if (nearest.segment >= 0) {
+      found.elements.push_back(nearest.segment);
+      found.node = net.model.links[nearest.segment][nearest.fraction > 0.5 ? 1 : 0];
+    }
     found.distance = nearest.distance;
   } else {
     for (int link = 0; link < static_cast<int>(net.model.links.size()); ++link)
       if (net.model.links[link][0] == found.node || net.model.links[link][1] == found.node) found.elements.push_back(link);
   }
   if (found.elements.empty())
-    found.errors.push_back("location: net " + quoted(net.model.name) + " has no link there; allowed: nodes that links join");
+    found.errors.push_back(place_text(place) + ": net " + quoted(net.model.name) +
+                           " has no link there; allowed: nodes that links join");
   return found;
 }
 
@@ -201,17 +217,35 @@ Location locate_body(const RequestedPlace& place, const World& world, int index)
   Location found;
   found.body = rigid_body_id(index);
   if (!world.frame_known(world.bodies()[index].frame))
-    found.errors.push_back("location.cable: " + quoted(world.bodies()[index].name) +
-                           " waits for its tf frames; allowed: bodies that are simulated already");
+    found.errors.push_back(waits_for_frames(place.cable, *place.words) + "; allowed: bodies that are simulated already");
   else if (place.mode != RequestedPlace::at_node)
-    found.errors.push_back("location.mode: " + std::to_string(place.mode) + " for body " + quoted(world.bodies()[index].name) +
-                           "; allowed: 0 (NODE)");
+    found.errors.push_back(mode_text(place) + " for body " + quoted(place.cable) +
+                           "; allowed: " + place.words->mode_names[RequestedPlace::at_node]);
   else if (place.node != 0)
-    found.errors.push_back("location.node: " + std::to_string(place.node) + "; allowed: 0, the origin of the body's frame");
+    found.errors.push_back(place.words->node + ": " + std::to_string(place.node) +
+                           "; allowed: 0, the origin of the body's frame");
   return found;
 }
 
 }  // namespace
+
+const RequestWords& service_words() {
+  static const RequestWords words{"location.cable",
+                                  "location.node",
+                                  "location.arc_length",
+                                  "location.point",
+                                  "location.point.point",
+                                  "location.point.header.frame_id",
+                                  "location.mode",
+                                  {"0 (NODE)", "1 (ARC_LENGTH)", "2 (NEAREST)"},
+                                  "location",
+                                  "tf frames"};
+  return words;
+}
+
+std::string place_text(const RequestedPlace& place) {
+  return place.words->place.empty() ? place.words->mode_names.at(static_cast<std::size_t>(place.mode)) : place.words->place;
+}
 
 Location locate_node(const RequestedPlace& place, const World& world, const FindFrame& find_frame) {
   if (const int net = find_net(place, world, find_frame); net >= 0) return locate_net_node(place, world, net, find_frame);
@@ -228,7 +262,8 @@ Location locate_cut(const RequestedPlace& place, const World& world, const FindF
     const int last = cable.state.segments() - 2;
     const bool behind_the_end = place.mode == RequestedPlace::at_node && found.fraction > 0;
     if (last < 1) {
-      found.errors.push_back("location.cable: " + quoted(cable.model->name) + " of " + std::to_string(cable.state.segments()) +
+      found.errors.push_back(place.words->cable + ": " + quoted(cable.model->name) + " of " +
+                             std::to_string(cable.state.segments()) +
                              " segments; allowed: cables of at least 3, so that each piece keeps one");
     } else if (found.segment < 1 || found.segment > last || behind_the_end) {
       found.errors.push_back(

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -13,7 +14,19 @@ namespace verlet_cable {
 /// Where a frame is in the fixed frame; none if it is not known.
 using FindFrame = std::function<std::optional<Pose>(const std::string&)>;
 
-/// A place as requests give it. Nothing of it is checked; errors name the fields as CableLocation.msg does.
+/// How messages name what requests give.
+struct RequestWords {
+  std::string cable, node, arc_length, point, point_numbers, point_frame;
+  std::string mode;                       ///< where it has a number; empty: it follows from what is given
+  std::array<std::string, 3> mode_names;  ///< of at_node, at_arc_length, nearest
+  std::string place;                      ///< all of it; empty: what is given of it
+  std::string frames;                     ///< for which cables wait
+};
+
+/// As CableLocation.msg and the node have it.
+const RequestWords& service_words();
+
+/// A place as requests give it. Nothing of it is checked.
 struct RequestedPlace {
   static constexpr int at_node = 0, at_arc_length = 1, nearest = 2;
   std::string cable;                ///< or net, or rigid body; empty: what is nearest of all
@@ -22,12 +35,16 @@ struct RequestedPlace {
   double arc_length = 0;            ///< [m] of at_arc_length: from the cable's start, at rest
   Vector3 point = Vector3::Zero();  ///< [m] of nearest
   std::string point_frame;          ///< in which the point is; empty: the fixed frame
+  const RequestWords* words = &service_words();
 };
+
+/// What messages call a place, of a mode that there is.
+std::string place_text(const RequestedPlace& place);
 
 /// A place on a cable or net, or a body of a world, or everything that is wrong with the request for it.
 struct Location {
   BodyId body;                ///< the cable, net or rigid body
-  int node = 0;               ///< that was asked for
+  int node = 0;               ///< that was asked for; nearest: of a link that is cut, its nearer one
   std::vector<int> elements;  ///< to be cut: a segment, or links of a net; ascending
   double distance = 0;        ///< [m] nearest: from the given point
   std::vector<std::string> errors;

@@ -14,11 +14,13 @@ namespace verlet_cable {
 namespace {
 
 /// Why there is no such cable; nothing if there is.
-std::optional<EditResult> refused_cable(const World& world, const std::string& field, const std::string& cable) {
+std::optional<EditResult> refused_cable(const World& world, const std::string& field, const std::string& cable,
+                                        const RequestWords& words) {
   if (find(world.cables(), cable) >= 0) return std::nullopt;
   const std::vector<std::string>& waiting = world.findings().waiting;
   if (std::find(waiting.begin(), waiting.end(), cable) != waiting.end())
-    return refused({field + ": " + quoted(cable) + " waits for its tf frames; allowed: cables that are simulated already"});
+    return refused(
+        {field + ": " + quoted(cable) + " waits for its " + words.frames + "; allowed: cables that are simulated already"});
   std::string names;
   for (const SimulatedCable& other : world.cables()) names += (names.empty() ? "" : ", ") + other.model->name;
   return refused({field + ": " + quoted(cable) + "; allowed: " + (names.empty() ? "none, there are no cables" : names)});
@@ -55,23 +57,24 @@ EditResult apply_move(World& world, const std::string& name, const Pose& offset)
   return {true, "attachment " + quoted(name) + " is moved in its frame", {}};
 }
 
-PlacedEdit apply_cut(World& world, const BodyId& body, const std::vector<int>& elements) {
-  const std::string what = kind_and_name(world, body);
-  const int node = body.is_net() ? world.nets()[body.index].model.links[elements.front()][0] : elements.front();
+PlacedEdit apply_cut(World& world, const Location& place) {
+  const std::vector<int>& elements = place.elements;
+  const std::string what = kind_and_name(world, place.body);
   EditResult result;
   for (auto element = elements.rbegin(); element != elements.rend(); ++element) {
-    result = world.apply(edit::Cut{body, *element});
-    if (!result.ok) return {result, node};
+    result = world.apply(edit::Cut{place.body, *element});
+    if (!result.ok) return {result, place.node};
   }
-  result.message = body.is_net()
+  result.message = place.body.is_net()
                        ? std::to_string(elements.size()) + (elements.size() == 1 ? " link" : " links") + " of " + what + " cut"
-                       : "segment " + std::to_string(node) + " of " + what +
+                       : "segment " + std::to_string(place.node) + " of " + what +
                              " is cut out: the part from there to its end is now cable " + verlet_cable::quoted(result.name);
-  return {result, node};
+  return {result, place.node};
 }
 
-EditResult apply_set_length(World& world, const std::string& cable, bool at_end, double length, double speed) {
-  if (const auto reason = refused_cable(world, "cable", cable)) return *reason;
+EditResult apply_set_length(World& world, const std::string& cable, bool at_end, double length, double speed,
+                            const RequestWords& words) {
+  if (const auto reason = refused_cable(world, "cable", cable, words)) return *reason;
   const int index = find(world.cables(), cable);
   const double before = world.cables()[index].state.length();
   const EditResult result = world.apply(edit::SetLength{index, at_end, length, speed});
@@ -83,9 +86,10 @@ EditResult apply_set_length(World& world, const std::string& cable, bool at_end,
           {}};
 }
 
-PlacedEdit apply_join(World& world, const std::string& first, bool first_at_end, const std::string& second, bool second_at_end) {
-  if (const auto reason = refused_cable(world, "first", first)) return {*reason};
-  if (const auto reason = refused_cable(world, "second", second)) return {*reason};
+PlacedEdit apply_join(World& world, const std::string& first, bool first_at_end, const std::string& second, bool second_at_end,
+                      const RequestWords& words) {
+  if (const auto reason = refused_cable(world, "first", first, words)) return {*reason};
+  if (const auto reason = refused_cable(world, "second", second, words)) return {*reason};
   const int node = world.cables()[find(world.cables(), first_at_end ? first : second)].state.nodes() - 1;
   const EditResult result =
       world.apply(edit::Join{find(world.cables(), first), first_at_end, find(world.cables(), second), second_at_end});

@@ -13,7 +13,7 @@ namespace verlet_cable {
 /// An edit, and where it was.
 struct PlacedEdit {
   EditResult result;
-  int node = 0;  ///< cut: the segment of a cable, or a node of a net's first link; join: where the cables meet
+  int node = 0;  ///< cut: the segment of a cable, or the node of a net; join: where the cables meet
 };
 
 /// The frame is added where the world does not know it. No name: one is made.
@@ -24,13 +24,15 @@ EditResult apply_unpin(World& world, const std::string& name);
 /// The attachment's new pose in its frame, a quaternion of zeros for no rotation: the next step takes what it holds there.
 EditResult apply_move(World& world, const std::string& name, const Pose& offset);
 
-/// Removes a segment of a cable, or links of a net: `elements`, at least one and ascending, as `locate_cut` finds them.
-PlacedEdit apply_cut(World& world, const BodyId& body, const std::vector<int>& elements);
+/// Removes a segment of a cable, or links of a net, which `locate_cut` has found.
+PlacedEdit apply_cut(World& world, const Location& place);
 
 /// The length in m, the speed in m/s.
-EditResult apply_set_length(World& world, const std::string& cable, bool at_end, double length, double speed);
+EditResult apply_set_length(World& world, const std::string& cable, bool at_end, double length, double speed,
+                            const RequestWords& words = service_words());
 
-PlacedEdit apply_join(World& world, const std::string& first, bool first_at_end, const std::string& second, bool second_at_end);
+PlacedEdit apply_join(World& world, const std::string& first, bool first_at_end, const std::string& second, bool second_at_end,
+                      const RequestWords& words = service_words());
 
 /// The refusal of a name that no attachment has.
 EditResult refused_attachment(const World& world, const std::string& name);

@@ -47,7 +47,9 @@ void add_bending_stiffness(const SceneDesc& scene, std::size_t material, std::ve
 
 std::vector<TunableNumber> tunable_numbers(const SceneDesc& scene) {
   std::vector<TunableNumber> numbers;
-  add_vector("gravity", "[m/s^2]", &SceneDesc::gravity, &GravityDesc::acceleration, numbers);
+  // A center's attraction has a strength instead, which is not tuned.
+  if (scene.gravity.type == GravityDesc::Type::uniform)
+    add_vector("gravity", "[m/s^2]", &SceneDesc::gravity, &GravityDesc::acceleration, numbers);
   add_vector("wind", "[m/s] velocity of the fluid", &SceneDesc::fluid, &FluidDesc::velocity, numbers);
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     for (const auto& field : material_fields) {

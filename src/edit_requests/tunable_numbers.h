@@ -24,8 +24,8 @@ struct NumberChange {
   double value = 0;
 };
 
-/// What can be tuned of a scene: gravity, wind (the fluid's velocity), and of each material the dampings, finite stiffnesses and
-/// friction.
+/// What can be tuned of a scene: uniform gravity, wind (the fluid's velocity), and of each material the dampings, finite
+/// stiffnesses and friction.
 std::vector<TunableNumber> tunable_numbers(const SceneDesc& scene);
 
 /// The scene with the changes, `numbers` being its tunable ones. Throws SceneError with everything that is wrong, after `errors`,

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "verlet_cable/scene/scene_reader.h"
+
 namespace verlet_cable {
 namespace {
 
@@ -10,7 +12,7 @@ constexpr std::size_t longest_text = 60;
 void append_flow(const YAML::Node& node, int depth, std::string& text) {
   if (text.size() > longest_text) return;
   if (!node.IsDefined() || node.IsNull()) {
-    text += "nothing";
+    text += node.IsDefined() && !node.Tag().empty() ? node.Tag() : "nothing";
   } else if (node.IsScalar()) {
     text += node.Scalar().size() > longest_text ? node.Scalar().substr(0, longest_text + 1) : node.Scalar();
   } else if (depth == 0) {
@@ -68,7 +70,7 @@ int read_integer(const Value& value, const std::string& allowed) {
 }
 
 std::string read_text(const Value& value, const std::string& allowed) {
-  if (value.node.IsScalar()) return value.node.Scalar();
+  if (value.node.IsScalar() && value.node.Tag() != boolean_tag) return value.node.Scalar();
   value.reject(allowed);
   return {};
 }

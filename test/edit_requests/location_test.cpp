@@ -184,6 +184,8 @@ TEST(CheckedPin, RefusesWithFieldAndValue) {
   EXPECT_EQ(pin_errors(request).find(advice), pin_errors(request).size() - advice.size()) << pin_errors(request);
   request.keep_offset = true;
   EXPECT_EQ(pin_errors(request), "");
+  request.offset.position.x() = nan;
+  EXPECT_EQ(pin_errors(request), "") << "the offset does not count";
 }
 
 }  // namespace

@@ -110,10 +110,30 @@ TEST(Tuning, EveryErrorIsToldAtOnce) {
   }
 }
 
+TEST(Tuning, GravityIsTunedWhereItIsUniform) {
+  SceneDesc scene;
+  EXPECT_EQ(tunable_numbers(scene).front().name, "gravity_x");
+  scene.gravity.type = GravityDesc::Type::central;
+  EXPECT_EQ(tunable_numbers(scene).front().name, "wind_x");
+}
+
+TEST(NamedEdits, ACutNextToANetIsAtAnEndOfTheNearestLink) {
+  World world = cables_and_net();
+  RequestedPlace place;
+  place.cable = "chain";
+  place.mode = RequestedPlace::nearest;
+  for (const auto& [x, node] : {std::pair(1.4, 1), std::pair(1.6, 2)}) {
+    place.point = {x, 5, 0.1};
+    const Location found = locate_cut(place, world, only_the_fixed_frame);
+    EXPECT_EQ(found.elements, std::vector<int>{1});
+    EXPECT_EQ(found.node, node);
+  }
+}
+
 TEST(NamedEdits, ACutSaysWhatIsGone) {
   World world = cables_and_net();
   const Location place = cut_place(world, "lower", 4);
-  const PlacedEdit cut = apply_cut(world, place.body, place.elements);
+  const PlacedEdit cut = apply_cut(world, place);
   EXPECT_TRUE(cut.result.ok);
   EXPECT_EQ(cut.node, 4);
   EXPECT_EQ(cut.result.name, "lower_2");
@@ -125,9 +145,9 @@ TEST(NamedEdits, ACutAtANodeOfANetRemovesAllItsLinks) {
   World world = cables_and_net();
   const Location middle = cut_place(world, "chain", 1);
   EXPECT_EQ(middle.elements, (std::vector<int>{0, 1}));
-  const PlacedEdit cut = apply_cut(world, middle.body, middle.elements);
+  const PlacedEdit cut = apply_cut(world, middle);
   EXPECT_TRUE(cut.result.ok);
-  EXPECT_EQ(cut.node, 0);
+  EXPECT_EQ(cut.node, 1);
   EXPECT_EQ(cut.result.message, "2 links of net \"chain\" cut");
   EXPECT_TRUE(world.nets()[0].model.links.empty());
   EXPECT_EQ(join(cut_place(world, "chain", 1).errors),

@@ -19,10 +19,14 @@ struct SceneSources {
   std::function<std::optional<std::string>(const std::string& name)> parameter;
 };
 
+/// Of scalars that are no text, whatever they look like.
+constexpr const char* boolean_tag = "tag:yaml.org,2002:bool";
+
 /// Reads a scene from its tree of keys. Throws SceneError with every error at once: unknown and doubled keys, wrong
 /// types, meshes and robots that cannot be read, and all that `validate` finds; in the order of the tree, then of `validate`.
 /// Scalars are text, as YAML has them: numbers may be written as integers, decimals or `.inf`. Top-level keys in `ignored` are
-/// not looked at. The tree must be finite: aliases are bounded for text by `read_scene_text`, and nowhere else.
+/// not looked at. What is nothing is refused; errors call it by its tag, where it has one. The tree must be finite: aliases are
+/// bounded for text by `read_scene_text`, and nowhere else.
 SceneDesc read_scene(const YAML::Node& root, const std::vector<std::string>& ignored = {}, const SceneSources& sources = {});
 
 /// Reads a scene from YAML text: one document, at most 64 MB, a million values and 32 levels deep, aliases counted as often as

@@ -3,6 +3,7 @@
 #include <cinttypes>
 #include <cstdio>
 
+#include "binding/text_arguments.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/core/world.h"
@@ -29,7 +30,7 @@ Pose read_pose(const double* position, const std::string& position_name, const d
                           "; allowed: finite numbers [m] (from -1e+09 to 1e+09)");
   if (!is_sound({Vector3::Zero(), pose.orientation}))
     throw py::value_error(orientation_name + ": " + numbers_text(orientation, 4) +
-                          "; allowed: quaternions x, y, z, w of length 1");
+                          "; allowed: quaternions x, y, z, w of length 1 (from 0.5 to 2 is brought to 1)");
   pose.orientation.normalize();
   return pose;
 }
@@ -70,9 +71,10 @@ std::int64_t read_count(const char* name, std::int64_t count, std::int64_t least
   return count;
 }
 
-std::vector<Quantity> read_quantities(const char* argument, const std::vector<std::string>& names) {
+std::vector<Quantity> read_quantities(const char* argument, const std::vector<py::str>& names) {
   std::vector<Quantity> quantities;
-  for (const std::string& name : names) {
+  for (const py::str& given : names) {
+    const std::string name = text_of(given, argument);
     std::size_t i = 0;
     while (i < quantity_names.size() && name != quantity_names[i]) ++i;
     if (i == quantity_names.size()) {

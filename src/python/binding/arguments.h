@@ -34,7 +34,12 @@ Pose read_pose(const Numbers& position, const Numbers& quaternion_xyzw);
 std::int64_t read_count(const char* name, std::int64_t count, std::int64_t least);
 
 /// "positions", ...; `argument`: of which they are. Throws ValueError.
-std::vector<Quantity> read_quantities(const char* argument, const std::vector<std::string>& names);
+std::vector<Quantity> read_quantities(const char* argument, const std::vector<py::str>& names);
+
+/// What the method that reads it calls its argument.
+inline const char* argument_of(Quantity quantity) {
+  return quantity == Quantity::wrench ? "attachment" : "name";
+}
 
 /// A new array, and what it is of.
 py::array_t<double> array_of(const World& world, Quantity quantity, const std::string& name);

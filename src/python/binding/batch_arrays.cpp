@@ -4,12 +4,14 @@
 #include <optional>
 #include <utility>
 
+#include "binding/text_arguments.h"
+
 namespace verlet_cable {
 namespace {
 
 constexpr std::int64_t most_points = 100000;
 
-std::string text_of(const QuantityShape& shape) {
+std::string text_of_shape(const QuantityShape& shape) {
   return "(" + std::to_string(shape.rows) + (shape.columns > 0 ? ", " + std::to_string(shape.columns) + ")" : ",)");
 }
 
@@ -18,7 +20,7 @@ std::string text_of(const QuantityShape& shape) {
                                    const std::string& like) {
   const std::string index = std::to_string(world);
   throw py::value_error(std::string(name_of(quantity)) + " of " + name + ": world " + index + " has none of shape " +
-                        text_of(shape) + " as " + like + ": it was edited, or a cable broke, or slides through " +
+                        text_of_shape(shape) + " as " + like + ": it was edited, or a cable broke, or slides through " +
                         "guides; allowed: what has one shape; world(" + index +
                         ") has its own, and observations() reads points of cables with any number of nodes");
 }
@@ -57,17 +59,19 @@ py::array_t<double> array_of_now(const Batch& batch, Quantity quantity, const st
   return array;
 }
 
-Part read_part(const World& world, const std::tuple<std::string, std::string>& given) {
-  const auto& [quantity_name, name] = given;
+Part read_part(const World& world, const std::tuple<py::str, py::str>& given) {
+  const auto& [quantity_name, name_text] = given;
+  const std::string name = text_of(name_text, "parts");
   const Quantity quantity = read_quantities("parts", {quantity_name}).front();
   return {quantity, name, shape_of(world, quantity, name)};
 }
 
-Part read_part(const World& world, const std::tuple<std::string, std::string, std::int64_t>& given) {
-  const auto& [quantity_name, name, points] = given;
-  const Part nodes = read_part(world, {quantity_name, name});
+Part read_part(const World& world, const std::tuple<py::str, py::str, std::int64_t>& given) {
+  const auto& [quantity_name, name_text, points] = given;
+  const Part nodes = read_part(world, {quantity_name, name_text});
+  const std::string& name = nodes.name;
   if (find(world.cables(), name) < 0 || nodes.shape.columns != 3)
-    throw py::value_error("parts: points of " + quantity_name + " of " + name +
+    throw py::value_error("parts: points of " + std::string(name_of(nodes.quantity)) + " of " + name +
                           "; allowed: points of positions and velocities of cables");
   if (points < 2 || points > most_points)
     throw py::value_error("parts: " + std::to_string(points) + " points of " + name + "; allowed: 2 to " +

@@ -15,7 +15,7 @@ namespace verlet_cable {
 py::array_t<double> array_of(const Batch& batch, Quantity quantity, const std::string& name);
 
 /// A quantity and a name; and how many points of a cable, where it is not its nodes.
-using GivenPart = std::variant<std::tuple<std::string, std::string>, std::tuple<std::string, std::string, std::int64_t>>;
+using GivenPart = std::variant<std::tuple<py::str, py::str>, std::tuple<py::str, py::str, std::int64_t>>;
 
 /// (count, k): of each world the numbers of all parts, one after the other. Throws UnknownName, ValueError.
 py::array_t<double> observations(const Batch& batch, const std::vector<GivenPart>& parts);

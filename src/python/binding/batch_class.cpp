@@ -14,6 +14,7 @@
 #include "binding/motion_argument.h"
 #include "binding/run_steps.h"
 #include "binding/scene_class.h"
+#include "binding/text_arguments.h"
 #include "binding/world_class.h"
 #include "simulation/batch.h"
 
@@ -71,19 +72,20 @@ std::unique_ptr<PythonBatch> make_of_world(PythonWorld& world, std::int64_t coun
   return std::make_unique<PythonBatch>(Batch(world.driven, static_cast<std::size_t>(count), threads));
 }
 
-void set_material(PythonBatch& batch, const std::string& name, const py::kwargs& fields) {
+void set_material(PythonBatch& batch, const py::str& name, const py::kwargs& fields) {
+  const std::string material = text_of(name, "name");
   std::vector<MaterialChange> changes;
   for (const auto& [key, value] : fields) {
-    const std::string field = py::str(key);
+    const std::string field = text_of(key, "key");
     changes.push_back({field, read_values(field, Numbers(py::reinterpret_borrow<py::object>(value)), use(batch).size())});
   }
   const InUse in_use(batch.busy, "batch");
   const py::gil_scoped_release release;
-  batch.batch.set_material(name, changes);
+  batch.batch.set_material(material, changes);
 }
 
-void set_frames(PythonBatch& batch, const std::string& name, const Numbers& poses) {
-  batch.batch.set_frame(name, read_poses(poses, use(batch).size()));
+void set_frames(PythonBatch& batch, const py::str& name, const Numbers& poses) {
+  batch.batch.set_frame(text_of(name, "name"), read_poses(poses, use(batch).size()));
 }
 
 void set_world(PythonBatch& batch, const py::object& index, PythonWorld& world) {
@@ -93,7 +95,7 @@ void set_world(PythonBatch& batch, const py::object& index, PythonWorld& world) 
   batch.batch.set_worlds(indices, world.driven);
 }
 
-void step(PythonBatch& batch, std::int64_t steps, std::int64_t record_every, const std::vector<std::string>& fields) {
+void step(PythonBatch& batch, std::int64_t steps, std::int64_t record_every, const std::vector<py::str>& fields) {
   read_count("steps", steps, 0);
   read_count("record_every", record_every, 0);
   if (record_every > 0 && steps % record_every != 0)
@@ -112,9 +114,9 @@ void step(PythonBatch& batch, std::int64_t steps, std::int64_t record_every, con
 
 /// The method that reads a quantity.
 template <Quantity quantity>
-py::array_t<double> read(PythonBatch& batch, const std::string& name) {
+py::array_t<double> read(PythonBatch& batch, const py::str& name) {
   const InUse in_use(batch.busy, "batch");
-  return array_of(batch.batch, quantity, name);
+  return array_of(batch.batch, quantity, text_of(name, argument_of(quantity)));
 }
 
 py::array_t<double> observe(PythonBatch& batch, const std::vector<GivenPart>& parts) {
@@ -179,9 +181,9 @@ void add_batch_class(py::module_& module) {
            "changed.")
       .def("set_frames", set_frames, py::arg("name"), py::arg("poses"),
            "(count, 7): where a frame is at the end of the next step, and from then on; (count, steps, 7): at the end of each of "
-           "the next steps, then as at the last. x, y, z [m], qx, qy, qz, qw in the fixed frame; quaternions of a length from "
-           "0.5 to "
-           "2 are normalised.\n\nRaises KeyError, ValueError.")
+           "the next steps, then as at the last. x, y, z [m], qx, qy, qz, qw in the fixed frame; quaternions of length 0.5 to 2 "
+           "are "
+           "brought to 1.\n\nRaises KeyError, ValueError.")
       .def(
           "step", step, py::arg("steps") = 1, py::arg("record_every") = 0,
           py::arg("fields") = std::vector<std::string>{"positions", "velocities", "tension", "wrench", "body_pose", "body_twist"},

@@ -12,6 +12,7 @@
 
 #include "binding/arguments.h"
 #include "binding/run_steps.h"
+#include "binding/text_arguments.h"
 #include "simulation/edits.h"
 #include "verlet_cable/core/quoted_text.h"
 
@@ -33,16 +34,18 @@ Pose read_offset(const OptionalNumbers& offset) {
   return {{p[0], p[1], p[2]}, Quaternion(p[6], p[3], p[4], p[5])};
 }
 
-RequestedPlace read_place(const std::string& cable, std::optional<std::int64_t> node, std::optional<double> arc_length,
-                          const OptionalNumbers& point, const std::string& point_frame) {
+RequestedPlace read_place(const py::str& cable, std::optional<std::int64_t> node, std::optional<double> arc_length,
+                          const OptionalNumbers& point, const py::str& point_frame) {
   const int given = (node ? 1 : 0) + (arc_length ? 1 : 0) + (point ? 1 : 0);
   if (given != 1)
     throw py::value_error("node, arc_length, point: " + std::to_string(given) + " of them given; allowed: exactly one");
-  if (!point && !point_frame.empty())
-    throw py::value_error("point_frame: " + quoted(point_frame) + " without a point; allowed: together with one");
+  const std::string frame = text_of(point_frame, "point_frame");
+  if (!point && !frame.empty())
+    throw py::value_error("point_frame: " + quoted(frame) + " without a point; allowed: together with one");
   RequestedPlace place;
-  place.cable = cable;
-  place.point_frame = point_frame;
+  place.words = &python_words();
+  place.cable = text_of(cable, "cable");
+  place.point_frame = frame;
   if (node) place.node = *node;
   if (arc_length) {
     place.mode = RequestedPlace::at_arc_length;
@@ -91,8 +94,8 @@ void add_materials(const SceneDesc& scene, const std::map<std::string, std::map<
   }
 }
 
-void add_frame(PythonWorld& world, const std::string& name, const Numbers& position, const Numbers& quaternion_xyzw) {
-  use(world).add_frame(name, read_pose(position, quaternion_xyzw));
+void add_frame(PythonWorld& world, const py::str& name, const Numbers& position, const Numbers& quaternion_xyzw) {
+  use(world).add_frame(text_of(name, "name"), read_pose(position, quaternion_xyzw));
 }
 
 void tune_world(PythonWorld& world, const OptionalNumbers& gravity, const OptionalNumbers& wind,
@@ -136,12 +139,16 @@ void add_cable_edits(py::module_& module, py::class_<PythonWorld>& world) {
                                       "What World.cut returns: the names of the pieces. The second is '' where a net was cut.");
   world.def(
       "pin",
-      [pinned](PythonWorld& self, const std::string& cable, std::optional<std::int64_t> node, std::optional<double> arc_length,
-               const OptionalNumbers& point, const std::string& point_frame, const std::string& name, const std::string& frame_id,
+      [pinned](PythonWorld& self, const py::str& cable, std::optional<std::int64_t> node, std::optional<double> arc_length,
+               const OptionalNumbers& point, const py::str& point_frame, const py::str& name, const py::str& frame_id,
                const OptionalNumbers& offset, bool clamp, bool keep_offset) {
         DrivenWorld& driven = use(self);
-        const RequestedPin request{
-            read_place(cable, node, arc_length, point, point_frame), name, frame_id, read_offset(offset), clamp, keep_offset};
+        const RequestedPin request{read_place(cable, node, arc_length, point, point_frame),
+                                   text_of(name, "name"),
+                                   text_of(frame_id, "frame_id"),
+                                   read_offset(offset),
+                                   clamp,
+                                   keep_offset};
         const PinAnswer answer = pin(request, driven, self.events);
         return pinned(answer.name, answer.node);
       },
@@ -164,8 +171,8 @@ void add_cable_edits(py::module_& module, py::class_<PythonWorld>& world) {
       "is changed.");
   world.def(
       "cut",
-      [pieces](PythonWorld& self, const std::string& cable, std::optional<std::int64_t> node, std::optional<double> arc_length,
-               const OptionalNumbers& point, const std::string& point_frame) {
+      [pieces](PythonWorld& self, const py::str& cable, std::optional<std::int64_t> node, std::optional<double> arc_length,
+               const OptionalNumbers& point, const py::str& point_frame) {
         DrivenWorld& driven = use(self);
         const CutAnswer answer = cut(read_place(cable, node, arc_length, point, point_frame), driven, self.events);
         return pieces(answer.first, answer.second);
@@ -184,44 +191,47 @@ void add_cable_edits(py::module_& module, py::class_<PythonWorld>& world) {
 void add_edit_methods(py::module_& module, py::class_<PythonWorld>& world) {
   add_cable_edits(module, world);
   world.def(
-      "unpin", [](PythonWorld& self, const std::string& name) { unpin(name, use(self), self.events); }, py::arg("name"),
+      "unpin", [](PythonWorld& self, const py::str& name) { unpin(text_of(name, "name"), use(self), self.events); },
+      py::arg("name"),
       "Releases what an attachment holds, one of the scene or a pin. Raises KeyError, ValueError; then nothing is changed.");
   world.def(
       "join",
-      [](PythonWorld& self, const std::string& first, bool first_at_end, const std::string& second, bool second_at_end) {
+      [](PythonWorld& self, const py::str& first, bool first_at_end, const py::str& second, bool second_at_end) {
         DrivenWorld& driven = use(self);
-        return join(first, first_at_end, second, second_at_end, driven, self.events);
+        return join(text_of(first, "first"), first_at_end, text_of(second, "second"), second_at_end, driven, self.events);
       },
       py::arg("first"), py::arg("first_at_end"), py::arg("second"), py::arg("second_at_end"),
       "Welds two ends of cables of one material, as the service `join` does; ends that are apart are drawn together.\n\n"
       "Returns the name of the cable that they are now, the first's. Raises ValueError, KeyError; then nothing is changed.");
   world.def(
       "set_length",
-      [](PythonWorld& self, const std::string& cable, bool at_end, double length, double speed) {
-        set_length(cable, at_end, length, speed, use(self));
+      [](PythonWorld& self, const py::str& cable, bool at_end, double length, double speed) {
+        set_length(text_of(cable, "cable"), at_end, length, speed, use(self));
       },
       py::arg("cable"), py::arg("at_end"), py::arg("length"), py::arg("speed"),
       "A winch at the cable's end (at_end) or start pays out or takes in cable, to the length [m] at the speed [m/s], as the "
       "service `set_length` does; the number of nodes changes. Raises ValueError, KeyError; then nothing is changed.");
   world.def(
       "move_attachment",
-      [](PythonWorld& self, const std::string& name, const Numbers& offset) {
+      [](PythonWorld& self, const py::str& name, const Numbers& offset) {
         DrivenWorld& driven = use(self);
-        move_attachment(name, read_offset(offset), driven);
+        move_attachment(text_of(name, "name"), read_offset(offset), driven);
       },
       py::arg("name"), py::arg("offset"),
       "Gives an attachment another pose in its frame: (7,) x, y, z [m], qx, qy, qz, qw, four zeros for no rotation. The next "
       "step "
       "takes what it holds there, as with set_frame: move it little by little. Raises ValueError, KeyError; then nothing is "
       "changed.");
-  world.def(
-      "add_frame", add_frame, py::arg("name"), py::arg("position"), py::arg("quaternion_xyzw"),
-      "A frame for pins and obstacles, at (3,) [m] and (4,) in the fixed frame until set_frame moves it. Raises ValueError, "
-      "also for a name that a frame has.");
+  world.def("add_frame", add_frame, py::arg("name"), py::arg("position"), py::arg("quaternion_xyzw"),
+            "A frame for pins and obstacles, at (3,) [m] and (4,) in the fixed frame until set_frame moves it; a quaternion of "
+            "length 0.5 "
+            "to 2 is brought to 1. Raises ValueError, "
+            "also for a name that a frame has.");
   world.def("tune", tune_world, py::kw_only(), py::arg("gravity") = py::none(), py::arg("wind") = py::none(),
             py::arg("contact_friction") = py::none(),
             py::arg("materials") = std::map<std::string, std::map<std::string, Numbers>>{},
-            "Changes what can be tuned while it runs, as the node's `~tuning` does: gravity (3,) [m/s^2], wind (3,) [m/s], the "
+            "Changes what can be tuned while it runs, as the node's `~tuning` does: gravity (3,) [m/s^2] where it has no center, "
+            "wind (3,) [m/s], the "
             "velocity of the fluid; the friction of cables with cables; and {material: {key: number}} of dampings, finite "
             "stiffnesses (bending_stiffness also as (2,) of a material that bends unequally), drag and friction.\n\n"
             "Raises SceneError with every error at once, by the names that `~tuning` has; ValueError, KeyError; then nothing is "

@@ -15,15 +15,23 @@ using verlet_cable::UnknownName;
 /// Made once and never freed: exceptions may come until the interpreter's end.
 PyObject* scene_error = nullptr;
 
+/// For messages: paths, and what files have written, may be no UTF-8.
+py::object text_of(const std::string& message) {
+  return py::reinterpret_steal<py::object>(
+      PyUnicode_DecodeUTF8(message.data(), static_cast<Py_ssize_t>(message.size()), "backslashreplace"));
+}
+
 void translate(std::exception_ptr thrown) {
   try {
     std::rethrow_exception(thrown);
   } catch (const SceneError& error) {
-    py::object instance = py::reinterpret_borrow<py::object>(scene_error)(error.what());
-    instance.attr("errors") = error.errors();
+    py::object instance = py::reinterpret_borrow<py::object>(scene_error)(text_of(error.what()));
+    py::list lines;
+    for (const std::string& line : error.errors()) lines.append(text_of(line));
+    instance.attr("errors") = lines;
     PyErr_SetObject(scene_error, instance.ptr());
   } catch (const UnknownName& error) {
-    PyErr_SetString(PyExc_KeyError, error.what());
+    PyErr_SetObject(PyExc_KeyError, text_of(error.what()).ptr());
   }
 }
 

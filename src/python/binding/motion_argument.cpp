@@ -1,14 +1,14 @@
 #include "binding/motion_argument.h"
 
-#include <algorithm>
-#include <cmath>
 #include <string>
 #include <vector>
 
 #include "binding/arguments.h"
+#include "binding/text_arguments.h"
 #include "scene/frame_source.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
+#include "verlet_cable/core/scene_fields.h"
 
 namespace verlet_cable {
 namespace {
@@ -26,9 +26,12 @@ FrameTrack read_track(const std::string& name, const py::handle& value) {
   FrameTrack track;
   for (py::ssize_t row = 0; row < times.shape(0); ++row) {
     const double time = times.at(row);
-    if (!(std::abs(time) <= 1e9) || (!track.empty() && time <= track.last_time()))
-      throw py::value_error(name + "[0][" + std::to_string(row) + "], times: " + number_text(time) +
-                            "; allowed: finite numbers [s] that ascend");
+    const auto refuse = [&](const std::string& allowed) {
+      throw py::value_error(name + "[0][" + std::to_string(row) + "], times: " + number_text(time) + "; allowed: " + allowed);
+    };
+    if (!coordinate.contains(time)) refuse(coordinate.text("s"));
+    if (!track.empty() && time <= track.last_time())
+      refuse("times that ascend, the one before is " + number_text(track.last_time()));
     track.add(time, read_pose(poses.data(row, 0), name + "[1][" + std::to_string(row) + "], poses"));
   }
   return track;
@@ -37,7 +40,7 @@ FrameTrack read_track(const std::string& name, const py::handle& value) {
 Motion read_tracks(const py::dict& tracks, const SceneDesc& scene) {
   Motion motion;
   for (const auto& [key, value] : tracks) {
-    const std::string frame = py::str(key);
+    const std::string frame = text_of(py::str(key), "motion");
     motion[frame] = read_track("motion[" + quoted(frame) + "]", value);
   }
   const std::vector<std::string> unused = unused_frames(scene, motion);
@@ -49,8 +52,14 @@ Motion read_tracks(const py::dict& tracks, const SceneDesc& scene) {
                       "; allowed: " + (allowed.empty() ? "none, the scene has no frames" : allowed));
 }
 
-std::string path_of(const py::object& motion) {
-  return py::str(py::module_::import("os").attr("fspath")(motion));
+Motion read_file(const std::string& path) {
+  try {
+    return read_motion_file(path);
+  } catch (const SceneError& error) {
+    std::vector<std::string> lines = error.errors();
+    for (std::string& line : lines) line = "motion: \"" + escaped(path, path.size()) + "\": " + line;
+    throw SceneError(lines);
+  }
 }
 
 }  // namespace
@@ -58,7 +67,7 @@ std::string path_of(const py::object& motion) {
 Motion read_motion(const py::object& given, const SceneDesc& scene) {
   if (given.is_none()) return {};
   const bool tracks = py::isinstance<py::dict>(given);
-  const Motion motion = tracks ? read_tracks(given, scene) : read_motion_file(path_of(given));
+  const Motion motion = tracks ? read_tracks(given, scene) : read_file(path_of(given, "motion"));
   std::vector<std::string> errors;
   if (motion.count(scene.frame_id) > 0)
     errors.push_back("motion: frame " + quoted(scene.frame_id) + " moves; allowed: any but the fixed frame");

@@ -2,6 +2,7 @@
 #include "binding/edit_methods.h"
 #include "binding/run_steps.h"
 #include "binding/scene_class.h"
+#include "binding/text_arguments.h"
 #include "binding/yaml_of.h"
 #include "simulation/edits.h"
 #include "verlet_cable/scene/scene_reader.h"
@@ -9,18 +10,18 @@
 namespace verlet_cable {
 namespace {
 
-void set_from_keys(PythonWorld& world, const std::string& name, const py::object& directory, const py::kwargs& keys) {
+void set_from_keys(PythonWorld& world, const py::str& name, const py::object& directory, const py::kwargs& keys) {
   const SceneSources sources = sources_of(directory);
-  YAML::Node node = yaml_of(keys, "obstacle");
-  node["name"] = name;
+  YAML::Node node = yaml_of(keys);
+  node["name"] = text_of(name, "name");
   const InUse in_use(world.busy, "world");
   const py::gil_scoped_release release;
   set_obstacle(read_obstacle(node, sources), world.driven);
 }
 
-void remove_by_name(PythonWorld& world, const std::string& name) {
+void remove_by_name(PythonWorld& world, const py::str& name) {
   InUse::check(world.busy, "world");
-  remove_obstacle(name, world.driven);
+  remove_obstacle(text_of(name, "name"), world.driven);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "binding/text_arguments.h"
 #include "binding/yaml_of.h"
 #include "verlet_cable/core/world.h"
 
@@ -15,12 +16,13 @@ namespace {
 namespace py = pybind11;
 
 PythonScene load(const py::object& path) {
-  const std::string file = py::str(py::module_::import("os").attr("fspath")(path));
+  const std::string file = path_of(path, "path");
   const py::gil_scoped_release release;
   return {std::make_shared<SceneDesc>(read_scene_file(file))};
 }
 
-PythonScene from_yaml(const std::string& text, const py::object& directory) {
+PythonScene from_yaml(const py::str& given, const py::object& directory) {
+  const std::string text = text_of(given, "text");
   const SceneSources sources = sources_of(directory);
   const py::gil_scoped_release release;
   return {std::make_shared<SceneDesc>(read_scene_text(text, sources))};
@@ -28,7 +30,7 @@ PythonScene from_yaml(const std::string& text, const py::object& directory) {
 
 PythonScene from_dict(const py::dict& keys, const py::object& directory) {
   const SceneSources sources = sources_of(directory);
-  const YAML::Node root = yaml_of(keys, "scene");
+  const YAML::Node root = yaml_of(keys);
   const py::gil_scoped_release release;
   return {std::make_shared<SceneDesc>(read_scene(root, {}, sources))};
 }
@@ -63,8 +65,8 @@ std::vector<std::string> moving_frame_names(const SceneDesc& scene) {
 
 SceneSources sources_of(const py::object& directory) {
   const py::module_ os = py::module_::import("os");
-  const py::object start = directory.is_none() ? os.attr("getcwd")() : os.attr("fspath")(directory);
-  return {FileAccess{true, py::str(os.attr("path").attr("abspath")(start))}, {}};
+  const py::bytes start = directory.is_none() ? os.attr("getcwdb")() : py::bytes(path_of(directory, "directory"));
+  return {FileAccess{true, py::bytes(os.attr("path").attr("abspath")(start))}, {}};
 }
 
 void add_scene_class(py::module_& module) {

@@ -13,6 +13,7 @@
 #include "binding/motion_argument.h"
 #include "binding/run_steps.h"
 #include "binding/scene_class.h"
+#include "binding/text_arguments.h"
 
 namespace verlet_cable {
 namespace {
@@ -33,9 +34,9 @@ std::unique_ptr<PythonWorld> copy(const PythonWorld& world) {
   return std::make_unique<PythonWorld>(world.driven, world.events);
 }
 
-void set_frame(PythonWorld& world, const std::string& name, const Numbers& position, const Numbers& quaternion_xyzw) {
+void set_frame(PythonWorld& world, const py::str& name, const Numbers& position, const Numbers& quaternion_xyzw) {
   use(world);
-  world.driven.set_frame(world.driven.find_frame(name), {read_pose(position, quaternion_xyzw)});
+  world.driven.set_frame(world.driven.find_frame(text_of(name, "name")), {read_pose(position, quaternion_xyzw)});
 }
 
 const char* step(PythonWorld& world, std::int64_t steps) {
@@ -60,8 +61,8 @@ bool settle(PythonWorld& world) {
 
 /// The method that reads a quantity.
 template <Quantity quantity>
-py::array_t<double> read(const PythonWorld& world, const std::string& name) {
-  return array_of(use(world), quantity, name);
+py::array_t<double> read(const PythonWorld& world, const py::str& name) {
+  return array_of(use(world), quantity, text_of(name, argument_of(quantity)));
 }
 
 /// An attribute with the names of all items; an empty one is left out.
@@ -117,10 +118,13 @@ void add_world_class(py::module_& module) {
       .def(py::init(&make), py::arg("scene"), py::arg("motion") = py::none(),
            "motion: path of a CSV file as of cable_sim --motion, or {frame: (times (k,) [s], poses (k, 7))}; poses are x, y, z "
            "[m], "
-           "qx, qy, qz, qw in the fixed frame.\n\nRaises SceneError, ValueError, KeyError.")
+           "qx, qy, qz, qw in the fixed frame, quaternions of length 0.5 to 2 being brought to 1; in a file any but 0 "
+           "is.\n\nRaises SceneError, ValueError, KeyError.")
       .def("set_frame", set_frame, py::arg("name"), py::arg("position"), py::arg("quaternion_xyzw"),
-           "Where a frame is at the end of the next step, and from then on: (3,) [m] and (4,), in the fixed frame. It no longer "
-           "follows a motion. Links of a robot whose parents it is follow it, where they are not given a pose themselves.\n\n"
+           "Where a frame is at the end of the next step, and from then on: (3,) [m] and (4,), in the fixed frame; a quaternion "
+           "of "
+           "length 0.5 to 2 is brought to 1. It no longer follows a motion. Links of a robot whose parents it is follow it, "
+           "where they are not given a pose themselves.\n\n"
            "Raises KeyError for a name that is not in frame_names, ValueError.")
       .def("step", step, py::arg("steps") = 1,
            "Advances by so many time steps. Returns the worst that came up: 'ok', 'overstretched', 'jumped', 'degraded' or "
@@ -154,7 +158,9 @@ void add_world_class(py::module_& module) {
           "time", [](const PythonWorld& world) { return use(world).time(); }, "[s] simulated.")
       .def_property_readonly(
           "state_hash", [](const PythonWorld& world) { return hash_text(use(world).hash()); },
-          "Text of 16 digits, of all that the future depends on, as in a summary of cable_sim.");
+          "Text of 16 digits, of all in the world that its future depends on, as in a summary of cable_sim. Its motion, and "
+          "poses "
+          "that set_frame gave for the next step, are not in it.");
   add_names(world);
   add_edit_methods(module, world);
   add_obstacle_methods(world);

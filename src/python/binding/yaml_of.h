@@ -3,12 +3,10 @@
 #include <pybind11/pybind11.h>
 #include <yaml-cpp/yaml.h>
 
-#include <string>
-
 namespace verlet_cable {
 
-/// The tree of keys that dicts, lists, tuples, arrays, text, numbers, booleans and None mean. Throws TypeError for anything else,
-/// ValueError where it is nested too deeply; `what` it is, for messages.
-YAML::Node yaml_of(const pybind11::handle& value, const std::string& what);
+/// The tree of keys that dicts, lists, tuples, arrays, text, paths, numbers, booleans and None mean. Anything else becomes
+/// nothing, its tag saying what it was: readers refuse it. Throws SceneError where it is nested too deeply.
+YAML::Node yaml_of(const pybind11::handle& value);
 
 }  // namespace verlet_cable

@@ -37,7 +37,7 @@ int DrivenWorld::find_frame(const std::string& name) const {
     if (names[frame] == name) return frame;
     allowed += (allowed.empty() ? "" : ", ") + names[frame];
   }
-  throw UnknownName("frame: " + quoted(name) +
+  throw UnknownName("name: " + quoted(name) +
                     "; allowed: " + (allowed.empty() ? "none, the scene has none that moves" : allowed));
 }
 

@@ -46,6 +46,12 @@ bool is_attached(const World& world, const std::string& name) {
 
 }  // namespace
 
+const RequestWords& python_words() {
+  static const RequestWords words{
+      "cable", "node", "arc_length", "point", "point", "point_frame", "", {"node", "arc_length", "point"}, "", "frames"};
+  return words;
+}
+
 PinAnswer pin(const RequestedPin& request, DrivenWorld& world, EventRecord& events) {
   const auto find_frame = [&](const std::string& name) {
     const std::optional<Pose> pose = world.frame_pose(name);
@@ -76,7 +82,7 @@ CutAnswer cut(const RequestedPlace& place, DrivenWorld& world, EventRecord& even
   const auto find_frame = [&](const std::string& name) { return world.frame_pose(name); };
   const Location location = locate_cut(place, world.world(), find_frame);
   require_none(location.errors, names_nothing(place, world, false));
-  const PlacedEdit cut = apply_cut(world.world(), location.body, location.elements);
+  const PlacedEdit cut = apply_cut(world.world(), location);
   require(cut.result);
   const CutAnswer answer{name_of(world.world(), location.body), cut.result.name};
   events.add(world.world().time(), {EventType::cut, {answer.first, {}, cut.node, answer.second}, cut.result.message});
@@ -87,7 +93,7 @@ std::string join(const std::string& first, bool first_at_end, const std::string&
                  EventRecord& events) {
   const auto& cables = world.world().cables();
   const bool unknown = find(cables, first) < 0 || find(cables, second) < 0;
-  const PlacedEdit joined = apply_join(world.world(), first, first_at_end, second, second_at_end);
+  const PlacedEdit joined = apply_join(world.world(), first, first_at_end, second, second_at_end, python_words());
   require(joined.result, unknown);
   events.add(world.world().time(), {EventType::joined, {joined.result.name, {}, joined.node, second}, joined.result.message});
   return joined.result.name;
@@ -95,7 +101,7 @@ std::string join(const std::string& first, bool first_at_end, const std::string&
 
 void set_length(const std::string& cable, bool at_end, double length, double speed, DrivenWorld& world) {
   const bool unknown = find(world.world().cables(), cable) < 0;
-  require(apply_set_length(world.world(), cable, at_end, length, speed), unknown);
+  require(apply_set_length(world.world(), cable, at_end, length, speed, python_words()), unknown);
 }
 
 void move_attachment(const std::string& name, const Pose& offset, DrivenWorld& world) {
@@ -124,7 +130,7 @@ void remove_obstacle(const std::string& name, DrivenWorld& world) {
     if (other.name == name) return require(world.world().apply(edit::RemoveObstacle{name}));
     names += (names.empty() ? "" : ", ") + other.name;
   }
-  throw UnknownName("obstacle: " + quoted(name) + "; allowed: " + (names.empty() ? "none, there is none" : names));
+  throw UnknownName("name: " + quoted(name) + "; allowed: " + (names.empty() ? "none, there is none" : names));
 }
 
 void tune(const std::vector<NumberChange>& changes, DrivenWorld& world) {

@@ -10,8 +10,11 @@
 
 namespace verlet_cable {
 
-// What the node's services do. What cannot be done throws, with the service's message, and changes nothing: UnknownName where
-// only a name is wrong that something should have, std::invalid_argument else.
+// What the node's services do. What cannot be done throws, with the service's message in the words of Python's arguments, and
+// changes nothing: UnknownName where only a name is wrong that something should have, std::invalid_argument else.
+
+/// Of a place that Python's arguments give.
+const RequestWords& python_words();
 
 struct PinAnswer {
   std::string name;

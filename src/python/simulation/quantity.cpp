@@ -22,6 +22,12 @@ int find_particle(const World& world, const std::string& name) {
 class Names {
  public:
   void add(const std::string& name) { text_ += (text_.empty() ? "" : ", ") + name; }
+  void add_cables(const World& world) {
+    for (const SimulatedCable& cable : world.cables()) add(cable.model->name);
+  }
+  void add_nets(const World& world) {
+    for (const SimulatedNet& net : world.nets()) add(net.model.name);
+  }
   [[noreturn]] void refuse(const char* what, const std::string& name) const {
     throw UnknownName(std::string(what) + ": " + quoted(name) + "; allowed: " + (text_.empty() ? "none, there is none" : text_));
   }
@@ -36,17 +42,26 @@ Nodes find_nodes(const World& world, const std::string& name) {
   if ((found.net = find(world.nets(), name)) >= 0) return found;
   if ((found.particle = find_particle(world, name)) >= 0) return found;
   Names names;
-  for (const SimulatedCable& cable : world.cables()) names.add(cable.model->name);
-  for (const SimulatedNet& net : world.nets()) names.add(net.model.name);
+  names.add_cables(world);
+  names.add_nets(world);
   for (const SimulatedParticle& particle : world.particles()) names.add(particle.desc.name);
-  names.refuse("cable", name);
+  names.refuse("name", name);
 }
 
 const SimulatedCable& find_cable(const World& world, const std::string& name) {
   if (const int cable = find(world.cables(), name); cable >= 0) return world.cables()[cable];
   Names names;
-  for (const SimulatedCable& cable : world.cables()) names.add(cable.model->name);
-  names.refuse("cable", name);
+  names.add_cables(world);
+  names.refuse("name", name);
+}
+
+const std::vector<double>& find_tension(const World& world, const std::string& name) {
+  if (const int cable = find(world.cables(), name); cable >= 0) return world.cables()[cable].state.tension;
+  if (const int net = find(world.nets(), name); net >= 0) return world.nets()[net].state.tension;
+  Names names;
+  names.add_cables(world);
+  names.add_nets(world);
+  names.refuse("name", name);
 }
 
 const SimulatedBody& find_body(const World& world, const std::string& name) {
@@ -55,7 +70,7 @@ const SimulatedBody& find_body(const World& world, const std::string& name) {
   Names names;
   for (const SimulatedBody& other : world.bodies())
     if (!other.is_junction) names.add(other.name);
-  names.refuse("body", name);
+  names.refuse("name", name);
 }
 
 const Attachment& find_attachment(const World& world, const std::string& name) {
@@ -98,8 +113,7 @@ QuantityShape shape_of(const World& world, Quantity quantity, const std::string&
     case Quantity::velocities:
       return {count_nodes(world, find_nodes(world, name)), 3};
     case Quantity::tension:
-      if (const int net = find(world.nets(), name); net >= 0) return {world.nets()[net].state.tension.size(), 0};
-      return {find_cable(world, name).state.tension.size(), 0};
+      return {find_tension(world, name).size(), 0};
     case Quantity::curvature:
     case Quantity::twist:
       return {static_cast<std::size_t>(find_cable(world, name).state.segments() - 1), 0};
@@ -137,8 +151,7 @@ void copy_quantity(const World& world, Quantity quantity, const std::string& nam
       return;
     }
     case Quantity::tension:
-      if (const int net = find(world.nets(), name); net >= 0) return write(world.nets()[net].state.tension, to);
-      return write(find_cable(world, name).state.tension, to);
+      return write(find_tension(world, name), to);
     case Quantity::curvature:
       return write(node_curvature(find_cable(world, name).state), to);
     case Quantity::twist:

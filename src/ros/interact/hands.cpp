@@ -138,7 +138,7 @@ EditResult Hands::cut(const Handle& handle) {
   if (handle.is_body) return refused({"menu_entry_id: 3; a body has 1 and 4 only"});
   const Location location = locate_cut(place_of(handle), simulation_.world(), {});
   if (!location.errors.empty()) return refused(location.errors);
-  return simulation_.cut(location.body, location.elements);
+  return simulation_.cut(location);
 }
 
 /// Sends an attachment to a place in the fixed frame, as near as the cable allows.

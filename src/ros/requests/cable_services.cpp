@@ -65,7 +65,7 @@ bool cut(Simulation& simulation, const Cut::Request& request, Cut::Response& res
   if (!simulation.started()) return answer(simulation.refused_before_start(), response);
   const Location location = locate_cut(requested_place(request.location), simulation.world(), find_frame_in(simulation));
   if (!location.errors.empty()) return answer(refused(location.errors), response);
-  const EditResult result = simulation.cut(location.body, location.elements);
+  const EditResult result = simulation.cut(location);
   if (result.ok) response.first = name_of(simulation.world(), location.body);
   response.second = result.name;
   return answer(with_distance(result, request.location, location.distance), response);

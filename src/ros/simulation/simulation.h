@@ -70,8 +70,8 @@ class Simulation {
   EditResult unpin(const std::string& name);
   /// Sends an attachment to another pose in its frame; it gets there smoothly.
   EditResult move_attachment(const std::string& name, const Pose& offset);
-  /// Removes a segment of a cable, or links of a net: `elements`, ascending.
-  EditResult cut(const BodyId& body, const std::vector<int>& elements);
+  /// Removes a segment of a cable, or links of a net.
+  EditResult cut(const Location& place);
   EditResult set_length(const std::string& cable, bool at_end, double length, double speed);
   EditResult join(const std::string& first, bool first_at_end, const std::string& second, bool second_at_end);
   /// Adds an obstacle to those of the scene, or replaces one that was added; it follows `frame` from when that is known on. It

@@ -60,10 +60,10 @@ EditResult Simulation::move_attachment(const std::string& name, const Pose& offs
   return done("attachment " + quoted(name) + " moves to its new place");
 }
 
-EditResult Simulation::cut(const BodyId& body, const std::vector<int>& elements) {
+EditResult Simulation::cut(const Location& place) {
   if (!started_) return refused_before_start();
-  const PlacedEdit cut = apply_cut(world_, body, elements);
-  if (cut.result.ok) announce(CableEvent::CUT, {name_of(world_, body), {}, cut.node, cut.result.name}, cut.result.message);
+  const PlacedEdit cut = apply_cut(world_, place);
+  if (cut.result.ok) announce(CableEvent::CUT, {name_of(world_, place.body), {}, cut.node, cut.result.name}, cut.result.message);
   return cut.result;
 }
 
