@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "chain/node_arrays.h"
+#include "guide/node_passing.h"
 #include "rod/rod_frames.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/pin_rules.h"
@@ -146,7 +147,10 @@ EditResult World::Implementation::apply(const edit::Pin& pin) {
   if (pin.body.is_cable()) attachment.pose.orientation = pin.pose.orientation.normalized();
   state.attachments.push_back(attachment);
   if (pin.body.is_net()) update_net(pin.body.index);
-  if (pin.body.is_cable()) find_targets_of(pin.body.index);
+  if (pin.body.is_cable()) {
+    find_targets_of(pin.body.index);
+    stop_at_pin(static_cast<int>(state.attachments.size()) - 1, state);
+  }
   return {true, "", attachment.name};
 }
 

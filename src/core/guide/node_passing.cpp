@@ -7,6 +7,7 @@
 #include "rod/length_projection.h"
 #include "target/length_drive.h"
 #include "verlet_cable/core/cable_materials.h"
+#include "world/island_stepper.h"
 
 namespace verlet_cable {
 
@@ -231,6 +232,28 @@ bool pass_nodes(int index, State& state) {
       }
   }
   return passed;
+}
+
+void stop_at_pin(int pin, State& state) {
+  const Attachment& attachment = state.attachments[pin];
+  const int index = attachment.body.index;
+  KinematicTargets& targets = state.cable_progress[index].targets;
+  if (!slides(targets) || follows_bodies(targets, state.attachments)) return;
+  const Frames& frames = state.frames;
+  const Vector3 way = (frames.poses[attachment.frame] * attachment.pose).position -
+                      (frames.previous_poses[attachment.frame] * attachment.pose).position;
+  const Vector3 velocity = way / state.scene->time_step;
+  for (KinematicTarget& target : targets.nodes)
+    if (target.attachment == pin)
+      target.velocity = target.mean_velocity = target.frame_velocity = target.average_velocity = velocity;
+  Boundary boundary = boundary_now(targets);
+  load_flows(index, state, boundary);
+  for (GuidedFlow& flow : boundary.flows) {
+    if (flow.friction < infinity) flow.friction = 0;
+    flow.resistance = 0;
+  }
+  project_velocities(*state.cables[index].model, boundary, state.cables[index].state);
+  keep_flows(index, boundary, state);
 }
 
 void move_with_guides(int index, State& state) {

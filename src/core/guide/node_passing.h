@@ -23,6 +23,10 @@ void keep_flows(int cable, const Boundary& boundary, State& state);
 /// long as the others. Mass, momentum and tensions stay. Targets and attachments follow. Whether there were any.
 bool pass_nodes(int cable, State& state);
 
+/// What a new pin does to a cable that slides through guides: its velocities change by an impact, which no finite friction
+/// withstands. Otherwise a span that is pulled straight would go on flowing between holders.
+void stop_at_pin(int pin, State& state);
+
 /// Makes the velocities of a cable those of its guides there, its lengths kept but for what flows.
 void move_with_guides(int cable, State& state);
 
