@@ -59,7 +59,8 @@ void check_held_body(const RequestedPin& request, const CheckedPin& pin, const W
 }
 
 void check_held_node(const RequestedPin& request, const CheckedPin& pin, const World& world, std::vector<std::string>& errors) {
-  const std::string node = place_text(request.place) + ": node " + std::to_string(pin.node) + " of " + kind_and_name(world, pin.body);
+  const std::string node =
+      place_text(request.place) + ": node " + std::to_string(pin.node) + " of " + kind_and_name(world, pin.body);
   const std::vector<Attachment>& attachments = world.attachments();
   if (const int holder = holder_of(pin.body, pin.node, attachments); holder >= 0) {
     errors.push_back(node + " is held by " + quoted(attachments[holder].name) + "; allowed: nodes that nothing holds");
