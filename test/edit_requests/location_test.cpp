@@ -141,6 +141,26 @@ TEST(CheckedPin, AGoodRequest) {
   EXPECT_EQ(pin.offset.orientation.coeffs(), Quaternion::Identity().coeffs()) << "all zero is the identity";
 }
 
+TEST(CheckedPin, LeavesGuidesRoom) {
+  SceneDesc scene = straight_cables({{"rope", Vector3::Zero()}});
+  GuideDesc& guide = scene.guides.emplace_back();
+  guide.name = "eye";
+  guide.cable = "rope";
+  guide.place = PlaceDesc{PlaceDesc::At::arc_length, 0.5};
+  guide.offset = {0.5, 0, 0};
+  const World world(scene, {});
+  RequestedPin request;
+  request.keep_offset = true;
+  request.place = at_node("rope", 4);
+  EXPECT_EQ(join(check_pin(request, world, find_frame).errors),
+            "location: node 4 of cable \"rope\" is 0.1 m of cable from guide \"eye\"; allowed: nodes at least 0.2 m from it");
+  request.place = at_node("rope", 5);
+  EXPECT_EQ(join(check_pin(request, world, find_frame).errors),
+            "location: node 5 of cable \"rope\" is held by \"eye\"; allowed: nodes that nothing holds");
+  request.place = at_node("rope", 3);
+  EXPECT_EQ(join(check_pin(request, world, find_frame).errors), "");
+}
+
 TEST(CheckedPin, KeepsTheNodeWhereItIsRelativeToTheFrame) {
   RequestedPin request = pin_request();
   request.keep_offset = true;
