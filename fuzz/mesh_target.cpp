@@ -1,6 +1,7 @@
 // Meshes: what is checked before Assimp sees a file, and, where its format lets them pass, what is made of its triangles. The
-// input's first byte is the format. The package reads meshes so in a process of its own, as Assimp is not to be relied on: where it
-// goes wrong behind our checks, that process ends and the file is refused. Such a finding is Assimp's, and still worth a check.
+// input's first byte is the format. The package reads meshes so in a process of its own, as Assimp is not to be relied on: where
+// it goes wrong behind our checks, that process ends and the file is refused. Such a finding is Assimp's, and still worth a
+// check.
 
 #include <cstddef>
 #include <cstdint>
