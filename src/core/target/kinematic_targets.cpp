@@ -277,7 +277,6 @@ void hold_at(double from, double to, const KinematicTargets& targets, Boundary& 
     held.slides = target.slides;
     held.position = to == 1 ? target.next_position : target.position + to * (target.next_position - target.position);
     held.velocity = target.velocity + to * (target.next_velocity - target.velocity);
-    held.force.setZero();
   }
   boundary.directions.resize(targets.directions.size());
   for (std::size_t k = 0; k < targets.directions.size(); ++k) {
@@ -288,7 +287,6 @@ void hold_at(double from, double to, const KinematicTargets& targets, Boundary& 
     boundary.directions[k].twist_after = target.twist_after;
     boundary.directions[k].start = target.orientation.slerp(from, target.next_orientation);
     boundary.directions[k].end = target.orientation.slerp(to, target.next_orientation);
-    boundary.directions[k].torque.setZero();
   }
 }
 
