@@ -250,7 +250,7 @@ Following follow_aims(const std::vector<Attachment>& attachments, double time, d
     }
     end_jump(target);
     target.frame_velocity = mean;
-    target.next_velocity = is_new ? mean : Vector3(mean + 0.5 * (mean - target.mean_velocity));
+    target.next_velocity = mean + 0.5 * (mean - target.mean_velocity);
   }
   return following;
 }
