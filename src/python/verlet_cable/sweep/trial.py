@@ -16,12 +16,14 @@ _ANY_SCENE = {'particles': [{'name': 'particle', 'mass': '1', 'position': ['0', 
 
 
 def motion_errors(path):
-    """What is wrong with a motion file, whatever the scene."""
+    """What is wrong with a motion file, whatever the scene; without its path, which the sweep names in its own way."""
     try:
         World(Scene.from_dict(_ANY_SCENE), motion=path)
         return []
     except (ValueError, KeyError) as error:
-        return getattr(error, 'errors', None) or [str(error)]
+        lines = getattr(error, 'errors', None) or [str(error)]
+        named = f'motion: "{path}": '
+        return [line[len(named):] if line.startswith(named) else line for line in lines]
 
 
 def value_errors(sweep, variations):
