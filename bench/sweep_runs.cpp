@@ -93,7 +93,7 @@ void run_together(const SceneDesc& base, const std::vector<Values>& values, std:
     for (std::size_t i = start; i < end; ++i) append(batch[i - start].world(), rows[i]);
     batch.begin_steps(steps, record_every, {std::begin(quantities), std::end(quantities)});
     batch.advance(steps);
-    for (std::size_t i = start; i < end; ++i) append(batch.records(), i - start, rows[i]);
+    for (std::size_t i = start; i < end; ++i) append(*batch.records(), i - start, rows[i]);
   }
 }
 
