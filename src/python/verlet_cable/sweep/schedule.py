@@ -53,8 +53,7 @@ def cluster(workers, scheduler):
             client = distributed.Client(scheduler, timeout=_CONNECT, set_as_default=False)
         except (OSError, ValueError, TypeError) as error:
             raise SweepError([f'--scheduler: {scheduler}: {error}; allowed: the address of a running dask-scheduler']) from error
-        for name in ('distributed', 'distributed.client'):  # which would tell of a lost connection in many tracebacks
-            logging.getLogger(name).setLevel(logging.CRITICAL)
+        logging.disable(logging.ERROR)  # Dask would tell of a lost connection in tracebacks, by loggers of many names
         with client:
             try:
                 yield client
