@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <iterator>
 
+#include "verlet_cable/core/name_list.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/core/scene_fields.h"
@@ -47,14 +48,14 @@ void find_cable(const RequestedPlace& place, const World& world, bool bodies, Po
     found.errors.push_back(waits_for_frames(place.cable, *place.words) + "; allowed: cables that are simulated already");
     return;
   }
-  std::string names;
-  for (const SimulatedCable& cable : world.cables()) names += (names.empty() ? "" : ", ") + cable.model->name;
-  for (const SimulatedNet& net : world.nets()) names += (names.empty() ? "" : ", ") + net.model.name;
+  NameList names;
+  for (const SimulatedCable& cable : world.cables()) names.add(cable.model->name);
+  for (const SimulatedNet& net : world.nets()) names.add(net.model.name);
   if (bodies)
     for (const SimulatedBody& body : world.bodies())
-      if (!body.is_junction) names += (names.empty() ? "" : ", ") + body.name;
+      if (!body.is_junction) names.add(body.name);
   found.errors.push_back(place.words->cable + ": " + quoted(place.cable) +
-                         "; allowed: " + (names.empty() ? "none, there are no cables or nets" : names));
+                         "; allowed: " + names.text("none, there are no cables or nets"));
 }
 
 void find_node(const RequestedPlace& place, const World& world, PointOnCable& found) {

@@ -7,6 +7,7 @@
 
 #include "edit_requests/error_text.h"
 #include "verlet_cable/core/body_name.h"
+#include "verlet_cable/core/name_list.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 
@@ -21,9 +22,9 @@ std::optional<EditResult> refused_cable(const World& world, const std::string& f
   if (std::find(waiting.begin(), waiting.end(), cable) != waiting.end())
     return refused(
         {field + ": " + quoted(cable) + " waits for its " + words.frames + "; allowed: cables that are simulated already"});
-  std::string names;
-  for (const SimulatedCable& other : world.cables()) names += (names.empty() ? "" : ", ") + other.model->name;
-  return refused({field + ": " + quoted(cable) + "; allowed: " + (names.empty() ? "none, there are no cables" : names)});
+  NameList names;
+  for (const SimulatedCable& other : world.cables()) names.add(other.model->name);
+  return refused({field + ": " + quoted(cable) + "; allowed: " + names.text("none, there are no cables")});
 }
 
 }  // namespace
@@ -98,11 +99,10 @@ PlacedEdit apply_join(World& world, const std::string& first, bool first_at_end,
 }
 
 EditResult refused_attachment(const World& world, const std::string& name) {
-  std::string names;
+  NameList names;
   for (const Attachment& attachment : world.attachments())
-    if (is_named(attachment)) names += (names.empty() ? "" : ", ") + attachment.name;
-  return refused(
-      {"name: " + quoted(name) + " is no attachment; allowed: " + (names.empty() ? "none, nothing is attached" : names)});
+    if (is_named(attachment)) names.add(attachment.name);
+  return refused({"name: " + quoted(name) + " is no attachment; allowed: " + names.text("none, nothing is attached")});
 }
 
 }  // namespace verlet_cable

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <utility>
 
+#include "verlet_cable/core/name_list.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 
@@ -76,9 +77,9 @@ std::vector<TunableNumber> tunable_numbers(const SceneDesc& scene) {
 namespace {
 
 std::string names_of(const std::vector<TunableNumber>& numbers) {
-  std::string names;
-  for (const TunableNumber& number : numbers) names += (names.empty() ? "" : ", ") + number.name;
-  return names;
+  NameList names;
+  for (const TunableNumber& number : numbers) names.add(number.name);
+  return names.text();
 }
 
 }  // namespace

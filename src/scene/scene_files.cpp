@@ -7,6 +7,7 @@
 
 #include "mesh_file.h"
 #include "robot_model.h"
+#include "verlet_cable/core/name_list.h"
 
 namespace verlet_cable {
 namespace {
@@ -76,13 +77,13 @@ Description read_description(const RobotDesc& robot, const SceneSources& sources
 }
 
 void check_links(const Value& root, const RobotDesc& robot) {
-  std::string names;
-  for (const LinkDesc& link : robot.tree) names += (names.empty() ? "" : ", ") + link.name;
+  NameList names;
+  for (const LinkDesc& link : robot.tree) names.add(link.name);
   for (std::size_t i = 0; i < robot.links.size(); ++i) {
     const auto is_it = [&](const LinkDesc& link) { return link.name == robot.links[i]; };
     const Value key = root.child("robot", {}).child("links", {}).element(i, {});
     if (std::none_of(robot.tree.begin(), robot.tree.end(), is_it) && !root.errors->is_unread(key.key))
-      root.errors->add(key.key, quoted(robot.links[i]), "a link of the robot: " + escaped(names, 500));
+      root.errors->add(key.key, quoted(robot.links[i]), "a link of the robot: " + names.text());
   }
 }
 

@@ -2,15 +2,14 @@
 import copy
 import json
 import os
-import signal
 import subprocess
 import sys
 import threading
-import time
 from pathlib import Path
 
 import numpy
 import pytest
+from worlds import interrupted
 
 from verlet_cable.sim import Batch, Scene, SceneError, World
 
@@ -346,14 +345,7 @@ except KeyboardInterrupt:
     print('ended', numpy.min(one.time) > before > 0, flush=True)
 '''
     for what in ('world', 'batch'):
-        process = subprocess.Popen([sys.executable, '-c', program, json.dumps(hang), what], stdout=subprocess.PIPE, text=True)
-        try:
-            assert process.stdout.readline() == 'begins\n'
-            time.sleep(0.2)
-            process.send_signal(signal.SIGINT)
-            assert process.communicate(timeout=60)[0] == 'ended True\n'
-        finally:
-            process.kill()
+        assert interrupted(program, hang, what) == 'ended True\n'
 
 
 def test_importing_needs_no_ros():

@@ -1,5 +1,7 @@
 #include "scene/validate_holders.h"
 
+#include "verlet_cable/core/name_list.h"
+
 namespace verlet_cable {
 
 SceneNames::SceneNames(const SceneDesc& scene)
@@ -17,15 +19,9 @@ SceneNames::SceneNames(const SceneDesc& scene)
 }
 
 std::string one_of(const char* kind, const NameIndex& names) {
-  constexpr std::size_t most = 20;
-  std::string list;
-  std::size_t count = 0;
-  for (const auto& [name, index] : names) {
-    if (++count > most) break;
-    list += (list.empty() ? "" : ", ") + escaped(name);
-  }
-  return std::string("a ") + kind + " of the scene (" + (names.empty() ? "there are none" : list) +
-         (names.size() > most ? ", ...)" : ")");
+  NameList list;
+  for (const auto& [name, index] : names) list.add(name);
+  return std::string("a ") + kind + " of the scene (" + list.text("there are none") + ")";
 }
 
 }  // namespace verlet_cable

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "binding/text_arguments.h"
+#include "verlet_cable/core/name_list.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/core/world.h"
@@ -77,11 +78,8 @@ std::vector<Quantity> read_quantities(const char* argument, const std::vector<py
     const std::string name = text_of(given, argument);
     std::size_t i = 0;
     while (i < quantity_names.size() && name != quantity_names[i]) ++i;
-    if (i == quantity_names.size()) {
-      std::string allowed;
-      for (const char* other : quantity_names) allowed += (allowed.empty() ? "" : ", ") + std::string(other);
-      throw py::value_error(std::string(argument) + ": " + quoted(name) + "; allowed: " + allowed);
-    }
+    if (i == quantity_names.size())
+      throw py::value_error(std::string(argument) + ": " + quoted(name) + "; allowed: " + NameList(quantity_names).text());
     quantities.push_back(static_cast<Quantity>(i));
   }
   return quantities;

@@ -6,6 +6,7 @@
 #include "binding/arguments.h"
 #include "binding/text_arguments.h"
 #include "scene/frame_source.h"
+#include "verlet_cable/core/name_list.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/core/scene_fields.h"
@@ -45,11 +46,10 @@ Motion read_tracks(const py::dict& tracks, const SceneDesc& scene) {
   }
   const std::vector<std::string> unused = unused_frames(scene, motion);
   if (unused.empty()) return motion;
-  std::string allowed;
+  NameList allowed;
   const std::vector<std::string> names = frame_names(scene);
-  for (std::size_t i = 1; i < names.size(); ++i) allowed += (i == 1 ? "" : ", ") + names[i];
-  throw py::key_error("motion: " + quoted(unused.front()) +
-                      "; allowed: " + (allowed.empty() ? "none, the scene has no frames" : allowed));
+  for (std::size_t i = 1; i < names.size(); ++i) allowed.add(names[i]);
+  throw py::key_error("motion: " + quoted(unused.front()) + "; allowed: " + allowed.text("none, the scene has no frames"));
 }
 
 Motion read_file(const std::string& path) {

@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "verlet_cable/core/name_list.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/world.h"
 
@@ -43,12 +44,6 @@ std::vector<std::pair<std::string, std::vector<std::string>>> structure_of(const
   };
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text.empty() ? "none" : text;
-}
-
 }  // namespace
 
 void check_alike(const SceneDesc& first, const SceneDesc& other, const std::string& name) {
@@ -57,8 +52,8 @@ void check_alike(const SceneDesc& first, const SceneDesc& other, const std::stri
   std::vector<std::string> errors;
   for (std::size_t i = 0; i < wanted.size(); ++i)
     if (given[i].second != wanted[i].second)
-      errors.push_back(name + "." + wanted[i].first + ": " + joined(given[i].second) +
-                       "; allowed: scenes that differ in numbers only, the first has " + joined(wanted[i].second));
+      errors.push_back(name + "." + wanted[i].first + ": " + NameList(given[i].second).text() +
+                       "; allowed: scenes that differ in numbers only, the first has " + NameList(wanted[i].second).text());
   if (!errors.empty()) throw SceneError(std::move(errors));
 }
 

@@ -6,6 +6,7 @@
 
 #include "scene/frame_speed.h"
 #include "simulation/quantity.h"
+#include "verlet_cable/core/name_list.h"
 #include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/core/scene_fields.h"
 
@@ -31,14 +32,13 @@ DrivenWorld::DrivenWorld(std::shared_ptr<const SceneDesc> scene, std::shared_ptr
 
 int DrivenWorld::find_frame(const std::string& name) const {
   const std::vector<std::string>& names = world_.frames();
-  std::string allowed;
+  NameList allowed;
   for (int frame = 1; frame < static_cast<int>(names.size()); ++frame) {
     if (world_.is_body_frame(frame)) continue;
     if (names[frame] == name) return frame;
-    allowed += (allowed.empty() ? "" : ", ") + names[frame];
+    allowed.add(names[frame]);
   }
-  throw UnknownName("name: " + quoted(name) +
-                    "; allowed: " + (allowed.empty() ? "none, the scene has none that moves" : allowed));
+  throw UnknownName("name: " + quoted(name) + "; allowed: " + allowed.text("none, the scene has none that moves"));
 }
 
 std::vector<std::string> DrivenWorld::frame_names() const {

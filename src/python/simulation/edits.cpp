@@ -9,6 +9,7 @@
 #include "edit_requests/named_edits.h"
 #include "simulation/quantity.h"
 #include "verlet_cable/core/body_name.h"
+#include "verlet_cable/core/name_list.h"
 #include "verlet_cable/core/obstacle_of.h"
 #include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/core/scene_fields.h"
@@ -125,12 +126,12 @@ void set_obstacle(const ObstacleDesc& desc, DrivenWorld& world) {
 }
 
 void remove_obstacle(const std::string& name, DrivenWorld& world) {
-  std::string names;
+  NameList names;
   for (const Obstacle& other : world.world().obstacles()) {
     if (other.name == name) return require(world.world().apply(edit::RemoveObstacle{name}));
-    names += (names.empty() ? "" : ", ") + other.name;
+    names.add(other.name);
   }
-  throw UnknownName("name: " + quoted(name) + "; allowed: " + (names.empty() ? "none, there is none" : names));
+  throw UnknownName("name: " + quoted(name) + "; allowed: " + names.text("none, there is none"));
 }
 
 void tune(const std::vector<NumberChange>& changes, DrivenWorld& world) {

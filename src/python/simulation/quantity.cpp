@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "verlet_cable/core/name_list.h"
 #include "verlet_cable/core/quoted_text.h"
 
 namespace verlet_cable {
@@ -21,7 +22,7 @@ int find_particle(const World& world, const std::string& name) {
 
 class Names {
  public:
-  void add(const std::string& name) { text_ += (text_.empty() ? "" : ", ") + name; }
+  void add(const std::string& name) { list_.add(name); }
   void add_cables(const World& world) {
     for (const SimulatedCable& cable : world.cables()) add(cable.model->name);
   }
@@ -29,11 +30,11 @@ class Names {
     for (const SimulatedNet& net : world.nets()) add(net.model.name);
   }
   [[noreturn]] void refuse(const char* what, const std::string& name) const {
-    throw UnknownName(std::string(what) + ": " + quoted(name) + "; allowed: " + (text_.empty() ? "none, there is none" : text_));
+    throw UnknownName(std::string(what) + ": " + quoted(name) + "; allowed: " + list_.text("none, there is none"));
   }
 
  private:
-  std::string text_;
+  NameList list_;
 };
 
 Nodes find_nodes(const World& world, const std::string& name) {

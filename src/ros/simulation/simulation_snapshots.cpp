@@ -1,4 +1,5 @@
 #include "simulation/simulation.h"
+#include "verlet_cable/core/name_list.h"
 #include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/core/scene_fields.h"
 
@@ -15,9 +16,9 @@ EditResult refused(const std::string& message) {
 }
 
 std::string names_of(const std::map<std::string, Snapshot>& snapshots) {
-  std::string names;
-  for (const auto& [name, snapshot] : snapshots) names += (names.empty() ? "" : ", ") + name;
-  return names.empty() ? "none is saved" : names;
+  NameList names;
+  for (const auto& [name, snapshot] : snapshots) names.add(name);
+  return names.text("none is saved");
 }
 
 }  // namespace
