@@ -73,9 +73,10 @@ struct StepResult {
     ok,
     overstretched,  ///< held points are further apart than what is between them can be: it was lengthened
     jumped,         ///< a frame changed its velocity too much for a motion: what it holds was carried along with it
-    degraded,       ///< a substep did not converge at the smallest size: the motion of the cable, or of bodies and what hangs on
-                    ///< them, was taken away, and it goes on from rest; or cables are in each other and have no room to get apart
-    fault           ///< not even that: the cable stays as it was last, finite
+    degraded,       ///< a substep did not converge at the smallest size, or the step took too much work: the motion of the cable,
+               ///< or of bodies and what hangs on them, was taken away, and it goes on from rest; or cables are in each other
+               ///< and have no room to get apart
+    fault  ///< not even that: the cable stays as it was last, finite
   };
   Status status = Status::ok;
   BodyId body;             ///< the first one that is not ok
@@ -83,6 +84,7 @@ struct StepResult {
   int ignored_frame = -1;  ///< the first frame whose pose was not sound
   int substeps = 0;        ///< the most that any cable took
   int iterations = 0;      ///< of the solver, all cables and substeps
+  bool exhausted = false;  ///< it took more work than a step may: what was left was done from rest
   double max_strain = 0;   ///< largest |l / l0 - 1| at the end of the step
 };
 

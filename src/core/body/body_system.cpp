@@ -23,6 +23,7 @@ constexpr double least_size = 1e-3;  // [m] of a body
 void BodySystem::begin(const std::vector<BodyMember>& members, const std::vector<Participant>& participants,
                        const std::vector<SimulatedBody>& bodies, const GravityDesc& gravity, const SubstepRules& rules) {
   rules_ = rules;
+  solutions_ = 0;
   member_of_.assign(bodies.size(), -1);
   members_.resize(members.size());
   momenta_.resize(members.size());
@@ -150,6 +151,7 @@ void BodySystem::solve(std::vector<Participant>& participants, bool stale) {
   if (stale) condense(participants);
   add_loads();
   equations_.solve();
+  ++solutions_;
   for (std::size_t c = 0; c < cable_count_; ++c) cables_[c].follow(members_, equations_, participants[cables_[c].participant()]);
 }
 

@@ -28,7 +28,8 @@ class BodySystem {
   const std::vector<BodyJoint>& joints() const { return joints_.all(); }
   BodyContacts& contacts() { return contacts_; }
   const BodyContacts& contacts() const { return contacts_; }
-  double substep() const { return rules_.h; }  ///< [s]
+  double substep() const { return rules_.h; }   ///< [s]
+  int solutions() const { return solutions_; }  ///< of the linear system, since it began
   /// Index among the members of a body, by its own; -1: it is none.
   int member_of(int body) const { return member_of_[body]; }
 
@@ -78,6 +79,7 @@ class BodySystem {
   std::vector<MovingBody> members_;
   std::vector<HeldCable> cables_;  ///< as many of them as there are
   std::size_t cable_count_ = 0;
+  int solutions_ = 0;
   std::vector<int> cable_of_;  ///< by participant; -1: no body has to do with it
   BodyJoints joints_;
   BodyContacts contacts_;

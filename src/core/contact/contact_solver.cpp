@@ -139,6 +139,7 @@ void ContactSolver::begin(std::vector<Participant>& participants) {
     p.stepper->begin(p.substep, *p.state, p.result);
   }
   largest_energy_ = 0;
+  coupling_steps_ = 0;
 }
 
 void ContactSolver::finish(std::vector<Participant>& participants, std::vector<Touch>& touches) const {
@@ -385,6 +386,7 @@ void ContactSolver::couple(std::vector<Participant>& participants) {
   double energy = 0, step = 0;
   for (int i = 0; i < maximum_coupling_iterations; ++i) {
     const double next_energy = precondition(participants);
+    ++coupling_steps_;
     if (!(next_energy > enough)) break;
     const double ratio = i == 0 ? 0 : next_energy / energy;
     energy = next_energy;

@@ -22,6 +22,7 @@ class ContactSolver {
   bool crosses(const std::vector<Participant>& participants, const std::vector<Touch>& touches) const;
   /// The states and the contacts take what has been found.
   void finish(std::vector<Participant>& participants, std::vector<Touch>& touches) const;
+  int coupling_steps() const { return coupling_steps_; }  ///< of conjugate gradients, in the last `solve`
 
  private:
   /// One participant, in the conjugate gradients.
@@ -98,6 +99,7 @@ class ContactSolver {
   double work_along_ = 0;         ///< [J] of the forces along the last correction, where it begins
   double negligible_energy_ = 0;  ///< [J] moves no node by more than what is tolerated
   double largest_energy_ = 0;     ///< of a correction in this substep
+  int coupling_steps_ = 0;
 };
 
 }  // namespace verlet_cable

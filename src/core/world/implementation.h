@@ -39,6 +39,7 @@ struct World::Implementation {
   void build_islands();
   void advance_islands();
   void step_islands(std::size_t from, std::size_t to, IslandStepper& stepper);
+  void resume_islands(bool one_by_one);
   void collect_outcomes(StepResult& result);
   void apply_breaks(StepResult& result);
   void step_nets_and_particles(StepResult& result);

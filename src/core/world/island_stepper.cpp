@@ -17,21 +17,11 @@ namespace {
 
 using Status = StepResult::Status;
 
-/// After so many substeps in one step a cable is not split further: whoever waits for it has waited long enough.
-constexpr int maximum_substeps = 4096;
-/// A substep that took no more iterations than this may be doubled; with contacts it always takes some more.
-constexpr int easy_iterations = 6;
-constexpr int easy_contact_iterations = 12;
-
 /// Of what starts in each other, in radii: no room to get out of each other by more in a substep.
 constexpr double least_separation = 1e-4;
 
 bool cannot_get_apart(const Touch& touch) {
   return touch.yields && touch.normal.dot(touch.displacement) < least_separation * touch.radius;
-}
-
-bool finite(const std::vector<Vector3>& vectors) {
-  return std::all_of(vectors.begin(), vectors.end(), [](const Vector3& v) { return v.allFinite(); });
 }
 
 /// The segment of a cable that breaks now, -1 if it holds. A piece keeps at least one segment, so that the outermost ones do not
@@ -55,6 +45,10 @@ int find_breaking_segment(const SimulatedCable& cable, const StepResult& result)
 }
 
 }  // namespace
+
+bool finite(const std::vector<Vector3>& vectors) {
+  return std::all_of(vectors.begin(), vectors.end(), [](const Vector3& v) { return v.allFinite(); });
+}
 
 Vector3 gravity_near(const State& state, int cable) {
   return state.scene->gravity.at(state.cables[cable].state.positions.front());
@@ -226,54 +220,10 @@ void IslandStepper::step(Island& island, IslandOutcome& found) {
   found.contacts.clear();
   found.jumps.clear();
   found.bodies = {};
+  found.unfinished.reset();
+  found.exhausted = false;
   bool contacts_known = false;
   if (!wait_for_others(island, found, contacts_known)) step_alone(island, found, contacts_known);
-}
-
-/// `contacts_known`: those of the whole step have been found, and it is not split yet.
-void IslandStepper::step_alone(Island& island, IslandOutcome& found, bool contacts_known) {
-  begin(island);
-  if (!island.bodies.empty()) update_body_targets(island, found);
-  int level = 0;
-  for (const int cable : island.cables) level = std::max(level, state_.cable_progress[cable].level);
-
-  const int finest = std::max(0, static_cast<int>(std::ceil(std::log2(state_.scene->time_step / shortest_substep))));
-  const std::int64_t whole = std::int64_t{1} << finest;
-  const double part = 1 / static_cast<double>(whole);
-  std::int64_t done = 0;
-  int substeps = 0;
-  bool stopped = false;
-  while (done < whole) {
-    const std::int64_t ticks = whole >> level;
-    const bool splits = level < finest && substeps < maximum_substeps;
-    const double from = part * static_cast<double>(done), to = part * static_cast<double>(done + ticks);
-    if (!contacts_known) find_contacts(island, from, to);
-    contacts_known = false;
-    const bool converged = advance(island, from, to, !splits);
-    if (!converged) {
-      if (splits) {
-        ++level;
-      } else if (!stopped) {
-        stop(island);
-        if (!island.bodies.empty()) note_status(Status::degraded, rigid_body_id(island.bodies.front()), 0, found.bodies);
-        stopped = true;
-      } else {
-        for (std::size_t k = 0; k < island.cables.size(); ++k)
-          if (!workspace_.cables[k].result.converged) give_up(island.cables[k], workspace_.cables[k].boundary);
-        break;
-      }
-      continue;
-    }
-    done += ticks;
-    ++substeps;
-    note_intrusions(found.intrusions);
-    for (std::size_t k = 0; k < island.cables.size(); ++k)
-      note_substep(island.cables[k], workspace_.cables[k].boundary, workspace_.cables[k].result,
-                   static_cast<double>(ticks) * part);
-    if (level > 0 && was_easy() && done % (2 * ticks) == 0) --level;
-  }
-  for (const int cable : island.cables) state_.cable_progress[cable].level = level;
-  complete(island, substeps, found);
 }
 
 void IslandStepper::begin(const Island& island) {
@@ -424,47 +374,6 @@ void IslandStepper::take_back(const Island& island) {
   }
 }
 
-/// What did not converge goes on from rest.
-void IslandStepper::stop(const Island& island) {
-  stop_bodies(island);
-  for (std::size_t k = 0; k < island.cables.size(); ++k) {
-    if (workspace_.cables[k].result.converged) continue;
-    CableState& state = state_.cables[island.cables[k]].state;
-    bring_to_rest(state);
-    stop_flows(island.cables[k], state_);
-    std::fill(state.axial_multiplier.begin(), state.axial_multiplier.end(), 0.0);
-    note_status(Status::degraded, cable_id(island.cables[k]), 0, outcomes_[island.cables[k]].result);
-  }
-}
-
-/// Not even from rest: the cable is put where its holders will be, and goes on from there.
-void IslandStepper::give_up(int index, Boundary& boundary) {
-  SimulatedCable& cable = state_.cables[index];
-  hold_at(1, 1, state_.cable_progress[index].targets, boundary);
-  hold_on_bodies(cable.state, state_.attachments, state_.bodies, state_.time(), state_.cable_progress[index].targets, boundary);
-  const CableState before = cable.state;
-  carry_along(*cable.model, boundary.nodes, gravity_near(state_, index), cable.state);
-  if (finite(cable.state.positions)) return;
-  cable.state = before;
-  note_status(Status::fault, cable_id(index), 0, outcomes_[index].result);
-}
-
-/// Whether the last substep may be doubled.
-bool IslandStepper::was_easy() const {
-  const int most = workspace_.participants.empty() ? easy_iterations : easy_contact_iterations;
-  const auto end = workspace_.cables.begin() + static_cast<std::ptrdiff_t>(workspace_.members.size());
-  return std::all_of(workspace_.cables.begin(), end,
-                     [&](const CableWorkspace& of_cable) { return of_cable.result.iterations <= most; });
-}
-
-void IslandStepper::note_substep(int index, const Boundary& boundary, const SubstepResult& substep, double part) {
-  StepResult& result = outcomes_[index].result;
-  add_forces(boundary, state_.cable_progress[index].targets, state_.frames.poses, part, state_.attachments);
-  result.max_strain = std::max(result.max_strain, substep.max_strain);
-  result.iterations += substep.iterations;
-  if (substep.overstretched_node >= 0) note_status(Status::overstretched, cable_id(index), substep.overstretched_node, result);
-}
-
 void IslandStepper::note_intrusions(std::vector<Intrusion>& noted) const {
   for (const Intrusion& found : workspace_.contacts.intrusions()) {
     const auto same = std::find_if(noted.begin(), noted.end(), [&](const Intrusion& other) {
@@ -478,9 +387,11 @@ void IslandStepper::note_intrusions(std::vector<Intrusion>& noted) const {
   }
 }
 
-void IslandStepper::complete(const Island& island, int substeps, IslandOutcome& found) {
-  for (std::size_t k = 0; k < island.cables.size(); ++k)
-    complete_cable(island.cables[k], workspace_.cables[k].boundary, substeps);
+void IslandStepper::complete(const Island& island, const StepProgress& progress, IslandOutcome& found) {
+  for (std::size_t k = 0; k < island.cables.size(); ++k) {
+    state_.cable_progress[island.cables[k]].level = progress.level;
+    complete_cable(island.cables[k], workspace_.cables[k].boundary, progress.substeps);
+  }
   for (const Touch& touch : workspace_.contacts.touches()) {
     if (touch.mode == Touch::Mode::open) continue;
     if (cannot_get_apart(touch))

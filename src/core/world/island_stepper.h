@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "world/islands.h"
 #include "world/state.h"
+#include "world/step_budget.h"
 #include "world/workspace.h"
 
 namespace verlet_cable {
@@ -22,6 +24,8 @@ struct IslandOutcome {
   std::vector<Jump> jumps;            ///< of what holds bodies, that the step found to be over
   std::vector<Intrusion> intrusions;  ///< the deepest of each cable and obstacle
   std::vector<SimulatedContact> contacts;
+  std::optional<StepProgress> unfinished;  ///< what is left waits for `resume`
+  bool exhausted = false;                  ///< the step took more work than it may
 };
 
 /// Where a cable hangs to: gravity at its first node.
@@ -35,6 +39,11 @@ ContactRules contact_rules(const SceneDesc& scene, bool still);
 
 /// What may touch in the next h [s], of an island whose cables are the members of the workspace.
 void find_contacts_of(Island& island, const State& state, const ContactRules& rules, double h, Workspace& workspace);
+
+bool finite(const std::vector<Vector3>& vectors);
+
+/// Work of an iteration, at most, see `budget`.
+double size_of(const Island& island, const State& state);
 
 /// Keeps the worst status, and of equals the first body's.
 void note_status(StepResult::Status status, const BodyId& body, int node, StepResult& result);
@@ -71,6 +80,9 @@ class IslandStepper {
   void step(Island& island, IslandOutcome& found);
   /// Steps those that wait, of this world and of others that are stepped in the same workspace.
   void finish();
+  /// Ends the step of an island that is unfinished, with no more than about this much more work, see `budget`: what is left then
+  /// is done from rest.
+  void resume(Island& island, double allowance, IslandOutcome& found);
 
  private:
   bool wait_for_others(Island& island, IslandOutcome& found, bool& contacts_known);
@@ -100,12 +112,18 @@ class IslandStepper {
   bool is_kept(const Island& island, std::size_t k) const;
   bool is_finite(const Island& island);
   void take_back(const Island& island);
-  void stop(const Island& island);
+  bool advance_within(double most_work, Island& island, StepProgress& progress, IslandOutcome& found, bool contacts_known);
+  void end_from_rest(Island& island, StepProgress& progress, IslandOutcome& found);
+  bool advance_part(Island& island, const PartOfStep& part, bool tolerated, bool contacts_known, StepProgress& progress,
+                    IslandOutcome& found);
+  double work_of_attempt(const Island& island) const;
+  void stop(const Island& island, IslandOutcome& found);
+  void give_up(const Island& island);
   void give_up(int cable, Boundary& boundary);
   bool was_easy() const;
   void note_substep(int cable, const Boundary& boundary, const SubstepResult& result, double part);
   void note_intrusions(std::vector<Intrusion>& noted) const;
-  void complete(const Island& island, int substeps, IslandOutcome& found);
+  void complete(const Island& island, const StepProgress& progress, IslandOutcome& found);
   void complete_cable(int cable, const Boundary& boundary, int substeps);
 
   State& state_;

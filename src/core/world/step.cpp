@@ -29,6 +29,7 @@ StepResult World::step(const BoundaryInputs& inputs) {
   StepResult result;
   w.begin_step(inputs, result);
   w.advance_islands();
+  w.resume_islands(w.one_by_one);
   w.end_step(result);
   return result;
 }
@@ -99,6 +100,27 @@ void World::Implementation::advance_islands() {
                     [&](const auto& some) { advance(some.begin(), some.end()); });
 }
 
+/// Islands that the first share of work was not enough for share what a step has for them by their sizes.
+void World::Implementation::resume_islands(bool one_by_one) {
+  std::vector<std::size_t> unfinished;
+  for (std::size_t i = 0; i < island_outcomes.value.size(); ++i)
+    if (island_outcomes.value[i].unfinished) unfinished.push_back(i);
+  if (unfinished.empty()) return;
+  double size = 0;
+  for (const std::size_t i : unfinished) size += size_of(islands.value.all()[i], state);
+  const auto resume = [&](std::size_t from, std::size_t to) {
+    const FlushDenormals flush_denormals;
+    IslandStepper stepper(state, workspaces.value.local(), cable_outcomes.value, most_lanes);
+    for (std::size_t k = from; k < to; ++k) {
+      Island& island = islands.value.all()[unfinished[k]];
+      stepper.resume(island, budget::most * size_of(island, state) / size, island_outcomes.value[unfinished[k]]);
+    }
+  };
+  if (one_by_one) return resume(0, unfinished.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, unfinished.size(), 1),
+                    [&](const auto& some) { resume(some.begin(), some.end()); });
+}
+
 void World::Implementation::step_islands(std::size_t from, std::size_t to, IslandStepper& stepper) {
   const bool updates_targets = !are_islands_of_many(*state.scene);
   for (std::size_t i = from; i < to; ++i) {
@@ -118,6 +140,7 @@ void World::Implementation::collect_outcomes(StepResult& result) {
   }
   for (const IslandOutcome& outcome : island_outcomes.value) {
     note_status(outcome.bodies.status, outcome.bodies.body, outcome.bodies.node, result);
+    result.exhausted = result.exhausted || outcome.exhausted;
     append(outcome.jumps, findings.jumps);
     append(outcome.intrusions, findings.intrusions);
     append(outcome.contacts, findings.contacts);

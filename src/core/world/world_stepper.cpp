@@ -52,7 +52,11 @@ void WorldStepper::Implementation::step(std::vector<WorldStep>& worlds, std::siz
     world.step_islands(0, islands, steppers.back());
   }
   if (!steppers.empty()) steppers.back().finish();
-  for (std::size_t i = from; i < to; ++i) worlds[i].world->implementation_->end_step(worlds[i].result);
+  for (std::size_t i = from; i < to; ++i) {
+    World::Implementation& world = *worlds[i].world->implementation_;
+    world.resume_islands(true);
+    world.end_step(worlds[i].result);
+  }
 }
 
 }  // namespace verlet_cable

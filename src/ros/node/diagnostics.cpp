@@ -87,6 +87,7 @@ void Diagnostics::report_simulation(Status& status) {
   status.add("overstretched_steps", s.overstretched);
   status.add("jumped_steps", s.jumped);
   status.add("degraded_steps", s.degraded);
+  status.add("exhausted_steps", s.exhausted);
   status.add("faults", report.faults);
   status.add("waiting_cables", join(simulation_.world().findings().waiting));
   report_waiting(status);
@@ -109,6 +110,8 @@ void Diagnostics::report_simulation(Status& status) {
   if (s.degraded > 0)
     status.mergeSummary(DiagnosticStatus::WARN,
                         "steps without a solution: the motion of cables, or of bodies and what hangs on them, was taken away");
+  if (s.exhausted > 0)
+    status.mergeSummary(DiagnosticStatus::WARN, "steps took too much work, and were ended from rest: the time_step is too long");
   if (!simulation_.world().findings().unsettled.empty())
     status.mergeSummary(DiagnosticStatus::WARN, "no static equilibrium was found to start from");
   if (!report.intrusions.empty()) status.mergeSummary(DiagnosticStatus::WARN, "cables were found inside obstacles");

@@ -13,6 +13,7 @@ struct Statistics {
   double longest_step = 0;  ///< [s] of wall time
   double max_strain = 0;
   std::int64_t degraded = 0;       ///< steps that were finished less exactly
+  std::int64_t exhausted = 0;      ///< of these, those that would have taken too much work
   std::int64_t overstretched = 0;  ///< steps in which held points were too far apart
   std::int64_t jumped = 0;         ///< steps in which a frame was suddenly elsewhere
 

@@ -30,9 +30,8 @@ StatusText text_of(StepResult::Status status) {
               "the points that hold it are further apart than the material between them is long; it is lengthened to reach"};
     case StepResult::Status::degraded:
       return {"degraded",
-              "no solution was found for a step, or it became unstable, and its motion was taken away; or its springs are too "
-              "stiff for the "
-              "time_step, and were softened"};
+              "no solution was found for a step, or none without too much work, or it became unstable, and its motion was taken "
+              "away; or its springs are too stiff for the time_step, and were softened"};
     case StepResult::Status::fault:
       return {"FAULT", "the simulation failed: it has no finite state any more"};
     case StepResult::Status::jumped:

@@ -1,0 +1,163 @@
+#include <algorithm>
+#include <cmath>
+
+#include "guide/guides.h"
+#include "rod/initial_shape.h"
+#include "world/island_stepper.h"
+#include "world/step_budget.h"
+
+namespace verlet_cable {
+
+namespace {
+
+using Status = StepResult::Status;
+
+/// A substep that took no more iterations than this may be doubled; with contacts it always takes some more.
+constexpr int easy_iterations = 6;
+constexpr int easy_contact_iterations = 12;
+
+int finest_level(double time_step) {
+  return std::max(0, static_cast<int>(std::ceil(std::log2(time_step / shortest_substep))));
+}
+
+}  // namespace
+
+double size_of(const Island& island, const State& state) {
+  double size = budget::body * static_cast<double>(island.bodies.size());
+  for (const int cable : island.cables) size += budget::heavy * (budget::cable + state.cables[cable].state.segments());
+  return size;
+}
+
+/// `contacts_known`: those of the whole step have been found, and it is not split yet.
+void IslandStepper::step_alone(Island& island, IslandOutcome& found, bool contacts_known) {
+  begin(island);
+  if (!island.bodies.empty()) update_body_targets(island, found);
+  StepProgress progress;
+  for (const int cable : island.cables) progress.level = std::max(progress.level, state_.cable_progress[cable].level);
+  if (advance_within(budget::first_share * size_of(island, state_), island, progress, found, contacts_known))
+    complete(island, progress, found);
+  else
+    found.unfinished = progress;
+}
+
+void IslandStepper::resume(Island& island, double allowance, IslandOutcome& found) {
+  StepProgress progress = *found.unfinished;
+  found.unfinished.reset();
+  begin(island);
+  if (!advance_within(progress.work + allowance, island, progress, found, false)) end_from_rest(island, progress, found);
+  complete(island, progress, found);
+}
+
+/// As far as `most_work` goes; true at the end of the step.
+bool IslandStepper::advance_within(double most_work, Island& island, StepProgress& progress, IslandOutcome& found,
+                                   bool contacts_known) {
+  const int finest = finest_level(state_.scene->time_step);
+  const std::int64_t whole = std::int64_t{1} << finest;
+  while (progress.done < whole) {
+    if (progress.work >= most_work) return false;
+    const std::int64_t ticks = whole >> progress.level;
+    const bool splits = progress.level < finest;
+    if (advance_part(island, {progress.done, progress.done + ticks, whole}, !splits, contacts_known, progress, found)) {
+      if (progress.level > 0 && was_easy() && progress.done % (2 * ticks) == 0) --progress.level;
+    } else if (splits) {
+      ++progress.level;
+    } else if (!progress.stopped) {
+      stop(island, found);
+      progress.stopped = true;
+    } else {
+      give_up(island);
+      progress.done = whole;
+    }
+    contacts_known = false;
+  }
+  return true;
+}
+
+/// What is left of a step that took too much work: from rest, in one substep. The next step begins with a whole one again.
+void IslandStepper::end_from_rest(Island& island, StepProgress& progress, IslandOutcome& found) {
+  const std::int64_t whole = std::int64_t{1} << finest_level(state_.scene->time_step);
+  for (std::size_t k = 0; k < island.cables.size(); ++k) workspace_.cables[k].result.converged = false;
+  stop(island, found);
+  if (!advance_part(island, {progress.done, whole, whole}, true, false, progress, found)) give_up(island);
+  progress.level = 0;
+  found.exhausted = true;
+}
+
+/// One substep and what it found. False if it has not converged; the states are then as before.
+bool IslandStepper::advance_part(Island& island, const PartOfStep& part, bool tolerated, bool contacts_known,
+                                 StepProgress& progress, IslandOutcome& found) {
+  if (!contacts_known) find_contacts(island, part.from(), part.to());
+  const bool converged = advance(island, part.from(), part.to(), tolerated);
+  progress.work += work_of_attempt(island);
+  if (!converged) return false;
+  progress.done = part.last;
+  ++progress.substeps;
+  note_intrusions(found.intrusions);
+  for (std::size_t k = 0; k < island.cables.size(); ++k)
+    note_substep(island.cables[k], workspace_.cables[k].boundary, workspace_.cables[k].result, part.to() - part.from());
+  return true;
+}
+
+double IslandStepper::work_of_attempt(const Island& island) const {
+  double work = 0;
+  if (!island.bodies.empty())
+    work += budget::body * static_cast<double>(island.bodies.size()) * workspace_.body_system.solutions();
+  for (std::size_t k = 0; k < island.cables.size(); ++k) {
+    const CableWorkspace& of_cable = workspace_.cables[k];
+    const bool heavy = of_cable.stepper.is_whole_rod() || workspace_.contacts.touched(k) || of_cable.boundary.is_on_bodies();
+    double iterations = (heavy ? budget::heavy : 1) * of_cable.result.iterations;
+    if (workspace_.contacts.touched(k) && of_cable.result.iterations > 0)
+      iterations += budget::coupling * workspace_.contact_solver.coupling_steps();
+    work += iterations * (budget::cable + state_.cables[island.cables[k]].state.segments());
+  }
+  return work;
+}
+
+/// What did not converge goes on from rest.
+void IslandStepper::stop(const Island& island, IslandOutcome& found) {
+  stop_bodies(island);
+  if (!island.bodies.empty()) note_status(Status::degraded, rigid_body_id(island.bodies.front()), 0, found.bodies);
+  for (std::size_t k = 0; k < island.cables.size(); ++k) {
+    if (workspace_.cables[k].result.converged) continue;
+    CableState& state = state_.cables[island.cables[k]].state;
+    bring_to_rest(state);
+    stop_flows(island.cables[k], state_);
+    std::fill(state.axial_multiplier.begin(), state.axial_multiplier.end(), 0.0);
+    note_status(Status::degraded, cable_id(island.cables[k]), 0, outcomes_[island.cables[k]].result);
+  }
+}
+
+void IslandStepper::give_up(const Island& island) {
+  for (std::size_t k = 0; k < island.cables.size(); ++k)
+    if (!workspace_.cables[k].result.converged) give_up(island.cables[k], workspace_.cables[k].boundary);
+}
+
+/// Not even from rest: the cable is put where its holders will be, and goes on from there.
+void IslandStepper::give_up(int index, Boundary& boundary) {
+  SimulatedCable& cable = state_.cables[index];
+  hold_at(1, 1, state_.cable_progress[index].targets, boundary);
+  hold_on_bodies(cable.state, state_.attachments, state_.bodies, state_.time(), state_.cable_progress[index].targets, boundary);
+  const CableState before = cable.state;
+  carry_along(*cable.model, boundary.nodes, gravity_near(state_, index), cable.state);
+  if (finite(cable.state.positions)) return;
+  cable.state = before;
+  note_status(Status::fault, cable_id(index), 0, outcomes_[index].result);
+}
+
+/// Whether the last substep may be doubled.
+bool IslandStepper::was_easy() const {
+  const int most = workspace_.participants.empty() ? easy_iterations : easy_contact_iterations;
+  const auto end = workspace_.cables.begin() + static_cast<std::ptrdiff_t>(workspace_.members.size());
+  return std::all_of(workspace_.cables.begin(), end,
+                     [&](const CableWorkspace& of_cable) { return of_cable.result.iterations <= most; });
+}
+
+void IslandStepper::note_substep(int index, const Boundary& boundary, const SubstepResult& substep, double part) {
+  StepResult& result = outcomes_[index].result;
+  add_forces(boundary, state_.cable_progress[index].targets, state_.frames.poses, part, state_.attachments);
+  result.max_strain = std::max(result.max_strain, substep.max_strain);
+  result.iterations += substep.iterations;
+  if (substep.overstretched_node >= 0) note_status(Status::overstretched, cable_id(index), substep.overstretched_node, result);
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,119 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "../support/scenes.h"
+#include "verlet_cable/core/world.h"
+
+namespace verlet_cable {
+namespace {
+
+using Status = StepResult::Status;
+
+/// Short cables whose ends follow frames, and that touch each other.
+SceneDesc tangle(int cables, int segments) {
+  SceneDesc scene = scenes::one_cable(segments, 0.3);
+  scene.time_step = 0.005;
+  scene.materials[0].material.bending_stiffness = 1e-3;
+  scene.contact = ContactDesc{};
+  const CableDesc first = scene.cables[0];
+  scene.cables.clear();
+  for (int k = 0; k < cables; ++k) {
+    CableDesc cable = first;
+    cable.name += std::to_string(k);
+    cable.attachments = {scenes::attachment(cable.name + "_start", PlaceDesc::At::start, {0, 0, 0}, cable.name + "_from"),
+                         scenes::attachment(cable.name + "_end", PlaceDesc::At::end, {0, 0, 0}, cable.name + "_to")};
+    scene.cables.push_back(cable);
+  }
+  return scene;
+}
+
+/// Frames that are somewhere else at every step.
+class Shaking {
+ public:
+  explicit Shaking(int frames) : inputs_(1 + frames) {}
+  const BoundaryInputs& next() {
+    std::uniform_real_distribution<double> place(-0.05, 0.05);
+    for (std::size_t f = 1; f < inputs_.size(); ++f)
+      for (int axis = 0; axis < 3; ++axis) inputs_[f].pose.position[axis] = place(random_);
+    return inputs_;
+  }
+
+ private:
+  std::mt19937 random_{7};
+  BoundaryInputs inputs_;
+};
+
+TEST(StepBudget, StepThatTakesTooMuchWorkGoesOnFromRestInOnePiece) {
+  const SceneDesc scene = tangle(4, 12);
+  Shaking shaking(8);
+  World world(scene, shaking.next());
+  int exhausted = 0;
+  for (int i = 0; i < 100; ++i) {
+    const StepResult result = world.step(shaking.next());
+    exhausted += result.exhausted;
+    if (result.exhausted) {
+      EXPECT_EQ(result.status, Status::degraded);
+    }
+    // With contacts each iteration visits its 12 segments at a cost of 6; it may end one attempt late.
+    EXPECT_LT(result.iterations * 6 * 12, 8e5) << "step " << i;
+    for (const SimulatedCable& cable : world.cables())
+      for (const Vector3& position : cable.state.positions) ASSERT_TRUE(position.allFinite()) << "step " << i;
+  }
+  EXPECT_GT(exhausted, 20);
+  // The hands stop; so does what is told.
+  BoundaryInputs still = shaking.next();
+  StepResult last;
+  for (int i = 0; i < 400; ++i) last = world.step(still);
+  EXPECT_FALSE(last.exhausted);
+}
+
+TEST(StepBudget, IsTheSameForCopiesAndOnEveryNumberOfCores) {
+  const SceneDesc scene = tangle(10, 12);
+  Shaking shaking(20);
+  World world(scene, shaking.next());
+  world.step(shaking.next());
+  World copy = world;
+  copy.step_one_by_one(true);
+  int exhausted = 0;
+  for (int i = 0; i < 10; ++i) {
+    const BoundaryInputs inputs = shaking.next();
+    exhausted += world.step(inputs).exhausted;
+    copy.step(inputs);
+    ASSERT_EQ(world.hash(), copy.hash()) << "step " << i;
+  }
+  EXPECT_GT(exhausted, 0);
+}
+
+/// A cable that needs more than its first share, but not all that there is for such.
+TEST(StepBudget, CablesThatAreCalmLeaveAllOfItToTheOneThatIsNot) {
+  SceneDesc alone = scenes::held_by_a_hand(40);
+  alone.materials[0].material.bending_stiffness = 1e-2;
+  alone.time_step = 0.04;
+  SceneDesc accompanied = alone;
+  for (int k = 0; k < 50; ++k) {
+    CableDesc calm = alone.cables[0];
+    calm.name = "calm" + std::to_string(k);
+    calm.attachments = {scenes::attachment(calm.name + "_top", PlaceDesc::At::start, {10.0 + k, 0, 0})};
+    accompanied.cables.push_back(calm);
+  }
+  const auto hand = [](int i) { return scenes::hand_at({0.5 + 0.25 * std::sin(0.9 * i), 0, 0.25 * std::sin(0.7 * i)}); };
+  World world(alone, hand(0)), other(accompanied, hand(0));
+  int most_iterations = 0;
+  for (int i = 1; i < 200; ++i) {
+    const StepResult result = world.step(hand(i));
+    ASSERT_FALSE(result.exhausted) << "step " << i;
+    most_iterations = std::max(most_iterations, result.iterations);
+    ASSERT_FALSE(other.step(hand(i)).exhausted) << "step " << i;
+    ASSERT_EQ(world.cables()[0].state.positions, other.cables()[0].state.positions) << "step " << i;
+    ASSERT_EQ(world.cables()[0].state.velocities, other.cables()[0].state.velocities) << "step " << i;
+  }
+  EXPECT_GT(most_iterations, 40 * 6) << "it was never resumed";
+}
+
+}  // namespace
+}  // namespace verlet_cable
