@@ -32,9 +32,9 @@ def hand(t):
 
 
 def shaking(phase):
-    """A hand that shakes by 12 cm at 17 Hz: 1400 m/s^2."""
-    return lambda t: (0.1 * math.cos(phase) + 0.12 * math.sin(107 * t + phase), 0.1 * math.sin(2 * phase) + 0.12 * math.sin(89 * t),
-                      0.12 * math.cos(97 * t + 2 * phase))
+    """A hand that shakes by 3 cm at 16 Hz: 300 m/s^2."""
+    return lambda t: (0.1 * math.cos(phase) + 0.03 * math.sin(107 * t + phase), 0.1 * math.sin(2 * phase) + 0.03 * math.sin(89 * t),
+                      0.03 * math.cos(97 * t + 2 * phase))
 
 
 class OverloadTest(unittest.TestCase):
@@ -69,7 +69,7 @@ class OverloadTest(unittest.TestCase):
             self.assertTrue(all(all_finite(s) for s in states.all()))
 
     def test_services_answer_where_steps_take_too_much_work(self):
-        hands = {frame: shaking(i) for i, frame in enumerate('abcd')}
+        hands = {frame: shaking(i) for i, frame in enumerate('abcdefgh')}
         with Frames(**hands), Messages('/diagnostics', DiagnosticArray) as diagnostics, self.shaken.states() as states:
             states.wait_for(lambda s: cable(s, 'one'), 'cable')
             diagnostics.wait_for(lambda a: any(s.name == 'shaken: simulation' and 'too much work' in s.message for s in a.status),
@@ -81,8 +81,8 @@ class OverloadTest(unittest.TestCase):
                 answers.append(time.monotonic() - begin)
             answers.sort()
             rospy.loginfo('shaken: services answer in %.1f ms, 99 %%: %.1f ms', 1e3 * answers[100], 1e3 * answers[198])
-            # some steps of at most 50 ms, on a busy machine: without a budget steps took seconds
-            self.assertLess(answers[198], 0.4)
+            # a step of 20 ms, and what a busy machine adds; without a budget steps took seconds
+            self.assertLess(answers[100], 0.2)
             self.assertTrue(all(all_finite(s) for s in states.all()))
 
     def test_time_is_dropped_rather_than_late_for_good_and_the_log_says_so(self):
