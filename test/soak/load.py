@@ -64,7 +64,7 @@ class Caller:
         d, node = self._draws, self._node
         requests = {
             'pin': lambda: node.pin(d.location(), (d.number(), 0, 0), name=d.one_of('', '', d.word(ATTACHMENTS)),
-                                    frame_id=d.word(FRAMES), clamp=d.chance(0.5), keep_offset=d.chance(0.5)),
+                                    frame_id=d.word(FRAMES), clamp=d.chance(0.5), keep_offset=d.chance(0.7)),
             'unpin': lambda: node.unpin(d.word(ATTACHMENTS)),
             'cut': lambda: node.cut(d.location(CABLES)),
             'join': lambda: node.join(d.word(CABLES), d.chance(0.5), d.word(CABLES), d.chance(0.5)),
