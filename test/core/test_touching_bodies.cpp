@@ -6,6 +6,7 @@
 
 #include "../support/meshes.h"
 #include "../support/scenes.h"
+#include "verlet_cable/core/world_stepper.h"
 
 // Bodies whose shapes touch obstacles and cables.
 
@@ -231,6 +232,31 @@ TEST(TouchingBodies, AreNotChangedByWhatIsFarAway) {
     ASSERT_EQ(first.bodies()[0].pose.position, second.bodies()[0].pose.position) << i;
     ASSERT_EQ(first.bodies()[0].pose.orientation.coeffs(), second.bodies()[0].pose.orientation.coeffs()) << i;
     ASSERT_EQ(first.cables()[0].state.positions, second.cables()[0].state.positions) << i;
+  }
+}
+
+/// Whatever else the thread steps in between: a cable elsewhere on the floor, and another world, which has no bodies.
+TEST(TouchingBodies, StickThoughOthersAreStepped) {
+  SceneDesc alone = on_floor();
+  alone.obstacles[0].pose = {0, 0, 0, 0, 0.1, 0};
+  add_body(alone, "box", 2, box({0.2, 0.2, 0.2}), {0, 0, 0.101, 0, 0.1, 0});
+  SceneDesc both = alone;
+  add_cable(both, "cable", {0, 3, 0.1});
+  SceneDesc cable_only = both;
+  cable_only.bodies.clear();
+  const BoundaryInputs inputs = initial_frames(alone);
+  World first(alone, inputs), second(both, inputs), third(cable_only, inputs), expected(cable_only, inputs);
+  std::vector<WorldStep> steps(2);
+  steps[0].world = &second;
+  steps[1].world = &third;
+  for (WorldStep& step : steps) step.inputs = &inputs;
+  WorldStepper stepper;
+  for (int i = 0; i < 500; ++i) {
+    first.step(inputs);
+    expected.step(inputs);
+    stepper.step(steps, false);
+    ASSERT_EQ(first.bodies()[0].pose.position, second.bodies()[0].pose.position) << i;
+    ASSERT_EQ(third.hash(), expected.hash()) << i;
   }
 }
 

@@ -12,6 +12,7 @@
 
 #include "publish/color.h"
 #include "publish/conversions.h"
+#include "publish/point_cloud.h"
 
 namespace verlet_cable {
 namespace {
@@ -173,6 +174,13 @@ TEST(Wrench, IsInTheAxesOfTheFrameAndAboutItsOrigin) {
   EXPECT_NEAR(wrench.torque.x, 0, rounding);
   EXPECT_NEAR(wrench.torque.y, 0.2 * 3 - 0.5, rounding);
   EXPECT_NEAR(wrench.torque.z, 0, rounding);
+}
+
+/// The tensions of a net that was torn away may be.
+TEST(PointCloud, NumbersAreFiniteThatAreTooLargeForFloats) {
+  EXPECT_EQ(to_float(1e54), std::numeric_limits<float>::max());
+  EXPECT_EQ(to_float(-1e54), std::numeric_limits<float>::lowest());
+  EXPECT_EQ(to_float(0.1), 0.1f);
 }
 
 }  // namespace

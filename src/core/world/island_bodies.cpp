@@ -221,6 +221,9 @@ void IslandStepper::finish_bodies(const Island& island, double from, double to) 
   }
   workspace_.body_system.restore_momenta(workspace_.participants, state_.bodies);
   if (projects_bodies_) workspace_.body_system.project(workspace_.participants, state_.bodies, state_.body_progress);
+  for (const BodyMember& member : workspace_.body_members)
+    if (!member.start->shapes.empty())
+      BodyTouches::keep(member.body, workspace_.body_system.contacts().touches(), state_.body_progress[member.body].contacts);
   for (const BodyJoint& joint : workspace_.body_system.joints()) {
     Attachment& attachment = state_.attachments[joint.attachment];
     if (from == 0) attachment.force = attachment.torque = Vector3::Zero();

@@ -297,9 +297,6 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
       keep_flow_at_drive(island.cables[k], workspace_.cables[k].wound, state_);
     }
     workspace_.contacts.keep(workspace_.members);
-    for (const BodyMember& member : workspace_.body_members)
-      if (!member.start->shapes.empty())
-        BodyTouches::keep(member.body, workspace_.body_system.contacts().touches(), state_.body_progress[member.body].contacts);
   } else {
     take_back(island);
   }

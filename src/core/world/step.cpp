@@ -1,5 +1,3 @@
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 
 #include "verlet_cable/core/cable_materials.h"
@@ -8,6 +6,7 @@
 #include "world/implementation.h"
 #include "world/island_stepper.h"
 #include "world/limits.h"
+#include "world/parallel_for.h"
 #include "world/straight_columns.h"
 
 namespace verlet_cable {
@@ -98,8 +97,7 @@ void World::Implementation::advance_islands() {
   island_outcomes.value.resize(count);
   if (one_by_one || count < 2 || segments < 2 * least_share) return advance(0, count);
   const std::size_t share = std::max<std::size_t>(1, least_share * count / segments);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, share),
-                    [&](const auto& some) { advance(some.begin(), some.end()); });
+  parallel_for(count, share, advance);
 }
 
 /// Islands that the first share of work was not enough for share what a step has for them by their sizes.
@@ -119,8 +117,7 @@ void World::Implementation::resume_islands(bool one_by_one) {
     }
   };
   if (one_by_one) return resume(0, unfinished.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, unfinished.size(), 1),
-                    [&](const auto& some) { resume(some.begin(), some.end()); });
+  parallel_for(unfinished.size(), 1, resume);
 }
 
 void World::Implementation::step_islands(std::size_t from, std::size_t to, IslandStepper& stepper) {

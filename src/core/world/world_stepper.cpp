@@ -1,11 +1,11 @@
 #include "verlet_cable/core/world_stepper.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
+#include <tbb/enumerable_thread_specific.h>
 
 #include "world/flush_denormals.h"
 #include "world/implementation.h"
 #include "world/island_stepper.h"
+#include "world/parallel_for.h"
 
 namespace verlet_cable {
 
@@ -32,8 +32,7 @@ WorldStepper::~WorldStepper() = default;
 
 void WorldStepper::step(std::vector<WorldStep>& worlds, bool all_cores) {
   if (!all_cores || worlds.size() < 2 * least_share) return implementation_->step(worlds, 0, worlds.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, worlds.size(), least_share),
-                    [&](const auto& some) { implementation_->step(worlds, some.begin(), some.end()); });
+  parallel_for(worlds.size(), least_share, [&](std::size_t from, std::size_t to) { implementation_->step(worlds, from, to); });
 }
 
 void WorldStepper::Implementation::step(std::vector<WorldStep>& worlds, std::size_t from, std::size_t to) {

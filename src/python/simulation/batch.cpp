@@ -1,14 +1,13 @@
 #include "simulation/batch.h"
 
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <map>
 #include <utility>
 
+#include "core/world/parallel_for.h"
 #include "simulation/batch_scenes.h"
 
 namespace verlet_cable {
@@ -45,9 +44,7 @@ class Batch::Threads {
       return;
     }
     const std::size_t shares = (items + share - 1) / share;
-    arena_.execute([&] {
-      tbb::parallel_for(std::size_t{0}, shares, [&](std::size_t i) { work(i * share, std::min(items, (i + 1) * share)); });
-    });
+    arena_.execute([&] { parallel_for(shares, [&](std::size_t i) { work(i * share, std::min(items, (i + 1) * share)); }); });
   }
 
   Buffers& buffers() { return buffers_.local(); }

@@ -4,12 +4,21 @@
 #include <sensor_msgs/PointCloud2.h>
 #include <sensor_msgs/point_cloud2_iterator.h>
 
+#include <algorithm>
+#include <boost/make_shared.hpp>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <vector>
 
 namespace verlet_cable {
+
+/// What is too large for a float is the largest there is, not infinite.
+inline float to_float(double number) {
+  constexpr double largest = std::numeric_limits<float>::max();
+  return static_cast<float>(std::clamp(number, -largest, largest));
+}
 
 /// A cloud of height 1. `Record` is a point as it lies in the cloud's data; `fields` are those of
 /// PointCloud2Modifier::setPointCloud2Fields, in the record's order.

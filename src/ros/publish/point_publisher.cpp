@@ -23,21 +23,19 @@ void append_points(const SimulatedCable& cable, std::uint32_t cable_id, const st
                    std::vector<PointRecord>& points) {
   const std::vector<double> arc_length = cable.state.arc_length();
   for (int node = 0; node < cable.state.nodes(); ++node) {
-    const Eigen::Vector3f position = cable.state.positions[node].cast<float>();
+    const Vector3& p = cable.state.positions[node];
     const double tension = cable.state.tension[std::min(node, cable.state.segments() - 1)];
-    points.push_back({position.x(), position.y(), position.z(), packed_rgb(colors[node]), static_cast<float>(tension), cable_id,
-                      static_cast<std::uint32_t>(node), static_cast<float>(arc_length[node])});
+    points.push_back({to_float(p.x()), to_float(p.y()), to_float(p.z()), packed_rgb(colors[node]), to_float(tension), cable_id,
+                      static_cast<std::uint32_t>(node), to_float(arc_length[node])});
   }
 }
 
-PointRecord record(const Vector3& position, const std::array<double, 4>& color, double tension, std::size_t id,
-                   std::size_t node) {
-  const Eigen::Vector3f p = position.cast<float>();
-  return {p.x(),
-          p.y(),
-          p.z(),
+PointRecord record(const Vector3& p, const std::array<double, 4>& color, double tension, std::size_t id, std::size_t node) {
+  return {to_float(p.x()),
+          to_float(p.y()),
+          to_float(p.z()),
           packed_rgb(to_color(color)),
-          static_cast<float>(tension),
+          to_float(tension),
           static_cast<std::uint32_t>(id),
           static_cast<std::uint32_t>(node),
           0};

@@ -56,8 +56,8 @@ void append_points(const SimulatedCable& cable, std::uint32_t cable_id, double c
     for (int side = 0; side < sides; ++side) {
       const double angle = 2 * M_PI * side / sides;
       const Vector3 spoke = materials[i].radius * Vector3(0, std::cos(angle), std::sin(angle));
-      const Eigen::Vector3f point = (center + orientations[i] * spoke).cast<float>();
-      points.push_back({point.x(), point.y(), point.z(), rgb, cable_id});
+      const Vector3 point = center + orientations[i] * spoke;
+      points.push_back({to_float(point.x()), to_float(point.y()), to_float(point.z()), rgb, cable_id});
     }
   }
 }

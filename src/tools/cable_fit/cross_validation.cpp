@@ -1,9 +1,8 @@
 #include "cross_validation.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 
+#include "core/world/parallel_for.h"
 #include "least_squares.h"
 
 namespace verlet_cable::cable_fit {
@@ -16,7 +15,7 @@ constexpr int fewest_for_pairs = 6;
 
 std::vector<Prediction> predictions(const std::vector<FittedCable>& cables, const std::vector<Recording>& recordings) {
   std::vector<Prediction> predictions(recordings.size());
-  tbb::parallel_for(0, static_cast<int>(predictions.size()), [&](int i) {
+  parallel_for(predictions.size(), [&](std::size_t i) {
     const auto& [settings, values] = cables[i];
     predictions[i] = predict(cable_scene(settings, values), markers_of(settings, values), recordings[i]);
   });

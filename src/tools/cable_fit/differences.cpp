@@ -1,10 +1,9 @@
 #include "differences.h"
 
-#include <tbb/parallel_for.h>
-
 #include <cmath>
 #include <mutex>
 
+#include "core/world/parallel_for.h"
 #include "prediction_error.h"
 
 namespace verlet_cable::cable_fit {
@@ -51,8 +50,9 @@ Linearization linearize(const Problem& problem, const std::vector<int>& recordin
     steps[k] = values[k] + parameter.step <= parameter.highest ? parameter.step : -parameter.step;
   }
   std::mutex mutex;
-  tbb::parallel_for(0, count * (changes + 1), [&](int i) {
-    const int change = i / count, recording = i % count, which = recordings[recording];
+  parallel_for(recordings.size() * (changes + 1), [&](std::size_t i) {
+    const std::size_t change = i / recordings.size(), recording = i % recordings.size();
+    const int which = recordings[recording];
     std::vector<double> changed = values;
     if (change > 0) changed[change - 1] += steps[change - 1];
     columns[recording][change] = scaled_differences(problem, changed, which);

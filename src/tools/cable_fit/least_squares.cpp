@@ -1,12 +1,12 @@
 #include "least_squares.h"
 
 #include <ceres/ceres.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <mutex>
 
+#include "core/world/parallel_for.h"
 #include "prediction_error.h"
 
 namespace verlet_cable::cable_fit {
@@ -167,10 +167,10 @@ std::vector<double> coarse_search(const Problem& problem, const std::vector<int>
   std::vector<std::vector<double>> guesses;
   for (const double bending : starting_bending)
     for (const double damping : starting_damping) guesses.push_back(first_guess(problem.settings, bending, damping));
-  const int recordings = static_cast<int>(training.size());
+  const std::size_t recordings = training.size();
   std::vector<double> errors(guesses.size() * training.size());
   std::mutex mutex;
-  tbb::parallel_for(0, static_cast<int>(errors.size()), [&](int i) {
+  parallel_for(errors.size(), [&](std::size_t i) {
     const int recording = training[i % recordings];
     const std::vector<double>& guess = guesses[i / recordings];
     const Prediction prediction =
