@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from worlds import world_of
 
-from verlet_cable.sim import Scene, SceneError, World
+from verlet_cable.sim import Batch, Scene, SceneError, World
 
 
 def refusal(keys):
@@ -57,3 +57,22 @@ def test_named_pipes_are_refused_as_nobody_may_ever_write_to_them(hang, tmp_path
         Scene.load(pipe)
     with pytest.raises(SceneError, match='motion: .*: cannot read: it is a named pipe'):
         World(Scene.from_dict(hang), motion=pipe)
+
+
+def test_records_are_sized_before_memory_is_taken(hang):
+    batch = Batch(Scene.from_dict(hang), 2)
+    before = batch.state_hash
+    refusal = r'record_every: 1000000000000 records of 2 worlds take [0-9.e+]* GB of memory; allowed: at most the'
+    with pytest.raises(MemoryError, match=refusal):
+        batch.step(10**12, record_every=1)
+    assert batch.state_hash == before
+
+
+def test_batches_are_sized_before_memory_is_taken(hang):
+    hang['cables'] = [{'name': 'hose', 'length': 1, 'segments': 20_000, 'material': 'wire'}]
+    scene = Scene.from_dict(hang)
+    refusal = r'count: 1000000 worlds take 4001 GB of memory; allowed: at most the'
+    with pytest.raises(MemoryError, match=refusal):
+        Batch(scene, 1_000_000)
+    with pytest.raises(MemoryError, match=refusal):
+        Batch(World(scene), 1_000_000)
