@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "csv_lines.h"
+#include "named_file.h"
 #include "text.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/scene_fields.h"
@@ -18,6 +19,7 @@ constexpr std::array<const char*, 9> columns{"t", "frame", "x", "y", "z", "qx", 
 constexpr std::size_t frame_column = 1;
 constexpr std::size_t longest_line = 4095;
 constexpr std::size_t most_errors = 100;
+constexpr std::size_t most_frames = 20000;  // as the node takes from tf
 constexpr double least_quaternion = 1e-6;
 
 class MotionReader {
@@ -67,6 +69,8 @@ class MotionReader {
     }
     const std::string& frame = cells[frame_column];
     if (!is_frame_name(frame)) add_error("frame " + quoted(frame), frame_words);
+    if (motion_.size() >= most_frames && motion_.count(frame) == 0)
+      add_error("frame " + quoted(frame), "at most " + std::to_string(most_frames) + " frames");
     if (errors_.size() != errors_before) return;
 
     const Quaternion orientation(numbers[8], numbers[5], numbers[6], numbers[7]);
@@ -86,6 +90,8 @@ class MotionReader {
 }  // namespace
 
 Motion read_motion_file(const std::string& path) {
+  if (const std::string problem = why_not_readable(path); !problem.empty())
+    throw SceneError({"cannot read: " + problem + "; allowed: a file"});
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file.is_open() || file.peek() == std::ifstream::traits_type::eof()) {

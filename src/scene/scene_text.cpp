@@ -9,6 +9,8 @@
 #include <system_error>
 
 #include "guarded_text.h"
+#include "named_file.h"
+#include "scene_size.h"
 #include "value.h"
 #include "verlet_cable/scene/scene_reader.h"
 #include "within_memory.h"
@@ -16,9 +18,6 @@
 namespace verlet_cable {
 namespace {
 
-constexpr std::size_t largest_text = std::size_t{16} << 20;  // [byte] 10,000 cables are 3 MB
-constexpr std::size_t most_values = 1'000'000;
-constexpr std::size_t deepest_level = 32;
 constexpr std::size_t longest_message = 300;
 
 std::string place_text(const YAML::Mark& mark) {
@@ -72,14 +71,14 @@ class SizeCheck : public YAML::EventHandler {
   void count(const YAML::Mark& mark, std::size_t values) {
     text_.let_go();
     values_ += values;
-    if (values_ > most_values) fail(mark, "more than " + std::to_string(most_values) + " values");
+    if (values_ > most_scene_values) fail(mark, "more than " + std::to_string(most_scene_values) + " values");
   }
   void check_depth(const YAML::Mark& mark, std::size_t levels) {
     for (std::size_t i = open_.size(); i-- > 0;) {
       ++levels;
       open_[i].levels = std::max(open_[i].levels, levels);
     }
-    if (levels > deepest_level) fail(mark, "nested deeper than " + std::to_string(deepest_level) + " levels");
+    if (levels > deepest_scene_level) fail(mark, "nested deeper than " + std::to_string(deepest_scene_level) + " levels");
   }
   void add_value(const YAML::Mark& mark, YAML::anchor_t anchor) {
     count(mark, 1);
@@ -118,12 +117,14 @@ void check_size(const std::string& text) {
 }
 
 std::string text_of(const std::string& path) {
+  if (const std::string problem = why_not_readable(path); !problem.empty())
+    throw SceneError({"cannot read: " + problem + "; allowed: a file"});
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   std::string text;
   std::vector<char> block(std::size_t{1} << 16);
   // What is too large is not read to its end: it may have none.
-  while (file && text.size() <= largest_text) {
+  while (file && text.size() <= largest_scene_text) {
     file.read(block.data(), static_cast<std::streamsize>(block.size()));
     text.append(block.data(), static_cast<std::size_t>(file.gcount()));
   }
@@ -135,9 +136,9 @@ std::string text_of(const std::string& path) {
 }  // namespace
 
 SceneDesc read_scene_text(const std::string& text, const SceneSources& sources) {
-  if (text.size() > largest_text)
+  if (text.size() > largest_scene_text)
     throw SceneError(
-        {"scene: " + std::to_string(text.size()) + " bytes or more; allowed: at most " + std::to_string(largest_text)});
+        {"scene: " + std::to_string(text.size()) + " bytes or more; allowed: at most " + std::to_string(largest_scene_text)});
   try {
     return within_memory([&] {
       check_size(text);

@@ -85,6 +85,14 @@ TEST_F(Recordings, TimesThatCannotBeMeantAreRefused) {
   expect_error(header + rows(11) + row("0.600000000001", "0.2"), "line 13: marker 1 moves at 1e+11 m/s since the row before, ");
 }
 
+TEST_F(Recordings, AreBoundedInAll) {
+  const std::string half = write(header + rows(160'000)), other = write(header + rows(160'000));
+  EXPECT_EQ(errors_of({half}), "");
+  const std::string errors = errors_of({half, other});
+  EXPECT_NE(errors.find(other + ": line 147694: too many numbers; allowed: at most 4000000 in all recordings"), std::string::npos)
+      << errors;
+}
+
 TEST_F(Recordings, AllErrorsAreSaidAtOnce) {
   const std::string five = "t,x0,y0,z0,x1,y1,z1,x2,y2,z2,x3,y3,z3,x4,y4,z4\n";
   std::string five_rows;

@@ -258,7 +258,7 @@ def test_a_broken_cable_has_no_array_of_the_batch(hang):
     (lambda s: Batch(s, 2).set_material('wire', radius=[1, numpy.nan]), SceneError, r'materials.wire.radius\[1\]: nan'),
     (lambda s: Batch(s, 2).step(5, record_every=2), ValueError, 'record_every: 2'),
     (lambda s: Batch(s, 2).step(5, record_every=5, fields=['place']), ValueError, 'place.*positions'),
-    (lambda s: Batch(s, 2).step(10 ** 15, record_every=1), MemoryError, ''),
+    (lambda s: Batch(s, 2).step(10 ** 15, record_every=1), MemoryError, 'record_every: '),
     (lambda s: Batch(s, 2).world(2), IndexError, 'index: 2'),
 ])
 def test_what_is_refused(hang, wrong, kind, text):

@@ -125,6 +125,45 @@ TEST(FrameBuffer, AFloodOfNamesIsBounded) {
   EXPECT_TRUE(buffer.insert(received)) << "those that are there go on";
 }
 
+TEST(FrameBuffer, AFloodOfTransformsIsBoundedAndTakesNoOtherFrameAway) {
+  constexpr std::size_t most = 1000;
+  FrameBuffer buffer("world", most);
+  ReceivedTransform flood = good(), hand = good();
+  flood.transform.child_frame_id = "flood";
+  std::size_t stored = 0;
+  const auto send = [&](ReceivedTransform& received, double time) {
+    received.transform.header.stamp = ros::Time(time);
+    if (!buffer.insert(received)) return false;
+    ++stored;
+    return true;
+  };
+  for (int i = 0; i < 20000; ++i) {
+    send(flood, 5 + 1e-6 * i);
+    EXPECT_TRUE(i % 2000 != 0 || send(hand, 5 + 0.2 * i / 2000)) << i;
+  }
+  EXPECT_LE(stored, most + 10);
+  EXPECT_NE(buffer.refused().at("flood").find("more than 1000 transforms in 60 s"), std::string::npos)
+      << buffer.refused().at("flood");
+  EXPECT_TRUE(send(flood, 6)) << "one that comes as often as there is room for";
+  for (int i = 0; i < 200; ++i) EXPECT_TRUE(send(flood, 66 + 1e-3 * i)) << "what is older than 60 s is forgotten";
+}
+
+TEST(StoredTransforms, AreAsManyAsTf2Keeps) {
+  StoredTransforms stored(nanoseconds(60), 4);
+  stored.add("a", nanoseconds(100));
+  stored.add("a", nanoseconds(50));
+  stored.add("b", nanoseconds(10));
+  EXPECT_TRUE(stored.has_room("b", nanoseconds(9)));
+  stored.add("b", nanoseconds(11));
+  EXPECT_EQ(stored.size(), 4U);
+  EXPECT_EQ(stored.least_interval(), nanoseconds(30));
+  EXPECT_FALSE(stored.has_room("a", nanoseconds(129)));
+  EXPECT_TRUE(stored.has_room("a", nanoseconds(130)));
+  EXPECT_TRUE(stored.has_room("c", nanoseconds(1)));
+  stored.add("a", nanoseconds(130));
+  EXPECT_EQ(stored.size(), 4U) << "the one at 50 s is gone";
+}
+
 TEST(FrameBuffer, RefusesBadTransformsAndGoesOnWithGoodOnes) {
   FrameBuffer buffer("world");
   ReceivedTransform received = good();

@@ -168,6 +168,32 @@ class RecordToCsv(unittest.TestCase):
                 signal.sigtimedwait([], 10)  # never so long
             self.expect_only_old()
 
+    def test_clouds_whose_sizes_lie_are_refused_before_memory_is_taken(self):
+        lies = ({'width': 4_000_000_000}, {'height': 4_000_000_000, 'row_step': 64}, {'width': 0, 'height': 4_000_000_000}, {'point_step': 0},
+                {'point_step': 15}, {'row_step': 4_000_000_000}, {'data': b'12345'})
+        words = ('row_step: 64', 'data: 64 bytes', 'data: 64 bytes', 'point_step: 0', 'point_step: 15', 'data: 64 bytes', 'data: 5 bytes')
+        for lie, word in zip(lies, words):
+            message = cloud(0, NODES[:4])
+            for name, value in lie.items():
+                setattr(message, name, value)
+            with rosbag.Bag(self.bag, 'w') as bag:
+                bag.write('/points', message, stamp(0))
+            done = self.convert('--points', '/points')
+            self.assertEqual(done.returncode, 2, (lie, done.stderr))
+            self.assertIn(f'take.bag: {word}', done.stderr)
+            self.assertIn('; allowed: ', done.stderr)
+            self.assertFalse(os.path.exists(self.csv))
+
+    def test_damaged_messages_are_refused(self):
+        with open(self.bag, 'rb') as file:
+            content = file.read()
+        with open(self.bag, 'wb') as file:
+            file.write(content.replace(b'lead', b'le\xffd').replace(b'\x05\x00\x00\x00other', b'\xff\xff\xff\x7fother'))
+        done = self.convert('--state', '/cable/state')
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn('take.bag: it cannot be read: ', done.stderr)
+        self.assertNotIn('Traceback', done.stderr)
+
     def test_links_and_permissions_stay(self):
         link = self.csv + '.link'
         os.symlink('take.csv', link)

@@ -53,5 +53,34 @@ TEST(SceneParameters, OtherTypesAreNamedWithTheirKey) {
   }
 }
 
+/// What `to_yaml` says of a value that is too large.
+std::string refusal_of(const XmlRpcValue& value) {
+  try {
+    to_yaml(value);
+  } catch (const SceneError& error) {
+    return error.errors().front();
+  }
+  return "";
+}
+
+TEST(SceneParameters, AreNoLargerThanScenesThatAreText) {
+  XmlRpcValue deep = 1;
+  for (int i = 0; i < 40; ++i) {
+    XmlRpcValue outer;
+    outer["a"] = deep;
+    deep = outer;
+  }
+  EXPECT_NE(refusal_of(deep).find("a.a: nested deeper than 32 levels; allowed: less"), std::string::npos) << refusal_of(deep);
+  XmlRpcValue many;
+  many["cables"].setSize(1'000'000);
+  EXPECT_EQ(refusal_of(many), "cables[999997]: with it the scene has more than 1000000 values; allowed: less");
+  XmlRpcValue long_text;
+  long_text["frame_id"] = std::string(std::size_t{17} << 20, 'x');
+  EXPECT_EQ(refusal_of(long_text), "frame_id: with it the scene has more than 16777216 bytes of text; allowed: less");
+  XmlRpcValue long_name;
+  long_name[std::string(std::size_t{17} << 20, 'x')] = 1;
+  EXPECT_LT(refusal_of(long_name).size(), 200U);
+}
+
 }  // namespace
 }  // namespace verlet_cable

@@ -247,6 +247,14 @@ TEST(MotionFile, filesThatAreNoMotionAreRefused) {
   EXPECT_THROW(read_motion_file("/"), SceneError);
 }
 
+TEST(MotionFile, framesAreBounded) {
+  std::string rows = header;
+  for (int i = 0; i < 20002; ++i) rows += "0,f" + std::to_string(i) + ",0,0,0,0,0,0,1\n";
+  const auto errors = read(rows);
+  ASSERT_EQ(errors.size(), 2u);
+  EXPECT_EQ(errors[0], "line 20002: frame \"f20000\"; allowed: at most 20000 frames");
+}
+
 TEST(FrameSpeed, holdsBackWhatIsTooFast) {
   BoundaryInputs before(3);
   BoundaryInputs frames(3);

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "cable_sim_fixture.h"
+#include "scene/named_file.h"
 
 namespace verlet_cable::tools {
 namespace {

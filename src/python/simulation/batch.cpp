@@ -9,6 +9,7 @@
 
 #include "core/world/parallel_for.h"
 #include "simulation/batch_scenes.h"
+#include "simulation/memory_check.h"
 
 namespace verlet_cable {
 namespace {
@@ -22,6 +23,15 @@ bool try_copy(const World& world, const Part& part, double* to) {
   if (find(world.cables(), part.name) < 0) return false;
   copy_points(world, part.quantity, part.name, part.shape.rows, to);
   return true;
+}
+
+/// Before copies are made. [byte] of a world, and of each of its nodes, at least.
+void check_size(const World& world, std::size_t count) {
+  constexpr double least = 1000, least_of_node = 200;
+  double nodes = static_cast<double>(world.particles().size());
+  for (const SimulatedCable& cable : world.cables()) nodes += cable.state.nodes();
+  for (const SimulatedNet& net : world.nets()) nodes += net.model.nodes();
+  check_memory("count: " + std::to_string(count) + " worlds", static_cast<double>(count) * (least + least_of_node * nodes));
 }
 
 }  // namespace
@@ -58,20 +68,26 @@ class Batch::Threads {
 Batch::Batch(const std::vector<std::shared_ptr<const SceneDesc>>& scenes, const Motion& motion, int threads)
     : threads_(std::make_shared<Threads>(threads)), status_(scenes.size(), StepResult::Status::ok) {
   for (std::size_t i = 1; i < scenes.size(); ++i) check_alike(*scenes.front(), *scenes[i], "scenes[" + std::to_string(i) + "]");
-  worlds_.reserve(scenes.size());
   std::map<const SceneDesc*, std::size_t> known;  // looked up only: its order does not matter
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     const auto [same, is_new] = known.emplace(scenes[i].get(), i);
-    if (is_new)
+    if (is_new) {
       worlds_.emplace_back(scenes[i], std::make_shared<FrameSource>(*scenes[i], motion));
-    else
+      if (i == 0) {
+        check_size(worlds_.front().world(), scenes.size());
+        worlds_.reserve(scenes.size());
+      }
+    } else {
       worlds_.push_back(worlds_[same->second]);
+    }
     worlds_.back().world().step_one_by_one(true);
   }
 }
 
 Batch::Batch(const DrivenWorld& world, std::size_t count, int threads)
-    : threads_(std::make_shared<Threads>(threads)), worlds_(count, world), status_(count, StepResult::Status::ok) {
+    : threads_(std::make_shared<Threads>(threads)), status_(count, StepResult::Status::ok) {
+  check_size(world.world(), count);
+  worlds_.assign(count, world);
   for (DrivenWorld& copy : worlds_) copy.world().step_one_by_one(true);
 }
 

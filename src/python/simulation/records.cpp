@@ -1,8 +1,8 @@
 #include "simulation/records.h"
 
 #include <algorithm>
-#include <limits>
-#include <new>
+
+#include "simulation/memory_check.h"
 
 namespace verlet_cable {
 namespace {
@@ -26,22 +26,24 @@ std::vector<std::string> names_of(const World& world, Quantity quantity) {
   return names;
 }
 
-std::shared_ptr<double> room_for(std::size_t size, std::size_t worlds, std::size_t records) {
-  constexpr std::size_t most = std::numeric_limits<std::size_t>::max() / (4 * sizeof(double));
-  if (size > 0 && worlds > 0 && records > most / worlds / size) throw std::bad_alloc();
-  return {new double[size * worlds * records], std::default_delete<double[]>()};
+std::shared_ptr<double> room_for(std::size_t size) {
+  return {new double[size], std::default_delete<double[]>()};
 }
 
 }  // namespace
 
 Records::Records(const World& world, const std::vector<Quantity>& quantities, std::size_t worlds, std::size_t records)
     : records_(records) {
+  double bytes = 0;
   for (const Quantity quantity : quantities) {
     for (std::string& name : names_of(world, quantity)) {
       const QuantityShape shape = shape_of(world, quantity, name);
-      all_.push_back({quantity, std::move(name), shape, room_for(shape.size(), worlds, records), std::vector<int>(worlds, 0)});
+      all_.push_back({quantity, std::move(name), shape, nullptr, std::vector<int>(worlds, 0)});
+      bytes += static_cast<double>(sizeof(double) * shape.size() * worlds) * static_cast<double>(records);
     }
   }
+  check_memory("record_every: " + std::to_string(records) + " records of " + std::to_string(worlds) + " worlds", bytes);
+  for (Record& record : all_) record.numbers = room_for(record.shape.size() * worlds * records);
 }
 
 const Record* Records::find(Quantity quantity, const std::string& name) const {

@@ -22,7 +22,7 @@ struct Record {
 class Records {
  public:
   Records() = default;
-  /// Room for all that `world`, which is like the others, has of these quantities. Throws std::bad_alloc.
+  /// Room for all that `world`, which is like the others, has of these quantities. Throws TooMuchMemory.
   Records(const World& world, const std::vector<Quantity>& quantities, std::size_t worlds, std::size_t records);
 
   std::size_t count() const { return records_; }

@@ -70,7 +70,8 @@ std::string transform_problem(const ReceivedTransform& received, Nanoseconds now
   return problem.str();
 }
 
-FrameBuffer::FrameBuffer(std::string fixed_frame) : fixed_frame_(std::move(fixed_frame)), buffer_(cache_time) {}
+FrameBuffer::FrameBuffer(std::string fixed_frame, std::size_t most_stored)
+    : fixed_frame_(std::move(fixed_frame)), buffer_(cache_time), stored_(memory, most_stored) {}
 
 bool FrameBuffer::insert(const ReceivedTransform& received, Nanoseconds now) {
   const std::string child = without_slash(received.transform.child_frame_id);
@@ -89,12 +90,20 @@ bool FrameBuffer::insert(const ReceivedTransform& received, Nanoseconds now) {
     Nanoseconds& newest = newest_[child];
     const Nanoseconds stamp = from_ros_time(received.transform.header.stamp);
     if (stamp == newest || stamp < newest - memory) return false;
+    if (!stored_.has_room(child, stamp)) {
+      refuse(child, "more than " + std::to_string(stored_.most()) +
+                        " transforms in 60 s; allowed of each frame for now: one in " +
+                        std::to_string(stored_.least_interval() / 1000) + " us");
+      return false;
+    }
     if (stamp > newest) note_parent(child, without_slash(received.transform.header.frame_id));
     newest = std::max(newest, stamp);
   } else {
     note_parent(child, without_slash(received.transform.header.frame_id));
   }
-  return buffer_.setTransform(received.transform, "verlet_cable", received.is_static);
+  if (!buffer_.setTransform(received.transform, "verlet_cable", received.is_static)) return false;
+  if (!received.is_static) stored_.add(child, from_ros_time(received.transform.header.stamp));
+  return true;
 }
 
 void FrameBuffer::see_from(const std::string& fixed_frame) {
@@ -164,6 +173,7 @@ std::map<std::string, std::vector<std::string>> FrameBuffer::disputed() const {
 
 void FrameBuffer::clear() {
   buffer_.clear();
+  stored_.clear();
   newest_.clear();
 }
 

@@ -55,7 +55,7 @@ TfInputs::Track TfInputs::track_from(const std::string& frame, const FrameInput&
 void TfInputs::receive(Nanoseconds ros_now) {
   const ros::WallTime now = ros::WallTime::now();
   while (!recent_.empty() && recent_.front().first + longest_overtaking < now) recent_.pop_front();
-  for (ReceivedTransform& received : listener_.take()) received_.push_back(std::move(received));
+  for (ReceivedTransform& received : listener_.take(received_.size())) received_.push_back(std::move(received));
   if (!received_.empty()) find_followers();
   // The rest waits for the next call: however much somebody sends, others do not wait.
   for (; !received_.empty() && ros::WallTime::now() - now < longest_receiving; received_.pop_front()) {

@@ -7,8 +7,6 @@ namespace {
 
 // As in tf2_ros: a static transform may be sent by each of many nodes at once.
 constexpr int queue_size = 1000;
-/// Between two looks; more is a flood.
-constexpr std::size_t most_received = 100000;
 
 }  // namespace
 
@@ -24,16 +22,17 @@ TfListener::TfListener(const ros::NodeHandle& node) : guard_(queue_), node_(node
   spinner_.start();
 }
 
-std::vector<ReceivedTransform> TfListener::take() {
+std::vector<ReceivedTransform> TfListener::take(std::size_t waiting) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  waiting_ = waiting + received_.size();
   return std::exchange(received_, {});
 }
 
 void TfListener::receive(const ros::MessageEvent<const tf2_msgs::TFMessage>& event, bool is_static) {
   const std::lock_guard<std::mutex> lock(mutex_);
   for (const auto& transform : event.getConstMessage()->transforms) {
-    if (received_.size() >= most_received) {
-      ROS_ERROR_THROTTLE(1, "tf: more than %zu transforms at once; the rest is left out", most_received);
+    if (waiting_ + received_.size() >= most_waiting) {
+      ROS_ERROR_THROTTLE(1, "tf: more than %zu transforms wait to be read; the rest is left out", most_waiting);
       return;
     }
     received_.push_back({transform, is_static, event.getPublisherName()});

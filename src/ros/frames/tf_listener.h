@@ -23,10 +23,13 @@ struct ReceivedTransform {
 /// Nothing is judged here.
 class TfListener {
  public:
+  /// That wait to be judged, here and where they were taken to; more is a flood.
+  static constexpr std::size_t most_waiting = 100000;
+
   explicit TfListener(const ros::NodeHandle& node);
 
-  /// What has come since the last call, in the order of its arrival.
-  std::vector<ReceivedTransform> take();
+  /// What has come since the last call, in the order of its arrival. `waiting`: how many of before are still there.
+  std::vector<ReceivedTransform> take(std::size_t waiting);
 
  private:
   void receive(const ros::MessageEvent<const tf2_msgs::TFMessage>& event, bool is_static);
@@ -36,6 +39,7 @@ class TfListener {
   ros::NodeHandle node_;
   std::mutex mutex_;
   std::vector<ReceivedTransform> received_;  ///< guarded by mutex_
+  std::size_t waiting_ = 0;                  ///< elsewhere, when `take` was called last; guarded by mutex_
   ros::Subscriber dynamic_;
   ros::Subscriber static_;
   ros::AsyncSpinner spinner_;

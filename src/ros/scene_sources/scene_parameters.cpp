@@ -8,24 +8,14 @@
 #include <optional>
 #include <string>
 
+#include "scene/scene_size.h"
 #include "verlet_cable/core/number_text.h"
+#include "verlet_cable/core/quoted_text.h"
 
 namespace verlet_cable {
 namespace {
 
 using XmlRpc::XmlRpcValue;
-
-YAML::Node struct_to_yaml(XmlRpcValue value, const std::string& key) {
-  YAML::Node map(YAML::NodeType::Map);
-  for (auto& [name, member] : value) map.force_insert(name, to_yaml(member, key.empty() ? name : key + "." + name));
-  return map;
-}
-
-YAML::Node array_to_yaml(XmlRpcValue value, const std::string& key) {
-  YAML::Node sequence(YAML::NodeType::Sequence);
-  for (int i = 0; i < value.size(); ++i) sequence.push_back(to_yaml(value[i], key + "[" + std::to_string(i) + "]"));
-  return sequence;
-}
 
 std::string yaml_number(double value) {
   if (std::isnan(value)) return ".nan";
@@ -33,29 +23,56 @@ std::string yaml_number(double value) {
   return number_text(value);
 }
 
+/// XmlRpcValue converts by non-const reference only.
+class Converter {
+ public:
+  YAML::Node node_of(XmlRpcValue& value, const std::string& key, std::size_t level) {
+    const bool is_text = value.getType() == XmlRpcValue::TypeString;
+    size_.add(key, level, is_text ? static_cast<std::string&>(value).size() : 0);
+    switch (value.getType()) {
+      case XmlRpcValue::TypeBoolean:
+        return YAML::Node(static_cast<bool&>(value) ? "true" : "false");
+      case XmlRpcValue::TypeInt:
+        return YAML::Node(std::to_string(static_cast<int&>(value)));
+      case XmlRpcValue::TypeDouble:
+        return YAML::Node(yaml_number(static_cast<double&>(value)));
+      case XmlRpcValue::TypeString:
+        return YAML::Node(static_cast<std::string&>(value));
+      case XmlRpcValue::TypeArray:
+        return array_of(value, key, level);
+      case XmlRpcValue::TypeStruct:
+        return struct_of(value, key, level);
+      case XmlRpcValue::TypeInvalid:
+        return YAML::Node(YAML::NodeType::Null);
+      default:
+        throw SceneError({key + ": binary data or a date; allowed: numbers, text, true, false, lists and maps"});
+    }
+  }
+
+ private:
+  YAML::Node struct_of(XmlRpcValue& value, const std::string& key, std::size_t level) {
+    YAML::Node map(YAML::NodeType::Map);
+    for (auto& [name, member] : value) {
+      size_.add(key, level, name.size());
+      const std::string text = escaped(name);
+      map.force_insert(name, node_of(member, key.empty() ? text : key + "." + text, level + 1));
+    }
+    return map;
+  }
+
+  YAML::Node array_of(XmlRpcValue& value, const std::string& key, std::size_t level) {
+    YAML::Node sequence(YAML::NodeType::Sequence);
+    for (int i = 0; i < value.size(); ++i) sequence.push_back(node_of(value[i], key + "[" + std::to_string(i) + "]", level + 1));
+    return sequence;
+  }
+
+  SceneSize size_;
+};
+
 }  // namespace
 
-YAML::Node to_yaml(const XmlRpcValue& value, const std::string& key) {
-  // XmlRpcValue converts by non-const reference only; copies share nothing.
-  XmlRpcValue copy = value;
-  switch (copy.getType()) {
-    case XmlRpcValue::TypeBoolean:
-      return YAML::Node(static_cast<bool>(copy) ? "true" : "false");
-    case XmlRpcValue::TypeInt:
-      return YAML::Node(std::to_string(static_cast<int>(copy)));
-    case XmlRpcValue::TypeDouble:
-      return YAML::Node(yaml_number(static_cast<double>(copy)));
-    case XmlRpcValue::TypeString:
-      return YAML::Node(static_cast<std::string>(copy));
-    case XmlRpcValue::TypeArray:
-      return array_to_yaml(copy, key);
-    case XmlRpcValue::TypeStruct:
-      return struct_to_yaml(copy, key);
-    case XmlRpcValue::TypeInvalid:
-      return YAML::Node(YAML::NodeType::Null);
-    default:
-      throw SceneError({key + ": binary data or a date; allowed: numbers, text, true, false, lists and maps"});
-  }
+YAML::Node to_yaml(XmlRpcValue value, const std::string& key) {
+  return Converter().node_of(value, key, 0);
 }
 
 SceneSources node_sources(const std::string& scene_directory, const std::string& where) {

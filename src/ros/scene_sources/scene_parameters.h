@@ -12,8 +12,8 @@
 namespace verlet_cable {
 
 /// A parameter as the tree of keys that the scene reader knows. `key` is its full name, for errors: throws SceneError where the
-/// tree holds binary data or dates.
-YAML::Node to_yaml(const XmlRpc::XmlRpcValue& value, const std::string& key = {});
+/// tree holds binary data or dates, or is larger than a scene may be.
+YAML::Node to_yaml(XmlRpc::XmlRpcValue value, const std::string& key = {});
 
 /// What scenes of a node may read: files of packages and in `scene_directory`, and parameters in the namespace `where` and those
 /// around it.

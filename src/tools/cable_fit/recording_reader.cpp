@@ -3,9 +3,9 @@
 #include <optional>
 #include <system_error>
 
-#include "common/output_file.h"
 #include "recording.h"
 #include "scene/csv_lines.h"
+#include "scene/named_file.h"
 #include "scene/text.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/scene_fields.h"
@@ -17,7 +17,8 @@ constexpr std::size_t fewest_markers = 4;  // two at each end give the direction
 constexpr std::size_t fewest_rows = 10;    // of which the first two are the start of the prediction
 constexpr std::size_t most_errors = 100;
 constexpr std::size_t longest_line = 1'000'000;
-constexpr std::size_t most_numbers = 100'000'000;
+/// Of all recordings: fits have taken 1.2 kB of memory for each.
+constexpr std::size_t most_numbers = 4'000'000;
 constexpr double least_distance = 1e-6;  // [m] of two held markers, for a direction
 constexpr double greatest_speed = 1e4;   // [m/s] of a marker
 /// [s] of all recordings: a fit simulates them hundreds of times.
@@ -32,10 +33,13 @@ std::vector<std::string> column_names(std::size_t markers) {
 
 class RecordingReader {
  public:
-  RecordingReader(const std::string& path, std::vector<std::string>& errors) : errors_(errors) { recording_.path = path; }
+  /// `room`: for how many numbers more there is room; becomes less.
+  RecordingReader(const std::string& path, std::size_t& room, std::vector<std::string>& errors) : room_(room), errors_(errors) {
+    recording_.path = path;
+  }
 
   Recording read() {
-    const std::string refused = tools::why_not_readable(recording_.path);
+    const std::string refused = why_not_readable(recording_.path);
     if (!refused.empty()) {
       errors_.push_back(recording_.path + ": cannot read: " + refused + "; allowed: a file");
       return std::move(recording_);
@@ -93,11 +97,12 @@ class RecordingReader {
     const std::vector<std::string> cells = csv_cells(line);
     if (cells.size() != names_.size())
       return add_line_error(std::to_string(cells.size()) + " columns", std::to_string(names_.size()) + ", as the header has");
-    if ((recording_.times.size() + 1) * cells.size() > most_numbers) {
-      add_line_error("too many numbers", "at most " + std::to_string(most_numbers));
+    if (cells.size() > room_) {
+      add_line_error("too many numbers", "at most " + std::to_string(most_numbers) + " in all recordings");
       found_ = most_errors;
       return;
     }
+    room_ -= cells.size();
     const std::size_t found_before = found_;
     std::vector<double> numbers;
     for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -132,6 +137,7 @@ class RecordingReader {
     }
   }
 
+  std::size_t& room_;
   std::vector<std::string>& errors_;
   std::size_t found_ = 0;
   std::size_t line_ = 0;
@@ -144,8 +150,9 @@ class RecordingReader {
 std::vector<Recording> read_recordings(const std::vector<std::string>& paths, std::vector<std::string>& errors) {
   std::vector<Recording> recordings;
   double time = 0;
+  std::size_t room = most_numbers;
   for (const std::string& path : paths) {
-    recordings.push_back(RecordingReader(path, errors).read());
+    recordings.push_back(RecordingReader(path, room, errors).read());
     if (!recordings.back().times.empty()) time += recordings.back().times.back();
     if (recordings.front().markers.empty() || recordings.back().markers.empty()) continue;
     const int first = recordings.front().marker_count(), count = recordings.back().marker_count();

@@ -22,12 +22,6 @@ void append(const std::string& prefix, const std::vector<std::string>& lines, st
   for (const std::string& line : lines) errors.push_back(prefix + ": " + line);
 }
 
-/// Throws SceneError for what would hang where it is opened.
-void check_input(const std::string& path) {
-  const std::string problem = tools::why_not_readable(path);
-  if (!problem.empty()) throw SceneError({"cannot read: " + problem + "; allowed: a file"});
-}
-
 void check_outputs(const Options& options, std::vector<std::string>& errors) {
   struct Output {
     const char* option;
@@ -88,7 +82,6 @@ Job prepare(const Options& options, std::vector<std::string>& errors) {
   bool motion_is_sound = true;
   if (!options.scene.empty()) {
     try {
-      check_input(options.scene);
       job.scene = read_scene_file(options.scene);
       scene_is_sound = true;
     } catch (const SceneError& error) {
@@ -97,7 +90,6 @@ Job prepare(const Options& options, std::vector<std::string>& errors) {
   }
   if (!options.motion.empty()) {
     try {
-      check_input(options.motion);
       job.motion = read_motion_file(options.motion);
     } catch (const SceneError& error) {
       append(tools::path_text(options.motion), error.errors(), errors);

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "messages.h"
-#include "named_file.h"
+#include "scene/named_file.h"
 
 namespace verlet_cable::tools {
 namespace {
@@ -77,13 +77,6 @@ std::string why_not_writable(const std::string& path) {
 
 std::string cannot_write(const std::string& path, const std::string& why) {
   return "cannot write " + quoted_path(path) + ": " + why + "; allowed: a file in a directory that can be written, or a device";
-}
-
-std::string why_not_readable(const std::string& path) {
-  const NamedFile file = named_file(path);
-  if (!file.problem.empty() || file.descriptor >= 0) return "";
-  const auto status = status_of(file);
-  return status && S_ISFIFO(status->st_mode) ? "it is a named pipe" : "";
 }
 
 bool is_same_file(const std::string& a, const std::string& b) {

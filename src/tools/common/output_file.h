@@ -10,8 +10,6 @@ namespace verlet_cable::tools {
 std::string why_not_writable(const std::string& path);
 /// An error for `why_not_writable`'s answer: with the path, and what is allowed.
 std::string cannot_write(const std::string& path, const std::string& why);
-/// Why a file is not to be read, for what would hang: a named pipe. Empty for all others, also where there is nothing.
-std::string why_not_readable(const std::string& path);
 /// Whether two paths name one file, which may not be there yet; also the same open stream. Devices are never the same.
 bool is_same_file(const std::string& a, const std::string& b);
 /// Whether a path names this program's standard output.

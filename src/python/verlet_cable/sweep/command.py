@@ -8,6 +8,7 @@ import sys
 from .errors import SweepError, SweepStopped
 
 _BAD_INPUT, _STOPPED = 2, 3
+_MOST_ERRORS = 100  # that are printed
 
 
 def main(arguments=None):
@@ -16,8 +17,10 @@ def main(arguments=None):
     try:
         return _sweep(options)
     except SweepError as error:
-        for text in error.errors:
+        for text in error.errors[:_MOST_ERRORS]:
             print(f'cable_sweep: {text}', file=sys.stderr)
+        if len(error.errors) > _MOST_ERRORS:
+            print(f'cable_sweep: and {len(error.errors) - _MOST_ERRORS} more errors', file=sys.stderr)
         return _BAD_INPUT
 
 

@@ -1,8 +1,10 @@
 """SWEEP.yaml: what is to be simulated, how often, and what is kept of it. Every error is found before anything is simulated."""
 import copy
+import errno
 import hashlib
 import math
 import os
+import stat
 
 from verlet_cable.sim import Scene, SceneError
 
@@ -26,6 +28,9 @@ _NOT_VARIED = {
 _MOST_SAMPLES = 10**9
 _MOST_STEPS = 2**53
 _LARGEST_SEED = 2**63 - 1
+_LARGEST_DESCRIPTION = 1 << 20  # [byte]
+_LARGEST_SCENE = 16 << 20       # [byte] as Scene reads
+_MOST_VARIED = 1000             # keys: a scene is read for each
 _DEFAULT_RATE = 100.0
 _TOLERANCE = 1e-6  # of a step, of a row: as cable_sim's
 
@@ -85,7 +90,7 @@ def read_sweep(path):
     """The Sweep that a file describes, and its Scene as it stands, without variations. Raises SweepError with all that is wrong."""
     errors = []
     name = os.path.basename(path)
-    values = text_yaml.parse(_text_of(path, path, errors), name, errors)
+    values = text_yaml.parse(_text_of(path, path, _LARGEST_DESCRIPTION, errors), name, errors)
     if errors:
         raise SweepError(errors)
     if not isinstance(values, dict):
@@ -114,14 +119,26 @@ def read_sweep(path):
     return sweep, scene
 
 
-def _text_of(path, key, errors):
+def _open(path):
+    """A file's bytes to be read. What is no file may have no end, or nobody who writes it: OSError."""
+    file = open(path, 'rb', opener=lambda name, flags: os.open(name, flags | os.O_NONBLOCK))
+    if stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+        return file
+    file.close()
+    raise OSError(errno.EINVAL, 'it is not a file')
+
+
+def _text_of(path, key, largest, errors):
     try:
-        with open(path, encoding='utf-8', newline='') as file:
-            return file.read()
+        with _open(path) as file:
+            content = file.read(largest + 1)
+        if len(content) <= largest:
+            return content.decode('utf-8')
+        errors.append(rejected(key, f'more than {largest} bytes', 'less'))
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else 'not UTF-8'
         errors.append(rejected(key, reason, 'a file that can be read'))
-        return ''
+    return ''
 
 
 def _read_scene(sweep, values, errors):
@@ -132,17 +149,17 @@ def _read_scene(sweep, values, errors):
         return None
     path = os.path.join(sweep.folder, sweep.scene_name)
     before = len(errors)
-    sweep.scene_text = _text_of(path, f'scene: {sweep.scene_name}', errors)
+    sweep.scene_text = _text_of(path, f'scene: {sweep.scene_name}', _LARGEST_SCENE, errors)
     if len(errors) > before:
         return None
-    yaml_errors = []
-    sweep.tree = text_yaml.parse(sweep.scene_text, sweep.scene_name, yaml_errors)
     try:
         scene = Scene.load(path)
     except SceneError as error:
         errors += [f'{sweep.scene_name}: {text}' for text in error.errors]
-        return None
-    errors += yaml_errors
+        scene = None
+    yaml_errors = []
+    sweep.tree = text_yaml.parse(sweep.scene_text, sweep.scene_name, yaml_errors)
+    errors += yaml_errors if scene is not None else []
     return scene
 
 
@@ -162,7 +179,8 @@ def _read_integer(key, values, default, smallest, largest, errors):
     if key not in values and default is not None:
         return default
     # Not by way of a double, which has no room for every seed.
-    if isinstance(text, str) and text.isascii() and text.isdigit() and smallest <= int(text) <= largest:
+    is_digits = isinstance(text, str) and text.isascii() and text.isdigit() and len(text) <= len(str(largest))
+    if is_digits and smallest <= int(text) <= largest:
         return int(text)
     value = number(text)
     if value is not None and value.is_integer() and smallest <= value <= min(largest, 2**53):
@@ -207,6 +225,9 @@ def _read_variations(sweep, values, errors):
         return
     if not isinstance(vary, dict):
         errors.append(rejected('vary', shown(vary), 'keys of the scene, and how each varies'))
+        return
+    if len(vary) > _MOST_VARIED:
+        errors.append(rejected('vary', f'{len(vary)} keys', f'at most {_MOST_VARIED}'))
         return
     paths = {}
     for text, value in vary.items():
@@ -277,7 +298,7 @@ def _read_motions(sweep, values, errors):
 def digest_of(path):
     """SHA-256 of a file."""
     digest = hashlib.sha256()
-    with open(path, 'rb') as file:
+    with _open(path) as file:
         for block in iter(lambda: file.read(1 << 20), b''):
             digest.update(block)
     return digest.hexdigest()

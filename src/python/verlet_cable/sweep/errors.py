@@ -1,5 +1,7 @@
 """What ends a sweep before or while it runs, in words for the user."""
 
+_LONGEST_KEY = 300
+
 
 class SweepError(Exception):
     """What the user gave cannot be used. `errors`: one text each, all that were found."""
@@ -15,6 +17,8 @@ class SweepStopped(Exception):
 
 def rejected(key, value, allowed):
     """The package's one form of an error: the full key, the value that was given, what is allowed."""
+    if len(key) > _LONGEST_KEY:
+        key = key[:_LONGEST_KEY - 3] + '...'
     return f'{key}: {value}; allowed: {allowed}'
 
 

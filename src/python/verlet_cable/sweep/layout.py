@@ -14,6 +14,7 @@ from .trial import rows_of
 
 CHUNK_BYTES = 8 << 20       # of one file, before compression: large for a file system, small for memory
 SAMPLE_BYTES = 4 << 30      # of all fields of one sample, which a worker holds
+MOST_ROWS = 10_000_000      # of a sample
 _CHUNK_NODE_STEPS = 2e9     # about a minute of one core: what a worker's death may cost
 _LANES = 8                  # samples that are stepped at once
 _FEWEST_CHUNKS = 64         # of a sweep that has samples enough, for the workers to share evenly
@@ -60,6 +61,8 @@ def plan_layout(sweep, scene):
     if sample_bytes > SAMPLE_BYTES:
         errors.append(rejected('record', f'{sample_bytes / 2**30:.3g} GiB a sample ({sweep.rows} rows)',
                                f'at most {SAMPLE_BYTES >> 30} GiB'))
+    if sweep.rows > MOST_ROWS:
+        errors.append(rejected('record.rate', f'{sweep.rows} rows a sample', f'at most {MOST_ROWS}'))
     if errors:
         raise SweepError(errors)
     largest = max(8 * _size(shape) for shape in shapes.values()) * sweep.rows

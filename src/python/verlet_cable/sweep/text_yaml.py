@@ -7,17 +7,27 @@ import yaml
 _NULL = ('', '~', 'null', 'Null', 'NULL')
 _NUMBER = re.compile(r'[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?')
 _INTEGER = re.compile(r'[-+]?(0|[1-9]\d*)')
+# As in scenes.
+_MOST_VALUES = 1_000_000
+_DEEPEST_LEVEL = 32
 _SPECIAL = {'.inf': math.inf, '+.inf': math.inf, '-.inf': -math.inf}
 
 
 def parse(text, name, errors):
-    """`text` as dicts, lists, texts and None; None, with what is wrong in `errors`, if it cannot be read. `name`: the file's."""
+    """`text` as dicts, lists, texts and None; None, with what is wrong in `errors`, if it cannot be read. `name`: the file's. Aliases
+    that multiply or nest without end are refused before anything is built of them."""
     try:
         node = yaml.compose(text, Loader=yaml.SafeLoader)
     except (yaml.YAMLError, RecursionError) as error:
         errors.append(f'{name}: not YAML: ' + ' '.join(str(error).split()))
         return None
-    return None if node is None else _value(node, '', name, errors)
+    if node is None:
+        return None
+    problem = _why_too_large(node)
+    if problem:
+        errors.append(f'{name}: {problem}; allowed: less')
+        return None
+    return _value(node, '', name, errors)
 
 
 def number(value):
@@ -58,6 +68,24 @@ def shown(value):
     else:
         text = str(value)
     return text if len(text) <= 80 else text[:77] + '...'
+
+
+def _why_too_large(root):
+    """Why no tree is built of a node, whose parts may be the same ones many times; None if one is."""
+    values = 0
+    waiting = [(root, 0)]
+    while waiting:
+        node, level = waiting.pop()
+        values += 1
+        if level > _DEEPEST_LEVEL:
+            return f'nested deeper than {_DEEPEST_LEVEL} levels'
+        if values > _MOST_VALUES:
+            return f'more than {_MOST_VALUES} values'
+        if isinstance(node, yaml.SequenceNode):
+            waiting += [(entry, level + 1) for entry in node.value]
+        elif isinstance(node, yaml.MappingNode):
+            waiting += [(entry, level + 1) for pair in node.value for entry in pair]
+    return None
 
 
 def _value(node, key, name, errors):

@@ -7,6 +7,7 @@ import numpy as np
 from .errors import rejected
 from .text_yaml import number, shown, with_numbers
 
+_MOST_OPTIONS = 10_000  # of a choice: each may be tried before a sweep begins
 DISTRIBUTIONS = ('uniform', 'log_uniform', 'normal', 'choice')
 
 
@@ -67,6 +68,9 @@ def read_variation(key, value, errors):
     if kind == 'choice':
         if not isinstance(parameters, list) or not parameters:
             errors.append(rejected(key, shown(parameters), 'a list of at least one value'))
+            return None
+        if len(parameters) > _MOST_OPTIONS:
+            errors.append(rejected(key, f'{len(parameters)} values', f'at most {_MOST_OPTIONS}'))
             return None
         return Variation(kind, with_numbers(parameters))
     numbers = [number(entry) for entry in parameters] if isinstance(parameters, list) else []

@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace verlet_cable::tools {
+namespace verlet_cable {
 
 /// What a path leads to.
 struct NamedFile {
@@ -13,7 +13,10 @@ struct NamedFile {
 
 NamedFile named_file(const std::string& path);
 
+/// Why a file is not to be read, for what would hang: a named pipe. Empty for all others, also where there is nothing.
+std::string why_not_readable(const std::string& path);
+
 /// With its slash; "./" if none is named.
 std::string directory_of(const std::string& path);
 
-}  // namespace verlet_cable::tools
+}  // namespace verlet_cable

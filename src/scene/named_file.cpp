@@ -1,14 +1,14 @@
 #include "named_file.h"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <charconv>
 #include <filesystem>
+#include <system_error>
 
-#include "messages.h"
-
-namespace verlet_cable::tools {
+namespace verlet_cable {
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,7 +28,7 @@ NamedFile named_file(const std::string& path) {
   fs::path next = path;
   for (int links = 0; links < most_links; ++links) {
     const std::string name = next.filename().string();
-    if (name.empty() || name == "." || name == "..") return {next.string(), -1, error_text(EISDIR)};
+    if (name.empty() || name == "." || name == "..") return {next.string(), -1, std::generic_category().message(EISDIR)};
     std::error_code error;
     const fs::path directory = fs::canonical(directory_of(next.string()), error);
     if (error) return {next.string(), -1, error.message()};
@@ -39,7 +39,14 @@ NamedFile named_file(const std::string& path) {
     if (error) return {next.string(), -1, ""};
     next = directory / link;
   }
-  return {path, -1, error_text(ELOOP)};
+  return {path, -1, std::generic_category().message(ELOOP)};
+}
+
+std::string why_not_readable(const std::string& path) {
+  const NamedFile file = named_file(path);
+  if (!file.problem.empty() || file.descriptor >= 0) return "";
+  struct stat status {};
+  return stat(file.path.c_str(), &status) == 0 && S_ISFIFO(status.st_mode) ? "it is a named pipe" : "";
 }
 
 std::string directory_of(const std::string& path) {
@@ -47,4 +54,4 @@ std::string directory_of(const std::string& path) {
   return slash == std::string::npos ? "./" : path.substr(0, slash + 1);
 }
 
-}  // namespace verlet_cable::tools
+}  // namespace verlet_cable
