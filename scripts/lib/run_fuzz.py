@@ -16,7 +16,7 @@ LONGEST_INPUT_SECONDS = 600
 MEMORY_MB = 4096
 MOST_BYTES = 20000
 # Of worlds, whose inputs have no format: enough for some tens of calls.
-WORLD_SEEDS = 60
+WORLD_SEEDS = 20
 WORLD_SEED_BYTES = 600
 FIGURE = re.compile(r'^stat::number_of_executed_units:\s*(\d+)', re.MULTILINE)
 COVERAGE = re.compile(r'cov: (\d+)')
