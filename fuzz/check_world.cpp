@@ -57,11 +57,67 @@ void check_net(const SimulatedNet& net) {
   check_all(net.model.name + ": tension", net.state.tension, static_cast<int>(net.model.links.size()));
 }
 
+bool is_index(int index, std::size_t size) {
+  return index >= 0 && index < static_cast<int>(size);
+}
+
+bool is_there(const World& world, const BodyId& body) {
+  switch (body.kind) {
+    case BodyId::Kind::none:
+      return true;
+    case BodyId::Kind::cable:
+      return is_index(body.index, world.cables().size());
+    case BodyId::Kind::net:
+      return is_index(body.index, world.nets().size());
+    case BodyId::Kind::particle:
+      return is_index(body.index, world.particles().size());
+    case BodyId::Kind::rigid_body:
+      return is_index(body.index, world.bodies().size());
+  }
+  return false;
+}
+
+void check_findings(const World& world) {
+  const Findings& findings = world.findings();
+  const auto is_segment = [&](int cable, int segment) {
+    return is_index(cable, world.cables().size()) && is_index(segment, world.cables()[cable].state.rest_lengths.size());
+  };
+  for (const Break& gone : findings.breaks)
+    require(is_index(gone.cable, world.cables().size()) && is_index(gone.new_cable, world.cables().size()) && gone.limit > 0,
+            "what broke is there");
+  for (const Excursion& excursion : findings.excursions) {
+    require(is_index(excursion.cable, world.cables().size()) &&
+                is_index(excursion.node, world.cables()[excursion.cable].state.positions.size()),
+            "what bends is there");
+    check_finite("excursion", excursion.value);
+  }
+  for (const std::vector<int>* guides : {&findings.caught, &findings.released})
+    for (const int guide : *guides) require(is_index(guide, world.guides().size()), "what caught or let go is there");
+  for (const Jump& jump : findings.jumps) {
+    require(is_index(jump.attachment, world.attachments().size()), "what jumped is there");
+    check_finite("jump", Vector3(jump.distance, jump.time, jump.duration));
+  }
+  for (const Intrusion& intrusion : findings.intrusions) {
+    require(is_segment(intrusion.cable, intrusion.segment) && is_index(intrusion.obstacle, world.obstacles().size()),
+            "what is inside of what is there");
+    check_finite("depth", intrusion.depth);
+  }
+  for (const SimulatedContact& contact : findings.contacts) {
+    require(is_segment(contact.cable, contact.segment), "what touches is there");
+    if (contact.obstacle >= 0) require(is_index(contact.obstacle, world.obstacles().size()), "the touched obstacle is there");
+    if (contact.other_cable >= 0) require(is_segment(contact.other_cable, contact.other_segment), "the touched cable is there");
+    if (contact.body >= 0) require(is_index(contact.body, world.bodies().size()), "the touched body is there");
+    check_finite("contact position", contact.position);
+    check_finite("contact normal", contact.normal);
+    check_finite("contact force", contact.force);
+  }
+}
+
 void check_attachment(const World& world, const Attachment& attachment) {
-  const auto is_index = [](int index, std::size_t size) { return index >= 0 && index < static_cast<int>(size); };
   check_finite(attachment.name + ": force", attachment.force);
   check_finite(attachment.name + ": torque", attachment.torque);
   check_finite(attachment.name + ": pose", attachment.pose);
+  for (const Vector3& point : attachment.tangent_points) check_finite(attachment.name + ": tangent point", point);
   require(is_index(attachment.frame, world.frames().size()), attachment.name + ": its frame is there");
   const BodyId& body = attachment.body;
   if (body.is_cable())
@@ -94,9 +150,16 @@ void check_world(const World& world) {
     const GuideView view = world.view_guide(guide);
     check_finite(world.guides()[guide].name, Vector3(view.arc_length, view.tension[0], view.tension[1]));
   }
-  for (const SimulatedContact& contact : world.findings().contacts) check_finite("contact force", contact.force);
+  check_findings(world);
   check_finite("energy", world.energy().total());
   check_finite("time", world.time());
+}
+
+void check_result(const World& world, const StepResult& result) {
+  check_finite("strain", result.max_strain);
+  require(result.status == StepResult::Status::ok || bool(result.body), "what is not well is named");
+  require(is_there(world, result.body), "what is not well is there");
+  require(result.ignored_frame < static_cast<int>(world.frames().size()), "the ignored frame is there");
 }
 
 double mass(const World& world) {

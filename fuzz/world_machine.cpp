@@ -4,21 +4,30 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <type_traits>
+#include <utility>
 
 #include "check_world.h"
 #include "require.h"
 #include "verlet_cable/core/cable_materials.h"
+#include "verlet_cable/core/triangle_mesh.h"
 
 namespace verlet_cable::fuzz {
+namespace {
 
-WorldMachine::WorldMachine(const SceneDesc& scene, Arbitrary& input)
-    : input_(input),
-      scene_(scene),
-      frames_(initial_frames(scene)),
-      world_(scene, frames_),
-      saved_(world_),
-      saved_frames_(frames_) {
+/// None, where the lengths are none.
+std::shared_ptr<const TriangleMesh> tetrahedron(double width, double height) {
+  const std::vector<Vector3> vertices = {Vector3::Zero(), {width, 0, 0}, {0, width, 0}, {0, 0, height}};
+  const std::vector<TriangleMesh::Triangle> triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  const bool is_solid = TriangleMesh::problem(vertices, triangles).empty();
+  return is_solid ? std::make_shared<TriangleMesh>(vertices, triangles) : nullptr;
+}
+
+}  // namespace
+
+WorldMachine::WorldMachine(const SceneDesc& scene, const World& world, Arbitrary& input)
+    : input_(input), scene_(scene), frames_(initial_frames(scene)), world_(world), saved_(world), saved_frames_(frames_) {
   check_world(world_);
 }
 
@@ -85,7 +94,7 @@ void WorldMachine::move_frame() {
 void WorldMachine::disturb_frame() {
   if (frames_.empty()) return;
   FrameInput& frame = frames_[input_.below(static_cast<int>(frames_.size()))];
-  switch (input_.below(4)) {
+  switch (input_.below(5)) {
     case 0:
       frame.pose = input_.pose(frame.pose.position, 2);
       break;
@@ -93,7 +102,10 @@ void WorldMachine::disturb_frame() {
       frame.pose.position[input_.below(3)] = input_.flip() ? std::numeric_limits<double>::quiet_NaN() : infinity;
       break;
     case 2:
-      frame.pose.orientation = Quaternion(input_.between(-2, 2), input_.between(-2, 2), 0, 0);
+      frame.pose.orientation = Quaternion{input_.between(-2, 2), input_.between(-2, 2), 0, 0};
+      break;
+    case 3:
+      frame.velocity = FrameVelocity{input_.vector(4), input_.vector(10)};
       break;
     default:
       frame.known = !frame.known;
@@ -113,8 +125,8 @@ void WorldMachine::step() {
   if (moving_frame_ < frames_.size()) frames_[moving_frame_].pose.position += world_.time_step() * velocity_;
   const double before = mass(world_), wound = most_wound();
   const StepResult result = on_both([&](World& world) { return world.step(frames_); });
-  substeps_ += result.substeps;
-  require(std::isfinite(result.max_strain), "strain is finite");
+  effort_ += result.substeps + result.iterations;
+  check_result(world_, result);
   require(std::abs(mass(world_) - before) <= wound + 1e-9 * before, "a step keeps mass, but for winches");
 }
 
@@ -136,13 +148,21 @@ void WorldMachine::start_waiting() {
   on_both([&](World& world) { return world.start_waiting(frames_); });
 }
 
+/// As much work as many steps, which bodies that touch something would multiply.
 void WorldMachine::settle() {
+  if (!world_.bodies().empty() && !world_.findings().contacts.empty()) return;
+  effort_ += most_effort / 2;
   on_both([&](World& world) { return world.settle(); });
 }
 
 void WorldMachine::copy() {
   copy_ = world_;
   require(copy_->hash() == world_.hash(), "a copy has the same bytes");
+  if (input_.flip()) {
+    World moved(std::move(*copy_));
+    *copy_ = std::move(moved);
+    require(copy_->hash() == world_.hash(), "what is moved has the same bytes");
+  }
   copy_->step_one_by_one(input_.flip());
   copy_->limit_lanes(input_.one_of({1, 2, 4, 8}));
 }
@@ -243,7 +263,7 @@ void WorldMachine::set_obstacle() {
   if (input_.flip()) obstacle.friction = input_.positive(0.01, 2);
   if (input_.flip()) obstacle.padding = input_.positive(1e-4, 0.1);
   const double radius = input_.positive(0.01, 0.5), length = input_.positive(0.01, 1);
-  switch (input_.below(5)) {
+  switch (input_.below(6)) {
     case 0:
       obstacle.shape = PlaneShape{};
       break;
@@ -255,6 +275,9 @@ void WorldMachine::set_obstacle() {
       break;
     case 3:
       obstacle.shape = CylinderShape{radius, length};
+      break;
+    case 4:
+      obstacle.shape = MeshShape{tetrahedron(radius, length)};
       break;
     default:
       obstacle.shape = BoxShape{{radius, length, radius}};

@@ -13,15 +13,16 @@ namespace verlet_cable::fuzz {
 /// changed nothing, no mass has come or gone but by winches, and copies have gone on with the same bytes; else the process ends.
 class WorldMachine {
  public:
-  WorldMachine(const SceneDesc& scene, Arbitrary& input);
+  /// `world`: of that scene, as it started with its initial frames.
+  WorldMachine(const SceneDesc& scene, const World& world, Arbitrary& input);
 
   /// Does one thing.
   void act();
-  /// Whether it has taken so many substeps that more of them would take too long.
-  bool is_tired() const { return substeps_ > most_substeps; }
+  /// Whether it has worked so much that more of it would take too long.
+  bool is_tired() const { return effort_ > most_effort; }
 
  private:
-  static constexpr int most_substeps = 10000;
+  static constexpr int most_effort = 3000;
 
   // What is done.
   void move_frame();
@@ -63,7 +64,7 @@ class WorldMachine {
   Vector3 velocity_ = Vector3::Zero();  ///< [m/s] of the frame that moves
   std::size_t moving_frame_ = 0;
   double winch_speed_ = 0;  ///< [m/s] the most that a winch was given
-  int substeps_ = 0;
+  int effort_ = 0;          ///< substeps, and iterations in them
   World world_;
   std::optional<World> copy_;  ///< that is to go on like the world, with other lanes
   World saved_;

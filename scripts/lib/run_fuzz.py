@@ -1,5 +1,5 @@
-"""Runs fuzz targets, as many at once as there are cores, and says what each found: run_fuzz.py WORKSPACE CHECKOUT SECONDS
-RESULTS TARGET..., where RESULTS is a JUnit file to write, or empty."""
+"""Runs fuzz targets, as many at once as there are cores, and says what each found."""
+import argparse
 import concurrent.futures
 import os
 import pathlib
@@ -8,12 +8,15 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 from xml.etree import ElementTree
 
-LONGEST_INPUT_SECONDS = 60
+# On a machine that does much else, too: an input that takes so long is a finding.
+LONGEST_INPUT_SECONDS = 600
 MEMORY_MB = 4096
+MOST_BYTES = 20000
 # Of worlds, whose inputs have no format: enough for some tens of calls.
-WORLD_SEEDS = 60
+WORLD_SEEDS = 20
 WORLD_SEED_BYTES = 600
 FIGURE = re.compile(r'^stat::number_of_executed_units:\s*(\d+)', re.MULTILINE)
 COVERAGE = re.compile(r'cov: (\d+)')
@@ -33,32 +36,36 @@ def seeds(target, checkout):
     return []
 
 
-def shorter(content, most=20000):
+def shorter(content, most=MOST_BYTES):
     """Whole lines of long files: what is large is slow, and no other code."""
     return content if len(content) <= most else content[:content.rfind(b'\n', 0, most) + 1]
 
 
 def fill_corpus(target, checkout, corpus):
+    """With a target's first inputs, and with those of earlier findings."""
     corpus.mkdir(parents=True, exist_ok=True)
     for path in seeds(target, checkout):
         (corpus / ('seed_' + path.name)).write_bytes(shorter(path.read_bytes()))
     if target == 'world':
         for seed in range(WORLD_SEEDS):
-            (corpus / f'seed_{seed}').write_bytes(random.Random(seed).getrandbits(8 * WORLD_SEED_BYTES).to_bytes(WORLD_SEED_BYTES, 'big'))
+            content = random.Random(seed).getrandbits(8 * WORLD_SEED_BYTES)
+            (corpus / f'seed_{seed}').write_bytes(content.to_bytes(WORLD_SEED_BYTES, 'big'))
     kept = checkout / 'fuzz' / 'inputs' / target
     for path in sorted(kept.glob('*')) if kept.is_dir() else []:
         shutil.copy(path, corpus / ('kept_' + path.name))
 
 
-def run(target, workspace, checkout, seconds):
+def run(target, corpus, arguments):
     """(executions, covered edges, paths of what was found)"""
-    corpus, findings = workspace / 'corpus' / target, workspace / 'findings' / target
+    workspace, checkout = arguments.workspace, arguments.checkout
+    findings = workspace / 'findings' / target
     fill_corpus(target, checkout, corpus)
     findings.mkdir(parents=True, exist_ok=True)
     before = set(findings.iterdir())
     program = workspace / 'devel' / 'lib' / 'verlet_cable' / f'fuzz_{target}'
-    options = [f'-max_total_time={seconds}', f'-timeout={LONGEST_INPUT_SECONDS}', f'-rss_limit_mb={MEMORY_MB}', '-print_final_stats=1',
-               f'-artifact_prefix={findings}/', '-max_len=20000']
+    options = [f'-max_total_time={arguments.seconds}', f'-timeout={LONGEST_INPUT_SECONDS}',
+               f'-report_slow_units={LONGEST_INPUT_SECONDS}', f'-rss_limit_mb={MEMORY_MB}', f'-max_len={MOST_BYTES}',
+               f'-seed={arguments.seed or 0}', '-print_final_stats=1', f'-artifact_prefix={findings}/']
     dictionary = checkout / 'fuzz' / 'dictionaries' / f'{target}.dict'
     if dictionary.exists():
         options.append(f'-dict={dictionary}')
@@ -78,6 +85,20 @@ def run(target, workspace, checkout, seconds):
     return int(executed.group(1)) if executed else 0, int(covered[-1]) if covered else 0, found
 
 
+def run_all(corpora, arguments):
+    """{target: text of what was wrong}"""
+    failures = {}
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        runs = {target: pool.submit(run, target, corpora / target, arguments) for target in arguments.targets}
+        for target, result in runs.items():
+            executions, edges, found = result.result()
+            text = ', '.join(map(str, found)) if found else 'nothing'
+            if found or executions == 0:
+                failures[target] = f'{executions} executions, found: {text}'
+            print(f'{target}: {executions} executions, {edges} edges covered, found: {text}', flush=True)
+    return failures
+
+
 def write_results(path, failures, targets):
     """`failures`: text by target."""
     suite = ElementTree.Element('testsuite', name='fuzz', tests=str(len(targets)), failures=str(len(failures)))
@@ -89,20 +110,26 @@ def write_results(path, failures, targets):
     ElementTree.ElementTree(suite).write(path, encoding='utf-8', xml_declaration=True)
 
 
+def parse_arguments():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('--workspace', type=pathlib.Path, required=True)
+    parser.add_argument('--checkout', type=pathlib.Path, required=True)
+    parser.add_argument('--seconds', type=int, required=True, help='how long each target runs')
+    parser.add_argument('--seed', type=int, help='begin with no inputs of earlier runs, and make up the same ones each time')
+    parser.add_argument('--results', type=pathlib.Path, help='JUnit file to write')
+    parser.add_argument('targets', nargs='+')
+    return parser.parse_args()
+
+
 def main():
-    workspace, checkout, seconds, results = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), int(sys.argv[3]), sys.argv[4]
-    targets = sys.argv[5:]
-    failures = {}
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        runs = {target: pool.submit(run, target, workspace, checkout, seconds) for target in targets}
-        for target, result in runs.items():
-            executions, edges, found = result.result()
-            text = ', '.join(map(str, found)) if found else 'nothing'
-            if found or executions == 0:
-                failures[target] = f'{executions} executions, found: {text}'
-            print(f'{target}: {executions} executions, {edges} edges covered, found: {text}', flush=True)
-    if results:
-        write_results(pathlib.Path(results), failures, targets)
+    arguments = parse_arguments()
+    if arguments.seed is None:
+        failures = run_all(arguments.workspace / 'corpus', arguments)
+    else:
+        with tempfile.TemporaryDirectory(dir=arguments.workspace) as corpora:
+            failures = run_all(pathlib.Path(corpora), arguments)
+    if arguments.results:
+        write_results(arguments.results, failures, arguments.targets)
     sys.exit(1 if failures else 0)
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs every test program that CMake registered, and counts their test cases.
+"""Runs every test program that CMake registered, and the fuzz targets, and counts their test cases.
 
 Usage: run_tests.py WORKSPACE PACKAGE_DIRECTORY yes|no    (whether everything was built)
 
@@ -19,6 +19,9 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 TIME_LIMIT = 300.0  # [s] for a program that registers none; rostest has its own, 60 s for each of its tests
+FUZZ_SECONDS = 60  # for each target
+FUZZ_TIME_LIMIT = 5400.0  # [s] to compile the simulation once more, with clang and its sanitizers, and to run
+FUZZ_SEED = 1  # every run makes up the same inputs
 GRACE = 20.0  # [s] for a program that was interrupted to end its own children
 PR_SET_CHILD_SUBREAPER = 36
 BUILD_ERROR = re.compile(r'\berror:|CMake Error|No rule to make|undefined reference')
@@ -174,6 +177,12 @@ def check_package(package):
     return lint
 
 
+def fuzz_program(package, results):
+    """What makes up inputs, see doc/fuzzing.md."""
+    return Program('fuzz', [str(package / 'scripts/fuzz'), '--seconds', str(FUZZ_SECONDS), '--seed', str(FUZZ_SEED),
+                            '--results', str(results / 'fuzz.xml')], FUZZ_TIME_LIMIT)
+
+
 def main():
     workspace, package, built = Path(sys.argv[1]), Path(sys.argv[2]), sys.argv[3] == 'yes'
     ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1)
@@ -194,14 +203,15 @@ def main():
     programs = registered_programs(workspace / 'build')
     if not programs:
         build.failures.append('no test is registered')
-    print(f'\nRunning {len(programs)} test programs; their output is in {log_directory}')
+    print(f'\nRunning {len(programs) + 1} test programs; their output is in {log_directory}')
     finished = [build]
     try:
         if shutil.which('catkin_lint'):
             finished.append(check_package(package))
-        for program in programs:
+        results = workspace / 'build/test_results'
+        for program in [*programs, fuzz_program(package, results)]:
             finished.append(program)
-            run(program, workspace / 'build/test_results', log_directory)
+            run(program, results, log_directory)
     except KeyboardInterrupt:
         finished[-1].failures.append('interrupted')
     print()

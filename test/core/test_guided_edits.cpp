@@ -77,6 +77,25 @@ TEST(GuidedWinch, liftsABodyBehindSheaves) {
   EXPECT_NEAR(tension, 9.81 * (2 + 0.05 * hanging), 0.03 * 9.81 * 2);
 }
 
+/// The wheel is held by both nodes of the segment that goes: it must not look for the second one in the first piece, which no
+/// number shows, but AddressSanitizer.
+TEST(GuidedWinch, aWheelLetsGoOfACableThatIsCutOnIt) {
+  World world(crane(false), {});
+  run(world, 0.1);
+  const Attachment wheel = world.attachments()[find(world.attachments(), "front")];
+  const std::vector<Vector3> before = world.cables()[0].state.positions;
+  ASSERT_TRUE(is_wheel(wheel));
+  ASSERT_TRUE(world.apply(edit::Cut{cable_id(0), wheel.node}).ok);
+  EXPECT_EQ(world.view_guide(0).cable, 0);
+  EXPECT_EQ(world.view_guide(1).cable, -1);
+  ASSERT_EQ(world.cables().size(), 2u);
+  std::vector<Vector3> after = world.cables()[0].state.positions;
+  const std::vector<Vector3>& second = world.cables()[1].state.positions;
+  after.insert(after.end(), second.begin(), second.end());
+  ASSERT_EQ(after.size(), before.size());
+  for (std::size_t i = 0; i < after.size(); ++i) EXPECT_LT((after[i] - before[i]).norm(), 0.05) << i;
+}
+
 /// From a winch through an eyelet a segment away, behind which the cable hangs down.
 SceneDesc fairlead(double eyelet) {
   SceneDesc scene = scenes::one_cable(20, 2);

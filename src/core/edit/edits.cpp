@@ -219,6 +219,7 @@ EditResult World::Implementation::cut_cable(int cable, int segment) {
     const auto any = [&](const auto& descs) { return std::any_of(descs.begin(), descs.end(), has_name); };
     return find(state.cables, n) >= 0 || any(state.scene->cables) || any(state.scene->nets) || any(state.scene->particles);
   };
+  release_wheels_on(cable, segment);
   CableModel model = *state.cables[cable].model;
   model.name = numbered(name + "_", 2, taken);
 

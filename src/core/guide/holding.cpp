@@ -99,6 +99,14 @@ void World::Implementation::release_guide(int index) {
   findings.released.push_back(attachment.guide);
 }
 
+/// Those that a segment lies on which is to be cut: neither piece has both of its nodes.
+void World::Implementation::release_wheels_on(int cable, int segment) {
+  for (int a = static_cast<int>(state.attachments.size()) - 1; a >= 0; --a) {
+    const Attachment& attachment = state.attachments[a];
+    if (attachment.body == cable_id(cable) && attachment.node == segment && is_wheel(attachment)) release_guide(a);
+  }
+}
+
 /// Guides that have no cable on one side after a cut.
 void World::Implementation::release_bare_guides() {
   for (int a = static_cast<int>(state.attachments.size()) - 1; a >= 0; --a) {

@@ -96,6 +96,7 @@ struct World::Implementation {
   void pass_nodes_of(int cable);
   bool lets_go(int attachment) const;
   void release_guide(int attachment);
+  void release_wheels_on(int cable, int segment);
   void release_bare_guides();
   void capture_cable(int guide);
   void erase_attachment(int attachment);

@@ -229,7 +229,10 @@ void IslandStepper::step(Island& island, IslandOutcome& found) {
 void IslandStepper::begin(const Island& island) {
   if (workspace_.cables.size() < island.cables.size()) workspace_.cables.resize(island.cables.size());
   workspace_.members.clear();
-  if (!island.bodies.empty()) joined_mass_ = mass_of(island, state_);
+  // Islands without bodies must not meet those of the last one.
+  workspace_.body_members.clear();
+  workspace_.body_system.joints().clear();
+  joined_mass_ = island.bodies.empty() ? 0 : mass_of(island, state_);
   for (std::size_t k = 0; k < island.cables.size(); ++k) {
     CableProgress& memory = state_.cable_progress[island.cables[k]];
     workspace_.members.push_back({memory.id, &memory.targets, &memory.contacts});
