@@ -1,7 +1,10 @@
 #!/usr/bin/env python3
 """Runs every test program that CMake registered, and the fuzz targets, and counts their test cases.
 
-Usage: run_tests.py WORKSPACE PACKAGE_DIRECTORY yes|no    (whether everything was built)
+Usage: run_tests.py WORKSPACE PACKAGE_DIRECTORY yes|no [REPORTS NAME...]    (yes|no: whether everything was built)
+
+With NAMEs, those programs only, as they were compiled with sanitizers, which write to the directory REPORTS: with more time, and
+each report is a failure more.
 
 A program that could not be built, crashed, timed out, ended with an error or left no result counts as one failure more.
 The last line is "N passed, M failed"; the exit status is 0 only if something passed and nothing failed.
@@ -22,6 +25,7 @@ TIME_LIMIT = 300.0  # [s] for a program that registers none; rostest has its own
 FUZZ_SECONDS = 60  # for each target
 FUZZ_TIME_LIMIT = 5400.0  # [s] to compile the simulation once more, with clang and its sanitizers, and to run
 FUZZ_SEED = 1  # every run makes up the same inputs
+SANITIZED = 6.0  # times as long with sanitizers
 GRACE = 20.0  # [s] for a program that was interrupted to end its own children
 PR_SET_CHILD_SUBREAPER = 36
 BUILD_ERROR = re.compile(r'\berror:|CMake Error|No rule to make|undefined reference')
@@ -135,7 +139,16 @@ def read_results(program, results):
                 program.passed += 1
 
 
-def run(program, results, log_directory):
+def read_reports(program, reports):
+    """What sanitizers wrote while the program ran, whichever of its processes; moved to where the next program has no such."""
+    for report in sorted(reports.glob('report.*')):
+        lines = report.read_text(errors='replace').splitlines()
+        what = next((line for line in lines if 'SUMMARY' in line or 'runtime error' in line), 'a report of a sanitizer')
+        seen = report.rename(reports / f'{program.name}{report.suffix}')
+        program.failures.append(f'{what.strip()[:300]} (see {seen})')
+
+
+def run(program, results, log_directory, reports=None):
     shutil.rmtree(results, ignore_errors=True)
     results.mkdir(parents=True)
     log_path = log_directory / f'{program.name}.log'
@@ -147,6 +160,8 @@ def run(program, results, log_directory):
         with open(log_path, 'wb') as log:
             problem = execute(program, log)
         read_results(program, results)
+        if reports:
+            read_reports(program, reports)
     if not program.failures:
         if problem:
             program.failures.append(problem)
@@ -201,17 +216,25 @@ def main():
         build.failures.append('\n    | '.join(['see ' + str(workspace / 'build.log')] + errors[:20]))
         remove_outdated_executables(workspace)
     programs = registered_programs(workspace / 'build')
+    reports, names = (Path(sys.argv[4]), sys.argv[5:]) if len(sys.argv) > 4 else (None, [])
+    if names:
+        known = {program.name: program for program in programs}
+        programs = [known.get(name, Program(name, None)) for name in names]
+        for program in programs:
+            program.time_limit *= SANITIZED
     if not programs:
         build.failures.append('no test is registered')
-    print(f'\nRunning {len(programs) + 1} test programs; their output is in {log_directory}')
+    results = workspace / 'build/test_results'
+    if not names:
+        programs.append(fuzz_program(package, results))
+    print(f'\nRunning {len(programs)} test programs; their output is in {log_directory}')
     finished = [build]
     try:
-        if shutil.which('catkin_lint'):
+        if not names and shutil.which('catkin_lint'):
             finished.append(check_package(package))
-        results = workspace / 'build/test_results'
-        for program in [*programs, fuzz_program(package, results)]:
+        for program in programs:
             finished.append(program)
-            run(program, results, log_directory)
+            run(program, results, log_directory, reports)
     except KeyboardInterrupt:
         finished[-1].failures.append('interrupted')
     print()
