@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cassert>
 #include <utility>
 
 #include "simulation/simulation.h"
@@ -40,7 +41,8 @@ EditResult Simulation::place(const AddedObstacle& added) {
   Obstacle obstacle = added.obstacle;
   const std::optional<Pose> pose = started_ ? find_frame(added.frame) : std::nullopt;
   obstacle.frame = world_.add_frame(added.frame, pose);
-  frames_.add(added.frame, stamp_);
+  [[maybe_unused]] const int id = frames_.add(added.frame, stamp_);
+  assert(id == obstacle.frame);
   return world_.apply(edit::SetObstacle{std::move(obstacle)});
 }
 

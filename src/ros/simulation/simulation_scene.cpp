@@ -34,7 +34,10 @@ void Simulation::prepare_start(Nanoseconds time) {
   sample_at_start(time);
   if (keeps_world_) return start(time);
   start_.emplace(Start{WorldBuild(scene_, frames_.inputs(), tasks_), time, scene_version_});
-  if (start_->build.is_ready(longest_build)) finish_start();
+  if (start_->build.is_ready(longest_build)) return finish_start();
+  // Until then: frames of obstacles that came before are numbered anew, as sampling has dropped them.
+  use_world(World(scene_));
+  place_added_obstacles();
 }
 
 void Simulation::finish_start() {
