@@ -69,10 +69,8 @@ def run(target, corpus, arguments):
     dictionary = checkout / 'fuzz' / 'dictionaries' / f'{target}.dict'
     if dictionary.exists():
         options.append(f'-dict={dictionary}')
-    # Assimp leaks what it has begun of a text STL that it refuses; the package reads in a process that ends then.
-    leaks = 0 if target == 'mesh' else 1
-    environment = dict(os.environ, ASAN_OPTIONS=f'allocator_may_return_null=1:detect_leaks={leaks}',
-                       UBSAN_OPTIONS='print_stacktrace=1')
+    environment = dict(os.environ, ASAN_OPTIONS='allocator_may_return_null=1', UBSAN_OPTIONS='print_stacktrace=1',
+                       LSAN_OPTIONS=f"suppressions={checkout / 'fuzz' / 'leaks_of_libraries.txt'}:print_suppressions=0")
     log = workspace / f'fuzz_{target}.log'
     with open(log, 'wb') as output:
         status = subprocess.run([str(program), *options, str(corpus)], stdout=output, stderr=subprocess.STDOUT,
