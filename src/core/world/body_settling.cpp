@@ -15,6 +15,9 @@ namespace {
 
 constexpr double first_step = 1e-3, last_step = 1e5;  // [s]
 constexpr int maximum_steps = 2000;
+/// It is given up after so many iterations, or as many as take some seconds, see `budget`.
+constexpr double most_iterations = 2000;
+constexpr double short_work = 4e7;
 /// From one step to the next; the second once a step was too long.
 constexpr double fastest_growth = 2, slow_growth = 1.3;
 /// While what has begun to fall gets faster: it is followed, as longer steps would hold on to what does not last, but not for
@@ -47,10 +50,13 @@ bool BodySettling::settle() {
   const FlushDenormals flush_denormals;
   hold_still();
   double h = first_step, last = infinity, growth = fastest_growth;
+  const double size = size_of(island_, state_);
+  double work_left = std::max(most_iterations * size, short_work);
   int calm = 0;
-  for (int i = 0; i < maximum_steps && calm < calm_steps; ++i) {
+  for (int i = 0; i < maximum_steps && calm < calm_steps && work_left > 0; ++i) {
     if (cancelled_ != nullptr && *cancelled_) break;
     const Outcome outcome = advance(h);
+    work_left -= size * workspace_.body_system.solutions();
     if (!outcome.converged) {
       h = std::max(0.25 * h, shortest_substep);
       growth = slow_growth;

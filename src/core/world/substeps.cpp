@@ -73,13 +73,13 @@ bool IslandStepper::advance_within(double most_work, Island& island, StepProgres
   return true;
 }
 
-/// What is left of a step that took too much work: from rest, in one substep. The next step begins with a whole one again.
+/// What is left of a step that took too much work: from rest, in one substep. The next step begins where this one was, in
+/// substeps that may come somewhere.
 void IslandStepper::end_from_rest(Island& island, StepProgress& progress, IslandOutcome& found) {
   const std::int64_t whole = std::int64_t{1} << finest_level(state_.scene->time_step);
   for (std::size_t k = 0; k < island.cables.size(); ++k) workspace_.cables[k].result.converged = false;
   stop(island, found);
   if (!advance_part(island, {progress.done, whole, whole}, true, false, progress, found)) give_up(island);
-  progress.level = 0;
   found.exhausted = true;
 }
 
