@@ -7,7 +7,6 @@
 #include "world/island_stepper.h"
 #include "world/limits.h"
 #include "world/parallel_for.h"
-#include "world/straight_columns.h"
 
 namespace verlet_cable {
 
@@ -39,7 +38,6 @@ void World::Implementation::begin_step(const BoundaryInputs& inputs, StepResult&
   result.ignored_frame = update_frames(inputs);
   advance_winches();
   advance_guides();
-  disturb_straight_columns(state);
   build_islands();
 }
 
