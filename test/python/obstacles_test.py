@@ -36,11 +36,11 @@ def test_an_obstacle_in_a_moving_frame_is_as_in_cable_sim(ropes, cable_sim, tmp_
 def test_an_obstacle_is_moved_and_removed(hang):
     world = world_of(hang)
     world.set_obstacle('table', **TABLE)
-    world.step(200)
+    world.step(400)
     assert world.positions('hose')[:, 2].min() > -0.26
     world.set_obstacle('table', **dict(TABLE, pose=[0.3, 0, -0.4, 0, 0, 0]))
     assert world.obstacle_names == ['table']
-    world.step(200)
+    world.step(400)
     assert -0.36 < world.positions('hose')[:, 2].min() < -0.26
     world.remove_obstacle('table')
     assert world.obstacle_names == []

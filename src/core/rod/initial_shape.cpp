@@ -162,6 +162,13 @@ bool carry_along(const CableModel& model, const std::vector<HeldNode>& held, con
   return fits;
 }
 
+void hang_anew(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {
+  const std::vector<Vector3> before = state.positions;
+  state.positions = hanging(model, state, held, gravity, false);
+  project_positions(model, held, state);
+  carry_frames(before, state);
+}
+
 void carry_with_targets(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {
   const std::vector<Vector3> before = state.positions;
   std::vector<double> lengths(state.segments());

@@ -21,6 +21,9 @@ bool carry_along(const CableModel& model, const std::vector<HeldNode>& held, con
 /// The same after a jump of holders: elastic cables are as long as before, too, where that is possible.
 void carry_with_targets(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state);
 
+/// Hangs a cable from its holders, whatever its shape was.
+void hang_anew(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state);
+
 /// Whether a cable starts in static equilibrium: also if it is given no shape, and a clamp turns it away from its catenary.
 bool settles_at_start(const CableDesc& desc, const CableModel& model, const CableState& state);
 

@@ -119,7 +119,7 @@ class IslandStepper {
   double work_of_attempt(const Island& island) const;
   void stop(const Island& island, IslandOutcome& found);
   void give_up(const Island& island);
-  void give_up(int cable, Boundary& boundary);
+  void give_up(int cable, bool touches, Boundary& boundary);
   bool was_easy() const;
   void note_substep(int cable, const Boundary& boundary, const SubstepResult& result, double part);
   void note_intrusions(std::vector<Intrusion>& noted) const;

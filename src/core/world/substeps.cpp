@@ -129,16 +129,20 @@ void IslandStepper::stop(const Island& island, IslandOutcome& found) {
 
 void IslandStepper::give_up(const Island& island) {
   for (std::size_t k = 0; k < island.cables.size(); ++k)
-    if (!workspace_.cables[k].result.converged) give_up(island.cables[k], workspace_.cables[k].boundary);
+    if (!workspace_.cables[k].result.converged)
+      give_up(island.cables[k], workspace_.contacts.touched(k), workspace_.cables[k].boundary);
 }
 
-/// Not even from rest: the cable is put where its holders will be, and goes on from there.
-void IslandStepper::give_up(int index, Boundary& boundary) {
+/// Not even from rest: the cable is put where its holders will be, and goes on from there; or hangs anew, where it would be stuck
+/// with nothing around it.
+void IslandStepper::give_up(int index, bool touches, Boundary& boundary) {
   SimulatedCable& cable = state_.cables[index];
   hold_at(1, 1, state_.cable_progress[index].targets, boundary);
   hold_on_bodies(cable.state, state_.attachments, state_.bodies, state_.time(), state_.cable_progress[index].targets, boundary);
   const CableState before = cable.state;
   carry_along(*cable.model, boundary.nodes, gravity_near(state_, index), cable.state);
+  if (!touches && cable.state.positions == before.positions)
+    hang_anew(*cable.model, boundary.nodes, gravity_near(state_, index), cable.state);
   if (finite(cable.state.positions)) return;
   cable.state = before;
   note_status(Status::fault, cable_id(index), 0, outcomes_[index].result);
