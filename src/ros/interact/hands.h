@@ -13,9 +13,10 @@
 
 namespace verlet_cable {
 
-/// Interactive markers under `hands`: attachments are dragged and turned, nodes are taken and held as long as the mouse button is
-/// down, and menus pin, release, cut and reset. What is not finite, out of bounds or in an unknown frame is refused. Nothing is
-/// computed while nobody looks.
+/// Topic `hands/update` (visualization_msgs/InteractiveMarkerUpdate), with `hands/update_full` and the subscribed topic
+/// `hands/feedback`: interactive markers. Attachments are dragged and turned, nodes are taken and held as long as the mouse
+/// button is down, and menus pin, release, cut and reset. What is not finite, out of bounds or in an unknown frame is refused.
+/// Nothing is computed while nobody looks.
 class Hands {
  public:
   Hands(ros::NodeHandle& private_node, Simulation& simulation);

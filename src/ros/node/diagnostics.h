@@ -8,7 +8,8 @@
 
 namespace verlet_cable {
 
-/// Reports on `/diagnostics`, each second of wall time: how the simulation goes, how its frames and its obstacles are.
+/// Topic `/diagnostics` (diagnostic_msgs/DiagnosticArray), each second of wall time: how the simulation goes, how its frames and
+/// its obstacles are.
 class Diagnostics {
  public:
   Diagnostics(ros::NodeHandle& private_node, Simulation& simulation, const ObstacleListener& obstacles);

@@ -11,7 +11,7 @@
 
 namespace verlet_cable {
 
-/// The topic `events`. Events are logged, too.
+/// Topic `events` (verlet_cable/CableEvent): what happened, once each. Events are logged, too.
 class EventPublisher {
  public:
   EventPublisher(ros::NodeHandle& private_node, std::string frame_id);

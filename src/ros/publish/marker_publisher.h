@@ -13,7 +13,8 @@
 
 namespace verlet_cable {
 
-/// Topic `markers`. Complete at every tick, so that a viewer that starts late lacks nothing; what is gone is deleted once.
+/// Topic `markers` (visualization_msgs/MarkerArray): what rviz shows. Complete at every tick, so that a viewer that starts late
+/// lacks nothing; what is gone is deleted once.
 ///  * namespace = name of a cable, id 0: the cable, a tube or a line (cable_markers.h);
 ///  * namespace = name of a net, id 0: its links, as lines; id 1, of a grid with marker_style tube: its triangles, lit from both
 ///  sides;

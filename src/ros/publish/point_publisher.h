@@ -9,10 +9,10 @@
 
 namespace verlet_cable {
 
-/// Topic `points`: the nodes of every cable, in order, as a PointCloud2 of height 1 with the fields x, y, z [m], rgb, tension [N]
-/// (of the segment that starts at the node; the last node repeats its neighbour's), cable_id, node_id and s (arc length [m]).
-/// Nets follow, cable_id counting on, with the largest tension of the links at the node and s = 0; then particles, without
-/// tension.
+/// Topic `points` (sensor_msgs/PointCloud2): the nodes of every cable, in order, as a cloud of height 1 with the fields x, y, z
+/// [m], rgb, tension [N] (of the segment that starts at the node; the last node repeats its neighbour's), cable_id, node_id and s
+/// (arc length [m]). Nets follow, cable_id counting on, with the largest tension of the links at the node and s = 0; then
+/// particles, without tension.
 class PointPublisher {
  public:
   PointPublisher(ros::NodeHandle& private_node, const SceneDesc& scene);

@@ -8,7 +8,7 @@
 
 namespace verlet_cable {
 
-/// Topic `state`: everything that is simulated, in double precision, as a CableArray.
+/// Topic `state` (verlet_cable/CableArray): everything that is simulated, in double precision.
 class StatePublisher {
  public:
   StatePublisher(ros::NodeHandle& private_node, const SceneDesc& scene);

@@ -11,9 +11,9 @@
 
 namespace verlet_cable {
 
-/// Topics `wrench/<attachment>`: what the cable exerts on what holds it, in the axes of the attachment's frame and with the
-/// torque about that frame's origin, the mean since the last tick. A topic is there as long as its attachment, but for the moment
-/// that the master takes, which is not waited for.
+/// Topic `wrench/ATTACHMENT` (geometry_msgs/WrenchStamped), one an attachment: what the cable exerts on what holds it, in the
+/// axes of the attachment's frame and with the torque about that frame's origin, the mean since the last tick. A topic is there
+/// as long as its attachment, but for the moment that the master takes, which is not waited for.
 class WrenchPublisher {
  public:
   explicit WrenchPublisher(ros::NodeHandle& private_node);

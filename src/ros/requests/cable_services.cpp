@@ -115,6 +115,7 @@ CableServices::CableServices(ros::NodeHandle& node, Simulation& simulation) : ow
   using std_srvs::Trigger;
   Simulation* const s = &simulation;
   servers_ = {
+      // Stops time, or lets it go on.
       serve<SetBool>(node, "pause",
                      [s](const auto& request, auto& response) { return answer(s->set_paused(request.data), response); }),
       serve<Unpin>(node, "unpin", [s](const auto& request, auto& response) { return answer(s->unpin(request.name), response); }),
@@ -137,6 +138,7 @@ CableServices::CableServices(ros::NodeHandle& node, Simulation& simulation) : ow
   SceneDesc lasting;  // what no request changes
   lasting.scene_directory = s->scene().scene_directory;
   lasting.limits = s->scene().limits;
+  // Back to the scene's initial state.
   serve_aside<Trigger>(node, "reset", [this, s](const auto&, auto& response) {
     return answer(owner_.ask([s](const Answer& done) { s->reset(done); }), response);
   });

@@ -13,9 +13,11 @@
 
 namespace verlet_cable {
 
-/// Topic `obstacles`: a perception node adds, moves and removes obstacles by markers. What it asks for is done between steps, as
-/// all callbacks come from one thread. A marker that is refused is logged, counted, and changes nothing. An obstacle whose mesh
-/// has to be read is there when that has been done, unless a later marker has replaced or deleted it.
+/// Subscribed topic `obstacles` (visualization_msgs/MarkerArray): a perception node adds, moves and removes obstacles by markers:
+/// CUBE, SPHERE, CYLINDER and MESH_RESOURCE, by ADD, DELETE and DELETEALL; namespace and id name an obstacle, its frame_id moves
+/// it. What it asks for is done between steps, as all callbacks come from one thread. A marker that is refused is logged,
+/// counted, and changes nothing. An obstacle whose mesh has to be read is there when that has been done, unless a later marker
+/// has replaced or deleted it.
 class ObstacleListener {
  public:
   ObstacleListener(ros::NodeHandle& private_node, Simulation& simulation);

@@ -11,8 +11,10 @@
 
 namespace verlet_cable {
 
-/// dynamic_reconfigure under `tuning`. The parameters follow the scene, with the ranges that it allows: that is why this speaks
-/// the protocol of dynamic_reconfigure (of its messages) itself, whose own server knows parameters of compile time only.
+/// Topic `tuning/parameter_descriptions` (dynamic_reconfigure/ConfigDescription), latched, with `tuning/parameter_updates` and
+/// the service `tuning/set_parameters`: dynamic_reconfigure for gravity, wind, dampings, stiffnesses and friction. The parameters
+/// follow the scene, with the ranges that it allows: that is why this speaks the protocol of dynamic_reconfigure (of its
+/// messages) itself, whose own server knows parameters of compile time only.
 class Tuning {
  public:
   Tuning(ros::NodeHandle& private_node, Simulation& simulation);

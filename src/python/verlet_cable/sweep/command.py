@@ -33,7 +33,7 @@ def _options(arguments):
     where = parser.add_mutually_exclusive_group()
     # No default here: argparse takes a value that is the default for none.
     cores = len(os.sched_getaffinity(0))
-    where.add_argument('--workers', metavar='N', type=_workers, help=f'processes on this machine (default: its cores, {cores})')
+    where.add_argument('--workers', metavar='N', type=_workers, help='processes on this machine (default: one a core)')
     where.add_argument('--scheduler', metavar='tcp://HOST:PORT', help='a running dask-scheduler, whose workers do the work')
     parser.add_argument('--resume', action='store_true', help='go on with a store that was begun; begin it if it is not there')
     options = parser.parse_args(arguments)
