@@ -67,6 +67,11 @@ page_packages=(python3-matplotlib python3-scipy)
 # And for scripts/test only.
 test_packages=(mypy)
 
+# And for scripts/docs only; Ubuntu 20.04's are too old, or missing.
+docs_packages=(
+  doxygen fonts-mathjax furo libjs-mathjax python3-breathe python3-myst-parser python3-sphinx python3-sphinx-copybutton
+)
+
 # as_root COMMAND...: needs sudo where the user is not root.
 as_root() {
   if [[ $(id -u) == 0 ]]; then

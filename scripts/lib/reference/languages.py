@@ -1,0 +1,58 @@
+"""doc/reference/cpp.md and python.md: which headers and modules there are; Doxygen and autodoc say the rest in the manual."""
+import re
+
+from reference.markdown import fence, generated, with_code
+
+GROUPS = {
+    'Worlds': ['core/world.h', 'core/edit.h', 'core/world_stepper.h', 'core/types.h'],
+    'What is simulated': [
+        'core/cable.h', 'core/cable_materials.h', 'core/body.h', 'core/body_id.h', 'core/net.h', 'core/guide.h', 'core/contact.h',
+        'core/obstacle.h', 'core/surface_point.h'],
+    'Scenes': [
+        'core/scene_desc.h', 'core/attachment_desc.h', 'core/body_desc.h', 'core/guide_desc.h', 'core/junction_desc.h', 'core/shape_desc.h',
+        'core/scene_fields.h'],
+    'Scene files': ['scene/scene_reader.h', 'scene/motion.h', 'scene/resource.h'],
+    'Geometry': ['core/shape.h', 'core/triangle_mesh.h', 'core/rotation.h'],
+    'Look-ups and messages': [
+        'core/body_name.h', 'core/obstacle_of.h', 'core/pin_rules.h', 'core/excursion_text.h', 'core/jump_text.h', 'core/name_list.h',
+        'core/number_text.h', 'core/quoted_text.h'],
+}
+MODULES = {
+    'verlet_cable.sim': ['Scene', 'World', 'Batch', 'Event', 'Pinned', 'Pieces', 'SceneError'],
+    'verlet_cable.environments': ['ShapeRope', 'ShapeRopeVector', 'LayCable', 'LayCableVector', 'AutoresetMode', 'Box'],
+}
+FIRST_COMMENT = re.compile(r'^(?:template.*\n)?((?:///.*\n)+)', re.M)
+
+
+def first_sentence(header):
+    match = FIRST_COMMENT.search(header)
+    text = ' '.join(line.lstrip('/ ') for line in match[1].splitlines()) if match else ''
+    return with_code(re.match(r'.*?\.(?= |$)|.*', text)[0])
+
+
+def cpp_page(checkout):
+    directory = checkout / 'include/verlet_cable'
+    headers = {str(path.relative_to(directory)) for path in directory.rglob('*.h')}
+    grouped = [header for group in GROUPS.values() for header in group]
+    if sorted(grouped) != sorted(headers):
+        raise ValueError(f'{__file__}: GROUPS differs from the headers: {sorted(headers.symmetric_difference(grouped))}')
+    text = generated('C++', 'include/verlet_cable') + (
+        'All is in the namespace `verlet_cable`. The libraries are `verlet_cable_core`, without ROS, and `verlet_cable_scene`, which reads '
+        'scene files.\n\n')
+    for group, names in GROUPS.items():
+        text += f'## {group}\n\n'
+        for name in names:
+            text += f'### {name}\n\n[`#include <verlet_cable/{name}>`](../../include/verlet_cable/{name})\n\n'
+            text += first_sentence((directory / name).read_text(encoding='utf-8')) + '\n\n'
+            text += fence('', f'{{doxygenfile}} {name}')
+    return text
+
+
+def python_page():
+    text = generated('Python', 'the modules')
+    for module, names in MODULES.items():
+        directives = f'.. automodule:: {module}\n   :no-members:\n'
+        text += f'## {module}\n\n' + fence(directives, '{eval-rst}')
+        for name in names:
+            text += f'### {name}\n\n' + fence(f'.. autoclass:: {module}.{name}\n', '{eval-rst}')
+    return text
