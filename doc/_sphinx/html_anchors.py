@@ -1,4 +1,5 @@
-"""`<a id="name"></a>` in a page, as in the tables of the reference, is what `page.md#name` leads to, as on GitHub."""
+"""`<a id="name"></a>` in a page is what `page.md#name` leads to, as on GitHub. Tables with such anchors are those of the reference, to
+which the style sheet gives another form on narrow screens."""
 import re
 
 from docutils import nodes
@@ -12,6 +13,9 @@ def note_anchors(app, doctree):
     for raw in doctree.findall(nodes.raw):
         for name in ANCHOR.findall(raw.astext()):
             labels[f'{app.env.doc2path(docname, base=False)}#{name}'] = docname, name
+            if isinstance(raw.parent.parent, nodes.entry):
+                table = raw.parent.parent.parent.parent.parent.parent
+                table['classes'] = ['reference-table']
 
 
 def setup(app):

@@ -79,7 +79,7 @@ def make_pages(app):
         return
     paths = {path for page in app.env.metadata.values() for path in page.get('repository_files', [])}
     for path in sorted(paths):
-        body = f'<h1><code>{escape(path)}</code></h1>{body_of(app, Path(path))}'
+        body = f'<h1><code class="file-path">{escape(path)}</code></h1>{body_of(app, Path(path))}'
         yield f'files/{path}', {'title': path, 'body': body, 'parents': []}, 'page.html'
 
 

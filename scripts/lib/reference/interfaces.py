@@ -2,7 +2,7 @@
 import re
 from dataclasses import dataclass
 
-from reference.markdown import generated, table, with_code
+from reference.markdown import anchor, generated, table, with_code
 
 FIELD = re.compile(r'^(?P<type>[\w/]+(?:\[\d*\])?)\s+(?P<name>\w+)\s*(?:=\s*(?P<value>[^#\s]+))?\s*(?:#\s*(?P<comment>.*))?$')
 
@@ -35,9 +35,9 @@ def type_link(name, messages):
     return f'[`{name}`](messages.md#{base.lower()})' if base in messages else f'`{name}`'
 
 
-def fields_table(fields, messages):
-    constants = [[f'`{field.name}`', f'`{field.value}`', with_code(field.comment)] for field in fields if field.value]
-    rows = [[f'`{field.name}`', type_link(field.type, messages), with_code(field.comment)] for field in fields if not field.value]
+def fields_table(fields, messages, owner):
+    constants = [[anchor(f'{owner}-{field.name}'.lower()) + f'`{field.name}`', f'`{field.value}`', with_code(field.comment)] for field in fields if field.value]
+    rows = [[anchor(f'{owner}-{field.name}'.lower()) + f'`{field.name}`', type_link(field.type, messages), with_code(field.comment)] for field in fields if not field.value]
     if not fields:
         return 'No fields.\n\n'
     text = table(['constant', 'value', 'meaning'], constants) if constants else ''
@@ -51,7 +51,7 @@ def sections(directory, suffix, names, messages):
         text += f'## {path.stem}\n\n' + (with_code(description) + '\n\n' if description else '')
         text += f'[{path.name}](../../{directory.name}/{path.name})\n\n'
         for name, fields in zip(names, parts):
-            text += f'{name}:\n\n' * bool(name) + fields_table(fields, messages)
+            text += f'{name}:\n\n' * bool(name) + fields_table(fields, messages, f'{path.stem}-{name}'.rstrip('-'))
     return text
 
 

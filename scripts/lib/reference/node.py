@@ -9,7 +9,8 @@ from reference.scene import read_keys, row
 TOPIC = re.compile(r'^/// (Topic|Subscribed topic) `([^`]+)` \(([\w/]+)\)(, latched)?((?:[,:]| ).*(?:\n///.*)*)\n(?:class|struct)', re.M)
 SERVICE = re.compile(r'(?:^ *// (?P<comment>.*)\n)?^ *serve(?:_aside)?<(?P<type>\w+)>\(\s*node, "(?P<name>\w+)"', re.M)
 REPORT = re.compile(r'void Diagnostics::report_(\w+)\(Status& status\)(?: const)? \{(.*?)\n\}', re.S)
-REPORTED = re.compile(r'status\.add\("(?P<key>[^"]+)"(?P<more> \+)?[^\n]*;(?: +// (?P<comment>.*))?')
+REPORTED = re.compile(r'status\.add\("(?P<key>[^"]+)"(?P<more> \+)?[^\n]*?[;,](?: +// (?P<comment>.*))?$', re.M)
+STATUS = re.compile(r'updater_\.add\("(\w+)"')
 TUNABLE = re.compile(r'&MaterialDesc::(\w+)')
 
 
@@ -29,7 +30,7 @@ def topic_rows(checkout, kind):
     for path in sorted((checkout / 'src/ros').rglob('*.h')):
         for found, name, type_name, latched, comment in TOPIC.findall(path.read_text(encoding='utf-8')):
             if found == kind:
-                yield [anchor('topic-' + name.strip('/').replace('/', '-').lower()) + f'`{name}`',
+                yield [anchor(kind.lower().replace(' ', '-') + '-' + name.strip('/').replace('/', '-').lower()) + f'`{name}`',
                        own_type(type_name, message_names(checkout)), ('Latched. ' if latched else '') + text_of(comment)]
 
 
@@ -66,11 +67,12 @@ def tuning_text(checkout):
 
 def diagnostics_text(checkout):
     code = (checkout / 'src/ros/node/diagnostics.cpp').read_text(encoding='utf-8')
-    text = ''
+    sections, last = {}, ''  # what no status is named after goes on with the one before
     for name, body in REPORT.findall(code):
-        rows = [[f'`{match["key"]}{"NAME" if match["more"] else ""}`', with_code(match['comment'] or '')] for match in REPORTED.finditer(body)]
-        text += f'Status `{name}`:\n\n' + table(['key', 'value'], rows) if name != 'waiting' else ''
-    return text
+        rows = [[anchor('diagnostics-' + match['key'].strip().replace(' ', '-')) + f'`{match["key"]}{"NAME" if match["more"] else ""}`', with_code(match['comment'] or '')] for match in REPORTED.finditer(body)]
+        sections.setdefault(name if name in STATUS.findall(code) else last, []).extend(rows)
+        last = name
+    return ''.join(f'Status `{name}`:\n\n' + table(['key', 'value'], rows) for name, rows in sections.items())
 
 
 def page(checkout):
@@ -86,5 +88,5 @@ def page(checkout):
             + table(['parameter', 'default', 'unit', 'meaning, range'], parameter_rows(checkout))
             + '## Tuning\n\n' + tuning_text(checkout)
             + '## Events\n\nValues of `type` in [`CableEvent`](messages.md#cableevent):\n\n'
-            + fields_table([event for event in events if event.value], message_names(checkout))
+            + fields_table([event for event in events if event.value], message_names(checkout), 'event')
             + '## Diagnostics\n\n' + diagnostics_text(checkout))

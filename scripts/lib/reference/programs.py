@@ -3,7 +3,7 @@ import os
 import subprocess
 import xml.etree.ElementTree
 
-from reference.markdown import fence, generated, table
+from reference.markdown import anchor, fence, generated, table
 
 BUILT = ['cable_sim', 'cable_fit']
 INSTALLED = ['cable_sweep', 'record_to_csv', 'play_motion.py']
@@ -31,7 +31,7 @@ def launch_rows(path):
     for argument in xml.etree.ElementTree.parse(path).getroot().findall('arg'):
         if 'value' not in argument.attrib:
             default = argument.get('default')
-            yield [f'`{argument.get("name")}`', 'required' if default is None else f'`{default}`', argument.get('doc', '')]
+            yield [anchor(f'{path.stem}-{argument.get("name")}') + f'`{argument.get("name")}`', 'required' if default is None else f'`{default}`', argument.get('doc', '')]
 
 
 def launch_sections(checkout):

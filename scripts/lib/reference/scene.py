@@ -2,15 +2,20 @@
 import re
 from dataclasses import dataclass, field
 
+import yaml
+
 from reference.markdown import anchor, generated, table, with_code
 
 KEY = re.compile(r'^(?P<indent> *)(?P<item>- )?(?P<key>[a-z_]+):(?: (?P<value>.*))?$')
-HIDDEN_KEY = re.compile(r'^ *#(?: |   )(?P<key>[a-z_]+): (?P<value>\S.*)$')
+# A key that is itself a comment, below its own.
+HIDDEN_KEY = re.compile(r'^(?P<indent> *)#(?: |   )(?P<key>[a-z_]+): (?P<value>\S.*)$')
 COMMENT = re.compile(r'^ *# ?(?P<text>.*)$')
 UNIT = re.compile(r'\[([a-zA-Z0-9/^() ]+)\]')
 # Whose value in the template is an example.
 EXAMPLE = re.compile(r'[Tt]he default is|[Ww]ithout it|required')
-# Keys that only examples have, as comments of the keys before them.
+REQUIRED = re.compile(r'Required[.,]')
+DEFAULT = re.compile(r'The default is ((?:[^.;:]|\.[0-9i])+)[.;:]')
+LONGEST_DEFAULT = 40  # letters; where it takes more to tell, the table has an example
 NAMES_OF_USERS = {'my_hose': 'NAME'}
 
 
@@ -20,7 +25,8 @@ class Key:
     value: str
     comment: list
     level: int
-    is_item: bool
+    is_item: bool = False
+    is_example: bool = False
     keys: list = field(default_factory=list)
 
     def add(self, key):
@@ -33,18 +39,20 @@ class Key:
 
 def read_keys(text):
     """The tree of keys, with the comments above each; a paragraph that stands alone is a key without a name."""
-    root = Key('', '', [], -1, False)
+    root = Key('', '', [], -1)
     open_keys, comment = [root], []
     for line in text.splitlines()[1:]:
         hidden, key, remark = HIDDEN_KEY.match(line), KEY.match(line), COMMENT.match(line)
         if not line:
             if comment:
-                root.keys.append(Key('', '', comment, 0, False))
+                root.keys.append(Key('', '', comment, 0))
             comment = []
-        elif hidden and (comment or hidden['key'] in ('tolerance', 'minimum_distances')):
-            level = len(line) - len(line.lstrip())
-            add(open_keys, Key(hidden['key'], hidden['value'], comment, level, False))
+        elif hidden and comment:
+            add(open_keys, Key(hidden['key'], hidden['value'], comment, len(hidden['indent']), is_example=True))
             comment = []
+        elif hidden and open_keys[-1].value.startswith('{'):  # what the keys of that mapping are
+            above = open_keys[-1]
+            above.keys.append(Key(hidden['key'], str(yaml.safe_load(above.value)[hidden['key']]), [hidden['value']], 0, is_example=True))
         elif remark:
             comment.append(remark['text'])
         elif key:
@@ -75,15 +83,18 @@ def unit_of(text):
     """The unit at the beginning, and the text without it; else those that the text names."""
     match = re.match(UNIT.pattern + r' ?', text)
     if match:
-        return match[1], text[match.end():]
+        return match[1], text[match.end():match.end() + 1].upper() + text[match.end() + 1:]
     return ', '.join(dict.fromkeys(UNIT.findall(text))), text
 
 
 def default_of(key, comment):
     value = key.value.split('  #')[0].strip()
-    if 'Required' in comment:
+    told = DEFAULT.search(comment)
+    if REQUIRED.search(comment):
         return f'required, such as `{value}`' if value else 'required'
-    if EXAMPLE.search(comment) or comment.startswith('As for'):
+    if told and len(told[1]) < LONGEST_DEFAULT:
+        return with_code(told[1])
+    if key.is_example or EXAMPLE.search(comment) or comment.startswith('As for'):
         return f'such as `{value}`' if value else ''
     return f'`{value}`' if value else ''
 
@@ -102,10 +113,8 @@ def meaning(lines):
 def row(key, path):
     comment = meaning(key.comment)
     unit, text = unit_of(comment)
-    inner = re.findall(r'(\w+): ', key.value) if key.value.startswith('{') and path != 'initial' else []
-    anchors = ''.join(anchor(slug(name)) for name in [path, *(f'{path}.{name}' for name in inner)])
     name = f'`{key.name}`' if not key.keys else f'[`{key.name}`](#{heading_anchor(section_path(key, path))})'
-    return [anchors + name, default_of(key, comment), unit, with_code(text.replace('Required.', '').strip())]
+    return [anchor(slug(path)) + name, default_of(key, comment), unit, with_code(text.replace('Required.', '').strip())]
 
 
 def section_path(key, path):
@@ -126,13 +135,13 @@ def section(key, path):
 
     for inner in key.keys:
         if inner.name:
-            rows.append(row(inner, f'{path}.{inner.name}' if path else inner.name))
+            rows.append(row(inner, f'{path}.{inner.name}'.lstrip('.')))
         else:
             text, rows = text + finished() + with_code(meaning(inner.comment)) + '\n\n', []
     text += finished()
     for inner in key.keys:
         if inner.keys:
-            below = section_path(inner, f'{path}.{inner.name}' if path else inner.name)
+            below = section_path(inner, f'{path}.{inner.name}'.lstrip('.'))
             text += f'## {below}\n\n{with_code(meaning(inner.comment))}\n\n' * bool(inner.name) + section(inner, below)
     return text
 

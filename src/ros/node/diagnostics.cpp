@@ -78,25 +78,25 @@ void Diagnostics::report_simulation(Status& status) {
   const Statistics& s = report.statistics;
   const double time_step = simulation_.world().time_step();
   const double step_time = s.steps > 0 ? s.wall_time / static_cast<double>(s.steps) : 0;
-  status.add("real_time_factor", step_time > 0 ? time_step / step_time : 0);
-  status.add("step_time_mean_s", step_time);
-  status.add("step_time_max_s", s.longest_step);
-  status.add("steps", s.steps);
-  status.add("dropped_time_s", seconds(report.dropped));
-  status.add("max_strain", s.max_strain);
-  status.add("overstretched_steps", s.overstretched);
-  status.add("jumped_steps", s.jumped);
-  status.add("degraded_steps", s.degraded);
-  status.add("exhausted_steps", s.exhausted);
-  status.add("faults", report.faults);
-  status.add("waiting_cables", join(simulation_.world().findings().waiting));
+  status.add("real_time_factor", step_time > 0 ? time_step / step_time : 0);  // time step over step_time_mean_s
+  status.add("step_time_mean_s", step_time);                                  // computing time of a step since the last report
+  status.add("step_time_max_s", s.longest_step);                              // that of the longest one
+  status.add("steps", s.steps);                           // steps since the last report, as all that counts steps here
+  status.add("dropped_time_s", seconds(report.dropped));  // left out since the start, for lack of time
+  status.add("max_strain", s.max_strain);                 // largest |l / l0 - 1|
+  status.add("overstretched_steps", s.overstretched);     // what holds a cable or net was further apart than it is long
+  status.add("jumped_steps", s.jumped);                   // a frame jumped, and what it holds was carried along
+  status.add("degraded_steps", s.degraded);               // no solution was found, and motion was taken away
+  status.add("exhausted_steps", s.exhausted);             // too much work for a step, which was ended from rest
+  status.add("faults", report.faults);                    // since the start
+  status.add("waiting_cables", join(simulation_.world().findings().waiting));  // cables, nets and bodies that are not there yet
   report_waiting(status);
-  status.add("unsettled_cables", join(simulation_.world().findings().unsettled));
-  status.add("found_inside_obstacles", join({report.intrusions.begin(), report.intrusions.end()}));
+  status.add("unsettled_cables", join(simulation_.world().findings().unsettled));  // without an equilibrium to start from
+  status.add("found_inside_obstacles", join({report.intrusions.begin(), report.intrusions.end()}));  // since the scene started
 
   summarize(report.phase, status);
   const Nanoseconds dropped = report.dropped - std::exchange(dropped_, report.dropped);
-  status.add("dropped_since_last_s", seconds(dropped));
+  status.add("dropped_since_last_s", seconds(dropped));  // dropped_time_s since the last report
   if (dropped > 0 && s.steps > 0) {
     const double simulated = static_cast<double>(s.steps) * time_step;
     char share[32];
@@ -123,7 +123,7 @@ void Diagnostics::report_waiting(Status& status) const {
   const std::vector<WaitingAttachment> waiting =
       waiting_attachments(simulation_.scene(), simulation_.world(), simulation_.frames().inputs());
   for (std::size_t i = 0; i < std::min(waiting.size(), most_waiting); ++i)
-    status.add("waiting_attachment " + waiting[i].holds + "/" + waiting[i].name, waiting[i].frame);
+    status.add("waiting_attachment " + waiting[i].holds + "/" + waiting[i].name, waiting[i].frame);  // the frame that is missing
 }
 
 void Diagnostics::report_frames(Status& status) const {
@@ -138,15 +138,15 @@ void Diagnostics::report_frames(Status& status) const {
       value += ", age " + rounded_text(seconds(simulation_.now() - frame.newest), 3) + " s";
     }
     if (frame.too_fast) value += ", faster than max_frame_speed";
-    status.add("frame " + frame.name, value);
+    status.add("frame " + frame.name, value);  // ok, late, lost, never seen or a body's; its age [s]
     if (frame.status == FrameStatus::never_seen)
       status.mergeSummary(DiagnosticStatus::WARN, "frame " + quoted(frame.name) + " never seen");
     if (frame.status == FrameStatus::lost) status.mergeSummary(DiagnosticStatus::WARN, "frame " + quoted(frame.name) + " lost");
     if (frame.too_fast) status.mergeSummary(DiagnosticStatus::WARN, "frame " + quoted(frame.name) + " too fast");
   }
-  status.add("refused_transforms", simulation_.frames().buffer().refused_count());
+  status.add("refused_transforms", simulation_.frames().buffer().refused_count());  // since the start
   for (const auto& [frame, sources] : simulation_.frames().buffer().disputed()) {
-    status.add("sources of " + frame, join(sources));
+    status.add("sources of " + frame, join(sources));  // nodes, where several send a frame
     status.mergeSummary(DiagnosticStatus::WARN,
                         "frame " + quoted(frame) + " comes from " + std::to_string(sources.size()) + " nodes");
   }
@@ -154,7 +154,7 @@ void Diagnostics::report_frames(Status& status) const {
     status.mergeSummary(DiagnosticStatus::WARN,
                         "frame " + quoted(frame) + " came on /tf and on /tf_static: start the node again");
   for (const auto& [frame, problem] : simulation_.frames().buffer().refused()) {
-    status.add("refused " + frame, problem);
+    status.add("refused " + frame, problem);  // why the last one was refused
     status.mergeSummary(DiagnosticStatus::WARN, "tf of frame " + quoted(frame) + " refused");
   }
 }
@@ -167,15 +167,15 @@ void Diagnostics::report_obstacles(Status& status) const {
     const bool lost = frames[obstacle.frame].status == FrameStatus::lost;
     if (obstacle.present && !lost) continue;
     const std::string& frame = world.frames()[obstacle.frame];
-    status.add("obstacle " + obstacle.name,
+    status.add("obstacle " + obstacle.name,  // where it is not as it should be
                (lost ? "stays where it was, as its frame is lost: " : "is not there yet, as its frame is not on tf: ") + frame);
     status.mergeSummary(DiagnosticStatus::WARN,
                         "obstacle " + quoted(obstacle.name) + (lost ? " has lost its frame" : " waits for its frame"));
   }
-  status.add("added", simulation_.added_obstacles().size());
-  status.add("refused_markers", obstacles_.refused_count());
+  status.add("added", simulation_.added_obstacles().size());  // obstacles that markers added
+  status.add("refused_markers", obstacles_.refused_count());  // since the start
   if (obstacles_.refused_count() == 0) return;
-  status.add("last_refused", obstacles_.last_problem());
+  status.add("last_refused", obstacles_.last_problem());  // why
   status.mergeSummary(DiagnosticStatus::WARN, "markers were refused");
 }
 
