@@ -29,6 +29,9 @@ html_static_path = ['_static', os.environ['VERLET_CABLE_MATHJAX']]
 mathjax_path = 'mathjax/MathJax.js?config=TeX-AMS_CHTML'
 mathjax2_config = {'showMathMenu': False, 'messageStyle': 'none', 'tex2jax': {'ignoreClass': 'body', 'processClass': 'math'}}
 
+highlight_language = 'text'  # where none is named
+smartquotes = False  # they make a dash of two hyphens
+
 autodoc_member_order = 'bysource'
 autodoc_default_options = {'members': True, 'undoc-members': True}
 autoclass_content = 'both'

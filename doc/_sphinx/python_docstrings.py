@@ -1,11 +1,12 @@
-"""Python's docstrings are plain text: backticks and indented lines are code, `name: text` lines are items, and signatures are those of the type stubs,
-where pybind11's would name types of its own."""
+"""Python's docstrings are plain text: backticks and indented lines are code, `name: text` lines are items, and signatures are those of
+the type stubs, where pybind11's would name types of its own."""
 import ast
 import re
 from pathlib import Path
 
 STUBS = Path(__file__).resolve().parents[2] / 'src/python/verlet_cable/_simulation.pyi'
 OVERLOAD = re.compile(r'^\d+\. __init__\(')
+ALIAS = re.compile(r'\b_(Path|Motion|Status)\b')
 ARGUMENT = re.compile(r'^[a-z_]+(?:, [a-z_]+)*(?: \(.*?\)| \[.*?\])?: ')
 
 
@@ -17,7 +18,8 @@ def signatures():
             if isinstance(function, ast.FunctionDef):
                 arguments = function.args
                 arguments.args = [argument for argument in arguments.args if argument.arg != 'self']
-                found.setdefault(f'{owner.name}.{function.name}', []).append((f'({ast.unparse(arguments)})', ast.unparse(function.returns)))
+                parts = f'({ast.unparse(arguments)})', ast.unparse(function.returns)
+                found.setdefault(f'{owner.name}.{function.name}', []).append([ALIAS.sub(r'\1', part) for part in parts])
     return found
 
 
@@ -44,7 +46,7 @@ def as_text(app, what, name, obj, options, lines):
             continue
         elif line.startswith('    '):
             last = next((above for above in reversed(text) if above), '')
-            text += ['::', ''] * (not last.startswith('    '))
+            text += ['.. code-block:: python' if ' import ' in line else '::', ''] * (not last.startswith('    '))
         elif ARGUMENT.match(line):
             text += [''] * (not text or not text[-1].startswith('* '))
             line = '* ' + line

@@ -1,4 +1,5 @@
-"""Links from pages to files of the repository that are no pages lead to pages that show them, or list the directory.
+"""Links from pages to files of the repository that are no pages lead to pages that show them, or list the directory; those to the README
+to the first page, which has its place here.
 
 GitHub shows `[hose.yaml](../config/hose.yaml)` by itself. Files that are no text, and large ones, are downloads."""
 import os
@@ -12,8 +13,9 @@ from sphinx import addnodes
 from sphinx.util.osutil import relative_uri
 
 CHECKOUT = Path(__file__).resolve().parents[2]
+README = Path('README.md')
 LARGEST = 200_000  # bytes
-LANGUAGES = {'.launch': 'xml', '.test': 'xml', '.msg': 'bash', '.srv': 'bash', '.action': 'bash', '.cfg': 'python'}
+LANGUAGES = {'.h': 'cpp', '.launch': 'xml', '.test': 'xml', '.msg': 'bash', '.srv': 'bash', '.action': 'bash', '.cfg': 'python'}
 
 
 def path_of(target, page):
@@ -49,9 +51,13 @@ def lead_to_files(app, doctree):
             path = link.get('reftype') == 'myst' and path_of(link['reftarget'], page)
             if not path or not is_shown(path) or app.env.path2doc(str(CHECKOUT / path)) in app.env.found_docs:
                 continue
-            uri = relative_uri(app.builder.get_target_uri(app.env.docname), f'files/{path}.html')
+            target = f'files/{path}.html'
+            if path == README:
+                target = app.builder.get_target_uri(app.config.root_doc)
+            else:
+                shown.append(str(path))
+            uri = relative_uri(app.builder.get_target_uri(app.env.docname), target)
             link.replace_self(nodes.reference('', '', *link.children, refuri=uri, internal=True))
-            shown.append(str(path))
 
 
 def language_of(path, text):

@@ -1,7 +1,7 @@
 """doc/reference/cpp.md and python.md: which headers and modules there are; Doxygen and autodoc say the rest in the manual."""
 import re
 
-from reference.markdown import fence, generated, with_code
+from reference.markdown import fence, generated
 
 GROUPS = {
     'Worlds': ['core/world.h', 'core/edit.h', 'core/world_stepper.h', 'core/types.h'],
@@ -21,13 +21,13 @@ MODULES = {
     'verlet_cable.sim': ['Scene', 'World', 'Batch', 'Event', 'Pinned', 'Pieces', 'SceneError'],
     'verlet_cable.environments': ['ShapeRope', 'ShapeRopeVector', 'LayCable', 'LayCableVector', 'AutoresetMode', 'Box'],
 }
-FIRST_COMMENT = re.compile(r'^(?:template.*\n)?((?:///.*\n)+)', re.M)
+TYPE = re.compile(r'^(?:class|struct|enum class|using) (\w+)[^;\n]*(?: [{=]|\{)', re.M)
+FUNCTION = re.compile(r'^(?! )(?:inline |constexpr )*[\w:<>,&* ]*[\w>&*] [&*]?(\w+)\(', re.M)
 
 
-def first_sentence(header):
-    match = FIRST_COMMENT.search(header)
-    text = ' '.join(line.lstrip('/ ') for line in match[1].splitlines()) if match else ''
-    return with_code(re.match(r'.*?\.(?= |$)|.*', text)[0])
+def declared_names(header):
+    found = [match for kind in (TYPE, FUNCTION) for match in kind.finditer(header)]
+    return ', '.join(dict.fromkeys(f'`{match[1]}`' for match in sorted(found, key=lambda match: match.start())))
 
 
 def cpp_page(checkout):
@@ -43,13 +43,15 @@ def cpp_page(checkout):
         text += f'## {group}\n\n'
         for name in names:
             text += f'### {name}\n\n[`#include <verlet_cable/{name}>`](../../include/verlet_cable/{name})\n\n'
-            text += first_sentence((directory / name).read_text(encoding='utf-8')) + '\n\n'
+            text += declared_names((directory / name).read_text(encoding='utf-8')) + '\n\n'
             text += fence('', f'{{doxygenfile}} {name}')
     return text
 
 
 def python_page():
-    text = generated('Python', 'the modules')
+    text = generated('Python', 'the modules') + (
+        'In signatures, a `Path` is text, bytes or an `os.PathLike`; a `Motion` is the path of a CSV file as of `cable_sim --motion`, or '
+        '`{frame: (times (k,) [s], poses (k, 7))}`; a `Status` is one of the words that `World.step` returns.\n\n')
     for module, names in MODULES.items():
         directives = f'.. automodule:: {module}\n   :no-members:\n'
         text += f'## {module}\n\n' + fence(directives, '{eval-rst}')

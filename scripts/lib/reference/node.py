@@ -83,7 +83,8 @@ def page(checkout):
             + '## Published topics\n\n' + table(topics, topic_rows(checkout, 'Topic'))
             + '## Subscribed topics\n\n' + table(topics, topic_rows(checkout, 'Subscribed topic'))
             + '## Services\n\n' + table(['service', 'type', 'what it does'], service_rows(checkout))
-            + 'The action `rollout` has the type [`Rollout`](services.md#rollout).\n\n'
+            + 'The action `rollout` has the type [`Rollout`](services.md#rollout), and the topics `rollout/goal`, `rollout/cancel`, '
+            '`rollout/status`, `rollout/feedback` and `rollout/result`.\n\n'
             + '## Parameters\n\nThe private parameters are the keys of a [scene](scene.md). Those that are for the node alone:\n\n'
             + table(['parameter', 'default', 'unit', 'meaning, range'], parameter_rows(checkout))
             + '## Tuning\n\n' + tuning_text(checkout)
