@@ -5,15 +5,17 @@ keeps a picture of each, NAME.png. What it needs: see rviz_stage.py.
 import pathlib
 import subprocess
 import sys
+import time
 
 from rviz_stage import configuration, inside, keep, stage
 
 SIZE = (640, 600)  # [pixels] of the window
+SHOWING = 2.0      # [s] until what stands still is published and drawn
 SCENES = {  # [s] until the picture
     'pole': 6,
     'pile': 6,
     'table': 4,
-    'knot': 3.5,
+    'knot': 2.2,
     'crossed': 4,
     'flat_cable': 5,
     'coiled_cable': 2,
@@ -56,7 +58,7 @@ def picture_lecture(name, file):
         clock.go_on(seconds)
         if steps is not None:
             stop(steps)
-            clock.go_on(1)
+            time.sleep(SHOWING)
         keep(file, inside(SIZE))
 
 
