@@ -64,7 +64,7 @@ def transform(name, frame_pose, stamp):
 
 
 def label(number, text, x, z):
-    marker = Marker(ns='labels', id=number, type=Marker.TEXT_VIEW_FACING, text=text, color=ColorRGBA(1, 1, 1, 1))
+    marker = Marker(ns='labels', id=number, type=Marker.TEXT_VIEW_FACING, text=text, color=ColorRGBA(0.1, 0.1, 0.12, 1))
     marker.header.frame_id = FIXED_FRAME
     marker.pose.position = Point(x, 0, z)
     marker.pose.orientation.w = 1

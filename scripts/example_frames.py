@@ -122,7 +122,7 @@ EXAMPLES = {
         ('the tether between a ship and an underwater robot, in a current', 0.5, 0, 0.55, 0.12),
         ('water surface', -1.1, 0, 0.06, 0.08), ('current ->', -1.1, 0, -0.9, 0.12)]),
     'tracker': (tracker, [
-        ('what a depth camera sees of a rope: white', 0, 0, 1.38, 0.055),
+        ('what a depth camera sees of a rope: blue', 0, 0, 1.38, 0.055),
         ('where its nodes are, at the same stamp: red', 0, 0, 1.3, 0.055)]),
     'gripper_load': (gripper_load, [
         ('the load of a cable on a gripper', 0.3, 0, 1.5, 0.06), ('orange: force, purple: torque', 0.3, 0, 1.42, 0.045),
@@ -148,7 +148,7 @@ def transform(name, frame_pose, stamp):
 
 
 def label(number, text, x, y, z, height):
-    marker = Marker(ns='labels', id=number, type=Marker.TEXT_VIEW_FACING, text=text, color=ColorRGBA(1, 1, 1, 1))
+    marker = Marker(ns='labels', id=number, type=Marker.TEXT_VIEW_FACING, text=text, color=ColorRGBA(0.1, 0.1, 0.12, 1))
     marker.header.frame_id = FIXED_FRAME
     marker.pose.position = Point(x, y, z)
     marker.pose.orientation.w = 1

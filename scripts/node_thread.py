@@ -1,11 +1,18 @@
 """Runs what a node does in a thread of its own."""
 import threading
+import time
 
 import rospy
 
 
+def wait_for_time():
+    """Until the first /clock where use_sim_time is true: what begins at time 0 leaps to the time that there is then."""
+    while rospy.Time.now().is_zero() and not rospy.core.is_shutdown_requested():
+        time.sleep(0.01)
+
+
 def run(name, work):
-    """A node of this name, until `work()` has ended or the node is shut down; raises what `work` raised, unless that came of the shutdown.
+    """A node of this name, once there is a time, until `work()` has ended or the node is shut down; raises what `work` raised, unless that came of the shutdown.
 
     rospy shuts a node down in the main thread, wherever that is. A thread that publishes holds the lock of a queue that the shutdown
     takes, too: were it the main thread, Ctrl-C could wait for ever (QueuedConnection in rospy/impl/tcpros_pubsub.py).
@@ -14,6 +21,7 @@ def run(name, work):
 
     def guarded_work():
         try:
+            wait_for_time()
             work()
         except BaseException as problem:  # SystemExit, too: a thread cannot end the program with it
             ended = rospy.core.is_shutdown_requested() and isinstance(problem, (rospy.ROSException, rospy.ServiceException))

@@ -40,8 +40,8 @@ RETURN = 2.0              # [s] from the last pose to the first
 STANDSTILL = 0.15         # [s] without tf after which the simulation has used up what it had: a multiple of tf_latency
 ANSWER_TIMEOUT = 10.0     # [s] for the node
 LOOK_PERIOD = 0.1         # [s] while it is waited for
-MEASURED_COLOR = ColorRGBA(0.25, 0.9, 0.35, 0.8)
-TEXT_COLOR = ColorRGBA(1.0, 1.0, 1.0, 1.0)
+MEASURED_COLOR = ColorRGBA(0.1, 0.6, 0.25, 0.8)
+TEXT_COLOR = ColorRGBA(0.1, 0.1, 0.12, 1.0)
 
 
 class MeanError:

@@ -1,47 +1,33 @@
 #!/usr/bin/python3
-"""picture_examples.py OUTPUT_DIRECTORY [NAME...]: pictures of launch/examples, and of the panel, the tools and a menu in use.
-
-Needs the workspace's setup sourced, Xvfb, xdotool and ImageMagick.
+"""picture_examples.py OUTPUT_DIRECTORY [NAME...]: pictures of launch/examples, of the demo, and of the panel, the tools and a
+menu in use, NAME.png. What it needs: see rviz_stage.py.
 """
 import os
 import pathlib
 import subprocess
 import sys
-import tempfile
 import time
-from urllib.parse import urlsplit
 
-import yaml
-
-from picture_scenes import DISPLAY, PACKAGE, STARTING, running
+from rviz_stage import DISPLAY, PACKAGE, configuration, inside, keep, stage
 
 SIZE = (800, 600)            # [pixels] of the window
 WIDE = (1100, 700)           # with panels
 EXAMPLES = {  # [s] until the picture
-    'arm_dress_pack': 8,
-    'crane': 4,
-    'drones_with_bar': 5,
-    'finger': 3,
-    'gripper_load': 5,
-    'harness': 14,
-    'hose_between_arms': 7,
-    'plug': 10,
-    'rov_tether': 8,
-    'tethered_drone': 5,
-    'tracker': 4,
+    'arm_dress_pack': 9,
+    'crane': 5,
+    'drones_with_bar': 6,
+    'finger': 4,
+    'gripper_load': 6,
+    'harness': 15,
+    'hose_between_arms': 8,
+    'plug': 11,
+    'rov_tether': 9,
+    'tethered_drone': 6,
+    'tracker': 5,
 }
 SCENE = 'config/hanging_cable.yaml'  # of the tools and the menu: it hangs still
 VIEW = {'Distance': 2.0, 'Pitch': 0.1, 'Yaw': -1.5708, 'Focal Point': {'X': 0.5, 'Y': 0, 'Z': 0.75}}
 ON_CABLE = (735, 458)  # [pixels] the middle of the cable in that view
-
-
-def configuration(file, size, panels, **view):
-    """The text of an rviz configuration for a window of a size, with or without its panels, and what it shows."""
-    config = yaml.safe_load((PACKAGE / file).read_text())
-    config['Visualization Manager']['Views']['Current'].update(view)
-    config['Window Geometry'].update({'Width': size[0], 'Height': size[1], 'X': 0, 'Y': 0})
-    config['Panels'] = [panel for panel in config['Panels'] if panels and panel['Class'] != 'rviz/Displays']
-    return yaml.safe_dump(config)
 
 
 def xdotool(*command):
@@ -59,74 +45,59 @@ def click(button):
     time.sleep(1.5)
 
 
-def keep(file, geometry=None):
-    crop = ['-crop', geometry, '+repage'] if geometry else []
-    subprocess.run(['import', '-display', DISPLAY, '-window', 'root', *crop, '-colors', '128', f'PNG8:{file}'], check=True)
-
-
-class Stage:
-    """rviz on the display, and a launch file."""
-
-    def __init__(self, config, launch):
-        self._file = tempfile.NamedTemporaryFile('w', suffix='.rviz')
-        self._file.write(config)
-        self._file.flush()
-        port = str(urlsplit(os.environ['ROS_MASTER_URI']).port)
-        self._parts = [running('roscore', '-p', port), running('rviz', '-d', self._file.name, DISPLAY=DISPLAY),
-                       running('roslaunch', 'verlet_cable', *launch, 'rviz:=false')]
-
-    def __enter__(self):
-        for part in self._parts:
-            part.__enter__()
-            time.sleep(STARTING / 2)
-        time.sleep(STARTING / 2)
-
-    def __exit__(self, *exception):
-        for part in reversed(self._parts):
-            part.__exit__(*exception)
-        self._file.close()
-
-
-def picture_example(name, file):
-    with Stage(configuration(f'rviz/examples/{name}.rviz', SIZE, panels=False), [f'{name}.launch']):
-        time.sleep(EXAMPLES[name])
-        keep(file, f'{SIZE[0] - 34}x{SIZE[1] - 105}+17+65')  # without rviz's menus and edges
-
-
-def picture_panel(file):
-    with Stage(configuration('rviz/panel.rviz', WIDE, panels=True), ['demo.launch']):
-        keep(file)
+def show(file, config, launch, seconds):
+    """In a window without panels."""
+    with stage(SIZE, configuration(config, SIZE), launch) as clock:
+        clock.go_on(seconds)
+        keep(file, inside(SIZE))
 
 
 def on_the_still_cable():
-    return Stage(configuration('rviz/panel.rviz', WIDE, panels=True, **VIEW), ['cable.launch', f'scene:={PACKAGE / SCENE}'])
+    return stage(WIDE, configuration('rviz/panel.rviz', WIDE, panels=True, **VIEW), ['cable.launch', f'scene:={PACKAGE / SCENE}'])
+
+
+def picture_demo(file):
+    show(file, 'rviz/cable.rviz', ['demo.launch'], 3)
+
+
+def picture_panel(file):
+    with stage(WIDE, configuration('rviz/panel.rviz', WIDE, panels=True), ['demo.launch']) as clock:
+        clock.go_on(4)
+        keep(file)
 
 
 def picture_tool(file):
-    with on_the_still_cable():
+    with on_the_still_cable() as clock:
+        clock.go_on(1)
         press('x')
         click(1)
+        clock.go_on(0.3)
         keep(file)
 
 
 def picture_menu(file):
-    with on_the_still_cable():
+    with on_the_still_cable() as clock:
+        clock.go_on(1)
         press('i')
         click(3)
         keep(file)
 
 
+OTHERS = {'demo': picture_demo, 'panel': picture_panel, 'tool': picture_tool, 'menu': picture_menu}
+
+
 def main():
     output = pathlib.Path(sys.argv[1])
     output.mkdir(parents=True, exist_ok=True)
-    others = {'panel': picture_panel, 'tool': picture_tool, 'menu': picture_menu}
-    with running('Xvfb', DISPLAY, '-screen', '0', f'{WIDE[0]}x{WIDE[1]}x24', '-nolisten', 'tcp'):
-        for name in sys.argv[2:] or [*EXAMPLES, *others]:
-            file = output / f'{name}.png'
-            if name in others:
-                others[name](file)
-            else:
-                picture_example(name, file)
+    if len(sys.argv) == 3:
+        name, file = sys.argv[2], output / f'{sys.argv[2]}.png'
+        if name in OTHERS:
+            OTHERS[name](file)
+        else:
+            show(file, f'rviz/examples/{name}.rviz', [f'{name}.launch'], EXAMPLES[name])
+        return
+    for name in sys.argv[2:] or [*EXAMPLES, *OTHERS]:
+        subprocess.run([sys.executable, __file__, str(output), name], check=True)
 
 
 if __name__ == '__main__':

@@ -12,6 +12,13 @@ import matplotlib
 
 matplotlib.use('Agg')
 import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib.lines import Line2D  # noqa: E402
+from matplotlib.ticker import FixedLocator, NullLocator, StrMethodFormatter  # noqa: E402
+
+COLORS = plt.get_cmap('tab10').colors
+MARKERS = 'os^Dvp*X'
+LEGEND_WIDTH = 66  # [characters]
+DATA_HEIGHT, LEGEND_HEIGHT = 4.0, 0.21  # [inches] of all but the legend, and of a row of it
 
 # Beginning of the names that make a picture: title, labels of the curves' axes.
 CASES = {
@@ -53,15 +60,18 @@ def read(path):
         return list(csv.reader(file))
 
 
-def legend(axes, size):
-    """Beside the data where there is room, below them otherwise."""
-    entries = len(axes.get_legend_handles_labels()[1])
-    if entries <= 6:
-        axes.legend(fontsize=size)
-    else:
-        columns = len(axes.figure.axes)
-        axes.legend(fontsize=6, loc='upper center', bbox_to_anchor=(0.5, -0.26), ncol=columns)
-        axes.figure.set_figheight(3.4 + 0.14 * entries / columns)
+def legend(axes, handles=None):
+    """Below the data, a row for two or three entries."""
+    handles = axes.get_legend_handles_labels()[0] if handles is None else handles
+    longest = max(len(handle.get_label()) for handle in handles)
+    columns = max(1, min(len(handles), LEGEND_WIDTH // (longest + 8)))
+    axes.legend(handles=handles, loc='upper center', bbox_to_anchor=(0.5, -0.2), ncol=columns, frameon=False)
+    return -(-len(handles) // columns)
+
+
+def without(case, name):
+    """What a name tells besides the case, which the title tells."""
+    return name[len(case):].lstrip(' ,:') or case
 
 
 def finest(curves):
@@ -77,45 +87,60 @@ def finest(curves):
     return {label: points for label, points in curves.items() if label in kept or ', n = ' not in label}
 
 
-def plot_errors(axes, rows):
+def plot_errors(axes, case, rows):
+    """A color a variant of the case, a marker a quantity. Returns the rows of the legend."""
     series = defaultdict(list)
     for name, n, error, tolerance in rows:
-        series[name].append((float(n), float(error), float(tolerance)))
-    for name, samples in series.items():
+        series[tuple(without(case, name).partition(': ')[::2])].append((float(n), float(error), float(tolerance)))
+    variants, quantities = (list(dict.fromkeys(key[part] for key in series)) for part in (0, 1))
+    for (variant, quantity), samples in series.items():
         n, errors, tolerances = zip(*samples)
-        line, = axes.loglog(n, errors, 'o-', label=name)
-        axes.loglog(n[-1], tolerances[-1], '_', color=line.get_color(), markersize=16, markeredgewidth=2)
+        color, marker = COLORS[variants.index(variant) % len(COLORS)], MARKERS[quantities.index(quantity)]
+        axes.loglog(n, errors, marker + '-', color=color, markersize=6)
+        axes.loglog(n[-1], tolerances[-1], '_', color=color, markersize=18, markeredgewidth=2)
     longest = max(series.values(), key=len)
+    handles = [Line2D([], [], color=COLORS[i % len(COLORS)], marker='o' if quantities == [''] else '', linewidth=2, label=variant)
+               for i, variant in enumerate(variants)]
+    if quantities != ['']:
+        handles += [Line2D([], [], color='0.4', marker=MARKERS[i], linestyle='', label=quantity or 'error') for i, quantity in enumerate(quantities)]
     if len(longest) > 1:
         n = [sample[0] for sample in longest]
-        axes.loglog(n, [longest[0][1] * (n[0] / x) ** 2 for x in n], 'k:', linewidth=1, label='second order')
-    axes.set_xlabel('segments or steps; dash: to reach')
+        handles += axes.loglog(n, [longest[0][1] * (n[0] / x) ** 2 for x in n], 'k:', linewidth=1.5, label='falls with the square')
+    handles.append(Line2D([], [], color='0.4', marker='_', markersize=14, markeredgewidth=2, linestyle='', label='largest error allowed'))
+    refinements = sorted({sample[0] for samples in series.values() for sample in samples})
+    axes.xaxis.set_major_locator(FixedLocator(refinements))
+    axes.xaxis.set_major_formatter(StrMethodFormatter('{x:g}'))
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.set_xlabel('number of segments, or of steps')
     axes.set_ylabel('relative error')
-    legend(axes, 7)
+    axes.grid(color='0.9')
+    return legend(axes, handles)
 
 
-def plot_curves(axes, rows, x_label, y_label):
+def plot_curves(axes, case, rows, x_label, y_label):
+    """The references are wide grey lines below the curves. Returns the rows of the legend."""
     curves = defaultdict(list)
     for name, label, x, y in rows:
-        curves[name + ', ' + label].append((float(x), float(y)))
+        curves[without(case, name + ', ' + label)].append((float(x), float(y)))
     if 'stiffness' not in y_label:
         curves = finest(curves)
-    references = [label for label in curves if label.endswith(', reference')]
+    references = [label for label in curves if label.endswith('reference')]
     for label, points in curves.items():
         if 'stiffness' in y_label:
             points.sort()
-        if label.endswith(', reference'):
-            axes.plot(*zip(*points), 'k--', linewidth=1, zorder=3, label='reference' if label == min(references) else None)
+        if label in references:
+            axes.plot(*zip(*points), color='0.75', linewidth=5, zorder=1, label='reference' if label == min(references) else None)
         else:
-            axes.plot(*zip(*points), '.-' if len(points) < 10 else '-', label=label)
+            axes.plot(*zip(*points), '.-' if len(points) < 10 else '-', linewidth=1.5, label=label)
     if 'stiffness' in y_label:
         axes.axhline(0, color='k', linewidth=0.5)
-        axes.axvline(1, color='k', linestyle='--', linewidth=1, label='reference')
+        axes.axvline(1, color='0.75', linewidth=5, zorder=1, label='reference')
     elif x_label.startswith('x'):
         axes.set_aspect('equal', 'datalim')
     axes.set_xlabel(x_label)
     axes.set_ylabel(y_label)
-    legend(axes, 6)
+    axes.grid(color='0.9')
+    return legend(axes)
 
 
 def main(data, pictures):
@@ -126,11 +151,12 @@ def main(data, pictures):
         drawn = [row for row in curves if row[0].startswith(case)]
         if not of_case:
             sys.exit(f'plot_validation.py: no errors of "{case}" in {data}')
-        figure, axes = plt.subplots(1, 2 if drawn else 1, figsize=(9 if drawn else 4.5, 3.4), squeeze=False)
-        plot_errors(axes[0][0], of_case)
+        figure, axes = plt.subplots(1, 2 if drawn else 1, figsize=(10 if drawn else 5, 1), squeeze=False)
+        rows = plot_errors(axes[0][0], case, of_case)
         if drawn:
-            plot_curves(axes[0][1], drawn, x_label, y_label)
+            rows = max(rows, plot_curves(axes[0][1], case, drawn, x_label, y_label))
         figure.suptitle(title)
+        figure.set_figheight(DATA_HEIGHT + LEGEND_HEIGHT * rows)
         figure.tight_layout()
         # No date and no version inside: the same data make the same bytes.
         figure.savefig(pictures / (case.lower().replace(',', '').replace(' ', '_') + '.png'), dpi=80, metadata={'Software': None})

@@ -181,13 +181,13 @@ def run(program, results, log_directory, reports=None):
 def check_package(package):
     """catkin_lint as a test case of its own, where it is installed."""
     lint = Program('catkin_lint', [])
-    checked = subprocess.run(['catkin_lint', '--offline', '-q', '--ignore', 'uninstalled_script', str(package)],
+    checked = subprocess.run(['catkin_lint', '--offline', '-q', '--strict', str(package)],
                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     print(checked.stdout, end='')
     if checked.returncode == 0:
         lint.passed = 1
     else:
-        lint.failures.append('found errors')
+        lint.failures.append('found errors or warnings')
     print(f'{"ok  " if lint.passed else "FAIL"}  catkin_lint')
     return lint
 

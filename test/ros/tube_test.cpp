@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "publish/color.h"
+#include "publish/light.h"
 #include "publish/ring_choice.h"
 
 namespace verlet_cable {
@@ -289,20 +290,39 @@ TEST(Tube, HasTheColorsOfItsNodes) {
   const std::vector<Vector3> line = straight_line(200, 1.0);
   Marker tube;
   fill_tube(line, colors, 0.01, detail_along(line, colors, 0.01), tube);
+  // The highest corner of each ring: along a straight tube they are all lit alike.
+  const auto higher = [](const geometry_msgs::Point& a, const geometry_msgs::Point& b) { return a.z < b.z; };
+  const Vector3 highest = from_point(*std::max_element(tube.points.begin(), tube.points.end(), higher));
+  const Vector3 normal = Vector3(0, highest.y(), highest.z()).normalized();
   std::map<double, std_msgs::ColorRGBA> shown;
-  for (std::size_t i = 0; i < tube.points.size(); ++i) shown[std::round(1e9 * tube.points[i].x) / 1e9] = tube.colors[i];
+  for (std::size_t i = 0; i < tube.points.size(); ++i)
+    if (tube.points[i].z > highest.z() - 1e-9) shown[std::round(1e9 * tube.points[i].x) / 1e9] = tube.colors[i];
   for (int node = 0; node <= 200; ++node) {
     const auto after = shown.lower_bound(line[node].x() - 1e-9);
     const auto before = after == shown.begin() ? after : std::prev(after);
     const double stretch = after->first - before->first;
     const double part = stretch > 0 ? std::min((line[node].x() - before->first) / stretch, 1.0) : 1;
+    const std_msgs::ColorRGBA expected = lit(colors[node], normal);
     for (const auto& channel :
          {&std_msgs::ColorRGBA::r, &std_msgs::ColorRGBA::g, &std_msgs::ColorRGBA::b, &std_msgs::ColorRGBA::a})
-      EXPECT_NEAR(before->second.*channel + part * (after->second.*channel - before->second.*channel), colors[node].*channel,
-                  0.026)
+      EXPECT_NEAR(before->second.*channel + part * (after->second.*channel - before->second.*channel), expected.*channel, 0.026)
           << node;
   }
   EXPECT_LT(tube.points.size(), 42 * 60u);
+}
+
+TEST(Tube, IsDarkerBelowThanAbove) {
+  const std::vector<Vector3> line = straight_line(10, 1.0);
+  const std::vector<std_msgs::ColorRGBA> colors(line.size(), color_of_load(1));
+  Marker tube;
+  fill_tube(line, colors, 0.01, detail_along(line, colors, 0.01), tube);
+  const auto higher = [](const geometry_msgs::Point& a, const geometry_msgs::Point& b) { return a.z < b.z; };
+  const auto ends = std::minmax_element(tube.points.begin(), tube.points.end(), higher);
+  const std_msgs::ColorRGBA& below = tube.colors[ends.first - tube.points.begin()];
+  const std_msgs::ColorRGBA& above = tube.colors[ends.second - tube.points.begin()];
+  EXPECT_LT(below.r, 0.8f * above.r);
+  EXPECT_GT(below.r, 0.4f * above.r);
+  EXPECT_EQ(below.a, above.a);
 }
 
 TEST(Tube, SurvivesFoldsAndCoincidingNodes) {

@@ -14,15 +14,15 @@ namespace {
 
 constexpr double standard_gravity = 9.81;             // [m/s^2] where the scene has none to weigh its cables with
 constexpr double full_strain_if_inextensible = 1e-3;  // nothing to see as long as the solver keeps its lengths
-/// ColorBrewer's RdYlBu (Harrower and Brewer 2003), nine classes, without its two darkest ends.
-constexpr std::array<std::array<float, 3>, 9> stops{{{0.27f, 0.46f, 0.71f},
-                                                     {0.45f, 0.68f, 0.82f},
-                                                     {0.67f, 0.85f, 0.91f},
-                                                     {0.88f, 0.95f, 0.97f},
-                                                     {1.00f, 1.00f, 0.75f},
-                                                     {1.00f, 0.88f, 0.56f},
-                                                     {0.99f, 0.68f, 0.38f},
-                                                     {0.96f, 0.43f, 0.26f},
+/// From blue over teal and ochre to red: none so pale or so dark that it is lost on a light or a dark background.
+constexpr std::array<std::array<float, 3>, 9> stops{{{0.22f, 0.42f, 0.75f},
+                                                     {0.20f, 0.56f, 0.80f},
+                                                     {0.20f, 0.66f, 0.74f},
+                                                     {0.35f, 0.72f, 0.58f},
+                                                     {0.58f, 0.74f, 0.38f},
+                                                     {0.82f, 0.70f, 0.24f},
+                                                     {0.93f, 0.56f, 0.18f},
+                                                     {0.93f, 0.38f, 0.20f},
                                                      {0.84f, 0.19f, 0.15f}}};
 
 double mass(const SceneDesc& scene, const CableDesc& cable) {

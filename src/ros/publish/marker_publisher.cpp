@@ -6,6 +6,7 @@
 #include "publish/cable_markers.h"
 #include "publish/conversions.h"
 #include "publish/guide_markers.h"
+#include "publish/light.h"
 #include "publish/obstacle_markers.h"
 #include "publish/queue_size.h"
 #include "verlet_cable/core/cable_materials.h"
@@ -23,9 +24,7 @@ constexpr int net_lines_id = 0, net_triangles_id = 1, particle_marker_id = 0;
 constexpr double net_line_width = 0.04;  // of the first link's length
 constexpr double net_pin_size = 0.4;     // likewise
 constexpr double body_pin_size = 0.3;    // of a body's radius of gyration
-constexpr double ambient_light = 0.35;   // of all
 constexpr std::array<double, 4> body_color{0.75, 0.55, 0.25, 1};
-const Vector3 to_light(-0.4, -0.6, 0.7);
 
 std_msgs::ColorRGBA grey(float level) {
   std_msgs::ColorRGBA color;
@@ -74,17 +73,6 @@ double pin_width(const World& world, const Attachment& attachment) {
   return 2 * pin_size * radius_at(world.cables()[index], attachment.node);
 }
 
-/// A color in a light that falls alike on both sides: rviz lights one side only of what it lights, and of two triangles that
-/// coincide it shows one.
-std_msgs::ColorRGBA lit(const std_msgs::ColorRGBA& color, const Vector3& normal) {
-  const auto brightness = static_cast<float>(ambient_light + (1 - ambient_light) * std::abs(normal.dot(to_light.normalized())));
-  std_msgs::ColorRGBA lit = color;
-  lit.r *= brightness;
-  lit.g *= brightness;
-  lit.b *= brightness;
-  return lit;
-}
-
 /// The two triangles of each cell.
 void add_triangles(const SimulatedNet& net, Marker& marker) {
   const int columns = net.model.columns;
@@ -95,7 +83,7 @@ void add_triangles(const SimulatedNet& net, Marker& marker) {
         const auto at = [&](int corner) -> const Vector3& { return net.state.positions[corners[corner]]; };
         const Vector3 normal = (at(1) - at(0)).cross(at(2) - at(0)).normalized();
         for (int corner = 0; corner < 3; ++corner) marker.points.push_back(to_point(at(corner)));
-        marker.colors.insert(marker.colors.end(), 3, lit(marker.color, normal));
+        marker.colors.insert(marker.colors.end(), 3, lit_from_both_sides(marker.color, normal));
       }
     }
 }

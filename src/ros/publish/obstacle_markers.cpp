@@ -1,5 +1,6 @@
 #include "publish/obstacle_markers.h"
 
+#include <array>
 #include <cmath>
 
 #include "publish/conversions.h"
@@ -13,8 +14,7 @@ namespace {
 using visualization_msgs::Marker;
 
 constexpr double plane_size = 20;          // [m]
-constexpr double plane_thickness = 0.01;   // [m]
-constexpr float plane_brightness = 1.4f;   // what lies or stands on it is told apart
+constexpr double plane_depth = 0.002;      // [m] below the plane, where grids are drawn
 constexpr double scale_tolerance = 1e-6;   // between edges that have to be equal
 constexpr double length_tolerance = 0.01;  // of an orientation: it may have been rounded
 constexpr std::size_t longest_uri = 4096;  // [characters] as paths
@@ -24,19 +24,24 @@ Marker make_marker(int type, const Pose& pose, const Vector3& scale) {
   marker.type = type;
   marker.pose = to_pose(pose);
   marker.scale = to_vector(scale);
-  marker.color.r = 0.45f;
-  marker.color.g = 0.5f;
-  marker.color.b = 0.55f;
+  marker.color.r = 0.8f;
+  marker.color.g = 0.83f;
+  marker.color.b = 0.87f;
   marker.color.a = 1;
   return marker;
 }
 
+/// With colors of corners, which rviz draws without light: its light shines from the camera, and leaves floors dark.
 std::vector<Marker> markers_of(const PlaneShape&, const Pose& pose) {
-  const Pose below{{0, 0, -plane_thickness / 2}, Quaternion::Identity()};
-  Marker plane = make_marker(Marker::CUBE, pose * below, {plane_size, plane_size, plane_thickness});
-  plane.color.r = plane_brightness * plane.color.r;
-  plane.color.g = plane_brightness * plane.color.g;
-  plane.color.b = plane_brightness * plane.color.b;
+  Marker plane = make_marker(Marker::TRIANGLE_LIST, pose, Vector3::Ones());
+  constexpr double half = plane_size / 2;
+  const std::array<Vector3, 4> corners{
+      Vector3{-half, -half, -plane_depth}, {half, -half, -plane_depth}, {half, half, -plane_depth}, {-half, half, -plane_depth}};
+  for (const int corner : {0, 1, 2, 0, 2, 3}) plane.points.push_back(to_point(corners[corner]));
+  plane.color.r = 0.74f;
+  plane.color.g = 0.76f;
+  plane.color.b = 0.79f;
+  plane.colors.assign(plane.points.size(), plane.color);
   return {plane};
 }
 

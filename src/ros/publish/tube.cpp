@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "publish/conversions.h"
+#include "publish/light.h"
 #include "verlet_cable/core/rotation.h"
 
 namespace verlet_cable {
@@ -44,6 +45,7 @@ struct Ring {
   Quaternion orientation;  // x along the tube
   double radius;
   std_msgs::ColorRGBA color;
+  double latitude = 0;  // [rad] of its normals, towards the tube's end
 };
 
 /// Unit vectors from each center to the next; where two centers coincide, the direction before is kept.
@@ -77,8 +79,9 @@ void orient(std::vector<Ring>& rings) {
 /// its start (-1).
 Ring on_half_sphere(const Ring& rim, double radius, double part, double outwards) {
   Ring ring = rim;
-  ring.center += outwards * radius * std::sin(M_PI_2 * part) * (rim.orientation * Vector3::UnitX());
-  ring.radius *= std::cos(M_PI_2 * part);
+  ring.latitude = outwards * M_PI_2 * part;
+  ring.center += radius * std::sin(ring.latitude) * (rim.orientation * Vector3::UnitX());
+  ring.radius *= std::cos(ring.latitude);
   return ring;
 }
 
@@ -133,19 +136,27 @@ void fill_tube(const std::vector<Vector3>& centers, const std::vector<std_msgs::
   const std::vector<Ring> rings = make_rings(centers, colors, radius, radii, detail);
   const int ring_count = static_cast<int>(rings.size());
 
-  std::vector<geometry_msgs::Point> surface;  // sides points a ring
+  std::vector<geometry_msgs::Point> surface;  // sides points a ring, and so the colors
+  std::vector<std_msgs::ColorRGBA> surface_colors;
   surface.reserve(rings.size() * sides);
+  surface_colors.reserve(rings.size() * sides);
   const std::vector<Vector3> circle = spokes(sides);
   for (const Ring& ring : rings) {
-    const Eigen::Matrix3d place = ring.radius * ring.orientation.toRotationMatrix();
-    for (const Vector3& spoke : circle) surface.push_back(to_point(ring.center + place * spoke));
+    const Eigen::Matrix3d axes = ring.orientation.toRotationMatrix();
+    const Vector3 along = std::sin(ring.latitude) * axes.col(0);
+    for (const Vector3& spoke : circle) {
+      const Vector3 across = axes * spoke;
+      surface.push_back(to_point(ring.center + ring.radius * across));
+      surface_colors.push_back(lit(ring.color, along + std::cos(ring.latitude) * across));
+    }
   }
 
   marker.points.reserve(detail.corners());
   marker.colors.reserve(detail.corners());
   const auto add_corner = [&](int ring, int side) {
-    marker.points.push_back(surface[ring * sides + side % sides]);
-    marker.colors.push_back(rings[ring].color);
+    const int corner = ring * sides + side % sides;
+    marker.points.push_back(surface[corner]);
+    marker.colors.push_back(surface_colors[corner]);
   };
   const auto add_triangle = [&](int ring, int side, int second_ring, int second_side, int third_ring, int third_side) {
     add_corner(ring, side);
