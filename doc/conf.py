@@ -25,7 +25,7 @@ myst_heading_anchors = 6  # GitHub's names of headings
 myst_update_mathjax = False  # is for version 3
 
 # MathJax 2 from Debian, beside the pages: scripts/docs copies it, and no page needs the network.
-html_static_path = ['_static', os.environ['VERLET_CABLE_MATHJAX']]
+html_static_path = ['_static', os.environ.get('VERLET_CABLE_MATHJAX', '../build/.docs/static')]
 mathjax_path = 'mathjax/MathJax.js?config=TeX-AMS_CHTML'
 mathjax2_config = {'showMathMenu': False, 'messageStyle': 'none', 'tex2jax': {'ignoreClass': 'body', 'processClass': 'math'}}
 
@@ -36,7 +36,7 @@ autodoc_member_order = 'bysource'
 autodoc_default_options = {'members': True, 'undoc-members': True}
 autoclass_content = 'both'
 
-breathe_projects = {'verlet_cable': os.environ['VERLET_CABLE_DOXYGEN']}
+breathe_projects = {'verlet_cable': os.environ.get('VERLET_CABLE_DOXYGEN', '../build/.docs/doxygen/xml')}
 breathe_default_project = 'verlet_cable'
 breathe_default_members = ('members', 'undoc-members')
 

@@ -78,7 +78,7 @@ def diagnostics_text(checkout):
 def page(checkout):
     _, (events,) = read_interface((checkout / 'msg/CableEvent.msg').read_text(encoding='utf-8'))
     topics = ['topic', 'type', 'content']
-    return (generated('Node', 'src/ros, msg and config/scene_template.yaml')
+    return (generated('Topics, services and parameters', 'src/ros, msg and config/scene_template.yaml')
             + 'Names are in the private namespace of the node, `/cable` with the launch files; those with a slash in front are global.\n\n'
             + '## Published topics\n\n' + table(topics, topic_rows(checkout, 'Topic'))
             + '## Subscribed topics\n\n' + table(topics, topic_rows(checkout, 'Subscribed topic'))
