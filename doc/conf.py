@@ -4,6 +4,8 @@ import re
 import sys
 from pathlib import Path
 
+from pygments.lexers import TextLexer
+
 DOC = Path(__file__).parent
 sys.path.insert(0, str(DOC / '_sphinx'))
 
@@ -49,3 +51,7 @@ html_css_files = ['manual.css']
 html_copy_source = False
 pygments_style = 'friendly'
 suppress_warnings = ['toc.not_readable']  # pages that come with other branches
+
+
+def setup(app):
+    app.add_lexer('csv', TextLexer)

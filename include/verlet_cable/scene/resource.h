@@ -22,7 +22,7 @@ struct FileAccess {
 /// not found. Asks no ROS master.
 std::optional<std::string> find_package(const std::string& name);
 
-/// The file that a URI means: package://PACKAGE/PATH inside of the package, file:///PATH, or a relative path without a scheme. It
+/// The file that a URI means: `package://PACKAGE/PATH` inside of the package, `file:///PATH`, or a relative path without a scheme. It
 /// is a regular file. Throws ResourceError.
 std::string file_of(const std::string& uri, const FileAccess& access);
 

@@ -16,7 +16,7 @@ TUNABLE = re.compile(r'&MaterialDesc::(\w+)')
 
 def own_type(name, messages):
     package, _, base = name.partition('/')
-    return type_link(base, messages) if package == 'verlet_cable' else f'`{name}`'
+    return type_link(base, messages) if package == 'verlet_cable' else f'`{package}/`<br>`{base}`'
 
 
 def text_of(comment):
@@ -42,7 +42,7 @@ def service_rows(checkout):
             description = read_interface(file.read_text(encoding='utf-8'))[0]
             type_cell = f'[`{match["type"]}`](services.md#{match["type"].lower()})'
         else:
-            description, type_cell = match['comment'], f'`std_srvs/{match["type"]}`'
+            description, type_cell = match['comment'], own_type(f'std_srvs/{match["type"]}', ())
         yield [anchor('service-' + match['name']) + f'`{match["name"]}`', type_cell, with_code(description)]
 
 
