@@ -1,7 +1,9 @@
 """Runs what a node does in a thread of its own."""
+import sys
 import threading
 import time
 
+import rosgraph
 import rospy
 
 
@@ -36,6 +38,8 @@ def run(name, work):
         if rospy.core.is_shutdown_requested():
             return
         raise
+    except OSError as problem:  # parameters of the command line go to the master at once
+        sys.exit(f'{name}: no ROS master at {rosgraph.get_master_uri()}: start roscore, or use roslaunch ({problem})')
     thread = threading.Thread(target=guarded_work, daemon=True)
     thread.start()
     rospy.spin()

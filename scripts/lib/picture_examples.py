@@ -61,8 +61,8 @@ def picture_demo(file):
 
 
 def picture_panel(file):
-    with stage(WIDE, configuration('rviz/panel.rviz', WIDE, panels=True), ['demo.launch']) as clock:
-        clock.go_on(4)
+    with stage(WIDE, configuration('rviz/panel.rviz', WIDE, panels=True), ['demo.launch'], pace=1.0) as clock:
+        clock.go_on(8)
         keep(file)
 
 

@@ -21,7 +21,7 @@ from verlet_cable.msg import CableArray
 PACKAGE = pathlib.Path(__file__).resolve().parents[2]
 DISPLAY = ':79'
 TICK = 0.01      # [s] of the clock
-PACE = 2.0       # times as long it takes
+PACE = 2.0       # times as long it takes, unless a picture shows how fast time goes
 LATE = 0.12      # [s] that what is shown may be behind the clock: tf_latency and a few periods of publishing
 DRAWING = 0.3    # [s] until rviz has drawn what it received
 STARTING = 6.0   # [s] until rviz has drawn its window
@@ -74,7 +74,8 @@ def keep(file, geometry=None):
 class SlowClock:
     """ROS time, and the stamp of the cables that are shown."""
 
-    def __init__(self):
+    def __init__(self, pace):
+        self._pace = pace
         self._now = 1.0
         self._shown = 0.0
         self._publisher = rospy.Publisher('clock', Clock, queue_size=10)
@@ -87,7 +88,7 @@ class SlowClock:
     def _tick(self):
         self._now += TICK
         self._publisher.publish(Clock(rospy.Time.from_sec(self._now)))
-        time.sleep(PACE * TICK)
+        time.sleep(self._pace * TICK)
 
     def wait_for_cables(self):
         wait_until(lambda: self._tick() or self._shown > 0, 'cables')
@@ -102,7 +103,7 @@ class SlowClock:
 
 
 @contextlib.contextmanager
-def stage(size, config, launch):
+def stage(size, config, launch, pace=PACE):
     """The clock, when the cables are there. One a process: it is a ROS node."""
     port = str(urlsplit(os.environ['ROS_MASTER_URI']).port)
     with tempfile.NamedTemporaryFile('w', suffix='.rviz') as file, \
@@ -115,7 +116,7 @@ def stage(size, config, launch):
         with running('rviz', '-d', file.name, DISPLAY=DISPLAY):
             time.sleep(STARTING)
             with running('roslaunch', 'verlet_cable', *launch, 'rviz:=false'):
-                clock = SlowClock()
+                clock = SlowClock(pace)
                 clock.wait_for_cables()
                 yield clock
         rospy.signal_shutdown('the picture is taken')

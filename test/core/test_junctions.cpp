@@ -411,6 +411,21 @@ TEST(Junctions, branchesDoNotPushTheirTrunk) {
       EXPECT_LT((world.cables()[k].state.positions[i] - other.cables()[k].state.positions[i]).norm(), 1e-9);
 }
 
+/// A trunk that only a clamp inside it holds, where a branch comes off, begins folded back on itself there.
+TEST(Junctions, haveFiniteMotionWhereTheirTrunkIsFolded) {
+  SceneDesc scene = nothing();
+  CableDesc& trunk = add_cable(scene, "trunk", 1, 40);
+  trunk.attachments = {scenes::attachment("grip", PlaceDesc::At::arc_length, Vector3::Zero(), "", AttachmentType::clamp)};
+  trunk.attachments[0].place.arc_length = 0.5;
+  add_cable(scene, "branch", 0.3, 12);
+  add_junction(scene, "trunk", 0.5, {branch("branch", End::start, {0, 0, 0.6})});
+  World world(scene, initial_frames(scene));
+  EXPECT_TRUE(std::isfinite(world.energy().total()));
+  for (const SimulatedBody& body : world.bodies()) EXPECT_TRUE(body.angular_velocity.allFinite()) << body.name;
+  world.step(initial_frames(scene));
+  EXPECT_TRUE(std::isfinite(world.energy().total()));
+}
+
 /// A harness that falls onto a floor comes to rest on it, its junctions, too.
 TEST(Junctions, lieOnAFloor) {
   SceneDesc scene = nothing();

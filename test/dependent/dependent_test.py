@@ -1,11 +1,14 @@
 #!/usr/bin/env python3
-"""A package that depends on this one and sets nothing compiles, links and runs, with a compiler that defaults to C++14 as ROS
-Noetic's does: against the devel space, and against an install space. Python finds what it needs in an install space, too.
+"""doc/template, a package that depends on this one and sets nothing, is copied out and compiles, links and runs, with a compiler that
+defaults to C++14 as ROS Noetic's does: against the devel space, where its own tests pass, too, and against an install space. Python
+finds what it needs in an install space, too.
 
 Usage: dependent_test.py BUILD DEVEL    (the package's build directory, its devel space)
 """
 import os
 import re
+import shlex
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -14,7 +17,7 @@ from pathlib import Path
 
 import rosunit
 
-PACKAGE = Path(__file__).resolve().parent / 'package'
+TEMPLATE = Path(__file__).resolve().parents[2] / 'doc/template'
 BUILD, DEVEL = (Path(argument) for argument in sys.argv[1:3])
 
 SCENE = '''
@@ -66,19 +69,31 @@ class DependentTest(unittest.TestCase):
         return done.stdout
 
     def use(self, prefix):
-        """Builds and runs the dependent package with the libraries in `prefix`."""
+        """Builds and runs a copy of the template with the libraries in `prefix`; returns its build directory."""
         environment = dict(os.environ, CXXFLAGS='-std=gnu++14', LD_LIBRARY_PATH=os.pathsep.join(without_devel('LD_LIBRARY_PATH')),
                            CMAKE_PREFIX_PATH=os.pathsep.join([str(prefix), *without_devel('CMAKE_PREFIX_PATH')]))
-        build = self.directory / 'build'
-        self.run_checked('cmake', '-S', str(PACKAGE), '-B', str(build), f'-DPYTHON_EXECUTABLE={sys.executable}', env=environment)
-        self.run_checked('cmake', '--build', str(build), '--target', 'cable_user', env=environment)
-        program, = build.rglob('lib/cable_user/cable_user')
+        package, build = self.directory / 'my_cables', self.directory / 'build'
+        shutil.copytree(TEMPLATE, package)
+        self.run_checked('cmake', '-S', str(package), '-B', str(build), f'-DPYTHON_EXECUTABLE={sys.executable}', env=environment)
+        self.run_checked('cmake', '--build', str(build), '--target', 'lowest_point', 'simulate', env=environment)
+        program = build / 'devel/lib/my_cables/simulate'
         for library in ('core', 'scene'):
             self.assertIn(f'{prefix}/lib/libverlet_cable_{library}.so', self.run_checked('ldd', str(program), env=environment))
-        self.assertRegex(self.run_checked(str(program), env=environment), r'^rope at 0\.100000 s: -0\.0[0-9]+ m\n$')
+        printed = self.run_checked(str(program), str(package / 'config/rope.yaml'), env=environment)
+        self.assertEqual(printed, 'hook bears 0.636 N\nhand bears 0.636 N\n')
+        return build
+
+    def run_tests(self, build):
+        """As a user does, with the workspace sourced; rostest takes a port of its own."""
+        results = build / 'test_results'
+        place = shlex.quote(str(build))
+        self.run_checked('bash', '-c', f'source {place}/devel/setup.bash && cmake --build {place} --target run_tests',
+                         env=dict(os.environ, ROS_HOME=str(self.directory / 'ros'), PATH='/usr/sbin:/usr/bin:/sbin:/bin'))
+        self.assertTrue(list(results.rglob('rosunit-*.xml')))
+        self.assertRegex(self.run_checked('catkin_test_results', str(results)), '[1-9][0-9]* tests, 0 errors, 0 failures')
 
     def test_devel_space(self):
-        self.use(DEVEL)
+        self.run_tests(self.use(DEVEL))
 
     def test_install_space(self):
         self.use(self.installed)

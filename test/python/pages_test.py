@@ -1,4 +1,4 @@
-"""The pages of doc/python and the README: their code does what they show; and run_page.py, which finds out."""
+"""The pages of doc/python, doc/how_to and the README: their code does what they show; and run_page.py, which finds out."""
 import ast
 import os
 import re
@@ -18,7 +18,9 @@ PACKAGE = Path(__file__).resolve().parents[2]
 RUN_PAGE = PACKAGE / 'scripts/lib/run_page.py'
 ENVIRONMENT = dict(os.environ, PYTHONPATH=os.pathsep.join(
     [os.environ['VERLET_CABLE_DEVEL'] + '/lib/python3/dist-packages', *filter(None, [os.environ.get('PYTHONPATH')])]))
-PAGES = [path for path in sorted(PACKAGE.glob('doc/python/*.md')) if '```python' in path.read_text()]
+PYTHON_PAGES, HOW_TO_PAGES = ([path for path in sorted(PACKAGE.glob(f'doc/{folder}/*.md')) if '```python' in path.read_text()]
+                              for folder in ('python', 'how_to'))
+PAGES = PYTHON_PAGES + HOW_TO_PAGES
 
 
 def run_page(page, *options):
@@ -59,11 +61,11 @@ def test_the_example_in_the_help_runs_well(write):
 
 def test_all_pages_are_in_the_index():
     index = (PACKAGE / 'doc/python/README.md').read_text()
-    assert len(PAGES) >= 4 and all(f'({page.name})' in index for page in PAGES)
+    assert len(PYTHON_PAGES) >= 4 and all(f'({page.name})' in index for page in PYTHON_PAGES)
 
 
 def test_every_picture_is_on_its_page():
-    for picture in PACKAGE.glob('doc/python/*/*.png'):
+    for picture in [*PACKAGE.glob('doc/python/*/*.png'), *PACKAGE.glob('doc/how_to/*/*.png')]:
         page = picture.parent.with_suffix('.md')
         assert f'({picture.relative_to(page.parent)})' in page.read_text(), picture
 

@@ -210,6 +210,13 @@ class ReadmeTest(unittest.TestCase):
         time.sleep(1)
         self.assertEqual(node.text().count('\n'), 1, node.text())
 
+    def test_a_motion_without_a_master(self):
+        self.environment['ROS_MASTER_URI'] = 'http://localhost:9'
+        done = self.run_to_end(typed('rosrun verlet_cable play_motion.py')[0])
+        self.assertEqual(done.returncode, 1)
+        self.assertIn('play_motion: no ROS master at http://localhost:9: start roscore, or use roslaunch', done.stdout)
+        self.assertNotIn('Traceback', done.stdout)
+
 
 if __name__ == '__main__':
     rostest.rosrun('verlet_cable', 'readme', ReadmeTest, sys.argv)

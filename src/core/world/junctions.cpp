@@ -14,6 +14,8 @@ namespace {
 
 /// A branch whose end is joined comes from the other side: its material's x goes towards the junction.
 const Quaternion reversed(0, 0, 0, 1);
+/// Of the length of cable around a node: less from one side of it to the other is a fold, which has no direction to spin about.
+constexpr double folded = 1e-6;
 
 /// [kg m^2] Of the halves of the segments beside a node about that node. A junction has no inertia of its own: it turns with
 /// these, which is less the shorter the segments are, of second order as all that they leave out.
@@ -31,6 +33,7 @@ double inertia_around(const SceneDesc& scene, const CableDesc& cable, int node) 
 Vector3 spin_at(const CableState& state, int node) {
   const int before = std::max(node - 1, 0), after = std::min(node + 1, state.segments());
   const Vector3 way = state.positions[after] - state.positions[before];
+  if (!(way.norm() > folded * state.length(before, after))) return Vector3::Zero();
   return way.cross(state.velocities[after] - state.velocities[before]) / way.squaredNorm();
 }
 
