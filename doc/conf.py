@@ -50,7 +50,6 @@ html_title = f'verlet_cable {release}'
 html_css_files = ['manual.css']
 html_copy_source = False
 pygments_style = 'friendly'
-suppress_warnings = ['toc.not_readable']  # pages that come with other branches
 
 
 def setup(app):
