@@ -35,6 +35,20 @@ void translate(std::exception_ptr thrown) {
   }
 }
 
+/// What pybind11 calls for the memory of an object whose constructor has not run: it would use it as it is, with anything in it.
+void* refuse_without_constructor(std::size_t) {
+  throw py::type_error("the object was not made: call its class, not its __new__");
+}
+
+/// Every class of the module: what `__new__` alone has made is an error wherever it is used.
+void refuse_objects_without_constructor(const py::module_& module) {
+  for (const auto& item : module.attr("__dict__").cast<py::dict>()) {
+    if (!PyType_Check(item.second.ptr())) continue;
+    if (auto* type = py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(item.second.ptr())))
+      type->operator_new = &refuse_without_constructor;
+  }
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_simulation, module) {
@@ -52,4 +66,5 @@ PYBIND11_MODULE(_simulation, module) {
   verlet_cable::add_world_class(module);
   verlet_cable::add_batch_class(module);
   for (const char* name : {"Scene", "World", "Batch"}) module.attr(name).attr("__module__") = "verlet_cable.sim";
+  refuse_objects_without_constructor(module);
 }
