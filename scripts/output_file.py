@@ -51,8 +51,8 @@ def is_standard_output(path):
 def written_whole(path):
     """A text file to write to, written aside and renamed at the end of the block; an exception leaves what was there. Until then it
     has no name, so that nothing is left of it whatever ends the program; on file systems that do not know such files it is
-    NAME.PID-N.part beside it. Links are followed and stay; permissions stay. Devices, and streams that are open already (/dev/stdout), are written
-    directly. Raises OSError."""
+    NAME.PID-N.part beside it. Links are followed and stay; permissions stay. Devices, and streams that are open already
+    (/dev/stdout), are written directly. Raises OSError."""
     problem = why_not_writable(path)
     if problem:
         raise OSError(f'cannot write {path!r}: {problem}; allowed: a file in a directory that can be written, or a device')

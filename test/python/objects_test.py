@@ -7,7 +7,8 @@ import pytest
 from verlet_cable.sim import Batch, Scene, World
 
 
-@pytest.mark.parametrize('use', [lambda scene: scene.cable_names, World, lambda scene: Batch(scene, 2), lambda scene: Batch([scene])])
+@pytest.mark.parametrize('use', [lambda scene: scene.cable_names, World, lambda scene: Batch(scene, 2),
+                                 lambda scene: Batch([scene])])
 def test_a_scene_without_its_constructor_is_refused(use):
     with pytest.raises(TypeError, match='the object was not made: call its class, not its __new__'):
         use(Scene.__new__(Scene))
