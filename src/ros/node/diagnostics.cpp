@@ -7,6 +7,7 @@
 
 #include "frames/frame_watch.h"
 #include "threads/guarded_queue.h"
+#include "verlet_cable/core/name_list.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 
@@ -31,12 +32,6 @@ std::string text(FrameStatus status) {
     default:
       return "ok";
   }
-}
-
-std::string join(const std::vector<std::string>& names) {
-  std::string joined;
-  for (const std::string& name : names) joined += (joined.empty() ? "" : ", ") + name;
-  return joined;
 }
 
 void summarize(SimulationReport::Phase phase, diagnostic_updater::DiagnosticStatusWrapper& status) {
@@ -89,10 +84,10 @@ void Diagnostics::report_simulation(Status& status) {
   status.add("degraded_steps", s.degraded);
   status.add("exhausted_steps", s.exhausted);
   status.add("faults", report.faults);
-  status.add("waiting_cables", join(simulation_.world().findings().waiting));
+  status.add("waiting_cables", NameList(simulation_.world().findings().waiting).text(""));
   report_waiting(status);
-  status.add("unsettled_cables", join(simulation_.world().findings().unsettled));
-  status.add("found_inside_obstacles", join({report.intrusions.begin(), report.intrusions.end()}));
+  status.add("unsettled_cables", NameList(simulation_.world().findings().unsettled).text(""));
+  status.add("found_inside_obstacles", NameList(report.intrusions).text(""));
 
   summarize(report.phase, status);
   const Nanoseconds dropped = report.dropped - std::exchange(dropped_, report.dropped);
@@ -146,7 +141,7 @@ void Diagnostics::report_frames(Status& status) const {
   }
   status.add("refused_transforms", simulation_.frames().buffer().refused_count());
   for (const auto& [frame, sources] : simulation_.frames().buffer().disputed()) {
-    status.add("sources of " + frame, join(sources));
+    status.add("sources of " + frame, NameList(sources).text(""));
     status.mergeSummary(DiagnosticStatus::WARN,
                         "frame " + quoted(frame) + " comes from " + std::to_string(sources.size()) + " nodes");
   }
