@@ -49,9 +49,10 @@ def is_standard_output(path):
 
 @contextlib.contextmanager
 def written_whole(path):
-    """A text file to write to, written aside, as NAME.PID-N.part, and renamed at the end of the block; an exception leaves what was
-    there. Links are followed and stay; permissions stay. Devices, and streams that are open already (/dev/stdout), are written
-    directly. Raises OSError."""
+    """A text file to write to, written aside and renamed at the end of the block; an exception leaves what was there. Until then it
+    has no name, so that nothing is left of it whatever ends the program; on file systems that do not know such files it is
+    NAME.PID-N.part beside it. Links are followed and stay; permissions stay. Devices, and streams that are open already
+    (/dev/stdout), are written directly. Raises OSError."""
     problem = why_not_writable(path)
     if problem:
         raise OSError(f'cannot write {path!r}: {problem}; allowed: a file in a directory that can be written, or a device')
@@ -61,18 +62,40 @@ def written_whole(path):
             yield file
         return
     target = os.path.realpath(path)
-    part = _new_part(target)
+    directory = os.path.dirname(target)
+    folder = os.open(directory, os.O_PATH | os.O_DIRECTORY | os.O_CLOEXEC)
+    part = None
     try:
-        with open(part, 'x', encoding='utf-8') as file:
+        descriptor = _open_nameless(directory)
+        if descriptor is None:
+            part = _new_part(target)
+        with open(part if descriptor is None else descriptor, 'w' if part is None else 'x', encoding='utf-8') as file:
             _keep_owner_and_mode(file.fileno(), target)
             yield file
             file.flush()
             os.fsync(file.fileno())
+            if part is None:
+                part = _new_part(target)
+                # With a directory to start from, Python follows the link.
+                os.link(f'/proc/self/fd/{file.fileno()}', os.path.basename(part), dst_dir_fd=folder)
         os.replace(part, target)
     except BaseException:
-        with contextlib.suppress(FileNotFoundError):
-            os.remove(part)
+        if part is not None:
+            with contextlib.suppress(FileNotFoundError):
+                os.remove(part)
         raise
+    finally:
+        os.close(folder)
+
+
+def _open_nameless(directory):
+    """A file that the system removes with the process that has it open; None where there is no such thing, or no way to name it."""
+    if not os.path.isdir('/proc/self/fd'):
+        return None
+    try:
+        return os.open(directory, os.O_TMPFILE | os.O_WRONLY | os.O_CLOEXEC, 0o666)
+    except OSError:
+        return None
 
 
 def _descriptor(path):

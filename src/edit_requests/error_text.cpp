@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "verlet_cable/core/quoted_text.h"
+
 namespace verlet_cable {
 
 std::string join(const std::vector<std::string>& errors) {
@@ -13,6 +15,18 @@ std::string join(const std::vector<std::string>& errors) {
 
 EditResult refused(const std::vector<std::string>& errors) {
   return {false, join(errors), {}};
+}
+
+std::string waits_for_frames(const std::string& field, const std::string& name, const RequestWords& words,
+                             const std::string& kind) {
+  return field + ": " + quoted(name) + " waits for its " + words.frames + "; allowed: " + kind + " that are simulated already";
+}
+
+std::optional<std::string> why_cable_waits(const World& world, const std::string& field, const std::string& cable,
+                                           const RequestWords& words) {
+  const std::vector<std::string>& waiting = world.findings().waiting;
+  if (std::find(waiting.begin(), waiting.end(), cable) == waiting.end()) return std::nullopt;
+  return waits_for_frames(field, cable, words, "cables");
 }
 
 }  // namespace verlet_cable

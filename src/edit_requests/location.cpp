@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <iterator>
 
+#include "edit_requests/error_text.h"
 #include "verlet_cable/core/name_list.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
@@ -34,20 +35,13 @@ std::string mode_text(const RequestedPlace& place) {
                             : words.mode + ": " + std::to_string(place.mode);
 }
 
-std::string waits_for_frames(const std::string& cable, const RequestWords& words) {
-  return words.cable + ": " + quoted(cable) + " waits for its " + words.frames;
-}
-
 /// `bodies`: whether those may be named, too.
 void find_cable(const RequestedPlace& place, const World& world, bool bodies, PointOnCable& found) {
   if (place.cable.empty() && place.mode == RequestedPlace::nearest) return;
   found.cable = find(world.cables(), place.cable);
   if (found.cable >= 0) return;
-  const std::vector<std::string>& waiting = world.findings().waiting;
-  if (std::find(waiting.begin(), waiting.end(), place.cable) != waiting.end()) {
-    found.errors.push_back(waits_for_frames(place.cable, *place.words) + "; allowed: cables that are simulated already");
-    return;
-  }
+  if (const auto waits = why_cable_waits(world, place.words->cable, place.cable, *place.words))
+    return found.errors.push_back(*waits);
   NameList names;
   for (const SimulatedCable& cable : world.cables()) names.add(cable.model->name);
   for (const SimulatedNet& net : world.nets()) names.add(net.model.name);
@@ -218,7 +212,7 @@ Location locate_body(const RequestedPlace& place, const World& world, int index)
   Location found;
   found.body = rigid_body_id(index);
   if (!world.frame_known(world.bodies()[index].frame))
-    found.errors.push_back(waits_for_frames(place.cable, *place.words) + "; allowed: bodies that are simulated already");
+    found.errors.push_back(waits_for_frames(place.words->cable, place.cable, *place.words, "bodies"));
   else if (place.mode != RequestedPlace::at_node)
     found.errors.push_back(mode_text(place) + " for body " + quoted(place.cable) +
                            "; allowed: " + place.words->mode_names[RequestedPlace::at_node]);

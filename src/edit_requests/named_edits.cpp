@@ -1,6 +1,5 @@
 #include "edit_requests/named_edits.h"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -18,10 +17,7 @@ namespace {
 std::optional<EditResult> refused_cable(const World& world, const std::string& field, const std::string& cable,
                                         const RequestWords& words) {
   if (find(world.cables(), cable) >= 0) return std::nullopt;
-  const std::vector<std::string>& waiting = world.findings().waiting;
-  if (std::find(waiting.begin(), waiting.end(), cable) != waiting.end())
-    return refused(
-        {field + ": " + quoted(cable) + " waits for its " + words.frames + "; allowed: cables that are simulated already"});
+  if (const auto waits = why_cable_waits(world, field, cable, words)) return refused({*waits});
   NameList names;
   for (const SimulatedCable& other : world.cables()) names.add(other.model->name);
   return refused({field + ": " + quoted(cable) + "; allowed: " + names.text("none, there are no cables")});

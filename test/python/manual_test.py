@@ -108,3 +108,8 @@ def test_every_topic_and_service_of_the_node_is_in_the_reference(reference):
     assert {'state', 'events', 'pin', 'reset', '/tf', 'parameter_updates', 'goal'} <= names
     told = set(re.findall(r'`([^`]+)`', reference['node.md']))
     assert {name for name in names if not any(text == name or text.endswith('/' + name) for text in told)} == set()
+
+
+def test_every_value_of_the_diagnostics_is_explained(reference):
+    rows = re.findall(r'^\| <a id="diagnostics-([^"]+)"></a>`.*` \| (.*) \|$', reference['node.md'], re.M)
+    assert len(rows) > 20 and [key for key, meaning in rows if not meaning.strip()] == []

@@ -517,8 +517,14 @@ def test_resume_simulates_again_what_was_lost(tmp_path):
     (tmp_path / 'store/hose/tension/1.0.0').write_bytes(b'')
     os.truncate(tmp_path / 'store/left/wrench/2.0.0', 100)
     os.truncate(tmp_path / 'store/status/3', 17)
+    changed = tmp_path / 'store/hose/positions/4.0.0.0'
+    data = bytearray(changed.read_bytes())
+    data[len(data) // 2] ^= 1
+    changed.write_bytes(data)
+    with pytest.raises(RuntimeError, match='checksum'):
+        zarr.open(str(tmp_path / 'store'), mode='r')['hose/positions'][:]
     status, text = run(folder, tmp_path / 'store', '--workers', '1', '--resume')
-    assert status == 0 and 'files of 4 chunks' in text and '32 simulated now' in text, text
+    assert status == 0 and 'files of 5 chunks' in text and '40 simulated now' in text, text
     assert_same_bytes(tmp_path / 'reference', tmp_path / 'store')
 
 

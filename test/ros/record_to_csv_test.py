@@ -148,6 +148,16 @@ class RecordToCsv(unittest.TestCase):
         self.assertIn('File too large', done.stderr)
         self.expect_only_old()
 
+    def test_killed_it_leaves_what_was_there(self):
+        with open(self.csv, 'w', encoding='utf-8') as file:
+            file.write('old')
+        script = ("import os, signal, sys; sys.path.insert(0, sys.argv[1]); from output_file import written_whole\n"
+                  "with written_whole(sys.argv[2]) as file:\n"
+                  "    file.write('new'); file.flush(); os.kill(os.getpid(), signal.SIGKILL)")
+        done = subprocess.run([sys.executable, '-c', script, SCRIPTS, self.csv], timeout=60, check=False)
+        self.assertEqual(done.returncode, -signal.SIGKILL)
+        self.expect_only_old()
+
     def test_a_full_device_exits_with_three(self):
         done = self.convert('--state', '/cable/state', '--cable', 'lead', output='/dev/full')
         self.assertEqual(done.returncode, 3, done.stderr)

@@ -66,6 +66,15 @@ class CableSim : public testing::Test {
                 found.end());
     return found;
   }
+  /// Paths by which what a process has open in the directory can be reached, with or without a name.
+  std::vector<std::string> open_files(pid_t process) const {
+    std::vector<std::string> found;
+    std::error_code gone;
+    for (const auto& entry : std::filesystem::directory_iterator("/proc/" + std::to_string(process) + "/fd", gone))
+      if (std::filesystem::read_symlink(entry.path(), gone).string().rfind(directory_, 0) == 0) found.push_back(entry.path());
+    std::sort(found.begin(), found.end());
+    return found;
+  }
 
   /// Exit status of the program; what it printed is in `out` and `err`. `before`: commands of the same shell.
   int run(const std::string& arguments, const std::string& before = "") {

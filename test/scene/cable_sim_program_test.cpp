@@ -262,6 +262,8 @@ TEST_F(CableSim, badInputExitsWithTwo) {
        "any but the fixed frame"},
       {scene + " --motion " + write("far.csv", "t,frame,x,y,z,qx,qy,qz,qw\n0,hand,3,0,0,0,0,0,1\n"),
        "far.csv at t = 0: cables[0].length: 1 m of cable between \"left\" and \"right\""},
+      {write("far.yaml", replaced(sound_scene, "initial_pose: [0.7, 0, 0, 0, 0, 0]", "offset: [3, 0, 0]")),
+       "cable_sim: at t = 0: cables[0].length: 1 m of cable between \"left\" and \"right\""},
   };
   for (const auto& bad : cases) {
     EXPECT_EQ(run(bad.arguments), 2) << bad.arguments;

@@ -62,9 +62,12 @@ class CableSimSignals : public CableSim {
            path("s.json")},
           -1, -1, nohup);
     ASSERT_TRUE(becomes([this] {
-      for (const std::string& part : parts())
-        if (std::filesystem::file_size(path(part)) > 0) return true;
-      return false;
+      const std::vector<std::string> files = open_files(child_);
+      std::error_code gone;
+      const auto has_rows = [&](const std::string& file) {
+        return file.substr(file.rfind('/')) != "/2" && std::filesystem::file_size(file, gone) > 0 && !gone;
+      };
+      return std::any_of(files.begin(), files.end(), has_rows);
     }));
   }
 
@@ -107,7 +110,8 @@ TEST_F(CableSimSignals, whatWasSimulatedIsWrittenWhole) {
     send(signal);
     EXPECT_EQ(exit_status(), 3);
     const YAML::Node json = summary("s.json");
-    EXPECT_NE(err.find("stopped at " + number_text(json["sim_time"].as<double>()) + " s: ended by " + name), std::string::npos) << err;
+    EXPECT_NE(err.find("stopped at " + number_text(json["sim_time"].as<double>()) + " s: ended by " + name), std::string::npos)
+        << err;
     EXPECT_EQ(parts(), std::vector<std::string>());
 
     // All rows of all times, one a step: the cable has 21 nodes, the scene steps of 2 ms.
@@ -167,20 +171,14 @@ TEST_F(CableSimSignals, whatIsIgnoredStaysIgnored) {
   EXPECT_NE(err.find("ended by SIGTERM"), std::string::npos) << err;
 }
 
-TEST_F(CableSimSignals, killedItLeavesTheOldFileAndOneThatIsRecognised) {
+TEST_F(CableSimSignals, killedItLeavesTheOldFileAndNothingElse) {
   write("o.csv", "old");
   start_long_run();
   send(SIGKILL);
   EXPECT_TRUE(WIFSIGNALED(status()));
   EXPECT_EQ(content(path("o.csv")), "old");
   EXPECT_FALSE(exists("s.json"));
-  const std::vector<std::string> left = parts();
-  ASSERT_EQ(left.size(), 2u);
-  EXPECT_EQ(left[0].rfind("o.csv.", 0), 0u);
-  EXPECT_EQ(left[1].rfind("s.json.", 0), 0u);
-  EXPECT_EQ(run(path("scene.yaml") + " --duration 0 --output " + path("o.csv")), 0) << err;
-  EXPECT_EQ(rows("o.csv").size(), 21u);
-  EXPECT_EQ(parts(), left);
+  EXPECT_EQ(parts(), std::vector<std::string>());
 }
 
 }  // namespace

@@ -73,10 +73,11 @@ struct StepResult {
     ok,
     overstretched,  ///< held points are further apart than what is between them can be: it was lengthened
     jumped,         ///< a frame changed its velocity too much for a motion: what it holds was carried along with it
-    degraded,       ///< a substep did not converge at the smallest size, or the step took too much work: the motion of the cable,
-               ///< or of bodies and what hangs on them, was taken away, and it goes on from rest; or cables are in each other
-               ///< and have no room to get apart
-    fault  ///< not even that: the cable stays as it was last, finite
+    /// A substep did not converge at the smallest size, a net is held where it cannot be, or the step took too much work: the
+    /// motion of the cable or net, or of bodies and what hangs on them, was taken away, and it goes on from rest; or cables are
+    /// in each other and have no room to get apart.
+    degraded,
+    fault,  ///< not even that: the cable stays as it was last, finite
   };
   Status status = Status::ok;
   BodyId body;             ///< the first one that is not ok

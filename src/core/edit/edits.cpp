@@ -279,7 +279,7 @@ int World::add_frame(const std::string& name, const std::optional<Pose>& pose) {
     w.state.frames.previous_poses.emplace_back();
     w.state.frames.earlier_poses.emplace_back();
     w.state.frames.known.push_back(false);
-    w.find_obstacle_anchors();
+    if (w.state.scene->robot) w.find_obstacle_anchors();
   }
   if (pose && is_sound(*pose) && !w.state.frames.known[frame]) {
     const Pose sound{pose->position, pose->orientation.normalized()};

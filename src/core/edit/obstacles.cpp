@@ -63,6 +63,25 @@ auto find_obstacle(std::vector<Obstacle>& obstacles, const std::string& name) {
   return std::find_if(obstacles.begin(), obstacles.end(), [&](const Obstacle& obstacle) { return obstacle.name == name; });
 }
 
+/// Which frames belong to an obstacle: its own, and those of links that no joint can move against it. The fixed frame holds too
+/// much to belong to anything.
+void find_anchors(const State& state, Obstacle& obstacle) {
+  obstacle.holders.clear();
+  if (obstacle.frame == 0) return;
+  obstacle.holders.push_back(obstacle.frame);
+  if (!state.scene->robot) return;
+  const std::vector<LinkDesc>& tree = state.scene->robot->tree;
+  const auto link =
+      std::find_if(tree.begin(), tree.end(), [&](const LinkDesc& l) { return l.name == state.frames.names[obstacle.frame]; });
+  if (link == tree.end()) return;
+  for (const int i : rigid_links(tree, static_cast<int>(link - tree.begin()))) {
+    const int frame = state.frames.find(tree[i].name);
+    if (frame > 0 && frame < static_cast<int>(state.frames.names.size()) && frame != obstacle.frame)
+      obstacle.holders.push_back(frame);
+  }
+  std::sort(obstacle.holders.begin(), obstacle.holders.end());
+}
+
 }  // namespace
 
 EditResult World::Implementation::apply(const edit::SetObstacle& set) {
@@ -72,6 +91,7 @@ EditResult World::Implementation::apply(const edit::SetObstacle& set) {
   obstacle.pose.orientation.normalize();
   obstacle.present = state.frames.known[obstacle.frame];
   const std::string name = obstacle.name;
+  find_anchors(state, obstacle);
   const auto same = find_obstacle(state.obstacles, name);
   obstacle.id = same == state.obstacles.end() ? state.new_obstacle_id() : same->id;
   if (same == state.obstacles.end()) {
@@ -79,7 +99,6 @@ EditResult World::Implementation::apply(const edit::SetObstacle& set) {
   } else {
     *same = std::move(obstacle);
   }
-  find_obstacle_anchors();
   return {true, "", name};
 }
 
@@ -101,35 +120,19 @@ EditResult World::Implementation::apply(const edit::RemoveObstacle& remove) {
 }
 
 void World::Implementation::add_scene_obstacles() {
+  const FrameIds ids = state.frames.ids();
   for (const ObstacleDesc& desc : all_obstacles(*state.scene)) {
     Obstacle obstacle = obstacle_of(desc);
-    obstacle.frame = desc.frame.empty() ? 0 : state.frames.find(desc.frame);
+    obstacle.frame = ids.at(desc.frame);
     obstacle.present = state.frames.known[obstacle.frame];
     obstacle.id = state.new_obstacle_id();
+    find_anchors(state, obstacle);
     state.obstacles.push_back(std::move(obstacle));
   }
-  find_obstacle_anchors();
 }
 
-/// Which frames belong to an obstacle: its own, and those of links that no joint can move against it. The fixed frame holds too
-/// much to belong to anything.
 void World::Implementation::find_obstacle_anchors() {
-  static const std::vector<LinkDesc> no_links;
-  const std::vector<LinkDesc>& tree = state.scene->robot ? state.scene->robot->tree : no_links;
-  for (Obstacle& obstacle : state.obstacles) {
-    obstacle.holders.clear();
-    if (obstacle.frame == 0) continue;
-    obstacle.holders.push_back(obstacle.frame);
-    const auto link =
-        std::find_if(tree.begin(), tree.end(), [&](const LinkDesc& l) { return l.name == state.frames.names[obstacle.frame]; });
-    if (link == tree.end()) continue;
-    for (const int i : rigid_links(tree, static_cast<int>(link - tree.begin()))) {
-      const int frame = state.frames.find(tree[i].name);
-      if (frame > 0 && frame < static_cast<int>(state.frames.names.size()) && frame != obstacle.frame)
-        obstacle.holders.push_back(frame);
-    }
-    std::sort(obstacle.holders.begin(), obstacle.holders.end());
-  }
+  for (Obstacle& obstacle : state.obstacles) find_anchors(state, obstacle);
 }
 
 }  // namespace verlet_cable

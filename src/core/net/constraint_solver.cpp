@@ -27,6 +27,9 @@ constexpr int rounds_along_start = 8;
 /// Rigid links are springs in the sweeps, so stiff that a step's motion leaves this part of an error: where more links than
 /// needed hold a net in shape, that shares the load between them.
 constexpr double rigid_softness = 1e-3;
+/// Strain beyond the tolerance that no net comes to which can be kept in its bounds. Held nodes want what is impossible then:
+/// what the links' impulses have come to would grow from step to step without end.
+constexpr double torn_strain = 0.05;
 /// [m] Longer than anything.
 constexpr double unbounded = 1e12;
 /// Relative: rest lengths of a grid differ by rounding.
@@ -150,6 +153,7 @@ NetStepResult NetConstraintSolver::advance(const NetStep& step, NetState& state,
   keep_bounds(result);
   react(step, memory);
   store(step, state, memory);
+  result.torn = result.max_strain > tolerance_of(step.model) + torn_strain;
   result.finite = is_sane(state.positions) && is_sane(state.velocities) && std::isfinite(result.max_strain);
   return result;
 }

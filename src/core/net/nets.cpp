@@ -47,8 +47,17 @@ void carry_along(const KinematicTargets& targets, NetState& state) {
   for (const KinematicTarget& target : targets.nodes) state.positions[target.node] = target.position;
 }
 
+/// Whether what holds a net is where the nodes are.
+bool is_in_place(const KinematicTargets& targets, const NetState& state) {
+  return std::all_of(targets.nodes.begin(), targets.nodes.end(), [&](const KinematicTarget& target) {
+    return (target.position - state.positions[target.node]).norm() <= nearest;
+  });
+}
+
+/// No forces are known of what has no solution.
 void bring_to_rest(NetState& state) {
   std::fill(state.velocities.begin(), state.velocities.end(), Vector3::Zero());
+  std::fill(state.tension.begin(), state.tension.end(), 0.0);
 }
 
 }  // namespace
@@ -72,6 +81,8 @@ void World::Implementation::start_net(const NetDesc& desc, const FrameIds& ids, 
   memory.links.impulses.assign(model.links.size() + model.minimum_distances.size(), 0.0);
   update_net(index);
   start_targets(state.attachments, state.frames.poses, inputs, memory.targets);
+  if (model.link_type != LinkType::spring && !is_in_place(memory.targets, state.nets.back().state))
+    carry_along(memory.targets, state.nets.back().state);
   take_velocities(memory.targets, state.nets.back().state);
 }
 
@@ -125,8 +136,13 @@ void World::Implementation::step_net(int index, StepResult& result) {
   const NetStep step{net.model, *state.scene, moving_obstacles.value, memory.targets, solver.boundary.nodes};
   const NetStepResult of_net = net.model.link_type == LinkType::spring ? solver.springs.advance(step, net.state, memory.points)
                                                                        : solver.links.advance(step, net.state, memory.links);
-  if (!of_net.finite) {
+  if (of_net.finite) {
+    result.iterations += of_net.iterations;
+    result.max_strain = std::max(result.max_strain, of_net.max_strain);
+  } else {
     net.state = solver.before;
+  }
+  if (!of_net.finite || of_net.torn) {
     bring_to_rest(net.state);
     forget_motion(net.model, memory);
     note_net(Status::degraded, index, 0, result);
@@ -136,8 +152,6 @@ void World::Implementation::step_net(int index, StepResult& result) {
   }
   if (of_net.softened) note_net(Status::degraded, index, 0, result);
   if (of_net.overstretched_node >= 0) note_net(Status::overstretched, index, of_net.overstretched_node, result);
-  result.iterations += of_net.iterations;
-  result.max_strain = std::max(result.max_strain, of_net.max_strain);
   for (std::size_t k = 0; k < solver.boundary.nodes.size(); ++k)
     state.attachments[memory.targets.nodes[k].attachment].force = solver.boundary.nodes[k].force;
   complete_step(state.scene->time_step, memory.targets);

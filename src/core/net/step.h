@@ -23,6 +23,7 @@ struct NetStep {
 struct NetStepResult {
   bool finite = true;           ///< false: the state is as it was before
   int overstretched_node = -1;  ///< of a link that could not be kept within its bounds; -1: none
+  bool torn = false;            ///< links are far outside their bounds: what pulls at them is not to go on
   bool softened = false;        ///< the step was too long for the springs: they were taken to be softer
   int iterations = 0;
   double max_strain = 0;

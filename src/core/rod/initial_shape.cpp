@@ -128,6 +128,12 @@ bool settles_at_start(const CableDesc& desc, const CableModel& model, const Cabl
 
 namespace {
 
+/// Nodes where they would hang between what holds them, whatever they did before.
+void hang_nodes_anew(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {
+  state.positions = hanging(model, state, held, gravity, false);
+  project_positions(model, held, state);
+}
+
 bool carry_nodes_along(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {
   if (!held.empty()) {
     const std::vector<double> arc_length = state.arc_length();
@@ -148,8 +154,7 @@ bool carry_nodes_along(const CableModel& model, const std::vector<HeldNode>& hel
   }
   if (project_positions(model, held, state)) return true;
   // KinematicTargets that come close along a straight cable do not tell where its slack goes.
-  state.positions = hanging(model, state, held, gravity, false);
-  project_positions(model, held, state);
+  hang_nodes_anew(model, held, gravity, state);
   return false;
 }
 
@@ -164,8 +169,7 @@ bool carry_along(const CableModel& model, const std::vector<HeldNode>& held, con
 
 void hang_anew(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {
   const std::vector<Vector3> before = state.positions;
-  state.positions = hanging(model, state, held, gravity, false);
-  project_positions(model, held, state);
+  hang_nodes_anew(model, held, gravity, state);
   carry_frames(before, state);
 }
 

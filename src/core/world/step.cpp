@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <numeric>
 
 #include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/world.h"
@@ -104,14 +105,15 @@ void World::Implementation::resume_islands(bool one_by_one) {
   for (std::size_t i = 0; i < island_outcomes.value.size(); ++i)
     if (island_outcomes.value[i].unfinished) unfinished.push_back(i);
   if (unfinished.empty()) return;
-  double size = 0;
-  for (const std::size_t i : unfinished) size += size_of(islands.value.all()[i], state);
+  std::vector<double> sizes;
+  for (const std::size_t i : unfinished) sizes.push_back(size_of(islands.value.all()[i], state));
+  const double size = std::accumulate(sizes.begin(), sizes.end(), 0.0);
   const auto resume = [&](std::size_t from, std::size_t to) {
     const FlushDenormals flush_denormals;
     IslandStepper stepper(state, workspaces.value.local(), cable_outcomes.value, most_lanes);
     for (std::size_t k = from; k < to; ++k) {
       Island& island = islands.value.all()[unfinished[k]];
-      stepper.resume(island, budget::most * size_of(island, state) / size, island_outcomes.value[unfinished[k]]);
+      stepper.resume(island, budget::most * sizes[k] / size, island_outcomes.value[unfinished[k]]);
     }
   };
   if (one_by_one) return resume(0, unfinished.size());

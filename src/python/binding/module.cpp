@@ -35,6 +35,27 @@ void translate(std::exception_ptr thrown) {
   }
 }
 
+/// What pybind11 calls for the memory of an object whose constructor has not run: it would use it as it is, with anything in it.
+void* refuse_without_constructor(std::size_t) {
+  throw py::type_error("the object was not made: call its class, not its __new__");
+}
+
+/// Every class of the module: what `__new__` alone has made is an error wherever it is used.
+void refuse_objects_without_constructor(const py::module_& module) {
+  for (const auto& item : module.attr("__dict__").cast<py::dict>()) {
+    if (!PyType_Check(item.second.ptr())) continue;
+    if (auto* type = py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(item.second.ptr())))
+      type->operator_new = &refuse_without_constructor;
+  }
+}
+
+/// For `__reduce__`, which pickle and multiprocessing call.
+void refuse_to_be_pickled(const py::object& object) {
+  throw py::type_error(py::type::of(object).attr("__name__").cast<std::string>() +
+                       ": cannot be pickled; allowed: to send what it is made of, the scene's path, text or dict and the motion, "
+                       "and to make it there; many worlds of one process are a Batch, which uses all cores");
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_simulation, module) {
@@ -51,5 +72,10 @@ PYBIND11_MODULE(_simulation, module) {
   verlet_cable::add_scene_class(module);
   verlet_cable::add_world_class(module);
   verlet_cable::add_batch_class(module);
-  for (const char* name : {"Scene", "World", "Batch"}) module.attr(name).attr("__module__") = "verlet_cable.sim";
+  for (const char* name : {"Scene", "World", "Batch"}) {
+    const py::object type = module.attr(name);
+    type.attr("__module__") = "verlet_cable.sim";
+    type.attr("__reduce__") = py::cpp_function(refuse_to_be_pickled, py::name("__reduce__"), py::is_method(type));
+  }
+  refuse_objects_without_constructor(module);
 }

@@ -7,6 +7,7 @@
 
 #include "frames/frame_watch.h"
 #include "threads/guarded_queue.h"
+#include "verlet_cable/core/name_list.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 
@@ -31,12 +32,6 @@ std::string text(FrameStatus status) {
     default:
       return "ok";
   }
-}
-
-std::string join(const std::vector<std::string>& names) {
-  std::string joined;
-  for (const std::string& name : names) joined += (joined.empty() ? "" : ", ") + name;
-  return joined;
 }
 
 void summarize(SimulationReport::Phase phase, diagnostic_updater::DiagnosticStatusWrapper& status) {
@@ -89,10 +84,10 @@ void Diagnostics::report_simulation(Status& status) {
   status.add("degraded_steps", s.degraded);               // no solution was found, and motion was taken away
   status.add("exhausted_steps", s.exhausted);             // too much work for a step, which was ended from rest
   status.add("faults", report.faults);                    // since the start
-  status.add("waiting_cables", join(simulation_.world().findings().waiting));  // cables, nets and bodies that are not there yet
+  status.add("waiting_cables", NameList(simulation_.world().findings().waiting).text(""));  // cables, nets and bodies that wait
   report_waiting(status);
-  status.add("unsettled_cables", join(simulation_.world().findings().unsettled));  // without an equilibrium to start from
-  status.add("found_inside_obstacles", join({report.intrusions.begin(), report.intrusions.end()}));  // since the scene started
+  status.add("unsettled_cables", NameList(simulation_.world().findings().unsettled).text(""));  // without a static equilibrium
+  status.add("found_inside_obstacles", NameList(report.intrusions).text(""));                   // since the scene started
 
   summarize(report.phase, status);
   const Nanoseconds dropped = report.dropped - std::exchange(dropped_, report.dropped);
@@ -146,7 +141,7 @@ void Diagnostics::report_frames(Status& status) const {
   }
   status.add("refused_transforms", simulation_.frames().buffer().refused_count());  // since the start
   for (const auto& [frame, sources] : simulation_.frames().buffer().disputed()) {
-    status.add("sources of " + frame, join(sources));  // nodes, where several send a frame
+    status.add("sources of " + frame, NameList(sources).text(""));  // nodes, where several send a frame
     status.mergeSummary(DiagnosticStatus::WARN,
                         "frame " + quoted(frame) + " comes from " + std::to_string(sources.size()) + " nodes");
   }

@@ -62,7 +62,8 @@ void check_motion(const Options& options, const SceneDesc& scene, const Motion& 
   if (motion.count(scene.frame_id))
     errors.push_back(tools::path_text(options.motion) + ": frame " + quoted(scene.frame_id) +
                      " moves; allowed: any but the fixed frame");
-  append(tools::path_text(options.motion) + " at t = 0", validate_distances(scene, FrameSource(scene, motion).at(0)), errors);
+  const std::string motion_text = options.motion.empty() ? "" : tools::path_text(options.motion) + " ";
+  append(motion_text + "at t = 0", validate_distances(scene, FrameSource(scene, motion).at(0)), errors);
 }
 
 }  // namespace

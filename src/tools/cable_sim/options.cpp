@@ -14,8 +14,7 @@ constexpr const char* usage =
     "usage: cable_sim SCENE.yaml [options]\n"
     "Runs a scene offline.";
 constexpr const char* footer =
-    "Files are written aside, as NAME.PID-N.part, and renamed when they are whole; devices are written directly. A signal ends "
-    "the\n"
+    "Files are written aside and renamed when they are whole; devices are written directly. A signal ends the\n"
     "run between two steps, with what was simulated by then; a second one ends it at once.\n"
     "exit status: 0 done, 2 a bad scene, motion or option, 3 it had to stop: a fault, a full disk, a signal";
 

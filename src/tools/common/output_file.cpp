@@ -63,6 +63,13 @@ std::string why_not_writable(const NamedFile& file) {
   return refused.empty() ? "" : "no file can be made in its directory: " + refused;
 }
 
+/// A file without a name, which the system removes with the process that has it open; -1 where there is no such thing, or no way
+/// to name it later.
+int open_nameless(const std::string& directory) {
+  if (access("/proc/self/fd", X_OK) != 0) return -1;
+  return open(directory.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, everyone);
+}
+
 std::optional<struct stat> status_of(const NamedFile& file) {
   struct stat status {};
   const int failed = file.descriptor >= 0 ? fstat(file.descriptor, &status) : stat(file.path.c_str(), &status);
@@ -110,24 +117,33 @@ std::string OutputFile::open(const std::string& path) {
 
 std::string OutputFile::open_aside(const std::string& target) {
   target_ = target;
-  const std::string name = target.substr(target.find_last_of('/') + 1);
-  const std::string start = directory_of(target) + name.substr(0, longest_name) + '.' + std::to_string(getpid()) + '-';
-  // What an earlier run of the same number has left is in nobody's way.
-  for (int i = 0; descriptor_ < 0; ++i) {
-    part_ = start + std::to_string(i) + ".part";
-    descriptor_ = ::open(part_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, everyone);
-    if (descriptor_ < 0 && errno != EEXIST) {
-      part_.clear();
-      return error_text(errno);
-    }
-  }
-  slot_ = remember_unfinished(part_.c_str());
+  descriptor_ = open_nameless(directory_of(target));
+  if (descriptor_ < 0)
+    descriptor_ = make_part([](const char* part) { return ::open(part, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, everyone); });
+  if (descriptor_ < 0) return error_text(errno);
   struct stat status {};
   if (stat(target.c_str(), &status) != 0) return "";
   // Only root may give a file away; others keep what they make.
   const bool is_given = fchown(descriptor_, status.st_uid, status.st_gid) == 0;
   if (fchmod(descriptor_, status.st_mode & (is_given ? permissions : everyone)) != 0) error_ = errno;
   return "";
+}
+
+/// Names what is written aside. `make` makes a file of that name, which nothing has yet; -1 and errno where it cannot.
+int OutputFile::make_part(const std::function<int(const char*)>& make) {
+  const std::string name = target_.substr(target_.find_last_of('/') + 1);
+  const std::string start = directory_of(target_) + name.substr(0, longest_name) + '.' + std::to_string(getpid()) + '-';
+  // What an earlier run of the same number has left is in nobody's way.
+  for (int i = 0;; ++i) {
+    part_ = start + std::to_string(i) + ".part";
+    const int made = make(part_.c_str());
+    if (made < 0 && errno == EEXIST) continue;
+    if (made < 0)
+      part_.clear();
+    else
+      slot_ = remember_unfinished(part_.c_str());
+    return made;
+  }
 }
 
 void OutputFile::write(const char* text, std::size_t size) {
@@ -163,6 +179,11 @@ std::string OutputFile::finish() {
   if (error_ == 0 && is_reserved_ && ftruncate(descriptor_, static_cast<off_t>(written_)) != 0) error_ = errno;
   // Some file systems find out only then that there is no room.
   if (error_ == 0 && !is_direct() && fsync(descriptor_) != 0 && errno != EINVAL) error_ = errno;
+  if (error_ == 0 && !is_direct() && part_.empty()) {
+    const std::string nameless = "/proc/self/fd/" + std::to_string(descriptor_);
+    const auto link = [&](const char* part) { return linkat(AT_FDCWD, nameless.c_str(), AT_FDCWD, part, AT_SYMLINK_FOLLOW); };
+    if (make_part(link) < 0) error_ = errno;
+  }
   close();
   if (error_ != 0 || is_direct()) {
     discard();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 
 namespace verlet_cable::tools {
@@ -15,9 +16,10 @@ bool is_same_file(const std::string& a, const std::string& b);
 /// Whether a path names this program's standard output.
 bool is_standard_output(const std::string& path);
 
-/// A file that is there when it is whole, and else as it was: written aside, to NAME.PID-N.part beside it, and renamed. Links are
-/// followed and stay; permissions stay. Devices, and streams that are open already (/dev/stdout, /dev/fd/N), are written
-/// directly.
+/// A file that is there when it is whole, and else as it was: written aside, and renamed. Until it is whole it has no name, so
+/// that nothing is left of it whatever ends the program; on file systems that do not know such files it is NAME.PID-N.part beside
+/// it. Links are followed and stay; permissions stay. Devices, and streams that are open already (/dev/stdout, /dev/fd/N), are
+/// written directly.
 class OutputFile {
  public:
   OutputFile() = default;
@@ -40,18 +42,19 @@ class OutputFile {
   std::string keep_first(std::size_t size);
   bool is_open() const { return descriptor_ >= 0; }
   /// Whether it is written directly, so that others may read it already.
-  bool is_direct() const { return part_.empty(); }
+  bool is_direct() const { return target_.empty(); }
   /// Puts the whole file in its place. Returns what went wrong since `open`, empty if nothing: nothing is left of it then, but
   /// for a whole file that is there and could not be renamed, which is named.
   std::string finish();
 
  private:
   std::string open_aside(const std::string& target);
+  int make_part(const std::function<int(const char*)>& make);
   void close();
   void discard();
 
-  std::string target_;  ///< links followed
-  std::string part_;    ///< empty: written directly
+  std::string target_;  ///< links followed; empty: written directly
+  std::string part_;    ///< name of what is written aside; empty: it has none
   int descriptor_ = -1;
   std::size_t written_ = 0;
   bool is_reserved_ = false;

@@ -21,8 +21,8 @@ World.step returns a status, the worst of its steps. From good to bad:
     ok             all is well
     overstretched  held points are further apart than what is between them can be; that was lengthened
     jumped         a frame changed its velocity too much for a motion; what it holds was carried along with it
-    degraded       no solution, however short the substeps, or none without too much work: motion was taken away, and it goes on
-                   from rest; or cables are in each other, and have no room to get apart
+    degraded       no solution, however short the substeps, or none without too much work, or a net is held where it cannot be:
+                   motion was taken away, and it goes on from rest; or cables are in each other, and have no room to get apart
     fault          not even that: the cable stays as it was last
 
 SI units everywhere. Poses are x, y, z, qx, qy, qz, qw in the scene's fixed frame.

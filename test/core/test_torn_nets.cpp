@@ -1,0 +1,109 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "../support/nets.h"
+
+namespace verlet_cable {
+namespace {
+
+/// What was seen of a net while it was held where it cannot be.
+struct Extremes {
+  double force = 0;     ///< [N] on a holder
+  double tension = 0;   ///< [N]
+  double speed = 0;     ///< [m/s]
+  double distance = 0;  ///< [m] from the origin
+  int degraded_steps = 0;
+};
+
+/// A flag whose second holder's frame, at x = `start` from where it belongs, goes to `end` in so many steps.
+class TornFlag {
+ public:
+  TornFlag(LinkType type, double start) : scene_(scenes::flag(6, 6, 0.05, type)), inputs_(2) {
+    scene_.fluid.velocity.setZero();
+    scene_.nets[0].stiffness = 500;
+    scene_.nets[0].attachments[1].frame = "hand";
+    inputs_[1].pose.position.x() = start;
+    world_.emplace(scene_, inputs_);
+  }
+
+  void move_to(double end, int steps, Extremes& seen) {
+    const double start = inputs_[1].pose.position.x();
+    for (int i = 1; i <= steps; ++i) {
+      inputs_[1].pose.position.x() = start + (end - start) * i / steps;
+      last_ = world_->step(inputs_);
+      seen.degraded_steps += last_.status == StepResult::Status::degraded;
+      for (const Attachment& attachment : world_->attachments()) seen.force = std::max(seen.force, attachment.force.norm());
+      const NetState& state = world_->nets()[0].state;
+      for (const double tension : state.tension) seen.tension = std::max(seen.tension, std::abs(tension));
+      for (const Vector3& velocity : state.velocities) seen.speed = std::max(seen.speed, velocity.norm());
+      for (const Vector3& position : state.positions) seen.distance = std::max(seen.distance, position.norm());
+    }
+  }
+  StepResult::Status last_status() const { return last_.status; }
+
+ private:
+  SceneDesc scene_;
+  BoundaryInputs inputs_;
+  std::optional<World> world_;
+  StepResult last_;
+};
+
+/// What moves 0.2 kg by all of a link's 0.05 m within a step of 1 ms is 10 kN; the net's weight is 2 N.
+constexpr double largest_force = 1e5;
+constexpr double largest_speed = 20;
+/// Held nodes are up to 0.35 m apart, and the net is 0.35 m along its diagonal.
+constexpr double largest_distance = 0.8;
+
+TEST(TornNet, StaysBoundedAndIsReported) {
+  for (const LinkType type : {LinkType::rigid, LinkType::limited}) {
+    for (const double end : {0.1, -0.2}) {
+      TornFlag flag(type, 0);
+      Extremes seen;
+      flag.move_to(end, 150, seen);
+      const std::string which = (type == LinkType::rigid ? "rigid, " : "limited, ") + std::to_string(end);
+      EXPECT_GT(seen.degraded_steps, 0) << which;
+      EXPECT_LT(seen.force, largest_force) << which;
+      EXPECT_LT(seen.tension, largest_force) << which;
+      EXPECT_LT(seen.speed, largest_speed) << which;
+      EXPECT_LT(seen.distance, largest_distance) << which;
+    }
+  }
+}
+
+TEST(TornNet, OfRigidLinksGoesOnWhenItIsHeldWhereItCanBe) {
+  TornFlag flag(LinkType::rigid, 0);
+  Extremes torn, after;
+  flag.move_to(0.1, 150, torn);
+  ASSERT_EQ(flag.last_status(), StepResult::Status::degraded);
+  flag.move_to(0, 150, torn);
+  flag.move_to(0, 500, torn);
+  flag.move_to(0, 50, after);
+  EXPECT_EQ(after.degraded_steps, 0);
+  EXPECT_LT(after.force, 20.0);
+}
+
+TEST(TornNet, OneThatIsHeldElsewhereAtTheStartIsCarriedThere) {
+  TornFlag flag(LinkType::limited, 0.02);
+  Extremes seen;
+  flag.move_to(0.02, 150, seen);
+  EXPECT_EQ(seen.degraded_steps, 0);
+  EXPECT_LT(seen.force, 20.0);
+  EXPECT_LT(seen.speed, 2.0);
+  EXPECT_LT(seen.distance, largest_distance);
+  for (const double start : {0.1, -0.1}) {
+    TornFlag far(LinkType::limited, start);
+    Extremes seen_far;
+    far.move_to(start, 150, seen_far);
+    EXPECT_GT(seen_far.degraded_steps, 0);
+    EXPECT_LT(seen_far.force, largest_force);
+    EXPECT_LT(seen_far.speed, largest_speed);
+    EXPECT_LT(seen_far.distance, largest_distance);
+  }
+}
+
+}  // namespace
+}  // namespace verlet_cable
