@@ -4,14 +4,33 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
-#include <cstdlib>
 #include <string>
+#if !defined(__cpp_lib_to_chars)
+#include <iomanip>
+#include <locale>
+#include <sstream>
+#endif
 
 namespace verlet_cable {
 
 /// Room that `write_number` needs.
 constexpr std::size_t number_text_size = 32;
+
+/// A number as printf has it with "%.*f" where `digits` are those after the point, else with "%.*g", but with a point in any
+/// locale: the program around the simulation may have set one. `is_fixed` only below 1e16.
+inline std::string printed_text(double value, int digits, bool is_fixed = false) {
+#if defined(__cpp_lib_to_chars)
+  char buffer[number_text_size];
+  const auto format = is_fixed ? std::chars_format::fixed : std::chars_format::general;
+  return {buffer, std::to_chars(buffer, buffer + number_text_size, value, format, digits).ptr};
+#else
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  if (is_fixed) text << std::fixed;
+  text << std::setprecision(digits) << value;
+  return text.str();
+#endif
+}
 
 /// Writes a number so that reading it back gives the same double; the shortest such text where the standard library has it.
 /// `buffer` has room for `number_text_size` characters. Returns the end of the text, which is not terminated. A NaN has no sign.
@@ -20,7 +39,8 @@ inline char* write_number(char* buffer, double value) {
 #if defined(__cpp_lib_to_chars)
   return std::to_chars(buffer, buffer + number_text_size, value).ptr;
 #else
-  return buffer + std::snprintf(buffer, number_text_size, "%.17g", value);
+  const std::string text = printed_text(value, 17);
+  return std::copy(text.begin(), text.end(), buffer);
 #endif
 }
 
@@ -33,16 +53,27 @@ inline std::string number_text(double value) {
 /// A number that was measured or computed, for people: rounded to so many significant digits, but to 1 at least below 1e9.
 inline std::string rounded_text(double value, int digits = 4) {
   if (std::isnan(value)) return "nan";
-  char buffer[number_text_size];
   const bool is_long = std::abs(value) >= std::pow(10.0, digits) && std::abs(value) < 1e9;
-  std::snprintf(buffer, sizeof buffer, is_long ? "%.*f" : "%.*g", is_long ? 0 : digits, value);
-  return buffer;
+  return printed_text(value, is_long ? 0 : digits, is_long);
+}
+
+/// What a text of the above says.
+inline double number_of(const std::string& text) {
+  double value = 0;
+#if defined(__cpp_lib_to_chars)
+  std::from_chars(text.data(), text.data() + text.size(), value);
+#else
+  std::istringstream stream(text);
+  stream.imbue(std::locale::classic());
+  stream >> value;
+#endif
+  return value;
 }
 
 /// The same for a bound: 1 rounds up, so that a smallest allowed number is allowed as it is written, -1 rounds down.
 inline std::string rounded_bound_text(double value, int direction, int digits = 4) {
-  std::string text = rounded_text(value, digits);
-  if (direction * (value - std::strtod(text.c_str(), nullptr)) <= 0 || !std::isfinite(value)) return text;
+  const std::string text = rounded_text(value, digits);
+  if (!std::isfinite(value) || direction * (value - number_of(text)) <= 0) return text;
   const double last_digit = std::pow(10.0, std::floor(std::log10(std::abs(value))) - digits + 1);
   const double unit = std::abs(value) < 1e9 ? std::min(1.0, last_digit) : last_digit;
   return rounded_text(value + direction * 0.5 * unit, digits);

@@ -103,7 +103,7 @@ void ContactSet::find(const std::vector<SimulatedCable>& cables, const std::vect
   double radius = 0;
   for (const int cable : island) radius = std::max(radius, CableMaterials(cables[cable]).largest_radius());
   find_joined(attachments, members);
-  grid_.update(cables, island, rules.pairs, joined_, reach(0, radius, h) + radius, h, pairs);
+  grid_.update(cables, island, rules.pairs, reach(0, radius, h) + radius, h, pairs);
   find_pairs(cables, members, pairs, radius, h);
 }
 
@@ -282,6 +282,7 @@ void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, const std
     const double speed = found.speeds[pair.first_node] + found.speeds[pair.second_node];
     const double moved = found.moved[pair.first_node] + found.moved[pair.second_node];
     if (pair.distance - moved > (2 * thickest + reach(speed, thickest, h)) * (1 + distance_rounding)) continue;
+    if (!can_touch(cables, joined_, pair)) continue;
     const SimulatedCable &a = cables[pair.first.cable], &b = cables[pair.second.cable];
     const int i = pair.first.segment, j = pair.second.segment;
     const double first_radius = CableMaterials(a)[i].radius, second_radius = CableMaterials(b)[j].radius;

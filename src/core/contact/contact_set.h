@@ -61,7 +61,7 @@ class ContactSet {
   bool recall(const ContactMember& member, Touch& touch);
 
   SegmentGrid grid_;
-  std::vector<SegmentGrid::JoinedNode> joined_;
+  std::vector<JoinedNode> joined_;
   ContactRules rules_;
   double time_ = 0;  ///< [s] in which contacts come to rest
   std::vector<Touch> touches_;

@@ -37,21 +37,26 @@ bool longer(const CableState& state, int first, int last, double length) {
   return false;
 }
 
-/// [m] Along the cable at rest, from a segment to a node.
-double way_to(const CableState& state, int segment, int node) {
-  return node <= segment ? state.length(node, segment) : state.length(segment + 1, node);
+/// [m] Along the cable at rest, from a segment to a node; infinite where it is longer than `length` [m].
+double way_to(const CableState& state, int segment, int node, double length) {
+  double way = 0;
+  for (int i = std::min(node, segment + 1); i < std::max(node, segment); ++i) {
+    way += state.rest_lengths[i];
+    if (way > length) return infinity;
+  }
+  return way;
 }
 
 /// Whether the way from one segment to another through a junction is no longer than `length` [m].
-bool close_at_junction(const std::vector<SimulatedCable>& cables, const std::vector<SegmentGrid::JoinedNode>& joined,
-                       const SegmentId& first, const SegmentId& second, double length) {
-  for (const SegmentGrid::JoinedNode& a : joined) {
+bool close_at_junction(const std::vector<SimulatedCable>& cables, const std::vector<JoinedNode>& joined, const SegmentId& first,
+                       const SegmentId& second, double length) {
+  for (const JoinedNode& a : joined) {
     if (a.cable != first.cable) continue;
-    const double way = way_to(cables[a.cable].state, first.segment, a.node);
+    const double way = way_to(cables[a.cable].state, first.segment, a.node, length);
     if (way > length) continue;
-    for (const SegmentGrid::JoinedNode& b : joined)
+    for (const JoinedNode& b : joined)
       if (b.junction == a.junction && b.cable == second.cable &&
-          way + way_to(cables[b.cable].state, second.segment, b.node) <= length)
+          way + way_to(cables[b.cable].state, second.segment, b.node, length) <= length)
         return true;
   }
   return false;
@@ -93,8 +98,16 @@ double find_margin(const std::vector<SimulatedCable>& cables, const std::vector<
 
 }  // namespace
 
+bool can_touch(const std::vector<SimulatedCable>& cables, const std::vector<JoinedNode>& joined, const SegmentPairs::Pair& pair) {
+  const SegmentId &first = pair.first, &second = pair.second;
+  const SimulatedCable &cable = cables[first.cable], &other = cables[second.cable];
+  const double thicker = std::max(CableMaterials(cable)[first.segment].radius, CableMaterials(other)[second.segment].radius);
+  if (first.cable == second.cable && !longer(cable.state, first.segment + 1, second.segment, bend_radii * thicker)) return false;
+  return joined.empty() || !close_at_junction(cables, joined, first, second, junction_radii * thicker);
+}
+
 void SegmentGrid::update(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, const Rules& rules,
-                         const std::vector<JoinedNode>& joined, double reach, double h, SegmentPairs& found) {
+                         double reach, double h, SegmentPairs& found) {
   if (follow_nodes(cables, group, h, found)) return;
   found.margin = find_margin(cables, group, h);
   found.places.clear();
@@ -105,7 +118,7 @@ void SegmentGrid::update(const std::vector<SimulatedCable>& cables, const std::v
   found.moved.resize(found.places.size());
   found.speeds.resize(found.places.size());
   fill(cables, group, reach, found.margin);
-  collect(cables, rules, joined, reach, found);
+  collect(cables, rules, reach, found);
   follow_nodes(cables, group, h, found);
 }
 
@@ -136,8 +149,7 @@ void SegmentGrid::fill(const std::vector<SimulatedCable>& cables, const std::vec
     }
 }
 
-void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules& rules, const std::vector<JoinedNode>& joined,
-                          double reach, SegmentPairs& found) {
+void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules& rules, double reach, SegmentPairs& found) {
   found.pairs.clear();
   std::size_t buckets = 1;
   while (buckets < 2 * entries_.size()) buckets *= 2;
@@ -145,8 +157,7 @@ void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules
   // From the last one on, so that each meets those after it alone.
   for (int a = static_cast<int>(entries_.size()) - 1; a >= 0; --a) {
     Entry& first = entries_[a];
-    const SimulatedCable& cable = cables[first.id.cable];
-    const double radius = CableMaterials(cable)[first.id.segment].radius;
+    const double radius = CableMaterials(cables[first.id.cable])[first.id.segment].radius;
     near_.clear();
     for (int dx = -1; dx <= 1; ++dx)
       for (int dy = -1; dy <= 1; ++dy)
@@ -158,11 +169,7 @@ void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules
             const double sum = first.radius + second.radius;
             if ((first.middle - second.middle).squaredNorm() > sum * sum) continue;
             const bool same = first.id.cable == second.id.cable;
-            if (same ? !rules.self : !rules.between_cables) continue;
-            const double other_radius = CableMaterials(cables[second.id.cable])[second.id.segment].radius;
-            const double thicker = std::max(radius, other_radius);
-            if (same && !longer(cable.state, first.id.segment + 1, second.id.segment, bend_radii * thicker)) continue;
-            if (!joined.empty() && close_at_junction(cables, joined, first.id, second.id, junction_radii * thicker)) continue;
+            if (same ? !rules.self || second.id.segment == first.id.segment + 1 : !rules.between_cables) continue;
             near_.push_back(b);
           }
         }

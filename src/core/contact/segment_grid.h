@@ -13,8 +13,14 @@ struct SegmentId {
   int cable = 0, segment = 0;
 };
 
-/// Pairs of segments that may touch soon. They stay valid as long as no node has moved by more than a margin, so that most
-/// substeps find them ready.
+/// A node of a cable that is joined with others at a junction.
+struct JoinedNode {
+  int cable = 0, node = 0;
+  int junction = 0;  ///< the body that it is
+};
+
+/// Pairs of segments that come close to each other soon. They stay valid as long as no node has moved by more than a margin, so
+/// that most substeps find them ready.
 struct SegmentPairs {
   struct Pair {
     SegmentId first, second;              ///< ascending
@@ -30,6 +36,10 @@ struct SegmentPairs {
   std::vector<double> speeds;  ///< [m/s] of a segment, at either end; likewise
 };
 
+/// Whether a pair is far enough from each other along a cable, or by way of a junction, to touch. Lengths at rest decide, which
+/// winches and guides change in any step: it is asked of each anew.
+bool can_touch(const std::vector<SimulatedCable>& cables, const std::vector<JoinedNode>& joined, const SegmentPairs::Pair& pair);
+
 /// Finds pairs of segments with a hash of cubic cells (Teschner et al., Optimized Spatial Hashing for Collision Detection of
 /// Deformable Objects, 2003).
 class SegmentGrid {
@@ -39,17 +49,11 @@ class SegmentGrid {
     bool self = false;            ///< segments of one cable
     bool between_cables = false;  ///< segments of two
   };
-  /// A node of a cable that is joined with others at a junction.
-  struct JoinedNode {
-    int cable = 0, node = 0;
-    int junction = 0;  ///< the body that it is
-  };
-
   /// Brings `found` up to date: those of `group`, ascending indices into `cables`, whose centre lines may come closer in the
   /// next h [s] than the sum of the radii and `reach` [m]. No centre lines of a pair are closer now than its distance less what
-  /// its two segments have moved. `joined`: pairs that are close to each other by way of a junction do not count.
-  void update(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, const Rules& rules,
-              const std::vector<JoinedNode>& joined, double reach, double h, SegmentPairs& found);
+  /// its two segments have moved. Which of them can touch, `can_touch` tells.
+  void update(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, const Rules& rules, double reach,
+              double h, SegmentPairs& found);
 
  private:
   struct Entry {
@@ -62,8 +66,7 @@ class SegmentGrid {
   };
 
   void fill(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, double reach, double margin);
-  void collect(const std::vector<SimulatedCable>& cables, const Rules& rules, const std::vector<JoinedNode>& joined, double reach,
-               SegmentPairs& found);
+  void collect(const std::vector<SimulatedCable>& cables, const Rules& rules, double reach, SegmentPairs& found);
   std::size_t bucket(const std::array<std::int32_t, 3>& cell) const;
 
   std::vector<Entry> entries_;
