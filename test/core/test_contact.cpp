@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "../support/scenes.h"
 #include "contact/law.h"
+#include "contact/segment_grid.h"
 #include "geometry/segment_geometry.h"
 #include "verlet_cable/core/world.h"
 
@@ -340,6 +343,37 @@ TEST(ContactLaw, DeepContactIsLedToTheDepthOfItsForceInOneIteration) {
     evaluate_touch(Vector3(0, 0, -next / touch.rate), touch);
     // The depth of a force is found to some percent; the tangent would leave twenty times the force, and more.
     EXPECT_NEAR(touch.normal_force, force, 0.2 * force);
+  }
+}
+
+/// Pairs of segments that count, by their numbers.
+std::vector<std::pair<int, int>> counted(const SegmentPairs& found, const std::vector<SimulatedCable>& cables) {
+  std::vector<std::pair<int, int>> numbers;
+  for (const SegmentPairs::Pair& pair : found.pairs)
+    if (!pair.may_adjoin || !SegmentGrid::adjoin(cables, {}, pair.first, pair.second))
+      numbers.emplace_back(pair.first.segment, pair.second.segment);
+  return numbers;
+}
+
+/// A copy of a world finds them anew, where the world goes on with those that it found before a winch or a guide changed lengths.
+TEST(SegmentGrid, PairsFollowFromTheRestLengthsOfNow) {
+  std::vector<SimulatedCable> cables = World(scenes::one_cable(3), {}).cables();
+  CableState& cable = cables[0].state;
+  cable.positions = {{0, 0, 0}, {0.1, 0, 0}, {0.1, 0.012, 0}, {0, 0.012, 0}};
+  // Two and a half radii are 0.0125 m.
+  const double shorter = 0.012, longer = 0.013;
+  for (const auto& [before, now] : {std::pair(longer, shorter), std::pair(shorter, longer)}) {
+    SegmentGrid grid;
+    const auto update = [&](double between, SegmentPairs& found) {
+      cable.rest_lengths = {0.1, between, 0.1};
+      grid.update(cables, {0}, {true, false}, {}, 0.01, 1e-3, found);
+    };
+    SegmentPairs kept, anew;
+    update(before, kept);
+    update(now, kept);
+    update(now, anew);
+    EXPECT_EQ(counted(kept, cables), counted(anew, cables));
+    EXPECT_EQ(counted(kept, cables).size(), now == longer ? 1u : 0u);
   }
 }
 

@@ -282,6 +282,7 @@ void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, const std
     const double speed = found.speeds[pair.first_node] + found.speeds[pair.second_node];
     const double moved = found.moved[pair.first_node] + found.moved[pair.second_node];
     if (pair.distance - moved > (2 * thickest + reach(speed, thickest, h)) * (1 + distance_rounding)) continue;
+    if (pair.may_adjoin && SegmentGrid::adjoin(cables, joined_, pair.first, pair.second)) continue;
     const SimulatedCable &a = cables[pair.first.cable], &b = cables[pair.second.cable];
     const int i = pair.first.segment, j = pair.second.segment;
     const double first_radius = CableMaterials(a)[i].radius, second_radius = CableMaterials(b)[j].radius;

@@ -20,6 +20,8 @@ constexpr double margin_substeps = 20;
 /// by no more than so many segment lengths, or a radius, and no less than this part of a radius.
 constexpr double margin_segments = 0.5;
 constexpr double least_margin = 0.2;
+/// Rest lengths of a cable may change by so much until then, in radii.
+constexpr double rest_margin_radii = 0.5;
 
 double largest_speed(const std::vector<SimulatedCable>& cables, const std::vector<int>& group) {
   double square = 0;
@@ -58,7 +60,7 @@ bool close_at_junction(const std::vector<SimulatedCable>& cables, const std::vec
 }
 
 /// How far and how fast the nodes have come since pairs were found; then, of the two nodes of a segment, the larger. False if
-/// one may leave its margin in the next h [s].
+/// one may leave its margin in the next h [s], or a cable's rest lengths have left theirs.
 bool follow_nodes(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, double h, SegmentPairs& found) {
   std::size_t k = 0;
   for (const int cable : group) {
@@ -71,24 +73,31 @@ bool follow_nodes(const std::vector<SimulatedCable>& cables, const std::vector<i
       found.moved[k] = moved;
       found.speeds[k] = speed;
     }
+    double changed = 0;
     for (std::size_t i = first; i + 1 < k; ++i) {
+      changed += std::abs(state.rest_lengths[i - first] - found.rest_lengths[i]);
       found.moved[i] = std::max(found.moved[i], found.moved[i + 1]);
       found.speeds[i] = std::max(found.speeds[i], found.speeds[i + 1]);
     }
+    if (!(changed <= found.rest_margin)) return false;
   }
   return k == found.places.size();
 }
 
+double thickest(const std::vector<SimulatedCable>& cables, const std::vector<int>& group) {
+  double radius = 0;
+  for (const int cable : group) radius = std::max(radius, CableMaterials(cables[cable]).largest_radius());
+  return radius;
+}
+
 /// [m] That nodes may move until the pairs have to be found anew.
 double find_margin(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, double h) {
-  double longest = 0, thickest = 0;
-  for (const int cable : group) {
+  double longest = 0;
+  for (const int cable : group)
     longest =
         std::max(longest, *std::max_element(cables[cable].state.rest_lengths.begin(), cables[cable].state.rest_lengths.end()));
-    thickest = std::max(thickest, CableMaterials(cables[cable]).largest_radius());
-  }
-  const double way = h * largest_speed(cables, group);
-  return std::clamp(margin_substeps * way, least_margin * thickest, std::max(thickest, margin_segments * longest)) + 2 * way;
+  const double way = h * largest_speed(cables, group), radius = thickest(cables, group);
+  return std::clamp(margin_substeps * way, least_margin * radius, std::max(radius, margin_segments * longest)) + 2 * way;
 }
 
 }  // namespace
@@ -97,16 +106,30 @@ void SegmentGrid::update(const std::vector<SimulatedCable>& cables, const std::v
                          const std::vector<JoinedNode>& joined, double reach, double h, SegmentPairs& found) {
   if (follow_nodes(cables, group, h, found)) return;
   found.margin = find_margin(cables, group, h);
+  found.rest_margin = rest_margin_radii * thickest(cables, group);
   found.places.clear();
+  found.rest_lengths.clear();
   for (const int cable : group) {
-    const std::vector<Vector3>& places = cables[cable].state.positions;
-    found.places.insert(found.places.end(), places.begin(), places.end());
+    const CableState& state = cables[cable].state;
+    found.places.insert(found.places.end(), state.positions.begin(), state.positions.end());
+    found.rest_lengths.insert(found.rest_lengths.end(), state.rest_lengths.begin(), state.rest_lengths.end());
+    found.rest_lengths.push_back(0);  // as many as nodes
   }
   found.moved.resize(found.places.size());
   found.speeds.resize(found.places.size());
   fill(cables, group, reach, found.margin);
   collect(cables, rules, joined, reach, found);
   follow_nodes(cables, group, h, found);
+}
+
+bool SegmentGrid::adjoin(const std::vector<SimulatedCable>& cables, const std::vector<JoinedNode>& joined, const SegmentId& first,
+                         const SegmentId& second, double spare) {
+  const double thicker = std::max(CableMaterials(cables[first.cable])[first.segment].radius,
+                                  CableMaterials(cables[second.cable])[second.segment].radius);
+  if (first.cable == second.cable &&
+      !longer(cables[first.cable].state, first.segment + 1, second.segment, bend_radii * thicker + spare))
+    return true;
+  return !joined.empty() && close_at_junction(cables, joined, first, second, junction_radii * thicker + spare);
 }
 
 void SegmentGrid::fill(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, double reach, double margin) {
@@ -139,14 +162,15 @@ void SegmentGrid::fill(const std::vector<SimulatedCable>& cables, const std::vec
 void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules& rules, const std::vector<JoinedNode>& joined,
                           double reach, SegmentPairs& found) {
   found.pairs.clear();
+  // Two cables may lead to a junction.
+  const double spare = 2 * found.rest_margin;
   std::size_t buckets = 1;
   while (buckets < 2 * entries_.size()) buckets *= 2;
   buckets_.assign(buckets, -1);
   // From the last one on, so that each meets those after it alone.
   for (int a = static_cast<int>(entries_.size()) - 1; a >= 0; --a) {
     Entry& first = entries_[a];
-    const SimulatedCable& cable = cables[first.id.cable];
-    const double radius = CableMaterials(cable)[first.id.segment].radius;
+    const double radius = CableMaterials(cables[first.id.cable])[first.id.segment].radius;
     near_.clear();
     for (int dx = -1; dx <= 1; ++dx)
       for (int dy = -1; dy <= 1; ++dy)
@@ -159,11 +183,7 @@ void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules
             if ((first.middle - second.middle).squaredNorm() > sum * sum) continue;
             const bool same = first.id.cable == second.id.cable;
             if (same ? !rules.self : !rules.between_cables) continue;
-            const double other_radius = CableMaterials(cables[second.id.cable])[second.id.segment].radius;
-            const double thicker = std::max(radius, other_radius);
-            if (same && !longer(cable.state, first.id.segment + 1, second.id.segment, bend_radii * thicker)) continue;
-            if (!joined.empty() && close_at_junction(cables, joined, first.id, second.id, junction_radii * thicker)) continue;
-            near_.push_back(b);
+            if (!adjoin(cables, joined, first.id, second.id, -spare)) near_.push_back(b);
           }
         }
     int& own_bucket = buckets_[bucket(first.cell)];
@@ -178,7 +198,9 @@ void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules
       const double distance =
           (start + closest.first * (end - start) - other_start - closest.second * (other_end - other_start)).norm();
       const double far = radius + CableMaterials(cables[second.id.cable])[second.id.segment].radius + reach + 2 * found.margin;
-      if (distance <= far) found.pairs.push_back({first.id, second.id, first.node, second.node, distance});
+      if (distance <= far)
+        found.pairs.push_back(
+            {first.id, second.id, first.node, second.node, distance, adjoin(cables, joined, first.id, second.id, spare)});
     }
   }
   std::reverse(found.pairs.begin(), found.pairs.end());

@@ -20,11 +20,14 @@ struct SegmentPairs {
     SegmentId first, second;              ///< ascending
     int first_node = 0, second_node = 0;  ///< of the segments, into the arrays of nodes
     double distance = 0;                  ///< [m] of the centre lines
+    bool may_adjoin = false;              ///< whether they do follows from the rest lengths now, see SegmentGrid::adjoin
   };
   std::vector<Pair> pairs;  ///< ascending
   // When they were found; nowhere: never
-  std::vector<Vector3> places;  ///< [m] of the nodes, cable by cable
-  double margin = 0;            ///< [m] that a node may move
+  std::vector<Vector3> places;       ///< [m] of the nodes, cable by cable
+  double margin = 0;                 ///< [m] that a node may move
+  std::vector<double> rest_lengths;  ///< [m] of the segments; by their first nodes
+  double rest_margin = 0;            ///< [m] that those of a cable may change by, in all: winches and guides change them
   // Now
   std::vector<double> moved;   ///< [m] by a segment since, at either end; by its first node
   std::vector<double> speeds;  ///< [m/s] of a segment, at either end; likewise
@@ -47,9 +50,14 @@ class SegmentGrid {
 
   /// Brings `found` up to date: those of `group`, ascending indices into `cables`, whose centre lines may come closer in the
   /// next h [s] than the sum of the radii and `reach` [m]. No centre lines of a pair are closer now than its distance less what
-  /// its two segments have moved. `joined`: pairs that are close to each other by way of a junction do not count.
+  /// its two segments have moved. Those that adjoin are left out, but for pairs of which that may change.
   void update(const std::vector<SimulatedCable>& cables, const std::vector<int>& group, const Rules& rules,
               const std::vector<JoinedNode>& joined, double reach, double h, SegmentPairs& found);
+
+  /// Whether two segments, ascending, are so close to each other along the cable, or by way of a junction, that they do not count
+  /// as touching: closer than their radii ask for and `spare` [m] more.
+  static bool adjoin(const std::vector<SimulatedCable>& cables, const std::vector<JoinedNode>& joined, const SegmentId& first,
+                     const SegmentId& second, double spare = 0);
 
  private:
   struct Entry {
