@@ -137,13 +137,13 @@ TEST(GuidedWinch, stallsWhereAnEyeletLetsNothingThrough) {
   EXPECT_GT(world.cables()[0].state.length(), length - 0.2);
 }
 
-/// From where it hangs down freely up to a sheave, and along to a winch at its end, two segments and a half away.
+/// From where it hangs down freely up to a sheave, and along to a winch at its end, a segment and a half away.
 SceneDesc hoist() {
   SceneDesc scene = scenes::one_cable(20, 2);
-  scene.cables[0].attachments = {scenes::attachment("winch", PlaceDesc::At::end, {0.3, 0, 0.05})};
+  scene.cables[0].attachments = {scenes::attachment("winch", PlaceDesc::At::end, {0.2, 0, 0.05})};
   scene.cables[0].initial.type = InitialShapeDesc::Type::points;
-  scene.cables[0].initial.points = {{0, 0, -1.65}, {0, 0, 0.05}, {0.3, 0, 0.05}};
-  GuideDesc& wheel = scene.guides.emplace_back(guide("wheel", 1.7, {0.05, 0, 0}));
+  scene.cables[0].initial.points = {{0, 0, -1.75}, {0, 0, 0.05}, {0.2, 0, 0.05}};
+  GuideDesc& wheel = scene.guides.emplace_back(guide("wheel", 1.8, {0.05, 0, 0}));
   wheel.frame = "hand";
   wheel.type = GuideDesc::Type::sheave;
   wheel.rotation = {0.5 * M_PI, 0, 0};
@@ -157,11 +157,13 @@ TEST(GuidedWinch, atTheEndOfACableLeavesTheSheaveBesideItBothOfItsNodes) {
   ASSERT_TRUE(world.apply(edit::SetLength{0, true, 1.2, 0.4}).ok);
   const CableState& cable = world.cables()[0].state;
   for (int i = 0; i < 3000; ++i) {
-    world.step(scenes::hand_at(Vector3::Zero()));
+    // The sheave comes close to the winch.
+    world.step(scenes::hand_at({std::min(0.1 * world.time(), 0.12), 0, 0}));
     const Attachment& wheel = world.attachments()[world.attachments()[0].guide == 0 ? 0 : 1];
     ASSERT_LT(wheel.node + 1, cable.segments()) << world.time() << " s";
     const double mass = std::accumulate(cable.masses.begin(), cable.masses.end(), 0.0);
-    ASSERT_NEAR(mass, 0.1 * cable.length(), 3e-3) << world.time() << " s";
+    // But for what bends beside the wheel have lost of its length.
+    ASSERT_NEAR(mass, 0.1 * cable.length(), 5e-3) << world.time() << " s";
   }
   EXPECT_NEAR(cable.length(), 1.2, 5e-3);
   EXPECT_EQ(world.view_guide(0).cable, 0);
