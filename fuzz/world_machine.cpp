@@ -148,9 +148,9 @@ void WorldMachine::start_waiting() {
   on_both([&](World& world) { return world.start_waiting(frames_); });
 }
 
-/// As much work as many steps, which bodies multiply.
+/// As much work as many steps, which bodies multiply: not in each input.
 void WorldMachine::settle() {
-  if (!world_.bodies().empty() && input_.below(8) != 0) return;
+  if (input_.below(world_.bodies().empty() ? 4 : 8) != 0) return;
   effort_ += most_effort / 2;
   on_both([&](World& world) { return world.settle(); });
 }

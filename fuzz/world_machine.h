@@ -22,7 +22,7 @@ class WorldMachine {
   bool is_tired() const { return effort_ > most_effort; }
 
  private:
-  static constexpr int most_effort = 3000;
+  static constexpr int most_effort = 600;
 
   // What is done.
   void move_frame();

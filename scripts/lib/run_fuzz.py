@@ -15,6 +15,8 @@ from xml.etree import ElementTree
 LONGEST_INPUT_SECONDS = 600
 MEMORY_MB = 4096
 MOST_BYTES = 20000
+# Of files whose lines are all alike: some of them are enough, and are read several times as often.
+MOST_BYTES_OF_LINES = 4000
 # Of worlds, whose inputs have no format: enough for some tens of calls.
 WORLD_SEEDS = 20
 WORLD_SEED_BYTES = 600
@@ -36,7 +38,11 @@ def seeds(target, checkout):
     return []
 
 
-def shorter(content, most=MOST_BYTES):
+def most_bytes(target):
+    return MOST_BYTES_OF_LINES if target in ('motion', 'recording') else MOST_BYTES
+
+
+def shorter(content, most):
     """Whole lines of long files: what is large is slow, and no other code."""
     return content if len(content) <= most else content[:content.rfind(b'\n', 0, most) + 1]
 
@@ -45,7 +51,7 @@ def fill_corpus(target, checkout, corpus):
     """With a target's first inputs, and with those of earlier findings."""
     corpus.mkdir(parents=True, exist_ok=True)
     for path in seeds(target, checkout):
-        (corpus / ('seed_' + path.name)).write_bytes(shorter(path.read_bytes()))
+        (corpus / ('seed_' + path.name)).write_bytes(shorter(path.read_bytes(), most_bytes(target)))
     if target == 'world':
         for seed in range(WORLD_SEEDS):
             content = random.Random(seed).getrandbits(8 * WORLD_SEED_BYTES)
@@ -64,7 +70,7 @@ def run(target, corpus, arguments):
     before = set(findings.iterdir())
     program = workspace / 'devel' / 'lib' / 'verlet_cable' / f'fuzz_{target}'
     options = [f'-max_total_time={arguments.seconds}', f'-timeout={LONGEST_INPUT_SECONDS}',
-               f'-report_slow_units={LONGEST_INPUT_SECONDS}', f'-rss_limit_mb={MEMORY_MB}', f'-max_len={MOST_BYTES}',
+               f'-report_slow_units={LONGEST_INPUT_SECONDS}', f'-rss_limit_mb={MEMORY_MB}', f'-max_len={most_bytes(target)}',
                f'-seed={arguments.seed or 0}', '-print_final_stats=1', f'-artifact_prefix={findings}/']
     dictionary = checkout / 'fuzz' / 'dictionaries' / f'{target}.dict'
     if dictionary.exists():
@@ -83,6 +89,15 @@ def run(target, corpus, arguments):
     return int(executed.group(1)) if executed else 0, int(covered[-1]) if covered else 0, found
 
 
+def add_to_totals(path, target, executions, seconds):
+    """(executions, hours) of all runs of a target; `path` has a line for each."""
+    with open(path, 'a', encoding='utf-8') as file:
+        print(target, executions, round(seconds), sep=',', file=file)
+    runs = [line.split(',') for line in path.read_text(encoding='utf-8').split()]
+    own = [(int(executed), int(duration)) for name, executed, duration in runs if name == target]
+    return sum(executed for executed, _ in own), sum(duration for _, duration in own) / 3600
+
+
 def run_all(corpora, arguments):
     """{target: text of what was wrong}"""
     failures = {}
@@ -90,10 +105,12 @@ def run_all(corpora, arguments):
         runs = {target: pool.submit(run, target, corpora / target, arguments) for target in arguments.targets}
         for target, result in runs.items():
             executions, edges, found = result.result()
+            total, hours = add_to_totals(arguments.workspace / 'executions.csv', target, executions, arguments.seconds)
             text = ', '.join(map(str, found)) if found else 'nothing'
             if found or executions == 0:
                 failures[target] = f'{executions} executions, found: {text}'
-            print(f'{target}: {executions} executions, {edges} edges covered, found: {text}', flush=True)
+            print(f'{target}: {executions} executions, {edges} edges covered, found: {text}; with earlier runs {total} executions '
+                  f'in {hours:.2f} h', flush=True)
     return failures
 
 

@@ -137,6 +137,52 @@ TEST(GuidedWinch, stallsWhereAnEyeletLetsNothingThrough) {
   EXPECT_GT(world.cables()[0].state.length(), length - 0.2);
 }
 
+/// From where it hangs down freely up to a sheave, and along to a winch at its end, a segment and a half away.
+SceneDesc hoist() {
+  SceneDesc scene = scenes::one_cable(20, 2);
+  scene.cables[0].attachments = {scenes::attachment("winch", PlaceDesc::At::end, {0.2, 0, 0.05})};
+  scene.cables[0].initial.type = InitialShapeDesc::Type::points;
+  scene.cables[0].initial.points = {{0, 0, -1.75}, {0, 0, 0.05}, {0.2, 0, 0.05}};
+  GuideDesc& wheel = scene.guides.emplace_back(guide("wheel", 1.8, {0.05, 0, 0}));
+  wheel.frame = "hand";
+  wheel.type = GuideDesc::Type::sheave;
+  wheel.rotation = {0.5 * M_PI, 0, 0};
+  wheel.radius = 0.05;
+  wheel.inertia = 1e-5;
+  return scene;
+}
+
+TEST(GuidedWinch, atTheEndOfACableLeavesTheSheaveBesideItBothOfItsNodes) {
+  World world(hoist(), scenes::hand_at(Vector3::Zero()));
+  ASSERT_TRUE(world.apply(edit::SetLength{0, true, 1.2, 0.4}).ok);
+  const CableState& cable = world.cables()[0].state;
+  for (int i = 0; i < 3000; ++i) {
+    // The sheave comes close to the winch.
+    world.step(scenes::hand_at({std::min(0.1 * world.time(), 0.12), 0, 0}));
+    const Attachment& wheel = world.attachments()[world.attachments()[0].guide == 0 ? 0 : 1];
+    ASSERT_LT(wheel.node + 1, cable.segments()) << world.time() << " s";
+    const double mass = std::accumulate(cable.masses.begin(), cable.masses.end(), 0.0);
+    // But for what bends beside the wheel have lost of its length.
+    ASSERT_NEAR(mass, 0.1 * cable.length(), 5e-3) << world.time() << " s";
+  }
+  EXPECT_NEAR(cable.length(), 1.2, 5e-3);
+  EXPECT_EQ(world.view_guide(0).cable, 0);
+}
+
+/// The step is planned when the places where the cable comes to the wheel and leaves it follow what is beside it.
+TEST(GuidedWinch, keepsTheMassThatComesOntoTheSheaveBesideIt) {
+  World world(hoist(), scenes::hand_at(Vector3::Zero()));
+  constexpr double speed = 0.01, density = 0.1;
+  ASSERT_TRUE(world.apply(edit::SetLength{0, true, 2.2, speed}).ok);
+  const std::vector<double>& masses = world.cables()[0].state.masses;
+  const auto mass = [&] { return std::accumulate(masses.begin(), masses.end(), 0.0); };
+  for (int i = 0; i < 100; ++i) {
+    const double before = mass();
+    world.step(scenes::hand_at({0, 0, (i + 1) * world.time_step()}));  // at 1 m/s
+    ASSERT_LE(std::abs(mass() - before), 2 * speed * world.time_step() * density) << world.time() << " s";
+  }
+}
+
 TEST(GuidedWinch, aRodRunsOverOneSheaveOnly) {
   try {
     World world(crane(true), {});

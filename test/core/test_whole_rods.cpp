@@ -163,8 +163,7 @@ TEST(WholeRod, ConstantCurvatureAndTwistMakeACoil) {
     const Vector3 axis = Vector3(2, 0, 4) / std::sqrt(20.0);
     const double rate = std::sqrt(20.0), radius = 4 / 20.0;
     const Vector3 inward(0, 1, 0), tangent = axis.cross(-inward);
-    const Vector3 tip =
-        radius * inward - radius * std::cos(rate) * inward + radius * std::sin(rate) * tangent + 2 / rate * axis;
+    const Vector3 tip = radius * inward - radius * std::cos(rate) * inward + radius * std::sin(rate) * tangent + 2 / rate * axis;
     errors.push_back((world.cables()[0].state.positions.back() - tip).norm());
   }
   EXPECT_LT(errors[1], 2e-3);
@@ -255,7 +254,8 @@ TEST(WholeRod, PinsAndUnpinsDoNotTwistIt) {
     pin.node = node;
     pin.type = AttachmentType::clamp;
     pin.pose.position = world.cables()[0].state.positions[node];
-    pin.pose.orientation = Quaternion(Eigen::AngleAxisd(2, Vector3::UnitX())) * segment_orientations(world.cables()[0].state)[node];
+    pin.pose.orientation =
+        Quaternion(Eigen::AngleAxisd(2, Vector3::UnitX())) * segment_orientations(world.cables()[0].state)[node];
     ASSERT_TRUE(world.apply(pin).ok);
     EXPECT_NEAR(elastic_energy(world), energy, 0.05 * energy);
     EXPECT_EQ(world.cables()[0].state.joint_twist[node], 0);
@@ -326,6 +326,30 @@ TEST(WholeRod, TuningDoesNotTakeTheTorsionalStiffnessThatAJoinedCableNeeds) {
 }
 
 /// What a winch pays out is as twisted as the cable is: the cheap law of straight round cables says the same.
+/// Both of its nodes may be held at one place.
+TEST(SegmentOrientations, AreRotationsWhereASegmentHasNoLength) {
+  for (const bool whole : {false, true}) {
+    CableState state = World(scenes::one_cable(3), {}).cables()[0].state;
+    if (whole) {
+      std::vector<DirectionTarget> no_clamps;
+      give_frames(state, no_clamps);
+    }
+    const auto check = [&] {
+      for (const Quaternion& q : segment_orientations(state)) EXPECT_NEAR(q.norm(), 1, 1e-9) << "frames: " << whole;
+    };
+    for (const int node : {0, 1, 2}) {
+      const std::vector<Vector3> apart = state.positions;
+      state.positions[node + 1] = state.positions[node];
+      carry_frames(apart, state);
+      check();
+      const std::vector<Vector3> together = state.positions;
+      state.positions = apart;
+      carry_frames(together, state);
+      check();
+    }
+  }
+}
+
 TEST(WholeRod, WinchPassesTwistOn) {
   std::vector<World> worlds;
   for (const double difference : {0.0, 1e-9}) {

@@ -199,5 +199,29 @@ TEST(WinchEdits, BadRequestsChangeNothing) {
   EXPECT_NE(other_end.message.find("other end"), std::string::npos) << other_end.message;
 }
 
+/// No shape fits where a segment's nodes are held at one place. The winch pays out between them, and segments appear there.
+TEST(Winch, PaysOutWhereNothingFitsAndAllStaysFinite) {
+  for (const bool twists : {false, true}) {
+    SceneDesc scene = scenes::one_cable(4);
+    if (twists) scene.materials[0].material.bending_stiffness = scene.materials[0].material.torsional_stiffness = 1e-3;
+    scene.cables[0].attachments = {scenes::attachment("top", PlaceDesc::At::start, Vector3::Zero())};
+    World world(scene, {});
+    for (const int node : {1, 2}) {
+      edit::Pin pin;
+      pin.body = cable_id(0);
+      pin.node = node;
+      ASSERT_TRUE(world.apply(pin).ok);
+    }
+    ASSERT_TRUE(world.apply(edit::SetLength{0, false, 2, 1}).ok);
+    for (int i = 0; i < 1500; ++i) {
+      world.step({});
+      const CableState& cable = world.cables()[0].state;
+      for (const Vector3& position : cable.positions) ASSERT_TRUE(position.allFinite()) << world.time() << " s";
+      for (const Vector3& velocity : cable.velocities) ASSERT_TRUE(velocity.allFinite()) << world.time() << " s";
+      for (const Quaternion& q : segment_orientations(cable)) ASSERT_NEAR(q.norm(), 1, 1e-9) << world.time() << " s";
+    }
+  }
+}
+
 }  // namespace
 }  // namespace verlet_cable

@@ -161,9 +161,7 @@ void World::Implementation::remesh_winch(int index) {
     return cable.state.rest_lengths[drive.segment] + std::min(drive.change, 0.0) < shortest_segment * cable.model->segment_length;
   };
   const auto is_free = [&](int node) {
-    return node > 0 && node < cable.state.segments() && !carries_payload(cable, node) &&
-           std::none_of(state.attachments.begin(), state.attachments.end(),
-                        [&](const Attachment& a) { return a.body == cable_id(index) && a.node == node; });
+    return node > 0 && node < cable.state.segments() && !carries_payload(cable, node) && !is_attached(state, index, node);
   };
   while (too_short() && is_free(drive.place == LengthDrive::Place::start ? 1 : cable.state.segments() - 1))
     take_in_winch_node(index);

@@ -6,6 +6,7 @@
 #include "target/length_drive.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "world/implementation.h"
+#include "world/island_stepper.h"
 
 namespace verlet_cable {
 
@@ -67,6 +68,7 @@ void World::Implementation::advance_guides() {
     for (Attachment& attachment : state.attachments)
       if (attachment.body == cable_id(static_cast<int>(i)) && is_wheel(attachment))
         follow_on_wheel(static_cast<int>(i), state, attachment);
+    keep_flow_at_drive(static_cast<int>(i), 1, state);  // as the step is planned already
     pass_nodes_of(static_cast<int>(i));
   }
 }

@@ -33,12 +33,6 @@ Vector3 direction(const CableState& state, int segment) {
   return (state.positions[segment + 1] - state.positions[segment]).normalized();
 }
 
-bool is_attached(const State& state, int cable, int node) {
-  return std::any_of(state.attachments.begin(), state.attachments.end(), [&](const Attachment& a) {
-    return a.body == cable_id(cable) && (a.node == node || (is_wheel(a) && a.node + 1 == node));
-  });
-}
-
 /// The nodes from `first` on have moved by `shift`, the segments likewise.
 void renumber(int cable, int first, int shift, State& state) {
   const auto follow = [&](int& node) {
@@ -134,6 +128,12 @@ bool carries_payload(const SimulatedCable& cable, int node) {
   const auto density = [](const MaterialDesc& material) { return material.linear_density; };
   // What a cut has left may be of any of the cable's materials.
   return cable.state.masses[node] > materials.mean_at(node, density) * share + 1.5 * residue * materials.largest(density);
+}
+
+bool is_attached(const State& state, int cable, int node) {
+  return std::any_of(state.attachments.begin(), state.attachments.end(), [&](const Attachment& a) {
+    return a.body == cable_id(cable) && (a.node == node || (is_wheel(a) && a.node + 1 == node));
+  });
 }
 
 bool is_passable(const State& state, int cable, int node) {

@@ -8,6 +8,9 @@ namespace verlet_cable {
 /// Whether a node carries more than its segments and what a cut left on an end weigh.
 bool carries_payload(const SimulatedCable& cable, int node);
 
+/// Whether an attachment or a guide holds a node; a wheel holds two.
+bool is_attached(const State& state, int cable, int node);
+
 /// Whether a node may be taken in: nothing holds it, and nothing hangs on it.
 bool is_passable(const State& state, int cable, int node);
 

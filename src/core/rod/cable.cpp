@@ -54,6 +54,11 @@ std::vector<Quaternion> segment_orientations(const CableState& state) {
   carry_directors(state, segment, director);
   std::vector<Quaternion> orientations;
   for (int i = 0; i < n; ++i) {
+    // What has no length, where both nodes are held at one place, is turned as what is before it.
+    if (get(segment, i).isZero(0)) {
+      orientations.push_back(i > 0 ? orientations.back() : Quaternion::Identity());
+      continue;
+    }
     Eigen::Matrix3d axes;
     axes.col(0) = get(segment, i).normalized();
     axes.col(2) = axes.col(0).cross(get(director, i)).normalized();

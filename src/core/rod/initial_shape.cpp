@@ -134,6 +134,12 @@ void hang_nodes_anew(const CableModel& model, const std::vector<HeldNode>& held,
   project_positions(model, held, state);
 }
 
+/// Where holders are nearer to each other than the lengths between them allow no shape fits, and none may be found.
+void keep_finite(const std::vector<Vector3>& before, CableState& state) {
+  const auto is_finite = [](const Vector3& place) { return place.allFinite(); };
+  if (!std::all_of(state.positions.begin(), state.positions.end(), is_finite)) state.positions = before;
+}
+
 bool carry_nodes_along(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {
   if (!held.empty()) {
     const std::vector<double> arc_length = state.arc_length();
@@ -180,6 +186,7 @@ void carry_with_targets(const CableModel& model, const std::vector<HeldNode>& he
   carry_nodes_along(model, held, gravity, state);
   const bool elastic = CableMaterials(model, state).any_elastic();
   if (elastic && !project_lengths(held, lengths, state)) state.positions = hanging(model, state, held, gravity, false);
+  keep_finite(before, state);
   carry_frames(before, state);
 }
 
@@ -209,6 +216,7 @@ void restore_lengths(const CableModel& model, const std::vector<HeldNode>& held,
   for (int i = anchor; i < n; ++i) state.positions[i + 1] = state.positions[i] + lengths[i] * direction(i);
   for (int i = anchor; i-- > 0;) state.positions[i] = state.positions[i + 1] - lengths[i] * direction(i);
   carry_nodes_along(model, held, gravity, state);
+  keep_finite(before, state);
   carry_frames(before, state);
   project_velocities(model, held, state);
   std::fill(state.accelerations.begin(), state.accelerations.end(), Vector3::Zero());

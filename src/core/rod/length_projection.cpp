@@ -196,6 +196,12 @@ void project_velocities(const CableModel& model, const std::vector<HeldNode>& he
   LengthSystem system(state.masses, held, lengths);
   if (flows) system.set_flows(model, state, *flows);
   system.apply(positions, changes, velocities);
+  // Where both nodes of a segment are held at one place it has no direction, and the system no solution: from rest, then.
+  if (std::all_of(velocities.begin(), velocities.end(), [](const Vector3& v) { return v.allFinite(); })) return;
+  std::fill(velocities.begin(), velocities.end(), Vector3::Zero());
+  for (const HeldNode& h : held) velocities[h.node] = h.velocity;
+  if (flows)
+    for (GuidedFlow& flow : *flows) flow.rate = 0;
 }
 
 }  // namespace

@@ -17,7 +17,8 @@ void carry_directors(const CableState& state, const VectorArray& segment, Vector
     Vector3 normal = state.reference_orientation * Vector3::UnitY();
     double turn = 0;
     for (int i = first; i != end; i += step) {
-      const Vector3 next = get(segment, i).normalized();
+      // What has no length does not turn them.
+      const Vector3 way = get(segment, i), next = way.isZero(0) ? direction : Vector3(way.normalized());
       normal = parallel_transport(normal, direction, next);
       turn += step * half_turn(i);
       if (turn != 0) normal = std::cos(turn) * normal + std::sin(turn) * next.cross(normal);

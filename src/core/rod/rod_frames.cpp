@@ -18,8 +18,14 @@ Eigen::Matrix3d about_x(double angle) {
   return Eigen::AngleAxisd(angle, Vector3::UnitX()).toRotationMatrix();
 }
 
+/// What has no length, where both nodes are held at one place, has a direction across its director all the same.
+Vector3 direction(const Vector3& way, const Vector3& director) {
+  if (!way.isZero(0)) return way.normalized();
+  return director.isZero(0) ? Vector3(Vector3::UnitX()) : director.unitOrthogonal();
+}
+
 Vector3 direction(const CableState& state, int segment) {
-  return (state.positions[segment + 1] - state.positions[segment]).normalized();
+  return direction(state.positions[segment + 1] - state.positions[segment], state.directors[segment]);
 }
 
 Eigen::Matrix3d frame_of(const Vector3& x, const Vector3& director) {
@@ -222,7 +228,7 @@ void turn_in_clamp(double angle, DirectionTarget& clamp) {
 
 void carry_frames(const std::vector<Vector3>& before, CableState& state) {
   for (std::size_t i = 0; i < state.directors.size(); ++i) {
-    const Vector3 from = (before[i + 1] - before[i]).normalized(), to = direction(state, static_cast<int>(i));
+    const Vector3 from = direction(before[i + 1] - before[i], state.directors[i]), to = direction(state, static_cast<int>(i));
     state.directors[i] = frame_of(to, parallel_transport(state.directors[i], from, to)).col(1);
   }
 }
