@@ -209,6 +209,18 @@ TEST(StraightColumn, ThatIsPushedForASingleStepComesToRest) {
   }
 }
 
+/// Gravity pulls aside what is pushed, too.
+TEST(StraightColumn, ThatIsPushedFarInALongStepConverges) {
+  for (const double by : {0.01, 0.03, 0.05, 0.09}) {
+    SceneDesc scene = column(infinity, 0);
+    scene.cables[0].segments = 80;
+    scene.time_step = 0.02;
+    scene.gravity.acceleration = {0, 0, -9.81};
+    World world(scene, hand(1));
+    EXPECT_EQ(world.step(hand(1 - by)).status, StepResult::Status::ok) << by;
+  }
+}
+
 TEST(StraightColumn, BucklesAlikeInAllDirections) {
   std::vector<double> deflections;
   for (const Vector3& direction :

@@ -23,6 +23,8 @@ constexpr double rounding = 1e-9;
 /// Loads of less than so much of Euler's for hinges do not buckle a chain of segments, however it is held.
 constexpr double surely_stable = 0.5;
 constexpr int bisections = 40;
+/// Of a span's length: a bow for more slack is no start for a step in which gravity pulls it aside, too.
+constexpr double largest_slack_aside = 0.03;
 
 /// A straight span of a cable, and where its ends will be.
 struct Column : StraightSpan {
@@ -70,12 +72,18 @@ void for_each_column(int index, const State& state, const Place& place, const Fu
   }
 }
 
+/// What of gravity is across a column [m/s^2]; zero where that is rounding.
+Vector3 gravity_across(const Column& column, const SimulatedCable& cable, const State& state) {
+  const Vector3 along = column.direction(), g = state.scene->gravity.at(cable.state.positions[column.first]);
+  const Vector3 down = g - g.dot(along) * along;
+  return down.norm() > rounding * g.norm() ? down : Vector3(Vector3::Zero());
+}
+
 /// A direction across a column: of whole rods that in which it bends most easily, else that of gravity, else any. Where there is
 /// something to lie on, not down.
 Vector3 across(const Column& column, const SimulatedCable& cable, const State& state) {
-  const Vector3 along = column.direction(), g = state.scene->gravity.at(cable.state.positions[column.first]);
-  const Vector3 down = g - g.dot(along) * along;
-  const bool has_down = down.norm() > rounding * g.norm(), lies = !state.obstacles.empty();
+  const Vector3 along = column.direction(), down = gravity_across(column, cable, state);
+  const bool has_down = !down.isZero(0), lies = !state.obstacles.empty();
   if (!cable.state.directors.empty()) {
     const int middle = (column.first + column.last) / 2;
     const BendingStiffness& stiffness = CableMaterials(cable)[middle].bending_stiffness;
@@ -222,6 +230,7 @@ void buckle_straight_columns(int index, State& state) {
     if (can_stretch(column, cable)) return disturb(column, state, cable);
     const double slack = slack_of(column);
     if (slack == 0) return;
+    if (slack > largest_slack_aside * column.length && !gravity_across(column, cable, state).isZero(0)) return;
     bend(column, slack, time, waves_of_sudden_bow(*cable.model, cable.state, column, time), index, state);
   });
 }
