@@ -25,7 +25,7 @@ class LateralStiffness {
   LateralStiffness(const CableModel& model, const CableState& state, const StraightSpan& span,
                    const std::vector<double>& tension);
 
-  bool is_stable() { return factor(0); }
+  bool is_stable() { return factor(rounding_); }
   /// Across the span, of an unstable one: nodes of the span, first and last too, which are 0; of what grows, most of what grows
   /// fastest. Its size is arbitrary.
   std::vector<double> growing_shape();
@@ -37,6 +37,7 @@ class LateralStiffness {
   double largest_shift() const;
   void solve(std::vector<double>& load) const;
 
+  double rounding_ = 0;                               // [1/s^2] of an eigenvalue: what just stands, stands
   int unknowns_;                                      // inner nodes of the span
   std::vector<double> masses_;                        // [kg]
   std::vector<double> diagonal_, next_, second_;      // of the matrix: row i, and between i and i + 1, i + 2 [N/m]
