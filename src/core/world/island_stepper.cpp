@@ -10,6 +10,7 @@
 #include "rod/rod_frames.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/rotation.h"
+#include "world/straight_columns.h"
 
 namespace verlet_cable {
 
@@ -133,19 +134,16 @@ bool follows_bodies(const KinematicTargets& targets, const std::vector<Attachmen
                      [&](const KinematicTarget& target) { return attachments[target.attachment].holder >= 0; });
 }
 
-void update_targets(int index, State& state, CableOutcome& outcome) {
+namespace {
+
+/// Takes along, with holders that jump or begin to move, what cannot stretch.
+void follow_abrupt_holders(int index, const Following& following, State& state, CableOutcome& outcome) {
   SimulatedCable& cable = state.cables[index];
   KinematicTargets& targets = state.cable_progress[index].targets;
-  aim_targets(cable.state, state.attachments, state.frames.poses, state.time(), targets);
-  forget_forces(targets, state.attachments);
-  outcome.jumps.clear();
-  take_back_shown_velocities(targets, cable.state.velocities);
-  const Following following = follow_aims(state.attachments, state.time(), state.scene->time_step, targets, outcome.jumps);
-  const bool jumps = following.jumping_node >= 0;
-  if (!following.started && !jumps) return;
   Boundary boundary;
   hold_at(0, 0, targets, boundary);
-  if (jumps) {
+  if (following.jumping_node >= 0) {
+    carry_straight_columns(index, state);
     // Bodies are carried with the cable.
     std::vector<HeldNode> held;
     for (std::size_t k = 0; k < boundary.nodes.size(); ++k)
@@ -158,6 +156,21 @@ void update_targets(int index, State& state, CableOutcome& outcome) {
   load_flows(index, state, boundary);
   project_velocities(*cable.model, boundary, cable.state);
   keep_flows(index, boundary, state);
+}
+
+}  // namespace
+
+void update_targets(int index, State& state, CableOutcome& outcome) {
+  SimulatedCable& cable = state.cables[index];
+  KinematicTargets& targets = state.cable_progress[index].targets;
+  aim_targets(cable.state, state.attachments, state.frames.poses, state.time(), targets);
+  forget_forces(targets, state.attachments);
+  outcome.jumps.clear();
+  take_back_shown_velocities(targets, cable.state.velocities);
+  const Following following = follow_aims(state.attachments, state.time(), state.scene->time_step, targets, outcome.jumps);
+  const bool jumps = following.jumping_node >= 0;
+  if (following.started || jumps) follow_abrupt_holders(index, following, state, outcome);
+  if (!jumps) buckle_straight_columns(index, state);
 }
 
 namespace {

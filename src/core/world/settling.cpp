@@ -10,6 +10,7 @@
 #include "verlet_cable/core/cable_materials.h"
 #include "world/flush_denormals.h"
 #include "world/island_stepper.h"
+#include "world/straight_columns.h"
 
 namespace verlet_cable {
 
@@ -145,7 +146,11 @@ bool Settling::settle() {
   hold_still();
   find_obstacles();
   Approach approach(index_, may_touch());
-  const bool settled = relax(shortest_step(cable_), last_settling_step, maximum_settling_steps, approach);
+  bool settled = relax(shortest_step(cable_), last_settling_step, maximum_settling_steps, approach);
+  if (bend_straight_columns(index_, state_)) {
+    hold_at(1, 1, memory_.targets, work_.boundary);
+    settled = relax(shortest_step(cable_), last_settling_step, maximum_settling_steps, approach);
+  }
   complete();
   return settled;
 }
