@@ -13,6 +13,7 @@ import threading
 import time
 from pathlib import Path
 
+import rosgraph
 import rospy
 import yaml
 
@@ -77,6 +78,8 @@ class Soak:
             self._wait(workers, begin, begin + 3600 * options.hours)
         except KeyboardInterrupt:
             print('interrupted', flush=True)
+        except (OSError, rosgraph.MasterException) as error:
+            self._findings.add('the soak itself failed', f'no master: {error}')
         self._seconds = time.monotonic() - begin
         stop.set()
         for worker in workers:
