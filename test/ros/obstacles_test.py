@@ -165,6 +165,17 @@ class ObstaclesTest(unittest.TestCase):
         found = self.wait_for_shown(lambda m: 9 in {x.pose.position.y for x in m}, 'the good one')
         self.assertEqual(len([m for m in found if m.pose.position.y not in (2, 0)]), 1)
 
+    def test_what_a_message_does_is_bounded(self):
+        self.send(marker(1, position=(0, 5, 1)))
+        self.wait_for_shown(lambda found: 5 in {m.pose.position.y for m in found}, 'one')
+        self.send(*[marker(0, action=Marker.DELETEALL)] * 5001)
+        self.wait_for_diagnostics('last_refused', 'message of 5001 markers; allowed: at most 5000')
+        self.send(marker(2, position=(0, 6, 1)))
+        self.wait_for_shown(lambda found: {5, 6} <= {m.pose.position.y for m in found}, 'both: the message did nothing')
+        self.send(*[marker(0, action=Marker.DELETEALL)] * 2500, marker(2, position=(0, 7, 1)),
+                  *[marker(9, action=Marker.DELETE)] * 2499)
+        self.wait_for_shown(lambda found: {m.pose.position.y for m in found} & {5, 6, 7} == {7}, 'one that was added again')
+
 
 if __name__ == '__main__':
     rostest.rosrun('verlet_cable', 'obstacles', ObstaclesTest, sys.argv)

@@ -197,5 +197,15 @@ TEST(Pacer, CountsWhatIsDroppedElsewhere) {
   EXPECT_EQ(pacer.dropped(), 50);
 }
 
+TEST(Pacer, WhatIsDroppedStaysANumber) {
+  Pacer pacer = make_pacer();
+  Nanoseconds before = 0;
+  for (int leap = 0; leap < 5; ++leap) {
+    pacer.drop(4'294'967'295'000'000'000);
+    EXPECT_GE(pacer.dropped(), before);
+    before = pacer.dropped();
+  }
+}
+
 }  // namespace
 }  // namespace verlet_cable

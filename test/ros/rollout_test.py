@@ -92,6 +92,7 @@ class RolloutTest(unittest.TestCase):
                              (dict(duration=1, rate=1e6), 'rate: 1e+06'), (dict(duration=3600, rate=1000), 'nodes'),
                              (dict(good, snapshot='none'), 'snapshot: "none"'), (dict(good, snapshot='x' * 10_000_000), 'snapshot'),
                              (dict(good, motion=[transform('nowhere', 0)]), 'child_frame_id: "nowhere"'),
+                             (dict(good, motion=[transform('nowhere', 0)] * 200001), 'motion: 200001 transforms'),
                              (dict(good, motion=[transform('hand', 0, parent='hand')]), 'header.frame_id: "hand"'),
                              (dict(good, motion=hand((0, (NAN, 0, 0)))), 'motion[0]: translation'),
                              (dict(good, motion=[transform('hand', 0, rotation=(0, 0, 0, 0))]), 'rotation'),
@@ -105,6 +106,8 @@ class RolloutTest(unittest.TestCase):
         state, result = self.finish(many[8])
         self.assertEqual(state, GoalStatus.REJECTED)
         self.assertIn('limits.rollouts: 8', result.message)
+        state, result = self.roll_out(duration=NAN, motion=[transform('nowhere', 0)])
+        self.assertIn('limits.rollouts: 8', result.message)  # it is not even read
         for goal in many[:8]:
             goal.cancel()
             self.finish(goal)

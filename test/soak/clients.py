@@ -1,5 +1,8 @@
 """Clients that come and go, some of them by kill -9 in the middle of a call."""
+import os
 import random
+import select
+import signal
 import subprocess
 import sys
 import time
@@ -35,32 +38,47 @@ class Visitors:
 
 
 class Victims:
-    """Processes that call and subscribe like this one, and are killed."""
+    """Processes that call and subscribe like this one, and are killed: in the middle of a call, where that hits one, or after they
+    have read nothing for a while."""
+
+    STARTING = 60.0  # [s] of wall time, of Python with all its messages, on a busy machine
 
     def __init__(self, seed, log):
         self._choice, self._log = random.Random(seed), log
-        self.killed = 0
+        self.killed = self.killed_in_calls = self.stopped = 0
 
     def run(self, stop):
         while not stop.is_set():
             command = [sys.executable, sys.argv[0], '--victim', '--seed', str(self._choice.randrange(10**9))]
-            process = subprocess.Popen(command, stdout=self._log, stderr=subprocess.STDOUT)
-            stop.wait(self._choice.uniform(1.0, 6.0))
+            process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=self._log)
+            select.select([process.stdout], [], [], self.STARTING)  # for its first call
+            stop.wait(self._choice.uniform(0.0, 4.0))
+            if self._choice.random() < 0.2:
+                process.send_signal(signal.SIGSTOP)
+                self.stopped += 1
+                stop.wait(self._choice.uniform(1.0, 30.0))
             process.kill()
-            process.wait()
+            calls = process.communicate()[0]
             self.killed += 1
+            self.killed_in_calls += calls.count(CALLED) > calls.count(ANSWERED)
 
 
-class NoRecord:
-    """Of the calls of a process that will be killed."""
+CALLED, ANSWERED = b'\1', b'\2'  # what a victim writes; no log has these
+
+
+class Written:
+    """Of the calls of a process that will be killed: when each begins and ends, for who kills it."""
 
     def made(self, _, request):
+        os.write(sys.stdout.fileno(), CALLED)
         try:
             return request()
         except (rospy.ServiceException, rospy.ROSException, OSError):
             time.sleep(0.1)
+        finally:
+            os.write(sys.stdout.fileno(), ANSWERED)
 
 
 def be_a_victim(seed, scene, stop):
     rospy.init_node('victim', anonymous=True, disable_rostime=True, disable_signals=True)
-    return [Caller(seed, scene, NoRecord()), Sender(seed + 1), Visitors(seed + 2)]
+    return [Caller(seed, scene, Written()), Sender(seed + 1), Visitors(seed + 2)]

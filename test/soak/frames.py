@@ -42,7 +42,7 @@ class Frames:
     def _advance(self):
         draw = self._choice.random()
         if draw < 0.0005:
-            self._time = max(1.0, self._time + self._choice.choice([-30, -1, -0.01, 2, 100]))
+            self._time = max(1.0, self._time + self._choice.choice([-7200, -30, -1, -0.01, 2, 100, 7200]))
             self.jumps += 1
         elif draw < 0.0025:
             self._silent_until = time.monotonic() + self._choice.choice([0.1, 0.4, 1.0])

@@ -96,6 +96,35 @@ class Caller:
         return self._tune(Config(doubles=[DoubleParameter(name, d.number()) for name in names]))
 
 
+class Tuner:
+    """Moves the sliders of live tuning as fast as the node answers, again and again."""
+
+    LONGEST = 500  # calls
+
+    def __init__(self, seed, calls):
+        self._draws, self._calls = Draws(seed), calls
+        self.floods = 0
+
+    def run(self, stop):
+        while not stop.wait(self._draws.one_of(1, 5, 20)):
+            # Stays connected, also while there is no master.
+            tune = rospy.ServiceProxy('/cable/tuning/set_parameters', Reconfigure, persistent=True)
+            values = self._calls.made('tune', lambda: tune(Config()))
+            if values and values.config.doubles:
+                self._flood(tune, [parameter.name for parameter in values.config.doubles], stop)
+            tune.close()
+
+    def _flood(self, tune, names, stop):
+        self.floods += 1
+        for _ in range(self._draws.choice.randrange(self.LONGEST)):
+            name = self._draws.one_of(*names)
+            if stop.is_set() or not self._calls.made('tune', lambda: tune(self._slider(name))):
+                return
+
+    def _slider(self, name):
+        return Config(doubles=[DoubleParameter(name, self._draws.number())])
+
+
 class Sender:
     """Sends what nobody answers: floods of obstacles, rollouts and the mouse."""
 

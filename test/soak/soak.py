@@ -13,6 +13,7 @@ import threading
 import time
 from pathlib import Path
 
+import rosgraph
 import rospy
 import yaml
 
@@ -70,12 +71,15 @@ class Soak:
         callers = [load.Caller(options.seed + 10 * (k + 1), scene, self._calls) for k in range(CALLERS)]
         self._sender = load.Sender(options.seed + 2)
         self._visitors, self._victims = Visitors(options.seed + 3), Victims(options.seed + 4, self._log)
-        workers = load.start(callers + [self._sender, self._visitors, self._victims], stop)
+        self._tuner = load.Tuner(options.seed + 5, self._calls)
+        workers = load.start(callers + [self._sender, self._tuner, self._visitors, self._victims], stop)
         begin = time.monotonic()
         try:
-            self._wait(begin, begin + 3600 * options.hours)
+            self._wait(workers, begin, begin + 3600 * options.hours)
         except KeyboardInterrupt:
             print('interrupted', flush=True)
+        except (OSError, rosgraph.MasterException) as error:
+            self._findings.add('the soak itself failed', f'no master: {error}')
         self._seconds = time.monotonic() - begin
         stop.set()
         for worker in workers:
@@ -86,13 +90,16 @@ class Soak:
         if self._watch.messages['/cable/state'] == 0 or self._watch.steps == 0:
             self._findings.add('nothing was published', '')
 
-    def _wait(self, begin, end):
+    def _wait(self, workers, begin, end):
         next_death = begin + self._choice.uniform(*MASTER_PERIOD)
         while time.monotonic() < end:
             time.sleep(min(SAMPLE_PERIOD, max(0.0, end - time.monotonic())))
             if self._node.poll() is not None or any(self._options.reports.iterdir()):
                 return
             self._memory.sample(time.monotonic() - begin)
+            if not all(worker.is_alive() for worker in workers):
+                self._findings.add('the soak itself failed', 'a thread ended, see its output')
+                return
             if not self._calls.check_open():
                 return
             if time.monotonic() > next_death:
@@ -112,9 +119,10 @@ class Soak:
             self._findings.add('a report of the sanitizer', f'{report}\n{report.read_text(errors="replace")[:2000]}')
 
     def summarize(self):
-        others = {'sent': self._sender.sent,
+        others = {'sent': {**self._sender.sent, 'floods of tuning': self._tuner.floods},
                   'clients': {'subscriptions': self._visitors.visits, 'messages': self._visitors.messages,
-                              'killed': self._victims.killed, 'master restarts': self._master.restarts},
+                              'killed': self._victims.killed, 'of these in a call': self._victims.killed_in_calls,
+                              'stopped': self._victims.stopped, 'master restarts': self._master.restarts},
                   'frames': {'transforms': self._frames.sent, 'time jumps': self._frames.jumps, 'silences': self._frames.silences}}
         result = summary.summarize(self._seconds, self._options.seed, self._findings, self._calls, self._watch, self._memory, others)
         summary.write(result, self._memory, self._options.output)

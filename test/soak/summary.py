@@ -52,17 +52,19 @@ def draw(record, path):
     matplotlib.use('Agg')
     from matplotlib import pyplot
     times, sizes = np.array(record.samples).reshape(-1, 2).T
-    figure, axes = pyplot.subplots(figsize=(8, 4))
-    axes.plot(times / 60, sizes, linewidth=1, label='resident')
+    figure, axes = pyplot.subplots(figsize=(8, 3.5))
+    axes.axvspan(0, min(times[-1], record.SETTLING) / 60, color='0.92', label='caches fill')
+    axes.plot(times / 60, sizes, linewidth=1, label='resident, with the sanitizer\'s own')
     fit = record.fit()
     if fit:
         times, sizes = record.settled()
         line = np.median(sizes - fit[0] * times) + fit[0] * times
-        axes.plot(times / 60, line, label=f'{3600 * fit[0]:+.1f} MB/h, spread {fit[1]:.1f} MB')
+        axes.plot(times / 60, line, label=f'after that: {3600 * fit[0]:+.1f} MB an hour')
     axes.set_xlabel('time [min]')
-    axes.set_ylabel('memory of the node, with the sanitizer\'s [MB]')
+    axes.set_ylabel('memory of the node [MB]')
+    axes.set_xlim(left=0)
     axes.set_ylim(bottom=0)
-    axes.legend()
+    axes.legend(loc='lower right')
     figure.tight_layout()
     figure.savefig(path, dpi=120)
 

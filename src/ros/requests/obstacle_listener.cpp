@@ -18,6 +18,7 @@ constexpr double log_period = 5;  // [s] between warnings about what may last
 const ros::WallDuration failure_memory(5.0);
 constexpr std::size_t most_failures = 100;
 constexpr std::size_t most_pending = 1000;
+constexpr std::size_t most_markers = 5000;         // of a message: all obstacles there can be, several times
 constexpr std::size_t most_meshes = 1000;          // that are remembered
 constexpr std::size_t most_triangles = 2'000'000;  // of all obstacles of the topic
 
@@ -36,18 +37,26 @@ ObstacleListener::ObstacleListener(ros::NodeHandle& private_node, Simulation& si
           "obstacles", queue_size, [this](const visualization_msgs::MarkerArrayConstPtr& markers) { receive(*markers); })) {}
 
 void ObstacleListener::receive(const visualization_msgs::MarkerArray& markers) {
+  if (markers.markers.size() > most_markers) {
+    return refuse("message of " + std::to_string(markers.markers.size()) + " markers; allowed: at most " +
+                  std::to_string(most_markers));
+  }
   // What a message deletes and adds again is moved: what lies on it goes on lying.
   std::set<std::string> gone;
   for (const Marker& marker : markers.markers) {
     const std::string problem = apply(marker, gone);
-    if (!problem.empty()) refuse(marker.ns + "/" + std::to_string(marker.id), problem);
+    if (!problem.empty()) refuse_marker(marker.ns + "/" + std::to_string(marker.id), problem);
   }
   for (const std::string& name : gone) simulation_.remove_obstacle(name);
 }
 
-void ObstacleListener::refuse(const std::string& name, const std::string& problem) {
+void ObstacleListener::refuse_marker(const std::string& name, const std::string& problem) {
+  refuse("marker " + quoted(name) + ": " + problem);
+}
+
+void ObstacleListener::refuse(const std::string& problem) {
   ++refused_count_;
-  last_problem_ = "marker " + quoted(name) + ": " + problem;
+  last_problem_ = problem;
   ROS_WARN_THROTTLE(log_period, "topic obstacles: refused %s", last_problem_.c_str());
 }
 
@@ -58,10 +67,11 @@ std::string ObstacleListener::apply(const Marker& marker, std::set<std::string>&
       return add(marker, gone);
     case Marker::DELETE:
       drop_pending(name);
-      gone.insert(name);
+      if (simulation_.added_obstacles().count(name) > 0) gone.insert(name);
       return "";
     case Marker::DELETEALL:
       while (!pending_.empty()) drop_pending(std::string(pending_.begin()->first));
+      if (gone.size() == simulation_.added_obstacles().size()) return "";  // all of them already, however often it is said
       for (const auto& added : simulation_.added_obstacles()) gone.insert(added.first);
       return "";
     default:
@@ -118,7 +128,7 @@ void ObstacleListener::receive_mesh(const LoadedMesh& loaded) {
     Obstacle& obstacle = it->second.obstacle;
     std::get<MeshShape>(obstacle.shape).mesh = loaded.mesh;
     const std::string problem = loaded.mesh ? place(obstacle, it->second.frame) : unread;
-    if (!problem.empty()) refuse(obstacle.name, problem);
+    if (!problem.empty()) refuse_marker(obstacle.name, problem);
     it = pending_.erase(it);
   }
 }

@@ -22,7 +22,7 @@ class ObstacleListener {
  public:
   ObstacleListener(ros::NodeHandle& private_node, Simulation& simulation);
 
-  int refused_count() const { return refused_count_; }               ///< markers since the start
+  int refused_count() const { return refused_count_; }               ///< markers, and messages of too many, since the start
   const std::string& last_problem() const { return last_problem_; }  ///< why the last of them was refused
 
  private:
@@ -37,7 +37,8 @@ class ObstacleListener {
   };
 
   void receive(const visualization_msgs::MarkerArray& markers);
-  void refuse(const std::string& name, const std::string& problem);
+  void refuse_marker(const std::string& name, const std::string& problem);
+  void refuse(const std::string& problem);
   /// Why the marker was refused, empty if it was not. Adds to `gone` what it deletes.
   std::string apply(const visualization_msgs::Marker& marker, std::set<std::string>& gone);
   std::string add(const visualization_msgs::Marker& marker, std::set<std::string>& gone);

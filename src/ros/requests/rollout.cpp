@@ -16,6 +16,7 @@ constexpr double longest_duration = 3600;  // [s]
 constexpr double most_steps = 1e7;
 /// Nodes in all the states of a result: about 100 MB.
 constexpr double most_nodes = 1e6;
+constexpr std::size_t most_transforms = 200'000;  // of a motion: an hour of a frame at 50 Hz
 constexpr std::size_t most_errors = 20;
 
 int count_nodes(const World& world) {
@@ -44,6 +45,11 @@ void check_times(const RolloutGoal& goal, const World& world, std::vector<std::s
 /// The motions by frame id. Problems are added to `errors`, each with its place in the goal.
 std::map<int, FrameTrack> read_motion(const RolloutGoal& goal, const World& world, std::vector<std::string>& errors) {
   std::map<int, FrameTrack> motion;
+  if (goal.motion.size() > most_transforms) {
+    errors.push_back("motion: " + std::to_string(goal.motion.size()) + " transforms; allowed: at most " +
+                     std::to_string(most_transforms));
+    return motion;
+  }
   const std::vector<std::string>& names = world.frames();
   for (std::size_t i = 0; i < goal.motion.size() && errors.size() < most_errors; ++i) {
     const std::string key = "motion[" + std::to_string(i) + "]";

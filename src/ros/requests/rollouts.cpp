@@ -55,6 +55,9 @@ void Rollouts::accept(Server::GoalHandle goal) {
   const RolloutGoal& request = *goal.getGoal();
   const auto reject = [&](const std::string& message) { goal.setRejected(failure(message), message); };
   if (!simulation_.started()) return reject("the simulation has not started");
+  // Before anything is read or copied: whoever sends too many does not keep the node busy.
+  const auto most = static_cast<std::size_t>(simulation_.scene().limits.rollouts);
+  if (count_jobs() >= most) return reject("limits.rollouts: " + std::to_string(most) + " run or wait already");
   const std::optional<Snapshot> snapshot = simulation_.snapshot(request.snapshot);
   if (!snapshot)
     return reject("snapshot: " + verlet_cable::quoted(request.snapshot) +
@@ -65,8 +68,6 @@ void Rollouts::accept(Server::GoalHandle goal) {
     auto job = std::make_shared<Job>(goal, Rollout(request, std::move(start)));
     const std::lock_guard<std::mutex> lock(mutex_);
     if (ending_) return reject("the node ends");
-    const auto most = static_cast<std::size_t>(simulation_.scene().limits.rollouts);
-    if (jobs_.size() >= most) return reject("limits.rollouts: " + std::to_string(most) + " run or wait already");
     goal.setAccepted();
     jobs_.push_back(job);
     waiting_.push_back(std::move(job));
@@ -74,6 +75,11 @@ void Rollouts::accept(Server::GoalHandle goal) {
     return reject(join(error.errors()));
   }
   new_job_.notify_one();
+}
+
+std::size_t Rollouts::count_jobs() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return jobs_.size();
 }
 
 void Rollouts::cancel(Server::GoalHandle goal) {

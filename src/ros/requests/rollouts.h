@@ -38,6 +38,7 @@ class Rollouts {
   using Jobs = std::vector<std::shared_ptr<Job>>;
 
   void accept(Server::GoalHandle goal);
+  std::size_t count_jobs();
   void cancel(Server::GoalHandle goal);
   void work();
   Jobs take_waiting();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace verlet_cable {
 namespace {
@@ -77,7 +78,8 @@ void Pacer::rest() {
 }
 
 void Pacer::drop(Nanoseconds skipped) {
-  dropped_ += std::max<Nanoseconds>(skipped, 0);
+  // A clock that leaps to and fro by decades adds up to more than there are numbers for.
+  dropped_ += std::clamp<Nanoseconds>(skipped, 0, std::numeric_limits<Nanoseconds>::max() - dropped_);
 }
 
 }  // namespace verlet_cable
