@@ -24,7 +24,8 @@ import node_thread  # noqa: E402
 RATE = 100.0  # [Hz]
 REWIND = 3.0  # times as fast as forward
 HEADER = 't,frame,x,y,z,qx,qy,qz,qw'
-LARGEST = 1e9  # [s, m] as for cable_sim
+LARGEST = 1e9  # [s, m] as for cable_sim, and so
+MOST_FRAMES = 20000
 LEAST_QUATERNION = 1e-6
 USAGE = 'usage: rosrun verlet_cable play_motion.py _motion:=MOTION.csv [_pause:=SECONDS]'
 
@@ -87,6 +88,8 @@ def slerp(first, second, u):
 def read_motion(path):
     """Tracks by frame. Raises MotionError."""
     try:
+        if os.path.exists(path) and not os.path.isfile(path):
+            raise MotionError(f'motion: "{os.path.abspath(path)}": not a file; allowed: a CSV file')
         with open(path, encoding='utf-8-sig') as file:
             lines = [(number, line.strip()) for number, line in enumerate(file, start=1)]
     except FileNotFoundError as error:
@@ -111,6 +114,8 @@ def read_motion(path):
         earlier.append(row)
     if not rows:
         raise MotionError(f'{path}: no rows; allowed: at least one pose')
+    if len(rows) > MOST_FRAMES:
+        raise MotionError(f'{path}: {len(rows)} frames; allowed: at most {MOST_FRAMES}')
     return {frame: Track(numbers) for frame, numbers in rows.items()}
 
 

@@ -99,10 +99,16 @@ class PlayMotionTest(unittest.TestCase):
 
     def test_motions_that_cannot_be_played(self):
         self.assertEqual(self.refuse('_motion:=nope.csv'), f'motion: "{os.path.abspath("nope.csv")}": no such file\n')
+        self.assertEqual(self.refuse('_motion:=/dev/zero'), 'motion: "/dev/zero": not a file; allowed: a CSV file\n')
         header = MOTION.splitlines()[0]
         with tempfile.TemporaryDirectory() as directory:
+            pipe = os.path.join(directory, 'pipe')
+            os.mkfifo(pipe)
+            self.assertEqual(self.refuse(f'_motion:={pipe}'), f'motion: "{pipe}": not a file; allowed: a CSV file\n')
             path = os.path.join(directory, 'motion.csv')
+            many = ''.join(f'0,f{i},0,0,0,0,0,0,1\n' for i in range(20001))
             for text, message in (
+                    (f'{header}\n{many}', '20001 frames; allowed: at most 20000'),
                     ('', f'empty; allowed: the header {header} and rows'),
                     ('t,x0,y0\n0,1,2\n', f'line 1: header "t,x0,y0"; allowed: {header}'),
                     (f'{header}\n', 'no rows; allowed: at least one pose'),
