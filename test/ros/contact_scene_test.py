@@ -56,7 +56,10 @@ def distances(points, marker):
     rotation = numpy.array([[1 - 2 * (q.y * q.y + q.z * q.z), 2 * (q.x * q.y - q.w * q.z), 2 * (q.x * q.z + q.w * q.y)],
                             [2 * (q.x * q.y + q.w * q.z), 1 - 2 * (q.x * q.x + q.z * q.z), 2 * (q.y * q.z - q.w * q.x)],
                             [2 * (q.x * q.z - q.w * q.y), 2 * (q.y * q.z + q.w * q.x), 1 - 2 * (q.x * q.x + q.y * q.y)]])
-    local = numpy.abs((points - (p.x, p.y, p.z)) @ rotation)
+    local = (points - (p.x, p.y, p.z)) @ rotation
+    if marker.type == Marker.TRIANGLE_LIST:  # a plane's sheet, drawn a little below the plane, which is the pose's
+        return local[:, 2]
+    local = numpy.abs(local)
     if marker.type == Marker.SPHERE:
         return numpy.linalg.norm(local, axis=1) - size.x / 2
     if marker.type == Marker.CYLINDER:
@@ -95,7 +98,7 @@ class SceneTest(unittest.TestCase):
         closest, compared = numpy.inf, 0
         for state in states:
             for marker in obstacles.get(state.header.stamp, []):
-                self.assertIn(marker.type, (Marker.SPHERE, Marker.CYLINDER, Marker.CUBE))
+                self.assertIn(marker.type, (Marker.SPHERE, Marker.CYLINDER, Marker.CUBE, Marker.TRIANGLE_LIST))
                 for cable in state.cables:
                     compared += 1
                     closest = min(closest, distances(points_on(cable), marker).min() / cable.radius)

@@ -67,9 +67,14 @@ class ObstaclesTest(unittest.TestCase):
         markers = self.wait_for_shown(lambda found: len(found) >= 4, 'floor and pill')
         kinds = [m.type for m in markers]
         self.assertEqual(kinds.count(Marker.CYLINDER), 1)
-        floor = next(m for m in markers if m.type == Marker.CUBE and m.pose.position.x == 0)
-        self.assertAlmostEqual(floor.pose.position.z + floor.scale.z / 2, 0)
-        self.assertGreater(floor.scale.x, 5)
+        floor = next(m for m in markers if m.type == Marker.TRIANGLE_LIST)
+        self.assertEqual(kinds.count(Marker.TRIANGLE_LIST), 1)
+        self.assertAlmostEqual(floor.pose.position.z, 0)
+        for point in floor.points:  # a little below the plane, where rviz draws its grid
+            self.assertAlmostEqual(point.z, -0.002)
+        for axis in ('x', 'y'):
+            self.assertLess(min(getattr(point, axis) for point in floor.points), -2.5)
+            self.assertGreater(max(getattr(point, axis) for point in floor.points), 2.5)
         self.assertEqual(len({m.id for m in markers}), len(markers))
 
     def test_what_lies_on_the_floor_touches_it(self):
