@@ -1,4 +1,4 @@
-// simulate SCENE.yaml: a second of the scene, without ROS. Its frames stay at their initial_pose.
+// simulate SCENE.yaml: simulates a second of the scene, without ROS. Frames stay at their initial_pose.
 #include <cstdio>
 #include <exception>
 
@@ -17,7 +17,7 @@ int main(int argc, char** argv) try {
   for (const verlet_cable::Attachment& attachment : world.attachments()) {
     std::printf("%s bears %.3f N\n", attachment.name.c_str(), attachment.force.norm());
   }
-} catch (const std::exception& error) {  // of a scene that is wrong: every error, a line each
+} catch (const std::exception& error) {  // SceneError: all errors of the scene, one per line
   std::fprintf(stderr, "simulate: %s\n", error.what());
   return 2;
 }
