@@ -2,8 +2,8 @@
 """Sends the frames of a motion (CSV: t,frame,x,y,z,qx,qy,qz,qw, as for cable_sim) on tf at 100 Hz.
 
 Between rows the frames move as in cable_sim (src/scene/motion.cpp): positions follow a cubic Hermite spline with limited tangents,
-orientations slerp. When all is played, the frames stay for `~pause` seconds and go back the way they came; then the cables are reset,
-and it begins again.
+orientations are interpolated by slerp. At the end, the frames stay for `~pause` seconds and go back the way they came; then the
+cables are reset, and the motion starts again.
 """
 import math
 import os

@@ -44,7 +44,7 @@ class OneFile : public Assimp::IOSystem {
 /// Leaves the importer of one format.
 void keep_importer(const std::string& format, Assimp::Importer& importer) {
   const Assimp::BaseImporter* kept = importer.GetImporter(format.c_str());
-  if (!kept) throw Refused("this machine's Assimp reads no " + format);
+  if (!kept) throw Refused("Assimp on this machine does not read " + format);
   for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
     Assimp::BaseImporter* const other = importer.GetImporter(i);
     if (other == kept) continue;

@@ -94,7 +94,7 @@ Triangles read_triangles(const std::string& path, const Patience& patience) {
   mesh_protocol::Header header;
   read_whole(reader, &header, sizeof header, patience);
   if (header.vertices > mesh_protocol::most_vertices || header.triangles > mesh_protocol::most_triangles)
-    throw ResourceError("its reader made too much of it");
+    throw ResourceError("its reader returned more vertices or triangles than are allowed");
   const auto vertices = read_elements<mesh_protocol::Vertex>(reader, header.vertices, patience);
   const auto triangles = read_elements<mesh_protocol::Triangle>(reader, header.triangles, patience);
   Triangles result;

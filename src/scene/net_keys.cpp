@@ -138,7 +138,7 @@ void read_net(const Value& value, NetDesc& net) {
   const std::set<std::string> given = read_map(value, net_keys(), net);
   const auto key = [&](const char* name) { return value.child(name, {}).key; };
   if (given.count("link_type") && given.count("links") && !value.node["links"].IsSequence())
-    value.errors->add(key("link_type"), "given, although links says it as well", "one of the two");
+    value.errors->add(key("link_type"), "given, although links gives it, too", "one of the two");
   if (!given.count("grid") && !given.count("nodes"))
     value.errors->add_unread(key("nodes"), "missing", "a grid, or nodes and links");
   if (!given.count("mass") && !given.count("masses"))

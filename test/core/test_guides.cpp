@@ -55,7 +55,7 @@ TEST(Guides, areNoAttachmentsByName) {
   EXPECT_TRUE(world.apply(edit::Unpin{"eye"}).ok);
   const EditResult refused = world.apply(edit::Unpin{"eye"});
   EXPECT_FALSE(refused.ok);
-  EXPECT_NE(refused.message.find("is a guide, which nothing unpins"), std::string::npos) << refused.message;
+  EXPECT_NE(refused.message.find("is a guide, which cannot be unpinned"), std::string::npos) << refused.message;
 }
 
 /// Whatever the cable is: its law of motion is another where it bends, twists or is of several materials.
@@ -275,7 +275,7 @@ TEST(Guides, thatAShapeWindsAroundMoreThanOnceAreRefused) {
   }
   const std::vector<std::string> errors = validate(scene);
   const std::string wound =
-      "guides[0]: the initial shape of \"cable\" winds around it 1.5 times; allowed: less than one turn, as yet";
+      "guides[0]: the initial shape of \"cable\" winds around it 1.5 times; allowed: less than one turn, for now";
   EXPECT_EQ(std::count(errors.begin(), errors.end(), wound), 1);
 }
 

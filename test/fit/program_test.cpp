@@ -225,7 +225,7 @@ TEST_F(CableFit, FindsTheHoseOfTheRecordingsThatShip) {
       << err;
   EXPECT_NE(
       out.find("cables[0].rest_curvature: of 24 numbers, two axes at 12 places along the cable, 22 are not determined by these\n"
-               "  recordings: there the cable may as well be straight while nothing bends it; --report FILE lists them\n"),
+               "  recordings: there the unloaded cable may as well be straight; --report FILE lists them\n"),
       std::string::npos)
       << out;
   // Those near the hands, which gravity bends most, are known a little better than cables are usually straight.

@@ -134,7 +134,7 @@ bodies:
 )";
   const auto errors = errors_of(ring);
   ASSERT_EQ(errors.size(), 1u) << joined(errors);
-  EXPECT_TRUE(has_line(errors, "bodies[1].pose: missing, and what holds the body is held by it;")) << joined(errors);
+  EXPECT_TRUE(has_line(errors, "bodies[1].pose: missing, and the body is held by a body that it holds;")) << joined(errors);
   EXPECT_EQ(joined(errors_of(replaced(ring, "name: c, mass: 1", "name: c, mass: 1, pose: [0, 0, 0, 0, 0, 0]"))), "");
 }
 

@@ -121,8 +121,8 @@ TEST_F(CableSim, framesThatNothingPlacesAreNamed) {
   const std::string scene = write("scene.yaml", replaced(sound_scene, ", initial_pose: [0.7, 0, 0, 0, 0, 0]", ""));
   ASSERT_NE(content(scene), sound_scene);
   ASSERT_EQ(run(scene + " --duration 0 --output " + path("o.csv")), 0) << err;
-  EXPECT_EQ(err.find("cable_sim: warning: nothing says where frame \"hand\" is: it stands at the origin; --motion MOTION.csv or "
-                     "an initial_pose in the scene tells\n"),
+  EXPECT_EQ(err.find("cable_sim: warning: there is no pose of frame \"hand\": it stays at the origin; give one by --motion "
+                     "MOTION.csv or as initial_pose in the scene\n"),
             0u)
       << err;
   // As before, it is at the origin.

@@ -102,7 +102,7 @@ const NetMistake mistakes[] = {
     {"linkWithoutLength", "[0, 1, 0]]", "[1, 0, 0]]", "nets[1].links[1]: nodes that are 0 m apart;"},
     {"linksOfAnotherKind", "links: limited", "links: elastic", "nets[0].links: \"elastic\"; allowed: spring | limited | rigid"},
     {"linkTypeTwice", "links: limited", "links: limited\n    link_type: limited",
-     "nets[0].link_type: given, although links says it as well"},
+     "nets[0].link_type: given, although links gives it, too"},
     {"zeroRows", "rows: 3", "rows: 0", "nets[0].grid.rows: 0;"},
     {"zeroColumns", "columns: 4", "columns: 0", "nets[0].grid.columns: 0;"},
     {"zeroSpacing", "spacing: 0.1", "spacing: 0", "nets[0].grid.spacing: 0;"},

@@ -15,19 +15,19 @@ struct PlaceDesc {
   double arc_length = 0;  ///< [m] from the start, at rest; 0 to the cable's length
 };
 
-/// hinge: a point is held; clamp: a whole pose; axle, of bodies only: a point, and the direction of z.
+/// hinge: holds a point; clamp: holds a whole pose; axle, for bodies only: holds a point and the direction of z.
 enum class AttachmentType { hinge, clamp, axle };
 
-/// What holds a cable.
+/// An attachment of a cable.
 struct AttachmentDesc {
   std::string name;
   PlaceDesc place;
   std::string frame;                   ///< empty: the fixed frame
-  std::string body;                    ///< instead of a frame; empty: held by a frame
+  std::string body;                    ///< that holds it instead of a frame; empty: a frame does
   Vector3 offset = Vector3::Zero();    ///< [m] in the frame or body
   Vector3 rotation = Vector3::Zero();  ///< roll, pitch, yaw [rad] in the frame or body
   AttachmentType type = AttachmentType::hinge;
-  std::optional<InitialPose> initial_pose;  ///< where the frame is until anything says otherwise
+  std::optional<InitialPose> initial_pose;  ///< of the frame, until another pose is known
 };
 
 }  // namespace verlet_cable

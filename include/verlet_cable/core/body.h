@@ -16,14 +16,14 @@ struct BodyShape {
   Shape shape;
 };
 
-/// A rigid body. It is a frame, too, whose pose the world computes: what holds cables, nets and other bodies.
+/// A rigid body. It is also a frame, whose pose the world computes and which can hold cables, nets and other bodies.
 struct SimulatedBody {
   std::string name;
   double mass = 0;                                    ///< [kg]
   Vector3 center_of_mass = Vector3::Zero();           ///< [m] in its frame
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< [kg m^2] about the center of mass, in its frame's axes
   std::vector<BodyShape> shapes;
-  bool is_junction = false;                    ///< it joins cables where they branch, light and without size: nobody sees it
+  bool is_junction = false;                    ///< it joins cables where they branch; light, without a shape and not published
   double friction = 0;                         ///< Coulomb coefficient
   double linear_damping = 0;                   ///< [N s/m]
   double angular_damping = 0;                  ///< [N m s]
@@ -33,7 +33,7 @@ struct SimulatedBody {
   Vector3 angular_velocity = Vector3::Zero();  ///< [rad/s] fixed frame's axes
 };
 
-/// [m] How large a body is: the root of the mean square distance of its mass from its center.
+/// [m] A measure of the size of a body: the root mean square distance of its mass from its center of mass.
 inline double radius_of_gyration(const SimulatedBody& body) {
   return std::sqrt(body.inertia.trace() / (2 * body.mass));
 }

@@ -10,32 +10,32 @@
 
 namespace verlet_cable {
 
-/// What holds a rigid body.
+/// An attachment of a rigid body.
 struct BodyAttachmentDesc {
   std::string name;
   std::string frame;  ///< empty: the fixed frame
-  std::string body;   ///< another body instead of a frame; empty: held by a frame
+  std::string body;   ///< another body that holds it instead of a frame; empty: a frame does
   AttachmentType type = AttachmentType::hinge;
-  InitialPose at{};                         ///< where on the body, in its frame
+  InitialPose at{};                         ///< pose of the attachment on the body, in its frame
   Vector3 offset = Vector3::Zero();         ///< [m] in the frame that holds it
   Vector3 rotation = Vector3::Zero();       ///< roll, pitch, yaw [rad] in the frame that holds it
-  std::optional<InitialPose> initial_pose;  ///< where the frame is until anything says otherwise
+  std::optional<InitialPose> initial_pose;  ///< of the frame, until another pose is known
 };
 
 /// A rigid body: a plug, a hook, a load, a wheel.
 struct BodyDesc {
   std::string name;
   double mass = 0;  ///< [kg], > 0
-  /// [kg m^2] about the center of mass, along the body's axes; none: of the shapes, filled evenly
+  /// [kg m^2] about the center of mass, about the body's axes; none: that of the shapes with uniform density
   std::optional<Vector3> inertia;
-  std::optional<Vector3> center_of_mass;  ///< [m] in the body's frame; none: of the shapes, else the origin
-  /// At first; none: where its own clamp or axle holds it; else where the first cable that is clamped to it ends; else its point
-  /// at the first cable's end, with the fixed frame's axes.
+  std::optional<Vector3> center_of_mass;  ///< [m] in the body's frame; none: that of the shapes, or the origin without shapes
+  /// At the start. None: where its own clamp or axle holds it; else clamped to the end of the first cable that has a clamp on it;
+  /// else with its attachment point at the end of the first cable, parallel to the fixed frame.
   std::optional<InitialPose> pose;
   Vector3 velocity = Vector3::Zero();          ///< [m/s] of the center of mass, fixed frame's axes
   Vector3 angular_velocity = Vector3::Zero();  ///< [rad/s] fixed frame's axes
   std::vector<ShapeDesc> shapes;               ///< no planes; they touch cables and obstacles, not other bodies
-  double friction = 0.5;       ///< Coulomb coefficient of cables on it, and of it on obstacles that have none, >= 0
+  double friction = 0.5;       ///< Coulomb coefficient for cables on it, and for it on obstacles that have none, >= 0
   double linear_damping = 0;   ///< [N s/m] of the center of mass, >= 0
   double angular_damping = 0;  ///< [N m s], >= 0
   std::vector<BodyAttachmentDesc> attachments;

@@ -7,7 +7,7 @@
 
 namespace verlet_cable {
 
-/// The name of a body; empty where there is none.
+/// The name of a body; empty if there is no body.
 inline std::string name_of(const World& world, const BodyId& body) {
   const auto index = static_cast<std::size_t>(body.index);
   switch (body.kind) {
@@ -25,7 +25,7 @@ inline std::string name_of(const World& world, const BodyId& body) {
   return "";
 }
 
-/// As in messages: cable "hose".
+/// The kind and the name for messages, such as: cable "hose".
 inline std::string kind_and_name(const World& world, const BodyId& body) {
   const char* kind = body.is_cable() ? "cable" : body.is_net() ? "net" : body.is_rigid_body() ? "body" : "particle";
   return std::string(kind) + " " + quoted(name_of(world, body));

@@ -10,21 +10,21 @@
 
 namespace verlet_cable {
 
-/// What no step changes, only an edit.
+/// The part of a cable that no step changes, but only edits.
 struct CableModel {
   std::string name;
-  MaterialDesc material;                         ///< where the cable is of no other: see CableMaterials
+  MaterialDesc material;                         ///< outside of sections: see CableMaterials
   std::string material_name;                     ///< in the scene
   std::vector<NamedMaterial> section_materials;  ///< of its sections, each once
   std::array<double, 4> color{0.1, 0.1, 0.1, 1.0};
-  bool turns_bodies = false;  ///< clamps of bodies that move freely are turned by it
-  double segment_length = 0;  ///< [m] of the scene's segments: winches pay out and take in such
+  bool turns_bodies = false;  ///< it exerts moments on clamps of bodies that move freely
+  double segment_length = 0;  ///< [m] in the scene: winches pay out and take in segments of this length
 };
 
-/// Signs of motion that substeps do not resolve: it turns round from each to the next.
+/// Indicators of motion that substeps do not resolve: it alternates from each substep to the next.
 struct UnresolvedMotion {
   std::vector<Vector3> acceleration_changes;  ///< [m/s^2] a node, n + 1, from the substep before the last to the last
-  std::vector<Vector3> turns;  ///< [m/s^2] a node, n + 1: half of what the last change differs by from the one before
+  std::vector<Vector3> turns;  ///< [m/s^2] a node, n + 1: half the difference of the last change and the one before
   double changed = 0;          ///< [N^2/kg] sum over nodes and recent substeps: mass times the square of the turn,
                                ///< or of the change, where what is found is to be damped
   double turned = 0;           ///< [N^2/kg] likewise, mass times the one times the one before
@@ -32,40 +32,40 @@ struct UnresolvedMotion {
   int damped = 0;              ///< substeps that are still to damp
 };
 
-/// What a step changes. Written by World only. A cable of n segments has n + 1 nodes; segment i joins nodes i and i + 1. Winches
-/// that run change n, too.
+/// The part of a cable that steps change. Written by World only. A cable of n segments has n + 1 nodes; segment i joins nodes i
+/// and i + 1. Running winches change n, too.
 struct CableState {
   std::vector<double> rest_lengths;  ///< [m] a segment, n
-  /// a segment, n: 0 for CableModel::material, k for the k-th of its `section_materials`; empty where all is of the former
+  /// a segment, n: 0 for CableModel::material, k for the k-th of its `section_materials`; empty if all segments have the former
   std::vector<int> section_material;
   std::vector<double> masses;  ///< [kg] a node, n + 1: half of each neighbouring segment, and payloads
-  /// [1/m] a node, n + 1: curvature about the material's y and z axes that carries no moment; empty where the cable is straight
-  /// unloaded
+  /// [1/m] a node, n + 1: curvature about the material's y and z axes at which there is no moment; empty if the unloaded cable is
+  /// straight
   std::vector<std::array<double, 2>> rest_curvature;
-  std::vector<double> rest_twist;  ///< [rad/m] a node, n + 1: twist that carries no moment; empty where there is none
-  /// a node, n + 1: how much of the cable half a segment around it bends, above 0 to 1; empty where all of it does
+  std::vector<double> rest_twist;  ///< [rad/m] a node, n + 1: twist at which there is no torque; empty if it is zero
+  /// a node, n + 1: which part of the cable within half a segment of it bends, above 0 to 1; empty if all of it does
   std::vector<double> flexible_fraction;
-  /// a node, n + 1: for so many more steps it counts as beyond its material's limit of bend radius, and of tension (of the
-  /// segment that starts there); empty where its materials have none
+  /// a node, n + 1: for how many more steps it counts as beyond the limits of its material, of bend radius and of tension (of the
+  /// segment that starts there); empty if its materials have no limits
   std::vector<std::array<int, 2>> beyond_limits;
   std::vector<Vector3> positions;   ///< [m] a node, n + 1
   std::vector<Vector3> velocities;  ///< [m/s] a node, n + 1, at the time of the positions
-  /// [m/s^2] a node, n + 1, mean over the last substep: where the next one's solution starts
+  /// [m/s^2] a node, n + 1, mean over the last substep: the initial guess of the next one
   std::vector<Vector3> accelerations;
   UnresolvedMotion unresolved;
   /// [N] a segment, n, > 0 is tension; mean over the last two substeps, or over the last one without numerical damping
   std::vector<double> tension;
   std::vector<double> last_tension;  ///< [N] a segment, n; mean over the last substep
-  /// [N] a segment, n: the tension without the part that bending and twist have in it; where the next substep's solution starts
+  /// [N] a segment, n: the tension without the contributions of bending and twist; the initial guess of the next substep
   std::vector<double> axial_multiplier;
-  std::vector<double> twist;  ///< [rad/m] a segment, n; of a whole rod 0
+  std::vector<double> twist;  ///< [rad/m] a segment, n; 0 for a whole rod
   // Of a whole rod, empty otherwise
   std::vector<Vector3> directors;  ///< a segment, n: the material's y axis, a unit vector normal to the segment
   std::vector<double> spin;        ///< [rad/s] a segment, n, about its direction
-  /// [rad] a node, n + 1, any number of turns: between the segments before and after it; at a clamped end between clamp and
-  /// segment; 0 at other ends, and at clamps inside, whose targets have it
+  /// [rad] a node, n + 1, any number of turns: from the segment before it to the one after; at a clamped end between clamp and
+  /// segment; 0 at other ends, and at inner clamps, whose targets store it
   std::vector<double> joint_twist;
-  int reference_node = 0;  ///< where the material's orientation is known: the first clamp's node
+  int reference_node = 0;  ///< where the orientation of the material is defined: the node of the first clamp
   Quaternion reference_orientation = Quaternion::Identity();  ///< there: x along the cable, roll of the material
 
   int segments() const { return static_cast<int>(rest_lengths.size()); }
@@ -73,19 +73,19 @@ struct CableState {
   double length() const;                     ///< [m] at rest
   double length(int first, int last) const;  ///< [m] at rest, between two nodes
   std::vector<double> arc_length() const;    ///< [m] a node, n + 1, from the start, at rest
-  /// [m] of so much cable around a node, what bends
+  /// [m] the part that bends, of the length `around` of cable at a node
   double bending_length(int node, double around) const {
     return flexible_fraction.empty() ? around : flexible_fraction[node] * around;
   }
 };
 
 struct SimulatedCable {
-  std::shared_ptr<const CableModel> model;  ///< copies share it; an edit puts another in its place
+  std::shared_ptr<const CableModel> model;  ///< shared by copies; an edit replaces it
   CableState state;
 };
 
-/// Whether bending and twist depend on each other through the material's axes: such a cable has a frame a segment, in
-/// `directors`, `spin` and `joint_twist` of its state. One that is straight at rest and alike about y and z does without.
+/// Whether bending and twist depend on each other through the material's axes: such a cable has a material frame per segment, in
+/// `directors`, `spin` and `joint_twist` of its state. Others, straight at rest and as stiff about y as about z, need none.
 bool is_whole_rod(const CableModel& model, const CableState& state);
 
 /// Shapes derived from positions, for display and messages. n segments.

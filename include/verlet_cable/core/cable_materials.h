@@ -12,10 +12,10 @@ inline bool is_elastic(const MaterialDesc& material) {
   return material.axial_stiffness < infinity;
 }
 
-/// As CableState::section_material names it; -1 if it is none of the cable's.
+/// Index of a material as in CableState::section_material; -1 if the cable does not have it.
 int find_material(const CableModel& model, const std::string& name);
 
-/// What a cable is made of along its length; a view of its model and state, as long as neither is edited.
+/// The materials of a cable along its length: a view of its model and state, valid until either is edited.
 class CableMaterials {
  public:
   CableMaterials(const CableModel& model, const CableState& state)
@@ -24,10 +24,10 @@ class CableMaterials {
         section_material_(state.section_material.empty() ? nullptr : state.section_material.data()) {}
   explicit CableMaterials(const SimulatedCable& cable) : CableMaterials(*cable.model, cable.state) {}
 
-  /// Whether it has sections. If not, all of it is of CableModel::material.
+  /// Whether it has sections. If not, all of it has CableModel::material.
   bool vary() const { return section_material_ != nullptr; }
 
-  /// Of a segment.
+  /// The material of a segment.
   const MaterialDesc& operator[](int segment) const {
     const int k = vary() ? section_material_[segment] : 0;
     return k == 0 ? model_.material : model_.section_materials[k - 1].material;
@@ -93,8 +93,8 @@ class CableMaterials {
   const int* section_material_;  // of the state; nullptr: none
 };
 
-/// [1/m] Of the segments before and after an inner node, where the cable is bent by `angle` [rad]: one moment bends both halves,
-/// about the axis about which they bend more easily.
+/// [1/m] Curvatures of the segments before and after an inner node at which the cable is bent by `angle` [rad]: the same moment
+/// bends both halves, about the axis with the smaller stiffness.
 std::array<double, 2> curvature_beside(const CableMaterials& materials, const CableState& state, int node, double angle);
 
 }  // namespace verlet_cable

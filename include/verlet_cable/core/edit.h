@@ -11,16 +11,16 @@
 
 namespace verlet_cable {
 
-/// What can be done to a world between its steps.
+/// Edits of a world, which are applied between its steps.
 namespace edit {
 
-/// Holds a node of a cable or, by a hinge, of a net at a pose in a frame. The node goes there smoothly.
+/// Holds a node of a cable, or by a hinge a node of a net, at a pose in a frame. The node moves there smoothly.
 struct Pin {
-  std::string name;  ///< of the attachment; empty: one is made
+  std::string name;  ///< of the attachment; empty: one is generated
   BodyId body;
   int node = 0;
   int frame = 0;  ///< index into World::frames()
-  Pose pose;      ///< in the frame; of a net's node the place counts
+  Pose pose;      ///< in the frame; for a node of a net, only the position matters
   AttachmentType type = AttachmentType::hinge;
 };
 
@@ -28,21 +28,21 @@ struct Unpin {
   std::string name;
 };
 
-/// Gives an attachment another pose in its frame: the next step takes the node there, so move it little by little.
+/// Gives an attachment another pose in its frame. The next step moves the node there, so make small changes.
 struct MoveAttachment {
   std::string name;
   Pose pose;
 };
 
-/// Removes a segment of a cable or a link of a net; those after it count one less. A segment's mass stays on its nodes, and the
-/// first piece keeps the name.
+/// Removes a segment of a cable or a link of a net; the indices of later ones decrease by one. The mass of a segment stays on its
+/// nodes, and the first piece keeps the name.
 struct Cut {
   BodyId body;
   int element = 0;  ///< segment or link
 };
 
-/// Pays out or takes in cable at one end, at up to `speed` and smoothly, until the cable is so long; its nodes count anew as
-/// segments appear and vanish there. Other attachments and payloads keep their material point.
+/// Pays out or takes in cable at one end, smoothly and at up to `speed`, until the cable has that length. Nodes are renumbered as
+/// segments are added or removed there. Other attachments and payloads stay at their material points.
 struct SetLength {
   int cable = 0;
   bool at_end = false;
@@ -50,7 +50,7 @@ struct SetLength {
   double speed = 0;   ///< [m/s]
 };
 
-/// Welds two ends of cables of one material. Ends that are apart are drawn together first. The first cable keeps its name and
+/// Welds two ends of cables of one material. Ends that are apart are first pulled together. The first cable keeps its name and
 /// direction.
 struct Join {
   int first = 0;
@@ -59,7 +59,7 @@ struct Join {
   bool second_at_end = false;
 };
 
-/// Adds an obstacle, or replaces the one of that name. `holders`, `present` and `id` are the world's to fill in.
+/// Adds an obstacle, or replaces the one of that name. The world fills in `holders`, `present` and `id`.
 struct SetObstacle {
   Obstacle obstacle;
 };
@@ -73,11 +73,11 @@ struct RemoveObstacle {
 using Edit = std::variant<edit::Pin, edit::Unpin, edit::MoveAttachment, edit::Cut, edit::SetLength, edit::Join, edit::SetObstacle,
                           edit::RemoveObstacle>;
 
-/// Outcome of an edit: nothing has changed where `ok` is false, and `message` says why, with names and values.
+/// Outcome of an edit. If `ok` is false, nothing has changed and `message` says why, with names and values.
 struct EditResult {
   bool ok = false;
   std::string message;
-  std::string name;  ///< pin: of the pin; cut: of the new cable
+  std::string name;  ///< of the new pin, or after a cut of the new cable
 };
 
 }  // namespace verlet_cable

@@ -7,7 +7,7 @@
 
 namespace verlet_cable {
 
-/// For events.
+/// Describes an excursion, for events.
 inline std::string excursion_text(const Excursion& excursion) {
   if (excursion.kind == Excursion::Kind::bend)
     return "bends to a radius of " + rounded_text(excursion.value) + " m, below minimum_bend_radius, " +

@@ -9,7 +9,7 @@
 
 namespace verlet_cable {
 
-/// What a jump did, in words.
+/// Describes a jump, for events.
 inline std::string jump_text(const World& world, const Jump& jump) {
   const Attachment& attachment = world.attachments()[static_cast<std::size_t>(jump.attachment)];
   const double milliseconds = 1e3 * jump.duration;

@@ -13,17 +13,17 @@ struct BranchDesc {
   enum class End { start, end };
   std::string cable;
   End end = End::start;
-  /// Roll, pitch, yaw [rad] in the material's axes of the cable at the junction. A branch that has no initial shape of its own
-  /// goes on along that cable, turned by this.
+  /// Roll, pitch, yaw [rad] in the material's axes of the trunk cable at the junction. A branch without an initial shape of its
+  /// own starts in the direction of the trunk, rotated by this.
   Vector3 rotation = Vector3::Zero();
 };
 
-/// Where cables branch: light, and without size.
+/// A point where cables branch; light and without size.
 struct JunctionDesc {
-  /// rigid: the angles that the directions have at first are kept, roll included; hinge: a point only
+  /// rigid: keeps the initial angles between the cables, including roll; hinge: joins them at a point only
   enum class Type { rigid, hinge };
   std::string name;
-  std::string cable;  ///< that the branches come off
+  std::string cable;  ///< the trunk, from which the branches leave
   PlaceDesc place;    ///< on that cable
   std::vector<BranchDesc> branches;
   Type type = Type::rigid;

@@ -7,7 +7,7 @@
 
 namespace verlet_cable {
 
-/// Names for a message, of bounded length: the first 20, and how many more there are.
+/// A list of names for a message, of limited length: the first 20, and how many more there are.
 class NameList {
  public:
   NameList() = default;
@@ -18,7 +18,7 @@ class NameList {
   void add(const std::string& name) {
     if (++count_ <= most) text_ += (text_.empty() ? "" : ", ") + escaped(name);
   }
-  /// `none`: what is said where there are no names.
+  /// `none`: the text if there are no names.
   std::string text(const std::string& none = "none") const {
     if (count_ == 0) return none;
     return count_ <= most ? text_ : text_ + " and " + std::to_string(count_ - most) + " more";

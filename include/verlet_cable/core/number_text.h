@@ -13,11 +13,11 @@
 
 namespace verlet_cable {
 
-/// Room that `write_number` needs.
+/// Size [characters] of the buffer that `write_number` needs.
 constexpr std::size_t number_text_size = 32;
 
-/// A number as printf has it with "%.*f" where `digits` are those after the point, else with "%.*g", but with a point in any
-/// locale: the program around the simulation may have set one. `is_fixed` only below 1e16.
+/// A number as printf writes it: with "%.*f" if `is_fixed`, which is allowed below 1e16 only, else with "%.*g". Independent of
+/// the locale, which the program around the simulation may have set, the decimal point is a point.
 inline std::string printed_text(double value, int digits, bool is_fixed = false) {
 #if defined(__cpp_lib_to_chars)
   char buffer[number_text_size];
@@ -32,7 +32,7 @@ inline std::string printed_text(double value, int digits, bool is_fixed = false)
 #endif
 }
 
-/// Writes a number so that reading it back gives the same double; the shortest such text where the standard library has it.
+/// Writes a number so that reading it back gives the same double; the shortest such text if the standard library provides it.
 /// `buffer` has room for `number_text_size` characters. Returns the end of the text, which is not terminated. A NaN has no sign.
 inline char* write_number(char* buffer, double value) {
   if (std::isnan(value)) return std::copy_n("nan", 3, buffer);
@@ -44,20 +44,20 @@ inline char* write_number(char* buffer, double value) {
 #endif
 }
 
-/// The same as a string. For what a user gave and sees again; what was measured or computed is `rounded_text`.
+/// The same as a string. It is for numbers that a user gave; for measured or computed ones there is `rounded_text`.
 inline std::string number_text(double value) {
   char buffer[number_text_size];
   return {buffer, write_number(buffer, value)};
 }
 
-/// A number that was measured or computed, for people: rounded to so many significant digits, but to 1 at least below 1e9.
+/// A measured or computed number, rounded to `digits` significant digits, but below 1e9 not more coarsely than to an integer.
 inline std::string rounded_text(double value, int digits = 4) {
   if (std::isnan(value)) return "nan";
   const bool is_long = std::abs(value) >= std::pow(10.0, digits) && std::abs(value) < 1e9;
   return printed_text(value, is_long ? 0 : digits, is_long);
 }
 
-/// What a text of the above says.
+/// The number in a text of these functions.
 inline double number_of(const std::string& text) {
   double value = 0;
 #if defined(__cpp_lib_to_chars)
@@ -70,7 +70,7 @@ inline double number_of(const std::string& text) {
   return value;
 }
 
-/// The same for a bound: 1 rounds up, so that a smallest allowed number is allowed as it is written, -1 rounds down.
+/// As `rounded_text`, for a bound: direction 1 rounds up, so that a lower bound is itself allowed as written; -1 rounds down.
 inline std::string rounded_bound_text(double value, int direction, int digits = 4) {
   const std::string text = rounded_text(value, digits);
   if (!std::isfinite(value) || direction * (value - number_of(text)) <= 0) return text;

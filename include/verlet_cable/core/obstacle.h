@@ -15,13 +15,13 @@ struct Obstacle {
   int frame = 0;  ///< index into World::frames()
   Pose pose;      ///< of the shape, in the frame
   Shape shape;
-  std::optional<double> friction;  ///< Coulomb coefficient; none: that of the cable's material
-  double padding = 0;              ///< [m] the surface lies that far outside of the shape's
-  /// Ids of the frames that are rigidly joined to it. It does not push the first few centimetres of a cable around an attachment
-  /// to one of these. Ascending; empty for an obstacle at rest in the fixed frame.
+  std::optional<double> friction;  ///< Coulomb coefficient; none: that of the material of the cable
+  double padding = 0;              ///< [m] by which the surface is outside of that of the shape
+  /// Ids of the frames that are rigidly joined to it. It does not touch the first few centimetres of a cable next to an
+  /// attachment to one of these. Ascending; empty for an obstacle at rest in the fixed frame.
   std::vector<int> holders;
-  bool present = false;  ///< its frame has been seen; there is nothing to bump into until then
-  std::uint32_t id = 0;  ///< what touches the obstacle remembers it by that
+  bool present = false;  ///< whether its frame has been seen; until then it does not exist
+  std::uint32_t id = 0;  ///< by which contacts remember it
 };
 
 }  // namespace verlet_cable

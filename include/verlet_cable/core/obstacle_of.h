@@ -5,7 +5,7 @@
 
 namespace verlet_cable {
 
-/// What a scene describes, but for the frame, and what a world fills in. Of a mesh, the file must have been read.
+/// The obstacle that a scene describes, without its frame and what a world fills in. The file of a mesh must have been read.
 inline Obstacle obstacle_of(const ObstacleDesc& desc) {
   Obstacle obstacle;
   obstacle.name = desc.name;

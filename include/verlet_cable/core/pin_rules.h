@@ -6,15 +6,15 @@
 
 namespace verlet_cable {
 
-/// In segments of the scene: so much of a cable is between a guide and what else holds it, at first.
+/// Smallest length of cable between a guide and whatever else holds the cable at the start, in segments of the scene.
 constexpr double guide_room = 2;
-/// Whether a guide has that at `distance` [m] along a cable of such segments [m].
+/// Whether `distance` [m] along a cable with segments of `segment_length` [m] is enough for that.
 bool has_guide_room(double distance, double segment_length);
 
-/// Index of what holds a node, or the junction that joins it to other cables; -1: nothing does.
+/// Index of the attachment that holds a node, or joins it to a junction; -1: nothing holds it.
 int holder_of(const BodyId& body, int node, const std::vector<Attachment>& attachments);
 
-/// A guide to which a place along a cable is too near to be pinned.
+/// A guide that is too near to a node for that node to be pinned.
 struct NearGuide {
   int attachment = -1;  ///< index; -1: there is none
   double distance = 0;  ///< [m] of cable between them

@@ -5,7 +5,7 @@
 
 namespace verlet_cable {
 
-/// A text that someone wrote, for messages: one line without control characters, at most about `longest` characters of it.
+/// Text from a user, for messages: one line without control characters, truncated after about `longest` characters.
 inline std::string escaped(const std::string& text, std::size_t longest = 60) {
   constexpr char hexadecimal[] = "0123456789abcdef";
   std::string result;

@@ -26,7 +26,7 @@ struct BendingStiffness : std::array<double, 2> {
   double largest() const { return std::max(front(), back()); }
 };
 
-/// What a cable is made of. Ranges: see `validate`.
+/// The material of a cable. Ranges: see `validate`.
 struct MaterialDesc {
   double linear_density = 0;           ///< [kg/m] of rest length, > 0
   double radius = 0;                   ///< [m], > 0
@@ -39,8 +39,8 @@ struct MaterialDesc {
   double drag = 0;                     ///< [kg/(m s)] linear drag per unit length, >= 0
   double friction = 0.5;               ///< Coulomb coefficient against obstacles, >= 0
   double breaking_tension = infinity;  ///< [N], > 0
-  double minimum_bend_radius = 0;      ///< [m], >= 0; an event where it bends more tightly; 0: never
-  double maximum_tension = infinity;   ///< [N], > 0; an event where it is pulled harder
+  double minimum_bend_radius = 0;      ///< [m], >= 0; a smaller radius is reported as an event; 0: never
+  double maximum_tension = infinity;   ///< [N], > 0; a larger tension is reported as an event
 };
 
 struct PointMassDesc {
@@ -54,24 +54,24 @@ struct InitialShapeDesc {
   Vector3 from = Vector3::Zero();   ///< straight: the first node [m]
   Vector3 to = Vector3::UnitX();    ///< straight: gives the direction
   std::vector<Vector3> points;      ///< points: polyline [m]
-  std::vector<Vector3> velocities;  ///< points: [m/s], none or one a point
+  std::vector<Vector3> velocities;  ///< points: [m/s], none or one per point
 };
 
-/// The shape that carries no bending moment.
+/// The shape at which there is no bending moment.
 struct RestCurvatureDesc {
   enum class Type { straight, initial, constant, profile };
   Type type = Type::straight;
   std::array<double, 2> curvature{0, 0};  ///< constant: about the material's y and z axes [1/m]
-  /// profile: the same at places spread evenly from start to end, at least two, straight lines in between [1/m]
+  /// profile: the same at points that are evenly spaced from start to end, at least two, linear in between [1/m]
   std::vector<std::array<double, 2>> profile;
-  /// Numbers that are zero count as curved, too: cables that differ in these numbers alone then go by one law, as a fit needs it.
+  /// Zero curvatures count as curved, too: then cables that differ only in these numbers obey the same law, which a fit needs.
   bool zero_counts = false;
 
-  /// Whether the numbers alone say so; an initial shape may be straight, too.
+  /// Whether it is straight by these values alone; an `initial` shape may be straight as well.
   bool is_straight() const;
 };
 
-/// A stretch of a cable that is of another material. It goes from segment to segment: those whose middle is in it.
+/// A part of a cable with another material. It consists of whole segments: those whose midpoint is in it.
 struct SectionDesc {
   double from = 0, to = 0;  ///< [m] from the cable's start, at rest; 0 to its length
   std::string material;     ///< a key of SceneDesc::materials
@@ -86,37 +86,37 @@ struct CableDesc {
   std::array<double, 4> color{0.1, 0.1, 0.1, 1.0};  ///< red, green, blue, alpha; 0 to 1
   InitialShapeDesc initial;
   RestCurvatureDesc rest_curvature;
-  double rest_twist = 0;                   ///< [rad/m] twist that carries no moment
-  std::array<double, 2> stiff_ends{0, 0};  ///< [m] at start and end, in plugs, sleeves or grips, that do not bend; >= 0
+  double rest_twist = 0;                   ///< [rad/m] twist at which there is no torque
+  std::array<double, 2> stiff_ends{0, 0};  ///< [m] at start and end that do not bend, in plugs, sleeves or grips; >= 0
   std::vector<AttachmentDesc> attachments;
   std::vector<PointMassDesc> point_masses;
 };
 
-/// What cables bump into. Its pose is in its frame.
+/// A solid that cables cannot enter. Its pose is in its frame.
 struct ObstacleDesc : ShapeDesc {
   std::string name;
   std::string frame;                        ///< empty: the fixed frame
   std::optional<double> friction;           ///< Coulomb coefficient, >= 0; none: that of the cable's material
-  std::optional<InitialPose> initial_pose;  ///< where the frame is until anything says otherwise
+  std::optional<InitialPose> initial_pose;  ///< of the frame, until another pose is known
   double padding = 0;                       ///< [m] added all around, >= 0
 };
 
-/// A link of a robot, as its URDF has it.
+/// A link of a robot, as in its URDF.
 struct LinkDesc {
-  std::string name;                     ///< and of its frame
+  std::string name;                     ///< also of its frame
   int parent = -1;                      ///< index of a link before this one; -1: the root
   bool fixed = false;                   ///< to its parent
   InitialPose origin{};                 ///< in its parent, with the joint at zero
-  std::vector<ObstacleDesc> obstacles;  ///< its collision geometry, in its own frame; none if it is not to be an obstacle
+  std::vector<ObstacleDesc> obstacles;  ///< its collision geometry, in its own frame; none if it is not an obstacle
 };
 
 /// A robot whose links are obstacles.
 struct RobotDesc {
   std::string description = "robot_description";  ///< the parameter that holds the URDF
-  std::string file;                               ///< instead of the parameter
+  std::string file;                               ///< URDF file, instead of the parameter
   std::vector<std::string> links;                 ///< those that are obstacles; empty: all
   double padding = 0;                             ///< [m] added all around, >= 0
-  std::vector<LinkDesc> tree;                     ///< all links, parents first; filled in by whoever reads the URDF
+  std::vector<LinkDesc> tree;                     ///< all links, parents first; filled in when the URDF is read
 };
 
 /// Contact of cables with themselves and each other.
@@ -126,7 +126,7 @@ struct ContactDesc {
   double friction = 0.3;  ///< Coulomb coefficient of cable against cable, >= 0
 };
 
-/// Uniform gravity, or that of a point mass: mu / r^2 towards a center. It acts on cables, nets and particles.
+/// Uniform gravity, or that of a point mass: mu / r^2 towards a center. It acts on cables, bodies, nets and particles.
 struct GravityDesc {
   enum class Type { uniform, central };
   Type type = Type::uniform;
@@ -135,7 +135,7 @@ struct GravityDesc {
   Vector3 center = Vector3::Zero();   ///< [m] central
 
   Vector3 at(const Vector3& position) const;           ///< [m/s^2] zero in the center
-  double potential_at(const Vector3& position) const;  ///< [J/kg] zero at the origin (uniform) or infinitely far (central)
+  double potential_at(const Vector3& position) const;  ///< [J/kg] zero at the origin (uniform) or at infinity (central)
 };
 
 /// A free material point.
@@ -144,9 +144,9 @@ struct ParticleDesc {
   double mass = 0;                     ///< [kg], > 0
   Vector3 position = Vector3::Zero();  ///< [m]
   Vector3 velocity = Vector3::Zero();  ///< [m/s]
-  double restitution = 1;              ///< of its bounces off obstacles, 0 to 1: elastic
+  double restitution = 1;              ///< of its bounces off obstacles, 0 to 1 (elastic)
   double friction = 0;                 ///< Coulomb coefficient against obstacles that have none, >= 0
-  double radius = 0.02;                ///< [m] of the sphere that shows it, > 0; what bounces is the point
+  double radius = 0.02;                ///< [m] of the sphere that displays it, > 0; for contact it is a point
   std::array<double, 4> color{0.1, 0.3, 0.8, 1.0};
 };
 
@@ -172,7 +172,7 @@ struct NetAttachmentDesc {
   std::optional<InitialPose> initial_pose;
 };
 
-/// Two nodes that may not come closer.
+/// The smallest distance that two nodes may have.
 struct MinimumDistanceDesc {
   std::array<int, 2> nodes{0, 0};
   double distance = 0;  ///< [m] > 0
@@ -184,14 +184,14 @@ struct NetDesc {
   std::optional<GridDesc> grid;
   std::vector<Vector3> nodes;             ///< [m] without a grid; at rest
   std::vector<std::array<int, 2>> links;  ///< without a grid: pairs of nodes
-  double mass = 0;                        ///< [kg] in all, > 0, shared evenly; or
+  double mass = 0;                        ///< [kg] of the whole net, > 0, shared evenly; or
   std::vector<double> masses;             ///< [kg] a node, > 0
   LinkType link_type = LinkType::spring;
   double stiffness = 500;                              ///< [N/m] >= 0; spring and limited
   double damping = 0.5;                                ///< [N s/m] >= 0; spring and limited
   double tolerance = 0.1;                              ///< limited: largest |l / l0 - 1|
   std::vector<MinimumDistanceDesc> minimum_distances;  ///< limited and rigid
-  Vector3 velocity = Vector3::Zero();                  ///< [m/s] of all nodes at first
+  Vector3 velocity = Vector3::Zero();                  ///< [m/s] of all nodes at the start
   double restitution = 0;                              ///< of bounces off obstacles, 0 to 1
   double friction = 0.5;                               ///< Coulomb coefficient against obstacles that have none, >= 0
   std::array<double, 4> color{0.7, 0.2, 0.1, 1.0};
@@ -204,18 +204,18 @@ struct NetDesc {
 /// How particles and nets of springs are integrated over time.
 struct IntegratorDesc {
   enum class Type { verlet, euler, rk4, pc5 };
-  /// Of Verlet's method: r(1) = r(0) + h v(0) + 1/2 h^2 f(0)/m, or the lecture's r(1) = r(0) + h v(0) + h^2 f(0)/m.
+  /// In Verlet's method: r(1) = r(0) + h v(0) + 1/2 h^2 f(0)/m, or the lecture's r(1) = r(0) + h v(0) + h^2 f(0)/m.
   enum class FirstStep { taylor, lecture };
   Type type = Type::verlet;
   FirstStep first_step = FirstStep::taylor;
 };
 
-/// The fluid around the cables. Drag is quadratic, with the diameter as width, besides the linear drag of the materials.
+/// The fluid around the cables. Its drag is quadratic, with the diameter as reference width, and adds to the linear drag.
 struct FluidDesc {
   double density = 0;                  ///< [kg/m^3], >= 0
-  Vector3 velocity = Vector3::Zero();  ///< [m/s]; counts for linear drag, too, whatever the density
+  Vector3 velocity = Vector3::Zero();  ///< [m/s]; applies to the linear drag, too, for any density
   double surface = infinity;           ///< [m] z below which there is fluid
-  double normal_drag = 1.2;            ///< coefficient across the cable, >= 0
+  double normal_drag = 1.2;            ///< coefficient normal to the cable, >= 0
   double tangential_drag = 0.01;       ///< coefficient along the cable, >= 0
 };
 
@@ -239,9 +239,9 @@ struct NamedMaterial {
 struct SceneDesc {
   std::string frame_id = "world";
   double time_step = 0.001;  ///< [s], > 0
-  /// Motion that a step cannot resolve dies out within some steps; without, energy is conserved and such motion goes on.
+  /// If true, motion that a step cannot resolve dies out within some steps; else energy is conserved and such motion persists.
   bool numerical_damping = true;
-  double tolerance = 1e-5;  ///< [1/s] error of velocities at which a cable's iteration ends, in segment lengths; 1e-6 to 1e-3
+  double tolerance = 1e-5;  ///< [1/s] velocity error, in segment lengths, at which the iteration of a cable ends; 1e-6 to 1e-3
   GravityDesc gravity;
   FluidDesc fluid;
   double publish_rate = 50;  ///< [Hz], > 0
@@ -252,26 +252,26 @@ struct SceneDesc {
   TimeJumpPolicy on_time_jump = TimeJumpPolicy::reset;
   MarkerStyle marker_style = MarkerStyle::tube;
   ColorBy color_by = ColorBy::tension;
-  bool broadcast_tf = true;  ///< the bodies' poses as tf frames named like the bodies
+  bool broadcast_tf = true;  ///< poses of the bodies as tf frames with the names of the bodies
   std::string scene_directory;
   LimitsDesc limits;
   int seed = 0;
-  std::vector<NamedMaterial> materials;  ///< those that the cables name
+  std::vector<NamedMaterial> materials;  ///< that the cables name
   std::vector<CableDesc> cables;
   std::vector<ParticleDesc> particles;
   std::vector<NetDesc> nets;
   std::vector<BodyDesc> bodies;
   std::vector<JunctionDesc> junctions;
-  std::vector<GuideDesc> guides;  ///< those of one cable in the order of their places
+  std::vector<GuideDesc> guides;  ///< those of one cable in the order of their arc lengths
   IntegratorDesc integrator;
   std::vector<ObstacleDesc> obstacles;
   std::optional<RobotDesc> robot;
-  std::optional<ContactDesc> contact;  ///< none: cables do not touch cables
+  std::optional<ContactDesc> contact;  ///< none: no contact between cables or of a cable with itself
 
   const MaterialDesc* find_material(const std::string& name) const;
 };
 
-/// Everything that is wrong with a scene: one line an error, each with the full key, the value and what is allowed.
+/// All errors of a scene: one line per error, each with the full key, the value and what is allowed.
 class SceneError : public std::runtime_error {
  public:
   explicit SceneError(std::vector<std::string> errors);
@@ -281,21 +281,21 @@ class SceneError : public std::runtime_error {
   std::vector<std::string> errors_;
 };
 
-/// Every value out of range, name used twice, unknown material, attachments at one node, an obstacle's
-/// mesh that is not there, conflicting `initial_pose` of a frame, cable shorter than the distance of its attachments at their
-/// initial poses; empty if the scene is sound. Keys are written as in YAML: `cables[0].attachments[1].frame`.
+/// All errors of a scene, empty if there are none: values out of range, names used twice, unknown materials, attachments at one
+/// node, missing meshes of obstacles, conflicting `initial_pose` of a frame, cables shorter than the distance between their
+/// attachments at the initial poses. Keys are written as in YAML: `cables[0].attachments[1].frame`.
 std::vector<std::string> validate(const SceneDesc& scene);
 
-/// The scene's own obstacles, then those of its robot's links.
+/// The obstacles of the scene, then those of the links of its robot.
 std::vector<ObstacleDesc> all_obstacles(const SceneDesc& scene);
 
-/// The pose that six numbers of a scene mean.
+/// The pose that the six numbers of a scene describe.
 Pose pose_of(const InitialPose& pose);
 
-/// The section that a segment of a cable is in: an index into its sections, -1 if it is in none.
+/// Index of the section of a cable to which a segment belongs; -1 if it belongs to none.
 int section_at(const CableDesc& cable, int segment);
 
-/// The node that a place on a cable means: arc lengths go to the nearest node.
+/// The node at a place on a cable; for an arc length, the nearest node.
 int node_at(const CableDesc& cable, const PlaceDesc& place);
 
 }  // namespace verlet_cable

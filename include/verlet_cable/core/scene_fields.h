@@ -9,8 +9,8 @@
 
 namespace verlet_cable {
 
-/// What a number of a scene may be: lowest <= number <= highest, or infinite where that means something. Never NaN.
-/// The bounds are far from anything physical where the words name none; they keep sums and products finite.
+/// The range of a number in a scene: lowest <= number <= highest, or infinite if that has a meaning; never NaN. Bounds that the
+/// words do not mention are far outside of what is physical; they keep sums and products finite.
 struct Range {
   double lowest = 0;
   double highest = 0;
@@ -30,7 +30,7 @@ constexpr Range coordinate{-1e9, 1e9, "finite numbers"};
 constexpr Range unit_interval{0, 1, "numbers"};
 constexpr double largest_integer = std::numeric_limits<int>::max();
 
-/// A number of a scene: its key, where it is kept, its unit and range. One table for the reader, `validate` and the
+/// A number in a scene: its key, the member that stores it, its unit and range. One table for the reader, `validate` and the
 /// documentation.
 template <class Owner, class Number = double>
 struct Field {
@@ -159,7 +159,7 @@ constexpr std::array<Field<GuideDesc>, 2> clip_fields{{
     {"capture", &GuideDesc::capture, "m", not_negative},
 }};
 
-/// Of a body, along an axis: of a milligram, some micrometres in size, to a ship's.
+/// [kg m^2] Of a body about an axis: from a milligram of some micrometres in size to a ship.
 constexpr Range moment_of_inertia{1e-24, 1e24, "any number above 0"};
 
 constexpr std::array<Field<RobotDesc>, 1> robot_fields{{
@@ -170,14 +170,14 @@ constexpr std::array<Field<ContactDesc>, 1> contact_fields{{
     {"friction", &ContactDesc::friction, "", not_negative},
 }};
 
-/// Of every name, also of frames and of obstacles of the topic: each contact and each marker has a copy.
+/// Length limit of every name, also of frames and of obstacles of the topic, as each contact and each marker has a copy.
 constexpr std::size_t most_name_characters = 1000;
 /// Whether a scene may use `name` for a material, cable, attachment or obstacle: letters, digits and _, a letter first.
 bool is_name(const std::string& name);
 /// Whether `name` can be a tf frame: not empty, no leading /, no blanks or control characters.
 bool is_frame_name(const std::string& name);
 
-/// Which keys a shape's type has; all of them are required but `scale`.
+/// Whether shapes of a type have a key; all of these keys are required except `scale`.
 bool has_dimension(ShapeType type, const std::string& key);
 
 /// The names of materials, for messages: the first 20 of them.

@@ -37,7 +37,7 @@ struct BoxShape {
   Vector3 size;  ///< [m] along x, y and z
 };
 
-/// What is read from a file, and where that is, for displays that read it themselves.
+/// A mesh, and the file from which it was read, for displays that read the file themselves.
 struct MeshShape {
   std::shared_ptr<const TriangleMesh> mesh;  ///< never null; scaled
   std::string uri{};
@@ -46,17 +46,17 @@ struct MeshShape {
 
 using Shape = std::variant<PlaneShape, SphereShape, CapsuleShape, CylinderShape, BoxShape, MeshShape>;
 
-/// The solid that a scene describes, in its own frame. Of a mesh, the file must have been read.
+/// The solid that a scene describes, in its own frame. The file of a mesh must have been read.
 Shape shape_of(const ShapeDesc& desc);
 
 /// The point of the surface that is nearest to `point` [m], both in the shape's frame. Where several are equally near (on an
-/// axis, in the middle), one of them; the normal has unit length everywhere. Points that are `reach` or further outside are told
-/// so early: of these only `distance >= reach` holds.
+/// axis, in the middle), one of them; the normal has unit length everywhere. The search ends early for points that are `reach` or
+/// further outside: for these, only `distance >= reach` is guaranteed.
 SurfacePoint closest_point(const Shape& shape, const Vector3& point, double reach = infinity);
 
-/// Where the segment from `start` to `end` [m], in the shape's frame, is deepest in the shape or nearest to it. Where that is
-/// a whole stretch, some point of it. Segments that are `reach` or further outside are told so early: of these only
-/// `surface.distance >= reach` holds.
+/// The point of the segment from `start` to `end` [m], in the shape's frame, that is deepest in the shape or nearest to it. If it
+/// is not unique, one of them. The search ends early for segments that are `reach` or further outside: for these, only
+/// `surface.distance >= reach` is guaranteed.
 SegmentSurfacePoint deepest_point(const Shape& shape, const Vector3& start, const Vector3& end, double reach = infinity);
 
 /// A box around the shape at `pose`; a plane's is infinite in all directions.

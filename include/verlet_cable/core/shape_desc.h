@@ -10,12 +10,12 @@ namespace verlet_cable {
 
 class TriangleMesh;
 
-/// Roll, pitch, yaw and position of a frame, as written in a scene.
+/// Position and orientation of a frame, as written in a scene.
 using InitialPose = std::array<double, 6>;  // x, y, z [m], roll, pitch, yaw [rad]
 
 enum class ShapeType { plane, sphere, capsule, cylinder, box, mesh };
 
-/// A solid. Its dimensions are those that the type has; the others are not looked at.
+/// A solid. Only the dimensions of its type are used; the others are ignored.
 struct ShapeDesc {
   ShapeType type = ShapeType::plane;
   InitialPose pose{};               ///< in the frame or body that it belongs to
@@ -24,7 +24,7 @@ struct ShapeDesc {
   Vector3 size = Vector3::Zero();   ///< [m] box: > 0
   std::string uri;                  ///< mesh: package:// or file://
   Vector3 scale = Vector3::Ones();  ///< mesh: > 0
-  /// mesh: what `uri` names, scaled; filled in by whoever reads the file
+  /// mesh: the scaled mesh of `uri`; filled in when the file is read
   std::shared_ptr<const TriangleMesh> mesh;
 };
 

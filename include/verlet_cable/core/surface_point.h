@@ -11,9 +11,9 @@ using Aabb = Eigen::AlignedBox3d;
 
 /// The point of a surface that is nearest to another point.
 struct SurfacePoint {
-  double distance = 0;                ///< [m] of the other point; below 0 inside
+  double distance = 0;                ///< [m] of the other point; negative inside
   Vector3 point = Vector3::Zero();    ///< [m] on the surface
-  Vector3 normal = Vector3::UnitZ();  ///< unit, out of the solid; along it the distance grows
+  Vector3 normal = Vector3::UnitZ();  ///< unit, out of the solid, in the direction of growing distance
 };
 
 /// The point of a segment at which the signed distance to a surface is smallest.

@@ -8,18 +8,18 @@
 
 namespace verlet_cable {
 
-/// A solid bounded by triangles, with a tree of bounding boxes for queries. Does not change after its construction; queries
-/// allocate nothing.
+/// A solid bounded by triangles, with a tree of bounding boxes for queries. It does not change after construction; queries do not
+/// allocate memory.
 class TriangleMesh {
  public:
   using Triangle = std::array<int, 3>;  ///< indices of vertices, anticlockwise seen from outside
 
-  /// `vertices` [m]. A mesh that is closed, but whose triangles all face inwards, is turned inside out. Throws
-  /// std::invalid_argument with what `problem` says.
+  /// `vertices` [m]. A closed mesh whose triangles all face inwards is turned inside out. Throws
+  /// std::invalid_argument with the text of `problem`.
   TriangleMesh(std::vector<Vector3> vertices, std::vector<Triangle> triangles);
 
-  /// Why triangles do not bound a solid, empty if they do: none, vertices that are not finite or not there, an edge that is not
-  /// shared by two triangles in opposite directions, no volume.
+  /// Why the triangles do not bound a solid, empty if they do: there are none, vertices are not finite or missing, an edge is not
+  /// shared by two triangles in opposite directions, or there is no volume.
   static std::string problem(const std::vector<Vector3>& vertices, const std::vector<Triangle>& triangles);
 
   const std::vector<Vector3>& vertices() const { return vertices_; }
@@ -30,7 +30,7 @@ class TriangleMesh {
   /// Aanaes, Signed Distance Computation Using the Angle Weighted Pseudonormal, 2005).
   SurfacePoint closest_point(const Vector3& point, double reach = infinity) const;
   /// Exact for a segment that does not touch the solid. Inside, where the distance along the segment may have many minima, the
-  /// deepest point to a thousandth of the segment's length.
+  /// deepest point is found to a thousandth of the segment's length.
   SegmentSurfacePoint deepest_point(const Vector3& start, const Vector3& end, double reach = infinity) const;
 
  private:

@@ -13,23 +13,23 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 using Vector3 = Eigen::Vector3d;
 using Quaternion = Eigen::Quaterniond;
 
-/// A rigid pose: position [m] and orientation of a frame, seen from its parent.
+/// A rigid pose: position [m] and orientation of a frame in its parent.
 struct Pose {
   Vector3 position = Vector3::Zero();
   Quaternion orientation = Quaternion::Identity();
 
-  /// The pose `child`, given in this pose's frame, seen from this pose's parent.
+  /// The pose `child`, which is given in this pose's frame, in this pose's parent.
   Pose operator*(const Pose& child) const;
   Pose inverse() const;
 };
 
-/// How a frame moves, seen from the fixed frame.
+/// Velocity of a frame relative to the fixed frame.
 struct FrameVelocity {
   Vector3 linear = Vector3::Zero();   ///< [m/s] of its origin
   Vector3 angular = Vector3::Zero();  ///< [rad/s]
 };
 
-/// The rotation as axis times angle [rad], the short way.
+/// The rotation as axis times angle [rad], with an angle of at most pi.
 Vector3 rotation_vector(const Quaternion& rotation);
 
 /// Rotation of fixed-axis roll, pitch and yaw [rad], as in URDF: Rz(yaw) Ry(pitch) Rx(roll).

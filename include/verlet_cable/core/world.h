@@ -21,21 +21,21 @@
 
 namespace verlet_cable {
 
-/// Where the frames are at the end of a step, seen from the fixed frame; one entry a frame, by frame id. A pose that is not sound
-/// (see `is_sound`) counts as none: the frame stays where it was.
+/// The pose of a frame at the end of a step, in the fixed frame. A pose that is not sound (see `is_sound`) is ignored: the frame
+/// stays where it was. BoundaryInputs has one entry per frame, indexed by frame id.
 struct FrameInput {
   Pose pose;
-  bool known = true;  ///< false: never seen; cables that need it wait, obstacles in it are not there
-  /// What cables and nets that start now begin to move with, at what holds them. Steps do not read it: they follow the poses.
-  /// Without it a frame begins with its mean velocity over the first step.
+  bool known = true;  ///< false: never seen; cables that need it wait, and obstacles in it do not exist yet
+  /// The frame's velocity, with which cables and nets that start now begin to move where it holds them. Steps do not read it:
+  /// they follow the poses. Without it, a frame starts with its mean velocity over the first step.
   std::optional<FrameVelocity> velocity = std::nullopt;
 };
 using BoundaryInputs = std::vector<FrameInput>;
 
-/// What holds a node of a cable or net, or a rigid body, to a frame. The frame may be that of a rigid body.
+/// Holds a node of a cable or net, or a rigid body, in a frame. The frame may be that of a rigid body.
 struct Attachment {
   std::string name;
-  BodyId body;      ///< a cable, a net or a rigid body
+  BodyId body;      ///< what is held: a cable, a net or a rigid body
   int node = 0;     ///< of a cable or net
   int frame = 0;    ///< index into World::frames()
   int holder = -1;  ///< index into World::bodies() if the frame is a body's
@@ -43,27 +43,27 @@ struct Attachment {
   Pose pose;  ///< of the attachment, in the frame
   Pose at;    ///< of the attachment, in the frame of the rigid body that is held
   Vector3 force =
-      Vector3::Zero();  ///< [N] what the cable or body exerts on its holder, fixed frame's axes, mean over the last step
+      Vector3::Zero();  ///< [N] that the cable or body exerts on its holder, axes of the fixed frame, mean over the last step
   Vector3 torque = Vector3::Zero();  ///< [N m] likewise, about the attachment's point
-  /// Index into World::guides() of the guide that it is: the cable slides through it; -1: it is none.
+  /// Index into World::guides() if it is a guide, through which the cable slides; -1: it is not.
   int guide = -1;
-  bool is_junction = false;  ///< the holder is what joins the cable to others where they branch
-  int held_junction = -1;    ///< index into World::bodies() of the one at the node, which is held in its place; -1: there is none
-  /// [m] of a sheave, in its axes: where the cable comes to the wheel (`node`) and leaves it (the node after that)
+  bool is_junction = false;  ///< the holder is the junction that joins the cable to others
+  int held_junction = -1;    ///< index into World::bodies() of the junction at the node, which is held instead; -1: there is none
+  /// [m] of a sheave, in its axes: where the cable meets the wheel (`node`) and where it leaves it (the next node)
   std::array<Vector3, 2> tangent_points{Vector3::Zero(), Vector3::Zero()};
 };
 
-/// Whether a cable lies on it between two nodes, instead of going through it at one.
+/// Whether it is a wheel on which the cable lies between two nodes, and not a guide through which it passes at one node.
 inline bool is_wheel(const Attachment& attachment) {
   return attachment.guide >= 0 && attachment.tangent_points[0] != attachment.tangent_points[1];
 }
 
-/// Index into World::bodies() of the body that it holds, -1: it holds a node.
+/// Index into World::bodies() of the body that an attachment holds; -1: it holds a node.
 inline int held_body(const Attachment& attachment) {
   return attachment.body.is_rigid_body() ? attachment.body.index : attachment.held_junction;
 }
 
-/// Whether it is one that the scene or a pin names as such: guides and what joins cables at junctions are not.
+/// Whether it is an attachment that the scene or a pin names; guides and the attachments of cables to junctions are not.
 inline bool is_named(const Attachment& attachment) {
   return attachment.guide < 0 && !attachment.is_junction;
 }
@@ -71,25 +71,25 @@ inline bool is_named(const Attachment& attachment) {
 struct StepResult {
   enum class Status {
     ok,
-    overstretched,  ///< held points are further apart than what is between them can be: it was lengthened
-    jumped,         ///< a frame changed its velocity too much for a motion: what it holds was carried along with it
-    /// A substep did not converge at the smallest size, a net is held where it cannot be, or the step took too much work: the
-    /// motion of the cable or net, or of bodies and what hangs on them, was taken away, and it goes on from rest; or cables are
-    /// in each other and have no room to get apart.
+    overstretched,  ///< held points are further apart than the cable or net between them is long: it was lengthened
+    jumped,         ///< the velocity of a frame changed too much for a motion: what the frame holds was carried along
+    /// A substep of the smallest size did not converge, a net is held where it cannot be, or the step took too much work: the
+    /// cable or net, or the bodies and their cables, lost their velocity and continue from rest. Or cables are inside each
+    /// other and have no room to separate.
     degraded,
-    fault,  ///< not even that: the cable stays as it was last, finite
+    fault,  ///< that failed, too: the cable stays in its last finite state
   };
   Status status = Status::ok;
   BodyId body;             ///< the first one that is not ok
   int node = -1;           ///< its first node that is not ok
   int ignored_frame = -1;  ///< the first frame whose pose was not sound
-  int substeps = 0;        ///< the most that any cable took
-  int iterations = 0;      ///< of the solver, all cables and substeps
-  bool exhausted = false;  ///< it took more work than a step may: what was left was done from rest
+  int substeps = 0;        ///< the largest number for any cable
+  int iterations = 0;      ///< of the solver, over all cables and substeps
+  bool exhausted = false;  ///< the step exceeded its budget of work: the rest of it was done from rest
   double max_strain = 0;   ///< largest |l / l0 - 1| at the end of the step
 };
 
-/// [J]; gravity is zero at the fixed frame's origin, central gravity infinitely far away.
+/// [J]; the potential of uniform gravity is zero at the fixed frame's origin, that of central gravity at infinity.
 struct Energy {
   double kinetic = 0, gravity = 0, stretch = 0, bend = 0, twist = 0;
   double total() const { return kinetic + gravity + stretch + bend + twist; }
@@ -102,71 +102,71 @@ struct JointView {
   double twist = 0;       ///< [rad/m]
 };
 
-/// A segment that went in a step because its tension exceeded the material's breaking tension.
+/// A segment that was removed in a step because its tension exceeded the material's breaking tension.
 struct Break {
   int cable = 0;      ///< index of the cable, now the first piece
-  int segment = 0;    ///< that is gone
+  int segment = 0;    ///< that was removed
   int new_cable = 0;  ///< index of the second piece
   double limit = 0;   ///< [N] the segment's breaking tension
 };
 
-/// A cable has come to bend more tightly than its material's minimum_bend_radius, or to be pulled harder than its
-/// maximum_tension. One while that lasts at neighbouring nodes, and a tenth of a second after. Edits and breaks keep its indices
-/// valid.
+/// A cable has begun to bend more tightly than the minimum_bend_radius of its material, or its tension to exceed maximum_tension.
+/// There is one per excursion: as long as it lasts at neighbouring nodes, and for a tenth of a second after. Edits and breaks
+/// keep its indices valid.
 struct Excursion {
   enum class Kind { bend, tension };
   int cable = 0;  ///< index into World::cables()
-  int node = 0;   ///< the worst one; of tension that of the segment that starts there
+  int node = 0;   ///< the worst one; for tension, the first node of the worst segment
   Kind kind = Kind::bend;
   double value = 0;    ///< the radius [m] or tension [N] there
-  double allowed = 0;  ///< the material's
+  double allowed = 0;  ///< the limit of the material
 };
 
-/// What an attachment holds was carried along with it instead of being struck: its velocity had changed by more than 5 m/s within
-/// a step, and not for longer than 5 ms. It is known when that is over: a change that lasts is a motion, and is followed from
-/// then on.
+/// A jump of an attachment: its velocity changed by more than 5 m/s within a step, for no longer than 5 ms. What it holds was
+/// carried along with it, so that it is not struck. A jump is reported when it is over; a change that lasts longer is a motion,
+/// which is followed from then on.
 struct Jump {
   int attachment = 0;   ///< index into World::attachments()
   double distance = 0;  ///< [m] that the attachment was carried
-  double time = 0;      ///< [s] the world's time when it began
-  double duration = 0;  ///< [s] in whole steps
+  double time = 0;      ///< [s] of the world, when it began
+  double duration = 0;  ///< [s] a multiple of the time step
 };
 
-/// A cable that is inside an obstacle without having come through its surface: it started there, or the obstacle appeared there.
-/// It is pushed out gently. Edits and breaks keep its indices valid.
+/// A cable that is inside an obstacle although it did not pass through its surface: the cable started there, or the obstacle
+/// appeared there. It is pushed out slowly. Edits and breaks keep its indices valid.
 struct Intrusion {
   int cable = 0;     ///< index into World::cables()
   int segment = 0;   ///< the deepest one
   int obstacle = 0;  ///< index into World::obstacles()
-  double depth = 0;  ///< [m] of the cable's surface
+  double depth = 0;  ///< [m] of the cable's surface below that of the obstacle
 };
 
-/// What the last step, start or settling found.
+/// Findings of the last step, start or settling.
 struct Findings {
-  std::vector<std::string> waiting;  ///< names of cables, nets and bodies that wait for a frame, or for what holds them
-  /// Names of cables that found no equilibrium when they were to be settled, at their start or by `settle`.
+  std::vector<std::string> waiting;  ///< names of cables, nets and bodies that wait for a frame or for their holder
+  /// Names of cables for which settling found no equilibrium, at their start or in `settle`.
   std::vector<std::string> unsettled;
-  /// Names of cables whose given initial shape could not be brought to their lengths between their attachments: they hang
+  /// Names of cables whose initial shape could not be projected onto their lengths with the attachments held: they start hanging
   /// instead.
   std::vector<std::string> misfits;
   // In the last step
   std::vector<Break> breaks;
   std::vector<Excursion> excursions;       ///< that have begun
-  std::vector<int> caught, released;       ///< indices into World::guides() of those that took their cable, or let it go
-  std::vector<Jump> jumps;                 ///< that were found to be over, one an attachment
-  std::vector<Intrusion> intrusions;       ///< one a cable and obstacle
+  std::vector<int> caught, released;       ///< indices into World::guides() of clips that caught their cable, or let it go
+  std::vector<Jump> jumps;                 ///< that have ended, at most one per attachment
+  std::vector<Intrusion> intrusions;       ///< at most one per cable and obstacle
   std::vector<SimulatedContact> contacts;  ///< where cables touched something in the last substep
 };
 
-/// The simulation: cables and nets whose attachments follow frames, and particles, in the fixed frame. A value: a copy is a
-/// snapshot, and continuing a copy gives the same bytes. Reads no clock, logs nothing, throws nothing in `step`.
+/// The simulation: cables and nets whose attachments follow frames, bodies and particles. It is a value type: a copy is a
+/// snapshot, and continuing from a copy gives the same bytes. It reads no clock and logs nothing; `step` does not throw.
 class World {
  public:
-  /// Cables whose frames are all known start at once, the others wait for `start_waiting`. `inputs` is indexed like
-  /// `frame_names(scene)`. Throws SceneError with everything that `validate` finds. Soon after another thread has set `cancelled`
-  /// it ends, and the world is good for nothing.
+  /// Cables whose frames are all known start at once; the others wait for `start_waiting`. `inputs` is indexed like
+  /// `frame_names(scene)`. Throws SceneError with all errors that `validate` finds. If another thread sets `cancelled`,
+  /// construction ends soon after, and the world must not be used.
   World(const SceneDesc& scene, const BoundaryInputs& inputs, const std::atomic<bool>* cancelled = nullptr);
-  /// None of the cables and nets has started yet. Throws SceneError likewise.
+  /// A world in which no cable or net has started yet. Throws SceneError likewise.
   explicit World(const SceneDesc& scene);
   ~World();
   World(const World&);
@@ -174,54 +174,54 @@ class World {
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
 
-  /// Advances by the scene's time step. `inputs`: one entry a frame, see frames().
+  /// Advances by the scene's time step. `inputs`: one entry per frame, see frames().
   StepResult step(const BoundaryInputs& inputs);
-  /// Cables that cannot touch are stepped by all cores at once where they are many, with the same result; or not, for programs
-  /// that run many worlds at once.
+  /// Many cables that cannot touch are stepped on all cores at once. With `one_by_one` they are not, for programs that run many
+  /// worlds at once. The result is the same.
   void step_one_by_one(bool one_by_one);
-  /// Cables that are alike and touch nothing are stepped several at once, in lanes of the numbers that the processor computes
-  /// with together: two a cable, 2, 4 or 8, or as many of them as it has. The result is the same.
+  /// Cables that are alike and touch nothing are stepped together in the lanes of the processor's vector registers, two lanes per
+  /// cable. This limits them to `most` lanes: 2, 4 or 8, or fewer if the processor has fewer. The result is the same.
   void limit_lanes(int most);
 
-  /// Puts every cable that is held into static equilibrium, its holders where they are (Newton's method, no waiting); free cables
-  /// and nets stay as they are. False if one of them found none; it is then at rest near it.
+  /// Puts every held cable into static equilibrium with its holders where they are (Newton's method; time does not advance). Free
+  /// cables and nets stay as they are. False if a cable does not reach equilibrium; that cable is then at rest near it.
   bool settle();
 
-  double time() const;  ///< [s] steps done times the time step
+  double time() const;  ///< [s] number of steps done times the time step
   std::int64_t steps() const;
   double time_step() const;  ///< [s]
 
-  /// Frames by id: 0 is the fixed frame, then those of the scene in order of appearance, then those of its bodies, then those
-  /// that pins and obstacles added.
+  /// Names of the frames by id: 0 is the fixed frame; then come the frames of the scene in order of appearance, those of its
+  /// bodies, and those that pins and obstacles added.
   const std::vector<std::string>& frames() const;
   const Pose& frame_pose(int frame) const;  ///< at the world's time
   bool frame_known(int frame) const;        ///< whether it has been seen, or given a pose
-  bool is_body_frame(int frame) const;      ///< whether it is a body's: its pose is a result, inputs for it are not looked at
-  /// Id of the new or the existing frame. Without a (sound) pose, a new one is unknown until a step knows it.
+  bool is_body_frame(int frame) const;      ///< whether it belongs to a body: its pose is a result, and inputs for it are ignored
+  /// Returns the id of a frame, and adds it if it is new. Without a (sound) pose, a new one is unknown until a step gives it.
   int add_frame(const std::string& name, const std::optional<Pose>& pose);
 
   const std::vector<SimulatedCable>& cables() const;  ///< those that have started, pieces of cuts included
   const std::vector<SimulatedNet>& nets() const;      ///< those that have started
   const std::vector<SimulatedParticle>& particles() const;
-  const std::vector<SimulatedBody>& bodies() const;    ///< those of the scene, then those that join cables at its junctions
-  const std::vector<Attachment>& attachments() const;  ///< of the started cables, nets and bodies; guides are among them
+  const std::vector<SimulatedBody>& bodies() const;    ///< those of the scene, then those of its junctions
+  const std::vector<Attachment>& attachments() const;  ///< of the started cables, nets and bodies; including guides
   const std::vector<SimulatedGuide>& guides() const;   ///< those of the started cables
   GuideView view_guide(int guide) const;
-  const std::vector<Obstacle>& obstacles() const;  ///< those of the scene, of its robot's links, then those that were set
+  const std::vector<Obstacle>& obstacles() const;  ///< those of the scene, of the links of its robot, then those that edits added
   const Findings& findings() const;
 
-  /// Starts the waiting cables and nets whose frames are known now, at their default or given shapes. How many.
+  /// Starts the waiting cables and nets whose frames are known now, in their default or given shapes. Returns how many.
   int start_waiting(const BoundaryInputs& inputs);
   EditResult apply(const Edit& edit);
-  /// Takes over gravity, fluid, materials (those it has, by name) and the friction between cables from a sound scene. Throws
-  /// SceneError, and changes nothing, where a cable that was joined with another would lack torsional stiffness for its rest
-  /// shape.
+  /// Takes over gravity, fluid, the friction between cables and the values of the materials that the world has (by name) from a
+  /// valid scene. Throws SceneError, and changes nothing, if a cable that was joined with another would lack torsional stiffness
+  /// for its rest shape.
   void tune(const SceneDesc& scene);
 
   Energy energy() const;
-  /// All joints of a cable from start to end: of inner nodes, and those of clamps with the segments beside them.
+  /// All joints of a cable from start to end: those of inner nodes, and those between clamps and the segments next to them.
   void view_joints(int cable, std::vector<JointView>& joints) const;
-  std::uint64_t hash() const;  ///< of all that the future depends on
+  std::uint64_t hash() const;  ///< of everything that the future depends on
 
  private:
   friend struct WorldInspector;  // tests
@@ -230,24 +230,24 @@ class World {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Index of the cable, net, body, attachment or guide of a name, -1 if there is none.
+/// Index of the cable, net, body, attachment or guide with a name; -1 if there is none.
 int find(const std::vector<SimulatedCable>& cables, const std::string& name);
 int find(const std::vector<SimulatedNet>& nets, const std::string& name);
 int find(const std::vector<SimulatedBody>& bodies, const std::string& name);
 int find(const std::vector<Attachment>& attachments, const std::string& name);
 int find(const std::vector<SimulatedGuide>& guides, const std::string& name);
 
-/// Whether a pose can be worked with: coordinates within 1e9 m, and an orientation whose length is from 0.5 to 2, which is
-/// brought to 1.
+/// Whether a pose can be used: coordinates within 1e9 m, and a quaternion whose norm is from 0.5 to 2; the quaternion is then
+/// normalized.
 bool is_sound(const Pose& pose);
-/// Frames that a scene names, by id: the fixed frame first, then in order of appearance, each once.
+/// Names of the frames in a scene, by id: the fixed frame first, then in order of appearance, each once.
 std::vector<std::string> frame_names(const SceneDesc& scene);
-/// Frames whose poses are results, which follow those: of the scene's bodies, then of its junctions.
+/// Names of the frames whose poses are results; their ids follow those: of the scene's bodies, then of its junctions.
 std::vector<std::string> computed_frame_names(const SceneDesc& scene);
-/// Initial poses of the scene's frames, by id; `known` is false where the scene gives none.
+/// Initial poses of the scene's frames, by id; `known` is false if the scene gives no pose.
 BoundaryInputs initial_frames(const SceneDesc& scene);
-/// Inextensible cables that are shorter than the distance of two neighbouring attachments with the frames at `frames` (by id;
-/// unknown ones are left out): one line each, like `validate`, which does this at the initial poses.
+/// Errors, one line each as of `validate`: inextensible cables that are shorter than the distance between two neighbouring
+/// attachments, with the frames at `frames` (by id; unknown ones are left out). `validate` does this for the initial poses.
 std::vector<std::string> validate_distances(const SceneDesc& scene, const BoundaryInputs& frames);
 
 }  // namespace verlet_cable

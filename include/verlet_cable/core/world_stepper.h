@@ -14,14 +14,14 @@ struct WorldStep {
   StepResult result;                       ///< out
 };
 
-/// Steps many worlds by a step each, as World::step does, with the same result; sooner, where cables in them are alike. Keeps
-/// nothing from one call to the next but memory.
+/// Steps many worlds by one step each, with the same result as World::step, but faster if cables in them are alike. Between calls
+/// it keeps nothing but allocated memory.
 class WorldStepper {
  public:
   WorldStepper();
   ~WorldStepper();
 
-  /// No world twice. Uses all cores, or only the calling thread.
+  /// Each world may be given only once. Uses all cores, or only the calling thread.
   void step(std::vector<WorldStep>& worlds, bool all_cores);
 
  private:

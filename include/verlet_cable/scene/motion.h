@@ -8,17 +8,17 @@
 
 namespace verlet_cable {
 
-/// The pose of a frame over time, through given poses, its rows: positions follow a cubic Hermite spline with limited tangents,
-/// orientations slerp; held before the first row and after the last. What stands between two rows stands, and rows that go one way
-/// along a line never turn back. scripts/play_motion.py does the same.
+/// The pose of a frame over time, interpolated between given poses (rows): positions by a cubic Hermite spline with limited
+/// tangents, orientations by slerp; constant before the first row and after the last. Equal rows give a frame at rest, and rows
+/// that advance along a line never make the frame turn back. scripts/play_motion.py does the same.
 class FrameTrack {
  public:
   /// Adds a pose [m] at a time [s] above that of the last one.
   void add(double time, const Pose& pose);
 
-  /// At least one pose was added.
+  /// The pose at a time [s]; at least one pose must have been added.
   Pose at(double time) const;
-  /// Of the motion that begins at a time; zero before the first row, and at the last and after it.
+  /// Velocity just after a time [s]; zero before the first row, and from the last row on.
   FrameVelocity velocity_from(double time) const;
 
   bool empty() const { return times_.empty(); }

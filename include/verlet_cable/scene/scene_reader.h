@@ -12,34 +12,34 @@
 
 namespace verlet_cable {
 
-/// Where a scene may take from what it names outside of its own text.
+/// Where a scene may read the files and parameters that it names.
 struct SceneSources {
   FileAccess files;
-  /// The value of a parameter, none if it is not set. Empty where there are no parameters.
+  /// The value of a parameter, none if it is not set. An empty function if there are no parameters.
   std::function<std::optional<std::string>(const std::string& name)> parameter;
 };
 
-/// Of scalars that are no text, whatever they look like.
+/// Tag of scalars that are booleans and not text, whatever they look like.
 constexpr const char* boolean_tag = "tag:yaml.org,2002:bool";
 
-/// Reads a scene from its tree of keys. Throws SceneError with every error at once: unknown and doubled keys, wrong
+/// Reads a scene from its tree of keys. Throws SceneError with all errors at once: unknown and duplicate keys, wrong
 /// types, meshes and robots that cannot be read, and all that `validate` finds; in the order of the tree, then of `validate`.
-/// Scalars are text, as YAML has them: numbers may be written as integers, decimals or `.inf`. Top-level keys in `ignored` are
-/// not looked at. What is nothing is refused; errors call it by its tag, where it has one. The tree must be finite: aliases are
-/// bounded for text by `read_scene_text`, and nowhere else.
+/// Scalars are text, as in YAML: numbers may be written as integers, decimals or `.inf`. Top-level keys in `ignored` are
+/// ignored. Null values are refused; errors name them by their tag if they have one. The tree must be finite: aliases are
+/// limited by `read_scene_text` for text, and nowhere else.
 SceneDesc read_scene(const YAML::Node& root, const std::vector<std::string>& ignored = {}, const SceneSources& sources = {});
 
-/// Reads a scene from YAML text: one document, at most 64 MB, a million values and 32 levels deep, aliases counted as often as
-/// they are used. Throws SceneError; syntax errors with line and column.
+/// Reads a scene from YAML text: one document of at most 64 MB, a million values and 32 levels, with aliases counted each time
+/// they are used. Throws SceneError; syntax errors come with line and column.
 SceneDesc read_scene_text(const std::string& text, const SceneSources& sources = {});
 
-/// Reads a scene from a YAML file, and what it names from anywhere: relative paths start at the file. Throws SceneError, also
-/// where the file cannot be read.
+/// Reads a scene from a YAML file, and the files that it names from anywhere: relative paths refer to the directory of the scene
+/// file. Throws SceneError, also if the file cannot be read.
 SceneDesc read_scene_file(const std::string& path);
-/// The same, and what it names from `sources` only.
+/// The same, but files and parameters that it names are read from `sources` only.
 SceneDesc read_scene_file(const std::string& path, const SceneSources& sources);
 
-/// Reads one obstacle by the keys that a scene's have. Throws SceneError likewise; its lines begin with the key.
+/// Reads one obstacle, with the keys of an obstacle in a scene. Throws SceneError likewise; its lines begin with the key.
 ObstacleDesc read_obstacle(const YAML::Node& keys, const SceneSources& sources = {});
 
 }  // namespace verlet_cable

@@ -87,7 +87,7 @@ std::string node_problem(const State& state, const BodyId& body, int node) {
   if (body.is_rigid_body()) {
     if (body.index < 0 || body.index >= static_cast<int>(state.bodies.size())) return out_of_range("body", body.index);
     if (!state.body_progress[body.index].is_placed)
-      return "body: " + std::to_string(body.index) + "; is not there before the frames are that hold it";
+      return "body: " + std::to_string(body.index) + "; does not exist until the frames that hold it are known";
     return node == 0 ? "" : "node: " + std::to_string(node) + "; must be 0, the origin of the body's frame";
   }
   const bool is_net = body.is_net();
@@ -113,7 +113,7 @@ EditResult World::Implementation::apply(const edit::Pin& pin) {
   const int holder = state.body_of_frame(pin.frame);
   if (holder >= 0 && (!pin.body.is_cable() || pin.type != AttachmentType::hinge))
     return refused("frame: " + state.frames.names[pin.frame] +
-                   "; is a body's, which a pin can hold nodes of cables to, by a hinge");
+                   "; belongs to a body, to which a pin can hold only nodes of cables, by a hinge");
   if (const std::string problem = pose_problem("offset", pin.pose); !problem.empty()) return refused(problem);
   if (!pin.name.empty() && is_attachment(pin.name)) return refused("name: " + pin.name + "; is taken by another attachment");
   const std::string node = "node: " + std::to_string(pin.node) + " of " +
@@ -124,7 +124,7 @@ EditResult World::Implementation::apply(const edit::Pin& pin) {
     return refused(node + "; is already held by " + state.attachments[other].name);
   const int junction = junction_at(state.attachments, pin.body, pin.node);
   if (junction >= 0 && pin.type != AttachmentType::hinge)
-    return refused(node + "; is where cables branch, which a pin can hold by a hinge");
+    return refused(node + "; is at a junction, which a pin can hold only by a hinge");
   if (pin.body.is_cable()) {
     const int other = joining_node(state.cable_progress[pin.body.index].drive, pin.node);
     if (other >= 0 && holder_of(pin.body, other, state.attachments) >= 0)
@@ -157,8 +157,8 @@ EditResult World::Implementation::apply(const edit::Pin& pin) {
 EditResult World::Implementation::apply(const edit::Unpin& unpin) {
   const int index = find(state.attachments, unpin.name);
   if (index < 0) return refused("name: " + unpin.name + "; there is no such attachment");
-  if (state.attachments[index].guide >= 0) return refused("name: " + unpin.name + "; is a guide, which nothing unpins");
-  if (state.attachments[index].is_junction) return refused("name: " + unpin.name + "; is a junction, which nothing unpins");
+  if (state.attachments[index].guide >= 0) return refused("name: " + unpin.name + "; is a guide, which cannot be unpinned");
+  if (state.attachments[index].is_junction) return refused("name: " + unpin.name + "; is a junction, which cannot be unpinned");
   erase_attachment(index);
   return {true, "", unpin.name};
 }
@@ -188,8 +188,8 @@ void World::Implementation::erase_attachment(int index) {
 EditResult World::Implementation::apply(const edit::MoveAttachment& move) {
   const int index = find(state.attachments, move.name);
   if (index < 0) return refused("name: " + move.name + "; there is no such attachment");
-  if (state.attachments[index].guide >= 0) return refused("name: " + move.name + "; is a guide, which only its frame moves");
-  if (state.attachments[index].is_junction) return refused("name: " + move.name + "; is a junction, which only its cables move");
+  if (state.attachments[index].guide >= 0) return refused("name: " + move.name + "; is a guide, which only its frame can move");
+  if (state.attachments[index].is_junction) return refused("name: " + move.name + "; is a junction, which only cables can move");
   if (const std::string problem = pose_problem("offset", move.pose); !problem.empty()) return refused(problem);
   state.attachments[index].pose = {move.pose.position, move.pose.orientation.normalized()};
   return {true, "", move.name};

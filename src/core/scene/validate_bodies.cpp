@@ -98,7 +98,7 @@ void check_pose_rings(const SceneDesc& scene, const SceneNames& scene_names, Err
     for (; body < bodies && reached_from[body] == bodies; body = holder_of_pose(scene, scene_names, body))
       reached_from[body] = start;
     if (body < bodies && reached_from[body] == start)
-      errors.add(indexed("bodies", body) + ".pose", "missing, and what holds the body is held by it",
+      errors.add(indexed("bodies", body) + ".pose", "missing, and the body is held by a body that it holds",
                  "a pose for at least one of the bodies that hold each other");
   }
 }

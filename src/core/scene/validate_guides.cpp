@@ -178,7 +178,7 @@ class GuideChecker {
     errors_.add(key,
                 "the initial shape of " + quoted(cable.name) + " winds around it " + rounded_text(std::abs(turned) / (2 * M_PI)) +
                     " times",
-                "less than one turn, as yet");
+                "less than one turn, for now");
   }
 
   struct LastPlace {
@@ -206,7 +206,7 @@ class SimulationChecker {
       const bool is_sheave = guide.type == GuideDesc::Type::sheave;
       if (is_sheave && guide.friction_coefficient() < infinity && guide.inertia > 0)
         errors_.add(key + ".friction", number_text(guide.friction_coefficient()),
-                    "infinity (.inf) where the wheel has inertia; a wheel that the cable slips on has none, as yet");
+                    "infinity (.inf) if the wheel has inertia; slip on such wheels is not supported yet");
       const auto cable =
           std::find_if(scene_.cables.begin(), scene_.cables.end(), [&](const CableDesc& c) { return c.name == guide.cable; });
       if (!cable->sections.empty()) check_sections(key, is_sheave, *cable);
@@ -221,15 +221,13 @@ class SimulationChecker {
     const auto body =
         std::find_if(scene_.bodies.begin(), scene_.bodies.end(), [&](const BodyDesc& b) { return b.name == guide.body; });
     const bool is_placed = body->pose || !body->attachments.empty();
-    if (guide.place && !is_placed)
-      errors_.add(key + ".body", quoted(guide.body), "a body with a `pose`, or that its own attachments place, as yet");
+    if (guide.place && !is_placed) errors_.add(key + ".body", quoted(guide.body), "a body with a `pose` or attachments, for now");
     if (guide.inertia > 0)
-      errors_.add(key + ".inertia", number_text(guide.inertia), "0 on a body; wheels with inertia are held by frames, as yet");
+      errors_.add(key + ".inertia", number_text(guide.inertia), "0 on a body; wheels with inertia need a frame, for now");
   }
 
   void check_sections(const std::string& key, bool is_sheave, const CableDesc& cable) {
-    if (is_sheave)
-      errors_.add(key + ".cable", quoted(cable.name), "a cable without sections; others do not run over sheaves, as yet");
+    if (is_sheave) errors_.add(key + ".cable", quoted(cable.name), "a cable without sections, for now");
     double lightest = infinity, heaviest = 0;
     const auto weigh = [&](const std::string& name) {
       const double density = scene_.find_material(name)->linear_density;
@@ -241,7 +239,7 @@ class SimulationChecker {
     if (heaviest > most_uneven * lightest)
       errors_.add(
           key + ".cable", quoted(cable.name),
-          "a cable whose sections' linear densities differ by a factor of at most " + number_text(most_uneven) + ", as yet");
+          "a cable whose sections' linear densities differ by a factor of at most " + number_text(most_uneven) + ", for now");
   }
 
   /// Whether the cable is a rod of material frames; see is_whole_rod().
@@ -260,10 +258,11 @@ class SimulationChecker {
     if (!is_whole_rod(cable)) return;
     for (const GuideDesc& other : scene_.guides)
       if (&other < &guide && other.cable == guide.cable && other.type == GuideDesc::Type::sheave)
-        errors_.add(key + ".cable", quoted(cable.name),
-                    "a cable that no other sheave holds, as " + quoted(other.name) +
-                        " does; several only hold cables that bend alike about all axes, are straight unloaded and are not "
-                        "clamped to bodies, as yet");
+        errors_.add(
+            key + ".cable", quoted(cable.name),
+            "a cable that no other sheave holds, as " + quoted(other.name) +
+                " does; for now, several are only for cables with one bending_stiffness that are straight at rest and not "
+                "clamped to bodies");
   }
 
   /// Beside a guide there is cable on both sides, up to what else holds it.
@@ -271,7 +270,7 @@ class SimulationChecker {
     const double segment = cable.length / cable.segments, place = arc_length_of(cable, *guide.place);
     const auto refuse = [&](double least, const std::string& what) {
       errors_.add(key + ".at", number_text(place),
-                  "a place at least " + rounded_bound_text(least * segment, 1) + " m from " + what + ", as yet");
+                  "a place at least " + rounded_bound_text(least * segment, 1) + " m from " + what + ", for now");
     };
     const auto check_end = [&](double end, const std::string& what) {
       if (std::abs(place - end) < segment * (1 - same_place)) refuse(1, what);

@@ -234,8 +234,8 @@ void check_held_segment(const std::string& key, const SceneDesc& scene, const Ca
         key + ".length",
         rounded_text(length * segments) + " m of cable between " + quoted(first.name) + " and " + quoted(second.name),
         "at least " + rounded_bound_text(distance + held, 1) +
-            " m, as clamps hold the segment beside them of a cable that does not bend, and it is inextensible "
-            "(axial_stiffness .inf)");
+            " m, as clamps hold the segments next to them of a cable without bending_stiffness, and it is "
+            "inextensible (axial_stiffness .inf)");
   if (free > 0 || std::abs(distance - length) <= held_tolerance * length) return;
   errors.add(key + ".segments",
              std::to_string(cable.segments) + ", no node between " + quoted(first.name) + " and " + quoted(second.name) +

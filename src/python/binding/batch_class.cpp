@@ -153,48 +153,47 @@ py::array_t<bool> settle(PythonBatch& batch) {
 void add_batch_class(py::module_& module) {
   py::class_<PythonBatch>(
       module, "Batch",
-      "Worlds that are alike but for numbers, stepped together: sooner than one after another, with the same bytes "
-      "as each alone, whatever the number of threads. One thread at a time may use a batch; others run while it "
-      "steps.\n\nArrays begin with an axis of the worlds. After a step with `record_every` they have an axis of "
-      "records next, and are read-only views; else they are new ones. A batch keeps no events.")
+      "Worlds that differ only in numbers and are stepped together. This is faster than one after another and gives the same "
+      "bytes as each alone, with any number of threads. Only one thread at a time may use a batch; other threads run while it "
+      "steps.\n\nThe first axis of arrays is that of the worlds. After a step with `record_every`, the second axis is that of "
+      "the records, and the arrays are read-only views; otherwise they are new copies. A batch keeps no events.")
       .def(py::init(&make), py::arg("scene"), py::arg("count"), py::arg("motion") = py::none(), py::arg("threads") = 0,
-           "So many worlds of a scene. motion: as of World, of all of them. threads: 0 is one a core.")
+           "`count` worlds of a scene. motion: as for World, the same for all. threads: 0 is one per core.")
       .def(py::init(&make_from_list), py::arg("scenes"), py::arg("motion") = py::none(), py::arg("threads") = 0,
-           "A world for each of a list of scenes, which differ in numbers only: names, numbers of segments and time step are the "
-           "same.")
+           "A world for each scene of a list. The scenes may differ only in numbers: their names, numbers of segments and time "
+           "steps must be the same.")
       .def(py::init(&make_of_world), py::arg("world"), py::arg("count"), py::arg("threads") = 0,
-           "So many copies of a world as it is: its time, motion, given poses and edits. Each goes on with the bytes with which "
-           "the world would.")
+           "`count` copies of a world in its present state, with its time, motion, poses that were set, and edits. Each "
+           "continues with the same bytes as the world would.")
       .def("__len__", [](const PythonBatch& batch) { return use(batch).size(); })
-      .def(
-          "set_world", set_world, py::arg("index"), py::arg("world"),
-          "Worlds go on as copies of `world`, with its time, motion and given poses: to begin some of them anew, or to give all "
-          "a common start. index: an integer, negative ones count from the end, a sequence of integers, or a bool mask (count,). "
-          "A copy takes less time than a step, whatever the world took to be made. Drops what the last step recorded; `status` "
-          "of these worlds is 0.\n\nRaises IndexError, and ValueError for another kind of index, or where the world's scene "
-          "differs from the batch's in more than numbers: names, numbers of segments and time step are to be the same. Then "
-          "nothing is changed.")
+      .def("set_world", set_world, py::arg("index"), py::arg("world"),
+           "Replaces worlds by copies of `world`, with its time, motion and poses that were set: to restart some of them, or to "
+           "give all a common start. index: an integer (negative ones count from the end), a sequence of integers, or a bool "
+           "mask (count,). A copy takes less time than a step, however long it took to make the world. The records of the last "
+           "step are dropped; `status` of these worlds is 0.\n\nRaises IndexError; ValueError for another kind of index, or if "
+           "the scene of the world differs from that of the batch in more than numbers: names, numbers of segments and time step "
+           "must be the same. Then nothing is changed.")
       .def("set_material", set_material, py::arg("name"),
-           "Changes keys of a material: linear_density=..., bending_stiffness=...; a number, or (count,), or for "
-           "bending_stiffness (count, 2). Worlds that were not stepped, settled or edited begin anew with it; of others all but "
-           "linear_density can be changed.\n\nRaises SceneError with every error at once, ValueError, KeyError; then nothing is "
-           "changed.")
+           "Changes keys of a material, such as linear_density=... or bending_stiffness=...; the values are a number, or "
+           "(count,), or for bending_stiffness (count, 2). Worlds that were not yet stepped, settled or edited are started anew "
+           "with it; for others, all keys except linear_density can be changed.\n\nRaises SceneError with all errors at once, "
+           "ValueError, KeyError; then nothing is changed.")
       .def("set_frames", set_frames, py::arg("name"), py::arg("poses"),
-           "(count, 7): where a frame is at the end of the next step, and from then on; (count, steps, 7): at the end of each of "
-           "the next steps, then as at the last. x, y, z [m], qx, qy, qz, qw in the fixed frame; quaternions of length 0.5 to 2 "
-           "are "
-           "brought to 1.\n\nRaises KeyError, ValueError.")
+           "Sets the poses of a frame. (count, 7): at the end of the next step and after it; (count, steps, 7): at the end of "
+           "each of the next steps, and the last one from then on. A pose is x, y, z [m], qx, qy, qz, qw in the fixed frame; "
+           "quaternions are normalized, their norms must be from 0.5 to 2.\n\nRaises KeyError, ValueError.")
       .def(
           "step", step, py::arg("steps") = 1, py::arg("record_every") = 0,
           py::arg("fields") = std::vector<std::string>{"positions", "velocities", "tension", "wrench", "body_pose", "body_twist"},
-          "Advances all worlds by so many time steps. record_every: what `fields` names is recorded after every so many of them, "
-          "which must divide `steps`. Other threads run meanwhile; Ctrl-C ends it between two steps, without records.")
-      .def("settle", settle, "As of World, (count,) bool.")
-      .def("copy", copy, "A batch that goes on from here by itself, with the same bytes.")
+          "Advances all worlds by a number of time steps. record_every: a divisor of `steps`; the quantities in `fields` are "
+          "recorded each time that many steps are done. Other threads run meanwhile; Ctrl-C ends it between two steps, without "
+          "records.")
+      .def("settle", settle, "As World.settle; (count,) bool.")
+      .def("copy", copy, "An independent copy, which continues from here with the same bytes.")
       .def("__copy__", copy)
       .def(
           "__deepcopy__", [](const PythonBatch& batch, const py::dict&) { return copy(batch); }, py::arg("memo"))
-      .def("world", world_at, py::arg("index"), "A copy of one of the worlds, without events of the time before.")
+      .def("world", world_at, py::arg("index"), "A copy of one of the worlds, without its earlier events.")
       .def("positions", read<Quantity::positions>, py::arg("name"), "(count, n + 1, 3) or (count, records, n + 1, 3) [m].")
       .def("velocities", read<Quantity::velocities>, py::arg("name"), "(count, n + 1, 3) or (count, records, n + 1, 3) [m/s].")
       .def("tension", read<Quantity::tension>, py::arg("name"), "(count, n) or (count, records, n) [N].")
@@ -205,24 +204,24 @@ void add_batch_class(py::module_& module) {
       .def("body_pose", read<Quantity::body_pose>, py::arg("name"), "(count, 7) or (count, records, 7).")
       .def("body_twist", read<Quantity::body_twist>, py::arg("name"), "(count, 6) or (count, records, 6) [m/s, rad/s].")
       .def("observations", observe, py::arg("parts"),
-           "(count, k) float64: of each world the numbers of all `parts` as they are now, flattened, side by side. parts: "
-           "[(quantity, name), ...], quantities being the methods that read arrays: [('positions', 'rope'), ('wrench', 'left')]; "
-           "units and order as theirs. ('positions', 'rope', 20), or velocities likewise, reads 20 points instead of nodes, at "
-           "even distances along what is now the cable of that name, from end to end: also where cables differ in their nodes, "
-           "since they slide through guides, were cut or given another length, or broke. A new array, in C order.\n\nRaises "
-           "KeyError for names, ValueError for quantities and numbers of points, and where a world has not as many nodes as the "
-           "others.")
+           "(count, k) float64: for each world, the present values of all `parts`, flattened and concatenated. parts: "
+           "[(quantity, name), ...], where the quantities are the names of the methods that read arrays, with their units and "
+           "order: [('positions', 'rope'), ('wrench', 'left')]. ('positions', 'rope', 20), and velocities likewise, gives 20 "
+           "points instead of nodes, evenly spaced from end to end along the cable that has this name now. This also works if "
+           "the cables differ in their numbers of nodes because they slide through guides, were cut or changed in length, or "
+           "broke. The array is new and in C order.\n\nRaises KeyError for names, ValueError for quantities and numbers of "
+           "points, and if a world has not as many nodes as the others.")
       .def(
-          "energy", [](const PythonBatch& batch) { return energies(use(batch)); }, "Energies [J] as of World, (count,) each.")
+          "energy", [](const PythonBatch& batch) { return energies(use(batch)); }, "Energies [J] as World.energy, (count,) each.")
       .def_property_readonly(
           "status", [](const PythonBatch& batch) { return statuses(use(batch)); },
-          "(count,) int8, the worst of the last step(): 0 ok, 1 overstretched, 2 jumped, 3 degraded, 4 fault.")
+          "(count,) int8, the worst status in the last call of step(): 0 ok, 1 overstretched, 2 jumped, 3 degraded, 4 fault.")
       .def_property_readonly(
           "time", [](const PythonBatch& batch) { return times(use(batch)); },
-          "(count,) [s] simulated; worlds may differ in it after set_world.")
+          "(count,) [s] Simulated time; it may differ between worlds after set_world.")
       .def_property_readonly(
           "state_hash", [](const PythonBatch& batch) { return state_hashes(use(batch)); },
-          "List of the worlds' hashes, as of World.");
+          "List of the hashes of the worlds, as World.state_hash.");
 }
 
 }  // namespace verlet_cable

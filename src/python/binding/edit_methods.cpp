@@ -134,9 +134,9 @@ py::object add_tuple(py::module_& module, const char* name, const std::vector<st
 
 void add_cable_edits(py::module_& module, py::class_<PythonWorld>& world) {
   const py::object pinned =
-      add_tuple(module, "Pinned", {"name", "node"}, "What World.pin returns: the attachment's name, and the node.");
+      add_tuple(module, "Pinned", {"name", "node"}, "Result of World.pin: the name of the attachment, and the node.");
   const py::object pieces = add_tuple(module, "Pieces", {"first", "second"},
-                                      "What World.cut returns: the names of the pieces. The second is '' where a net was cut.");
+                                      "Result of World.cut: the names of the pieces. The second one is '' if a net was cut.");
   world.def(
       "pin",
       [pinned](PythonWorld& self, const py::str& cable, std::optional<std::int64_t> node, std::optional<double> arc_length,
@@ -155,20 +155,15 @@ void add_cable_edits(py::module_& module, py::class_<PythonWorld>& world) {
       py::arg("cable") = "", py::kw_only(), py::arg("node") = py::none(), py::arg("arc_length") = py::none(),
       py::arg("point") = py::none(), py::arg("point_frame") = "", py::arg("name") = "", py::arg("frame_id") = "",
       py::arg("offset") = py::none(), py::arg("clamp") = false, py::arg("keep_offset") = false,
-      "Holds a node of a cable or net, or a body's origin (node=0), to a frame, as the service `pin` does. The node goes there "
-      "smoothly.\n\n"
-      "cable: a cable, net or body; '' with `point`: what is nearest of all.\n"
-      "node, arc_length [m], point (3,) [m]: exactly one; the node itself, or the one nearest to it. point_frame: the frame that "
-      "the point is in, '' the fixed one.\n"
-      "name: of the new attachment; '': one is made.\n"
-      "frame_id: '' is the fixed frame. One that the world does not have begins at the origin, or is a robot's link where that "
-      "is; set_frame moves it.\n"
-      "offset: (7,) x, y, z [m], qx, qy, qz, qw in the frame, four zeros for no rotation; None: its origin.\n"
-      "clamp: holds direction and roll, too. keep_offset: holds it where it is relative to the frame now; then offset does not "
-      "count.\n\n"
-      "Returns Pinned(name, node). Raises ValueError, or KeyError for the name of a cable or frame that is not there; then "
-      "nothing "
-      "is changed.");
+      "Holds a node of a cable or net, or the origin of a body (node=0), in a frame, as the service `pin` does. The node moves "
+      "there smoothly.\n\ncable: a cable, net or body; '' together with `point`: the nearest one.\nnode, arc_length [m], point "
+      "(3,) [m]: exactly one of them; the node itself, or the position whose nearest node is held. point_frame: the frame in "
+      "which the point is given, '' for the fixed one.\nname: of the new attachment; '': one is generated.\nframe_id: '' is the "
+      "fixed frame. A frame that the world does not have is added, at the origin or where the robot has a link of that name; "
+      "set_frame moves it.\noffset: (7,) x, y, z [m], qx, qy, qz, qw in the frame, four zeros for no rotation; None: the origin "
+      "of the frame.\nclamp: holds direction and roll, too. keep_offset: keeps the present pose relative to the frame; offset is "
+      "then ignored.\n\nReturns Pinned(name, node). Raises ValueError, or KeyError for the name of a cable or frame that does "
+      "not exist; then nothing is changed.");
   world.def(
       "cut",
       [pieces](PythonWorld& self, const py::str& cable, std::optional<std::int64_t> node, std::optional<double> arc_length,
@@ -180,10 +175,9 @@ void add_cable_edits(py::module_& module, py::class_<PythonWorld>& world) {
       py::arg("cable") = "", py::kw_only(), py::arg("node") = py::none(), py::arg("arc_length") = py::none(),
       py::arg("point") = py::none(), py::arg("point_frame") = "",
       "Removes the segment that starts at the node, or contains the arc length or the nearest point, as the service `cut` does; "
-      "of "
-      "a net the links at the node, or the nearest one. Its mass stays on its nodes, and each piece keeps at least one segment. "
-      "Arguments as of `pin`.\n\n"
-      "Returns Pieces(first, second): the first keeps the name. Raises ValueError, KeyError; then nothing is changed.");
+      "from a net, the links at the node, or the link nearest to the point. The mass stays on the nodes, and each piece keeps at "
+      "least one segment. The arguments are those of `pin`.\n\nReturns Pieces(first, second): the first one keeps the name. "
+      "Raises ValueError, KeyError; then nothing is changed.");
 }
 
 }  // namespace
@@ -192,8 +186,7 @@ void add_edit_methods(py::module_& module, py::class_<PythonWorld>& world) {
   add_cable_edits(module, world);
   world.def(
       "unpin", [](PythonWorld& self, const py::str& name) { unpin(text_of(name, "name"), use(self), self.events); },
-      py::arg("name"),
-      "Releases what an attachment holds, one of the scene or a pin. Raises KeyError, ValueError; then nothing is changed.");
+      py::arg("name"), "Removes an attachment of the scene or a pin. Raises KeyError, ValueError; then nothing is changed.");
   world.def(
       "join",
       [](PythonWorld& self, const py::str& first, bool first_at_end, const py::str& second, bool second_at_end) {
@@ -201,16 +194,18 @@ void add_edit_methods(py::module_& module, py::class_<PythonWorld>& world) {
         return join(text_of(first, "first"), first_at_end, text_of(second, "second"), second_at_end, driven, self.events);
       },
       py::arg("first"), py::arg("first_at_end"), py::arg("second"), py::arg("second_at_end"),
-      "Welds two ends of cables of one material, as the service `join` does; ends that are apart are drawn together.\n\n"
-      "Returns the name of the cable that they are now, the first's. Raises ValueError, KeyError; then nothing is changed.");
+      "Welds two ends of cables of the same material, as the service `join` does; ends that are apart are pulled "
+      "together.\n\nReturns the name of the joined cable, which is that of the first. Raises ValueError, KeyError; then nothing "
+      "is changed.");
   world.def(
       "set_length",
       [](PythonWorld& self, const py::str& cable, bool at_end, double length, double speed) {
         set_length(text_of(cable, "cable"), at_end, length, speed, use(self));
       },
       py::arg("cable"), py::arg("at_end"), py::arg("length"), py::arg("speed"),
-      "A winch at the cable's end (at_end) or start pays out or takes in cable, to the length [m] at the speed [m/s], as the "
-      "service `set_length` does; the number of nodes changes. Raises ValueError, KeyError; then nothing is changed.");
+      "Lets a winch at the end (at_end) or the start of a cable pay out or take in cable, until it has the length [m], at up to "
+      "the speed [m/s], as the service `set_length` does; the number of nodes changes. Raises ValueError, KeyError; then nothing "
+      "is changed.");
   world.def(
       "move_attachment",
       [](PythonWorld& self, const py::str& name, const Numbers& offset) {
@@ -218,34 +213,30 @@ void add_edit_methods(py::module_& module, py::class_<PythonWorld>& world) {
         move_attachment(text_of(name, "name"), read_offset(offset), driven);
       },
       py::arg("name"), py::arg("offset"),
-      "Gives an attachment another pose in its frame: (7,) x, y, z [m], qx, qy, qz, qw, four zeros for no rotation. The next "
-      "step "
-      "takes what it holds there, as with set_frame: move it little by little. Raises ValueError, KeyError; then nothing is "
-      "changed.");
+      "Gives an attachment another pose in its frame: (7,) x, y, z [m], qx, qy, qz, qw, four zeros for no rotation. What it "
+      "holds is moved there in the next step, as with set_frame, so make small changes. Raises ValueError, KeyError; then "
+      "nothing is changed.");
   world.def("add_frame", add_frame, py::arg("name"), py::arg("position"), py::arg("quaternion_xyzw"),
-            "A frame for pins and obstacles, at (3,) [m] and (4,) in the fixed frame until set_frame moves it; a quaternion of "
-            "length 0.5 "
-            "to 2 is brought to 1. Raises ValueError, "
-            "also for a name that a frame has.");
+            "Adds a frame for pins and obstacles, at position (3,) [m] and quaternion (4,) in the fixed frame until set_frame "
+            "moves it; the quaternion is normalized, its norm must be from 0.5 to 2. Raises ValueError, also if a frame has that "
+            "name already.");
   world.def("tune", tune_world, py::kw_only(), py::arg("gravity") = py::none(), py::arg("wind") = py::none(),
             py::arg("contact_friction") = py::none(),
             py::arg("materials") = std::map<std::string, std::map<std::string, Numbers>>{},
-            "Changes what can be tuned while it runs, as the node's `~tuning` does: gravity (3,) [m/s^2] where it has no center, "
-            "wind (3,) [m/s], the "
-            "velocity of the fluid; the friction of cables with cables; and {material: {key: number}} of dampings, finite "
-            "stiffnesses (bending_stiffness also as (2,) of a material that bends unequally), drag and friction.\n\n"
-            "Raises SceneError with every error at once, by the names that `~tuning` has; ValueError, KeyError; then nothing is "
-            "changed.");
+            "Changes parameters of the running simulation, as the node's `~tuning` does: gravity (3,) [m/s^2] unless it is "
+            "central; wind (3,) [m/s], the velocity of the fluid; the coefficient of friction between cables; and {material: "
+            "{key: number}} for dampings, finite stiffnesses (bending_stiffness also as (2,), for a material with two different "
+            "ones), drag and friction.\n\nRaises SceneError with all errors at once, under the names of `~tuning`; ValueError, "
+            "KeyError; then nothing is changed.");
   const py::object event_type = add_tuple(module, "Event", {"time", "type", "cable", "attachment", "node", "other", "message"},
-                                          "What happened to a world: the fields of CableEvent.msg, `time` [s] simulated, and "
-                                          "`type` the constant's name. What does not "
-                                          "apply is '' or 0.");
+                                          "An event of a world: the fields of CableEvent.msg, with the simulated `time` [s] and "
+                                          "the name of the constant as `type`. Fields that do not apply are '' or 0.");
   world.def(
       "events", [event_type](PythonWorld& self) { return events(self, event_type); },
-      "List of Event(time, type, cable, attachment, node, other, message) since the last call: 'CUT', 'BROKE', 'PINNED', "
-      "'UNPINNED', 'FAULT', 'JOINED', 'LIMIT', 'CAUGHT', 'RELEASED' and 'JUMPED', of a frame once a second at most. The first "
-      "1000; then one of "
-      "type 'more' says how many were left out. A copy of a world has those that were not asked for yet.");
+      "List of Event(time, type, cable, attachment, node, other, message) since the last call, with the types 'CUT', 'BROKE', "
+      "'PINNED', 'UNPINNED', 'FAULT', 'JOINED', 'LIMIT', 'CAUGHT', 'RELEASED' and 'JUMPED' (at most once a second for each "
+      "frame). After the first 1000, one event of type 'more' states how many were left out. A copy of a world has the events "
+      "that were not retrieved yet.");
 }
 
 }  // namespace verlet_cable

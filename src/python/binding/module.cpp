@@ -61,11 +61,10 @@ void refuse_to_be_pickled(const py::object& object) {
 PYBIND11_MODULE(_simulation, module) {
   module.doc() = "The compiled part of verlet_cable.sim.";
   module.attr("__version__") = VERLET_CABLE_VERSION;
-  scene_error =
-      PyErr_NewExceptionWithDoc("verlet_cable.sim.SceneError",
-                                "Everything that is wrong with a scene or a motion: a line for each error, which are in the list "
-                                "`errors`.",
-                                PyExc_ValueError, nullptr);
+  scene_error = PyErr_NewExceptionWithDoc(
+      "verlet_cable.sim.SceneError",
+      "All errors of a scene or a motion. The message has a line for each; `errors` is the list of these lines.",
+      PyExc_ValueError, nullptr);
   if (!scene_error) throw py::error_already_set();
   module.attr("SceneError") = py::handle(scene_error);
   py::register_exception_translator(translate);

@@ -27,16 +27,15 @@ void remove_by_name(PythonWorld& world, const py::str& name) {
 }  // namespace
 
 void add_obstacle_methods(py::class_<PythonWorld>& world) {
-  world.def(
-      "set_obstacle", set_from_keys, py::arg("name"), py::kw_only(), py::arg("directory") = py::none(),
-      "Adds an obstacle, or replaces the one of that name, which is how one is moved: what lies on it goes on lying. The "
-      "other arguments are the keys of a scene's obstacles: type='sphere', pose=[x, y, z, roll, pitch, yaw] [m, rad], "
-      "radius=..., ...\n\nIt has no velocity from being set: one that carries or pushes what it touches moves with its frame. A "
-      "frame that the world does not have begins at initial_pose, else at the origin; of a robot's "
-      "link where that is. set_frame moves it. directory: where a mesh's path starts, by default the current one.\n\nRaises "
-      "SceneError with every error at once; then nothing is changed.");
+  world.def("set_obstacle", set_from_keys, py::arg("name"), py::kw_only(), py::arg("directory") = py::none(),
+            "Adds an obstacle, or replaces the one with that name. An obstacle can be moved in this way, and cables that lie on "
+            "it stay in contact. The other arguments are the keys of obstacles in a scene: type='sphere', pose=[x, y, z, roll, "
+            "pitch, yaw] [m, rad], radius=..., ...\n\nReplacing an obstacle gives it no velocity: to carry or push what it "
+            "touches, move its frame with set_frame. A frame that the world does not have is added at initial_pose, or where the "
+            "robot has a link of that name, or at the origin. directory: to which the path of a mesh refers, by default the "
+            "current one.\n\nRaises SceneError with all errors at once; then nothing is changed.");
   world.def("remove_obstacle", remove_by_name, py::arg("name"),
-            "Takes an obstacle away, of the scene or one that was set. Raises KeyError for a name that none has.");
+            "Removes an obstacle of the scene or of set_obstacle. Raises KeyError if there is none of that name.");
 }
 
 }  // namespace verlet_cable

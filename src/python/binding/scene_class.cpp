@@ -70,18 +70,18 @@ SceneSources sources_of(const py::object& directory) {
 }
 
 void add_scene_class(py::module_& module) {
-  py::class_<PythonScene>(module, "Scene", "A scene that was read and checked. It does not change; worlds are made from it.")
+  py::class_<PythonScene>(module, "Scene", "A scene that has been read and validated. It is immutable; worlds are made from it.")
       .def_static("load", load, py::arg("path"),
-                  "Reads a YAML file. Paths in it start at its directory. Raises SceneError with every error at once.")
+                  "Reads a YAML file. Relative paths in it refer to its directory. Raises SceneError with all errors at once.")
       .def_static("from_yaml", from_yaml, py::arg("text"), py::arg("directory") = py::none(),
-                  "Reads YAML text. Paths in it start at `directory`, by default the current one. Raises SceneError.")
+                  "Reads YAML text. Relative paths in it refer to `directory`, by default the current one. Raises SceneError.")
       .def_static("from_dict", from_dict, py::arg("keys"), py::arg("directory") = py::none(),
                   "Reads a scene from dicts and lists with the keys of a scene file. Raises SceneError.")
       .def_property_readonly(
           "frame_id", [](const PythonScene& scene) { return scene.desc->frame_id; }, "Name of the fixed frame.")
       .def_property_readonly(
           "frame_names", [](const PythonScene& scene) { return moving_frame_names(*scene.desc); },
-          "Names of the frames that hold something, but the fixed one, in order of appearance.")
+          "Names of the frames in the scene except the fixed one, in order of appearance.")
       .def_property_readonly(
           "cable_names", [](const PythonScene& scene) { return names_of(scene.desc->cables); }, "Names of the cables.")
       .def_property_readonly(
@@ -94,12 +94,12 @@ void add_scene_class(py::module_& module) {
           "guide_names", [](const PythonScene& scene) { return names_of(scene.desc->guides); }, "Names of the guides.")
       .def_property_readonly(
           "material_names", [](const PythonScene& scene) { return names_of(scene.desc->materials); },
-          "Names of the materials that the cables are of.")
+          "Names of the materials that the cables have.")
       .def_property_readonly(
           "attachment_names", [](const PythonScene& scene) { return attachment_names(*scene.desc); },
           "Names of the attachments of cables, nets and bodies.")
       .def_property_readonly(
-          "time_step", [](const PythonScene& scene) { return scene.desc->time_step; }, "[s] of a step.");
+          "time_step", [](const PythonScene& scene) { return scene.desc->time_step; }, "[s] Time step.");
 }
 
 }  // namespace verlet_cable

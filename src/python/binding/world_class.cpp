@@ -79,7 +79,7 @@ auto names_of(const Items& items, const Name& name) {
 void add_names(py::class_<PythonWorld>& world) {
   world
       .def_property_readonly("cable_names", names_of(&World::cables, [](const SimulatedCable& c) { return c.model->name; }),
-                             "Names of the cables that there are now: those of the scene, then pieces of cuts and breaks.")
+                             "Names of the present cables: those of the scene, then pieces from cuts and breaks.")
       .def_property_readonly("net_names", names_of(&World::nets, [](const SimulatedNet& net) { return net.model.name; }),
                              "Names of the nets.")
       .def_property_readonly("particle_names",
@@ -94,73 +94,73 @@ void add_names(py::class_<PythonWorld>& world) {
       .def_property_readonly(
           "attachment_names",
           names_of(&World::attachments, [](const Attachment& a) { return is_named(a) ? a.name : std::string(); }),
-          "Names of what holds cables, nets and bodies now, pins included.")
+          "Names of the present attachments of cables, nets and bodies, including pins.")
       .def_property_readonly("obstacle_names",
                              names_of(&World::obstacles, [](const Obstacle& obstacle) { return obstacle.name; }),
-                             "Names of the obstacles that there are now, links of a robot included.")
+                             "Names of the present obstacles, including the links of a robot.")
       .def_property_readonly(
           "frame_names",
           [](const PythonWorld& world) {
             use(world);
             return world.driven.frame_names();
           },
-          "Names of the frames that set_frame moves, those that pins and obstacles added included.");
+          "Names of the frames that set_frame can move, including those that pins and obstacles added.");
 }
 
 }  // namespace
 
 void add_world_class(py::module_& module) {
-  py::class_<PythonWorld> world(
-      module, "World",
-      "A simulated scene. Frames follow the motion, and those that it does not name rest as in cable_sim, until "
-      "set_frame. Every array is a new one. One thread at a time may use a world; others run while it steps.");
+  py::class_<PythonWorld> world(module, "World",
+                                "A simulated scene. Frames follow the motion until set_frame moves them; those that the motion "
+                                "does not name are at rest, as in cable_sim. Every returned array is a new copy. Only one thread "
+                                "at a time may use a world; other threads run while it steps.");
   world
       .def(py::init(&make), py::arg("scene"), py::arg("motion") = py::none(),
-           "motion: path of a CSV file as of cable_sim --motion, or {frame: (times (k,) [s], poses (k, 7))}; poses are x, y, z "
-           "[m], "
-           "qx, qy, qz, qw in the fixed frame, quaternions of length 0.5 to 2 being brought to 1; in a file any but 0 "
-           "is.\n\nRaises SceneError, ValueError, KeyError.")
+           "motion: the path of a CSV file as for cable_sim --motion, or {frame: (times (k,) [s], poses (k, 7))}; poses are x, "
+           "y, z [m], qx, qy, qz, qw in the fixed frame. Quaternions are normalized; their norm must be from 0.5 to 2, or in a "
+           "file just not 0.\n\nRaises SceneError, ValueError, KeyError.")
       .def("set_frame", set_frame, py::arg("name"), py::arg("position"), py::arg("quaternion_xyzw"),
-           "Where a frame is at the end of the next step, and from then on: (3,) [m] and (4,), in the fixed frame; a quaternion "
-           "of "
-           "length 0.5 to 2 is brought to 1. It no longer follows a motion. Links of a robot whose parents it is follow it, "
-           "where they are not given a pose themselves.\n\n"
-           "Raises KeyError for a name that is not in frame_names, ValueError.")
+           "Sets the pose of a frame at the end of the next step and after it: position (3,) [m] and quaternion (4,) in the "
+           "fixed frame; the quaternion is normalized, its norm must be from 0.5 to 2. The frame then no longer follows a "
+           "motion. Links of a robot below this frame follow it, unless their own pose is set.\n\nRaises KeyError for a name "
+           "that is not in frame_names, ValueError.")
       .def("step", step, py::arg("steps") = 1,
-           "Advances by so many time steps. Returns the worst that came up: 'ok', 'overstretched', 'jumped', 'degraded' or "
+           "Advances by a number of time steps. Returns their worst status: 'ok', 'overstretched', 'jumped', 'degraded' or "
            "'fault'. Other threads run meanwhile; Ctrl-C ends it between two steps.")
-      .def("settle", settle,
-           "Puts the cables that are held into static equilibrium, their frames where they are. False if one of them found none.")
-      .def("copy", copy, "A world that goes on from here by itself, with the same bytes.")
+      .def(
+          "settle", settle,
+          "Puts the held cables into static equilibrium, with the frames where they are. False if one of them does not reach it.")
+      .def("copy", copy, "An independent copy, which continues from here with the same bytes.")
       .def("__copy__", copy)
       .def(
           "__deepcopy__", [](const PythonWorld& world, const py::dict&) { return copy(world); }, py::arg("memo"))
       .def("positions", read<Quantity::positions>, py::arg("name"),
-           "(n + 1, 3) [m] of a cable's nodes; of a net, or of a particle.")
+           "(n + 1, 3) [m] of the nodes of a cable; likewise of a net or a particle.")
       .def("velocities", read<Quantity::velocities>, py::arg("name"),
-           "(n + 1, 3) [m/s] of a cable's nodes; of a net, or of a particle.")
+           "(n + 1, 3) [m/s] of the nodes of a cable; likewise of a net or a particle.")
       .def("tension", read<Quantity::tension>, py::arg("name"),
-           "(n,) [N] of a cable's segments or a net's links, mean over the last step; above 0 it pulls.")
-      .def("curvature", read<Quantity::curvature>, py::arg("name"), "(n - 1,) [1/m] at a cable's inner nodes.")
-      .def("twist", read<Quantity::twist>, py::arg("name"), "(n - 1,) [rad/m] at a cable's inner nodes.")
+           "(n,) [N] of the segments of a cable or the links of a net, mean over the last step; tension is positive.")
+      .def("curvature", read<Quantity::curvature>, py::arg("name"), "(n - 1,) [1/m] at the inner nodes of a cable.")
+      .def("twist", read<Quantity::twist>, py::arg("name"), "(n - 1,) [rad/m] at the inner nodes of a cable.")
       .def("orientations", read<Quantity::orientations>, py::arg("name"),
-           "(n, 4) x, y, z, w of a cable's segments: x along the segment, roll of the material.")
+           "(n, 4) quaternions x, y, z, w of the segments of a cable: the x axis along the segment, with the roll of the "
+           "material.")
       .def("wrench", read<Quantity::wrench>, py::arg("attachment"),
-           "(6,) force [N] and torque [N m] on the holder, fixed frame's axes, mean over the last step; about the attachment's "
-           "point.")
-      .def("body_pose", read<Quantity::body_pose>, py::arg("name"), "(7,) x, y, z [m], qx, qy, qz, qw of a body's frame.")
-      .def("body_twist", read<Quantity::body_twist>, py::arg("name"),
-           "(6,) velocity [m/s] of a body's center of mass and angular velocity [rad/s], fixed frame's axes.")
+           "(6,) force [N] and torque [N m] on the holder, in the axes of the fixed frame, mean over the last step; the torque "
+           "is about the point of the attachment.")
+      .def("body_pose", read<Quantity::body_pose>, py::arg("name"), "(7,) x, y, z [m], qx, qy, qz, qw of the frame of a body.")
+      .def(
+          "body_twist", read<Quantity::body_twist>, py::arg("name"),
+          "(6,) velocity [m/s] of the center of mass of a body and its angular velocity [rad/s], in the axes of the fixed frame.")
       .def(
           "energy", [](const PythonWorld& world) { return energy_dict(use(world).energy()); },
-          "kinetic, gravity, stretch, bend, twist and total [J], as in a summary of cable_sim.")
+          "Dict with kinetic, gravity, stretch, bend, twist and total [J], as in the summary of cable_sim.")
       .def_property_readonly(
-          "time", [](const PythonWorld& world) { return use(world).time(); }, "[s] simulated.")
+          "time", [](const PythonWorld& world) { return use(world).time(); }, "[s] Simulated time.")
       .def_property_readonly(
           "state_hash", [](const PythonWorld& world) { return hash_text(use(world).hash()); },
-          "Text of 16 digits, of all in the world that its future depends on, as in a summary of cable_sim. Its motion, and "
-          "poses "
-          "that set_frame gave for the next step, are not in it.");
+          "Hash (16 hexadecimal digits) of everything in the world on which its future depends, as in the summary of cable_sim. "
+          "It covers neither the motion nor poses that set_frame has set for the next step.");
   add_names(world);
   add_edit_methods(module, world);
   add_obstacle_methods(world);

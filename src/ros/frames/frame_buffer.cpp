@@ -139,7 +139,7 @@ void FrameBuffer::note_kind(const std::string& child, bool is_static) {
         quoted(child).c_str());
   } else {
     ROS_WARN(
-        "frame %s came on /tf_static and now comes on /tf, which ROS cannot change while a node runs: it is followed in jerks; "
+        "frame %s came on /tf_static and now comes on /tf, which ROS cannot change while a node runs: it is followed with jerks; "
         "start the node again",
         quoted(child).c_str());
   }

@@ -19,8 +19,8 @@ struct ReceivedTransform {
   std::string source{};  ///< the node that sent it
 };
 
-/// Subscribed topic `/tf` (tf2_msgs/TFMessage), and `/tf_static`: the frames that hold cables and carry obstacles. Collected in a
-/// thread of its own, so that nothing is missed while the node computes. Nothing is judged here.
+/// Subscribed topic `/tf` (tf2_msgs/TFMessage), and `/tf_static`: the frames that hold cables and carry obstacles. Received in a
+/// separate thread, so that no message is lost while the node computes.
 class TfListener {
  public:
   /// That wait to be judged, here and where they were taken to; more is a flood.

@@ -14,9 +14,9 @@
 namespace verlet_cable {
 
 /// Topic `hands/update` (visualization_msgs/InteractiveMarkerUpdate), with `hands/update_full` and the subscribed topic
-/// `hands/feedback`: interactive markers. Attachments are dragged and turned, nodes are taken and held as long as the mouse
-/// button is down, and menus pin, release, cut and reset. What is not finite, out of bounds or in an unknown frame is refused.
-/// Nothing is computed while nobody looks.
+/// `hands/feedback`: interactive markers. Attachments can be dragged and rotated, nodes are held as long as the mouse
+/// button is down, and menus pin, release, cut and reset. Poses that are not finite, out of bounds or in an unknown frame are
+/// refused. Nothing is computed without subscribers.
 class Hands {
  public:
   Hands(ros::NodeHandle& private_node, Simulation& simulation);

@@ -73,18 +73,18 @@ void Diagnostics::report_simulation(Status& status) {
   const Statistics& s = report.statistics;
   const double time_step = simulation_.world().time_step();
   const double step_time = s.steps > 0 ? s.wall_time / static_cast<double>(s.steps) : 0;
-  status.add("real_time_factor", step_time > 0 ? time_step / step_time : 0);  // time step over step_time_mean_s
+  status.add("real_time_factor", step_time > 0 ? time_step / step_time : 0);  // time_step over step_time_mean_s
   status.add("step_time_mean_s", step_time);                                  // computing time of a step since the last report
-  status.add("step_time_max_s", s.longest_step);                              // that of the longest one
-  status.add("steps", s.steps);                           // steps since the last report, as all that counts steps here
-  status.add("dropped_time_s", seconds(report.dropped));  // left out since the start, for lack of time
+  status.add("step_time_max_s", s.longest_step);                              // the same, of the longest step
+  status.add("steps", s.steps);                           // since the last report, like all numbers of steps here
+  status.add("dropped_time_s", seconds(report.dropped));  // simulated time skipped since the start when overloaded
   status.add("max_strain", s.max_strain);                 // largest |l / l0 - 1|
-  status.add("overstretched_steps", s.overstretched);     // what holds a cable or net was further apart than it is long
+  status.add("overstretched_steps", s.overstretched);     // held points were further apart than a cable or net is long
   status.add("jumped_steps", s.jumped);                   // a frame jumped, and what it holds was carried along
-  status.add("degraded_steps", s.degraded);               // no solution was found, and motion was taken away
-  status.add("exhausted_steps", s.exhausted);             // too much work for a step, which was ended from rest
-  status.add("faults", report.faults);                    // since the start
-  status.add("waiting_cables", NameList(simulation_.world().findings().waiting).text(""));  // cables, nets and bodies that wait
+  status.add("degraded_steps", s.degraded);               // no solution was found, and velocities were set to zero
+  status.add("exhausted_steps", s.exhausted);             // a step exceeded its budget of work and was ended from rest
+  status.add("faults", report.faults);                    // number since the start
+  status.add("waiting_cables", NameList(simulation_.world().findings().waiting).text(""));  // that wait for a frame
   report_waiting(status);
   status.add("unsettled_cables", NameList(simulation_.world().findings().unsettled).text(""));  // without a static equilibrium
   status.add("found_inside_obstacles", NameList(report.intrusions).text(""));                   // since the scene started
@@ -118,7 +118,7 @@ void Diagnostics::report_waiting(Status& status) const {
   const std::vector<WaitingAttachment> waiting =
       waiting_attachments(simulation_.scene(), simulation_.world(), simulation_.frames().inputs());
   for (std::size_t i = 0; i < std::min(waiting.size(), most_waiting); ++i)
-    status.add("waiting_attachment " + waiting[i].holds + "/" + waiting[i].name, waiting[i].frame);  // the frame that is missing
+    status.add("waiting_attachment " + waiting[i].holds + "/" + waiting[i].name, waiting[i].frame);  // the missing frame
 }
 
 void Diagnostics::report_frames(Status& status) const {
@@ -133,15 +133,15 @@ void Diagnostics::report_frames(Status& status) const {
       value += ", age " + rounded_text(seconds(simulation_.now() - frame.newest), 3) + " s";
     }
     if (frame.too_fast) value += ", faster than max_frame_speed";
-    status.add("frame " + frame.name, value);  // ok, late, lost, never seen or a body's; its age [s]
+    status.add("frame " + frame.name, value);  // ok, late, lost, never seen, or of a body; its age [s]
     if (frame.status == FrameStatus::never_seen)
       status.mergeSummary(DiagnosticStatus::WARN, "frame " + quoted(frame.name) + " never seen");
     if (frame.status == FrameStatus::lost) status.mergeSummary(DiagnosticStatus::WARN, "frame " + quoted(frame.name) + " lost");
     if (frame.too_fast) status.mergeSummary(DiagnosticStatus::WARN, "frame " + quoted(frame.name) + " too fast");
   }
-  status.add("refused_transforms", simulation_.frames().buffer().refused_count());  // since the start
+  status.add("refused_transforms", simulation_.frames().buffer().refused_count());  // number since the start
   for (const auto& [frame, sources] : simulation_.frames().buffer().disputed()) {
-    status.add("sources of " + frame, NameList(sources).text(""));  // nodes, where several send a frame
+    status.add("sources of " + frame, NameList(sources).text(""));  // the nodes that send a frame, if several do
     status.mergeSummary(DiagnosticStatus::WARN,
                         "frame " + quoted(frame) + " comes from " + std::to_string(sources.size()) + " nodes");
   }
@@ -149,7 +149,7 @@ void Diagnostics::report_frames(Status& status) const {
     status.mergeSummary(DiagnosticStatus::WARN,
                         "frame " + quoted(frame) + " came on /tf and on /tf_static: start the node again");
   for (const auto& [frame, problem] : simulation_.frames().buffer().refused()) {
-    status.add("refused " + frame, problem);  // why the last one was refused
+    status.add("refused " + frame, problem);  // why the last transform was refused
     status.mergeSummary(DiagnosticStatus::WARN, "tf of frame " + quoted(frame) + " refused");
   }
 }
@@ -162,15 +162,15 @@ void Diagnostics::report_obstacles(Status& status) const {
     const bool lost = frames[obstacle.frame].status == FrameStatus::lost;
     if (obstacle.present && !lost) continue;
     const std::string& frame = world.frames()[obstacle.frame];
-    status.add("obstacle " + obstacle.name,  // where it is not as it should be
+    status.add("obstacle " + obstacle.name,  // what is wrong with it
                (lost ? "stays where it was, as its frame is lost: " : "is not there yet, as its frame is not on tf: ") + frame);
     status.mergeSummary(DiagnosticStatus::WARN,
                         "obstacle " + quoted(obstacle.name) + (lost ? " has lost its frame" : " waits for its frame"));
   }
-  status.add("added", simulation_.added_obstacles().size());  // obstacles that markers added
-  status.add("refused_markers", obstacles_.refused_count());  // since the start
+  status.add("added", simulation_.added_obstacles().size());  // number of obstacles that markers added
+  status.add("refused_markers", obstacles_.refused_count());  // number since the start
   if (obstacles_.refused_count() == 0) return;
-  status.add("last_refused", obstacles_.last_problem());  // why
+  status.add("last_refused", obstacles_.last_problem());  // why the last marker was refused
   status.mergeSummary(DiagnosticStatus::WARN, "markers were refused");
 }
 

@@ -8,8 +8,8 @@
 
 namespace verlet_cable {
 
-/// Topic `/diagnostics` (diagnostic_msgs/DiagnosticArray), each second of wall time: how the simulation goes, how its frames and
-/// its obstacles are.
+/// Topic `/diagnostics` (diagnostic_msgs/DiagnosticArray), once per second of wall time: the status of the simulation, its frames
+/// and its obstacles.
 class Diagnostics {
  public:
   Diagnostics(ros::NodeHandle& private_node, Simulation& simulation, const ObstacleListener& obstacles);

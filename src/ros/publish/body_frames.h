@@ -8,7 +8,7 @@
 
 namespace verlet_cable {
 
-/// Topic `/tf` (tf2_msgs/TFMessage): the bodies' poses, as children of the fixed frame, if the scene has `broadcast_tf`.
+/// Topic `/tf` (tf2_msgs/TFMessage): the poses of the bodies, as children of the fixed frame, if `broadcast_tf` is true.
 class BodyFrames {
  public:
   BodyFrames(const ros::NodeHandle& node, const SceneDesc& scene) : node_(node) { show(scene); }

@@ -11,7 +11,7 @@
 
 namespace verlet_cable {
 
-/// Topic `events` (verlet_cable/CableEvent): what happened, once each. Events are logged, too.
+/// Topic `events` (verlet_cable/CableEvent): events, each published once. They are logged, too.
 class EventPublisher {
  public:
   EventPublisher(ros::NodeHandle& private_node, std::string frame_id);

@@ -6,8 +6,8 @@
 
 namespace verlet_cable {
 
-/// Topic `legend` (verlet_cable/Legend), latched: what the colors of `markers`, `points` and `surface` mean. Once for each scene
-/// that is shown.
+/// Topic `legend` (verlet_cable/Legend), latched: what the colors of `markers`, `points` and `surface` mean. Published once for
+/// each scene.
 class LegendPublisher {
  public:
   LegendPublisher(ros::NodeHandle& private_node, const SceneDesc& scene);

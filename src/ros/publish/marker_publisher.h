@@ -13,18 +13,18 @@
 
 namespace verlet_cable {
 
-/// Topic `markers` (visualization_msgs/MarkerArray): what rviz shows. Complete at every tick, so that a viewer that starts late
-/// lacks nothing; what is gone is deleted once.
+/// Topic `markers` (visualization_msgs/MarkerArray): the display in rviz. Every message is complete, so that late subscribers see
+/// everything; markers that are no longer needed are deleted once.
 ///  * namespace = name of a cable, id 0: the cable, a tube or a line (cable_markers.h);
-///  * namespace = name of a net, id 0: its links, as lines; id 1, of a grid with marker_style tube: its triangles, lit from both
+///  * namespace = name of a net, id 0: its links, as lines; id 1, for a grid with marker_style tube: its triangles, lit from both
 ///  sides;
 ///  * namespace = name of a particle, id 0: a sphere;
-///  * namespace "pins", ids from 1: what holds cables, nets and bodies: hinges are spheres, clamps are boxes, long along the
-///  cable's +x, axles are cylinders;
-///  * namespace "guides", ids from 1: what cables slide through (guide_markers.h);
-///  * namespace "obstacles", ids from 1: those that are there; a capsule is three markers;
-///  * namespace "bodies", ids from 1: the shapes of bodies, likewise;
-///  * namespace "payloads", ids from 1: point masses, as balls of aluminium would be.
+///  * namespace "pins", ids from 1: the attachments of cables, nets and bodies: hinges are spheres, clamps are boxes that are
+///  longest along the cable's +x axis, axles are cylinders;
+///  * namespace "guides", ids from 1: the guides that cables slide through (guide_markers.h);
+///  * namespace "obstacles", ids from 1: the present obstacles; a capsule is three markers;
+///  * namespace "bodies", ids from 1: the shapes of bodies, in the same way;
+///  * namespace "payloads", ids from 1: point masses, as balls with the density of aluminium.
 class MarkerPublisher {
  public:
   MarkerPublisher(ros::NodeHandle& private_node, const SceneDesc& scene);

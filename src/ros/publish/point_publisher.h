@@ -11,7 +11,7 @@ namespace verlet_cable {
 
 /// Topic `points` (sensor_msgs/PointCloud2): the nodes of every cable, in order, as a cloud of height 1 with the fields x, y, z
 /// [m], rgb, tension [N] (of the segment that starts at the node; the last node repeats its neighbour's), cable_id, node_id and s
-/// (arc length [m]). Nets follow, cable_id counting on, with the largest tension of the links at the node and s = 0; then
+/// (arc length [m]). Nets follow, with continued cable_id, the largest tension of the links at the node, and s = 0; then
 /// particles, without tension.
 class PointPublisher {
  public:

@@ -9,8 +9,8 @@
 
 namespace verlet_cable {
 
-/// Topic `surface` (sensor_msgs/PointCloud2): points on the cables' surface, about evenly spread, as a cloud of height 1 with the
-/// fields x, y, z [m], rgb and cable_id. At most 100000 points: many or long cables get fewer each, but a ring of 12 at least.
+/// Topic `surface` (sensor_msgs/PointCloud2): points on the cables' surface, about evenly spaced, as a cloud of height 1 with the
+/// fields x, y, z [m], rgb and cable_id. At most 100000 points: many or long cables have fewer each, in rings of at least 12.
 class SurfacePublisher {
  public:
   SurfacePublisher(ros::NodeHandle& private_node, const SceneDesc& scene);

@@ -11,9 +11,9 @@
 
 namespace verlet_cable {
 
-/// Topic `wrench/ATTACHMENT` (geometry_msgs/WrenchStamped), one an attachment: what the cable exerts on what holds it, in the
-/// axes of the attachment's frame and with the torque about that frame's origin, the mean since the last tick. A topic is there
-/// as long as its attachment, but for the moment that the master takes, which is not waited for.
+/// Topic `wrench/ATTACHMENT` (geometry_msgs/WrenchStamped), one per attachment: force and torque that the cable exerts on
+/// its holder, in the axes of the attachment's frame, with the torque about the origin of that frame; mean since the last tick. A
+/// topic exists as long as its attachment, except for the time that the master takes, for which the node does not wait.
 class WrenchPublisher {
  public:
   explicit WrenchPublisher(ros::NodeHandle& private_node);

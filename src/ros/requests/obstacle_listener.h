@@ -13,11 +13,11 @@
 
 namespace verlet_cable {
 
-/// Subscribed topic `obstacles` (visualization_msgs/MarkerArray): a perception node adds, moves and removes obstacles by markers:
-/// CUBE, SPHERE, CYLINDER and MESH_RESOURCE, by ADD, DELETE and DELETEALL; namespace and id name an obstacle, its frame_id moves
-/// it. What it asks for is done between steps, as all callbacks come from one thread. A marker that is refused is logged,
-/// counted, and changes nothing. An obstacle whose mesh has to be read is there when that has been done, unless a later marker
-/// has replaced or deleted it.
+/// Subscribed topic `obstacles` (visualization_msgs/MarkerArray): a perception node adds, moves and removes obstacles by markers
+/// of the types CUBE, SPHERE, CYLINDER and MESH_RESOURCE, with the actions ADD, DELETE and DELETEALL. Namespace and id identify
+/// an obstacle, and its frame_id moves it. Markers are applied between steps, as all callbacks run in one thread. A refused
+/// marker is logged, counted, and changes nothing. An obstacle with a mesh appears when the mesh has been read, unless a later
+/// marker has replaced or deleted it.
 class ObstacleListener {
  public:
   ObstacleListener(ros::NodeHandle& private_node, Simulation& simulation);

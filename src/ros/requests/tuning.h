@@ -13,8 +13,8 @@ namespace verlet_cable {
 
 /// Topic `tuning/parameter_descriptions` (dynamic_reconfigure/ConfigDescription), latched, with `tuning/parameter_updates` and
 /// the service `tuning/set_parameters`: dynamic_reconfigure for gravity, wind, dampings, stiffnesses and friction. The parameters
-/// follow the scene, with the ranges that it allows: that is why this speaks the protocol of dynamic_reconfigure (of its
-/// messages) itself, whose own server knows parameters of compile time only.
+/// and their ranges depend on the scene. The node therefore implements the protocol of dynamic_reconfigure (its messages) itself,
+/// as the server of that package only supports parameters that are known at compile time.
 class Tuning {
  public:
   Tuning(ros::NodeHandle& private_node, Simulation& simulation);

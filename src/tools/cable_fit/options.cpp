@@ -14,8 +14,8 @@ constexpr const char* file = "the name of a file";
 
 constexpr const char* usage =
     "usage: cable_fit RECORDING.csv... --name NAME --output SCENE.yaml [options]\n"
-    "Finds the cable that predicts recordings best: t,x0,y0,z0,x1,... [s, m], markers along the cable, the first two and the\n"
-    "last two on what holds it.";
+    "Fits a cable to recordings of it: CSV files t,x0,y0,z0,x1,... [s, m] of markers along the cable, of which the first two\n"
+    "and the last two are on the grippers that hold it.";
 constexpr const char* footer = "exit status: 0 done, 2 a bad recording or option, 3 the fit had to stop";
 
 void check_required(const Options& options, std::vector<std::string>& errors) {
@@ -41,16 +41,16 @@ Options parse_options(const std::vector<std::string>& arguments, std::vector<std
   line.add_text("--name", "NAME", "of the cable and its material", options.name, name_words);
   line.add_text("--output", "YAML", "the scene: materials and cables, without initial and attachments", options.output, file);
   line.add_integer("--segments", "N", "of the cable, default 40", options.segments, segments_range);
-  line.add_number("--linear-density", "KG_M", "default 0.1; recordings tell stiffnesses and dampings over weight only",
+  line.add_number("--linear-density", "KG_M", "default 0.1; stiffness and damping are found in proportion to it",
                   options.linear_density, positive, "kg/m");
-  line.add_number("--radius", "M", "default 0.005; recordings do not tell it", options.radius, positive, "m");
-  line.add_text("--report", "JSON", "intervals, errors, and errors on recordings that were left out", options.report, file);
+  line.add_number("--radius", "M", "default 0.005; it is not fitted", options.radius, positive, "m");
+  line.add_text("--report", "JSON", "confidence intervals, and errors for fitted and for left-out recordings", options.report,
+                file);
   line.add_text("--centre-line", "YAML",
-                "the scene, with attachments, of the cable's centre line, looked for together with how far off it\n"
-                "the markers sit; its errors are in the report, too",
+                "fit the centre line, too, and the offsets of the markers from it: its scene, with attachments;\n"
+                "its errors are in the report",
                 options.centre_line, file);
-  line.add_text("--predictions", "DIR",
-                "recordings as predicted by fits that did not know them, of the centre line if it is looked for",
+  line.add_text("--predictions", "DIR", "predictions of the recordings by fits without them, for the centre line if it is fitted",
                 options.predictions, "the name of a directory");
   options.recordings = line.parse(arguments, errors);
   options.help = line.help();

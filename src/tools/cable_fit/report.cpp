@@ -116,7 +116,7 @@ std::string parameter_lines(const Fit& fit) {
   if (untold > 0)
     text += line(
         "cables[0].rest_curvature: of %d numbers, two axes at %d places along the cable, %d are not determined by these\n"
-        "  recordings: there the cable may as well be straight while nothing bends it; --report FILE lists them\n",
+        "  recordings: there the unloaded cable may as well be straight; --report FILE lists them\n",
         curvatures, curvatures / 2, untold);
   return text;
 }
@@ -153,7 +153,7 @@ std::string summary_text(const std::vector<SwappedEnds>& swapped, const Fit& fit
   double noise = 0;
   for (std::size_t i = 0; i < swapped.size(); ++i) {
     if (swapped[i].any())
-      text += fit.problem.recordings[i].path + ": " + swapped_text(swapped[i]) + " markers are numbered the wrong way round\n";
+      text += fit.problem.recordings[i].path + ": " + swapped_text(swapped[i]) + " markers are numbered in the wrong order\n";
     noise = std::max(noise, fit.problem.inputs[i].noise);
   }
   text += line("noise of a coordinate: at most %.2f mm\n", 1000 * noise) + error_lines(swapped, fit.result);

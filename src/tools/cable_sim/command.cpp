@@ -75,8 +75,8 @@ void note_unused(const Options& options, const std::vector<std::string>& frames)
 void warn_of_unplaced(const std::vector<std::string>& frames) {
   if (frames.empty()) return;
   const bool one = frames.size() == 1;
-  std::cerr << program << ": warning: nothing says where " << frames_text(frames) << (one ? " is: it stands" : " are: they stand")
-            << " at the origin; --motion MOTION.csv or an initial_pose in the scene tells\n";
+  std::cerr << program << ": warning: there is no pose of " << frames_text(frames) << (one ? ": it stays" : ": they stay")
+            << " at the origin; give one by --motion MOTION.csv or as initial_pose in the scene\n";
 }
 
 int simulate_job(const Options& options, const Job& job) {

@@ -14,8 +14,8 @@ constexpr const char* usage =
     "usage: cable_sim SCENE.yaml [options]\n"
     "Runs a scene offline.";
 constexpr const char* footer =
-    "Files are written aside and renamed when they are whole; devices are written directly. A signal ends the\n"
-    "run between two steps, with what was simulated by then; a second one ends it at once.\n"
+    "Files appear under their names when they are complete; devices are written directly. A signal ends the run\n"
+    "between two steps and keeps what was simulated until then; a second signal ends it at once.\n"
     "exit status: 0 done, 2 a bad scene, motion or option, 3 it had to stop: a fault, a full disk, a signal";
 
 }  // namespace
@@ -27,7 +27,7 @@ Options parse_options(const std::vector<std::string>& arguments, std::vector<std
   line.add_text("--motion", "CSV", "poses of frames over time: t,frame,x,y,z,qx,qy,qz,qw", options.motion, file);
   line.add_text("--output", "CSV", "the nodes over time: t,cable,node,x,y,z,vx,vy,vz,tension", options.output, file);
   line.add_text("--bodies", "CSV", "the bodies over time: t,body,x,y,z,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz", options.bodies, file);
-  line.add_number("--rate", "HZ", "rows of --output and --bodies a second, default 100, at most 1 / time_step", options.rate,
+  line.add_number("--rate", "HZ", "rows per second of --output and --bodies, default 100, at most 1 / time_step", options.rate,
                   rate_range, "Hz");
   line.add_text("--summary", "JSON", "times, energies, forces and events", options.summary, file);
   line.add_flag("--settle", "put the cables into static equilibrium before t = 0", options.settle);

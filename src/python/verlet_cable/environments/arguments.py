@@ -1,4 +1,4 @@
-"""Reads arguments; what is wrong is a ValueError that names the argument, the value given and what is allowed."""
+"""Reads arguments. Raises ValueError with the name of the argument, the value given and what is allowed."""
 import math
 import numbers
 
@@ -41,7 +41,7 @@ def read_seed(name, value):
 
 
 def read_seeds(value, count):
-    """One a world: given so, or all None, or counted up from a number."""
+    """One seed per world: as given, or all None, or counted up from a number."""
     if value is None or isinstance(value, numbers.Integral):
         first = read_seed('seed', value)
         return [first if first is None else first + i for i in range(count)]
@@ -61,7 +61,7 @@ def read_render_mode(value, modes):
 
 
 def read_action(name, value, space):
-    """An array of a space, as float64."""
+    """An array in a space, as float64."""
     allowed = f'real numbers, of shape {space.shape}'
     try:
         array = numpy.asarray(value)
@@ -81,7 +81,7 @@ def read_action(name, value, space):
 
 
 def read_options(value, allowed):
-    """A dict with none but the keys that are allowed."""
+    """A dict that has only allowed keys."""
     if value is None:
         return {}
     if not isinstance(value, dict):
@@ -100,7 +100,7 @@ def read_index(name, value, count):
 
 
 def read_indices(name, value, worlds, count):
-    """One for all worlds, or one a world, (worlds,)."""
+    """One index for all worlds, or one per world, (worlds,)."""
     if isinstance(value, numbers.Integral):
         return numpy.full(worlds, read_index(name, value, count))
     values = list(value) if numpy.iterable(value) else [value]
@@ -110,7 +110,7 @@ def read_indices(name, value, worlds, count):
 
 
 def read_mask(name, value, worlds):
-    """Some of the worlds, (worlds,) bool."""
+    """Selects some of the worlds, (worlds,) bool."""
     mask = numpy.asarray(value)
     if mask.dtype != bool or mask.shape != (worlds,) or not mask.any():
         raise ValueError(f'{name}: {value!r}; allowed: bool of shape ({worlds},), at least one of them True')

@@ -1,9 +1,9 @@
-"""The space of arrays between two bounds, as plain data: what `gymnasium.spaces.Box` is where Gymnasium is not installed."""
+"""The space of arrays between two bounds: replaces `gymnasium.spaces.Box` if Gymnasium is not installed."""
 import numpy
 
 
 class Box:
-    """Arrays of one shape and dtype with `low` <= number <= `high`, which are arrays of that shape and may be infinite."""
+    """The arrays of one shape and dtype with `low` <= array <= `high`. The bounds are arrays of that shape and may be infinite."""
 
     def __init__(self, low, high, shape=None, dtype=numpy.float64, seed=None):
         self.dtype = numpy.dtype(dtype)
@@ -13,12 +13,12 @@ class Box:
         self.seed(seed)
 
     def seed(self, seed=None):
-        """Begins the numbers that sample() draws anew; None: from what the system has at random."""
+        """Seeds the random numbers of sample(); None: with random data of the operating system."""
         self._np_random = numpy.random.default_rng(seed)
         return seed
 
     def sample(self):
-        """An array: evenly between the bounds, exponentially from the only finite one, or normally distributed."""
+        """A random array: uniform between two finite bounds, exponential from a single finite one, else normally distributed."""
         below, above = numpy.isfinite(self.low), numpy.isfinite(self.high)
         both = below & above
         drawn = self._np_random.normal(size=self.shape)
@@ -29,7 +29,7 @@ class Box:
         return numpy.where(above & ~below, self.high - exponential, drawn).astype(self.dtype)
 
     def contains(self, x):
-        """Whether it is an array of the space; NaN is not in any."""
+        """Whether a value is an array in the space; NaN never is."""
         return (isinstance(x, numpy.ndarray) and numpy.can_cast(x.dtype, self.dtype) and x.shape == self.shape
                 and bool(numpy.all(x >= self.low) and numpy.all(x <= self.high)))
 

@@ -5,7 +5,7 @@ BACKGROUND = (244, 242, 236)
 
 
 class View:
-    """A picture of a rectangle of the x-y plane, x to the right and y upwards: `low` and `high` are its corners [m]."""
+    """A picture of a rectangle of the x-y plane, x to the right and y upwards: `low` and `high` (2,) are its corners [m]."""
 
     def __init__(self, low, high, width=480):
         self.low = numpy.asarray(low, dtype=float)
@@ -17,7 +17,7 @@ class View:
         self._places = numpy.stack([columns + 0.5, height - rows - 0.5], axis=-1) / self.scale + self.low
 
     def rectangle(self, middle, direction, size, color):
-        """Filled; `direction` (2,) is the unit vector along which it has size[0]."""
+        """Draws a filled rectangle; size[0] is its extent along the unit vector `direction` (2,)."""
         away = self._places - middle
         along = away @ direction
         across = away @ numpy.array([-direction[1], direction[0]])
@@ -28,7 +28,7 @@ class View:
         self.pixels[(away ** 2).sum(axis=-1) <= radius ** 2] = color
 
     def polyline(self, points, width, color):
-        """Through points (n, 2) [m], `width` [m] wide, but never less than two pixels."""
+        """Draws a line through points (n, 2) [m] that is `width` [m] wide, but at least two pixels."""
         points = numpy.asarray(points, dtype=float)
         spacing = 0.5 / self.scale
         radius = max(width * self.scale / 2, 1.0)

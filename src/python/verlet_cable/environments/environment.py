@@ -1,4 +1,4 @@
-"""One world, or many that step together, behind Gymnasium's interface."""
+"""One world, or many that step together, with the interface of Gymnasium."""
 import numpy
 
 from verlet_cable.environments import arguments
@@ -14,7 +14,7 @@ def refuse(call, reason):
 
 
 class Environment(Env):
-    """A task in one world, as gymnasium.Env has it."""
+    """A task in one world, with the interface of gymnasium.Env."""
 
     metadata = {'render_modes': RENDER_MODES, 'render_fps': FRAMES_PER_SECOND}
 
@@ -26,7 +26,7 @@ class Environment(Env):
         self._episodes = Episodes(task, 1, 1, max_episode_steps)
 
     def reset(self, *, seed=None, options=None):
-        """Begins an episode; returns (observation, info)."""
+        """Starts an episode; returns (observation, info)."""
         episodes = self._open('reset')
         options = arguments.read_options(options, [self.task.option])
         chosen = options.get(self.task.option)
@@ -37,7 +37,7 @@ class Environment(Env):
         return seen.observation[0], self._info(seen)
 
     def step(self, action):
-        """A step; returns (observation, reward, terminated, truncated, info)."""
+        """Performs a step; returns (observation, reward, terminated, truncated, info)."""
         episodes = self._open('step')
         if episodes.over[0]:
             refuse('step', 'the episode is over; call reset()' if episodes.begun else 'no episode has begun; call reset()')
@@ -46,7 +46,7 @@ class Environment(Env):
         return seen.observation[0], float(reward[0]), bool(terminated[0]), bool(truncated[0]), self._info(seen)
 
     def render(self):
-        """(rows, columns, 3) uint8, seen from above; None where render_mode is None."""
+        """A picture (rows, columns, 3) uint8, seen from above; None if render_mode is None."""
         episodes = self._open('render')
         if self.render_mode is None:
             return None
@@ -73,8 +73,8 @@ class Environment(Env):
 
 
 class VectorEnvironment(VectorEnv):
-    """A task in many worlds, as gymnasium.vector.VectorEnv has it. A world whose episode is over begins anew in the next step: it
-    does not heed the action, and has reward 0."""
+    """A task in many worlds, with the interface of gymnasium.vector.VectorEnv. A world whose episode has ended is reset in the next
+    step: that step ignores its action, and its reward is 0."""
 
     metadata = {'render_modes': RENDER_MODES, 'render_fps': FRAMES_PER_SECOND, 'autoreset_mode': AutoresetMode.NEXT_STEP}
 
@@ -92,8 +92,8 @@ class VectorEnvironment(VectorEnv):
         self.action_space = batch_box(self.single_action_space, self.num_envs)
 
     def reset(self, *, seed=None, options=None):
-        """Begins episodes in all worlds, or in those that options['reset_mask'], (num_envs,) bool, names. seed: None; a number,
-        which is that of the first world, the second has the next one, and so on; or a sequence of such, one a world."""
+        """Starts episodes in all worlds, or in those selected by options['reset_mask'], (num_envs,) bool. seed: None; or a number
+        for the first world, from which the others count up; or a sequence of numbers or None, one per world."""
         episodes = self._open('reset')
         options = arguments.read_options(options, ['reset_mask', self.task.option])
         mask = numpy.ones(self.num_envs, dtype=bool)
@@ -107,7 +107,7 @@ class VectorEnvironment(VectorEnv):
         return seen.observation, self._infos(seen, mask)
 
     def step(self, actions):
-        """A step of all worlds; returns (observations, rewards, terminations, truncations, infos)."""
+        """Performs a step in all worlds; returns (observations, rewards, terminations, truncations, infos)."""
         episodes = self._open('step')
         if not episodes.begun.all():
             refuse('step', 'no episode has begun in some worlds; call reset()')
@@ -116,7 +116,7 @@ class VectorEnvironment(VectorEnv):
         return seen.observation, rewards, terminated, truncated, self._infos(seen, numpy.ones(self.num_envs, dtype=bool))
 
     def render(self):
-        """A picture of each world, see Environment.render; None where render_mode is None."""
+        """A picture of each world, see Environment.render; None if render_mode is None."""
         episodes = self._open('render')
         if self.render_mode is None:
             return None
@@ -125,7 +125,7 @@ class VectorEnvironment(VectorEnv):
         return tuple(episodes.draw(world) for world in range(self.num_envs))
 
     def close_extras(self, **options):
-        """Frees the worlds: what close() does. After it only close() may be called."""
+        """Frees the worlds, for close(). After it only close() may be called."""
         self._episodes = None
 
     def positions(self):
@@ -134,12 +134,12 @@ class VectorEnvironment(VectorEnv):
 
     @property
     def np_random(self):
-        """The worlds' random number generators, a tuple."""
+        """The random number generators of the worlds, a tuple."""
         return tuple(self._generators)
 
     @property
     def np_random_seed(self):
-        """The seeds of the worlds' random number generators, a tuple; those that nobody gave are drawn at random."""
+        """The seeds of the random number generators of the worlds, a tuple; seeds that were not given are random."""
         return tuple(self._seeds)
 
     def _open(self, call):

@@ -1,5 +1,5 @@
-"""What Gymnasium's interface is made of: its own classes where it is installed, from version 1.1 on; else what they do for these
-environments, so that the same code runs with and without it."""
+"""The classes of Gymnasium's interface: its own if version 1.1 or newer is installed, else replacements with what these environments
+need, so that the same code runs with and without it."""
 import enum
 
 import numpy
@@ -16,7 +16,7 @@ except ImportError:
     Box = PlainBox
 
     class AutoresetMode(enum.Enum):
-        """When worlds of a vector environment whose episodes ended begin anew."""
+        """When a vector environment resets the worlds whose episodes have ended."""
         NEXT_STEP = 'NextStep'
         SAME_STEP = 'SameStep'
         DISABLED = 'Disabled'
@@ -57,7 +57,7 @@ except ImportError:
             return self._np_random_seed
 
     class Env(_Interface):
-        """What gymnasium.Env does for an environment."""
+        """Replaces gymnasium.Env."""
 
         def __enter__(self):
             return self
@@ -82,7 +82,7 @@ except ImportError:
             return f'<{type(self).__name__} instance>'
 
     class VectorEnv(_Interface):
-        """What gymnasium.vector.VectorEnv does for many environments that step together."""
+        """Replaces gymnasium.vector.VectorEnv."""
         closed = False
 
         def close(self, **options):
@@ -95,5 +95,5 @@ except ImportError:
 
 
 def batch_box(box, count):
-    """The space of `count` arrays of a space, one below the other."""
+    """The space of `count` arrays of a space, stacked along the first axis."""
     return Box(numpy.broadcast_to(box.low, (count, *box.shape)), numpy.broadcast_to(box.high, (count, *box.shape)), dtype=box.dtype)

@@ -208,17 +208,18 @@ def make_task():
 
 
 class LayCable(Environment):
-    """Lay a cable, tied down at one end, into three clips on a table with a hand that leads the other one.
+    """Lay a cable into three clips on a table. One end of the cable is tied down, and a hand holds the other end.
 
-    Action (3,), each from -1 to 1: velocity of the hand along x, y and z, in 0.25 m/s. The hand stays between -0.35 m and 0.57 m
-    in x, within 0.25 m in y, between 10.4 mm and 0.1 m in z, and where the cable reaches. It stops at posts, slides along them, or
-    goes over them. When a step ends with more than 5 N on it, it gives way in the next one; within a step nothing limits the force.
+    Action (3,), each from -1 to 1: velocity of the hand along x, y and z, in units of 0.25 m/s. The hand stays between -0.35 m and
+    0.57 m in x, within 0.25 m in y, between 10.4 mm and 0.1 m in z, and within reach of the cable. It stops at posts, slides along
+    them, or goes over them. If the force on it at the end of a step is above 5 N, it yields in the next step; within a step, the
+    force is not limited.
     Observation (327,) float64: nodes (51, 3) [m] from the tied end on, their velocities (51, 3) [m/s], the hand (3,) [m], the force
-    on it (3,) [N], the clips (3, 4): x, y [m] and the direction in which they lead the cable; and whether they hold it (3,), 0 or
-    1.
-    Reward: how many clips hold the cable, 0 to 3: its center line passes between their posts, below their tops.
-    Info: `held` (3,) bool, `layout`, the index of the clips' places. Options of reset: `layout`, below 32; else one is drawn.
-    Episodes are truncated after `max_episode_steps` steps of 0.02 s, never where it is None, and terminated where the simulation
+    on it (3,) [N], the clips (3, 4): x, y [m] and the unit vector of the cable's direction in them; and whether they hold it (3,),
+    0 or 1.
+    Reward: the number of clips that hold the cable, 0 to 3: its center line passes between their posts, below their tops.
+    Info: `held` (3,) bool; `layout`, the index of the arrangement of clips. Options of reset: `layout`, below 32; default: random.
+    Episodes are truncated after `max_episode_steps` steps of 0.02 s (never if it is None), and terminated if the simulation
     had to stop.
     """
 
@@ -227,7 +228,7 @@ class LayCable(Environment):
 
 
 class LayCableVector(VectorEnvironment):
-    """`num_envs` worlds of LayCable, on `threads` threads; 0: as many as there are cores."""
+    """`num_envs` worlds of LayCable, on `threads` threads; 0: one per core."""
 
     def __init__(self, num_envs=1, render_mode=None, max_episode_steps=EPISODE_STEPS, threads=0):
         super().__init__(make_task(), num_envs, max_episode_steps, render_mode, threads)

@@ -60,7 +60,7 @@ def scene():
 
 
 class ShapeRopeTask(Task):
-    """The goals are shapes that the rope has after some motion of the hand, from the same beginning as every episode's."""
+    """The goals are shapes of the rope after random motions of the hand, from the same start as that of every episode."""
     cable = 'rope'
     nodes = SEGMENTS + 1
     option = 'goal'
@@ -128,16 +128,16 @@ def make_task(goals):
 
 
 class ShapeRope(Environment):
-    """Shape a rope that lies on a table, pinned at one end, with a hand that holds the other one.
+    """Shape a rope on a table. One end of the rope is pinned, and a hand holds the other end.
 
-    Action (3,), each from -1 to 1: velocity of the hand along x and y, in 0.4 m/s, and its turning, in 2 rad/s. The hand stays
-    between 0.25 m and 0.95 m in x, within 0.5 m in y and 2.5 rad, and within 0.95 m of the pin. When a step ends with more than
-    20 N on it, it gives way in the next one; within a step nothing limits the force.
+    Action (3,), each from -1 to 1: velocity of the hand along x and y, in units of 0.4 m/s, and its angular velocity about z, in
+    units of 2 rad/s. The hand stays between 0.25 m and 0.95 m in x, within 0.5 m in y and 2.5 rad, and within 0.95 m of the pin. If
+    the force on it at the end of a step is above 20 N, it yields in the next step; within a step, the force is not limited.
     Observation (465,) float64: nodes (51, 3) [m] from the pin on, their velocities (51, 3) [m/s], the hand's x, y [m] and angle
     [rad], the force on the hand (3,) [N], and the nodes of the goal (51, 3) [m].
     Reward: minus the mean distance of the nodes from those of the goal [m].
-    Info: `distance` [m], `goal`, its index. Options of reset: `goal`, an index below `goals`; else one is drawn.
-    Episodes are truncated after `max_episode_steps` steps of 0.02 s, never where it is None, and terminated where the simulation
+    Info: `distance` [m]; `goal`, its index. Options of reset: `goal`, an index below `goals`; default: random.
+    Episodes are truncated after `max_episode_steps` steps of 0.02 s (never if it is None), and terminated if the simulation
     had to stop.
     """
 
@@ -146,7 +146,7 @@ class ShapeRope(Environment):
 
 
 class ShapeRopeVector(VectorEnvironment):
-    """`num_envs` worlds of ShapeRope, on `threads` threads; 0: as many as there are cores."""
+    """`num_envs` worlds of ShapeRope, on `threads` threads; 0: one per core."""
 
     def __init__(self, num_envs=1, render_mode=None, max_episode_steps=EPISODE_STEPS, goals=64, threads=0):
         super().__init__(make_task(arguments.read_count('goals', goals)), num_envs, max_episode_steps, render_mode, threads)

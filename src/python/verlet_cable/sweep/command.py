@@ -27,15 +27,15 @@ def main(arguments=None):
 def _options(arguments):
     parser = argparse.ArgumentParser(
         prog='cable_sweep', description='Simulates many variations of a scene with Dask and writes them to one Zarr store.',
-        epilog='Exit status: 0 when every sample is in the store, 2 for bad input, 3 when the sweep had to stop: --resume goes on.')
+        epilog='Exit status: 0 when every sample is in the store, 2 for bad input, 3 when the sweep had to stop: --resume continues.')
     parser.add_argument('sweep', metavar='SWEEP.yaml', help='what to simulate: doc/sweeps.md')
-    parser.add_argument('--output', metavar='DIR', required=True, type=_output, help='the store; must not exist, but with --resume')
+    parser.add_argument('--output', metavar='DIR', required=True, type=_output, help='the store; must not exist, except with --resume')
     where = parser.add_mutually_exclusive_group()
     # No default here: argparse takes a value that is the default for none.
     cores = len(os.sched_getaffinity(0))
-    where.add_argument('--workers', metavar='N', type=_workers, help='processes on this machine (default: one a core)')
-    where.add_argument('--scheduler', metavar='tcp://HOST:PORT', help='a running dask-scheduler, whose workers do the work')
-    parser.add_argument('--resume', action='store_true', help='go on with a store that was begun; begin it if it is not there')
+    where.add_argument('--workers', metavar='N', type=_workers, help='processes on this machine (default: one per core)')
+    where.add_argument('--scheduler', metavar='tcp://HOST:PORT', help='a running dask-scheduler, whose workers are used')
+    parser.add_argument('--resume', action='store_true', help='continue with an unfinished store, or create it')
     options = parser.parse_args(arguments)
     options.workers = options.workers or cores
     return options
