@@ -163,7 +163,7 @@ void LaneStepper::set_cable(int c, LaneMember& member) {
   member.result = {};
   if (!is_elastic(s.model) && s.boundary.nodes.size() > 1) {
     target_lengths_[c].resize(state.segments());
-    member.result.overstretched_node = reachable_lengths(s.model, state, s.boundary.nodes, target_lengths_[c]);
+    member.result.overstretched_node = reachable_lengths(s.model, state, s.boundary.nodes, s.drawn_out(), target_lengths_[c]);
     cable.target_lengths = target_lengths_[c].data();
   }
   find_clamp_joints(

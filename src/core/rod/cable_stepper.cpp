@@ -16,6 +16,8 @@ constexpr int maximum_iterations = 40;
 constexpr double slow_convergence = 0.1;
 /// Relative, for spans that are pulled straight.
 constexpr double pivot_regularisation = 1e-9;
+/// Of the lengths of such spans, relative.
+constexpr double greatest_gap = 1e-7;
 /// Of the first `count` numbers.
 void add(const std::vector<double>& more, int count, std::vector<double>& sum) {
   const double* from = more.data();
@@ -87,7 +89,7 @@ void CableStepper::begin(const Substep& s, const CableState& state, SubstepResul
     flows_[k].before = flows_[k].first - 1;
     flows_[k].after = flows_[k].last;
   }
-  result.overstretched_node = reachable_lengths(s.model, state, s.boundary.nodes, target_length_);
+  result.overstretched_node = reachable_lengths(s.model, state, s.boundary.nodes, s.drawn_out(), target_length_);
   set_loads(s, state);
   set_growth(s);
   start_bending(s, state);
@@ -182,6 +184,7 @@ void CableStepper::set_loads(const Substep& s, const CableState& state) {
   std::fill_n(strain_compliance_.begin(), segments_, 0.0);
   if (held.size() > 1 && any_rigid_) {
     const double stiffness = stiffness_of_taut(s, state);
+    const double stiffness_on_bodies = s.gives_in_on_bodies ? stiffness_of_overstretched(s, state) : stiffness;
     for (std::size_t k = 0; k + 1 < held.size(); ++k) {
       // What can stretch has a tension.
       if (materials.any_elastic_between(held[k].node, held[k + 1].node)) continue;
@@ -189,7 +192,8 @@ void CableStepper::set_loads(const Substep& s, const CableState& state) {
       const auto moves_freely = [](const HeldNode& node) { return node.body >= 0 && !node.at_junction; };
       const bool gives_way = moves_freely(held[k]) || moves_freely(held[k + 1]);
       for (int i = held[k].node; i < held[k + 1].node; ++i) {
-        system_.compliance[i] = target_length_[i] * target_length_[i] * target_length_[i] / stiffness;
+        system_.compliance[i] =
+            target_length_[i] * target_length_[i] * target_length_[i] / (gives_way ? stiffness_on_bodies : stiffness);
         if (!gives_way || s.strains_on_bodies) strain_compliance_[i] = system_.compliance[i];
       }
     }
@@ -198,6 +202,21 @@ void CableStepper::set_loads(const Substep& s, const CableState& state) {
   for (std::size_t k = 0; k + 1 < held.size(); ++k)
     if (held[k].node + 1 == held[k + 1].node && held[k].body == held[k + 1].body && !grows(held[k].node))
       both_held_.push_back(held[k].node);
+}
+
+bool CableStepper::keeps_lengths() const {
+  for (int i = 0; i < segments_; ++i)
+    if (system_.compliance[i] > 0 && !grows(i) &&
+        !(std::abs(system_.gap[i]) < greatest_gap * target_length_[i] * target_length_[i]))
+      return false;
+  return true;
+}
+
+double CableStepper::greatest_tension_of_taut() const {
+  double greatest = 0;
+  for (int i = 0; i < segments_; ++i)
+    if (system_.compliance[i] > 0) greatest = std::max(greatest, tension_density_[i] * target_length_[i]);
+  return greatest;
 }
 
 /// At a winch the material moves through the end node.

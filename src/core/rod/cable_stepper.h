@@ -63,6 +63,11 @@ class CableStepper {
   void read_impulses(const Boundary& boundary, HolderLoads& impulses) const;
   /// The state's velocities take the solution.
   void finish_projection(const Substep& substep, CableState& state);
+  /// Whether the present iterate has the lengths that it should between holders. Where all nodes are held it may not, though no
+  /// correction moves them any more.
+  bool keeps_lengths() const;
+  /// [N] Of the present iterate, of what cannot stretch between two holders.
+  double greatest_tension_of_taut() const;
   const VectorArray& displacement() const { return displacement_; }  ///< nodes: x' - x of the present iterate [m]
   KktSystem& system() { return system_; }
   // The solution of the linear system: of nodes [m], of segments [N/m], and of a whole rod's segments [rad]

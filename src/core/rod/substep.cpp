@@ -22,10 +22,51 @@ constexpr double taut_inertia = 1e3;
 /// Less of its length is as good as straight.
 constexpr double straight_slack = 1e-4;
 constexpr double standard_gravity = 9.81;
+/// Of the weight.
+constexpr double overstretched_stiffness = 1e4;
+constexpr double greatest_load = 1e3;
+constexpr double greatest_velocity = 30;  // [m/s]
+constexpr double greatest_growth = 10;
+/// More than its length is what bodies have drawn out.
+constexpr double drawn_stretch = 1e-4;
+/// [m/s] At which what bodies have drawn out is drawn in again, once they let it.
+constexpr double recovery_velocity = 1;
 /// A holder's change of velocity that moves a node by less in a substep, in segment lengths, goes unnoticed.
 constexpr double noticed_jerk = 1e-9;
 
+/// Whether of any part of what cannot stretch, between holders one of which is a body, this is so.
+template <typename Predicate>
+bool any_on_bodies(const Substep& s, const CableState& state, Predicate is_so) {
+  const CableMaterials materials(s.model, state);
+  const std::vector<HeldNode>& held = s.boundary.nodes;
+  for (std::size_t k = 0; k + 1 < held.size(); ++k) {
+    const int first = held[k].node, last = held[k + 1].node;
+    if ((held[k].body < 0 && held[k + 1].body < 0) || materials.any_elastic_between(first, last)) continue;
+    if (is_so((state.positions[last] - state.positions[first]).norm(), state.length(first, last))) return true;
+  }
+  return false;
+}
+
+/// [kg]
+double mass_of_taut(const Substep& s, const CableState& state) {
+  return s.boundary.is_on_bodies() ? s.boundary.joined_mass : std::accumulate(state.masses.begin(), state.masses.end(), 0.0);
+}
+
+/// [N] The weight, and what bends the cable.
+double load_of_taut(const Substep& s, const CableState& state) {
+  const double length = state.length();
+  const double weight = std::max(s.environment.gravity.at(state.positions[0]).norm(), standard_gravity) * mass_of_taut(s, state);
+  return weight + CableMaterials(s.model, state).largest_bending_stiffness() / (length * length);
+}
+
 }  // namespace
+
+DrawnOut Substep::drawn_out() const {
+  DrawnOut drawn_out;
+  if (!gives_in_on_bodies) drawn_out.drawn_in = recovery_velocity * h;
+  drawn_out.is_reported = gives_in_on_bodies;
+  return drawn_out;
+}
 
 Convergence::Convergence(const Substep& s)
     : Convergence(s.boundary.nodes.empty() ? free_part * s.tolerance : s.tolerance, s.h, s.statics) {}
@@ -41,25 +82,26 @@ bool Convergence::is_reached(double size) {
 }
 
 double stiffness_of_taut(const Substep& s, const CableState& state) {
-  const double own = std::accumulate(state.masses.begin(), state.masses.end(), 0.0);
-  const double mass = s.boundary.is_on_bodies() ? s.boundary.joined_mass : own;
-  const double length = state.length();
-  const double weight = std::max(s.environment.gravity.at(state.positions[0]).norm(), standard_gravity) * mass;
   double inertia = 0;
-  if (s.boundary.is_on_bodies()) inertia = taut_inertia * s.inertia() * mass * length / (s.h * s.h);
-  return inertia + taut_stiffness * (weight + CableMaterials(s.model, state).largest_bending_stiffness() / (length * length));
+  if (s.boundary.is_on_bodies()) inertia = taut_inertia * s.inertia() * mass_of_taut(s, state) * state.length() / (s.h * s.h);
+  return inertia + taut_stiffness * load_of_taut(s, state);
+}
+
+bool is_drawn_out_on_bodies(const Substep& s, const CableState& state) {
+  return any_on_bodies(s, state, [](double distance, double length) { return distance > (1 + drawn_stretch) * length; });
+}
+
+double stiffness_of_overstretched(const Substep& s, const CableState& state) {
+  return overstretched_stiffness * load_of_taut(s, state);
+}
+
+double greatest_tension_on_bodies(const Substep& s, const CableState& state) {
+  const double before = is_drawn_out_on_bodies(s, state) ? 0 : *std::max_element(state.tension.begin(), state.tension.end());
+  return greatest_growth * before + greatest_load * load_of_taut(s, state) + mass_of_taut(s, state) * greatest_velocity / s.h;
 }
 
 bool is_straight_on_bodies(const Substep& s, const CableState& state) {
-  const CableMaterials materials(s.model, state);
-  const std::vector<HeldNode>& held = s.boundary.nodes;
-  for (std::size_t k = 0; k + 1 < held.size(); ++k) {
-    const int first = held[k].node, last = held[k + 1].node;
-    if ((held[k].body < 0 && held[k + 1].body < 0) || materials.any_elastic_between(first, last)) continue;
-    const double distance = (state.positions[last] - state.positions[first]).norm();
-    if (distance > (1 - straight_slack) * state.length(first, last)) return true;
-  }
-  return false;
+  return any_on_bodies(s, state, [](double distance, double length) { return distance > (1 - straight_slack) * length; });
 }
 
 bool holders_accelerate(const Substep& s, const CableState& state) {

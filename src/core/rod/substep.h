@@ -40,11 +40,14 @@ struct Substep {
   /// What bodies pull straight strains, too, by as little as what is straight between frames: bodies in line between two frames
   /// have no other solution.
   bool strains_on_bodies = false;
+  /// What bodies draw out further than it is long gives in, as what can stretch does.
+  bool gives_in_on_bodies = false;
 
   /// Where in the substep forces are taken.
   double part() const { return statics || scheme != Scheme::conserving ? 1 : 0.5; }
   /// [mass] Of (u / h - v) / h in the equations of motion, u being the displacement.
   double inertia() const { return scheme == Scheme::first_order ? 1 : 2; }
+  DrawnOut drawn_out() const;
   double damping_time() const { return statics ? infinity : h; }
 };
 
@@ -81,6 +84,16 @@ class Convergence {
 /// motion. So much axial stiffness, relative to the weight of the cable, or of all that is joined to it by bodies, gives it both:
 /// that weight strains it by a part in ten million.
 double stiffness_of_taut(const Substep& substep, const CableState& state);
+
+/// Whether bodies hold a part of the cable, of what cannot stretch, that is longer than it should be; likewise.
+bool is_drawn_out_on_bodies(const Substep& substep, const CableState& state);
+
+/// [N] The same of a cable that bodies draw out beyond its length: as much as a soft rope's.
+double stiffness_of_overstretched(const Substep& substep, const CableState& state);
+
+/// [N] More has only what bodies draw out beyond its length: all that they join weighs a thousandth of it, or would be stopped by
+/// it from any velocity within the substep, or it was a tenth of it before it was drawn out.
+double greatest_tension_on_bodies(const Substep& substep, const CableState& state);
 
 /// Whether bodies hold a part of the cable, of what cannot stretch, as good as straight. `state` is that at the start of the
 /// substep.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "guide/flow.h"
@@ -76,10 +77,17 @@ struct HolderLoads {
   std::vector<Vector3> displacements;  ///< [m] of what is loaded, one a load of the motion
 };
 
+/// What becomes of spans that bodies have drawn out beyond their length.
+struct DrawnOut {
+  double drawn_in = std::numeric_limits<double>::infinity();  ///< [m] of what is too much, at most
+  bool is_reported = false;
+};
+
 /// The lengths [m] that the segments can keep: their rest lengths, but longer between holders that are further apart
-/// than the cable between them is long, by way of the guides that it slides through, where none of it can stretch. Returns the
-/// first node of such a span, -1 if there is none. `held` ascends by node; `lengths`: one a segment.
-int reachable_lengths(const CableModel& model, const CableState& state, const std::vector<HeldNode>& held,
+/// than the cable between them is long, by way of the guides that it slides through, where none of it can stretch. What bodies
+/// have drawn out keeps its length but for what is drawn in again. Returns the first node of such a span, -1 if
+/// there is none. `held` ascends by node; `lengths`: one a segment.
+int reachable_lengths(const CableModel& model, const CableState& state, const std::vector<HeldNode>& held, DrawnOut drawn_out,
                       std::vector<double>& lengths);
 
 }  // namespace verlet_cable

@@ -29,6 +29,16 @@ constexpr double least_size = 1e-3;  // [m] of what has none
 /// A change of a holder's velocity that moves a body by less in a substep, in parts of its size or rad, goes unnoticed.
 constexpr double noticed_jerk = 1e-9;
 
+constexpr double longest_part_without_room = 0.25;  // of a step
+
+/// Of what has converged.
+bool is_drawn_out(const Participant& p) {
+  if (!p.stepper->keeps_lengths()) return true;
+  if (p.substep.gives_in_on_bodies) return false;
+  return (p.substep.strains_on_bodies || is_drawn_out_on_bodies(p.substep, *p.state)) &&
+         p.stepper->greatest_tension_of_taut() > greatest_tension_on_bodies(p.substep, *p.state);
+}
+
 }  // namespace
 
 void find_body_joints(const Island& island, const State& state, double from, double to, Workspace& workspace) {
@@ -70,22 +80,34 @@ void IslandStepper::begin_bodies(const Island& island, double from, double to, S
 /// Those that touch nothing, by one substep. False if it has not converged.
 bool IslandStepper::advance_bodies() {
   BodySystem& system = workspace_.body_system;
-  const bool converged = system.advance(workspace_.participants, state_.scene->tolerance);
+  std::vector<Participant>& participants = workspace_.participants;
+  const bool converged = system.advance(participants, state_.scene->tolerance) &&
+                         std::none_of(participants.begin(), participants.end(), is_drawn_out);
   if (converged) {
-    system.place_at_end(workspace_.participants);
-    for (Participant& p : workspace_.participants) p.stepper->finish(p.substep, false, *p.state, p.result);
+    system.place_at_end(participants);
+    for (Participant& p : participants) p.stepper->finish(p.substep, false, *p.state, p.result);
   }
-  for (const Participant& p : workspace_.participants) workspace_.cables[p.place].result = p.result;
+  for (const Participant& p : participants) workspace_.cables[p.place].result = p.result;
   return converged;
 }
 
-/// Bodies in line, on what is pulled straight and cannot stretch, had no solution: they have one if that strains a little.
+/// Bodies in line, on what is pulled straight and cannot stretch, had no solution: they have one if that strains a little, or
+/// gives in where it is too short for the frames that draw them.
 bool IslandStepper::advance_straight_bodies(const Island& island, double from, double to, Scheme scheme) {
   std::vector<Participant>& participants = workspace_.participants;
   const bool straight = std::any_of(participants.begin(), participants.end(),
                                     [](const Participant& p) { return is_straight_on_bodies(p.substep, *p.state); });
   if (!straight) return false;
   for (Participant& p : participants) p.substep.strains_on_bodies = true;
+  begin_bodies(island, from, to, scheme);
+  if (advance_bodies()) return true;
+  // A pin, too, may have drawn nodes to its body; what that leaves a shorter substep finds room for.
+  const bool has_no_room = to - from <= longest_part_without_room;
+  const bool overstretched = std::any_of(participants.begin(), participants.end(), [&](const Participant& p) {
+    return p.result.converged ? is_drawn_out(p) : has_no_room && is_drawn_out_on_bodies(p.substep, *p.state);
+  });
+  if (!overstretched) return false;
+  for (Participant& p : participants) p.substep.gives_in_on_bodies = true;
   begin_bodies(island, from, to, scheme);
   return advance_bodies();
 }
