@@ -155,6 +155,22 @@ TEST_F(Topics, MarkersShowCablesPinsAndPayloads) {
   EXPECT_NEAR(payload->scale.x, 0.07072, 1e-5);
 }
 
+TEST_F(Topics, IdsOfWhatIsGoneAreGivenAgain) {
+  Listener<MarkerArray> listener(node_, "markers");
+  for (int i = 0; i < 10; ++i) {
+    Obstacle ball;
+    ball.name = "ball/" + std::to_string(i);
+    ball.shape = SphereShape{0.1};
+    ball.pose.position.x() = i;
+    ASSERT_TRUE(world_.apply(edit::SetObstacle{ball}).ok);
+    const Marker* shown = nullptr;
+    while (!shown || shown->pose.position.x != i) shown = find(next(listener), "obstacles", Marker::SPHERE);
+    // Those of three pins and a payload, and of the ball before this one, which may be gone only now.
+    EXPECT_LE(shown->id, 6);
+    world_.apply(edit::RemoveObstacle{ball.name});
+  }
+}
+
 TEST_F(Topics, MarkersAsLines) {
   scene_.marker_style = MarkerStyle::line;
   Publishers lines(node_, scene_);

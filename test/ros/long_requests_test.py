@@ -14,6 +14,7 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
 
 from cable_client import CableClient, Messages, cable, node_at, transform
+from verlet_cable.msg import CableEvent
 from verlet_cable.srv import Unpin
 
 ROPE = 'materials: {rope: {linear_density: 0.1, radius: 0.005, drag: 0.2, bending_stiffness: 1.0e-3}}\n'
@@ -144,6 +145,25 @@ class LongRequestsTest(unittest.TestCase):
         self.assertIn('restored the snapshot "there" since', answer.message)
         rospy.loginfo('a reset takes %.0f ms, a state that is restored meanwhile %.0f ms', 1e3 * took, 1e3 * restored)
         self.assertLess(restored, took / 2)
+
+    def test_resets_that_come_together_are_one(self):
+        self.assertTrue(self.node.load_scene(yaml=SLOW.replace('30000', '15000')).success)
+        with Messages('/cable/events', CableEvent) as events:
+            resets = [Aside(self.node.reset) for _ in range(4)]
+            self.assertTrue(all(reset.result().success for reset in resets))
+            events.wait_for(lambda event: event.type == CableEvent.RESET, 'RESET')
+            # the last may have come when the first was done
+            self.assertLessEqual(len([event for event in events.all() if event.type == CableEvent.RESET]), 2)
+
+    def test_a_wrong_step_is_refused_while_others_are_done(self):
+        self.node.pause(True)
+        steps = Aside(self.node.step, 10**6)
+        time.sleep(0.3)
+        answer = self.node.step(0)
+        self.assertIn('allowed: 1 to', answer.message)
+        self.assertTrue(steps.runs())
+        self.node.pause(False)
+        self.assertIn('interrupted', steps.result().message)
 
     def test_a_bad_scene_changes_nothing(self):
         loading = Aside(self.node.load_scene, yaml=ROPE + 'cables:\n' + rope('rope', 50).replace('1.0', '-1.0') * 3000)

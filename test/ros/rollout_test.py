@@ -7,9 +7,9 @@ import unittest
 import actionlib
 import rospy
 import rostest
-from actionlib_msgs.msg import GoalStatus
+from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 
-from cable_client import CableClient, cable, contents, distance, transform
+from cable_client import CableClient, Messages, cable, contents, distance, transform
 from verlet_cable.msg import RolloutAction, RolloutGoal
 
 NAN = float('nan')
@@ -81,6 +81,16 @@ class RolloutTest(unittest.TestCase):
         self.assertEqual(state, GoalStatus.PREEMPTED)
         self.assertFalse(result.success)
         self.assertIn('cancelled', result.message)
+
+    def test_a_cancel_of_what_is_no_goal_is_forgotten(self):
+        def is_listed(status):
+            return 'nobody' in [goal.goal_id.id for goal in status.status_list]
+        cancels = rospy.Publisher('/cable/rollout/cancel', GoalID, queue_size=1, latch=True)
+        with Messages('/cable/rollout/status', GoalStatusArray) as status:
+            cancels.publish(GoalID(id='nobody'))
+            status.wait_for(is_listed, 'cancel')
+            status.clear()
+            status.wait_for(lambda message: not is_listed(message), 'status without it', 30)
 
     def test_bad_goals_are_refused_and_change_nothing(self):
         self.assertTrue(self.node.pause(True).success)

@@ -146,7 +146,7 @@ class Watch:
 class Memory:
     """[MB] that a process occupies, over time [s]."""
 
-    SETTLING = 300.0  # [s] at first, when caches and the sanitizer's own memory fill
+    SETTLING = 900.0  # [s] at first: for so long what was in use still grew, on a busy machine, before it stayed
     SHORTEST = 300.0  # [s] after that, of which anything can be said
     LARGEST_GROWTH = 0.05  # of the median, by a robust line through what comes after that
 

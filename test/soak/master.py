@@ -1,8 +1,4 @@
 """A ROS master that is killed and comes back."""
-import os
-import random
-import signal
-import socket
 import subprocess
 import time
 import xmlrpc.client

@@ -36,6 +36,7 @@ def arguments():
     parser.add_argument('--hours', type=float, default=0.5)
     parser.add_argument('--seed', type=int, default=1)
     parser.add_argument('--node', help='the program')
+    parser.add_argument('--build', help='how it was built, for the summary')
     parser.add_argument('--output', type=Path, help='a directory for logs and results')
     parser.add_argument('--reports', type=Path, help='the directory where sanitizers write')
     parser.add_argument('--port', type=int, default=11399, help='of the master')
@@ -124,8 +125,10 @@ class Soak:
                               'killed': self._victims.killed, 'of these in a call': self._victims.killed_in_calls,
                               'stopped': self._victims.stopped, 'master restarts': self._master.restarts},
                   'frames': {'transforms': self._frames.sent, 'time jumps': self._frames.jumps, 'silences': self._frames.silences}}
-        result = summary.summarize(self._seconds, self._options.seed, self._findings, self._calls, self._watch, self._memory, others)
-        summary.write(result, self._memory, self._options.output)
+        options = self._options
+        result = summary.summarize(self._seconds, options.seed, options.build, self._findings, self._calls, self._watch, self._memory,
+                                   others)
+        summary.write(result, self._memory, options.output)
         print(summary.text(result), flush=True)
         return 1 if result['findings'] else 0
 

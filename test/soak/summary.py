@@ -21,9 +21,10 @@ def memory(record):
     return {key: round(float(value), 1) for key, value in result.items()}
 
 
-def summarize(seconds, seed, findings, calls, watch, record, others):
+def summarize(seconds, seed, build, findings, calls, watch, record, others):
     return {
-        'hours': round(seconds / 3600, 3), 'seed': seed, 'findings': {kind: count for kind, (count, _) in findings.all.items()},
+        'hours': round(seconds / 3600, 3), 'seed': seed, 'build': build,
+        'findings': {kind: count for kind, (count, _) in findings.all.items()},
         'examples': {kind: str(example)[:2000] for kind, (_, example) in findings.all.items()},
         'calls': {name: {'done': calls.answered.get(name, 0), 'refused': calls.refused.get(name, 0),
                          'without_master': calls.without_master.get(name, 0)}
@@ -33,7 +34,7 @@ def summarize(seconds, seed, findings, calls, watch, record, others):
 
 
 def text(summary):
-    lines = [f'{summary["hours"]:.2f} h, seed {summary["seed"]}: {summary["steps"]} steps, '
+    lines = [f'{summary["hours"]:.2f} h, {summary["build"]}, seed {summary["seed"]}: {summary["steps"]} steps, '
              f'{sum(summary["messages_checked"].values())} messages checked',
              f'{"service":15}{"done":>8}{"refused":>9}{"no master":>11}{"p50 [s]":>10}{"p99 [s]":>10}{"max [s]":>10}']
     for name, counts in summary['calls'].items():
@@ -47,14 +48,14 @@ def text(summary):
     return '\n'.join(lines)
 
 
-def draw(record, path):
+def draw(record, build, path):
     import matplotlib
     matplotlib.use('Agg')
     from matplotlib import pyplot
     times, sizes = np.array(record.samples).reshape(-1, 2).T
     figure, axes = pyplot.subplots(figsize=(8, 3.5))
-    axes.axvspan(0, min(times[-1], record.SETTLING) / 60, color='0.92', label='caches fill')
-    axes.plot(times / 60, sizes, linewidth=1, label='resident, with the sanitizer\'s own')
+    axes.axvspan(0, min(times[-1], record.SETTLING) / 60, color='0.92', label='fills up')
+    axes.plot(times / 60, sizes, linewidth=1, label=f'resident, {build}')
     fit = record.fit()
     if fit:
         times, sizes = record.settled()
@@ -66,10 +67,11 @@ def draw(record, path):
     axes.set_ylim(bottom=0)
     axes.legend(loc='lower right')
     figure.tight_layout()
-    figure.savefig(path, dpi=120)
+    figure.savefig(path, dpi=80, metadata={'Software': None})
 
 
 def write(summary, record, directory):
     (directory / 'summary.json').write_text(json.dumps(summary, indent=2) + '\n')
     (directory / 'summary.txt').write_text(text(summary) + '\n')
-    draw(record, directory / 'memory.png')
+    (directory / 'memory.csv').write_text('s,MB\n' + ''.join(f'{time:.1f},{size:.1f}\n' for time, size in record.samples))
+    draw(record, summary['build'], directory / 'memory.png')

@@ -117,6 +117,7 @@ void MarkerPublisher::publish(const World& world, const ros::Time& stamp) {
   for (const SimulatedBody& body : world.bodies())
     if (!body.is_junction && is_there(world, body)) add_body(body, *markers);
   delete_what_is_gone(*markers);
+  free_ids_of_what_is_gone();
   for (Marker& marker : markers->markers) marker.header.stamp = stamp;
   publisher_.publish(markers);
 }
@@ -263,7 +264,20 @@ void MarkerPublisher::delete_what_is_gone(MarkerArray& markers) {
 }
 
 int MarkerPublisher::id_of(const std::string& name) {
-  return ids_.emplace(name, static_cast<int>(ids_.size()) + 1).first->second;
+  const auto known = ids_.find(name);
+  if (known != ids_.end()) return known->second;
+  if (auto earlier = earlier_ids_.extract(name)) return ids_.insert(std::move(earlier)).position->second;
+  return ids_.emplace(name, free_id()).first->second;
+}
+
+int MarkerPublisher::free_id() {
+  if (free_ids_.empty()) return static_cast<int>(ids_.size() + earlier_ids_.size()) + 1;
+  return free_ids_.extract(free_ids_.begin()).value();
+}
+
+void MarkerPublisher::free_ids_of_what_is_gone() {
+  for (const auto& gone : earlier_ids_) free_ids_.insert(gone.second);
+  earlier_ids_ = std::exchange(ids_, {});
 }
 
 }  // namespace verlet_cable

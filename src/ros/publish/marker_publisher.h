@@ -49,13 +49,17 @@ class MarkerPublisher {
                 visualization_msgs::MarkerArray& markers);
   void delete_what_is_gone(visualization_msgs::MarkerArray& markers);
   int id_of(const std::string& name);
+  int free_id();
+  void free_ids_of_what_is_gone();
 
   ros::Publisher publisher_;
   std::string frame_id_;
   MarkerStyle style_;
   ColorScale colors_;
-  std::map<std::string, int> ids_;  // of pins, payloads, guides, obstacles and bodies, by name; never given twice
-  std::set<Key> shown_;             // at the last tick with subscribers
+  std::map<std::string, int> ids_;          // of pins, payloads, guides, obstacles and bodies, by name, of this tick
+  std::map<std::string, int> earlier_ids_;  // of the last tick: what is still there keeps its id
+  std::set<int> free_ids_;                  // of what is gone: obstacles may come with another name each time
+  std::set<Key> shown_;                     // at the last tick with subscribers
 };
 
 }  // namespace verlet_cable

@@ -28,8 +28,8 @@
 namespace verlet_cable {
 namespace {
 
-/// So many may be read and built at once; more wait.
-constexpr std::uint32_t most_loads = 4;
+/// So many of a service that takes long are dealt with at once; more wait.
+constexpr std::uint32_t most_at_once = 4;
 
 template <typename Response>
 bool answer(const EditResult& result, Response& response) {
@@ -143,12 +143,9 @@ CableServices::CableServices(ros::NodeHandle& node, Simulation& simulation) : ow
     return answer(owner_.ask([s](const Answer& done) { s->reset(done); }), response);
   });
   serve_aside<Step>(node, "step", [this, s](const auto& request, auto& response) { return step(*s, owner_, request, response); });
-  serve_aside<LoadScene>(
-      node, "load_scene",
-      [this, s, lasting](const auto& request, auto& response) {
-        return answer(load_scene(*s, owner_, reads_scene_, lasting, request), response);
-      },
-      most_loads);
+  serve_aside<LoadScene>(node, "load_scene", [this, s, lasting](const auto& request, auto& response) {
+    return answer(load_scene(*s, owner_, reads_scene_, lasting, request), response);
+  });
 }
 
 CableServices::~CableServices() {
@@ -157,8 +154,8 @@ CableServices::~CableServices() {
 }
 
 template <typename Service, typename Handler>
-void CableServices::serve_aside(const ros::NodeHandle& node, const std::string& name, Handler handler, std::uint32_t threads) {
-  Aside& aside = *asides_.emplace_back(std::make_unique<Aside>(threads));
+void CableServices::serve_aside(const ros::NodeHandle& node, const std::string& name, Handler handler) {
+  Aside& aside = *asides_.emplace_back(std::make_unique<Aside>(most_at_once));
   ros::NodeHandle own(node);
   own.setCallbackQueue(&aside.guard);
   aside.server = serve<Service>(own, name, handler);

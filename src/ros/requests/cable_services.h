@@ -17,8 +17,8 @@ namespace verlet_cable {
 
 /// The services of the node. Requests are checked and applied at once: the simulation's updates and they share one queue of
 /// callbacks, so each is applied between steps, in the order they came. `reset`, `step` and `load_scene` may take long: each has
-/// a thread that waits for the answer, and reads what is to be read, while the simulation does the others; `load_scene` has
-/// several, so that a scene that is wrong is refused while another is being built.
+/// threads that wait for the answers, and read what is to be read, while the simulation does the others. They are several, so
+/// that what is wrong is refused while another is done, and one world is built for resets that come together.
 class CableServices {
  public:
   CableServices(ros::NodeHandle& private_node, Simulation& simulation);
@@ -34,7 +34,7 @@ class CableServices {
     ros::ServiceServer server;
   };
   template <typename Service, typename Handler>
-  void serve_aside(const ros::NodeHandle& node, const std::string& name, Handler handler, std::uint32_t threads = 1);
+  void serve_aside(const ros::NodeHandle& node, const std::string& name, Handler handler);
 
   OwnerCalls owner_;
   std::mutex reads_scene_;

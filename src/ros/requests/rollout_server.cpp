@@ -39,7 +39,7 @@ void RolloutServer::initialize() {
 void RolloutServer::receive_cancel(const actionlib_msgs::GoalIDConstPtr& goal) {
   const Nanoseconds now = from_ros_time(ros::Time::now()), stamp = from_ros_time(goal->stamp);
   {
-    // Each cancel of an unknown goal is listed, and one without a stamp is never forgotten.
+    // Each cancel of an unknown goal is listed.
     const boost::recursive_mutex::scoped_lock lock(lock_);
     if (status_list_.size() >= most_listed) {
       ROS_WARN("rollout/cancel: more than %zu goals are listed", most_listed);
@@ -77,8 +77,12 @@ void RolloutServer::publishStatus() {
   message.header.stamp = now;
   for (auto goal = status_list_.begin(); goal != status_list_.end();) {
     message.status_list.push_back(goal->status_);
+    // actionlib would list a cancel of what is no goal, or none any longer, for ever.
+    if (goal->handle_tracker_.empty() && goal->handle_destruction_time_.isZero()) goal->handle_destruction_time_ = now;
     const bool ended = !goal->handle_destruction_time_.isZero();
-    const bool forgotten = ended && from_ros_time(goal->handle_destruction_time_) + status_memory < from_ros_time(now);
+    const bool old = from_ros_time(goal->handle_destruction_time_) + status_memory < from_ros_time(now);
+    // Nor do they become more and more while ROS time stands.
+    const bool forgotten = ended && (old || status_list_.size() > most_listed);
     goal = forgotten ? status_list_.erase(goal) : std::next(goal);
   }
   status_.publish(message);
