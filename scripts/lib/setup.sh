@@ -64,6 +64,9 @@ sweep_packages=(python3-dask python3-distributed python3-zarr)
 # Besides those, for the pages of doc/python, which scripts/test and scripts/pictures run.
 page_packages=(python3-matplotlib python3-scipy)
 
+# For scripts/fuzz --coverage only.
+coverage_packages=(llvm)
+
 # And for scripts/test only.
 test_packages=(mypy)
 

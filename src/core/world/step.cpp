@@ -113,7 +113,7 @@ void World::Implementation::resume_islands(bool one_by_one) {
     IslandStepper stepper(state, workspaces.value.local(), cable_outcomes.value, most_lanes);
     for (std::size_t k = from; k < to; ++k) {
       Island& island = islands.value.all()[unfinished[k]];
-      stepper.resume(island, budget::most * sizes[k] / size, island_outcomes.value[unfinished[k]]);
+      stepper.resume(island, SHARE_OF_STEP_BUDGET * budget::most * sizes[k] / size, island_outcomes.value[unfinished[k]]);
     }
   };
   if (one_by_one) return resume(0, unfinished.size());
