@@ -174,10 +174,11 @@ class Reader:
         fixed = text and (not self._rewrite or '...' in text.content)
         while True:
             done = self._run('set -e\n' + script)
-            if done.returncode == status or not self._terminals or time.monotonic() > deadline:
+            wrong = done.returncode != status or fixed and not shows(text.content, done.stdout, tolerance)
+            if not wrong or not self._terminals or time.monotonic() > deadline:
                 break
             time.sleep(0.5)
-        if done.returncode != status or fixed and not shows(text.content, done.stdout, tolerance):
+        if wrong:
             opened = ''.join(f'terminal {name}:\n{terminal.text()}' for name, terminal in self._terminals.items())
             raise PageError(f'{where}: ends with status {done.returncode}; shown is\n{text.content if text else ""}'
                             f'printed is\n{done.stdout}{opened}')
