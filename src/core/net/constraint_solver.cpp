@@ -18,6 +18,8 @@ constexpr int links_followed = 60;
 constexpr double kept_in_large_nets = 0.5;
 /// Relative error of a rigid link's length that is left.
 constexpr double rigid_tolerance = 1e-4;
+/// What is left beyond this is told: grids of rigid links that bend are near no solution, and come to the former slowly.
+constexpr double told_rigid_strain = 1e-3;
 /// Rounds over what is outside its bounds; then it is reported.
 constexpr int maximum_rounds = 800;
 /// Corrections of links in a step, for each link of the net; what takes longer is reported, too.
@@ -43,6 +45,10 @@ double tolerance_of(const NetModel& model) {
   return model.link_type == LinkType::rigid ? rigid_tolerance : model.tolerance;
 }
 
+double told_strain_of(const NetModel& model) {
+  return model.link_type == LinkType::rigid ? told_rigid_strain : model.tolerance + same_length;
+}
+
 }  // namespace
 
 void NetConstraintSolver::resize(const NetModel& model, const std::vector<HeldNode>& held, double h) {
@@ -62,6 +68,9 @@ void NetConstraintSolver::resize(const NetModel& model, const std::vector<HeldNo
   nodes_ = model.links;
   for (const MinimumDistanceDesc& minimum : model.minimum_distances) nodes_.push_back(minimum.nodes);
   row_of_.assign(links, -1);
+  held_links_.clear();
+  for (std::size_t link = 0; link < model.links.size(); ++link)
+    if (held_at_[model.links[link][0]] >= 0 && held_at_[model.links[link][1]] >= 0) held_links_.push_back(static_cast<int>(link));
   listed_.assign(links, 0);
   outside_.reserve(links);
   next_outside_.reserve(links);
@@ -140,32 +149,56 @@ void NetConstraintSolver::connect(std::size_t nodes) {
     for (const int node : nodes_[link]) links_at_[next[node]++] = static_cast<int>(link);
 }
 
-NetStepResult NetConstraintSolver::advance(const NetStep& step, NetState& state, LinkMemory& memory) {
-  NetStepResult result;
+void NetConstraintSolver::advance_part(const NetStep& step, NetState& state, LinkMemory& memory, NetStepResult& result) {
   load(step, state, memory);
   apply_loads(step);
   find_contacts(step);
   start();
   const int sweeps = step.model.link_type == LinkType::rigid ? rigid_sweeps : limited_sweeps;
-  for (int i = 0; i < sweeps; ++i) sweep(i % 2 == 0);
-  result.iterations = sweeps;
+  for (int i = 0; i < sweeps; ++i) sweep(step.model, i % 2 == 0);
+  result.iterations += sweeps;
   long_range_attachments_.pull(step.held, h_, arrays_);
   keep_bounds(result);
   react(step, memory);
   store(step, state, memory);
-  result.torn = result.max_strain > tolerance_of(step.model) + torn_strain;
+  judge(step, result);
   result.finite = is_sane(state.positions) && is_sane(state.velocities) && std::isfinite(result.max_strain);
-  return result;
+}
+
+void NetConstraintSolver::judge(const NetStep& s, NetStepResult& result) const {
+  result.torn = result.max_strain > tolerance_of(s.model) + torn_strain;
+  result.overstretched_node = overstretched_node(s);
+  result.unsolved_node = result.overstretched_node < 0 ? unsolved_node() : -1;
+}
+
+int NetConstraintSolver::overstretched_node(const NetStep& s) const {
+  const double strain = told_strain_of(s.model);
+  for (const int link : held_links_) {
+    const auto [i, j] = nodes_[link];
+    const double length = (s.held[held_at_[j]].position - s.held[held_at_[i]].position).norm();
+    if (!(std::abs(length / s.model.rest_lengths[link] - 1) <= strain)) return i;
+  }
+  return long_range_attachments_.overstretched_node(s.held, 1 + strain);
+}
+
+int NetConstraintSolver::unsolved_node() const {
+  for (const int link : outside_) {
+    const Row& row = rows_[row_of_[link]];
+    const double length = end_length(nodes_[link][0], nodes_[link][1], h_, arrays_);
+    const double slack = row.law.longest < unbounded ? 0 : (told_rigid_strain - rigid_tolerance) * row.law.rest_length;
+    if (!(length >= row.shortest - slack && length <= row.longest + slack)) return nodes_[link][0];
+  }
+  return -1;
 }
 
 void NetConstraintSolver::load(const NetStep& s, const NetState& state, LinkMemory& memory) {
-  h_ = s.h();
   if (!memory.started) begin(s, state, memory);
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
     set(arrays_.position, static_cast<int>(i), state.positions[i]);
     set(arrays_.velocity, static_cast<int>(i), memory.midstep_velocities[i]);
   }
-  for (std::size_t link = 0; link < memory.impulses.size(); ++link) arrays_.impulse[link] = kept_part_ * memory.impulses[link];
+  for (std::size_t link = 0; link < memory.impulses.size(); ++link)
+    arrays_.impulse[link] = kept_part_ * memory.impulses[link] / parts_;
 }
 
 /// What the recursion's velocity would have been half a step ago.
@@ -178,7 +211,7 @@ void NetConstraintSolver::begin(const NetStep& s, const NetState& state, LinkMem
   for (int i = 0; i < s.model.nodes(); ++i) {
     Vector3 acceleration = s.scene.gravity.at(state.positions[i]);
     if (wind_.active()) acceleration += get(wind_.force(), i) / s.model.masses[i];
-    memory.midstep_velocities[i] = state.velocities[i] - 0.5 * h_ * acceleration;
+    memory.midstep_velocities[i] = state.velocities[i] - 0.5 * s.h() * acceleration;
   }
   memory.started = true;
 }
@@ -209,13 +242,14 @@ void NetConstraintSolver::find_contacts(const NetStep& s) {
   fastest = std::sqrt(fastest);
   for (const MovingObstacle& moving : s.obstacles) {
     const double reach = 2 * h_ * (fastest + moving.speed) + moving.obstacle->padding;
-    const Aabb wide(moving.box.min().array() - reach, moving.box.max().array() + reach);
+    const double moved = part_ * h_ * moving.speed;
+    const Aabb wide(moving.box.min().array() - reach - moved, moving.box.max().array() + reach + moved);
     if (!wide.intersects(box)) continue;
     for (int i = 0; i < s.model.nodes(); ++i) {
       const Vector3 position = get(arrays_.position, i);
       if (arrays_.inverse_mass[i] == 0 || !wide.contains(position)) continue;
       NodeContact contact;
-      contact.surface = surface_near(moving, position, 0, h_, reach);
+      contact.surface = surface_near(moving, position, static_cast<double>(part_) / parts_, s.h(), reach);
       const double gap = contact.surface.distance;
       if (gap >= reach) continue;
       contact.node = i;
@@ -233,12 +267,18 @@ void NetConstraintSolver::start() {
   for (const Row& row : rows_) start_links(row.run, arrays_);
 }
 
-void NetConstraintSolver::sweep(bool forwards) {
-  if (forwards) {
-    for (auto row = rows_.begin(); row != rows_.end(); ++row) sweep_links(row->run, row->law, h_, arrays_);
-  } else {
-    for (auto row = rows_.rbegin(); row != rows_.rend(); ++row) sweep_links(row->run, row->law, h_, arrays_);
-  }
+void NetConstraintSolver::sweep(const NetModel& model, bool forwards) {
+  // What is as soft for each part of a step as for a whole one is stiffer.
+  const double stiffer = model.link_type == LinkType::rigid ? parts_ * parts_ : 1;
+  const auto sweep_row = [&](const Row& row) {
+    LinkLaw law = row.law;
+    law.stiffness *= stiffer;
+    sweep_links(row.run, law, h_, arrays_);
+  };
+  if (forwards)
+    std::for_each(rows_.begin(), rows_.end(), sweep_row);
+  else
+    std::for_each(rows_.rbegin(), rows_.rend(), sweep_row);
   press_contacts();
 }
 
@@ -249,6 +289,7 @@ void NetConstraintSolver::press_contacts() {
 /// Lists what is outside its bounds. False if nothing is.
 bool NetConstraintSolver::measure(NetStepResult& result) {
   outside_.clear();
+  turned_ = false;
   double least = 1, largest = 1;
   for (const Row& row : rows_) {
     const double rest = row.law.rest_length;
@@ -256,6 +297,7 @@ bool NetConstraintSolver::measure(NetStepResult& result) {
     if (row.is_link) {
       least = std::min(least, range.least);
       largest = std::max(largest, range.largest);
+      turned_ = turned_ || range.turned;
     }
     const double shortest = row.shortest / rest, longest = row.longest / rest;
     if (!(range.least >= shortest * shortest && range.largest <= longest * longest)) list_outside(row);
@@ -315,7 +357,7 @@ void NetConstraintSolver::keep_bounds(NetStepResult& result) {
     std::swap(outside_, next_outside_);
   }
   for (const int link : outside_) listed_[link] = 0;
-  if (measure(result)) result.overstretched_node = nodes_[outside_.front()][0];
+  measure(result);
 }
 
 void NetConstraintSolver::react(const NetStep& s, const LinkMemory& memory) const {
@@ -349,11 +391,12 @@ void NetConstraintSolver::store(const NetStep& s, NetState& state, LinkMemory& m
     state.positions[held.node] = held.position;
     state.velocities[held.node] = held.velocity;
   }
-  std::copy(arrays_.impulse.begin(), arrays_.impulse.end(), memory.impulses.begin());
+  for (std::size_t link = 0; link < memory.impulses.size(); ++link) memory.impulses[link] = parts_ * arrays_.impulse[link];
   for (std::size_t link = 0; link < state.tension.size(); ++link) {
     const Vector3 along = state.positions[nodes_[link][1]] - state.positions[nodes_[link][0]];
-    state.tension[link] =
-        row_of_[link] >= 0 ? -arrays_.impulse[link] / h_ : s.model.stiffness * (along.norm() - s.model.rest_lengths[link]);
+    const double earlier = part_ > 0 ? state.tension[link] : -0.0;
+    state.tension[link] = row_of_[link] >= 0 ? earlier - arrays_.impulse[link] / s.h()
+                                             : s.model.stiffness * (along.norm() - s.model.rest_lengths[link]);
   }
 }
 

@@ -5,6 +5,7 @@
 #include "net/long_range_attachments.h"
 #include "net/step.h"
 #include "net/wind.h"
+#include "target/boundary.h"
 
 namespace verlet_cable {
 
@@ -23,6 +24,7 @@ class NetConstraintSolver {
  public:
   /// Sets what no step changes: after pins and cuts, too.
   void resize(const NetModel& model, const std::vector<HeldNode>& held, double h);
+  /// In parts where links turn too far within the step: impulses along their directions at its start keep no energy there.
   NetStepResult advance(const NetStep& step, NetState& state, LinkMemory& memory);
 
  private:
@@ -35,12 +37,17 @@ class NetConstraintSolver {
 
   void add_rows(const NetModel& model, double h);
   void connect(std::size_t nodes);
+  NetStepResult advance_in_parts(int parts, const NetStep& step, NetState& state, LinkMemory& memory);
+  void advance_part(const NetStep& step, NetState& state, LinkMemory& memory, NetStepResult& result);
+  void judge(const NetStep& step, NetStepResult& result) const;
+  int overstretched_node(const NetStep& step) const;
+  int unsolved_node() const;
   void load(const NetStep& step, const NetState& state, LinkMemory& memory);
   void begin(const NetStep& step, const NetState& state, LinkMemory& memory);
   void apply_loads(const NetStep& step);
   void find_contacts(const NetStep& step);
   void start();
-  void sweep(bool forwards);
+  void sweep(const NetModel& model, bool forwards);
   void press_contacts();
   bool measure(NetStepResult& result);
   void keep_bounds(NetStepResult& result);
@@ -50,7 +57,12 @@ class NetConstraintSolver {
   void react(const NetStep& step, const LinkMemory& memory) const;
   void store(const NetStep& step, NetState& state, LinkMemory& memory) const;
 
-  double h_ = 0;
+  int parts_ = 1, part_ = 0;  ///< of the step, and which of them it is
+  double h_ = 0;              ///< [s] of a part
+  bool turned_ = false;       ///< links turn too far within the part
+  NetState state_before_;
+  LinkMemory memory_before_;
+  Boundary boundary_;  ///< at the end of a part
   std::vector<Row> rows_;
   std::vector<std::array<int, 2>> nodes_;  ///< of a link or minimum distance
   std::vector<int> row_of_;                ///< of a link or minimum distance, -1 between held nodes
@@ -60,6 +72,7 @@ class NetConstraintSolver {
   LongRangeAttachments long_range_attachments_;
   double kept_part_ = 1;  ///< of the impulses of the step before
   std::vector<NodeContact> contacts_;
+  std::vector<int> held_links_;              ///< both of whose nodes are held
   std::vector<int> held_at_;                 ///< by node: index of what holds it, -1: none
   std::vector<Vector3> bound_impulses_;      ///< [N s] of links' bounds on what is held, besides the links' own impulses
   std::vector<int> outside_, next_outside_;  ///< links to look at

@@ -9,6 +9,12 @@ namespace verlet_cable {
 
 namespace {
 
+/// Of the turn of a link within a step. An impulse along its direction at the start changes its length at the end by this part of
+/// what it does to a link that does not turn, and the other way round where it is negative: sweeps would drive it without end.
+constexpr double least_cosine = 0.5;
+/// Square of the cosine of 30 degrees.
+constexpr double turned_square = 0.75;
+
 /// The arrays of one run, as plain pointers: compilers make vector code of these only.
 struct Pointers {
   const double *x, *y, *z, *w;
@@ -87,7 +93,8 @@ inline __attribute__((always_inline)) void sweep(const Pointers& p, const Law& l
     double next = free - h * mobility * mobility * inverse * pull;
     next = next < law.longest ? next : law.longest;
     next = next > law.shortest ? next : law.shortest;
-    const double change = (next - length) * inverse * resistance;
+    const bool follows = e * (dx * ex + dy * ey + dz * ez) > least_cosine * length;
+    const double change = follows ? (next - length) * inverse * resistance : -before;
     impulse[link] = before + change;
     const double size = change * e, of_i = size * w[i], of_j = size * w[j];
     u[i] -= of_i * dx;
@@ -115,16 +122,21 @@ VERLET_CABLE_VECTOR_CODE void sweep_by_two(Pointers p, Law law) {
 constexpr int block = 64;
 
 /// Largest and least of each place in blocks: what a compiler makes vector code of without reordering anything.
-VERLET_CABLE_VECTOR_CODE void measure(Pointers p, double h, double* __restrict least, double* __restrict largest) {
+VERLET_CABLE_VECTOR_CODE void measure(Pointers p, double h, double* __restrict least, double* __restrict largest,
+                                      double* __restrict turned) {
   for (int start = 0; start < p.count; start += block) {
     const int count = std::min(block, p.count - start);
 #pragma GCC ivdep
     for (int k = 0; k < count; ++k) {
       const int i = p.i + (start + k) * p.stride, j = p.j + (start + k) * p.stride;
-      const double ex = p.x[j] - p.x[i] + h * (p.u[j] - p.u[i]);
-      const double ey = p.y[j] - p.y[i] + h * (p.v[j] - p.v[i]);
-      const double ez = p.z[j] - p.z[i] + h * (p.s[j] - p.s[i]);
+      const double dx = p.x[j] - p.x[i], dy = p.y[j] - p.y[i], dz = p.z[j] - p.z[i];
+      const double ex = dx + h * (p.u[j] - p.u[i]);
+      const double ey = dy + h * (p.v[j] - p.v[i]);
+      const double ez = dz + h * (p.s[j] - p.s[i]);
       const double square = ex * ex + ey * ey + ez * ez;
+      const double along = p.inverse_length[p.link + (start + k) * p.stride] * (dx * ex + dy * ey + dz * ez);
+      const double kept = along * std::fabs(along) - turned_square * square;
+      turned[k] = kept < turned[k] ? kept : turned[k];
       least[k] = square < least[k] ? square : least[k];
       largest[k] = square > largest[k] ? square : largest[k];
     }
@@ -148,12 +160,14 @@ void sweep_links(const LinkRun& run, const LinkLaw& law, double h, LinkArrays& a
 }
 
 SquareRange measure_links(const LinkRun& run, double rest_length, double h, const LinkArrays& arrays) {
-  double least[block], largest[block];
+  double least[block], largest[block], turned[block];
   std::fill(least, least + block, 1e300);
   std::fill(largest, largest + block, 0.0);
-  measure({run, arrays}, h, least, largest);
+  std::fill(turned, turned + block, 0.0);
+  measure({run, arrays}, h, least, largest, turned);
   const double scale = 1 / (rest_length * rest_length);
-  return {scale * *std::min_element(least, least + block), scale * *std::max_element(largest, largest + block)};
+  return {scale * *std::min_element(least, least + block), scale * *std::max_element(largest, largest + block),
+          *std::min_element(turned, turned + block) < 0};
 }
 
 double end_length(int i, int j, double h, const LinkArrays& a) {
@@ -161,12 +175,10 @@ double end_length(int i, int j, double h, const LinkArrays& a) {
 }
 
 Vector3 set_length(int link, int i, int j, double length, bool along_end, double h, LinkArrays& a) {
-  // A link that turns round within a step is not shortened by what pulls along its direction at the start.
-  constexpr double turned = 0.5;
   const Vector3 start = (get(a.position, j) - get(a.position, i)) * a.inverse_length[link];
   const Vector3 end = get(a.position, j) - get(a.position, i) + h * (get(a.velocity, j) - get(a.velocity, i));
   const double before = end.norm();
-  if (before > 0 && start.dot(end) < turned * before) along_end = true;
+  if (before > 0 && start.dot(end) < least_cosine * before) along_end = true;
   const Vector3 direction = along_end && before > 0 ? Vector3(end / before) : start;
   const double change = (length - before) / (h * (a.inverse_mass[i] + a.inverse_mass[j]));
   set(a.velocity, i, get(a.velocity, i) - change * a.inverse_mass[i] * direction);

@@ -43,6 +43,7 @@ void sweep_links(const LinkRun& run, const LinkLaw& law, double h, LinkArrays& a
 /// Squares of the lengths at the end of the step, relative to the rest length.
 struct SquareRange {
   double least = 0, largest = 0;
+  bool turned = false;  ///< a link's direction changes by more than 30 degrees within the step
 };
 SquareRange measure_links(const LinkRun& run, double rest_length, double h, const LinkArrays& arrays);
 

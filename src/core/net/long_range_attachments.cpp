@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <queue>
 #include <tuple>
 
@@ -12,10 +13,12 @@ namespace {
 /// More would cost more than they help.
 constexpr std::size_t most_tethers = 3;
 
-struct Way {
+struct Front {
   double length = 0;  ///< [m]
   int node = 0, held = 0, links = 0;
-  bool operator>(const Way& other) const { return std::tie(length, node, held) > std::tie(other.length, other.node, other.held); }
+  bool operator>(const Front& other) const {
+    return std::tie(length, node, held) > std::tie(other.length, other.node, other.held);
+  }
 };
 
 struct Neighbour {
@@ -41,21 +44,43 @@ void LongRangeAttachments::resize(const NetModel& model, const std::vector<HeldN
   impulses_.assign(held.size(), Vector3::Zero());
   most_links_ = 0;
   const std::vector<std::vector<Neighbour>> neighbours = find_neighbours(model);
-  std::vector<std::vector<int>> reached_from(model.masses.size());
-  std::priority_queue<Way, std::vector<Way>, std::greater<>> ways;
+  std::vector<std::vector<Way>> reached_from(model.masses.size());
+  std::priority_queue<Front, std::vector<Front>, std::greater<>> ways;
   for (std::size_t k = 0; k < held.size(); ++k) ways.push({0, held[k].node, static_cast<int>(k), 0});
   while (!ways.empty()) {
-    const Way way = ways.top();
+    const Front way = ways.top();
     ways.pop();
-    std::vector<int>& from = reached_from[way.node];
-    if (from.size() == most_tethers || std::find(from.begin(), from.end(), way.held) != from.end()) continue;
+    std::vector<Way>& from = reached_from[way.node];
+    const auto known = [&](const Way& other) { return other.held == way.held; };
+    if (from.size() == most_tethers || std::any_of(from.begin(), from.end(), known)) continue;
     if (from.empty()) most_links_ = std::max(most_links_, way.links);
-    from.push_back(way.held);
+    from.push_back({way.length, way.held});
     if (way.links > 0) long_range_attachments_.push_back({way.node, way.held, stretch * way.length});
     for (const Neighbour& next : neighbours[way.node]) ways.push({way.length + next.length, next.node, way.held, way.links + 1});
   }
   std::stable_sort(long_range_attachments_.begin(), long_range_attachments_.end(),
                    [](const Tether& a, const Tether& b) { return a.node < b.node; });
+  find_spans(reached_from);
+}
+
+/// Ways from two held nodes that meet at a node are a way between the two.
+void LongRangeAttachments::find_spans(const std::vector<std::vector<Way>>& ways) {
+  std::map<std::pair<int, int>, double> lengths;
+  for (const std::vector<Way>& here : ways)
+    for (std::size_t a = 0; a < here.size(); ++a)
+      for (std::size_t b = a + 1; b < here.size(); ++b) {
+        const double length = here[a].length + here[b].length;
+        const auto [at, added] = lengths.try_emplace(std::minmax(here[a].held, here[b].held), length);
+        if (!added) at->second = std::min(at->second, length);
+      }
+  spans_.clear();
+  for (const auto& [ends, length] : lengths) spans_.push_back({ends.first, ends.second, length});
+}
+
+int LongRangeAttachments::overstretched_node(const std::vector<HeldNode>& held, double stretch) const {
+  for (const Span& span : spans_)
+    if ((held[span.first].position - held[span.second].position).norm() > stretch * span.length) return held[span.first].node;
+  return -1;
 }
 
 void LongRangeAttachments::pull(const std::vector<HeldNode>& held, double h, LinkArrays& arrays) {

@@ -19,14 +19,28 @@ class LongRangeAttachments {
   void pull(const std::vector<HeldNode>& held, double h, LinkArrays& arrays);
   /// [N s] that the last `pull` exerted on a held node, by its index.
   const Vector3& impulse(std::size_t held) const { return impulses_[held]; }
+  /// A held node that is further from another than `stretch` times the links between are long, -1: none.
+  int overstretched_node(const std::vector<HeldNode>& held, double stretch) const;
   int most_links() const { return most_links_; }  ///< from a node to the nearest held one
 
  private:
+  struct Way {
+    double length = 0;  ///< [m]
+    int held = 0;       ///< index of the held node where it begins
+  };
   struct Tether {
     int node = 0, held = 0;  ///< the second an index of the held nodes
     double length = 0;       ///< [m]
   };
+  void find_spans(const std::vector<std::vector<Way>>& ways);
+
+  /// The links between two held nodes, along the shortest way that is known.
+  struct Span {
+    int first = 0, second = 0;  ///< indices of the held nodes
+    double length = 0;          ///< [m]
+  };
   std::vector<Tether> long_range_attachments_;  ///< ascending nodes
+  std::vector<Span> spans_;
   std::vector<Vector3> impulses_;
   int most_links_ = 0;
 };

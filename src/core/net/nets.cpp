@@ -151,6 +151,7 @@ void World::Implementation::step_net(int index, StepResult& result) {
     return;
   }
   if (of_net.softened) note_net(Status::degraded, index, 0, result);
+  if (of_net.unsolved_node >= 0) note_net(Status::degraded, index, of_net.unsolved_node, result);
   if (of_net.overstretched_node >= 0) note_net(Status::overstretched, index, of_net.overstretched_node, result);
   for (std::size_t k = 0; k < solver.boundary.nodes.size(); ++k)
     state.attachments[memory.targets.nodes[k].attachment].force = solver.boundary.nodes[k].force;

@@ -22,7 +22,8 @@ struct NetStep {
 
 struct NetStepResult {
   bool finite = true;           ///< false: the state is as it was before
-  int overstretched_node = -1;  ///< of a link that could not be kept within its bounds; -1: none
+  int overstretched_node = -1;  ///< that is held where its links cannot be within their bounds; -1: none
+  int unsolved_node = -1;       ///< of a link that was not brought within its bounds though it could be; -1: none
   bool torn = false;            ///< links are far outside their bounds: what pulls at them is not to go on
   bool softened = false;        ///< the step was too long for the springs: they were taken to be softer
   int iterations = 0;
