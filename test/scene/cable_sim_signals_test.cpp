@@ -65,7 +65,9 @@ class CableSimSignals : public CableSim {
       const std::vector<std::string> files = open_files(child_);
       std::error_code gone;
       const auto has_rows = [&](const std::string& file) {
-        return file.substr(file.rfind('/')) != "/2" && std::filesystem::file_size(file, gone) > 0 && !gone;
+        const bool is_output =
+            file.substr(file.rfind('/')) != "/2" && std::filesystem::read_symlink(file, gone) != path("scene.yaml");
+        return is_output && std::filesystem::file_size(file, gone) > 0 && !gone;
       };
       return std::any_of(files.begin(), files.end(), has_rows);
     }));
