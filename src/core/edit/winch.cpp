@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "guide/node_passing.h"
-#include "rod/length_projection.h"
 #include "rod/unresolved_motion.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/number_text.h"
@@ -149,7 +148,6 @@ void World::Implementation::plan_drive_step(int index) {
   if (drive.is_winch()) stall(cable.state.rest_lengths[drive.segment] - least_segment * cable.model->segment_length, drive);
   drive.start_length = cable.state.rest_lengths[drive.segment];
   for (const int side : {0, 1}) drive.start_masses[side] = cable.state.masses[drive.segment + side];
-  wind(drive, 1, state.scene->time_step, *cable.model, cable.state);
 }
 
 /// Segments appear and vanish at the winch, so that the one there stays about as long as the others.
@@ -196,16 +194,8 @@ void World::Implementation::take_in_winch_node(int index) {
   held.erase(std::remove_if(held.begin(), held.end(), [&](const KinematicTarget& h) { return h.node == node; }), held.end());
   renumber(index, node, -1);
   after_remeshing(index);
-  // Nothing but the rest length at the winch changes lengths now, either.
-  std::vector<HeldNode> nodes = boundary_now(s.targets).nodes;
-  for (HeldNode& h : nodes) {
-    if (h.node != drive.end_node(cable.state.segments())) continue;
-    cable.state.velocities[h.node] = h.velocity;
-    add_material_motion(drive, 1, cable.state);
-    h.velocity = cable.state.velocities[h.node];
-  }
-  project_velocities(*cable.model, nodes, cable.state);
   add_material_motion(drive, -1, cable.state);
+  move_with_holders(index, state);
 }
 
 /// The nodes of a cable from `first` on have moved by `shift`.
@@ -232,12 +222,12 @@ void World::Implementation::after_remeshing(int index) {
 /// What of the cable has come to its guides goes through.
 void World::Implementation::pass_nodes_of(int index) {
   if (!pass_nodes(index, state)) return;
-  keep_flow_at_drive(index, 1, state);  // as the step is planned already
+  keep_flow_at_drive(index, 0, state);  // the step is planned already
   findings.intrusions.erase(std::remove_if(findings.intrusions.begin(), findings.intrusions.end(),
                                            [&](const Intrusion& intrusion) { return intrusion.cable == index; }),
                             findings.intrusions.end());
   after_remeshing(index);
-  move_with_guides(index, state);
+  move_with_holders(index, state);
 }
 
 /// What names segments of a cable names others now.

@@ -68,7 +68,7 @@ void World::Implementation::advance_guides() {
     for (Attachment& attachment : state.attachments)
       if (attachment.body == cable_id(static_cast<int>(i)) && is_wheel(attachment))
         follow_on_wheel(static_cast<int>(i), state, attachment);
-    keep_flow_at_drive(static_cast<int>(i), 1, state);  // as the step is planned already
+    keep_flow_at_drive(static_cast<int>(i), 0, state);  // the step is planned already
     pass_nodes_of(static_cast<int>(i));
   }
 }
@@ -154,7 +154,7 @@ void World::Implementation::capture_cable(int index) {
   cable.state.velocities[node] -= guide.flow * direction_at(cable.state, node, node);
   state.attachments.push_back(attachment);
   after_remeshing(cable_index);
-  move_with_guides(cable_index, state);
+  move_with_holders(cable_index, state);
   findings.caught.push_back(index);
 }
 

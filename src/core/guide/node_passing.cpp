@@ -117,6 +117,15 @@ void continue_material(const Attachment& attachment, int from, CableState& state
   state.section_material[side_of(attachment, 1 - from).segment()] = state.section_material[side_of(attachment, from).segment()];
 }
 
+/// What holds a cable now, with what flows through its guides and what is wound.
+Boundary moving_boundary(int index, const State& state) {
+  const CableProgress& progress = state.cable_progress[index];
+  Boundary boundary = boundary_now(progress.targets);
+  load_flows(index, state, boundary);
+  if (progress.drive) boundary.growing.push_back({progress.drive->segment, progress.drive->growth()});
+  return boundary;
+}
+
 }  // namespace
 
 bool carries_payload(const SimulatedCable& cable, int node) {
@@ -246,8 +255,7 @@ void stop_at_pin(int pin, State& state) {
   for (KinematicTarget& target : targets.nodes)
     if (target.attachment == pin)
       target.velocity = target.mean_velocity = target.frame_velocity = target.average_velocity = velocity;
-  Boundary boundary = boundary_now(targets);
-  load_flows(index, state, boundary);
+  Boundary boundary = moving_boundary(index, state);
   for (GuidedFlow& flow : boundary.flows) {
     if (flow.friction < infinity) flow.friction = 0;
     flow.resistance = 0;
@@ -256,9 +264,8 @@ void stop_at_pin(int pin, State& state) {
   keep_flows(index, boundary, state);
 }
 
-void move_with_guides(int index, State& state) {
-  Boundary boundary = boundary_now(state.cable_progress[index].targets);
-  load_flows(index, state, boundary);
+void move_with_holders(int index, State& state) {
+  Boundary boundary = moving_boundary(index, state);
   project_velocities(*state.cables[index].model, boundary, state.cables[index].state);
   keep_flows(index, boundary, state);
 }

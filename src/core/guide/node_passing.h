@@ -30,7 +30,8 @@ bool pass_nodes(int cable, State& state);
 /// withstands. Otherwise a span that is pulled straight would go on flowing between holders.
 void stop_at_pin(int pin, State& state);
 
-/// Makes the velocities of a cable those of its guides there, its lengths kept but for what flows.
-void move_with_guides(int cable, State& state);
+/// Makes the velocities of a cable those of its holders there, its lengths kept but for what flows through guides and what is
+/// wound.
+void move_with_holders(int cable, State& state);
 
 }  // namespace verlet_cable

@@ -47,7 +47,7 @@ class LengthSystem {
       if (i + 1 < n) off_[i] = -mobility_[i + 1] * d.dot(positions[i + 2] - positions[i + 1]);
       if (i + 1 < n && (is_free(i) || is_free(i + 1))) off_[i] = 0;
     }
-    if (flows_) let_flow();
+    if (flows_) let_flow(changes);
     solve_tridiagonal(diagonal_, off_, impulse_, static_cast<int>(n));
     if (flows_) push_flows();
     Vector3 direction = positions[1] - positions[0];
@@ -74,13 +74,14 @@ class LengthSystem {
     return density * length + flow.inertia;
   }
 
-  void let_flow() {
+  void let_flow(const std::vector<double>& changes) {
     // Beside another holder nothing but the flow changes a segment's length.
     for (const GuidedFlow& flow : *flows_)
       for (const int i : {flow.first - 1, flow.last}) {
+        if (movable(i) || is_free(i) || mass_of(flow) == infinity) continue;
         const double length = (*rest_lengths_)[i];
-        if (!movable(i) && !is_free(i) && mass_of(flow) < infinity)
-          diagonal_[i] = regularisation * length * length / mass_of(flow);
+        diagonal_[i] = regularisation * length * length / mass_of(flow);
+        impulse_[i] = changes[i];
       }
     for (const GuidedFlow& flow : *flows_) {
       const int i = flow.first - 1, j = flow.last;
@@ -181,8 +182,8 @@ bool project_lengths(const std::vector<HeldNode>& held, const std::vector<double
 
 namespace {
 
-void project_velocities(const CableModel& model, const std::vector<HeldNode>& held, std::vector<GuidedFlow>* flows,
-                        CableState& state) {
+void project_velocities(const CableModel& model, const std::vector<HeldNode>& held, const std::vector<GrowingSegment>& growing,
+                        std::vector<GuidedFlow>* flows, CableState& state) {
   const std::vector<Vector3>& positions = state.positions;
   std::vector<Vector3>& velocities = state.velocities;
   for (const HeldNode& h : held) velocities[h.node] = h.velocity;
@@ -191,6 +192,8 @@ void project_velocities(const CableModel& model, const std::vector<HeldNode>& he
   std::vector<double> changes(state.segments());
   for (int i = 0; i < state.segments(); ++i)
     changes[i] = -(positions[i + 1] - positions[i]).dot(velocities[i + 1] - velocities[i]);
+  for (const GrowingSegment& g : growing)
+    changes[g.segment] += (positions[g.segment + 1] - positions[g.segment]).norm() * g.growth;
   std::vector<double> lengths = state.rest_lengths;
   free_elastic(materials, lengths);
   LengthSystem system(state.masses, held, lengths);
@@ -207,11 +210,11 @@ void project_velocities(const CableModel& model, const std::vector<HeldNode>& he
 }  // namespace
 
 void project_velocities(const CableModel& model, const std::vector<HeldNode>& held, CableState& state) {
-  project_velocities(model, held, nullptr, state);
+  project_velocities(model, held, {}, nullptr, state);
 }
 
 void project_velocities(const CableModel& model, Boundary& boundary, CableState& state) {
-  project_velocities(model, boundary.nodes, &boundary.flows, state);
+  project_velocities(model, boundary.nodes, boundary.growing, &boundary.flows, state);
 }
 
 }  // namespace verlet_cable

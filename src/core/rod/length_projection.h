@@ -16,7 +16,8 @@ bool project_positions(const CableModel& model, const std::vector<HeldNode>& hel
 /// velocities of their holders.
 void project_velocities(const CableModel& model, const std::vector<HeldNode>& held, CableState& state);
 
-/// The same where material flows through guides: what flows is moved by the impulses, too, if nothing holds it.
+/// The same where material flows through guides and rest lengths change: what flows is moved by the impulses, too, if nothing
+/// holds it; segments that grow do so on.
 void project_velocities(const CableModel& model, Boundary& boundary, CableState& state);
 
 /// Moves the nodes that are not held, each the less the heavier it is, until the segments have the lengths [m], one a segment.

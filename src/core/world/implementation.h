@@ -36,6 +36,7 @@ struct World::Implementation {
   int update_frames(const BoundaryInputs& inputs);
   void advance_winches();
   void advance_guides();
+  void wind_drives();
   void build_islands();
   void advance_islands();
   void step_islands(std::size_t from, std::size_t to, IslandStepper& stepper);

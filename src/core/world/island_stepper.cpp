@@ -6,7 +6,6 @@
 #include "guide/guides.h"
 #include "guide/node_passing.h"
 #include "rod/initial_shape.h"
-#include "rod/length_projection.h"
 #include "rod/rod_frames.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/rotation.h"
@@ -153,9 +152,7 @@ void follow_abrupt_holders(int index, const Following& following, State& state, 
     note_status(Status::jumped, cable_id(index), following.jumping_node, outcome.result);
   }
   if (follows_bodies(targets, state.attachments)) return;
-  load_flows(index, state, boundary);
-  project_velocities(*cable.model, boundary, cable.state);
-  keep_flows(index, boundary, state);
+  move_with_holders(index, state);
 }
 
 }  // namespace

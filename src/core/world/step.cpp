@@ -39,6 +39,7 @@ void World::Implementation::begin_step(const BoundaryInputs& inputs, StepResult&
   result.ignored_frame = update_frames(inputs);
   advance_winches();
   advance_guides();
+  wind_drives();
   build_islands();
 }
 
@@ -74,6 +75,15 @@ void World::Implementation::count_step() {
 void World::Implementation::advance_winches() {
   for (std::size_t i = 0; i < state.cables.size(); ++i)
     if (state.cable_progress[i].drive) plan_drive_step(static_cast<int>(i));
+}
+
+/// Once nodes are numbered anew, of segments as long as they are: where a clamp aims its second node depends on the length at the
+/// end of the step.
+void World::Implementation::wind_drives() {
+  for (std::size_t i = 0; i < state.cables.size(); ++i) {
+    const std::optional<LengthDrive>& drive = state.cable_progress[i].drive;
+    if (drive) wind(*drive, 1, state.scene->time_step, *state.cables[i].model, state.cables[i].state);
+  }
 }
 
 /// Where cables may touch each other, that depends on where their targets take them.

@@ -344,7 +344,7 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   const bool held = !memory.targets.nodes.empty();
   state.cables.push_back(std::move(cable));
   state.cable_progress.push_back(std::move(memory));
-  if (moves && slides(state.cable_progress[index].targets)) move_with_guides(index, state);
+  if (moves && slides(state.cable_progress[index].targets)) move_with_holders(index, state);
   // What is joined settles together.
   if (settles && held && !branches && !Settling(index, state, workspaces.value.local(), cancelled).settle_start())
     findings.unsettled.push_back(desc.name);
