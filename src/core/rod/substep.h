@@ -85,7 +85,7 @@ class Convergence {
 /// that weight strains it by a part in ten million.
 double stiffness_of_taut(const Substep& substep, const CableState& state);
 
-/// Whether bodies hold a part of the cable, of what cannot stretch, that is longer than it should be; likewise.
+/// Whether bodies hold an inextensible part of the cable that is longer than it should be at the start of the substep, `state`.
 bool is_drawn_out_on_bodies(const Substep& substep, const CableState& state);
 
 /// [N] The same of a cable that bodies draw out beyond its length: as much as a soft rope's.

@@ -80,7 +80,7 @@ struct HolderLoads {
 /// What becomes of spans that bodies have drawn out beyond their length.
 struct DrawnOut {
   double drawn_in = std::numeric_limits<double>::infinity();  ///< [m] of what is too much, at most
-  bool is_reported = false;
+  bool is_reported = false;                                   ///< whether they count among those whose first node is returned
 };
 
 /// The lengths [m] that the segments can keep: their rest lengths, but longer between holders that are further apart
