@@ -396,6 +396,23 @@ TEST(Jumps, SeveralHandsAtOnceAndTheClampTheyHold) {
     }
 }
 
+TEST(Jumps, KnowTheirAttachmentsAfterAnUnpin) {
+  SceneDesc scene = between_hands(AttachmentType::hinge, 0, infinity);
+  World world(scene, moving({Pose{}, at({0, 0, 1}), at({0.3, 0, 1})}, {}));
+  BoundaryInputs inputs = moving({Pose{}, at({0, 0, 1}), at({0.3, 0, 1})}, {});
+  for (int i = 0; i < 10; ++i) world.step(inputs);
+  inputs.back().pose.position.z() += 0.2;
+  for (int i = 0; i < 10 && world.findings().jumps.empty(); ++i) world.step(inputs);
+  ASSERT_EQ(world.findings().jumps.size(), 1u);
+  const auto name = [&] { return world.attachments().at(world.findings().jumps.at(0).attachment).name; };
+  const std::string jumping = name();
+  ASSERT_EQ(jumping, world.attachments()[1].name);
+  ASSERT_TRUE(world.apply(edit::Unpin{world.attachments()[0].name}).ok);
+  EXPECT_EQ(name(), jumping);
+  ASSERT_TRUE(world.apply(edit::Unpin{jumping}).ok);
+  EXPECT_TRUE(world.findings().jumps.empty());
+}
+
 TEST(Jumps, ANetIsCarriedAlongAndKeepsItsMotion) {
   for (const LinkType links : {LinkType::spring, LinkType::limited, LinkType::rigid}) {
     SceneDesc scene = scenes::flag(4, 4, 0.05, links);

@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
+#include <string>
 
 #include "../support/scenes.h"
+#include "verlet_cable/core/scene_fields.h"
 
 namespace verlet_cable {
 namespace {
@@ -154,6 +157,29 @@ TEST(World, CutKeepsMassMomentumAndHolders) {
   for (int i = 0; i < 1000; ++i) ASSERT_EQ(world.step(scenes::hand_at({0.6, 0.1, 0})).status, Status::ok);
   EXPECT_EQ(world.cables()[1].state.positions.back(), Vector3(0.6, 0.1, 0));
   EXPECT_LT(world.cables()[0].state.positions.back().z(), -0.2);
+}
+
+TEST(World, PiecesOfACutTakeNoMoreMemoryThanTheirNodesNeed) {
+  SceneDesc scene = scenes::one_cable(200, 1);
+  World world(scene, BoundaryInputs(frame_names(scene).size()));
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(world.apply(edit::Cut{cable_id(0), world.cables()[0].state.segments() - 3}).ok);
+  for (const SimulatedCable& piece : world.cables()) {
+    EXPECT_EQ(piece.state.positions.capacity(), piece.state.positions.size()) << piece.model->name;
+    EXPECT_EQ(piece.state.tension.capacity(), piece.state.tension.size()) << piece.model->name;
+  }
+}
+
+TEST(World, PiecesOfACutHaveNamesThatMayBeGiven) {
+  SceneDesc scene = scenes::one_cable(20, 1);
+  scene.cables[0].name = std::string(most_name_characters, 'a');
+  World world(scene, BoundaryInputs(frame_names(scene).size()));
+  std::set<std::string> names{scene.cables[0].name};
+  for (int i = 0; i < 5; ++i) {
+    const EditResult cut = world.apply(edit::Cut{cable_id(i), 1});
+    ASSERT_TRUE(cut.ok) << cut.message;
+    EXPECT_TRUE(names.insert(cut.name).second);
+    EXPECT_LE(cut.name.size(), most_name_characters);
+  }
 }
 
 TEST(World, CutThatLeavesNothingIsRefused) {

@@ -8,8 +8,7 @@ namespace {
 
 template <class Array>
 void keep(int first, int count, Array& array) {
-  array.erase(array.begin() + first + count, array.end());
-  array.erase(array.begin(), array.begin() + first);
+  array = Array(array.begin() + first, array.begin() + first + count);
 }
 
 double zero_like(double) {

@@ -34,7 +34,7 @@ void visit_segment_arrays(CableState& cable, const Visitor& visitor) {
 }
 /// @}
 
-/// Keeps the nodes `first` to `last` and the segments between them.
+/// Keeps the nodes `first` to `last` and the segments between them, and no memory for others.
 void slice(int first, int last, CableState& cable);
 
 /// From the end to the start.

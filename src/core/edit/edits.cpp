@@ -8,6 +8,7 @@
 #include "rod/rod_frames.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/pin_rules.h"
+#include "verlet_cable/core/scene_fields.h"
 #include "verlet_cable/core/world.h"
 #include "world/implementation.h"
 
@@ -22,11 +23,11 @@ int junction_at(const std::vector<Attachment>& attachments, const BodyId& body, 
   return joint == attachments.end() ? -1 : joint->holder;
 }
 
-/// `base` followed by the lowest number for which `taken` is false.
+/// `base` followed by the lowest number for which `taken` is false; the end of a long base gives way to the number.
 template <typename Taken>
 std::string numbered(const std::string& base, int first, const Taken& taken) {
   for (int i = first;; ++i) {
-    const std::string name = base + std::to_string(i);
+    const std::string number = std::to_string(i), name = base.substr(0, most_name_characters - number.size()) + number;
     if (!taken(name)) return name;
   }
 }
@@ -40,12 +41,13 @@ CableState piece(const CableState& whole, int first, int last) {
   return cable;
 }
 
-template <typename HolderType>
-void forget_attachment(int attachment, std::vector<HolderType>& targets) {
-  targets.erase(std::remove_if(targets.begin(), targets.end(), [&](const HolderType& h) { return h.attachment == attachment; }),
-                targets.end());
-  for (HolderType& h : targets)
-    if (h.attachment > attachment) --h.attachment;
+/// Removes what belongs to an attachment, and renumbers the attachments of the rest.
+template <typename Item>
+void forget_attachment(int attachment, std::vector<Item>& items) {
+  items.erase(std::remove_if(items.begin(), items.end(), [&](const Item& item) { return item.attachment == attachment; }),
+              items.end());
+  for (Item& item : items)
+    if (item.attachment > attachment) --item.attachment;
 }
 
 /// Moves the holders from node `first_node` on to the second piece, whose nodes count from there.
@@ -169,6 +171,7 @@ void World::Implementation::erase_attachment(int index) {
     for (const DirectionTarget& clamp : state.cable_progress[body.index].targets.directions)
       if (clamp.attachment == index) release_joint_twist(clamp, state.cables[body.index].state);
   state.attachments.erase(state.attachments.begin() + index);
+  forget_attachment(index, findings.jumps);
   for (CableProgress& s : state.cable_progress) {
     forget_attachment(index, s.targets.nodes);
     forget_attachment(index, s.targets.directions);
