@@ -227,6 +227,18 @@ TEST(Contact, CableSettlesOnAFloor) {
   EXPECT_LT(moved, 0.01 * radius);
 }
 
+TEST(Contact, SettlingForgetsWhatWasFoundInTheLastStep) {
+  SceneDesc scene = straight_rope(1, 20);
+  add_obstacle("table", ShapeType::box, {0.5, 0, -0.045, 0, 0, 0}, scene);
+  World world(scene, BoundaryInputs(frame_names(scene).size()));
+  world.step(BoundaryInputs(world.frames().size()));
+  ASSERT_FALSE(world.findings().contacts.empty());
+  ASSERT_FALSE(world.findings().intrusions.empty());
+  world.settle();
+  EXPECT_TRUE(world.findings().contacts.empty());
+  EXPECT_TRUE(world.findings().intrusions.empty());
+}
+
 TEST(Contact, CableInsideAnObstacleIsFoundAndPushedOutGently) {
   SceneDesc scene = straight_rope(0.3, 30);
   scene.cables[0].initial.from = {-0.15, 0, 0.03};

@@ -33,6 +33,7 @@ struct World::Implementation {
   void begin_step(const BoundaryInputs& inputs, StepResult& result);
   void end_step(StepResult& result);
   void count_step();
+  void forget_last_step();
   int update_frames(const BoundaryInputs& inputs);
   void advance_winches();
   void advance_guides();

@@ -60,6 +60,12 @@ void World::limit_lanes(int most) {
 
 void World::Implementation::count_step() {
   ++state.steps;
+  forget_last_step();
+  cable_outcomes.value.resize(state.cables.size());
+  for (CableOutcome& outcome : cable_outcomes.value) outcome.result = {};
+}
+
+void World::Implementation::forget_last_step() {
   findings.breaks.clear();
   findings.excursions.clear();
   findings.caught.clear();
@@ -67,8 +73,6 @@ void World::Implementation::count_step() {
   findings.jumps.clear();
   findings.intrusions.clear();
   findings.contacts.clear();
-  cable_outcomes.value.resize(state.cables.size());
-  for (CableOutcome& outcome : cable_outcomes.value) outcome.result = {};
 }
 
 /// Winches and joints that close number nodes and attachments anew: one after the other.

@@ -122,6 +122,7 @@ bool is_sound(const Pose& pose) {
 bool World::settle() {
   Implementation& w = *implementation_;
   w.findings.unsettled.clear();
+  w.forget_last_step();
   for (Attachment& attachment : w.state.attachments) attachment.force = attachment.torque = Vector3::Zero();
   for (int cable = 0; cable < static_cast<int>(w.state.cables.size()); ++cable) {
     const KinematicTargets& targets = w.state.cable_progress[cable].targets;
