@@ -166,9 +166,9 @@ bool project_lengths(const std::vector<HeldNode>& held, const std::vector<double
       const double square = (local[i + 1] - local[i]).squaredNorm(), target = lengths[i] * lengths[i];
       // A segment is not asked to grow or shrink by more than a part of itself at a time: Newton's model holds no further.
       changes[i] = 0.5 * std::clamp(target - square, -0.75 * square, 0.75 * std::max(square, 0.01 * target));
+      if (!std::isfinite(square) || !std::isfinite(target)) return false;  // std::max would lose what is not a number
       if (system.movable(i)) error = std::max(error, std::abs(target - square) / target);
     }
-    if (!std::isfinite(error)) return false;
     if (error < length_tolerance) {
       for (int i = 0; i <= n; ++i)
         if (system.movable_node(i)) state.positions[i] = origin + local[i];
