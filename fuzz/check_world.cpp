@@ -157,6 +157,7 @@ void check_world(const World& world) {
 
 void check_result(const World& world, const StepResult& result) {
   check_finite("strain", result.max_strain);
+  require(result.status != StepResult::Status::fault, "no cable is stopped by a fault");
   require(result.status == StepResult::Status::ok || bool(result.body), "what is not well is named");
   require(is_there(world, result.body), "what is not well is there");
   require(result.ignored_frame < static_cast<int>(world.frames().size()), "the ignored frame is there");
