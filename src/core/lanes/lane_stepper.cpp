@@ -107,10 +107,12 @@ void LaneStepper::resize(const LaneLaw& law) {
   work_.lane = (work_.last_node + 1) / 2 - 1;
   work_.record = record_size(law);
   const std::size_t places = work_.lane + 1, lanes = passes_.lanes;
-  const std::size_t records = places * work_.record * lanes;
-  if (records_.size() < records) records_.resize(records);
-  const std::size_t eliminations = places * elimination_size(law) * lanes;
-  if (eliminations_.size() < eliminations) eliminations_.resize(eliminations);
+  const auto extend = [&](std::size_t numbers, Array& array) {
+    const std::size_t blocks = (numbers * lanes + most_lanes - 1) / most_lanes;
+    if (array.size() < blocks) array.resize(blocks);
+  };
+  extend(places * work_.record, records_);
+  extend(places * elimination_size(law), eliminations_);
   cables_.resize(most_lanes / 2);
   middles_.resize(most_lanes / 2);
   clamps_.resize(most_lanes / 2);
@@ -122,8 +124,8 @@ void LaneStepper::resize(const LaneLaw& law) {
     start_multipliers_[c].reserve(law.segments);
   }
   convergences_.reserve(most_lanes / 2);
-  work_.records = records_.data();
-  work_.eliminations = eliminations_.data();
+  work_.records = records_.data()->values;
+  work_.eliminations = eliminations_.data()->values;
   work_.middles = middles_.data();
   work_.cables = cables_.data();
   work_.values = &values_;
@@ -338,7 +340,7 @@ void LaneStepper::complete(int c, LaneMember& member) {
 }
 
 double& LaneStepper::value(LaneField field, int place, int lane) {
-  return records_[(place * work_.record + static_cast<int>(field)) * passes_.lanes + lane];
+  return work_.records[(place * work_.record + static_cast<int>(field)) * passes_.lanes + lane];
 }
 
 double& LaneStepper::at(LaneField field, int c, int node) {

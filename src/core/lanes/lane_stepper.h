@@ -1,7 +1,5 @@
 #pragma once
 
-#include <tbb/cache_aligned_allocator.h>
-
 #include <vector>
 
 #include "lanes/passes.h"
@@ -65,7 +63,11 @@ class LaneStepper {
   Vector3 joint_moment(int cable, int node);
   Vector3 force_of(int cable, int segment);
 
-  using Array = std::vector<double, tbb::cache_aligned_allocator<double>>;
+  /// The widest number. Arrays of it are aligned for narrower ones as well.
+  struct alignas(64) Block {
+    double values[most_lanes];
+  };
+  using Array = std::vector<Block>;
   LanePasses passes_{};
   LaneWork work_;
   LaneValues values_{};
