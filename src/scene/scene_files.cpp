@@ -115,4 +115,24 @@ void read_scene_files(const Value& root, const SceneSources& sources, SceneDesc&
   if (scene.robot && !root.errors->is_unread("robot")) read_robot(root, sources, meshes, *scene.robot);
 }
 
+std::vector<std::string> named_files(const SceneDesc& scene, const FileAccess& access) {
+  std::vector<std::string> files;
+  const auto add = [&](const std::string& uri) {
+    if (uri.empty()) return;
+    try {
+      files.push_back(file_of(uri, access));
+    } catch (const ResourceError&) {
+      return;  // nothing is there
+    }
+  };
+  for (const ObstacleDesc& obstacle : scene.obstacles) add(obstacle.uri);
+  for (const BodyDesc& body : scene.bodies)
+    for (const auto& shape : body.shapes) add(shape.uri);
+  if (!scene.robot) return files;
+  add(scene.robot->file);
+  for (const LinkDesc& link : scene.robot->tree)
+    for (const ObstacleDesc& obstacle : link.obstacles) add(obstacle.uri);
+  return files;
+}
+
 }  // namespace verlet_cable

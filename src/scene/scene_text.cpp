@@ -135,6 +135,10 @@ std::string text_of(const std::string& path) {
 
 }  // namespace
 
+FileAccess access_beside(const std::string& scene) {
+  return {true, std::filesystem::path(scene).parent_path().string()};
+}
+
 SceneDesc read_scene_text(const std::string& text, const SceneSources& sources) {
   if (text.size() > largest_scene_text)
     throw SceneError(
@@ -150,7 +154,7 @@ SceneDesc read_scene_text(const std::string& text, const SceneSources& sources) 
 }
 
 SceneDesc read_scene_file(const std::string& path) {
-  return read_scene_file(path, {{true, std::filesystem::path(path).parent_path().string()}, {}});
+  return read_scene_file(path, {access_beside(path), {}});
 }
 
 SceneDesc read_scene_file(const std::string& path, const SceneSources& sources) {

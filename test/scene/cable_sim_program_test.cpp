@@ -15,6 +15,8 @@ using test::sound_scene;
 
 constexpr double gravity = 9.81;
 
+constexpr const char* tetrahedron = "v 9 0 0\nv 9 1 0\nv 9 0 1\nv 10 0 0\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
 TEST_F(CableSim, rowsAreTheWorldsOwnNumbers) {
   const std::string scene_path = write("scene.yaml", sound_scene);
   ASSERT_EQ(run(scene_path + " --duration 0.5 --rate 50 --output " + path("o.csv")), 0) << err;
@@ -257,6 +259,9 @@ TEST_F(CableSim, badInputExitsWithTwo) {
        "--bodies: \"" + path("x") + "\" is the output; allowed: another file"},
       {scene + " --bodies " + path("x") + " --summary " + path("x"), "is the output of bodies; allowed: another file"},
       {scene + " --bodies " + scene, "is the scene; allowed: another file"},
+      {write("mesh.yaml", std::string(sound_scene) + "obstacles: [{name: part, type: mesh, uri: part.obj}]\n") + " --output " +
+           write("part.obj", tetrahedron),
+       "--output: \"" + path("part.obj") + "\" is a file of the scene; allowed: another file"},
       {scene + " --motion " + path("none.csv"), "none.csv: cannot read"},
       {scene + " --motion " + write("world.csv", "t,frame,x,y,z,qx,qy,qz,qw\n0,world,0,0,0,0,0,0,1\n"),
        "any but the fixed frame"},

@@ -33,11 +33,17 @@ SceneDesc read_scene(const YAML::Node& root, const std::vector<std::string>& ign
 /// they are used. Throws SceneError; syntax errors come with line and column.
 SceneDesc read_scene_text(const std::string& text, const SceneSources& sources = {});
 
+/// Access to any file, with relative paths referring to the directory of a scene file.
+FileAccess access_beside(const std::string& scene);
+
 /// Reads a scene from a YAML file, and the files that it names from anywhere: relative paths refer to the directory of the scene
 /// file. Throws SceneError, also if the file cannot be read.
 SceneDesc read_scene_file(const std::string& path);
 /// The same, but files and parameters that it names are read from `sources` only.
 SceneDesc read_scene_file(const std::string& path, const SceneSources& sources);
+
+/// Paths of the files that a scene names and that are there: meshes of obstacles, bodies and the robot, and the robot's URDF.
+std::vector<std::string> named_files(const SceneDesc& scene, const FileAccess& access);
 
 /// Reads one obstacle, with the keys of an obstacle in a scene. Throws SceneError likewise; its lines begin with the key.
 ObstacleDesc read_obstacle(const YAML::Node& keys, const SceneSources& sources = {});

@@ -22,7 +22,8 @@ void append(const std::string& prefix, const std::vector<std::string>& lines, st
   for (const std::string& line : lines) errors.push_back(prefix + ": " + line);
 }
 
-void check_outputs(const Options& options, std::vector<std::string>& errors) {
+/// `scene_files`: those that the scene names.
+void check_outputs(const Options& options, const std::vector<std::string>& scene_files, std::vector<std::string>& errors) {
   struct Output {
     const char* option;
     const std::string& path;
@@ -31,10 +32,10 @@ void check_outputs(const Options& options, std::vector<std::string>& errors) {
     const char* what;
     const std::string& path;
   };
-  const Other others[] = {{"the scene", options.scene},
-                          {"the motion", options.motion},
-                          {"the output", options.output},
-                          {"the output of bodies", options.bodies}};
+  std::vector<Other> others{{"the scene", options.scene}, {"the motion", options.motion}};
+  for (const std::string& file : scene_files) others.push_back({"a file of the scene", file});
+  others.push_back({"the output", options.output});
+  others.push_back({"the output of bodies", options.bodies});
   for (const Output& output :
        {Output{"--output", options.output}, Output{"--bodies", options.bodies}, Output{"--summary", options.summary}}) {
     if (output.path.empty()) continue;
@@ -97,7 +98,7 @@ Job prepare(const Options& options, std::vector<std::string>& errors) {
       motion_is_sound = false;
     }
   }
-  check_outputs(options, errors);
+  check_outputs(options, named_files(job.scene, access_beside(options.scene)), errors);
   if (scene_is_sound) {
     check_times(options, job.scene.time_step, errors);
     if (motion_is_sound) check_motion(options, job.scene, job.motion, errors);
