@@ -90,7 +90,7 @@ class RecordToCsv(unittest.TestCase):
                 bag.write('/uneven', cloud(row, seen[:3 + row % 2]), stamp(row))
 
     def convert(self, *arguments, output=None):
-        command = [os.path.join(SCRIPTS, 'record_to_csv'), self.bag, output or self.csv, *arguments]
+        command = [os.path.join(SCRIPTS, 'record_to_csv'), self.bag, self.csv if output is None else output, *arguments]
         return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
 
     def expect_recorded(self, tolerance):
@@ -225,7 +225,7 @@ class RecordToCsv(unittest.TestCase):
         pipe = self.csv + '.pipe'
         os.mkfifo(pipe)
         for output, expected in ((pipe, 'it is a named pipe'), ('/nonexistent/o.csv', 'No such file or directory'),
-                                 ('/', 'Is a directory'), (self.bag, 'is the bag; allowed: another file')):
+                                 ('/', 'Is a directory'), ('', 'it is empty'), (self.bag, 'is the bag; allowed: another file')):
             done = self.convert('--state', '/cable/state', '--cable', 'lead', output=output)
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(expected, done.stderr)
