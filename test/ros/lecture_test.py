@@ -53,7 +53,7 @@ class LectureTest(unittest.TestCase):
         self.assertEqual(points, [(0, i) for i in range(30)] + [(1, 0)])
         markers = {(m.ns, m.id): m for m in receive('markers', MarkerArray).markers}
         self.assertEqual(len(markers['flag', 0].points), 2 * LINKS)
-        self.assertEqual(len(markers['flag', 1].points), 6 * 4 * 5)  # once, not for each side
+        self.assertEqual(len(markers['flag', -1].points), 6 * 4 * 5)  # once, not for each side
         self.assertEqual(markers['ball', 0].type, Marker.SPHERE)
 
     def test_holders_carry_the_net(self):

@@ -20,7 +20,8 @@ using visualization_msgs::MarkerArray;
 constexpr double aluminium_density = 2700;  // [kg/m^3]
 constexpr double pin_size = 2.2;            // of a pin to the cable it holds, radius to radius
 constexpr int cable_marker_id = 0;
-constexpr int net_lines_id = 0, net_triangles_id = 1, particle_marker_id = 0;
+constexpr int net_lines_id = 0, particle_marker_id = 0;
+constexpr int net_triangles_id = -1;     // markers that share a namespace with a net, as pins may, have ids from 0
 constexpr double net_line_width = 0.04;  // of the first link's length
 constexpr double net_pin_size = 0.4;     // likewise
 constexpr double body_pin_size = 0.3;    // of a body's radius of gyration
