@@ -6,7 +6,9 @@ import signal
 import subprocess
 import sys
 import time
+import xmlrpc.client
 
+import rosgraph
 import rospy
 
 from load import Caller, Sender
@@ -61,8 +63,31 @@ class Victims:
             calls = process.communicate()[0]
             self.killed += 1
             self.killed_in_calls += calls.count(CALLED) > calls.count(ANSWERED)
+            unregister(f'/{VICTIM}_{process.pid}_')
 
 
+def unregister(prefix):
+    """Removes nodes from the master, as `rosnode cleanup` does: roscpp tries again and again to connect to publishers that were killed,
+    and keeps 1.7 kB for each attempt."""
+    master = rosgraph.Master('/soak')
+    try:
+        publishers, subscribers, services = master.getSystemState()
+        for node in {node for _, nodes in publishers + subscribers + services for node in nodes if node.startswith(prefix)}:
+            of_node, api = rosgraph.Master(node), master.lookupNode(node)
+            for topic, nodes in publishers:
+                if node in nodes:
+                    of_node.unregisterPublisher(topic, api)
+            for topic, nodes in subscribers:
+                if node in nodes:
+                    of_node.unregisterSubscriber(topic, api)
+            for service, nodes in services:
+                if node in nodes:
+                    of_node.unregisterService(service, master.lookupService(service))
+    except (OSError, rosgraph.MasterException, xmlrpc.client.Error):
+        return  # no master at the moment: what it knew of killed clients is not restored
+
+
+VICTIM = 'victim'
 CALLED, ANSWERED = b'\1', b'\2'  # what a victim writes; no log has these
 
 
@@ -80,5 +105,5 @@ class Written:
 
 
 def be_a_victim(seed, scene, stop):
-    rospy.init_node('victim', anonymous=True, disable_rostime=True, disable_signals=True)
+    rospy.init_node(VICTIM, anonymous=True, disable_rostime=True, disable_signals=True)
     return [Caller(seed, scene, Written()), Sender(seed + 1), Visitors(seed + 2)]
