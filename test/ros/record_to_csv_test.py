@@ -230,6 +230,13 @@ class RecordToCsv(unittest.TestCase):
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(expected, done.stderr)
 
+    def test_a_marker_is_near_its_gripper(self):
+        for offset in ('0', '-0.02', '1e308', 'nan', 'inf'):
+            done = self.convert('--state', '/cable/state', '--cable', 'lead', '--start', 'start_hand', '--end', 'end_hand',
+                                f'--offset={offset}')
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn('allowed: above 0, at most 10.0 [m]', done.stderr)
+
 
 if __name__ == '__main__':
     rostest.rosrun('verlet_cable', 'record_to_csv', RecordToCsv)
