@@ -4,27 +4,17 @@
 #include <cctype>
 #include <utility>
 
+#include "verlet_cable/core/quoted_text.h"
+
 namespace verlet_cable {
 namespace {
-
-/// The number of bytes of the character of UTF-8 that starts at `at`; 0 where there is none.
-std::size_t length_of_character(const std::string& text, std::size_t at) {
-  const auto byte = static_cast<unsigned char>(text[at]);
-  if (byte == 0) return 0;
-  if (byte < 0x80) return 1;
-  const std::size_t length = byte >= 0xc2 && byte < 0xe0 ? 2 : (byte & 0xf0) == 0xe0 ? 3 : byte >= 0xf0 && byte < 0xf5 ? 4 : 0;
-  if (length == 0 || at + length > text.size()) return 0;
-  for (std::size_t i = 1; i < length; ++i)
-    if ((static_cast<unsigned char>(text[at + i]) & 0xc0) != 0x80) return 0;
-  return length;
-}
 
 std::size_t length_of_text(const std::string& text) {
   std::size_t at = 0;
   while (at < text.size()) {
-    const std::size_t length = length_of_character(text, at);
-    if (length == 0) break;
-    at += length;
+    const std::size_t size = character_size(text, at);
+    if (size == 0 || text[at] == '\0') break;
+    at += size;
   }
   return at;
 }

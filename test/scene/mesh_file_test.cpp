@@ -182,6 +182,15 @@ TEST_F(MeshFile, badFilesAreRefusedByName) {
   expect_refused("indices.dae", replaced(collada, ">0 2 1 1", ">0 2 1U 1"), "no mesh: <p> at byte ");
   expect_refused("hidden.dae", replaced(collada, ">0 2 1 1", "><!-- -->0 2 x 1"), "no mesh: <p> at byte ");
   expect_refused("count.dae", replaced(collada, "count=\"24\"", "count = '4000000000'"), "no mesh: count 4000000000 at byte ");
+  for (const auto& [was, is] : {std::pair("count=\"24\"", "size=\"24\""),
+                                {"count=\"24\"", "count=\"23\""},
+                                {"count=\"8\"", "count=\"9\""},
+                                {"stride=\"3\"", "stride=\"4\""},
+                                {"stride=\"3\"", "stride=\"3\" offset='1'"},
+                                {"stride=\"3\"", "offset = \"22\""},
+                                {"stride=\"3\"", "stride=\"-3\""},
+                                {"count=\"24\">", "count=\"24\">0</float_array><float_array id=\"a\" count=\"1\">"}})
+    expect_refused("accessor.dae", replaced(collada, was, is), "no mesh: <accessor> at byte ");
   expect_refused("doubling.dae", doubling_collada(), "it takes ");  // more than 1 GB or 15 s, or on a busy machine too long
   const std::string circle = "<library_nodes><node id=\"n\"><instance_node url=\"#n\"/></node></library_nodes>";
   expect_refused("circle.dae",
