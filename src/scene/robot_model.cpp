@@ -4,6 +4,7 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <set>
 
 #include "verlet_cable/core/quoted_text.h"
@@ -18,6 +19,19 @@ constexpr std::size_t longest_message = 300;
 constexpr std::size_t largest_text = std::size_t{4} << 20;  // [byte]
 constexpr std::size_t deepest_level = 64;
 constexpr std::size_t most_links = 1000;
+constexpr std::size_t most_reference_digits = 7;
+/// urdfdom uses texts of the file as formats of its messages, where `%n` writes to memory: it is shown this for each `%`.
+constexpr char percent_stand_in = '\x1f';
+
+std::string replaced(std::string text, char from, char to) {
+  std::replace(text.begin(), text.end(), from, to);
+  return text;
+}
+
+/// A text of the model as the file has it.
+std::string original(const std::string& text) {
+  return replaced(text, percent_stand_in, '%');
+}
 
 /// What urdfdom would print, as long as this is there.
 class CapturedErrors : public console_bridge::OutputHandler {
@@ -62,15 +76,36 @@ void set_shape(const urdf::Geometry& geometry, ObstacleDesc& obstacle) {
     case urdf::Geometry::MESH: {
       const urdf::Mesh& mesh = static_cast<const urdf::Mesh&>(geometry);
       obstacle.type = ShapeType::mesh;
-      obstacle.uri = mesh.filename;
+      obstacle.uri = original(mesh.filename);
       obstacle.scale = {mesh.scale.x, mesh.scale.y, mesh.scale.z};
       break;
     }
   }
 }
 
+[[noreturn]] void refuse(std::size_t byte, const std::string& what) {
+  throw ResourceError("no URDF: byte " + std::to_string(byte) + ": " + what);
+}
+
+/// XML has no control characters, one of which stands for `%`, and references must not become `%`: some parsers keep only the
+/// last byte of a character's number.
+void check_characters(const std::string& text) {
+  const auto is_control = [](char c) { return c >= 0 && c < ' ' && c != '\t' && c != '\r' && c != '\n'; };
+  const auto control = std::find_if(text.begin(), text.end(), is_control);
+  if (control != text.end()) refuse(static_cast<std::size_t>(control - text.begin()), "a control character");
+  for (std::size_t at = text.find("&#"); at != std::string::npos; at = text.find("&#", at + 1)) {
+    const bool is_hexadecimal = text.compare(at + 2, 1, "x") == 0;
+    const std::size_t first = at + (is_hexadecimal ? 3 : 2);
+    const std::size_t end = text.find_first_not_of(is_hexadecimal ? "0123456789abcdefABCDEF" : "0123456789", first);
+    if (end == std::string::npos || text[end] != ';' || end == first || end - first > most_reference_digits)
+      refuse(at, "a reference to no character");
+    if (std::strtoul(text.c_str() + first, nullptr, is_hexadecimal ? 16 : 10) % 256 == '%')
+      refuse(at, "a reference to the character %, or to one that some parsers take for it");
+  }
+}
+
 /// The parser and the model call themselves for each level of elements and of links.
-void check_size(const std::string& text) {
+void check_text(const std::string& text) {
   const auto check = [](std::size_t number, std::size_t most, const std::string& what) {
     if (number > most)
       throw ResourceError("no URDF: " + std::to_string(number) + " " + what + ", more than " + std::to_string(most));
@@ -80,16 +115,18 @@ void check_size(const std::string& text) {
   check(outline.levels, deepest_level, "levels of nested elements");
   check(outline.links, most_links, "links");
   if (!outline.problem.empty()) throw ResourceError("no URDF: " + outline.problem);
+  check_characters(text);
 }
 
 class TreeBuilder {
  public:
   TreeBuilder(const urdf::ModelInterface& model, const RobotDesc& robot) : robot_(robot) {
     for (const auto& link : model.links_) {
-      if (link.first.size() > most_name_characters)
-        throw ResourceError("no URDF: link " + quoted(link.first) + ", a name of " + std::to_string(link.first.size()) +
+      const std::string name = original(link.first);
+      if (name.size() > most_name_characters)
+        throw ResourceError("no URDF: link " + quoted(name) + ", a name of " + std::to_string(name.size()) +
                             " characters, more than " + std::to_string(most_name_characters));
-      taken_.insert(link.first);
+      taken_.insert(name);
     }
     add(*model.getRoot(), -1);
   }
@@ -100,14 +137,14 @@ class TreeBuilder {
   void add(const urdf::Link& link, int parent) {
     const int index = static_cast<int>(tree_.size());
     LinkDesc desc;
-    desc.name = link.name;
+    desc.name = original(link.name);
     desc.parent = parent;
     if (link.parent_joint) {
       desc.fixed = link.parent_joint->type == urdf::Joint::FIXED;
       desc.origin = to_pose(link.parent_joint->parent_to_joint_origin_transform);
     }
     const std::vector<std::string>& selected = robot_.links;
-    if (selected.empty() || std::find(selected.begin(), selected.end(), link.name) != selected.end()) add_obstacles(link, desc);
+    if (selected.empty() || std::find(selected.begin(), selected.end(), desc.name) != selected.end()) add_obstacles(link, desc);
     tree_.push_back(std::move(desc));
     for (const urdf::LinkSharedPtr& child : link.child_links) add(*child, index);
   }
@@ -117,10 +154,10 @@ class TreeBuilder {
     for (const urdf::CollisionSharedPtr& collision : link.collision_array) {
       if (!collision || !collision->geometry) continue;
       ObstacleDesc obstacle;
-      obstacle.name = link.name;
+      obstacle.name = desc.name;
       while (!desc.obstacles.empty() && !taken_.insert(obstacle.name).second)
-        obstacle.name = link.name + "_" + std::to_string(++number);
-      obstacle.frame = link.name;
+        obstacle.name = desc.name + "_" + std::to_string(++number);
+      obstacle.frame = desc.name;
       obstacle.pose = to_pose(collision->origin);
       obstacle.padding = robot_.padding;
       set_shape(*collision->geometry, obstacle);
@@ -136,13 +173,13 @@ class TreeBuilder {
 }  // namespace
 
 std::vector<LinkDesc> read_urdf(const std::string& text, const RobotDesc& robot) {
-  check_size(text);
+  check_text(text);
   const CapturedErrors errors;
-  const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
+  const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(replaced(text, '%', percent_stand_in));
   // urdfdom goes on without a collision that it cannot read.
   if (!model || !model->getRoot() || !errors.text().empty()) {
     const std::string reason = errors.text().empty() ? "it does not parse" : errors.text();
-    throw ResourceError("no URDF: " + escaped(reason, longest_message));
+    throw ResourceError("no URDF: " + escaped(original(reason), longest_message));
   }
   return TreeBuilder(*model, robot).take();
 }

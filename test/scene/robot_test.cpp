@@ -219,6 +219,34 @@ TEST_F(Robot, whatIsTooDeepOrTooLongForTheParserIsNamed) {
   expect("<robot name='r'/>" + std::string(5'000'000, ' '), "5000017 bytes, more than 4194304");
 }
 
+/// urdfdom prints numbers that it cannot read as formats: `%n` writes to memory, `%s` reads from it.
+TEST_F(Robot, percentSignsAreNoFormats) {
+  const auto problem = [&](const std::string& from, const std::string& to) {
+    write("bad.urdf", replaced(urdf, from, to));
+    const std::vector<std::string> lines = errors_of(sound_scene + "robot: {links: [base], file: " + path("bad.urdf") + "}\n");
+    const std::string start = "robot.file: \"" + path("bad.urdf") + "\": no URDF: ";
+    EXPECT_EQ(lines.size(), 1u) << joined(lines);
+    return lines.size() == 1 && lines[0].rfind(start, 0) == 0 ? lines[0].substr(start.size()) : joined(lines);
+  };
+  for (const char* number : {"0 0 0.1", "0.2 0.4 0.6", "0.3", "0.7", "0.05"})
+    EXPECT_NE(problem('"' + std::string(number) + '"', "\"%n%n%s%s%s%n%n 0 0\"").find("%n%n%s%s%s%n%n"), std::string::npos)
+        << number;
+  for (const char* reference : {"&#37;n", "&#0037;n", "&#x25;n", "&#x125;n", "&#293;n"})
+    EXPECT_NE(problem("0.2 0.4 0.6", reference).find(": a reference to the character %"), std::string::npos) << reference;
+  for (const char* reference : {"&#x100000025;n", "&#n", "&#37", "&#;", "&#x;", "&#-219;"})
+    EXPECT_NE(problem("0.2 0.4 0.6", reference).find(": a reference to no character"), std::string::npos) << reference;
+  EXPECT_NE(problem("0.2 0.4 0.6", "\x1fn").find(": a control character"), std::string::npos);
+}
+
+TEST_F(Robot, percentSignsStayWhatTheyAre) {
+  write("50%20.stl", stl_of(box_triangles({1, 1, 1})));
+  write("good.urdf", replaced(replaced(urdf, "MESH", "file://" + path("50%20.stl")), "<robot name=\"r\">",
+                              "<robot name=\"50 %n\"><!-- 50 % &#45;&#10; -->"));
+  const SceneDesc scene = read("{file: " + path("good.urdf") + "}");
+  ASSERT_EQ(all_obstacles(scene).size(), 5u);
+  EXPECT_EQ(all_obstacles(scene)[3].uri, "file://" + path("50%20.stl"));
+}
+
 TEST_F(Robot, markupThatIsNoElementDoesNotCount) {
   std::string text = "<?xml version='1.0' encoding='UTF-8'?><!DOCTYPE robot><!-- a > b <c> -->";
   text += "<robot name=\"caf\u00e9 > a\"><!-- <a><b>'\" --><link name='one'><x><![CDATA[<a><b></x>]]></x></link>";
