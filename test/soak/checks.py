@@ -33,11 +33,14 @@ class Findings:
 class Calls:
     """Of all services: how many, how they were answered, and how long that took [s]."""
 
+    CLOSED = 'unable to receive data from sender'  # in rospy's words: the connection ended before the answer
+    MOST_CLOSED = 1e-3  # of all calls; roscpp itself closes some, see doc/sanitizers_and_soak.md
+
     def __init__(self, findings, master, bound):
         self._findings, self._master, self._bound = findings, master, bound
         self._lock = threading.Lock()
         self._open = {}
-        self.answered, self.refused, self.without_master, self.latencies = {}, {}, {}, {}
+        self.answered, self.refused, self.closed, self.without_master, self.latencies = {}, {}, {}, {}, {}
 
     def made(self, name, request):
         """Makes a call; returns its answer, or None."""
@@ -47,9 +50,12 @@ class Calls:
         try:
             answer = request()
         except (rospy.ServiceException, rospy.ROSException, OSError) as error:
-            if self._master.up and self._master.restarts == restarts:
+            if not self._master.up or self._master.restarts != restarts:
+                self._count(self.without_master, name)
+            elif self.CLOSED in str(error):
+                self._count(self.closed, name)
+            else:
                 self._findings.add(f'{name}: not answered', error)
-            self._count(self.without_master, name)
             time.sleep(0.1)
             return None
         finally:
@@ -71,6 +77,12 @@ class Calls:
     def _count(self, counts, name):
         with self._lock:
             counts[name] = counts.get(name, 0) + 1
+
+    def check_closed(self):
+        closed = sum(self.closed.values())
+        calls = closed + sum(self.answered.values()) + sum(self.refused.values())
+        if closed > self.MOST_CLOSED * calls:
+            self._findings.add('connections closed without an answer', f'{closed} of {calls}')
 
     def check_open(self):
         """Whether none waits for far longer than it may."""

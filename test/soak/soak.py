@@ -88,6 +88,7 @@ class Soak:
         self._end_node()
         self._frames.stop()
         self._memory.check(self._findings)
+        self._calls.check_closed()
         if self._watch.messages['/cable/state'] == 0 or self._watch.steps == 0:
             self._findings.add('nothing was published', '')
 

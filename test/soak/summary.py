@@ -26,9 +26,9 @@ def summarize(seconds, seed, build, findings, calls, watch, record, others):
         'hours': round(seconds / 3600, 3), 'seed': seed, 'build': build,
         'findings': {kind: count for kind, (count, _) in findings.all.items()},
         'examples': {kind: str(example)[:2000] for kind, (_, example) in findings.all.items()},
-        'calls': {name: {'done': calls.answered.get(name, 0), 'refused': calls.refused.get(name, 0),
+        'calls': {name: {'done': calls.answered.get(name, 0), 'refused': calls.refused.get(name, 0), 'closed': calls.closed.get(name, 0),
                          'without_master': calls.without_master.get(name, 0)}
-                  for name in sorted({**calls.answered, **calls.refused, **calls.without_master})},
+                  for name in sorted({**calls.answered, **calls.refused, **calls.closed, **calls.without_master})},
         'latency_s': {name: latency(values) for name, values in sorted(calls.latencies.items())},
         'steps': watch.steps, 'messages_checked': watch.messages, 'events': watch.events, 'memory': memory(record), **others}
 
@@ -36,10 +36,10 @@ def summarize(seconds, seed, build, findings, calls, watch, record, others):
 def text(summary):
     lines = [f'{summary["hours"]:.2f} h, {summary["build"]}, seed {summary["seed"]}: {summary["steps"]} steps, '
              f'{sum(summary["messages_checked"].values())} messages checked',
-             f'{"service":15}{"done":>8}{"refused":>9}{"no master":>11}{"p50 [s]":>10}{"p99 [s]":>10}{"max [s]":>10}']
+             f'{"service":15}{"done":>8}{"refused":>9}{"closed":>8}{"no master":>11}{"p50 [s]":>10}{"p99 [s]":>10}{"max [s]":>10}']
     for name, counts in summary['calls'].items():
         times = summary['latency_s'].get(name, {})
-        lines.append(f'{name:15}{counts["done"]:8}{counts["refused"]:9}{counts["without_master"]:11}' +
+        lines.append(f'{name:15}{counts["done"]:8}{counts["refused"]:9}{counts["closed"]:8}{counts["without_master"]:11}' +
                      ''.join(f'{times[key]:10.3f}' if key in times else f'{"":10}' for key in ('p50', 'p99', 'max')))
     for key in ('sent', 'clients', 'frames', 'events', 'memory'):
         lines.append(f'{key}: ' + ', '.join(f'{name} {value}' for name, value in summary[key].items()))
