@@ -128,6 +128,7 @@ void IslandStepper::stop(const Island& island, IslandOutcome& found) {
 }
 
 void IslandStepper::give_up(const Island& island) {
+  workspace_.contacts.touches().clear();  // their forces are of what was no solution, and may not even be numbers
   for (std::size_t k = 0; k < island.cables.size(); ++k)
     if (!workspace_.cables[k].result.converged)
       give_up(island.cables[k], workspace_.contacts.touched(k), workspace_.cables[k].boundary);
