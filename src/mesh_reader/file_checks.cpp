@@ -110,9 +110,11 @@ void check_accessors(const std::string& content) {
     const auto array = sizes.find(attribute_of(tag, "source"));
     const double count = values_of(tag, "count", 0);
     if (array == sizes.end() || count == 0) return;
-    const std::size_t end = std::min(content.find("</accessor", at), content.size());
     double parameters = 0;
-    for_each_tag(content.substr(at, end - at), "param", [&](std::size_t, const std::string&) { ++parameters; });
+    if (tag.back() != '/') {
+      const std::string inside = content.substr(at, content.find("</accessor", at) - at);
+      for_each_tag(inside, "param", [&](std::size_t, const std::string&) { ++parameters; });
+    }
     const double stride = values_of(tag, "stride", 1);
     const double needed = values_of(tag, "offset", 0) + (count - 1) * stride + std::max(stride, parameters);
     if (!(needed <= array->second))

@@ -217,6 +217,13 @@ TEST_F(MeshFile, badFilesAreRefusedByName) {
   for (const char* name : {"empty.stl", "empty.obj", "empty.dae"}) expect_refused(name, "", "no mesh: it is empty");
 }
 
+TEST_F(MeshFile, accessorsWithoutParametersHaveNoneOfTheNext) {
+  const std::string weights =
+      "<source id=\"w\"><float_array id=\"b\" count=\"2\">1 2</float_array>"
+      "<technique_common><accessor source=\"#b\" count=\"2\"/></technique_common></source>";
+  EXPECT_EQ(read("weights.dae", replaced(collada, "<source id=\"p\">", weights + "<source id=\"p\">"))->vertices().size(), 8u);
+}
+
 TEST_F(MeshFile, noFileThatItNamesIsOpened) {
   fs::create_directory(path("inside"));
   ASSERT_EQ(mkfifo(path("x").c_str(), 0600), 0);
