@@ -43,9 +43,8 @@ void HeldCable::begin(int participant, const Participant& p, const std::vector<i
     sides_.push_back(side);
   }
   find_stretches(p);
+  find_others();
   share_turns();
-  const auto rows = static_cast<Eigen::Index>(3 * sides_.size());
-  if (resistance_.rows() != rows) resistance_.resize(rows, rows);
   motion_.displacements.resize(boundary.nodes.size());
   motion_.rotations.resize(boundary.directions.size());
 }
@@ -60,9 +59,10 @@ void HeldCable::find_stretches(const Participant& p) {
   });
   int stretch = 0;
   auto side = sides_.begin();
+  auto direction = boundary.directions.begin();
   for (const HeldNode& held : boundary.nodes) {
-    const bool clamped = std::any_of(boundary.directions.begin(), boundary.directions.end(),
-                                     [&](const HeldDirection& direction) { return direction.node == held.node; });
+    while (direction != boundary.directions.end() && direction->node < held.node) ++direction;
+    const bool clamped = direction != boundary.directions.end() && direction->node == held.node;
     const bool inside = held.node > 0 && held.node < p.state->segments();
     const bool separates = inside && (clamped || !bends) && boundary.flows.empty();
     for (; side != sides_.end() && side->node == held.node; ++side) {
@@ -73,21 +73,31 @@ void HeldCable::find_stretches(const Participant& p) {
   }
 }
 
-/// The first turn in which nothing that a side interacts with interacts with another one.
+/// Stretches ascend with the sides: those that feel a side follow each other.
+void HeldCable::find_others() {
+  const int count = static_cast<int>(sides_.size());
+  int first = 0, past = 0, blocks = 0;
+  for (Side& side : sides_) {
+    while (sides_[first].last_stretch < side.first_stretch) ++first;
+    while (past < count && sides_[past].first_stretch <= side.last_stretch) ++past;
+    side.first_other = first;
+    side.past_others = past;
+    side.first_block = blocks;
+    blocks += past - first;
+  }
+  resistance_.resize(blocks);
+}
+
+/// The first turn in which nothing that feels a side feels another one.
 void HeldCable::share_turns() {
-  turns_ = 0;
-  for (std::size_t i = 0; i < sides_.size(); ++i) {
-    const auto disturbs = [&](int turn) {
-      for (std::size_t j = 0; j < i; ++j) {
-        if (sides_[j].turn != turn) continue;
-        for (const Side& third : sides_)
-          if (interact(third, sides_[i]) && interact(third, sides_[j])) return true;
-      }
-      return false;
-    };
-    sides_[i].turn = 0;
-    while (disturbs(sides_[i].turn)) ++sides_[i].turn;
-    turns_ = std::max(turns_, sides_[i].turn + 1);
+  turns_.clear();
+  for (Side& side : sides_) {
+    const auto turn = std::find_if(turns_.begin(), turns_.end(), [&](int past) { return past <= side.first_other; });
+    side.turn = static_cast<int>(turn - turns_.begin());
+    if (turn == turns_.end())
+      turns_.push_back(side.past_others);
+    else
+      *turn = side.past_others;
   }
 }
 
@@ -102,9 +112,8 @@ void HeldCable::couple(BodyEquations& equations) {
       for (const int b : members_) equations.couple(a, b);
     return;
   }
-  for (const Side& a : sides_)
-    for (const Side& b : sides_)
-      if (interact(a, b)) equations.couple(a.member, b.member);
+  for (const Side& side : sides_)
+    for (int other = side.first_other; other < side.past_others; ++other) equations.couple(side.member, sides_[other].member);
 }
 
 void HeldCable::add_masses(const Participant& p, std::vector<MovingBody>& bodies) const {
@@ -185,7 +194,7 @@ void HeldCable::find_resistance(BodyStage stage, Participant& p) {
   motion_.loads.clear();
   motion_.clear();
   const bool turning_acts = stage == BodyStage::substep;
-  for (int turn = 0; turn < turns_; ++turn)
+  for (int turn = 0; turn < static_cast<int>(turns_.size()); ++turn)
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       bool any = false;
       for (const Side& side : sides_) {
@@ -195,13 +204,12 @@ void HeldCable::find_resistance(BodyStage stage, Participant& p) {
       }
       if (!any) continue;
       p.stepper->respond(p.substep.boundary, motion_, responses_);
-      for (std::size_t j = 0; j < sides_.size(); ++j) {
-        if (sides_[j].turn != turn || (sides_[j].turns && !turning_acts)) continue;
-        motion_of(sides_[j]).setZero();
-        for (std::size_t i = 0; i < sides_.size(); ++i)
-          if (interact(sides_[i], sides_[j]))
-            resistance_.block<3, 1>(static_cast<Eigen::Index>(3 * i), static_cast<Eigen::Index>(3 * j) + axis) =
-                -load_of(sides_[i], responses_);
+      for (std::size_t moved = 0; moved < sides_.size(); ++moved) {
+        const Side& side = sides_[moved];
+        if (side.turn != turn || (side.turns && !turning_acts)) continue;
+        motion_of(side).setZero();
+        for (int other = side.first_other; other < side.past_others; ++other)
+          resistance(sides_[other], static_cast<int>(moved)).col(axis) = -load_of(sides_[other], responses_);
       }
     }
 }
@@ -210,16 +218,14 @@ void HeldCable::add_resistance(const std::vector<MovingBody>& bodies, BodyStage 
   if (!contacts_.empty() && stage == BodyStage::substep) return add_touching_resistance(bodies, stage, p, equations);
   find_resistance(stage, p);
   const bool turning_acts = stage == BodyStage::substep;
-  for (std::size_t i = 0; i < sides_.size(); ++i) {
-    const Side& a = sides_[i];
-    if (a.turns && !turning_acts) continue;
-    const Matrix63 load = load_of(a, bodies[a.member].stepper, stage);
-    for (std::size_t j = 0; j < sides_.size(); ++j) {
-      const Side& b = sides_[j];
-      if (!interact(a, b) || (b.turns && !turning_acts)) continue;
-      equations.block(a.member, b.member).noalias() +=
-          load * (resistance_.block<3, 3>(static_cast<Eigen::Index>(3 * i), static_cast<Eigen::Index>(3 * j)) *
-                  motion_of(b, bodies[b.member].stepper));
+  for (const Side& side : sides_) {
+    if (side.turns && !turning_acts) continue;
+    const Matrix63 load = load_of(side, bodies[side.member].stepper, stage);
+    for (int k = side.first_other; k < side.past_others; ++k) {
+      const Side& other = sides_[k];
+      if (other.turns && !turning_acts) continue;
+      equations.block(side.member, other.member).noalias() +=
+          load * (resistance(side, k) * motion_of(other, bodies[other.member].stepper));
     }
   }
 }

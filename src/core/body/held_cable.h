@@ -59,7 +59,9 @@ class HeldCable {
     Vector3 point = Vector3::Zero();  ///< of a node
     /// Of the cable, between places across which nothing is felt: those that feel how the side moves.
     int first_stretch = 0, last_stretch = 0;
-    int turn = 0;  ///< sides of the same one are moved at once: none feels two of them
+    int first_other = 0, past_others = 0;  ///< of the sides that feel how it moves; it feels how these move
+    int first_block = 0;                   ///< of `resistance_`: what it feels of those, in their order
+    int turn = 0;                          ///< sides of the same one are moved at once: none feels two of them
   };
   static Matrix36 motion_of(const Side& side, const RigidBodyStepper& body);
   static Matrix63 load_of(const Side& side, const RigidBodyStepper& body, BodyStage stage);
@@ -77,18 +79,17 @@ class HeldCable {
     return side.turns ? loads.torques[side.entry] : loads.forces[side.entry];
   }
   void find_stretches(const Participant& p);
+  void find_others();
   void share_turns();
-  bool interact(const Side& a, const Side& b) const {
-    return a.first_stretch <= b.last_stretch && b.first_stretch <= a.last_stretch;
-  }
+  Eigen::Matrix3d& resistance(const Side& of, int against) { return resistance_[of.first_block + against - of.first_other]; }
   void find_resistance(BodyStage stage, Participant& p);
 
   int participant_ = 0;
   std::vector<Side> sides_;  ///< ascending by node, a node before its direction
   std::vector<Contact> contacts_;
   std::vector<int> members_;  ///< bodies that hold it or press on it, ascending; set by `couple`
-  int turns_ = 0;
-  Eigen::MatrixXd resistance_;  ///< of what the sides feel against how they move, where they interact
+  std::vector<int> turns_;                   ///< of each: past the last side that feels a side of it so far
+  std::vector<Eigen::Matrix3d> resistance_;  ///< of what the sides feel, against how they move
   HolderLoads loads_, responses_;
   HolderMotion motion_;
 };

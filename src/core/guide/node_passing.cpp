@@ -117,6 +117,12 @@ void continue_material(const Attachment& attachment, int from, CableState& state
   state.section_material[side_of(attachment, 1 - from).segment()] = state.section_material[side_of(attachment, from).segment()];
 }
 
+/// Whether material flows at what holds a node: once a guide, also at a wheel, which holds two.
+bool flows_at(const KinematicTarget& target, const State& state) {
+  const Attachment& attachment = state.attachments[target.attachment];
+  return attachment.guide >= 0 && target.node == attachment.node;
+}
+
 /// What holds a cable now, with what flows through its guides and what is wound.
 Boundary moving_boundary(int index, const State& state) {
   const CableProgress& progress = state.cable_progress[index];
@@ -170,13 +176,20 @@ bool runs_out(const Attachment& attachment, const State& state) {
   });
 }
 
+int count_flows(int index, const State& state) {
+  if (state.guides.empty()) return 0;
+  const std::vector<KinematicTarget>& targets = state.cable_progress[index].targets.nodes;
+  return static_cast<int>(
+      std::count_if(targets.begin(), targets.end(), [&](const KinematicTarget& target) { return flows_at(target, state); }));
+}
+
 void load_flows(int index, const State& state, Boundary& boundary) {
   boundary.flows.clear();
   if (state.guides.empty()) return;
   const SimulatedCable& cable = state.cables[index];
   for (const KinematicTarget& target : state.cable_progress[index].targets.nodes) {
+    if (!flows_at(target, state)) continue;
     const Attachment& attachment = state.attachments[target.attachment];
-    if (attachment.guide < 0 || target.node != attachment.node) continue;
     const SimulatedGuide& guide = state.guides[attachment.guide];
     GuidedFlow& flow = boundary.flows.emplace_back();
     flow.first = attachment.node;

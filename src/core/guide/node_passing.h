@@ -19,6 +19,7 @@ bool runs_out(const Attachment& guide, const State& state);
 
 /// Sets the flows of a boundary of a cable to what they are now; their places.
 void load_flows(int cable, const State& state, Boundary& boundary);
+int count_flows(int cable, const State& state);
 /// Takes over what a substep has found of them.
 void keep_flows(int cable, const Boundary& boundary, State& state);
 

@@ -29,6 +29,7 @@ constexpr double most = 5e5;
 constexpr double first_share = 40;
 constexpr double heavy = 6;     ///< times as long take twist, contacts and bodies
 constexpr double coupling = 2;  ///< likewise, a step that couples cables which touch each other
+constexpr double guide = 0.3;   ///< so much longer takes each guide, whose flow all of a cable responds to
 constexpr double cable = 4;     ///< counts as so many segments, beside those that it has
 constexpr double body = 100;    ///< likewise
 }  // namespace budget

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "guide/guides.h"
+#include "guide/node_passing.h"
 #include "rod/initial_shape.h"
 #include "world/island_stepper.h"
 #include "world/step_budget.h"
@@ -24,7 +25,9 @@ int finest_level(double time_step) {
 
 double size_of(const Island& island, const State& state) {
   double size = budget::body * static_cast<double>(island.bodies.size());
-  for (const int cable : island.cables) size += budget::heavy * (budget::cable + state.cables[cable].state.segments());
+  for (const int cable : island.cables)
+    size += budget::heavy * (1 + budget::guide * count_flows(cable, state)) *
+            (budget::cable + state.cables[cable].state.segments());
   return size;
 }
 
@@ -105,7 +108,8 @@ double IslandStepper::work_of_attempt(const Island& island) const {
   for (std::size_t k = 0; k < island.cables.size(); ++k) {
     const CableWorkspace& of_cable = workspace_.cables[k];
     const bool heavy = of_cable.stepper.is_whole_rod() || workspace_.contacts.touched(k) || of_cable.boundary.is_on_bodies();
-    double iterations = (heavy ? budget::heavy : 1) * of_cable.result.iterations;
+    const double flows = static_cast<double>(of_cable.boundary.flows.size());
+    double iterations = (heavy ? budget::heavy : 1) * (1 + budget::guide * flows) * of_cable.result.iterations;
     if (workspace_.contacts.touched(k) && of_cable.result.iterations > 0)
       iterations += budget::coupling * workspace_.contact_solver.coupling_steps();
     work += iterations * (budget::cable + state_.cables[island.cables[k]].state.segments());

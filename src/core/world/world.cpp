@@ -14,6 +14,7 @@
 #include "rod/rest_curvature.h"
 #include "rod/rod_frames.h"
 #include "rod/stiff_ends.h"
+#include "scene/coupled_places.h"
 #include "scene/validate_guides.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/number_text.h"
@@ -152,6 +153,7 @@ World::World(const SceneDesc& scene, const BoundaryInputs& inputs, const std::at
 
 World::World(const SceneDesc& scene) : implementation_(std::make_unique<Implementation>()) {
   std::vector<std::string> errors = validate(scene);
+  if (errors.empty()) errors = too_many_coupled_places(scene);
   if (errors.empty()) errors = not_simulated_guides(scene);
   if (!errors.empty()) throw SceneError(std::move(errors));
   Implementation& w = *implementation_;
