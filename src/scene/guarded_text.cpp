@@ -7,7 +7,7 @@ namespace verlet_cable {
 namespace {
 
 constexpr std::size_t block = 1024;
-constexpr std::size_t most_marks = 1'000'000;
+constexpr std::size_t most_marks = 1'000'000;  // takes up to 270 MB
 constexpr long most_brackets = 1000;
 
 bool is_one_of(const char* characters, char c) {
@@ -35,7 +35,10 @@ void GuardedText::count(char c) {
   if (is_one_of("[]{},:?\"'&*!|>%", c) || (last_ == '-' && is_one_of(" \t\r\n", c))) ++marks_;
   last_ = c;
   if (brackets_ > most_brackets) problem_ = "more than " + std::to_string(most_brackets) + " open brackets";
-  if (marks_ > most_marks) problem_ = "more than " + std::to_string(most_marks) + " signs [ ] { } , : and others in one value";
+  if (marks_ > most_marks)
+    problem_ =
+        "more than " + std::to_string(most_marks) +
+        " signs [ ] { } , : and others in one value in brackets; allowed: its lists with one element a line, each after \"- \"";
   if (!problem_.empty()) problem_ = "line " + std::to_string(line_) + ": " + problem_;
 }
 

@@ -7,7 +7,8 @@
 namespace verlet_cable {
 
 /// A text that ends early where a parser of YAML would have to keep too much before it can say anything: yaml-cpp keeps all
-/// tokens of a list in brackets up to its end, some hundred bytes for each. What it has said is let go.
+/// tokens of brackets in a list up to their end, some hundred bytes for each, whatever lines they are on. What it has said is let
+/// go.
 class GuardedText : public std::streambuf {
  public:
   /// `text` outlives this.

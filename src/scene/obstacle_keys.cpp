@@ -35,6 +35,13 @@ void read_links(const Value& value, RobotDesc& robot) {
   if (!value.node.IsSequence() || value.node.size() == 0) return value.reject(link_words);
   robot.links = read_list<std::string>(
       value, [](const Value& element, std::string& link) { link = read_text(element, "the name of a link"); });
+  std::set<std::string> seen;
+  for (std::size_t i = 0; i < robot.links.size(); ++i) {
+    const std::string& link = robot.links[i];
+    // What could not be read is empty.
+    if (!link.empty() && !seen.insert(link).second)
+      value.errors->add(value.element(i, {}).key, quoted(link) + " given twice", "each link once");
+  }
 }
 
 const Keys<RobotDesc>& robot_keys() {

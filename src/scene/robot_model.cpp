@@ -19,6 +19,8 @@ constexpr std::size_t longest_message = 300;
 constexpr std::size_t largest_text = std::size_t{4} << 20;  // [byte]
 constexpr std::size_t deepest_level = 64;
 constexpr std::size_t most_links = 1000;
+constexpr std::size_t most_attributes = 1000;  // of an element: the parser compares each with all before it
+constexpr std::size_t most_collisions = 5000;  // of all links in use
 constexpr std::size_t most_reference_digits = 7;
 /// urdfdom uses texts of the file as formats of its messages, where `%n` writes to memory: it is shown this for each `%`.
 constexpr char percent_stand_in = '\x1f';
@@ -104,36 +106,45 @@ void check_characters(const std::string& text) {
   }
 }
 
+void check_number(std::size_t number, std::size_t most, const std::string& what) {
+  if (number > most)
+    throw ResourceError("no URDF: " + std::to_string(number) + " " + what + ", more than " + std::to_string(most));
+}
+
 /// The parser and the model call themselves for each level of elements and of links.
 void check_text(const std::string& text) {
-  const auto check = [](std::size_t number, std::size_t most, const std::string& what) {
-    if (number > most)
-      throw ResourceError("no URDF: " + std::to_string(number) + " " + what + ", more than " + std::to_string(most));
-  };
-  check(text.size(), largest_text, "bytes");
+  check_number(text.size(), largest_text, "bytes");
   const XmlOutline outline = outline_of(text);
-  check(outline.levels, deepest_level, "levels of nested elements");
-  check(outline.links, most_links, "links");
+  check_number(outline.levels, deepest_level, "levels of nested elements");
+  check_number(outline.links, most_links, "links");
+  check_number(outline.attributes, most_attributes, "attributes on one element");
   if (!outline.problem.empty()) throw ResourceError("no URDF: " + outline.problem);
   check_characters(text);
 }
 
 class TreeBuilder {
  public:
-  TreeBuilder(const urdf::ModelInterface& model, const RobotDesc& robot) : robot_(robot) {
+  TreeBuilder(const urdf::ModelInterface& model, const RobotDesc& robot)
+      : robot_(robot), selected_(robot.links.begin(), robot.links.end()) {
+    std::size_t collisions = 0;
     for (const auto& link : model.links_) {
       const std::string name = original(link.first);
+      if (name.empty()) throw ResourceError("no URDF: a link with the name \"\"");
       if (name.size() > most_name_characters)
         throw ResourceError("no URDF: link " + quoted(name) + ", a name of " + std::to_string(name.size()) +
                             " characters, more than " + std::to_string(most_name_characters));
       taken_.insert(name);
+      if (is_selected(name)) collisions += link.second->collision_array.size();
     }
+    check_number(collisions, most_collisions, robot.links.empty() ? "collisions" : "collisions of the links in robot.links");
     add(*model.getRoot(), -1);
   }
 
   std::vector<LinkDesc> take() && { return std::move(tree_); }
 
  private:
+  bool is_selected(const std::string& link) const { return selected_.empty() || selected_.count(link) > 0; }
+
   void add(const urdf::Link& link, int parent) {
     const int index = static_cast<int>(tree_.size());
     LinkDesc desc;
@@ -143,8 +154,7 @@ class TreeBuilder {
       desc.fixed = link.parent_joint->type == urdf::Joint::FIXED;
       desc.origin = to_pose(link.parent_joint->parent_to_joint_origin_transform);
     }
-    const std::vector<std::string>& selected = robot_.links;
-    if (selected.empty() || std::find(selected.begin(), selected.end(), desc.name) != selected.end()) add_obstacles(link, desc);
+    if (is_selected(desc.name)) add_obstacles(link, desc);
     tree_.push_back(std::move(desc));
     for (const urdf::LinkSharedPtr& child : link.child_links) add(*child, index);
   }
@@ -166,7 +176,8 @@ class TreeBuilder {
   }
 
   const RobotDesc& robot_;
-  std::set<std::string> taken_;  ///< names
+  const std::set<std::string> selected_;  ///< names of links; empty: all
+  std::set<std::string> taken_;           ///< names
   std::vector<LinkDesc> tree_;
 };
 

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <istream>
 #include <map>
+#include <string_view>
 #include <system_error>
 
 #include "guarded_text.h"
@@ -19,16 +20,48 @@ namespace verlet_cable {
 namespace {
 
 constexpr std::size_t longest_message = 300;
+constexpr std::string_view document_start = "--- ";
 
-std::string place_text(const YAML::Mark& mark) {
-  return "line " + std::to_string(mark.line + 1) + ", column " + std::to_string(mark.column + 1) + ": ";
+/// A text as yaml-cpp is given it. It takes a scene in brackets (JSON) for what may be a key, and keeps all its tokens up to the
+/// last bracket; it does not where the start of a document is in front.
+class YamlText {
+ public:
+  explicit YamlText(const std::string& original) : text_(original) {
+    const std::size_t first = std::min(text_.find_first_not_of(" \t\r\n"), text_.size());
+    if (first == text_.size() || text_[first] != '{') return;
+    const auto begin = text_.begin();
+    line_ = static_cast<int>(std::count(begin, begin + static_cast<std::ptrdiff_t>(first), '\n'));
+    text_.insert(line_ == 0 ? 0 : text_.rfind('\n', first) + 1, document_start);
+  }
+
+  const std::string& text() const { return text_; }
+  /// A place of it in the original.
+  std::string place(const YAML::Mark& mark) const {
+    const int inserted = mark.line == line_ ? static_cast<int>(document_start.size()) : 0;
+    return "line " + std::to_string(mark.line + 1) + ", column " + std::to_string(mark.column + 1 - inserted) + ": ";
+  }
+
+ private:
+  std::string text_;
+  int line_ = -1;  ///< which begins with the start of a document; -1: none was inserted
+};
+
+/// yaml-cpp takes a NUL for the start of an escape sequence, and one in front for wide characters.
+void check_encoding(const std::string& text) {
+  const auto starts_with = [&](const std::string& bytes) { return text.compare(0, bytes.size(), bytes) == 0; };
+  const bool wide = starts_with("\xff\xfe") || starts_with("\xfe\xff") || starts_with(std::string("\0\0\xfe\xff", 4));
+  const std::size_t nul = wide ? std::string::npos : text.find('\0');
+  if (nul == std::string::npos) return;
+  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(nul), '\n');
+  throw SceneError(
+      {"line " + std::to_string(line) + ": a NUL byte; allowed: text in UTF-8, or in UTF-16 or UTF-32 with a byte order mark"});
 }
 
 /// Counts values and levels while YAML is parsed, before anything is built of it: a short text can stand for a tree without end.
 class SizeCheck : public YAML::EventHandler {
  public:
-  /// `text` outlives this.
-  explicit SizeCheck(GuardedText& text) : text_(text) {}
+  /// `guarded` is of `text`; both outlive this.
+  SizeCheck(const YamlText& text, GuardedText& guarded) : text_(text), guarded_(guarded) {}
 
   void OnDocumentStart(const YAML::Mark& mark) override {
     if (++documents_ > 1) fail(mark, "a second document (---); allowed: one");
@@ -64,12 +97,12 @@ class SizeCheck : public YAML::EventHandler {
     std::size_t levels;
   };
 
-  [[noreturn]] static void fail(const YAML::Mark& mark, const std::string& message) {
-    throw SceneError({place_text(mark) + message});
+  [[noreturn]] void fail(const YAML::Mark& mark, const std::string& message) const {
+    throw SceneError({text_.place(mark) + message});
   }
 
   void count(const YAML::Mark& mark, std::size_t values) {
-    text_.let_go();
+    guarded_.let_go();
     values_ += values;
     if (values_ > most_scene_values) fail(mark, "more than " + std::to_string(most_scene_values) + " values");
   }
@@ -95,18 +128,19 @@ class SizeCheck : public YAML::EventHandler {
     if (closed.anchor != 0) subtrees_[closed.anchor] = {values_ - closed.values_before, closed.levels};
   }
 
-  GuardedText& text_;
+  const YamlText& text_;
+  GuardedText& guarded_;
   std::size_t documents_ = 0;
   std::size_t values_ = 0;
   std::vector<Open> open_;
   std::map<YAML::anchor_t, Subtree> subtrees_;
 };
 
-void check_size(const std::string& text) {
-  GuardedText guarded(text);
+void check_size(const YamlText& text) {
+  GuardedText guarded(text.text());
   std::istream stream(&guarded);
   YAML::Parser parser(stream);
-  SizeCheck check(guarded);
+  SizeCheck check(text, guarded);
   try {
     while (parser.HandleNextDocument(check)) {
     }
@@ -143,14 +177,16 @@ SceneDesc read_scene_text(const std::string& text, const SceneSources& sources) 
   if (text.size() > largest_scene_text)
     throw SceneError(
         {"scene: " + std::to_string(text.size()) + " bytes or more; allowed: at most " + std::to_string(largest_scene_text)});
-  try {
-    return within_memory([&] {
-      check_size(text);
-      return read_scene(YAML::Load(text), {}, sources);
-    });
-  } catch (const YAML::Exception& error) {
-    throw SceneError({place_text(error.mark) + escaped(error.msg, longest_message)});
-  }
+  check_encoding(text);
+  return within_memory([&] {
+    const YamlText yaml(text);
+    try {
+      check_size(yaml);
+      return read_scene(YAML::Load(yaml.text()), {}, sources);
+    } catch (const YAML::Exception& error) {
+      throw SceneError({yaml.place(error.mark) + escaped(error.msg, longest_message)});
+    }
+  });
 }
 
 SceneDesc read_scene_file(const std::string& path) {

@@ -76,15 +76,18 @@ class Scanner {
     const auto first = static_cast<unsigned char>(name < xml_.size() ? xml_[name] : 0);
     if (!std::isalpha(first) && first != '_' && first < 0x80) return fail(at_, "a < that starts no tag");
     const std::size_t name_end = std::min(xml_.find_first_of(" \t\r\n/>", name), xml_.size());
-    std::size_t at = name_end;
+    std::size_t at = name_end, attributes = 0;
     while (at < xml_.size() && xml_[at] != '>') {
       if (xml_[at] == '<') return fail(at, "a < inside of a tag");
+      // Each attribute has one outside of quotes; a parser that takes values without quotes may see fewer attributes.
+      if (xml_[at] == '=') ++attributes;
       if (xml_[at] == '"' || xml_[at] == '\'') at = xml_.find(xml_[at], at + 1);
       if (at == std::string::npos) break;
       ++at;
     }
     if (at >= xml_.size()) return fail(at_, "a tag without end");
     outline_.levels = std::max(outline_.levels, open_ + 1);
+    outline_.attributes = std::max(outline_.attributes, attributes);
     if (xml_.compare(name, name_end - name, "link") == 0) ++outline_.links;
     if (xml_[at - 1] != '/') ++open_;
     at_ = at + 1;

@@ -82,5 +82,58 @@ INSTANTIATE_TEST_SUITE_P(Holders, OverstretchedBodies,
                          testing::Combine(testing::Values(AttachmentType::hinge, AttachmentType::clamp),
                                           testing::Values(AttachmentType::hinge, AttachmentType::clamp)));
 
+/// A rope of 1.2 m from the frame "base" to "hand", 1 m apart, and a branch of 0.54 m that leaves it and comes back to it.
+SceneDesc loop_on_a_rope(JunctionDesc::Type type) {
+  SceneDesc scene = scenes::held_by_a_hand(30, AttachmentType::clamp);
+  scene.time_step = 0.002;
+  scene.materials[0].material.drag = 0.15;
+  scene.cables[0].length = 1.2;
+  CableDesc& loop = scene.cables.emplace_back();
+  loop.name = "loop";
+  loop.length = 0.54;
+  loop.segments = 12;
+  loop.material = "rope";
+  loop.initial.type = InitialShapeDesc::Type::points;
+  loop.initial.points = {{0.4, 0, -0.15}, {0.45, 0.12, -0.22}, {0.55, 0.17, -0.25}, {0.65, 0.12, -0.22}, {0.7, 0, -0.15}};
+  for (const BranchDesc::End end : {BranchDesc::End::start, BranchDesc::End::end}) {
+    const bool is_start = end == BranchDesc::End::start;
+    BranchDesc branch;
+    branch.cable = "loop";
+    branch.end = end;
+    JunctionDesc& junction = scene.junctions.emplace_back();
+    junction.name = is_start ? "off" : "back";
+    junction.cable = "cable";
+    junction.place.at = PlaceDesc::At::arc_length;
+    junction.place.arc_length = is_start ? 0.4 : 0.76;
+    junction.type = type;
+    junction.branches = {branch};
+  }
+  return scene;
+}
+
+/// Nothing leads a step from where it was drawn to: it hangs anew once its frames allow that.
+TEST(OverstretchedHarness, HangsAgainWhenItsFramesHaveComeBack) {
+  for (const JunctionDesc::Type type : {JunctionDesc::Type::hinge, JunctionDesc::Type::rigid}) {
+    World world(loop_on_a_rope(type), scenes::hand_at({1, 0, 0}));
+    int degraded = 0;
+    for (int i = 1; i <= 300; ++i) {
+      const double out = std::sin(M_PI * i / 300);
+      degraded += world.step(scenes::hand_at({1 + 0.8 * out * out, 0, 0})).status == Status::degraded;
+    }
+    EXPECT_GT(degraded, 20);
+    Status last = Status::degraded;
+    for (int i = 0; i < 1500; ++i) last = world.step(scenes::hand_at({1, 0, 0})).status;
+    EXPECT_EQ(last, Status::ok);
+    for (const SimulatedCable& cable : world.cables()) {
+      double length = 0;
+      for (int i = 0; i < cable.state.segments(); ++i) length += (cable.state.positions[i + 1] - cable.state.positions[i]).norm();
+      EXPECT_NEAR(length, cable.state.length(), 1e-5) << cable.model->name;
+    }
+    // 0.17 kg
+    EXPECT_LT(world.attachments()[1].force.norm(), 0.174 * 9.81);
+    EXPECT_LT(world.energy().kinetic, 1e-3);
+  }
+}
+
 }  // namespace
 }  // namespace verlet_cable

@@ -128,6 +128,29 @@ TEST_F(CableFit, CentreLineIsASceneAndPredictionsAreRecordings) {
   EXPECT_FALSE(exists("refused"));
 }
 
+/// A cable that stands straight and still tells its length only; the intervals of the others would have no end.
+TEST_F(CableFit, WhatIsNotDeterminedHasNoInterval) {
+  std::string text = "t";
+  for (int i = 0; i < 12; ++i)
+    for (const char* axis : {"x", "y", "z"}) text += "," + (axis + std::to_string(i));
+  text += "\n";
+  for (int row = 0; row < 40; ++row) {
+    text += number_text(0.01 * row);
+    for (int i = 0; i < 12; ++i) text += ",0,0," + number_text(i * 0.05);
+    text += "\n";
+  }
+  ASSERT_EQ(fit(write("straight.csv", text) + " --name lead --segments 8 --output " + path("scene.yaml")), 0) << err;
+  std::istringstream lines(out);
+  int untold = 0;
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_EQ(line.find("inf"), std::string::npos) << line;
+    if (line.find("not determined") == std::string::npos) continue;
+    ++untold;
+    EXPECT_EQ(line.find(" to "), std::string::npos) << line;
+  }
+  EXPECT_GT(untold, 0) << out;
+}
+
 TEST_F(CableFit, BadInputIsRefusedAllAtOnceAndNothingWritten) {
   const Recording sound = synthetic_recording(known_cable(), 0, 0.2, 0);
   Recording short_start = sound;

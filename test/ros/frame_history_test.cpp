@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <vector>
+
 namespace verlet_cable {
 namespace {
 
@@ -45,11 +48,19 @@ TEST(FrameHistory, WhatItSaysDoesNotDependOnWhenStampsArrived) {
   for (Nanoseconds time = 950; time < 1150; ++time) EXPECT_EQ(asked_early.at(time), asked_late.at(time)) << time;
 }
 
-TEST(FrameHistory, EarlierStampsChangeNothing) {
-  FrameHistory history = history_of({1000, 1050});
-  history.extend(1020);
-  EXPECT_EQ(history.newest(), 1050);
-  EXPECT_EQ(history.at(1050), Coverage::covered);
+TEST(FrameHistory, WhatItSaysDoesNotDependOnTheOrderOfStamps) {
+  std::vector<Nanoseconds> stamps{1000, 1050, 1100, 1201, 1250, 1400};
+  const FrameHistory ascending = history_of({1000, 1050, 1100, 1201, 1250, 1400});
+  do {
+    FrameHistory history(longest_gap);
+    for (const Nanoseconds stamp : stamps) history.extend(stamp);
+    EXPECT_EQ(history.newest(), 1400);
+    for (Nanoseconds time = 950; time < 1450; ++time) {
+      ASSERT_EQ(history.at(time), ascending.at(time)) << time;
+      ASSERT_EQ(history.last_before(time), ascending.last_before(time)) << time;
+      ASSERT_EQ(history.first_after(time), ascending.first_after(time)) << time;
+    }
+  } while (std::next_permutation(stamps.begin(), stamps.end()));
 }
 
 TEST(FrameHistory, ForgettingKeepsThatTheFrameWasSeenAndUntilWhen) {

@@ -177,6 +177,42 @@ class LostFramesTest(unittest.TestCase):
                 self.assertTrue(all_finite(state))
                 self.assertLess(distance(cable(state, 'rope').positions[0], HELD), 1e-9)
 
+    def test_stamps_in_the_future_do_not_keep_the_frame_from_being_followed(self):
+        publisher = rospy.Publisher('/tf', TFMessage, queue_size=10)
+        frames = Frames(hand=lambda t: HELD)
+
+        def rope_at(position):
+            states.clear()
+            states.wait_for(lambda s: distance(cable(s, 'rope').positions[0], position) < 1e-9, f'rope at {position}')
+
+        def refused():
+            report = next(s for s in diagnostics.wait_for(lambda a: a.status[0].name.startswith('policy/hold:'), 'report').status
+                          if s.name == 'policy/hold: frames')
+            diagnostics.clear()
+            return next(int(v.value) for v in report.values if v.key == 'refused_transforms')
+
+        with frames, self.hold.events() as events, self.hold.states() as states, Messages('/diagnostics', DiagnosticArray) as diagnostics:
+            self.start(self.hold)
+            before = refused()
+            for ahead in (1.8, 20, 59):
+                frames.motions['hand'] = lambda t: HELD
+                rope_at(HELD)
+                events.clear()
+                begin = rospy.get_time()
+                publisher.publish([transform('hand', begin + ahead, HELD)])
+                rospy.sleep(0.7)  # longer than tf_timeout
+                frames.motions['hand'] = lambda t: BACK
+                rope_at(BACK)
+                self.assertLess(rospy.get_time() - begin, ahead, 'not only when ROS time is there')
+                # Next to one that is stored, a late good one is taken for a gap.
+                if ahead > 2:
+                    self.assertEqual([e.message for e in events.all() if lost(e)], [], ahead)
+                rospy.sleep(max(0, begin + 2 - rospy.get_time()))
+            diagnostics.clear()
+            rospy.sleep(1.5)  # a report a second
+            diagnostics.clear()
+            self.assertEqual(refused() - before, 2, 'those that are more than 2 s ahead')
+
     def test_a_frame_that_is_too_fast_is_followed_at_the_limit(self):
         speed = 0.1  # [m/s] max_frame_speed of the node
         frames = Frames(hand=lambda t: HELD)

@@ -128,6 +128,9 @@ class RecordToCsv(unittest.TestCase):
     def test_what_is_wrong_is_said_and_nothing_written(self):
         for arguments, expected in (
                 (('--state', '/nothing'), '/nothing: no messages'),
+                (('--state', '/points'), '--state: /points is of type sensor_msgs/PointCloud2; allowed: verlet_cable/CableArray'),
+                (('--points', '/cable/state'),
+                 '--points: /cable/state is of type verlet_cable/CableArray; allowed: sensor_msgs/PointCloud2'),
                 (('--state', '/cable/state'), '--cable: None; allowed: one of other, lead'),
                 (('--points', '/uneven'), '3 to 4 points; allowed: the same number'),
                 (('--points', '/points', '--fixed', 'nowhere'), 'tf reaches none of its messages'),

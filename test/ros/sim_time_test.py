@@ -103,6 +103,8 @@ class SimTimeTest(unittest.TestCase):
             self.assertFalse(answer.success)
             self.assertIn('no ROS time', answer.message)
 
+            # of a program that does not know of simulated time: the clock shows that it is a mistake
+            self.tf.publish([transform('hand', 1e9, (5, 5, 5))])
             self.play(100, 1)
             last = resetting.wait_for(lambda s: s.header.stamp.to_sec() >= 100.94, 'state of the last tick')
             # the last tick before the end of the clock less tf_latency, 100.95

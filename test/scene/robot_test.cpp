@@ -219,6 +219,50 @@ TEST_F(Robot, whatIsTooDeepOrTooLongForTheParserIsNamed) {
   expect("<robot name='r'/>" + std::string(5'000'000, ' '), "5000017 bytes, more than 4194304");
 }
 
+/// The parser compares each attribute of an element with all before it: many take minutes.
+TEST_F(Robot, elementsWithTooManyAttributesAreNamed) {
+  const auto errors = [&](const std::string& attribute, int count) {
+    std::string text = "<robot name='r'><!-- a=1 --><link name='a'/><x";
+    for (int i = 0; i < count; ++i) text += " x" + std::to_string(i) + attribute;
+    write("bad.urdf", text + "/></robot>");
+    return joined(errors_of(sound_scene + "robot: {file: " + path("bad.urdf") + "}\n"));
+  };
+  // Signs in values are no attributes.
+  EXPECT_EQ(errors("='= \" ='", 1000), "");
+  for (const char* attribute : {"='1'", " =\n\"=\"", "=1"})
+    EXPECT_NE(errors(attribute, 30'000).find("bad.urdf\": no URDF: 30000 attributes on one element, more than 1000"),
+              std::string::npos)
+        << attribute;
+}
+
+TEST_F(Robot, tooManyCollisionsAreNamed) {
+  const auto link = [](const std::string& name, int collisions) {
+    std::string text = "<link name='" + name + "'>";
+    for (int i = 0; i < collisions; ++i) text += "<collision><geometry><sphere radius='1'/></geometry></collision>";
+    return text + "</link>";
+  };
+  const std::string joint = "<joint name='j' type='fixed'><parent link='a'/><child link='b'/></joint>";
+  write("many.urdf", "<robot name='r'>" + link("a", 5000) + link("b", 1) + joint + "</robot>");
+  const auto errors = [&](const std::string& links) {
+    return joined(errors_of(sound_scene + "robot: {file: " + path("many.urdf") + links + "}\n"));
+  };
+  EXPECT_NE(errors("").find("many.urdf\": no URDF: 5001 collisions, more than 5000"), std::string::npos) << errors("");
+  EXPECT_NE(errors(", links: [b, a]").find("no URDF: 5001 collisions of the links in robot.links, more than 5000"),
+            std::string::npos);
+  EXPECT_EQ(errors(", links: [a]"), "");
+}
+
+TEST_F(Robot, namesOfLinksAreNotEmptyAndGivenOnce) {
+  const auto expect = [&](const std::string& robot, const std::string& error) {
+    const std::vector<std::string> lines = errors_of(sound_scene + "robot: {" + robot + "}\n");
+    EXPECT_EQ(lines.size(), 1u) << joined(lines);
+    EXPECT_TRUE(has_line(lines, error)) << joined(lines);
+  };
+  expect(file() + ", links: [tool, base, tool]", "robot.links[2]: \"tool\" given twice; allowed: each link once");
+  write("bad.urdf", "<robot name='r'><link name=''/></robot>");
+  expect("file: " + path("bad.urdf"), "robot.file: \"" + path("bad.urdf") + "\": no URDF: a link with the name \"\"");
+}
+
 /// urdfdom prints numbers that it cannot read as formats: `%n` writes to memory, `%s` reads from it.
 TEST_F(Robot, percentSignsAreNoFormats) {
   const auto problem = [&](const std::string& from, const std::string& to) {

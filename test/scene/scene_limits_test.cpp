@@ -68,6 +68,59 @@ TEST(SceneLimits, textsThatCannotBeReadTakeLittleMemory) {
   }
 }
 
+/// As programs write them, on one line.
+TEST(SceneLimits, aLargeSceneInJsonIsRead) {
+  constexpr int count = 60'000;
+  std::string text = "\n {\"particles\": [";
+  for (int i = 0; i < count; ++i)
+    text += (i == 0 ? "" : ", ") + ("{\"name\": \"p" + std::to_string(i)) + "\", \"mass\": 1, \"position\": [0, 0, 1]}";
+  const SceneDesc scene = read_scene_text(text + "]}\n");
+  EXPECT_EQ(scene.particles.size(), static_cast<std::size_t>(count));
+}
+
+TEST(SceneLimits, placesInJsonAreThoseOfTheText) {
+  EXPECT_TRUE(has_line(errors_of("{\"a\": &a [*a]}"), "line 1, column 11: an alias inside"));
+  EXPECT_TRUE(has_line(errors_of("\n\n  {\"a\": &a [*a]}"), "line 3, column 13: an alias inside"));
+  EXPECT_TRUE(has_line(errors_of("\n{\"a\":\n &a [*a]}"), "line 3, column 6: an alias inside"));
+  EXPECT_TRUE(has_line(errors_of("{\"a\": \"\\y\"}"), "line 1, column 10: unknown escape character"));
+}
+
+/// What yaml-cpp keeps up to its end: an element of a list.
+TEST(SceneLimits, aValueWithTooManySignsSaysWhatToDo) {
+  std::string flow = "frame_id: [[", lines = "frame_id:\n -\n";
+  for (int i = 0; i < 400'000; ++i) {
+    flow += "[], ";
+    lines += "  - []\n";
+  }
+  EXPECT_EQ(errors_of(flow + "]]\n"),
+            std::vector<std::string>{"line 1: more than 1000000 signs [ ] { } , : and others in one value in brackets; "
+                                     "allowed: its lists with one element a line, each after \"- \""});
+  EXPECT_TRUE(has_line(errors_of(lines), "frame_id: [[")) << joined(errors_of(lines));
+}
+
+TEST(SceneLimits, nulBytesAreNamed) {
+  const std::string nul(1, '\0'), error = ": a NUL byte; allowed: text in UTF-8, or in UTF-16 or UTF-32 with a byte order mark";
+  const std::string scene = sound_scene;
+  const auto lines = std::count(scene.begin(), scene.end(), '\n');
+  for (const std::string& end : {nul, "# " + nul, "a: \"" + nul + "\"\n", "\"" + nul})
+    EXPECT_EQ(errors_of(scene + end), std::vector<std::string>{"line " + std::to_string(lines + 1) + error});
+  EXPECT_EQ(errors_of(nul + scene), std::vector<std::string>{"line 1" + error});
+}
+
+TEST(SceneLimits, wideTextWithAByteOrderMarkIsRead) {
+  for (const int size : {2, 4}) {
+    for (const bool big : {false, true}) {
+      std::string text;
+      const auto add = [&](unsigned character) {
+        for (int i = 0; i < size; ++i) text += static_cast<char>(character >> 8 * (big ? size - 1 - i : i) & 0xff);
+      };
+      add(0xfeff);
+      for (const char c : std::string(sound_scene)) add(static_cast<unsigned char>(c));
+      EXPECT_EQ(joined(errors_of(text)), "") << size << big;
+    }
+  }
+}
+
 /// Signs in texts and comments are no brackets.
 TEST(SceneLimits, bracketsInTextsAreRead) {
   std::string comment(999, '[');

@@ -104,6 +104,11 @@ int segments(const Participant& p) {
   return p.state->segments();
 }
 
+/// Of solving for a cable once, see `budget`.
+double work_of_visiting(const Participant& p) {
+  return visiting_work(segments(p), static_cast<double>(p.substep.boundary.flows.size()));
+}
+
 bool joins_cables(const Touch& touch) {
   return touch.other.cable >= 0;
 }
@@ -123,23 +128,26 @@ inline Vector3 ContactSolver::displacement_of(Touch& touch, std::vector<Particip
   return own - between(at(participants, other).stepper->displacement(), other.segment, other.fraction);
 }
 
-bool ContactSolver::solve(std::vector<Participant>& participants, std::vector<Touch>& touches, BodySystem* bodies) {
+bool ContactSolver::solve(std::vector<Participant>& participants, std::vector<Touch>& touches, BodySystem* bodies,
+                          double most_work) {
   bodies_ = bodies;
+  most_work_ = most_work;
   begin(participants);
   return iterate(participants, touches);
 }
 
 void ContactSolver::begin(std::vector<Participant>& participants) {
   if (work_.size() < participants.size()) work_.resize(participants.size());
+  size_ = spent_ = 0;
   for (std::size_t k = 0; k < participants.size(); ++k) {
     Participant& p = participants[k];
     if (static_cast<int>(index_.size()) <= p.cable) index_.resize(p.cable + 1);
     index_[p.cable] = static_cast<int>(k);
     p.result = {};
     p.stepper->begin(p.substep, *p.state, p.result);
+    size_ += work_of_visiting(p);
   }
   largest_energy_ = 0;
-  coupling_steps_ = 0;
 }
 
 void ContactSolver::finish(std::vector<Participant>& participants, std::vector<Touch>& touches) const {
@@ -187,7 +195,8 @@ bool ContactSolver::iterate(std::vector<Participant>& participants, std::vector<
   }
   double last = 0;
   bool stale = true;
-  for (int i = 0; i < maximum_iterations; ++i) {
+  for (int i = 0; i < maximum_iterations && spent_ < most_work_; ++i) {
+    spend(budget::heavy, touches.size());
     const bool changed = i == 0 ? press(participants, touches) : shorten(participants, touches);
     const bool factored = stale || changed;
     if (factored) factor(participants, touches);
@@ -248,6 +257,7 @@ bool ContactSolver::shorten(std::vector<Participant>& participants, std::vector<
     if (bodies_ != nullptr) bodies_->take_back(taken - next);
     taken = next;
     changed = press(participants, touches) || changed;
+    spend(1, touches.size());
   }
   return changed;
 }
@@ -324,6 +334,7 @@ void ContactSolver::follow_friction(std::vector<Participant>& participants, std:
   bool follows = true;
   for (int i = 0; i < maximum_followings && follows && last > 0; ++i) {
     solve_slipping(participants);
+    spend(1, slips_.size());
     const double way = follow_slips(participants);
     if (!(way > 0)) break;
     follows = way < last;
@@ -386,8 +397,8 @@ void ContactSolver::couple(std::vector<Participant>& participants) {
   double energy = 0, step = 0;
   for (int i = 0; i < maximum_coupling_iterations; ++i) {
     const double next_energy = precondition(participants);
-    ++coupling_steps_;
-    if (!(next_energy > enough)) break;
+    spend(budget::coupling, couplings_.size());
+    if (!(next_energy > enough) || spent_ > most_work_) break;
     const double ratio = i == 0 ? 0 : next_energy / energy;
     energy = next_energy;
     turn_directions(step, ratio, participants);

@@ -5,6 +5,7 @@
 #include "body/body_system.h"
 #include "contact/law.h"
 #include "rod/participant.h"
+#include "rod/work_budget.h"
 
 namespace verlet_cable {
 
@@ -16,13 +17,13 @@ namespace verlet_cable {
 class ContactSolver {
  public:
   /// If it has not converged, `converged` is false in the result of the participant that failed. The states are untouched.
-  /// `bodies`: that hold or touch some of them, and have begun; none where it is null.
-  bool solve(std::vector<Participant>& participants, std::vector<Touch>& touches, BodySystem* bodies);
+  /// `bodies`: that hold or touch some of them, and have begun; none where it is null. Gives up after `most_work`, see `budget`.
+  bool solve(std::vector<Participant>& participants, std::vector<Touch>& touches, BodySystem* bodies, double most_work);
   /// Whether segments that touch pass through each other in what has been found.
   bool crosses(const std::vector<Participant>& participants, const std::vector<Touch>& touches) const;
   /// The states and the contacts take what has been found.
   void finish(std::vector<Participant>& participants, std::vector<Touch>& touches) const;
-  int coupling_steps() const { return coupling_steps_; }  ///< of conjugate gradients, in the last `solve`
+  double work() const { return spent_; }  ///< of the last `solve`, see `budget`
 
  private:
   /// One participant, in the conjugate gradients.
@@ -69,6 +70,9 @@ class ContactSolver {
   };
 
   void begin(std::vector<Participant>& participants);
+  void spend(double visits, std::size_t contacts) {
+    spent_ += visits * size_ + budget::touch * static_cast<double>(contacts);
+  }
   bool iterate(std::vector<Participant>& participants, std::vector<Touch>& touches);
   bool press(std::vector<Participant>& participants, std::vector<Touch>& touches);
   bool shorten(std::vector<Participant>& participants, std::vector<Touch>& touches);
@@ -99,7 +103,9 @@ class ContactSolver {
   double work_along_ = 0;         ///< [J] of the forces along the last correction, where it begins
   double negligible_energy_ = 0;  ///< [J] moves no node by more than what is tolerated
   double largest_energy_ = 0;     ///< of a correction in this substep
-  int coupling_steps_ = 0;
+  double size_ = 0;               ///< work of visiting all segments once
+  double spent_ = 0;              ///< work so far
+  double most_work_ = 0;
 };
 
 }  // namespace verlet_cable

@@ -68,6 +68,7 @@ class CableStepper {
   bool keeps_lengths() const;
   /// [N] Of the present iterate, of what cannot stretch between two holders.
   double greatest_tension_of_taut() const;
+  double tension(int segment) const { return tension_density_[segment] * length_[segment]; }  ///< [N] of the present iterate
   const VectorArray& displacement() const { return displacement_; }  ///< nodes: x' - x of the present iterate [m]
   KktSystem& system() { return system_; }
   // The solution of the linear system: of nodes [m], of segments [N/m], and of a whole rod's segments [rad]

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "target/boundary.h"
@@ -26,6 +27,8 @@ class LateralStiffness {
                    const std::vector<double>& tension);
 
   bool is_stable() { return factor(rounding_); }
+  /// Whether no shape grows by a factor of more than e in a time [s].
+  bool is_stable_for(double time) { return factor(std::max(rounding_, 1 / (time * time))); }
   /// Across the span, of an unstable one: nodes of the span, first and last too, which are 0; of what grows, most of what grows
   /// fastest. Its size is arbitrary.
   std::vector<double> growing_shape();

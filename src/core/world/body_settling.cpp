@@ -130,7 +130,7 @@ BodySettling::Outcome BodySettling::advance(double h) {
   std::vector<Touch>& touches = workspace_.contacts.touches();
   outcome.touches = !touches.empty() || !system.contacts().touches().empty();
   if (outcome.touches)
-    outcome.converged = workspace_.contact_solver.solve(workspace_.participants, touches, &system);
+    outcome.converged = workspace_.contact_solver.solve(workspace_.participants, touches, &system, infinity);
   else
     outcome.converged = system.advance(workspace_.participants, state_.scene->tolerance);
   if (!outcome.converged) return outcome;

@@ -211,6 +211,51 @@ void IslandStepper::carry_cables(const Island& island) {
   }
 }
 
+/// Bodies that hold a cable where no frame holds them, and that are not `placed` yet, go to where it is now.
+void IslandStepper::take_bodies_along(int index, std::vector<char>& placed) {
+  const CableState& cable = state_.cables[index].state;
+  for (const KinematicTarget& target : state_.cable_progress[index].targets.nodes) {
+    const Attachment& attachment = state_.attachments[target.attachment];
+    if (attachment.holder < 0 || target.node != attachment.node || placed[attachment.holder]) continue;
+    SimulatedBody& body = state_.bodies[attachment.holder];
+    if (attachment.type == AttachmentType::clamp)
+      body.pose.orientation = (axes_at(cable, target.node) * attachment.pose.orientation.conjugate()).normalized();
+    body.pose.position += cable.positions[target.node] - (body.pose * attachment.pose).position;
+    placed[attachment.holder] = 1;
+  }
+}
+
+/// Puts cables and the bodies that hold them, which are stuck, where they would hang: those that frames hold first, between these
+/// alone; then, as far as they reach, those that come off them.
+void IslandStepper::hang_on_bodies_anew(const Island& island) {
+  std::vector<char> placed(state_.bodies.size(), 0), hung(island.cables.size(), 0);
+  for (const int body : island.bodies) placed[body] = !state_.body_progress[body].holders.empty();
+  const auto hang = [&](std::size_t k) {
+    SimulatedCable& cable = state_.cables[island.cables[k]];
+    Boundary& boundary = workspace_.cables[k].boundary;
+    const KinematicTargets& targets = state_.cable_progress[island.cables[k]].targets;
+    hold_at(1, 1, targets, boundary);
+    hold_on_bodies(cable.state, state_.attachments, state_.bodies, state_.time(), targets, boundary);
+    std::vector<HeldNode> held;
+    for (const HeldNode& node : boundary.nodes)
+      if (node.body < 0 || placed[node.body]) held.push_back(node);
+    if (held.empty()) return false;
+    const CableState before = cable.state;
+    hang_anew(*cable.model, held, gravity_near(state_, island.cables[k]), cable.state);
+    if (!finite(cable.state.positions)) cable.state = before;
+    return true;
+  };
+  for (bool any = true; any;) {
+    any = false;
+    for (std::size_t k = 0; k < island.cables.size(); ++k) {
+      if (hung[k] || !hang(k)) continue;
+      hung[k] = 1;
+      take_bodies_along(island.cables[k], placed);
+      any = true;
+    }
+  }
+}
+
 /// Where the frame that holds a body is at the end of the substep, and how fast.
 void IslandStepper::follow_body_holder(BodyJoint& joint, double to) {
   const Attachment& attachment = state_.attachments[joint.attachment];

@@ -251,8 +251,9 @@ void IslandStepper::begin(const Island& island) {
   }
 }
 
-/// One substep, from one part of the step to another, whose contacts have been found. False if it has not converged or cables
-/// have passed through each other (where that is not `tolerated`); the states are then as before.
+/// One substep, from one part of the step to another, whose contacts have been found. False if it has not converged, cables have
+/// passed through each other, or some would have to fold (where that is not `tolerated`); the states are then as before, but for
+/// what has folded.
 bool IslandStepper::advance(Island& island, double from, double to, bool tolerated) {
   const double h = (to - from) * state_.scene->time_step;
   const bool touching = touches();
@@ -294,10 +295,12 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
   if (bodies != nullptr) begin_bodies(island, from, to, touching_scheme);
   if (converged && bodies != nullptr && !touching)
     converged = advance_bodies() || advance_straight_bodies(island, from, to, touching_scheme);
+  contact_work_ = 0;
   if (converged && touching) {
     ContactSolver& solver = workspace_.contact_solver;
-    converged = solver.solve(workspace_.participants, workspace_.contacts.touches(), bodies) &&
-                (tolerated || !solver.crosses(workspace_.participants, workspace_.contacts.touches()));
+    converged = solver.solve(workspace_.participants, workspace_.contacts.touches(), bodies, most_contact_work_) &&
+                (tolerated || (!solver.crosses(workspace_.participants, workspace_.contacts.touches()) && !folds_columns()));
+    contact_work_ = solver.work();
     if (converged) solver.finish(workspace_.participants, workspace_.contacts.touches());
     for (const Participant& p : workspace_.participants) workspace_.cables[p.place].result = p.result;
   }
@@ -314,6 +317,14 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     take_back(island);
   }
   return converged;
+}
+
+/// Changes what has folded; the others are as before.
+bool IslandStepper::folds_columns() {
+  bool folds = false;
+  for (const Participant& p : workspace_.participants)
+    if (workspace_.contacts.touched(p.place) && fold_pressed_columns(p, workspace_.contacts.touches(), state_)) folds = true;
+  return folds;
 }
 
 void IslandStepper::find_contacts(Island& island, double from, double to) {

@@ -6,7 +6,7 @@
 
 #include "world/islands.h"
 #include "world/state.h"
-#include "world/step_budget.h"
+#include "world/step_progress.h"
 #include "world/workspace.h"
 
 namespace verlet_cable {
@@ -105,6 +105,7 @@ class IslandStepper {
   void follow_body_holder(BodyJoint& joint, double to);
   void find_contacts(Island& island, double from, double to);
   bool touches() const;
+  bool folds_columns();
   Scheme scheme_of(int cable) const;
   Scheme find_touching_scheme(const Island& island, double h);
   /// Returns the part of the step that it has wound.
@@ -119,7 +120,9 @@ class IslandStepper {
   double work_of_attempt(const Island& island) const;
   void stop(const Island& island, IslandOutcome& found);
   void give_up(const Island& island);
-  void give_up(int cable, bool touches, Boundary& boundary);
+  bool give_up(int cable, bool touches, Boundary& boundary);
+  void hang_on_bodies_anew(const Island& island);
+  void take_bodies_along(int cable, std::vector<char>& placed);
   bool was_easy() const;
   void note_substep(int cable, const Boundary& boundary, const SubstepResult& result, double part);
   void note_intrusions(std::vector<Intrusion>& noted) const;
@@ -132,6 +135,8 @@ class IslandStepper {
   Environment environment_;
   bool projects_bodies_ = false;  ///< velocities of bodies and what they hold, at the end of the substep
   double joined_mass_ = 0;        ///< [kg] of the island, where there are bodies
+  double most_contact_work_ = infinity;  ///< of the next attempt, see `budget`
+  double contact_work_ = 0;              ///< that the last one took
   int lanes_;                     ///< two a cable that is stepped together with others
 };
 

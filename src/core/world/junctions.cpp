@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 
 #include "rod/rod_frames.h"
 #include "scene/scene_materials.h"
+#include "scene/validate_holders.h"
 #include "verlet_cable/core/rotation.h"
 #include "world/implementation.h"
 
@@ -59,13 +61,10 @@ bool is_welded(const SceneDesc& scene, const std::string& cable) {
 std::vector<int> harnesses_of(const SceneDesc& scene) {
   std::vector<int> labels(scene.cables.size());
   std::iota(labels.begin(), labels.end(), 0);
-  const auto index_of = [&](const std::string& name) {
-    return std::find_if(scene.cables.begin(), scene.cables.end(), [&](const CableDesc& cable) { return cable.name == name; }) -
-           scene.cables.begin();
-  };
+  const NameIndex index = index_of_names(scene.cables);
   const auto join = [&](int a, int b) { std::replace(labels.begin(), labels.end(), std::max(a, b), std::min(a, b)); };
   for (const JunctionDesc& junction : scene.junctions)
-    for (const BranchDesc& branch : junction.branches) join(labels[index_of(junction.cable)], labels[index_of(branch.cable)]);
+    for (const BranchDesc& branch : junction.branches) join(labels[index.at(junction.cable)], labels[index.at(branch.cable)]);
   for (const BodyDesc& body : scene.bodies) {
     int first = -1;
     for (std::size_t i = 0; i < scene.cables.size(); ++i) {
@@ -104,20 +103,32 @@ void World::Implementation::add_junctions() {
 std::vector<int> World::Implementation::with_trunks_first(const std::vector<int>& cables) const {
   const SceneDesc& scene = *state.scene;
   if (scene.junctions.empty()) return cables;
-  std::vector<int> left = cables, ordered;
-  const auto waits = [&](int cable) {
-    const std::vector<JunctionPlace> places = junction_places(scene, scene.cables[cable]);
-    return std::any_of(places.begin(), places.end(), [&](const JunctionPlace& place) {
-      const std::string& trunk = scene.junctions[place.junction].cable;
-      return place.branch != nullptr &&
-             std::any_of(left.begin(), left.end(), [&](int other) { return scene.cables[other].name == trunk; });
-    });
-  };
+  const NameIndex index = index_of_names(scene.cables);
+  std::vector<int> place(scene.cables.size(), -1), waits_for(cables.size(), 0), ordered;
+  for (std::size_t i = 0; i < cables.size(); ++i) place[cables[i]] = static_cast<int>(i);
+  std::vector<std::vector<int>> branches(cables.size());
+  for (const JunctionDesc& junction : scene.junctions) {
+    const int trunk = place[index.at(junction.cable)];
+    if (trunk < 0) continue;
+    for (const BranchDesc& desc : junction.branches) {
+      const int branch = place[index.at(desc.cable)];
+      if (branch < 0) continue;
+      branches[trunk].push_back(branch);
+      ++waits_for[branch];
+    }
+  }
+  std::set<int> left, ready;
+  for (int i = 0; i < static_cast<int>(cables.size()); ++i) {
+    left.insert(i);
+    if (waits_for[i] == 0) ready.insert(i);
+  }
   while (!left.empty()) {
-    auto next = std::find_if_not(left.begin(), left.end(), waits);
-    if (next == left.end()) next = left.begin();  // cables that come off each other
-    ordered.push_back(*next);
+    const int next = ready.empty() ? *left.begin() : *ready.begin();  // else they come off each other
     left.erase(next);
+    ready.erase(next);
+    ordered.push_back(cables[next]);
+    for (const int branch : branches[next])
+      if (--waits_for[branch] == 0 && left.count(branch) > 0) ready.insert(branch);
   }
   return ordered;
 }

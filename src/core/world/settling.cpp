@@ -438,7 +438,7 @@ SubstepResult Settling::advance(Approach& approach, double h) {
   } else {
     workspace_.participants.clear();
     workspace_.participants.push_back({0, index_, &work_.stepper, substep, &cable_.state, {}});
-    if (workspace_.contact_solver.solve(workspace_.participants, workspace_.contacts.touches(), nullptr))
+    if (workspace_.contact_solver.solve(workspace_.participants, workspace_.contacts.touches(), nullptr, infinity))
       workspace_.contact_solver.finish(workspace_.participants, workspace_.contacts.touches());
     result = workspace_.participants.front().result;
   }

@@ -23,6 +23,14 @@ constexpr double rounding = 1e-9;
 /// Loads of less than so much of Euler's for hinges do not buckle a chain of segments, however it is held.
 constexpr double surely_stable = 0.5;
 constexpr int bisections = 40;
+/// Of a span's length: what is pressed against something and less aside stays straight for too long.
+constexpr double pressed_straightness = 1e-3;
+/// Of what presses: less compression is none.
+constexpr double noticed_pressure = 1e-2;
+/// Of what presses: less along the column is a thing that the cable lies against.
+constexpr double pressed_along = 0.7;
+/// Of a segment, by which it is turned at most where its cable buckles under that.
+constexpr double pressed_slope = 1e-2;
 /// Of a span's length: a bow for more slack is no start for a step in which gravity pulls it aside, too.
 constexpr double largest_slack_aside = 0.03;
 
@@ -35,7 +43,7 @@ struct Column : StraightSpan {
   double distance() const { return (to - from).norm(); }
 };
 
-bool is_straight(const CableState& state, int first, int last) {
+bool is_straight(const CableState& state, int first, int last, double tolerance = straightness) {
   const std::vector<Vector3>& positions = state.positions;
   const Vector3 span = positions[last] - positions[first];
   const double length = span.norm();
@@ -43,12 +51,17 @@ bool is_straight(const CableState& state, int first, int last) {
   double along = 0;
   for (int i = first + 1; i < last; ++i) {
     const Vector3 place = positions[i] - positions[first];
-    if (place.cross(span).norm() > straightness * length * length) return false;
+    if (place.cross(span).norm() > tolerance * length * length) return false;
     const double next = place.dot(span);
     if (next <= along) return false;
     along = next;
   }
   return along < length * length;
+}
+
+bool is_clamped(int node, const KinematicTargets& targets) {
+  return std::any_of(targets.directions.begin(), targets.directions.end(),
+                     [node](const DirectionTarget& direction) { return direction.node == node; });
 }
 
 /// Calls `f` with each straight span between two holders that move as they are told, and are then at `place`.
@@ -62,11 +75,7 @@ void for_each_column(int index, const State& state, const Place& place, const Fu
   for (std::size_t k = 0; k + 1 < targets.nodes.size(); ++k) {
     const KinematicTarget &from = targets.nodes[k], &to = targets.nodes[k + 1];
     if (to.node - from.node < 2 || !is_told(from) || !is_told(to) || !is_straight(cable, from.node, to.node)) continue;
-    const auto is_clamped = [&](int node) {
-      return std::any_of(targets.directions.begin(), targets.directions.end(),
-                         [node](const DirectionTarget& direction) { return direction.node == node; });
-    };
-    Column column{{from.node, to.node, is_clamped(from.node), is_clamped(to.node)}, place(from), place(to)};
+    Column column{{from.node, to.node, is_clamped(from.node, targets), is_clamped(to.node, targets)}, place(from), place(to)};
     column.length = cable.length(from.node, to.node);
     if (column.distance() > 0) f(column);
   }
@@ -201,7 +210,16 @@ bool can_stretch(const Column& column, const SimulatedCable& cable) {
   return CableMaterials(cable).any_elastic_between(column.first, column.last);
 }
 
-/// Puts a column where it is, after `time` [s] of its present motion, a bow that takes `slack` [m]. Its motion begins anew.
+/// The motion of a cable begins anew, from where its nodes are now.
+void start_anew(const std::vector<Vector3>& before, int index, State& state) {
+  CableState& cable = state.cables[index].state;
+  begin_anew(cable.unresolved);
+  std::fill(cable.axial_multiplier.begin(), cable.axial_multiplier.end(), 0.0);
+  carry_frames(before, cable);
+  measure_joint_twists(state.cable_progress[index].targets.directions, cable);
+}
+
+/// Puts a column where it is, after `time` [s] of its present motion, a bow that takes `slack` [m].
 void bend(const Column& column, double slack, double time, double waves, int index, State& state) {
   SimulatedCable& cable = state.cables[index];
   const std::vector<Vector3> before = cable.state.positions;
@@ -211,13 +229,77 @@ void bend(const Column& column, double slack, double time, double waves, int ind
     const int i = column.first + k;
     cable.state.positions[i] = column.from + bow.along[k] * along + bow.across[k] * aside - time * cable.state.velocities[i];
   }
-  begin_anew(cable.state.unresolved);
-  std::fill(cable.state.axial_multiplier.begin(), cable.state.axial_multiplier.end(), 0.0);
-  carry_frames(before, cable.state);
-  measure_joint_twists(state.cable_progress[index].targets.directions, cable.state);
+  start_anew(before, index, state);
+}
+
+/// Calls `f` with each span, almost straight, from an end that nothing holds to what holds the cable next, or to the other end,
+/// and with whether it is held at its last node.
+template <class Function>
+void for_each_free_column(int index, const State& state, const Function& f) {
+  const KinematicTargets& targets = state.cable_progress[index].targets;
+  const CableState& cable = state.cables[index].state;
+  const auto visit = [&](int first, int last, bool held_at_last) {
+    if (last - first < 2 || !is_straight(cable, first, last, pressed_straightness)) return;
+    Column column{{first, last, is_clamped(first, targets), is_clamped(last, targets)}, cable.positions[first], cable.positions[last]};
+    column.length = cable.length(first, last);
+    f(column, held_at_last);
+  };
+  if (targets.nodes.empty()) return visit(0, cable.segments(), false);
+  visit(0, targets.nodes.front().node, true);
+  visit(targets.nodes.back().node, cable.segments(), false);
+}
+
+/// Turns the segments of a column into the shape in which it buckles, from the end that is held. It keeps their lengths.
+void fold(const Column& column, bool held_at_last, const std::vector<double>& shape, int index, State& state) {
+  SimulatedCable& cable = state.cables[index];
+  const std::vector<Vector3> before = cable.state.positions;
+  const Vector3 aside = across(column, cable, state);
+  double steepest = 0;
+  const auto slope = [&](int k) { return (shape[k + 1] - shape[k]) / cable.state.rest_lengths[column.first + k]; };
+  for (int k = 0; k < column.segments(); ++k) steepest = std::max(steepest, std::abs(slope(k)));
+  const auto turned = [&](int k) -> Vector3 {
+    const int i = column.first + k;
+    const Vector3 segment = before[i + 1] - before[i];
+    return segment.norm() * (segment.normalized() + pressed_slope / steepest * slope(k) * aside).normalized();
+  };
+  std::vector<Vector3>& positions = cable.state.positions;
+  for (int k = 0; k < column.segments() && !held_at_last; ++k)
+    positions[column.first + k + 1] = positions[column.first + k] + turned(k);
+  for (int k = column.segments(); k-- > 0 && held_at_last;)
+    positions[column.first + k] = positions[column.first + k + 1] - turned(k);
+  start_anew(before, index, state);
+}
+
+/// [N] The largest of the forces that press on a cable along a column; infinite where it lies against something, whose friction
+/// keeps it straight.
+double pressure_along(const Column& column, int cable, const std::vector<Touch>& touches) {
+  const Vector3 along = column.direction();
+  double pressure = 0;
+  for (const Touch& touch : touches) {
+    if (touch.point.cable != cable && touch.other.cable != cable) continue;
+    if (touch.normal_force > 0 && std::abs(touch.normal.dot(along)) < pressed_along) return infinity;
+    pressure = std::max(pressure, touch.normal_force);
+  }
+  return pressure > 0 ? pressure : infinity;
 }
 
 }  // namespace
+
+bool fold_pressed_columns(const Participant& p, const std::vector<Touch>& touches, State& state) {
+  bool folds = false;
+  for_each_free_column(p.cable, state, [&](const Column& column, bool held_at_last) {
+    double least = 0;
+    for (int i = column.first; i < column.last; ++i) least = std::min(least, p.stepper->tension(i));
+    if (least > -noticed_pressure * pressure_along(column, p.cable, touches)) return;
+    std::vector<double> tension;
+    for (int i = column.first; i < column.last; ++i) tension.push_back(p.stepper->tension(i));
+    LateralStiffness stiffness(*state.cables[p.cable].model, state.cables[p.cable].state, column, tension);
+    if (stiffness.is_stable_for(p.substep.h)) return;
+    fold(column, held_at_last, stiffness.growing_shape(), p.cable, state);
+    folds = true;
+  });
+  return folds;
+}
 
 void buckle_straight_columns(int index, State& state) {
   SimulatedCable& cable = state.cables[index];

@@ -4,8 +4,9 @@
 #include "guide/guides.h"
 #include "guide/node_passing.h"
 #include "rod/initial_shape.h"
+#include "rod/work_budget.h"
 #include "world/island_stepper.h"
-#include "world/step_budget.h"
+#include "world/step_progress.h"
 
 namespace verlet_cable {
 
@@ -26,8 +27,7 @@ int finest_level(double time_step) {
 double size_of(const Island& island, const State& state) {
   double size = budget::body * static_cast<double>(island.bodies.size());
   for (const int cable : island.cables)
-    size += budget::heavy * (1 + budget::guide * count_flows(cable, state)) *
-            (budget::cable + state.cables[cable].state.segments());
+    size += budget::heavy * visiting_work(state.cables[cable].state.segments(), count_flows(cable, state));
   return size;
 }
 
@@ -56,8 +56,11 @@ bool IslandStepper::advance_within(double most_work, Island& island, StepProgres
                                    bool contacts_known) {
   const int finest = finest_level(state_.scene->time_step);
   const std::int64_t whole = std::int64_t{1} << finest;
+  // An attempt that has begun may take as much more as a first share is.
+  const double overrun = budget::first_share * size_of(island, state_);
   while (progress.done < whole) {
     if (progress.work >= most_work) return false;
+    most_contact_work_ = most_work - progress.work + overrun;
     const std::int64_t ticks = whole >> progress.level;
     const bool splits = progress.level < finest;
     if (advance_part(island, {progress.done, progress.done + ticks, whole}, !splits, contacts_known, progress, found)) {
@@ -82,6 +85,7 @@ void IslandStepper::end_from_rest(Island& island, StepProgress& progress, Island
   const std::int64_t whole = std::int64_t{1} << finest_level(state_.scene->time_step);
   for (std::size_t k = 0; k < island.cables.size(); ++k) workspace_.cables[k].result.converged = false;
   stop(island, found);
+  most_contact_work_ = infinity;
   if (!advance_part(island, {progress.done, whole, whole}, true, false, progress, found)) give_up(island);
   found.exhausted = true;
 }
@@ -102,17 +106,16 @@ bool IslandStepper::advance_part(Island& island, const PartOfStep& part, bool to
 }
 
 double IslandStepper::work_of_attempt(const Island& island) const {
-  double work = 0;
+  double work = contact_work_;
   if (!island.bodies.empty())
     work += budget::body * static_cast<double>(island.bodies.size()) * workspace_.body_system.solutions();
   for (std::size_t k = 0; k < island.cables.size(); ++k) {
     const CableWorkspace& of_cable = workspace_.cables[k];
-    const bool heavy = of_cable.stepper.is_whole_rod() || workspace_.contacts.touched(k) || of_cable.boundary.is_on_bodies();
-    const double flows = static_cast<double>(of_cable.boundary.flows.size());
-    double iterations = (heavy ? budget::heavy : 1) * (1 + budget::guide * flows) * of_cable.result.iterations;
-    if (workspace_.contacts.touched(k) && of_cable.result.iterations > 0)
-      iterations += budget::coupling * workspace_.contact_solver.coupling_steps();
-    work += iterations * (budget::cable + state_.cables[island.cables[k]].state.segments());
+    const bool on_bodies = of_cable.boundary.is_on_bodies();
+    if (touches() && (workspace_.contacts.touched(k) || on_bodies)) continue;  // the contact solver has counted it
+    const double visit = visiting_work(state_.cables[island.cables[k]].state.segments(),
+                                       static_cast<double>(of_cable.boundary.flows.size()));
+    work += (of_cable.stepper.is_whole_rod() || on_bodies ? budget::heavy : 1) * of_cable.result.iterations * visit;
   }
   return work;
 }
@@ -132,25 +135,29 @@ void IslandStepper::stop(const Island& island, IslandOutcome& found) {
 }
 
 void IslandStepper::give_up(const Island& island) {
+  const bool touching = touches();
   workspace_.contacts.touches().clear();  // their forces are of what was no solution, and may not even be numbers
+  bool stuck = true;
   for (std::size_t k = 0; k < island.cables.size(); ++k)
     if (!workspace_.cables[k].result.converged)
-      give_up(island.cables[k], workspace_.contacts.touched(k), workspace_.cables[k].boundary);
+      stuck = give_up(island.cables[k], workspace_.contacts.touched(k), workspace_.cables[k].boundary) && stuck;
+  if (stuck && !touching && !island.bodies.empty()) hang_on_bodies_anew(island);
 }
 
 /// Not even from rest: the cable is put where its holders will be, and goes on from there; or hangs anew, where it would be stuck
-/// with nothing around it.
-void IslandStepper::give_up(int index, bool touches, Boundary& boundary) {
+/// with nothing around it. Whether it was there already.
+bool IslandStepper::give_up(int index, bool touches, Boundary& boundary) {
   SimulatedCable& cable = state_.cables[index];
   hold_at(1, 1, state_.cable_progress[index].targets, boundary);
   hold_on_bodies(cable.state, state_.attachments, state_.bodies, state_.time(), state_.cable_progress[index].targets, boundary);
   const CableState before = cable.state;
   carry_along(*cable.model, boundary.nodes, gravity_near(state_, index), cable.state);
-  if (!touches && cable.state.positions == before.positions)
-    hang_anew(*cable.model, boundary.nodes, gravity_near(state_, index), cable.state);
-  if (finite(cable.state.positions)) return;
+  const bool stuck = cable.state.positions == before.positions;
+  if (!touches && stuck) hang_anew(*cable.model, boundary.nodes, gravity_near(state_, index), cable.state);
+  if (finite(cable.state.positions)) return stuck;
   cable.state = before;
   note_status(Status::fault, cable_id(index), 0, outcomes_[index].result);
+  return false;
 }
 
 /// Whether the last substep may be doubled.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <iterator>
 #include <sstream>
 #include <stdexcept>
@@ -43,9 +44,7 @@ std::string transform_problem(const ReceivedTransform& received, Nanoseconds now
   const auto& r = transform.transform.rotation;
   const double squared_length = r.x * r.x + r.y * r.y + r.z * r.z + r.w * r.w;
   const Nanoseconds stamp = from_ros_time(transform.header.stamp);
-  // What tf2 adds to a stamp stays a ROS time.
-  const Nanoseconds latest =
-      std::min(now > 0 ? now : last_ros_time, last_ros_time - 2 * FrameBuffer::memory) + FrameBuffer::memory;
+  const Nanoseconds latest = FrameBuffer::latest(now);
   std::ostringstream problem;
   if (without_slash(transform.child_frame_id).empty() || without_slash(transform.header.frame_id).empty()) {
     problem << "a frame without a name";
@@ -64,14 +63,25 @@ std::string transform_problem(const ReceivedTransform& received, Nanoseconds now
     problem << "stamp with " << transform.header.stamp.nsec << " ns after the second; allowed: less than 1000000000";
   } else if (!received.is_static && stamp > latest) {
     problem << "stamp " << transform.header.stamp.sec << " s";
-    if (now > 0) problem << ", " << (stamp - now) / 1'000'000'000 << " s ahead of ROS time";
+    if (now > 0) problem << std::fixed << std::setprecision(3) << ", " << seconds(stamp - now) << " s ahead of ROS time";
     problem << "; allowed: up to " << latest / 1'000'000'000 << " s";
+    if (now > 0) problem << ", " << FrameBuffer::most_ahead / 1'000'000'000 << " s ahead";
   }
   return problem.str();
 }
 
 FrameBuffer::FrameBuffer(std::string fixed_frame, std::size_t most_stored)
     : fixed_frame_(std::move(fixed_frame)), buffer_(cache_time), stored_(memory, most_stored) {}
+
+Nanoseconds FrameBuffer::latest(Nanoseconds now) {
+  // What tf2 adds to a stamp stays a ROS time.
+  const Nanoseconds last = last_ros_time - memory;
+  return now > 0 ? std::min(now + most_ahead, last) : last;
+}
+
+bool FrameBuffer::reaches_beyond(Nanoseconds time) const {
+  return std::any_of(newest_.begin(), newest_.end(), [time](const auto& newest) { return newest.second > time; });
+}
 
 bool FrameBuffer::insert(const ReceivedTransform& received, Nanoseconds now) {
   const std::string child = without_slash(received.transform.child_frame_id);

@@ -19,14 +19,17 @@ namespace verlet_cable {
 std::string without_slash(const std::string& frame);
 
 /// Why a transform cannot be used; empty if it can. Refused are values that are not finite, quaternions that are not of length
-/// one, missing, endless or equal frame names, and a transform over time without a stamp, or with one that is further ahead of
-/// ROS time `now` than transforms are kept: tf2 would take everything else for too old. `now` is 0 where there is no time.
+/// one, missing, endless or equal frame names, and a transform over time without a stamp, or with one that is later than
+/// FrameBuffer::latest. `now` is 0 where there is no time.
 std::string transform_problem(const ReceivedTransform& received, Nanoseconds now = 0);
 
 /// The tree of frames over the last 60 s, seen from the fixed frame. The one place that talks to tf2 and catches what it throws.
 class FrameBuffer {
  public:
   static constexpr Nanoseconds memory = 60'000'000'000;  ///< how long transforms are kept
+  /// That a stamp may be ahead of ROS time. Localisation dates its transforms ahead by a second or so, and with a clock that is
+  /// published, tf may come before the clock does. What is further ahead is a mistake, and would be where the frame is newest.
+  static constexpr Nanoseconds most_ahead = 2'000'000'000;
   /// That are kept at once, of all frames: 1.3 GB. A hundred frames at 1 kHz have as many.
   static constexpr std::size_t most_stored = 6'000'000;
 
@@ -34,6 +37,10 @@ class FrameBuffer {
 
   /// Whether the transform is in the tree now. What is wrong with it is logged now and then, and counted.
   bool insert(const ReceivedTransform& received, Nanoseconds now = 0);
+  /// The latest stamp that is taken at ROS time `now`; where there is no time, the latest that can be stored.
+  static Nanoseconds latest(Nanoseconds now);
+  /// Whether there are transforms of later than `time`.
+  bool reaches_beyond(Nanoseconds time) const;
   void see_from(const std::string& fixed_frame);
   /// Forgets everything but static transforms.
   void clear();

@@ -7,10 +7,20 @@ namespace verlet_cable {
 
 void FrameHistory::extend(Nanoseconds stamp) {
   static_ = false;
-  if (intervals_.empty() || stamp - intervals_.back().last > longest_gap_) {
-    intervals_.push_back({stamp, stamp});
-  } else if (stamp > intervals_.back().last) {
-    intervals_.back().last = stamp;
+  const auto next = intervals_.begin() + (first_ending_from(stamp) - intervals_.cbegin());
+  const bool has_next = next != intervals_.end(), has_previous = next != intervals_.begin();
+  if (has_next && next->first <= stamp) return;
+  const bool joins_next = has_next && next->first - stamp <= longest_gap_;
+  const bool joins_previous = has_previous && stamp - std::prev(next)->last <= longest_gap_;
+  if (joins_previous && joins_next) {
+    next->first = std::prev(next)->first;
+    intervals_.erase(std::prev(next));
+  } else if (joins_previous) {
+    std::prev(next)->last = stamp;
+  } else if (joins_next) {
+    next->first = stamp;
+  } else {
+    intervals_.insert(next, {stamp, stamp});
   }
 }
 

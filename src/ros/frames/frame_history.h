@@ -19,8 +19,8 @@ class FrameHistory {
     ahead     ///< after the last stamp
   };
 
-  void extend(Nanoseconds stamp);  ///< stamps not later than the newest are ignored
-  void set_static();               ///< known at all times
+  void extend(Nanoseconds stamp);
+  void set_static();  ///< known at all times
   void forget_before(Nanoseconds time);
   void clear();
 

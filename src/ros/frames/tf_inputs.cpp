@@ -55,6 +55,10 @@ TfInputs::Track TfInputs::track_from(const std::string& frame, const FrameInput&
 void TfInputs::receive(Nanoseconds ros_now) {
   const ros::WallTime now = ros::WallTime::now();
   while (!recent_.empty() && recent_.front().first + longest_overtaking < now) recent_.pop_front();
+  // Before there was a ROS time, nothing could be too far ahead of it.
+  const bool is_first_time = ros_now > 0 && !std::exchange(has_time_, true);
+  const Nanoseconds latest = FrameBuffer::latest(ros_now);
+  if (is_first_time && buffer_.reaches_beyond(latest)) replay_recent(ros_now, last_ros_time);
   for (ReceivedTransform& received : listener_.take(received_.size())) received_.push_back(std::move(received));
   if (!received_.empty()) find_followers();
   // The rest waits for the next call: however much somebody sends, others do not wait.
@@ -69,7 +73,24 @@ void TfInputs::insert(const ReceivedTransform& received, Nanoseconds now) {
   if (buffer_.tree_version() != followers_version_) find_followers();
   const auto moved = followers_.find(without_slash(received.transform.child_frame_id));
   if (moved == followers_.end()) return;
-  for (const int frame : moved->second) update_history(tracks_[frame]);
+  for (const int frame : moved->second) {
+    update_history(tracks_[frame]);
+    if (!received.is_static) fill_history(tracks_[frame], from_ros_time(received.transform.header.stamp));
+  }
+}
+
+/// From what was sent in the last second until `latest`, as if all of it came now; what came before is forgotten.
+void TfInputs::replay_recent(Nanoseconds now, Nanoseconds latest) {
+  buffer_.clear();
+  for (Track& track : tracks_) {
+    if (track.is_body()) continue;
+    track.history.clear();
+    update_history(track);
+  }
+  find_followers();
+  for (const auto& [arrival, received] : recent_) {
+    if (from_ros_time(received.transform.header.stamp) <= latest) insert(received, now);
+  }
 }
 
 void TfInputs::find_followers() {
@@ -86,30 +107,33 @@ void TfInputs::update_history(Track& track) const {
   if (!newest) return;
   if (*newest == 0) {
     track.history.set_static();
-  } else {
+  } else if (*newest > track.history.newest()) {
     track.history.extend(*newest);
     track.history.forget_before(*newest - FrameBuffer::memory);
   }
 }
 
+/// One that came a little ahead of time must not hide those that come after it for earlier times.
+void TfInputs::fill_history(Track& track, Nanoseconds stamp) const {
+  if (stamp >= track.history.newest() || track.history.at(stamp) == Coverage::covered) return;
+  if (buffer_.pose(track.name, stamp)) track.history.extend(stamp);
+}
+
 void TfInputs::restart(Nanoseconds now, bool forget) {
-  buffer_.clear();
-  if (forget) drop_pinned_frames();
+  if (forget) unsee_frames();
+  replay_recent(now, now + longest_ahead);
+}
+
+/// But for those that pins and obstacles added, which are dropped.
+void TfInputs::unsee_frames() {
+  drop_pinned_frames();
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     Track& track = tracks_[i];
     if (track.is_body()) continue;
-    track.history.clear();
-    if (forget) {
-      track.status = i == 0 ? FrameStatus::ok : FrameStatus::never_seen;
-      track.too_fast = false;
-      track.gap = {};
-      inputs_[i] = track.initial;
-    }
-    update_history(track);
-  }
-  find_followers();
-  for (const auto& [arrival, received] : recent_) {
-    if (from_ros_time(received.transform.header.stamp) <= now + longest_ahead) insert(received, now);
+    track.status = i == 0 ? FrameStatus::ok : FrameStatus::never_seen;
+    track.too_fast = false;
+    track.gap = {};
+    inputs_[i] = track.initial;
   }
 }
 

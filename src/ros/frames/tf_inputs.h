@@ -116,8 +116,11 @@ class TfInputs {
   };
 
   void insert(const ReceivedTransform& received, Nanoseconds now);
+  void unsee_frames();
+  void replay_recent(Nanoseconds now, Nanoseconds latest);
   void find_followers();
   void update_history(Track& track) const;
+  void fill_history(Track& track, Nanoseconds stamp) const;
   const Track* find_track(const std::string& frame) const;
   Track track_from(const std::string& frame, const FrameInput& at, Nanoseconds time) const;
   Track computed_track(const std::string& frame) const;
@@ -133,6 +136,7 @@ class TfInputs {
   FrameBuffer buffer_;
   std::deque<ReceivedTransform> received_;                          ///< not yet in the buffer
   std::deque<std::pair<ros::WallTime, ReceivedTransform>> recent_;  ///< with the time of arrival
+  bool has_time_ = false;                                           ///< `receive` has been told a ROS time
   Nanoseconds timeout_ = 0;
   double max_frame_speed_ = infinity;
   bool approaches_ = true;                             ///< frames that come back

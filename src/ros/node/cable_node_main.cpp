@@ -33,6 +33,14 @@ void wait_for_master() {
   while (!ros::master::check()) ros::WallDuration(0.2).sleep();
 }
 
+/// roscpp subscribes to this parameter with the first line that is logged. In a node without any, that line would say that
+/// another node has taken its name; whoever subscribes then counts as the newer one, and the master would end the other node,
+/// too.
+void register_what_logging_needs() {
+  bool ignored = false;
+  ros::param::getCached("/rosout_disable_topics_generation", ignored);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -41,6 +49,7 @@ int main(int argc, char** argv) {
   wait_for_master();
   // Outlives what is thrown: logging ends with the last node handle.
   const ros::NodeHandle node("~");
+  register_what_logging_needs();
   try {
     const verlet_cable::CableNode cable_node(node);
     ros::spin();

@@ -108,10 +108,10 @@ std::string parameter_lines(const Fit& fit) {
         continue;
       }
     }
+    text += line("%-44s %10.4g %-9s ", parameter.key.c_str(), scene_value(parameter, result.values[i]), parameter.unit.c_str());
+    // The interval of what is not told may be without end, and says no more.
     const Interval range = interval(parameter, result.values[i], result.confidence[i]);
-    text += line("%-44s %10.4g %-9s (%.3g to %.3g)%s\n", parameter.key.c_str(), scene_value(parameter, result.values[i]),
-                 parameter.unit.c_str(), range.low, range.high,
-                 result.confidence[i].told ? "" : "  not determined by these recordings");
+    text += result.confidence[i].told ? line("(%.3g to %.3g)\n", range.low, range.high) : "not determined by these recordings\n";
   }
   if (untold > 0)
     text += line(
