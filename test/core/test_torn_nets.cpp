@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <optional>
 #include <string>
 
@@ -102,6 +103,90 @@ TEST(TornNet, OneThatIsHeldElsewhereAtTheStartIsCarriedThere) {
     EXPECT_LT(seen_far.force, largest_force);
     EXPECT_LT(seen_far.speed, largest_speed);
     EXPECT_LT(seen_far.distance, largest_distance);
+  }
+}
+
+/// 10,000 nodes that hang on two corners, of which the second is moved.
+class LargeNet {
+ public:
+  LargeNet() : inputs_(2) {
+    NetDesc net = scenes::grid(100, 100, 0.02, LinkType::limited);
+    net.mass = 1;
+    net.stiffness = 500;
+    net.damping = 0.5;
+    net.tolerance = 0.1;
+    net.attachments = {scenes::net_attachment("left", 0, {0, 0, 0}), scenes::net_attachment("right", 99, {1.98, 0, 0})};
+    net.attachments[1].frame = "hand";
+    SceneDesc scene;
+    scene.nets = {net};
+    world_.emplace(scene, inputs_);
+  }
+
+  void step(double x, double y) {
+    inputs_[1].pose.position = {x, y, 0};
+    const std::clock_t start = std::clock();
+    last_ = world_->step(inputs_);
+    processor_time_ += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    exhausted_steps_ += last_.exhausted;
+    const NetState& state = world_->nets()[0].state;
+    for (const Vector3& position : state.positions) ASSERT_LT(position.norm(), 5);
+    ASSERT_LT((state.positions[99] - Vector3(1.98 + x, y, 0)).norm(), 1e-12);
+  }
+  /// The hand is 0.28 m away at once, and swings from there.
+  void swing(int from, int to) {
+    for (int i = from; i < to; ++i) step(-0.28 + 0.2 * std::sin(0.012 * i), 0.1 * std::sin(0.009 * i));
+  }
+
+  double energy() const { return world_->energy().kinetic + world_->energy().gravity; }
+  World& world() { return *world_; }
+  const BoundaryInputs& inputs() const { return inputs_; }
+  const StepResult& last() const { return last_; }
+  double processor_time() const { return processor_time_; }
+  int exhausted_steps() const { return exhausted_steps_; }
+
+ private:
+  BoundaryInputs inputs_;
+  std::optional<World> world_;
+  StepResult last_;
+  double processor_time_ = 0;
+  int exhausted_steps_ = 0;
+};
+
+TEST(TornNet, LargeOneTakesABoundedTimeForAStepAndSaysSo) {
+  LargeNet calm, torn;
+  constexpr int steps = 8;
+  for (int i = 0; i < steps; ++i) calm.step(0, 0);
+  torn.swing(0, steps);
+  EXPECT_EQ(calm.exhausted_steps(), 0);
+  EXPECT_EQ(torn.exhausted_steps(), steps);
+  EXPECT_EQ(torn.last().status, StepResult::Status::degraded);
+  // The calm one's first step makes the solver, too. It is 7 times as long; without a bound it was 50 times.
+  EXPECT_LT(torn.processor_time(), 20 * calm.processor_time());
+}
+
+TEST(TornNet, LargeOneThatTookTooMuchWorkCalmsDown) {
+  LargeNet net;
+  net.swing(0, 250);
+  EXPECT_GT(net.exhausted_steps(), 50);
+  const double energy = net.energy();
+  const int exhausted = net.exhausted_steps();
+  const Vector3 hand = net.inputs()[1].pose.position;
+  for (int i = 0; i < 250; ++i) net.step(hand.x(), hand.y());
+  // What is under way when the hand stops may still need it, but not for long, and gains nothing.
+  EXPECT_LT(net.exhausted_steps() - exhausted, 100);
+  EXPECT_EQ(net.last().status, StepResult::Status::ok);
+  EXPECT_LT(net.energy(), energy + 0.1 * std::abs(energy));
+}
+
+TEST(TornNet, LargeOneThatTookTooMuchWorkGoesOnAlikeInACopy) {
+  LargeNet net;
+  net.swing(0, 5);
+  ASSERT_GT(net.exhausted_steps(), 0);
+  World copy = net.world();
+  for (int i = 0; i < 5; ++i) {
+    net.step(-0.2, 0.01 * i);
+    EXPECT_TRUE(copy.step(net.inputs()).exhausted);
+    EXPECT_EQ(copy.hash(), net.world().hash()) << i;
   }
 }
 

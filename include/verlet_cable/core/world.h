@@ -85,7 +85,7 @@ struct StepResult {
   int ignored_frame = -1;  ///< the first frame whose pose was not sound
   int substeps = 0;        ///< the largest number for any cable
   int iterations = 0;      ///< of the solver, over all cables and substeps
-  bool exhausted = false;  ///< the step exceeded its budget of work: the rest of it was done from rest
+  bool exhausted = false;  ///< the step exceeded its budget of work and was cut short: cables did the rest of it from rest
   double max_strain = 0;   ///< largest |l / l0 - 1| at the end of the step
 };
 

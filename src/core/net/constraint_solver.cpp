@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rod/work_budget.h"
+
 namespace verlet_cable {
 
 namespace {
@@ -71,7 +73,6 @@ void NetConstraintSolver::resize(const NetModel& model, const std::vector<HeldNo
   held_links_.clear();
   for (std::size_t link = 0; link < model.links.size(); ++link)
     if (held_at_[model.links[link][0]] >= 0 && held_at_[model.links[link][1]] >= 0) held_links_.push_back(static_cast<int>(link));
-  listed_.assign(links, 0);
   outside_.reserve(links);
   next_outside_.reserve(links);
   contacts_.reserve(nodes);
@@ -139,6 +140,17 @@ void NetConstraintSolver::connect(std::size_t nodes) {
   for (std::size_t row = 0; row < rows_.size(); ++row)
     for (int k = 0; k < rows_[row].run.count; ++k)
       row_of_[rows_[row].run.first + k * rows_[row].run.stride] = static_cast<int>(row);
+  bounds_.resize(nodes_.size());
+  listed_.assign(nodes_.size(), 0);
+  for (std::size_t link = 0; link < nodes_.size(); ++link) {
+    listed_[link] = row_of_[link] < 0;
+    if (listed_[link]) continue;
+    const Row& row = rows_[row_of_[link]];
+    const double rest = row.law.rest_length;
+    const double part = row.law.longest < unbounded ? aimed_part : 0;  // rigid links are brought to their rest length
+    bounds_[link] = {nodes_[link], row.shortest, row.longest, rest + part * (row.shortest - rest),
+                     row.is_link ? rest + part * (row.longest - rest) : unbounded};
+  }
   first_at_.assign(nodes + 1, 0);
   for (const std::array<int, 2>& link : nodes_)
     for (const int node : link) ++first_at_[node + 1];
@@ -157,12 +169,19 @@ void NetConstraintSolver::advance_part(const NetStep& step, NetState& state, Lin
   const int sweeps = step.model.link_type == LinkType::rigid ? rigid_sweeps : limited_sweeps;
   for (int i = 0; i < sweeps; ++i) sweep(step.model, i % 2 == 0);
   result.iterations += sweeps;
+  work_ += work_of_parts(step.model, 1);
   long_range_attachments_.pull(step.held, h_, arrays_);
   keep_bounds(result);
   react(step, memory);
   store(step, state, memory);
   judge(step, result);
   result.finite = is_sane(state.positions) && is_sane(state.velocities) && std::isfinite(result.max_strain);
+}
+
+/// All that a step does with each of the links, before it corrects single ones.
+double NetConstraintSolver::work_of_parts(const NetModel& model, int parts) const {
+  const int sweeps = model.link_type == LinkType::rigid ? rigid_sweeps : limited_sweeps;
+  return parts * (budget::link_part + budget::link_sweep * sweeps) * static_cast<double>(nodes_.size());
 }
 
 void NetConstraintSolver::judge(const NetStep& s, NetStepResult& result) const {
@@ -184,7 +203,7 @@ int NetConstraintSolver::overstretched_node(const NetStep& s) const {
 int NetConstraintSolver::unsolved_node() const {
   for (const int link : outside_) {
     const Row& row = rows_[row_of_[link]];
-    const double length = end_length(nodes_[link][0], nodes_[link][1], h_, arrays_);
+    const double length = end_way(loose_node(nodes_[link][0], arrays_), loose_node(nodes_[link][1], arrays_), h_).norm();
     const double slack = row.law.longest < unbounded ? 0 : (told_rigid_strain - rigid_tolerance) * row.law.rest_length;
     if (!(length >= row.shortest - slack && length <= row.longest + slack)) return nodes_[link][0];
   }
@@ -308,56 +327,66 @@ bool NetConstraintSolver::measure(NetStepResult& result) {
 
 void NetConstraintSolver::list_outside(const Row& row) {
   for (int k = 0; k < row.run.count; ++k) {
-    const int link = row.run.first + k * row.run.stride;
-    if (is_outside(link)) outside_.push_back(link);
+    const int i = row.run.first_node + k * row.run.stride, j = row.run.second_node + k * row.run.stride;
+    const double length = end_way(loose_node(i, arrays_), loose_node(j, arrays_), h_).norm();
+    if (!(length >= row.shortest && length <= row.longest)) outside_.push_back(row.run.first + k * row.run.stride);
   }
-}
-
-bool NetConstraintSolver::is_outside(int link) const {
-  const Row& row = rows_[row_of_[link]];
-  const double length = end_length(nodes_[link][0], nodes_[link][1], h_, arrays_);
-  return !(length >= row.shortest && length <= row.longest);
-}
-
-void NetConstraintSolver::correct(int link, bool along_end) {
-  const Row& row = rows_[row_of_[link]];
-  const double rest = row.law.rest_length;
-  const double length = end_length(nodes_[link][0], nodes_[link][1], h_, arrays_);
-  const double part = row.law.longest < unbounded ? aimed_part : 0;  // rigid links are brought to their rest length
-  const double shortest = rest + part * (row.shortest - rest);
-  const double longest = row.is_link ? rest + part * (row.longest - rest) : unbounded;
-  const auto [i, j] = nodes_[link];
-  const Vector3 impulse = set_length(link, i, j, std::clamp(length, shortest, longest), along_end, h_, arrays_);
-  if (held_at_[i] >= 0) bound_impulses_[held_at_[i]] -= impulse;
-  if (held_at_[j] >= 0) bound_impulses_[held_at_[j]] += impulse;
 }
 
 /// Corrects what is outside its bounds, then whatever that has pushed out, until nothing is.
 void NetConstraintSolver::keep_bounds(NetStepResult& result) {
   std::fill(bound_impulses_.begin(), bound_impulses_.end(), Vector3::Zero());
   if (!measure(result)) return;
+  const int nodes = static_cast<int>(arrays_.inverse_mass.size());
+  loose_nodes_.resize(nodes);
+  for (int i = 0; i < nodes; ++i) loose_nodes_[i] = loose_node(i, arrays_);
   const std::size_t most = std::max(fewest_corrections, maximum_corrections * nodes_.size());
   std::size_t visited = 0;
   for (int round = 0; round < maximum_rounds && visited < most && !outside_.empty(); ++round) {
+    exhausted_ = work_ >= most_work_;
+    if (exhausted_) break;
     ++result.iterations;
     visited += outside_.size();
-    next_outside_.clear();
-    for (const int link : outside_) listed_[link] = 0;
-    for (const int link : outside_) {
-      if (!is_outside(link)) continue;
-      correct(link, round >= rounds_along_start);
-      for (const int node : nodes_[link])
-        for (int k = first_at_[node]; k < first_at_[node + 1]; ++k) {
-          const int neighbour = links_at_[k];
-          if (listed_[neighbour] || row_of_[neighbour] < 0) continue;
-          listed_[neighbour] = 1;
-          next_outside_.push_back(neighbour);
-        }
-    }
-    std::swap(outside_, next_outside_);
+    work_ += correct_once(round >= rounds_along_start);
   }
   for (const int link : outside_) listed_[link] = 0;
+  for (int i = 0; i < nodes; ++i) set(arrays_.velocity, i, loose_nodes_[i].velocity);
   measure(result);
+}
+
+/// One round: lists what is to be looked at in the next one. Returns its work [visits].
+double NetConstraintSolver::correct_once(bool along_end) {
+  next_outside_.clear();
+  std::size_t corrected = 0;
+  for (const int link : outside_) listed_[link] = 0;
+  for (const int link : outside_) {
+    const Bounds& bounds = bounds_[link];
+    const auto [i, j] = bounds.nodes;
+    const Vector3 end = end_way(loose_nodes_[i], loose_nodes_[j], h_);
+    const double length = end.norm();
+    if (length >= bounds.shortest && length <= bounds.longest) continue;
+    const double next = std::clamp(length, bounds.aimed_shortest, bounds.aimed_longest);
+    const Vector3 impulse = set_length(next, end, length, arrays_.inverse_length[link], along_end, h_, loose_nodes_[i],
+                                       loose_nodes_[j], arrays_.impulse[link]);
+    if (held_at_[i] >= 0) bound_impulses_[held_at_[i]] -= impulse;
+    if (held_at_[j] >= 0) bound_impulses_[held_at_[j]] += impulse;
+    list_neighbours(i);
+    list_neighbours(j);
+    ++corrected;
+  }
+  const double work =
+      budget::link_look * static_cast<double>(outside_.size()) + budget::link_correction * static_cast<double>(corrected);
+  std::swap(outside_, next_outside_);
+  return work;
+}
+
+void NetConstraintSolver::list_neighbours(int node) {
+  for (int k = first_at_[node]; k < first_at_[node + 1]; ++k) {
+    const int neighbour = links_at_[k];
+    if (listed_[neighbour]) continue;
+    listed_[neighbour] = 1;
+    next_outside_.push_back(neighbour);
+  }
 }
 
 void NetConstraintSolver::react(const NetStep& s, const LinkMemory& memory) const {

@@ -170,21 +170,16 @@ SquareRange measure_links(const LinkRun& run, double rest_length, double h, cons
           *std::min_element(turned, turned + block) < 0};
 }
 
-double end_length(int i, int j, double h, const LinkArrays& a) {
-  return (get(a.position, j) - get(a.position, i) + h * (get(a.velocity, j) - get(a.velocity, i))).norm();
-}
-
-Vector3 set_length(int link, int i, int j, double length, bool along_end, double h, LinkArrays& a) {
-  const Vector3 start = (get(a.position, j) - get(a.position, i)) * a.inverse_length[link];
-  const Vector3 end = get(a.position, j) - get(a.position, i) + h * (get(a.velocity, j) - get(a.velocity, i));
-  const double before = end.norm();
+Vector3 set_length(double length, const Vector3& end, double before, double inverse_length, bool along_end, double h,
+                   LooseNode& i, LooseNode& j, double& impulse) {
+  const Vector3 start = (j.position - i.position) * inverse_length;
   if (before > 0 && start.dot(end) < least_cosine * before) along_end = true;
   const Vector3 direction = along_end && before > 0 ? Vector3(end / before) : start;
-  const double change = (length - before) / (h * (a.inverse_mass[i] + a.inverse_mass[j]));
-  set(a.velocity, i, get(a.velocity, i) - change * a.inverse_mass[i] * direction);
-  set(a.velocity, j, get(a.velocity, j) + change * a.inverse_mass[j] * direction);
+  const double change = (length - before) / (h * (i.inverse_mass + j.inverse_mass));
+  i.velocity -= change * i.inverse_mass * direction;
+  j.velocity += change * j.inverse_mass * direction;
   if (along_end) return change * direction;
-  a.impulse[link] += change;
+  impulse += change;
   return Vector3::Zero();
 }
 

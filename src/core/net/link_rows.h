@@ -47,12 +47,26 @@ struct SquareRange {
 };
 SquareRange measure_links(const LinkRun& run, double rest_length, double h, const LinkArrays& arrays);
 
-/// Brings one link's length to `length` [m]: the part of `sweep_links` that is left when nothing but bounds counts. By an impulse
-/// along its direction at the start of the step, or by one along that at the end, which finds a way where the former cannot (a
-/// net in a plane cannot be kept in shape along its links when it leaves the plane), but is no part of the link's impulse: then
-/// what the second node was given [N s] is returned, else nothing.
-Vector3 set_length(int link, int first_node, int second_node, double length, bool along_end, double h, LinkArrays& arrays);
-/// [m] of one link at the end of the step.
-double end_length(int first_node, int second_node, double h, const LinkArrays& arrays);
+/// A node as corrections of single links work on it: those come in no order, so that all of a node is in one line of the cache.
+struct alignas(64) LooseNode {
+  Vector3 position;         ///< at the start of the step [m]
+  Vector3 velocity;         ///< over the step [m/s]
+  double inverse_mass = 0;  ///< [1/kg], 0 where held
+};
+inline LooseNode loose_node(int node, const LinkArrays& arrays) {
+  return {get(arrays.position, node), get(arrays.velocity, node), arrays.inverse_mass[node]};
+}
+
+/// [m] From a node to another at the end of the step.
+inline Vector3 end_way(const LooseNode& i, const LooseNode& j, double h) {
+  return j.position - i.position + h * (j.velocity - i.velocity);
+}
+
+/// Brings one link to `length` [m]: the part of `sweep_links` that is left when nothing but bounds counts. `end`: its way at the
+/// end of the step, `before` its length. By an impulse along its direction at the start of the step, or by one along that at the
+/// end, which finds a way where the former cannot (a net in a plane cannot be kept in shape along its links when it leaves the
+/// plane), but is no part of the link's impulse: then what the second node was given [N s] is returned, else nothing.
+Vector3 set_length(double length, const Vector3& end, double before, double inverse_length, bool along_end, double h,
+                   LooseNode& i, LooseNode& j, double& impulse);
 
 }  // namespace verlet_cable

@@ -121,7 +121,17 @@ void World::Implementation::add_particle(const ParticleDesc& desc) {
 void World::Implementation::step_nets_and_particles(StepResult& result) {
   if (state.nets.empty() && state.particles.empty()) return;
   move_obstacles(state, 0, 1, moving_obstacles.value);
-  for (int net = 0; net < static_cast<int>(state.nets.size()); ++net) step_net(net, result);
+  // What a net leaves of its share of the work, the next ones may have.
+  double work = budget::most, size = 0;
+  for (const SimulatedNet& net : state.nets) size += size_of(net.model);
+  for (int net = 0; net < static_cast<int>(state.nets.size()); ++net) {
+    const NetModel& model = state.nets[net].model;
+    NetConstraintSolver& links = solver_of(net).links;
+    links.allow_work(first_share_of(model) + work * size_of(model) / size);
+    step_net(net, result);
+    work -= std::clamp(links.work() - first_share_of(model), 0.0, work);
+    size -= size_of(model);
+  }
   for (int particle = 0; particle < static_cast<int>(state.particles.size()); ++particle) step_particle(particle, result);
   result.substeps = std::max(result.substeps, 1);
 }
@@ -142,6 +152,7 @@ void World::Implementation::step_net(int index, StepResult& result) {
   } else {
     net.state = solver.before;
   }
+  result.exhausted = result.exhausted || of_net.exhausted;
   if (!of_net.finite || of_net.torn) {
     bring_to_rest(net.state);
     forget_motion(net.model, memory);
@@ -150,6 +161,8 @@ void World::Implementation::step_net(int index, StepResult& result) {
     show_velocities(memory.targets, net.state.velocities);
     return;
   }
+  // It keeps its velocities: where it took too much work for many steps, it would hang in the air without.
+  if (of_net.exhausted) note_net(Status::degraded, index, std::max(of_net.unsolved_node, 0), result);
   if (of_net.softened) note_net(Status::degraded, index, 0, result);
   if (of_net.unsolved_node >= 0) note_net(Status::degraded, index, of_net.unsolved_node, result);
   if (of_net.overstretched_node >= 0) note_net(Status::overstretched, index, of_net.overstretched_node, result);

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "contact/moving_obstacle.h"
+#include "rod/work_budget.h"
 #include "target/boundary.h"
 #include "target/kinematic_targets.h"
 #include "verlet_cable/core/net.h"
@@ -26,9 +27,19 @@ struct NetStepResult {
   int unsolved_node = -1;       ///< of a link that was not brought within its bounds though it could be; -1: none
   bool torn = false;            ///< links are far outside their bounds: what pulls at them is not to go on
   bool softened = false;        ///< the step was too long for the springs: they were taken to be softer
+  bool exhausted = false;       ///< it took more work than it may: what it had come to by then is no solution
   int iterations = 0;
   double max_strain = 0;
 };
+
+/// In links, by which nets share what a step has for them.
+inline double size_of(const NetModel& model) {
+  return budget::net + static_cast<double>(model.links.size() + model.minimum_distances.size());
+}
+/// [visits] of work (rod/work_budget.h) that a net's step may take in any case.
+inline double first_share_of(const NetModel& model) {
+  return budget::net_first_share * size_of(model);
+}
 
 /// What acts on a held node besides the net's links.
 inline Vector3 force_on_holder(const NetStep& s, const HeldNode& held, const Vector3& links, const Vector3& wind,

@@ -82,7 +82,7 @@ void Diagnostics::report_simulation(Status& status) {
   status.add("overstretched_steps", s.overstretched);     // held points were further apart than a cable or net is long
   status.add("jumped_steps", s.jumped);                   // a frame jumped, and what it holds was carried along
   status.add("degraded_steps", s.degraded);               // no solution was found, and velocities were set to zero
-  status.add("exhausted_steps", s.exhausted);             // a step exceeded its budget of work and was ended from rest
+  status.add("exhausted_steps", s.exhausted);             // a step exceeded its budget of work and was cut short
   status.add("faults", report.faults);                    // number since the start
   status.add("waiting_cables", NameList(simulation_.world().findings().waiting).text(""));  // that wait for a frame
   report_waiting(status);

@@ -29,7 +29,7 @@ void CableWatch::report_status(const StepResult& result, Nanoseconds stamp, cons
   if (result.exhausted) {
     ROS_WARN_THROTTLE(
         log_period,
-        "a step took too much work and was ended from rest, so that others need not wait: %s moves too violently for "
+        "a step took too much work and was cut short, so that others need not wait: %s moves too violently for "
         "the time_step, a shorter one or slower frames would help",
         quoted(subject).c_str());
   } else if (result.status == StepResult::Status::degraded && (result.body.is_cable() || result.body.is_rigid_body())) {
@@ -37,8 +37,7 @@ void CableWatch::report_status(const StepResult& result, Nanoseconds stamp, cons
                       "no solution was found for a step of %s: its motion was taken away, and it goes on from rest; or it is in "
                       "another, and has no room to get apart",
                       quoted(subject).c_str());
-  }
-  if (result.status == StepResult::Status::degraded && !result.body.is_cable() && !result.body.is_rigid_body()) {
+  } else if (result.status == StepResult::Status::degraded) {
     ROS_WARN_THROTTLE(log_period,
                       "%s is unstable and was softened or stopped: stiff springs between light nodes need a shorter time_step",
                       quoted(subject).c_str());
