@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <ctime>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "../support/scenes.h"
+#include "contact/segment_grid.h"
 
 // Cables that many bodies, junctions and guides hold: what a step takes stays in proportion, or is refused.
 
@@ -155,6 +158,38 @@ TEST(CoupledPlaces, TimeOfAStepGrowsInProportionToRigidJunctions) {
   const double few = iteration_time(with_branches(150, JunctionDesc::Type::rigid));
   const double many = iteration_time(with_branches(600, JunctionDesc::Type::rigid));
   EXPECT_LT(many, 3 * few) << "an iteration of a cable, which should take as long in both";
+}
+
+/// Without a limit 600 cables in one place would have 180,000 pairs, and ten times as many a hundred times that.
+TEST(HeapedUpSegments, AreWatchedForTheNearestOthersOnly) {
+  constexpr int count = 600, most = 256;
+  SceneDesc scene = scenes::one_cable(1, 0.1);
+  const CableDesc first = scene.cables[0];
+  scene.cables.clear();
+  for (int i = 0; i < count; ++i) {
+    CableDesc cable = first;
+    cable.name += std::to_string(i);
+    cable.initial.type = InitialShapeDesc::Type::straight;
+    cable.initial.from = {0, 1e-6 * i, 0};
+    cable.initial.to = {0.1, 1e-6 * i, 0};
+    scene.cables.push_back(cable);
+  }
+  const World world(scene, initial_frames(scene));
+  std::vector<int> all;
+  for (int i = 0; i < count; ++i) all.push_back(i);
+  SegmentGrid grid;
+  SegmentPairs found;
+  grid.update(world.cables(), all, {false, true}, 1e-3, 1e-3, found);
+  std::size_t expected = 0;
+  for (int i = 0; i < count; ++i) expected += std::min(most, count - 1 - i);
+  ASSERT_EQ(found.pairs.size(), expected);
+  for (std::size_t k = 0; k < found.pairs.size(); ++k) {
+    const SegmentPairs::Pair& pair = found.pairs[k];
+    ASSERT_LE(pair.second.cable - pair.first.cable, most) << "one further away";
+    if (k == 0) continue;
+    const SegmentPairs::Pair& before = found.pairs[k - 1];
+    ASSERT_LT(std::make_pair(before.first.cable, before.second.cable), std::make_pair(pair.first.cable, pair.second.cable));
+  }
 }
 
 }  // namespace

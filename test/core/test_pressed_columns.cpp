@@ -86,7 +86,8 @@ TEST(PressedColumns, StiffRodStands) {
     ASSERT_EQ(world.step(scenes::hand_at({0, 0, height})).status, Status::ok) << "step " << i;
   }
   double aside = 0;
-  for (const Vector3& position : world.cables()[0].state.positions) aside = std::max(aside, std::hypot(position.x(), position.y()));
+  for (const Vector3& position : world.cables()[0].state.positions)
+    aside = std::max(aside, std::hypot(position.x(), position.y()));
   EXPECT_LT(aside, 1e-6);
   EXPECT_FALSE(world.findings().contacts.empty());
 }

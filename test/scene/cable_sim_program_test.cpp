@@ -77,6 +77,14 @@ TEST_F(CableSim, rowsThatFallBetweenStepsAreTheNextStep) {
   for (std::size_t i = 0; i < times.size(); ++i) EXPECT_NEAR(times[i], expected[i], 1e-12);
 }
 
+TEST_F(CableSim, stepsThatAreLongerThanARowAreTheRows) {
+  const std::string scene = write("scene.yaml", replaced(sound_scene, "time_step: 0.002", "time_step: 0.02"));
+  ASSERT_EQ(run(scene + " --duration 0.1 --output " + path("o.csv")), 0) << err;
+  const std::vector<Row> all = rows("o.csv");
+  ASSERT_EQ(all.size(), 6u * 21);
+  EXPECT_EQ(all.back().time, 0.1);
+}
+
 TEST_F(CableSim, summaryOfACableAtRest) {
   // 0.1 kg of cable, held at one end, starts at rest straight down.
   write("scene.yaml", R"(

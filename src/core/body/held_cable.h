@@ -87,7 +87,7 @@ class HeldCable {
   int participant_ = 0;
   std::vector<Side> sides_;  ///< ascending by node, a node before its direction
   std::vector<Contact> contacts_;
-  std::vector<int> members_;  ///< bodies that hold it or press on it, ascending; set by `couple`
+  std::vector<int> members_;                 ///< bodies that hold it or press on it, ascending; set by `couple`
   std::vector<int> turns_;                   ///< of each: past the last side that feels a side of it so far
   std::vector<Eigen::Matrix3d> resistance_;  ///< of what the sides feel, against how they move
   HolderLoads loads_, responses_;

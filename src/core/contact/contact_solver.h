@@ -70,9 +70,7 @@ class ContactSolver {
   };
 
   void begin(std::vector<Participant>& participants);
-  void spend(double visits, std::size_t contacts) {
-    spent_ += visits * size_ + budget::touch * static_cast<double>(contacts);
-  }
+  void spend(double visits, std::size_t contacts) { spent_ += visits * size_ + budget::touch * static_cast<double>(contacts); }
   bool iterate(std::vector<Participant>& participants, std::vector<Touch>& touches);
   bool press(std::vector<Participant>& participants, std::vector<Touch>& touches);
   bool shorten(std::vector<Participant>& participants, std::vector<Touch>& touches);

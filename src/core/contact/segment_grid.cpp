@@ -20,6 +20,8 @@ constexpr double margin_substeps = 20;
 /// by no more than so many segment lengths, or a radius, and no less than this part of a radius.
 constexpr double margin_segments = 0.5;
 constexpr double least_margin = 0.2;
+/// Others that a segment is watched for: where more are as near, cables are heaped up in one place, and the nearest count.
+constexpr std::size_t most_neighbours = 256;
 
 double largest_speed(const std::vector<SimulatedCable>& cables, const std::vector<int>& group) {
   double square = 0;
@@ -94,6 +96,18 @@ double find_margin(const std::vector<SimulatedCable>& cables, const std::vector<
   }
   const double way = h * largest_speed(cables, group);
   return std::clamp(margin_substeps * way, least_margin * thickest, std::max(thickest, margin_segments * longest)) + 2 * way;
+}
+
+/// Of the pairs of a segment, which are the last ones, from `first` on, descending: those that are the closest.
+void keep_nearest(std::size_t first, std::vector<SegmentPairs::Pair>& pairs) {
+  if (pairs.size() - first <= most_neighbours) return;
+  using Pair = SegmentPairs::Pair;
+  const auto begin = pairs.begin() + static_cast<std::ptrdiff_t>(first), end = begin + most_neighbours;
+  std::nth_element(begin, end, pairs.end(), [](const Pair& a, const Pair& b) {
+    return a.distance != b.distance ? a.distance < b.distance : a.second_node < b.second_node;
+  });
+  pairs.erase(end, pairs.end());
+  std::sort(begin, pairs.end(), [](const Pair& a, const Pair& b) { return a.second_node > b.second_node; });
 }
 
 }  // namespace
@@ -178,6 +192,7 @@ void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules
     own_bucket = a;
     std::sort(near_.rbegin(), near_.rend());
     const Vector3 &start = found.places[first.node], &end = found.places[first.node + 1];
+    const std::size_t before = found.pairs.size();
     for (const int b : near_) {
       const Entry& second = entries_[b];
       const Vector3 &other_start = found.places[second.node], &other_end = found.places[second.node + 1];
@@ -187,6 +202,7 @@ void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules
       const double far = radius + CableMaterials(cables[second.id.cable])[second.id.segment].radius + reach + 2 * found.margin;
       if (distance <= far) found.pairs.push_back({first.id, second.id, first.node, second.node, distance});
     }
+    keep_nearest(before, found.pairs);
   }
   std::reverse(found.pairs.begin(), found.pairs.end());
 }

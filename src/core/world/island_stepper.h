@@ -133,11 +133,11 @@ class IslandStepper {
   Workspace& workspace_;
   std::vector<CableOutcome>& outcomes_;
   Environment environment_;
-  bool projects_bodies_ = false;  ///< velocities of bodies and what they hold, at the end of the substep
-  double joined_mass_ = 0;        ///< [kg] of the island, where there are bodies
+  bool projects_bodies_ = false;         ///< velocities of bodies and what they hold, at the end of the substep
+  double joined_mass_ = 0;               ///< [kg] of the island, where there are bodies
   double most_contact_work_ = infinity;  ///< of the next attempt, see `budget`
   double contact_work_ = 0;              ///< that the last one took
-  int lanes_;                     ///< two a cable that is stepped together with others
+  int lanes_;                            ///< two a cable that is stepped together with others
 };
 
 /// The step of a winch or joint is done.

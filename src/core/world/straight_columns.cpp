@@ -240,7 +240,8 @@ void for_each_free_column(int index, const State& state, const Function& f) {
   const CableState& cable = state.cables[index].state;
   const auto visit = [&](int first, int last, bool held_at_last) {
     if (last - first < 2 || !is_straight(cable, first, last, pressed_straightness)) return;
-    Column column{{first, last, is_clamped(first, targets), is_clamped(last, targets)}, cable.positions[first], cable.positions[last]};
+    Column column{
+        {first, last, is_clamped(first, targets), is_clamped(last, targets)}, cable.positions[first], cable.positions[last]};
     column.length = cable.length(first, last);
     f(column, held_at_last);
   };

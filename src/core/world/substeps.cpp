@@ -113,8 +113,8 @@ double IslandStepper::work_of_attempt(const Island& island) const {
     const CableWorkspace& of_cable = workspace_.cables[k];
     const bool on_bodies = of_cable.boundary.is_on_bodies();
     if (touches() && (workspace_.contacts.touched(k) || on_bodies)) continue;  // the contact solver has counted it
-    const double visit = visiting_work(state_.cables[island.cables[k]].state.segments(),
-                                       static_cast<double>(of_cable.boundary.flows.size()));
+    const double visit =
+        visiting_work(state_.cables[island.cables[k]].state.segments(), static_cast<double>(of_cable.boundary.flows.size()));
     work += (of_cable.stepper.is_whole_rod() || on_bodies ? budget::heavy : 1) * of_cable.result.iterations * visit;
   }
   return work;

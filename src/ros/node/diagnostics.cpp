@@ -106,7 +106,7 @@ void Diagnostics::report_simulation(Status& status) {
     status.mergeSummary(DiagnosticStatus::WARN,
                         "steps without a solution: the motion of cables, or of bodies and what hangs on them, was taken away");
   if (s.exhausted > 0)
-    status.mergeSummary(DiagnosticStatus::WARN, "steps took too much work, and were ended from rest: the time_step is too long");
+    status.mergeSummary(DiagnosticStatus::WARN, "steps took too much work, and were cut short: the time_step is too long");
   if (!simulation_.world().findings().unsettled.empty())
     status.mergeSummary(DiagnosticStatus::WARN, "no static equilibrium was found to start from");
   if (!report.intrusions.empty()) status.mergeSummary(DiagnosticStatus::WARN, "cables were found inside obstacles");

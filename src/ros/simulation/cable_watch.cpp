@@ -27,11 +27,10 @@ void CableWatch::report_status(const StepResult& result, Nanoseconds stamp, cons
         quoted(subject).c_str(), result.node);
   }
   if (result.exhausted) {
-    ROS_WARN_THROTTLE(
-        log_period,
-        "a step took too much work and was cut short, so that others need not wait: %s moves too violently for "
-        "the time_step, a shorter one or slower frames would help",
-        quoted(subject).c_str());
+    ROS_WARN_THROTTLE(log_period,
+                      "a step took too much work and was cut short, so that others need not wait: %s moves too violently for "
+                      "the time_step, a shorter one or slower frames would help",
+                      quoted(subject).c_str());
   } else if (result.status == StepResult::Status::degraded && (result.body.is_cable() || result.body.is_rigid_body())) {
     ROS_WARN_THROTTLE(log_period,
                       "no solution was found for a step of %s: its motion was taken away, and it goes on from rest; or it is in "

@@ -103,7 +103,7 @@ int simulate_job(const Options& options, const Job& job) {
   // A summary tells of a disk that rows have filled.
   if (!options.summary.empty()) outputs.summary.reserve(2 * summary.json(world, {}).size() + room_for_events);
   const RunEnd end = simulate(
-      job, options.rate, frames, world,
+      job, frames, world,
       {options.output.empty() ? nullptr : &nodes, options.bodies.empty() ? nullptr : &bodies, summary, events, progress, stop});
   progress.clear();
   report(end, stop.signal(), world.time());

@@ -1,5 +1,6 @@
 #include "job.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/messages.h"
@@ -54,7 +55,7 @@ void check_times(const Options& options, double time_step, std::vector<std::stri
   if (options.duration / time_step > most_steps)
     errors.push_back("--duration: " + number_text(options.duration) + "; allowed: at most " +
                      rounded_text(most_steps * time_step) + " s, which is " + number_text(most_steps) + " steps");
-  if (options.rate * time_step > 1 + rate_tolerance)
+  if (options.has_rate && options.rate * time_step > 1 + rate_tolerance)
     errors.push_back("--rate: " + number_text(options.rate) +
                      "; allowed: at most 1 / time_step = " + rounded_text(1 / time_step) + " Hz");
 }
@@ -106,7 +107,8 @@ Job prepare(const Options& options, std::vector<std::string>& errors) {
   if (errors.size() > errors_before) return job;
   job.steps = steps_for(options.duration, job.scene.time_step);
   job.settle = options.settle;
-  job.rows = 1 + static_cast<std::int64_t>(std::floor(options.duration * options.rate + step_tolerance));
+  job.rate = options.has_rate ? options.rate : std::min(options.rate, 1 / job.scene.time_step);
+  job.rows = 1 + static_cast<std::int64_t>(std::floor(options.duration * job.rate + step_tolerance));
   return job;
 }
 

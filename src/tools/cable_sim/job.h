@@ -30,6 +30,7 @@ struct Job {
   Motion motion;
   bool settle = false;  ///< into equilibrium before t = 0
   std::int64_t steps = 0;
+  double rate = 0;        ///< [Hz] of rows
   std::int64_t rows = 0;  ///< of the output a node
 };
 

@@ -27,12 +27,17 @@ Options parse_options(const std::vector<std::string>& arguments, std::vector<std
   line.add_text("--motion", "CSV", "poses of frames over time: t,frame,x,y,z,qx,qy,qz,qw", options.motion, file);
   line.add_text("--output", "CSV", "the nodes over time: t,cable,node,x,y,z,vx,vy,vz,tension", options.output, file);
   line.add_text("--bodies", "CSV", "the bodies over time: t,body,x,y,z,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz", options.bodies, file);
-  line.add_number("--rate", "HZ", "rows per second of --output and --bodies, default 100, at most 1 / time_step", options.rate,
-                  rate_range, "Hz");
+  double rate = 0;
+  line.add_number(
+      "--rate", "HZ",
+      "rows per second of --output and --bodies, at most 1 / time_step; default 100, or 1 / time_step if that is less", rate,
+      rate_range, "Hz");
   line.add_text("--summary", "JSON", "times, energies, forces and events", options.summary, file);
   line.add_flag("--settle", "put the cables into static equilibrium before t = 0", options.settle);
   const std::vector<std::string> scenes = line.parse(arguments, errors);
   options.help = line.help();
+  options.has_rate = rate > 0;
+  if (options.has_rate) options.rate = rate;
   for (const std::string& scene : scenes) {
     if (!options.scene.empty())
       errors.push_back(quoted(scene) + ": a second scene; allowed: one, it is " + quoted(options.scene));

@@ -7,15 +7,16 @@ namespace verlet_cable::cable_sim {
 
 /// The command line.
 struct Options {
-  std::string scene;     ///< path
-  double duration = 10;  ///< [s]
-  double rate = 100;     ///< [Hz] of rows
-  std::string motion;    ///< path, empty: none
-  std::string output;    ///< path, empty: none
-  std::string bodies;    ///< path, empty: none
-  std::string summary;   ///< path, empty: none
-  bool settle = false;   ///< into equilibrium before t = 0
-  std::string help;      ///< what --help prints, empty: not asked for
+  std::string scene;      ///< path
+  double duration = 10;   ///< [s]
+  double rate = 100;      ///< [Hz] of rows
+  bool has_rate = false;  ///< whether that was given
+  std::string motion;     ///< path, empty: none
+  std::string output;     ///< path, empty: none
+  std::string bodies;     ///< path, empty: none
+  std::string summary;    ///< path, empty: none
+  bool settle = false;    ///< into equilibrium before t = 0
+  std::string help;       ///< what --help prints, empty: not asked for
 };
 
 /// Reads the arguments after the program's name. Adds a line to `errors` for each that is wrong.

@@ -17,10 +17,10 @@ std::int64_t averaged_steps(const Job& job) {
   return std::max<std::int64_t>(1, std::llround(averaged_time / job.scene.time_step));
 }
 
-RunEnd simulate(const Job& job, double rate, const FrameSource& frames, World& world, const Recorders& recorders) {
+RunEnd simulate(const Job& job, const FrameSource& frames, World& world, const Recorders& recorders) {
   using Clock = std::chrono::steady_clock;
   const double time_step = job.scene.time_step;
-  const RowSchedule schedule(rate, time_step);
+  const RowSchedule schedule(job.rate, time_step);
   std::int64_t row = 0;
   const auto write_due_rows = [&] {
     if (row == job.rows || world.steps() < schedule.step_of(row)) return;

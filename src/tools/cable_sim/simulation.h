@@ -4,8 +4,8 @@
 #include "common/progress_bar.h"
 #include "csv_writer.h"
 #include "event_log.h"
-#include "scene/frame_source.h"
 #include "job.h"
+#include "scene/frame_source.h"
 #include "summary.h"
 
 namespace verlet_cable::cable_sim {
@@ -31,6 +31,6 @@ enum class RunEnd {
 };
 
 /// Steps the world to the end of the job, or until it has to stop.
-RunEnd simulate(const Job& job, double rate, const FrameSource& frames, World& world, const Recorders& recorders);
+RunEnd simulate(const Job& job, const FrameSource& frames, World& world, const Recorders& recorders);
 
 }  // namespace verlet_cable::cable_sim
