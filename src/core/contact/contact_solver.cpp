@@ -257,7 +257,6 @@ bool ContactSolver::shorten(std::vector<Participant>& participants, std::vector<
     if (bodies_ != nullptr) bodies_->take_back(taken - next);
     taken = next;
     changed = press(participants, touches) || changed;
-    spend(1, touches.size());
   }
   return changed;
 }
@@ -334,7 +333,6 @@ void ContactSolver::follow_friction(std::vector<Participant>& participants, std:
   bool follows = true;
   for (int i = 0; i < maximum_followings && follows && last > 0; ++i) {
     solve_slipping(participants);
-    spend(1, slips_.size());
     const double way = follow_slips(participants);
     if (!(way > 0)) break;
     follows = way < last;
