@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
+#include <set>
+#include <string>
 #include <tuple>
 
 #include "mesh_file.h"
@@ -78,12 +80,16 @@ Description read_description(const RobotDesc& robot, const SceneSources& sources
 
 void check_links(const Value& root, const RobotDesc& robot) {
   NameList names;
-  for (const LinkDesc& link : robot.tree) names.add(link.name);
+  std::set<std::string> known;
+  for (const LinkDesc& link : robot.tree) {
+    names.add(link.name);
+    known.insert(link.name);
+  }
+  const std::string allowed = "a link of the robot: " + names.text();
   for (std::size_t i = 0; i < robot.links.size(); ++i) {
-    const auto is_it = [&](const LinkDesc& link) { return link.name == robot.links[i]; };
+    if (known.count(robot.links[i]) > 0) continue;
     const Value key = root.child("robot", {}).child("links", {}).element(i, {});
-    if (std::none_of(robot.tree.begin(), robot.tree.end(), is_it) && !root.errors->is_unread(key.key))
-      root.errors->add(key.key, quoted(robot.links[i]), "a link of the robot: " + names.text());
+    if (!root.errors->is_unread(key.key)) root.errors->add(key.key, quoted(robot.links[i]), allowed);
   }
 }
 

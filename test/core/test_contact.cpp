@@ -262,6 +262,26 @@ TEST(Contact, CableInsideAnObstacleIsFoundAndPushedOutGently) {
   EXPECT_LT(fastest(world), 1e-3);
 }
 
+/// A rope of 1 m through a block whose faces press it to opposite sides: what they exert means nothing, and is told once it has
+/// had time to get out.
+TEST(Contact, CableThatFindsNoWayOutOfAnObstacleIsTold) {
+  SceneDesc scene = scenes::between_two_points(40, 0.8);
+  add_obstacle("block", ShapeType::box, {0.4, 0, -0.25, 0, 0, 0}, scene);
+  World world(scene, BoundaryInputs(1));
+  const BoundaryInputs inputs(1);
+  int pressed = 0, told = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const bool degraded = world.step(inputs).status == StepResult::Status::degraded;
+    double pressure = 0;
+    for (const SimulatedContact& contact : world.findings().contacts) pressure = std::max(pressure, contact.force.norm());
+    if (i < 100 || pressure < 100) continue;
+    ++pressed;
+    told += degraded;
+  }
+  EXPECT_GT(pressed, 1000);
+  EXPECT_GT(told, 0.98 * pressed);
+}
+
 TEST(Contact, CopiesOfAWorldWithContactsGoOnWithTheSameBytes) {
   SceneDesc scene = straight_rope(0.5, 50);
   scene.contact = ContactDesc{};

@@ -82,6 +82,39 @@ INSTANTIATE_TEST_SUITE_P(Holders, OverstretchedBodies,
                          testing::Combine(testing::Values(AttachmentType::hinge, AttachmentType::clamp),
                                           testing::Values(AttachmentType::hinge, AttachmentType::clamp)));
 
+/// A bar of 1 kg on two inextensible ropes of 0.6 m, whose second holder jumps up and aside, and back.
+TEST(OverstretchedRopes, AreToldWhereverWhatCannotStretchIsStrained) {
+  SceneDesc scene = scenes::one_cable(20, 0.6);
+  scene.time_step = 0.002;
+  BodyDesc& bar = scene.bodies.emplace_back();
+  bar.name = "bar";
+  bar.mass = 1;
+  bar.inertia = Vector3(0.001, 0.02, 0.02);
+  bar.pose = InitialPose{0.2, 0, -0.6, 0, 0, 0};
+  const auto rope = [](const std::string& name, double x, const std::string& frame) {
+    CableDesc cable = scenes::one_cable(20, 0.6).cables[0];
+    cable.name = name;
+    cable.attachments = {scenes::attachment(name + "_top", PlaceDesc::At::start, {frame.empty() ? x : 0, 0, 0}, frame),
+                         scenes::attachment(name + "_bar", PlaceDesc::At::end, {x - 0.2, 0, 0})};
+    cable.attachments[1].body = "bar";
+    return cable;
+  };
+  scene.cables = {rope("left", 0, ""), rope("right", 0.4, "hand")};
+  World world(scene, scenes::hand_at({0.4, 0, 0}));
+  int strained = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const bool away = i >= 200 && i < 700;
+    const Status status = world.step(scenes::hand_at(away ? Vector3(0.7, 0, 0.3) : Vector3(0.4, 0, 0))).status;
+    double greatest = 0;
+    for (const SimulatedCable& cable : world.cables())
+      for (int k = 0; k < cable.state.segments(); ++k) greatest = std::max(greatest, std::abs(strain(cable.state, k)));
+    if (!(greatest > 0.01)) continue;
+    ++strained;
+    EXPECT_GE(status, Status::overstretched) << "step " << i << ": " << greatest;
+  }
+  EXPECT_GT(strained, 0);
+}
+
 /// A rope of 1.2 m from the frame "base" to "hand", 1 m apart, and a branch of 0.54 m that leaves it and comes back to it.
 SceneDesc loop_on_a_rope(JunctionDesc::Type type) {
   SceneDesc scene = scenes::held_by_a_hand(30, AttachmentType::clamp);

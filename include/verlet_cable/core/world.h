@@ -74,8 +74,8 @@ struct StepResult {
     overstretched,  ///< held points are further apart than the cable or net between them is long: it was lengthened
     jumped,         ///< the velocity of a frame changed too much for a motion: what the frame holds was carried along
     /// A substep of the smallest size did not converge, a net is held where it cannot be, or the step took too much work: the
-    /// cable or net, or the bodies and their cables, lost their velocity and continue from rest. Or cables are inside each
-    /// other and have no room to separate.
+    /// cable or net, or the bodies and their cables, lost their velocity and continue from rest. Or a cable is inside an
+    /// obstacle or another cable, and has no room to get out.
     degraded,
     fault,  ///< that failed, too: the cable stays in its last finite state
   };

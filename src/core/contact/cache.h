@@ -15,6 +15,7 @@ struct CachedContact {
   double normal_force = 0;               ///< [N]
   Touch::Mode mode = Touch::Mode::open;
   bool inside = false;
+  double inside_for = 0;  ///< [s]
 };
 
 /// Of the touches whose point is on one cable: ascending by keys.

@@ -319,8 +319,8 @@ void ContactSet::add(Touch& touch, const ContactMember& member, double h) {
   const bool known = recall(member, touch);
   if (!known && touch.obstacle >= 0 && touch.gap < -deepest_arrival * touch.radius)
     intrusions_.push_back({touch.point.cable, touch.point.segment, touch.obstacle, -touch.gap});
-  touch.inside = !known || touch.inside;
-  if (touch.gap >= gentle) touch.inside = false;
+  touch.inside = (!known || touch.inside) && touch.gap < gentle;
+  touch.inside_for = touch.inside ? touch.inside_for + h : 0;
   if (touch.inside) touch.gap = gentle;
   touch.yields = touch.inside && touch.other.cable >= 0;
   anticipate(Scheme::conserving, h, time_, Vector3::Zero(), touch);
@@ -355,6 +355,7 @@ bool ContactSet::recall(const ContactMember& member, Touch& touch) {
   touch.mode = last->mode;
   touch.last_force = last->normal_force;
   touch.inside = last->inside;
+  touch.inside_for = last->inside_for;
   return true;
 }
 
@@ -371,7 +372,7 @@ void ContactSet::keep(const std::vector<ContactMember>& members) const {
   for (const ContactMember& member : members) member.cache->clear();
   for (const Touch& touch : touches_)
     members[places_[touch.point.cable]].cache->push_back(
-        {touch.key, touch.other_key, remaining_friction(touch), touch.normal_force, touch.mode, touch.inside});
+        {touch.key, touch.other_key, remaining_friction(touch), touch.normal_force, touch.mode, touch.inside, touch.inside_for});
 }
 
 }  // namespace verlet_cable

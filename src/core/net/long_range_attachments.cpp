@@ -45,8 +45,21 @@ void LongRangeAttachments::resize(const NetModel& model, const std::vector<HeldN
   most_links_ = 0;
   const std::vector<std::vector<Neighbour>> neighbours = find_neighbours(model);
   std::vector<std::vector<Way>> reached_from(model.masses.size());
+  std::vector<std::vector<Way>> waiting(model.masses.size());
   std::priority_queue<Front, std::vector<Front>, std::greater<>> ways;
-  for (std::size_t k = 0; k < held.size(); ++k) ways.push({0, held[k].node, static_cast<int>(k), 0});
+  // What is no shorter than another that waits, from the same held node, would come to nothing.
+  const auto push = [&](const Front& way) {
+    if (reached_from[way.node].size() == most_tethers) return;
+    std::vector<Way>& known = waiting[way.node];
+    const auto same = std::find_if(known.begin(), known.end(), [&](const Way& other) { return other.held == way.held; });
+    if (same != known.end() && same->length <= way.length) return;
+    if (same != known.end())
+      same->length = way.length;
+    else
+      known.push_back({way.length, way.held});
+    ways.push(way);
+  };
+  for (std::size_t k = 0; k < held.size(); ++k) push({0, held[k].node, static_cast<int>(k), 0});
   while (!ways.empty()) {
     const Front way = ways.top();
     ways.pop();
@@ -56,7 +69,7 @@ void LongRangeAttachments::resize(const NetModel& model, const std::vector<HeldN
     if (from.empty()) most_links_ = std::max(most_links_, way.links);
     from.push_back({way.length, way.held});
     if (way.links > 0) long_range_attachments_.push_back({way.node, way.held, stretch * way.length});
-    for (const Neighbour& next : neighbours[way.node]) ways.push({way.length + next.length, next.node, way.held, way.links + 1});
+    for (const Neighbour& next : neighbours[way.node]) push({way.length + next.length, next.node, way.held, way.links + 1});
   }
   std::stable_sort(long_range_attachments_.begin(), long_range_attachments_.end(),
                    [](const Tether& a, const Tether& b) { return a.node < b.node; });

@@ -17,11 +17,15 @@ namespace {
 
 using Status = StepResult::Status;
 
-/// Of what starts in each other, in radii: no room to get out of each other by more in a substep.
+/// Of what starts inside an obstacle or another cable, in radii: no room to get out of it by more in a substep.
 constexpr double least_separation = 1e-4;
 
+/// [s] What gets into an obstacle between two steps has found its way out by then.
+constexpr double patience = 0.05;
+
 bool cannot_get_apart(const Touch& touch) {
-  return touch.yields && touch.normal.dot(touch.displacement) < least_separation * touch.radius;
+  const bool should_have_moved = touch.yields || (touch.inside && touch.inside_for > patience);
+  return should_have_moved && touch.normal.dot(touch.displacement) < least_separation * touch.radius;
 }
 
 /// The segment of a cable that breaks now, -1 if it holds. A piece keeps at least one segment, so that the outermost ones do not
@@ -38,10 +42,27 @@ int find_breaking_segment(const SimulatedCable& cable, const StepResult& result)
     if (tension[i] > materials[i].breaking_tension) broken = i;
     if (i > 0 && i < last && limited(i) && (weakest < 0 || load(i) > load(weakest))) weakest = i;
   }
-  // What cannot stretch and is pulled beyond its length findings.breaks at any strength.
+  // What cannot stretch and is pulled beyond its length breaks at any strength.
   const bool torn = result.status == StepResult::Status::overstretched && !materials.any_elastic();
   if (weakest < 0) return broken < 0 ? -1 : std::clamp(broken, 1, last - 1);
   return torn || broken >= 0 ? weakest : -1;
+}
+
+/// What bodies hold may give in where its solver finds no other way, though no frames are too far apart for it: strain beyond
+/// this of what cannot stretch is told.
+constexpr double told_strain = 1e-2;
+
+/// The inextensible segment of a cable that is strained most, if that is told; else -1.
+int find_strained_segment(const SimulatedCable& cable) {
+  const CableMaterials materials(cable);
+  double greatest = told_strain;
+  int found = -1;
+  for (int i = 0; i < cable.state.segments(); ++i) {
+    if (is_elastic(materials[i]) || !(std::abs(strain(cable.state, i)) > greatest)) continue;
+    greatest = std::abs(strain(cable.state, i));
+    found = i;
+  }
+  return found;
 }
 
 }  // namespace
@@ -428,8 +449,13 @@ void IslandStepper::complete_cable(int index, const Boundary& boundary, int subs
   follow_bodies(boundary, memory.targets);
   if (memory.drive) complete_drive_step(index, state_);
   follow_material(*state_.cables[index].model, boundary.directions, memory.spans, state);
-  outcomes_[index].result.substeps = substeps;
-  outcomes_[index].breaking_segment = find_breaking_segment(state_.cables[index], outcomes_[index].result);
+  StepResult& result = outcomes_[index].result;
+  result.substeps = substeps;
+  if (boundary.is_on_bodies() && result.max_strain > told_strain) {
+    const int strained = find_strained_segment(state_.cables[index]);
+    if (strained >= 0) note_status(StepResult::Status::overstretched, cable_id(index), strained, result);
+  }
+  outcomes_[index].breaking_segment = find_breaking_segment(state_.cables[index], result);
   complete_step(state_.scene->time_step, memory.targets);
   show_velocities(memory.targets, state.velocities);
 }

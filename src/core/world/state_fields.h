@@ -167,7 +167,7 @@ auto fields(T& x, const LengthDrive*) {
 }
 template <class T>
 auto fields(T& x, const CachedContact*) {
-  return std::tie(x.key, x.other_key, x.force, x.normal_force, x.mode, x.inside);
+  return std::tie(x.key, x.other_key, x.force, x.normal_force, x.mode, x.inside, x.inside_for);
 }
 template <class T>
 auto fields(T& x, const CableProgress*) {

@@ -154,7 +154,7 @@ void add_cable_edits(py::module_& module, py::class_<PythonWorld>& world) {
       },
       py::arg("cable") = "", py::kw_only(), py::arg("node") = py::none(), py::arg("arc_length") = py::none(),
       py::arg("point") = py::none(), py::arg("point_frame") = "", py::arg("name") = "", py::arg("frame_id") = "",
-      py::arg("offset") = py::none(), py::arg("clamp") = false, py::arg("keep_offset") = false,
+      py::arg("offset") = py::none(), py::arg("clamp").noconvert() = false, py::arg("keep_offset").noconvert() = false,
       "Holds a node of a cable or net, or the origin of a body (node=0), in a frame, as the service `pin` does. The node moves "
       "there smoothly.\n\ncable: a cable, net or body; '' together with `point`: the nearest one.\nnode, arc_length [m], point "
       "(3,) [m]: exactly one of them; the node itself, or the position whose nearest node is held. point_frame: the frame in "
@@ -193,7 +193,7 @@ void add_edit_methods(py::module_& module, py::class_<PythonWorld>& world) {
         DrivenWorld& driven = use(self);
         return join(text_of(first, "first"), first_at_end, text_of(second, "second"), second_at_end, driven, self.events);
       },
-      py::arg("first"), py::arg("first_at_end"), py::arg("second"), py::arg("second_at_end"),
+      py::arg("first"), py::arg("first_at_end").noconvert(), py::arg("second"), py::arg("second_at_end").noconvert(),
       "Welds two ends of cables of the same material, as the service `join` does; ends that are apart are pulled "
       "together.\n\nReturns the name of the joined cable, which is that of the first. Raises ValueError, KeyError; then nothing "
       "is changed.");
@@ -202,7 +202,7 @@ void add_edit_methods(py::module_& module, py::class_<PythonWorld>& world) {
       [](PythonWorld& self, const py::str& cable, bool at_end, double length, double speed) {
         set_length(text_of(cable, "cable"), at_end, length, speed, use(self));
       },
-      py::arg("cable"), py::arg("at_end"), py::arg("length"), py::arg("speed"),
+      py::arg("cable"), py::arg("at_end").noconvert(), py::arg("length"), py::arg("speed"),
       "Lets a winch at the end (at_end) or the start of a cable pay out or take in cable, until it has the length [m], at up to "
       "the speed [m/s], as the service `set_length` does; the number of nodes changes. Raises ValueError, KeyError; then nothing "
       "is changed.");
