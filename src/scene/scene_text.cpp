@@ -46,15 +46,17 @@ class YamlText {
   int line_ = -1;  ///< which begins with the start of a document; -1: none was inserted
 };
 
-/// yaml-cpp takes a NUL for the start of an escape sequence, and one in front for wide characters.
+/// yaml-cpp takes a NUL for the start of an escape sequence, and one in front for wide characters; and what is not UTF-8 as it is,
+/// though no message of ROS and no text of Python can hold it.
 void check_encoding(const std::string& text) {
   const auto starts_with = [&](const std::string& bytes) { return text.compare(0, bytes.size(), bytes) == 0; };
   const bool wide = starts_with("\xff\xfe") || starts_with("\xfe\xff") || starts_with(std::string("\0\0\xfe\xff", 4));
-  const std::size_t nul = wide ? std::string::npos : text.find('\0');
-  if (nul == std::string::npos) return;
-  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(nul), '\n');
+  const std::size_t end = wide ? text.size() : length_of_text(text);
+  if (end == text.size()) return;
+  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n');
+  const std::string byte = text[end] == '\0' ? "a NUL byte" : "the byte " + quoted(text.substr(end, 1)) + ", which is not UTF-8";
   throw SceneError(
-      {"line " + std::to_string(line) + ": a NUL byte; allowed: text in UTF-8, or in UTF-16 or UTF-32 with a byte order mark"});
+      {"line " + std::to_string(line) + ": " + byte + "; allowed: text in UTF-8, or in UTF-16 or UTF-32 with a byte order mark"});
 }
 
 /// Counts values and levels while YAML is parsed, before anything is built of it: a short text can stand for a tree without end.

@@ -9,16 +9,6 @@
 namespace verlet_cable {
 namespace {
 
-std::size_t length_of_text(const std::string& text) {
-  std::size_t at = 0;
-  while (at < text.size()) {
-    const std::size_t size = character_size(text, at);
-    if (size == 0 || text[at] == '\0') break;
-    at += size;
-  }
-  return at;
-}
-
 /// Goes through the markup once. It refuses what parsers read differently (they disagree on where a stray `<` ends, and skip
 /// bytes that are no UTF-8), since the levels of one parser would not be those of another.
 class Scanner {

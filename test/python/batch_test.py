@@ -203,6 +203,11 @@ def test_masses_are_given_before_the_first_step_of_every_world(hang, scene, move
     assert batch.state_hash == [World(Scene.from_dict(hang)).state_hash] * 3
 
 
+def test_what_is_no_number_is_named(scene):
+    with pytest.raises(ValueError, match="drag: 'a'; allowed: numbers"):
+        Batch(scene, 2).set_material('wire', drag='a')
+
+
 def test_a_material_does_not_undo_settling(scene):
     batch = Batch(scene, 2)
     assert batch.settle().all()

@@ -94,6 +94,21 @@ class LostFramesTest(unittest.TestCase):
             # stamps are doubles of about 1e9 s, exact to 2e-7 s; a reset puts the rope where its frame is
             self.assertLessEqual(abs(b - a), speed * max(u - t, 0) + 1e-6)
 
+    def test_one_wrong_pose_when_a_frame_comes_back_throws_nothing(self):
+        node = self.hold
+        with Frames(hand=lambda t: HELD):
+            self.start(node)
+        with node.states() as states, node.events() as events:
+            events.wait_for(lost, 'FRAME_LOST')
+            wrong_until = rospy.get_time() + 0.1
+            with Frames(hand=lambda t: (5, 0, 1) if t < wrong_until else HELD):
+                self.assertIn('5 m from where it was lost', events.wait_for(back, 'FRAME_BACK').message)
+                end = rospy.get_time() + 1
+                last = states.wait_for(lambda s: s.header.stamp.to_sec() > end, 'state a second later')
+            for state in states.all():
+                self.assertTrue(-0.01 < cable(state, 'rope').positions[0].x < 0.3, cable(state, 'rope').positions[0])
+            self.assertLess(distance(cable(last, 'rope').positions[0], HELD), 1e-6)
+
     def test_the_gap_closes_on_top_of_the_frames_own_motion_and_is_in_snapshots(self):
         node = self.brisk
         start = rospy.get_time()

@@ -29,6 +29,12 @@ class ParametersTest(unittest.TestCase):
         self.assertGreater(ended.returncode, 0)
         self.assertIn('/no_scene', ended.stdout + ended.stderr)
 
+    def test_a_name_that_no_node_can_have(self):
+        for name in ('1a', 'a b'):
+            ended = self.run_node(name, None)
+            self.assertEqual(ended.returncode, 2)
+            self.assertIn('cable_node: ', ended.stderr)
+
 
 if __name__ == '__main__':
     rospy.init_node('parameters_test')

@@ -132,6 +132,17 @@ class ServicesTest(unittest.TestCase):
             running = states.wait_for(lambda s: s.header.stamp.to_nsec() > stamp + 100 * 10**6, 'running state')
             self.assertAlmostEqual((rospy.Time.now() - running.header.stamp).to_sec(), 0.08, delta=0.08)
 
+    def test_what_is_ahead_of_ros_time_goes_back_to_it_when_it_runs_again(self):
+        self.assertTrue(self.node.pause(True).success)
+        ahead = self.node.step(20000).time
+        self.assertGreater(ahead, rospy.get_time() + 5)
+        with self.node.states() as states, self.node.events() as events:
+            self.assertTrue(self.node.pause(False).success)
+            self.assertIn('ahead of ROS time', events.wait_for(lambda e: e.type == CableEvent.TIME_JUMP, 'TIME_JUMP').message)
+            running = states.wait_for(lambda s: s.header.stamp.to_sec() < ahead - 1, 'state of now')
+            states.wait_for(lambda s: s.header.stamp > running.header.stamp and s.header.stamp.to_sec() < ahead - 1, 'next state')
+            self.assertAlmostEqual((rospy.Time.now() - running.header.stamp).to_sec(), 0.2, delta=0.2)
+
     def test_steps_are_refused_while_running_and_in_silly_numbers(self):
         self.assertRefused(self.node.step(5), 'not paused')
         self.assertTrue(self.node.pause(True).success)
@@ -152,6 +163,15 @@ class ServicesTest(unittest.TestCase):
         # tf's interpolation rounds: a frame at rest is not at the same bits at all times.
         for before, after in zip(first.positions + first.velocities, again.positions + again.velocities):
             self.assertLess(math.dist((before.x, before.y, before.z), (after.x, after.y, after.z)), 1e-9)
+
+    def test_what_waited_when_it_was_saved_starts_when_it_is_restored(self):
+        self.assertIsNone(cable(self.node.state(), 'waiting'))
+        self.assertTrue(self.node.save_state('before').success)
+        with Frames(late_hand=lambda t: (0, 3, 1)), self.node.states() as states:
+            states.wait_for(lambda s: cable(s, 'waiting'), 'cable whose frame has come')
+            self.assertTrue(self.node.restore_state('before').success)
+            stamp = self.node.state().header.stamp
+            states.wait_for(lambda s: s.header.stamp > stamp and cable(s, 'waiting'), 'the same after it was restored')
 
 
 if __name__ == '__main__':

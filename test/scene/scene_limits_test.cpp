@@ -107,6 +107,12 @@ TEST(SceneLimits, nulBytesAreNamed) {
   EXPECT_EQ(errors_of(nul + scene), std::vector<std::string>{"line 1" + error});
 }
 
+TEST(SceneLimits, whatIsNoTextIsNamed) {
+  const std::string end = ", which is not UTF-8; allowed: text in UTF-8, or in UTF-16 or UTF-32 with a byte order mark";
+  EXPECT_EQ(errors_of("# caf\xc3\xa9\nframe_id: l\xe9\n"), std::vector<std::string>{"line 2: the byte \"\\xe9\"" + end});
+  EXPECT_EQ(errors_of("\xed\xa0\x80: 1\n"), std::vector<std::string>{"line 1: the byte \"\\xed\"" + end});
+}
+
 TEST(SceneLimits, wideTextWithAByteOrderMarkIsRead) {
   for (const int size : {2, 4}) {
     for (const bool big : {false, true}) {

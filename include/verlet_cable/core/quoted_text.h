@@ -21,6 +21,17 @@ inline std::size_t character_size(const std::string& text, std::size_t place) {
   return is_other ? 0 : size;
 }
 
+/// How many bytes of a text there are before the first that is a NUL, or not of a character of UTF-8.
+inline std::size_t length_of_text(const std::string& text) {
+  std::size_t at = 0;
+  while (at < text.size()) {
+    const std::size_t size = character_size(text, at);
+    if (size == 0 || text[at] == '\0') break;
+    at += size;
+  }
+  return at;
+}
+
 /// Text from a user, for messages: one line of valid UTF-8 without control characters, truncated after about `longest` bytes.
 inline std::string escaped(const std::string& text, std::size_t longest = 60) {
   constexpr char hexadecimal[] = "0123456789abcdef";

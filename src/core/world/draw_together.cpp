@@ -43,6 +43,7 @@ double misfit(const SimulatedCable& cable) {
 /// Where cables that have just started do not reach each other with the shapes that they have by default, what joins them goes to
 /// where they do, all segments keeping their lengths (Jakobsen, Advanced Character Physics, 2001); if there is such a place.
 void World::Implementation::draw_together(const std::vector<int>& descs) {
+  if (state.bodies.empty()) return;
   std::vector<int> started;
   for (const int i : descs) {
     const int cable = find(state.cables, state.scene->cables[i].name);

@@ -77,7 +77,9 @@ void set_material(PythonBatch& batch, const py::str& name, const py::kwargs& fie
   std::vector<MaterialChange> changes;
   for (const auto& [key, value] : fields) {
     const std::string field = text_of(key, "key");
-    changes.push_back({field, read_values(field, Numbers(py::reinterpret_borrow<py::object>(value)), use(batch).size())});
+    const Numbers numbers = Numbers::ensure(value);
+    if (!numbers) throw py::value_error(field + ": " + ascii_text(value) + "; allowed: numbers");
+    changes.push_back({field, read_values(field, numbers, use(batch).size())});
   }
   const InUse in_use(batch.busy, "batch");
   const py::gil_scoped_release release;

@@ -15,6 +15,8 @@ using Coverage = FrameHistory::Coverage;
 const ros::WallDuration longest_overtaking(1.0);
 const ros::WallDuration longest_receiving(0.005);
 constexpr Nanoseconds longest_ahead = 500'000'000;
+/// [m/s] A frame that goes back faster to what it holds, while that still comes after it, had come back at a pose that was wrong.
+constexpr double fastest_motion = 10;
 
 }  // namespace
 
@@ -300,7 +302,8 @@ void TfInputs::follow(int frame, const Pose& pose, double elapsed) {
   if (!inputs_[frame].known) return place(frame, pose);
   FrameInput& input = inputs_[frame];
   Track& track = tracks_[frame];
-  Pose followed = track.gap.frame(input.pose);
+  const Pose before = track.gap.frame(input.pose);
+  Pose followed = before;
   const double way = (pose.position - followed.position).norm();
   const double longest_way = elapsed > 0 ? max_frame_speed_ * elapsed : infinity;
   if (way <= longest_way) {
@@ -312,6 +315,11 @@ void TfInputs::follow(int frame, const Pose& pose, double elapsed) {
     followed.orientation = followed.orientation.slerp(part, pose.orientation).normalized();
     if (!track.too_fast) change(FrameChange::Kind::too_fast, frame);
     track.too_fast = true;
+  }
+  const double moved = (followed.position - before.position).norm();
+  if (!track.gap.is_closed() && elapsed > 0 && moved > fastest_motion * elapsed) {
+    const FrameGap left = FrameGap::between(followed, input.pose);
+    if (left.distance() < track.gap.distance()) track.gap = left;
   }
   if (!track.gap.is_closed())
     track.gap.close_by(std::min(FrameGap::speed, max_frame_speed_) * elapsed, FrameGap::turn_speed * elapsed);

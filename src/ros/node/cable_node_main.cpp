@@ -44,7 +44,12 @@ void register_what_logging_needs() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  ros::init(argc, argv, "cable");
+  try {
+    ros::init(argc, argv, "cable");
+  } catch (const ros::Exception& error) {
+    std::cerr << "cable_node: " << verlet_cable::escaped(error.what()) << '\n' << usage;
+    return 2;
+  }
   if (const auto status = answer_arguments(argc, argv)) return *status;
   wait_for_master();
   // Outlives what is thrown: logging ends with the last node handle.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "time/ros_time.h"
+#include "verlet_cable/core/number_text.h"
 
 namespace verlet_cable {
 namespace {
@@ -173,13 +174,16 @@ bool Simulation::step_world(Nanoseconds time) {
   frame_watch_.report_jumps(stamp_, world_);
   cable_watch_.report_events(stamp_, world_);
   cable_watch_.report_intrusions(world_);
-  if (!world_.findings().waiting.empty() && !frames_.changes().empty()) {
-    const std::size_t unsettled = world_.findings().unsettled.size(), misfits = world_.findings().misfits.size();
-    world_.start_waiting(frames_.inputs());
-    cable_watch_.report_starts(unsettled, misfits, world_);
-  }
+  if (!frames_.changes().empty()) start_waiting_cables();
   if (grid_.passes_tick(before, stamp_)) publish();
   return true;
+}
+
+void Simulation::start_waiting_cables() {
+  if (world_.findings().waiting.empty()) return;
+  const std::size_t unsettled = world_.findings().unsettled.size(), misfits = world_.findings().misfits.size();
+  world_.start_waiting(frames_.inputs());
+  cable_watch_.report_starts(unsettled, misfits, world_);
 }
 
 void Simulation::report_overload() {
@@ -195,6 +199,16 @@ void Simulation::skip_to(Nanoseconds time) {
   if (time <= stamp_) return;
   pacer_.drop(time - stamp_);
   stamp_ = time;
+}
+
+/// After a pause, in which steps or a snapshot may have led beyond ROS time.
+void Simulation::go_on_from(Nanoseconds time) {
+  if (time >= stamp_) return skip_to(time);
+  const double ahead = seconds(stamp_ - time);
+  stamp_ = std::max<Nanoseconds>(time, 0);
+  pacer_.rest();
+  publishers_.forget_steps();
+  announce(CableEvent::TIME_JUMP, {}, "the simulated time was " + number_text(ahead) + " s ahead of ROS time, and goes back to it");
 }
 
 void Simulation::publish() {

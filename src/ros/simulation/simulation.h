@@ -157,6 +157,8 @@ class Simulation {
   void report_overload();
   SimulationReport::Phase phase() const;
   void skip_to(Nanoseconds time);
+  void go_on_from(Nanoseconds time);
+  void start_waiting_cables();
   void publish();
   void announce(std::uint8_t type, const EventSubject& subject, const std::string& message) const;
   std::optional<EditResult> refused_frame(const std::string& frame) const;

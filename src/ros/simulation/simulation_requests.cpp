@@ -26,7 +26,7 @@ EditResult Simulation::set_paused(bool paused) {
   if (paused == paused_) return done(paused ? "it is paused already" : "it is running already");
   paused_ = paused;
   if (!paused) interrupt_steps("the pause has ended");
-  if (started_ && !paused) skip_to(grid_.step_at_or_before(target()));
+  if (started_ && !paused) go_on_from(grid_.step_at_or_before(target()));
   return done(paused ? "paused" : "running");
 }
 

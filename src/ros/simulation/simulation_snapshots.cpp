@@ -58,6 +58,8 @@ EditResult Simulation::restore_state(const std::string& name) {
     frames_.rewind(snapshot.frames, stamp_);
   } else {
     frames_.restore(snapshot.frames, stamp_);
+    // Their frames may have come since it was saved.
+    start_waiting_cables();
   }
   faulted_ = false;
   stepped_to_ = 0;
