@@ -262,6 +262,16 @@ TEST(Contact, CableInsideAnObstacleIsFoundAndPushedOutGently) {
   EXPECT_LT(fastest(world), 1e-3);
 }
 
+TEST(Contact, CableThatIsStuckInAnObstacleIsNotSettled) {
+  for (const ShapeType type : {ShapeType::cylinder, ShapeType::sphere}) {
+    SceneDesc scene = scenes::between_two_points(40, 0.8);
+    add_obstacle("ball", type, {0.4, 0, -0.25, pi / 2, 0, 0}, scene);
+    scene.obstacles[0].radius = 0.1;
+    World world(scene, BoundaryInputs(1));
+    EXPECT_FALSE(world.settle());
+  }
+}
+
 /// A rope of 1 m through a block whose faces press it to opposite sides: what they exert means nothing, and is told once it has
 /// had time to get out.
 TEST(Contact, CableThatFindsNoWayOutOfAnObstacleIsTold) {

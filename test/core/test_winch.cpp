@@ -60,6 +60,27 @@ struct WinchCase {
 
 class Winch : public testing::TestWithParam<WinchCase> {};
 
+/// The clamp at the winch lets a rope that does not bend through in any direction, and holds it in its own when it is wound.
+TEST(ClampedWinch, SlackRopeIsWoundThroughAClamp) {
+  for (const AttachmentType start : {AttachmentType::clamp, AttachmentType::hinge}) {
+    SceneDesc scene = scenes::one_cable(24, 1.2);
+    scene.cables[0].attachments = {scenes::attachment("wall", PlaceDesc::At::start, {0, 0, 0}, "", start),
+                                   scenes::attachment("winch", PlaceDesc::At::end, {1, 0, 0}, "", AttachmentType::clamp)};
+    World world(scene, BoundaryInputs(1));
+    for (const double goal : {1.8, 1.1}) {
+      ASSERT_TRUE(world.apply(edit::SetLength{0, true, goal, 1}).ok);
+      for (int i = 0; i < 2500; ++i) {
+        EXPECT_EQ(world.step(BoundaryInputs(1)).status, Status::ok);
+        // It weighs 1 to 2 N.
+        for (const double tension : world.cables()[0].state.tension) ASSERT_LT(std::abs(tension), 20) << i;
+      }
+      EXPECT_NEAR(length(world), goal, 1e-6);
+      const std::vector<Vector3>& x = world.cables()[0].state.positions;
+      EXPECT_GT((x[x.size() - 1] - x[x.size() - 2]).normalized().x(), 1 - 1e-6);
+    }
+  }
+}
+
 TEST_P(Winch, LiftsAndLowersALoad) {
   const WinchCase& winch = GetParam();
   const SceneDesc scene = crane(winch.at_end, winch.material, winch.type);

@@ -88,7 +88,10 @@ EditResult World::Implementation::apply(const edit::SetLength& change) {
   const std::optional<LengthDrive> before = std::exchange(s.drive, drive);
   const double shortest = cable.length() - available_length(index);
   const double needed = cable.length() - slack_at_winch(index);
-  if (length >= shortest && length >= needed) return {true, "", model.name};
+  if (length >= shortest && length >= needed) {
+    open_clamp(drive, state.attachments, cable.segments(), s.targets);
+    return {true, "", model.name};
+  }
   s.drive = before;
   return refused(
       "length: " + number_text(length) + "; must be at least " + rounded_bound_text(std::max(shortest, needed), 1) + " m, " +

@@ -61,6 +61,17 @@ void plan_drive(double available, double time_step, LengthDrive& drive) {
   drive.change = drive.wound + drive.debt - drive.next_debt;
 }
 
+void open_clamp(const LengthDrive& drive, const std::vector<Attachment>& attachments, int segments, KinematicTargets& targets) {
+  if (!drive.is_winch()) return;
+  const int end = drive.end_node(segments);
+  const auto is_neighbour = [&](const KinematicTarget& target) {
+    const Attachment& attachment = attachments[target.attachment];
+    return attachment.node == end && target.node != end && attachment.guide < 0;
+  };
+  auto& nodes = targets.nodes;
+  nodes.erase(std::remove_if(nodes.begin(), nodes.end(), is_neighbour), nodes.end());
+}
+
 void wind(const LengthDrive& drive, double part, double time_step, const CableModel& model, CableState& state) {
   const auto lengths = [&] { return std::array{joint_length(state, drive.segment), joint_length(state, drive.segment + 1)}; };
   const std::array<double, 2> before = lengths();

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <vector>
+
+#include "target/kinematic_targets.h"
 #include "verlet_cable/core/cable.h"
+#include "verlet_cable/core/world.h"
 
 namespace verlet_cable {
 
@@ -31,6 +35,10 @@ struct LengthDrive {
   bool is_winch() const { return place != Place::inside; }
   int end_node(int segments) const { return place == Place::start ? 0 : segments; }  ///< of a winch
 };
+
+/// While a winch winds, what goes through a clamp there of a cable without bending stiffness may have any direction: the clamp
+/// does not hold the neighbour of its node.
+void open_clamp(const LengthDrive& drive, const std::vector<Attachment>& attachments, int segments, KinematicTargets& targets);
 
 /// Plans the next step: speeds up, goes on or brakes so that it comes to rest at the end of `left`, or where no more than
 /// `available` [m] is taken in.

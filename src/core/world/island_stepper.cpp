@@ -447,6 +447,7 @@ void IslandStepper::complete_cable(int index, const Boundary& boundary, int subs
   CableProgress& memory = state_.cable_progress[index];
   CableState& state = state_.cables[index].state;
   follow_bodies(boundary, memory.targets);
+  const bool winds = memory.drive && memory.drive->is_winch();
   if (memory.drive) complete_drive_step(index, state_);
   follow_material(*state_.cables[index].model, boundary.directions, memory.spans, state);
   StepResult& result = outcomes_[index].result;
@@ -458,6 +459,14 @@ void IslandStepper::complete_cable(int index, const Boundary& boundary, int subs
   outcomes_[index].breaking_segment = find_breaking_segment(state_.cables[index], result);
   complete_step(state_.scene->time_step, memory.targets);
   show_velocities(memory.targets, state.velocities);
+  if (winds && !memory.drive) close_clamps(index);
+}
+
+/// What a winch has left is held by clamps again, from where it is.
+void IslandStepper::close_clamps(int index) {
+  KinematicTargets& targets = state_.cable_progress[index].targets;
+  targets = find_targets(*state_.cables[index].model, state_.cables[index].state, state_.attachments,
+                         attachments_of(cable_id(index), state_.attachments), state_.frames.poses, targets, state_.time());
 }
 
 }  // namespace verlet_cable

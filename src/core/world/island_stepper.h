@@ -128,6 +128,7 @@ class IslandStepper {
   void note_intrusions(std::vector<Intrusion>& noted) const;
   void complete(const Island& island, const StepProgress& progress, IslandOutcome& found);
   void complete_cable(int cable, const Boundary& boundary, int substeps);
+  void close_clamps(int cable);
 
   State& state_;
   Workspace& workspace_;

@@ -145,14 +145,22 @@ bool Settling::settle() {
   const FlushDenormals flush_denormals;
   hold_still();
   find_obstacles();
-  Approach approach(index_, may_touch());
+  const bool touching = may_touch();
+  Approach approach(index_, touching);
   bool settled = relax(shortest_step(cable_), last_settling_step, maximum_settling_steps, approach);
   if (bend_straight_columns(index_, state_)) {
     hold_at(1, 1, memory_.targets, work_.boundary);
     settled = relax(shortest_step(cable_), last_settling_step, maximum_settling_steps, approach);
   }
   complete();
-  return settled;
+  return settled && !(touching && is_stuck());
+}
+
+/// What is pressed by something that it is inside of has found no equilibrium, though it does not move.
+bool Settling::is_stuck() const {
+  const std::vector<Touch>& touches = workspace_.contacts.touches();
+  return std::any_of(touches.begin(), touches.end(),
+                     [](const Touch& touch) { return touch.inside && touch.mode != Touch::Mode::open; });
 }
 
 bool Settling::settle_start() {
@@ -176,7 +184,7 @@ bool Settling::settle_start() {
         cable_.state = hanging;
         turn_clamps(touching);
       }
-      settled = find_untwisted_equilibrium(touching);
+      settled = find_untwisted_equilibrium(touching) && !is_stuck();
     }
   }
   memory_.spans = find_spans(cable_.state, work_.boundary.directions);

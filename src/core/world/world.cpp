@@ -378,6 +378,7 @@ void World::Implementation::find_targets_of(int index) {
   const KinematicTargets before = memory.targets;
   memory.targets = find_targets(*cable.model, cable.state, state.attachments, attachments_of(cable_id(index), state.attachments),
                                 state.frames.poses, before, state.time());
+  if (memory.drive) open_clamp(*memory.drive, state.attachments, cable.state.segments(), memory.targets);
   close_gaps_on_bodies(state.attachments, state.bodies, before, memory.targets);
   aim_targets(cable.state, state.attachments, state.frames.poses, state.time(), memory.targets);
   const Boundary boundary = boundary_now(memory.targets);
