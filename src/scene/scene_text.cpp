@@ -46,8 +46,8 @@ class YamlText {
   int line_ = -1;  ///< which begins with the start of a document; -1: none was inserted
 };
 
-/// yaml-cpp takes a NUL for the start of an escape sequence, and one in front for wide characters; and what is not UTF-8 as it is,
-/// though no message of ROS and no text of Python can hold it.
+/// yaml-cpp takes a NUL for the start of an escape sequence, and one in front for wide characters; and what is not UTF-8 as it
+/// is, though no message of ROS and no text of Python can hold it.
 void check_encoding(const std::string& text) {
   const auto starts_with = [&](const std::string& bytes) { return text.compare(0, bytes.size(), bytes) == 0; };
   const bool wide = starts_with("\xff\xfe") || starts_with("\xfe\xff") || starts_with(std::string("\0\0\xfe\xff", 4));

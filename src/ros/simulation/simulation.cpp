@@ -208,7 +208,8 @@ void Simulation::go_on_from(Nanoseconds time) {
   stamp_ = std::max<Nanoseconds>(time, 0);
   pacer_.rest();
   publishers_.forget_steps();
-  announce(CableEvent::TIME_JUMP, {}, "the simulated time was " + number_text(ahead) + " s ahead of ROS time, and goes back to it");
+  announce(CableEvent::TIME_JUMP, {},
+           "the simulated time was " + number_text(ahead) + " s ahead of ROS time, and goes back to it");
 }
 
 void Simulation::publish() {
