@@ -24,7 +24,7 @@ constexpr double least_separation = 1e-4;
 constexpr double patience = 0.05;
 
 bool cannot_get_apart(const Touch& touch) {
-  const bool should_have_moved = touch.yields || (touch.inside && touch.inside_for > patience);
+  const bool should_have_moved = touch.yields || touch.inside_for > patience;
   return should_have_moved && touch.normal.dot(touch.displacement) < least_separation * touch.radius;
 }
 
