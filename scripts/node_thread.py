@@ -15,10 +15,14 @@ def wait_for_time():
 
 def run(name, work):
     """A node of this name, once there is a time, until `work()` has ended or the node is shut down; raises what `work` raised, unless that came of the shutdown.
+    `--help` prints what the program says of itself instead, which needs no master.
 
     rospy shuts a node down in the main thread, wherever that is. A thread that publishes holds the lock of a queue that the shutdown
     takes, too: were it the main thread, Ctrl-C could wait for ever (QueuedConnection in rospy/impl/tcpros_pubsub.py).
     """
+    if {'-h', '--help'} & set(rospy.myargv()[1:]):
+        print(sys.modules['__main__'].__doc__.strip())
+        return
     problems = []
 
     def guarded_work():

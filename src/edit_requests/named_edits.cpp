@@ -98,7 +98,8 @@ EditResult refused_attachment(const World& world, const std::string& name) {
   NameList names;
   for (const Attachment& attachment : world.attachments())
     if (is_named(attachment)) names.add(attachment.name);
-  return refused({"name: " + quoted(name) + " is no attachment; allowed: " + names.text("none, nothing is attached")});
+  const std::string waiting = world.findings().waiting.empty() ? "" : "; what still waits for its frames has none yet";
+  return refused({"name: " + quoted(name) + " is no attachment; allowed: " + names.text("none, nothing is attached") + waiting});
 }
 
 }  // namespace verlet_cable

@@ -71,7 +71,7 @@ Description read_description(const RobotDesc& robot, const SceneSources& sources
       errors.add_unread("robot.file", quoted(robot.file) + ": " + error.what(), urdf_words);
     }
   } else if (sources.parameter) {
-    errors.add_unread("robot.description", quoted(robot.description) + " is not set", "a parameter with a URDF");
+    errors.add_unread("robot.description", quoted(robot.description) + " is not set, or is no text", "a parameter with a URDF");
   } else {
     errors.add_unread("robot.file", "missing", "a file with a URDF: there are no parameters here");
   }

@@ -38,7 +38,7 @@ class YamlText {
   /// A place of it in the original.
   std::string place(const YAML::Mark& mark) const {
     const int inserted = mark.line == line_ ? static_cast<int>(document_start.size()) : 0;
-    return "line " + std::to_string(mark.line + 1) + ", column " + std::to_string(mark.column + 1 - inserted) + ": ";
+    return "line " + std::to_string(mark.line + 1) + ", column " + std::to_string(std::max(mark.column + 1 - inserted, 1)) + ": ";
   }
 
  private:

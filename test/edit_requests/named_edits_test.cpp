@@ -65,7 +65,8 @@ TEST(NamedEdits, APinAddsItsFrameAndIsReleased) {
   const EditResult released = apply_unpin(world, "pin1");
   EXPECT_TRUE(released.ok);
   EXPECT_EQ(released.message, "attachment \"pin1\" is released");
-  EXPECT_EQ(apply_unpin(world, "pin1").message, "name: \"pin1\" is no attachment; allowed: lower_start");
+  EXPECT_EQ(apply_unpin(world, "pin1").message,
+            "name: \"pin1\" is no attachment; allowed: lower_start; what still waits for its frames has none yet");
 }
 
 TEST(NamedEdits, APinThatTheWorldRefusesAddsNoFrame) {
@@ -83,7 +84,8 @@ TEST(NamedEdits, APinThatTheWorldRefusesAddsNoFrame) {
 TEST(NamedEdits, AnAttachmentIsMovedInItsFrame) {
   World world = cables_and_net();
   const std::uint64_t before = world.hash();
-  EXPECT_EQ(apply_move(world, "pin1", {}).message, "name: \"pin1\" is no attachment; allowed: lower_start");
+  EXPECT_EQ(apply_move(world, "pin1", {}).message,
+            "name: \"pin1\" is no attachment; allowed: lower_start; what still waits for its frames has none yet");
   const Pose turned{Vector3::Zero(), Quaternion(2, 0, 0, 0)};
   EXPECT_EQ(apply_move(world, "lower_start", turned).message,
             "offset.orientation: (0, 0, 0, 2); allowed: quaternions of length 1, or all zero for no rotation");

@@ -98,7 +98,7 @@ TEST(BodyRequests, motionsOfARolloutMoveNoBodies) {
     FAIL() << "not refused";
   } catch (const SceneError& error) {
     ASSERT_EQ(error.errors().size(), 1u) << error.what();
-    EXPECT_EQ(error.errors()[0], "motion[0].child_frame_id: \"load\"; allowed: frames that hold something, but those of bodies");
+    EXPECT_EQ(error.errors()[0], "motion[0].child_frame_id: \"load\"; allowed: none, no frame holds anything");
   }
 }
 

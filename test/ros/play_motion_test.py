@@ -128,9 +128,10 @@ class PlayMotionTest(unittest.TestCase):
         self.assertIn('argument "motion.csv"', message)
         self.assertIn('_motion:=MOTION.csv', message)
         without_master = {**os.environ, 'ROS_MASTER_URI': 'http://localhost:1'}
-        output = subprocess.run(['rosrun', 'verlet_cable', 'play_motion.py', '--help'], check=True, stdout=subprocess.PIPE, text=True,
-                                env=without_master, timeout=LIMIT).stdout
-        self.assertTrue(output.startswith('usage: rosrun verlet_cable play_motion.py _motion:='), output)
+        for program, usage in (('play_motion.py', 'usage: rosrun verlet_cable play_motion.py _motion:='), ('replay.py', 'replay.py _data:=')):
+            output = subprocess.run(['rosrun', 'verlet_cable', program, '--help'], check=True, stdout=subprocess.PIPE, text=True,
+                                    env=without_master, timeout=LIMIT).stdout
+            self.assertTrue(output.startswith(usage), output)
 
 
 if __name__ == '__main__':

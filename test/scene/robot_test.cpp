@@ -160,6 +160,13 @@ TEST_F(Robot, aParameterComesBeforeTheFile) {
   EXPECT_EQ(asked, "arm_description");
   EXPECT_EQ(scene.robot->tree.size(), 1u);
   sources.parameter = [](const std::string&) { return std::nullopt; };
+  try {
+    read_scene_text(sound_scene + "robot: {description: arm_description}\n", sources);
+    ADD_FAILURE() << "not refused";
+  } catch (const SceneError& error) {
+    EXPECT_TRUE(has_line(error.errors(),
+                         "robot.description: \"arm_description\" is not set, or is no text; allowed: a parameter with a URDF"));
+  }
   EXPECT_EQ(read_scene_text(sound_scene + "robot: {" + file() + "}\n", sources).robot->tree.size(), 4u);
 }
 

@@ -270,6 +270,7 @@ TEST(SceneErrors, sceneIsNotAMap) {
 
 TEST(SceneErrors, syntaxErrorsHaveLineAndColumn) {
   EXPECT_TRUE(has_line(errors_of("a: [1, 2"), "line 1, column "));
+  EXPECT_TRUE(has_line(errors_of("{"), "line 1, column 1: "));
   EXPECT_TRUE(has_line(errors_of("a: 1\nb: {c: 1\nd: }]"), "line 3, column "));
   EXPECT_TRUE(has_line(errors_of(sound_scene + "---\n" + sound_scene), "line 17, column 1: a second document"));
 }

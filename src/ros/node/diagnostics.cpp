@@ -149,7 +149,7 @@ void Diagnostics::report_frames(Status& status) const {
     status.mergeSummary(DiagnosticStatus::WARN,
                         "frame " + quoted(frame) + " came on /tf and on /tf_static: start the node again");
   for (const auto& [frame, problem] : simulation_.frames().buffer().refused()) {
-    status.add("refused " + frame, problem);  // why the last transform was refused
+    status.add("refused " + escaped(frame), problem);  // why the last transform was refused
     status.mergeSummary(DiagnosticStatus::WARN, "tf of frame " + quoted(frame) + " refused");
   }
 }

@@ -6,6 +6,7 @@
 
 #include "frames/frame_buffer.h"
 #include "publish/conversions.h"
+#include "verlet_cable/core/name_list.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 
@@ -42,6 +43,14 @@ void check_times(const RolloutGoal& goal, const World& world, std::vector<std::s
   }
 }
 
+/// What a motion moves: the frames that hold something, without the fixed frame, which is the first, and those of bodies.
+std::string moved_frames(const World& world) {
+  NameList names;
+  for (std::size_t i = 1; i < world.frames().size(); ++i)
+    if (!world.is_body_frame(static_cast<int>(i))) names.add(world.frames()[i]);
+  return names.text("none, no frame holds anything");
+}
+
 /// The motions by frame id. Problems are added to `errors`, each with its place in the goal.
 std::map<int, FrameTrack> read_motion(const RolloutGoal& goal, const World& world, std::vector<std::string>& errors) {
   std::map<int, FrameTrack> motion;
@@ -63,7 +72,7 @@ std::map<int, FrameTrack> read_motion(const RolloutGoal& goal, const World& worl
                        "; allowed: the fixed frame " + verlet_cable::quoted(names.front()) + ", or empty");
     } else if (frame == names.end() || world.is_body_frame(static_cast<int>(frame - names.begin()))) {
       errors.push_back(key + ".child_frame_id: " + verlet_cable::quoted(transform.child_frame_id) +
-                       "; allowed: frames that hold something, but those of bodies");
+                       "; allowed: " + moved_frames(world));
     } else if (!problem.empty()) {
       errors.push_back(key + ": " + problem);
     } else {
