@@ -5,12 +5,13 @@ import sys
 import time
 import unittest
 
+import actionlib
 import rospy
 import rostest
 from visualization_msgs.msg import Marker, MarkerArray
 
 from cable_client import CableClient, Messages, process_of
-from verlet_cable.msg import CableArray
+from verlet_cable.msg import CableArray, RolloutAction, RolloutGoal
 from verlet_cable.srv import Cut, CutRequest, Pin, PinRequest, Unpin, UnpinRequest
 
 FLOODS = 2
@@ -73,6 +74,26 @@ class FloodTest(unittest.TestCase):
         self.assertEqual([c.name for c in last.cables], ['rope'])
         self.assertEqual(len(last.cables[0].positions), 51)
         self.assertTrue(node.unpin('left').success, 'what is asked for properly is still done')
+
+    def test_what_a_large_rollout_takes_is_given_back(self):
+        node, actions = CableClient('/cable'), actionlib.SimpleActionClient('/cable/rollout', RolloutAction)
+        self.assertTrue(actions.wait_for_server(rospy.Duration(5)))
+
+        def roll_out(segments):
+            answer = node.load_scene(yaml=f'{{cables: [{{name: rope, length: 1.0, segments: {segments}, material: rope}}], '
+                                          'materials: {rope: {linear_density: 0.1, radius: 0.005}}}')
+            self.assertTrue(answer.success, answer.message)
+            for _ in range(5):  # on each of its threads
+                actions.send_goal_and_wait(RolloutGoal(duration=0.002, rate=500), rospy.Duration(30))
+                self.assertTrue(actions.get_result().success)
+            return memory_of('/cable')
+
+        before = roll_out(50)
+        during = roll_out(10000)
+        after = roll_out(50)
+        rospy.loginfo('%.1f MB before, %.1f MB with 10000 segments, %.1f MB after', before, during, after)
+        self.assertGreater(during - before, 20)
+        self.assertLess(after - before, 10)
 
 
 if __name__ == '__main__':

@@ -59,32 +59,40 @@ class Victims:
                 process.send_signal(signal.SIGSTOP)
                 self.stopped += 1
                 stop.wait(self._choice.uniform(1.0, 30.0))
+            node = f'/{VICTIM}_{process.pid}_'
+            known = registrations(node)
             process.kill()
+            unregister(known)
             calls = process.communicate()[0]
             self.killed += 1
             self.killed_in_calls += calls.count(CALLED) > calls.count(ANSWERED)
-            unregister(f'/{VICTIM}_{process.pid}_')
+            unregister(registrations(node))  # what it was doing meanwhile
 
 
-def unregister(prefix):
-    """Removes nodes from the master, as `rosnode cleanup` does: roscpp tries again and again to connect to publishers that were killed,
-    and keeps 1.7 kB for each attempt."""
+def registrations(prefix):
+    """The calls that remove nodes from the master, publishers first."""
     master = rosgraph.Master('/soak')
     try:
         publishers, subscribers, services = master.getSystemState()
+        calls = []
         for node in {node for _, nodes in publishers + subscribers + services for node in nodes if node.startswith(prefix)}:
             of_node, api = rosgraph.Master(node), master.lookupNode(node)
-            for topic, nodes in publishers:
-                if node in nodes:
-                    of_node.unregisterPublisher(topic, api)
-            for topic, nodes in subscribers:
-                if node in nodes:
-                    of_node.unregisterSubscriber(topic, api)
-            for service, nodes in services:
-                if node in nodes:
-                    of_node.unregisterService(service, master.lookupService(service))
+            calls += [(of_node.unregisterPublisher, topic, api) for topic, nodes in publishers if node in nodes]
+            calls += [(of_node.unregisterSubscriber, topic, api) for topic, nodes in subscribers if node in nodes]
+            calls += [(of_node.unregisterService, service, master.lookupService(service)) for service, nodes in services if node in nodes]
+        return calls
     except (OSError, rosgraph.MasterException, xmlrpc.client.Error):
-        return  # no master at the moment: what it knew of killed clients is not restored
+        return []  # no master at the moment: what it knew of killed clients is not restored
+
+
+def unregister(calls):
+    """As `rosnode cleanup` does, but within the tenth of a second after which roscpp tries to connect to a publisher that was killed, again
+    and again: it keeps 1.7 kB for each attempt."""
+    for call, name, api in calls:
+        try:
+            call(name, api)
+        except (OSError, rosgraph.MasterException, xmlrpc.client.Error):
+            return
 
 
 VICTIM = 'victim'

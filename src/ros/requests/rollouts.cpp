@@ -90,11 +90,10 @@ void Rollouts::cancel(Server::GoalHandle goal) {
 
 void Rollouts::work() {
   setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), niceness);
-  WorldStepper stepper;
   while (true) {
     const Jobs jobs = take_waiting();
     if (jobs.empty()) return;
-    run_guarded("a rollout", [&] { run(jobs, stepper); });
+    run_guarded("a rollout", [&] { run(jobs); });
     const std::lock_guard<std::mutex> lock(mutex_);
     for (const auto& job : jobs) jobs_.remove(job);
   }
@@ -114,7 +113,8 @@ Rollouts::Jobs Rollouts::take_waiting() {
   return jobs;
 }
 
-void Rollouts::run(Jobs jobs, WorldStepper& stepper) const {
+void Rollouts::run(Jobs jobs) const {
+  WorldStepper stepper;  // of these only: it keeps as much memory as the largest of all its worlds took
   for (const auto& job : jobs) job->rollout.begin();
   std::vector<WorldStep> steps;
   while (!jobs.empty()) {

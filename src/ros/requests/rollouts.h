@@ -42,7 +42,7 @@ class Rollouts {
   void cancel(Server::GoalHandle goal);
   void work();
   Jobs take_waiting();
-  void run(Jobs jobs, WorldStepper& stepper) const;
+  void run(Jobs jobs) const;
   void report(Job& job) const;
   static void end(Job& job);
 
