@@ -15,9 +15,9 @@ namespace verlet_cable {
 
 /// Subscribed topic `obstacles` (visualization_msgs/MarkerArray): a perception node adds, moves and removes obstacles by markers
 /// of the types CUBE, SPHERE, CYLINDER and MESH_RESOURCE, with the actions ADD, DELETE and DELETEALL. Namespace and id identify
-/// an obstacle, and its frame_id moves it. Markers are applied between steps, as all callbacks run in one thread. A refused
-/// marker is logged, counted, and changes nothing. An obstacle with a mesh appears when the mesh has been read, unless a later
-/// marker has replaced or deleted it.
+/// an obstacle, and its frame_id moves it; it stays until it is deleted, whatever its lifetime. Markers are applied between steps,
+/// as all callbacks run in one thread. A refused marker is logged, counted, and changes nothing. An obstacle with a mesh appears
+/// when the mesh has been read, unless a later marker has replaced or deleted it.
 class ObstacleListener {
  public:
   ObstacleListener(ros::NodeHandle& private_node, Simulation& simulation);
