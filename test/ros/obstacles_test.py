@@ -106,6 +106,13 @@ class ObstaclesTest(unittest.TestCase):
         self.send(marker(1, position=(0, 0, 0.02)))
         self.wait_for_diagnostics('found_inside_obstacles', 'rope in ')
 
+    def test_no_more_than_a_thousand_that_were_inside_are_remembered(self):
+        for message in range(24):
+            self.send(*[marker(number, ns=f'new{message}', position=(0, 0, 0.02)) for number in range(100)])
+            rospy.sleep(0.1)
+            self.send(marker(0, action=Marker.DELETEALL))
+        self.wait_for_diagnostics('found_inside_obstacles', ' and 980 more')
+
     def test_markers_add_move_and_delete(self):
         before = self.wait_for_shown(lambda found: len(found) >= 4, 'floor and pill')
         others = {m.id for m in before}

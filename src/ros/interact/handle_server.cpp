@@ -14,7 +14,8 @@ using visualization_msgs::InteractiveMarkerUpdate;
 // As the library's.
 constexpr std::uint32_t queue_size = 100;
 const ros::WallDuration sign_of_life(0.5);
-const ros::WallDuration hold_time(1.0);  // in which nobody else drags what a client has dragged
+const ros::WallDuration hold_time(1.0);   // in which nobody else drags what a client has dragged
+constexpr std::size_t longest_id = 1000;  // of a client, that is kept
 /// After feedback on a marker, in which its pose is sent though it is where it was.
 const ros::WallDuration correction_time(2.0);
 
@@ -96,8 +97,9 @@ void HandleServer::take(const Feedback& feedback) {
   Client& client = clients_[feedback.marker_name];
   const ros::WallTime now = ros::WallTime::now();
   heard_of_[feedback.marker_name] = now;
-  if (client.id != feedback.client_id && now - client.last < hold_time) return;
-  client = {feedback.client_id, now};
+  const std::string id = feedback.client_id.substr(0, longest_id);
+  if (client.id != id && now - client.last < hold_time) return;
+  client = {id, now};
   receive_(feedback);
 }
 

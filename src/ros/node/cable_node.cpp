@@ -1,5 +1,7 @@
 #include "node/cable_node.h"
 
+#include <malloc.h>
+
 #include <algorithm>
 
 #include "interact/hands.h"
@@ -14,6 +16,10 @@
 
 namespace verlet_cable {
 namespace {
+
+/// Between times at which the system gets back what scenes, rollouts and floods took: glibc keeps what is freed, each thread for
+/// itself, up to twice the largest block that there ever was and more.
+const ros::WallDuration trim_period(5.0);
 
 /// Ticks come as evenly as this fraction of their period, but no finer than a millisecond.
 ros::WallDuration update_period(const SceneDesc& scene) {
@@ -41,6 +47,7 @@ struct CableNode::Parts {
   Hands hands;
   Diagnostics diagnostics;
   ros::WallTimer timer;
+  ros::WallTimer trim_timer;
   double publish_rate;  ///< [Hz] for which the timer runs
 };
 
@@ -56,6 +63,7 @@ CableNode::Parts::Parts(ros::NodeHandle private_node)
       diagnostics(node, simulation, obstacles),
       timer(node.createWallTimer(update_period(simulation.scene()),
                                  [this](const ros::WallTimerEvent&) { run_guarded("an update", [this] { update(); }); })),
+      trim_timer(node.createWallTimer(trim_period, [](const ros::WallTimerEvent&) { malloc_trim(0); })),
       publish_rate(simulation.scene().publish_rate) {}
 
 void CableNode::Parts::update() {

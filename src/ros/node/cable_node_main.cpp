@@ -1,4 +1,3 @@
-#include <malloc.h>
 #include <ros/ros.h>
 
 #include <cstdlib>
@@ -42,17 +41,9 @@ void register_what_logging_needs() {
   ros::param::getCached("/rosout_disable_topics_generation", ignored);
 }
 
-/// The system gets back at once what scenes and rollouts took that were larger. glibc would raise the threshold to the largest
-/// block that was freed, and each thread would keep up to twice as much.
-void give_back_large_blocks() {
-  constexpr int threshold = 128 * 1024;  // [bytes] the one that it begins with
-  mallopt(M_MMAP_THRESHOLD, threshold);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-  give_back_large_blocks();
   try {
     ros::init(argc, argv, "cable");
   } catch (const ros::Exception& error) {

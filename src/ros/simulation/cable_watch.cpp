@@ -9,6 +9,7 @@ namespace {
 
 /// Between warnings about what may last [s].
 constexpr double log_period = 5;
+constexpr std::size_t most_intrusions = 1000;  // that are remembered: who sends obstacles may name each anew
 
 }  // namespace
 
@@ -51,7 +52,8 @@ void CableWatch::report_intrusions(const World& world) {
   for (const Intrusion& intrusion : world.findings().intrusions) {
     const std::string& cable = world.cables()[intrusion.cable].model->name;
     const std::string& obstacle = world.obstacles()[intrusion.obstacle].name;
-    if (!intrusions_.insert(cable + " in " + obstacle).second) continue;
+    if (intrusions_.size() >= most_intrusions) return;
+    if (!intrusions_.insert(escaped(cable) + " in " + escaped(obstacle)).second) continue;
     ROS_WARN("cable %s is %s m deep inside obstacle %s at segment %d and is pushed out of it", quoted(cable).c_str(),
              rounded_text(intrusion.depth).c_str(), quoted(obstacle).c_str(), intrusion.segment);
   }

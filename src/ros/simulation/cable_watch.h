@@ -19,7 +19,8 @@ class CableWatch {
   void report_status(const StepResult& result, Nanoseconds stamp, const World& world);
   /// Reports what happened to cables in the step that led to `stamp`: see `events_of_step`.
   void report_events(Nanoseconds stamp, const World& world) const;
-  /// Warns of cables that the last step found inside obstacles, of each pair once until `restart`.
+  /// Warns of cables that the last step found inside obstacles, of each pair once until `restart`, and of a thousand pairs at
+  /// most.
   void report_intrusions(const World& world);
   /// Warns of cables that could not start as the scene says, from these of World::unsettled() and World::misfits() on.
   void report_starts(std::size_t first_unsettled, std::size_t first_misfit, const World& world) const;
@@ -27,7 +28,7 @@ class CableWatch {
   void restart(const World& world);
 
   int faults() const { return faults_; }  ///< since the node started
-  /// "CABLE in OBSTACLE" of all that were found inside since the last restart.
+  /// "CABLE in OBSTACLE" of those that were warned of since the last restart.
   const std::set<std::string>& intrusions() const { return intrusions_; }
 
  private:

@@ -24,7 +24,7 @@ struct SimulationReport {
   Statistics statistics;    ///< since the last report
   Nanoseconds dropped = 0;  ///< since the node started, as `faults`
   int faults = 0;
-  std::set<std::string> intrusions;  ///< "CABLE in OBSTACLE" of all that were found inside since the scene started
+  std::set<std::string> intrusions;  ///< "CABLE in OBSTACLE" of those that were found inside since the scene started
 };
 
 }  // namespace verlet_cable

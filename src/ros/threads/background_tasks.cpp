@@ -1,7 +1,5 @@
 #include "threads/background_tasks.h"
 
-#include <malloc.h>
-
 #include <algorithm>
 #include <chrono>
 
@@ -19,7 +17,6 @@ void BackgroundTasks::run(std::function<void()> task) {
   tasks_.push_back(std::async(std::launch::async, [task = std::move(task)]() mutable {
     task();
     task = nullptr;
-    malloc_trim(0);  // the system gets back what was large
   }));
 }
 
