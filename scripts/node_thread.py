@@ -21,7 +21,7 @@ def run(name, work):
     takes, too: were it the main thread, Ctrl-C could wait for ever (QueuedConnection in rospy/impl/tcpros_pubsub.py).
     """
     if {'-h', '--help'} & set(rospy.myargv()[1:]):
-        print(sys.modules['__main__'].__doc__.strip())
+        print(work.__globals__['__doc__'].strip())  # of its file: in a devel space, another one is __main__
         return
     problems = []
 
