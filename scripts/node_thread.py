@@ -14,15 +14,18 @@ def wait_for_time():
 
 
 def run(name, work):
-    """A node of this name, once there is a time, until `work()` has ended or the node is shut down; raises what `work` raised, unless that came of the shutdown.
-    `--help` prints what the program says of itself instead, which needs no master.
+    """A node of this name, once there is a time, until `work()` has ended or the node is shut down; raises what `work` raised, unless
+    that came of the shutdown. Arguments other than ROS's own are refused, but for `--help`: that prints what the program says of itself.
 
     rospy shuts a node down in the main thread, wherever that is. A thread that publishes holds the lock of a queue that the shutdown
     takes, too: were it the main thread, Ctrl-C could wait for ever (QueuedConnection in rospy/impl/tcpros_pubsub.py).
     """
-    if {'-h', '--help'} & set(rospy.myargv()[1:]):
+    arguments = rospy.myargv()[1:]
+    if {'-h', '--help'} & set(arguments):
         print(work.__globals__['__doc__'].strip())  # of its file: in a devel space, another one is __main__
         return
+    if arguments:
+        sys.exit(f'{name}: argument "{arguments[0]}"; allowed: _name:=value (--help: which ones there are)')
     problems = []
 
     def guarded_work():

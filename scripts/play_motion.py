@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Sends the frames of a motion (CSV: t,frame,x,y,z,qx,qy,qz,qw, as for cable_sim) on tf at 100 Hz.
+"""play_motion.py _motion:=FILE.csv [_pause:=SECONDS]: sends the frames of a motion on tf at 100 Hz.
 
-Between rows the frames move as in cable_sim (src/scene/motion.cpp): positions follow a cubic Hermite spline with limited tangents,
-orientations are interpolated by slerp. At the end, the frames stay for `~pause` seconds and go back the way they came; then the
-cables are reset, and the motion starts again.
+A motion is one as for cable_sim, with the columns t,frame,x,y,z,qx,qy,qz,qw. Between rows the frames move as there
+(src/scene/motion.cpp): positions follow a cubic Hermite spline with limited tangents, orientations are interpolated by slerp. At the
+end, the frames stay for `~pause` seconds and go back the way they came; then the cables are reset, and the motion starts again.
 """
 import math
 import os
@@ -27,7 +27,6 @@ HEADER = 't,frame,x,y,z,qx,qy,qz,qw'
 LARGEST = 1e9  # [s, m] as for cable_sim, and so
 MOST_FRAMES = 20000
 LEAST_QUATERNION = 1e-6
-USAGE = 'usage: rosrun verlet_cable play_motion.py _motion:=MOTION.csv [_pause:=SECONDS]'
 
 
 class MotionError(Exception):
@@ -191,24 +190,14 @@ class Player:
         self._rate.sleep()
 
 
-def check_arguments(arguments):
-    """Answers --help, and ends with the usage where there is anything but ROS's own arguments."""
-    if any(argument in ('-h', '--help') for argument in arguments):
-        print(f'{USAGE}\n\n{__doc__.strip()}')
-        sys.exit()
-    if arguments:
-        sys.exit(f'play_motion.py: argument "{arguments[0]}"; allowed: _name:=value\n{USAGE}')
-
-
 def main():
-    check_arguments(rospy.myargv()[1:])
     node_thread.run('play_motion', play)
 
 
 def play():
     path = rospy.get_param('~motion', '')
     if not path:
-        sys.exit(f'play_motion.py: no motion\n{USAGE}')
+        sys.exit('play_motion.py: motion: not set; allowed: the path of a CSV file, as _motion:=FILE.csv')
     try:
         player = Player(read_motion(path))
     except MotionError as error:

@@ -8,7 +8,7 @@ import unittest
 import actionlib
 import rospy
 import rostest
-from visualization_msgs.msg import Marker, MarkerArray
+from visualization_msgs.msg import InteractiveMarkerFeedback, InteractiveMarkerUpdate, Marker, MarkerArray
 
 from cable_client import CableClient, Messages, process_of
 from verlet_cable.msg import CableArray, RolloutAction, RolloutGoal
@@ -16,6 +16,7 @@ from verlet_cable.srv import Cut, CutRequest, Pin, PinRequest, Unpin, UnpinReque
 
 FLOODS = 2
 SECONDS = 5
+GIVEN_BACK = 12  # [s] what was freed is given back every 5 s, and actionlib forgets results after 5 s
 NAN = float('nan')
 
 
@@ -89,7 +90,7 @@ class FloodTest(unittest.TestCase):
             return memory_of('/cable')
 
         def memory_after_a_while():
-            time.sleep(12)  # what was freed is given back every 5 s, and actionlib forgets results after 5 s
+            time.sleep(GIVEN_BACK)
             return memory_of('/cable')
 
         roll_out(50)
@@ -100,6 +101,19 @@ class FloodTest(unittest.TestCase):
         rospy.loginfo('%.1f MB before, %.1f MB with 10000 segments, %.1f MB after', before, during, after)
         self.assertGreater(during - before, 20)
         self.assertLess(after - before, 10)
+
+    def test_the_endless_name_of_a_client_is_not_kept(self):
+        self.assertTrue(CableClient('/cable').reset().success)
+        with Messages('/cable/hands/update', InteractiveMarkerUpdate) as shown:
+            handle = shown.wait_for(lambda update: update.markers, 'handles').markers[0].name
+            mouse = rospy.Publisher('/cable/hands/feedback', InteractiveMarkerFeedback, queue_size=1)
+            while mouse.get_num_connections() == 0:
+                time.sleep(0.01)
+            before = memory_of('/cable')
+            mouse.publish(InteractiveMarkerFeedback(client_id='x' * 40_000_000, marker_name=handle,
+                                                    event_type=InteractiveMarkerFeedback.MOUSE_DOWN))
+            time.sleep(GIVEN_BACK)
+            self.assertLess(memory_of('/cable') - before, 20)
 
 
 if __name__ == '__main__':

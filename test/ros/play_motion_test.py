@@ -124,11 +124,13 @@ class PlayMotionTest(unittest.TestCase):
                 self.assertEqual(self.refuse(f'_motion:={path}'), f'{path}: {message}\n')
 
     def test_arguments(self):
-        message = self.refuse('motion.csv')
-        self.assertIn('argument "motion.csv"', message)
-        self.assertIn('_motion:=MOTION.csv', message)
+        self.assertIn('_motion:=FILE.csv', self.refuse())
         without_master = {**os.environ, 'ROS_MASTER_URI': 'http://localhost:1'}
-        for program, usage in (('play_motion.py', 'usage: rosrun verlet_cable play_motion.py _motion:='), ('replay.py', 'replay.py _data:=')):
+        for program, usage in (('play_motion.py', 'play_motion.py _motion:='), ('replay.py', 'replay.py _data:=')):
+            refused = subprocess.run(['rosrun', 'verlet_cable', program, 'motion.csv'], stderr=subprocess.PIPE, text=True,
+                                     env=without_master, timeout=LIMIT)
+            self.assertEqual(refused.returncode, 1)
+            self.assertIn('argument "motion.csv"; allowed: _name:=value', refused.stderr)
             output = subprocess.run(['rosrun', 'verlet_cable', program, '--help'], check=True, stdout=subprocess.PIPE, text=True,
                                     env=without_master, timeout=LIMIT).stdout
             self.assertTrue(output.startswith(usage), output)
