@@ -1,3 +1,4 @@
+#include <malloc.h>
 #include <ros/ros.h>
 
 #include <cstdlib>
@@ -41,9 +42,17 @@ void register_what_logging_needs() {
   ros::param::getCached("/rosout_disable_topics_generation", ignored);
 }
 
+/// Large blocks of scenes and rollouts are mapped, and go back to the system as soon as they are freed. glibc would raise this
+/// threshold to the largest block that was freed, and then cut them out of what its threads keep, which splits it up.
+void map_large_blocks() {
+  constexpr int threshold = 128 * 1024;  // [bytes] the one that it begins with
+  mallopt(M_MMAP_THRESHOLD, threshold);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  map_large_blocks();
   try {
     ros::init(argc, argv, "cable");
   } catch (const ros::Exception& error) {
