@@ -155,22 +155,37 @@ class Watch:
                 self.steps += int(next(entry.value for entry in status.values if entry.key == 'steps'))
 
 
+def resident(pid):
+    """Reads what a process occupies [MB]."""
+    def read():
+        with open(f'/proc/{pid}/status') as status:
+            return next((int(line.split()[1]) / 1e3 for line in status if line.startswith('VmRSS')), None)
+    return read
+
+
+def live_heap(file):
+    """Reads what live_heap.cpp writes [MB]."""
+    def read():
+        text = file.read_text() if file.exists() else ''
+        return int(text) / 1e6 if text.endswith('\n') else None
+    return read
+
+
 class Memory:
-    """[MB] that a process occupies, over time [s]."""
+    """A size [MB] of the node, over time [s]."""
 
     SETTLING = 900.0  # [s] at first: for so long what was in use still grew, on a busy machine, before it stayed
     SHORTEST = 300.0  # [s] after that, of which anything can be said
-    LARGEST_GROWTH = 0.05  # of the median, by a robust line through what comes after that
 
-    def __init__(self, pid):
-        self._status = f'/proc/{pid}/status'
-        self.samples = []
+    def __init__(self, name, read, largest_growth):
+        """`largest_growth(median)`: [MB] by a robust line through what comes after the settling, None where it is not judged."""
+        self.name, self.samples = name, []
+        self._read, self._largest_growth = read, largest_growth
 
     def sample(self, time_now):
-        with open(self._status) as status:
-            rss = next((int(line.split()[1]) for line in status if line.startswith('VmRSS')), None)
-        if rss:
-            self.samples.append((time_now, rss / 1000))
+        size = self._read()
+        if size:
+            self.samples.append((time_now, size))
 
     def settled(self):
         """Times and sizes after the settling."""
@@ -191,9 +206,9 @@ class Memory:
 
     def check(self, findings):
         fit = self.fit()
-        if fit is None:
+        if fit is None or self._largest_growth is None:
             return
         times, sizes = self.settled()
         growth = fit[0] * (times[-1] - times[0])
-        if growth > self.LARGEST_GROWTH * np.median(sizes):
-            findings.add('memory grows', f'{3600 * fit[0]:.1f} MB an hour, of {np.median(sizes):.0f} MB')
+        if growth > self._largest_growth(np.median(sizes)):
+            findings.add(f'memory grows, {self.name}', f'{3600 * fit[0]:.1f} MB an hour, of {np.median(sizes):.1f} MB')

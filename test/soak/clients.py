@@ -44,6 +44,7 @@ class Victims:
     have read nothing for a while."""
 
     STARTING = 60.0  # [s] of wall time, of Python with all its messages, on a busy machine
+    FORGETTING = 0.5  # [s] in which the node hears from the master that a publisher is gone
 
     def __init__(self, seed, log):
         self._choice, self._log = random.Random(seed), log
@@ -55,18 +56,18 @@ class Victims:
             process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=self._log)
             select.select([process.stdout], [], [], self.STARTING)  # for its first call
             stop.wait(self._choice.uniform(0.0, 4.0))
+            process.send_signal(signal.SIGSTOP)
             if self._choice.random() < 0.2:
-                process.send_signal(signal.SIGSTOP)
                 self.stopped += 1
                 stop.wait(self._choice.uniform(1.0, 30.0))
             node = f'/{VICTIM}_{process.pid}_'
-            known = registrations(node)
+            unregister(registrations(node))
+            time.sleep(self.FORGETTING)
             process.kill()
-            unregister(known)
             calls = process.communicate()[0]
             self.killed += 1
             self.killed_in_calls += calls.count(CALLED) > calls.count(ANSWERED)
-            unregister(registrations(node))  # what it was doing meanwhile
+            unregister(registrations(node))  # what the master had not heard of yet
 
 
 def registrations(prefix):
@@ -86,8 +87,8 @@ def registrations(prefix):
 
 
 def unregister(calls):
-    """As `rosnode cleanup` does, but within the tenth of a second after which roscpp tries to connect to a publisher that was killed, again
-    and again: it keeps 1.7 kB for each attempt."""
+    """As `rosnode cleanup` does, but before they are killed: roscpp tries to connect to a publisher that the master still knows, again and
+    again, and keeps 1.7 kB for each attempt."""
     for call, name, api in calls:
         try:
             call(name, api)

@@ -19,7 +19,7 @@ import yaml
 
 import load
 import summary
-from checks import Calls, Findings, Memory, Watch
+from checks import Calls, Findings, Memory, Watch, live_heap, resident
 from clients import Victims, Visitors, be_a_victim
 from frames import Frames
 from master import Master
@@ -28,6 +28,8 @@ SCENE = Path(__file__).with_name('scene.yaml')
 CALLERS = 3
 SAMPLE_PERIOD = 5.0  # [s]
 ENDING = 30.0  # [s] that the node has to end by itself
+RESIDENT_GROWTH = 0.05  # of the median, at most, without sanitizers, whose allocator spreads out
+LIVE_GROWTH = 1.0  # [MB] at most
 MASTER_PERIOD = (120.0, 600.0)  # [s] between its deaths
 
 
@@ -36,6 +38,7 @@ def arguments():
     parser.add_argument('--hours', type=float, default=0.5)
     parser.add_argument('--seed', type=int, default=1)
     parser.add_argument('--node', help='the program')
+    parser.add_argument('--live-heap', help='the library that is to tell what is in use, of a node with AddressSanitizer')
     parser.add_argument('--build', help='how it was built, for the summary')
     parser.add_argument('--output', type=Path, help='a directory for logs and results')
     parser.add_argument('--reports', type=Path, help='the directory where sanitizers write')
@@ -59,11 +62,16 @@ class Soak:
         rospy.init_node('soak', disable_rostime=True, disable_signals=True)
         self._frames = Frames(random.Random(options.seed + 1))
         self._frames.start()
+        live_file, environment = options.output / 'live_heap', dict(os.environ)
+        if options.live_heap:
+            environment.update(LD_PRELOAD=options.live_heap, LIVE_HEAP_FILE=str(live_file))
         with open(options.output / 'node.log', 'w') as log:
-            self._node = subprocess.Popen([options.node, '__name:=cable'], stdout=log, stderr=subprocess.STDOUT)
+            self._node = subprocess.Popen([options.node, '__name:=cable'], stdout=log, stderr=subprocess.STDOUT, env=environment)
         self._findings = Findings()
         self._calls = Calls(self._findings, self._master, options.bound)
-        self._memory = Memory(self._node.pid)
+        self._memory = [Memory('resident', resident(self._node.pid), lambda median: RESIDENT_GROWTH * median)]
+        if options.live_heap:
+            self._memory = [Memory('resident', resident(self._node.pid), None), Memory('in use', live_heap(live_file), lambda _: LIVE_GROWTH)]
 
     def run(self):
         options, stop = self._options, threading.Event()
@@ -87,7 +95,8 @@ class Soak:
             worker.join(2 * options.bound)
         self._end_node()
         self._frames.stop()
-        self._memory.check(self._findings)
+        for memory in self._memory:
+            memory.check(self._findings)
         self._calls.check_closed()
         if self._watch.messages['/cable/state'] == 0 or self._watch.steps == 0:
             self._findings.add('nothing was published', '')
@@ -98,7 +107,8 @@ class Soak:
             time.sleep(min(SAMPLE_PERIOD, max(0.0, end - time.monotonic())))
             if self._node.poll() is not None or any(self._options.reports.iterdir()):
                 return
-            self._memory.sample(time.monotonic() - begin)
+            for memory in self._memory:
+                memory.sample(time.monotonic() - begin)
             if not all(worker.is_alive() for worker in workers):
                 self._findings.add('the soak itself failed', 'a thread ended, see its output')
                 return

@@ -21,7 +21,7 @@ def memory(record):
     return {key: round(float(value), 1) for key, value in result.items()}
 
 
-def summarize(seconds, seed, build, findings, calls, watch, record, others):
+def summarize(seconds, seed, build, findings, calls, watch, records, others):
     return {
         'hours': round(seconds / 3600, 3), 'seed': seed, 'build': build,
         'findings': {kind: count for kind, (count, _) in findings.all.items()},
@@ -30,7 +30,8 @@ def summarize(seconds, seed, build, findings, calls, watch, record, others):
                          'without_master': calls.without_master.get(name, 0)}
                   for name in sorted({**calls.answered, **calls.refused, **calls.closed, **calls.without_master})},
         'latency_s': {name: latency(values) for name, values in sorted(calls.latencies.items())},
-        'steps': watch.steps, 'messages_checked': watch.messages, 'events': watch.events, 'memory': memory(record), **others}
+        'steps': watch.steps, 'messages_checked': watch.messages, 'events': watch.events,
+        'memory': {record.name: memory(record) for record in records if record.samples}, **others}
 
 
 def text(summary):
@@ -41,37 +42,42 @@ def text(summary):
         times = summary['latency_s'].get(name, {})
         lines.append(f'{name:15}{counts["done"]:8}{counts["refused"]:9}{counts["closed"]:8}{counts["without_master"]:11}' +
                      ''.join(f'{times[key]:10.3f}' if key in times else f'{"":10}' for key in ('p50', 'p99', 'max')))
-    for key in ('sent', 'clients', 'frames', 'events', 'memory'):
+    for key in ('sent', 'clients', 'frames', 'events'):
         lines.append(f'{key}: ' + ', '.join(f'{name} {value}' for name, value in summary[key].items()))
+    for key, sizes in summary['memory'].items():
+        lines.append(f'memory, {key}: ' + ', '.join(f'{name} {value}' for name, value in sizes.items()))
     for kind, count in summary['findings'].items():
         lines.append(f'FOUND {count} times: {kind}: {summary["examples"][kind][:300]}')
     return '\n'.join(lines)
 
 
-def draw(record, build, path):
+def draw(records, build, path):
     import matplotlib
     matplotlib.use('Agg')
     from matplotlib import pyplot
-    times, sizes = np.array(record.samples).reshape(-1, 2).T
     figure, axes = pyplot.subplots(figsize=(8, 3.5))
+    for record in records:
+        times, sizes = np.array(record.samples).reshape(-1, 2).T
+        axes.plot(times / 60, sizes, linewidth=1, label=f'{record.name}, {build}')
+        fit = record.fit()
+        if fit:
+            times, sizes = record.settled()
+            line = np.median(sizes - fit[0] * times) + fit[0] * times
+            axes.plot(times / 60, line, label=f'from the {record.SETTLING / 60:.0f}th minute on: {3600 * fit[0]:+.1f} MB an hour')
     axes.axvspan(0, min(times[-1], record.SETTLING) / 60, color='0.92', label='fills up')
-    axes.plot(times / 60, sizes, linewidth=1, label=f'resident, {build}')
-    fit = record.fit()
-    if fit:
-        times, sizes = record.settled()
-        line = np.median(sizes - fit[0] * times) + fit[0] * times
-        axes.plot(times / 60, line, label=f'after that: {3600 * fit[0]:+.1f} MB an hour')
     axes.set_xlabel('time [min]')
     axes.set_ylabel('memory of the node [MB]')
     axes.set_xlim(left=0)
     axes.set_ylim(bottom=0)
-    axes.legend(loc='lower right')
+    axes.legend(loc='center right')
     figure.tight_layout()
     figure.savefig(path, dpi=80, metadata={'Software': None})
 
 
-def write(summary, record, directory):
+def write(summary, records, directory):
     (directory / 'summary.json').write_text(json.dumps(summary, indent=2) + '\n')
     (directory / 'summary.txt').write_text(text(summary) + '\n')
-    (directory / 'memory.csv').write_text('s,MB\n' + ''.join(f'{time:.1f},{size:.1f}\n' for time, size in record.samples))
-    draw(record, summary['build'], directory / 'memory.png')
+    records = [record for record in records if record.samples]
+    (directory / 'memory.csv').write_text('s,of,MB\n' + ''.join(
+        f'{time:.1f},{record.name},{size:.2f}\n' for record in records for time, size in record.samples))
+    draw(records, summary['build'], directory / 'memory.png')
