@@ -3,8 +3,11 @@
 The format is that of the motion captures named in the README: a CSV with the header `t,x0,y0,z0,x1,y1,z1,...`, times in s and
 positions in m, gravity along -z, markers numbered along the cable. The two markers at each end sit on what holds the cable.
 """
+import os
+
 import numpy as np
 
+LARGEST_FILE = 1_000_000_000  # [bytes]
 FEWEST_MARKERS = 4  # two at each end give the direction in which the cable is held
 FEWEST_ROWS = 2     # give the velocity at the start
 
@@ -60,6 +63,10 @@ class Recording:
 
 
 def _read(path):
+    if os.path.exists(path) and not os.path.isfile(path):
+        raise RecordingError(f'{path}: not a file; allowed: a CSV file')
+    if os.path.exists(path) and os.path.getsize(path) > LARGEST_FILE:
+        raise RecordingError(f'{path}: {os.path.getsize(path)} bytes; allowed: at most {LARGEST_FILE}')
     try:
         with open(path, encoding='utf-8') as file:
             header = file.readline().strip().split(',')

@@ -76,6 +76,9 @@ std::vector<TunableNumber> tunable_numbers(const SceneDesc& scene) {
 
 namespace {
 
+/// Parameters that are named one by one.
+constexpr std::size_t most_unknown = 100;
+
 std::string names_of(const std::vector<TunableNumber>& numbers) {
   NameList names;
   for (const TunableNumber& number : numbers) names.add(number.name);
@@ -86,16 +89,21 @@ std::string names_of(const std::vector<TunableNumber>& numbers) {
 
 SceneDesc tuned_scene(SceneDesc scene, const std::vector<TunableNumber>& numbers, const std::vector<NumberChange>& changes,
                       std::vector<std::string> errors) {
+  const std::string known = names_of(numbers);
+  std::size_t unknown = 0;
   for (const NumberChange& change : changes) {
     const auto number = std::find_if(numbers.begin(), numbers.end(), [&](const auto& n) { return n.name == change.name; });
     if (number == numbers.end()) {
-      errors.push_back("tuning: unknown parameter " + quoted(change.name) + "; allowed: " + names_of(numbers));
+      if (++unknown <= most_unknown)
+        errors.push_back("tuning: unknown parameter " + quoted(change.name) + "; allowed: " + known);
     } else if (!number->range.contains(change.value)) {
       errors.push_back("tuning." + number->name + ": " + number_text(change.value) + "; allowed: " + number->range.text());
     } else {
       number->set(scene, change.value);
     }
   }
+  if (unknown > most_unknown)
+    errors.push_back("tuning: " + std::to_string(unknown - most_unknown) + " more unknown parameters");
   if (errors.empty()) errors = validate(scene);
   if (!errors.empty()) throw SceneError(std::move(errors));
   return scene;

@@ -194,6 +194,22 @@ TEST(WinchEdits, ACopyGoesOnAlikeAndACutCableIsWoundOn) {
   EXPECT_NEAR(length(world), 1 - lost, 1e-6);
 }
 
+TEST(WinchEdits, WinchesTogetherKeepTheLimitOfSegments) {
+  SceneDesc scene = scenes::between_two_points(50, 0.8);
+  scene.cables.push_back(scene.cables.front());
+  scene.cables.back().name = "other";
+  for (AttachmentDesc& attachment : scene.cables.back().attachments) attachment.name = "other_" + attachment.name;
+  scene.limits.segments = 120;
+  World world(scene, initial_frames(scene));
+  ASSERT_TRUE(world.apply(edit::SetLength{0, true, 1.3, 0.5}).ok);  // 65 segments
+  const EditResult more = world.apply(edit::SetLength{1, true, 1.3, 0.5});
+  EXPECT_FALSE(more.ok);
+  EXPECT_NE(more.message.find("at most 1.1 m, as limits.segments allows"), std::string::npos) << more.message;
+  EXPECT_TRUE(world.apply(edit::SetLength{1, true, 1.09, 0.5}).ok);
+  for (int i = 0; i < 2000; ++i) world.step(initial_frames(scene));
+  EXPECT_LE(world.cables()[0].state.segments() + world.cables()[1].state.segments(), 120);
+}
+
 TEST(WinchEdits, BadRequestsChangeNothing) {
   SceneDesc scene = scenes::between_two_points(50, 0.8);
   scene.limits.segments = 60;

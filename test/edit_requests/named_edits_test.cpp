@@ -112,6 +112,17 @@ TEST(Tuning, EveryErrorIsToldAtOnce) {
   }
 }
 
+TEST(Tuning, OfMillionsOfUnknownParametersAHundredAreNamed) {
+  SceneDesc scene;
+  try {
+    tuned_scene(scene, tunable_numbers(scene), std::vector<NumberChange>(1000, {"x", 1}), {});
+    FAIL();
+  } catch (const SceneError& error) {
+    ASSERT_EQ(error.errors().size(), 101u);
+    EXPECT_EQ(error.errors().back(), "tuning: 900 more unknown parameters");
+  }
+}
+
 TEST(Tuning, GravityIsTunedWhereItIsUniform) {
   SceneDesc scene;
   EXPECT_EQ(tunable_numbers(scene).front().name, "gravity_x");

@@ -53,6 +53,19 @@ void add_material_motion(const LengthDrive& drive, double side, CableState& cabl
   cable.velocities[node] += (node == 0 ? side : -side) * drive.growth() * along;
 }
 
+/// What counts towards `limits.segments` beside a cable, with all that the other winches have been told to let out.
+double size_beside(int index, const State& state) {
+  double size = static_cast<double>(state.scene->particles.size() + state.bodies.size());
+  for (const NetDesc& net : state.scene->nets) size += std::max(net.node_count(), net.link_count());
+  for (int i = 0; i < static_cast<int>(state.cables.size()); ++i) {
+    if (i == index) continue;
+    const std::optional<LengthDrive>& drive = state.cable_progress[i].drive;
+    size += state.cables[i].state.segments();
+    if (drive && drive->is_winch()) size += std::ceil(std::max(drive->left, 0.0) / state.cables[i].model->segment_length);
+  }
+  return size;
+}
+
 }  // namespace
 
 EditResult World::Implementation::apply(const edit::SetLength& change) {
@@ -72,9 +85,7 @@ EditResult World::Implementation::apply(const edit::SetLength& change) {
   const double fastest = shortest_segment * model.segment_length / state.scene->time_step;
   if (!(speed > 0 && speed <= fastest))
     return refused("speed: " + number_text(speed) + "; must be above 0, and at most " + rounded_bound_text(fastest, -1) + " m/s");
-  int others = 0;
-  for (int i = 0; i < static_cast<int>(state.cables.size()); ++i) others += i == index ? 0 : state.cables[i].state.segments();
-  const double longest = (state.scene->limits.segments - others) * model.segment_length;
+  const double longest = (state.scene->limits.segments - size_beside(index, state)) * model.segment_length;
   if (!(length > 0 && length <= longest))
     return refused("length: " + number_text(length) + "; must be above 0, and at most " + rounded_bound_text(longest, -1) +
                    " m, as limits.segments allows");

@@ -48,7 +48,7 @@ std::string transform_problem(const ReceivedTransform& received, Nanoseconds now
   std::ostringstream problem;
   if (without_slash(transform.child_frame_id).empty() || without_slash(transform.header.frame_id).empty()) {
     problem << "a frame without a name";
-  } else if (std::max(transform.child_frame_id.size(), transform.header.frame_id.size()) > most_name_characters) {
+  } else if (!FrameBuffer::has_room_for_names(transform)) {
     problem << "a frame's name of " << std::max(transform.child_frame_id.size(), transform.header.frame_id.size())
             << " characters; allowed: at most " << most_name_characters;
   } else if (without_slash(transform.child_frame_id) == without_slash(transform.header.frame_id)) {
@@ -72,6 +72,10 @@ std::string transform_problem(const ReceivedTransform& received, Nanoseconds now
 
 FrameBuffer::FrameBuffer(std::string fixed_frame, std::size_t most_stored)
     : fixed_frame_(std::move(fixed_frame)), buffer_(cache_time), stored_(memory, most_stored) {}
+
+bool FrameBuffer::has_room_for_names(const geometry_msgs::TransformStamped& transform) {
+  return std::max(transform.child_frame_id.size(), transform.header.frame_id.size()) <= most_name_characters;
+}
 
 Nanoseconds FrameBuffer::latest(Nanoseconds now) {
   // What tf2 adds to a stamp stays a ROS time.

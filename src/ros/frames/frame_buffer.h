@@ -37,6 +37,8 @@ class FrameBuffer {
 
   /// Whether the transform is in the tree now. What is wrong with it is logged now and then, and counted.
   bool insert(const ReceivedTransform& received, Nanoseconds now = 0);
+  /// Whether the names are short enough to be kept.
+  static bool has_room_for_names(const geometry_msgs::TransformStamped& transform);
   /// The latest stamp that is taken at ROS time `now`; where there is no time, the latest that can be stored.
   static Nanoseconds latest(Nanoseconds now);
   /// Whether there are transforms of later than `time`.

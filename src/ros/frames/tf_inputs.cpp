@@ -66,7 +66,7 @@ void TfInputs::receive(Nanoseconds ros_now) {
   // The rest waits for the next call: however much somebody sends, others do not wait.
   for (; !received_.empty() && ros::WallTime::now() - now < longest_receiving; received_.pop_front()) {
     insert(received_.front(), ros_now);
-    recent_.emplace_back(now, std::move(received_.front()));
+    if (FrameBuffer::has_room_for_names(received_.front().transform)) recent_.emplace_back(now, std::move(received_.front()));
   }
 }
 

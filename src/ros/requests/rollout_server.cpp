@@ -16,6 +16,13 @@ const ros::WallDuration status_period(0.2);
 /// How long a goal that has ended is listed still.
 constexpr Nanoseconds status_memory = 5'000'000'000;
 constexpr std::size_t most_listed = 1000;
+constexpr std::size_t longest_id = 1000;  // characters
+
+bool is_too_long(const actionlib_msgs::GoalID& goal, const char* field) {
+  if (goal.id.size() <= longest_id) return false;
+  ROS_WARN("%s: %zu characters; allowed: at most %zu", field, goal.id.size(), longest_id);
+  return true;
+}
 
 }  // namespace
 
@@ -27,8 +34,9 @@ void RolloutServer::initialize() {
   result_ = node_.advertise<RolloutActionResult>("result", queue_size);
   feedback_ = node_.advertise<RolloutActionFeedback>("feedback", queue_size);
   status_ = node_.advertise<actionlib_msgs::GoalStatusArray>("status", queue_size, true);
-  goals_ = node_.subscribe<RolloutActionGoal>("goal", queue_size,
-                                              [this](const RolloutActionGoalConstPtr& goal) { goalCallback(goal); });
+  goals_ = node_.subscribe<RolloutActionGoal>("goal", queue_size, [this](const RolloutActionGoalConstPtr& goal) {
+    if (!is_too_long(goal->goal_id, "rollout/goal: goal_id.id")) goalCallback(goal);
+  });
   cancels_ = node_.subscribe<actionlib_msgs::GoalID>(
       "cancel", queue_size, [this](const actionlib_msgs::GoalIDConstPtr& goal) { receive_cancel(goal); });
   timer_ = node_.createWallTimer(status_period,
@@ -37,6 +45,7 @@ void RolloutServer::initialize() {
 
 /// A stamp cancels every goal from before it: one in the future would cancel those that are still to come.
 void RolloutServer::receive_cancel(const actionlib_msgs::GoalIDConstPtr& goal) {
+  if (is_too_long(*goal, "rollout/cancel: id")) return;
   const Nanoseconds now = from_ros_time(ros::Time::now()), stamp = from_ros_time(goal->stamp);
   {
     // Each cancel of an unknown goal is listed.
