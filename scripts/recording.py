@@ -65,10 +65,11 @@ class Recording:
 def _read(path):
     if os.path.exists(path) and not os.path.isfile(path):
         raise RecordingError(f'{path}: not a file; allowed: a CSV file')
-    if os.path.exists(path) and os.path.getsize(path) > LARGEST_FILE:
-        raise RecordingError(f'{path}: {os.path.getsize(path)} bytes; allowed: at most {LARGEST_FILE}')
     try:
         with open(path, encoding='utf-8') as file:
+            size = os.fstat(file.fileno()).st_size
+            if size > LARGEST_FILE:
+                raise RecordingError(f'{path}: {size} bytes; allowed: at most {LARGEST_FILE}')
             header = file.readline().strip().split(',')
             lines = [line.strip() for line in file]
     except OSError as error:

@@ -89,13 +89,12 @@ std::string names_of(const std::vector<TunableNumber>& numbers) {
 
 SceneDesc tuned_scene(SceneDesc scene, const std::vector<TunableNumber>& numbers, const std::vector<NumberChange>& changes,
                       std::vector<std::string> errors) {
-  const std::string known = names_of(numbers);
   std::size_t unknown = 0;
   for (const NumberChange& change : changes) {
     const auto number = std::find_if(numbers.begin(), numbers.end(), [&](const auto& n) { return n.name == change.name; });
     if (number == numbers.end()) {
       if (++unknown <= most_unknown)
-        errors.push_back("tuning: unknown parameter " + quoted(change.name) + "; allowed: " + known);
+        errors.push_back("tuning: unknown parameter " + quoted(change.name) + "; allowed: " + names_of(numbers));
     } else if (!number->range.contains(change.value)) {
       errors.push_back("tuning." + number->name + ": " + number_text(change.value) + "; allowed: " + number->range.text());
     } else {

@@ -178,7 +178,7 @@ class Memory:
     SHORTEST = 300.0  # [s] after that, of which anything can be said
 
     def __init__(self, name, read, largest_growth):
-        """`largest_growth(median)`: [MB] by a robust line through what comes after the settling, None where it is not judged."""
+        """`largest_growth(median)`: [MB] by a robust line through what comes after the settling."""
         self.name, self.samples = name, []
         self._read, self._largest_growth = read, largest_growth
 
@@ -206,7 +206,7 @@ class Memory:
 
     def check(self, findings):
         fit = self.fit()
-        if fit is None or self._largest_growth is None:
+        if fit is None:
             return
         times, sizes = self.settled()
         growth = fit[0] * (times[-1] - times[0])

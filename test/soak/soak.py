@@ -28,7 +28,7 @@ SCENE = Path(__file__).with_name('scene.yaml')
 CALLERS = 3
 SAMPLE_PERIOD = 5.0  # [s]
 ENDING = 30.0  # [s] that the node has to end by itself
-RESIDENT_GROWTH = 0.05  # of the median, at most, without sanitizers, whose allocator spreads out
+RESIDENT_GROWTH = 0.05  # of the median, at most
 LIVE_GROWTH = 1.0  # [MB] at most
 MASTER_PERIOD = (120.0, 600.0)  # [s] between its deaths
 
@@ -71,7 +71,7 @@ class Soak:
         self._calls = Calls(self._findings, self._master, options.bound)
         self._memory = [Memory('resident', resident(self._node.pid), lambda median: RESIDENT_GROWTH * median)]
         if options.live_heap:
-            self._memory = [Memory('resident', resident(self._node.pid), None), Memory('in use', live_heap(live_file), lambda _: LIVE_GROWTH)]
+            self._memory.append(Memory('in use', live_heap(live_file), lambda _: LIVE_GROWTH))
 
     def run(self):
         options, stop = self._options, threading.Event()

@@ -4,6 +4,7 @@
 
 #include "guide/node_passing.h"
 #include "rod/unresolved_motion.h"
+#include "scene/scene_size.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/number_text.h"
 #include "world/implementation.h"
@@ -55,8 +56,7 @@ void add_material_motion(const LengthDrive& drive, double side, CableState& cabl
 
 /// What counts towards `limits.segments` beside a cable, with all that the other winches have been told to let out.
 double size_beside(int index, const State& state) {
-  double size = static_cast<double>(state.scene->particles.size() + state.bodies.size());
-  for (const NetDesc& net : state.scene->nets) size += std::max(net.node_count(), net.link_count());
+  double size = size_beside_cables(*state.scene);
   for (int i = 0; i < static_cast<int>(state.cables.size()); ++i) {
     if (i == index) continue;
     const std::optional<LengthDrive>& drive = state.cable_progress[i].drive;

@@ -5,6 +5,7 @@
 
 #include "scene/scene_errors.h"
 #include "scene/scene_materials.h"
+#include "scene/scene_size.h"
 #include "scene/validate_bodies.h"
 #include "scene/validate_guides.h"
 #include "scene/validate_holders.h"
@@ -271,14 +272,11 @@ void check_distances(const std::string& key, const SceneDesc& scene, const Cable
   }
 }
 
-/// `limits.segments` counts segments of cables, nodes or links of nets, whichever are more, particles and bodies.
 void check_size(const SceneDesc& scene, Errors& errors) {
-  double segments = 0;
+  double segments = size_beside_cables(scene);
   for (const CableDesc& cable : scene.cables) segments += std::max(0, cable.segments);
   const bool cables_only = scene.nets.empty() && scene.particles.empty() && scene.bodies.empty();
   const bool has_bodies = !scene.bodies.empty();
-  for (const NetDesc& net : scene.nets) segments += static_cast<double>(std::max(net.node_count(), net.link_count()));
-  segments += static_cast<double>(scene.particles.size() + scene.bodies.size());
   if (!limits_fields[0].range.contains(scene.limits.segments) || segments <= scene.limits.segments) return;
   errors.add(cables_only  ? "cables"
              : has_bodies ? "cables, nets, particles, bodies"
