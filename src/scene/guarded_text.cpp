@@ -34,7 +34,8 @@ void GuardedText::count(char c) {
   // A dash is a mark of its own before a blank only.
   if (is_one_of("[]{},:?\"'&*!|>%", c) || (last_ == '-' && is_one_of(" \t\r\n", c))) ++marks_;
   last_ = c;
-  if (brackets_ > most_brackets) problem_ = "more than " + std::to_string(most_brackets) + " open brackets";
+  if (brackets_ > most_brackets)
+    problem_ = "brackets inside of brackets; allowed: at most " + std::to_string(most_brackets) + " levels";
   if (marks_ > most_marks)
     problem_ =
         "more than " + std::to_string(most_marks) +

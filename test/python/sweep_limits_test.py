@@ -4,7 +4,7 @@ import os
 import pytest
 
 pytest.importorskip('distributed')
-from verlet_cable.sweep import command  # noqa: E402
+from verlet_cable.sweep import command, text_yaml  # noqa: E402
 from verlet_cable.sweep.description import read_sweep  # noqa: E402
 from verlet_cable.sweep.errors import SweepError  # noqa: E402
 from verlet_cable.sweep.layout import plan_layout  # noqa: E402
@@ -50,6 +50,14 @@ def test_what_contains_itself_or_is_nested_deeply_is_refused(tmp_path):
     assert 'sweep.yaml: nested deeper than 32 levels; allowed: less' in refusal(tmp_path, SWEEP + 'a: &a [*a]\n')
     assert 'nested deeper than 32 levels' in refusal(tmp_path, SWEEP + f'a: {"[" * 100}{"]" * 100}\n')
     assert 'not YAML' in refusal(tmp_path, SWEEP + 'a: ' + '[' * 100_000)
+
+
+def test_pyyaml_is_given_no_scene_that_was_refused(tmp_path, monkeypatch):
+    parsed = []
+    parse = text_yaml.parse
+    monkeypatch.setattr(text_yaml, 'parse', lambda text, name, errors: parsed.append(name) or parse(text, name, errors))
+    assert 'nested deeper than 32 levels' in refusal(tmp_path, SWEEP, SCENE + 'a: ' + '[' * 2000)
+    assert len(parsed) == 1 and 'sweep.yaml' in parsed[0]
 
 
 def test_what_is_no_file_is_not_read(tmp_path):

@@ -189,6 +189,18 @@ TEST(StoredTransforms, AreAsManyAsTf2Keeps) {
   EXPECT_EQ(stored.size(), 4U) << "the one at 50 s is gone";
 }
 
+TEST(StoredTransforms, AreNotTakenOfNewFramesOnceSilentOnesHaveTwiceAsMany) {
+  StoredTransforms stored(nanoseconds(60), 4);
+  for (int i = 0; i < 8; ++i) {
+    const std::string frame = std::to_string(i);
+    ASSERT_FALSE(stored.knows(frame));
+    ASSERT_TRUE(stored.has_room(frame, nanoseconds(1))) << i;
+    stored.add(frame, nanoseconds(1));
+  }
+  EXPECT_FALSE(stored.has_room("new", nanoseconds(1)));
+  EXPECT_TRUE(stored.has_room("0", nanoseconds(61))) << "known frames go on";
+}
+
 TEST(FrameBuffer, RefusesBadTransformsAndGoesOnWithGoodOnes) {
   FrameBuffer buffer("world");
   ReceivedTransform received = good();

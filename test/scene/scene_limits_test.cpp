@@ -68,6 +68,14 @@ TEST(SceneLimits, textsThatCannotBeReadTakeLittleMemory) {
   }
 }
 
+TEST(SceneLimits, moreObstaclesThanAStepCanLookAtAreRefused) {
+  std::string text = sound_scene + "obstacles:\n";
+  for (int i = 0; i < 10'001; ++i) text += "- {name: o" + std::to_string(i) + ", type: sphere, radius: 0.1}\n";
+  const auto errors = errors_of(text);
+  ASSERT_EQ(errors.size(), 1u) << joined(errors);
+  EXPECT_EQ(errors[0], "obstacles: 10001 obstacles; allowed: at most 10000");
+}
+
 /// As programs write them, on one line.
 TEST(SceneLimits, aLargeSceneInJsonIsRead) {
   constexpr int count = 60'000;

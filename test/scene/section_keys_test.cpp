@@ -62,6 +62,15 @@ INSTANTIATE_TEST_SUITE_P(
                     "[1]: 0 to 0.6 m; allowed: sections that do not overlap; cables[0].sections[0] is from 0.5 to 0.7 m"},
         BadSections{"[{from: 0.03, to: 0.06, material: wire}]", "[0]: 0.03 to 0.06 m; allowed: with the middle of a segment"}));
 
+/// Before each is compared with each other.
+TEST(SectionKeys, MoreThanSegmentsAreRefused) {
+  std::string sections = "[";
+  for (int i = 0; i < 100'000; ++i) sections += "{from: 0, to: 0.5, material: wire}, ";
+  const std::vector<std::string> errors = errors_of(with_sections(sections + "]"));
+  ASSERT_EQ(errors.size(), 1u) << joined(errors);
+  EXPECT_TRUE(has_line(errors, "cables[0].sections: 100000 sections; allowed: at most one for each segment, ")) << errors[0];
+}
+
 TEST(SectionKeys, AllThatIsWrongIsNamedAtOnce) {
   const std::vector<std::string> errors =
       errors_of(replaced(with_sections("[{from: 0.5, to: 2, material: wire}, {from: 0.1, to: 0.3, material: none}]"),

@@ -5,6 +5,9 @@
 namespace verlet_cable {
 namespace {
 
+/// Each is looked at for each segment in each step.
+constexpr std::size_t most_obstacles = 10'000;
+
 void check_vector_is_positive(const std::string& key, const Vector3& v, const char* unit, Errors& errors) {
   check_numbers(key, std::array<double, 3>{v.x(), v.y(), v.z()}, positive, unit, errors);
 }
@@ -35,6 +38,9 @@ void check_shape(const std::string& prefix, const ShapeDesc& shape, Errors& erro
 }
 
 void check_obstacles(const SceneDesc& scene, Errors& errors) {
+  if (scene.obstacles.size() > most_obstacles)
+    errors.add("obstacles", std::to_string(scene.obstacles.size()) + " obstacles",
+               "at most " + std::to_string(most_obstacles));
   UniqueNames names;
   std::set<std::string> taken;
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {

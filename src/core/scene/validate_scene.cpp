@@ -131,6 +131,12 @@ void check_section(const std::string& key, const std::string& list, const CableD
 }
 
 void check_sections(const std::string& list, const SceneDesc& scene, const CableDesc& cable, Errors& errors) {
+  // Each has a segment of its own; to find which, and whether they overlap, takes the square of their number.
+  if (has_sound_size(cable) && cable.sections.size() > static_cast<std::size_t>(cable.segments)) {
+    errors.add(list, std::to_string(cable.sections.size()) + " sections",
+               "at most one for each segment, " + std::to_string(cable.segments));
+    return;
+  }
   for (std::size_t i = 0; i < cable.sections.size(); ++i) {
     const SectionDesc& section = cable.sections[i];
     const std::string key = indexed(list, i);

@@ -105,9 +105,10 @@ bool FrameBuffer::insert(const ReceivedTransform& received, Nanoseconds now) {
     const Nanoseconds stamp = from_ros_time(received.transform.header.stamp);
     if (stamp == newest || stamp < newest - memory) return false;
     if (!stored_.has_room(child, stamp)) {
-      refuse(child, "more than " + std::to_string(stored_.most()) +
-                        " transforms in 60 s; allowed of each frame for now: one in " +
-                        std::to_string(stored_.least_interval() / 1000) + " us");
+      refuse(child, "more than " + std::to_string(stored_.most()) + " transforms in 60 s; allowed " +
+                        (stored_.knows(child)
+                             ? "of each frame for now: one in " + std::to_string(stored_.least_interval() / 1000) + " us"
+                             : "for now: frames that some are stored of"));
       return false;
     }
     if (stamp > newest) note_parent(child, without_slash(received.transform.header.frame_id));

@@ -11,8 +11,9 @@ Nanoseconds StoredTransforms::least_interval() const {
 
 bool StoredTransforms::has_room(const std::string& frame, Nanoseconds stamp) const {
   const auto stored = stamps_.find(frame);
+  if (stored == stamps_.end()) return size_ < 2 * most_;
   const Nanoseconds interval = least_interval();
-  return interval == 0 || stored == stamps_.end() || stamp - stored->second.back() >= interval;
+  return interval == 0 || stamp - stored->second.back() >= interval;
 }
 
 void StoredTransforms::add(const std::string& frame, Nanoseconds stamp) {

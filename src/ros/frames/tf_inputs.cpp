@@ -35,6 +35,7 @@ void TfInputs::follow_scene(const SceneDesc& scene, Nanoseconds time) {
   for (std::size_t i = 0; i < names.size(); ++i) tracks_.push_back(track_from(names[i], inputs_[i], time));
   for (const std::string& name : computed_frame_names(scene)) tracks_.push_back(computed_track(name));
   scene_frames_ = static_cast<int>(tracks_.size());
+  followers_version_.reset();
   inputs_.resize(tracks_.size(), FrameInput{Pose{}, false});
   tracks_.front().status = FrameStatus::ok;
   changes_.clear();
@@ -62,7 +63,7 @@ void TfInputs::receive(Nanoseconds ros_now) {
   const Nanoseconds latest = FrameBuffer::latest(ros_now);
   if (is_first_time && buffer_.reaches_beyond(latest)) replay_recent(ros_now, last_ros_time);
   for (ReceivedTransform& received : listener_.take(received_.size())) received_.push_back(std::move(received));
-  if (!received_.empty()) find_followers();
+  if (!received_.empty() && followers_version_ != buffer_.tree_version()) find_followers();
   // The rest waits for the next call: however much somebody sends, others do not wait.
   for (; !received_.empty() && ros::WallTime::now() - now < longest_receiving; received_.pop_front()) {
     insert(received_.front(), ros_now);
@@ -151,6 +152,7 @@ void TfInputs::reset(Nanoseconds time) {
 
 void TfInputs::drop_pinned_frames() {
   tracks_.erase(tracks_.begin() + scene_frames_, tracks_.end());
+  followers_version_.reset();
   inputs_.resize(scene_frames_);
 }
 
@@ -160,6 +162,7 @@ int TfInputs::add(const std::string& frame, Nanoseconds time) {
   const FrameInput at{pose.value_or(Pose{}), pose.has_value()};
   tracks_.push_back(track_from(frame, at, time));
   if (pose) tracks_.back().status = FrameStatus::ok;
+  followers_version_.reset();
   inputs_.push_back(at);
   return static_cast<int>(tracks_.size()) - 1;
 }
@@ -197,6 +200,7 @@ void TfInputs::restore(const std::vector<SavedFrame>& saved, Nanoseconds time) {
     inputs.push_back(input);
   }
   tracks_ = std::move(tracks);
+  followers_version_.reset();
   inputs_ = std::move(inputs);
 }
 

@@ -143,7 +143,7 @@ class TfInputs {
   int scene_frames_ = 0;                               ///< those of bodies included
   std::vector<Track> tracks_;                          ///< by frame id; the first is the fixed frame
   std::map<std::string, std::vector<int>> followers_;  ///< by child frame of a transform: the frame ids it moves
-  int followers_version_ = -1;                         ///< of the tree, for which they hold
+  std::optional<int> followers_version_;               ///< of the tree, for which they hold; none: tracks have changed
   BoundaryInputs inputs_;                              ///< by frame id
   std::vector<FrameChange> changes_;
 };

@@ -155,11 +155,10 @@ def _read_scene(sweep, values, errors):
     try:
         scene = Scene.load(path)
     except SceneError as error:
+        # PyYAML knows no limits: it is given nothing that was refused.
         errors += [f'{sweep.scene_name}: {text}' for text in error.errors]
-        scene = None
-    yaml_errors = []
-    sweep.tree = text_yaml.parse(sweep.scene_text, sweep.scene_name, yaml_errors)
-    errors += yaml_errors if scene is not None else []
+        return None
+    sweep.tree = text_yaml.parse(sweep.scene_text, sweep.scene_name, errors)
     return scene
 
 
