@@ -70,6 +70,24 @@ SceneDesc incline(double slope, double friction) {
   return scene;
 }
 
+/// Far stretches of a rope are passed over at once: none of what is close may be.
+TEST(Contact, ObstaclesAreFoundAllAlongARope) {
+  constexpr int segments = 100;
+  for (int half = 0; half <= 2 * segments; ++half) {
+    SceneDesc scene = straight_rope(1.0, segments);
+    scene.gravity.acceleration = Vector3::Zero();
+    scene.cables[0].initial.from = Vector3::Zero();
+    scene.cables[0].initial.to = Vector3::UnitX();
+    const double x = 0.5 * half / segments;
+    add_obstacle("ball", ShapeType::sphere, {x, 0, -0.05 - 0.9 * radius, 0, 0, 0}, scene);
+    World world(scene, BoundaryInputs(1));
+    ASSERT_EQ(world.step(BoundaryInputs(1)).status, StepResult::Status::ok);
+    const std::vector<Vector3>& velocities = world.cables()[0].state.velocities;
+    EXPECT_GT(velocities[half / 2].z(), 10 * velocities[half < segments ? segments : 0].norm()) << "at " << x << " m";
+    EXPECT_GT(velocities[half / 2].z(), 1e-2) << "at " << x << " m";
+  }
+}
+
 TEST(Contact, RopeSlidesDownAnInclineAsCoulombSays) {
   const double slope = 0.5, friction = 0.3, duration = 1.0;
   World world(incline(slope, friction), BoundaryInputs(1));

@@ -54,8 +54,8 @@ bool continues(const CachedContact& last, const Touch& touch) {
   return std::max(last.other_key, touch.other_key) - std::min(last.other_key, touch.other_key) <= reach;
 }
 
-bool apart(const Vector3& a, const Vector3& b, const Aabb& box, double reach) {
-  return (a.cwiseMax(b).array() + reach < box.min().array()).any() || (a.cwiseMin(b).array() - reach > box.max().array()).any();
+bool apart(const Vector3& least, const Vector3& largest, const Aabb& box, double reach) {
+  return (largest.array() + reach < box.min().array()).any() || (least.array() - reach > box.max().array()).any();
 }
 
 /// Whether a point is close to where an attachment joins the cable to the obstacle's own frame.
@@ -96,6 +96,7 @@ void ContactSet::find(const std::vector<SimulatedCable>& cables, const std::vect
     places_[island[k]] = static_cast<int>(k);
     if (!any_solids) continue;
     set_held(cable, *members[k].targets, attachments);
+    stretches_.update(cable);
     for (const MovingObstacle& obstacle : obstacles) find_obstacle(cable, island[k], members[k], obstacle, attachments, h);
     if (!bodies.empty()) find_bodies(cable, island[k], members[k], bodies, attachments, h);
   }
@@ -160,26 +161,22 @@ void ContactSet::set_inside(const SimulatedCable& cable, const KinematicTargets&
 
 void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const ContactMember& member, const MovingObstacle& moving,
                                const std::vector<Attachment>& attachments, double h) {
+  const auto reach_at = [&](double radius, double speed) {
+    return radius + moving.obstacle->padding + reach(speed + moving.speed, radius, h);
+  };
+  const auto is_far = [&](const Stretch& stretch) {
+    return apart(stretch.box.min(), stretch.box.max(), moving.box, reach_at(stretch.radius, stretch.speed));
+  };
+  const std::vector<Stretch>& stretches = stretches_.all();
+  if (std::all_of(stretches.begin(), stretches.end(), is_far)) return;
   const CableMaterials materials(cable);
   const CableState& state = cable.state;
   const int n = state.segments();
-  const bool varies = materials.vary();
-  const double common_radius = cable.model->material.radius;
-  // At a node between sections the thicker one ends.
-  const auto node_radius = [&](int i) {
-    return varies ? std::max(materials[std::max(i - 1, 0)].radius, materials[std::min(i, n - 1)].radius) : common_radius;
-  };
   const Eigen::Matrix3d orientation = moving.start.orientation.toRotationMatrix();
   const Shape& shape = moving.obstacle->shape;
   const bool flat = std::holds_alternative<PlaneShape>(shape);
 
-  const auto node_reach = [&](int i) {
-    const double radius = node_radius(i);
-    return radius + moving.obstacle->padding + reach(state.velocities[i].norm() + moving.speed, radius, h);
-  };
   const auto visit = [&](int i, double far) {
-    if (visited_[i] != 0) return;
-    visited_[i] = 1;
     local_[i] = orientation.transpose() * (state.positions[i] - moving.start.position);
     nearest_[i] = closest_point(shape, local_[i], far);
   };
@@ -190,7 +187,7 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
   const auto touch_at = [&](const CablePoint& point, std::uint64_t element, const SurfacePoint& nearest) {
     const bool on_node = element % 2 == 0;
     const int place = static_cast<int>(element / 2);
-    const double radius = on_node ? node_radius(place) : materials[place].radius;
+    const double radius = on_node ? stretches_.radius(place) : materials[place].radius;
     const double gap = nearest.distance - (radius + moving.obstacle->padding);
     const Vector3 normal = orientation * nearest.normal;
     SurfaceMotion motion;
@@ -235,34 +232,43 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
 
   const std::size_t first_touch = touches_.size();
   feet_.clear();
-  visited_.assign(n + 1, 0);
   local_.resize(n + 1);
   nearest_.resize(n + 1);
-  bool last = false;
-  double next_reach = node_reach(0);
-  for (int i = 0; i <= n; ++i) {
-    const double own_reach = next_reach;
-    next_reach = i < n ? node_reach(i + 1) : 0.0;
-    const double far = std::max(own_reach, next_reach);
-    const bool close = i < n && !apart(state.positions[i], state.positions[i + 1], moving.box, far);
-    const double length = close ? (state.positions[i + 1] - state.positions[i]).norm() : 0;
-    if (close) {
-      visit(i, far + length);
-      visit(i + 1, far + length);
+  const auto touch_node = [&](int i) {
+    if (held_[i] == 0) touch_at(node_point(index, i, n), 2 * i, nearest_[i]);
+  };
+  bool last = false;  // whether the segment before is close: its nodes have been visited
+  for (const Stretch& stretch : stretches) {
+    if (is_far(stretch)) {
+      if (last) touch_node(stretch.first);
+      last = false;
+      continue;
     }
-    if ((close || last) && held_[i] == 0) touch_at(node_point(index, i, n), 2 * i, nearest_[i]);
-    last = close;
-    if (!close || flat || held_[i] != 0 || held_[i + 1] != 0) continue;
-    const double first = nearest_[i].distance, second = nearest_[i + 1].distance;
-    if (0.5 * (first + second - length) > far) continue;
-    // Where it is nowhere deeper than this, it does not cut in by more than bulges out.
-    const double radius = materials[i].radius, shallow = std::max(first, second) - bulge * radius;
-    SegmentSurfacePoint deepest = deepest_point(shape, local_[i], local_[i + 1], std::min(far, shallow));
-    const double cut = first + deepest.fraction * (second - first) - deepest.surface.distance;
-    if (deepest.surface.distance >= far || cut <= bulge * radius) continue;
-    deepest.surface.distance += bulge * radius;
-    touch_at({index, i, deepest.fraction}, 2 * i + 1, deepest.surface);
+    double next_reach = reach_at(stretches_.radius(stretch.first), stretches_.speed(stretch.first));
+    for (int i = stretch.first; i < stretch.end; ++i) {
+      const double own_reach = next_reach;
+      next_reach = reach_at(stretches_.radius(i + 1), stretches_.speed(i + 1));
+      const double far = std::max(own_reach, next_reach);
+      const Vector3 &start = state.positions[i], &end = state.positions[i + 1];
+      const bool close = !apart(start.cwiseMin(end), start.cwiseMax(end), moving.box, far);
+      const double length = close ? (end - start).norm() : 0;
+      if (close && !last) visit(i, far + length);
+      if (close) visit(i + 1, far + length);
+      if (close || last) touch_node(i);
+      last = close;
+      if (!close || flat || held_[i] != 0 || held_[i + 1] != 0) continue;
+      const double first = nearest_[i].distance, second = nearest_[i + 1].distance;
+      if (0.5 * (first + second - length) > far) continue;
+      // Where it is nowhere deeper than this, it does not cut in by more than bulges out.
+      const double radius = materials[i].radius, shallow = std::max(first, second) - bulge * radius;
+      SegmentSurfacePoint deepest = deepest_point(shape, local_[i], local_[i + 1], std::min(far, shallow));
+      const double cut = first + deepest.fraction * (second - first) - deepest.surface.distance;
+      if (deepest.surface.distance >= far || cut <= bulge * radius) continue;
+      deepest.surface.distance += bulge * radius;
+      touch_at({index, i, deepest.fraction}, 2 * i + 1, deepest.surface);
+    }
   }
+  if (last) touch_node(n);
   if (cuts)
     bound_friction_at_corners(state, first_touch, feet_, touches_, pressed_);
   else

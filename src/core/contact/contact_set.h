@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "contact/cable_stretches.h"
 #include "contact/cache.h"
 #include "contact/moving_obstacle.h"
 #include "contact/segment_grid.h"
@@ -71,10 +72,11 @@ class ContactSet {
   std::vector<char> touches_body_;     ///< likewise
   std::vector<std::size_t> recalled_;  ///< by member: the first of its cache that may still be asked for
   // Nodes of one cable
-  std::vector<char> held_, visited_;
+  std::vector<char> held_;
+  CableStretches stretches_;
   std::vector<char> inside_;           ///< of a body, from where that holds the cable; nodes and segments in turns
-  std::vector<Vector3> local_;         ///< [m] in an obstacle's frame; where visited
-  std::vector<SurfacePoint> nearest_;  ///< on its surface; where visited
+  std::vector<Vector3> local_;         ///< [m] in an obstacle's frame; of segments that are close to it
+  std::vector<SurfacePoint> nearest_;  ///< on its surface; likewise
   std::vector<Vector3> feet_;          ///< [m] on its surface, in its frame, of each of the touches
   std::vector<std::size_t> pressed_;   ///< scratch
 };

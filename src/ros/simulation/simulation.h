@@ -161,7 +161,7 @@ class Simulation {
   void start_waiting_cables();
   void publish();
   void announce(std::uint8_t type, const EventSubject& subject, const std::string& message) const;
-  std::optional<EditResult> refused_frame(const std::string& frame) const;
+  std::optional<EditResult> refused_frame(const std::string& key, const std::string& frame) const;
   EditResult place(const AddedObstacle& added);
   void place_added_obstacles();
   std::size_t find_frame_id(const std::string& frame) const;

@@ -18,17 +18,17 @@ EditResult Simulation::set_obstacle(Obstacle obstacle, const std::string& frame)
   const bool is_new = added_obstacles_.count(obstacle.name) == 0;
   if (is_new && added_obstacles_.size() >= most_obstacles)
     return {false, "there are " + std::to_string(most_obstacles) + " obstacles already; allowed: no more than these", {}};
-  if (const auto reason = refused_frame(frame)) return *reason;
+  if (const auto reason = refused_frame("header.frame_id", frame)) return *reason;
   const EditResult result = place({obstacle, frame});
   if (result.ok) added_obstacles_.insert_or_assign(result.name, AddedObstacle{std::move(obstacle), frame});
   return result;
 }
 
-/// Why no frame of that name can be added; nothing if it can, or is there.
-std::optional<EditResult> Simulation::refused_frame(const std::string& frame) const {
+/// Why no frame of that name, which the field `key` has, can be added; nothing if it can, or is there.
+std::optional<EditResult> Simulation::refused_frame(const std::string& key, const std::string& frame) const {
   if (world_.frames().size() < most_frames || find_frame_id(frame) < world_.frames().size()) return std::nullopt;
   return EditResult{false,
-                    "frame_id: " + quoted(frame) + "; allowed: one of the " + std::to_string(most_frames) +
+                    key + ": " + quoted(frame) + "; allowed: one of the " + std::to_string(most_frames) +
                         " that were used since the last reset",
                     {}};
 }

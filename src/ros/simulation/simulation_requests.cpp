@@ -32,7 +32,7 @@ EditResult Simulation::set_paused(bool paused) {
 
 EditResult Simulation::pin(const std::string& name, const CheckedPin& pin, AttachmentType type) {
   if (!started_) return refused_before_start();
-  if (const auto reason = refused_frame(pin.frame)) return *reason;
+  if (const auto reason = refused_frame("frame_id", pin.frame)) return *reason;
   EditResult result = apply_pin(world_, name, pin, type);
   if (!result.ok) return result;
   frames_.add(pin.frame, stamp_);
