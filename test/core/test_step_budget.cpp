@@ -145,5 +145,44 @@ TEST(StepBudget, CableThatIsStuckHangsAnewWhenItsFramesComeToRest) {
   EXPECT_LT(last.max_strain, 0.01);
 }
 
+/// More than there is room for around a segment are in each other: the nearest are enough to get them apart.
+TEST(StepBudget, CablesInOnePlaceTouchNoMoreThanTheNearest) {
+  constexpr int cables = 60, segments = 20;
+  SceneDesc scene = scenes::one_cable(segments);
+  scene.cables[0].initial.type = InitialShapeDesc::Type::straight;
+  scene.cables[0].initial.to = Vector3::UnitX();
+  scene.cables.resize(cables, scene.cables[0]);
+  for (int k = 0; k < cables; ++k) scene.cables[k].name = "cable" + std::to_string(k);
+  scene.contact = ContactDesc{};
+  scene.contact->between_cables = true;
+  World world(scene, BoundaryInputs(1));
+  world.step(BoundaryInputs(1));
+  const std::size_t touched = world.findings().contacts.size();
+  EXPECT_GT(touched, static_cast<std::size_t>(cables * segments)) << "each touches others";
+  EXPECT_LT(touched, static_cast<std::size_t>(30 * cables * segments));
+  for (int i = 0; i < 20; ++i) EXPECT_NE(world.step(BoundaryInputs(1)).status, Status::fault);
+}
+
+/// Obstacles in one place, many times as many as a cable can touch.
+TEST(StepBudget, CableInManyObstaclesTouchesNoMoreThanTheNearest) {
+  constexpr int segments = 50, obstacles = 500;
+  SceneDesc scene = scenes::one_cable(segments);
+  scene.cables[0].initial.type = InitialShapeDesc::Type::straight;
+  scene.cables[0].initial.to = Vector3::UnitX();
+  ObstacleDesc floor;
+  floor.type = ShapeType::plane;
+  for (int k = 0; k < obstacles; ++k) {
+    floor.name = "floor" + std::to_string(k);
+    // The last ones are the highest.
+    floor.pose = {0, 0, -0.0051 + 1e-7 * k, 0, 0, 0};
+    scene.obstacles.push_back(floor);
+  }
+  World world(scene, BoundaryInputs(1));
+  for (int i = 0; i < 100; ++i) ASSERT_EQ(world.step(BoundaryInputs(1)).status, Status::ok);
+  EXPECT_LT(world.findings().contacts.size(), static_cast<std::size_t>(16 * (2 * segments + 1)));
+  // On all of them, or on the highest: 0.005 m above it.
+  for (const Vector3& x : world.cables()[0].state.positions) EXPECT_NEAR(x.z(), -0.0051 + 1e-7 * obstacles + 0.005, 2e-4);
+}
+
 }  // namespace
 }  // namespace verlet_cable

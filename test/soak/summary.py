@@ -69,7 +69,7 @@ def draw(records, build, path):
     axes.set_ylabel('memory of the node [MB]')
     axes.set_xlim(left=0)
     axes.set_ylim(bottom=0)
-    axes.legend(loc='lower left', bbox_to_anchor=(0, 1), ncol=3, frameon=False)
+    axes.legend(loc='lower left', bbox_to_anchor=(0, 1), ncol=3, frameon=False, fontsize='small')
     figure.tight_layout()
     figure.savefig(path, dpi=80, metadata={'Software': None})
 

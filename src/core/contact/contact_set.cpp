@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "contact/friction_bound.h"
 #include "geometry/segment_geometry.h"
@@ -23,6 +24,8 @@ constexpr double anchored_length = 0.05;
 constexpr double smallest_lean = 0.05;
 /// Relative, of distances.
 constexpr double distance_rounding = 1e-6;
+/// Obstacles that a node or segment touches: all of them, unless those of a cable touch twice as many on average.
+constexpr std::size_t nearest_obstacles = 8;
 /// Nodes and segments in turns: of a node, the segments and nodes next to it.
 constexpr std::uint64_t neighbouring_elements = 2;
 /// Deeper than this, in radii, nothing comes through a surface before its contact is found.
@@ -44,6 +47,14 @@ CablePoint node_point(int cable, int node, int segments) {
 template <typename Contact>
 auto keys(const Contact& of) {
   return std::tie(of.key, of.other_key);
+}
+
+/// Where a segment [m] can be touched by more than this many of others that are as thin and as short as that [m], they are in
+/// each other: around it there is no more room.
+std::size_t room_around(double radius, double length, double thinnest, double shortest) {
+  const double around = std::ceil(M_PI * (radius + thinnest) / thinnest);
+  const double along = 2 + std::ceil((length + 2 * (radius + thinnest)) / shortest);
+  return static_cast<std::size_t>(std::min(around * along, 1e6));
 }
 
 /// Whether a touch was this in the last substep. A cable that slides over an edge touches the obstacle with one element after the
@@ -97,12 +108,20 @@ void ContactSet::find(const std::vector<SimulatedCable>& cables, const std::vect
     if (!any_solids) continue;
     set_held(cable, *members[k].targets, attachments);
     stretches_.update(cable);
+    first_of_cable_ = touches_.size();
     for (const MovingObstacle& obstacle : obstacles) find_obstacle(cable, island[k], members[k], obstacle, attachments, h);
     if (!bodies.empty()) find_bodies(cable, island[k], members[k], bodies, attachments, h);
   }
   if (!rules.pairs.self && !rules.pairs.between_cables) return;
   double radius = 0;
-  for (const int cable : island) radius = std::max(radius, CableMaterials(cables[cable]).largest_radius());
+  thinnest_ = shortest_ = infinity;
+  for (const int cable : island) {
+    const CableMaterials materials(cables[cable]);
+    const std::vector<double>& lengths = cables[cable].state.rest_lengths;
+    radius = std::max(radius, materials.largest_radius());
+    thinnest_ = std::min(thinnest_, materials.smallest([](const MaterialDesc& material) { return material.radius; }));
+    shortest_ = std::min(shortest_, *std::min_element(lengths.begin(), lengths.end()));
+  }
   find_joined(attachments, members);
   grid_.update(cables, island, rules.pairs, reach(0, radius, h) + radius, h, pairs);
   find_pairs(cables, members, pairs, radius, h);
@@ -273,58 +292,96 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
     bound_friction_at_corners(state, first_touch, feet_, touches_, pressed_);
   else
     bound_friction_of_nodes(state, first_touch, touches_);
-  if (moving.body < 0) return;
+  if (moving.body < 0) {
+    keep_nearest_obstacles(first_of_cable_, 2 * n + 1);
+    return;
+  }
   // What leans may do work on what gives way.
   const double friction = *moving.obstacle->friction;
   for (std::size_t k = first_touch; k < touches_.size(); ++k) {
     touches_[k].friction = touches_[k].lean.norm() > smallest_lean ? friction : std::min(friction, touches_[k].friction);
     touches_[k].lean.setZero();
   }
+  keep_nearest_obstacles(first_of_cable_, 2 * n + 1);
 }
 
 void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members,
                             const SegmentPairs& found, double thickest, double h) {
-  for (const SegmentPairs::Pair& pair : found.pairs) {
-    const double speed = found.speeds[pair.first_node] + found.speeds[pair.second_node];
-    const double moved = found.moved[pair.first_node] + found.moved[pair.second_node];
-    if (pair.distance - moved > (2 * thickest + reach(speed, thickest, h)) * (1 + distance_rounding)) continue;
-    if (!can_touch(cables, joined_, pair)) continue;
-    const SimulatedCable &a = cables[pair.first.cable], &b = cables[pair.second.cable];
-    const int i = pair.first.segment, j = pair.second.segment;
-    const double first_radius = CableMaterials(a)[i].radius, second_radius = CableMaterials(b)[j].radius;
-    const double radius = std::min(first_radius, second_radius), surface = first_radius + second_radius;
-    const double far = surface + reach(speed, radius, h);
-    const Vector3 &a0 = a.state.positions[i], &b0 = b.state.positions[j];
-    const Vector3 along_a = a.state.positions[i + 1] - a0, along_b = b.state.positions[j + 1] - b0;
-    const ClosestPoints closest = closest_points(a0, along_a, b0, along_b);
-    const double distance = closest.between.norm();
-    if (distance > far) continue;
-    const Vector3 normal = distance > 0 ? Vector3(closest.between / distance) : along_a.unitOrthogonal();
-    const Vector3 velocity =
-        interpolate(a.state.velocities, i, closest.first) - interpolate(b.state.velocities, j, closest.second);
-    if (!may_close(distance - surface, normal, velocity, radius, h)) continue;
-
-    Touch& touch = touches_.emplace_back();
-    touch.key = pair_key | i;
-    touch.other_key = key_of(members[places_[pair.second.cable]].id, j);
-    touch.point = {pair.first.cable, i, closest.first};
-    touch.other = {pair.second.cable, j, closest.second};
-    touch.normal = normal;
-    touch.gap = distance - surface;
-    touch.friction = rules_.cable_friction;
-    touch.radius = radius;
-    touch.base_stiffness = std::min(stopping(a, i, rules_.time_step), stopping(b, j, rules_.time_step));
-    touch.velocity = velocity;
-    touch.position = a0 + closest.first * along_a;
-    add(touch, members[places_[pair.first.cable]], h);
+  const auto is_of = [](const SegmentId& segment, const SegmentPairs::Pair& pair) {
+    return pair.first.cable == segment.cable && pair.first.segment == segment.segment;
+  };
+  for (auto pair = found.pairs.begin(); pair != found.pairs.end();) {
+    const SegmentId segment = pair->first;
+    near_.clear();
+    for (; pair != found.pairs.end() && is_of(segment, *pair); ++pair) {
+      const double speed = found.speeds[pair->first_node] + found.speeds[pair->second_node];
+      const double moved = found.moved[pair->first_node] + found.moved[pair->second_node];
+      if (pair->distance - moved > (2 * thickest + reach(speed, thickest, h)) * (1 + distance_rounding)) continue;
+      if (can_touch(cables, joined_, *pair)) look_at(cables, *pair, speed, h);
+    }
+    const SimulatedCable& cable = cables[segment.cable];
+    keep_nearest(room_around(CableMaterials(cable)[segment.segment].radius, cable.state.rest_lengths[segment.segment], thinnest_,
+                             shortest_));
+    for (const NearPair& near : near_) add_pair(cables, members, near, h);
   }
+}
+
+/// Whether the segments of a pair may touch: then it is one of `near_`.
+void ContactSet::look_at(const std::vector<SimulatedCable>& cables, const SegmentPairs::Pair& pair, double speed, double h) {
+  const SimulatedCable &a = cables[pair.first.cable], &b = cables[pair.second.cable];
+  const int i = pair.first.segment, j = pair.second.segment;
+  const double first_radius = CableMaterials(a)[i].radius, second_radius = CableMaterials(b)[j].radius;
+  const double radius = std::min(first_radius, second_radius), surface = first_radius + second_radius;
+  const double far = surface + reach(speed, radius, h);
+  const Vector3 &a0 = a.state.positions[i], &b0 = b.state.positions[j];
+  const Vector3 along_a = a.state.positions[i + 1] - a0, along_b = b.state.positions[j + 1] - b0;
+  const ClosestPoints closest = closest_points(a0, along_a, b0, along_b);
+  const double distance = closest.between.norm();
+  if (distance > far) return;
+  const Vector3 normal = distance > 0 ? Vector3(closest.between / distance) : along_a.unitOrthogonal();
+  const Vector3 velocity =
+      interpolate(a.state.velocities, i, closest.first) - interpolate(b.state.velocities, j, closest.second);
+  if (!may_close(distance - surface, normal, velocity, radius, h)) return;
+  near_.push_back({{pair.first.cable, i, closest.first}, {pair.second.cable, j, closest.second}, normal, velocity,
+                   distance - surface, radius});
+}
+
+/// Of `near_`, which stays ascending; of those that are equally near, the first.
+void ContactSet::keep_nearest(std::size_t most) {
+  if (near_.size() <= most) return;
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t k = 0; k < near_.size(); ++k) order.emplace_back(near_[k].gap, k);
+  const auto end = order.begin() + static_cast<std::ptrdiff_t>(most);
+  std::nth_element(order.begin(), end, order.end());
+  std::sort(order.begin(), end, [](const auto& a, const auto& b) { return a.second < b.second; });
+  for (std::size_t k = 0; k < most; ++k) near_[k] = near_[order[k].second];
+  near_.resize(most);
+}
+
+void ContactSet::add_pair(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members,
+                          const NearPair& near, double h) {
+  const SimulatedCable &a = cables[near.first.cable], &b = cables[near.second.cable];
+  const int i = near.first.segment, j = near.second.segment;
+  Touch& touch = touches_.emplace_back();
+  touch.key = pair_key | i;
+  touch.other_key = key_of(members[places_[near.second.cable]].id, j);
+  touch.point = near.first;
+  touch.other = near.second;
+  touch.normal = near.normal;
+  touch.gap = near.gap;
+  touch.friction = rules_.cable_friction;
+  touch.radius = near.radius;
+  touch.base_stiffness = std::min(stopping(a, i, rules_.time_step), stopping(b, j, rules_.time_step));
+  touch.velocity = near.velocity;
+  touch.position = a.state.positions[i] + near.first.fraction * (a.state.positions[i + 1] - a.state.positions[i]);
+  add(touch, members[places_[near.first.cable]], h);
 }
 
 void ContactSet::add(Touch& touch, const ContactMember& member, double h) {
   const double gentle = gentle_gap(touch.radius, contact_time(rules_.time_step));
   const bool known = recall(member, touch);
   if (!known && touch.obstacle >= 0 && touch.gap < -deepest_arrival * touch.radius)
-    intrusions_.push_back({touch.point.cable, touch.point.segment, touch.obstacle, -touch.gap});
+    note({touch.point.cable, touch.point.segment, touch.obstacle, -touch.gap});
   touch.inside = (!known || touch.inside) && touch.gap < gentle;
   touch.inside_for = touch.inside ? touch.inside_for + h : 0;
   if (touch.inside) touch.gap = gentle;
@@ -333,6 +390,34 @@ void ContactSet::add(Touch& touch, const ContactMember& member, double h) {
   start_touch(touch);
   touched_[places_[touch.point.cable]] = 1;
   if (touch.other.cable >= 0) touched_[places_[touch.other.cable]] = 1;
+}
+
+/// The deepest of a cable in an obstacle; all of them come one after the other.
+void ContactSet::note(const Intrusion& found) {
+  if (intrusions_.empty() || intrusions_.back().cable != found.cable || intrusions_.back().obstacle != found.obstacle)
+    intrusions_.push_back(found);
+  else if (intrusions_.back().depth < found.depth)
+    intrusions_.back() = found;
+}
+
+/// Of the touches from `first` on, which are those of a cable with obstacles: on each node and segment the nearest, so that they
+/// take no more memory however many obstacles there are in one place.
+void ContactSet::keep_nearest_obstacles(std::size_t first, std::size_t elements) {
+  if (touches_.size() - first <= 2 * nearest_obstacles * elements) return;
+  using Order = std::tuple<std::uint64_t, double, std::size_t>;
+  std::vector<Order> order;
+  order.reserve(touches_.size() - first);
+  for (std::size_t k = first; k < touches_.size(); ++k) order.emplace_back(touches_[k].other_key, touches_[k].gap, k);
+  std::sort(order.begin(), order.end());
+  std::vector<std::size_t> kept;
+  std::size_t of_element = 0;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    of_element = k > 0 && std::get<0>(order[k]) == std::get<0>(order[k - 1]) ? of_element + 1 : 0;
+    if (of_element < nearest_obstacles) kept.push_back(std::get<2>(order[k]));
+  }
+  std::sort(kept.begin(), kept.end());
+  for (std::size_t k = 0; k < kept.size(); ++k) touches_[first + k] = touches_[kept[k]];
+  touches_.resize(first + kept.size());
 }
 
 /// Whether a gap [m] may close, at a `velocity` [m/s] relative to what is touched.

@@ -46,6 +46,15 @@ class ContactSet {
   const std::vector<Intrusion>& intrusions() const { return intrusions_; }  ///< that `find` came upon
 
  private:
+  /// Segments of two cables, or of one, that may touch in the next substep.
+  struct NearPair {
+    CablePoint first, second;
+    Vector3 normal;     ///< from the second to the first
+    Vector3 velocity;   ///< [m/s] of the first, relative to the second
+    double gap = 0;     ///< [m] between the surfaces
+    double radius = 0;  ///< [m] of the thinner one
+  };
+
   void set_held(const SimulatedCable& cable, const KinematicTargets& targets, const std::vector<Attachment>& attachments);
   void find_bodies(const SimulatedCable& cable, int index, const ContactMember& member, const std::vector<MovingObstacle>& bodies,
                    const std::vector<Attachment>& attachments, double h);
@@ -56,6 +65,12 @@ class ContactSet {
                      const std::vector<Attachment>& attachments, double h);
   void find_pairs(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members, const SegmentPairs& found,
                   double thickest, double h);
+  void look_at(const std::vector<SimulatedCable>& cables, const SegmentPairs::Pair& pair, double speed, double h);
+  void keep_nearest(std::size_t most);
+  void add_pair(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members, const NearPair& near,
+                double h);
+  void keep_nearest_obstacles(std::size_t first, std::size_t elements);
+  void note(const Intrusion& found);
   void add(Touch& touch, const ContactMember& member, double h);
   double reach(double speed, double radius, double h) const;
   bool may_close(double gap, const Vector3& normal, const Vector3& velocity, double radius, double h) const;
@@ -71,9 +86,12 @@ class ContactSet {
   std::vector<char> touched_;          ///< by member
   std::vector<char> touches_body_;     ///< likewise
   std::vector<std::size_t> recalled_;  ///< by member: the first of its cache that may still be asked for
+  double thinnest_ = 0, shortest_ = 0;  ///< [m] radius, and segment at rest, of all that are found together
+  std::vector<NearPair> near_;          ///< of one segment, with those after it; ascending
   // Nodes of one cable
   std::vector<char> held_;
   CableStretches stretches_;
+  std::size_t first_of_cable_ = 0;     ///< of touches_: of the cable whose obstacles are looked for
   std::vector<char> inside_;           ///< of a body, from where that holds the cable; nodes and segments in turns
   std::vector<Vector3> local_;         ///< [m] in an obstacle's frame; of segments that are close to it
   std::vector<SurfacePoint> nearest_;  ///< on its surface; likewise

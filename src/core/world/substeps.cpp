@@ -85,7 +85,7 @@ void IslandStepper::end_from_rest(Island& island, StepProgress& progress, Island
   const std::int64_t whole = std::int64_t{1} << finest_level(state_.scene->time_step);
   for (std::size_t k = 0; k < island.cables.size(); ++k) workspace_.cables[k].result.converged = false;
   stop(island, found);
-  most_contact_work_ = infinity;
+  most_contact_work_ = budget::last_share * size_of(island, state_);
   if (!advance_part(island, {progress.done, whole, whole}, true, false, progress, found)) give_up(island);
   found.exhausted = true;
 }
