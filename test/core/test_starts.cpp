@@ -176,6 +176,23 @@ TEST(Start, LongCableStartsSoon) {
   EXPECT_LT(start, 200 * step) << start / CLOCKS_PER_SEC << " s";
 }
 
+/// However long: rounding of places far from its first node does not make it hang, or start, elsewhere.
+TEST(Start, LongCableStartsWhereItsShapeIs) {
+  for (const double length : {40.0, 400.0})
+    for (const bool is_held : {false, true}) {
+      SceneDesc scene = scenes::one_cable(4000, length);
+      const Vector3 from(3, 2, 1), to = from + length * Vector3(0.6, 0.8, 0);
+      scene.cables[0].initial.type = InitialShapeDesc::Type::straight;
+      scene.cables[0].initial.from = from;
+      scene.cables[0].initial.to = to;
+      if (is_held) scene.cables[0].attachments = {scenes::attachment("end", PlaceDesc::At::end, to)};
+      const World world(scene, initial_frames(scene));
+      const std::vector<Vector3>& positions = world.cables()[0].state.positions;
+      EXPECT_LT((positions.front() - from).norm(), 1e-9) << length << " m, held: " << is_held;
+      EXPECT_LT((positions.back() - to).norm(), 1e-9) << length << " m, held: " << is_held;
+    }
+}
+
 TEST(Start, WaitingCableStartsAtRest) {
   SceneDesc scene = scenes::held_by_a_hand(50, AttachmentType::clamp);
   scene.materials[0].material.bending_stiffness = 0.02;

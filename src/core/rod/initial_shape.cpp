@@ -140,6 +140,21 @@ void keep_finite(const std::vector<Vector3>& before, CableState& state) {
   if (!std::all_of(state.positions.begin(), state.positions.end(), is_finite)) state.positions = before;
 }
 
+/// Gives the segments lengths [m] from a node on, along the directions that they have.
+void set_lengths(int anchor, const std::vector<double>& lengths, CableState& state) {
+  const std::vector<Vector3> before = state.positions;
+  const auto direction = [&](int i) -> Vector3 {
+    const Vector3 d = before[i + 1] - before[i];
+    return d.norm() > 0 ? Vector3(d.normalized()) : Vector3(Vector3::UnitX());
+  };
+  for (int i = anchor; i < state.segments(); ++i) state.positions[i + 1] = state.positions[i] + lengths[i] * direction(i);
+  for (int i = anchor; i-- > 0;) state.positions[i] = state.positions[i + 1] - lengths[i] * direction(i);
+}
+
+int anchor_of(const std::vector<HeldNode>& held, const CableState& state) {
+  return held.empty() ? state.segments() / 2 : held.front().node;
+}
+
 bool carry_nodes_along(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {
   if (!held.empty()) {
     const std::vector<double> arc_length = state.arc_length();
@@ -159,9 +174,18 @@ bool carry_nodes_along(const CableModel& model, const std::vector<HeldNode>& hel
     }
   }
   if (project_positions(model, held, state)) return true;
-  // KinematicTargets that come close along a straight cable do not tell where its slack goes.
-  hang_nodes_anew(model, held, gravity, state);
-  return false;
+  if (held.size() > 1) {
+    // Holders that come close along a straight cable do not tell where its slack goes.
+    hang_nodes_anew(model, held, gravity, state);
+    return false;
+  }
+  // A cable with a free end can have any lengths where it is.
+  const CableMaterials materials(model, state);
+  std::vector<double> lengths = state.rest_lengths;
+  for (int i = 0; i < state.segments(); ++i)
+    if (is_elastic(materials[i])) lengths[i] = (state.positions[i + 1] - state.positions[i]).norm();
+  set_lengths(anchor_of(held, state), lengths, state);
+  return true;
 }
 
 }  // namespace
@@ -185,7 +209,12 @@ void carry_with_targets(const CableModel& model, const std::vector<HeldNode>& he
   for (int i = 0; i < state.segments(); ++i) lengths[i] = (before[i + 1] - before[i]).norm();
   carry_nodes_along(model, held, gravity, state);
   const bool elastic = CableMaterials(model, state).any_elastic();
-  if (elastic && !project_lengths(held, lengths, state)) state.positions = hanging(model, state, held, gravity, false);
+  if (elastic && !project_lengths(held, lengths, state)) {
+    if (held.size() > 1)
+      state.positions = hanging(model, state, held, gravity, false);
+    else
+      set_lengths(anchor_of(held, state), lengths, state);
+  }
   keep_finite(before, state);
   carry_frames(before, state);
 }
@@ -208,13 +237,7 @@ void restore_lengths(const CableModel& model, const std::vector<HeldNode>& held,
   }
   if (!wrong) return;
   const std::vector<Vector3> before = state.positions;
-  const auto direction = [&](int i) -> Vector3 {
-    const Vector3 d = before[i + 1] - before[i];
-    return d.norm() > 0 ? Vector3(d.normalized()) : Vector3(Vector3::UnitX());
-  };
-  const int anchor = held.empty() ? n / 2 : held.front().node;
-  for (int i = anchor; i < n; ++i) state.positions[i + 1] = state.positions[i] + lengths[i] * direction(i);
-  for (int i = anchor; i-- > 0;) state.positions[i] = state.positions[i + 1] - lengths[i] * direction(i);
+  set_lengths(anchor_of(held, state), lengths, state);
   carry_nodes_along(model, held, gravity, state);
   keep_finite(before, state);
   carry_frames(before, state);

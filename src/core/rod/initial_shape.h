@@ -15,7 +15,8 @@ bool set_initial_state(const InitialShapeDesc& initial, bool settles, const Cabl
                        const Vector3& gravity, CableState& state);
 
 /// Carries a cable along with holders that have jumped: each node by the jump of its neighbouring holders, in proportion to the
-/// arc length between them. Where that leaves no shape of the right lengths nearby, the cable hangs from them anew: false.
+/// arc length between them. Where that leaves no shape of the right lengths nearby, the cable hangs from them anew: false. With
+/// a free end it keeps its directions instead.
 bool carry_along(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state);
 
 /// The same after a jump of holders: elastic cables are as long as before, too, where that is possible.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "rod/tridiagonal.h"
 #include "verlet_cable/core/cable_materials.h"
@@ -11,7 +12,8 @@ namespace verlet_cable {
 namespace {
 
 constexpr int maximum_iterations = 100;
-constexpr double length_tolerance = 1e-12;  // relative
+constexpr double length_tolerance = 1e-12;  // relative, of squares
+constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();  // of places, likewise: a long cable's is more
 constexpr double straight = 1 - 1e-7;       // of a span's length
 constexpr double regularisation = 1e-12;    // relative, for spans pulled straight
 
@@ -161,15 +163,17 @@ bool project_lengths(const std::vector<HeldNode>& held, const std::vector<double
   std::vector<Vector3> local;
   for (const Vector3& position : state.positions) local.push_back(position - origin);
   for (int iteration = 0; iteration < maximum_iterations; ++iteration) {
-    double error = 0;
+    double error = 0, extent = 0;
+    for (const Vector3& place : local) extent = std::max(extent, place.cwiseAbs().maxCoeff());
     for (int i = 0; i < n; ++i) {
       const double square = (local[i + 1] - local[i]).squaredNorm(), target = lengths[i] * lengths[i];
       // A segment is not asked to grow or shrink by more than a part of itself at a time: Newton's model holds no further.
       changes[i] = 0.5 * std::clamp(target - square, -0.75 * square, 0.75 * std::max(square, 0.01 * target));
       if (!std::isfinite(square) || !std::isfinite(target)) return false;  // std::max would lose what is not a number
-      if (system.movable(i)) error = std::max(error, std::abs(target - square) / target);
+      const double tolerated = std::max(length_tolerance, rounding * extent / lengths[i]);
+      if (system.movable(i)) error = std::max(error, std::abs(target - square) / (tolerated * target));
     }
-    if (error < length_tolerance) {
+    if (error < 1) {
       for (int i = 0; i <= n; ++i)
         if (system.movable_node(i)) state.positions[i] = origin + local[i];
       return true;

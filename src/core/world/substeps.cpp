@@ -153,7 +153,7 @@ bool IslandStepper::give_up(int index, bool touches, Boundary& boundary) {
   const CableState before = cable.state;
   carry_along(*cable.model, boundary.nodes, gravity_near(state_, index), cable.state);
   const bool stuck = cable.state.positions == before.positions;
-  if (!touches && stuck) hang_anew(*cable.model, boundary.nodes, gravity_near(state_, index), cable.state);
+  if (!touches && stuck && !boundary.nodes.empty()) hang_anew(*cable.model, boundary.nodes, gravity_near(state_, index), cable.state);
   if (finite(cable.state.positions)) return stuck;
   cable.state = before;
   note_status(Status::fault, cable_id(index), 0, outcomes_[index].result);
