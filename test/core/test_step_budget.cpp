@@ -145,6 +145,39 @@ TEST(StepBudget, CableThatIsStuckHangsAnewWhenItsFramesComeToRest) {
   EXPECT_LT(last.max_strain, 0.01);
 }
 
+/// A free cable in which a box appears, so that its steps are given up one after the other.
+TEST(StepBudget, LongFreeCableStaysWhereItIs) {
+  constexpr double length = 40;
+  SceneDesc scene = scenes::one_cable(4000, length);
+  scene.time_step = 0.002;
+  scene.materials[0].material.radius = 0.01;
+  scene.cables[0].initial.type = InitialShapeDesc::Type::straight;
+  scene.cables[0].initial.from = {3, 2, 0.01};
+  scene.cables[0].initial.to = {3, 2 + length, 0.01};
+  ObstacleDesc floor;
+  floor.name = "floor";
+  floor.type = ShapeType::plane;
+  scene.obstacles.push_back(floor);
+  World world(scene, BoundaryInputs(1));
+  Obstacle ball;
+  ball.name = "ball";
+  ball.shape = SphereShape{0.01};
+  ball.pose.position = {3, 22, 0.03};
+  ASSERT_TRUE(world.apply(edit::SetObstacle{ball}).ok);
+  for (int i = 0; i < 5; ++i) world.step(BoundaryInputs(1));
+  ball.shape = BoxShape{Vector3::Constant(0.01)};
+  ball.pose.position.z() = 0.005;
+  ASSERT_TRUE(world.apply(edit::SetObstacle{ball}).ok);
+  int exhausted = 0;
+  for (int i = 0; i < 12; ++i) {
+    exhausted += world.step(BoundaryInputs(1)).exhausted;
+    const std::vector<Vector3>& positions = world.cables()[0].state.positions;
+    ASSERT_LT((positions.front() - Vector3(3, 2, 0.01)).norm(), 0.1) << "step " << i;
+    ASSERT_LT((positions.back() - Vector3(3, 2 + length, 0.01)).norm(), 0.1) << "step " << i;
+  }
+  EXPECT_GT(exhausted, 0);
+}
+
 /// More than there is room for around a segment are in each other: the nearest are enough to get them apart.
 TEST(StepBudget, CablesInOnePlaceTouchNoMoreThanTheNearest) {
   constexpr int cables = 60, segments = 20;
