@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
-#include <utility>
 
 #include "contact/friction_bound.h"
 #include "geometry/segment_geometry.h"
@@ -24,8 +23,6 @@ constexpr double anchored_length = 0.05;
 constexpr double smallest_lean = 0.05;
 /// Relative, of distances.
 constexpr double distance_rounding = 1e-6;
-/// Obstacles that a node or segment touches: all of them, unless those of a cable touch twice as many on average.
-constexpr std::size_t nearest_obstacles = 8;
 /// Nodes and segments in turns: of a node, the segments and nodes next to it.
 constexpr std::uint64_t neighbouring_elements = 2;
 /// Deeper than this, in radii, nothing comes through a surface before its contact is found.
@@ -47,14 +44,6 @@ CablePoint node_point(int cable, int node, int segments) {
 template <typename Contact>
 auto keys(const Contact& of) {
   return std::tie(of.key, of.other_key);
-}
-
-/// Where a segment [m] can be touched by more than this many of others that are as thin and as short as that [m], they are in
-/// each other: around it there is no more room.
-std::size_t room_around(double radius, double length, double thinnest, double shortest) {
-  const double around = std::ceil(M_PI * (radius + thinnest) / thinnest);
-  const double along = 2 + std::ceil((length + 2 * (radius + thinnest)) / shortest);
-  return static_cast<std::size_t>(std::min(around * along, 1e6));
 }
 
 /// Whether a touch was this in the last substep. A cable that slides over an edge touches the obstacle with one element after the
@@ -293,7 +282,7 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
   else
     bound_friction_of_nodes(state, first_touch, touches_);
   if (moving.body < 0) {
-    keep_nearest_obstacles(first_of_cable_, 2 * n + 1);
+    keep_nearest_obstacles(first_of_cable_, 2 * n + 1, touches_);
     return;
   }
   // What leans may do work on what gives way.
@@ -302,7 +291,7 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
     touches_[k].friction = touches_[k].lean.norm() > smallest_lean ? friction : std::min(friction, touches_[k].friction);
     touches_[k].lean.setZero();
   }
-  keep_nearest_obstacles(first_of_cable_, 2 * n + 1);
+  keep_nearest_obstacles(first_of_cable_, 2 * n + 1, touches_);
 }
 
 void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members,
@@ -320,8 +309,8 @@ void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, const std
       if (can_touch(cables, joined_, *pair)) look_at(cables, *pair, speed, h);
     }
     const SimulatedCable& cable = cables[segment.cable];
-    keep_nearest(room_around(CableMaterials(cable)[segment.segment].radius, cable.state.rest_lengths[segment.segment], thinnest_,
-                             shortest_));
+    const double radius = CableMaterials(cable)[segment.segment].radius;
+    keep_nearest(room_around(radius, cable.state.rest_lengths[segment.segment], thinnest_, shortest_), near_);
     for (const NearPair& near : near_) add_pair(cables, members, near, h);
   }
 }
@@ -344,18 +333,6 @@ void ContactSet::look_at(const std::vector<SimulatedCable>& cables, const Segmen
   if (!may_close(distance - surface, normal, velocity, radius, h)) return;
   near_.push_back({{pair.first.cable, i, closest.first}, {pair.second.cable, j, closest.second}, normal, velocity,
                    distance - surface, radius});
-}
-
-/// Of `near_`, which stays ascending; of those that are equally near, the first.
-void ContactSet::keep_nearest(std::size_t most) {
-  if (near_.size() <= most) return;
-  std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t k = 0; k < near_.size(); ++k) order.emplace_back(near_[k].gap, k);
-  const auto end = order.begin() + static_cast<std::ptrdiff_t>(most);
-  std::nth_element(order.begin(), end, order.end());
-  std::sort(order.begin(), end, [](const auto& a, const auto& b) { return a.second < b.second; });
-  for (std::size_t k = 0; k < most; ++k) near_[k] = near_[order[k].second];
-  near_.resize(most);
 }
 
 void ContactSet::add_pair(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members,
@@ -398,26 +375,6 @@ void ContactSet::note(const Intrusion& found) {
     intrusions_.push_back(found);
   else if (intrusions_.back().depth < found.depth)
     intrusions_.back() = found;
-}
-
-/// Of the touches from `first` on, which are those of a cable with obstacles: on each node and segment the nearest, so that they
-/// take no more memory however many obstacles there are in one place.
-void ContactSet::keep_nearest_obstacles(std::size_t first, std::size_t elements) {
-  if (touches_.size() - first <= 2 * nearest_obstacles * elements) return;
-  using Order = std::tuple<std::uint64_t, double, std::size_t>;
-  std::vector<Order> order;
-  order.reserve(touches_.size() - first);
-  for (std::size_t k = first; k < touches_.size(); ++k) order.emplace_back(touches_[k].other_key, touches_[k].gap, k);
-  std::sort(order.begin(), order.end());
-  std::vector<std::size_t> kept;
-  std::size_t of_element = 0;
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    of_element = k > 0 && std::get<0>(order[k]) == std::get<0>(order[k - 1]) ? of_element + 1 : 0;
-    if (of_element < nearest_obstacles) kept.push_back(std::get<2>(order[k]));
-  }
-  std::sort(kept.begin(), kept.end());
-  for (std::size_t k = 0; k < kept.size(); ++k) touches_[first + k] = touches_[kept[k]];
-  touches_.resize(first + kept.size());
 }
 
 /// Whether a gap [m] may close, at a `velocity` [m/s] relative to what is touched.

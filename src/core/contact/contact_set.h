@@ -5,6 +5,7 @@
 #include "contact/cable_stretches.h"
 #include "contact/cache.h"
 #include "contact/moving_obstacle.h"
+#include "contact/nearest_touches.h"
 #include "contact/segment_grid.h"
 #include "target/kinematic_targets.h"
 #include "verlet_cable/core/world.h"
@@ -46,15 +47,6 @@ class ContactSet {
   const std::vector<Intrusion>& intrusions() const { return intrusions_; }  ///< that `find` came upon
 
  private:
-  /// Segments of two cables, or of one, that may touch in the next substep.
-  struct NearPair {
-    CablePoint first, second;
-    Vector3 normal;     ///< from the second to the first
-    Vector3 velocity;   ///< [m/s] of the first, relative to the second
-    double gap = 0;     ///< [m] between the surfaces
-    double radius = 0;  ///< [m] of the thinner one
-  };
-
   void set_held(const SimulatedCable& cable, const KinematicTargets& targets, const std::vector<Attachment>& attachments);
   void find_bodies(const SimulatedCable& cable, int index, const ContactMember& member, const std::vector<MovingObstacle>& bodies,
                    const std::vector<Attachment>& attachments, double h);
@@ -66,10 +58,8 @@ class ContactSet {
   void find_pairs(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members, const SegmentPairs& found,
                   double thickest, double h);
   void look_at(const std::vector<SimulatedCable>& cables, const SegmentPairs::Pair& pair, double speed, double h);
-  void keep_nearest(std::size_t most);
   void add_pair(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members, const NearPair& near,
                 double h);
-  void keep_nearest_obstacles(std::size_t first, std::size_t elements);
   void note(const Intrusion& found);
   void add(Touch& touch, const ContactMember& member, double h);
   double reach(double speed, double radius, double h) const;

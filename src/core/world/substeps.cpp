@@ -144,8 +144,8 @@ void IslandStepper::give_up(const Island& island) {
   if (stuck && !touching && !island.bodies.empty()) hang_on_bodies_anew(island);
 }
 
-/// Not even from rest: the cable is put where its holders will be, and goes on from there; or hangs anew, where it would be stuck
-/// with nothing around it. Whether it was there already.
+/// Not even from rest: the cable is put where its holders will be, and goes on from there; or hangs from them anew, where it would
+/// be stuck with nothing around it. Whether it was there already.
 bool IslandStepper::give_up(int index, bool touches, Boundary& boundary) {
   SimulatedCable& cable = state_.cables[index];
   hold_at(1, 1, state_.cable_progress[index].targets, boundary);
@@ -153,7 +153,8 @@ bool IslandStepper::give_up(int index, bool touches, Boundary& boundary) {
   const CableState before = cable.state;
   carry_along(*cable.model, boundary.nodes, gravity_near(state_, index), cable.state);
   const bool stuck = cable.state.positions == before.positions;
-  if (!touches && stuck && !boundary.nodes.empty()) hang_anew(*cable.model, boundary.nodes, gravity_near(state_, index), cable.state);
+  const bool is_free = boundary.nodes.empty();
+  if (!touches && stuck && !is_free) hang_anew(*cable.model, boundary.nodes, gravity_near(state_, index), cable.state);
   if (finite(cable.state.positions)) return stuck;
   cable.state = before;
   note_status(Status::fault, cable_id(index), 0, outcomes_[index].result);

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "contact/law.h"
+
+namespace verlet_cable {
+
+/// Segments of two cables, or of one, that may touch in the next substep.
+struct NearPair {
+  CablePoint first, second;
+  Vector3 normal;     ///< from the second to the first
+  Vector3 velocity;   ///< [m/s] of the first, relative to the second
+  double gap = 0;     ///< [m] between the surfaces
+  double radius = 0;  ///< [m] of the thinner one
+};
+
+/// Where a segment of that radius and length [m] can be touched by more than this many of others that are as thin and as short as
+/// that [m], they are in each other: around it there is no more room.
+std::size_t room_around(double radius, double length, double thinnest, double shortest);
+
+/// Leaves so many of the pairs of a segment, in their order: the nearest, and of those that are equally near the first.
+void keep_nearest(std::size_t most, std::vector<NearPair>& pairs);
+
+/// Of the touches from `first` on, which are those of a cable of so many nodes and segments with obstacles: once they are many on
+/// average, the nearest of each node and segment, in their order. So they take no more memory, however many obstacles there are
+/// in one place.
+void keep_nearest_obstacles(std::size_t first, std::size_t elements, std::vector<Touch>& touches);
+
+}  // namespace verlet_cable
