@@ -58,8 +58,7 @@ void Rollouts::accept(Server::GoalHandle goal) {
   // Before anything is read or copied: whoever sends too many does not keep the node busy.
   const auto most = static_cast<std::size_t>(simulation_.scene().limits.rollouts);
   if (count_jobs() >= most)
-    return reject(std::to_string(most) + " rollouts run or wait already; allowed: at most limits.rollouts, " +
-                  std::to_string(most));
+    return reject("limits.rollouts: " + std::to_string(most) + " run or wait already; allowed: no more than these");
   const std::optional<Snapshot> snapshot = simulation_.snapshot(request.snapshot);
   if (!snapshot)
     return reject("snapshot: " + verlet_cable::quoted(request.snapshot) +
