@@ -281,15 +281,13 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
     bound_friction_at_corners(state, first_touch, feet_, touches_, pressed_);
   else
     bound_friction_of_nodes(state, first_touch, touches_);
-  if (moving.body < 0) {
-    keep_nearest_obstacles(first_of_cable_, 2 * n + 1, touches_);
-    return;
-  }
-  // What leans may do work on what gives way.
-  const double friction = *moving.obstacle->friction;
-  for (std::size_t k = first_touch; k < touches_.size(); ++k) {
-    touches_[k].friction = touches_[k].lean.norm() > smallest_lean ? friction : std::min(friction, touches_[k].friction);
-    touches_[k].lean.setZero();
+  if (moving.body >= 0) {
+    // What leans may do work on what gives way.
+    const double friction = *moving.obstacle->friction;
+    for (std::size_t k = first_touch; k < touches_.size(); ++k) {
+      touches_[k].friction = touches_[k].lean.norm() > smallest_lean ? friction : std::min(friction, touches_[k].friction);
+      touches_[k].lean.setZero();
+    }
   }
   keep_nearest_obstacles(first_of_cable_, 2 * n + 1, touches_);
 }
@@ -310,7 +308,7 @@ void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, const std
     }
     const SimulatedCable& cable = cables[segment.cable];
     const double radius = CableMaterials(cable)[segment.segment].radius;
-    keep_nearest(room_around(radius, cable.state.rest_lengths[segment.segment], thinnest_, shortest_), near_);
+    keep_nearest_pairs(room_around(radius, cable.state.rest_lengths[segment.segment], thinnest_, shortest_), near_);
     for (const NearPair& near : near_) add_pair(cables, members, near, h);
   }
 }

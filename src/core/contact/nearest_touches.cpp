@@ -4,7 +4,8 @@
 #include <cmath>
 #include <cstdint>
 #include <tuple>
-#include <utility>
+
+#include "contact/keep_nearest.h"
 
 namespace verlet_cable {
 namespace {
@@ -20,15 +21,12 @@ std::size_t room_around(double radius, double length, double thinnest, double sh
   return static_cast<std::size_t>(std::min(around * along, 1e6));
 }
 
-void keep_nearest(std::size_t most, std::vector<NearPair>& pairs) {
-  if (pairs.size() <= most) return;
-  std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t k = 0; k < pairs.size(); ++k) order.emplace_back(pairs[k].gap, k);
-  const auto end = order.begin() + static_cast<std::ptrdiff_t>(most);
-  std::nth_element(order.begin(), end, order.end());
-  std::sort(order.begin(), end, [](const auto& a, const auto& b) { return a.second < b.second; });
-  for (std::size_t k = 0; k < most; ++k) pairs[k] = pairs[order[k].second];
-  pairs.resize(most);
+void keep_nearest_pairs(std::size_t most, std::vector<NearPair>& pairs) {
+  const auto before = [](const NearPair& a, const NearPair& b) {
+    return std::tie(a.second.cable, a.second.segment) < std::tie(b.second.cable, b.second.segment);
+  };
+  const auto nearer = [&](const NearPair& a, const NearPair& b) { return a.gap != b.gap ? a.gap < b.gap : before(a, b); };
+  keep_nearest(0, most, pairs, nearer, before);
 }
 
 void keep_nearest_obstacles(std::size_t first, std::size_t elements, std::vector<Touch>& touches) {

@@ -21,7 +21,7 @@ struct NearPair {
 std::size_t room_around(double radius, double length, double thinnest, double shortest);
 
 /// Leaves so many of the pairs of a segment, in their order: the nearest, and of those that are equally near the first.
-void keep_nearest(std::size_t most, std::vector<NearPair>& pairs);
+void keep_nearest_pairs(std::size_t most, std::vector<NearPair>& pairs);
 
 /// Of the touches from `first` on, which are those of a cable of so many nodes and segments with obstacles: once they are many on
 /// average, the nearest of each node and segment, in their order. So they take no more memory, however many obstacles there are

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/keep_nearest.h"
 #include "geometry/segment_geometry.h"
 #include "verlet_cable/core/cable_materials.h"
 
@@ -99,15 +100,12 @@ double find_margin(const std::vector<SimulatedCable>& cables, const std::vector<
 }
 
 /// Of the pairs of a segment, which are the last ones, from `first` on, descending: those that are the closest.
-void keep_nearest(std::size_t first, std::vector<SegmentPairs::Pair>& pairs) {
-  if (pairs.size() - first <= most_neighbours) return;
+void keep_closest(std::size_t first, std::vector<SegmentPairs::Pair>& pairs) {
   using Pair = SegmentPairs::Pair;
-  const auto begin = pairs.begin() + static_cast<std::ptrdiff_t>(first), end = begin + most_neighbours;
-  std::nth_element(begin, end, pairs.end(), [](const Pair& a, const Pair& b) {
+  const auto nearer = [](const Pair& a, const Pair& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.second_node < b.second_node;
-  });
-  pairs.erase(end, pairs.end());
-  std::sort(begin, pairs.end(), [](const Pair& a, const Pair& b) { return a.second_node > b.second_node; });
+  };
+  keep_nearest(first, most_neighbours, pairs, nearer, [](const Pair& a, const Pair& b) { return a.second_node > b.second_node; });
 }
 
 }  // namespace
@@ -202,7 +200,7 @@ void SegmentGrid::collect(const std::vector<SimulatedCable>& cables, const Rules
       const double far = radius + CableMaterials(cables[second.id.cable])[second.id.segment].radius + reach + 2 * found.margin;
       if (distance <= far) found.pairs.push_back({first.id, second.id, first.node, second.node, distance});
     }
-    keep_nearest(before, found.pairs);
+    keep_closest(before, found.pairs);
   }
   std::reverse(found.pairs.begin(), found.pairs.end());
 }

@@ -108,7 +108,7 @@ bool FrameBuffer::insert(const ReceivedTransform& received, Nanoseconds now) {
       refuse(child, "more than " + std::to_string(stored_.most()) + " transforms in 60 s; allowed " +
                         (stored_.knows(child)
                              ? "of each frame for now: one in " + std::to_string(stored_.least_interval() / 1000) + " us"
-                             : "for now: frames that some are stored of"));
+                             : "for now: frames of which some are stored"));
       return false;
     }
     if (stamp > newest) note_parent(child, without_slash(received.transform.header.frame_id));

@@ -63,7 +63,6 @@ void TfInputs::receive(Nanoseconds ros_now) {
   const Nanoseconds latest = FrameBuffer::latest(ros_now);
   if (is_first_time && buffer_.reaches_beyond(latest)) replay_recent(ros_now, last_ros_time);
   for (ReceivedTransform& received : listener_.take(received_.size())) received_.push_back(std::move(received));
-  if (!received_.empty() && followers_version_ != buffer_.tree_version()) find_followers();
   // The rest waits for the next call: however much somebody sends, others do not wait.
   for (; !received_.empty() && ros::WallTime::now() - now < longest_receiving; received_.pop_front()) {
     insert(received_.front(), ros_now);
