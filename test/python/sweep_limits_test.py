@@ -52,11 +52,11 @@ def test_what_contains_itself_or_is_nested_deeply_is_refused(tmp_path):
     assert 'not YAML' in refusal(tmp_path, SWEEP + 'a: ' + '[' * 100_000)
 
 
-def test_pyyaml_is_given_no_scene_that_was_refused(tmp_path, monkeypatch):
+def test_pyyaml_is_given_no_large_scene_that_was_refused(tmp_path, monkeypatch):
     parsed = []
     parse = text_yaml.parse
     monkeypatch.setattr(text_yaml, 'parse', lambda text, name, errors: parsed.append(name) or parse(text, name, errors))
-    assert 'nested deeper than 32 levels' in refusal(tmp_path, SWEEP, SCENE + 'a: ' + '[' * 2000)
+    assert 'nested deeper than 32 levels' in refusal(tmp_path, SWEEP, SCENE + 'a: ' + '[' * 2000 + '\n' + '# large\n' * 200_000)
     assert len(parsed) == 1 and 'sweep.yaml' in parsed[0]
 
 

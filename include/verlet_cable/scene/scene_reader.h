@@ -29,7 +29,7 @@ constexpr const char* boolean_tag = "tag:yaml.org,2002:bool";
 /// limited by `read_scene_text` for text, and nowhere else.
 SceneDesc read_scene(const YAML::Node& root, const std::vector<std::string>& ignored = {}, const SceneSources& sources = {});
 
-/// Reads a scene from YAML text: one document of at most 64 MB, a million values and 32 levels, with aliases counted each time
+/// Reads a scene from YAML text: one document of at most 16 MiB, a million values and 32 levels, with aliases counted each time
 /// they are used. Throws SceneError; syntax errors come with line and column.
 SceneDesc read_scene_text(const std::string& text, const SceneSources& sources = {});
 

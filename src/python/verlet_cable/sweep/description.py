@@ -155,8 +155,10 @@ def _read_scene(sweep, values, errors):
     try:
         scene = Scene.load(path)
     except SceneError as error:
-        # PyYAML knows no limits: it is given nothing that was refused.
         errors += [f'{sweep.scene_name}: {text}' for text in error.errors]
+        # The tree of it is for errors of the values varied. PyYAML has no limits: what was refused is no larger than a description.
+        if len(sweep.scene_text) <= _LARGEST_DESCRIPTION:
+            sweep.tree = text_yaml.parse(sweep.scene_text, sweep.scene_name, [])
         return None
     sweep.tree = text_yaml.parse(sweep.scene_text, sweep.scene_name, errors)
     return scene
