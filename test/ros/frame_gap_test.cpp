@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace verlet_cable {
@@ -40,6 +41,33 @@ TEST(FrameGap, closesAtASteadyRateOnTopOfTheFramesOwnMotion) {
   EXPECT_NEAR(steps, 3 / turn, 1.5);  // the turn takes longer than the way
   EXPECT_EQ(followed.position, frame.position);
   EXPECT_EQ(followed.orientation.coeffs(), frame.orientation.coeffs());
+}
+
+TEST(FrameGap, onlyGetsShorterWhereTheFrameGoesBackTooFast) {
+  constexpr double step = 5e-4, speed = 320;
+  const Vector3 held(0.1, 0, 0);
+  Pose frame = pose({5, 0, 0}, {0, 0, 0});
+  FrameGap gap = FrameGap::between(frame, {held, frame.orientation});
+  // Past what it holds, too, until it stops behind it.
+  while (frame.position.x() > 0) {
+    const Pose before = frame;
+    frame.position.x() = std::max(frame.position.x() - step * speed, 0.0);
+    gap.move(before, frame, step);
+    ASSERT_NEAR((gap.followed(frame).position - held).norm(), 0, 1e-12);
+  }
+  EXPECT_TRUE(gap.recoils);
+  gap.move(frame, frame, step);
+  EXPECT_FALSE(gap.recoils);
+  EXPECT_NEAR(gap.distance(), 0.1, 1e-12);
+}
+
+TEST(FrameGap, isLeftAloneByAFrameThatMovesAsItCan) {
+  const Pose frame = pose({5, 0, 0}, {0, 0, 0});
+  FrameGap gap = FrameGap::between(frame, pose({0, 0, 0}, {0, 0, 0}));
+  gap.move(frame, pose({4.91, 0, 0}, {0, 0, 0}), 0.01);  // back, at 9 m/s
+  gap.move(frame, pose({6, 0, 0}, {0, 0, 0}), 0.01);     // away, at 100 m/s
+  EXPECT_EQ(gap.distance(), 5);
+  EXPECT_FALSE(gap.recoils);
 }
 
 TEST(FrameGap, isNothingWhereTheFrameIsBackInItsPlace) {

@@ -9,6 +9,14 @@ FrameGap FrameGap::between(const Pose& frame, const Pose& followed) {
   return gap;
 }
 
+void FrameGap::move(const Pose& from, const Pose& to, double time) {
+  const bool is_fast = (to.position - from.position).norm() > fastest_motion * time;
+  const FrameGap left = between(to, followed(from));
+  const bool goes_back = is_fast && (recoils || left.distance() < distance());
+  if (goes_back) *this = left;
+  recoils = goes_back;
+}
+
 void FrameGap::close_by(double by_distance, double by_angle) {
   const double whole_way = distance(), whole_turn = angle();
   way = whole_way > by_distance ? Vector3((1 - by_distance / whole_way) * way) : Vector3(Vector3::Zero());

@@ -15,8 +15,9 @@ using Coverage = FrameHistory::Coverage;
 const ros::WallDuration longest_overtaking(1.0);
 const ros::WallDuration longest_receiving(0.005);
 constexpr Nanoseconds longest_ahead = 500'000'000;
-/// [m/s] A frame that goes back faster to what it holds, while that still comes after it, had come back at a pose that was wrong.
-constexpr double fastest_motion = 10;
+/// Of a step, in which a frame may begin to go back, or stop: what of that is followed is less than the speed at which gaps close.
+constexpr int parts_of_step = 10;
+static_assert(FrameGap::fastest_motion / parts_of_step <= FrameGap::speed);
 
 }  // namespace
 
@@ -232,13 +233,13 @@ bool TfInputs::sample(Nanoseconds time, Nanoseconds elapsed, Nanoseconds target,
   bool wait = false;
   for (std::size_t i = 0; i < tracks_.size(); ++i) wait |= needed[i] && must_wait(tracks_[i], time, target);
   if (wait) return false;
-  sample_frames(time, target, seconds(elapsed));
+  sample_frames(time, target, elapsed);
   return true;
 }
 
 void TfInputs::sample_without_waiting(Nanoseconds time, Nanoseconds elapsed) {
   changes_.clear();
-  sample_frames(time, 0, seconds(elapsed));
+  sample_frames(time, 0, elapsed);
 }
 
 void TfInputs::sample_at_once(Nanoseconds time) {
@@ -246,7 +247,7 @@ void TfInputs::sample_at_once(Nanoseconds time) {
   sample_frames(time, 0, 0);
 }
 
-void TfInputs::sample_frames(Nanoseconds time, Nanoseconds target, double elapsed) {
+void TfInputs::sample_frames(Nanoseconds time, Nanoseconds target, Nanoseconds elapsed) {
   for (std::size_t i = 0; i < tracks_.size(); ++i) sample_frame(static_cast<int>(i), time, target, elapsed);
 }
 
@@ -258,7 +259,7 @@ bool TfInputs::must_wait(Track& track, Nanoseconds time, Nanoseconds target) con
   return late;
 }
 
-void TfInputs::sample_frame(int frame, Nanoseconds time, Nanoseconds target, double elapsed) {
+void TfInputs::sample_frame(int frame, Nanoseconds time, Nanoseconds target, Nanoseconds elapsed) {
   Track& track = tracks_[frame];
   if (track.is_body()) return;
   const Coverage coverage = track.history.at(time);
@@ -267,7 +268,7 @@ void TfInputs::sample_frame(int frame, Nanoseconds time, Nanoseconds target, dou
       if (track.status == FrameStatus::never_seen) change(FrameChange::Kind::seen, frame);
       if (track.status == FrameStatus::lost) come_back(frame, *pose);
       track.status = FrameStatus::ok;
-      follow(frame, *pose, elapsed);
+      follow(frame, *pose, time, time, elapsed);
       return;
     }
   }
@@ -278,7 +279,7 @@ void TfInputs::sample_frame(int frame, Nanoseconds time, Nanoseconds target, dou
   }
   if (track.status == FrameStatus::lost) return;
   if (const Nanoseconds last = track.history.last_before(time); last > 0) {
-    if (const auto pose = buffer_.pose(track.name, last)) follow(frame, *pose, elapsed);
+    if (const auto pose = buffer_.pose(track.name, last)) follow(frame, *pose, last, time, elapsed);
   }
   const bool late = coverage == Coverage::ahead && target - track.history.newest() <= timeout_;
   track.status = late ? FrameStatus::late : FrameStatus::lost;
@@ -300,15 +301,15 @@ void TfInputs::come_back(int frame, const Pose& pose) {
   if (!approaches_) place(frame, pose);
 }
 
-/// `elapsed` 0: as far as the frame went, at once.
-void TfInputs::follow(int frame, const Pose& pose, double elapsed) {
+/// `pose`: the frame's at `stamp`, the last there is until `time`. `elapsed` 0: as far as the frame went, at once.
+void TfInputs::follow(int frame, const Pose& pose, Nanoseconds stamp, Nanoseconds time, Nanoseconds elapsed) {
   if (!inputs_[frame].known) return place(frame, pose);
   FrameInput& input = inputs_[frame];
   Track& track = tracks_[frame];
   const Pose before = track.gap.frame(input.pose);
   Pose followed = before;
   const double way = (pose.position - followed.position).norm();
-  const double longest_way = elapsed > 0 ? max_frame_speed_ * elapsed : infinity;
+  const double longest_way = elapsed > 0 ? max_frame_speed_ * seconds(elapsed) : infinity;
   if (way <= longest_way) {
     followed = pose;
     track.too_fast = false;
@@ -319,14 +320,27 @@ void TfInputs::follow(int frame, const Pose& pose, double elapsed) {
     if (!track.too_fast) change(FrameChange::Kind::too_fast, frame);
     track.too_fast = true;
   }
-  const double moved = (followed.position - before.position).norm();
-  if (!track.gap.is_closed() && elapsed > 0 && moved > fastest_motion * elapsed) {
-    const FrameGap left = FrameGap::between(followed, input.pose);
-    if (left.distance() < track.gap.distance()) track.gap = left;
+  if (!track.gap.is_closed() && elapsed > 0) {
+    if (track.too_fast)
+      track.gap.move(before, followed, seconds(elapsed));
+    else
+      move_gap(track, before, followed, time - elapsed, stamp);
+    track.gap.close_by(std::min(FrameGap::speed, max_frame_speed_) * seconds(elapsed), FrameGap::turn_speed * seconds(elapsed));
   }
-  if (!track.gap.is_closed())
-    track.gap.close_by(std::min(FrameGap::speed, max_frame_speed_) * elapsed, FrameGap::turn_speed * elapsed);
   input = {track.gap.followed(followed), true};
+}
+
+/// By where tf says that the frame went between these times, part by part.
+void TfInputs::move_gap(Track& track, const Pose& from, const Pose& to, Nanoseconds begin, Nanoseconds end) const {
+  const Nanoseconds duration = std::max<Nanoseconds>(end - begin, 0) / parts_of_step;
+  Pose before = from;
+  for (int i = 1; i < parts_of_step && duration > 0; ++i) {
+    const std::optional<Pose> pose = buffer_.pose(track.name, begin + i * duration);
+    if (!pose) continue;
+    track.gap.move(before, *pose, seconds(duration));
+    before = *pose;
+  }
+  track.gap.move(before, to, seconds(duration));
 }
 
 std::optional<Nanoseconds> TfInputs::back_after(Nanoseconds time, const std::vector<bool>& needed) const {

@@ -125,11 +125,12 @@ class TfInputs {
   Track track_from(const std::string& frame, const FrameInput& at, Nanoseconds time) const;
   Track computed_track(const std::string& frame) const;
   bool must_wait(Track& track, Nanoseconds time, Nanoseconds target) const;
-  void sample_frames(Nanoseconds time, Nanoseconds target, double elapsed);
-  void sample_frame(int frame, Nanoseconds time, Nanoseconds target, double elapsed);
+  void sample_frames(Nanoseconds time, Nanoseconds target, Nanoseconds elapsed);
+  void sample_frame(int frame, Nanoseconds time, Nanoseconds target, Nanoseconds elapsed);
   void come_back(int frame, const Pose& pose);
   void place(int frame, const Pose& pose);
-  void follow(int frame, const Pose& pose, double elapsed);
+  void follow(int frame, const Pose& pose, Nanoseconds stamp, Nanoseconds time, Nanoseconds elapsed);
+  void move_gap(Track& track, const Pose& from, const Pose& to, Nanoseconds begin, Nanoseconds end) const;
   void change(FrameChange::Kind kind, int frame) { changes_.push_back({kind, frame}); }
 
   TfListener listener_;
