@@ -109,6 +109,19 @@ class LostFramesTest(unittest.TestCase):
                 self.assertTrue(-0.01 < cable(state, 'rope').positions[0].x < 0.3, cable(state, 'rope').positions[0])
             self.assertLess(distance(cable(last, 'rope').positions[0], HELD), 1e-6)
 
+    def test_a_second_parent_that_is_in_no_tree_loses_nothing(self):
+        publisher = rospy.Publisher('/tf', TFMessage, queue_size=100)
+        with Frames(hand=lambda t: HELD):
+            self.start(self.hold)
+            with self.hold.events() as events, self.hold.states() as states:
+                end = rospy.get_time() + 1
+                while rospy.get_time() < end:
+                    publisher.publish([transform('hand', rospy.get_time(), BACK, parent='nowhere')])
+                    rospy.sleep(0.007)
+                last = states.wait_for(lambda s: s.header.stamp.to_sec() > end, 'state after it')
+                self.assertFalse([event.message for event in events.all() if lost(event)])
+        self.assertLess(distance(cable(last, 'rope').positions[0], HELD), 1e-9)
+
     def test_the_gap_closes_on_top_of_the_frames_own_motion_and_is_in_snapshots(self):
         node = self.brisk
         start = rospy.get_time()

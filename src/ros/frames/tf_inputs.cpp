@@ -268,7 +268,14 @@ void TfInputs::sample_frame(int frame, Nanoseconds time, Nanoseconds target, Nan
       if (track.status == FrameStatus::never_seen) change(FrameChange::Kind::seen, frame);
       if (track.status == FrameStatus::lost) come_back(frame, *pose);
       track.status = FrameStatus::ok;
+      track.last_known = time;
       follow(frame, *pose, time, time, elapsed);
+      return;
+    }
+    // Where two give it different parents, tf does not know it at the times of one that is in no tree: not lost, if others come.
+    track.last_known = std::min(track.last_known, time);
+    if (track.status != FrameStatus::never_seen && track.status != FrameStatus::lost && time - track.last_known <= timeout_) {
+      track.status = FrameStatus::late;
       return;
     }
   }

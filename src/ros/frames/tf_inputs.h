@@ -111,6 +111,7 @@ class TfInputs {
     FrameStatus status = FrameStatus::never_seen;
     bool too_fast = false;
     FrameGap gap;
+    Nanoseconds last_known = 0;  ///< time of the last sample for which tf had a pose
 
     bool is_body() const { return status == FrameStatus::computed; }
   };
