@@ -298,6 +298,65 @@ TEST(Junctions, branchesPayOutAndTakeIn) {
   }
 }
 
+/// Cables without a shape of their own that are joined with themselves, or at both ends with one node; the junctions' cables and nodes.
+struct Loop {
+  std::string name;
+  SceneDesc scene;
+};
+
+std::vector<Loop> loops(double bending_stiffness) {
+  SceneDesc free = nothing();
+  free.materials[0].material.bending_stiffness = bending_stiffness;
+  if (bending_stiffness == 0) free.materials[0].material.torsional_stiffness = 0;
+  add_cable(free, "cable", 1, 20);
+  SceneDesc held = free;
+  held.cables[0].attachments = {scenes::attachment("top", PlaceDesc::At::start, {0, 0, 1})};
+  SceneDesc held_inside = free;
+  held_inside.cables[0].attachments = {scenes::attachment("side", PlaceDesc::At::arc_length, {0, 0, 1})};
+  held_inside.cables[0].attachments[0].place.arc_length = 0.7;
+  SceneDesc held_at_junction = held;
+  held_at_junction.cables[0].attachments.push_back(scenes::attachment("fork", PlaceDesc::At::arc_length, {0.2, 0, 1}));
+  held_at_junction.cables[0].attachments[1].place.arc_length = 0.4;
+  SceneDesc ears = free;
+  SceneDesc straight = held;
+  straight.cables[0].initial.type = InitialShapeDesc::Type::straight;
+  straight.cables[0].initial.from = {0, 0, 1};
+  straight.cables[0].initial.to = {1, 0, 1};
+  SceneDesc hung = held;
+  add_cable(hung, "loop", 0.6, 12);
+  add_junction(hung, "cable", 0.5, {branch("loop"), branch("loop", End::end)});
+  for (SceneDesc* noose : {&free, &held, &held_inside, &held_at_junction, &straight})
+    add_junction(*noose, "cable", 0.4, {branch("cable", End::end)});
+  SceneDesc ring = ears;
+  add_junction(ring, "cable", 0, {branch("cable", End::end)});
+  add_junction(ears, "cable", 0.3, {branch("cable")});
+  add_junction(ears, "cable", 0.7, {branch("cable", End::end)});
+  return {{"free", free},         {"held", held}, {"held_inside", held_inside}, {"held_at_junction", held_at_junction},
+          {"straight", straight}, {"hung", hung}, {"ears", ears},               {"ring", ring}};
+}
+
+TEST(Junctions, cablesWithoutAShapeBeginAsLoops) {
+  for (const double bending_stiffness : {0.0, 0.002, 0.02}) {
+    for (Loop& loop : loops(bending_stiffness)) {
+      for (const JunctionDesc::Type type : {JunctionDesc::Type::rigid, JunctionDesc::Type::hinge}) {
+        SCOPED_TRACE(loop.name + " " + std::to_string(bending_stiffness) + (type == JunctionDesc::Type::rigid ? " rigid" : " hinge"));
+        for (JunctionDesc& junction : loop.scene.junctions) junction.type = type;
+        BoundaryInputs inputs = initial_frames(loop.scene);
+        World world(loop.scene, inputs);
+        EXPECT_LT(largest_gap(world), 1e-6);
+        EXPECT_EQ(world.findings().misfits.size(), loop.name == "straight" ? 1U : 0U);
+        const std::vector<Vector3> before = world.cables()[0].state.positions;
+        run(world, inputs, world.time_step());
+        // Nothing is drawn together by the first step.
+        for (std::size_t i = 0; i < before.size(); ++i)
+          EXPECT_LT((world.cables()[0].state.positions[i] - before[i]).norm(), 0.01) << i;
+        run(world, inputs, 0.3);
+        EXPECT_LT(largest_gap(world), 1e-6);
+      }
+    }
+  }
+}
+
 TEST(Junctions, waitForEveryFrameOfTheHarness) {
   SceneDesc scene = ladder();
   scene.cables[0].attachments[0].frame = "early";

@@ -208,6 +208,27 @@ TEST(Start, WaitingCableStartsAtRest) {
   EXPECT_LT(speed, 1e-6);
 }
 
+/// Folded there it would be at rest, too, and fall open at the first touch.
+TEST(Start, CableOnAHingeBetweenItsEndsIsNotFolded) {
+  for (const double place : {0.5, 0.45, 0.2}) {
+    for (const double stiffness : {1e-3, 1e-2, 1.0}) {
+      SCOPED_TRACE(std::to_string(place) + " " + std::to_string(stiffness));
+      SceneDesc scene = scenes::one_cable(50);
+      scene.materials[0].material.bending_stiffness = stiffness;
+      scene.cables[0].attachments = {scenes::attachment("pin", At::arc_length, {0, 0, 1})};
+      scene.cables[0].attachments[0].place.arc_length = place * scene.cables[0].length;
+      World world(scene, initial_frames(scene));
+      EXPECT_TRUE(world.findings().unsettled.empty());
+      const std::vector<Vector3> before = world.cables()[0].state.positions;
+      for (std::size_t i = 2; i < before.size(); ++i)
+        EXPECT_GT((before[i] - before[i - 1]).dot(before[i - 1] - before[i - 2]), 0) << i;
+      for (int i = 0; i < 200; ++i) ASSERT_EQ(world.step(initial_frames(scene)).status, StepResult::Status::ok);
+      for (std::size_t i = 0; i < before.size(); ++i)
+        EXPECT_LT((world.cables()[0].state.positions[i] - before[i]).norm(), 1e-4) << i;
+    }
+  }
+}
+
 TEST(Start, ShapeThatIsGivenIsKept) {
   Case level = cases()[0];
   SceneDesc scene = make_scene(level, 0.1, infinity);

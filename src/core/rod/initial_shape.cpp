@@ -33,17 +33,20 @@ Vector3 moved_apart(const Vector3& from, const Vector3& to, const Vector3& down,
   return apart.norm() < length ? Vector3(from + apart) : to;
 }
 
-/// Hangs between each two neighbouring holders, straight down from the outer ones; `open`: without folds.
+/// Hangs between each two neighbouring holders, straight down from the outer ones.
 std::vector<Vector3> hanging(const CableModel& model, const CableState& state, const std::vector<HeldNode>& held,
-                             const Vector3& gravity, bool open) {
+                             const Vector3& gravity, Folds folds) {
   if (held.empty()) return straight_line(Vector3::Zero(), Vector3::UnitX(), state);
   const bool weightless = gravity.norm() == 0;
   const Vector3 down = weightless ? Vector3(-Vector3::UnitZ()) : Vector3(gravity.normalized());
   const double weight = weightless ? 1 : gravity.norm();
   const CableMaterials materials(model, state);
+  const bool balances =
+      folds == Folds::nowhere && held.size() == 1 && held.front().node > 0 && held.front().node < state.segments();
+  const Vector3 after = balances ? Vector3(down.unitOrthogonal()) : down, before = balances ? Vector3(-after) : down;
   std::vector<Vector3> nodes(state.nodes());
   nodes[held.front().node] = held.front().position;
-  for (int i = held.front().node; i-- > 0;) nodes[i] = nodes[i + 1] + state.rest_lengths[i] * down;
+  for (int i = held.front().node; i-- > 0;) nodes[i] = nodes[i + 1] + state.rest_lengths[i] * before;
   for (std::size_t k = 0; k + 1 < held.size(); ++k) {
     const int first = held[k].node, last = held[k + 1].node;
     nodes[last] = held[k + 1].position;
@@ -54,12 +57,12 @@ std::vector<Vector3> hanging(const CableModel& model, const CableState& state, c
     std::vector<double> axial_stiffness;
     for (int i = first; i < last; ++i) axial_stiffness.push_back(materials[i].axial_stiffness);
     const Vector3 &from = held[k].position, &to = held[k + 1].position;
-    const Vector3 end = open ? moved_apart(from, to, down, state.length(first, last)) : to;
+    const Vector3 end = folds != Folds::anywhere ? moved_apart(from, to, down, state.length(first, last)) : to;
     std::vector<Vector3> span = hanging_chain(from, end, lengths, weights, down, axial_stiffness);
     for (int i = 0; i <= last - first; ++i) span[i] += static_cast<double>(i) / (last - first) * (to - end);
     std::copy(span.begin(), span.end(), nodes.begin() + first);
   }
-  for (int i = held.back().node; i < state.segments(); ++i) nodes[i + 1] = nodes[i] + state.rest_lengths[i] * down;
+  for (int i = held.back().node; i < state.segments(); ++i) nodes[i + 1] = nodes[i] + state.rest_lengths[i] * after;
   return nodes;
 }
 
@@ -81,7 +84,11 @@ std::vector<Vector3> spread(const std::vector<Vector3>& points, const std::vecto
 
 }  // namespace
 
-bool set_initial_state(const InitialShapeDesc& initial, bool settles, const CableModel& model, const std::vector<HeldNode>& held,
+bool is_given(const InitialShapeDesc& initial) {
+  return initial.type == InitialShapeDesc::Type::straight || initial.type == InitialShapeDesc::Type::points;
+}
+
+bool set_initial_state(const InitialShapeDesc& initial, Folds folds, const CableModel& model, const std::vector<HeldNode>& held,
                        const Vector3& gravity, CableState& state) {
   using Type = InitialShapeDesc::Type;
   state.velocities.assign(state.nodes(), Vector3::Zero());
@@ -105,7 +112,7 @@ bool set_initial_state(const InitialShapeDesc& initial, bool settles, const Cabl
     case Type::automatic:
     case Type::catenary:
     case Type::settled:
-      state.positions = hanging(model, state, held, gravity, settles);
+      state.positions = hanging(model, state, held, gravity, folds);
       project_positions(model, held, state);
       break;
   }
@@ -120,17 +127,23 @@ bool set_initial_state(const InitialShapeDesc& initial, bool settles, const Cabl
 }
 
 bool settles_at_start(const CableDesc& desc, const CableModel& model, const CableState& state) {
-  if (desc.initial.type == InitialShapeDesc::Type::settled) return true;
-  return desc.initial.type == InitialShapeDesc::Type::automatic && CableMaterials(model, state).any_bends() &&
-         std::any_of(desc.attachments.begin(), desc.attachments.end(),
-                     [](const AttachmentDesc& a) { return a.type == AttachmentType::clamp; });
+  using Type = InitialShapeDesc::Type;
+  if (desc.initial.type != Type::automatic) return desc.initial.type == Type::settled;
+  if (!CableMaterials(model, state).any_bends()) return false;
+  const auto is_between_ends = [&](const AttachmentDesc& a) {
+    const int node = node_at(desc, a.place);
+    return node > 0 && node < desc.segments;
+  };
+  return std::any_of(desc.attachments.begin(), desc.attachments.end(),
+                     [](const AttachmentDesc& a) { return a.type == AttachmentType::clamp; }) ||
+         (desc.attachments.size() == 1 && is_between_ends(desc.attachments.front()));
 }
 
 namespace {
 
 /// Nodes where they would hang between what holds them, whatever they did before.
 void hang_nodes_anew(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state) {
-  state.positions = hanging(model, state, held, gravity, false);
+  state.positions = hanging(model, state, held, gravity, Folds::anywhere);
   project_positions(model, held, state);
 }
 
@@ -211,7 +224,7 @@ void carry_with_targets(const CableModel& model, const std::vector<HeldNode>& he
   const bool elastic = CableMaterials(model, state).any_elastic();
   if (elastic && !project_lengths(held, lengths, state)) {
     if (held.size() > 1)
-      state.positions = hanging(model, state, held, gravity, false);
+      state.positions = hanging(model, state, held, gravity, Folds::anywhere);
     else
       set_lengths(anchor_of(held, state), lengths, state);
   }

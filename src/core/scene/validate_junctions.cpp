@@ -1,5 +1,6 @@
 #include "scene/validate_junctions.h"
 
+#include <cstdlib>
 #include <map>
 #include <utility>
 
@@ -10,6 +11,8 @@ namespace {
 
 /// A node of a cable, by their indices.
 using CableNode = std::pair<std::size_t, int>;
+
+constexpr int fewest_segments_of_loop = 3;
 
 const char* name_of(BranchDesc::End end) {
   return end == BranchDesc::End::start ? "start" : "end";
@@ -61,9 +64,15 @@ class JunctionChecker {
     if (!cable || !has_sound_size(*cable)) return;
     const int node = branch.end == BranchDesc::End::start ? 0 : cable->segments;
     const std::string place = std::string(name_of(branch.end)) + " of " + quoted(cable->name);
-    if (branch.cable == junction.cable && is_sound(*cable, junction.place) && node_at(*cable, junction.place) == node)
-      return errors_.add(key, place + ", where the junction is",
-                         "another cable, or another place of this one: a cable cannot be joined with itself at one place");
+    if (branch.cable == junction.cable && is_sound(*cable, junction.place)) {
+      const int segments = std::abs(node_at(*cable, junction.place) - node);
+      if (segments == 0)
+        return errors_.add(key, place + ", where the junction is",
+                           "another cable, or another place of this one: a cable cannot be joined with itself at one place");
+      if (segments < fewest_segments_of_loop)
+        errors_.add(key, place + ", " + std::to_string(segments) + " of its segments from the junction",
+                    "an end at least " + std::to_string(fewest_segments_of_loop) + " segments away: fewer are no loop");
+    }
     const CableNode end = node_of(*cable, node);
     const auto [first, is_new] = branches_.emplace(end, key);
     if (!is_new) errors_.add(key + ".end", place, "an end that is joined once; " + first->second + " joins it already");

@@ -38,6 +38,20 @@ double misfit(const SimulatedCable& cable) {
   return largest;
 }
 
+/// [of a segment] How far nodes are from the junctions that hold them.
+double opening(const SimulatedCable& cable, const KinematicTargets& targets, const std::vector<Attachment>& attachments,
+               const std::vector<Pose>& frames) {
+  double largest = 0;
+  for (const KinematicTarget& target : targets.nodes) {
+    const Attachment& attachment = attachments[target.attachment];
+    if (!attachment.is_junction) continue;
+    const Vector3 place = (frames[attachment.frame] * attachment.pose).position;
+    const double away = (cable.state.positions[target.node] - place).norm();
+    largest = std::max(largest, away * cable.state.segments() / cable.state.length());
+  }
+  return largest;
+}
+
 }  // namespace
 
 /// Where cables that have just started do not reach each other with the shapes that they have by default, what joins them goes to
@@ -51,7 +65,11 @@ void World::Implementation::draw_together(const std::vector<int>& descs) {
     const KinematicTargets& targets = state.cable_progress[cable].targets;
     if (follows_bodies(targets, state.attachments) && !slides(targets)) started.push_back(cable);
   }
-  const auto is_loose = [&](int cable) { return misfit(state.cables[cable]) > loose; };
+  const auto is_loose = [&](int cable) {
+    const SimulatedCable& of = state.cables[cable];
+    return misfit(of) > loose ||
+           opening(of, state.cable_progress[cable].targets, state.attachments, state.frames.poses) > loose;
+  };
   if (std::none_of(started.begin(), started.end(), is_loose)) return;
 
   std::vector<Drawn> points(state.bodies.size());
@@ -78,6 +96,16 @@ void World::Implementation::draw_together(const std::vector<int>& descs) {
       points[attachment.holder].mobility = is_given ? 0 : 0.5;
       drawn_cable.points[target.node] = attachment.holder;
       drawn_cable.offsets[target.node] = body.pose.orientation * attachment.pose.position;
+    }
+  }
+  // A frame that holds a cable where it branches holds the junction.
+  for (DrawnCable& of : cables) {
+    for (const Attachment& attachment : state.attachments) {
+      if (attachment.body != cable_id(of.cable) || !attachment.is_junction) continue;
+      int& point = of.points[attachment.node];
+      if (point == attachment.holder) continue;
+      points[attachment.holder] = {points[point].place, 0};
+      point = attachment.holder;
     }
   }
 

@@ -4,9 +4,11 @@
 #include <numeric>
 #include <set>
 
+#include "rod/loop_shape.h"
 #include "rod/rod_frames.h"
 #include "scene/scene_materials.h"
 #include "scene/validate_holders.h"
+#include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/rotation.h"
 #include "world/implementation.h"
 
@@ -18,7 +20,8 @@ namespace {
 const Quaternion reversed(0, 0, 0, 1);
 /// Of the length of cable around a node: less from one side of it to the other is a fold, which has no direction to spin about.
 constexpr double folded = 1e-6;
-
+/// [of the length between them] Nodes that are to be at one place and are farther apart than this are brought together by a loop.
+constexpr double open_as_given = 0.5, open_as_hung = 1e-3;
 /// [kg m^2] Of the halves of the segments beside a node about that node. A junction has no inertia of its own: it turns with
 /// these, which is less the shorter the segments are, of second order as all that they leave out.
 double inertia_around(const SceneDesc& scene, const CableDesc& cable, int node) {
@@ -37,6 +40,25 @@ Vector3 spin_at(const CableState& state, int node) {
   const Vector3 way = state.positions[after] - state.positions[before];
   if (!(way.norm() > folded * state.length(before, after))) return Vector3::Zero();
   return way.cross(state.velocities[after] - state.velocities[before]) / way.squaredNorm();
+}
+
+bool lay_loops(const std::vector<Attachment>& attachments, BodyId body, bool is_given, SimulatedCable& cable) {
+  CableState& shape = cable.state;
+  const double least = is_given ? open_as_given : CableMaterials(cable).any_bends() ? 0 : open_as_hung;
+  bool is_closed = true;
+  for (std::size_t i = 0; i < attachments.size(); ++i) {
+    const Attachment& one = attachments[i];
+    if (!one.is_junction || one.body != body) continue;
+    for (std::size_t k = i + 1; k < attachments.size(); ++k) {
+      const Attachment& other = attachments[k];
+      if (!other.is_junction || other.body != body || other.holder != one.holder) continue;
+      const auto [first, last] = std::minmax(one.node, other.node);
+      if ((shape.positions[last] - shape.positions[first]).norm() < least * shape.length(first, last)) continue;
+      lay_loop(first, last, shape);
+      is_closed = false;
+    }
+  }
+  return is_closed;
 }
 
 std::vector<JunctionPlace> junction_places(const SceneDesc& scene, const CableDesc& cable) {

@@ -327,9 +327,12 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
       state.scene->gravity.at(boundary.nodes.empty() ? Vector3(Vector3::Zero()) : boundary.nodes.front().position);
   const bool settles = settles_at_start(desc, *cable.model, cable.state);
   const std::optional<InitialShapeDesc> from_trunk = shape_from_trunk(desc);
-  if (!set_initial_state(from_trunk.value_or(desc.initial), settles, *cable.model, boundary.nodes, gravity, cable.state) &&
-      !from_trunk)
-    findings.misfits.push_back(desc.name);
+  const Folds folds = !settles ? Folds::anywhere : boundary.directions.empty() ? Folds::nowhere : Folds::at_holders;
+  const bool has_shape =
+      set_initial_state(from_trunk.value_or(desc.initial), folds, *cable.model, boundary.nodes, gravity, cable.state);
+  const bool is_closed = lay_loops(holding, cable_id(index), is_given(desc.initial), cable);
+  if (!is_closed) carry_along(*cable.model, boundary.nodes, gravity, cable.state);
+  if ((!has_shape && !from_trunk) || (!is_closed && is_given(desc.initial))) findings.misfits.push_back(desc.name);
   // Where velocities of holders are not known yet, the first step finds them, and all go together.
   const auto starts = [](const KinematicTarget& target) { return target.starts; };
   const bool moves = std::none_of(memory.targets.nodes.begin(), memory.targets.nodes.end(), starts);
