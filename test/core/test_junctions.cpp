@@ -357,6 +357,25 @@ TEST(Junctions, cablesWithoutAShapeBeginAsLoops) {
   }
 }
 
+TEST(Junctions, trunksMayBeClampedBetweenTheirEnds) {
+  for (const Vector3& rotation : {Vector3(0, 0, 0), Vector3(0, 1.5, 0), Vector3(0, -1.5, 0), Vector3(0.3, 0.5, 1.57)}) {
+    SceneDesc scene = nothing();
+    CableDesc& trunk = add_cable(scene, "trunk", 1, 40);
+    trunk.attachments = {scenes::attachment("wall", PlaceDesc::At::arc_length, {0, 0, 1}, "", AttachmentType::clamp)};
+    trunk.attachments[0].place.arc_length = 0.8;
+    trunk.attachments[0].rotation = rotation;
+    add_cable(scene, "arm", 0.4, 16);
+    add_junction(scene, "trunk", 0.5, {branch("arm")});
+    BoundaryInputs inputs = initial_frames(scene);
+    World world(scene, inputs);
+    EXPECT_TRUE(world.findings().unsettled.empty());
+    const std::vector<Vector3> before = world.cables()[0].state.positions;
+    run(world, inputs, 0.2);
+    for (std::size_t i = 0; i < before.size(); ++i)
+      EXPECT_LT((world.cables()[0].state.positions[i] - before[i]).norm(), 1e-4) << i;
+  }
+}
+
 TEST(Junctions, waitForEveryFrameOfTheHarness) {
   SceneDesc scene = ladder();
   scene.cables[0].attachments[0].frame = "early";

@@ -229,6 +229,27 @@ TEST(Start, CableOnAHingeBetweenItsEndsIsNotFolded) {
   }
 }
 
+/// One that is a whole rod, though hardly another one than the cable, is found in the same equilibrium.
+TEST(Start, RibbonOnAClampBetweenItsEndsStartsAsACableDoes) {
+  for (const Vector3& rotation : {Vector3(0, 0, 0), Vector3(0, 1.57, 0), Vector3(0, -1.57, 0), Vector3(0.3, 0.5, 1.57)}) {
+    for (const double place : {0.5, 0.8}) {
+      SCOPED_TRACE(std::to_string(rotation.y()) + " " + std::to_string(place));
+      SceneDesc scene = scenes::one_cable(40);
+      MaterialDesc& material = scene.materials[0].material;
+      material.bending_stiffness = 0.01;
+      material.torsional_stiffness = 0.01;
+      scene.cables[0].attachments = {clamp("pin", At::arc_length, {0, 0, 1}, rotation)};
+      scene.cables[0].attachments[0].place.arc_length = place * scene.cables[0].length;
+      const World cable(scene, initial_frames(scene));
+      material.bending_stiffness = {0.01, 0.010001};
+      World ribbon(scene, initial_frames(scene));
+      EXPECT_TRUE(ribbon.findings().unsettled.empty());
+      EXPECT_NEAR(ribbon.energy().total(), cable.energy().total(), 1e-3 * cable.energy().bend + 1e-6);
+      EXPECT_LT(fastest(ribbon, 200), 2e-4);
+    }
+  }
+}
+
 TEST(Start, ShapeThatIsGivenIsKept) {
   Case level = cases()[0];
   SceneDesc scene = make_scene(level, 0.1, infinity);

@@ -10,6 +10,10 @@
 
 namespace verlet_cable {
 
+bool is_held_between_ends(const std::vector<HeldNode>& held, const CableState& state) {
+  return held.size() == 1 && held.front().node > 0 && held.front().node < state.segments();
+}
+
 namespace {
 
 /// Relative; more is not left by steps, but by holders that have gone.
@@ -41,8 +45,7 @@ std::vector<Vector3> hanging(const CableModel& model, const CableState& state, c
   const Vector3 down = weightless ? Vector3(-Vector3::UnitZ()) : Vector3(gravity.normalized());
   const double weight = weightless ? 1 : gravity.norm();
   const CableMaterials materials(model, state);
-  const bool balances =
-      folds == Folds::nowhere && held.size() == 1 && held.front().node > 0 && held.front().node < state.segments();
+  const bool balances = folds == Folds::nowhere && is_held_between_ends(held, state);
   const Vector3 after = balances ? Vector3(down.unitOrthogonal()) : down, before = balances ? Vector3(-after) : down;
   std::vector<Vector3> nodes(state.nodes());
   nodes[held.front().node] = held.front().position;

@@ -10,6 +10,9 @@ namespace verlet_cable {
 /// Whether the places of nodes are given, and not where the cable hangs.
 bool is_given(const InitialShapeDesc& initial);
 
+/// Whether one holder alone holds the cable, with a free end on each side.
+bool is_held_between_ends(const std::vector<HeldNode>& held, const CableState& state);
+
 /// Where a cable that hangs may be folded. A fold has no side to which it falls open: what is to settle from there has none.
 enum class Folds {
   anywhere,

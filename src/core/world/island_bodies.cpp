@@ -226,15 +226,6 @@ void IslandStepper::take_bodies_along(int index, std::vector<char>& placed) {
   }
 }
 
-/// Of a cable that was hung anew from these nodes.
-void IslandStepper::close_loops(int index, const std::vector<HeldNode>& held) {
-  SimulatedCable& cable = state_.cables[index];
-  const std::vector<Vector3> before = cable.state.positions;
-  if (lay_loops(state_.attachments, cable_id(index), false, cable)) return;
-  carry_frames(before, cable.state);
-  carry_along(*cable.model, held, gravity_near(state_, index), cable.state);
-}
-
 /// Puts cables and the bodies that hold them, which are stuck, where they would hang: those that frames hold first, between these
 /// alone; then, as far as they reach, those that come off them.
 void IslandStepper::hang_on_bodies_anew(const Island& island) {
@@ -252,7 +243,7 @@ void IslandStepper::hang_on_bodies_anew(const Island& island) {
     if (held.empty()) return false;
     const CableState before = cable.state;
     hang_anew(*cable.model, held, gravity_near(state_, island.cables[k]), cable.state);
-    close_loops(island.cables[k], held);
+    close_loops(state_.attachments, cable_id(island.cables[k]), held, gravity_near(state_, island.cables[k]), cable);
     if (!finite(cable.state.positions)) cable.state = before;
     return true;
   };

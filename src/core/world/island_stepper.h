@@ -121,7 +121,6 @@ class IslandStepper {
   void stop(const Island& island, IslandOutcome& found);
   void give_up(const Island& island);
   bool give_up(int cable, bool touches, Boundary& boundary);
-  void close_loops(int cable, const std::vector<HeldNode>& held);
   void hang_on_bodies_anew(const Island& island);
   void take_bodies_along(int cable, std::vector<char>& placed);
   bool was_easy() const;

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <set>
 
+#include "rod/initial_shape.h"
 #include "rod/loop_shape.h"
 #include "rod/rod_frames.h"
 #include "scene/scene_materials.h"
@@ -59,6 +60,14 @@ bool lay_loops(const std::vector<Attachment>& attachments, BodyId body, bool is_
     }
   }
   return is_closed;
+}
+
+void close_loops(const std::vector<Attachment>& attachments, BodyId body, const std::vector<HeldNode>& held, const Vector3& gravity,
+                 SimulatedCable& cable) {
+  const std::vector<Vector3> before = cable.state.positions;
+  if (lay_loops(attachments, body, false, cable)) return;
+  carry_frames(before, cable.state);
+  carry_along(*cable.model, held, gravity, cable.state);
 }
 
 std::vector<JunctionPlace> junction_places(const SceneDesc& scene, const CableDesc& cable) {

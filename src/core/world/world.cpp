@@ -327,7 +327,11 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
       state.scene->gravity.at(boundary.nodes.empty() ? Vector3(Vector3::Zero()) : boundary.nodes.front().position);
   const bool settles = settles_at_start(desc, *cable.model, cable.state);
   const std::optional<InitialShapeDesc> from_trunk = shape_from_trunk(desc);
-  const Folds folds = !settles ? Folds::anywhere : boundary.directions.empty() ? Folds::nowhere : Folds::at_holders;
+  const bool has_frames = is_whole_rod(*cable.model, cable.state) || desc.rest_curvature.type != RestCurvatureDesc::Type::straight;
+  const Folds folds = !settles                                      ? Folds::anywhere
+                      : boundary.directions.empty() || has_frames ? Folds::nowhere
+                                                                    : Folds::at_holders;
+  const bool is_spread = folds == Folds::nowhere && is_held_between_ends(boundary.nodes, cable.state) && boundary.nodes.front().body < 0;
   const bool has_shape =
       set_initial_state(from_trunk.value_or(desc.initial), folds, *cable.model, boundary.nodes, gravity, cable.state);
   const bool is_closed = lay_loops(holding, cable_id(index), is_given(desc.initial), cable);
@@ -351,9 +355,12 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   state.cables.push_back(std::move(cable));
   state.cable_progress.push_back(std::move(memory));
   if (moves && slides(state.cable_progress[index].targets)) move_with_holders(index, state);
-  // What is joined settles together.
-  if (settles && held && !branches && !Settling(index, state, workspaces.value.local(), cancelled).settle_start())
-    findings.unsettled.push_back(desc.name);
+  // What is joined settles together; a trunk that was spread out does not lead there.
+  if (settles && held && (!branches || is_spread)) {
+    const bool is_settled = Settling(index, state, workspaces.value.local(), cancelled).settle_start();
+    if (!is_settled && !branches) findings.unsettled.push_back(desc.name);
+    if (branches) close_loops(holding, cable_id(index), boundary.nodes, gravity, state.cables[index]);
+  }
   place_bodies_on(placing);
 }
 
