@@ -99,14 +99,14 @@ void World::Implementation::draw_together(const std::vector<int>& descs) {
     }
   }
   // A frame that holds a cable where it branches holds the junction.
-  for (DrawnCable& of : cables) {
-    for (const Attachment& attachment : state.attachments) {
-      if (attachment.body != cable_id(of.cable) || !attachment.is_junction) continue;
-      int& point = of.points[attachment.node];
-      if (point == attachment.holder) continue;
-      points[attachment.holder] = {points[point].place, 0};
-      point = attachment.holder;
-    }
+  std::vector<int> drawn_as(state.cables.size(), -1);
+  for (std::size_t k = 0; k < cables.size(); ++k) drawn_as[cables[k].cable] = static_cast<int>(k);
+  for (const Attachment& attachment : state.attachments) {
+    if (!attachment.is_junction || drawn_as[attachment.body.index] < 0) continue;
+    int& point = cables[drawn_as[attachment.body.index]].points[attachment.node];
+    if (point == attachment.holder) continue;
+    points[attachment.holder] = {points[point].place, 0};
+    point = attachment.holder;
   }
 
   double worst = infinity;

@@ -1,6 +1,7 @@
 #include "world/junctions.h"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 #include <set>
 
@@ -46,18 +47,16 @@ Vector3 spin_at(const CableState& state, int node) {
 bool lay_loops(const std::vector<Attachment>& attachments, BodyId body, bool is_given, SimulatedCable& cable) {
   CableState& shape = cable.state;
   const double least = is_given ? open_as_given : CableMaterials(cable).any_bends() ? 0 : open_as_hung;
+  std::map<int, int> nodes;  // by junction
   bool is_closed = true;
-  for (std::size_t i = 0; i < attachments.size(); ++i) {
-    const Attachment& one = attachments[i];
-    if (!one.is_junction || one.body != body) continue;
-    for (std::size_t k = i + 1; k < attachments.size(); ++k) {
-      const Attachment& other = attachments[k];
-      if (!other.is_junction || other.body != body || other.holder != one.holder) continue;
-      const auto [first, last] = std::minmax(one.node, other.node);
-      if ((shape.positions[last] - shape.positions[first]).norm() < least * shape.length(first, last)) continue;
-      lay_loop(first, last, shape);
-      is_closed = false;
-    }
+  for (const Attachment& attachment : attachments) {
+    if (!attachment.is_junction || attachment.body != body) continue;
+    const auto [joined, is_new] = nodes.emplace(attachment.holder, attachment.node);
+    if (is_new) continue;
+    const auto [first, last] = std::minmax(joined->second, attachment.node);
+    if ((shape.positions[last] - shape.positions[first]).norm() < least * shape.length(first, last)) continue;
+    lay_loop(first, last, shape);
+    is_closed = false;
   }
   return is_closed;
 }
