@@ -246,6 +246,10 @@ TEST(Start, RibbonOnAClampBetweenItsEndsStartsAsACableDoes) {
       EXPECT_TRUE(ribbon.findings().unsettled.empty());
       EXPECT_NEAR(ribbon.energy().total(), cable.energy().total(), 1e-3 * cable.energy().bend + 1e-6);
       EXPECT_LT(fastest(ribbon, 200), 2e-4);
+      scene.cables[0].rest_twist = 3;
+      World twisted(scene, initial_frames(scene));
+      EXPECT_TRUE(twisted.findings().unsettled.empty());
+      EXPECT_LT(fastest(twisted, 200), 2e-4);
     }
   }
 }

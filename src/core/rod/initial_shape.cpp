@@ -133,13 +133,15 @@ bool settles_at_start(const CableDesc& desc, const CableModel& model, const Cabl
   using Type = InitialShapeDesc::Type;
   if (desc.initial.type != Type::automatic) return desc.initial.type == Type::settled;
   if (!CableMaterials(model, state).any_bends()) return false;
-  const auto is_between_ends = [&](const AttachmentDesc& a) {
-    const int node = node_at(desc, a.place);
-    return node > 0 && node < desc.segments;
-  };
+  int ends = 0, between_ends = 0;  // on frames
+  for (const AttachmentDesc& attachment : desc.attachments) {
+    if (!attachment.body.empty()) continue;
+    const int node = node_at(desc, attachment.place);
+    ++(node > 0 && node < desc.segments ? between_ends : ends);
+  }
   return std::any_of(desc.attachments.begin(), desc.attachments.end(),
                      [](const AttachmentDesc& a) { return a.type == AttachmentType::clamp; }) ||
-         (desc.attachments.size() == 1 && is_between_ends(desc.attachments.front()));
+         (ends == 0 && between_ends == 1);
 }
 
 namespace {

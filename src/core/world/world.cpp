@@ -327,10 +327,10 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
       state.scene->gravity.at(boundary.nodes.empty() ? Vector3(Vector3::Zero()) : boundary.nodes.front().position);
   const bool settles = settles_at_start(desc, *cable.model, cable.state);
   const std::optional<InitialShapeDesc> from_trunk = shape_from_trunk(desc);
-  const bool has_frames = is_whole_rod(*cable.model, cable.state) || desc.rest_curvature.type != RestCurvatureDesc::Type::straight;
-  const Folds folds = !settles                                      ? Folds::anywhere
-                      : boundary.directions.empty() || has_frames ? Folds::nowhere
-                                                                    : Folds::at_holders;
+  const bool has_frames = is_whole_rod(*cable.model, cable.state) || desc.rest_twist != 0 ||
+                          desc.rest_curvature.type != RestCurvatureDesc::Type::straight;
+  const Folds fewest = boundary.directions.empty() || has_frames ? Folds::nowhere : Folds::at_holders;
+  const Folds folds = settles ? fewest : Folds::anywhere;
   const bool is_spread = folds == Folds::nowhere && is_held_between_ends(boundary.nodes, cable.state) && boundary.nodes.front().body < 0;
   const bool has_shape =
       set_initial_state(from_trunk.value_or(desc.initial), folds, *cable.model, boundary.nodes, gravity, cable.state);
