@@ -298,7 +298,8 @@ TEST(Junctions, branchesPayOutAndTakeIn) {
   }
 }
 
-/// Cables without a shape of their own that are joined with themselves, or at both ends with one node; the junctions' cables and nodes.
+/// Cables without a shape of their own that are joined with themselves, or at both ends with one node; the junctions' cables and
+/// nodes.
 struct Loop {
   std::string name;
   SceneDesc scene;
@@ -331,15 +332,22 @@ std::vector<Loop> loops(double bending_stiffness) {
   add_junction(ring, "cable", 0, {branch("cable", End::end)});
   add_junction(ears, "cable", 0.3, {branch("cable")});
   add_junction(ears, "cable", 0.7, {branch("cable", End::end)});
-  return {{"free", free},         {"held", held}, {"held_inside", held_inside}, {"held_at_junction", held_at_junction},
-          {"straight", straight}, {"hung", hung}, {"ears", ears},               {"ring", ring}};
+  return {{"free", free},
+          {"held", held},
+          {"held_inside", held_inside},
+          {"held_at_junction", held_at_junction},
+          {"straight", straight},
+          {"hung", hung},
+          {"ears", ears},
+          {"ring", ring}};
 }
 
 TEST(Junctions, cablesWithoutAShapeBeginAsLoops) {
   for (const double bending_stiffness : {0.0, 0.002, 0.02}) {
     for (Loop& loop : loops(bending_stiffness)) {
       for (const JunctionDesc::Type type : {JunctionDesc::Type::rigid, JunctionDesc::Type::hinge}) {
-        SCOPED_TRACE(loop.name + " " + std::to_string(bending_stiffness) + (type == JunctionDesc::Type::rigid ? " rigid" : " hinge"));
+        SCOPED_TRACE(loop.name + " " + std::to_string(bending_stiffness) +
+                     (type == JunctionDesc::Type::rigid ? " rigid" : " hinge"));
         for (JunctionDesc& junction : loop.scene.junctions) junction.type = type;
         BoundaryInputs inputs = initial_frames(loop.scene);
         World world(loop.scene, inputs);

@@ -326,11 +326,14 @@ void ContactSet::look_at(const std::vector<SimulatedCable>& cables, const Segmen
   const double distance = closest.between.norm();
   if (distance > far) return;
   const Vector3 normal = distance > 0 ? Vector3(closest.between / distance) : along_a.unitOrthogonal();
-  const Vector3 velocity =
-      interpolate(a.state.velocities, i, closest.first) - interpolate(b.state.velocities, j, closest.second);
+  const Vector3 velocity = interpolate(a.state.velocities, i, closest.first) - interpolate(b.state.velocities, j, closest.second);
   if (!may_close(distance - surface, normal, velocity, radius, h)) return;
-  near_.push_back({{pair.first.cable, i, closest.first}, {pair.second.cable, j, closest.second}, normal, velocity,
-                   distance - surface, radius});
+  near_.push_back({{pair.first.cable, i, closest.first},
+                   {pair.second.cable, j, closest.second},
+                   normal,
+                   velocity,
+                   distance - surface,
+                   radius});
 }
 
 void ContactSet::add_pair(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members,

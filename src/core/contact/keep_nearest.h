@@ -6,8 +6,8 @@
 
 namespace verlet_cable {
 
-/// Leaves `most` of the items from `first` on: those that come first by `nearer`, in the order of `before`. Both orders are strict
-/// and total, so that the same are left wherever they stood.
+/// Leaves `most` of the items from `first` on: those that come first by `nearer`, in the order of `before`. Both orders are
+/// strict and total, so that the same are left wherever they stood.
 template <class Item, class Nearer, class Before>
 void keep_nearest(std::size_t first, std::size_t most, std::vector<Item>& items, const Nearer& nearer, const Before& before) {
   if (items.size() - first <= most) return;

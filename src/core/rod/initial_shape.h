@@ -38,8 +38,8 @@ void carry_with_targets(const CableModel& model, const std::vector<HeldNode>& he
 /// Hangs a cable from its holders, whatever its shape was.
 void hang_anew(const CableModel& model, const std::vector<HeldNode>& held, const Vector3& gravity, CableState& state);
 
-/// Whether a cable starts in static equilibrium: also if it is given no shape, and a clamp turns it away from its catenary, or what
-/// holds it in between its ends alone would fold it.
+/// Whether a cable starts in static equilibrium: also if it is given no shape, and a clamp turns it away from its catenary, or
+/// what holds it in between its ends alone would fold it.
 bool settles_at_start(const CableDesc& desc, const CableModel& model, const CableState& state);
 
 /// Gives the segments of an inextensible cable the lengths that its holders allow, after a holder that had lengthened it let go:

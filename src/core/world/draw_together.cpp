@@ -67,8 +67,7 @@ void World::Implementation::draw_together(const std::vector<int>& descs) {
   }
   const auto is_loose = [&](int cable) {
     const SimulatedCable& of = state.cables[cable];
-    return misfit(of) > loose ||
-           opening(of, state.cable_progress[cable].targets, state.attachments, state.frames.poses) > loose;
+    return misfit(of) > loose || opening(of, state.cable_progress[cable].targets, state.attachments, state.frames.poses) > loose;
   };
   if (std::none_of(started.begin(), started.end(), is_loose)) return;
 

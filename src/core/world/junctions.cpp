@@ -61,8 +61,8 @@ bool lay_loops(const std::vector<Attachment>& attachments, BodyId body, bool is_
   return is_closed;
 }
 
-void close_loops(const std::vector<Attachment>& attachments, BodyId body, const std::vector<HeldNode>& held, const Vector3& gravity,
-                 SimulatedCable& cable) {
+void close_loops(const std::vector<Attachment>& attachments, BodyId body, const std::vector<HeldNode>& held,
+                 const Vector3& gravity, SimulatedCable& cable) {
   const std::vector<Vector3> before = cable.state.positions;
   if (lay_loops(attachments, body, false, cable)) return;
   carry_frames(before, cable.state);

@@ -331,7 +331,8 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
                           desc.rest_curvature.type != RestCurvatureDesc::Type::straight;
   const Folds fewest = boundary.directions.empty() || has_frames ? Folds::nowhere : Folds::at_holders;
   const Folds folds = settles ? fewest : Folds::anywhere;
-  const bool is_spread = folds == Folds::nowhere && is_held_between_ends(boundary.nodes, cable.state) && boundary.nodes.front().body < 0;
+  const bool is_spread =
+      folds == Folds::nowhere && is_held_between_ends(boundary.nodes, cable.state) && boundary.nodes.front().body < 0;
   const bool has_shape =
       set_initial_state(from_trunk.value_or(desc.initial), folds, *cable.model, boundary.nodes, gravity, cable.state);
   const bool is_closed = lay_loops(holding, cable_id(index), is_given(desc.initial), cable);

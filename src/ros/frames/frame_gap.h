@@ -23,8 +23,8 @@ struct FrameGap {
   double distance() const { return way.norm(); }                 ///< [m]
   double angle() const { return rotation_vector(turn).norm(); }  ///< [rad]
 
-  /// The frame moves, within `time` [s], and what it holds with it. Where it goes back to that faster than it can move, and until it
-  /// has stopped, only the way between them changes.
+  /// The frame moves, within `time` [s], and what it holds with it. Where it goes back to that faster than it can move, and until
+  /// it has stopped, only the way between them changes.
   void move(const Pose& from, const Pose& to, double time);
   void close_by(double distance, double angle);  ///< [m] and [rad]
   Pose followed(const Pose& frame) const;        ///< where a frame is followed

@@ -15,7 +15,8 @@ using Coverage = FrameHistory::Coverage;
 const ros::WallDuration longest_overtaking(1.0);
 const ros::WallDuration longest_receiving(0.005);
 constexpr Nanoseconds longest_ahead = 500'000'000;
-/// Of a step, in which a frame may begin to go back, or stop: what of that is followed is less than the speed at which gaps close.
+/// Of a step, in which a frame may begin to go back, or stop: what of that is followed is less than the speed at which gaps
+/// close.
 constexpr int parts_of_step = 10;
 static_assert(FrameGap::fastest_motion / parts_of_step <= FrameGap::speed);
 

@@ -61,9 +61,10 @@ void CableWatch::report_intrusions(const World& world) {
 
 void CableWatch::report_starts(std::size_t first_unsettled, std::size_t first_misfit, const World& world) const {
   for (std::size_t i = first_misfit; i < world.findings().misfits.size(); ++i)
-    ROS_WARN("the initial shape of cable %s does not fit its attachments and junctions: it hangs between them instead, in a "
-             "loop where it is joined with itself",
-             quoted(world.findings().misfits[i]).c_str());
+    ROS_WARN(
+        "the initial shape of cable %s does not fit its attachments and junctions: it hangs between them instead, in a "
+        "loop where it is joined with itself",
+        quoted(world.findings().misfits[i]).c_str());
   for (std::size_t i = first_unsettled; i < world.findings().unsettled.size(); ++i)
     ROS_WARN("cable %s: no static equilibrium was found to start from; it starts at rest near one, and may move at first",
              quoted(world.findings().unsettled[i]).c_str());
