@@ -384,6 +384,22 @@ TEST(Junctions, trunksMayBeClampedBetweenTheirEnds) {
   }
 }
 
+TEST(Junctions, trunksThatHangOnOneAreNotFolded) {
+  for (const JunctionDesc::Type type : {JunctionDesc::Type::rigid, JunctionDesc::Type::hinge}) {
+    SceneDesc scene = nothing();
+    CableDesc& trunk = add_cable(scene, "trunk", 1, 40);
+    trunk.attachments = {scenes::attachment("wall", PlaceDesc::At::arc_length, {0, 0, 1}, "", AttachmentType::clamp)};
+    trunk.attachments[0].place.arc_length = 0.5;
+    add_cable(scene, "arm", 0.4, 16);
+    add_junction(scene, "trunk", 0.5, {branch("arm", End::start, {0, 0, 0.8})}).type = type;
+    BoundaryInputs inputs = initial_frames(scene);
+    World world(scene, inputs);
+    const std::vector<Vector3>& nodes = world.cables()[0].state.positions;
+    for (std::size_t i = 2; i < nodes.size(); ++i) EXPECT_GT((nodes[i] - nodes[i - 1]).dot(nodes[i - 1] - nodes[i - 2]), 0) << i;
+    run(world, inputs, 0.2);
+  }
+}
+
 TEST(Junctions, waitForEveryFrameOfTheHarness) {
   SceneDesc scene = ladder();
   scene.cables[0].attachments[0].frame = "early";

@@ -329,7 +329,7 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   const std::optional<InitialShapeDesc> from_trunk = shape_from_trunk(desc);
   const bool has_frames = is_whole_rod(*cable.model, cable.state) || desc.rest_twist != 0 ||
                           desc.rest_curvature.type != RestCurvatureDesc::Type::straight;
-  const Folds fewest = boundary.directions.empty() || has_frames ? Folds::nowhere : Folds::at_holders;
+  const Folds fewest = boundary.directions.empty() || has_frames || branches ? Folds::nowhere : Folds::at_holders;
   const Folds folds = settles ? fewest : Folds::anywhere;
   const bool is_spread =
       folds == Folds::nowhere && is_held_between_ends(boundary.nodes, cable.state) && boundary.nodes.front().body < 0;

@@ -72,8 +72,7 @@ void EventLog::add_starts(const World& world) {
   for (const std::string& cable : world.findings().misfits)
     add({world.time(), "not_fitted", cable, -1, "",
          "the initial shape does not fit the cable's attachments and junctions; it hangs between them instead, in a loop where "
-         "it is joined with "
-         "itself",
+         "it is joined with itself",
          ""});
   for (const std::string& cable : world.findings().unsettled)
     add({world.time(), "not_settled", cable, -1, "",
