@@ -365,14 +365,20 @@ TEST(Junctions, cablesWithoutAShapeBeginAsLoops) {
   }
 }
 
+/// Clamped there, with an arm that is not joined yet.
+SceneDesc trunk_on_a_wall(double arc_length) {
+  SceneDesc scene = nothing();
+  CableDesc& trunk = add_cable(scene, "trunk", 1, 40);
+  trunk.attachments = {scenes::attachment("wall", PlaceDesc::At::arc_length, {0, 0, 1}, "", AttachmentType::clamp)};
+  trunk.attachments[0].place.arc_length = arc_length;
+  add_cable(scene, "arm", 0.4, 16);
+  return scene;
+}
+
 TEST(Junctions, trunksMayBeClampedBetweenTheirEnds) {
   for (const Vector3& rotation : {Vector3(0, 0, 0), Vector3(0, 1.5, 0), Vector3(0, -1.5, 0), Vector3(0.3, 0.5, 1.57)}) {
-    SceneDesc scene = nothing();
-    CableDesc& trunk = add_cable(scene, "trunk", 1, 40);
-    trunk.attachments = {scenes::attachment("wall", PlaceDesc::At::arc_length, {0, 0, 1}, "", AttachmentType::clamp)};
-    trunk.attachments[0].place.arc_length = 0.8;
-    trunk.attachments[0].rotation = rotation;
-    add_cable(scene, "arm", 0.4, 16);
+    SceneDesc scene = trunk_on_a_wall(0.8);
+    scene.cables[0].attachments[0].rotation = rotation;
     add_junction(scene, "trunk", 0.5, {branch("arm")});
     BoundaryInputs inputs = initial_frames(scene);
     World world(scene, inputs);
@@ -386,11 +392,7 @@ TEST(Junctions, trunksMayBeClampedBetweenTheirEnds) {
 
 TEST(Junctions, trunksThatHangOnOneAreNotFolded) {
   for (const JunctionDesc::Type type : {JunctionDesc::Type::rigid, JunctionDesc::Type::hinge}) {
-    SceneDesc scene = nothing();
-    CableDesc& trunk = add_cable(scene, "trunk", 1, 40);
-    trunk.attachments = {scenes::attachment("wall", PlaceDesc::At::arc_length, {0, 0, 1}, "", AttachmentType::clamp)};
-    trunk.attachments[0].place.arc_length = 0.5;
-    add_cable(scene, "arm", 0.4, 16);
+    SceneDesc scene = trunk_on_a_wall(0.5);
     add_junction(scene, "trunk", 0.5, {branch("arm", End::start, {0, 0, 0.8})}).type = type;
     BoundaryInputs inputs = initial_frames(scene);
     World world(scene, inputs);

@@ -243,7 +243,7 @@ void IslandStepper::hang_on_bodies_anew(const Island& island) {
     if (held.empty()) return false;
     const CableState before = cable.state;
     hang_anew(*cable.model, held, gravity_near(state_, island.cables[k]), cable.state);
-    close_loops(state_.attachments, cable_id(island.cables[k]), held, gravity_near(state_, island.cables[k]), cable);
+    close_loops(state_.attachments, cable_id(island.cables[k]), false, held, gravity_near(state_, island.cables[k]), cable);
     if (!finite(cable.state.positions)) cable.state = before;
     return true;
   };

@@ -24,6 +24,7 @@ const Quaternion reversed(0, 0, 0, 1);
 constexpr double folded = 1e-6;
 /// [of the length between them] Nodes that are to be at one place and are farther apart than this are brought together by a loop.
 constexpr double open_as_given = 0.5, open_as_hung = 1e-3;
+
 /// [kg m^2] Of the halves of the segments beside a node about that node. A junction has no inertia of its own: it turns with
 /// these, which is less the shorter the segments are, of second order as all that they leave out.
 double inertia_around(const SceneDesc& scene, const CableDesc& cable, int node) {
@@ -44,8 +45,10 @@ Vector3 spin_at(const CableState& state, int node) {
   return way.cross(state.velocities[after] - state.velocities[before]) / way.squaredNorm();
 }
 
-bool lay_loops(const std::vector<Attachment>& attachments, BodyId body, bool is_given, SimulatedCable& cable) {
+bool close_loops(const std::vector<Attachment>& attachments, BodyId body, bool is_given, const std::vector<HeldNode>& held,
+                 const Vector3& gravity, SimulatedCable& cable) {
   CableState& shape = cable.state;
+  const std::vector<Vector3> before = shape.positions;
   const double least = is_given ? open_as_given : CableMaterials(cable).any_bends() ? 0 : open_as_hung;
   std::map<int, int> nodes;  // by junction
   bool is_closed = true;
@@ -58,15 +61,10 @@ bool lay_loops(const std::vector<Attachment>& attachments, BodyId body, bool is_
     lay_loop(first, last, shape);
     is_closed = false;
   }
-  return is_closed;
-}
-
-void close_loops(const std::vector<Attachment>& attachments, BodyId body, const std::vector<HeldNode>& held,
-                 const Vector3& gravity, SimulatedCable& cable) {
-  const std::vector<Vector3> before = cable.state.positions;
-  if (lay_loops(attachments, body, false, cable)) return;
-  carry_frames(before, cable.state);
-  carry_along(*cable.model, held, gravity, cable.state);
+  if (is_closed) return true;
+  carry_frames(before, shape);
+  carry_along(*cable.model, held, gravity, shape);
+  return false;
 }
 
 std::vector<JunctionPlace> junction_places(const SceneDesc& scene, const CableDesc& cable) {

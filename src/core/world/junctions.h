@@ -13,12 +13,9 @@ namespace verlet_cable {
 /// Of the material around a node, from the motion of the nodes next to it [rad/s].
 Vector3 spin_at(const CableState& state, int node);
 
-/// Lays loops where one junction holds two nodes of a cable and its shape leaves them apart; one that was not given and that
-/// bends would be folded if it does not. False if there were any.
-bool lay_loops(const std::vector<Attachment>& attachments, BodyId body, bool is_given, SimulatedCable& cable);
-
-/// The same for a cable that has frames, and that was hung or settled with nodes held like this, but not by junctions.
-void close_loops(const std::vector<Attachment>& attachments, BodyId body, const std::vector<HeldNode>& held,
+/// Lays loops where one junction holds two nodes of a cable and its shape leaves them apart, or where one that was not given and
+/// that bends would be folded; then carries it to what holds it (`held`, without junctions). False if there were any.
+bool close_loops(const std::vector<Attachment>& attachments, BodyId body, bool is_given, const std::vector<HeldNode>& held,
                  const Vector3& gravity, SimulatedCable& cable);
 
 /// Where a cable takes part in a junction: as its trunk, or with an end.

@@ -335,8 +335,7 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
       folds == Folds::nowhere && is_held_between_ends(boundary.nodes, cable.state) && boundary.nodes.front().body < 0;
   const bool has_shape =
       set_initial_state(from_trunk.value_or(desc.initial), folds, *cable.model, boundary.nodes, gravity, cable.state);
-  const bool is_closed = lay_loops(holding, cable_id(index), is_given(desc.initial), cable);
-  if (!is_closed) carry_along(*cable.model, boundary.nodes, gravity, cable.state);
+  const bool is_closed = close_loops(holding, cable_id(index), is_given(desc.initial), boundary.nodes, gravity, cable);
   if ((!has_shape && !from_trunk) || (!is_closed && is_given(desc.initial))) findings.misfits.push_back(desc.name);
   // Where velocities of holders are not known yet, the first step finds them, and all go together.
   const auto starts = [](const KinematicTarget& target) { return target.starts; };
@@ -356,11 +355,11 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   state.cables.push_back(std::move(cable));
   state.cable_progress.push_back(std::move(memory));
   if (moves && slides(state.cable_progress[index].targets)) move_with_holders(index, state);
-  // What is joined settles together; a trunk that was spread out does not lead there.
+  // What is joined settles together; a trunk that was spread out settles alone before that.
   if (settles && held && (!branches || is_spread)) {
     const bool is_settled = Settling(index, state, workspaces.value.local(), cancelled).settle_start();
     if (!is_settled && !branches) findings.unsettled.push_back(desc.name);
-    if (branches) close_loops(holding, cable_id(index), boundary.nodes, gravity, state.cables[index]);
+    if (branches) close_loops(holding, cable_id(index), false, boundary.nodes, gravity, state.cables[index]);
   }
   place_bodies_on(placing);
 }
