@@ -12,6 +12,7 @@
 #include "net_keys.h"
 #include "obstacle_keys.h"
 #include "scene_files.h"
+#include "verlet_cable/core/frame_keys.h"
 #include "within_memory.h"
 
 namespace verlet_cable {
@@ -52,6 +53,7 @@ void read_fluid(const Value& value, SceneDesc& scene) {
 Keys<SceneDesc> scene_keys(const std::vector<std::string>& ignored) {
   Keys<SceneDesc> keys{
       text_key("frame_id", &SceneDesc::frame_id, frame_words),
+      vector_key("origin", &SceneDesc::origin, "m"),
       switch_key("numerical_damping", &SceneDesc::numerical_damping),
       {"gravity", "three numbers [m/s^2]", false, read_gravity},
       {"fluid", "a map", false, read_fluid},
@@ -114,6 +116,13 @@ void check_not_empty(const Value& root, const std::set<std::string>& given, cons
   if (cables.node.IsSequence()) cables.reject(allowed);
 }
 
+/// Who draws relative to the scene's `origin` sends that place as a frame of its own.
+void check_origin_frame(const std::string& frame, const SceneDesc& scene, ErrorList& errors) {
+  if (frame.empty() || scene.origin.isZero(0)) return;
+  for (const std::string& key : keys_of_frame(scene, frame))
+    errors.add(key, quoted(frame), "other names: with `origin`, the frame of this name is that of the markers and clouds");
+}
+
 SceneDesc read_all(const YAML::Node& root, const std::vector<std::string>& ignored, const SceneSources& sources) {
   SceneDesc scene;
   ErrorList errors;
@@ -123,6 +132,7 @@ SceneDesc read_all(const YAML::Node& root, const std::vector<std::string>& ignor
     add_presets(value, scene);
     read_scene_files(value, sources, scene);
     errors.add_validation(validate(scene));
+    check_origin_frame(sources.origin_frame, scene, errors);
   } else {
     errors.add("scene", value_text(root), "a map of keys: materials, cables, ...");
   }

@@ -129,7 +129,7 @@ class Watch:
     def __init__(self, findings):
         self._findings = findings
         self.messages = dict.fromkeys(self.TOPICS, 0)
-        self.events, self.steps, self.state_shapes = {}, 0, [0, 0]
+        self.events, self.steps, self.state = {}, 0, None  # the last state
         self._names = {value: name for name, value in vars(CableEvent).items() if name.isupper() and isinstance(value, int)}
         for topic, kind in self.TOPICS.items():
             rospy.Subscriber(topic, kind, self._check, topic, queue_size=1)
@@ -140,6 +140,8 @@ class Watch:
         if topic == '/tf' and message._connection_header['callerid'] != '/cable':
             return
         self.messages[topic] += 1
+        if topic == '/cable/state':
+            self.state = message
         if not (is_finite_cloud(message) if isinstance(message, PointCloud2) else is_finite(message)):
             self._findings.add(f'{topic}: not finite', str(message)[:2000])
 

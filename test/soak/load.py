@@ -5,6 +5,7 @@ import time
 
 import actionlib
 import rospy
+import yaml
 from dynamic_reconfigure.msg import Config, DoubleParameter
 from dynamic_reconfigure.srv import Reconfigure
 from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
@@ -15,11 +16,47 @@ from values import ATTACHMENTS, BAD_SCENES, CABLES, FRAMES, HANDLES, NUMBERS, PL
 from verlet_cable.msg import RolloutAction, RolloutGoal
 
 
+class FixedNames:
+    """What requests name: what the scene of scripts/soak has and may get."""
+
+    cables, places, attachments, frames, handles = CABLES, PLACES, ATTACHMENTS, FRAMES, HANDLES
+
+
+class LiveNames:
+    """What requests name: what a scene began with, and what `watch` saw last."""
+
+    frames = ['', 'world', 'hand']
+
+    def __init__(self, text, watch):
+        keys, self._watch = yaml.safe_load(text), watch
+        self._cables = [cable['name'] for cable in keys['cables']]
+        self._bodies = [body['name'] for body in keys['bodies']]
+        self._attachments = [held['name'] for cable in keys['cables'] for held in cable.get('attachments', [])]
+
+    @property
+    def cables(self):
+        state = self._watch.state
+        return self._cables + [cable.name for cable in state.cables] if state else self._cables
+
+    @property
+    def places(self):
+        return self.cables + self._bodies
+
+    @property
+    def attachments(self):
+        state = self._watch.state
+        return self._attachments + [name for cable in state.cables for name in cable.attachments] if state else self._attachments
+
+    @property
+    def handles(self):
+        return [f'attachment/{name}' for name in self.attachments] + [f'{name}/1' for name in self.cables]
+
+
 class Draws:
     """Random values of requests."""
 
-    def __init__(self, seed):
-        self.choice = random.Random(seed)
+    def __init__(self, seed, names=FixedNames()):
+        self.choice, self.names = random.Random(seed), names
 
     def chance(self, probability):
         return self.choice.random() < probability
@@ -34,10 +71,10 @@ class Draws:
         """One of those that mean something, mostly."""
         return self.choice.choice(sound if self.chance(0.9) else WORDS)
 
-    def location(self, names=PLACES):
-        name, number = self.word(names), self.number()
+    def location(self, names=None):
+        name, number = self.word(names or self.names.places), self.number()
         return self.one_of(lambda: node_at(name, self.one_of(0, 1, 5, 10, 20, 4294967295)), lambda: arc_length_at(name, number),
-                           lambda: nearest_to(name, (number, 0, 0), self.word(FRAMES)))()
+                           lambda: nearest_to(name, (number, 0, 0), self.word(self.names.frames)))()
 
     def pose(self):
         rotation = self.one_of((0, 0, 0, 1), (0, 0, 0, 1), (0, 0, 0, 1), (0, 0, 0, 0), (self.number(), 0, 0, 1))
@@ -47,8 +84,8 @@ class Draws:
 class Caller:
     """Calls services one after the other, for as long as `run` is let. `calls` records each."""
 
-    def __init__(self, seed, scene, calls):
-        self._draws, self._scene, self._calls = Draws(seed), scene, calls
+    def __init__(self, seed, scene, calls, names=FixedNames()):
+        self._draws, self._scene, self._calls = Draws(seed, names), scene, calls
         self._node = CableClient('/cable')
         self._tune = rospy.ServiceProxy('/cable/tuning/set_parameters', Reconfigure)
         self._tunable = []
@@ -63,12 +100,12 @@ class Caller:
     def _request(self):
         d, node = self._draws, self._node
         requests = {
-            'pin': lambda: node.pin(d.location(), (d.number(), 0, 0), name=d.one_of('', '', d.word(ATTACHMENTS)),
-                                    frame_id=d.word(FRAMES), clamp=d.chance(0.5), keep_offset=d.chance(0.7)),
-            'unpin': lambda: node.unpin(d.word(ATTACHMENTS)),
-            'cut': lambda: node.cut(d.location(CABLES)),
-            'join': lambda: node.join(d.word(CABLES), d.chance(0.5), d.word(CABLES), d.chance(0.5)),
-            'set_length': lambda: node.set_length(d.word(CABLES), d.chance(0.5), d.number(), d.number()),
+            'pin': lambda: node.pin(d.location(), (d.number(), 0, 0), name=d.one_of('', '', d.word(d.names.attachments)),
+                                    frame_id=d.word(d.names.frames), clamp=d.chance(0.5), keep_offset=d.chance(0.7)),
+            'unpin': lambda: node.unpin(d.word(d.names.attachments)),
+            'cut': lambda: node.cut(d.location(d.names.cables)),
+            'join': lambda: node.join(d.word(d.names.cables), d.chance(0.5), d.word(d.names.cables), d.chance(0.5)),
+            'set_length': lambda: node.set_length(d.word(d.names.cables), d.chance(0.5), d.number(), d.number()),
             'save_state': lambda: node.save_state(d.word(SNAPSHOTS)),
             'restore_state': lambda: node.restore_state(d.word(SNAPSHOTS)),
             'load_scene': self._load_scene,
@@ -128,8 +165,8 @@ class Tuner:
 class Sender:
     """Sends what nobody answers: floods of obstacles, rollouts and the mouse."""
 
-    def __init__(self, seed):
-        self._draws = Draws(seed)
+    def __init__(self, seed, names=FixedNames()):
+        self._draws = Draws(seed, names)
         self._obstacles = rospy.Publisher('/cable/obstacles', MarkerArray, queue_size=10)
         self._mouse = rospy.Publisher('/cable/hands/feedback', InteractiveMarkerFeedback, queue_size=100)
         self._rollouts = actionlib.ActionClient('/cable/rollout', RolloutAction)
@@ -152,14 +189,14 @@ class Sender:
         marker = Marker(ns='soak', id=d.choice.randrange(20), type=d.one_of(1, 1, 2, 3, 10, 0, 99),
                         action=d.choice.choice([0] * 10 + [2] * 10 + [3, 7]), pose=d.pose(),
                         mesh_resource=d.one_of('', 'package://none/a.stl', 'file:///etc/passwd', 'http://localhost:1/a.stl'))
-        marker.header.frame_id = d.word(FRAMES)
+        marker.header.frame_id = d.word(d.names.frames)
         size = d.one_of(0.1, 0.3, d.number())
         marker.scale = Vector3(size, size, size)
         return marker
 
     def _roll_out(self):
         d = self._draws
-        motion = [transform(d.word(FRAMES), d.one_of(0, 0.1, 0.5, 0.5, 1, 1e6), (d.number(), 0, 0))
+        motion = [transform(d.word(d.names.frames), d.one_of(0, 0.1, 0.5, 0.5, 1, 1e6), (d.number(), 0, 0))
                   for _ in range(d.choice.randrange(4))]
         goal = RolloutGoal(snapshot=d.word(SNAPSHOTS) if d.chance(0.3) else '', motion=motion, duration=d.number(), rate=d.number())
         self._goals.append(self._rollouts.send_goal(goal))
@@ -172,7 +209,7 @@ class Sender:
 
     def _move(self):
         d = self._draws
-        feedback = InteractiveMarkerFeedback(client_id='soak', marker_name=d.one_of(*HANDLES), event_type=d.choice.randrange(8),
+        feedback = InteractiveMarkerFeedback(client_id='soak', marker_name=d.one_of(*d.names.handles), event_type=d.choice.randrange(8),
                                              menu_entry_id=d.choice.randrange(6), pose=d.pose())
         feedback.header.frame_id = d.one_of('', 'world', 'world', 'hand', 'nowhere', 'x' * 100000)
         self._mouse.publish(feedback)

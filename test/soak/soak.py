@@ -35,7 +35,7 @@ MASTER_PERIOD = (120.0, 600.0)  # [s] between its deaths
 
 def arguments():
     parser = argparse.ArgumentParser()
-    parser.add_argument('--hours', type=float, default=0.5)
+    parser.add_argument('--seconds', type=float, default=1800)
     parser.add_argument('--seed', type=int, default=1)
     parser.add_argument('--node', help='the program')
     parser.add_argument('--live-heap', help='the library that is to tell what is in use, of a node with AddressSanitizer')
@@ -84,7 +84,7 @@ class Soak:
         workers = load.start(callers + [self._sender, self._tuner, self._visitors, self._victims], stop)
         begin = time.monotonic()
         try:
-            self._wait(workers, begin, begin + 3600 * options.hours)
+            self._wait(workers, begin, begin + options.seconds)
         except KeyboardInterrupt:
             print('interrupted', flush=True)
         except (OSError, rosgraph.MasterException) as error:

@@ -253,6 +253,8 @@ struct SceneDesc {
   MarkerStyle marker_style = MarkerStyle::tube;
   ColorBy color_by = ColorBy::tension;
   bool broadcast_tf = true;  ///< poses of the bodies as tf frames with the names of the bodies
+  /// [m] in the fixed frame: what is drawn is given relative to this point, as viewers and clouds have single precision
+  Vector3 origin = Vector3::Zero();
   std::string scene_directory;
   LimitsDesc limits;
   int seed = 0;
@@ -285,6 +287,10 @@ class SceneError : public std::runtime_error {
 /// node, missing meshes of obstacles, conflicting `initial_pose` of a frame, cables shorter than the distance between their
 /// attachments at the initial poses. Keys are written as in YAML: `cables[0].attachments[1].frame`.
 std::vector<std::string> validate(const SceneDesc& scene);
+
+/// What is allowed in a scene without errors, and probably not meant: one line each, with the full key, the value and what was
+/// made of it. Now: sections whose ends are off the ends of segments by more than 5 % of the section's length.
+std::vector<std::string> warnings_of(const SceneDesc& scene);
 
 /// The obstacles of the scene, then those of the links of its robot.
 std::vector<ObstacleDesc> all_obstacles(const SceneDesc& scene);

@@ -17,6 +17,8 @@ struct SceneSources {
   FileAccess files;
   /// The value of a parameter, none if it is not set. An empty function if there are no parameters.
   std::function<std::optional<std::string>(const std::string& name)> parameter;
+  /// The frame that the program sends at a scene's `origin`, a name that the scene must not use then; empty: it sends none.
+  std::string origin_frame = {};
 };
 
 /// Tag of scalars that are booleans and not text, whatever they look like.

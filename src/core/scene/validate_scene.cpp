@@ -323,6 +323,7 @@ std::vector<std::string> validate(const SceneDesc& scene) {
     check_fields("gravity.", gravity_fields, scene.gravity, errors);
     check_vector("gravity.center", scene.gravity.center, "m", errors);
   }
+  check_vector("origin", scene.origin, "m", errors);
   check_vector("fluid.velocity", scene.fluid.velocity, "m/s", errors);
   check_fields("fluid.", fluid_fields, scene.fluid, errors);
 

@@ -99,7 +99,11 @@ void add_scene_class(py::module_& module) {
           "attachment_names", [](const PythonScene& scene) { return attachment_names(*scene.desc); },
           "Names of the attachments of cables, nets and bodies.")
       .def_property_readonly(
-          "time_step", [](const PythonScene& scene) { return scene.desc->time_step; }, "[s] Time step.");
+          "time_step", [](const PythonScene& scene) { return scene.desc->time_step; }, "[s] Time step.")
+      .def_property_readonly(
+          "warnings", [](const PythonScene& scene) { return warnings_of(*scene.desc); },
+          "What the scene allows and probably does not mean, one text each: sections that whole segments do not fit, for "
+          "example.");
 }
 
 }  // namespace verlet_cable

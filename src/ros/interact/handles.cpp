@@ -190,11 +190,11 @@ std::vector<Handle> find_handles(const Simulation& simulation, const std::set<st
   return handles;
 }
 
-InteractiveMarker interactive_marker(const Handle& handle, const std::string& frame_id) {
+InteractiveMarker interactive_marker(const Handle& handle, const DrawingFrame& frame) {
   InteractiveMarker marker;
-  marker.header.frame_id = frame_id;
+  marker.header.frame_id = frame.name;
   marker.name = handle.name;
-  marker.pose = to_pose(handle.pose);
+  marker.pose = frame.pose(handle.pose);
   marker.scale = static_cast<float>(handle.arm_length);
   marker.controls.push_back(take_control(handle));
   add_menu(handle, marker);

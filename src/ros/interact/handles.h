@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "publish/drawing_frame.h"
 #include "simulation/simulation.h"
 #include "verlet_cable/core/world.h"
 
@@ -34,6 +35,6 @@ enum class HandleAction : std::uint32_t { pin = 1, release, cut, reset };
 /// are the attachments that stand for the mouse: their nodes count as held by nothing. What is not finite is left out.
 std::vector<Handle> find_handles(const Simulation& simulation, const std::set<std::string>& grabs);
 
-visualization_msgs::InteractiveMarker interactive_marker(const Handle& handle, const std::string& frame_id);
+visualization_msgs::InteractiveMarker interactive_marker(const Handle& handle, const DrawingFrame& frame);
 
 }  // namespace verlet_cable

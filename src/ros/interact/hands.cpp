@@ -39,7 +39,9 @@ bool is_same(const Pose& a, const Pose& b) {
 }  // namespace
 
 Hands::Hands(ros::NodeHandle& private_node, Simulation& simulation)
-    : simulation_(simulation), server_(private_node, "hands", [this](const Feedback& feedback) { receive(feedback); }) {}
+    : simulation_(simulation),
+      node_(private_node.getNamespace()),
+      server_(private_node, "hands", [this](const Feedback& feedback) { receive(feedback); }) {}
 
 void Hands::receive(const Feedback& feedback) {
   const bool drags = feedback.event_type == Feedback::POSE_UPDATE;
@@ -168,11 +170,11 @@ void Hands::drop_lost_grabs() {
 }
 
 void Hands::show() {
-  const std::string& frame = simulation_.scene().frame_id;
-  if (frame != shown_frame_) {
+  const DrawingFrame frame(simulation_.scene(), node_);
+  if (frame.name != shown_frame_) {
     server_.clear();
     shown_.clear();
-    shown_frame_ = frame;
+    shown_frame_ = frame.name;
   }
   std::map<std::string, Handle> handles;
   for (Handle& handle : find_handles(simulation_, grabbed_attachments())) handles.emplace(handle.name, std::move(handle));
@@ -183,7 +185,7 @@ void Hands::show() {
     if (before == shown_.end() || !look_alike(before->second, handle)) {
       server_.insert(interactive_marker(handle, frame));
     } else if (!is_same(before->second.pose, handle.pose) || server_.may_be_elsewhere(name)) {
-      server_.set_pose(name, to_pose(handle.pose));
+      server_.set_pose(name, frame.pose(handle.pose));
     }
   }
   server_.apply_changes();

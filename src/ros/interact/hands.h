@@ -52,10 +52,11 @@ class Hands {
   std::set<std::string> grabbed_attachments() const;
 
   Simulation& simulation_;
+  std::string node_;  // its private namespace
   std::deque<Request> requests_;
   std::map<std::string, Handle> shown_;  // by name
   std::map<std::string, Grab> grabs_;    // by the name of the handle
-  std::string shown_frame_;
+  std::string shown_frame_;              // the drawing frame
   ros::WallTime last_shown_;
   HandleServer server_;  // the last: it calls back until it is gone
 };

@@ -75,7 +75,7 @@ double pin_width(const World& world, const Attachment& attachment) {
 }
 
 /// The two triangles of each cell.
-void add_triangles(const SimulatedNet& net, Marker& marker) {
+void add_triangles(const SimulatedNet& net, const DrawingFrame& frame, Marker& marker) {
   const int columns = net.model.columns;
   for (int row = 0; row + 1 < net.model.rows; ++row)
     for (int column = 0; column + 1 < columns; ++column) {
@@ -83,7 +83,7 @@ void add_triangles(const SimulatedNet& net, Marker& marker) {
       for (const std::array<int, 3>& corners : {std::array<int, 3>{a, c, b}, {b, c, d}}) {
         const auto at = [&](int corner) -> const Vector3& { return net.state.positions[corners[corner]]; };
         const Vector3 normal = (at(1) - at(0)).cross(at(2) - at(0)).normalized();
-        for (int corner = 0; corner < 3; ++corner) marker.points.push_back(to_point(at(corner)));
+        for (int corner = 0; corner < 3; ++corner) marker.points.push_back(frame.point(at(corner)));
         marker.colors.insert(marker.colors.end(), 3, lit_from_both_sides(marker.color, normal));
       }
     }
@@ -91,14 +91,14 @@ void add_triangles(const SimulatedNet& net, Marker& marker) {
 
 }  // namespace
 
-MarkerPublisher::MarkerPublisher(ros::NodeHandle& private_node, const SceneDesc& scene)
+MarkerPublisher::MarkerPublisher(ros::NodeHandle& private_node, const SceneDesc& scene, const DrawingFrame& frame)
     : publisher_(private_node.advertise<MarkerArray>("markers", publisher_queue_size)),
-      frame_id_(scene.frame_id),
+      frame_(frame),
       style_(scene.marker_style),
       colors_(scene) {}
 
-void MarkerPublisher::show(const SceneDesc& scene) {
-  frame_id_ = scene.frame_id;
+void MarkerPublisher::show(const SceneDesc& scene, const DrawingFrame& frame) {
+  frame_ = frame;
   style_ = scene.marker_style;
   colors_ = ColorScale(scene);
 }
@@ -125,7 +125,7 @@ void MarkerPublisher::publish(const World& world, const ros::Time& stamp) {
 
 Marker MarkerPublisher::make_marker(const std::string& ns, int id, int type) const {
   Marker marker;
-  marker.header.frame_id = frame_id_;
+  marker.header.frame_id = frame_.name;
   marker.ns = ns;
   marker.id = id;
   marker.type = type;
@@ -152,6 +152,7 @@ void MarkerPublisher::add_cables(const World& world, MarkerArray& markers) {
     marker.scale = shapes[i].scale;
     marker.color = shapes[i].color;
     marker.points.swap(shapes[i].points);
+    for (geometry_msgs::Point& point : marker.points) frame_.enter(point);
     marker.colors.swap(shapes[i].colors);
     markers.markers.push_back(std::move(marker));
     add_payloads(*cables[i], markers);
@@ -165,7 +166,7 @@ void MarkerPublisher::add_payloads(const SimulatedCable& cable, MarkerArray& mar
     if (mass <= 0) continue;
     // Counted, since a winch changes the numbers of the nodes.
     Marker marker = make_marker("payloads", id_of(cable.model->name + "/" + std::to_string(payloads++)), Marker::SPHERE);
-    marker.pose.position = to_point(cable.state.positions[node]);
+    marker.pose.position = frame_.point(cable.state.positions[node]);
     const double ball = 2 * std::cbrt(3 * mass / (4 * M_PI * aluminium_density));
     const double diameter = std::max(ball, 2 * pin_size * radius_at(cable, node));
     set_scale(marker, diameter, diameter, diameter);
@@ -180,20 +181,20 @@ void MarkerPublisher::add_net(const SimulatedNet& net, MarkerArray& markers) con
     lines.scale.x = net_line_width * link_length(net.model);
     lines.color = to_color(net.model.color);
     for (const std::array<int, 2>& link : net.model.links)
-      for (const int node : link) lines.points.push_back(to_point(net.state.positions[node]));
+      for (const int node : link) lines.points.push_back(frame_.point(net.state.positions[node]));
     markers.markers.push_back(std::move(lines));
   }
   if (!net.model.is_grid() || style_ == MarkerStyle::line) return;
   Marker triangles = make_marker(net.model.name, net_triangles_id, Marker::TRIANGLE_LIST);
   set_scale(triangles, 1, 1, 1);
   triangles.color = to_color(net.model.color);
-  add_triangles(net, triangles);
+  add_triangles(net, frame_, triangles);
   markers.markers.push_back(std::move(triangles));
 }
 
 void MarkerPublisher::add_particle(const SimulatedParticle& particle, MarkerArray& markers) const {
   Marker marker = make_marker(particle.desc.name, particle_marker_id, Marker::SPHERE);
-  marker.pose.position = to_point(particle.position);
+  marker.pose.position = frame_.point(particle.position);
   const double diameter = 2 * particle.desc.radius;
   set_scale(marker, diameter, diameter, diameter);
   marker.color = to_color(particle.desc.color);
@@ -208,7 +209,7 @@ void MarkerPublisher::add_pin(const World& world, const Attachment& attachment, 
   const double size = pin_width(world, attachment);
   const bool clamp = attachment.type == AttachmentType::clamp, axle = attachment.type == AttachmentType::axle;
   Marker marker = make_marker("pins", id_of(attachment.name), clamp ? Marker::CUBE : axle ? Marker::CYLINDER : Marker::SPHERE);
-  marker.pose = to_pose(pose);
+  marker.pose = frame_.pose(pose);
   marker.color = grey(0.8f);
   if (clamp) {
     set_scale(marker, 2 * size, size, 0.7 * size);  // three unequal edges show direction and roll
@@ -245,7 +246,8 @@ void MarkerPublisher::add_shape(const std::string& ns, const std::string& name, 
 }
 
 void MarkerPublisher::add_look(const std::string& ns, const std::string& name, int& part, Marker look, MarkerArray& markers) {
-  look.header.frame_id = frame_id_;
+  look.header.frame_id = frame_.name;
+  frame_.enter(look.pose.position);
   look.ns = ns;
   // No other name has a colon and a number behind it.
   look.id = id_of(name + ":" + std::to_string(part++));

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "publish/color.h"
+#include "publish/drawing_frame.h"
 #include "verlet_cable/core/world.h"
 
 namespace verlet_cable {
@@ -27,8 +28,8 @@ namespace verlet_cable {
 ///  * namespace "payloads", ids from 1: point masses, as balls with the density of aluminium.
 class MarkerPublisher {
  public:
-  MarkerPublisher(ros::NodeHandle& private_node, const SceneDesc& scene);
-  void show(const SceneDesc& scene);  ///< from now on
+  MarkerPublisher(ros::NodeHandle& private_node, const SceneDesc& scene, const DrawingFrame& frame);
+  void show(const SceneDesc& scene, const DrawingFrame& frame);  ///< from now on
   void publish(const World& world, const ros::Time& stamp);
 
  private:
@@ -53,7 +54,7 @@ class MarkerPublisher {
   void free_ids_of_what_is_gone();
 
   ros::Publisher publisher_;
-  std::string frame_id_;
+  DrawingFrame frame_;
   MarkerStyle style_;
   ColorScale colors_;
   std::map<std::string, int> ids_;          // of pins, payloads, guides, obstacles and bodies, by name, of this tick

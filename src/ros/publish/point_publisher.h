@@ -2,9 +2,8 @@
 
 #include <ros/ros.h>
 
-#include <string>
-
 #include "publish/color.h"
+#include "publish/drawing_frame.h"
 #include "verlet_cable/core/world.h"
 
 namespace verlet_cable {
@@ -15,13 +14,13 @@ namespace verlet_cable {
 /// particles, without tension.
 class PointPublisher {
  public:
-  PointPublisher(ros::NodeHandle& private_node, const SceneDesc& scene);
-  void show(const SceneDesc& scene);  ///< from now on
+  PointPublisher(ros::NodeHandle& private_node, const SceneDesc& scene, const DrawingFrame& frame);
+  void show(const SceneDesc& scene, const DrawingFrame& frame);  ///< from now on
   void publish(const World& world, const ros::Time& stamp);
 
  private:
   ros::Publisher publisher_;
-  std::string frame_id_;
+  DrawingFrame frame_;
   ColorScale colors_;
 };
 

@@ -1,8 +1,13 @@
 #include "publish/publishers.h"
 
+#include <optional>
+#include <string>
+
 #include "publish/body_frames.h"
+#include "publish/drawing_frame.h"
 #include "publish/legend_publisher.h"
 #include "publish/marker_publisher.h"
+#include "publish/origin_frame.h"
 #include "publish/point_publisher.h"
 #include "publish/state_publisher.h"
 #include "publish/surface_publisher.h"
@@ -12,14 +17,29 @@ namespace verlet_cable {
 
 struct Publishers::Implementation {
   Implementation(ros::NodeHandle& private_node, const SceneDesc& scene)
-      : body_frames(private_node, scene),
+      : node(private_node.getNamespace()),
+        frame(scene, node),
+        body_frames(private_node, scene),
         legend(private_node, scene),
-        markers(private_node, scene),
-        points(private_node, scene),
+        markers(private_node, scene, frame),
+        points(private_node, scene, frame),
         state(private_node, scene),
-        surface(private_node, scene),
-        wrenches(private_node) {}
+        surface(private_node, scene, frame),
+        wrenches(private_node) {
+    origin_frame.send(frame, scene.frame_id);
+  }
 
+  void warn_where_coarse(const World& world) {
+    if (is_coarse) return;
+    const std::optional<std::string> warning = coarse_drawing(world, frame);
+    if (warning) ROS_WARN("%s", warning->c_str());
+    is_coarse = warning.has_value();
+  }
+
+  std::string node;
+  DrawingFrame frame;
+  bool is_coarse = false;  // which has been said
+  OriginFrame origin_frame;
   BodyFrames body_frames;
   LegendPublisher legend;
   MarkerPublisher markers;
@@ -35,12 +55,14 @@ Publishers::Publishers(ros::NodeHandle& private_node, const SceneDesc& scene)
 Publishers::~Publishers() = default;
 
 void Publishers::show(const SceneDesc& scene) {
+  const DrawingFrame& frame = implementation_->frame = DrawingFrame(scene, implementation_->node);
+  implementation_->origin_frame.send(frame, scene.frame_id);
   implementation_->body_frames.show(scene);
   implementation_->legend.show(scene);
-  implementation_->markers.show(scene);
-  implementation_->points.show(scene);
+  implementation_->markers.show(scene, frame);
+  implementation_->points.show(scene, frame);
   implementation_->state.show(scene);
-  implementation_->surface.show(scene);
+  implementation_->surface.show(scene, frame);
 }
 
 void Publishers::note_step(const World& world) {
@@ -52,6 +74,7 @@ void Publishers::forget_steps() {
 }
 
 void Publishers::publish(const World& world, const ros::Time& stamp) {
+  implementation_->warn_where_coarse(world);
   implementation_->body_frames.publish(world, stamp);
   implementation_->markers.publish(world, stamp);
   implementation_->points.publish(world, stamp);

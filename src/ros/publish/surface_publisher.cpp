@@ -41,7 +41,7 @@ double find_coarseness(const World& world) {
 }
 
 void append_points(const SimulatedCable& cable, std::uint32_t cable_id, double coarseness,
-                   const std::vector<std_msgs::ColorRGBA>& colors, std::vector<PointRecord>& points) {
+                   const std::vector<std_msgs::ColorRGBA>& colors, const Vector3& origin, std::vector<PointRecord>& points) {
   const std::vector<Quaternion> orientations = segment_orientations(cable.state);
   const std::vector<double> arc_length = cable.state.arc_length();
   const CableMaterials materials(cable);
@@ -56,7 +56,7 @@ void append_points(const SimulatedCable& cable, std::uint32_t cable_id, double c
     for (int side = 0; side < sides; ++side) {
       const double angle = 2 * M_PI * side / sides;
       const Vector3 spoke = materials[i].radius * Vector3(0, std::cos(angle), std::sin(angle));
-      const Vector3 point = center + orientations[i] * spoke;
+      const Vector3 point = center - origin + orientations[i] * spoke;
       points.push_back({to_float(point.x()), to_float(point.y()), to_float(point.z()), rgb, cable_id});
     }
   }
@@ -64,13 +64,13 @@ void append_points(const SimulatedCable& cable, std::uint32_t cable_id, double c
 
 }  // namespace
 
-SurfacePublisher::SurfacePublisher(ros::NodeHandle& private_node, const SceneDesc& scene)
-    : publisher_(private_node.advertise<sensor_msgs::PointCloud2>("surface", publisher_queue_size)), colors_(scene) {
-  show(scene);
-}
+SurfacePublisher::SurfacePublisher(ros::NodeHandle& private_node, const SceneDesc& scene, const DrawingFrame& frame)
+    : publisher_(private_node.advertise<sensor_msgs::PointCloud2>("surface", publisher_queue_size)),
+      frame_(frame),
+      colors_(scene) {}
 
-void SurfacePublisher::show(const SceneDesc& scene) {
-  frame_id_ = scene.frame_id;
+void SurfacePublisher::show(const SceneDesc& scene, const DrawingFrame& frame) {
+  frame_ = frame;
   colors_ = ColorScale(scene);
 }
 
@@ -82,11 +82,12 @@ void SurfacePublisher::publish(const World& world, const ros::Time& stamp) {
   for (std::size_t id = 0; id < world.cables().size(); ++id) {
     const SimulatedCable& cable = world.cables()[id];
     if (!is_finite(cable)) continue;
-    append_points(cable, static_cast<std::uint32_t>(id), coarseness, colors_.node_colors(cable, contact_forces[id]), points);
+    append_points(cable, static_cast<std::uint32_t>(id), coarseness, colors_.node_colors(cable, contact_forces[id]),
+                  frame_.origin, points);
   }
   using sensor_msgs::PointField;
-  publisher_.publish(make_point_cloud(frame_id_, stamp, points, "x", 1, PointField::FLOAT32, "y", 1, PointField::FLOAT32, "z", 1,
-                                      PointField::FLOAT32, "rgb", 1, PointField::FLOAT32, "cable_id", 1, PointField::UINT32));
+  publisher_.publish(make_point_cloud(frame_.name, stamp, points, "x", 1, PointField::FLOAT32, "y", 1, PointField::FLOAT32, "z",
+                                      1, PointField::FLOAT32, "rgb", 1, PointField::FLOAT32, "cable_id", 1, PointField::UINT32));
 }
 
 }  // namespace verlet_cable

@@ -2,9 +2,8 @@
 
 #include <ros/ros.h>
 
-#include <string>
-
 #include "publish/color.h"
+#include "publish/drawing_frame.h"
 #include "verlet_cable/core/world.h"
 
 namespace verlet_cable {
@@ -13,13 +12,13 @@ namespace verlet_cable {
 /// fields x, y, z [m], rgb and cable_id. At most 100000 points: many or long cables have fewer each, in rings of at least 12.
 class SurfacePublisher {
  public:
-  SurfacePublisher(ros::NodeHandle& private_node, const SceneDesc& scene);
-  void show(const SceneDesc& scene);  ///< from now on
+  SurfacePublisher(ros::NodeHandle& private_node, const SceneDesc& scene, const DrawingFrame& frame);
+  void show(const SceneDesc& scene, const DrawingFrame& frame);  ///< from now on
   void publish(const World& world, const ros::Time& stamp);
 
  private:
   ros::Publisher publisher_;
-  std::string frame_id_;
+  DrawingFrame frame_;
   ColorScale colors_;
 };
 

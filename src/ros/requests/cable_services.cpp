@@ -74,11 +74,11 @@ bool cut(Simulation& simulation, const Cut::Request& request, Cut::Response& res
 /// What a thread of the service does: reads and checks, which may take long, and waits for the scene. `reads`: one reads at a
 /// time, so that scenes are asked for in the order they came.
 EditResult load_scene(Simulation& simulation, OwnerCalls& owner, std::mutex& reads, const SceneDesc& current,
-                      const LoadScene::Request& request) {
+                      const std::string& name, const LoadScene::Request& request) {
   std::future<EditResult> asked;
   try {
     const std::lock_guard<std::mutex> lock(reads);
-    const SceneDesc scene = read_requested_scene(request, current);
+    const SceneDesc scene = read_requested_scene(request, current, name);
     asked = owner.begin([&simulation, scene](const Answer& answer) { simulation.load_scene(scene, answer); });
   } catch (const SceneError& error) {
     return refused(error.errors());
@@ -143,8 +143,8 @@ CableServices::CableServices(ros::NodeHandle& node, Simulation& simulation) : ow
     return answer(owner_.ask([s](const Answer& done) { s->reset(done); }), response);
   });
   serve_aside<Step>(node, "step", [this, s](const auto& request, auto& response) { return step(*s, owner_, request, response); });
-  serve_aside<LoadScene>(node, "load_scene", [this, s, lasting](const auto& request, auto& response) {
-    return answer(load_scene(*s, owner_, reads_scene_, lasting, request), response);
+  serve_aside<LoadScene>(node, "load_scene", [this, s, lasting, name = node.getNamespace()](const auto& request, auto& response) {
+    return answer(load_scene(*s, owner_, reads_scene_, lasting, name, request), response);
   });
 }
 

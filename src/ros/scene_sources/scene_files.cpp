@@ -1,7 +1,6 @@
 #include "scene_sources/scene_files.h"
 
 #include <ros/package.h>
-#include <ros/this_node.h>
 
 #include <algorithm>
 #include <cctype>
@@ -72,7 +71,7 @@ std::string find_scene_file(const std::string& key, const std::string& file, con
   return path.string();
 }
 
-SceneDesc read_requested_scene(const LoadScene::Request& request, const SceneDesc& current) {
+SceneDesc read_requested_scene(const LoadScene::Request& request, const SceneDesc& current, const std::string& node) {
   if (request.file.empty() == request.yaml.empty()) {
     throw SceneError(
         {std::string("file, yaml: ") + (request.file.empty() ? "both empty" : "both given") + "; allowed: one of them"});
@@ -81,13 +80,14 @@ SceneDesc read_requested_scene(const LoadScene::Request& request, const SceneDes
     throw SceneError({"yaml: " + std::to_string(request.yaml.size()) + " bytes; allowed: at most " +
                       std::to_string(longest_text) + ", longer scenes as a file"});
   }
-  const SceneSources sources = node_sources(current.scene_directory, ros::this_node::getName());
+  const SceneSources sources = node_sources(current.scene_directory, node);
   SceneDesc scene = request.file.empty()
                         ? read_scene_text(request.yaml, sources)
                         : read_scene_file(find_scene_file("file", request.file, current.scene_directory), sources);
   // A scene must not widen what it may do itself.
   scene.scene_directory = current.scene_directory;
   scene.limits = current.limits;
+  log_warnings(scene);
   return scene;
 }
 

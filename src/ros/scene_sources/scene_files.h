@@ -13,7 +13,7 @@ namespace verlet_cable {
 std::string find_scene_file(const std::string& key, const std::string& file, const std::string& scene_directory);
 
 /// The scene that a request means. What the node was started with in `current` stays in force: `limits` and `scene_directory`.
-/// Throws SceneError.
-SceneDesc read_requested_scene(const LoadScene::Request& request, const SceneDesc& current);
+/// `node`: its private namespace. Logs what is doubtful in the scene. Throws SceneError.
+SceneDesc read_requested_scene(const LoadScene::Request& request, const SceneDesc& current, const std::string& node);
 
 }  // namespace verlet_cable

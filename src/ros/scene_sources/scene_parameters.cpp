@@ -1,5 +1,6 @@
 #include "scene_sources/scene_parameters.h"
 
+#include <ros/console.h>
 #include <ros/names.h>
 #include <ros/param.h>
 #include <yaml-cpp/yaml.h>
@@ -8,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "publish/drawing_frame.h"
 #include "scene/scene_size.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
@@ -78,12 +80,17 @@ YAML::Node to_yaml(XmlRpcValue value, const std::string& key) {
 SceneSources node_sources(const std::string& scene_directory, const std::string& where) {
   SceneSources sources;
   sources.files = {false, scene_directory};
+  sources.origin_frame = origin_frame_of(where);
   sources.parameter = [where](const std::string& name) -> std::optional<std::string> {
     std::string full_name, text;
     const bool found = ros::names::validate(name, full_name) && ros::param::search(where, name, full_name);
     return found && ros::param::get(full_name, text) ? std::optional(text) : std::nullopt;
   };
   return sources;
+}
+
+void log_warnings(const SceneDesc& scene) {
+  for (const std::string& warning : warnings_of(scene)) ROS_WARN("%s", warning.c_str());
 }
 
 SceneDesc read_scene_parameters(const ros::NodeHandle& private_node) {
@@ -96,7 +103,9 @@ SceneDesc read_scene_parameters(const ros::NodeHandle& private_node) {
   }
   std::string scene_directory;
   private_node.getParam("scene_directory", scene_directory);
-  return read_scene(to_yaml(parameters), {"tuning"}, node_sources(scene_directory, private_node.getNamespace()));
+  SceneDesc scene = read_scene(to_yaml(parameters), {"tuning"}, node_sources(scene_directory, private_node.getNamespace()));
+  log_warnings(scene);
+  return scene;
 }
 
 }  // namespace verlet_cable

@@ -15,11 +15,15 @@ namespace verlet_cable {
 /// tree holds binary data or dates, or is larger than a scene may be.
 YAML::Node to_yaml(XmlRpc::XmlRpcValue value, const std::string& key = {});
 
-/// What scenes of a node may read: files of packages and in `scene_directory`, and parameters in the namespace `where` and those
-/// around it.
+/// What scenes of a node may read: files of packages and in `scene_directory`, and parameters in the namespace `where`, the
+/// node's private one, and those around it.
 SceneSources node_sources(const std::string& scene_directory, const std::string& where);
 
-/// Reads the scene from a node's private parameters; `tuning` is left out. Throws SceneError with every error at once.
+/// Logs what is doubtful in a scene.
+void log_warnings(const SceneDesc& scene);
+
+/// Reads the scene from a node's private parameters; `tuning` is left out. Logs what is doubtful in it. Throws SceneError with
+/// every error at once.
 SceneDesc read_scene_parameters(const ros::NodeHandle& private_node);
 
 }  // namespace verlet_cable

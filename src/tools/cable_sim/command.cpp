@@ -72,6 +72,13 @@ void note_unused(const Options& options, const std::vector<std::string>& frames)
             << "\n";
 }
 
+void warn_of_scene(const SceneDesc& scene) {
+  const std::vector<std::string> warnings = warnings_of(scene);
+  const std::size_t listed = std::min(warnings.size(), most_noted);
+  for (std::size_t i = 0; i < listed; ++i) std::cerr << program << ": warning: " << warnings[i] << "\n";
+  if (listed < warnings.size()) std::cerr << program << ": and " << warnings.size() - listed << " more warnings\n";
+}
+
 void warn_of_unplaced(const std::vector<std::string>& frames) {
   if (frames.empty()) return;
   const bool one = frames.size() == 1;
@@ -88,6 +95,7 @@ int simulate_job(const Options& options, const Job& job) {
   std::vector<std::string> errors;
   outputs.open(options, errors);
   if (!errors.empty()) return refuse(errors);
+  warn_of_scene(job.scene);
   note_unused(options, unused_frames(job.scene, job.motion));
   warn_of_unplaced(unplaced_frames(job.scene, job.motion));
 
