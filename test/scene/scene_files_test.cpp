@@ -30,6 +30,7 @@ TEST(SceneFiles, templateHoldsTheDefaults) {
   EXPECT_EQ(scene.marker_style, defaults.marker_style);
   EXPECT_EQ(scene.color_by, defaults.color_by);
   EXPECT_EQ(scene.scene_directory, defaults.scene_directory);
+  EXPECT_EQ(scene.origin, defaults.origin);
   ASSERT_TRUE(scene.contact);
   EXPECT_EQ(scene.contact->self, ContactDesc{}.self);
   EXPECT_EQ(scene.contact->between_cables, ContactDesc{}.between_cables);
@@ -168,6 +169,7 @@ TEST(SceneFiles, templateDocumentsEveryKey) {
                           "marker_style",
                           "color_by",
                           "scene_directory",
+                          "origin",
                           "limits",
                           "materials",
                           "cables",

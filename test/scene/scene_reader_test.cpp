@@ -12,6 +12,7 @@ using test::sound_scene;
 TEST(SceneReader, readsEveryKey) {
   const SceneDesc scene = read_scene_text(R"(
 frame_id: map
+origin: [500000, 5400000, 0]
 time_step: 0.005
 numerical_damping: false
 gravity: [1, 2, 3]
@@ -53,6 +54,7 @@ cables:
   - {name: d, length: 1, segments: 2, material: rope, initial: {type: settled}, attachments: [{name: d1, at: start}]}
 )");
   EXPECT_EQ(scene.frame_id, "map");
+  EXPECT_EQ(scene.origin, Vector3(500000, 5400000, 0));
   EXPECT_EQ(scene.time_step, 0.005);
   EXPECT_FALSE(scene.numerical_damping);
   EXPECT_EQ(scene.gravity.acceleration, Vector3(1, 2, 3));
@@ -195,6 +197,39 @@ cables: [{name: c, length: 1, segments: 2, material: n, attachments: [{name: a, 
 )");
   EXPECT_EQ(scene.find_material("n")->radius, 0.1);
   EXPECT_EQ(scene.cables[0].attachments[1].offset, Vector3(1, 2, 3));
+}
+
+TEST(SceneReader, tellsOfSectionsThatSegmentsDoNotFit) {
+  const auto warnings = [](const std::string& sections) {
+    return warnings_of(read_scene_text(replaced(sound_scene, "segments: 20", "segments: 20\n    sections: [" + sections + "]")));
+  };
+  EXPECT_TRUE(warnings_of(read_scene_text(sound_scene)).empty());
+  EXPECT_TRUE(warnings("{from: 0.1, to: 0.3, material: m}, {from: 0.499, to: 0.999, material: m}").empty());
+  const std::vector<std::string> told = warnings("{from: 0.1, to: 0.3, material: m}, {from: 0.42, to: 0.62, material: m}");
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(
+      told[0],
+      "cables[0].sections[1]: 0.42 to 0.62 m; simulated from 0.4 to 0.6 m, as sections consist of whole segments, which are "
+      "0.05 m long: more segments are shorter");
+}
+
+TEST(SceneReader, keepsTheFrameOfTheOriginFromOthers) {
+  const auto errors = [](const std::string& text, const std::string& frame) -> std::string {
+    try {
+      read_scene_text(text, {{}, {}, frame});
+    } catch (const SceneError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string moved = replaced(sound_scene, "time_step:", "origin: [5e5, 0, 0]\ntime_step:");
+  EXPECT_EQ(
+      errors(moved, "hand"),
+      "cables[0].attachments[1].frame: \"hand\"; allowed: other names: with `origin`, the frame of this name is that of the "
+      "markers and clouds");
+  EXPECT_EQ(errors(moved, "cable_origin"), "");
+  EXPECT_EQ(errors(moved, ""), "");
+  EXPECT_EQ(errors(sound_scene, "hand"), "");
 }
 
 TEST(SceneReader, ignoresOnlyTheTopLevelKeysItIsToldTo) {

@@ -34,7 +34,7 @@ def arguments():
     parser.add_argument('--output', type=Path, required=True, help='a directory for logs')
     parser.add_argument('--reports', type=Path, required=True, help='the directory where sanitizers write')
     parser.add_argument('--port', type=int, required=True, help='of the master')
-    parser.add_argument('--bound', type=float, default=30.0, help='[s] in which a call has to be answered')
+    parser.add_argument('--bound', type=float, default=120.0, help='[s] in which a call has to be answered')
     return parser.parse_args(rospy.myargv()[1:])
 
 
@@ -74,8 +74,9 @@ class Edits:
                 print('interrupted', flush=True)
             self._seconds = time.monotonic() - begin
             stop.set()
+            ending = time.monotonic() + options.bound
             for thread in threads:
-                thread.join(2 * options.bound)
+                thread.join(max(0.0, ending - time.monotonic()))
             self._end_node()
         self._calls.check_closed()
         if self._watch.steps == 0:
