@@ -13,7 +13,7 @@ constexpr double largest_shift = 0.05;
 /// Sections consist of whole segments: their ends are nodes.
 void warn_of_sections(const std::string& cable_key, const CableDesc& cable, std::vector<std::string>& warnings) {
   const double segment = cable.length / cable.segments;
-  /// A segment belongs to the section that its middle is in.
+  // A segment belongs to the section that its middle is in.
   const auto node_of = [&](double end) {
     return segment * std::clamp(std::ceil(end / segment - 0.5), 0.0, static_cast<double>(cable.segments));
   };

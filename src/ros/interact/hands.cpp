@@ -171,10 +171,10 @@ void Hands::drop_lost_grabs() {
 
 void Hands::show() {
   const DrawingFrame frame(simulation_.scene(), node_);
-  if (frame.name != shown_frame_) {
+  if (!shown_frame_ || frame.name != shown_frame_->name || frame.origin != shown_frame_->origin) {
     server_.clear();
     shown_.clear();
-    shown_frame_ = frame.name;
+    shown_frame_ = frame;
   }
   std::map<std::string, Handle> handles;
   for (Handle& handle : find_handles(simulation_, grabbed_attachments())) handles.emplace(handle.name, std::move(handle));

@@ -4,6 +4,7 @@
 
 #include <deque>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,7 +57,7 @@ class Hands {
   std::deque<Request> requests_;
   std::map<std::string, Handle> shown_;  // by name
   std::map<std::string, Grab> grabs_;    // by the name of the handle
-  std::string shown_frame_;              // the drawing frame
+  std::optional<DrawingFrame> shown_frame_;
   ros::WallTime last_shown_;
   HandleServer server_;  // the last: it calls back until it is gone
 };
