@@ -10,7 +10,7 @@ GROUPS = {
         'core/obstacle.h', 'core/surface_point.h'],
     'Scenes': [
         'core/scene_desc.h', 'core/attachment_desc.h', 'core/body_desc.h', 'core/guide_desc.h', 'core/junction_desc.h', 'core/shape_desc.h',
-        'core/scene_fields.h'],
+        'core/frame_keys.h', 'core/scene_fields.h'],
     'Scene files': ['scene/scene_reader.h', 'scene/motion.h', 'scene/resource.h'],
     'Geometry': ['core/shape.h', 'core/triangle_mesh.h', 'core/rotation.h'],
     'Look-ups and messages': [
