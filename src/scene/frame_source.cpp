@@ -19,7 +19,7 @@ FrameInput carried(const FrameInput& parent, const Pose& origin) {
 
 }  // namespace
 
-FrameSource::FrameSource(const SceneDesc& scene, const Motion& motion) {
+FrameSource::FrameSource(const SceneDesc& scene, const Motion& motion) : jump_speed_(scene.jump_speed) {
   const std::vector<std::string> names = frame_names(scene);
   const BoundaryInputs initial = initial_frames(scene);
   ids_ = static_cast<int>(names.size());
@@ -42,6 +42,7 @@ FrameSource::FrameSource(const SceneDesc& scene, const Motion& motion) {
 int FrameSource::add_frame(int id, const std::string& name, const FrameInput& resting, const Motion& motion) {
   const auto track = motion.find(name);
   frames_.push_back({id, track == motion.end() ? FrameTrack{} : track->second, resting.pose});
+  frames_.back().track.find_jumps(jump_speed_);
   return static_cast<int>(frames_.size()) - 1;
 }
 

@@ -40,7 +40,7 @@ class FrameSource {
 
   struct Frame {
     int id = -1;       ///< -1: nothing but a link uses it
-    FrameTrack track;  ///< empty where it rests
+    FrameTrack track;  ///< empty where it rests; its jumps are found
     Pose resting;
   };
   struct Link {
@@ -53,6 +53,7 @@ class FrameSource {
 
   int add_frame(int id, const std::string& name, const FrameInput& resting, const Motion& motion);
 
+  double jump_speed_ = infinity;  ///< [m/s]
   std::vector<Frame> frames_;
   int ids_ = 0;              ///< one more than the last of them
   std::vector<Link> links_;  ///< parents first

@@ -49,6 +49,7 @@ constexpr std::array<Field<SceneDesc>, 6> scene_fields{{
     {"tf_latency", &SceneDesc::tf_latency, "s", {0, 30, "0 or any number above, at most 30"}},
     {"tf_timeout", &SceneDesc::tf_timeout, "s", {1e-3, 30, "any number above 0, at most 30"}},
     {"max_frame_speed", &SceneDesc::max_frame_speed, "m/s", positive_or_infinite},
+    {"jump_speed", &SceneDesc::jump_speed, "m/s", positive_or_infinite},
 }};
 
 constexpr std::array<Field<SceneDesc, int>, 1> scene_integer_fields{{

@@ -122,9 +122,9 @@ struct Excursion {
   double allowed = 0;  ///< the limit of the material
 };
 
-/// A jump of an attachment: its velocity changed by more than 5 m/s within a step, for no longer than 5 ms. What it holds was
-/// carried along with it, so that it is not struck. A jump is reported when it is over; a change that lasts longer is a motion,
-/// which is followed from then on.
+/// A jump of an attachment: its velocity changed by more than the scene's jump_speed within a step, for no longer than 5 ms. What
+/// it holds was carried along with it, so that it is not struck. A jump is reported when it is over; a change that lasts longer
+/// is a motion, which is followed from then on.
 struct Jump {
   int attachment = 0;   ///< index into World::attachments()
   double distance = 0;  ///< [m] that the attachment was carried
@@ -176,6 +176,8 @@ class World {
 
   /// Advances by the scene's time step. `inputs`: one entry per frame, see frames().
   StepResult step(const BoundaryInputs& inputs);
+  /// Frames have gone further until the next step than it is long, because time was left out: they show no jump in it.
+  void note_left_out_time();
   /// Many cables that cannot touch are stepped on all cores at once. With `one_by_one` they are not, for programs that run many
   /// worlds at once. The result is the same.
   void step_one_by_one(bool one_by_one);

@@ -15,6 +15,9 @@ class FrameTrack {
  public:
   /// Adds a pose [m] at a time [s] above that of the last one.
   void add(double time, const Pose& pose);
+  /// A frame that goes faster than `jump_speed` [m/s] from one row to the next, and not before and after, has jumped: until that
+  /// row it stays where it was.
+  void find_jumps(double jump_speed);
 
   /// The pose at a time [s]; at least one pose must have been added.
   Pose at(double time) const;
@@ -30,6 +33,7 @@ class FrameTrack {
 
   std::vector<double> times_;  ///< [s] ascending
   std::vector<Pose> poses_;    ///< one a time
+  std::vector<char> jumps_;    ///< likewise: whether the frame jumps there
 };
 
 /// Tracks by frame name, in the fixed frame.

@@ -178,8 +178,7 @@ void World::Implementation::aim_net(int index, StepResult& result) {
   aim_hinges(state.attachments, state.frames.poses, state.time(), memory.targets);
   forget_forces(memory.targets, state.attachments);
   take_back_shown_velocities(memory.targets, state.nets[index].state.velocities);
-  const Following following =
-      follow_aims(state.attachments, state.time(), state.scene->time_step, memory.targets, findings.jumps);
+  const Following following = follow_aims(state.attachments, state.time(), step_of_frames(state), memory.targets, findings.jumps);
   if (following.started) take_velocities(memory.targets, state.nets[index].state);
   if (following.jumping_node < 0) return;
   carry_along(memory.targets, state.nets[index].state);

@@ -23,21 +23,17 @@ constexpr double one_speed = 0.1;
 constexpr double shortly = 0.02;
 constexpr double rounding = 1e-6;
 
-bool is_greater_than_a_motion(const Vector3& change) {
-  return change.norm() > greatest_change;
-}
-
 /// Whether a jump may begin in a step with this mean velocity, and its velocity before. An acceleration that goes on is none, nor
 /// is what comes back from a change that was no jump.
-bool may_begin_jump(const Vector3& mean, double time_step, KinematicTarget& target) {
+bool may_begin_jump(const Vector3& mean, double time_step, double jump_speed, KinematicTarget& target) {
   const Vector3 change = mean - target.mean_velocity;
-  if (!is_greater_than_a_motion(change)) return false;
-  if (target.left_for < shortly && !is_greater_than_a_motion(mean - target.left_velocity)) return false;
+  if (!(change.norm() > jump_speed)) return false;
+  if (target.left_for < shortly && !((mean - target.left_velocity).norm() > jump_speed)) return false;
   const double jerk = (change - target.change).norm();
-  if (jerk <= greatest_change || jerk <= sudden * target.change.norm()) return false;
+  if (jerk <= jump_speed || jerk <= sudden * target.change.norm()) return false;
   if (time_step > longest_jump * (1 + rounding) && change.norm() <= out_of_proportion * target.liveliness) return false;
   const Vector3 before = target.change.norm() <= steady_change ? target.mean_velocity : target.average_velocity;
-  if (!is_greater_than_a_motion(mean - before)) return false;
+  if (!((mean - before).norm() > jump_speed)) return false;
   target.mean_velocity = before;
   return true;
 }
@@ -74,23 +70,23 @@ void end_jump(KinematicTarget& target) {
   target.first_excess = target.last_excess = target.least_excess = target.greatest_excess = 0;
 }
 
-Change judge(const Vector3& mean, double time_step, KinematicTarget& target) {
-  if (target.jumping_steps == 0 && !may_begin_jump(mean, time_step, target)) return Change::none;
+Change judge(const Vector3& mean, double time_step, double jump_speed, KinematicTarget& target) {
+  if (target.jumping_steps == 0 && !may_begin_jump(mean, time_step, jump_speed, target)) return Change::none;
   const double excess = (mean - target.mean_velocity).norm();
-  if (excess <= greatest_change) return Change::jump;
+  if (excess <= jump_speed) return Change::jump;
   if (is_short(excess, time_step, target)) {
     begin_or_continue_jump(excess, target);
     return Change::undecided;
   }
   const Vector3 lasting = (target.next_position - target.jumped_from) / ((target.jumping_steps + 1) * time_step);
-  if (is_greater_than_a_motion(lasting - target.mean_velocity)) {
+  if ((lasting - target.mean_velocity).norm() > jump_speed) {
     target.left_velocity = target.mean_velocity;
     target.left_for = 0;
     return Change::motion;
   }
   end_jump(target);
   target.mean_velocity = lasting;
-  if (!is_greater_than_a_motion(mean - lasting)) return Change::none;
+  if (!((mean - lasting).norm() > jump_speed)) return Change::none;
   begin_or_continue_jump((mean - lasting).norm(), target);
   return Change::undecided;
 }

@@ -212,8 +212,9 @@ void put_at_aim(KinematicTargets& targets) {
   for (DirectionTarget& target : targets.directions) target.orientation = target.next_orientation;
 }
 
-Following follow_aims(const std::vector<Attachment>& attachments, double time, double time_step, KinematicTargets& targets,
+Following follow_aims(const std::vector<Attachment>& attachments, double time, const FrameStep& step, KinematicTargets& targets,
                       std::vector<Jump>& over) {
+  const double time_step = step.time_step;
   Following following;
   for (KinematicTarget& target : targets.nodes) {
     if (attachments[target.attachment].holder >= 0) continue;
@@ -225,7 +226,7 @@ Following follow_aims(const std::vector<Attachment>& attachments, double time, d
     }
     // What a node that has just been caught was doing is no motion of a frame.
     const bool is_new = time - target.caught < 1.5 * time_step;
-    const Change change = is_new ? Change::none : judge(mean, time_step, target);
+    const Change change = is_new || !step.is_judged ? Change::none : judge(mean, time_step, step.jump_speed, target);
     if (change == Change::undecided) {
       const Vector3 way = target.next_position - target.position - time_step * target.mean_velocity;
       target.position += way;

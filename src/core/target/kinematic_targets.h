@@ -112,9 +112,16 @@ struct Following {
   int jumping_node = -1;  ///< the first whose holder jumps, -1: none does
 };
 
+/// A step, for frames.
+struct FrameStep {
+  double time_step = 0;   ///< [s]
+  double jump_speed = 0;  ///< [m/s] a change of velocity by more, and not for long, is a jump
+  bool is_judged = true;  ///< false: how far frames went says nothing of how fast they were, since time was left out
+};
+
 /// Sets how the holders move over a step that ends at `time`. Those that jump are taken as far as they jump, to be followed on
 /// from there. Jumps that are over are added to `jumps`.
-Following follow_aims(const std::vector<Attachment>& attachments, double time, double time_step, KinematicTargets& targets,
+Following follow_aims(const std::vector<Attachment>& attachments, double time, const FrameStep& step, KinematicTargets& targets,
                       std::vector<Jump>& jumps);
 
 /// What is held at the end of a substep that goes from one part of the step to another, 0 to 1.

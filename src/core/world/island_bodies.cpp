@@ -147,7 +147,7 @@ void IslandStepper::aim_body(int index, std::vector<int>::const_iterator first, 
       if (progress.has_moved) target.velocity = body.velocity + body.angular_velocity.cross(arm);
       target.mean_velocity = target.frame_velocity = target.average_velocity = target.velocity;
       target.starts = !progress.has_moved && attachment.frame != 0;
-      target.liveliness = greatest_change;
+      target.liveliness = state_.scene->jump_speed;
       targets.nodes.push_back(target);
       progress.holder_spins.push_back(mean_spin(state_.frames, attachment, state_.scene->time_step));
     }
@@ -159,7 +159,7 @@ void IslandStepper::aim_body(int index, std::vector<int>::const_iterator first, 
   std::vector<Vector3>& before = workspace_.holder_places;
   before.clear();
   for (const KinematicTarget& target : nodes) before.push_back(target.position);
-  const Following following = follow_aims(state_.attachments, state_.time(), state_.scene->time_step, targets, found.jumps);
+  const Following following = follow_aims(state_.attachments, state_.time(), step_of_frames(state_), targets, found.jumps);
   if (following.jumping_node >= 0) {
     const KinematicTarget& target = nodes[following.jumping_node];
     const Attachment& attachment = state_.attachments[target.attachment];

@@ -185,7 +185,7 @@ void update_targets(int index, State& state, CableOutcome& outcome) {
   forget_forces(targets, state.attachments);
   outcome.jumps.clear();
   take_back_shown_velocities(targets, cable.state.velocities);
-  const Following following = follow_aims(state.attachments, state.time(), state.scene->time_step, targets, outcome.jumps);
+  const Following following = follow_aims(state.attachments, state.time(), step_of_frames(state), targets, outcome.jumps);
   const bool jumps = following.jumping_node >= 0;
   if (following.started || jumps) follow_abrupt_holders(index, following, state, outcome);
   if (!jumps) buckle_straight_columns(index, state);

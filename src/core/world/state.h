@@ -45,11 +45,16 @@ struct Frames {
   std::vector<Pose> previous_poses;  ///< a step before; of a frame that is new to a step, its first
   std::vector<Pose> earlier_poses;   ///< two steps before, likewise
   std::vector<char> known;           ///< whether it has been seen, or given a pose
+  int steps_unjudged = 0;            ///< from the next one on, in which no frame shows a jump: time was left out
 
   /// The index of a name, their number if it is not there.
   int find(const std::string& name) const;
   FrameIds ids() const;
 };
+
+struct State;
+/// The step that is being done, as it is for frames.
+FrameStep step_of_frames(const State& state);
 
 /// All that decides the future, and only that: its copy is a snapshot, its visit the world's hash.
 struct State {

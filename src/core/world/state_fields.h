@@ -117,7 +117,7 @@ auto fields(T& x, const RobotDesc*) {
 /// What the world itself reads: not what only programs do, nor what is made into particles and obstacles at once.
 template <class T>
 auto fields(T& x, const SceneDesc*) {
-  return std::tie(x.time_step, x.numerical_damping, x.tolerance, x.gravity, x.fluid, x.limits.segments, x.materials, x.cables,
+  return std::tie(x.time_step, x.jump_speed, x.numerical_damping, x.tolerance, x.gravity, x.fluid, x.limits.segments, x.materials, x.cables,
                   x.nets, x.integrator, x.robot, x.contact);
 }
 
@@ -269,7 +269,7 @@ auto fields(T& x, const Obstacle*) {
 // World
 template <class T>
 auto fields(T& x, const Frames*) {
-  return std::tie(x.names, x.poses, x.previous_poses, x.earlier_poses, x.known);
+  return std::tie(x.names, x.poses, x.previous_poses, x.earlier_poses, x.known, x.steps_unjudged);
 }
 template <class T>
 auto fields(T& x, const State*) {

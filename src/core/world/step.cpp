@@ -43,11 +43,21 @@ void World::Implementation::begin_step(const BoundaryInputs& inputs, StepResult&
   build_islands();
 }
 
+FrameStep step_of_frames(const State& state) {
+  return {state.scene->time_step, state.scene->jump_speed, state.frames.steps_unjudged == 0};
+}
+
+void World::note_left_out_time() {
+  constexpr int unjudged = 2;  // in the second one the speed of frames changes back
+  implementation_->state.frames.steps_unjudged = unjudged;
+}
+
 void World::Implementation::end_step(StepResult& result) {
   collect_outcomes(result);
   find_excursions(state, findings.excursions);
   apply_breaks(result);
   step_nets_and_particles(result);
+  state.frames.steps_unjudged = std::max(state.frames.steps_unjudged - 1, 0);
 }
 
 void World::step_one_by_one(bool one_by_one) {

@@ -30,6 +30,18 @@ Pose to_pose(const geometry_msgs::Transform& transform) {
   return {Vector3(t.x, t.y, t.z), Quaternion(r.w, r.x, r.y, r.z).normalized()};
 }
 
+geometry_msgs::Transform to_transform(const Pose& pose) {
+  geometry_msgs::Transform transform;
+  transform.translation.x = pose.position.x();
+  transform.translation.y = pose.position.y();
+  transform.translation.z = pose.position.z();
+  transform.rotation.x = pose.orientation.x();
+  transform.rotation.y = pose.orientation.y();
+  transform.rotation.z = pose.orientation.z();
+  transform.rotation.w = pose.orientation.w();
+  return transform;
+}
+
 }  // namespace
 
 std::string without_slash(const std::string& frame) {
@@ -87,8 +99,38 @@ bool FrameBuffer::reaches_beyond(Nanoseconds time) const {
   return std::any_of(newest_.begin(), newest_.end(), [time](const auto& newest) { return newest.second > time; });
 }
 
-bool FrameBuffer::insert(const ReceivedTransform& received, Nanoseconds now) {
+void FrameBuffer::follow(double jump_speed, Nanoseconds longest_gap) {
+  jump_speed_ = jump_speed;
+  longest_gap_ = longest_gap;
+  tracks_.clear();
+}
+
+std::vector<Nanoseconds> FrameBuffer::insert(const ReceivedTransform& received, Nanoseconds now) {
   const std::string child = without_slash(received.transform.child_frame_id);
+  if (!accept(received, child, now)) return {};
+  if (received.is_static)
+    return buffer_.setTransform(received.transform, "verlet_cable", true) ? std::vector<Nanoseconds>{0}
+                                                                          : std::vector<Nanoseconds>{};
+  const PoseSample sample{from_ros_time(received.transform.header.stamp), to_pose(received.transform.transform)};
+  std::vector<Nanoseconds> known;
+  geometry_msgs::TransformStamped played = received.transform;
+  for (const PoseSample& pose : tracks_.try_emplace(child, jump_speed_, longest_gap_).first->second.add(sample)) {
+    played.header.stamp = to_ros_time(pose.stamp);
+    // As it was sent, to the last bit.
+    played.transform = pose.stamp == sample.stamp ? received.transform.transform : to_transform(pose.pose);
+    if (play(played, child)) known.push_back(pose.stamp);
+  }
+  return known;
+}
+
+bool FrameBuffer::play(const geometry_msgs::TransformStamped& transform, const std::string& child) {
+  if (!buffer_.setTransform(transform, "verlet_cable", false)) return false;
+  stored_.add(child, from_ros_time(transform.header.stamp));
+  return true;
+}
+
+/// Whether the transform can be used. Notes whose it is.
+bool FrameBuffer::accept(const ReceivedTransform& received, const std::string& child, Nanoseconds now) {
   std::string problem = transform_problem(received, now);
   if (problem.empty() && !(know(child) && know(without_slash(received.transform.header.frame_id))))
     problem = "it would be more than " + std::to_string(most_frames) + " frames";
@@ -111,13 +153,11 @@ bool FrameBuffer::insert(const ReceivedTransform& received, Nanoseconds now) {
                              : "for now: frames of which some are stored"));
       return false;
     }
-    if (stamp > newest) note_parent(child, without_slash(received.transform.header.frame_id));
+    if (stamp > newest && note_parent(child, without_slash(received.transform.header.frame_id))) tracks_.erase(child);
     newest = std::max(newest, stamp);
   } else {
     note_parent(child, without_slash(received.transform.header.frame_id));
   }
-  if (!buffer_.setTransform(received.transform, "verlet_cable", received.is_static)) return false;
-  if (!received.is_static) stored_.add(child, from_ros_time(received.transform.header.stamp));
   return true;
 }
 
@@ -160,11 +200,13 @@ void FrameBuffer::note_kind(const std::string& child, bool is_static) {
   }
 }
 
-void FrameBuffer::note_parent(const std::string& child, const std::string& parent) {
+/// Whether it has another one than before.
+bool FrameBuffer::note_parent(const std::string& child, const std::string& parent) {
   std::string& known = parents_[child];
-  if (known == parent) return;
+  if (known == parent) return false;
   known = parent;
   ++tree_version_;
+  return true;
 }
 
 void FrameBuffer::note_source(const std::string& child, const std::string& source) {
@@ -190,6 +232,7 @@ void FrameBuffer::clear() {
   buffer_.clear();
   stored_.clear();
   newest_.clear();
+  tracks_.clear();
 }
 
 std::optional<Pose> FrameBuffer::pose(const std::string& frame, Nanoseconds time) const {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "frames/pose_track.h"
 #include "frames/stored_transforms.h"
 #include "frames/tf_listener.h"
 #include "time/time_grid.h"
@@ -35,8 +36,12 @@ class FrameBuffer {
 
   explicit FrameBuffer(std::string fixed_frame, std::size_t most_stored = FrameBuffer::most_stored);
 
-  /// Whether the transform is in the tree now. What is wrong with it is logged now and then, and counted.
-  bool insert(const ReceivedTransform& received, Nanoseconds now = 0);
+  /// Which frames have jumped, see PoseTrack; from now on, for transforms that come then.
+  void follow(double jump_speed, Nanoseconds longest_gap);
+  /// The stamps from which on a frame is known now that the transform has come, ascending: its own, and that of one which was
+  /// held back, see PoseTrack; none if it is held back or refused. A static one has stamp 0. What is wrong with it is logged now
+  /// and then, and counted.
+  std::vector<Nanoseconds> insert(const ReceivedTransform& received, Nanoseconds now = 0);
   /// Whether the names are short enough to be kept.
   static bool has_room_for_names(const geometry_msgs::TransformStamped& transform);
   /// The latest stamp that is taken at ROS time `now`; where there is no time, the latest that can be stored.
@@ -67,17 +72,22 @@ class FrameBuffer {
   int refused_count() const { return refused_count_; }  ///< since the start
 
  private:
+  bool accept(const ReceivedTransform& received, const std::string& child, Nanoseconds now);
+  bool play(const geometry_msgs::TransformStamped& transform, const std::string& child);
   void refuse(const std::string& child, const std::string& problem);
   bool know(const std::string& frame);
   void note_kind(const std::string& child, bool is_static);
-  void note_parent(const std::string& child, const std::string& parent);
+  bool note_parent(const std::string& child, const std::string& parent);
   void note_source(const std::string& child, const std::string& source);
 
   std::string fixed_frame_;
   tf2::BufferCore buffer_;
-  StoredTransforms stored_;             ///< in it, but for static ones
-  std::set<std::string> frames_;        ///< names that tf2 has, which it never forgets
-  std::map<std::string, bool> static_;  ///< by child frame: whether it came as a static one first
+  StoredTransforms stored_;                  ///< in it, but for static ones
+  double jump_speed_ = infinity;             ///< [m/s]
+  Nanoseconds longest_gap_ = memory;         ///< that a frame may be silent
+  std::map<std::string, PoseTrack> tracks_;  ///< by child frame, of dynamic transforms
+  std::set<std::string> frames_;             ///< names that tf2 has, which it never forgets
+  std::map<std::string, bool> static_;       ///< by child frame: whether it came as a static one first
   std::set<std::string> mixed_;
   std::map<std::string, Nanoseconds> newest_;                            ///< by child frame, dynamic transforms
   std::map<std::string, std::string> parents_;                           ///< by child frame, as in its newest transform

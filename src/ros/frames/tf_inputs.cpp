@@ -28,6 +28,7 @@ TfInputs::TfInputs(const ros::NodeHandle& node, const SceneDesc& scene) : listen
 
 void TfInputs::follow_scene(const SceneDesc& scene, Nanoseconds time) {
   buffer_.see_from(scene.frame_id);
+  buffer_.follow(scene.jump_speed, nanoseconds(scene.tf_timeout));
   timeout_ = nanoseconds(scene.tf_timeout);
   max_frame_speed_ = scene.max_frame_speed;
   approaches_ = scene.on_lost_frame != LostFramePolicy::release;
@@ -73,13 +74,15 @@ void TfInputs::receive(Nanoseconds ros_now) {
 }
 
 void TfInputs::insert(const ReceivedTransform& received, Nanoseconds now) {
-  if (!buffer_.insert(received, now)) return;
+  const std::vector<Nanoseconds> known = buffer_.insert(received, now);
+  if (known.empty()) return;
   if (buffer_.tree_version() != followers_version_) find_followers();
   const auto moved = followers_.find(without_slash(received.transform.child_frame_id));
   if (moved == followers_.end()) return;
   for (const int frame : moved->second) {
+    for (const Nanoseconds stamp : known)
+      if (stamp > 0) fill_history(tracks_[frame], stamp);
     update_history(tracks_[frame]);
-    if (!received.is_static) fill_history(tracks_[frame], from_ros_time(received.transform.header.stamp));
   }
 }
 

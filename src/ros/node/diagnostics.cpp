@@ -77,6 +77,7 @@ void Diagnostics::report_simulation(Status& status) {
   status.add("step_time_mean_s", step_time);                                  // computing time of a step since the last report
   status.add("step_time_max_s", s.longest_step);                              // the same, of the longest step
   status.add("steps", s.steps);                           // since the last report, like all numbers of steps here
+  status.add("behind_s", seconds(report.behind));         // of the time to simulate, ROS time - tf_latency; at most tf_timeout
   status.add("dropped_time_s", seconds(report.dropped));  // simulated time skipped since the start when overloaded
   status.add("max_strain", s.max_strain);                 // largest |l / l0 - 1|
   status.add("overstretched_steps", s.overstretched);     // held points were further apart than a cable or net is long
@@ -122,9 +123,12 @@ void Diagnostics::report_waiting(Status& status) const {
 }
 
 void Diagnostics::report_frames(Status& status) const {
-  status.summary(DiagnosticStatus::OK, "all frames are there");
   std::vector<FrameReport> frames = simulation_.frames().report();
   frames.erase(frames.begin());  // the fixed frame
+  NameList late;
+  for (const FrameReport& frame : frames)
+    if (frame.status == FrameStatus::late) late.add(frame.name);
+  status.summary(DiagnosticStatus::OK, late.text("").empty() ? "all frames are there" : "late: " + late.text(""));
   for (const FrameReport& frame : frames) {
     std::string value = text(frame.status);
     if (frame.is_static) {

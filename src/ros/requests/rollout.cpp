@@ -99,6 +99,7 @@ Rollout::Rollout(const RolloutGoal& goal, RolloutStart start)
   check_times(goal, world_, errors);
   motion_ = read_motion(goal, world_, errors);
   if (!errors.empty()) throw SceneError(std::move(errors));
+  for (auto& [frame, track] : motion_) track.find_jumps(start.jump_speed);
   all_steps_ = std::llround(duration_ / world_.time_step());
 }
 

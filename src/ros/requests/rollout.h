@@ -16,6 +16,7 @@ namespace verlet_cable {
 struct RolloutStart {
   World world;
   BoundaryInputs frames;
+  double jump_speed = infinity;  ///< [m/s] of the scene
 };
 
 /// A run of a world's copy along given motions of frames.

@@ -63,7 +63,7 @@ void Rollouts::accept(Server::GoalHandle goal) {
   if (!snapshot)
     return reject("snapshot: " + verlet_cable::quoted(request.snapshot) +
                   "; allowed: a saved one, or empty for the present state");
-  RolloutStart start{snapshot->world, {}};
+  RolloutStart start{snapshot->world, {}, snapshot->scene.jump_speed};
   for (const SavedFrame& frame : snapshot->frames) start.frames.push_back(frame.input);
   try {
     auto job = std::make_shared<Job>(goal, Rollout(request, std::move(start)));

@@ -10,8 +10,6 @@
 namespace verlet_cable {
 namespace {
 
-/// What can be caught up beyond the longest wait for a late frame [s]: a busy machine's hiccups.
-constexpr double hiccup = 0.5;
 /// Longer waits than this [s] cannot be caught up: tf would have forgotten the frames.
 constexpr double longest_wait = 50;
 /// Between messages while the clock stands: whoever subscribes then sees something.
@@ -22,7 +20,7 @@ const ros::WallDuration standing_period(0.5);
 const ros::WallDuration Simulation::longest_slice(0.01);
 
 Nanoseconds Simulation::longest_backlog(const SceneDesc& scene) {
-  return nanoseconds(std::min(scene.tf_timeout, longest_wait) + hiccup);
+  return nanoseconds(std::min(scene.tf_timeout, longest_wait));
 }
 
 Simulation::Simulation(ros::NodeHandle& private_node, const SceneDesc& scene)
@@ -162,6 +160,7 @@ bool Simulation::step_world(Nanoseconds time) {
   const auto begin = std::chrono::steady_clock::now();
   moves_.advance(scene_.time_step, world_);
   if (stamp_ != stepped_to_) frame_watch_.skip(world_.time());
+  if (time - stamp_ > grid_.step()) world_.note_left_out_time();
   const StepResult result = world_.step(frames_.inputs());
   statistics_.add(result, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   if (result.ignored_frame >= 0) frame_watch_.warn_of_ignored(world_, frames_.inputs());
@@ -246,7 +245,8 @@ SimulationReport::Phase Simulation::phase() const {
 }
 
 SimulationReport Simulation::take_report() {
-  return {phase(), std::exchange(statistics_, {}), pacer_.dropped(), cable_watch_.faults(), cable_watch_.intrusions()};
+  const Nanoseconds behind = phase() == SimulationReport::Phase::running ? std::max<Nanoseconds>(target() - stamp_, 0) : 0;
+  return {phase(), std::exchange(statistics_, {}), behind, pacer_.dropped(), cable_watch_.faults(), cable_watch_.intrusions()};
 }
 
 }  // namespace verlet_cable

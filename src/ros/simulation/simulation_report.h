@@ -22,6 +22,7 @@ struct SimulationReport {
   };
   Phase phase = Phase::running;
   Statistics statistics;    ///< since the last report
+  Nanoseconds behind = 0;   ///< what is due and not simulated yet
   Nanoseconds dropped = 0;  ///< since the node started, as `faults`
   int faults = 0;
   std::set<std::string> intrusions;  ///< "CABLE in OBSTACLE" of those that were found inside since the scene started

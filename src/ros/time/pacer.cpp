@@ -7,10 +7,8 @@
 namespace verlet_cable {
 namespace {
 
-/// A target that is further ahead [s] than can be caught up has leapt.
-constexpr double leap = 0.2;
-/// Further behind [s], beyond the longest backlog, no pace leads anywhere.
-constexpr double most_beyond = 5;
+/// Of the target's time, between two calls [s], that counts as busy: in a leap nobody was.
+constexpr double longest_busy = 0.2;
 /// Beyond the backlog that is caught up the pace grows by a factor of e each time the backlog grows by this [s]: whatever the
 /// load, there is a pace that keeps up. The smaller one is for a lasting overload, with steps that take no time.
 constexpr double longest_scale = 0.5, shortest_scale = 0.1;
@@ -37,13 +35,11 @@ void Pacer::use(const TimeGrid& grid, Nanoseconds longest_backlog) {
 }
 
 Nanoseconds Pacer::resume(Nanoseconds simulated, Nanoseconds target) {
-  const Nanoseconds beyond = target - simulated - longest_backlog_, leapt = std::min(beyond, target - last_target_);
-  if (beyond + longest_backlog_ > grid_.step()) busy_ += std::clamp(seconds(target - last_target_), 0.0, leap);
+  const Nanoseconds beyond = target - simulated - longest_backlog_;
+  if (target - simulated > grid_.step()) busy_ += std::clamp(seconds(target - last_target_), 0.0, longest_busy);
   last_target_ = target;
-  Nanoseconds skipped = leapt > nanoseconds(leap) ? leapt : 0;
-  if (beyond - skipped > nanoseconds(most_beyond)) skipped = beyond;
-  if (skipped == 0) return simulated;
-  const Nanoseconds time = grid_.step_at_or_after(simulated + skipped);
+  if (beyond <= 0) return simulated;
+  const Nanoseconds time = grid_.step_at_or_after(simulated + beyond);
   if (busy_ > patience) left_out_ += time - simulated;
   drop(time - simulated);
   return time;
@@ -61,7 +57,8 @@ std::optional<Nanoseconds> Pacer::next(Nanoseconds simulated, Nanoseconds target
 void Pacer::done(Nanoseconds simulated, Nanoseconds time, Nanoseconds target) {
   drop(time - simulated - grid_.step());
   left_out_ += std::max<Nanoseconds>(time - simulated - grid_.step(), 0);
-  const double way = seconds(time - simulated), longest = seconds(longest_backlog_);
+  // Half of the longest backlog is left for the pace to come up to what the machine can do.
+  const double way = seconds(time - simulated), longest = seconds(longest_backlog_) / 2;
   usual_way_ += std::min(way / way_memory, 1.0) * (way - usual_way_);
   const double given_up = std::exp(-std::max(busy_ - patience, 0.0) / surrender);
   const double backlog =

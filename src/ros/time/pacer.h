@@ -18,8 +18,8 @@ class Pacer {
 
   void use(const TimeGrid& grid, Nanoseconds longest_backlog);  ///< from now on
 
-  /// Where to go on from, to be asked before steps are done: later than `simulated` where `target`, the time to be at, has leapt
-  /// so far since the last call that it cannot be caught up.
+  /// Where to go on from, to be asked before steps are done: later than `simulated` where `target`, the time to be at, is further
+  /// ahead than the longest backlog.
   Nanoseconds resume(Nanoseconds simulated, Nanoseconds target);
   /// The time that the next step leads to: on the grid while nothing is left out; none where it is not due.
   std::optional<Nanoseconds> next(Nanoseconds simulated, Nanoseconds target) const;
