@@ -15,7 +15,7 @@ void warn_of_sections(const std::string& cable_key, const CableDesc& cable, std:
   const double segment = cable.length / cable.segments;
   // A segment belongs to the section that its middle is in.
   const auto node_of = [&](double end) {
-    return segment * std::clamp(std::ceil(end / segment - 0.5), 0.0, static_cast<double>(cable.segments));
+    return segment * std::min(std::max(0.0, std::ceil(end / segment - 0.5)), static_cast<double>(cable.segments));  // never -0
   };
   for (std::size_t k = 0; k < cable.sections.size(); ++k) {
     const SectionDesc& section = cable.sections[k];
