@@ -85,6 +85,7 @@ SceneDesc read_requested_scene(const LoadScene::Request& request, const SceneDes
   SceneDesc scene = request.file.empty()
                         ? read_scene_text(request.yaml, sources)
                         : read_scene_file(find_scene_file("file", request.file, current.scene_directory), sources);
+  warn_of_left_out(scene);
   // A scene must not widen what it may do itself.
   scene.scene_directory = current.scene_directory;
   scene.limits = current.limits;

@@ -1,5 +1,6 @@
 #include "scene_sources/scene_parameters.h"
 
+#include <ros/console.h>
 #include <ros/names.h>
 #include <ros/param.h>
 #include <yaml-cpp/yaml.h>
@@ -86,6 +87,11 @@ SceneSources node_sources(const std::string& scene_directory, const std::string&
   return sources;
 }
 
+void warn_of_left_out(const SceneDesc& scene) {
+  if (!scene.robot) return;
+  for (const std::string& line : scene.robot->left_out) ROS_WARN("%s", line.c_str());
+}
+
 SceneDesc read_scene_parameters(const ros::NodeHandle& private_node) {
   XmlRpcValue parameters;
   private_node.getParam(private_node.getNamespace(), parameters);
@@ -96,7 +102,9 @@ SceneDesc read_scene_parameters(const ros::NodeHandle& private_node) {
   }
   std::string scene_directory;
   private_node.getParam("scene_directory", scene_directory);
-  return read_scene(to_yaml(parameters), {"tuning"}, node_sources(scene_directory, private_node.getNamespace()));
+  SceneDesc scene = read_scene(to_yaml(parameters), {"tuning"}, node_sources(scene_directory, private_node.getNamespace()));
+  warn_of_left_out(scene);
+  return scene;
 }
 
 }  // namespace verlet_cable

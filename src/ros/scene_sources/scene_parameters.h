@@ -19,6 +19,9 @@ YAML::Node to_yaml(XmlRpc::XmlRpcValue value, const std::string& key = {});
 /// around it.
 SceneSources node_sources(const std::string& scene_directory, const std::string& where);
 
+/// Warns of what a scene's robot does without.
+void warn_of_left_out(const SceneDesc& scene);
+
 /// Reads the scene from a node's private parameters; `tuning` is left out. Throws SceneError with every error at once.
 SceneDesc read_scene_parameters(const ros::NodeHandle& private_node);
 

@@ -79,6 +79,11 @@ void warn_of_unplaced(const std::vector<std::string>& frames) {
             << " at the origin; give one by --motion MOTION.csv or as initial_pose in the scene\n";
 }
 
+void warn_of_left_out(const SceneDesc& scene) {
+  if (!scene.robot) return;
+  for (const std::string& line : scene.robot->left_out) std::cerr << program << ": warning: " << line << "\n";
+}
+
 int simulate_job(const Options& options, const Job& job) {
   const FrameSource frames(job.scene, job.motion);
   BoundaryInputs start = frames.at_start();
@@ -88,6 +93,7 @@ int simulate_job(const Options& options, const Job& job) {
   std::vector<std::string> errors;
   outputs.open(options, errors);
   if (!errors.empty()) return refuse(errors);
+  warn_of_left_out(job.scene);
   note_unused(options, unused_frames(job.scene, job.motion));
   warn_of_unplaced(unplaced_frames(job.scene, job.motion));
 
