@@ -114,7 +114,14 @@ std::shared_ptr<const TriangleMesh> scaled(const Triangles& mesh, const Vector3&
       throw ResourceError("a vertex has a coordinate of " + number_text(farthest) + " m, beyond " +
                           number_text(coordinate.highest) + " m");
   }
-  return std::make_shared<TriangleMesh>(std::move(vertices), mesh.triangles);
+  std::vector<TriangleMesh::Triangle> triangles = mesh.triangles;
+  if (scale.prod() < 0)  // a mirror image
+    for (TriangleMesh::Triangle& triangle : triangles) std::swap(triangle[1], triangle[2]);
+  try {
+    return std::make_shared<TriangleMesh>(std::move(vertices), std::move(triangles));
+  } catch (const std::invalid_argument& error) {
+    throw ResourceError(error.what());
+  }
 }
 
 /// How far apart two vertices may be that are one but for rounding: to single precision, in a file or on reading it, or by the
@@ -136,18 +143,11 @@ void Patience::check() const {
 
 std::shared_ptr<const TriangleMesh> read_mesh_file(const std::string& path, const Vector3& scale, const Patience& patience) {
   Triangles mesh = read_triangles(path, patience);
-  try {
-    return scaled(mesh, scale);
-  } catch (const std::invalid_argument& error) {
-    const double tolerance = mesh.vertices.empty() ? 0 : rounding_of(mesh.vertices);
-    if (!(tolerance > 0)) throw ResourceError(error.what());
-    weld(tolerance, mesh.vertices, mesh.triangles);
-  }
-  try {
-    return scaled(mesh, scale);
-  } catch (const std::invalid_argument& error) {
-    throw ResourceError(error.what());
-  }
+  auto as_given = scaled(mesh, scale);
+  const double tolerance = as_given->is_closed() ? 0 : rounding_of(mesh.vertices);
+  if (!(tolerance > 0)) return as_given;
+  weld(tolerance, mesh.vertices, mesh.triangles);
+  return mesh.triangles.empty() ? as_given : scaled(mesh, scale);
 }
 
 }  // namespace verlet_cable

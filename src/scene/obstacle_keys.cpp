@@ -46,9 +46,15 @@ void read_links(const Value& value, RobotDesc& robot) {
 
 const Keys<RobotDesc>& robot_keys() {
   static const Keys<RobotDesc> keys{
-      text_key("description", &RobotDesc::description, "the name of a parameter"),
+      text_key("description", &RobotDesc::description, "the name of a parameter, or file:PATH"),
       text_key("file", &RobotDesc::file, "a URDF file"),
       {"links", link_words, false, read_links},
+      choice_key("on_bad_mesh", &RobotDesc::on_bad_mesh,
+                 {{"warn", RobotDesc::OnBadMesh::warn}, {"error", RobotDesc::OnBadMesh::error}}),
+      choice_key("geometry", &RobotDesc::geometry,
+                 {{"collision", RobotDesc::Geometry::collision},
+                  {"visual", RobotDesc::Geometry::visual},
+                  {"collision_or_visual", RobotDesc::Geometry::collision_or_visual}}),
       field_key(robot_fields[0]),
   };
   return keys;

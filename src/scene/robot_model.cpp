@@ -134,9 +134,9 @@ class TreeBuilder {
         throw ResourceError("no URDF: link " + quoted(name) + ", a name of " + std::to_string(name.size()) +
                             " characters, more than " + std::to_string(most_name_characters));
       taken_.insert(name);
-      if (is_selected(name)) collisions += link.second->collision_array.size();
+      if (is_selected(name)) collisions += geometry_of(*link.second).size();
     }
-    check_number(collisions, most_collisions, robot.links.empty() ? "collisions" : "collisions of the links in robot.links");
+    check_number(collisions, most_collisions, robot.links.empty() ? "geometries" : "geometries of the links in robot.links");
     add(*model.getRoot(), -1);
   }
 
@@ -159,18 +159,37 @@ class TreeBuilder {
     for (const urdf::LinkSharedPtr& child : link.child_links) add(*child, index);
   }
 
+  struct Placed {
+    urdf::GeometrySharedPtr geometry;
+    urdf::Pose origin;
+  };
+  template <class Elements>
+  static std::vector<Placed> placed(const Elements& elements) {
+    std::vector<Placed> all;
+    for (const auto& element : elements)
+      if (element && element->geometry) all.push_back({element->geometry, element->origin});
+    return all;
+  }
+  std::vector<Placed> geometry_of(const urdf::Link& link) const {
+    using Geometry = RobotDesc::Geometry;
+    std::vector<Placed> found;
+    if (robot_.geometry != Geometry::visual) found = placed(link.collision_array);
+    if (robot_.geometry == Geometry::visual || (robot_.geometry == Geometry::collision_or_visual && found.empty()))
+      found = placed(link.visual_array);
+    return found;
+  }
+
   void add_obstacles(const urdf::Link& link, LinkDesc& desc) {
     int number = 0;
-    for (const urdf::CollisionSharedPtr& collision : link.collision_array) {
-      if (!collision || !collision->geometry) continue;
+    for (const Placed& placed : geometry_of(link)) {
       ObstacleDesc obstacle;
       obstacle.name = desc.name;
       while (!desc.obstacles.empty() && !taken_.insert(obstacle.name).second)
         obstacle.name = desc.name + "_" + std::to_string(++number);
       obstacle.frame = desc.name;
-      obstacle.pose = to_pose(collision->origin);
+      obstacle.pose = to_pose(placed.origin);
       obstacle.padding = robot_.padding;
-      set_shape(*collision->geometry, obstacle);
+      set_shape(*placed.geometry, obstacle);
       desc.obstacles.push_back(std::move(obstacle));
     }
   }

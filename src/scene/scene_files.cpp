@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <tuple>
@@ -42,16 +44,44 @@ class MeshReader {
   std::map<std::tuple<std::string, double, double, double>, std::shared_ptr<const TriangleMesh>> meshes_;
 };
 
+bool is_scaled(const ShapeDesc& shape) {
+  return std::all_of(shape.scale.begin(), shape.scale.end(), [](double factor) { return positive.contains(std::abs(factor)); });
+}
+
 void read_mesh(const std::string& key, MeshReader& reader, ErrorList& errors, ShapeDesc& shape) {
   const bool unread = errors.is_unread(key + ".uri") || errors.is_unread(key + ".scale");
-  const Vector3& scale = shape.scale;
-  const bool scaled = positive.contains(scale.minCoeff()) && positive.contains(scale.maxCoeff());
-  if (shape.type != ShapeType::mesh || unread || !scaled) return errors.mark(key + ".uri");
+  if (shape.type != ShapeType::mesh || unread || !is_scaled(shape)) return errors.mark(key + ".uri");
   try {
     shape.mesh = reader.read(shape);
   } catch (const ResourceError& error) {
     errors.add_unread(key + ".uri", quoted(shape.uri) + ": " + error.what(), mesh_words);
   }
+}
+
+/// Why a robot can do without a geometry: it has no size, or its mesh cannot be read, which is done here. None: there is nothing
+/// to say, or an error that `validate` names.
+std::optional<std::string> problem_of(ObstacleDesc& obstacle, MeshReader& reader) {
+  if (obstacle.type == ShapeType::box && obstacle.size.cwiseAbs().minCoeff() == 0) return "a box with an edge of length 0";
+  const bool is_round = obstacle.type == ShapeType::sphere || obstacle.type == ShapeType::cylinder;
+  if (is_round && obstacle.radius == 0) return "a radius of 0";
+  if (obstacle.type == ShapeType::cylinder && obstacle.length == 0) return "a cylinder of length 0";
+  if (obstacle.type != ShapeType::mesh) return std::nullopt;
+  if (obstacle.scale.cwiseAbs().minCoeff() == 0) return quoted(obstacle.uri) + ": a scale of 0";
+  if (!is_scaled(obstacle)) return std::nullopt;
+  try {
+    obstacle.mesh = reader.read(obstacle);
+  } catch (const ResourceError& error) {
+    return quoted(obstacle.uri) + ": " + error.what();
+  }
+  return std::nullopt;
+}
+
+/// The file of `description: file:PATH`; empty: it is the name of a parameter, which has no colon.
+std::string file_of_description(const RobotDesc& robot) {
+  const std::string prefix = "file:";
+  if (robot.description.compare(0, prefix.size(), prefix) != 0) return "";
+  const bool is_uri = robot.description.compare(0, prefix.size() + 2, prefix + "//") == 0;
+  return is_uri ? robot.description : robot.description.substr(prefix.size());
 }
 
 /// The URDF's text and the key that it comes from. The parameter comes before the file: a scene with both is for the node and for
@@ -61,14 +91,17 @@ struct Description {
   std::string text;
 };
 Description read_description(const RobotDesc& robot, const SceneSources& sources, ErrorList& errors) {
-  if (sources.parameter) {
+  const std::string named = file_of_description(robot);
+  if (sources.parameter && named.empty()) {
     if (const auto text = sources.parameter(robot.description)) return {"robot.description", *text};
   }
-  if (!robot.file.empty()) {
+  const std::string& file = named.empty() ? robot.file : named;
+  const std::string key = named.empty() ? "robot.file" : "robot.description";
+  if (!file.empty()) {
     try {
-      return {"robot.file", read_file(file_of(robot.file, sources.files))};
+      return {key, read_file(file_of(file, sources.files))};
     } catch (const ResourceError& error) {
-      errors.add_unread("robot.file", quoted(robot.file) + ": " + error.what(), urdf_words);
+      errors.add_unread(key, quoted(file) + ": " + error.what(), urdf_words);
     }
   } else if (sources.parameter) {
     errors.add_unread("robot.description", quoted(robot.description) + " is not set, or is no text", "a parameter with a URDF");
@@ -103,8 +136,19 @@ void read_robot(const Value& root, const SceneSources& sources, MeshReader& mesh
     return root.errors->add_unread(description.key, quoted(name) + ": " + error.what(), urdf_words);
   }
   check_links(root, robot);
-  for (LinkDesc& link : robot.tree)
-    for (ObstacleDesc& obstacle : link.obstacles) read_mesh("robot." + escaped(obstacle.name), meshes, *root.errors, obstacle);
+  for (LinkDesc& link : robot.tree) {
+    const auto is_left_out = [&](ObstacleDesc& obstacle) {
+      const auto problem = problem_of(obstacle, meshes);
+      if (!problem) return false;
+      const std::string key = "robot." + escaped(obstacle.name);
+      if (robot.on_bad_mesh == RobotDesc::OnBadMesh::error)
+        root.errors->add_unread(key, *problem, "geometry with a size, or robot.on_bad_mesh: warn");
+      else
+        robot.left_out.push_back(key + " is left out: " + *problem);
+      return true;
+    };
+    link.obstacles.erase(std::remove_if(link.obstacles.begin(), link.obstacles.end(), is_left_out), link.obstacles.end());
+  }
 }
 
 }  // namespace
@@ -136,6 +180,7 @@ std::vector<std::string> named_files(const SceneDesc& scene, const FileAccess& a
     for (const auto& shape : body.shapes) add(shape.uri);
   if (!scene.robot) return files;
   add(scene.robot->file);
+  add(file_of_description(*scene.robot));
   for (const LinkDesc& link : scene.robot->tree)
     for (const ObstacleDesc& obstacle : link.obstacles) add(obstacle.uri);
   return files;

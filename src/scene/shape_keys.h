@@ -16,8 +16,8 @@ Key<Owner> pose_key(const std::string& name, Pose Owner::*member) {
 /// Of a shape: its type, where it is, and the dimensions of all types.
 const Keys<ShapeDesc>& shape_keys();
 
-/// Dimensions go with their type: others are errors, and those that the type has are required, but for `scale`. `given`: the keys
-/// of the map `value` that are there.
+/// Dimensions go with their type: others are errors, and those that the type has are required, but for `scale`, `sheet` and
+/// `thickness`. `given`: the keys of the map `value` that are there.
 void check_dimensions(const Value& value, const std::set<std::string>& given, ShapeType type);
 
 }  // namespace verlet_cable

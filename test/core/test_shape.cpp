@@ -242,28 +242,19 @@ TEST(TriangleMesh, TurnedInsideOutIsTheSameSolid) {
   EXPECT_NEAR(box.mesh()->closest_point({0, 0, 0.4}).distance, -0.1, rounding);
 }
 
-TEST(TriangleMesh, RefusesWhatBoundsNoSolid) {
+TEST(TriangleMesh, RefusesWhatIsNoMesh) {
   const Triangles box = box_triangles({1, 1, 1});
   const auto problem = [](const Triangles& t) { return TriangleMesh::problem(t.vertices, t.triangles); };
   EXPECT_EQ(problem(box), "");
-  Triangles open = box;
-  open.triangles.pop_back();
-  EXPECT_EQ(problem(open), "it is not closed: 3 edges are not shared by just two triangles that face the same way");
-  Triangles turned = box;
-  std::swap(turned.triangles[0][0], turned.triangles[0][1]);
-  EXPECT_EQ(problem(turned), "it is not closed: 3 edges are not shared by just two triangles that face the same way");
   EXPECT_EQ(problem({box.vertices, {}}), "it has no triangles");
+  EXPECT_EQ(problem({box.vertices, {{0, 1, 1}}}), "it has no triangles");
   Triangles stray = box;
   stray.triangles[3][1] = 8;
   EXPECT_EQ(problem(stray), "a triangle names a vertex that does not exist");
-  Triangles twice = box;
-  twice.triangles[3][1] = twice.triangles[3][0];
-  EXPECT_EQ(problem(twice), "a triangle has a vertex twice");
   Triangles infinite = box;
   infinite.vertices[2].y() = infinity;
   EXPECT_EQ(problem(infinite), "a vertex is not finite");
-  EXPECT_EQ(problem({box.vertices, {{0, 1, 2}, {0, 2, 1}}}), "it encloses no volume");
-  EXPECT_THROW(open.mesh(), std::invalid_argument);
+  EXPECT_THROW(stray.mesh(), std::invalid_argument);
 }
 
 }  // namespace

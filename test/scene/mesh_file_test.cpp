@@ -150,7 +150,7 @@ TEST_F(MeshFile, verticesThatDifferByRoundingAreOne) {
   const Triangles small = box_triangles(Vector3::Constant(0.4));
   EXPECT_EQ(read("jitter.obj", obj_of(torn(small, 1.5e-7)))->vertices().size(), 8u);
   // What is further apart is no rounding.
-  EXPECT_EQ(problem_of(write("gap.obj", obj_of(torn(box, 1e-5)))).rfind("it is not closed: 36 edges", 0), 0u);
+  EXPECT_EQ(read("gap.obj", obj_of(torn(box, 1e-5)))->vertices().size(), 36u);
 }
 
 TEST_F(MeshFile, trianglesThatEndAsLinesAreLeftOut) {

@@ -308,22 +308,82 @@ TEST_F(Robot, markupThatIsNoElementDoesNotCount) {
   EXPECT_EQ(scene.robot->tree.size(), 1u);
 }
 
-TEST_F(Robot, meshesThatAreNoSolidAreNamed) {
+TEST_F(Robot, meshesWithoutTrianglesAreNamed) {
   const auto expect = [&](const std::string& name, const std::string& error) {
     const auto lines = errors_of(sound_scene + "obstacles: [{name: a, type: mesh, uri: \"file://" + path(name) + "\"}]\n");
     EXPECT_EQ(lines.size(), 1u) << joined(lines);
     EXPECT_TRUE(has_line(lines, "obstacles[0].uri: \"file://" + path(name) + "\": " + error)) << joined(lines);
   };
-  Triangles open = box_triangles({1, 1, 1});
-  open.triangles.pop_back();
-  write("open.stl", stl_of(open));
-  expect("open.stl", "it is not closed: 3 edges");
   write("empty.stl", "solid m\nendsolid m\n");
   expect("empty.stl", "no mesh: ");
   write("text.stl", "no mesh at all");
   expect("text.stl", "no mesh: ");
   write("zero.obj", "");
   expect("zero.obj", "no mesh: ");
+}
+
+TEST_F(Robot, badGeometryIsLeftOutAndNamed) {
+  write("empty.stl", "solid m\nendsolid m\n");
+  const auto with = [&](const std::string& geometry) {
+    write("bad.urdf",
+          "<robot name='r'><link name='base'><collision><geometry><sphere radius='1'/></geometry></collision>"
+          "<collision><geometry>" +
+              geometry + "</geometry></collision></link></robot>");
+  };
+  const auto mesh = [&](const std::string& name, const std::string& scale) {
+    return "<mesh filename='file://" + path(name) + "' scale='" + scale + "'/>";
+  };
+  for (const auto& [geometry, reason] : {std::pair(mesh("empty.stl", "1 1 1"), "empty.stl\": no mesh: "),
+                                         {mesh("missing.stl", "1 1 1"), "missing.stl\": "},
+                                         {mesh("box.stl", "1 0 1"), "box.stl\": a scale of 0"},
+                                         {"<cylinder radius='1' length='0'/>", "a cylinder of length 0"},
+                                         {"<sphere radius='0'/>", "a radius of 0"},
+                                         {"<box size='1 0 1'/>", "a box with an edge of length 0"}}) {
+    with(geometry);
+    const SceneDesc scene = read("{file: " + path("bad.urdf") + "}");
+    EXPECT_EQ(scene.robot->tree[0].obstacles.size(), 1u) << geometry;
+    ASSERT_EQ(scene.robot->left_out.size(), 1u) << geometry;
+    EXPECT_EQ(scene.robot->left_out[0].rfind("robot.base_1 is left out: ", 0), 0u) << scene.robot->left_out[0];
+    EXPECT_NE(scene.robot->left_out[0].find(reason), std::string::npos) << scene.robot->left_out[0];
+    const auto lines = errors_of(sound_scene + "robot: {on_bad_mesh: error, file: " + path("bad.urdf") + "}\n");
+    ASSERT_EQ(lines.size(), 1u) << joined(lines);
+    EXPECT_EQ(lines[0].rfind("robot.base_1: ", 0), 0u) << lines[0];
+    EXPECT_NE(lines[0].find(reason), std::string::npos) << lines[0];
+  }
+}
+
+TEST_F(Robot, openAndMirroredMeshesAreObstacles) {
+  Triangles open = box_triangles({1, 1, 1});
+  open.triangles.pop_back();
+  write("box.stl", stl_of(open));
+  write("robot.urdf", replaced(replaced(urdf, "MESH", "file://" + path("box.stl")), "2 3 4", "1 -1 1"));
+  const SceneDesc scene = read("{" + file() + "}");
+  const ObstacleDesc& arm = scene.robot->tree[1].obstacles.at(0);
+  EXPECT_EQ(arm.name, "arm");
+  EXPECT_FALSE(arm.mesh->is_closed());
+  EXPECT_LT(arm.mesh->closest_point({0, 0, 0}).distance, 0);
+}
+
+TEST_F(Robot, visualGeometryMayBeChosen) {
+  write("both.urdf",
+        "<robot name='r'><link name='base'><visual><geometry><sphere radius='1'/></geometry></visual>"
+        "<collision><geometry><box size='1 1 1'/></geometry></collision></link>"
+        "<link name='tool'><visual><geometry><sphere radius='2'/></geometry></visual></link>"
+        "<joint name='j' type='fixed'><parent link='base'/><child link='tool'/></joint></robot>");
+  const auto types = [&](const std::string& geometry) {
+    std::vector<ShapeType> found;
+    const SceneDesc scene = read("{geometry: " + geometry + ", file: " + path("both.urdf") + "}");
+    for (const ObstacleDesc& obstacle : obstacles_of(scene)) found.push_back(obstacle.type);
+    return found;
+  };
+  EXPECT_EQ(types("collision"), (std::vector<ShapeType>{ShapeType::box}));
+  EXPECT_EQ(types("visual"), (std::vector<ShapeType>{ShapeType::sphere, ShapeType::sphere}));
+  EXPECT_EQ(types("collision_or_visual"), (std::vector<ShapeType>{ShapeType::box, ShapeType::sphere}));
+}
+
+TEST_F(Robot, descriptionsMayBeFiles) {
+  EXPECT_EQ(read("{description: \"file:" + path("robot.urdf") + "\"}").robot->tree.size(), 4u);
+  EXPECT_EQ(read("{description: \"file://" + path("robot.urdf") + "\"}").robot->tree.size(), 4u);
 }
 
 TEST_F(Robot, scaledMeshesAreThoseOfTheFile) {

@@ -107,16 +107,22 @@ struct LinkDesc {
   int parent = -1;                      ///< index of a link before this one; -1: the root
   bool fixed = false;                   ///< to its parent
   InitialPose origin{};                 ///< in its parent, with the joint at zero
-  std::vector<ObstacleDesc> obstacles;  ///< its collision geometry, in its own frame; none if it is not an obstacle
+  std::vector<ObstacleDesc> obstacles;  ///< its geometry, in its own frame; none if it is not an obstacle
 };
 
 /// A robot whose links are obstacles.
 struct RobotDesc {
+  /// What becomes of geometry without size or triangles, and of meshes that cannot be read.
+  enum class OnBadMesh { warn, error };
+  enum class Geometry { collision, visual, collision_or_visual };
   std::string description = "robot_description";  ///< the parameter that holds the URDF
   std::string file;                               ///< URDF file, instead of the parameter
   std::vector<std::string> links;                 ///< those that are obstacles; empty: all
   double padding = 0;                             ///< [m] added all around, >= 0
-  std::vector<LinkDesc> tree;                     ///< all links, parents first; filled in when the URDF is read
+  OnBadMesh on_bad_mesh = OnBadMesh::warn;
+  Geometry geometry = Geometry::collision;
+  std::vector<LinkDesc> tree;         ///< all links, parents first; filled in when the URDF is read
+  std::vector<std::string> left_out;  ///< a line for each geometry that is not there: key, file and reason; likewise
 };
 
 /// Contact of cables with themselves and each other.

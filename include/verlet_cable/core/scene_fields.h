@@ -133,9 +133,10 @@ constexpr std::array<Field<NetDesc>, 5> net_fields{{
     {"friction", &NetDesc::friction, "", not_negative},
 }};
 
-constexpr std::array<Field<ShapeDesc>, 2> shape_fields{{
+constexpr std::array<Field<ShapeDesc>, 3> shape_fields{{
     {"radius", &ShapeDesc::radius, "m", positive},
     {"length", &ShapeDesc::length, "m", positive},
+    {"thickness", &ShapeDesc::thickness, "m", not_negative},
 }};
 
 constexpr std::array<Field<BodyDesc>, 4> body_fields{{
@@ -185,6 +186,7 @@ bool has_dimension(ShapeType type, const std::string& key);
 std::string material_names(const std::vector<NamedMaterial>& materials);
 
 /// What is allowed, for messages.
+constexpr const char* scale_words = "one or three numbers other than 0; those below 0 mirror";
 constexpr const char* name_words = "at most 1000 letters, digits and _, a letter first";
 constexpr const char* frame_words = "a frame name without leading / and without blanks, at most 1000 characters";
 

@@ -4,13 +4,12 @@
 #include <string>
 #include <variant>
 
+#include "verlet_cable/core/shape_desc.h"
 #include "verlet_cable/core/surface_point.h"
 #include "verlet_cable/core/triangle_mesh.h"
 #include "verlet_cable/core/types.h"
 
 namespace verlet_cable {
-
-struct ShapeDesc;
 
 /// The half space z < 0; its normal is +z.
 struct PlaneShape {};
@@ -42,6 +41,12 @@ struct MeshShape {
   std::shared_ptr<const TriangleMesh> mesh;  ///< never null; scaled
   std::string uri{};
   Vector3 scale = Vector3::Ones();
+  Sheet sheet = Sheet::automatic;
+  double thickness = 0;  ///< [m] of a sheet
+
+  /// Without where a display finds it, which takes memory.
+  MeshShape solid() const { return {mesh, {}, Vector3::Ones(), sheet, thickness}; }
+  bool is_sheet() const { return sheet == Sheet::automatic ? mesh->is_sheet() : sheet == Sheet::yes; }
 };
 
 using Shape = std::variant<PlaneShape, SphereShape, CapsuleShape, CylinderShape, BoxShape, MeshShape>;

@@ -15,6 +15,9 @@ using InitialPose = std::array<double, 6>;  // x, y, z [m], roll, pitch, yaw [ra
 
 enum class ShapeType { plane, sphere, capsule, cylinder, box, mesh };
 
+/// Whether a mesh is a sheet, which has no inside and is touched from both sides. `automatic`: see TriangleMesh::is_sheet.
+enum class Sheet { automatic, no, yes };
+
 /// A solid. Only the dimensions of its type are used; the others are ignored.
 struct ShapeDesc {
   ShapeType type = ShapeType::plane;
@@ -23,7 +26,9 @@ struct ShapeDesc {
   double length = 0;                ///< [m] capsule: of the cylindrical part, cylinder: > 0
   Vector3 size = Vector3::Zero();   ///< [m] box: > 0
   std::string uri;                  ///< mesh: package:// or file://
-  Vector3 scale = Vector3::Ones();  ///< mesh: > 0
+  Vector3 scale = Vector3::Ones();  ///< mesh: not 0; mirrored along axes where it is below 0
+  Sheet sheet = Sheet::automatic;   ///< mesh
+  double thickness = 0;             ///< [m] mesh that is a sheet: >= 0
   /// mesh: the scaled mesh of `uri`; filled in when the file is read
   std::shared_ptr<const TriangleMesh> mesh;
 };

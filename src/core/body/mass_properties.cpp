@@ -1,6 +1,7 @@
 #include "body/mass_properties.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <variant>
 
@@ -52,10 +53,17 @@ MassProperties properties_of(const BoxShape& box) {
   return around_origin(mass, mass / 12 * (Vector3::Constant(squares.sum()) - squares));
 }
 
+/// What is open, or a sheet, has no volume. Of a mesh's shape or description.
+template <class Mesh>
+bool has_volume(const Mesh& shape) {
+  return shape.mesh->is_closed() && shape.sheet != Sheet::yes;
+}
+
 /// Sums over the tetrahedra between the triangles and a point (Blow and Binstock, How to find the inertia tensor of an arbitrary
 /// polyhedron, 2004): the integral of x x' over that of the corners 0, a, b and c is det(a, b, c) / 120 (a a' + b b' + c c' + s
 /// s') with s = a + b + c.
 MassProperties properties_of(const MeshShape& shape) {
+  if (!has_volume(shape)) return {};
   const TriangleMesh& mesh = *shape.mesh;
   const Vector3 origin = mesh.vertices().front();
   double volume = 0;
@@ -103,8 +111,10 @@ MassProperties mass_properties(const Shape& shape) {
 }
 
 std::optional<MassProperties> mass_properties(const BodyDesc& body) {
+  const auto is_solid = [](const ShapeDesc& shape) { return shape.type != ShapeType::mesh || has_volume(shape); };
   const MassProperties filled = sum_of(body.shapes);
-  if (!body.inertia && !(filled.mass > 0)) return std::nullopt;
+  const bool follows = filled.mass > 0 && std::all_of(body.shapes.begin(), body.shapes.end(), is_solid);
+  if (!body.inertia && !follows) return std::nullopt;
   MassProperties result{body.mass, body.center_of_mass.value_or(filled.center_of_mass), Eigen::Matrix3d::Zero()};
   if (body.inertia) {
     result.inertia = body.inertia->asDiagonal();

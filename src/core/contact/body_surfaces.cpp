@@ -8,10 +8,9 @@ namespace verlet_cable {
 
 namespace {
 
-/// Without where a display finds it, which takes memory.
 Shape solid_of(const Shape& shape) {
   const auto* mesh = std::get_if<MeshShape>(&shape);
-  return mesh == nullptr ? shape : Shape(MeshShape{mesh->mesh});
+  return mesh == nullptr ? shape : Shape(mesh->solid());
 }
 
 }  // namespace

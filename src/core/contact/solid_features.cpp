@@ -75,9 +75,11 @@ class Finder {
   void find(const MeshShape& mesh) {
     const Aabb box = bounds(other_, Pose());
     const std::vector<Vector3>& vertices = mesh.mesh->vertices();
+    const double radius = mesh.is_sheet() ? 0.5 * mesh.thickness : 0;
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       const Vector3 place = position_ + turn_ * vertices[i];
-      if (is_plane_ || box.squaredExteriorDistance(place) < spare(0) * spare(0)) add(static_cast<std::uint32_t>(i), place, 0);
+      if (is_plane_ || box.squaredExteriorDistance(place) < spare(radius) * spare(radius))
+        add(static_cast<std::uint32_t>(i), place, radius);
     }
   }
 
@@ -91,7 +93,7 @@ class Finder {
     if (const auto* box = std::get_if<BoxShape>(&shape)) return BoxShape{box->size - Vector3::Constant(2 * rounding)};
     if (const auto* cylinder = std::get_if<CylinderShape>(&shape))
       return CylinderShape{cylinder->radius - rounding, cylinder->length - 2 * rounding};
-    if (const auto* mesh = std::get_if<MeshShape>(&shape)) return MeshShape{mesh->mesh};
+    if (const auto* mesh = std::get_if<MeshShape>(&shape)) return mesh->solid();
     return shape;
   }
 

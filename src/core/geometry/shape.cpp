@@ -62,8 +62,17 @@ SurfacePoint closest_point_of(const BoxShape& box, const Vector3& p, double) {
   return {most, on_surface, normal};
 }
 
+/// Of a surface that is further out.
+SurfacePoint raised(SurfacePoint surface, double height) {
+  surface.distance -= height;
+  surface.point += height * surface.normal;
+  return surface;
+}
+
 SurfacePoint closest_point_of(const MeshShape& mesh, const Vector3& p, double reach) {
-  return mesh.mesh->closest_point(p, reach);
+  if (!mesh.is_sheet()) return mesh.mesh->closest_point(p, reach);
+  const double half = 0.5 * mesh.thickness;
+  return raised(mesh.mesh->closest_point_of_sheet(p, reach + half), half);
 }
 
 template <typename ShapeType>
@@ -145,7 +154,10 @@ SegmentSurfacePoint deepest_point_of(const BoxShape& box, const Vector3& start, 
 }
 
 SegmentSurfacePoint deepest_point_of(const MeshShape& mesh, const Vector3& start, const Vector3& end, double reach) {
-  return mesh.mesh->deepest_point(start, end, reach);
+  if (!mesh.is_sheet()) return mesh.mesh->deepest_point(start, end, reach);
+  const double half = 0.5 * mesh.thickness;
+  const SegmentSurfacePoint found = mesh.mesh->closest_point_of_sheet(start, end, reach + half);
+  return {found.fraction, raised(found.surface, half)};
 }
 
 }  // namespace
@@ -165,7 +177,7 @@ Shape shape_of(const ShapeDesc& desc) {
     case ShapeType::mesh:
       break;
   }
-  return MeshShape{desc.mesh, desc.uri, desc.scale};
+  return MeshShape{desc.mesh, desc.uri, desc.scale, desc.sheet, desc.thickness};
 }
 
 SurfacePoint closest_point(const Shape& shape, const Vector3& point, double reach) {

@@ -43,7 +43,8 @@ Aabb bounds_of(const BoxShape& box, const Pose& pose) {
 
 Aabb bounds_of(const MeshShape& mesh, const Pose& pose) {
   const Aabb& box = mesh.mesh->bounds();
-  return box_around(box.center(), 0.5 * box.sizes(), pose);
+  const double half = mesh.is_sheet() ? 0.5 * mesh.thickness : 0;
+  return box_around(box.center(), 0.5 * box.sizes() + Vector3::Constant(half), pose);
 }
 
 }  // namespace

@@ -2,18 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
-#include <tuple>
 #include <utility>
 
+#include "geometry/mesh_edges.h"
+#include "geometry/mesh_orientation.h"
 #include "geometry/triangle_geometry.h"
+#include "geometry/winding_number.h"
 
 namespace verlet_cable {
 
 namespace {
 
 constexpr int triangles_a_leaf = 4;
+/// A mesh with a point that it surrounds by this is no sheet.
+constexpr double surrounded = 0.9;
+constexpr int most_samples = 5000;    // triangles
+constexpr double near_corner = 0.95;  // of the way from the middle of a triangle
 
 /// Six times the volume [m^3], below 0 where the triangles face inwards; about a corner of the mesh, for the sake of rounding.
 double sixfold_volume(const std::vector<Vector3>& vertices, const std::vector<TriangleMesh::Triangle>& triangles) {
@@ -21,26 +26,6 @@ double sixfold_volume(const std::vector<Vector3>& vertices, const std::vector<Tr
   double sum = 0;
   for (const auto& [a, b, c] : triangles) sum += (vertices[a] - origin).dot((vertices[b] - origin).cross(vertices[c] - origin));
   return sum;
-}
-
-/// An edge as one of its triangles goes along it.
-struct Edge {
-  int from, to;
-  int triangle, side;
-
-  std::pair<int, int> key() const { return std::minmax(from, to); }
-};
-
-/// All edges, those between the same vertices side by side.
-std::vector<Edge> sorted_edges(const std::vector<TriangleMesh::Triangle>& triangles) {
-  std::vector<Edge> edges;
-  edges.reserve(3 * triangles.size());
-  for (int t = 0; t < static_cast<int>(triangles.size()); ++t)
-    for (int side = 0; side < 3; ++side) edges.push_back({triangles[t][side], triangles[t][(side + 1) % 3], t, side});
-  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
-    return std::make_tuple(a.key(), a.triangle, a.side) < std::make_tuple(b.key(), b.triangle, b.side);
-  });
-  return edges;
 }
 
 double angle_between(const Vector3& a, const Vector3& b) {
@@ -54,36 +39,48 @@ void normalize(std::vector<Vector3>& normals) {
 }  // namespace
 
 std::string TriangleMesh::problem(const std::vector<Vector3>& vertices, const std::vector<Triangle>& triangles) {
-  if (triangles.empty()) return "it has no triangles";
   const auto in_range = [&](int vertex) { return vertex >= 0 && vertex < static_cast<int>(vertices.size()); };
+  bool any = false;
   for (const auto& [a, b, c] : triangles) {
     if (!in_range(a) || !in_range(b) || !in_range(c)) return "a triangle names a vertex that does not exist";
-    if (a == b || b == c || c == a) return "a triangle has a vertex twice";
+    any = any || (a != b && b != c && c != a);
   }
+  if (!any) return "it has no triangles";
   for (const Vector3& vertex : vertices)
     if (!vertex.allFinite()) return "a vertex is not finite";
-  const std::vector<Edge> edges = sorted_edges(triangles);
-  int open = 0;
-  for (std::size_t i = 0; i < edges.size();) {
-    std::size_t end = i;
-    int balance = 0;
-    for (; end < edges.size() && edges[end].key() == edges[i].key(); ++end) balance += edges[end].from < edges[end].to ? 1 : -1;
-    if (end - i != 2 || balance != 0) ++open;
-    i = end;
-  }
-  if (open > 0)
-    return "it is not closed: " + std::to_string(open) + " edges are not shared by just two triangles that face the same way";
-  if (!(std::abs(sixfold_volume(vertices, triangles)) > 0)) return "it encloses no volume";
   return "";
 }
 
 TriangleMesh::TriangleMesh(std::vector<Vector3> vertices, std::vector<Triangle> triangles)
     : vertices_(std::move(vertices)), triangles_(std::move(triangles)) {
   if (const std::string text = problem(vertices_, triangles_); !text.empty()) throw std::invalid_argument(text);
-  if (sixfold_volume(vertices_, triangles_) < 0)
-    for (Triangle& triangle : triangles_) std::swap(triangle[1], triangle[2]);
+  orient(vertices_, triangles_);
   build(0, static_cast<int>(triangles_.size()));
   compute_normals();
+  if (verlet_cable::is_closed(triangles_) && sixfold_volume(vertices_, triangles_) > 0) return;
+  winding_ = std::make_shared<WindingNumber>(vertices_, triangles_, nodes_);
+  sheet_ = find_sheet();
+}
+
+bool TriangleMesh::find_sheet() const {
+  const int count = static_cast<int>(triangles_.size());
+  const int stride = 1 + (count - 1) / most_samples;
+  for (int t = 0; t < count; t += stride) {
+    const Corners corner = corners(t);
+    const Vector3 middle = (corner[0] + corner[1] + corner[2]) / 3;
+    for (int i = 0; i < 4; ++i) {
+      const Vector3 point = i < 3 ? Vector3(middle + near_corner * (corner[i] - middle)) : middle;
+      // On its inner side a triangle surrounds a point by a half, on the other one by minus a half.
+      const double others = winding_->at(point, vertices_, triangles_, nodes_, t);
+      if (0.5 + std::abs(others) >= surrounded) return false;
+    }
+  }
+  return true;
+}
+
+double TriangleMesh::winding_number(const Vector3& point) const {
+  if (winding_) return winding_->at(point, vertices_, triangles_, nodes_);
+  return closest_point(point).distance < 0 ? 1 : 0;
 }
 
 Corners TriangleMesh::corners(int triangle) const {
@@ -130,12 +127,12 @@ void TriangleMesh::compute_normals() {
       vertex_normals_[triangles_[t][i]] += angle_between(next - here, before - here) * face_normals_[t];
     }
   }
-  const std::vector<Edge> edges = sorted_edges(triangles_);
-  for (std::size_t i = 0; i + 1 < edges.size(); i += 2) {
-    const Edge &one = edges[i], &other = edges[i + 1];
-    const Vector3 sum = face_normals_[one.triangle] + face_normals_[other.triangle];
-    edge_normals_[3 * one.triangle + one.side] = edge_normals_[3 * other.triangle + other.side] = sum;
-  }
+  for_each_edge(sorted_edges(triangles_), [&](auto first, auto end) {
+    Vector3 sum = Vector3::Zero();
+    for (auto edge = first; edge != end; ++edge) sum += face_normals_[edge->triangle];
+    for (auto edge = first; edge != end; ++edge)
+      edge_normals_[3 * edge->triangle + edge->side] = sum.isZero(0) ? face_normals_[edge->triangle] : sum;
+  });
   normalize(edge_normals_);
   normalize(vertex_normals_);
 }

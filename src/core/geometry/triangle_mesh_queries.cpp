@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "geometry/triangle_geometry.h"
+#include "geometry/winding_number.h"
 #include "verlet_cable/core/triangle_mesh.h"
 
 namespace verlet_cable {
@@ -20,6 +21,16 @@ constexpr double rounding = 1e-12;
 
 }  // namespace
 
+struct TriangleMesh::Nearest {
+  TrianglePoint at;
+  int triangle = 0;
+};
+
+struct TriangleMesh::NearestOfSegment {
+  SegmentTriangle at;
+  int triangle = 0;
+};
+
 const Vector3& TriangleMesh::normal(int triangle, int feature) const {
   if (feature == whole_face) return face_normals_[triangle];
   return feature >= first_edge ? edge_normals_[3 * triangle + feature - first_edge]
@@ -30,21 +41,40 @@ SurfacePoint TriangleMesh::surface_point(const Vector3& point, const Vector3& on
   const Vector3 arm = point - on_surface;
   const Vector3& pseudonormal = normal(triangle, feature);
   const double length = arm.norm();
-  const double sign = pseudonormal.dot(arm) < 0 ? -1 : 1;
+  const bool inside = winding_ ? winding_number(point) > 0.5 : pseudonormal.dot(arm) < 0;
+  const double sign = inside ? -1 : 1;
   if (feature != whole_face && length > rounding * on_surface.cwiseAbs().maxCoeff())
     return {sign * length, on_surface, sign / length * arm};
   return {sign * length, on_surface, pseudonormal};
 }
 
+SurfacePoint TriangleMesh::sheet_point(const Vector3& point, const Vector3& on_surface, const Vector3& otherwise) const {
+  const Vector3 arm = point - on_surface;
+  const double length = arm.norm();
+  if (length > rounding * on_surface.cwiseAbs().maxCoeff()) return {length, on_surface, arm / length};
+  return {length, on_surface, otherwise};
+}
+
 SurfacePoint TriangleMesh::closest_point(const Vector3& point, double reach) const {
   const double to_bounds = std::sqrt(bounds().squaredExteriorDistance(point));
   if (to_bounds > 0 && to_bounds >= reach) return {to_bounds, point, Vector3::UnitZ()};
+  const Nearest found = nearest(point);
+  return surface_point(point, found.at.point, found.triangle, found.at.feature);
+}
+
+SurfacePoint TriangleMesh::closest_point_of_sheet(const Vector3& point, double reach) const {
+  const double to_bounds = std::sqrt(bounds().squaredExteriorDistance(point));
+  if (to_bounds > 0 && to_bounds >= reach) return {to_bounds, point, Vector3::UnitZ()};
+  const Nearest found = nearest(point);
+  return sheet_point(point, found.at.point, face_normals_[found.triangle]);
+}
+
+TriangleMesh::Nearest TriangleMesh::nearest(const Vector3& point) const {
   Stack stack;
   int pending = 0;
   stack[pending++] = {0, 0};
   double squared_distance = infinity;
-  TrianglePoint nearest;
-  int nearest_triangle = 0;
+  Nearest found;
   while (pending > 0) {
     const Pending next = stack[--pending];
     if (next.squared_distance >= squared_distance) continue;
@@ -54,8 +84,7 @@ SurfacePoint TriangleMesh::closest_point(const Vector3& point, double reach) con
       const double squared = (point - candidate.point).squaredNorm();
       if (squared >= squared_distance) continue;
       squared_distance = squared;
-      nearest = candidate;
-      nearest_triangle = t;
+      found = {candidate, t};
     }
     if (node.count > 0) continue;
     Pending near{next.node + 1, nodes_[next.node + 1].box.squaredExteriorDistance(point)};
@@ -64,13 +93,31 @@ SurfacePoint TriangleMesh::closest_point(const Vector3& point, double reach) con
     stack[pending++] = far;
     stack[pending++] = near;
   }
-  return surface_point(point, nearest.point, nearest_triangle, nearest.feature);
+  return found;
 }
 
 SegmentSurfacePoint TriangleMesh::deepest_point(const Vector3& start, const Vector3& end, double reach) const {
-  Aabb box(start.cwiseMin(end), start.cwiseMax(end));
-  const double to_bounds = bounds().exteriorDistance(box);
+  const double to_bounds = bounds().exteriorDistance(Aabb(start.cwiseMin(end), start.cwiseMax(end)));
   if (to_bounds > 0 && to_bounds >= reach) return {0, {to_bounds, start, Vector3::UnitZ()}};
+  const auto [closest, triangle] = nearest(start, end);
+  if (!(closest.squared_distance > 0)) return deepest_inside(start, end);
+  const Vector3 point = start + closest.fraction * (end - start);
+  const SurfacePoint surface = surface_point(point, closest.nearest.point, triangle, closest.nearest.feature);
+  return surface.distance < 0 ? deepest_inside(start, end) : SegmentSurfacePoint{closest.fraction, surface};
+}
+
+SegmentSurfacePoint TriangleMesh::closest_point_of_sheet(const Vector3& start, const Vector3& end, double reach) const {
+  const double to_bounds = bounds().exteriorDistance(Aabb(start.cwiseMin(end), start.cwiseMax(end)));
+  if (to_bounds > 0 && to_bounds >= reach) return {0, {to_bounds, start, Vector3::UnitZ()}};
+  const auto [closest, triangle] = nearest(start, end);
+  const Vector3 point = start + closest.fraction * (end - start);
+  const Vector3 longer = closest.fraction < 0.5 ? end - point : start - point;
+  const Vector3& face = face_normals_[triangle];
+  return {closest.fraction, sheet_point(point, closest.nearest.point, face.dot(longer) < 0 ? Vector3(-face) : face)};
+}
+
+TriangleMesh::NearestOfSegment TriangleMesh::nearest(const Vector3& start, const Vector3& end) const {
+  const Aabb box(start.cwiseMin(end), start.cwiseMax(end));
   Stack stack;
   int pending = 0;
   stack[pending++] = {0, 0};
@@ -93,10 +140,7 @@ SegmentSurfacePoint TriangleMesh::deepest_point(const Vector3& start, const Vect
     stack[pending++] = far;
     stack[pending++] = near;
   }
-  if (!(closest.squared_distance > 0)) return deepest_inside(start, end);
-  const Vector3 point = start + closest.fraction * (end - start);
-  const SurfacePoint surface = surface_point(point, closest.nearest.point, closest_triangle, closest.nearest.feature);
-  return surface.distance < 0 ? deepest_inside(start, end) : SegmentSurfacePoint{closest.fraction, surface};
+  return {closest, closest_triangle};
 }
 
 /// Branch and bound: along a segment the distance changes by no more than the way, which bounds it between two points.

@@ -34,7 +34,7 @@ bool has_dimension(ShapeType type, const std::string& key) {
     case ShapeType::mesh:
       break;
   }
-  return key == "uri" || key == "scale";
+  return key == "uri" || key == "scale" || key == "sheet" || key == "thickness";
 }
 
 std::string Range::text(const char* unit) const {

@@ -34,6 +34,7 @@ void warn_of_sections(const std::string& cable_key, const CableDesc& cable, std:
 std::vector<std::string> warnings_of(const SceneDesc& scene) {
   std::vector<std::string> warnings;
   for (std::size_t i = 0; i < scene.cables.size(); ++i) warn_of_sections(indexed("cables", i), scene.cables[i], warnings);
+  if (scene.robot) warnings.insert(warnings.end(), scene.robot->left_out.begin(), scene.robot->left_out.end());
   return warnings;
 }
 

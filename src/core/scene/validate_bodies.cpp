@@ -72,7 +72,9 @@ void check_inertia(const std::string& prefix, const BodyDesc& body, bool shapes_
   }
   if (!shapes_sound || !positive.contains(body.mass)) return;
   const auto derived = mass_properties(body);
-  if (!derived) return errors.add(prefix + "inertia", "missing", std::string(inertia_words) + ", or shapes that it follows from");
+  if (!derived)
+    return errors.add(prefix + "inertia", "missing",
+                      std::string(inertia_words) + ", or shapes that it follows from: no open meshes");
   const Vector3 moments = derived->inertia.diagonal();
   if (!moment_of_inertia.contains(moments.minCoeff()) || !moment_of_inertia.contains(moments.maxCoeff()))
     errors.add(prefix + "shapes", "an inertia of " + list_text(moments) + " kg m^2", moment_of_inertia.text("kg m^2"));

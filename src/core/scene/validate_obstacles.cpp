@@ -1,5 +1,7 @@
 #include "scene/validate_obstacles.h"
 
+#include <algorithm>
+#include <cmath>
 #include <set>
 
 namespace verlet_cable {
@@ -33,14 +35,16 @@ void check_shape(const std::string& prefix, const ShapeDesc& shape, Errors& erro
   }
   if (shape.type == ShapeType::box) check_vector_is_positive(prefix + "size", shape.size, "m", errors);
   if (shape.type != ShapeType::mesh) return;
-  check_vector_is_positive(prefix + "scale", shape.scale, "", errors);
+  // Signs mirror.
+  const auto is_scale = [](double factor) { return positive.contains(std::abs(factor)); };
+  if (!std::all_of(shape.scale.begin(), shape.scale.end(), is_scale))
+    errors.add(prefix + "scale", list_text(shape.scale), scale_words);
   if (!shape.mesh) errors.add(prefix + "uri", quoted(shape.uri), "a mesh file that could be read");
 }
 
 void check_obstacles(const SceneDesc& scene, Errors& errors) {
   if (scene.obstacles.size() > most_obstacles)
-    errors.add("obstacles", std::to_string(scene.obstacles.size()) + " obstacles",
-               "at most " + std::to_string(most_obstacles));
+    errors.add("obstacles", std::to_string(scene.obstacles.size()) + " obstacles", "at most " + std::to_string(most_obstacles));
   UniqueNames names;
   std::set<std::string> taken;
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {

@@ -246,7 +246,7 @@ auto fields(T& x, const BoxShape*) {
 }
 template <class T>
 auto fields(T& x, const MeshShape*) {
-  return std::tie(x.mesh, x.uri, x.scale);
+  return std::tie(x.mesh, x.uri, x.scale, x.sheet, x.thickness);
 }
 template <class T>
 auto fields(T& x, const BodyShape*) {

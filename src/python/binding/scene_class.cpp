@@ -15,24 +15,34 @@ namespace {
 
 namespace py = pybind11;
 
+/// With a warning of all that is doubtful in it.
+template <class Reader>
+PythonScene scene_of(const Reader& read) {
+  PythonScene scene;
+  {
+    const py::gil_scoped_release release;
+    scene.desc = std::make_shared<SceneDesc>(read());
+  }
+  for (const std::string& line : warnings_of(*scene.desc))
+    if (PyErr_WarnEx(PyExc_UserWarning, line.c_str(), 1) != 0) throw py::error_already_set();
+  return scene;
+}
+
 PythonScene load(const py::object& path) {
   const std::string file = path_of(path, "path");
-  const py::gil_scoped_release release;
-  return {std::make_shared<SceneDesc>(read_scene_file(file))};
+  return scene_of([&] { return read_scene_file(file); });
 }
 
 PythonScene from_yaml(const py::str& given, const py::object& directory) {
   const std::string text = text_of(given, "text");
   const SceneSources sources = sources_of(directory);
-  const py::gil_scoped_release release;
-  return {std::make_shared<SceneDesc>(read_scene_text(text, sources))};
+  return scene_of([&] { return read_scene_text(text, sources); });
 }
 
 PythonScene from_dict(const py::dict& keys, const py::object& directory) {
   const SceneSources sources = sources_of(directory);
   const YAML::Node root = yaml_of(keys);
-  const py::gil_scoped_release release;
-  return {std::make_shared<SceneDesc>(read_scene(root, {}, sources))};
+  return scene_of([&] { return read_scene(root, {}, sources); });
 }
 
 template <class Items>
@@ -102,8 +112,8 @@ void add_scene_class(py::module_& module) {
           "time_step", [](const PythonScene& scene) { return scene.desc->time_step; }, "[s] Time step.")
       .def_property_readonly(
           "warnings", [](const PythonScene& scene) { return warnings_of(*scene.desc); },
-          "What the scene allows and probably does not mean, one text each: sections that whole segments do not fit, for "
-          "example.");
+          "What the scene allows and probably does not mean, one text each: sections that whole segments do not fit, "
+          "or what its robot does without. Each was a UserWarning when the scene was read.");
 }
 
 }  // namespace verlet_cable

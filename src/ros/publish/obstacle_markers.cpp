@@ -85,8 +85,9 @@ bool are_equal(double a, double b) {
 std::string set_shape(const Marker& marker, Obstacle& obstacle) {
   const Vector3 scale(marker.scale.x, marker.scale.y, marker.scale.z);
   const std::string scale_text = "scale: " + vector_text(scale) + "; allowed: ";
-  if (!positive.contains(scale.minCoeff()) || !positive.contains(scale.maxCoeff()) || scale.hasNaN())
-    return scale_text + positive.text("m");
+  const bool is_mesh = marker.type == Marker::MESH_RESOURCE;
+  for (const double factor : scale)
+    if (!positive.contains(is_mesh ? std::abs(factor) : factor)) return scale_text + (is_mesh ? scale_words : positive.text("m"));
   switch (marker.type) {
     case Marker::CUBE:
       obstacle.shape = BoxShape{scale};
