@@ -81,6 +81,7 @@ void Diagnostics::report_simulation(Status& status) {
   status.add("max_strain", s.max_strain);                 // largest |l / l0 - 1|
   status.add("overstretched_steps", s.overstretched);     // held points were further apart than a cable or net is long
   status.add("jumped_steps", s.jumped);                   // a frame jumped, and what it holds was carried along
+  status.add("inside_obstacle_steps", s.inside_obstacle); // a cable was inside an obstacle, and was pushed out
   status.add("degraded_steps", s.degraded);               // no solution was found, and velocities were set to zero
   status.add("exhausted_steps", s.exhausted);             // a step exceeded its budget of work and was cut short
   status.add("faults", report.faults);                    // number since the start
