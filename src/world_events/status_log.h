@@ -27,8 +27,8 @@ struct StatusEvent {
   std::string message;
 };
 
-/// Tells what steps find when it begins and when it has ended, not in each step. What comes back within 0.1 s has not ended. Jumps
-/// are no statuses here: they have events of their own.
+/// Tells what steps find when it begins and when it has ended, not in each step. What comes back within 0.1 s has not ended.
+/// Jumps are no statuses here: they have events of their own.
 class StatusLog {
  public:
   /// Cables that found no equilibrium, from this of Findings::unsettled on.

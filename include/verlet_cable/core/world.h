@@ -135,8 +135,8 @@ struct Jump {
   double duration = 0;  ///< [s] a multiple of the time step
 };
 
-/// A cable that is inside an obstacle, deeper than half its radius: it started there, the obstacle appeared there, or it was drawn
-/// there. It is pushed out slowly, and found in each step until it is out. Edits and breaks keep its indices valid.
+/// A cable that is inside an obstacle, deeper than half its radius: it started there, the obstacle appeared there, or it was
+/// drawn there. It is pushed out slowly, and found in each step until it is out. Edits and breaks keep its indices valid.
 struct Intrusion {
   int cable = 0;     ///< index into World::cables()
   int segment = 0;   ///< the deepest one

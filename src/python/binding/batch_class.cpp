@@ -192,11 +192,12 @@ void add_batch_class(py::module_& module) {
            "(count,), or for bending_stiffness (count, 2). Worlds that were not yet stepped, settled or edited are started anew "
            "with it; for others, all keys except linear_density can be changed.\n\nRaises SceneError with all errors at once, "
            "ValueError, KeyError; then nothing is changed.")
-      .def("set_frames", set_frames, py::arg("name"), py::arg("poses"),
-           "Sets the poses of a frame. (count, 7): at the end of the next step and after it; (count, steps, 7): at the end of "
-           "each of the next steps, and the last one from then on. A pose is x, y, z [m], qx, qy, qz, qw in the fixed frame; "
-           "quaternions are normalized, their norms must be from 0.5 to 2. As with World.set_frame, a frame that nothing else has "
-           "placed is at its first pose from the start on.\n\nRaises KeyError, ValueError.")
+      .def(
+          "set_frames", set_frames, py::arg("name"), py::arg("poses"),
+          "Sets the poses of a frame. (count, 7): at the end of the next step and after it; (count, steps, 7): at the end of "
+          "each of the next steps, and the last one from then on. A pose is x, y, z [m], qx, qy, qz, qw in the fixed frame; "
+          "quaternions are normalized, their norms must be from 0.5 to 2. As with World.set_frame, a frame that nothing else has "
+          "placed is at its first pose from the start on.\n\nRaises KeyError, ValueError.")
       .def(
           "step", step, py::arg("steps") = 1, py::arg("record_every") = 0,
           py::arg("fields") = std::vector<std::string>{"positions", "velocities", "tension", "wrench", "body_pose", "body_twist"},

@@ -72,10 +72,12 @@ SceneSources sources_of(const py::object& directory) {
 
 void add_scene_class(py::module_& module) {
   py::class_<PythonScene>(module, "Scene", "A scene that has been read and validated. It is immutable; worlds are made from it.")
-      .def(py::init([](const py::args&, const py::kwargs&) -> PythonScene {
-        throw py::type_error(
-            "Scene is not made by calling it; allowed: Scene.load(path) for a file, Scene.from_yaml(text), Scene.from_dict(keys)");
-      }))
+      .def(py::init([](const py::object&) -> PythonScene {
+             throw py::type_error(
+                 "Scene is not made by calling it; allowed: Scene.load(path) for a file, Scene.from_yaml(text), "
+                 "Scene.from_dict(keys)");
+           }),
+           py::arg("path") = py::none(), "Not for use: load, from_yaml and from_dict make scenes.")
       .def("__repr__",
            [](const PythonScene& scene) {
              NameList cables;

@@ -144,10 +144,11 @@ void add_world_class(py::module_& module) {
            "motion. Links of a robot below this frame follow it, unless their own pose is set. A frame of an attachment or guide "
            "that has neither a motion nor an initial_pose must be set before the first step: there it is at the start, too.\n\n"
            "Raises KeyError for a name that is not in frame_names, ValueError.")
-      .def("step", step, py::arg("steps") = 1,
-           "Advances by a number of time steps. Returns their worst status, from good to bad 'ok', 'jumped', 'overstretched', "
-           "'inside_obstacle', 'not_settled', 'degraded' or 'fault'. Other threads run meanwhile; Ctrl-C ends it between two "
-           "steps.\n\nRaises ValueError if nothing has placed the frame of an attachment or guide; the message names all of them.")
+      .def(
+          "step", step, py::arg("steps") = 1,
+          "Advances by a number of time steps. Returns their worst status, from good to bad 'ok', 'jumped', 'overstretched', "
+          "'inside_obstacle', 'not_settled', 'degraded' or 'fault'. Other threads run meanwhile; Ctrl-C ends it between two "
+          "steps.\n\nRaises ValueError if nothing has placed the frame of an attachment or guide; the message names all of them.")
       .def(
           "settle", settle,
           "Puts the held cables into static equilibrium, with the frames where they are. False if one of them does not reach it; "

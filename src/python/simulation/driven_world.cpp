@@ -101,9 +101,10 @@ void DrivenWorld::require_placed_frames(const std::string& where) const {
   if (unplaced_.empty()) return;
   NameList names;
   for (const std::string& name : unplaced_) names.add(name);
-  throw std::invalid_argument(where + "frames: nothing has placed " + names.text() +
-                              "; allowed: a pose by set_frame (set_frames of a Batch) before the first step, by the motion, or as "
-                              "initial_pose in the scene");
+  throw std::invalid_argument(
+      where + "frames: nothing has placed " + names.text() +
+      "; allowed: a pose by set_frame (set_frames of a Batch) before the first step, by the motion, or as "
+      "initial_pose in the scene");
 }
 
 bool DrivenWorld::set_frame(int frame, std::vector<Pose> poses) {

@@ -37,10 +37,9 @@ class DrivenWorld {
   /// Follows the frames that the world has had from an id on, and that its scene does not know: a robot's link follows its
   /// parent, others rest where they are.
   void follow_frames_from(std::size_t first);
-  /// Where a frame is at the end of each of the next steps, at least one; it stays at the last one. A frame that nothing has placed
-  /// yet is at the first of them from the start on: once all are placed, a world that is as it began begins anew with them. Throws
-  /// SceneError if it cannot begin so; then nothing is changed.
-  /// Returns whether it did.
+  /// Where a frame is at the end of each of the next steps, at least one; it stays at the last one. A frame that nothing has
+  /// placed yet is at the first of them from the start on: once all are placed, a world that is as it began begins anew with
+  /// them. Throws SceneError if it cannot begin so; then nothing is changed. Returns whether it did.
   bool set_frame(int frame, std::vector<Pose> poses);
   bool has_unplaced_frames() const { return !unplaced_.empty(); }
   /// Throws std::invalid_argument if nothing has placed a frame that an attachment or guide needs. `where`: before the message.

@@ -1,6 +1,6 @@
 from collections.abc import Mapping, Sequence
 from os import PathLike
-from typing import Any, Literal, NamedTuple, Union, overload
+from typing import Any, Literal, NamedTuple, NoReturn, Union, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,6 +22,7 @@ class SceneError(ValueError):
     errors: list[str]
 
 class Scene:
+    def __init__(self, path: NoReturn = ...) -> None: ...
     @staticmethod
     def load(path: _Path) -> Scene: ...
     @staticmethod

@@ -48,8 +48,8 @@ void EventPublisher::publish(const WorldEvent& event, Nanoseconds stamp) const {
 
 void EventPublisher::publish(const StatusEvent& event, Nanoseconds stamp) const {
   const int node = std::max(event.node, 0);
-  const std::string message = quoted(event.cable) + (event.has_ended ? ": " : " at node " + std::to_string(node) + ": ") + event.name +
-                              (event.has_ended ? " " : ": ") + event.message;
+  const std::string message = quoted(event.cable) + (event.has_ended ? ": " : " at node " + std::to_string(node) + ": ") +
+                              event.name + (event.has_ended ? " " : ": ") + event.message;
   send(CableEvent::STATUS, stamp, {{event.cable, {}, node, event.name}}, message);
   if (event.has_ended)
     ROS_INFO("%s", message.c_str());

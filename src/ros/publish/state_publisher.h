@@ -13,8 +13,8 @@ namespace verlet_cable {
 class StatePublisher {
  public:
   StatePublisher(ros::NodeHandle& private_node, const SceneDesc& scene);
-  void show(const SceneDesc& scene);  ///< from now on
-  void note_step(const World& world);      ///< after each step
+  void show(const SceneDesc& scene);   ///< from now on
+  void note_step(const World& world);  ///< after each step
   void forget_steps();
   /// With the worst statuses since the last call.
   void publish(const World& world, const ros::Time& stamp);

@@ -28,8 +28,7 @@ void EventLog::observe(const World& world, const StepResult& result, const std::
 }
 
 void EventLog::add_starts(const World& world) {
-  for (const std::string& cable : world.findings().misfits)
-    add({world.time(), "not_fitted", cable, -1, "", misfit_text, ""});
+  for (const std::string& cable : world.findings().misfits) add({world.time(), "not_fitted", cable, -1, "", misfit_text, ""});
   statuses_.observe_start(world);
   add_statuses();
 }

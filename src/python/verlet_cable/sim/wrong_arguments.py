@@ -96,6 +96,12 @@ def _fits(kind, value):
         if isinstance(value, (str, bytes)) or not hasattr(value, '__len__') or not hasattr(value, '__getitem__'):
             return False
         return isinstance(value, dict) is False and all(_fits(several, item) for item in value)
+    union, items = _inner(kind, 'Union'), _inner(kind, 'Tuple')
+    if union:
+        return any(_fits(one, value) for one in _split(union))
+    if items:
+        kinds = _split(items)
+        return isinstance(value, (tuple, list)) and len(value) == len(kinds) and all(map(_fits, kinds, value))
     if kind.startswith('Dict[') or kind == 'dict':
         if not isinstance(value, dict):
             return False
@@ -129,6 +135,11 @@ def _words(kind):
         return 'None, or ' + _words(optional)
     if several:
         return 'a list, of each ' + _words(several)
+    union, items = _inner(kind, 'Union'), _inner(kind, 'Tuple')
+    if union:
+        return ' or '.join(map(_words, _split(union)))
+    if items:
+        return '(' + ', '.join(map(_words, _split(items))) + ')'
     parts = _split(_inner(kind, 'Dict') or '')
     if parts:
         return f'a dict of {_words(parts[1])} by {_words(parts[0])}'
