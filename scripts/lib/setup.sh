@@ -68,7 +68,7 @@ page_packages=(python3-matplotlib python3-scipy)
 coverage_packages=(llvm)
 
 # And for scripts/test only.
-test_packages=(mypy)
+test_packages=(mypy python3-xarray)
 
 # And for scripts/docs only; Ubuntu 20.04's are too old, or missing.
 docs_packages=(

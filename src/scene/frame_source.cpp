@@ -46,6 +46,11 @@ int FrameSource::add_frame(int id, const std::string& name, const FrameInput& re
   return static_cast<int>(frames_.size()) - 1;
 }
 
+void FrameSource::place(int id, const Pose& resting) {
+  for (Frame& frame : frames_)
+    if (frame.id == id) frame.resting = resting;
+}
+
 bool FrameSource::is_link(const std::string& name) const {
   return std::any_of(links_.begin(), links_.end(), [&](const Link& link) { return link.name == name; });
 }
@@ -124,6 +129,19 @@ std::vector<std::string> unplaced_frames(const SceneDesc& scene, const Motion& m
     if (!initial[i].known && motion.count(names[i]) == 0 && links.count(names[i]) == 0) unplaced.push_back(names[i]);
   }
   return unplaced;
+}
+
+std::vector<std::string> unplaced_holders(const SceneDesc& scene, const Motion& motion) {
+  std::set<std::string> holders;
+  const auto add = [&](const auto& user) { holders.insert(user.frame); };
+  for (const CableDesc& cable : scene.cables) std::for_each(cable.attachments.begin(), cable.attachments.end(), add);
+  for (const NetDesc& net : scene.nets) std::for_each(net.attachments.begin(), net.attachments.end(), add);
+  for (const BodyDesc& body : scene.bodies) std::for_each(body.attachments.begin(), body.attachments.end(), add);
+  std::for_each(scene.guides.begin(), scene.guides.end(), add);
+  std::vector<std::string> frames = unplaced_frames(scene, motion);
+  const auto holds_nothing = [&](const std::string& frame) { return holders.count(frame) == 0; };
+  frames.erase(std::remove_if(frames.begin(), frames.end(), holds_nothing), frames.end());
+  return frames;
 }
 
 }  // namespace verlet_cable

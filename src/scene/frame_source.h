@@ -30,6 +30,8 @@ class FrameSource {
   bool is_link(const std::string& name) const;
   /// Follows one more frame, of a world that names more than its scene does: a link of the robot, or one that rests at `resting`.
   void add(const std::string& name, int id, const Pose& resting);
+  /// Where a frame is that nothing else has placed.
+  void place(int id, const Pose& resting);
   /// Those that a run begins with: a motion that does not go on for longer than a jump (5 ms) is one, and no velocity to begin
   /// with.
   BoundaryInputs at_start() const;
@@ -64,5 +66,7 @@ std::vector<std::string> unused_frames(const SceneDesc& scene, const Motion& mot
 
 /// Names of the scene's frames that nothing gives a place: they stand at the origin.
 std::vector<std::string> unplaced_frames(const SceneDesc& scene, const Motion& motion);
+/// Those of them that an attachment or guide is in.
+std::vector<std::string> unplaced_holders(const SceneDesc& scene, const Motion& motion);
 
 }  // namespace verlet_cable

@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import time
+import warnings
 
 import numpy as np
 import pytest
@@ -320,7 +321,8 @@ def test_wrong_samples_are_recorded(tmp_path):
         message = root['message'][sample].decode()
         assert ('cables[0].length' in message) == (status[sample] == 1)
         assert bool(message) == (status[sample] != 0)
-        assert np.any(root['hose/positions'][sample]) == (status[sample] == 0)
+        positions = root['hose/positions'][sample]
+        assert np.isfinite(positions).all() if status[sample] == 0 else np.isnan(positions).all()
 
 
 PULL = 't,frame,x,y,z,qx,qy,qz,qw\n0,hand,0.7,0,0,0,0,0,1\n0.5,hand,1.5,0,0,0,0,0,1\n'
@@ -348,7 +350,7 @@ vary:
     assert np.array_equal(root['status'][:], np.where(is_weak, 2, 0))
     for sample in range(8):
         assert ('s: cable "hose" broke at segment ' in root['message'][sample].decode()) == is_weak[sample]
-        assert np.any(root['left/wrench' if 'wrench' in fields else 'hose/positions'][sample]) != is_weak[sample]
+        assert np.isnan(root['left/wrench' if 'wrench' in fields else 'hose/positions'][sample]).all() == is_weak[sample]
 
 
 def test_worst_status_of_the_steps(tmp_path):
@@ -360,7 +362,66 @@ def test_worst_status_of_the_steps(tmp_path):
         status, text = run(folder, tmp_path / f'store{rate}', '--workers', '1')
         assert status == 0, text
         root = zarr.open_group(str(tmp_path / f'store{rate}'), mode='r')
-        assert list(root['status'][:]) == [0, 0, 0] and list(root['worst'][:]) == [1, 1, 1]
+        assert list(root['status'][:]) == [0, 0, 0] and list(root['worst'][:]) == [2, 2, 2]
+
+
+def test_what_starts_below_a_table_is_the_worst(tmp_path):
+    """Every sample that is below the table at the start or the end is named by `worst`."""
+    scene = """
+time_step: 0.005
+materials: {m: {linear_density: 0.05, radius: 0.004, bending_stiffness: 0.002, bending_damping: 0.0001}}
+cables: [{name: rope, length: 1.0, segments: 40, material: m, attachments: [
+  {name: hand, at: start, frame: hand, type: clamp, initial_pose: [0, 0, 0.6, 0, 0, 0]}]}]
+obstacles: [{name: table, type: plane, friction: 0.2}]
+"""
+    folder = write(tmp_path, """
+scene: scene.yaml
+duration: 0.5
+record: {rate: 20, fields: [positions]}
+samples: 64
+vary:
+  cables[0].attachments[0].initial_pose[2]: {uniform: [0.3, 1.2]}
+  cables[0].length: {uniform: [0.8, 1.2]}
+  obstacles[0].friction: {uniform: [0.0, 0.6]}
+""", scene)
+    status, text = run(folder, tmp_path / 'store', '--workers', '1')
+    assert status == 0, text
+    root = zarr.open_group(str(tmp_path / 'store'), mode='r')
+    heights = root['rope/positions'][..., 2]
+    below = np.logical_or(heights[:, 0].min(axis=1) < 0, heights[:, -1].min(axis=1) < 0)
+    assert 0 < np.count_nonzero(below) < 64
+    assert (root['worst'][:][below] >= 3).all()
+
+
+def test_a_frame_that_nothing_places_is_an_error(tmp_path):
+    folder = write(tmp_path, scene=SCENE.replace(', initial_pose: [0.7, 0, 0, 0, 0, 0]', ''))
+    status, text = run(folder, tmp_path / 'store')
+    assert status == 2 and 'scene.yaml: frames: nothing has placed hand;' in text, text
+    assert not (tmp_path / 'store').exists()
+
+
+def test_a_store_opens_in_xarray(tmp_path):
+    xarray = pytest.importorskip('xarray')
+    folder = write(tmp_path, SWEEP.replace('{uniform: [0.95, 1.1]}', '{choice: [1.0, -1.0]}') + '  cables[0].material: {choice: [m, m]}\n')
+    status, text = run(folder, tmp_path / 'store', '--workers', '1')
+    assert status == 0, text
+    with warnings.catch_warnings():
+        warnings.simplefilter('error', UserWarning)
+        warnings.simplefilter('error', RuntimeWarning)
+        root = xarray.open_zarr(str(tmp_path / 'store'), consolidated=False)
+        hose = xarray.open_zarr(str(tmp_path / 'store'), group='hose', consolidated=False)
+        left = xarray.open_zarr(str(tmp_path / 'store'), group='left', consolidated=False)
+        vary = xarray.open_zarr(str(tmp_path / 'store'), group='vary', consolidated=False)
+    assert dict(root.sizes) == {'samples': 40, 'rows': 51}
+    assert hose.positions.dims == ('samples', 'rows', 'nodes', 'axes') and hose.tension.dims == ('samples', 'rows', 'segments')
+    assert left.wrench.shape == (40, 51, 6)
+    failed = (root.status != 0).values
+    assert 0 < np.count_nonzero(failed) < 40 and int(root.worst.max()) == 0
+    assert np.array_equal(np.isnan(hose.positions).all(['rows', 'nodes', 'axes']).values, failed)
+    assert np.array_equal(np.isnan(hose.positions).any(['rows', 'nodes', 'axes']).values, failed)
+    assert float(root.time[0]) == 0 and np.array_equal(np.isnan(root.worst), failed)
+    assert not np.isnan(vary['cables[0].length']).any() and not np.isnan(vary['cables[0].material']).any()
+    assert np.array_equal([b'length' in message for message in root.message.values], failed)
 
 
 def test_motions_are_drawn_from(tmp_path):

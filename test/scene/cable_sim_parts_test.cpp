@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
 #include "cable_sim/event_log.h"
-#include "scene/frame_source.h"
 #include "cable_sim/job.h"
 #include "cable_sim/options.h"
+#include "scene/frame_source.h"
 #include "scene_text.h"
 
 namespace verlet_cable::cable_sim {
@@ -54,8 +54,8 @@ TEST(Options, everyMistakeIsNamedAtOnce) {
   EXPECT_TRUE(has_line(errors, "no scene"));
   // A value that is empty, or missing, takes nothing of what follows.
   EXPECT_EQ(parse({"--output=", "a.yaml", "--settle=x", "--settle", "---", "-5", "--", "--summary"}, &errors).scene, "a.yaml");
-  for (const char* start : {"--output: \"\"", "--settle: \"x\"; allowed: no value", "--settle: given twice", "---: no such option",
-                            "-5: no such option", "--: no such option"})
+  for (const char* start : {"--output: \"\"", "--settle: \"x\"; allowed: no value", "--settle: given twice",
+                            "---: no such option", "-5: no such option", "--: no such option"})
     EXPECT_TRUE(has_line(errors, start)) << start << "\n" << joined(errors);
 }
 
@@ -138,10 +138,7 @@ TEST(EventLog, anEpisodeIsTwoEventsHoweverManySteps) {
   tools::ProgressBar progress(1);
   EventLog log(progress);
   StepResult bad;
-  bad.status = StepResult::Status::degraded;
-  bad.body = cable_id(0);
-  bad.node = 3;
-  bad.max_strain = 0.25;
+  bad.ignored_frame = 1;
   testing::internal::CaptureStderr();
   for (int i = 0; i < 400; ++i) {
     world.step(frames);
@@ -151,14 +148,42 @@ TEST(EventLog, anEpisodeIsTwoEventsHoweverManySteps) {
   const std::string printed = testing::internal::GetCapturedStderr();
   const std::vector<Event> events = log.events();
   ASSERT_EQ(events.size(), 2u);
-  EXPECT_EQ(events[0].type, "degraded");
-  EXPECT_EQ(events[0].cable, "hose");
-  EXPECT_EQ(events[0].node, 3);
+  EXPECT_EQ(events[0].type, "frame_out_of_range");
+  EXPECT_EQ(events[0].frame, world.frames()[1]);
   EXPECT_DOUBLE_EQ(events[0].time, 0.1);
-  EXPECT_EQ(events[1].type, "degraded_end");
+  EXPECT_EQ(events[1].type, "frame_out_of_range_end");
   EXPECT_DOUBLE_EQ(events[1].time, 0.3);
-  EXPECT_NE(events[1].message.find("largest strain 0.25"), std::string::npos) << events[1].message;
-  EXPECT_NE(printed.find("degraded: hose node 3"), std::string::npos) << printed;
+  EXPECT_EQ(events[1].message, "ended, after 0.2 s");
+  EXPECT_NE(printed.find("frame_out_of_range: " + world.frames()[1]), std::string::npos) << printed;
+}
+
+/// A rope that hangs into a table, and is carried out of it.
+TEST(EventLog, aStatusSaysOfWhatItIsAndHowLongItLasted) {
+  SceneDesc scene = read_scene_text(R"(
+time_step: 0.005
+materials: {m: {linear_density: 0.05, radius: 0.004}}
+cables: [{name: rope, length: 1.0, segments: 20, material: m, initial: {type: straight, from: [0, 0, 0.6], to: [0, 0, -0.4]},
+          attachments: [{name: hand, at: start, frame: hand, initial_pose: [0, 0, 0.6, 0, 0, 0]}]}]
+obstacles: [{name: table, type: plane}])");
+  BoundaryInputs frames = FrameSource(scene, {}).at(0);
+  World world(scene, frames);
+  tools::ProgressBar progress(1);
+  EventLog log(progress);
+  testing::internal::CaptureStderr();
+  for (int i = 0; i < 600; ++i) {
+    frames[1].pose.position.z() = 0.6 + std::min(1e-3 * i, 0.5);
+    log.observe(world, world.step(frames), {});
+  }
+  const std::string printed = testing::internal::GetCapturedStderr();
+  const std::vector<Event> events = log.events();
+  ASSERT_EQ(events.size(), 2u) << printed;
+  EXPECT_EQ(events[0].type, "inside_obstacle");
+  EXPECT_EQ(events[0].cable, "rope");
+  EXPECT_EQ(events[0].other, "table");
+  EXPECT_DOUBLE_EQ(events[0].time, 0.005);
+  EXPECT_EQ(events[1].type, "inside_obstacle_end");
+  EXPECT_GT(events[1].time, 0.1);
+  EXPECT_NE(events[1].message.find("; deepest 0.4"), std::string::npos) << events[1].message;
 }
 
 }  // namespace

@@ -69,10 +69,13 @@ inline bool is_named(const Attachment& attachment) {
 }
 
 struct StepResult {
+  /// What forces of the step are worth, from good to bad. Numbers are those of Cable.msg.
   enum class Status {
     ok,
-    overstretched,  ///< held points are further apart than the cable or net between them is long: it was lengthened
-    jumped,         ///< the velocity of a frame changed too much for a motion: what the frame holds was carried along
+    jumped,           ///< the velocity of a frame changed too much for a motion: what the frame holds was carried along
+    overstretched,    ///< held points are further apart than the cable or net between them is long: it was lengthened
+    inside_obstacle,  ///< a cable is inside an obstacle, see Intrusion
+    not_settled,      ///< no equilibrium was found to start from, or to settle in; said until the first step after that is done
     /// A substep of the smallest size did not converge, a net is held where it cannot be, or the step took too much work: the
     /// cable or net, or the bodies and their cables, lost their velocity and continue from rest. Or a cable is inside an
     /// obstacle or another cable, and has no room to get out.
@@ -132,13 +135,21 @@ struct Jump {
   double duration = 0;  ///< [s] a multiple of the time step
 };
 
-/// A cable that is inside an obstacle although it did not pass through its surface: the cable started there, or the obstacle
-/// appeared there. It is pushed out slowly. Edits and breaks keep its indices valid.
+/// A cable that is inside an obstacle, deeper than half its radius: it started there, the obstacle appeared there, or it was
+/// drawn there. It is pushed out slowly, and found in each step until it is out. Edits and breaks keep its indices valid.
 struct Intrusion {
   int cable = 0;     ///< index into World::cables()
   int segment = 0;   ///< the deepest one
   int obstacle = 0;  ///< index into World::obstacles()
   double depth = 0;  ///< [m] of the cable's surface below that of the obstacle
+};
+
+/// A status of a cable, net, particle or body that is not ok. Edits and breaks keep its indices valid.
+struct StatusFinding {
+  BodyId body;
+  StepResult::Status status = StepResult::Status::ok;
+  int node = 0;           ///< the first one; inside an obstacle, of the deepest segment
+  double max_strain = 0;  ///< largest |l / l0 - 1| of the body at the end of the step
 };
 
 /// Findings of the last step, start or settling.
@@ -149,6 +160,8 @@ struct Findings {
   /// Names of cables whose initial shape could not be projected onto their lengths with the attachments held: they start hanging
   /// instead.
   std::vector<std::string> misfits;
+  /// Each status of each body once; what the last step, or the start or settling since then, was not ok for.
+  std::vector<StatusFinding> statuses;
   // In the last step
   std::vector<Break> breaks;
   std::vector<Excursion> excursions;       ///< that have begun

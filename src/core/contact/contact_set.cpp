@@ -25,8 +25,8 @@ constexpr double smallest_lean = 0.05;
 constexpr double distance_rounding = 1e-6;
 /// Nodes and segments in turns: of a node, the segments and nodes next to it.
 constexpr std::uint64_t neighbouring_elements = 2;
-/// Deeper than this, in radii, nothing comes through a surface before its contact is found.
-constexpr double deepest_arrival = 0.5;
+/// Deeper than this, in radii, nothing that touches a surface from outside gets: it is inside.
+constexpr double deepest_touch = 0.5;
 
 double stopping(const SimulatedCable& cable, int segment, double time_step) {
   return stopping_stiffness(cable.state.rest_lengths[segment] * CableMaterials(cable)[segment].linear_density, time_step);
@@ -358,7 +358,7 @@ void ContactSet::add_pair(const std::vector<SimulatedCable>& cables, const std::
 void ContactSet::add(Touch& touch, const ContactMember& member, double h) {
   const double gentle = gentle_gap(touch.radius, contact_time(rules_.time_step));
   const bool known = recall(member, touch);
-  if (!known && touch.obstacle >= 0 && touch.gap < -deepest_arrival * touch.radius)
+  if (touch.obstacle >= 0 && touch.gap < -deepest_touch * touch.radius)
     note({touch.point.cable, touch.point.segment, touch.obstacle, -touch.gap});
   touch.inside = (!known || touch.inside) && touch.gap < gentle;
   touch.inside_for = touch.inside ? touch.inside_for + h : 0;

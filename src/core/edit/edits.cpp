@@ -266,6 +266,11 @@ void World::Implementation::follow_cut(int cable, int segment, int new_cable) {
     intrusion.cable = new_cable;
     intrusion.segment -= segment + 1;
   }
+  for (StatusFinding& found : findings.statuses) {
+    if (found.body != cable_id(cable) || found.node <= segment) continue;
+    found.body = cable_id(new_cable);
+    found.node -= segment + 1;
+  }
   for (Excursion& excursion : findings.excursions) {
     if (excursion.cable != cable || excursion.node <= segment) continue;
     excursion.cable = new_cable;

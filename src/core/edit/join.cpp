@@ -206,6 +206,8 @@ void World::Implementation::follow_join(int first, int second) {
   for (Attachment& a : state.attachments)
     if (a.body.is_cable()) follow(a.body.index);
   for (Intrusion& intrusion : findings.intrusions) follow(intrusion.cable);
+  for (StatusFinding& found : findings.statuses)
+    if (found.body.is_cable()) follow(found.body.index);
   for (Excursion& excursion : findings.excursions) follow(excursion.cable);
   for (Break& broken : findings.breaks) {
     follow(broken.cable);
@@ -218,6 +220,8 @@ void World::Implementation::reverse_cable(int index) {
   const int n = state.cables[index].state.segments();
   for (Intrusion& intrusion : findings.intrusions)
     if (intrusion.cable == index) intrusion.segment = n - 1 - intrusion.segment;
+  for (StatusFinding& found : findings.statuses)
+    if (found.body == cable_id(index)) found.node = n - found.node;
   for (Excursion& excursion : findings.excursions)
     if (excursion.cable == index) excursion.node = n - excursion.node - (excursion.kind == Excursion::Kind::tension ? 1 : 0);
   for (Attachment& a : state.attachments) {

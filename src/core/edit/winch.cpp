@@ -221,6 +221,8 @@ void World::Implementation::renumber(int index, int first, int shift) {
     if (a.body == cable_id(index)) follow(a.node);
   for (Intrusion& intrusion : findings.intrusions)
     if (intrusion.cable == index) follow(intrusion.segment);
+  for (StatusFinding& found : findings.statuses)
+    if (found.body == cable_id(index)) follow(found.node);
   for (Excursion& excursion : findings.excursions)
     if (excursion.cable == index) follow(excursion.node);
   for (KinematicTarget& h : state.cable_progress[index].targets.nodes) follow(h.node);

@@ -14,11 +14,6 @@ using Status = StepResult::Status;
 /// Nodes that are nearer than this to a held one [m] are carried along with it.
 constexpr double nearest = 1e-6;
 
-void note_net(Status status, int net, int node, StepResult& result) {
-  if (status <= result.status) return;
-  note_status(status, net_id(net), node, result);
-}
-
 void forget_motion(const NetModel& model, NetProgress& memory) {
   memory.links.started = false;
   std::fill(memory.links.impulses.begin(), memory.links.impulses.end(), 0.0);
@@ -156,16 +151,17 @@ void World::Implementation::step_net(int index, StepResult& result) {
   if (!of_net.finite || of_net.torn) {
     bring_to_rest(net.state);
     forget_motion(net.model, memory);
-    note_net(Status::degraded, index, 0, result);
+    note({net_id(index), Status::degraded, 0, of_net.max_strain}, result);
     complete_step(state.scene->time_step, memory.targets);
     show_velocities(memory.targets, net.state.velocities);
     return;
   }
   // It keeps its velocities: where it took too much work for many steps, it would hang in the air without.
-  if (of_net.exhausted) note_net(Status::degraded, index, std::max(of_net.unsolved_node, 0), result);
-  if (of_net.softened) note_net(Status::degraded, index, 0, result);
-  if (of_net.unsolved_node >= 0) note_net(Status::degraded, index, of_net.unsolved_node, result);
-  if (of_net.overstretched_node >= 0) note_net(Status::overstretched, index, of_net.overstretched_node, result);
+  const auto tell = [&](Status status, int node) { note({net_id(index), status, node, of_net.max_strain}, result); };
+  if (of_net.exhausted) tell(Status::degraded, std::max(of_net.unsolved_node, 0));
+  if (of_net.softened) tell(Status::degraded, 0);
+  if (of_net.unsolved_node >= 0) tell(Status::degraded, of_net.unsolved_node);
+  if (of_net.overstretched_node >= 0) tell(Status::overstretched, of_net.overstretched_node);
   for (std::size_t k = 0; k < solver.boundary.nodes.size(); ++k)
     state.attachments[memory.targets.nodes[k].attachment].force = solver.boundary.nodes[k].force;
   complete_step(state.scene->time_step, memory.targets);
@@ -183,7 +179,7 @@ void World::Implementation::aim_net(int index, StepResult& result) {
   if (following.jumping_node < 0) return;
   carry_along(memory.targets, state.nets[index].state);
   memory.points.restart();
-  note_net(Status::jumped, index, following.jumping_node, result);
+  note({net_id(index), Status::jumped, following.jumping_node}, result);
 }
 
 void World::Implementation::step_particle(int index, StepResult& result) {
@@ -191,8 +187,7 @@ void World::Implementation::step_particle(int index, StepResult& result) {
   if (particle_stepper.value.advance(*state.scene, moving_obstacles.value, particle, state.particle_integrators[index])) return;
   particle.velocity.setZero();
   state.particle_integrators[index].restart();
-  if (result.status >= Status::degraded) return;
-  note_status(Status::degraded, particle_id(index), 0, result);
+  note({particle_id(index), Status::degraded}, result);
 }
 
 void World::Implementation::add_net_energy(Energy& energy) const {

@@ -19,6 +19,7 @@ struct World::Implementation {
   Findings findings;
   bool one_by_one = false;                       ///< as World::step_one_by_one asks
   int most_lanes = widest_lanes();               ///< as World::limit_lanes asks
+  std::size_t told_unsettled = 0;                ///< of findings.unsettled, those that a step has told
   const std::atomic<bool>* cancelled = nullptr;  ///< during construction
   // Scratch, and what follows from the state
   NotCopied<Workspaces> workspaces;
@@ -44,6 +45,8 @@ struct World::Implementation {
   void resume_islands(bool one_by_one);
   void collect_outcomes(StepResult& result);
   void apply_breaks(StepResult& result);
+  void note(const StatusFinding& found, StepResult& result);
+  void note_unsettled(std::size_t first);
   void step_nets_and_particles(StepResult& result);
 
   bool is_cancelled() const { return cancelled && *cancelled; }

@@ -53,6 +53,9 @@ void World::note_left_out_time() {
 }
 
 void World::Implementation::end_step(StepResult& result) {
+  note_unsettled(told_unsettled);
+  for (const StatusFinding& found : findings.statuses) note_status(found.status, found.body, found.node, result);
+  told_unsettled = findings.unsettled.size();
   collect_outcomes(result);
   find_excursions(state, findings.excursions);
   apply_breaks(result);
@@ -82,7 +85,25 @@ void World::Implementation::forget_last_step() {
   findings.released.clear();
   findings.jumps.clear();
   findings.intrusions.clear();
+  findings.statuses.clear();
   findings.contacts.clear();
+}
+
+/// Once of each body and status.
+void World::Implementation::note(const StatusFinding& found, StepResult& result) {
+  note_status(found.status, found.body, found.node, result);
+  std::vector<StatusFinding>& all = findings.statuses;
+  const auto is_same = [&](const StatusFinding& other) { return other.body == found.body && other.status == found.status; };
+  if (found.status != StepResult::Status::ok && std::none_of(all.begin(), all.end(), is_same)) all.push_back(found);
+}
+
+/// Of cables that found no equilibrium, from one of findings.unsettled on.
+void World::Implementation::note_unsettled(std::size_t first) {
+  StepResult none;
+  for (std::size_t i = first; i < findings.unsettled.size(); ++i) {
+    const int cable = find(state.cables, findings.unsettled[i]);
+    if (cable >= 0) note({cable_id(cable), StepResult::Status::not_settled}, none);
+  }
 }
 
 /// Winches and joints that close number nodes and attachments anew: one after the other.
@@ -155,18 +176,22 @@ void World::Implementation::step_islands(std::size_t from, std::size_t to, Islan
 
 void World::Implementation::collect_outcomes(StepResult& result) {
   for (const CableOutcome& outcome : cable_outcomes.value) {
-    note_status(outcome.result.status, outcome.result.body, outcome.result.node, result);
+    note({outcome.result.body, outcome.result.status, outcome.result.node, outcome.result.max_strain}, result);
     result.substeps = std::max(result.substeps, outcome.result.substeps);
     result.iterations += outcome.result.iterations;
     result.max_strain = std::max(result.max_strain, outcome.result.max_strain);
     append(outcome.jumps, findings.jumps);
   }
   for (const IslandOutcome& outcome : island_outcomes.value) {
-    note_status(outcome.bodies.status, outcome.bodies.body, outcome.bodies.node, result);
+    note({outcome.bodies.body, outcome.bodies.status, outcome.bodies.node}, result);
     result.exhausted = result.exhausted || outcome.exhausted;
     append(outcome.jumps, findings.jumps);
     append(outcome.intrusions, findings.intrusions);
     append(outcome.contacts, findings.contacts);
+  }
+  for (const Intrusion& found : findings.intrusions) {
+    const double strain = cable_outcomes.value[found.cable].result.max_strain;
+    note({cable_id(found.cable), StepResult::Status::inside_obstacle, found.segment, strain}, result);
   }
 }
 

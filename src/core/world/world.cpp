@@ -132,6 +132,8 @@ bool World::settle() {
       w.findings.unsettled.push_back(w.state.cables[cable].model->name);
   }
   settle_bodies(std::vector<char>(w.state.cables.size(), 1), w.state, w.workspaces.value.local(), w.findings.unsettled);
+  w.told_unsettled = 0;
+  w.note_unsettled(0);
   return w.findings.unsettled.empty();
 }
 
@@ -209,6 +211,7 @@ int World::start_waiting(const BoundaryInputs& inputs) {
   w.settle_started_bodies(cables);
   for (const int i : nets)
     if (!w.is_cancelled()) w.start_net(scene.nets[i], ids, inputs);
+  w.note_unsettled(w.told_unsettled);
   w.name_waiting();
   return static_cast<int>(cables.size() + nets.size());
 }

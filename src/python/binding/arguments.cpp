@@ -91,7 +91,7 @@ py::array_t<double> array_of(const World& world, Quantity quantity, const std::s
   if (shape.columns > 0) sizes.push_back(shape.columns);
   py::array_t<double> array(sizes);
   copy_quantity(world, quantity, name, array.mutable_data());
-  return array;
+  return read_only(std::move(array));
 }
 
 std::string hash_text(std::uint64_t hash) {
@@ -109,22 +109,6 @@ py::dict energy_dict(const Energy& energy) {
   dict["twist"] = energy.twist;
   dict["total"] = energy.total();
   return dict;
-}
-
-const char* status_text(StepResult::Status status) {
-  switch (status) {
-    case StepResult::Status::ok:
-      return "ok";
-    case StepResult::Status::overstretched:
-      return "overstretched";
-    case StepResult::Status::jumped:
-      return "jumped";
-    case StepResult::Status::degraded:
-      return "degraded";
-    case StepResult::Status::fault:
-      return "fault";
-  }
-  return "";
 }
 
 }  // namespace verlet_cable

@@ -47,8 +47,13 @@ py::array_t<double> array_of(const World& world, Quantity quantity, const std::s
 /// 16 hexadecimal digits, as in a summary.
 std::string hash_text(std::uint64_t hash);
 
-py::dict energy_dict(const Energy& energy);
+/// An array that is handed out: nobody takes what is written into a copy for a change of the world.
+template <class Array>
+Array read_only(Array array) {
+  array.attr("setflags")(py::arg("write") = false);
+  return array;
+}
 
-const char* status_text(StepResult::Status status);
+py::dict energy_dict(const Energy& energy);
 
 }  // namespace verlet_cable

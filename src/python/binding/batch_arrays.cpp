@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "binding/arguments.h"
 #include "binding/text_arguments.h"
 
 namespace verlet_cable {
@@ -37,8 +38,7 @@ py::array_t<double> recorded_array(const Record& record, std::size_t worlds, std
   auto* owner = new std::shared_ptr<double>(record.numbers);
   const py::capsule capsule(owner, [](void* pointer) { delete static_cast<std::shared_ptr<double>*>(pointer); });
   py::array_t<double> array(sizes_of(record.shape, {worlds, records}), record.numbers.get(), capsule);
-  array.attr("setflags")(py::arg("write") = false);
-  return array;
+  return read_only(std::move(array));
 }
 
 void copy(const Batch& batch, const std::vector<Part>& parts, double* to) {
@@ -56,7 +56,7 @@ py::array_t<double> array_of_now(const Batch& batch, Quantity quantity, const st
   const QuantityShape shape = shape_of(batch[0].world(), quantity, name);
   py::array_t<double> array(sizes_of(shape, {batch.size()}));
   copy(batch, {{quantity, name, shape}}, array.mutable_data());
-  return array;
+  return read_only(std::move(array));
 }
 
 Part read_part(const World& world, const std::tuple<py::str, py::str>& given) {
@@ -84,7 +84,7 @@ template <class Number, class Read>
 py::array_t<Number> array_of_numbers(const Batch& batch, const Read& read) {
   py::array_t<Number> array(static_cast<py::ssize_t>(batch.size()));
   for (std::size_t i = 0; i < batch.size(); ++i) array.mutable_data()[i] = read(i);
-  return array;
+  return read_only(std::move(array));
 }
 
 }  // namespace
@@ -108,7 +108,7 @@ py::array_t<double> observations(const Batch& batch, const std::vector<GivenPart
   }
   py::array_t<double> array(std::vector<std::size_t>{batch.size(), row});
   copy(batch, parts, array.mutable_data());
-  return array;
+  return read_only(std::move(array));
 }
 
 py::array_t<double> times(const Batch& batch) {
@@ -120,12 +120,18 @@ py::array_t<std::int8_t> statuses(const Batch& batch) {
 }
 
 py::dict energies(const Batch& batch) {
+  std::vector<Energy> energies;
+  for (std::size_t i = 0; i < batch.size(); ++i) energies.push_back(batch[i].world().energy());
+  const auto all_of = [&](const auto& read) {
+    return array_of_numbers<double>(batch, [&](std::size_t i) { return read(energies[i]); });
+  };
   py::dict all;
-  for (std::size_t i = 0; i < batch.size(); ++i)
-    for (const auto& [key, value] : energy_dict(batch[i].world().energy())) {
-      if (!all.contains(key)) all[key] = py::array_t<double>(static_cast<py::ssize_t>(batch.size()));
-      py::array_t<double>(py::reinterpret_borrow<py::object>(all[key])).mutable_at(i) = value.cast<double>();
-    }
+  all["kinetic"] = all_of([](const Energy& energy) { return energy.kinetic; });
+  all["gravity"] = all_of([](const Energy& energy) { return energy.gravity; });
+  all["stretch"] = all_of([](const Energy& energy) { return energy.stretch; });
+  all["bend"] = all_of([](const Energy& energy) { return energy.bend; });
+  all["twist"] = all_of([](const Energy& energy) { return energy.twist; });
+  all["total"] = all_of([](const Energy& energy) { return energy.total(); });
   return all;
 }
 

@@ -11,6 +11,7 @@
 #include "binding/arguments.h"
 #include "binding/batch_arguments.h"
 #include "binding/batch_arrays.h"
+#include "binding/edit_methods.h"
 #include "binding/motion_argument.h"
 #include "binding/run_steps.h"
 #include "binding/scene_class.h"
@@ -87,7 +88,11 @@ void set_material(PythonBatch& batch, const py::str& name, const py::kwargs& fie
 }
 
 void set_frames(PythonBatch& batch, const py::str& name, const Numbers& poses) {
-  batch.batch.set_frame(text_of(name, "name"), read_poses(poses, use(batch).size()));
+  const std::string frame = text_of(name, "name");
+  std::vector<std::vector<Pose>> all = read_poses(poses, use(batch).size());
+  const InUse in_use(batch.busy, "batch");
+  const py::gil_scoped_release release;
+  batch.batch.set_frame(frame, std::move(all));
 }
 
 void set_world(PythonBatch& batch, const py::object& index, PythonWorld& world) {
@@ -105,6 +110,7 @@ void step(PythonBatch& batch, std::int64_t steps, std::int64_t record_every, con
                           std::to_string(steps));
   const std::vector<Quantity> quantities = read_quantities("fields", fields);
   const InUse in_use(batch.busy, "batch");
+  if (steps > 0) batch.batch.require_placed_frames();
   batch.batch.begin_steps(steps, record_every, quantities);
   try {
     run_steps(steps, [&](std::int64_t some) { batch.batch.advance(some); });
@@ -139,6 +145,7 @@ std::unique_ptr<PythonBatch> copy(const PythonBatch& batch) {
 
 py::array_t<bool> settle(PythonBatch& batch) {
   const InUse in_use(batch.busy, "batch");
+  batch.batch.require_placed_frames();
   std::vector<char> found;
   {
     const py::gil_scoped_release release;
@@ -147,7 +154,11 @@ py::array_t<bool> settle(PythonBatch& batch) {
   }
   py::array_t<bool> array(static_cast<py::ssize_t>(found.size()));
   for (std::size_t i = 0; i < found.size(); ++i) array.mutable_at(i) = found[i] != 0;
-  return array;
+  return read_only(std::move(array));
+}
+
+std::string represent(const PythonBatch& batch) {
+  return "<Batch of " + std::to_string(use(batch).size()) + " worlds>";
 }
 
 }  // namespace
@@ -158,7 +169,7 @@ void add_batch_class(py::module_& module) {
       "Worlds that differ only in numbers and are stepped together. This is faster than one after another and gives the same "
       "bytes as each alone, with any number of threads. Only one thread at a time may use a batch; other threads run while it "
       "steps.\n\nThe first axis of arrays is that of the worlds. After a step with `record_every`, the second axis is that of "
-      "the records, and the arrays are read-only views; otherwise they are new copies. A batch keeps no events.")
+      "the records, and the arrays are views; otherwise they are new copies. All of them are read-only.")
       .def(py::init(&make), py::arg("scene"), py::arg("count"), py::arg("motion") = py::none(), py::arg("threads") = 0,
            "`count` worlds of a scene. motion: as for World, the same for all. threads: 0 is one per core.")
       .def(py::init(&make_from_list), py::arg("scenes"), py::arg("motion") = py::none(), py::arg("threads") = 0,
@@ -167,6 +178,7 @@ void add_batch_class(py::module_& module) {
       .def(py::init(&make_of_world), py::arg("world"), py::arg("count"), py::arg("threads") = 0,
            "`count` copies of a world in its present state, with its time, motion, poses that were set, and edits. Each "
            "continues with the same bytes as the world would.")
+      .def("__repr__", represent)
       .def("__len__", [](const PythonBatch& batch) { return use(batch).size(); })
       .def("set_world", set_world, py::arg("index"), py::arg("world"),
            "Replaces worlds by copies of `world`, with its time, motion and poses that were set: to restart some of them, or to "
@@ -180,22 +192,31 @@ void add_batch_class(py::module_& module) {
            "(count,), or for bending_stiffness (count, 2). Worlds that were not yet stepped, settled or edited are started anew "
            "with it; for others, all keys except linear_density can be changed.\n\nRaises SceneError with all errors at once, "
            "ValueError, KeyError; then nothing is changed.")
-      .def("set_frames", set_frames, py::arg("name"), py::arg("poses"),
-           "Sets the poses of a frame. (count, 7): at the end of the next step and after it; (count, steps, 7): at the end of "
-           "each of the next steps, and the last one from then on. A pose is x, y, z [m], qx, qy, qz, qw in the fixed frame; "
-           "quaternions are normalized, their norms must be from 0.5 to 2.\n\nRaises KeyError, ValueError.")
+      .def(
+          "set_frames", set_frames, py::arg("name"), py::arg("poses"),
+          "Sets the poses of a frame. (count, 7): at the end of the next step and after it; (count, steps, 7): at the end of "
+          "each of the next steps, and the last one from then on. A pose is x, y, z [m], qx, qy, qz, qw in the fixed frame; "
+          "quaternions are normalized, their norms must be from 0.5 to 2. As with World.set_frame, a frame that nothing else has "
+          "placed is at its first pose from the start on.\n\nRaises KeyError, ValueError.")
       .def(
           "step", step, py::arg("steps") = 1, py::arg("record_every") = 0,
           py::arg("fields") = std::vector<std::string>{"positions", "velocities", "tension", "wrench", "body_pose", "body_twist"},
           "Advances all worlds by a number of time steps. record_every: a divisor of `steps`; the quantities in `fields` are "
           "recorded each time that many steps are done. Other threads run meanwhile; Ctrl-C ends it between two steps, without "
-          "records.")
+          "records. Raises ValueError as World.step, for the first world that lacks the pose of a frame.")
       .def("settle", settle, "As World.settle; (count,) bool.")
       .def("copy", copy, "An independent copy, which continues from here with the same bytes.")
       .def("__copy__", copy)
       .def(
           "__deepcopy__", [](const PythonBatch& batch, const py::dict&) { return copy(batch); }, py::arg("memo"))
       .def("world", world_at, py::arg("index"), "A copy of one of the worlds, without its earlier events.")
+      .def(
+          "events",
+          [event_type = py::object(module.attr("Event"))](PythonBatch& self, std::int64_t world) {
+            const std::size_t index = read_world_index(world, use(self).size());
+            return take_events(self.batch.events(index), event_type);
+          },
+          py::arg("world"), "As World.events, of one of the worlds, since it began, was replaced or was asked for last.")
       .def("positions", read<Quantity::positions>, py::arg("name"), "(count, n + 1, 3) or (count, records, n + 1, 3) [m].")
       .def("velocities", read<Quantity::velocities>, py::arg("name"), "(count, n + 1, 3) or (count, records, n + 1, 3) [m/s].")
       .def("tension", read<Quantity::tension>, py::arg("name"), "(count, n) or (count, records, n) [N].")
@@ -217,7 +238,8 @@ void add_batch_class(py::module_& module) {
           "energy", [](const PythonBatch& batch) { return energies(use(batch)); }, "Energies [J] as World.energy, (count,) each.")
       .def_property_readonly(
           "status", [](const PythonBatch& batch) { return statuses(use(batch)); },
-          "(count,) int8, the worst status in the last call of step(): 0 ok, 1 overstretched, 2 jumped, 3 degraded, 4 fault.")
+          "(count,) int8, the worst status in the last call of step(): 0 ok, 1 jumped, 2 overstretched, 3 inside_obstacle, "
+          "4 not_settled, 5 degraded, 6 fault.")
       .def_property_readonly(
           "time", [](const PythonBatch& batch) { return times(use(batch)); },
           "(count,) [s] Simulated time; it may differ between worlds after set_world.")

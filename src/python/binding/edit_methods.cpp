@@ -29,8 +29,10 @@ DrivenWorld& use(PythonWorld& world) {
 /// What is wrong with its numbers is said where they are used.
 Pose read_offset(const OptionalNumbers& offset) {
   if (!offset) return {};
-  check_size("offset", *offset, 7);
+  if (offset->ndim() != 1 || (offset->shape(0) != 3 && offset->shape(0) != 7))
+    throw py::value_error("offset: shape " + shape_text(*offset) + "; allowed: (7,), or (3,) without rotation");
   const double* p = offset->data();
+  if (offset->shape(0) == 3) return {{p[0], p[1], p[2]}, Quaternion::Identity()};
   return {{p[0], p[1], p[2]}, Quaternion(p[6], p[3], p[4], p[5])};
 }
 
@@ -109,20 +111,6 @@ void tune_world(PythonWorld& world, const OptionalNumbers& gravity, const Option
   tune(changes, driven);
 }
 
-py::list events(PythonWorld& world, const py::object& event_type) {
-  use(world);
-  const EventRecord::Taken taken = world.events.take();
-  py::list list;
-  for (const auto& [time, event] : taken.events) {
-    const EventSubject& subject = event.subject;
-    list.append(
-        event_type(time, name_of(event.type), subject.cable, subject.attachment, subject.node, subject.other, event.message));
-  }
-  if (taken.left_out > 0)
-    list.append(event_type(taken.last_time, "more", "", "", 0, "", std::to_string(taken.left_out) + " more events"));
-  return list;
-}
-
 /// A class of named tuples, in the module.
 py::object add_tuple(py::module_& module, const char* name, const std::vector<std::string>& fields, const char* doc) {
   using namespace py::literals;
@@ -160,7 +148,7 @@ void add_cable_edits(py::module_& module, py::class_<PythonWorld>& world) {
       "(3,) [m]: exactly one of them; the node itself, or the position whose nearest node is held. point_frame: the frame in "
       "which the point is given, '' for the fixed one.\nname: of the new attachment; '': one is generated.\nframe_id: '' is the "
       "fixed frame. A frame that the world does not have is added, at the origin or where the robot has a link of that name; "
-      "set_frame moves it.\noffset: (7,) x, y, z [m], qx, qy, qz, qw in the frame, four zeros for no rotation; None: the origin "
+      "set_frame moves it.\noffset: (7,) x, y, z [m], qx, qy, qz, qw in the frame, or (3,) without rotation; None: the origin "
       "of the frame.\nclamp: holds direction and roll, too. keep_offset: keeps the present pose relative to the frame; offset is "
       "then ignored.\n\nReturns Pinned(name, node). Raises ValueError, or KeyError for the name of a cable or frame that does "
       "not exist; then nothing is changed.");
@@ -181,6 +169,16 @@ void add_cable_edits(py::module_& module, py::class_<PythonWorld>& world) {
 }
 
 }  // namespace
+
+py::list take_events(EventRecord& record, const py::object& event_type) {
+  const EventRecord::Taken taken = record.take();
+  py::list list;
+  for (const auto& [time, type, subject, message] : taken.events)
+    list.append(event_type(time, type, subject.cable, subject.attachment, subject.node, subject.other, message));
+  if (taken.left_out > 0)
+    list.append(event_type(taken.last_time, "more", "", "", 0, "", std::to_string(taken.left_out) + " more events"));
+  return list;
+}
 
 void add_edit_methods(py::module_& module, py::class_<PythonWorld>& world) {
   add_cable_edits(module, world);
@@ -213,7 +211,7 @@ void add_edit_methods(py::module_& module, py::class_<PythonWorld>& world) {
         move_attachment(text_of(name, "name"), read_offset(offset), driven);
       },
       py::arg("name"), py::arg("offset"),
-      "Gives an attachment another pose in its frame: (7,) x, y, z [m], qx, qy, qz, qw, four zeros for no rotation. What it "
+      "Gives an attachment another pose in its frame: (7,) x, y, z [m], qx, qy, qz, qw, or (3,) without rotation. What it "
       "holds is moved there in the next step, as with set_frame, so make small changes. Raises ValueError, KeyError; then "
       "nothing is changed.");
   world.def("add_frame", add_frame, py::arg("name"), py::arg("position"), py::arg("quaternion_xyzw"),
@@ -232,10 +230,17 @@ void add_edit_methods(py::module_& module, py::class_<PythonWorld>& world) {
                                           "An event of a world: the fields of CableEvent.msg, with the simulated `time` [s] and "
                                           "the name of the constant as `type`. Fields that do not apply are '' or 0.");
   world.def(
-      "events", [event_type](PythonWorld& self) { return events(self, event_type); },
-      "List of Event(time, type, cable, attachment, node, other, message) since the last call, with the types 'CUT', 'BROKE', "
-      "'PINNED', 'UNPINNED', 'FAULT', 'JOINED', 'LIMIT', 'CAUGHT', 'RELEASED' and 'JUMPED' (at most once a second for each "
-      "frame). After the first 1000, one event of type 'more' states how many were left out. A copy of a world has the events "
+      "events",
+      [event_type](PythonWorld& self) {
+        use(self);
+        return take_events(self.events, event_type);
+      },
+      "List of Event(time, type, cable, attachment, node, other, message) since the last call, in the order of their times, with "
+      "the types of cable_sim. At once: 'CUT', 'BROKE', 'PINNED', 'UNPINNED', 'JOINED', 'LIMIT', 'CAUGHT', 'RELEASED', 'JUMPED' "
+      "(at most once a second for each frame) and 'not_fitted' (the initial shape). When they begin, and with '_end' when they "
+      "were not there for 0.1 s: 'overstretched', 'inside_obstacle' (other: the obstacle), 'not_settled', 'degraded', 'FAULT', "
+      "'frame_too_fast' and 'frame_out_of_range' (other: the frame); the time of an end is that of the last step they were "
+      "there. After the first 1000, one event of type 'more' states how many were left out. A copy of a world has the events "
       "that were not retrieved yet.");
 }
 

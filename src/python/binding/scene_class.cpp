@@ -8,6 +8,7 @@
 
 #include "binding/text_arguments.h"
 #include "binding/yaml_of.h"
+#include "verlet_cable/core/name_list.h"
 #include "verlet_cable/core/world.h"
 
 namespace verlet_cable {
@@ -81,6 +82,18 @@ SceneSources sources_of(const py::object& directory) {
 
 void add_scene_class(py::module_& module) {
   py::class_<PythonScene>(module, "Scene", "A scene that has been read and validated. It is immutable; worlds are made from it.")
+      .def(py::init([](const py::object&) -> PythonScene {
+             throw py::type_error(
+                 "Scene is not made by calling it; allowed: Scene.load(path) for a file, Scene.from_yaml(text), "
+                 "Scene.from_dict(keys)");
+           }),
+           py::arg("path") = py::none(), "Not for use: load, from_yaml and from_dict make scenes.")
+      .def("__repr__",
+           [](const PythonScene& scene) {
+             NameList cables;
+             for (const CableDesc& cable : scene.desc->cables) cables.add(cable.name);
+             return "<Scene with cables: " + cables.text("none") + ">";
+           })
       .def_static("load", load, py::arg("path"),
                   "Reads a YAML file. Relative paths in it refer to its directory. Raises SceneError with all errors at once.")
       .def_static("from_yaml", from_yaml, py::arg("text"), py::arg("directory") = py::none(),

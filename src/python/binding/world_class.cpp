@@ -14,6 +14,9 @@
 #include "binding/run_steps.h"
 #include "binding/scene_class.h"
 #include "binding/text_arguments.h"
+#include "verlet_cable/core/name_list.h"
+#include "verlet_cable/core/number_text.h"
+#include "world_events/status_log.h"
 
 namespace verlet_cable {
 namespace {
@@ -24,9 +27,11 @@ const World& use(const PythonWorld& world) {
 }
 
 std::unique_ptr<PythonWorld> make(const PythonScene& scene, const py::object& motion) {
-  auto frames = std::make_shared<FrameSource>(*scene.desc, read_motion(motion, *scene.desc));
+  const Motion tracks = read_motion(motion, *scene.desc);
   const py::gil_scoped_release release;
-  return std::make_unique<PythonWorld>(DrivenWorld(scene.desc, std::move(frames)));
+  auto world = std::make_unique<PythonWorld>(DrivenWorld(scene.desc, tracks));
+  world->events.observe_start(world->driven.world());
+  return world;
 }
 
 std::unique_ptr<PythonWorld> copy(const PythonWorld& world) {
@@ -36,27 +41,41 @@ std::unique_ptr<PythonWorld> copy(const PythonWorld& world) {
 
 void set_frame(PythonWorld& world, const py::str& name, const Numbers& position, const Numbers& quaternion_xyzw) {
   use(world);
-  world.driven.set_frame(world.driven.find_frame(text_of(name, "name")), {read_pose(position, quaternion_xyzw)});
+  const int frame = world.driven.find_frame(text_of(name, "name"));
+  if (!world.driven.set_frame(frame, {read_pose(position, quaternion_xyzw)})) return;
+  world.events = {};
+  world.events.observe_start(world.driven.world());
 }
 
 const char* step(PythonWorld& world, std::int64_t steps) {
   read_count("steps", steps, 0);
   const InUse in_use(world.busy, "world");
+  if (steps > 0) world.driven.require_placed_frames();
   StepResult::Status worst = StepResult::Status::ok;
   run_steps(steps, [&](std::int64_t some) {
     for (std::int64_t i = 0; i < some; ++i) {
       const StepResult result = world.driven.step();
       worst = std::max(worst, result.status);
-      world.events.observe(world.driven.world(), result);
+      world.events.observe(world.driven.world(), result, world.driven.held_back());
     }
   });
-  return status_text(worst);
+  return name_of(worst);
 }
 
 bool settle(PythonWorld& world) {
   const InUse in_use(world.busy, "world");
+  world.driven.require_placed_frames();
   const py::gil_scoped_release release;
-  return world.driven.world().settle();
+  const bool found = world.driven.world().settle();
+  world.events.observe_start(world.driven.world());
+  return found;
+}
+
+std::string represent(const PythonWorld& world) {
+  const World& simulated = use(world);
+  NameList cables;
+  for (const SimulatedCable& cable : simulated.cables()) cables.add(cable.model->name);
+  return "<World at " + rounded_text(simulated.time(), 6) + " s, cables: " + cables.text("none") + ">";
 }
 
 /// The method that reads a quantity.
@@ -112,7 +131,7 @@ void add_names(py::class_<PythonWorld>& world) {
 void add_world_class(py::module_& module) {
   py::class_<PythonWorld> world(module, "World",
                                 "A simulated scene. Frames follow the motion until set_frame moves them; those that the motion "
-                                "does not name are at rest, as in cable_sim. Every returned array is a new copy. Only one thread "
+                                "does not name are at rest. Every returned array is a new copy, and read-only. Only one thread "
                                 "at a time may use a world; other threads run while it steps.");
   world
       .def(py::init(&make), py::arg("scene"), py::arg("motion") = py::none(),
@@ -122,14 +141,19 @@ void add_world_class(py::module_& module) {
       .def("set_frame", set_frame, py::arg("name"), py::arg("position"), py::arg("quaternion_xyzw"),
            "Sets the pose of a frame at the end of the next step and after it: position (3,) [m] and quaternion (4,) in the "
            "fixed frame; the quaternion is normalized, its norm must be from 0.5 to 2. The frame then no longer follows a "
-           "motion. Links of a robot below this frame follow it, unless their own pose is set.\n\nRaises KeyError for a name "
-           "that is not in frame_names, ValueError.")
-      .def("step", step, py::arg("steps") = 1,
-           "Advances by a number of time steps. Returns their worst status: 'ok', 'overstretched', 'jumped', 'degraded' or "
-           "'fault'. Other threads run meanwhile; Ctrl-C ends it between two steps.")
+           "motion. Links of a robot below this frame follow it, unless their own pose is set. A frame of an attachment or guide "
+           "that has neither a motion nor an initial_pose must be set before the first step: there it is at the start, too.\n\n"
+           "Raises KeyError for a name that is not in frame_names, ValueError.")
+      .def(
+          "step", step, py::arg("steps") = 1,
+          "Advances by a number of time steps. Returns their worst status, from good to bad 'ok', 'jumped', 'overstretched', "
+          "'inside_obstacle', 'not_settled', 'degraded' or 'fault'. Other threads run meanwhile; Ctrl-C ends it between two "
+          "steps.\n\nRaises ValueError if nothing has placed the frame of an attachment or guide; the message names all of them.")
       .def(
           "settle", settle,
-          "Puts the held cables into static equilibrium, with the frames where they are. False if one of them does not reach it.")
+          "Puts the held cables into static equilibrium, with the frames where they are. False if one of them does not reach it; "
+          "the status is then 'not_settled' until the next step is done. Raises ValueError as step().")
+      .def("__repr__", represent)
       .def("copy", copy, "An independent copy, which continues from here with the same bytes.")
       .def("__copy__", copy)
       .def(

@@ -72,7 +72,7 @@ Batch::Batch(const std::vector<std::shared_ptr<const SceneDesc>>& scenes, const 
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     const auto [same, is_new] = known.emplace(scenes[i].get(), i);
     if (is_new) {
-      worlds_.emplace_back(scenes[i], std::make_shared<FrameSource>(*scenes[i], motion));
+      worlds_.emplace_back(scenes[i], motion);
       if (i == 0) {
         check_size(worlds_.front().world(), scenes.size());
         worlds_.reserve(scenes.size());
@@ -82,13 +82,21 @@ Batch::Batch(const std::vector<std::shared_ptr<const SceneDesc>>& scenes, const 
     }
     worlds_.back().world().step_one_by_one(true);
   }
+  events_.resize(worlds_.size());
+  for (std::size_t i = 0; i < worlds_.size(); ++i) begin_events(i);
 }
 
 Batch::Batch(const DrivenWorld& world, std::size_t count, int threads)
     : threads_(std::make_shared<Threads>(threads)), status_(count, StepResult::Status::ok) {
   check_size(world.world(), count);
   worlds_.assign(count, world);
+  events_.resize(count);
   for (DrivenWorld& copy : worlds_) copy.world().step_one_by_one(true);
+}
+
+void Batch::begin_events(std::size_t world) {
+  events_[world] = {};
+  events_[world].observe_start(worlds_[world].world());
 }
 
 void Batch::set_worlds(const std::vector<std::size_t>& indices, const DrivenWorld& world) {
@@ -100,6 +108,7 @@ void Batch::set_worlds(const std::vector<std::size_t>& indices, const DrivenWorl
       copy = world;
       copy.world().step_one_by_one(true);
       status_[indices[i]] = StepResult::Status::ok;
+      events_[indices[i]] = {};
     }
   });
   drop_records();
@@ -108,20 +117,45 @@ void Batch::set_worlds(const std::vector<std::size_t>& indices, const DrivenWorl
 void Batch::set_material(const std::string& name, const std::vector<MaterialChange>& changes) {
   const std::vector<std::shared_ptr<const SceneDesc>> scenes = scenes_with(name, changes, worlds_);
   std::vector<DrivenWorld> changed = worlds_;
+  std::vector<char> begun(changed.size(), 0);
   for (std::size_t i = 0; i < changed.size(); ++i) {
-    if (changed[i].is_as_it_began())
+    begun[i] = changed[i].is_as_it_began() ? 1 : 0;
+    if (begun[i] != 0)
       changed[i].begin_anew(scenes[i]);
     else
       changed[i].tune(scenes[i]);
     changed[i].world().step_one_by_one(true);
   }
-  worlds_ = std::move(changed);
+  replace(std::move(changed), begun);
+}
+
+/// Of those that have `begun`, events begin, too.
+void Batch::replace(std::vector<DrivenWorld> worlds, const std::vector<char>& begun) {
+  worlds_ = std::move(worlds);
+  for (std::size_t i = 0; i < worlds_.size(); ++i)
+    if (begun[i] != 0) begin_events(i);
 }
 
 void Batch::set_frame(const std::string& name, std::vector<std::vector<Pose>> poses) {
   std::vector<int> frames;
   for (const DrivenWorld& world : worlds_) frames.push_back(world.find_frame(name));
-  for (std::size_t i = 0; i < worlds_.size(); ++i) worlds_[i].set_frame(frames[i], std::move(poses[i]));
+  const auto lacks = [](const DrivenWorld& world) { return world.has_unplaced_frames(); };
+  if (std::none_of(worlds_.begin(), worlds_.end(), lacks)) {
+    for (std::size_t i = 0; i < worlds_.size(); ++i) worlds_[i].set_frame(frames[i], std::move(poses[i]));
+    return;
+  }
+  std::vector<DrivenWorld> changed = worlds_;
+  std::vector<char> begun(changed.size(), 0);
+  for (std::size_t i = 0; i < changed.size(); ++i) {
+    begun[i] = changed[i].set_frame(frames[i], std::move(poses[i])) ? 1 : 0;
+    if (begun[i] != 0) changed[i].world().step_one_by_one(true);
+  }
+  replace(std::move(changed), begun);
+}
+
+void Batch::require_placed_frames() const {
+  for (std::size_t i = 0; i < worlds_.size(); ++i)
+    if (worlds_[i].has_unplaced_frames()) worlds_[i].require_placed_frames("world " + std::to_string(i) + ": ");
 }
 
 std::optional<OddWorld> Batch::copy(const std::vector<Part>& parts, double* to) const {
@@ -164,7 +198,11 @@ void Batch::advance(std::size_t first, std::size_t last, std::int64_t steps) {
     buffers.steps.clear();
     for (std::size_t i = first; i < last; ++i) buffers.steps.push_back({&worlds_[i].world(), &worlds_[i].next_inputs(), {}});
     buffers.stepper.step(buffers.steps, false);
-    for (std::size_t i = first; i < last; ++i) status_[i] = std::max(status_[i], buffers.steps[i - first].result.status);
+    for (std::size_t i = first; i < last; ++i) {
+      const StepResult& result = buffers.steps[i - first].result;
+      status_[i] = std::max(status_[i], result.status);
+      events_[i].observe(worlds_[i].world(), result, worlds_[i].held_back());
+    }
     if (record_every_ == 0 || done % record_every_ != 0) continue;
     for (std::size_t i = first; i < last; ++i)
       records_->add(worlds_[i].world(), i, static_cast<std::size_t>(done / record_every_ - 1));
@@ -174,7 +212,10 @@ void Batch::advance(std::size_t first, std::size_t last, std::int64_t steps) {
 std::vector<char> Batch::settle() {
   std::vector<char> found(worlds_.size());
   threads_->share_out(worlds_.size(), [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) found[i] = worlds_[i].world().settle();
+    for (std::size_t i = first; i < last; ++i) {
+      found[i] = worlds_[i].world().settle();
+      events_[i].observe_start(worlds_[i].world());
+    }
   });
   return found;
 }

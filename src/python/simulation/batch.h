@@ -8,6 +8,7 @@
 
 #include "simulation/batch_materials.h"
 #include "simulation/driven_world.h"
+#include "simulation/event_record.h"
 #include "simulation/records.h"
 #include "verlet_cable/core/world_stepper.h"
 #include "verlet_cable/scene/motion.h"
@@ -39,6 +40,8 @@ class Batch {
 
   std::size_t size() const { return worlds_.size(); }
   const DrivenWorld& operator[](std::size_t index) const { return worlds_[index]; }
+  /// What has happened to a world since it began or was replaced.
+  EventRecord& events(std::size_t index) { return events_[index]; }
 
   /// These worlds, each named once, go on as copies of another. Throws SceneError where its scene differs from theirs in more
   /// than numbers. Drops the records.
@@ -48,11 +51,14 @@ class Batch {
   /// changed, which linear_density is not. Throws SceneError with all that is wrong, and UnknownName.
   void set_material(const std::string& name, const std::vector<MaterialChange>& changes);
 
-  /// See DrivenWorld::set_frame; for each world. Throws UnknownName.
+  /// See DrivenWorld::set_frame; for each world. Throws UnknownName, and SceneError; then nothing is changed.
   void set_frame(const std::string& name, std::vector<std::vector<Pose>> poses);
 
   /// Writes the parts of world after world, side by side, or returns the first that does not have them all.
   std::optional<OddWorld> copy(const std::vector<Part>& parts, double* to) const;
+
+  /// See DrivenWorld; names the first world that lacks some.
+  void require_placed_frames() const;
 
   /// Begins a call: what the steps until the next one record, after every `record_every` of them; 0: nothing.
   void begin_steps(std::int64_t steps, std::int64_t record_every, const std::vector<Quantity>& quantities);
@@ -74,9 +80,12 @@ class Batch {
   class Threads;
 
   void advance(std::size_t first, std::size_t last, std::int64_t steps);
+  void begin_events(std::size_t world);
+  void replace(std::vector<DrivenWorld> worlds, const std::vector<char>& begun);
 
   std::shared_ptr<Threads> threads_;  ///< of copies, too: nobody steps two at once
   std::vector<DrivenWorld> worlds_;
+  std::vector<EventRecord> events_;  ///< one a world
   std::vector<StepResult::Status> status_;
   std::optional<Records> records_;
   std::int64_t record_every_ = 0;

@@ -30,6 +30,11 @@ DrivenWorld::DrivenWorld(std::shared_ptr<const SceneDesc> scene, std::shared_ptr
       world_(begin(*scene_, *frames_)),
       hash_of_start_(world_.hash()) {}
 
+DrivenWorld::DrivenWorld(std::shared_ptr<const SceneDesc> scene, const Motion& motion)
+    : DrivenWorld(scene, std::make_shared<FrameSource>(*scene, motion)) {
+  unplaced_ = unplaced_holders(*scene, motion);
+}
+
 int DrivenWorld::find_frame(const std::string& name) const {
   const std::vector<std::string>& names = world_.frames();
   NameList allowed;
@@ -92,18 +97,47 @@ PosesById DrivenWorld::given_now() const {
   return given;
 }
 
-void DrivenWorld::set_frame(int frame, std::vector<Pose> poses) {
+void DrivenWorld::require_placed_frames(const std::string& where) const {
+  if (unplaced_.empty()) return;
+  NameList names;
+  for (const std::string& name : unplaced_) names.add(name);
+  throw std::invalid_argument(
+      where + "frames: nothing has placed " + names.text() +
+      "; allowed: a pose by set_frame (set_frames of a Batch) before the first step, by the motion, or as "
+      "initial_pose in the scene");
+}
+
+bool DrivenWorld::set_frame(int frame, std::vector<Pose> poses) {
+  const auto unplaced = std::find(unplaced_.begin(), unplaced_.end(), world_.frames()[frame]);
+  const bool begins = unplaced != unplaced_.end() && place(unplaced - unplaced_.begin(), frame, poses.front());
   const auto given =
       std::find_if(given_.begin(), given_.end(), [frame](const GivenPoses& other) { return other.frame == frame; });
   if (given == given_.end())
     given_.push_back({frame, std::move(poses), 0});
   else
     *given = {frame, std::move(poses), 0};
+  return begins;
+}
+
+/// One of the unplaced frames. Returns whether the world began anew with it.
+bool DrivenWorld::place(std::ptrdiff_t unplaced, int frame, const Pose& pose) {
+  auto frames = std::make_shared<FrameSource>(*frames_);
+  frames->place(frame, pose);
+  if (unplaced_.size() == 1 && is_as_it_began()) {
+    DrivenWorld anew(scene_, frames);
+    anew.given_ = given_;
+    *this = std::move(anew);
+    return true;
+  }
+  frames_ = std::move(frames);
+  unplaced_.erase(unplaced_.begin() + unplaced);
+  return false;
 }
 
 void DrivenWorld::begin_anew(std::shared_ptr<const SceneDesc> scene) {
   DrivenWorld anew(std::move(scene), frames_);
   anew.given_ = std::move(given_);
+  anew.unplaced_ = std::move(unplaced_);
   *this = std::move(anew);
 }
 
@@ -125,7 +159,8 @@ const BoundaryInputs& DrivenWorld::next_inputs() {
   for (GivenPoses& given : given_)
     if (given.next + 1 < given.poses.size()) ++given.next;
   inputs_.swap(targets_);
-  if (scene_->max_frame_speed < infinity) limit_frame_motion(targets_, scene_->max_frame_speed * scene_->time_step, inputs_);
+  if (scene_->max_frame_speed < infinity)
+    held_back_ = limit_frame_motion(targets_, scene_->max_frame_speed * scene_->time_step, inputs_);
   if (!frames_->rests() || !given_.empty()) targets_ = inputs_;
   return inputs_;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -8,6 +9,7 @@
 
 #include "scene/frame_source.h"
 #include "verlet_cable/core/world.h"
+#include "verlet_cable/scene/motion.h"
 
 namespace verlet_cable {
 
@@ -15,8 +17,8 @@ namespace verlet_cable {
 /// then on. A value, as the world is.
 class DrivenWorld {
  public:
-  /// `frames` is of that scene. Throws SceneError.
-  DrivenWorld(std::shared_ptr<const SceneDesc> scene, std::shared_ptr<const FrameSource> frames);
+  /// Throws SceneError.
+  DrivenWorld(std::shared_ptr<const SceneDesc> scene, const Motion& motion);
 
   const World& world() const { return world_; }
   World& world() { return world_; }
@@ -35,8 +37,13 @@ class DrivenWorld {
   /// Follows the frames that the world has had from an id on, and that its scene does not know: a robot's link follows its
   /// parent, others rest where they are.
   void follow_frames_from(std::size_t first);
-  /// Where a frame is at the end of each of the next steps, at least one; it stays at the last one.
-  void set_frame(int frame, std::vector<Pose> poses);
+  /// Where a frame is at the end of each of the next steps, at least one; it stays at the last one. A frame that nothing has
+  /// placed yet is at the first of them from the start on: once all are placed, a world that is as it began begins anew with
+  /// them. Throws SceneError if it cannot begin so; then nothing is changed. Returns whether it did.
+  bool set_frame(int frame, std::vector<Pose> poses);
+  bool has_unplaced_frames() const { return !unplaced_.empty(); }
+  /// Throws std::invalid_argument if nothing has placed a frame that an attachment or guide needs. `where`: before the message.
+  void require_placed_frames(const std::string& where = "") const;
 
   /// Whether nothing was done to it: no step, no settling, no edit.
   bool is_as_it_began() const { return world_.hash() == hash_of_start_; }
@@ -48,8 +55,13 @@ class DrivenWorld {
   /// The frames at the end of the next step, of which there is one for each call. Valid until the next call.
   const BoundaryInputs& next_inputs();
   StepResult step() { return world_.step(next_inputs()); }
+  /// Ids of the frames that moved faster than the scene's `max_frame_speed` to the last of these.
+  const std::vector<int>& held_back() const { return held_back_; }
 
  private:
+  DrivenWorld(std::shared_ptr<const SceneDesc> scene, std::shared_ptr<const FrameSource> frames);
+  bool place(std::ptrdiff_t unplaced, int frame, const Pose& pose);
+
   std::shared_ptr<const FrameSource> frames_with(const std::string& name, std::size_t id, const Pose& resting) const;
   /// Of the frames that were given poses, now.
   PosesById given_now() const;
@@ -66,6 +78,8 @@ class DrivenWorld {
   BoundaryInputs targets_;  ///< where the motion has the frames
   World world_;
   std::uint64_t hash_of_start_;
+  std::vector<std::string> unplaced_;  ///< frames that hold something, at the origin until they are given a pose
+  std::vector<int> held_back_;
   std::vector<GivenPoses> given_;
 };
 

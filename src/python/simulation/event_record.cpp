@@ -1,9 +1,7 @@
 #include "simulation/event_record.h"
 
+#include <algorithm>
 #include <utility>
-
-#include "verlet_cable/core/body_name.h"
-#include "verlet_cable/core/quoted_text.h"
 
 namespace verlet_cable {
 namespace {
@@ -14,41 +12,55 @@ constexpr double jump_quiet_time = 1;
 
 }  // namespace
 
-void EventRecord::add(double time, WorldEvent event) {
+void EventRecord::add(TimedEvent event) {
   if (taken_.events.size() < most_events) {
-    taken_.events.push_back({time, std::move(event)});
+    taken_.events.push_back(std::move(event));
   } else {
     ++taken_.left_out;
-    taken_.last_time = time;
+    taken_.last_time = event.time;
   }
 }
 
-void EventRecord::add_all(const World& world, const StepResult& result) {
-  const bool fault = result.status == StepResult::Status::fault;
-  if (fault && !faulted_) {
-    const std::string subject = name_of(world, result.body);
-    add(world.time(), {EventType::fault,
-                       {subject, {}, result.node, {}},
-                       "the simulation of " + quoted(subject) + " failed at node " + std::to_string(result.node) +
-                           ": it stays as it was last"});
-  }
-  faulted_ = fault;
+void EventRecord::add(double time, const WorldEvent& event) {
+  add({time, name_of(event.type), event.subject, event.message});
+}
+
+void EventRecord::observe_start(const World& world) {
+  for (const std::string& cable : world.findings().misfits)
+    if (world.steps() == 0) add({world.time(), "not_fitted", {cable, {}, 0, {}}, misfit_text});
+  statuses_.observe_start(world);
+  add_statuses();
+}
+
+void EventRecord::add_all(const World& world) {
+  add_statuses();
   add_jumps(world);
-  for (WorldEvent& event : events_of_step(world)) add(world.time(), std::move(event));
+  for (const WorldEvent& event : events_of_step(world)) add(world.time(), event);
+}
+
+void EventRecord::add_statuses() {
+  for (StatusEvent& event : statuses_.take())
+    add({event.time,
+         event.name + (event.has_ended ? "_end" : ""),
+         {std::move(event.cable), {}, std::max(event.node, 0), std::move(event.other)},
+         std::move(event.message)});
 }
 
 void EventRecord::add_jumps(const World& world) {
   for (const Jump& jump : world.findings().jumps) {
-    WorldEvent event = jump_event(world, jump);
+    const WorldEvent event = jump_event(world, jump);
     const auto [told, is_new] = jumps_.emplace(event.subject.other, jump.time);
     if (!is_new && jump.time > told->second && jump.time - told->second < jump_quiet_time) continue;
     told->second = jump.time;
-    add(jump.time, std::move(event));
+    add(jump.time, event);
   }
 }
 
 EventRecord::Taken EventRecord::take() {
-  return std::exchange(taken_, {});
+  Taken taken = std::exchange(taken_, {});
+  std::stable_sort(taken.events.begin(), taken.events.end(),
+                   [](const TimedEvent& a, const TimedEvent& b) { return a.time < b.time; });
+  return taken;
 }
 
 }  // namespace verlet_cable

@@ -1,6 +1,6 @@
 from collections.abc import Mapping, Sequence
 from os import PathLike
-from typing import Any, Literal, NamedTuple, Union, overload
+from typing import Any, Literal, NamedTuple, NoReturn, Union, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -9,16 +9,20 @@ __version__: str
 
 _Path = Union[str, bytes, PathLike[str], PathLike[bytes]]
 _Motion = Union[None, _Path, Mapping[str, tuple[ArrayLike, ArrayLike]]]
-_Status = Literal['ok', 'overstretched', 'jumped', 'degraded', 'fault']
+_Status = Literal['ok', 'jumped', 'overstretched', 'inside_obstacle', 'not_settled', 'degraded', 'fault']
 
 _EventType = Literal[
-    'CUT', 'BROKE', 'PINNED', 'UNPINNED', 'FAULT', 'JOINED', 'LIMIT', 'CAUGHT', 'RELEASED', 'JUMPED', 'more'
+    'CUT', 'BROKE', 'PINNED', 'UNPINNED', 'JOINED', 'LIMIT', 'CAUGHT', 'RELEASED', 'JUMPED', 'not_fitted',
+    'overstretched', 'overstretched_end', 'inside_obstacle', 'inside_obstacle_end', 'not_settled', 'not_settled_end',
+    'degraded', 'degraded_end', 'FAULT', 'FAULT_end', 'frame_too_fast', 'frame_too_fast_end',
+    'frame_out_of_range', 'frame_out_of_range_end', 'more'
 ]
 
 class SceneError(ValueError):
     errors: list[str]
 
 class Scene:
+    def __init__(self, path: NoReturn = ...) -> None: ...
     @staticmethod
     def load(path: _Path) -> Scene: ...
     @staticmethod
@@ -142,6 +146,7 @@ class Batch:
     def __copy__(self) -> Batch: ...
     def __deepcopy__(self, memo: dict[int, Any]) -> Batch: ...
     def world(self, index: int) -> World: ...
+    def events(self, world: int) -> list[Event]: ...
     def positions(self, name: str) -> NDArray[np.float64]: ...
     def velocities(self, name: str) -> NDArray[np.float64]: ...
     def tension(self, name: str) -> NDArray[np.float64]: ...

@@ -76,15 +76,16 @@ void Diagnostics::report_simulation(Status& status) {
   status.add("real_time_factor", step_time > 0 ? time_step / step_time : 0);  // time_step over step_time_mean_s
   status.add("step_time_mean_s", step_time);                                  // computing time of a step since the last report
   status.add("step_time_max_s", s.longest_step);                              // the same, of the longest step
-  status.add("steps", s.steps);                           // since the last report, like all numbers of steps here
-  status.add("behind_s", seconds(report.behind));         // of the time to simulate, ROS time - tf_latency; at most tf_timeout
-  status.add("dropped_time_s", seconds(report.dropped));  // simulated time skipped since the start when overloaded
-  status.add("max_strain", s.max_strain);                 // largest |l / l0 - 1|
-  status.add("overstretched_steps", s.overstretched);     // held points were further apart than a cable or net is long
-  status.add("jumped_steps", s.jumped);                   // a frame jumped, and what it holds was carried along
-  status.add("degraded_steps", s.degraded);               // no solution was found, and velocities were set to zero
-  status.add("exhausted_steps", s.exhausted);             // a step exceeded its budget of work and was cut short
-  status.add("faults", report.faults);                    // number since the start
+  status.add("steps", s.steps);                            // since the last report, like all numbers of steps here
+  status.add("behind_s", seconds(report.behind));          // of the time to simulate, ROS time - tf_latency; at most tf_timeout
+  status.add("dropped_time_s", seconds(report.dropped));   // simulated time skipped since the start when overloaded
+  status.add("max_strain", s.max_strain);                  // largest |l / l0 - 1|
+  status.add("overstretched_steps", s.overstretched);      // held points were further apart than a cable or net is long
+  status.add("jumped_steps", s.jumped);                    // a frame jumped, and what it holds was carried along
+  status.add("inside_obstacle_steps", s.inside_obstacle);  // a cable was inside an obstacle, and was pushed out
+  status.add("degraded_steps", s.degraded);                // no solution was found, and velocities were set to zero
+  status.add("exhausted_steps", s.exhausted);              // a step exceeded its budget of work and was cut short
+  status.add("faults", report.faults);                     // number since the start
   status.add("waiting_cables", NameList(simulation_.world().findings().waiting).text(""));  // that wait for a frame
   report_waiting(status);
   status.add("unsettled_cables", NameList(simulation_.world().findings().unsettled).text(""));  // without a static equilibrium

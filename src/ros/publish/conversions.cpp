@@ -129,11 +129,21 @@ void add_guides(const World& world, const std::vector<int>& places, CableArray& 
   }
 }
 
+/// In the last step.
+std::uint8_t worst_status(const World& world, const BodyId& body) {
+  StepResult::Status worst = StepResult::Status::ok;
+  for (const StatusFinding& found : world.findings().statuses)
+    if (found.body == body) worst = std::max(worst, found.status);
+  return static_cast<std::uint8_t>(worst);
+}
+
 void add_cables(const World& world, CableArray& message) {
   std::vector<int> places;  // in the message, of each cable; -1: it is left out
   for (const SimulatedCable& cable : world.cables()) {
     places.push_back(is_finite(cable) ? static_cast<int>(message.cables.size()) : -1);
-    if (places.back() >= 0) message.cables.push_back(to_message(cable));
+    if (places.back() < 0) continue;
+    message.cables.push_back(to_message(cable));
+    message.cables.back().status = worst_status(world, cable_id(static_cast<int>(places.size()) - 1));
   }
   for (const Attachment& attachment : world.attachments()) {
     if (!is_named(attachment) || !attachment.body.is_cable() || places[attachment.body.index] < 0) continue;
@@ -183,8 +193,12 @@ CableArray to_message(const World& world) {
     if (is_finite(net)) message.nets.push_back(to_message(net));
   for (const SimulatedParticle& particle : world.particles())
     if (is_finite(particle)) message.particles.push_back(to_message(particle));
-  for (const SimulatedBody& body : world.bodies())
-    if (!body.is_junction && is_there(world, body)) message.bodies.push_back(to_message(body));
+  for (std::size_t i = 0; i < world.bodies().size(); ++i) {
+    const SimulatedBody& body = world.bodies()[i];
+    if (body.is_junction || !is_there(world, body)) continue;
+    message.bodies.push_back(to_message(body));
+    message.bodies.back().status = worst_status(world, rigid_body_id(static_cast<int>(i)));
+  }
   return message;
 }
 

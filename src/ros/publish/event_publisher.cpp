@@ -1,9 +1,13 @@
 #include "publish/event_publisher.h"
 
+#include <verlet_cable/Cable.h>
+
+#include <algorithm>
 #include <utility>
 
 #include "publish/queue_size.h"
 #include "time/ros_time.h"
+#include "verlet_cable/core/quoted_text.h"
 
 namespace verlet_cable {
 namespace {
@@ -20,6 +24,14 @@ static_assert(is(EventType::cut, CableEvent::CUT) && is(EventType::broke, CableE
               is(EventType::limit, CableEvent::LIMIT) && is(EventType::caught, CableEvent::CAUGHT) &&
               is(EventType::released, CableEvent::RELEASED) && is(EventType::jumped, CableEvent::JUMPED));
 
+constexpr bool is(StepResult::Status status, std::uint8_t constant) {
+  return static_cast<std::uint8_t>(status) == constant;
+}
+using Status = StepResult::Status;
+static_assert(is(Status::ok, Cable::OK) && is(Status::jumped, Cable::JUMPED) && is(Status::overstretched, Cable::OVERSTRETCHED) &&
+              is(Status::inside_obstacle, Cable::INSIDE_OBSTACLE) && is(Status::not_settled, Cable::NOT_SETTLED) &&
+              is(Status::degraded, Cable::DEGRADED) && is(Status::fault, Cable::FAULT));
+
 }  // namespace
 
 EventPublisher::EventPublisher(ros::NodeHandle& private_node, std::string frame_id)
@@ -34,8 +46,19 @@ void EventPublisher::publish(const WorldEvent& event, Nanoseconds stamp) const {
   publish(static_cast<std::uint8_t>(event.type), stamp, event.subject, event.message);
 }
 
-void EventPublisher::publish_each(std::uint8_t type, Nanoseconds stamp, const std::vector<EventSubject>& subjects,
-                                  const std::string& message) const {
+void EventPublisher::publish(const StatusEvent& event, Nanoseconds stamp) const {
+  const int node = std::max(event.node, 0);
+  const std::string message = quoted(event.cable) + (event.has_ended ? ": " : " at node " + std::to_string(node) + ": ") +
+                              event.name + (event.has_ended ? " " : ": ") + event.message;
+  send(CableEvent::STATUS, stamp, {{event.cable, {}, node, event.name}}, message);
+  if (event.has_ended)
+    ROS_INFO("%s", message.c_str());
+  else
+    ROS_WARN("%s", message.c_str());
+}
+
+void EventPublisher::send(std::uint8_t type, Nanoseconds stamp, const std::vector<EventSubject>& subjects,
+                          const std::string& message) const {
   CableEvent event;
   event.header.frame_id = frame_id_;
   event.header.stamp = to_ros_time(stamp);
@@ -48,6 +71,11 @@ void EventPublisher::publish_each(std::uint8_t type, Nanoseconds stamp, const st
     event.other = subject.other;
     publisher_.publish(event);
   }
+}
+
+void EventPublisher::publish_each(std::uint8_t type, Nanoseconds stamp, const std::vector<EventSubject>& subjects,
+                                  const std::string& message) const {
+  send(type, stamp, subjects, message);
   if (type == CableEvent::FAULT) {
     ROS_ERROR("%s", message.c_str());
   } else if (type == CableEvent::FRAME_LOST || type == CableEvent::TIME_JUMP || type == CableEvent::BROKE ||

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "time/time_grid.h"
+#include "world_events/status_log.h"
 #include "world_events/world_event.h"
 
 namespace verlet_cable {
@@ -21,11 +22,14 @@ class EventPublisher {
   /// `type`: a constant of CableEvent; `stamp`: the simulated time.
   void publish(std::uint8_t type, Nanoseconds stamp, const EventSubject& subject, const std::string& message) const;
   void publish(const WorldEvent& event, Nanoseconds stamp) const;
+  void publish(const StatusEvent& event, Nanoseconds stamp) const;
   /// One event about each subject, logged once.
   void publish_each(std::uint8_t type, Nanoseconds stamp, const std::vector<EventSubject>& subjects,
                     const std::string& message) const;
 
  private:
+  void send(std::uint8_t type, Nanoseconds stamp, const std::vector<EventSubject>& subjects, const std::string& message) const;
+
   ros::Publisher publisher_;
   std::string frame_id_;
 };

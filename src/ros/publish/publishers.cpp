@@ -66,10 +66,12 @@ void Publishers::show(const SceneDesc& scene) {
 }
 
 void Publishers::note_step(const World& world) {
+  implementation_->state.note_step(world);
   implementation_->wrenches.means().add(world);
 }
 
 void Publishers::forget_steps() {
+  implementation_->state.forget_steps();
   implementation_->wrenches.means().forget();
 }
 

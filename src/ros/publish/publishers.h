@@ -23,7 +23,8 @@ class Publishers {
   /// Shows another scene from now on; what is gone is deleted at the next tick.
   void show(const SceneDesc& scene);
 
-  /// After each step: a tick shows wrenches as their means over the steps since the one before.
+  /// After each step: a tick shows wrenches as their means over the steps since the one before, and the
+  /// worst status of these.
   void note_step(const World& world);
   /// What comes next does not go on from the steps before: a reset, a restored snapshot, a jump of time.
   void forget_steps();

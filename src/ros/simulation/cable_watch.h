@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <set>
 #include <string>
 
 #include "publish/event_publisher.h"
 #include "time/time_grid.h"
 #include "verlet_cable/core/world.h"
+#include "world_events/status_log.h"
 
 namespace verlet_cable {
 
@@ -19,20 +21,24 @@ class CableWatch {
   void report_status(const StepResult& result, Nanoseconds stamp, const World& world);
   /// Reports what happened to cables in the step that led to `stamp`: see `events_of_step`.
   void report_events(Nanoseconds stamp, const World& world) const;
-  /// Warns of cables that the last step found inside obstacles, of each pair once until `restart`, and of a thousand pairs at
-  /// most.
-  void report_intrusions(const World& world);
-  /// Warns of cables that could not start as the scene says, from these of World::unsettled() and World::misfits() on.
-  void report_starts(std::size_t first_unsettled, std::size_t first_misfit, const World& world) const;
-  /// Another world starts: reports how, and forgets what was found inside obstacles.
-  void restart(const World& world);
+  /// Reports which statuses the step that led to `stamp` began with, or found to be over.
+  void report_statuses(const StepResult& result, Nanoseconds stamp, const World& world);
+  /// Reports cables that could not start as the scene says, from these of Findings::unsettled and Findings::misfits on.
+  void report_starts(std::size_t first_unsettled, std::size_t first_misfit, Nanoseconds stamp, const World& world);
+  /// Another world starts: ends the statuses of the last one, reports how it starts, and forgets what was found inside obstacles.
+  void restart(Nanoseconds stamp, const World& world);
+  /// What comes next does not go on from the steps before.
+  void end_statuses(Nanoseconds stamp);
 
   int faults() const { return faults_; }  ///< since the node started
-  /// "CABLE in OBSTACLE" of those that were warned of since the last restart.
+  /// "CABLE in OBSTACLE" of those that were found since the last restart, a thousand pairs at most.
   const std::set<std::string>& intrusions() const { return intrusions_; }
 
  private:
+  void publish(Nanoseconds stamp, std::optional<double> time);
+
   const EventPublisher& events_;
+  StatusLog statuses_;
   int faults_ = 0;
   std::set<std::string> intrusions_;
 };

@@ -108,7 +108,7 @@ void Simulation::start(Nanoseconds time) {
     place_added_obstacles();
     frame_watch_.forget_from(0);
     faulted_ = false;
-    cable_watch_.restart(world_);
+    cable_watch_.restart(stamp_, world_);
   }
   waits_for_frames_ = frame_watch_.react(frames_.changes(), stamp_, world_);
   frame_watch_.report_unseen(world_, frames_);
@@ -162,7 +162,7 @@ bool Simulation::step_world(Nanoseconds time) {
   if (stamp_ != stepped_to_) frame_watch_.skip(world_.time());
   if (time - stamp_ > grid_.step()) world_.note_left_out_time();
   const StepResult result = world_.step(frames_.inputs());
-  statistics_.add(result, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  statistics_.add(result, world_.findings(), std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   if (result.ignored_frame >= 0) frame_watch_.warn_of_ignored(world_, frames_.inputs());
   cable_watch_.report_status(result, stamp_, world_);
   faulted_ = result.status == StepResult::Status::fault;
@@ -172,7 +172,7 @@ bool Simulation::step_world(Nanoseconds time) {
   stepped_to_ = stamp_;
   frame_watch_.report_jumps(stamp_, world_);
   cable_watch_.report_events(stamp_, world_);
-  cable_watch_.report_intrusions(world_);
+  cable_watch_.report_statuses(result, stamp_, world_);
   if (!frames_.changes().empty()) start_waiting_cables();
   if (grid_.passes_tick(before, stamp_)) publish();
   return true;
@@ -182,7 +182,7 @@ void Simulation::start_waiting_cables() {
   if (world_.findings().waiting.empty()) return;
   const std::size_t unsettled = world_.findings().unsettled.size(), misfits = world_.findings().misfits.size();
   world_.start_waiting(frames_.inputs());
-  cable_watch_.report_starts(unsettled, misfits, world_);
+  cable_watch_.report_starts(unsettled, misfits, stamp_, world_);
 }
 
 void Simulation::report_overload() {

@@ -140,7 +140,7 @@ EditResult Simulation::start_anew(World world) {
   place_added_obstacles();
   faulted_ = false;
   frame_watch_.forget_from(static_cast<int>(world_.frames().size()));
-  cable_watch_.restart(world_);
+  cable_watch_.restart(stamp_, world_);
   const std::string message = "reset to the initial state of the scene";
   announce(CableEvent::RESET, {}, message);
   if (paused_) publish();

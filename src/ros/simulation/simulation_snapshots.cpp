@@ -48,6 +48,7 @@ EditResult Simulation::restore_state(const std::string& name) {
   const std::string message = "restored the snapshot " + quoted(name);
   interrupt_steps(message);
   forget_resets(message);
+  cable_watch_.end_statuses(stamp_);
   world_ = snapshot.world;
   publishers_.forget_steps();
   added_obstacles_ = snapshot.added_obstacles;

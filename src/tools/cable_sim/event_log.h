@@ -1,13 +1,12 @@
 #pragma once
 
 #include <map>
-#include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "common/progress_bar.h"
 #include "verlet_cable/core/world.h"
+#include "world_events/status_log.h"
 
 namespace verlet_cable::cable_sim {
 
@@ -22,7 +21,7 @@ struct Event {
   std::string other;  ///< BROKE: the new cable; inside_obstacle: the obstacle
 };
 
-/// Turns what each step reports into events: one when something begins, one when it has ended, not one a step. Keeps the first
+/// What each step reports, as events; of what lasts, one when it begins and one when it has ended, see StatusLog. Keeps the first
 /// 1000 and prints the first 20 to standard error.
 class EventLog {
  public:
@@ -42,26 +41,17 @@ class EventLog {
   std::vector<Event> events() const;
 
  private:
-  struct Episode {
-    Event first;
-    double last_time = 0;
-    double largest_strain = 0;
-  };
-
   void add_breaks(const World& world);
   void add_excursions(const World& world);
-  void add_intrusions(const World& world);
-  void report(const Event& event, double strain);
-  void end_episodes(double time);
+  void add_statuses();
   void add(const Event& event);
 
   tools::ProgressBar& progress_;
   std::vector<Event> events_;
   std::size_t dropped_ = 0;
   double last_dropped_time_ = 0;
-  std::map<std::string, Episode> episodes_;                   ///< that have not ended, by type and subject
-  std::map<std::string, double> jumps_;                       ///< when a frame's last one was told [s]
-  std::set<std::pair<std::string, std::string>> intrusions_;  ///< that were told: cable and obstacle
+  StatusLog statuses_;
+  std::map<std::string, double> jumps_;  ///< when a frame's last one was told [s]
 };
 
 }  // namespace verlet_cable::cable_sim

@@ -3,7 +3,7 @@ import numpy
 
 from verlet_cable.sim import Batch
 
-FAULT = 4  # of Batch.status: the simulation of that world had to stop
+FAULT = 6  # of Batch.status: the simulation of that world had to stop
 
 
 class Worlds:

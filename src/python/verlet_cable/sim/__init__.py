@@ -14,19 +14,26 @@
         world.set_frame('left_gripper', [-0.4, 0, 1 + 0.0001 * (k + 1)], [0, 0, 0, 1])
         status = world.step()
 
-A frame with a pose neither in the motion nor as `initial_pose` in the scene starts at the origin.
+A frame of an attachment or guide needs a pose before the first step: by the motion, as `initial_pose` in the scene, or by set_frame.
 
-World.step returns the worst status of its steps. From good to bad:
+World.step returns the worst status of its steps. From good to bad, with the numbers of Batch.status:
 
-    ok             all is well
-    overstretched  held points are further apart than the cable or net between them is long; it was lengthened
-    jumped         the velocity of a frame changed too much for a motion; what the frame holds was carried along
-    degraded       no solution was found with the shortest substeps or within the budget of work, or a net is held where it cannot
-                   be: it lost its velocity and continues from rest; or cables are inside each other without room to separate
-    fault          that failed, too: the cable stays in its last state
+    0 ok               all is well
+    1 jumped           the velocity of a frame changed too much for a motion; what the frame holds was carried along
+    2 overstretched    held points are further apart than the cable or net between them is long; it was lengthened
+    3 inside_obstacle  a cable is inside an obstacle, deeper than half its radius, and is pushed out
+    4 not_settled      no equilibrium was found to start from, or by settle(); said until the first step after that is done
+    5 degraded         no solution was found with the shortest substeps or within the budget of work, or a net is held where it cannot
+                       be: it lost its velocity and continues from rest; or cables are inside each other without room to separate
+    6 fault            that failed, too: the cable stays in its last state
+
+When each begins and ends is in World.events() and Batch.events(world), under the names that cable_sim prints. Arrays are read-only.
 
 All units are SI units. Poses are x, y, z, qx, qy, qz, qw in the fixed frame of the scene.
 """
 from verlet_cable._simulation import Batch, Event, Pieces, Pinned, Scene, SceneError, World
+from verlet_cable.sim.wrong_arguments import explain
 
 __all__ = ['Batch', 'Event', 'Pieces', 'Pinned', 'Scene', 'SceneError', 'World']
+
+explain(Batch, Scene, World)

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from verlet_cable.sim import Batch
+from verlet_cable.sim import Batch, World
 
 from .description import FIELDS
 from .errors import SweepError, rejected
@@ -49,6 +49,7 @@ def plan_layout(sweep, scene):
     for motion in sweep.motions or [None]:
         try:
             batch = Batch([scene], motion=motion and sweep.motion_path(motion), threads=1)
+            World(scene, motion and sweep.motion_path(motion)).step()  # says whether all its frames are placed
         except (ValueError, KeyError) as error:  # SceneError is a ValueError
             errors += [f'{motion or sweep.scene_name}: {text}' for text in getattr(error, 'errors', None) or [str(error)]]
     if errors:

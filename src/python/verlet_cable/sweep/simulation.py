@@ -17,21 +17,21 @@ _GUIDED = 'the number of nodes of a cable changed, which slides through a guide;
 
 
 class Result:
-    """Of some samples, in their order: status, worst, messages (lists); fields {(name, field): (samples, rows, ...)}, 0 where a sample
+    """Of some samples, in their order: status, worst, messages (lists); fields {(name, field): (samples, rows, ...)}, NaN where a sample
     failed; drawn {key: (samples)}. worst: index into STATUSES, MISSING where nothing was simulated."""
 
     def __init__(self, count, layout):
         self.status = [COMPLETE] * count
         self.worst = [MISSING] * count
         self.messages = [''] * count
-        self.fields = {key: np.zeros((count, layout.rows) + shape) for key, shape in layout.shapes.items()}
+        self.fields = {key: np.full((count, layout.rows) + shape, np.nan) for key, shape in layout.shapes.items()}
         self.drawn = {}
 
     def fail(self, position, status, message):
         self.status[position] = status
         self.messages[position] = ' '.join(message.split())
         for data in self.fields.values():
-            data[position] = 0
+            data[position] = np.nan
 
 
 def simulate(sweep, layout, samples):

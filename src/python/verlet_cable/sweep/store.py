@@ -1,6 +1,6 @@
 """The Zarr store of a sweep. DIR is the store.
 
-<name>/<field>   (samples, rows, ...) float64; 0 where a sample failed
+<name>/<field>   (samples, rows, ...) float64; NaN where a sample failed
 time             (rows) [s] k / rate; row k is the first step at or after it
 vary/<key>       (samples) what was drawn
 status           (samples) int8: COMPLETE, WRONG_SCENE, FAULT; MISSING where a sample was not simulated yet
@@ -36,14 +36,24 @@ except ImportError as error:
     raise missing_package(error) from error
 
 COMPLETE, WRONG_SCENE, FAULT, MISSING = 0, 1, 2, -1
-STATUSES = ('ok', 'overstretched', 'jumped', 'degraded', 'fault')  # of a step, as Batch.status numbers them
+# Of a step, as Batch.status numbers them.
+STATUSES = ('ok', 'jumped', 'overstretched', 'inside_obstacle', 'not_settled', 'degraded', 'fault')
 MESSAGE_LENGTH = 256
 
 # What several threads compress would be in the order in which they came to an end.
 numcodecs.blosc.use_threads = False
-_BLOSC = numcodecs.Blosc(cname='lz4', clevel=5, shuffle=numcodecs.Blosc.SHUFFLE)
-# Blosc does not notice a changed byte. With a checksum around it, whoever reads a chunk is told.
+# What is compressed are bytes: numbers were shuffled before.
+_BLOSC = numcodecs.Blosc(cname='lz4', clevel=5, shuffle=numcodecs.Blosc.NOSHUFFLE)
+# Blosc does not notice a changed byte. With a checksum in it, whoever reads a chunk is told.
 _CHECKSUM = numcodecs.CRC32()
+_CHECKSUM_BYTES = 4
+
+# xarray takes what a chunk that is not there holds for what is missing: no number that a sample may have.
+_NO_MESSAGE = b'not simulated yet'
+_NO_CHOICE = -1
+_DIMENSIONS = {'positions': ('nodes', 'axes'), 'velocities': ('nodes', 'axes'), 'tension': ('segments',), 'curvature': ('inner_nodes',),
+               'twist': ('inner_nodes',), 'orientations': ('segments', 'quaternion'), 'wrench': ('force_torque',),
+               'body_pose': ('position_quaternion',), 'body_twist': ('linear_angular',)}
 
 
 def versions():
@@ -74,30 +84,34 @@ def _attributes(sweep, layout):
 def _write_arrays(root, sweep, layout):
     root.attrs.put(_attributes(sweep, layout))
 
-    def create(name, shape, chunks, dtype, fill, **attributes):
-        array = root.create_dataset(name, shape=shape, chunks=chunks, dtype=dtype, fill_value=fill, filters=[_BLOSC],
-                                    compressor=_CHECKSUM, order='C')
-        if attributes:
-            array.attrs.put(attributes)
+    def create(name, dimensions, shape, chunks, dtype, fill, **attributes):
+        array = root.create_dataset(name, shape=shape, chunks=chunks, dtype=dtype, fill_value=fill, filters=_filters(np.dtype(dtype)),
+                                    compressor=_BLOSC, order='C')
+        array.attrs.put({'_ARRAY_DIMENSIONS': list(dimensions), **attributes})
         return array
 
-    samples, chunk = (layout.samples,), (layout.chunk,)
+    samples, chunk, of_samples = (layout.samples,), (layout.chunk,), ('samples',)
     for (name, field), shape in sorted(layout.shapes.items()):
-        create(f'{name}/{field}', samples + (layout.rows,) + shape, chunk + (layout.row_chunk(shape),) + shape, '<f8', 0.0,
-               unit=units_of(layout)[field])
-    time = create('time', (layout.rows,), (layout.rows,), '<f8', 0.0, unit='s')
+        create(f'{name}/{field}', ('samples', 'rows') + _DIMENSIONS[field][:len(shape)], samples + (layout.rows,) + shape,
+               chunk + (layout.row_chunk(shape),) + shape, '<f8', math.nan, unit=units_of(layout)[field])
+    time = create('time', ('rows',), (layout.rows,), (layout.rows,), '<f8', math.nan, unit='s')
     time[:] = np.arange(layout.rows) / sweep.rate
     for key, variation in sorted(sweep.variations.items()):
         if variation.is_choice and not variation.is_numeric:
-            create(f'vary/{key}', samples, chunk, '<i4', 0, choices=variation.parameters)
+            create(f'vary/{key}', of_samples, samples, chunk, '<i4', _NO_CHOICE, choices=variation.parameters)
         else:
-            create(f'vary/{key}', samples, chunk, '<f8', 0.0)
-    create('message', samples, chunk, f'|S{MESSAGE_LENGTH}', b'')
-    create('worst', samples, chunk, '|i1', MISSING, meanings={**{str(index): name for index, name in enumerate(STATUSES)},
+            create(f'vary/{key}', of_samples, samples, chunk, '<f8', math.nan)
+    create('message', of_samples, samples, chunk, f'|S{MESSAGE_LENGTH}', _NO_MESSAGE)
+    create('worst', of_samples, samples, chunk, '|i1', MISSING, meanings={**{str(index): name for index, name in enumerate(STATUSES)},
                                                                str(MISSING): 'nothing simulated'})
-    create('status', samples, chunk, '|i1', MISSING,
+    create('status', of_samples, samples, chunk, '|i1', MISSING,
            meanings={str(COMPLETE): 'complete', str(WRONG_SCENE): 'scene refused', str(FAULT): 'simulation failed',
                      str(MISSING): 'not simulated yet'})
+
+
+def _filters(dtype):
+    numbers = dtype.kind != 'S' and dtype.itemsize > 1
+    return [numcodecs.Shuffle(dtype.itemsize), _CHECKSUM] if numbers else [_CHECKSUM]
 
 
 def check_same(path, sweep, layout):
@@ -193,11 +207,12 @@ def _is_whole(path, array, chunk):
     for rest in itertools.product(*map(range, array.cdata_shape[1:])):
         name = '.'.join(map(str, (chunk, *rest)))
         try:
-            compressed = _CHECKSUM.decode(pathlib.Path(path, array.path, name).read_bytes())
+            compressed = pathlib.Path(path, array.path, name).read_bytes()
             lengths = struct.unpack_from('<4xI4xI', compressed)
+            if lengths != (_CHECKSUM_BYTES + math.prod(array.chunks) * array.dtype.itemsize, len(compressed)):
+                return False
+            _CHECKSUM.decode(_BLOSC.decode(compressed))
         except (OSError, RuntimeError, struct.error, ValueError, IndexError):
-            return False
-        if lengths != (math.prod(array.chunks) * array.dtype.itemsize, len(compressed)):
             return False
     return True
 

@@ -1,0 +1,134 @@
+#include "world_events/status_log.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "verlet_cable/core/body_name.h"
+#include "verlet_cable/core/number_text.h"
+
+namespace verlet_cable {
+namespace {
+
+using Status = StepResult::Status;
+
+/// [s] what does not come back for so long has ended; what comes and goes faster is one event.
+constexpr double quiet_time = 0.1;
+
+const char* message_of(Status status) {
+  switch (status) {
+    case Status::overstretched:
+      return "the points that hold it are further apart than the material between them is long; it is lengthened to reach";
+    case Status::not_settled:
+      return "no static equilibrium was found; the cable starts at rest near one, and may move at first";
+    case Status::degraded:
+      return "no solution was found for a step, or none without too much work, or it became unstable, and its motion was taken "
+             "away; or its springs are too stiff for the time_step, and were softened; or it is in another, and has no room to "
+             "get apart";
+    case Status::fault:
+      return "the simulation failed: it has no finite state any more, and stays as it was last";
+    case Status::inside_obstacle:
+    case Status::jumped:
+    case Status::ok:
+      break;
+  }
+  return "";
+}
+
+StatusEvent event_of(const World& world, const StatusFinding& found) {
+  const std::string name = found.status == Status::fault ? "FAULT" : name_of(found.status);
+  const int node = found.status == Status::not_settled ? -1 : found.node;
+  return {world.time(), name, false, name_of(world, found.body), node, "", message_of(found.status)};
+}
+
+StatusEvent event_of(const World& world, const Intrusion& found) {
+  const std::string& obstacle = world.obstacles()[found.obstacle].name;
+  return {world.time(),
+          name_of(Status::inside_obstacle),
+          false,
+          world.cables()[found.cable].model->name,
+          found.segment,
+          obstacle,
+          "the segment that starts here is " + rounded_text(found.depth) + " m deep inside " + obstacle + " and is pushed out"};
+}
+
+}  // namespace
+
+const char* name_of(Status status) {
+  switch (status) {
+    case Status::ok:
+      return "ok";
+    case Status::jumped:
+      return "jumped";
+    case Status::overstretched:
+      return "overstretched";
+    case Status::inside_obstacle:
+      return "inside_obstacle";
+    case Status::not_settled:
+      return "not_settled";
+    case Status::degraded:
+      return "degraded";
+    case Status::fault:
+      return "fault";
+  }
+  return "";
+}
+
+void StatusLog::observe_start(const World& world, std::size_t first_unsettled) {
+  const std::vector<std::string>& unsettled = world.findings().unsettled;
+  for (std::size_t i = first_unsettled; i < unsettled.size(); ++i)
+    report({world.time(), name_of(Status::not_settled), false, unsettled[i], -1, "", message_of(Status::not_settled)}, 0);
+}
+
+void StatusLog::tell(const World& world, const StepResult& result, const std::vector<int>& held_back) {
+  const double time = world.time();
+  for (const StatusFinding& found : world.findings().statuses)
+    if (found.status != Status::jumped && found.status != Status::inside_obstacle)
+      report(event_of(world, found), found.max_strain);
+  for (const Intrusion& found : world.findings().intrusions) report(event_of(world, found), found.depth);
+  for (const int frame : held_back)
+    report({time, "frame_too_fast", false, "", -1, world.frames()[frame],
+            "the frame moves faster than max_frame_speed and is followed at that speed"},
+           0);
+  if (result.ignored_frame >= 0)
+    report({time, "frame_out_of_range", false, "", -1, world.frames()[result.ignored_frame],
+            "the frame is further than 1e9 m from the origin along an axis; it is not followed there and stays where it was"},
+           0);
+  for (auto it = episodes_.begin(); it != episodes_.end();) {
+    if (time - it->second.last_time < quiet_time) {
+      ++it;
+    } else {
+      end(it->second);
+      it = episodes_.erase(it);
+    }
+  }
+}
+
+void StatusLog::report(const StatusEvent& event, double size) {
+  const auto [found, is_new] = episodes_.emplace(event.name + " " + event.cable + " " + event.other, Episode{event});
+  found->second.last_time = event.time;
+  found->second.largest = std::max(found->second.largest, size);
+  if (is_new) told_.push_back(event);
+}
+
+void StatusLog::end(const Episode& episode) {
+  StatusEvent event = episode.first;
+  event.time = episode.last_time;
+  event.has_ended = true;
+  event.message = "ended, after " + rounded_text(episode.last_time - episode.first.time) + " s";
+  if (episode.largest > 0) {
+    const bool is_depth = event.name == name_of(Status::inside_obstacle);
+    event.message += (is_depth ? "; deepest " : "; largest strain ") + rounded_text(episode.largest) + (is_depth ? " m" : "");
+  }
+  told_.push_back(std::move(event));
+}
+
+void StatusLog::end_all() {
+  for (const auto& [key, episode] : episodes_) end(episode);
+  episodes_.clear();
+}
+
+std::vector<StatusEvent> StatusLog::take() {
+  return std::exchange(told_, {});
+}
+
+}  // namespace verlet_cable
