@@ -75,7 +75,7 @@ void World::Implementation::start_net(const NetDesc& desc, const FrameIds& ids, 
   memory.links.midstep_velocities.assign(model.masses.size(), Vector3::Zero());
   memory.links.impulses.assign(model.links.size() + model.minimum_distances.size(), 0.0);
   update_net(index);
-  start_targets(state.attachments, state.frames.poses, inputs, memory.targets);
+  start_targets(state.attachments, state.frames.poses, inputs, state.scene->jump_speed, memory.targets);
   if (model.link_type != LinkType::spring && !is_in_place(memory.targets, state.nets.back().state))
     carry_along(memory.targets, state.nets.back().state);
   take_velocities(memory.targets, state.nets.back().state);

@@ -152,12 +152,12 @@ KinematicTargets find_targets(const CableModel& model, const CableState& state, 
 }
 
 void start_targets(const std::vector<Attachment>& attachments, const std::vector<Pose>& frames, const BoundaryInputs& inputs,
-                   KinematicTargets& targets) {
+                   double jump_speed, KinematicTargets& targets) {
   for (KinematicTarget& target : targets.nodes) {
     const auto frame = static_cast<std::size_t>(attachments[target.attachment].frame);
     if (frame == 0 || attachments[target.attachment].holder >= 0) continue;
     target.starts = true;
-    target.liveliness = greatest_change;
+    target.liveliness = jump_speed;
     if (frame >= inputs.size() || !inputs[frame].velocity) continue;
     const FrameVelocity& of_frame = *inputs[frame].velocity;
     const Vector3 velocity = of_frame.linear + of_frame.angular.cross(target.position - frames[frame].position);

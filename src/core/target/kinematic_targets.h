@@ -90,7 +90,7 @@ KinematicTargets find_net_targets(const std::vector<Vector3>& positions, const s
 /// How the holders of a cable or net that starts begin to move: as their frames do (`inputs`, by frame id) or, where that is not
 /// given, as they will in their first step.
 void start_targets(const std::vector<Attachment>& attachments, const std::vector<Pose>& frames, const BoundaryInputs& inputs,
-                   KinematicTargets& targets);
+                   double jump_speed, KinematicTargets& targets);
 
 /// Sets where the holders will be at the end of a step that ends at `time`, `frames` being the poses then.
 void aim_targets(const CableState& state, const std::vector<Attachment>& attachments, const std::vector<Pose>& frames,

@@ -322,7 +322,7 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   for (DirectionTarget& target : memory.targets.directions) target.gap.setIdentity();
   aim_targets(cable.state, state.attachments, state.frames.poses, state.time(), memory.targets);
   put_at_aim(memory.targets);
-  start_targets(state.attachments, state.frames.poses, inputs, memory.targets);
+  start_targets(state.attachments, state.frames.poses, inputs, state.scene->jump_speed, memory.targets);
   start_with_bodies(cable.state, memory.targets);
   Boundary boundary;
   hold_at(1, 1, memory.targets, boundary);
