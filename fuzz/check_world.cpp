@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "../test/support/world_inspector.h"
 #include "require.h"
+#include "world/invariant.h"
 
 namespace verlet_cable::fuzz {
 namespace {
@@ -134,6 +136,8 @@ void check_attachment(const World& world, const Attachment& attachment) {
 }  // namespace
 
 void check_world(const World& world) {
+  const std::string violated = violation(WorldInspector::state(world));
+  require(violated.empty(), violated);
   for (int cable = 0; cable < static_cast<int>(world.cables().size()); ++cable) check_cable(world, cable);
   for (const SimulatedNet& net : world.nets()) check_net(net);
   for (const SimulatedParticle& particle : world.particles()) {

@@ -7,16 +7,13 @@
 
 #include "../support/nets.h"
 #include "../support/scenes.h"
+#include "../support/world_inspector.h"
 #include "world/implementation.h"
 #include "world/state_fields.h"
 
 // What decides the future is the state, all of it is hashed, and what is done to one cable is nothing to another.
 
 namespace verlet_cable {
-
-struct WorldInspector {
-  static State& state(World& world) { return world.implementation_->state; }
-};
 
 namespace {
 
@@ -365,8 +362,7 @@ TEST(State, TheOrderOfCablesDoesNotMatterToTheirStarts) {
   SceneDesc turned = scene;
   std::swap(turned.cables[0], turned.cables[1]);
   const World first(scene, initial_frames(scene)), second(turned, initial_frames(turned));
-  for (const int i : {0, 1})
-    EXPECT_TRUE(same(first.cables()[i].state.positions, second.cables()[1 - i].state.positions)) << i;
+  for (const int i : {0, 1}) EXPECT_TRUE(same(first.cables()[i].state.positions, second.cables()[1 - i].state.positions)) << i;
 }
 
 /// Cables that come at each other at any speed, and with any time step, are found before they meet.

@@ -1,6 +1,7 @@
 #include "chain/node_arrays.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace verlet_cable {
 
@@ -26,7 +27,7 @@ void extend(const Array& tail, Array& array) {
   array.insert(array.end(), tail.begin(), tail.end());
 }
 
-/// Of arrays that are empty where every entry is `usual`.
+/// Of arrays that are empty where every entry is `usual`: afterwards as long as the others, or empty.
 template <class T>
 void extend_where_needed(const std::vector<T>& tail, int tail_size, int size, const T& usual, std::vector<T>& array) {
   if (array.empty() && tail.empty()) return;
@@ -49,32 +50,30 @@ void reverse_arrays(CableState& cable) {
 }
 
 void append(const CableState& tail, CableState& cable) {
+  assert(cable.directors.empty() == tail.directors.empty());
   const int size = cable.nodes(), tail_size = tail.nodes();
   const std::array<double, 2> straight{0, 0};
   extend_where_needed(tail.rest_curvature, tail_size, size, straight, cable.rest_curvature);
   extend_where_needed(tail.flexible_fraction, tail_size, size, 1.0, cable.flexible_fraction);
   extend_where_needed(tail.beyond_limits, tail_size, size, std::array<int, 2>{0, 0}, cable.beyond_limits);
   extend_where_needed(tail.rest_twist, tail_size, size, 0.0, cable.rest_twist);
+  extend_where_needed(tail.joint_twist, tail_size, size, 0.0, cable.joint_twist);
   extend(tail.masses, cable.masses);
   extend(tail.positions, cable.positions);
   extend(tail.velocities, cable.velocities);
   extend(tail.accelerations, cable.accelerations);
   extend(tail.unresolved.acceleration_changes, cable.unresolved.acceleration_changes);
   extend(tail.unresolved.turns, cable.unresolved.turns);
-  if (!tail.section_material.empty()) cable.section_material.resize(cable.segments(), 0);
   visit_segment_arrays(cable, [](auto& array) { array.push_back(zero_like(array.back())); });
-  if (!cable.section_material.empty()) {
-    extend(tail.section_material, cable.section_material);
-    cable.section_material.resize(cable.segments() + tail.segments(), 0);
-  }
+  const int segments = cable.segments(), tail_segments = tail.segments();
+  extend_where_needed(tail.section_material, tail_segments, segments, 0, cable.section_material);
+  extend_where_needed(tail.spin, tail_segments, segments, 0.0, cable.spin);
+  extend_where_needed<Vector3>(tail.directors, tail_segments, segments, Vector3::Zero(), cable.directors);
   extend(tail.rest_lengths, cable.rest_lengths);
   extend(tail.tension, cable.tension);
   extend(tail.last_tension, cable.last_tension);
   extend(tail.axial_multiplier, cable.axial_multiplier);
   extend(tail.twist, cable.twist);
-  extend(tail.spin, cable.spin);
-  extend(tail.directors, cable.directors);
-  extend(tail.joint_twist, cable.joint_twist);
 }
 
 void duplicate_node(int node, CableState& cable) {

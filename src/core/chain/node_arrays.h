@@ -5,10 +5,10 @@
 namespace verlet_cable {
 
 /// All arrays of a cable that have an entry a node or a segment, named here once: who cuts, joins, reverses and renumbers cables
-/// does it by these functions. A new array is added to the two visits, and to `append` if it may be empty.
+/// does it by these functions. A new array is added to the two visits and to `append`. `cable`: a CableState, constant or not.
 /// @{
-template <class Visitor>
-void visit_node_arrays(CableState& cable, const Visitor& visitor) {
+template <class Cable, class Visitor>
+void visit_node_arrays(Cable& cable, const Visitor& visitor) {
   visitor(cable.positions);
   visitor(cable.velocities);
   visitor(cable.accelerations);
@@ -21,8 +21,8 @@ void visit_node_arrays(CableState& cable, const Visitor& visitor) {
   if (!cable.beyond_limits.empty()) visitor(cable.beyond_limits);
   if (!cable.joint_twist.empty()) visitor(cable.joint_twist);
 }
-template <class Visitor>
-void visit_segment_arrays(CableState& cable, const Visitor& visitor) {
+template <class Cable, class Visitor>
+void visit_segment_arrays(Cable& cable, const Visitor& visitor) {
   visitor(cable.rest_lengths);
   visitor(cable.tension);
   visitor(cable.last_tension);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cassert>
 #include <memory>
 #include <string>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "verlet_cable/core/scene_fields.h"
 #include "verlet_cable/core/world.h"
 #include "world/implementation.h"
+#include "world/invariant.h"
 
 namespace verlet_cable {
 
@@ -75,7 +77,9 @@ bool World::Implementation::is_attachment(const std::string& name) const {
 }
 
 EditResult World::apply(const Edit& edit) {
-  return std::visit([&](const auto& of_kind) { return implementation_->apply(of_kind); }, edit);
+  EditResult result = std::visit([&](const auto& of_kind) { return implementation_->apply(of_kind); }, edit);
+  assert(violation(implementation_->state).empty());
+  return result;
 }
 
 namespace {

@@ -146,7 +146,7 @@ EditResult World::Implementation::apply(const edit::Join& join) {
 
   // The second cable in the direction of the first.
   if (first_at_end == second_at_end) reverse_cable(second);
-  const bool whole = is_whole_rod(model, state.cables[first].state) || is_whole_rod(other, state.cables[second].state);
+  const bool whole = !state.cables[first].state.directors.empty() || !state.cables[second].state.directors.empty();
   for (const int index : {first, second}) {
     std::vector<DirectionTarget>& clamps = state.cable_progress[index].targets.directions;
     if (whole) give_frames(state.cables[index].state, clamps);

@@ -1,10 +1,11 @@
+#include <cassert>
 #include <memory>
 #include <utility>
 
-#include "rod/rod_frames.h"
 #include "scene/validate_materials.h"
 #include "verlet_cable/core/world.h"
 #include "world/implementation.h"
+#include "world/invariant.h"
 #include "world/limits.h"
 
 namespace verlet_cable {
@@ -25,17 +26,12 @@ void World::tune(const SceneDesc& scene) {
     model.material = *scene.find_material(model.material_name);
     for (NamedMaterial& other : model.section_materials) other.material = *scene.find_material(other.name);
     state.cables[i].model = std::make_shared<const CableModel>(std::move(model));
-    SimulatedCable& cable = state.cables[i];
-    std::vector<DirectionTarget>& clamps = state.cable_progress[i].targets.directions;
-    if (is_whole_rod(*cable.model, cable.state))
-      give_frames(cable.state, clamps);
-    else
-      drop_frames(cable.state, clamps);
-    watch_limits(cable);
+    watch_limits(state.cables[i]);
     // A clamp holds the direction where the cable is stiff, the neighbouring node where it is not.
     implementation_->find_targets_of(i);
   }
   implementation_->islands.value.invalidate();  // their pairs are those of the radii before
+  assert(violation(state).empty());
 }
 
 }  // namespace verlet_cable

@@ -49,7 +49,6 @@ void Bending::start(const CableModel& model, const CableState& state, const Vect
       model, state, directions, [&segment](int i) { return get(segment, i); }, h, part, clamps_);
   growing_.clear();
   changing_.clear();
-  is_damped_ = damping > 0;
   if (is_damped_) turn_with_material(model, state, segment, directions, h);
 }
 

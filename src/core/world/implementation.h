@@ -94,6 +94,7 @@ struct World::Implementation {
   void add_scene_obstacles();
   void find_obstacle_anchors();
   void find_targets_of(int cable);
+  void fit_frames(int cable);
   void plan_drive_step(int cable);
   double available_length(int cable) const;
   double slack_at_winch(int cable) const;

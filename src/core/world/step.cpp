@@ -1,10 +1,12 @@
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 
 #include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/world.h"
 #include "world/flush_denormals.h"
 #include "world/implementation.h"
+#include "world/invariant.h"
 #include "world/island_stepper.h"
 #include "world/limits.h"
 #include "world/parallel_for.h"
@@ -40,6 +42,7 @@ void World::Implementation::begin_step(const BoundaryInputs& inputs, StepResult&
   advance_winches();
   advance_guides();
   wind_drives();
+  assert(violation(state).empty());
   build_islands();
 }
 
@@ -59,6 +62,7 @@ void World::Implementation::end_step(StepResult& result) {
   collect_outcomes(result);
   find_excursions(state, findings.excursions);
   apply_breaks(result);
+  assert(violation(state).empty());
   step_nets_and_particles(result);
   state.frames.steps_unjudged = std::max(state.frames.steps_unjudged - 1, 0);
 }

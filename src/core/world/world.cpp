@@ -1,6 +1,7 @@
 #include "verlet_cable/core/world.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <iterator>
 #include <memory>
@@ -21,7 +22,9 @@
 #include "verlet_cable/core/rotation.h"
 #include "verlet_cable/core/scene_fields.h"
 #include "world/body_settling.h"
+#include "world/holding_bodies.h"
 #include "world/implementation.h"
+#include "world/invariant.h"
 #include "world/island_stepper.h"
 #include "world/junctions.h"
 #include "world/limits.h"
@@ -51,9 +54,6 @@ CableModel make_model(const SceneDesc& scene, const CableDesc& desc) {
       model.section_materials.push_back({section.material, *scene.find_material(section.material)});
   model.color = desc.color;
   model.segment_length = desc.length / desc.segments;
-  model.turns_bodies = std::any_of(desc.attachments.begin(), desc.attachments.end(),
-                                   [](const AttachmentDesc& a) { return !a.body.empty() && a.type == AttachmentType::clamp; }) ||
-                       is_welded(scene, desc.name);
   return model;
 }
 
@@ -213,6 +213,7 @@ int World::start_waiting(const BoundaryInputs& inputs) {
     if (!w.is_cancelled()) w.start_net(scene.nets[i], ids, inputs);
   w.note_unsettled(w.told_unsettled);
   w.name_waiting();
+  assert(violation(w.state).empty());
   return static_cast<int>(cables.size() + nets.size());
 }
 
@@ -286,8 +287,7 @@ int World::Implementation::update_frames(const BoundaryInputs& inputs) {
 void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& ids, const BoundaryInputs& inputs) {
   const int index = static_cast<int>(state.cables.size());
   SimulatedCable cable;
-  cable.model = std::make_shared<const CableModel>(make_model(*state.scene, desc));
-  cable.state = make_state(*cable.model, desc);
+  CableModel model = make_model(*state.scene, desc);
   std::vector<Attachment> holding = junction_attachments(desc, index);
   const bool branches = !holding.empty();
   for (const AttachmentDesc& a : desc.attachments) {
@@ -300,6 +300,9 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
     attachment.type = a.type;
     attachment.pose = {a.offset, quaternion_from_rpy(a.rotation)};
   }
+  model.turns_bodies = turns_bodies(index, holding, state);
+  cable.state = make_state(model, desc);
+  cable.model = std::make_shared<const CableModel>(std::move(model));
   std::vector<int> own;
   std::vector<Attachment> placing;  // bodies that begin where the cable ends
   for (const Attachment& attachment : holding) {
@@ -384,8 +387,24 @@ void World::Implementation::settle_started_bodies(const std::vector<int>& descs)
   }
 }
 
-/// After a change of what holds a cable, or of its nodes.
+/// A cable has frames as long as what it is made of, or what it is held by, needs them.
+void World::Implementation::fit_frames(int index) {
+  SimulatedCable& cable = state.cables[index];
+  if (const bool turns = turns_bodies(index, state.attachments, state); turns != cable.model->turns_bodies) {
+    CableModel model = *cable.model;
+    model.turns_bodies = turns;
+    cable.model = std::make_shared<const CableModel>(std::move(model));
+  }
+  std::vector<DirectionTarget>& clamps = state.cable_progress[index].targets.directions;
+  if (is_whole_rod(*cable.model, cable.state))
+    give_frames(cable.state, clamps);
+  else
+    drop_frames(cable.state, clamps);
+}
+
+/// After a change of what holds a cable, of its nodes, or of its materials.
 void World::Implementation::find_targets_of(int index) {
+  fit_frames(index);
   SimulatedCable& cable = state.cables[index];
   CableProgress& memory = state.cable_progress[index];
   const KinematicTargets before = memory.targets;

@@ -1,0 +1,17 @@
+#include "world/holding_bodies.h"
+
+#include <algorithm>
+
+namespace verlet_cable {
+
+bool turns_bodies(int cable, const std::vector<Attachment>& attachments, const State& state) {
+  const SceneDesc& scene = *state.scene;
+  return std::any_of(attachments.begin(), attachments.end(), [&](const Attachment& a) {
+    if (a.body != cable_id(cable) || a.holder < 0 || a.guide >= 0) return false;
+    // Junctions come after the scene's bodies; what is not stiff there is welded as a hinge, of a cable that may be elsewhere.
+    if (a.is_junction) return scene.junctions[a.holder - scene.bodies.size()].type == JunctionDesc::Type::rigid;
+    return a.type == AttachmentType::clamp;
+  });
+}
+
+}  // namespace verlet_cable
