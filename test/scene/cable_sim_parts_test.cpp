@@ -1,9 +1,9 @@
 #include <gtest/gtest.h>
 
 #include "cable_sim/event_log.h"
-#include "scene/frame_source.h"
 #include "cable_sim/job.h"
 #include "cable_sim/options.h"
+#include "scene/frame_source.h"
 #include "scene_text.h"
 
 namespace verlet_cable::cable_sim {
@@ -54,8 +54,8 @@ TEST(Options, everyMistakeIsNamedAtOnce) {
   EXPECT_TRUE(has_line(errors, "no scene"));
   // A value that is empty, or missing, takes nothing of what follows.
   EXPECT_EQ(parse({"--output=", "a.yaml", "--settle=x", "--settle", "---", "-5", "--", "--summary"}, &errors).scene, "a.yaml");
-  for (const char* start : {"--output: \"\"", "--settle: \"x\"; allowed: no value", "--settle: given twice", "---: no such option",
-                            "-5: no such option", "--: no such option"})
+  for (const char* start : {"--output: \"\"", "--settle: \"x\"; allowed: no value", "--settle: given twice",
+                            "---: no such option", "-5: no such option", "--: no such option"})
     EXPECT_TRUE(has_line(errors, start)) << start << "\n" << joined(errors);
 }
 
