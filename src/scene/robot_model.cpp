@@ -136,7 +136,7 @@ class TreeBuilder {
       taken_.insert(name);
       if (is_selected(name)) collisions += geometry_of(*link.second).size();
     }
-    check_number(collisions, most_collisions, robot.links.empty() ? "geometries" : "geometries of the links in robot.links");
+    check_number(collisions, most_collisions, robot.links.empty() ? "collisions" : "collisions of the links in robot.links");
     add(*model.getRoot(), -1);
   }
 

@@ -140,7 +140,7 @@ void read_robot(const Value& root, const SceneSources& sources, MeshReader& mesh
     const auto is_left_out = [&](ObstacleDesc& obstacle) {
       const auto problem = problem_of(obstacle, meshes);
       if (!problem) return false;
-      const std::string key = "robot." + escaped(obstacle.name);
+      const std::string key = "robot." + escaped(obstacle.name) + (obstacle.type == ShapeType::mesh ? ".uri" : "");
       if (robot.on_bad_mesh == RobotDesc::OnBadMesh::error)
         root.errors->add_unread(key, *problem, "geometry with a size, or robot.on_bad_mesh: warn");
       else

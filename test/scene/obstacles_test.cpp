@@ -95,7 +95,7 @@ const Mistake mistakes[] = {
      "cables[0].attachments[1].initial_pose"},
     {"noUri", "{name: a, type: mesh}", "obstacles[1].uri: missing;"},
     {"noSuchMesh", "{name: a, type: mesh, uri: \"file:///nonexistent.stl\"}",
-     "obstacles[1].uri: \"file:///nonexistent.stl\": No such file or directory; allowed: a file with a closed mesh"},
+     "obstacles[1].uri: \"file:///nonexistent.stl\": No such file or directory; allowed: a file with a mesh"},
     {"relativeUri", "{name: a, type: mesh, uri: \"file://a.stl\"}",
      "obstacles[1].uri: \"file://a.stl\": its path does not start with /;"},
     {"meshFromTheWeb", "{name: a, type: mesh, uri: \"http://a/b.stl\"}",
@@ -106,7 +106,10 @@ const Mistake mistakes[] = {
     {"unknownPackage", "{name: a, type: mesh, uri: \"package://no_such_package/a.stl\"}",
      "obstacles[1].uri: \"package://no_such_package/a.stl\": package \"no_such_package\" is not found in ROS_PACKAGE_PATH;"},
     {"zeroScale", "{name: a, type: mesh, uri: \"file:///a.stl\", scale: 0}", "obstacles[1].scale: [0, 0, 0];"},
-    {"negativeScale", "{name: a, type: mesh, uri: \"file:///a.stl\", scale: [1, 1, -1]}", "obstacles[1].scale: [1, 1, -1];"},
+    {"unknownSheet", "{name: a, type: mesh, uri: \"file:///a.stl\", sheet: both}",
+     "obstacles[1].sheet: \"both\"; allowed: auto | true | false"},
+    {"negativeThickness", "{name: a, type: mesh, uri: \"file:///a.stl\", thickness: -1}", "obstacles[1].thickness: -1;"},
+    {"sheetOfABox", "{name: a, type: box, size: [1, 1, 1], sheet: true}", "obstacles[1].sheet: given with another type;"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Each, ObstacleMistake, testing::ValuesIn(mistakes),

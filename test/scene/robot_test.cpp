@@ -192,7 +192,9 @@ TEST_F(Robot, mistakesAreNamed) {
   write("nan.urdf", replaced(urdf, "0.2 0.4 0.6", "0.2 nan 0.6"));
   expect("{file: " + path("nan.urdf") + "}", "robot.file: \"" + path("nan.urdf") + "\": no URDF: ");
   write("robot.urdf", replaced(urdf, "MESH", "package://none/a.stl"));
-  expect("{" + file() + "}", "robot.arm.uri: \"package://none/a.stl\": package \"none\" is not found");
+  expect("{" + file() + ", on_bad_mesh: error}", "robot.arm.uri: \"package://none/a.stl\": package \"none\" is not found");
+  expect("{" + file() + ", on_bad_mesh: stop}", "robot.on_bad_mesh: \"stop\"; allowed: warn | error");
+  expect("{" + file() + ", geometry: all}", "robot.geometry: \"all\"; allowed: collision | visual | collision_or_visual");
   expect("{" + file() + ", links: [base]}\nseed: -1", "seed: -1");  // what is not selected is not read
 }
 
@@ -343,11 +345,11 @@ TEST_F(Robot, badGeometryIsLeftOutAndNamed) {
     const SceneDesc scene = read("{file: " + path("bad.urdf") + "}");
     EXPECT_EQ(scene.robot->tree[0].obstacles.size(), 1u) << geometry;
     ASSERT_EQ(scene.robot->left_out.size(), 1u) << geometry;
-    EXPECT_EQ(scene.robot->left_out[0].rfind("robot.base_1 is left out: ", 0), 0u) << scene.robot->left_out[0];
+    EXPECT_EQ(scene.robot->left_out[0].rfind("robot.base_1", 0), 0u) << scene.robot->left_out[0];
     EXPECT_NE(scene.robot->left_out[0].find(reason), std::string::npos) << scene.robot->left_out[0];
     const auto lines = errors_of(sound_scene + "robot: {on_bad_mesh: error, file: " + path("bad.urdf") + "}\n");
     ASSERT_EQ(lines.size(), 1u) << joined(lines);
-    EXPECT_EQ(lines[0].rfind("robot.base_1: ", 0), 0u) << lines[0];
+    EXPECT_EQ(lines[0].rfind("robot.base_1", 0), 0u) << lines[0];
     EXPECT_NE(lines[0].find(reason), std::string::npos) << lines[0];
   }
 }
@@ -373,7 +375,7 @@ TEST_F(Robot, visualGeometryMayBeChosen) {
   const auto types = [&](const std::string& geometry) {
     std::vector<ShapeType> found;
     const SceneDesc scene = read("{geometry: " + geometry + ", file: " + path("both.urdf") + "}");
-    for (const ObstacleDesc& obstacle : obstacles_of(scene)) found.push_back(obstacle.type);
+    for (const ObstacleDesc& obstacle : all_obstacles(scene)) found.push_back(obstacle.type);
     return found;
   };
   EXPECT_EQ(types("collision"), (std::vector<ShapeType>{ShapeType::box}));

@@ -43,7 +43,8 @@ SurfacePoint TriangleMesh::surface_point(const Vector3& point, const Vector3& on
   const double length = arm.norm();
   const bool inside = winding_ ? winding_number(point) > 0.5 : pseudonormal.dot(arm) < 0;
   const double sign = inside ? -1 : 1;
-  if (feature != whole_face && length > rounding * on_surface.cwiseAbs().maxCoeff())
+  // What is open may be touched from the side that a triangle faces away from, and not be inside.
+  if ((feature != whole_face || winding_) && length > rounding * on_surface.cwiseAbs().maxCoeff())
     return {sign * length, on_surface, sign / length * arm};
   return {sign * length, on_surface, pseudonormal};
 }
