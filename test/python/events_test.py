@@ -20,7 +20,8 @@ def test_events_are_those_of_cable_sim(ropes, cable_sim):
 
 def test_a_guide_that_lets_go_is_an_event(ropes, cable_sim):
     ropes['cables'][1]['initial'] = {'type': 'straight', 'from': [2, 0, 0], 'to': [2, 0, -1]}
-    ropes['guides'] = [{'name': 'eye', 'cable': 'second', 'at': 0.2, 'frame': 'mast', 'offset': [2, 0, -0.2], 'type': 'eyelet'}]
+    ropes['guides'] = [{'name': 'eye', 'cable': 'second', 'at': 0.2, 'frame': 'mast', 'offset': [2, 0, -0.2], 'type': 'eyelet',
+                        'initial_pose': [0, 0, 0, 0, 0, 0]}]
     summary, _ = cable_sim(ropes, '--duration', '0.5')
     world = world_of(ropes)
     assert world.guide_names == ['eye']

@@ -153,7 +153,7 @@ def test_a_batch_names_the_world(hang):
 def test_a_place_that_a_cable_does_not_reach_is_refused_and_changes_nothing(hang):
     world = world_of(unplaced(hang))
     world.set_frame('hand', [0.6, 0, 0], IDENTITY)
-    with pytest.raises(ValueError, match='hose'):
+    with pytest.raises(ValueError, match='1 m of cable between "left" and "right"'):
         world.set_frame('other_hand', [5, 0, 0], IDENTITY)
     with pytest.raises(ValueError, match='frames: nothing has placed other_hand;'):
         world.step()

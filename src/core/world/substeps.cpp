@@ -94,12 +94,12 @@ void IslandStepper::end_from_rest(Island& island, StepProgress& progress, Island
 bool IslandStepper::advance_part(Island& island, const PartOfStep& part, bool tolerated, bool contacts_known,
                                  StepProgress& progress, IslandOutcome& found) {
   if (!contacts_known) find_contacts(island, part.from(), part.to());
+  note_intrusions(found.intrusions);
   const bool converged = advance(island, part.from(), part.to(), tolerated);
   progress.work += work_of_attempt(island);
   if (!converged) return false;
   progress.done = part.last;
   ++progress.substeps;
-  note_intrusions(found.intrusions);
   for (std::size_t k = 0; k < island.cables.size(); ++k)
     note_substep(island.cables[k], workspace_.cables[k].boundary, workspace_.cables[k].result, part.to() - part.from());
   return true;

@@ -77,4 +77,6 @@ PYBIND11_MODULE(_simulation, module) {
     type.attr("__reduce__") = py::cpp_function(refuse_to_be_pickled, py::name("__reduce__"), py::is_method(type));
   }
   refuse_objects_without_constructor(module);
+  const py::object explain = py::module_::import("verlet_cable.wrong_arguments").attr("explain");
+  explain(module.attr("Batch"), module.attr("Scene"), module.attr("World"));
 }

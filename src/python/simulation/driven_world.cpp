@@ -124,6 +124,8 @@ bool DrivenWorld::place(std::ptrdiff_t unplaced, int frame, const Pose& pose) {
   auto frames = std::make_shared<FrameSource>(*frames_);
   frames->place(frame, pose);
   if (unplaced_.size() == 1 && is_as_it_began()) {
+    const std::vector<std::string> errors = validate_distances(*scene_, frames->at(0));
+    if (!errors.empty()) throw SceneError(errors);
     DrivenWorld anew(scene_, frames);
     anew.given_ = given_;
     *this = std::move(anew);
