@@ -166,6 +166,23 @@ TEST(Pacer, WaitsAsLongAsItTakesToCatchUpWhatAnotherWaitedFor) {
   EXPECT_EQ(pacer.dropped(), 0);
 }
 
+TEST(Pacer, IsNeverFurtherBehindThanTheLongestBacklog) {
+  for (const Nanoseconds longest : {backlog / 10, backlog / 2, backlog})
+    for (const Nanoseconds cost : {ms * 5 / 4, 2 * ms, 8 * ms, 40 * ms}) {
+      Pacer pacer(TimeGrid(0.001, 50), longest);
+      Nanoseconds simulated = 0;
+      for (Nanoseconds clock = 0; clock < 20 * second;) {
+        simulated = pacer.resume(simulated, clock);
+        ASSERT_LE(clock - simulated, longest) << "cost " << cost;
+        const auto time = pacer.next(simulated, clock);
+        clock += time ? cost : ms / 4;
+        if (!time) continue;
+        pacer.done(simulated, *time, clock);
+        simulated = *time;
+      }
+    }
+}
+
 TEST(OverloadWatch, ReportsSoonAndThenEveryTenSeconds) {
   OverloadWatch watch;
   std::vector<double> reported;

@@ -114,8 +114,9 @@ TEST(PoseTrack, VelocitiesDoNotKinkBetweenSlowSamples) {
     largest_change = std::max(largest_change, change.norm() / 5e-3);
     largest_error = std::max(largest_error, (track.place(time) - motion(1e-9 * static_cast<double>(time - ms))).norm());
   }
-  // [m/s] the motion's own change in 5 ms is 0.004, that of straight lines between the samples 0.08.
-  EXPECT_LT(largest_change, 0.015);
+  // [m/s] Straight lines between the samples change by 0.08; half of that is left where the hand turns back, and must not be led beyond
+  // its samples.
+  EXPECT_LT(largest_change, 0.04);
   EXPECT_LT(largest_error, 1e-3);
 }
 

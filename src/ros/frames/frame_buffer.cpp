@@ -115,6 +115,8 @@ std::vector<Nanoseconds> FrameBuffer::insert(const ReceivedTransform& received, 
   std::vector<Nanoseconds> known;
   geometry_msgs::TransformStamped played = received.transform;
   for (const PoseSample& pose : tracks_.try_emplace(child, jump_speed_, longest_gap_).first->second.add(sample)) {
+    // Points of a spline only where there is room for them.
+    if (pose.is_between && !stored_.has_room(child, pose.stamp)) continue;
     played.header.stamp = to_ros_time(pose.stamp);
     // As it was sent, to the last bit.
     played.transform = pose.stamp == sample.stamp ? received.transform.transform : to_transform(pose.pose);

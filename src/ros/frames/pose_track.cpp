@@ -8,7 +8,7 @@ namespace verlet_cable {
 namespace {
 
 /// As far apart [ns] straight lines may be laid along the spline.
-constexpr Nanoseconds longest_line = 5'000'000;
+constexpr Nanoseconds longest_line = 10'000'000;
 
 Quaternion turned_by(const Vector3& turn, const Quaternion& orientation) {
   const double angle = turn.norm();
@@ -69,14 +69,16 @@ void PoseTrack::follow(const PoseSample& sample, std::vector<PoseSample>& played
     return;
   }
   const Velocity mean{way / duration, turn / duration};
-  const Velocity start{shortened(arrival_.linear, mean.linear.norm()), shortened(arrival_.angular, mean.angular.norm())};
-  const Velocity end{carried_on(mean_.linear, mean.linear), carried_on(mean_.angular, mean.angular)};
+  const Velocity before = mean_.value_or(mean), arrival = mean_ ? arrival_ : mean;
+  const Velocity start{shortened(arrival.linear, mean.linear.norm()), shortened(arrival.angular, mean.angular.norm())};
+  const Velocity end{carried_on(before.linear, mean.linear), carried_on(before.angular, mean.angular)};
   const Nanoseconds lines = (interval + longest_line - 1) / longest_line;
   for (Nanoseconds i = 1; i < lines; ++i) {
     const double u = static_cast<double>(i) / static_cast<double>(lines);
     played.push_back({from.stamp + interval * i / lines,
                       {from.pose.position + spline_way(u, way, duration * start.linear, duration * end.linear),
-                       turned_by(spline_way(u, turn, duration * start.angular, duration * end.angular), from.pose.orientation)}});
+                       turned_by(spline_way(u, turn, duration * start.angular, duration * end.angular), from.pose.orientation)},
+                      true});
   }
   played.push_back(sample);
   mean_ = mean;
@@ -89,7 +91,7 @@ void PoseTrack::begin_anew(const PoseSample& sample) {
   last_ = sample;
   held_.reset();
   was_fast_ = false;
-  mean_ = arrival_ = {};
+  mean_.reset();
 }
 
 }  // namespace verlet_cable

@@ -12,6 +12,7 @@ namespace verlet_cable {
 struct PoseSample {
   Nanoseconds stamp = 0;
   Pose pose;
+  bool is_between = false;  ///< a point of the spline between samples
 };
 
 /// The samples of one transform of tf, made into what is played: straight lines between poses.
@@ -49,7 +50,7 @@ class PoseTrack {
   std::optional<PoseSample> last_;  ///< that is played
   std::optional<PoseSample> held_;  ///< after it, a jump or the beginning of a fast motion
   bool was_fast_ = false;           ///< up to the last one
-  Velocity mean_;                   ///< over the interval up to the last one
+  std::optional<Velocity> mean_;    ///< over the interval up to the last one; none at the beginning: the next way is straight
   Velocity arrival_;                ///< with which the frame came to the last one
 };
 

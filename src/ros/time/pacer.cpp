@@ -14,9 +14,11 @@ constexpr double longest_busy = 0.2;
 constexpr double longest_scale = 0.5, shortest_scale = 0.1;
 /// A machine that has not caught up for so long [s] will not: from then on less and less is left to catch up, by a factor of e in
 /// each `surrender` [s], down to `shortest_backlog` [s].
-constexpr double patience = 2, surrender = 0.5, shortest_backlog = 0.05;
+constexpr double patience = 2, surrender = 0.5, shortest_backlog = 0.09;
 /// Over which the mean way of a step is taken [s].
 constexpr double way_memory = 2;
+/// Of what the machine needed for the last 25 steps or so, from step to step.
+constexpr double kept = 1 - 1.0 / 25;
 /// In mean ways of a step: what a lasting overload leaves of both, so that a step that takes longer than others changes the pace
 /// little.
 constexpr double steps_of_scale = 8, steps_of_backlog = 6;
@@ -36,11 +38,12 @@ void Pacer::use(const TimeGrid& grid, Nanoseconds longest_backlog) {
 
 Nanoseconds Pacer::resume(Nanoseconds simulated, Nanoseconds target) {
   const Nanoseconds beyond = target - simulated - longest_backlog_;
+  const bool leapt = target - last_target_ > nanoseconds(longest_busy);
   if (target - simulated > grid_.step()) busy_ += std::clamp(seconds(target - last_target_), 0.0, longest_busy);
   last_target_ = target;
   if (beyond <= 0) return simulated;
   const Nanoseconds time = grid_.step_at_or_after(simulated + beyond);
-  if (busy_ > patience) left_out_ += time - simulated;
+  if (!leapt || busy_ > patience) left_out_ += time - simulated;
   drop(time - simulated);
   return time;
 }
@@ -57,21 +60,26 @@ std::optional<Nanoseconds> Pacer::next(Nanoseconds simulated, Nanoseconds target
 void Pacer::done(Nanoseconds simulated, Nanoseconds time, Nanoseconds target) {
   drop(time - simulated - grid_.step());
   left_out_ += std::max<Nanoseconds>(time - simulated - grid_.step(), 0);
-  // Half of the longest backlog is left for the pace to come up to what the machine can do.
-  const double way = seconds(time - simulated), longest = seconds(longest_backlog_) / 2;
+  const double way = seconds(time - simulated), longest = seconds(longest_backlog_);
   usual_way_ += std::min(way / way_memory, 1.0) * (way - usual_way_);
   const double given_up = std::exp(-std::max(busy_ - patience, 0.0) / surrender);
   const double backlog =
       std::max(given_up * longest, std::min(std::max(shortest_backlog, steps_of_backlog * usual_way_), longest));
   const double scale = std::max(given_up * longest_scale, std::clamp(steps_of_scale * usual_way_, shortest_scale, longest_scale));
-  const double beyond = std::max(seconds(target - time) - backlog, 0.0);
-  pace_ += std::min(way / pace_lag, 1.0) * (std::exp(beyond / scale) - pace_);
-  if (beyond == 0 && pace_ < least_pace) pace_ = 1;
+  // What the machine needs for a step, once it is not expected to catch up, whatever the backlog is.
+  busy_time_ = kept * busy_time_ + seconds(std::max<Nanoseconds>(target - done_target_, 0));
+  busy_steps_ = kept * busy_steps_ + 1;
+  done_target_ = target;
+  const double needed = std::max(busy_time_ / (busy_steps_ * seconds(grid_.step())), 1.0);
+  const double behind = seconds(target - time), part = std::clamp(2 * behind / backlog, 0.0, 1.0);
+  const double wanted = std::pow(needed, (1 - given_up) * part) * std::exp(std::max(behind - backlog, 0.0) / scale);
+  pace_ += std::min(way / pace_lag, 1.0) * (wanted - pace_);
+  if (wanted == 1 && pace_ < least_pace) pace_ = 1;
   if (target - time < grid_.step()) rest();
 }
 
 void Pacer::rest() {
-  busy_ = 0;
+  busy_ = busy_time_ = busy_steps_ = 0;
 }
 
 void Pacer::drop(Nanoseconds skipped) {

@@ -40,9 +40,11 @@ class Pacer {
   Nanoseconds last_target_ = 0;
   Nanoseconds dropped_ = 0;
   Nanoseconds left_out_ = 0;
-  double pace_ = 1;       ///< how far a step leads, in steps
-  double usual_way_ = 0;  ///< [s] of a step, a mean of the last ones
-  double busy_ = 0;       ///< [s] of the target's time since all that was due was done
+  double pace_ = 1;                        ///< how far a step leads, in steps
+  double usual_way_ = 0;                   ///< [s] of a step, a mean of the last ones
+  double busy_ = 0;                        ///< [s] of the target's time since all that was due was done
+  double busy_time_ = 0, busy_steps_ = 0;  ///< likewise, and how many steps; what is long ago counts less
+  Nanoseconds done_target_ = 0;            ///< at the last step
 };
 
 }  // namespace verlet_cable
