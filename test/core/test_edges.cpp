@@ -51,7 +51,8 @@ TEST(Edge, ThinCablesThatSlideOverItDoNotStayInside) {
         World world(thin_cable_on_a_block(radius, segments, 0.5, type), BoundaryInputs(1));
         double since = 0;
         for (int i = 0; i < 1500; ++i) {
-          EXPECT_EQ(world.step(BoundaryInputs(1)).status, StepResult::Status::ok);
+          // What gets inside says so.
+          EXPECT_LE(world.step(BoundaryInputs(1)).status, StepResult::Status::inside_obstacle);
           if (i % 5 != 0) continue;
           const double depth = depth_of_centre_line(world.cables()[0], world.obstacles()[0]);
           if (depth <= 0) since = world.time();

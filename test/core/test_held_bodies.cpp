@@ -185,7 +185,9 @@ TEST(HeldBodies, TheirCablesTouchTheFloor) {
   scene.obstacles.push_back(floor);
   BoundaryInputs inputs = scenes::hand_at({0, 0, 0.4});
   World world(scene, inputs);
-  for (int i = 0; i < 2000; ++i) ASSERT_LE(world.step(inputs).status, Status::overstretched) << i;
+  // It starts below the floor, is pushed out, and then no longer inside.
+  for (int i = 0; i < 1000; ++i) ASSERT_LE(world.step(inputs).status, Status::inside_obstacle) << i;
+  for (int i = 0; i < 1000; ++i) ASSERT_LE(world.step(inputs).status, Status::overstretched) << i;
   EXPECT_FALSE(world.findings().contacts.empty());
   for (const Vector3& position : world.cables()[0].state.positions) EXPECT_GT(position.z(), 0.004);
 }

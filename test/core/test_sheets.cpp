@@ -36,8 +36,8 @@ SceneDesc rope_above(const Triangles& mesh, double height, double time_step) {
 
 /// Heights [m] of the nodes after a duration [s].
 std::pair<double, double> heights_after(const SceneDesc& scene, double duration) {
-  World world(scene);
-  const BoundaryInputs inputs(world.frames().size());
+  const BoundaryInputs inputs = initial_frames(scene);
+  World world(scene, inputs);
   for (const double end = duration - 0.5 * scene.time_step; world.time() < end;) world.step(inputs);
   std::pair<double, double> heights{infinity, -infinity};
   for (const Vector3& x : world.cables()[0].state.positions) {
