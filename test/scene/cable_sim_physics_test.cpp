@@ -93,9 +93,10 @@ obstacles: [{name: block, type: box, size: [0.4, 0.4, 0.1]}]
 )");
   ASSERT_EQ(run(scene + " --duration 1 --summary " + path("s.json")), 0) << err;
   const YAML::Node events = summary("s.json")["events"];
-  ASSERT_EQ(events.size(), 1u);
+  ASSERT_EQ(events.size(), 2u);
   EXPECT_EQ(events[0]["type"].as<std::string>(), "inside_obstacle");
   EXPECT_EQ(events[0]["cable"].as<std::string>(), "r");
+  EXPECT_EQ(events[1]["type"].as<std::string>(), "inside_obstacle_end");
   EXPECT_NE(err.find("inside block"), std::string::npos) << err;
 }
 

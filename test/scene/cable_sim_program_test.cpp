@@ -179,7 +179,7 @@ TEST_F(CableSim, overstretchingIsReportedOnceWithBeginAndEnd) {
 TEST_F(CableSim, aFrameThatIsTooFastIsFollowedAtTheAllowedSpeed) {
   const std::string scene =
       write("scene.yaml", replaced(sound_scene, "time_step: 0.002", "time_step: 0.002\nmax_frame_speed: 0.1"));
-  const std::string motion = write("m.csv", "t,frame,x,y,z,qx,qy,qz,qw\n0,hand,0.7,0,0,0,0,0,1\n0.01,hand,0.8,0,0,0,0,0,1\n");
+  const std::string motion = write("m.csv", "t,frame,x,y,z,qx,qy,qz,qw\n0,hand,0.7,0,0,0,0,0,1\n0.05,hand,0.8,0,0,0,0,0,1\n");
   ASSERT_EQ(run(scene + " --duration 2 --motion " + motion + " --output " + path("o.csv") + " --summary " + path("s.json")), 0)
       << err;
   for (const Row& row : rows("o.csv")) {

@@ -149,8 +149,8 @@ TEST_F(MeshFile, verticesThatDifferByRoundingAreOne) {
   EXPECT_EQ(read("far.obj", obj_of(torn(moved(box, {100, 0, 0}), 4e-6)))->vertices().size(), 8u);
   const Triangles small = box_triangles(Vector3::Constant(0.4));
   EXPECT_EQ(read("jitter.obj", obj_of(torn(small, 1.5e-7)))->vertices().size(), 8u);
-  // What is further apart is no rounding.
-  EXPECT_EQ(read("gap.obj", obj_of(torn(box, 1e-5)))->vertices().size(), 36u);
+  // What is further apart is no rounding: of 36 corners those that are torn the same way are one.
+  EXPECT_EQ(read("gap.obj", obj_of(torn(box, 1e-5)))->vertices().size(), 30u);
 }
 
 TEST_F(MeshFile, trianglesThatEndAsLinesAreLeftOut) {

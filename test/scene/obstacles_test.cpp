@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <regex>
+
 #include "scene_text.h"
 #include "verlet_cable/core/world.h"
 
@@ -63,8 +66,10 @@ void PrintTo(const Mistake& mistake, std::ostream* stream) {
 class ObstacleMistake : public testing::TestWithParam<Mistake> {};
 
 TEST_P(ObstacleMistake, isTheOneErrorAndNamed) {
-  const std::string obstacles = std::string("obstacles: [{name: floor, type: plane}, ") + GetParam().obstacle + "]\n";
-  const std::vector<std::string> errors = errors_of(sound_scene + obstacles);
+  const std::string mesh = testing::TempDir() + "triangle.obj";
+  std::ofstream(mesh) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  const std::string obstacle = std::regex_replace(GetParam().obstacle, std::regex("TRIANGLE"), "file://" + mesh);
+  const std::vector<std::string> errors = errors_of(sound_scene + "obstacles: [{name: floor, type: plane}, " + obstacle + "]\n");
   EXPECT_TRUE(has_line(errors, GetParam().error)) << joined(errors);
   EXPECT_EQ(errors.size(), 1u) << joined(errors);
 }
@@ -106,9 +111,9 @@ const Mistake mistakes[] = {
     {"unknownPackage", "{name: a, type: mesh, uri: \"package://no_such_package/a.stl\"}",
      "obstacles[1].uri: \"package://no_such_package/a.stl\": package \"no_such_package\" is not found in ROS_PACKAGE_PATH;"},
     {"zeroScale", "{name: a, type: mesh, uri: \"file:///a.stl\", scale: 0}", "obstacles[1].scale: [0, 0, 0];"},
-    {"unknownSheet", "{name: a, type: mesh, uri: \"file:///a.stl\", sheet: both}",
+    {"unknownSheet", "{name: a, type: mesh, uri: \"TRIANGLE\", sheet: both}",
      "obstacles[1].sheet: \"both\"; allowed: auto | true | false"},
-    {"negativeThickness", "{name: a, type: mesh, uri: \"file:///a.stl\", thickness: -1}", "obstacles[1].thickness: -1;"},
+    {"negativeThickness", "{name: a, type: mesh, uri: \"TRIANGLE\", thickness: -1}", "obstacles[1].thickness: -1;"},
     {"sheetOfABox", "{name: a, type: box, size: [1, 1, 1], sheet: true}", "obstacles[1].sheet: given with another type;"},
 };
 
