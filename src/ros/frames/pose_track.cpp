@@ -7,8 +7,9 @@
 namespace verlet_cable {
 namespace {
 
-/// As far apart [ns] straight lines may be laid along the spline.
-constexpr Nanoseconds longest_line = 10'000'000;
+/// As long [ns] straight lines along the spline may be: not what usual rates of tf are multiples of, so that the rounding of
+/// stamps does not decide on their number.
+constexpr Nanoseconds longest_line = 7'000'000;
 
 Quaternion turned_by(const Vector3& turn, const Quaternion& orientation) {
   const double angle = turn.norm();
