@@ -75,8 +75,9 @@ void PoseTrack::follow(const PoseSample& sample, std::vector<PoseSample>& played
   const Velocity end{carried_on(before.linear, mean.linear), carried_on(before.angular, mean.angular)};
   const Nanoseconds lines = (interval + longest_line - 1) / longest_line;
   for (Nanoseconds i = 1; i < lines; ++i) {
-    const double u = static_cast<double>(i) / static_cast<double>(lines);
-    played.push_back({from.stamp + interval * i / lines,
+    const Nanoseconds since = interval * i / lines;
+    const double u = static_cast<double>(since) / static_cast<double>(interval);
+    played.push_back({from.stamp + since,
                       {from.pose.position + spline_way(u, way, duration * start.linear, duration * end.linear),
                        turned_by(spline_way(u, turn, duration * start.angular, duration * end.angular), from.pose.orientation)},
                       true});
