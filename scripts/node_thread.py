@@ -39,6 +39,8 @@ def run(name, work):
         finally:
             rospy.signal_shutdown('its work has ended')
 
+    if not rosgraph.is_master_online():
+        print(f'{name}: waits for a ROS master at {rosgraph.get_master_uri()}: start roscore', file=sys.stderr)
     try:
         rospy.init_node(name)
     except rospy.exceptions.ROSInitException:

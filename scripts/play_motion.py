@@ -3,7 +3,8 @@
 
 A motion is one as for cable_sim, with the columns t,frame,x,y,z,qx,qy,qz,qw. Between rows the frames move as there
 (src/scene/motion.cpp): positions follow a cubic Hermite spline with limited tangents, orientations are interpolated by slerp. At the
-end, the frames stay for `~pause` seconds and go back the way they came; then the cables are reset, and the motion starts again.
+beginning the frames stay where they are for a second, so that nobody sees them first on their way; at the end they stay for `~pause`
+seconds and go back the way they came; then the cables are reset, and the motion starts again.
 """
 import math
 import os
@@ -11,6 +12,7 @@ import sys
 import threading
 
 import numpy as np
+import rosgraph
 import rospy
 import tf2_ros
 from geometry_msgs.msg import Quaternion, TransformStamped, Vector3
@@ -23,6 +25,7 @@ import node_thread  # noqa: E402
 
 RATE = 100.0  # [Hz]
 REWIND = 3.0  # times as fast as forward
+FIRST_PAUSE = 1.0  # [s] until everyone has heard of the frames
 HEADER = 't,frame,x,y,z,qx,qy,qz,qw'
 LARGEST = 1e9  # [s, m] as for cable_sim, and so
 MOST_FRAMES = 20000
@@ -162,6 +165,10 @@ class Player:
         self._broadcaster = tf2_ros.TransformBroadcaster()
         self._rate = rospy.Rate(RATE)
 
+    def stay(self, seconds):
+        """At the first row."""
+        self._go(lambda elapsed: 0, seconds)
+
     def play(self, pause):
         """From the first row to the last, and stays there."""
         self._go(lambda elapsed: elapsed, self.duration + pause)
@@ -191,19 +198,24 @@ class Player:
 
 
 def main():
+    if not rosgraph.is_master_online() and not any(argument.startswith('_motion:=') for argument in sys.argv):
+        print(__doc__.split('\n', maxsplit=1)[0], file=sys.stderr)
+        sys.exit(2)
     node_thread.run('play_motion', play)
 
 
 def play():
     path = rospy.get_param('~motion', '')
     if not path:
-        sys.exit('play_motion.py: motion: not set; allowed: the path of a CSV file, as _motion:=FILE.csv')
+        print('play_motion.py: motion: not set; allowed: the path of a CSV file, as _motion:=FILE.csv', file=sys.stderr)
+        sys.exit(2)
     try:
         player = Player(read_motion(path))
     except MotionError as error:
         sys.exit(f'play_motion.py: {error}')
     rospy.loginfo('plays %s, %.3g s, goes back, resets the cables and begins again; Ctrl-C ends it', path, player.duration)
     reset = rospy.ServiceProxy('cable/reset', Trigger)
+    player.stay(FIRST_PAUSE)
     while not rospy.is_shutdown():
         player.play(rospy.get_param('~pause', 2.0))
         player.rewind()

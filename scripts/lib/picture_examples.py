@@ -53,15 +53,15 @@ def show(file, config, launch, seconds):
 
 
 def on_the_still_cable():
-    return stage(WIDE, configuration('rviz/panel.rviz', WIDE, panels=True, **VIEW), ['cable.launch', f'scene:={PACKAGE / SCENE}'])
+    return stage(WIDE, configuration('rviz/cable.rviz', WIDE, panels=True, **VIEW), ['cable.launch', f'scene:={PACKAGE / SCENE}'])
 
 
 def picture_demo(file):
-    show(file, 'rviz/cable.rviz', ['demo.launch'], 3)
+    show(file, 'rviz/demo.rviz', ['demo.launch'], 3)
 
 
 def picture_panel(file):
-    with stage(WIDE, configuration('rviz/panel.rviz', WIDE, panels=True), ['demo.launch'], pace=1.0) as clock:
+    with stage(WIDE, configuration('rviz/demo.rviz', WIDE, panels=True), ['demo.launch'], pace=1.0) as clock:
         clock.go_on(8)
         keep(file)
 

@@ -1,4 +1,4 @@
-# Sourced by scripts/demo, scripts/test and scripts/bench: installs what is missing, and builds the package in a workspace of
+# Sourced by scripts/demo, scripts/build, scripts/test and others: installs what is missing, and builds the package in a workspace of
 # its own.
 
 set -euo pipefail
@@ -86,6 +86,9 @@ as_root() {
   fi
 }
 
+# catkin_make alone would not look again for what was not there when it first configured.
+configure_anew=()
+
 # install_packages PACKAGE...: asks dpkg first, and does nothing where all are installed.
 install_packages() {
   local installed missing apt=(env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300 -o Dpkg::Use-Pty=0)
@@ -95,6 +98,7 @@ install_packages() {
   echo "Installing: ${missing[*]}"
   as_root "${apt[@]}" update || echo "apt-get update failed, going on with the package lists there are" >&2
   as_root "${apt[@]}" install -y --no-install-recommends "${missing[@]}" || fail "apt-get could not install ${missing[*]}"
+  configure_anew=(--force-cmake)
 }
 
 # A root file system without /etc/hosts (a container, a chroot) may not know the names that roslaunch gives this machine: localhost
@@ -134,6 +138,11 @@ link_package() {
 # What a script's build needs besides CMake's defaults.
 cmake_arguments=()
 
+# The node, in a process of its own or as a nodelet, what its scripts and rviz need of the package, and cable_sim.
+live_targets=(
+  cable_node cable_sim mesh_reader verlet_cable_gencfg verlet_cable_generate_messages_py verlet_cable_nodelet verlet_cable_rviz
+)
+
 # build_workspace TARGET...: make's targets. Goes on after an error, so that one broken file hides no other error.
 build_workspace() {
   local cache=$workspace/build/CMakeCache.txt
@@ -145,6 +154,6 @@ build_workspace() {
   link_package
   # catkin leaves this directory out of PYTHONPATH for good if it does not exist when it first configures.
   mkdir -p "$workspace/devel/lib/python3/dist-packages"
-  catkin_make -C "$workspace" -j"$(nproc)" --cmake-args -DPYTHON_EXECUTABLE=/usr/bin/python3 "${cmake_arguments[@]}" \
+  catkin_make -C "$workspace" -j"$(nproc)" "${configure_anew[@]}" --cmake-args -DPYTHON_EXECUTABLE=/usr/bin/python3 "${cmake_arguments[@]}" \
     --make-args -k "$@"
 }

@@ -58,7 +58,7 @@ QImage legend_picture(const Legend& legend, const QFont& font) {
   painter.drawText(QRectF(bar.left(), margin * line, bar.width(), line), Qt::AlignLeft, title(legend));
   painter.fillRect(bar, gradient(legend, bar));
   painter.drawText(numbers, Qt::AlignLeft, legend_number(legend.values.front()));
-  painter.drawText(numbers, Qt::AlignRight, legend_number(legend.values.back()));
+  painter.drawText(numbers, Qt::AlignRight, "\u2265 " + legend_number(legend.values.back()));
   if (legend.values.size() % 2 == 1)
     painter.drawText(numbers, Qt::AlignHCenter, legend_number(legend.values[legend.values.size() / 2]));
   return picture;

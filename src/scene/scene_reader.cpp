@@ -116,6 +116,12 @@ void check_not_empty(const Value& root, const std::set<std::string>& given, cons
   if (cables.node.IsSequence()) cables.reject(allowed);
 }
 
+/// Whoever gives a cable a color wants to see it.
+ColorBy natural_colors(const YAML::Node& cables) {
+  const auto has_color = [](const YAML::Node& cable) { return cable.IsMap() && cable["color"]; };
+  return cables.IsSequence() && std::any_of(cables.begin(), cables.end(), has_color) ? ColorBy::cable : SceneDesc{}.color_by;
+}
+
 /// Who draws relative to the scene's `origin` sends that place as a frame of its own.
 void check_origin_frame(const std::string& frame, const SceneDesc& scene, ErrorList& errors) {
   if (frame.empty() || scene.origin.isZero(0)) return;
@@ -128,7 +134,9 @@ SceneDesc read_all(const YAML::Node& root, const std::vector<std::string>& ignor
   ErrorList errors;
   const Value value{root, "", &errors};
   if (root.IsMap()) {
-    check_not_empty(value, read_map(value, scene_keys(ignored), scene), scene);
+    const std::set<std::string> given = read_map(value, scene_keys(ignored), scene);
+    if (given.count("color_by") == 0) scene.color_by = natural_colors(root["cables"]);
+    check_not_empty(value, given, scene);
     add_presets(value, scene);
     read_scene_files(value, sources, scene);
     errors.add_validation(validate(scene));

@@ -104,7 +104,8 @@ class ReadmeTest(unittest.TestCase):
             warning, = program.wait_for_lines('WARN')
             self.assertIn('"hose"', warning)
             self.assertIn('from "world" to "left_gripper" and "right_gripper"', warning)
-            self.assertRegex(warning, r': rosrun tf2_ros static_transform_publisher 0 0 1 0 0 0 world left_gripper')
+            for command in ('0 0 1 0 0 0 world left_gripper', '0.84 0 1 0 0 0 world right_gripper'):
+                program.wait_for_lines(f'  rosrun tf2_ros static_transform_publisher {command} &', 1)
             self.assertEqual(node.state().cables, [])
             for answer in (node.set_length('hose', False, 1.0, 0.1), node.join('hose', True, 'hose', False)):
                 self.assertFalse(answer.success)

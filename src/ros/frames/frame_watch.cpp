@@ -100,6 +100,21 @@ std::vector<std::string> missing_frames(const std::vector<WaitingAttachment>& wa
   return missing;
 }
 
+/// Commands to be typed that put frames side by side, as far from the first to the last as a cable that hangs between them well
+/// allows.
+std::string commands_for(const std::vector<std::string>& missing, const SceneDesc& scene) {
+  constexpr double span = 0.7;     // of the shortest cable's length
+  constexpr std::size_t most = 4;  // that people read
+  double shortest = infinity;
+  for (const CableDesc& cable : scene.cables) shortest = std::min(shortest, cable.length);
+  const double spacing = std::isfinite(shortest) && missing.size() > 1 ? span * shortest / (missing.size() - 1) : 0;
+  std::string commands;
+  for (std::size_t i = 0; i < std::min(missing.size(), most); ++i)
+    commands += "\n  rosrun tf2_ros static_transform_publisher " + number_text(i * spacing) + " 0 1 0 0 0 " + escaped(scene.frame_id) +
+                " " + escaped(missing[i]) + " &";
+  return commands;
+}
+
 }  // namespace
 
 FrameWatch::FrameWatch(const SceneDesc& scene, const EventPublisher& events)
@@ -192,11 +207,10 @@ void FrameWatch::warn_of_waiting(const SceneDesc& scene, const World& world, con
   const std::vector<std::string> missing = missing_frames(waiting_attachments(scene, world, frames.inputs()));
   if (missing.empty()) return;
   ROS_WARN(
-      "not shown yet: %s, because tf has no transform from %s to %s. If nothing else is to publish them, type for each: rosrun "
-      "tf2_ros "
-      "static_transform_publisher 0 0 1 0 0 0 %s %s",
+      "not shown yet: %s, because tf has no transform from %s to %s. If nothing else is to publish them, type, with x, y, z [m] as you "
+      "like:%s",
       list(world.findings().waiting).c_str(), quoted(scene.frame_id).c_str(), list(missing).c_str(),
-      escaped(scene.frame_id).c_str(), escaped(missing.front()).c_str());
+      commands_for(missing, scene).c_str());
 }
 
 void FrameWatch::report_lost(int frame, Nanoseconds stamp, const World& world) {

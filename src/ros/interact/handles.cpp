@@ -18,13 +18,14 @@ constexpr std::size_t most_nodes = 200;
 /// Wider than what is shown of the cable [radii], so that the mouse finds it. A node's is a cube of the same width: with a sphere
 /// at each of two hundred nodes rviz draws a quarter as often.
 constexpr double node_size = 1.6, attachment_size = 3.2;
+/// Of a cable's length, to each side: 12 pixels or more in a window that shows the whole cable.
+constexpr double node_reach = 0.01;
 constexpr double largest_arm = 0.3;      // [m]
 constexpr double arm_of_cable = 0.12;    // of its length
 constexpr double arm_of_net = 3;         // of its first link's length
 constexpr double smallest_arm = 10;      // [radii]
 constexpr double sphere_in_arm = 0.25;   // a sphere is no larger than this part of the arrows
 constexpr double arm_of_body = 1.5;      // of its radius of gyration
-constexpr double smallest_node = 0.004;  // [m] radius: thinner cables cannot be hit
 
 void add_menu(const Handle& handle, InteractiveMarker& marker) {
   const auto add = [&](HandleAction action, const char* title) {
@@ -47,7 +48,7 @@ void add_menu(const Handle& handle, InteractiveMarker& marker) {
 Marker node_shape(const Handle& handle) {
   Marker cube;
   cube.type = Marker::CUBE;
-  cube.scale.x = cube.scale.y = cube.scale.z = 2 * std::max(node_size * handle.radius, smallest_node);
+  cube.scale.x = cube.scale.y = cube.scale.z = 2 * handle.half_width;
   return cube;
 }
 
@@ -55,7 +56,7 @@ Marker attachment_shape(const Handle& handle) {
   Marker sphere;
   sphere.type = Marker::SPHERE;
   sphere.scale.x = sphere.scale.y = sphere.scale.z =
-      2 * std::min(attachment_size * handle.radius, sphere_in_arm * handle.arm_length);
+      2 * std::min(std::max(attachment_size * handle.radius, handle.half_width), sphere_in_arm * handle.arm_length);
   sphere.color.r = sphere.color.g = 1;
   sphere.color.b = 0.3f;
   sphere.color.a = 0.6f;
@@ -89,6 +90,7 @@ Handle handle_of(const SimulatedCable& cable) {
   Handle handle;
   handle.cable = cable.model->name;
   handle.radius = CableMaterials(cable).largest_radius();
+  handle.half_width = std::max(node_size * handle.radius, node_reach * cable.state.length());
   handle.arm_length = std::max(smallest_arm * handle.radius, std::min(arm_of_cable * cable.state.length(), largest_arm));
   return handle;
 }
@@ -169,7 +171,7 @@ void add_bodies(const World& world, const std::set<std::string>& grabs, std::vec
     handle.name = body.name + "/0";
     handle.cable = body.name;
     handle.is_body = true;
-    handle.radius = radius_of_gyration(body) / node_size;
+    handle.half_width = radius_of_gyration(body);
     handle.pose.position = body.pose.position;
     handles.push_back(std::move(handle));
   }
@@ -178,7 +180,7 @@ void add_bodies(const World& world, const std::set<std::string>& grabs, std::vec
 }  // namespace
 
 bool look_alike(const Handle& a, const Handle& b) {
-  return a.name == b.name && a.cable == b.cable && a.turns == b.turns && a.radius == b.radius && a.arm_length == b.arm_length;
+  return a.name == b.name && a.cable == b.cable && a.turns == b.turns && a.radius == b.radius && a.half_width == b.half_width && a.arm_length == b.arm_length;
 }
 
 std::vector<Handle> find_handles(const Simulation& simulation, const std::set<std::string>& grabs) {

@@ -22,6 +22,7 @@ struct Handle {
   bool is_body = false;   ///< a body's origin, which cannot be cut
   bool turns = false;     ///< a clamp or axle, whose orientation matters
   double radius = 0;      ///< [m] of the cable, or as if
+  double half_width = 0;  ///< [m] from a node: where the mouse finds it
   double arm_length = 0;  ///< [m] of the arrows of an attachment
   Pose pose;              ///< in the fixed frame
 };

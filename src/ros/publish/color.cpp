@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 
 #include "publish/conversions.h"
 #include "verlet_cable/core/cable_materials.h"
@@ -57,6 +58,18 @@ double largest_strain(const SceneDesc& scene, double tension) {
     for (const SectionDesc& section : cable.sections) add(section.material);
   }
   return largest > 0 ? largest : full_strain_if_inextensible;
+}
+
+constexpr double fading_time = 10;  // [s]
+/// The range is left as it is until it is so many times too wide: a legend that changes all the time is not read.
+constexpr double widest = 1.5;
+
+/// Two digits at most, and no less than the value.
+double rounded_up(double value) {
+  const double power = std::pow(10, std::floor(std::log10(value)));
+  for (const double digits : {1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0})
+    if (digits * power >= value) return digits * power;
+  return 10 * power;
 }
 
 /// Of a radius that is as small as allowed, 1; 0 of one that is so many times as large.
@@ -113,7 +126,30 @@ ColorScale::ColorScale(const SceneDesc& scene)
     : color_by_(scene.color_by),
       has_cables_(!scene.cables.empty()),
       full_tension_(scene.cables.empty() ? 1 : largest_weight(scene)),
-      full_strain_(largest_strain(scene, full_tension_)) {}
+      full_strain_(largest_strain(scene, full_tension_)),
+      least_(color_by_ == ColorBy::strain ? full_strain_ : full_tension_) {}
+
+double ColorScale::largest(const World& world) const {
+  double largest = 0;
+  const std::vector<std::vector<double>> forces = contact_forces(world);
+  for (std::size_t i = 0; i < world.cables().size(); ++i) {
+    const SimulatedCable& cable = world.cables()[i];
+    if (!is_finite(cable)) continue;
+    for (const double force : forces[i]) largest = std::max(largest, force);
+    for (int segment = 0; color_by_ != ColorBy::contact && segment < cable.state.segments(); ++segment)
+      largest = std::max(largest, color_by_ == ColorBy::strain ? strain(cable.state, segment) : cable.state.tension[segment]);
+  }
+  return largest;
+}
+
+bool ColorScale::follow(const World& world, double elapsed) {
+  if (color_by_ == ColorBy::cable || color_by_ == ColorBy::bend) return false;
+  recent_ = std::max(largest(world), recent_ * std::exp(-std::max(elapsed, 0.0) / fading_time));
+  double& full = color_by_ == ColorBy::strain ? full_strain_ : full_tension_;
+  const double wanted = recent_ > least_ ? rounded_up(recent_) : least_;
+  if (recent_ <= full && widest * wanted > full && wanted > least_) return false;
+  return std::exchange(full, wanted) != wanted;
+}
 
 double ColorScale::load(const SimulatedCable& cable, int segment, const std::vector<double>& contact_forces) const {
   if (color_by_ == ColorBy::contact) return contact_forces.empty() ? 0 : std::cbrt(contact_forces[segment] / full_tension_);
@@ -124,12 +160,12 @@ double ColorScale::load(const SimulatedCable& cable, int segment, const std::vec
 Legend ColorScale::legend() const {
   Legend legend;
   if (color_by_ == ColorBy::cable || !has_cables_) return legend;
-  legend.quantity = color_by_ == ColorBy::contact  ? "contact force, cube-root scale"
+  legend.quantity = color_by_ == ColorBy::contact  ? "contact force, by its cube root"
                     : color_by_ == ColorBy::strain ? "strain"
                                                    : "tension";
   legend.unit = color_by_ == ColorBy::strain ? "%" : "N";
   if (color_by_ == ColorBy::bend) {
-    legend.quantity = "bend radius over the smallest allowed";
+    legend.quantity = "bend radius / smallest allowed";
     legend.unit = "1";
     for (std::size_t i = 0; i < stops.size(); ++i) {
       const double load = 1 - static_cast<double>(i) / (stops.size() - 1);

@@ -1,16 +1,14 @@
 #include "publish/legend_publisher.h"
 
-#include "publish/color.h"
-
 namespace verlet_cable {
 
-LegendPublisher::LegendPublisher(ros::NodeHandle& private_node, const SceneDesc& scene)
+LegendPublisher::LegendPublisher(ros::NodeHandle& private_node, const ColorScale& colors)
     : publisher_(private_node.advertise<Legend>("legend", 1, true)) {
-  show(scene);
+  show(colors);
 }
 
-void LegendPublisher::show(const SceneDesc& scene) {
-  publisher_.publish(ColorScale(scene).legend());
+void LegendPublisher::show(const ColorScale& colors) {
+  publisher_.publish(colors.legend());
 }
 
 }  // namespace verlet_cable

@@ -2,16 +2,16 @@
 
 #include <ros/ros.h>
 
-#include "verlet_cable/core/scene_desc.h"
+#include "publish/color.h"
 
 namespace verlet_cable {
 
-/// Topic `legend` (verlet_cable/Legend), latched: what the colors of `markers`, `points` and `surface` mean. Published once for
-/// each scene.
+/// Topic `legend` (verlet_cable/Legend), latched: what the colors of `markers`, `points` and `surface` mean. Published whenever
+/// that changes.
 class LegendPublisher {
  public:
-  LegendPublisher(ros::NodeHandle& private_node, const SceneDesc& scene);
-  void show(const SceneDesc& scene);
+  LegendPublisher(ros::NodeHandle& private_node, const ColorScale& colors);
+  void show(const ColorScale& colors);
 
  private:
   ros::Publisher publisher_;

@@ -10,6 +10,7 @@
 #include "publish/obstacle_markers.h"
 #include "publish/queue_size.h"
 #include "verlet_cable/core/cable_materials.h"
+#include "verlet_cable/core/name_list.h"
 
 namespace verlet_cable {
 namespace {
@@ -25,6 +26,8 @@ constexpr int net_triangles_id = -1;     // markers that share a namespace with 
 constexpr double net_line_width = 0.04;  // of the first link's length
 constexpr double net_pin_size = 0.4;     // likewise
 constexpr double body_pin_size = 0.3;    // of a body's radius of gyration
+constexpr double text_size = 0.05;       // of the longest cable
+constexpr std::array<double, 4> text_color{0.6, 0.1, 0.1, 1};
 constexpr std::array<double, 4> body_color{0.75, 0.55, 0.25, 1};
 
 std_msgs::ColorRGBA grey(float level) {
@@ -92,21 +95,30 @@ void add_triangles(const SimulatedNet& net, const DrawingFrame& frame, Marker& m
 }  // namespace
 
 MarkerPublisher::MarkerPublisher(ros::NodeHandle& private_node, const SceneDesc& scene, const DrawingFrame& frame)
-    : publisher_(private_node.advertise<MarkerArray>("markers", publisher_queue_size)),
-      frame_(frame),
-      style_(scene.marker_style),
-      colors_(scene) {}
+    : publisher_(private_node.advertise<MarkerArray>("markers", publisher_queue_size)), frame_(frame) {
+  show(scene, frame);
+}
 
 void MarkerPublisher::show(const SceneDesc& scene, const DrawingFrame& frame) {
   frame_ = frame;
   style_ = scene.marker_style;
-  colors_ = ColorScale(scene);
+  holders_.clear();
+  const auto note = [this](const auto& held) {
+    for (const auto& desc : held)
+      for (const auto& attachment : desc.attachments) holders_[desc.name].push_back(attachment.frame);
+  };
+  note(scene.cables);
+  note(scene.nets);
+  note(scene.bodies);
+  double longest = 0;
+  for (const CableDesc& cable : scene.cables) longest = std::max(longest, cable.length);
+  text_height_ = longest > 0 ? text_size * longest : 1;
 }
 
-void MarkerPublisher::publish(const World& world, const ros::Time& stamp) {
+void MarkerPublisher::publish(const World& world, const ColorScale& colors, const ros::Time& stamp) {
   if (publisher_.getNumSubscribers() == 0) return;
   const auto markers = boost::make_shared<MarkerArray>();
-  add_cables(world, *markers);
+  add_cables(world, colors, *markers);
   for (const SimulatedNet& net : world.nets())
     if (is_finite(net)) add_net(net, *markers);
   for (const SimulatedParticle& particle : world.particles())
@@ -117,6 +129,7 @@ void MarkerPublisher::publish(const World& world, const ros::Time& stamp) {
   for (const Obstacle& obstacle : world.obstacles()) add_obstacle(world, obstacle, *markers);
   for (const SimulatedBody& body : world.bodies())
     if (!body.is_junction && is_there(world, body)) add_body(body, *markers);
+  add_waiting(world, *markers);
   delete_what_is_gone(*markers);
   free_ids_of_what_is_gone();
   for (Marker& marker : markers->markers) marker.header.stamp = stamp;
@@ -133,8 +146,8 @@ Marker MarkerPublisher::make_marker(const std::string& ns, int id, int type) con
   return marker;
 }
 
-void MarkerPublisher::add_cables(const World& world, MarkerArray& markers) {
-  const std::vector<std::vector<double>> contact_forces = colors_.contact_forces(world);
+void MarkerPublisher::add_cables(const World& world, const ColorScale& colors, MarkerArray& markers) {
+  const std::vector<std::vector<double>> contact_forces = colors.contact_forces(world);
   std::vector<const SimulatedCable*> cables;
   std::vector<CableLook> looks;
   for (std::size_t i = 0; i < world.cables().size(); ++i) {
@@ -142,7 +155,7 @@ void MarkerPublisher::add_cables(const World& world, MarkerArray& markers) {
     if (!is_finite(cable)) continue;
     cables.push_back(&cable);
     const CableMaterials materials(cable);
-    looks.push_back({cable.state.positions, colors_.node_colors(cable, contact_forces[i]), materials.largest_radius()});
+    looks.push_back({cable.state.positions, colors.node_colors(cable, contact_forces[i]), materials.largest_radius()});
     for (int segment = 0; materials.vary() && segment < cable.state.segments(); ++segment)
       looks.back().segment_radii.push_back(materials[segment].radius);
   }
@@ -157,6 +170,27 @@ void MarkerPublisher::add_cables(const World& world, MarkerArray& markers) {
     markers.markers.push_back(std::move(marker));
     add_payloads(*cables[i], markers);
   }
+}
+
+void MarkerPublisher::add_waiting(const World& world, MarkerArray& markers) const {
+  std::string text;
+  for (const std::string& name : world.findings().waiting) {
+    NameList frames;
+    const auto holders = holders_.find(name);
+    for (const std::string& holder : holders == holders_.end() ? std::vector<std::string>{} : holders->second) {
+      const std::vector<std::string>& names = world.frames();
+      const auto frame = std::find(names.begin(), names.end(), holder);
+      if (frame == names.end() || !world.frame_known(static_cast<int>(frame - names.begin()))) frames.add(holder);
+    }
+    text += (text.empty() ? "" : "\n") + name + " waits for tf: " + frames.text("its holder");
+  }
+  if (text.empty()) return;
+  Marker marker = make_marker("waiting", 0, Marker::TEXT_VIEW_FACING);
+  marker.pose.position = frame_.point(frame_.origin);
+  marker.scale.z = text_height_;
+  marker.color = to_color(text_color);
+  marker.text = text;
+  markers.markers.push_back(std::move(marker));
 }
 
 void MarkerPublisher::add_payloads(const SimulatedCable& cable, MarkerArray& markers) {

@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "publish/color.h"
 #include "publish/drawing_frame.h"
@@ -25,18 +26,19 @@ namespace verlet_cable {
 ///  * namespace "guides", ids from 1: the guides that cables slide through (guide_markers.h);
 ///  * namespace "obstacles", ids from 1: the present obstacles; a capsule is three markers;
 ///  * namespace "bodies", ids from 1: the shapes of bodies, in the same way;
-///  * namespace "payloads", ids from 1: point masses, as balls with the density of aluminium.
+///  * namespace "payloads", ids from 1: point masses, as balls with the density of aluminium;
+///  * namespace "waiting", id 0: while something has not started, a text that says which frames of tf it waits for.
 class MarkerPublisher {
  public:
   MarkerPublisher(ros::NodeHandle& private_node, const SceneDesc& scene, const DrawingFrame& frame);
   void show(const SceneDesc& scene, const DrawingFrame& frame);  ///< from now on
-  void publish(const World& world, const ros::Time& stamp);
+  void publish(const World& world, const ColorScale& colors, const ros::Time& stamp);
 
  private:
   using Key = std::pair<std::string, int>;  // namespace and id
 
   visualization_msgs::Marker make_marker(const std::string& ns, int id, int type) const;
-  void add_cables(const World& world, visualization_msgs::MarkerArray& markers);
+  void add_cables(const World& world, const ColorScale& colors, visualization_msgs::MarkerArray& markers);
   void add_payloads(const SimulatedCable& cable, visualization_msgs::MarkerArray& markers);
   void add_net(const SimulatedNet& net, visualization_msgs::MarkerArray& markers) const;
   void add_particle(const SimulatedParticle& particle, visualization_msgs::MarkerArray& markers) const;
@@ -44,6 +46,7 @@ class MarkerPublisher {
   void add_guide(const World& world, int guide, visualization_msgs::MarkerArray& markers);
   void add_obstacle(const World& world, const Obstacle& obstacle, visualization_msgs::MarkerArray& markers);
   void add_body(const SimulatedBody& body, visualization_msgs::MarkerArray& markers);
+  void add_waiting(const World& world, visualization_msgs::MarkerArray& markers) const;
   void add_shape(const std::string& ns, const std::string& name, int& part, const Shape& shape, const Pose& pose,
                  visualization_msgs::MarkerArray& markers);
   void add_look(const std::string& ns, const std::string& name, int& part, visualization_msgs::Marker look,
@@ -56,7 +59,8 @@ class MarkerPublisher {
   ros::Publisher publisher_;
   DrawingFrame frame_;
   MarkerStyle style_;
-  ColorScale colors_;
+  std::map<std::string, std::vector<std::string>> holders_;  // frames, by the name of what they hold
+  double text_height_ = 0;                                   // [m]
   std::map<std::string, int> ids_;          // of pins, payloads, guides, obstacles and bodies, by name, of this tick
   std::map<std::string, int> earlier_ids_;  // of the last tick: what is still there keeps its id
   std::set<int> free_ids_;                  // of what is gone: obstacles may come with another name each time

@@ -60,22 +60,20 @@ void append_nets_and_particles(const World& world, const Vector3& origin, std::v
 
 PointPublisher::PointPublisher(ros::NodeHandle& private_node, const SceneDesc& scene, const DrawingFrame& frame)
     : publisher_(private_node.advertise<sensor_msgs::PointCloud2>("points", publisher_queue_size)),
-      frame_(frame),
-      colors_(scene) {}
+      frame_(frame) {}
 
 void PointPublisher::show(const SceneDesc& scene, const DrawingFrame& frame) {
   frame_ = frame;
-  colors_ = ColorScale(scene);
 }
 
-void PointPublisher::publish(const World& world, const ros::Time& stamp) {
+void PointPublisher::publish(const World& world, const ColorScale& colors, const ros::Time& stamp) {
   if (publisher_.getNumSubscribers() == 0) return;
   std::vector<PointRecord> points;
-  const std::vector<std::vector<double>> contact_forces = colors_.contact_forces(world);
+  const std::vector<std::vector<double>> contact_forces = colors.contact_forces(world);
   for (std::size_t id = 0; id < world.cables().size(); ++id) {
     const SimulatedCable& cable = world.cables()[id];
     if (is_finite(cable))
-      append_points(cable, static_cast<std::uint32_t>(id), colors_.node_colors(cable, contact_forces[id]), frame_.origin, points);
+      append_points(cable, static_cast<std::uint32_t>(id), colors.node_colors(cable, contact_forces[id]), frame_.origin, points);
   }
   append_nets_and_particles(world, frame_.origin, points);
   using sensor_msgs::PointField;

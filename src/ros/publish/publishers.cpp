@@ -4,6 +4,7 @@
 #include <string>
 
 #include "publish/body_frames.h"
+#include "publish/color.h"
 #include "publish/drawing_frame.h"
 #include "publish/legend_publisher.h"
 #include "publish/marker_publisher.h"
@@ -20,7 +21,8 @@ struct Publishers::Implementation {
       : node(private_node.getNamespace()),
         frame(scene, node),
         body_frames(private_node, scene),
-        legend(private_node, scene),
+        colors(scene),
+        legend(private_node, colors),
         markers(private_node, scene, frame),
         points(private_node, scene, frame),
         state(private_node, scene),
@@ -36,11 +38,18 @@ struct Publishers::Implementation {
     is_coarse = warning.has_value();
   }
 
+  void follow_colors(const World& world, const ros::Time& stamp) {
+    if (colors.follow(world, (stamp - colored).toSec())) legend.show(colors);
+    colored = stamp;
+  }
+
   std::string node;
   DrawingFrame frame;
   bool is_coarse = false;  // which has been said
   OriginFrame origin_frame;
   BodyFrames body_frames;
+  ColorScale colors;
+  ros::Time colored;  ///< the last tick
   LegendPublisher legend;
   MarkerPublisher markers;
   PointPublisher points;
@@ -58,7 +67,8 @@ void Publishers::show(const SceneDesc& scene) {
   const DrawingFrame& frame = implementation_->frame = DrawingFrame(scene, implementation_->node);
   implementation_->origin_frame.send(frame, scene.frame_id);
   implementation_->body_frames.show(scene);
-  implementation_->legend.show(scene);
+  implementation_->colors = ColorScale(scene);
+  implementation_->legend.show(implementation_->colors);
   implementation_->markers.show(scene, frame);
   implementation_->points.show(scene, frame);
   implementation_->state.show(scene);
@@ -78,10 +88,12 @@ void Publishers::forget_steps() {
 void Publishers::publish(const World& world, const ros::Time& stamp) {
   implementation_->warn_where_coarse(world);
   implementation_->body_frames.publish(world, stamp);
-  implementation_->markers.publish(world, stamp);
-  implementation_->points.publish(world, stamp);
+  implementation_->follow_colors(world, stamp);
+  const ColorScale& colors = implementation_->colors;
+  implementation_->markers.publish(world, colors, stamp);
+  implementation_->points.publish(world, colors, stamp);
   implementation_->state.publish(world, stamp);
-  implementation_->surface.publish(world, stamp);
+  implementation_->surface.publish(world, colors, stamp);
   implementation_->wrenches.publish(world, stamp);
 }
 

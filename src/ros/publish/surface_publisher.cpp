@@ -66,23 +66,21 @@ void append_points(const SimulatedCable& cable, std::uint32_t cable_id, double c
 
 SurfacePublisher::SurfacePublisher(ros::NodeHandle& private_node, const SceneDesc& scene, const DrawingFrame& frame)
     : publisher_(private_node.advertise<sensor_msgs::PointCloud2>("surface", publisher_queue_size)),
-      frame_(frame),
-      colors_(scene) {}
+      frame_(frame) {}
 
 void SurfacePublisher::show(const SceneDesc& scene, const DrawingFrame& frame) {
   frame_ = frame;
-  colors_ = ColorScale(scene);
 }
 
-void SurfacePublisher::publish(const World& world, const ros::Time& stamp) {
+void SurfacePublisher::publish(const World& world, const ColorScale& colors, const ros::Time& stamp) {
   if (publisher_.getNumSubscribers() == 0) return;
   const double coarseness = find_coarseness(world);
   std::vector<PointRecord> points;
-  const std::vector<std::vector<double>> contact_forces = colors_.contact_forces(world);
+  const std::vector<std::vector<double>> contact_forces = colors.contact_forces(world);
   for (std::size_t id = 0; id < world.cables().size(); ++id) {
     const SimulatedCable& cable = world.cables()[id];
     if (!is_finite(cable)) continue;
-    append_points(cable, static_cast<std::uint32_t>(id), coarseness, colors_.node_colors(cable, contact_forces[id]),
+    append_points(cable, static_cast<std::uint32_t>(id), coarseness, colors.node_colors(cable, contact_forces[id]),
                   frame_.origin, points);
   }
   using sensor_msgs::PointField;

@@ -14,12 +14,11 @@ class SurfacePublisher {
  public:
   SurfacePublisher(ros::NodeHandle& private_node, const SceneDesc& scene, const DrawingFrame& frame);
   void show(const SceneDesc& scene, const DrawingFrame& frame);  ///< from now on
-  void publish(const World& world, const ros::Time& stamp);
+  void publish(const World& world, const ColorScale& colors, const ros::Time& stamp);
 
  private:
   ros::Publisher publisher_;
   DrawingFrame frame_;
-  ColorScale colors_;
 };
 
 }  // namespace verlet_cable
