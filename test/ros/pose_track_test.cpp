@@ -21,8 +21,8 @@ class Played {
  public:
   explicit Played(double speed = jump_speed) : track_(speed, longest_gap) {}
 
-  void add(Nanoseconds stamp, const Pose& pose) {
-    for (const PoseSample& sample : track_.add({stamp, pose})) {
+  void add(Nanoseconds stamp, const Pose& pose, const std::vector<Vector3>& carried = {}) {
+    for (const PoseSample& sample : track_.add({stamp, pose}, carried)) {
       const bool ascends = samples_.empty() || samples_.back().stamp < sample.stamp;
       EXPECT_TRUE(ascends);
       if (ascends) samples_.push_back(sample);
@@ -96,6 +96,24 @@ TEST(PoseTrack, WhatMayBeAJumpIsHeldBackUntilTheNextSample) {
   EXPECT_EQ(track.newest(), 250 * ms);
   EXPECT_EQ(track.place(199 * ms), Vector3(0, 0, 0));
   EXPECT_EQ(track.place(200 * ms), Vector3(1, 0, 0));
+}
+
+/// A base that turns on the spot by 20 degrees within 10 ms, or goes on turning: 0.35 m for a hand that is 1 m away.
+Played turned(bool goes_on, const std::vector<Vector3>& carried) {
+  Played track;
+  for (int i = 0; i <= 10; ++i) track.add(ms + i * 10 * ms, at(Vector3::Zero(), 0.35 * std::clamp(i - 4, 0, goes_on ? 6 : 1)), carried);
+  return track;
+}
+
+TEST(PoseTrack, ABaseThatTurnsAtOnceJumpsByTheWayOfTheHandItCarries) {
+  const Vector3 hand(1, 0, 0);
+  const auto way = [&](const Played& track, Nanoseconds from, Nanoseconds to) {
+    return (track.pose(to).orientation * hand - track.pose(from).orientation * hand).norm();
+  };
+  const Nanoseconds before = ms + 41 * ms, after = ms + 49 * ms;
+  EXPECT_EQ(way(turned(false, {hand}), before, after), 0) << "the way to the sample is not played";
+  EXPECT_GT(way(turned(false, {}), before, after), 0.2) << "nothing is carried: a turn, and no jump";
+  EXPECT_GT(way(turned(true, {hand}), before, after), 0.2) << "two fast intervals are motion";
 }
 
 TEST(PoseTrack, NoFrameJumpsWhereJumpSpeedIsInfinite) {

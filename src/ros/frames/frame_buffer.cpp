@@ -105,7 +105,7 @@ void FrameBuffer::follow(double jump_speed, Nanoseconds longest_gap) {
   tracks_.clear();
 }
 
-std::vector<Nanoseconds> FrameBuffer::insert(const ReceivedTransform& received, Nanoseconds now) {
+std::vector<Nanoseconds> FrameBuffer::insert(const ReceivedTransform& received, Nanoseconds now, const std::vector<Vector3>& carried) {
   const std::string child = without_slash(received.transform.child_frame_id);
   if (!accept(received, child, now)) return {};
   if (received.is_static)
@@ -114,7 +114,7 @@ std::vector<Nanoseconds> FrameBuffer::insert(const ReceivedTransform& received, 
   const PoseSample sample{from_ros_time(received.transform.header.stamp), to_pose(received.transform.transform)};
   std::vector<Nanoseconds> known;
   geometry_msgs::TransformStamped played = received.transform;
-  for (const PoseSample& pose : tracks_.try_emplace(child, jump_speed_, longest_gap_).first->second.add(sample)) {
+  for (const PoseSample& pose : tracks_.try_emplace(child, jump_speed_, longest_gap_).first->second.add(sample, carried)) {
     // Points of a spline only where there is room for them.
     if (pose.is_between && !stored_.has_room(child, pose.stamp)) continue;
     played.header.stamp = to_ros_time(pose.stamp);
@@ -244,6 +244,15 @@ std::optional<Pose> FrameBuffer::pose(const std::string& frame, Nanoseconds time
     // Finite transforms can multiply to what is not.
     if (pose.position.allFinite() && pose.orientation.coeffs().allFinite()) return pose;
   } catch (const std::runtime_error&) {  // tf2's own, and those of its arithmetic with times
+  }
+  return std::nullopt;
+}
+
+std::optional<Vector3> FrameBuffer::position_in(const std::string& other, const std::string& frame) const {
+  try {
+    const Vector3 position = to_pose(buffer_.lookupTransform(other, frame, ros::Time()).transform).position;
+    if (position.allFinite()) return position;
+  } catch (const std::runtime_error&) {
   }
   return std::nullopt;
 }

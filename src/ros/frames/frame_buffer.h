@@ -40,8 +40,8 @@ class FrameBuffer {
   void follow(double jump_speed, Nanoseconds longest_gap);
   /// The stamps from which on a frame is known now that the transform has come, ascending: its own, and that of one which was
   /// held back, see PoseTrack; none if it is held back or refused. A static one has stamp 0. What is wrong with it is logged now
-  /// and then, and counted.
-  std::vector<Nanoseconds> insert(const ReceivedTransform& received, Nanoseconds now = 0);
+  /// and then, and counted. `carried`: [m] points in the child frame that move with it.
+  std::vector<Nanoseconds> insert(const ReceivedTransform& received, Nanoseconds now = 0, const std::vector<Vector3>& carried = {});
   /// Whether the names are short enough to be kept.
   static bool has_room_for_names(const geometry_msgs::TransformStamped& transform);
   /// The latest stamp that is taken at ROS time `now`; where there is no time, the latest that can be stored.
@@ -54,6 +54,8 @@ class FrameBuffer {
 
   /// Of a frame in the fixed frame at a time; none where the tree does not know it.
   std::optional<Pose> pose(const std::string& frame, Nanoseconds time) const;
+  /// [m] A frame's origin in another frame, as last known; none where the tree does not connect them.
+  std::optional<Vector3> position_in(const std::string& other, const std::string& frame) const;
   /// The newest time at which the frame is known; 0 for one that does not depend on time; none where it is not connected.
   std::optional<Nanoseconds> newest(const std::string& frame) const;
 

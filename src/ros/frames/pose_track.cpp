@@ -1,5 +1,6 @@
 #include "frames/pose_track.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "scene/spline.h"
@@ -24,7 +25,7 @@ Vector3 carried_on(const Vector3& before, const Vector3& mean) {
 
 }  // namespace
 
-std::vector<PoseSample> PoseTrack::add(const PoseSample& sample) {
+std::vector<PoseSample> PoseTrack::add(const PoseSample& sample, const std::vector<Vector3>& carried) {
   if (!last_) {
     begin_anew(sample);
     return {sample};
@@ -34,7 +35,7 @@ std::vector<PoseSample> PoseTrack::add(const PoseSample& sample) {
   if (held_) {
     const PoseSample held = *held_;
     held_.reset();
-    if (is_fast(held, sample)) {
+    if (is_fast(held, sample, carried)) {
       was_fast_ = true;
       follow(held, played);
     } else {
@@ -43,7 +44,7 @@ std::vector<PoseSample> PoseTrack::add(const PoseSample& sample) {
       begin_anew(held);
     }
   }
-  const bool fast = is_fast(*last_, sample);
+  const bool fast = is_fast(*last_, sample, carried);
   if (fast && !was_fast_ && sample.stamp - last_->stamp <= longest_gap_) {
     held_ = sample;
     return played;
@@ -53,8 +54,12 @@ std::vector<PoseSample> PoseTrack::add(const PoseSample& sample) {
   return played;
 }
 
-bool PoseTrack::is_fast(const PoseSample& from, const PoseSample& to) const {
-  return (to.pose.position - from.pose.position).norm() > jump_speed_ * seconds(to.stamp - from.stamp);
+bool PoseTrack::is_fast(const PoseSample& from, const PoseSample& to, const std::vector<Vector3>& carried) const {
+  const double longest_way = jump_speed_ * seconds(to.stamp - from.stamp);
+  const auto goes_further = [&](const Vector3& point) {
+    return (to.pose.position + to.pose.orientation * point - from.pose.position - from.pose.orientation * point).norm() > longest_way;
+  };
+  return goes_further(Vector3::Zero()) || std::any_of(carried.begin(), carried.end(), goes_further);
 }
 
 /// Plays the way to a sample.

@@ -20,7 +20,7 @@ struct PoseSample {
 /// A frame that goes faster than `jump_speed` from one sample to the next, and was slower before and is slower after, has jumped:
 /// it stays where it was until that sample, and is there then. Two fast intervals in a row are motion. What shows the first fast
 /// interval is therefore held back until the next sample tells which it is; until then the frame is known up to the sample
-/// before.
+/// before. A frame goes as fast as the fastest of what it carries: a base that turns takes a hand along.
 ///
 /// Between samples that are far apart the frame follows a spline, so that its velocity does not jump from sample to sample: it
 /// leaves a sample with the velocity with which it came there, that of the two intervals before carried on. No later sample is
@@ -31,8 +31,8 @@ class PoseTrack {
   PoseTrack(double jump_speed, Nanoseconds longest_gap) : jump_speed_(jump_speed), longest_gap_(longest_gap) {}
 
   /// What is to be played now that a sample has come, ascending; empty where it is held back. A sample that is no later than
-  /// those before is played as it is.
-  std::vector<PoseSample> add(const PoseSample& sample);
+  /// those before is played as it is. `carried`: [m] points in the frame that are to be followed, besides its origin.
+  std::vector<PoseSample> add(const PoseSample& sample, const std::vector<Vector3>& carried = {});
 
  private:
   /// Of the frame at a sample, a way and a turn [1/s].
@@ -41,7 +41,7 @@ class PoseTrack {
     Vector3 angular = Vector3::Zero();
   };
 
-  bool is_fast(const PoseSample& from, const PoseSample& to) const;
+  bool is_fast(const PoseSample& from, const PoseSample& to, const std::vector<Vector3>& carried) const;
   void follow(const PoseSample& sample, std::vector<PoseSample>& played);
   void begin_anew(const PoseSample& sample);
 

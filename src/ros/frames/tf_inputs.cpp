@@ -74,10 +74,11 @@ void TfInputs::receive(Nanoseconds ros_now) {
 }
 
 void TfInputs::insert(const ReceivedTransform& received, Nanoseconds now) {
-  const std::vector<Nanoseconds> known = buffer_.insert(received, now);
+  const std::string child = without_slash(received.transform.child_frame_id);
+  const std::vector<Nanoseconds> known = buffer_.insert(received, now, carried_by(child));
   if (known.empty()) return;
   if (buffer_.tree_version() != followers_version_) find_followers();
-  const auto moved = followers_.find(without_slash(received.transform.child_frame_id));
+  const auto moved = followers_.find(child);
   if (moved == followers_.end()) return;
   for (const int frame : moved->second) {
     for (const Nanoseconds stamp : known)
@@ -107,6 +108,18 @@ void TfInputs::find_followers() {
     if (tracks_[i].is_body()) continue;
     for (const std::string& child : buffer_.transforms_of(tracks_[i].name)) followers_[child].push_back(static_cast<int>(i));
   }
+}
+
+/// [m] The origins of the frames that a transform moves, in its child frame.
+std::vector<Vector3> TfInputs::carried_by(const std::string& child) const {
+  std::vector<Vector3> carried;
+  const auto moved = followers_.find(child);
+  if (moved == followers_.end()) return carried;
+  for (const int frame : moved->second) {
+    if (tracks_[frame].name == child) continue;
+    if (const auto position = buffer_.position_in(child, tracks_[frame].name)) carried.push_back(*position);
+  }
+  return carried;
 }
 
 void TfInputs::update_history(Track& track) const {

@@ -120,6 +120,7 @@ class TfInputs {
   void unsee_frames();
   void replay_recent(Nanoseconds now, Nanoseconds latest);
   void find_followers();
+  std::vector<Vector3> carried_by(const std::string& child) const;
   void update_history(Track& track) const;
   void fill_history(Track& track, Nanoseconds stamp) const;
   const Track* find_track(const std::string& frame) const;
