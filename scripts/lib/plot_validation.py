@@ -54,6 +54,20 @@ CASES = {
     'number of segments': ('Number of segments', '', ''),
 }
 
+# What is counted along the axis of a case, and what its errors are, where that is not the number of segments and a relative error.
+# The rods of test/validation are 1 m long: distances in m are parts of the length.
+REFINEMENTS = {'step size': 'number of steps in 0.64 s'}
+ERRORS = {
+    'elastic catenary': 'distance / length,\nrelative error of the force',
+    'end moment': 'gap / length,\nrelative error of the moment',
+    'natural circle': 'gap / length',
+    'clamped rod': 'distance / length,\nrelative error of forces and moments',
+    'natural helix': 'distance of the end / length',
+    'at rest': 'largest distance from the start [m]',
+    'folded chain': 'error of the energy / (m g L),\nrelative error of the time',
+    'step size': 'largest distance / length',
+}
+
 
 def read(path):
     with open(path, newline='') as file:
@@ -111,8 +125,8 @@ def plot_errors(axes, case, rows):
     axes.xaxis.set_major_locator(FixedLocator(refinements))
     axes.xaxis.set_major_formatter(StrMethodFormatter('{x:g}'))
     axes.xaxis.set_minor_locator(NullLocator())
-    axes.set_xlabel('number of segments, or of steps')
-    axes.set_ylabel('relative error')
+    axes.set_xlabel(REFINEMENTS.get(case, 'number of segments'))
+    axes.set_ylabel(ERRORS.get(case, 'relative error'))
     axes.grid(color='0.9')
     return legend(axes, handles)
 

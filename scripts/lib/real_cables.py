@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """real_cables.py PROGRAMS DATA WORK PICTURES [SEGMENTS]: fits the cables of DATA (dloK_R.csv) with the programs in PROGRAMS, keeps
-scenes and reports in WORK (those that are there already are taken), prints the tables of doc/real_cables.md, and draws its
-pictures."""
+scenes and reports in WORK (those that are there already are taken), prints the tables of
+doc/real_cables_measured.md, and draws its pictures."""
 import glob
 import json
 import os

@@ -212,7 +212,7 @@ TEST(CableMarkers, ColorsByBendAreOfTheSectionsLimits) {
   EXPECT_EQ(none[10], color_of_load(0));
   EXPECT_EQ(none[40], color_of_load(1));
   const Legend legend = ColorScale(scene).legend();
-  EXPECT_EQ(legend.quantity, "bend radius over the smallest allowed");
+  EXPECT_EQ(legend.quantity, "bend radius / smallest allowed");
   EXPECT_EQ(legend.values.front(), 1);
   EXPECT_EQ(legend.values.back(), 5);
   EXPECT_TRUE(std::is_sorted(legend.values.begin(), legend.values.end()));

@@ -120,7 +120,7 @@ TEST(Color, LegendHasTheColorsOfTheCables) {
     }
     EXPECT_TRUE(std::is_sorted(legend.values.begin(), legend.values.end()));
     EXPECT_EQ(legend.unit, color_by == ColorBy::strain ? "%" : "N");
-    EXPECT_EQ(legend.quantity.find("cube-root scale") != std::string::npos, color_by == ColorBy::contact);
+    EXPECT_EQ(legend.quantity.find("cube root") != std::string::npos, color_by == ColorBy::contact);
   }
 }
 

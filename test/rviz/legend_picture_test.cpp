@@ -51,7 +51,7 @@ TEST(LegendPicture, ShowsTheColors) {
 TEST(LegendPicture, IsAsWideAsItsTitle) {
   Legend legend = legend_from_blue_to_red();
   const int least = legend_picture(legend, QApplication::font()).width();
-  legend.quantity = "contact force, cube-root scale";
+  legend.quantity = "contact force, by its cube root";
   const int needed = QFontMetrics(QApplication::font()).horizontalAdvance(QString::fromStdString(legend.quantity) + " [N]");
   EXPECT_GE(legend_picture(legend, QApplication::font()).width(), std::max(least, needed));
 }

@@ -45,10 +45,10 @@ TEST(Options, haveDefaults) {
 TEST(Options, everyMistakeIsNamedAtOnce) {
   std::vector<std::string> errors;
   parse({"--duration", "-1", "--rate=nan", "--durashun", "3", "b.yaml", "--motion", "--output=", "--rate", "5"}, &errors);
-  for (const char* start :
-       {"--duration: \"-1\"; allowed: 0 or any number above [s]", "--rate: \"nan\"; allowed: any number above 0",
-        "--durashun: no such option (did you mean --duration?)", "\"b.yaml\": a second scene", "--motion: no value",
-        "--output: \"\"; allowed: the name of a file", "--rate: given twice"})
+  for (const char* start : {"--duration: \"-1\"; allowed: 0 or more [s]", "--rate: \"nan\"; allowed: any number above 0",
+                            "--durashun: no such option (did you mean --duration?)",
+                            "\"b.yaml\": a second scene; allowed: one, and \"3\" is given already", "--motion: no value",
+                            "--output: \"\"; allowed: the name of a file", "--rate: given twice"})
     EXPECT_TRUE(has_line(errors, start)) << start << "\n" << joined(errors);
   parse({}, &errors);
   EXPECT_TRUE(has_line(errors, "no scene"));

@@ -114,7 +114,7 @@ const JunctionMistake mistakes[] = {
      "junctions[0].branches[0].rotation: 0.6; allowed: three finite numbers"},
     {"infiniteRotation", "rotation: [0, 0, 0.6]", "rotation: [0, 0, .inf]", "junctions[0].branches[0].rotation: [0, 0, inf];"},
     {"type", "type: hinge", "type: weld", "junctions[0].type: \"weld\"; allowed: rigid | hinge"},
-    {"mass", "mass: 0.01", "mass: -0.01", "junctions[0].mass: -0.01; allowed: 0 or any number above [kg]"},
+    {"mass", "mass: 0.01", "mass: -0.01", "junctions[0].mass: -0.01; allowed: 0 or more [kg]"},
     {"withItselfAtOnePlace", "cable: right, at: start, branches: [{cable: twig}]",
      "cable: twig, at: end, branches: [{cable: twig, end: end}]",
      "junctions[1].branches[0]: end of \"twig\", where the junction is; allowed: another cable, or another place of this one"},

@@ -138,7 +138,7 @@ const Mistake mistakes[] = {
     {"infiniteBendingStiffness", "radius: 0.005", "radius: 0.005, bending_stiffness: .inf",
      "materials.m.bending_stiffness: inf;"},
     {"negativeStiffnessAboutOneAxis", "radius: 0.005", "radius: 0.005, bending_stiffness: [1, -0.1]",
-     "materials.m.bending_stiffness: [1, -0.1]; allowed: 0 or any number above [N m^2]"},
+     "materials.m.bending_stiffness: [1, -0.1]; allowed: 0 or more [N m^2]"},
     {"threeBendingStiffnesses", "radius: 0.005", "radius: 0.005, bending_stiffness: [1, 1, 1]",
      "materials.m.bending_stiffness: [1, 1, 1]; allowed: one number, or two"},
     {"ribbonWithoutTorsionalStiffness", "radius: 0.005", "radius: 0.005, bending_stiffness: [0.5, 0.02]",

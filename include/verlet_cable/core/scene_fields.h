@@ -24,8 +24,8 @@ struct Range {
 
 constexpr Range positive{1e-12, 1e12, "any number above 0"};
 constexpr Range positive_or_infinite{1e-12, 1e12, "any number above 0, or .inf", true};
-constexpr Range not_negative_or_infinite{0, 1e12, "0 or any number above, or .inf", true};
-constexpr Range not_negative{0, 1e12, "0 or any number above"};
+constexpr Range not_negative_or_infinite{0, 1e12, "0 or more, or .inf", true};
+constexpr Range not_negative{0, 1e12, "0 or more"};
 constexpr Range coordinate{-1e9, 1e9, "finite numbers"};
 constexpr Range unit_interval{0, 1, "numbers"};
 constexpr double largest_integer = std::numeric_limits<int>::max();
@@ -46,7 +46,7 @@ constexpr std::array<Field<SceneDesc>, 7> scene_fields{{
     {"tolerance", &SceneDesc::tolerance, "1/s", {1e-6, 1e-3, "any number from 1e-6 to 1e-3"}},
     {"publish_rate", &SceneDesc::publish_rate, "Hz", {1e-3, 1e4, "any number above 0"}},
     // tf is buffered for 60 s: latency and timeout together must stay inside.
-    {"tf_latency", &SceneDesc::tf_latency, "s", {0, 30, "0 or any number above, at most 30"}},
+    {"tf_latency", &SceneDesc::tf_latency, "s", {0, 30, "0 or more, at most 30"}},
     {"tf_timeout", &SceneDesc::tf_timeout, "s", {1e-3, 30, "any number above 0, at most 30"}},
     {"max_frame_speed", &SceneDesc::max_frame_speed, "m/s", positive_or_infinite},
     {"jump_speed", &SceneDesc::jump_speed, "m/s", positive_or_infinite},

@@ -309,7 +309,7 @@ void IslandStepper::finish_bodies(const Island& island, double from, double to) 
   for (const int body : island.bodies) state_.frames.poses[state_.bodies[body].frame] = state_.bodies[body].pose;
 }
 
-/// What did not converge goes on from rest.
+/// What did not converge is stopped: its next step starts from rest.
 void IslandStepper::stop_bodies(const Island& island) {
   for (const int body : island.bodies) {
     state_.bodies[body].velocity = state_.bodies[body].angular_velocity = Vector3::Zero();

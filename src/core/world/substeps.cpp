@@ -120,7 +120,7 @@ double IslandStepper::work_of_attempt(const Island& island) const {
   return work;
 }
 
-/// What did not converge goes on from rest.
+/// What did not converge is stopped: its next step starts from rest.
 void IslandStepper::stop(const Island& island, IslandOutcome& found) {
   stop_bodies(island);
   if (!island.bodies.empty()) note_status(Status::degraded, rigid_body_id(island.bodies.front()), 0, found.bodies);

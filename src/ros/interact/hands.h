@@ -15,9 +15,9 @@
 namespace verlet_cable {
 
 /// Topic `hands/update` (visualization_msgs/InteractiveMarkerUpdate), with `hands/update_full` and the subscribed topic
-/// `hands/feedback`: interactive markers. Attachments can be dragged and rotated, nodes are held as long as the mouse
-/// button is down, and menus pin, release, cut and reset. Poses that are not finite, out of bounds or in an unknown frame are
-/// refused. Nothing is computed without subscribers.
+/// `hands/feedback`: interactive markers, the handles in rviz. Attachments can be dragged and rotated, nodes are held as long as
+/// the mouse button is down, and menus pin, release, cut and reset. Poses that are not finite, out of bounds or in an unknown
+/// frame are refused. Nothing is computed without subscribers.
 class Hands {
  public:
   Hands(ros::NodeHandle& private_node, Simulation& simulation);

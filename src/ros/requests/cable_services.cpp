@@ -46,7 +46,7 @@ FindFrame find_frame_in(const Simulation& simulation) {
 /// Says how far the place that was found is from the point that was given.
 EditResult with_distance(EditResult result, const CableLocation& location, double distance) {
   if (result.ok && location.mode == CableLocation::NEAREST)
-    result.message += "; the nearest point, " + rounded_text(distance, 3) + " m away";
+    result.message += "; the nearest point of the cable is " + rounded_text(distance, 3) + " m from the point that was given";
   return result;
 }
 

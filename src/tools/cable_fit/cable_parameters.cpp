@@ -12,7 +12,7 @@
 namespace verlet_cable::cable_fit {
 namespace {
 
-/// Errors are the same at 1 ms within a percent, see doc/real_cables.md.
+/// Errors are the same at 1 ms within a percent.
 constexpr double time_step = 0.01;  // [s]
 
 /// A property of the material, in proportion to the cable's weight.

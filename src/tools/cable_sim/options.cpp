@@ -6,7 +6,7 @@
 namespace verlet_cable::cable_sim {
 namespace {
 
-constexpr Range duration_range{0, 1e9, "0 or any number above"};
+constexpr Range duration_range{0, 1e9, "0 or more"};
 constexpr Range rate_range{1e-9, 1e9, "any number above 0, at most 1 / time_step"};
 constexpr const char* file = "the name of a file";
 
@@ -40,7 +40,7 @@ Options parse_options(const std::vector<std::string>& arguments, std::vector<std
   if (options.has_rate) options.rate = rate;
   for (const std::string& scene : scenes) {
     if (!options.scene.empty())
-      errors.push_back(quoted(scene) + ": a second scene; allowed: one, it is " + quoted(options.scene));
+      errors.push_back(quoted(scene) + ": a second scene; allowed: one, and " + quoted(options.scene) + " is given already");
     if (scene.empty()) errors.push_back("\"\": an empty argument; allowed: the name of a scene file");
     if (options.scene.empty()) options.scene = scene;
   }
