@@ -369,6 +369,24 @@ TEST_F(Robot, aRobotOfWhichNothingCanBeReadIsAnError) {
   EXPECT_EQ(errors(collision("<sphere radius='0'/>")).size(), 0u);
 }
 
+TEST_F(Robot, whatNoObstacleNeedsMayBeWrong) {
+  const std::string sphere = "<geometry><sphere radius='1'/></geometry>";
+  const auto spheres = [&](const std::string& in_link, const std::string& geometry) {
+    write("odd.urdf", "<robot name='r'><material name='m'/><material name='m'/><link name='a'>" + in_link + "<collision>" + sphere +
+                          "</collision></link><!-- <visual> --></robot>");
+    return all_obstacles(read("{on_bad_mesh: error, file: " + path("odd.urdf") + ", geometry: " + geometry + "}")).size();
+  };
+  for (const std::string& in_link : {std::string("<inertial><mass value='1'/><inertia ixx='x'/></inertial>"), std::string("<inertial/>"),
+                                     "<visual>" + sphere + "<material><color rgba='1 1 1 1'/></material></visual>"}) {
+    EXPECT_EQ(spheres(in_link, "collision"), 1u) << in_link;
+    EXPECT_EQ(spheres(in_link, "collision_or_visual"), 1u) << in_link;
+  }
+  EXPECT_EQ(spheres("<visual><geometry><mesh/></geometry></visual>", "collision"), 1u);
+  EXPECT_EQ(spheres("<visual>" + sphere + "<material><color/></material></visual><visual>" + sphere + "</visual>", "visual"), 2u);
+  EXPECT_THROW(spheres("<visual><geometry><mesh/></geometry></visual>", "visual"), SceneError);
+  EXPECT_THROW(spheres("<collision><geometry><mesh/></geometry></collision>", "collision"), SceneError);
+}
+
 TEST_F(Robot, openAndMirroredMeshesAreObstacles) {
   Triangles open = box_triangles({1, 1, 1});
   open.triangles.pop_back();
