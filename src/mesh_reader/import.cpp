@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include "file_checks.h"
 
@@ -22,6 +23,9 @@ using mesh_protocol::most_triangles;
 
 /// Cutting a face into triangles takes a time that grows with the square of this.
 constexpr unsigned most_corners = 4096;
+
+using Transform = aiMatrix4x4t<double>;
+using Point = aiVector3t<double>;
 
 /// A file system with a single file, which is in memory.
 class OneFile : public Assimp::IOSystem {
@@ -79,15 +83,29 @@ void check_faces(const aiScene& scene) {
 /// Triangles whose vertices are found by their coordinates.
 class TriangleList {
  public:
-  void add(const aiMesh& mesh) {
+  /// The meshes of a node and of those below it; `above`: what places the node. Assimp's own step for this,
+  /// aiProcess_PreTransformVertices, skips transforms that differ from none by less than 0.01, that is, by a centimetre.
+  void add(const aiScene& scene, const aiNode& node, const Transform& above) {
+    const Transform placed = above * static_cast<Transform>(node.mTransformation);
+    for (unsigned m = 0; m < node.mNumMeshes; ++m) add(*scene.mMeshes[node.mMeshes[m]], placed);
+    for (unsigned c = 0; c < node.mNumChildren; ++c) add(scene, *node.mChildren[c], placed);
+  }
+
+  Mesh take() && { return std::move(mesh_); }
+
+ private:
+  void add(const aiMesh& mesh, const Transform& placed) {
+    const bool is_mirrored = placed.Determinant() < 0;
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
       const aiFace& face = mesh.mFaces[f];
       if (face.mNumIndices != 3) continue;  // points and lines
       mesh_protocol::Triangle triangle;
       for (int i = 0; i < 3; ++i) {
         if (face.mIndices[i] >= mesh.mNumVertices) throw Refused("a face has a vertex that is not there");
-        triangle[i] = index_of(mesh.mVertices[face.mIndices[i]]);
+        const aiVector3D& vertex = mesh.mVertices[face.mIndices[i]];
+        triangle[i] = index_of(placed * Point(vertex.x, vertex.y, vertex.z));
       }
+      if (is_mirrored) std::swap(triangle[1], triangle[2]);
       // A triangle between two points: its neighbours on both sides are neighbours.
       if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) continue;
       mesh_.triangles.push_back(triangle);
@@ -95,10 +113,7 @@ class TriangleList {
     }
   }
 
-  Mesh take() && { return std::move(mesh_); }
-
- private:
-  std::int32_t index_of(const aiVector3D& vertex) {
+  std::int32_t index_of(const Point& vertex) {
     const mesh_protocol::Vertex key{static_cast<float>(vertex.x), static_cast<float>(vertex.y), static_cast<float>(vertex.z)};
     for (const float coordinate : key)
       if (!std::isfinite(coordinate)) throw Refused("a vertex is not finite");
@@ -122,11 +137,13 @@ Mesh import(const std::string& format, const std::string& content) {
   const aiScene* scene = importer.ReadFile(name, 0);
   if (!scene) refuse(importer);
   check_faces(*scene);
-  scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_PreTransformVertices);
+  scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
   if (!scene) refuse(importer);
   TriangleList triangles;
-  for (unsigned i = 0; i < scene->mNumMeshes; ++i) triangles.add(*scene->mMeshes[i]);
-  return std::move(triangles).take();
+  triangles.add(*scene, *scene->mRootNode, Transform());
+  Mesh mesh = std::move(triangles).take();
+  if (mesh.triangles.empty()) throw Refused("no mesh: it has no triangles");
+  return mesh;
 }
 
 }  // namespace verlet_cable::mesh_reader

@@ -111,15 +111,21 @@ void check_number(std::size_t number, std::size_t most, const std::string& what)
     throw ResourceError("no URDF: " + std::to_string(number) + " " + what + ", more than " + std::to_string(most));
 }
 
-/// The parser and the model call themselves for each level of elements and of links.
-void check_text(const std::string& text) {
+/// Checks a text, since the parser and the model call themselves for each level of elements and of links, and blanks what is not
+/// needed: urdfdom takes no geometry of a link after an inertia, a material or a visual element that it does not understand.
+std::string needed_text(std::string text, RobotDesc::Geometry geometry) {
   check_number(text.size(), largest_text, "bytes");
-  const XmlOutline outline = outline_of(text);
+  std::set<std::string> unneeded = {"inertial", "material"};
+  if (geometry == RobotDesc::Geometry::collision) unneeded.insert("visual");
+  const XmlOutline outline = outline_of(text, unneeded);
   check_number(outline.levels, deepest_level, "levels of nested elements");
   check_number(outline.links, most_links, "links");
   check_number(outline.attributes, most_attributes, "attributes on one element");
   if (!outline.problem.empty()) throw ResourceError("no URDF: " + outline.problem);
   check_characters(text);
+  for (const auto& [first, end] : outline.named)
+    std::fill(text.begin() + static_cast<std::ptrdiff_t>(first), text.begin() + static_cast<std::ptrdiff_t>(end), ' ');
+  return text;
 }
 
 class TreeBuilder {
@@ -203,9 +209,9 @@ class TreeBuilder {
 }  // namespace
 
 std::vector<LinkDesc> read_urdf(const std::string& text, const RobotDesc& robot) {
-  check_text(text);
+  const std::string needed = needed_text(text, robot.geometry);
   const CapturedErrors errors;
-  const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(replaced(text, '%', percent_stand_in));
+  const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(replaced(needed, '%', percent_stand_in));
   // urdfdom goes on without a collision that it cannot read.
   if (!model || !model->getRoot() || !errors.text().empty()) {
     const std::string reason = errors.text().empty() ? "it does not parse" : errors.text();

@@ -84,22 +84,23 @@ std::string file_of_description(const RobotDesc& robot) {
   return is_uri ? robot.description : robot.description.substr(prefix.size());
 }
 
-/// The URDF's text and the key that it comes from. The parameter comes before the file: a scene with both is for the node and for
-/// cable_sim.
+/// The URDF's text, the key that it comes from and the file's name, which a parameter does not have. The parameter comes before the
+/// file: a scene with both is for the node and for cable_sim.
 struct Description {
   std::string key;
   std::string text;
+  std::string file;
 };
 Description read_description(const RobotDesc& robot, const SceneSources& sources, ErrorList& errors) {
   const std::string named = file_of_description(robot);
   if (sources.parameter && named.empty()) {
-    if (const auto text = sources.parameter(robot.description)) return {"robot.description", *text};
+    if (const auto text = sources.parameter(robot.description)) return {"robot.description", *text, ""};
   }
   const std::string& file = named.empty() ? robot.file : named;
   const std::string key = named.empty() ? "robot.file" : "robot.description";
   if (!file.empty()) {
     try {
-      return {key, read_file(file_of(file, sources.files))};
+      return {key, read_file(file_of(file, sources.files)), file};
     } catch (const ResourceError& error) {
       errors.add_unread(key, quoted(file) + ": " + error.what(), urdf_words);
     }
@@ -109,6 +110,12 @@ Description read_description(const RobotDesc& robot, const SceneSources& sources
     errors.add_unread("robot.file", "missing", "a file with a URDF: there are no parameters here");
   }
   return {};
+}
+
+/// The name of a mesh in a URDF: a relative path starts at the URDF's file.
+std::string named_beside(const std::string& file, const std::string& uri) {
+  const bool is_relative = uri.find("://") == std::string::npos && !uri.empty() && uri.front() != '/';
+  return is_relative ? file.substr(0, file.rfind('/') + 1) + uri : uri;
 }
 
 void check_links(const Value& root, const RobotDesc& robot) {
@@ -136,18 +143,31 @@ void read_robot(const Value& root, const SceneSources& sources, MeshReader& mesh
     return root.errors->add_unread(description.key, quoted(name) + ": " + error.what(), urdf_words);
   }
   check_links(root, robot);
+  struct LeftOut {
+    std::string key, problem;
+    bool is_mesh;
+  };
+  std::vector<LeftOut> left_out;
+  bool is_any_left = false;
   for (LinkDesc& link : robot.tree) {
     const auto is_left_out = [&](ObstacleDesc& obstacle) {
+      const bool is_mesh = obstacle.type == ShapeType::mesh;
+      if (is_mesh) obstacle.uri = named_beside(description.file, obstacle.uri);
       const auto problem = problem_of(obstacle, meshes);
       if (!problem) return false;
-      const std::string key = "robot." + escaped(obstacle.name) + (obstacle.type == ShapeType::mesh ? ".uri" : "");
-      if (robot.on_bad_mesh == RobotDesc::OnBadMesh::error)
-        root.errors->add_unread(key, *problem, "geometry with a size, or robot.on_bad_mesh: warn");
-      else
-        robot.left_out.push_back(key + " is left out: " + *problem);
+      left_out.push_back({"robot." + escaped(obstacle.name) + (is_mesh ? ".uri" : ""), *problem, is_mesh});
       return true;
     };
     link.obstacles.erase(std::remove_if(link.obstacles.begin(), link.obstacles.end(), is_left_out), link.obstacles.end());
+    is_any_left = is_any_left || !link.obstacles.empty();
+  }
+  for (const auto& [key, problem, is_mesh] : left_out) {
+    if (robot.on_bad_mesh == RobotDesc::OnBadMesh::error)
+      root.errors->add_unread(key, problem, "geometry with a size, or robot.on_bad_mesh: warn");
+    else if (is_mesh && !is_any_left)
+      root.errors->add_unread(key, problem, "a mesh that can be read: without it nothing is left of the robot");
+    else
+      robot.left_out.push_back(key + " is left out: " + problem);
   }
 }
 

@@ -13,7 +13,7 @@ namespace {
 /// bytes that are no UTF-8), since the levels of one parser would not be those of another.
 class Scanner {
  public:
-  explicit Scanner(const std::string& xml) : xml_(xml), end_(length_of_text(xml)) {}
+  Scanner(const std::string& xml, const std::set<std::string>& names) : xml_(xml), end_(length_of_text(xml)), names_(names) {}
 
   XmlOutline outline() && {
     while (outline_.problem.empty() && (at_ = xml_.find('<', at_)) < end_) {
@@ -28,6 +28,7 @@ class Scanner {
       } else if (starts("</")) {
         skip_to(">", "an end tag without end");
         open_ -= std::min<std::size_t>(open_, 1);
+        if (is_in_named_ && open_ == level_of_named_) end_named();
       } else {
         read_start_tag();
       }
@@ -79,21 +80,39 @@ class Scanner {
     outline_.levels = std::max(outline_.levels, open_ + 1);
     outline_.attributes = std::max(outline_.attributes, attributes);
     if (xml_.compare(name, name_end - name, "link") == 0) ++outline_.links;
-    if (xml_[at - 1] != '/') ++open_;
+    const bool is_named = !is_in_named_ && names_.count(xml_.substr(name, name_end - name)) > 0;
+    if (is_named) begin_named();
     at_ = at + 1;
+    if (xml_[at - 1] != '/')
+      ++open_;
+    else if (is_named)
+      end_named();
+  }
+
+  void begin_named() {
+    is_in_named_ = true;
+    level_of_named_ = open_;
+    outline_.named.emplace_back(at_, xml_.size());
+  }
+  void end_named() {
+    is_in_named_ = false;
+    outline_.named.back().second = at_;
   }
 
   const std::string& xml_;
   const std::size_t end_;  ///< of what is text
+  const std::set<std::string>& names_;
   XmlOutline outline_;
   std::size_t at_ = 0;
   std::size_t open_ = 0;
+  bool is_in_named_ = false;
+  std::size_t level_of_named_ = 0;
 };
 
 }  // namespace
 
-XmlOutline outline_of(const std::string& xml) {
-  return Scanner(xml).outline();
+XmlOutline outline_of(const std::string& xml, const std::set<std::string>& names) {
+  return Scanner(xml, names).outline();
 }
 
 }  // namespace verlet_cable

@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -135,6 +136,23 @@ TEST_F(MeshFile, formatsAreStlObjAndDae) {
   }
   for (const char* name : {"a.x3d", "a.ply", "a.gltf", "a.zae", "a", "stl"})
     expect_refused(name, collada, "its name ends neither with .stl, .obj nor .dae");
+}
+
+TEST_F(MeshFile, nodesOfColladaPlaceTheirMeshes) {
+  const auto placed = [&](const std::string& place) { return read("placed.dae", replaced(collada, "<node>", "<node>" + place)); };
+  // Also by millimetres and by less than a hundredth of a radian. Coordinates are read in single precision.
+  for (const double shift : {1e-4, 0.003, 0.3}) {
+    const auto mesh = placed("<translate>0 " + std::to_string(shift) + " 0</translate>");
+    EXPECT_NEAR(mesh->bounds().min().y(), shift, 1e-7);
+    EXPECT_NEAR(mesh->bounds().max().y(), 1 + shift, 1e-7);
+  }
+  EXPECT_NEAR(placed("<rotate>0 0 1 0.5</rotate>")->bounds().min().x(), -std::sin(M_PI / 360), 1e-7);
+  // By the nodes above it, too. A mirror image is not turned inside out.
+  const std::string instance = "<node><instance_geometry url=\"#box\"/></node>";
+  const auto mirrored = read("mirrored.dae", replaced(collada, instance, "<node><scale>-1 1.005 1</scale>" + instance + "</node>"));
+  EXPECT_NEAR(mirrored->bounds().min().x(), -1, 1e-7);
+  EXPECT_NEAR(mirrored->bounds().max().y(), 1.005, 1e-7);
+  EXPECT_LT(mirrored->closest_point(Vector3(-0.5, 0.5, 0.5)).distance, 0);
 }
 
 TEST_F(MeshFile, verticesThatDifferByRoundingAreOne) {

@@ -354,6 +354,39 @@ TEST_F(Robot, badGeometryIsLeftOutAndNamed) {
   }
 }
 
+TEST_F(Robot, aRobotOfWhichNothingCanBeReadIsAnError) {
+  const auto errors = [&](const std::string& geometry) {
+    write("bad.urdf", "<robot name='r'><link name='base'/><link name='arm'>" + geometry +
+                          "</link><joint name='j' type='fixed'><parent link='base'/><child link='arm'/></joint></robot>");
+    return errors_of(sound_scene + "robot: {file: " + path("bad.urdf") + "}\n");
+  };
+  const auto collision = [](const std::string& shape) { return "<collision><geometry>" + shape + "</geometry></collision>"; };
+  const std::string missing = collision("<mesh filename='package://none/a.stl'/>");
+  const std::vector<std::string> lines = errors(missing + missing);
+  EXPECT_EQ(lines.size(), 2u) << joined(lines);
+  EXPECT_TRUE(has_line(lines, "robot.arm.uri: \"package://none/a.stl\": package \"none\" is not found")) << joined(lines);
+  EXPECT_EQ(errors(missing + collision("<sphere radius='1'/>")).size(), 0u);
+  EXPECT_EQ(errors(collision("<sphere radius='0'/>")).size(), 0u);
+}
+
+TEST_F(Robot, whatNoObstacleNeedsMayBeWrong) {
+  const std::string sphere = "<geometry><sphere radius='1'/></geometry>";
+  const auto spheres = [&](const std::string& in_link, const std::string& geometry) {
+    write("odd.urdf", "<robot name='r'><material name='m'/><material name='m'/><link name='a'>" + in_link + "<collision>" + sphere +
+                          "</collision></link><!-- <visual> --></robot>");
+    return all_obstacles(read("{on_bad_mesh: error, file: " + path("odd.urdf") + ", geometry: " + geometry + "}")).size();
+  };
+  for (const std::string& in_link : {std::string("<inertial><mass value='1'/><inertia ixx='x'/></inertial>"), std::string("<inertial/>"),
+                                     "<visual>" + sphere + "<material><color rgba='1 1 1 1'/></material></visual>"}) {
+    EXPECT_EQ(spheres(in_link, "collision"), 1u) << in_link;
+    EXPECT_EQ(spheres(in_link, "collision_or_visual"), 1u) << in_link;
+  }
+  EXPECT_EQ(spheres("<visual><geometry><mesh/></geometry></visual>", "collision"), 1u);
+  EXPECT_EQ(spheres("<visual>" + sphere + "<material><color/></material></visual><visual>" + sphere + "</visual>", "visual"), 2u);
+  EXPECT_THROW(spheres("<visual><geometry><mesh/></geometry></visual>", "visual"), SceneError);
+  EXPECT_THROW(spheres("<collision><geometry><mesh/></geometry></collision>", "collision"), SceneError);
+}
+
 TEST_F(Robot, openAndMirroredMeshesAreObstacles) {
   Triangles open = box_triangles({1, 1, 1});
   open.triangles.pop_back();
@@ -386,6 +419,20 @@ TEST_F(Robot, visualGeometryMayBeChosen) {
 TEST_F(Robot, descriptionsMayBeFiles) {
   EXPECT_EQ(read("{description: \"file:" + path("robot.urdf") + "\"}").robot->tree.size(), 4u);
   EXPECT_EQ(read("{description: \"file://" + path("robot.urdf") + "\"}").robot->tree.size(), 4u);
+}
+
+TEST_F(Robot, relativeMeshesAreBesideTheFile) {
+  write("ws/my_robot/package.xml", "<package><name>my_robot</name></package>");
+  write("ws/my_robot/meshes/box.stl", stl_of(box_triangles({1, 1, 1})));
+  write("ws/my_robot/urdf/robot.urdf", replaced(urdf, "MESH", "../meshes/box.stl"));
+  ASSERT_EQ(setenv("ROS_PACKAGE_PATH", path("ws").c_str(), 1), 0);
+  const std::string from_scene = "ws/my_robot/urdf/robot.urdf";
+  for (const std::string& file : {from_scene, path(from_scene), "file://" + path(from_scene), std::string("package://my_robot/urdf/robot.urdf")}) {
+    const std::string text = sound_scene + "robot: {on_bad_mesh: error, file: \"" + file + "\"}\n";
+    const SceneDesc scene = read_scene_text(text, {{true, directory_}, {}});
+    EXPECT_EQ(scene.robot->tree[1].obstacles[0].mesh->bounds().sizes(), Vector3(2, 3, 4)) << file;
+  }
+  unsetenv("ROS_PACKAGE_PATH");
 }
 
 TEST_F(Robot, scaledMeshesAreThoseOfTheFile) {
