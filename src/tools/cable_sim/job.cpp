@@ -37,8 +37,11 @@ void check_outputs(const Options& options, const std::vector<std::string>& scene
   for (const std::string& file : scene_files) others.push_back({"a file of the scene", file});
   others.push_back({"the output", options.output});
   others.push_back({"the output of bodies", options.bodies});
+  others.push_back({"the summary", options.summary});
+  others.push_back({"the plot", options.plot});
   for (const Output& output :
-       {Output{"--output", options.output}, Output{"--bodies", options.bodies}, Output{"--summary", options.summary}}) {
+       {Output{"--output", options.output}, Output{"--bodies", options.bodies}, Output{"--summary", options.summary},
+        Output{"--plot", options.plot}, Output{"--gif", options.gif}}) {
     if (output.path.empty()) continue;
     const std::string problem = tools::why_not_writable(output.path);
     if (!problem.empty()) errors.push_back(std::string(output.option) + ": " + tools::cannot_write(output.path, problem));
