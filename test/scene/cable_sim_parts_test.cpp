@@ -3,6 +3,7 @@
 #include "cable_sim/event_log.h"
 #include "cable_sim/job.h"
 #include "cable_sim/options.h"
+#include "common/duration_text.h"
 #include "scene/frame_source.h"
 #include "scene_text.h"
 
@@ -129,6 +130,18 @@ TEST(FrameSource, aJumpAtTheStartIsNoVelocityToBeginWith) {
   EXPECT_EQ(start(0.001), 0);
   EXPECT_EQ(start(0.005), 0);
   EXPECT_NEAR(start(0.5), 2, 1e-12);
+}
+
+TEST(Durations, areInUnitsThatSuitThem) {
+  EXPECT_EQ(tools::progress_text(359.1, 1e5), "6 of 1667 min");
+  EXPECT_EQ(tools::progress_text(0.26, 2), "0.3 of 2 s");
+  EXPECT_EQ(tools::progress_text(59.6, 100), "60 of 100 s");
+  EXPECT_EQ(tools::progress_text(4e5, 4e6), "111 of 1111 h");
+  EXPECT_EQ(tools::duration_text(2.11e3), "35 min");
+  EXPECT_EQ(tools::duration_text(119), "119 s");
+  EXPECT_EQ(tools::duration_text(120), "2.0 min");
+  EXPECT_EQ(tools::duration_text(0.34), "0.3 s");
+  EXPECT_EQ(tools::duration_text(3e4), "8.3 h");
 }
 
 TEST(EventLog, anEpisodeIsTwoEventsHoweverManySteps) {

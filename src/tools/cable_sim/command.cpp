@@ -125,7 +125,7 @@ int simulate_job(const Options& options, const Job& job, const Painter* painter)
 
   const bool has_data = tools::is_standard_output(options.output) || tools::is_standard_output(options.bodies) ||
                         tools::is_standard_output(options.summary);
-  tools::ProgressBar progress(options.duration, "s", has_data);
+  tools::ProgressBar progress(options.duration, nullptr, has_data);
   EventLog events(progress);
   if (job.settle) world.settle();
   const tools::StopRequest stop;
