@@ -170,6 +170,22 @@ TEST(EventLog, anEpisodeIsTwoEventsHoweverManySteps) {
   EXPECT_NE(printed.find("frame_out_of_range: " + world.frames()[1]), std::string::npos) << printed;
 }
 
+TEST(EventLog, aDegradedStepHasOneCause) {
+  SceneDesc scene = read_scene_text(R"(
+time_step: 0.005
+nets: [{name: flag, grid: {rows: 6, columns: 8, spacing: 0.05}, mass: 1.0e-4, stiffness: 1.0e+6, damping: 10,
+        attachments: [{name: pole, node: 0}]}])");
+  World world(scene, FrameSource(scene, {}).at(0));
+  tools::ProgressBar progress(1);
+  EventLog log(progress);
+  testing::internal::CaptureStderr();
+  log.observe(world, world.step(FrameSource(scene, {}).at(0)), {});
+  testing::internal::GetCapturedStderr();
+  ASSERT_EQ(log.events().size(), 1u);
+  EXPECT_EQ(log.events()[0].type, "degraded");
+  EXPECT_EQ(log.events()[0].message, "its springs are too stiff for the time_step, and were softened; use a shorter time_step");
+}
+
 /// A rope that hangs into a table, and is carried out of it.
 TEST(EventLog, aStatusSaysOfWhatItIsAndHowLongItLasted) {
   SceneDesc scene = read_scene_text(R"(
