@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """move_joints.py: moves the joints of config/scenes/dress_pack.urdf, from rest, on joint_states at 100 Hz."""
-import math
 import os
 import sys
 
@@ -9,25 +8,9 @@ from sensor_msgs.msg import JointState
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import node_thread  # noqa: E402
+from example_motions import joint_positions  # noqa: E402
 
 RATE = 100.0  # [Hz]
-RAMP = 2.0    # [s] in which the motion grows to its full size
-
-# joint: mean [rad], amplitude [rad], period [s]
-JOINTS = {
-    'pan': (0.0, 0.9, 7.0),
-    'lift': (0.1, 0.4, 5.0),
-    'elbow': (0.0, 0.5, 4.0),
-    'roll': (0.0, 0.8, 3.0),
-}
-
-
-def joint_positions(t):
-    """Angles [rad] by joint at a time [s]; all 0 at 0, without a jump of velocity."""
-    part = min(t / RAMP, 1.0)
-    growth = part * part * (3 - 2 * part)
-    return {joint: growth * (mean + amplitude * math.sin(2 * math.pi * t / period))
-            for joint, (mean, amplitude, period) in JOINTS.items()}
 
 
 def main():

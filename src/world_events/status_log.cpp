@@ -14,18 +14,34 @@ using Status = StepResult::Status;
 /// [s] what does not come back for so long has ended; what comes and goes faster is one event.
 constexpr double quiet_time = 0.1;
 
+/// What happened, and what to do.
+const char* message_of(DegradedCause cause) {
+  switch (cause) {
+    case DegradedCause::no_solution:
+      return "no solution was found for a step, and its motion was taken away; use a shorter time_step";
+    case DegradedCause::too_much_work:
+      return "a step took too much work and was cut short; make it of fewer segments or links";
+    case DegradedCause::unstable:
+      return "it became unstable, and its motion was taken away; use a shorter time_step";
+    case DegradedCause::too_stiff:
+      return "its springs are too stiff for the time_step, and were softened; use a shorter time_step";
+    case DegradedCause::no_room:
+      return "it is pressed into something and has no room to get out; give it more room there";
+    case DegradedCause::none:
+      break;
+  }
+  return "";
+}
+
 const char* message_of(Status status) {
   switch (status) {
     case Status::overstretched:
       return "the points that hold it are further apart than the material between them is long; it is lengthened to reach";
     case Status::not_settled:
       return "no static equilibrium was found; the cable starts at rest near one, and may move at first";
-    case Status::degraded:
-      return "no solution was found for a step, or none without too much work, or it became unstable, and its motion was taken "
-             "away; or its springs are too stiff for the time_step, and were softened; or it is in another, and has no room to "
-             "get apart";
     case Status::fault:
       return "the simulation failed: it has no finite state any more, and stays as it was last";
+    case Status::degraded:
     case Status::inside_obstacle:
     case Status::jumped:
     case Status::ok:
@@ -37,7 +53,8 @@ const char* message_of(Status status) {
 StatusEvent event_of(const World& world, const StatusFinding& found) {
   const std::string name = found.status == Status::fault ? "FAULT" : name_of(found.status);
   const int node = found.status == Status::not_settled ? -1 : found.node;
-  return {world.time(), name, false, name_of(world, found.body), node, "", message_of(found.status)};
+  const char* message = found.status == Status::degraded ? message_of(found.cause) : message_of(found.status);
+  return {world.time(), name, false, name_of(world, found.body), node, "", message};
 }
 
 StatusEvent event_of(const World& world, const Intrusion& found) {

@@ -307,7 +307,11 @@ TEST(Contact, CableThatFindsNoWayOutOfAnObstacleIsTold) {
   const BoundaryInputs inputs(1);
   int pressed = 0, told = 0;
   for (int i = 0; i < 2000; ++i) {
-    const bool degraded = world.step(inputs).status == StepResult::Status::degraded;
+    const StepResult result = world.step(inputs);
+    const bool degraded = result.status == StepResult::Status::degraded;
+    if (degraded) {
+      ASSERT_EQ(result.cause, DegradedCause::no_room) << i;
+    }
     double pressure = 0;
     for (const SimulatedContact& contact : world.findings().contacts) pressure = std::max(pressure, contact.force.norm());
     if (i < 100 || pressure < 100) continue;

@@ -269,6 +269,7 @@ TEST(Net, ThatIsTooStiffForItsStepIsSoftenedAndReported) {
   for (int i = 0; i < 1000; ++i) {
     const StepResult result = world.step({FrameInput{}});
     ASSERT_EQ(result.status, StepResult::Status::degraded);
+    ASSERT_EQ(result.cause, DegradedCause::too_stiff);
     ASSERT_TRUE(result.body == net_id(0));
     for (const Vector3& x : world.nets()[0].state.positions) ASSERT_LT(x.norm(), 2);
   }

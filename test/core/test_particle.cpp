@@ -225,6 +225,7 @@ TEST(Particle, ThatRunsAwayIsReportedAndStaysFinite) {
   World world(scene, {FrameInput{}});
   const StepResult result = world.step({FrameInput{}});
   EXPECT_EQ(result.status, StepResult::Status::degraded);
+  EXPECT_EQ(result.cause, DegradedCause::unstable);
   EXPECT_TRUE(result.body == particle_id(0));
   EXPECT_TRUE(world.particles()[0].position.allFinite());
 }

@@ -531,14 +531,36 @@ def test_notes_of_what_may_not_be_meant(tmp_path):
     (tmp_path / 'hamd.csv').write_text(header + '0,hamd,0.7,0,0,0,0,0,1\n')
     write(tmp_path, SWEEP + 'motions: [hand.csv, hamd.csv]\n')
     assert notes(*read_sweep(str(tmp_path / 'sweep.yaml'))) == ['hamd.csv: the scene does not use frames hamd']
-    guide = 'guides:\n  - {name: eye, cable: hose, at: 0.5, frame: mast, type: eyelet}\n'
-    write(tmp_path, SWEEP + 'motions: [hand.csv, hamd.csv]\n', SCENE.replace(', initial_pose: [0.7, 0, 0, 0, 0, 0]', '') + guide)
+    guide = 'guides:\n  - {name: eye, cable: hose, at: 0.5, offset: [0.35, 0, 0], type: eyelet}\n'
+    box = 'obstacles: [{name: box, type: box, frame: mast, pose: [0, 0, 9, 0, 0, 0], size: [1, 1, 1]}]\n'
+    write(tmp_path, SWEEP + 'motions: [hand.csv, hamd.csv]\n', SCENE + guide + box)
     assert notes(*read_sweep(str(tmp_path / 'sweep.yaml'))) == [
-        'hand.csv: nothing places frames mast: at the origin',
         'hamd.csv: the scene does not use frames hamd',
-        'hamd.csv: nothing places frames hand, mast: at the origin',
+        'hand.csv, hamd.csv: nothing places frame mast, and the obstacles in it: at the origin',
         'guides (eye) change the number of nodes of a cable that slides through them; '
         'samples in which they do fail, since they have no positions, tension of one shape']
+
+
+def test_frames_that_hold_something_need_a_pose(tmp_path):
+    from verlet_cable.sweep.description import read_sweep
+    from verlet_cable.sweep.errors import SweepError
+    header = 't,frame,x,y,z,qx,qy,qz,qw\n'
+    (tmp_path / 'hand.csv').write_text(header + '0,hand,0.7,0,0,0,0,0,1\n')
+    (tmp_path / 'hamd.csv').write_text(header + '0,hamd,0.7,0,0,0,0,0,1\n')
+    guide = 'guides:\n  - {name: eye, cable: hose, at: 0.5, frame: mast, type: eyelet}\n'
+    unplaced = SCENE.replace(', initial_pose: [0.7, 0, 0, 0, 0, 0]', '') + guide
+    allowed = 'allowed: initial_pose: [x, y, z, roll, pitch, yaw] (m, rad) beside frame: {0}, or rows of it in each motion'
+
+    def errors(sweep):
+        write(tmp_path, sweep, unplaced)
+        with pytest.raises(SweepError) as refused:
+            read_sweep(str(tmp_path / 'sweep.yaml'))
+        return refused.value.errors
+
+    assert errors(SWEEP) == [f'scene: scene.yaml: frame {frame}: it has no pose; ' + allowed.format(frame) for frame in ('hand', 'mast')]
+    assert errors(SWEEP + 'motions: [hand.csv, hamd.csv]\n') == [
+        'scene: scene.yaml: frame mast: it has no pose in hand.csv, hamd.csv; ' + allowed.format('mast'),
+        'scene: scene.yaml: frame hand: it has no pose in hamd.csv; ' + allowed.format('hand')]
 
 
 def test_fields_that_the_scene_does_not_have(tmp_path):

@@ -18,7 +18,7 @@ from verlet_cable.msg import CableArray
 
 PACKAGE = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..')
 sys.path.insert(0, os.path.join(PACKAGE, 'scripts'))
-import demo_frames  # noqa: E402
+import example_motions  # noqa: E402
 
 STOP_LIMIT = 30.0  # [s]
 
@@ -28,17 +28,17 @@ class DemoTest(unittest.TestCase):
     def test_hands_never_ask_for_more_rope_than_there_is(self):
         with open(os.path.join(PACKAGE, 'config', 'demo.yaml'), encoding='utf-8') as file:
             rope = next(cable for cable in yaml.safe_load(file)['cables'] if cable['name'] == 'rope')
-        for moment in np.arange(0, demo_frames.CYCLE, 0.01):
-            poses = demo_frames.frame_poses(moment)
+        for moment in np.arange(0, example_motions.DEMO_CYCLE, 0.01):
+            poses = example_motions.demo(moment)
             left, right = (self.held_point(poses[attachment['frame']], attachment['offset']) for attachment in rope['attachments'])
             self.assertLess(np.linalg.norm(left - right), rope['length'])
 
     @staticmethod
     def held_point(pose, offset):
         """An offset along x, in a frame that is turned about y."""
-        position, quaternion = pose
-        pitch = 2 * np.arctan2(quaternion.y, quaternion.w)
-        return np.array([position.x, position.y, position.z]) + offset[0] * np.array([np.cos(pitch), 0, -np.sin(pitch)])
+        position, (_, y, _, w) = pose
+        pitch = 2 * np.arctan2(y, w)
+        return np.array(position) + offset[0] * np.array([np.cos(pitch), 0, -np.sin(pitch)])
 
     def test_rates_and_stamps(self):
         command = ['roslaunch', 'verlet_cable', 'demo.launch', 'rviz:=false']

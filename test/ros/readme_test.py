@@ -91,6 +91,17 @@ class ReadmeTest(unittest.TestCase):
     def start_hose(self):
         line = typed('roslaunch verlet_cable cable.launch scene:=config/hose.yaml rviz:=true')[0]
         program = self.start(line.replace('rviz:=true', 'rviz:=false'))
+        program.wait_for_lines('stays at its initial_pose', 2)
+        return program, CableClient('/cable')
+
+    def write_waiting_hose(self):
+        """Without initial poses."""
+        with open(f'{self.directory}/waiting.yaml', 'w', encoding='utf-8') as file:
+            file.write(re.sub(r' initial_pose: \[.*?\],', '', blocks('yaml')[0]))
+
+    def start_waiting_hose(self):
+        self.write_waiting_hose()
+        program = self.start('roslaunch verlet_cable cable.launch scene:=waiting.yaml')
         program.wait_for_lines('not shown yet')
         return program, CableClient('/cable')
 
@@ -98,8 +109,18 @@ class ReadmeTest(unittest.TestCase):
         with open(f'{PACKAGE}/config/hose.yaml', encoding='utf-8') as file:
             self.assertEqual(blocks('yaml')[0], file.read())
 
-    def test_the_hose_asks_for_its_frames_and_follows_them(self):
+    def test_the_hose_is_there_before_its_frames(self):
         program, node = self.start_hose()
+        ends = cable(node.state(), 'hose').positions[0], cable(node.state(), 'hose').positions[-1]
+        self.assertEqual([(round(p.x, 6), p.y, p.z) for p in ends], [(-0.35, 0, 1), (0.35, 0, 1)])
+        for line in typed('rosrun tf2_ros static_transform_publisher'):
+            self.start(line)
+        with node.states() as states:
+            states.wait_for(lambda s: [round(cable(s, 'hose').positions[i].x, 6) for i in (0, -1)] == [-0.4, 0.4], 'hose in its frames')
+        self.assertNotIn('WARN', program.text())
+
+    def test_a_hose_without_poses_asks_for_its_frames_and_follows_them(self):
+        program, node = self.start_waiting_hose()
         with Messages('/diagnostics', DiagnosticArray) as diagnostics:
             warning, = program.wait_for_lines('WARN')
             self.assertIn('"hose"', warning)
@@ -124,7 +145,8 @@ class ReadmeTest(unittest.TestCase):
     def test_frames_that_come_with_the_node_are_not_asked_for(self):
         frames = rospy.Publisher('/tf_static', TFMessage, queue_size=1, latch=True)
         self.addCleanup(frames.unregister)
-        program = self.start('roslaunch verlet_cable cable.launch scene:=config/hose.yaml')
+        self.write_waiting_hose()
+        program = self.start('roslaunch verlet_cable cable.launch scene:=waiting.yaml')
         # It no longer waits for them to start.
         self.assertEqual(rospy.wait_for_message('/cable/state', CableArray, PATIENCE).cables, [])
         frames.publish([transform('left_gripper', 1, (-0.4, 0, 1)), transform('right_gripper', 1, (0.4, 0, 1))])
@@ -155,7 +177,7 @@ class ReadmeTest(unittest.TestCase):
         self.assertEqual(len(node.state().cables), 2)
 
     def test_the_warning_comes_again(self):
-        program, _ = self.start_hose()
+        program, _ = self.start_waiting_hose()
         first, second = (float(re.search(r'\[(\d+\.\d+)\]', line)[1]) for line in program.wait_for_lines('not shown yet', 2))
         self.assertAlmostEqual(second - first, 10, delta=2)
 

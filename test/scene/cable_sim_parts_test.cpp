@@ -3,6 +3,7 @@
 #include "cable_sim/event_log.h"
 #include "cable_sim/job.h"
 #include "cable_sim/options.h"
+#include "common/duration_text.h"
 #include "scene/frame_source.h"
 #include "scene_text.h"
 
@@ -131,6 +132,18 @@ TEST(FrameSource, aJumpAtTheStartIsNoVelocityToBeginWith) {
   EXPECT_NEAR(start(0.5), 2, 1e-12);
 }
 
+TEST(Durations, areInUnitsThatSuitThem) {
+  EXPECT_EQ(tools::progress_text(359.1, 1e5), "6 of 1667 min");
+  EXPECT_EQ(tools::progress_text(0.26, 2), "0.3 of 2 s");
+  EXPECT_EQ(tools::progress_text(59.6, 100), "60 of 100 s");
+  EXPECT_EQ(tools::progress_text(4e5, 4e6), "111 of 1111 h");
+  EXPECT_EQ(tools::duration_text(2.11e3), "35 min");
+  EXPECT_EQ(tools::duration_text(119), "119 s");
+  EXPECT_EQ(tools::duration_text(120), "2.0 min");
+  EXPECT_EQ(tools::duration_text(0.34), "0.3 s");
+  EXPECT_EQ(tools::duration_text(3e4), "8.3 h");
+}
+
 TEST(EventLog, anEpisodeIsTwoEventsHoweverManySteps) {
   const SceneDesc scene = read_scene_text(test::sound_scene);
   const BoundaryInputs frames = FrameSource(scene, {}).at(0);
@@ -155,6 +168,22 @@ TEST(EventLog, anEpisodeIsTwoEventsHoweverManySteps) {
   EXPECT_DOUBLE_EQ(events[1].time, 0.3);
   EXPECT_EQ(events[1].message, "ended, after 0.2 s");
   EXPECT_NE(printed.find("frame_out_of_range: " + world.frames()[1]), std::string::npos) << printed;
+}
+
+TEST(EventLog, aDegradedStepHasOneCause) {
+  SceneDesc scene = read_scene_text(R"(
+time_step: 0.005
+nets: [{name: flag, grid: {rows: 6, columns: 8, spacing: 0.05}, mass: 1.0e-4, stiffness: 1.0e+6, damping: 10,
+        attachments: [{name: pole, node: 0}]}])");
+  World world(scene, FrameSource(scene, {}).at(0));
+  tools::ProgressBar progress(1);
+  EventLog log(progress);
+  testing::internal::CaptureStderr();
+  log.observe(world, world.step(FrameSource(scene, {}).at(0)), {});
+  testing::internal::GetCapturedStderr();
+  ASSERT_EQ(log.events().size(), 1u);
+  EXPECT_EQ(log.events()[0].type, "degraded");
+  EXPECT_EQ(log.events()[0].message, "its springs are too stiff for the time_step, and were softened; use a shorter time_step");
 }
 
 /// A rope that hangs into a table, and is carried out of it.

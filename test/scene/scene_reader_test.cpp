@@ -213,6 +213,41 @@ TEST(SceneReader, tellsOfSectionsThatSegmentsDoNotFit) {
       "0.05 m long: more segments are shorter");
 }
 
+TEST(SceneReader, tellsOfScalesThatAreOffByAThousand) {
+  const std::string material = "{linear_density: 0.1, radius: 0.005}", cable = "length: 1.0\n    segments: 20";
+  const auto told = [&](const std::string& what, const std::string& with) {
+    return test::joined(warnings_of(read_scene_text(replaced(sound_scene, what, with))));
+  };
+  EXPECT_EQ(
+      told(material, "{linear_density: 0.1, radius: 5}"),
+      "cables[0]: the radius of its material m, 5 m, is above a tenth of its length, 1 m; usual: below a hundredth; did you "
+      "mean 0.005 m (5 mm)?\n");
+  EXPECT_EQ(
+      told(material, "{linear_density: 100, radius: 0.005}"),
+      "materials.m: linear_density 100 kg/m and radius 0.005 m are matter of 1273240 kg/m^3; usual: 10 to 25000 kg/m^3; did "
+      "you mean 0.1 kg/m (100 g/m)?\n");
+  EXPECT_EQ(told(material, "{linear_density: 1.0e-4, radius: 0.005}"),
+            "materials.m: linear_density 1e-04 kg/m and radius 0.005 m are matter of 1.27 kg/m^3; usual: 10 to 25000 kg/m^3\n");
+  EXPECT_EQ(
+      told(cable, "length: 1\n    segments: 250"),
+      "cables[0].segments: 250 are 0.004 m long, shorter than the radius of m, 0.005 m; usual: longer than the cable is thick; "
+      "did you mean 100?\n");
+  EXPECT_EQ(told(cable, "length: 1500\n    segments: 20"),
+            "cables[0].length: 1500 m; usual: up to 1000 m; did you mean 1.5 m (1500 mm)?\n");
+  EXPECT_EQ(told("time_step: 0.002", "time_step: 0.06"),
+            "time_step: 0.06 s; usual: up to 0.05 s; did you mean 0.001 s (1 ms)?\n");
+  // A radius that is wrong for a long cable shows in the density.
+  EXPECT_EQ(
+      test::joined(warnings_of(read_scene_text(replaced(replaced(sound_scene, material, "{linear_density: 0.1, radius: 5}"),
+                                                        cable, "length: 100\n    segments: 20")))),
+      "materials.m: linear_density 0.1 kg/m and radius 5 m are matter of 0.00127 kg/m^3; usual: 10 to 25000 kg/m^3; did you "
+      "mean 0.005 m (5 mm)?\n");
+  // The ends of what is usual.
+  EXPECT_EQ(told(cable, "length: 1000\n    segments: 20") + told(cable, "length: 1\n    segments: 200") +
+                told("time_step: 0.002", "time_step: 0.05"),
+            "");
+}
+
 TEST(SceneReader, keepsTheFrameOfTheOriginFromOthers) {
   const auto errors = [](const std::string& text, const std::string& frame) -> std::string {
     try {

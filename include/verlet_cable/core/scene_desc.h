@@ -296,8 +296,8 @@ class SceneError : public std::runtime_error {
 std::vector<std::string> validate(const SceneDesc& scene);
 
 /// What is allowed in a scene without errors, and probably not meant: one line each, with the full key, the value and what was
-/// made of it. Now: sections whose ends are off the ends of segments by more than 5 % of the section's length,
-/// and what a robot does without.
+/// made of it. Now: sizes, densities and time steps that are mostly in the wrong unit, sections whose ends are off the ends of
+/// segments by more than 5 % of the section's length, and what a robot does without.
 std::vector<std::string> warnings_of(const SceneDesc& scene);
 
 /// The obstacles of the scene, then those of the links of its robot.

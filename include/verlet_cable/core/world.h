@@ -68,6 +68,16 @@ inline bool is_named(const Attachment& attachment) {
   return attachment.guide < 0 && !attachment.is_junction;
 }
 
+/// What became of a step that is degraded. Of several causes the first one that was found.
+enum class DegradedCause {
+  none,           ///< it is not degraded
+  no_solution,    ///< a substep of the smallest size did not converge, or a net is held where it cannot be
+  too_much_work,  ///< the step exceeded its budget of work, and was cut short
+  unstable,       ///< numbers were no longer finite
+  too_stiff,      ///< the springs of a net are too stiff for the time step, and were softened
+  no_room,        ///< a cable is inside an obstacle or another cable, and does not get out
+};
+
 struct StepResult {
   /// What forces of the step are worth, from good to bad. Numbers are those of Cable.msg.
   enum class Status {
@@ -90,6 +100,7 @@ struct StepResult {
   int iterations = 0;      ///< of the solver, over all cables and substeps
   bool exhausted = false;  ///< the step exceeded its budget of work and was cut short: cables did the rest of it from rest
   double max_strain = 0;   ///< largest |l / l0 - 1| at the end of the step
+  DegradedCause cause = DegradedCause::none;  ///< if the status is degraded
 };
 
 /// [J]; the potential of uniform gravity is zero at the fixed frame's origin, that of central gravity at infinity.
@@ -148,8 +159,9 @@ struct Intrusion {
 struct StatusFinding {
   BodyId body;
   StepResult::Status status = StepResult::Status::ok;
-  int node = 0;           ///< the first one; inside an obstacle, of the deepest segment
-  double max_strain = 0;  ///< largest |l / l0 - 1| of the body at the end of the step
+  int node = 0;                               ///< the first one; inside an obstacle, of the deepest segment
+  double max_strain = 0;                      ///< largest |l / l0 - 1| of the body at the end of the step
+  DegradedCause cause = DegradedCause::none;  ///< if the status is degraded
 };
 
 /// Findings of the last step, start or settling.

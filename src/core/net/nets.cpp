@@ -151,16 +151,19 @@ void World::Implementation::step_net(int index, StepResult& result) {
   if (!of_net.finite || of_net.torn) {
     bring_to_rest(net.state);
     forget_motion(net.model, memory);
-    note({net_id(index), Status::degraded, 0, of_net.max_strain}, result);
+    const DegradedCause cause = of_net.finite ? DegradedCause::no_solution : DegradedCause::unstable;
+    note({net_id(index), Status::degraded, 0, of_net.max_strain, cause}, result);
     complete_step(state.scene->time_step, memory.targets);
     show_velocities(memory.targets, net.state.velocities);
     return;
   }
   // It keeps its velocities: where it took too much work for many steps, it would hang in the air without.
-  const auto tell = [&](Status status, int node) { note({net_id(index), status, node, of_net.max_strain}, result); };
-  if (of_net.exhausted) tell(Status::degraded, std::max(of_net.unsolved_node, 0));
-  if (of_net.softened) tell(Status::degraded, 0);
-  if (of_net.unsolved_node >= 0) tell(Status::degraded, of_net.unsolved_node);
+  const auto tell = [&](Status status, int node, DegradedCause cause = DegradedCause::none) {
+    note({net_id(index), status, node, of_net.max_strain, cause}, result);
+  };
+  if (of_net.exhausted) tell(Status::degraded, std::max(of_net.unsolved_node, 0), DegradedCause::too_much_work);
+  if (of_net.softened) tell(Status::degraded, 0, DegradedCause::too_stiff);
+  if (of_net.unsolved_node >= 0) tell(Status::degraded, of_net.unsolved_node, DegradedCause::no_solution);
   if (of_net.overstretched_node >= 0) tell(Status::overstretched, of_net.overstretched_node);
   for (std::size_t k = 0; k < solver.boundary.nodes.size(); ++k)
     state.attachments[memory.targets.nodes[k].attachment].force = solver.boundary.nodes[k].force;
@@ -187,7 +190,7 @@ void World::Implementation::step_particle(int index, StepResult& result) {
   if (particle_stepper.value.advance(*state.scene, moving_obstacles.value, particle, state.particle_integrators[index])) return;
   particle.velocity.setZero();
   state.particle_integrators[index].restart();
-  note({particle_id(index), Status::degraded}, result);
+  note({particle_id(index), Status::degraded, 0, 0, DegradedCause::unstable}, result);
 }
 
 void World::Implementation::add_net_energy(Energy& energy) const {

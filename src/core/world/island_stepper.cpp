@@ -108,11 +108,12 @@ void find_contacts_of(Island& island, const State& state, const ContactRules& ru
                           state.attachments, rules, h, island.pairs);
 }
 
-void note_status(Status status, const BodyId& body, int node, StepResult& result) {
+void note_status(Status status, const BodyId& body, int node, StepResult& result, DegradedCause cause) {
   if (status <= result.status) return;
   result.status = status;
   result.body = body;
   result.node = node;
+  result.cause = cause;
 }
 
 void add_forces(const Boundary& boundary, const KinematicTargets& targets, const std::vector<Pose>& frames, double weight,
@@ -437,7 +438,8 @@ void IslandStepper::complete(const Island& island, const StepProgress& progress,
   for (const Touch& touch : workspace_.contacts.touches()) {
     if (touch.mode == Touch::Mode::open) continue;
     if (cannot_get_apart(touch))
-      note_status(Status::degraded, cable_id(touch.point.cable), touch.point.segment, outcomes_[touch.point.cable].result);
+      note_status(Status::degraded, cable_id(touch.point.cable), touch.point.segment, outcomes_[touch.point.cable].result,
+                  DegradedCause::no_room);
     found.contacts.push_back({touch.point.cable, touch.point.segment, touch.position, touch.normal, touch.force, touch.obstacle,
                               touch.other.cable, touch.other.segment, touch.obstacle < 0 ? touch.body : -1});
   }

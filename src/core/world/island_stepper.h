@@ -46,7 +46,8 @@ bool finite(const std::vector<Vector3>& vectors);
 double size_of(const Island& island, const State& state);
 
 /// Keeps the worst status, and of equals the first body's.
-void note_status(StepResult::Status status, const BodyId& body, int node, StepResult& result);
+void note_status(StepResult::Status status, const BodyId& body, int node, StepResult& result,
+                 DegradedCause cause = DegradedCause::none);
 
 /// Adds what a cable exerted on its holders, weighted, to its attachments.
 void add_forces(const Boundary& boundary, const KinematicTargets& targets, const std::vector<Pose>& frames, double weight,
@@ -118,7 +119,7 @@ class IslandStepper {
   bool advance_part(Island& island, const PartOfStep& part, bool tolerated, bool contacts_known, StepProgress& progress,
                     IslandOutcome& found);
   double work_of_attempt(const Island& island) const;
-  void stop(const Island& island, IslandOutcome& found);
+  void stop(const Island& island, DegradedCause cause, IslandOutcome& found);
   void give_up(const Island& island);
   bool give_up(int cable, bool touches, Boundary& boundary);
   void hang_on_bodies_anew(const Island& island);

@@ -57,7 +57,7 @@ void World::note_left_out_time() {
 
 void World::Implementation::end_step(StepResult& result) {
   note_unsettled(told_unsettled);
-  for (const StatusFinding& found : findings.statuses) note_status(found.status, found.body, found.node, result);
+  for (const StatusFinding& found : findings.statuses) note_status(found.status, found.body, found.node, result, found.cause);
   told_unsettled = findings.unsettled.size();
   collect_outcomes(result);
   find_excursions(state, findings.excursions);
@@ -95,7 +95,7 @@ void World::Implementation::forget_last_step() {
 
 /// Once of each body and status.
 void World::Implementation::note(const StatusFinding& found, StepResult& result) {
-  note_status(found.status, found.body, found.node, result);
+  note_status(found.status, found.body, found.node, result, found.cause);
   std::vector<StatusFinding>& all = findings.statuses;
   const auto is_same = [&](const StatusFinding& other) { return other.body == found.body && other.status == found.status; };
   if (found.status != StepResult::Status::ok && std::none_of(all.begin(), all.end(), is_same)) all.push_back(found);
@@ -180,14 +180,15 @@ void World::Implementation::step_islands(std::size_t from, std::size_t to, Islan
 
 void World::Implementation::collect_outcomes(StepResult& result) {
   for (const CableOutcome& outcome : cable_outcomes.value) {
-    note({outcome.result.body, outcome.result.status, outcome.result.node, outcome.result.max_strain}, result);
+    note({outcome.result.body, outcome.result.status, outcome.result.node, outcome.result.max_strain, outcome.result.cause},
+         result);
     result.substeps = std::max(result.substeps, outcome.result.substeps);
     result.iterations += outcome.result.iterations;
     result.max_strain = std::max(result.max_strain, outcome.result.max_strain);
     append(outcome.jumps, findings.jumps);
   }
   for (const IslandOutcome& outcome : island_outcomes.value) {
-    note({outcome.bodies.body, outcome.bodies.status, outcome.bodies.node}, result);
+    note({outcome.bodies.body, outcome.bodies.status, outcome.bodies.node, 0, outcome.bodies.cause}, result);
     result.exhausted = result.exhausted || outcome.exhausted;
     append(outcome.jumps, findings.jumps);
     append(outcome.intrusions, findings.intrusions);

@@ -68,7 +68,7 @@ bool IslandStepper::advance_within(double most_work, Island& island, StepProgres
     } else if (splits) {
       ++progress.level;
     } else if (!progress.stopped) {
-      stop(island, found);
+      stop(island, DegradedCause::no_solution, found);
       progress.stopped = true;
     } else {
       give_up(island);
@@ -84,7 +84,7 @@ bool IslandStepper::advance_within(double most_work, Island& island, StepProgres
 void IslandStepper::end_from_rest(Island& island, StepProgress& progress, IslandOutcome& found) {
   const std::int64_t whole = std::int64_t{1} << finest_level(state_.scene->time_step);
   for (std::size_t k = 0; k < island.cables.size(); ++k) workspace_.cables[k].result.converged = false;
-  stop(island, found);
+  stop(island, DegradedCause::too_much_work, found);
   most_contact_work_ = budget::last_share * size_of(island, state_);
   if (!advance_part(island, {progress.done, whole, whole}, true, false, progress, found)) give_up(island);
   found.exhausted = true;
@@ -121,16 +121,16 @@ double IslandStepper::work_of_attempt(const Island& island) const {
 }
 
 /// What did not converge is stopped: its next step starts from rest.
-void IslandStepper::stop(const Island& island, IslandOutcome& found) {
+void IslandStepper::stop(const Island& island, DegradedCause cause, IslandOutcome& found) {
   stop_bodies(island);
-  if (!island.bodies.empty()) note_status(Status::degraded, rigid_body_id(island.bodies.front()), 0, found.bodies);
+  if (!island.bodies.empty()) note_status(Status::degraded, rigid_body_id(island.bodies.front()), 0, found.bodies, cause);
   for (std::size_t k = 0; k < island.cables.size(); ++k) {
     if (workspace_.cables[k].result.converged) continue;
     CableState& state = state_.cables[island.cables[k]].state;
     bring_to_rest(state);
     stop_flows(island.cables[k], state_);
     std::fill(state.axial_multiplier.begin(), state.axial_multiplier.end(), 0.0);
-    note_status(Status::degraded, cable_id(island.cables[k]), 0, outcomes_[island.cables[k]].result);
+    note_status(Status::degraded, cable_id(island.cables[k]), 0, outcomes_[island.cables[k]].result, cause);
   }
 }
 
@@ -144,8 +144,8 @@ void IslandStepper::give_up(const Island& island) {
   if (stuck && !touching && !island.bodies.empty()) hang_on_bodies_anew(island);
 }
 
-/// Not even from rest: the cable is put where its holders will be, and goes on from there; or hangs from them anew, where it would
-/// be stuck with nothing around it. Whether it was there already.
+/// Not even from rest: the cable is put where its holders will be, and goes on from there; or hangs from them anew, where it
+/// would be stuck with nothing around it. Whether it was there already.
 bool IslandStepper::give_up(int index, bool touches, Boundary& boundary) {
   SimulatedCable& cable = state_.cables[index];
   hold_at(1, 1, state_.cable_progress[index].targets, boundary);

@@ -7,25 +7,17 @@
 namespace verlet_cable {
 namespace {
 
-/// Between warnings about what may last [s].
-constexpr double log_period = 5;
 constexpr std::size_t most_intrusions = 1000;  // that are remembered: who sends obstacles may name each anew
 
 }  // namespace
 
 void CableWatch::report_status(const StepResult& result, Nanoseconds stamp, const World& world) {
-  const std::string subject = name_of(world, result.body);
   if (result.status == StepResult::Status::fault) {
     ++faults_;
+    const std::string subject = name_of(world, result.body);
     events_.publish(CableEvent::FAULT, stamp, {subject, {}, result.node, {}},
                     "the simulation of " + quoted(subject) + " failed at node " + std::to_string(result.node) +
                         " and has stopped; call reset or restore_state to go on");
-  }
-  if (result.exhausted) {
-    ROS_WARN_THROTTLE(log_period,
-                      "a step took too much work and was cut short, so that others need not wait: %s moves too violently for "
-                      "the time_step, a shorter one or slower frames would help",
-                      quoted(subject).c_str());
   }
 }
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <iostream>
+#include <optional>
 
 #include "common/messages.h"
 #include "common/program.h"
+#include "picture.h"
 #include "scene/frame_speed.h"
 #include "scene/text.h"
 #include "simulation.h"
@@ -26,11 +28,15 @@ struct Outputs {
   tools::OutputFile nodes;
   tools::OutputFile bodies;
   tools::OutputFile summary;
+  tools::OutputFile plot;
+  tools::OutputFile gif;
 
   void open(const Options& options, std::vector<std::string>& errors) {
     open_one("--output", options.output, nodes, errors);
     open_one("--bodies", options.bodies, bodies, errors);
     open_one("--summary", options.summary, summary, errors);
+    open_one("--plot", options.plot, plot, errors);
+    open_one("--gif", options.gif, gif, errors);
   }
 
  private:
@@ -86,7 +92,25 @@ void warn_of_unplaced(const std::vector<std::string>& frames) {
             << " at the origin; give one by --motion MOTION.csv or as initial_pose in the scene\n";
 }
 
-int simulate_job(const Options& options, const Job& job) {
+/// A scene's file without its folder.
+std::string title_of(const std::string& scene) {
+  return scene.substr(scene.find_last_of('/') + 1);
+}
+
+/// Draws a run, if it is asked for. `time`: simulated [s].
+bool write_picture(const std::string& path, const char* kind, const Painter& painter, const PictureRecord& record, double time,
+                   tools::OutputFile& file) {
+  if (path.empty()) return true;
+  const Painter::Picture picture = painter.draw(kind, record.json());
+  if (picture.problem.empty()) {
+    file.write(picture.bytes.data(), picture.bytes.size());
+    return finish(file, path, time);
+  }
+  std::cerr << program << ": cannot draw " << tools::quoted_path(path) << ": " << picture.problem << "\n";
+  return false;
+}
+
+int simulate_job(const Options& options, const Job& job, const Painter* painter) {
   const FrameSource frames(job.scene, job.motion);
   BoundaryInputs start = frames.at_start();
   limit_frame_velocities(job.scene.max_frame_speed, start);
@@ -101,18 +125,20 @@ int simulate_job(const Options& options, const Job& job) {
 
   const bool has_data = tools::is_standard_output(options.output) || tools::is_standard_output(options.bodies) ||
                         tools::is_standard_output(options.summary);
-  tools::ProgressBar progress(options.duration, "s", has_data);
+  tools::ProgressBar progress(options.duration, nullptr, has_data);
   EventLog events(progress);
   if (job.settle) world.settle();
   const tools::StopRequest stop;
   events.add_starts(world);
   CsvWriter nodes(outputs.nodes, node_columns), bodies(outputs.bodies, body_columns);
   Summary summary(world, averaged_steps(job));
+  std::optional<PictureRecord> pictures;
+  if (painter) pictures.emplace(world, title_of(options.scene), job.steps);
   // A summary tells of a disk that rows have filled.
   if (!options.summary.empty()) outputs.summary.reserve(2 * summary.json(world, {}).size() + room_for_events);
-  const RunEnd end = simulate(
-      job, frames, world,
-      {options.output.empty() ? nullptr : &nodes, options.bodies.empty() ? nullptr : &bodies, summary, events, progress, stop});
+  const RunEnd end = simulate(job, frames, world,
+                              {options.output.empty() ? nullptr : &nodes, options.bodies.empty() ? nullptr : &bodies,
+                               pictures ? &*pictures : nullptr, summary, events, progress, stop});
   progress.clear();
   report(end, stop.signal(), world.time());
 
@@ -125,6 +151,10 @@ int simulate_job(const Options& options, const Job& job) {
     outputs.summary.write(json.data(), json.size());
   }
   good = finish(outputs.summary, options.summary, world.time()) && good;
+  if (painter) {
+    good = write_picture(options.plot, "png", *painter, *pictures, world.time(), outputs.plot) && good;
+    good = write_picture(options.gif, "gif", *painter, *pictures, world.time(), outputs.gif) && good;
+  }
   good = tools::print_result(program, summary.line(world) + "\n", has_data) && good;
   return good && end == RunEnd::done ? tools::exit_done : tools::exit_stopped;
 }
@@ -139,9 +169,15 @@ int run(const std::vector<std::string>& arguments) {
     return tools::exit_done;
   }
   const Job job = prepare(options, errors);
+  std::optional<Painter> painter;
+  if (!options.plot.empty() || !options.gif.empty()) {
+    painter.emplace();
+    if (!painter->problem().empty())
+      errors.push_back(std::string(options.plot.empty() ? "--gif" : "--plot") + ": " + painter->problem());
+  }
   if (!errors.empty()) return refuse(errors);
   try {
-    return simulate_job(options, job);
+    return simulate_job(options, job, painter ? &*painter : nullptr);
   } catch (const SceneError& error) {
     return refuse(error.errors());
   }

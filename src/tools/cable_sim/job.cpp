@@ -37,8 +37,11 @@ void check_outputs(const Options& options, const std::vector<std::string>& scene
   for (const std::string& file : scene_files) others.push_back({"a file of the scene", file});
   others.push_back({"the output", options.output});
   others.push_back({"the output of bodies", options.bodies});
+  others.push_back({"the summary", options.summary});
+  others.push_back({"the plot", options.plot});
   for (const Output& output :
-       {Output{"--output", options.output}, Output{"--bodies", options.bodies}, Output{"--summary", options.summary}}) {
+       {Output{"--output", options.output}, Output{"--bodies", options.bodies}, Output{"--summary", options.summary},
+        Output{"--plot", options.plot}, Output{"--gif", options.gif}}) {
     if (output.path.empty()) continue;
     const std::string problem = tools::why_not_writable(output.path);
     if (!problem.empty()) errors.push_back(std::string(output.option) + ": " + tools::cannot_write(output.path, problem));
@@ -60,10 +63,25 @@ void check_times(const Options& options, double time_step, std::vector<std::stri
                      "; allowed: at most 1 / time_step = " + rounded_text(1 / time_step) + " Hz");
 }
 
+/// Frames that hold something and that nothing places.
+void check_holders(const Options& options, const SceneDesc& scene, const Motion& motion, std::vector<std::string>& errors) {
+  const std::vector<std::string> unused = unused_frames(scene, motion);
+  for (const std::string& frame : unplaced_holders(scene, motion)) {
+    const std::string nearest = nearest_name(frame, unused);
+    errors.push_back(tools::path_text(options.scene) + ": frame " + quoted(frame) +
+                     ": it has no pose; allowed: initial_pose: [x, y, z, roll, pitch, yaw] (m, rad) beside frame: " +
+                     escaped(frame) + " in the scene, or rows of it in --motion MOTION.csv" +
+                     (nearest.empty() ? "" : " (did you mean " + quoted(nearest) + ", which the scene does not use?)"));
+  }
+}
+
 void check_motion(const Options& options, const SceneDesc& scene, const Motion& motion, std::vector<std::string>& errors) {
   if (motion.count(scene.frame_id))
     errors.push_back(tools::path_text(options.motion) + ": frame " + quoted(scene.frame_id) +
                      " moves; allowed: any but the fixed frame");
+  const std::size_t errors_before = errors.size();
+  check_holders(options, scene, motion, errors);
+  if (errors.size() > errors_before) return;  // distances between places that are not known
   const std::string motion_text = options.motion.empty() ? "" : tools::path_text(options.motion) + " ";
   append(motion_text + "at t = 0", validate_distances(scene, FrameSource(scene, motion).at(0)), errors);
 }

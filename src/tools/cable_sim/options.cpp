@@ -18,6 +18,13 @@ constexpr const char* footer =
     "between two steps and keeps what was simulated until then; a second signal ends it at once.\n"
     "exit status: 0 done, 2 a bad scene, motion or option, 3 it had to stop: a fault, a full disk, a signal";
 
+/// Other names would say that something else is in the file.
+void require_ending(const char* option, const std::string& path, const std::string& ending, std::vector<std::string>& errors) {
+  if (path.empty() || (path.size() > ending.size() && path.compare(path.size() - ending.size(), ending.size(), ending) == 0))
+    return;
+  errors.push_back(std::string(option) + ": " + quoted(path) + "; allowed: a name that ends in " + ending);
+}
+
 }  // namespace
 
 Options parse_options(const std::vector<std::string>& arguments, std::vector<std::string>& errors) {
@@ -33,9 +40,14 @@ Options parse_options(const std::vector<std::string>& arguments, std::vector<std
       "rows per second of --output and --bodies, at most 1 / time_step; default 100, or 1 / time_step if that is less", rate,
       rate_range, "Hz");
   line.add_text("--summary", "JSON", "times, energies, forces and events", options.summary, file);
+  line.add_text("--plot", "PNG", "a picture of the shapes over time and the forces at attachments; needs matplotlib",
+                options.plot, file);
+  line.add_text("--gif", "GIF", "the motion; needs matplotlib", options.gif, file);
   line.add_flag("--settle", "put the cables into static equilibrium before t = 0", options.settle);
   const std::vector<std::string> scenes = line.parse(arguments, errors);
   options.help = line.help();
+  require_ending("--plot", options.plot, ".png", errors);
+  require_ending("--gif", options.gif, ".gif", errors);
   options.has_rate = rate > 0;
   if (options.has_rate) options.rate = rate;
   for (const std::string& scene : scenes) {

@@ -15,6 +15,8 @@ struct Options {
   std::string output;     ///< path, empty: none
   std::string bodies;     ///< path, empty: none
   std::string summary;    ///< path, empty: none
+  std::string plot;       ///< path of a PNG file, empty: none
+  std::string gif;        ///< path, empty: none
   bool settle = false;    ///< into equilibrium before t = 0
   std::string help;       ///< what --help prints, empty: not asked for
 };

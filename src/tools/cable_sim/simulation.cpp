@@ -49,6 +49,7 @@ RunEnd simulate(const Job& job, const FrameSource& frames, World& world, const R
 
     recorders.summary.add_step(world, result, end - start);
     recorders.events.observe(world, result, held_back);
+    if (recorders.pictures) recorders.pictures->add(world);
     if (result.status == StepResult::Status::fault) return RunEnd::fault;
     write_due_rows();
     recorders.progress.show(world.time(), end);

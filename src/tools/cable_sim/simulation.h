@@ -5,6 +5,7 @@
 #include "csv_writer.h"
 #include "event_log.h"
 #include "job.h"
+#include "picture_record.h"
 #include "scene/frame_source.h"
 #include "summary.h"
 
@@ -12,8 +13,9 @@ namespace verlet_cable::cable_sim {
 
 /// What a run fills.
 struct Recorders {
-  CsvWriter* nodes;   ///< may be null
-  CsvWriter* bodies;  ///< likewise
+  CsvWriter* nodes;         ///< may be null
+  CsvWriter* bodies;        ///< likewise
+  PictureRecord* pictures;  ///< likewise
   Summary& summary;
   EventLog& events;
   tools::ProgressBar& progress;

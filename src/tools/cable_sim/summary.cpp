@@ -135,8 +135,9 @@ std::string Summary::json(const World& world, const std::vector<Event>& events) 
 
 std::string Summary::line(const World& world) const {
   char text[200];
-  std::snprintf(text, sizeof text, "%g s of %" PRId64 " segments in %.3g s (%.3g times real time), largest strain %.2g, state %s",
-                world.time(), segments_, wall_seconds(), wall_seconds() > 0 ? world.time() / wall_seconds() : 0.0, max_strain_,
+  std::snprintf(text, sizeof text,
+                "%g s of %" PRId64 " segments in %.3g s (%.3g times real time), largest strain %.2g, state hash %s", world.time(),
+                segments_, wall_seconds(), wall_seconds() > 0 ? world.time() / wall_seconds() : 0.0, max_strain_,
                 hash_text(world.hash()).c_str());
   return text;
 }

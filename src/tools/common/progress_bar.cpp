@@ -5,6 +5,9 @@
 #include <cstdio>
 #include <string>
 
+#include "duration_text.h"
+#include "verlet_cable/core/number_text.h"
+
 namespace verlet_cable::tools {
 namespace {
 
@@ -27,8 +30,11 @@ void ProgressBar::show(double done, std::chrono::steady_clock::time_point now) {
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   const double fraction = done / amount_;
   const auto filled = static_cast<std::size_t>(fraction * width);
-  std::fprintf(stderr, "\r[%s%s] %3.0f %%  %.4g of %.4g %s, %.3g s left \x1b[K", std::string(filled, '#').c_str(),
-               std::string(width - filled, '.').c_str(), 100 * fraction, done, amount_, unit_, elapsed * (1 / fraction - 1));
+  const std::string so_far =
+      unit_ ? rounded_text(done) + " of " + rounded_text(amount_) + " " + unit_ : progress_text(done, amount_);
+  std::fprintf(stderr, "\r[%s%s] %3.0f %%  %s, %s left \x1b[K", std::string(filled, '#').c_str(),
+               std::string(width - filled, '.').c_str(), 100 * fraction, so_far.c_str(),
+               duration_text(elapsed * (1 / fraction - 1)).c_str());
 }
 
 void ProgressBar::clear() {

@@ -7,8 +7,8 @@ namespace verlet_cable::tools {
 /// A bar on standard error, if that is a terminal, and no data goes to one; otherwise nothing.
 class ProgressBar {
  public:
-  /// `amount` of what is to be done, counted in `unit`. `has_data`: standard output is for data.
-  explicit ProgressBar(double amount, const char* unit = "s", bool has_data = false);
+  /// `amount` of what is to be done, counted in `unit`; without one a time [s]. `has_data`: standard output is for data.
+  explicit ProgressBar(double amount, const char* unit = nullptr, bool has_data = false);
   ~ProgressBar() { clear(); }
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
@@ -22,7 +22,7 @@ class ProgressBar {
   bool is_on_;
   bool is_visible_ = false;
   double amount_;
-  const char* unit_;
+  const char* unit_;  ///< null: it is a time
   std::chrono::steady_clock::time_point start_;
   std::chrono::steady_clock::time_point last_;
 };

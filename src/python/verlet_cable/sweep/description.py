@@ -114,6 +114,8 @@ def read_sweep(path):
         errors += trial.value_errors(sweep, sweep.variations)
         errors += trial.field_errors(sweep, scene, {index: field for index, field in enumerate(sweep.fields or []) if field in FIELDS})
     _read_motions(sweep, values, errors)
+    if not errors:
+        errors += trial.holder_errors(sweep, scene)
     if errors:
         raise SweepError(errors)
     return sweep, scene

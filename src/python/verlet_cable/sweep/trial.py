@@ -67,6 +67,18 @@ def rows_of(batch, scene, field):
             continue
 
 
+def holder_errors(sweep, scene):
+    """Which frames hold something and have no pose, in the scene or in a motion."""
+    held = set(_holding_frames(sweep.tree))
+    errors = []
+    for frame, motions in _unplaced_frames(sweep, scene).items():
+        if frame in held:
+            where = f' in {_listed(motions)}' if motions[0] else ''
+            errors.append(rejected('scene', f'{sweep.scene_name}: frame {frame}: it has no pose{where}',
+                                   f'initial_pose: [x, y, z, roll, pitch, yaw] (m, rad) beside frame: {frame}, or rows of it in each motion'))
+    return errors
+
+
 def notes(sweep, scene):
     """What a user may not have meant: frames of one name here and of another there, fields that guides make impossible."""
     return _notes_of_frames(sweep, scene) + _notes_of_guides(sweep, scene)
@@ -75,17 +87,34 @@ def notes(sweep, scene):
 def _notes_of_frames(sweep, scene):
     if 'robot' in sweep.tree:  # whose links are frames, too, which Scene does not tell
         return []
-    placed = set(_placed_frames(sweep.tree))
     files = {}
-    for motion in sweep.motions or [None]:
-        moved = _frames_of(sweep.motion_path(motion)) if motion else set()
-        unused = sorted(moved - set(scene.frame_names) - {scene.frame_id})
+    for motion in sweep.motions:
+        unused = sorted(_frames_of(sweep.motion_path(motion)) - set(scene.frame_names) - {scene.frame_id})
         if unused:
             files.setdefault(f'the scene does not use frames {_listed(unused)}', []).append(motion)
-        unplaced = sorted(set(scene.frame_names) - moved - placed)
-        if unplaced:
-            files.setdefault(f'nothing places frames {_listed(unplaced)}: at the origin', []).append(motion)
+    for frame, motions in _unplaced_frames(sweep, scene).items():
+        files.setdefault(f'nothing places frame {frame}, and the obstacles in it: at the origin', []).extend(motions)
     return [(f'{_listed(motions)}: ' if motions[0] else '') + text for text, motions in files.items()]
+
+
+def _unplaced_frames(sweep, scene):
+    """{frame: [motion]} of frames that neither the scene nor that motion (None: there is none) gives a pose."""
+    if 'robot' in sweep.tree:  # whose links are placed, and not told by Scene
+        return {}
+    placed = set(_placed_frames(sweep.tree))
+    unplaced = {}
+    for motion in sweep.motions or [None]:
+        moved = _frames_of(sweep.motion_path(motion)) if motion else set()
+        for frame in sorted(set(scene.frame_names) - moved - placed):
+            unplaced.setdefault(frame, []).append(motion)
+    return unplaced
+
+
+def _holding_frames(tree):
+    """Names of the frames that attachments and guides are in."""
+    for owner in [owner for key in ('cables', 'nets', 'bodies') for owner in tree.get(key) or []]:
+        yield from (holder['frame'] for holder in owner.get('attachments') or [] if 'frame' in holder)
+    yield from (guide['frame'] for guide in tree.get('guides') or [] if 'frame' in guide)
 
 
 def _placed_frames(tree):
