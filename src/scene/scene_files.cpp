@@ -84,8 +84,8 @@ std::string file_of_description(const RobotDesc& robot) {
   return is_uri ? robot.description : robot.description.substr(prefix.size());
 }
 
-/// The URDF's text, the key that it comes from and the file's name, which a parameter does not have. The parameter comes before the
-/// file: a scene with both is for the node and for cable_sim.
+/// The URDF's text, the key that it comes from and the file's name, which a parameter does not have. The parameter comes before
+/// the file: a scene with both is for the node and for cable_sim.
 struct Description {
   std::string key;
   std::string text;

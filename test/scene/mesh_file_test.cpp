@@ -149,7 +149,8 @@ TEST_F(MeshFile, nodesOfColladaPlaceTheirMeshes) {
   EXPECT_NEAR(placed("<rotate>0 0 1 0.5</rotate>")->bounds().min().x(), -std::sin(M_PI / 360), 1e-7);
   // By the nodes above it, too. A mirror image is not turned inside out.
   const std::string instance = "<node><instance_geometry url=\"#box\"/></node>";
-  const auto mirrored = read("mirrored.dae", replaced(collada, instance, "<node><scale>-1 1.005 1</scale>" + instance + "</node>"));
+  const auto mirrored =
+      read("mirrored.dae", replaced(collada, instance, "<node><scale>-1 1.005 1</scale>" + instance + "</node>"));
   EXPECT_NEAR(mirrored->bounds().min().x(), -1, 1e-7);
   EXPECT_NEAR(mirrored->bounds().max().y(), 1.005, 1e-7);
   EXPECT_LT(mirrored->closest_point(Vector3(-0.5, 0.5, 0.5)).distance, 0);

@@ -372,12 +372,13 @@ TEST_F(Robot, aRobotOfWhichNothingCanBeReadIsAnError) {
 TEST_F(Robot, whatNoObstacleNeedsMayBeWrong) {
   const std::string sphere = "<geometry><sphere radius='1'/></geometry>";
   const auto spheres = [&](const std::string& in_link, const std::string& geometry) {
-    write("odd.urdf", "<robot name='r'><material name='m'/><material name='m'/><link name='a'>" + in_link + "<collision>" + sphere +
-                          "</collision></link><!-- <visual> --></robot>");
+    write("odd.urdf", "<robot name='r'><material name='m'/><material name='m'/><link name='a'>" + in_link + "<collision>" +
+                          sphere + "</collision></link><!-- <visual> --></robot>");
     return all_obstacles(read("{on_bad_mesh: error, file: " + path("odd.urdf") + ", geometry: " + geometry + "}")).size();
   };
-  for (const std::string& in_link : {std::string("<inertial><mass value='1'/><inertia ixx='x'/></inertial>"), std::string("<inertial/>"),
-                                     "<visual>" + sphere + "<material><color rgba='1 1 1 1'/></material></visual>"}) {
+  for (const std::string& in_link :
+       {std::string("<inertial><mass value='1'/><inertia ixx='x'/></inertial>"), std::string("<inertial/>"),
+        "<visual>" + sphere + "<material><color rgba='1 1 1 1'/></material></visual>"}) {
     EXPECT_EQ(spheres(in_link, "collision"), 1u) << in_link;
     EXPECT_EQ(spheres(in_link, "collision_or_visual"), 1u) << in_link;
   }
@@ -427,7 +428,8 @@ TEST_F(Robot, relativeMeshesAreBesideTheFile) {
   write("ws/my_robot/urdf/robot.urdf", replaced(urdf, "MESH", "../meshes/box.stl"));
   ASSERT_EQ(setenv("ROS_PACKAGE_PATH", path("ws").c_str(), 1), 0);
   const std::string from_scene = "ws/my_robot/urdf/robot.urdf";
-  for (const std::string& file : {from_scene, path(from_scene), "file://" + path(from_scene), std::string("package://my_robot/urdf/robot.urdf")}) {
+  for (const std::string& file :
+       {from_scene, path(from_scene), "file://" + path(from_scene), std::string("package://my_robot/urdf/robot.urdf")}) {
     const std::string text = sound_scene + "robot: {on_bad_mesh: error, file: \"" + file + "\"}\n";
     const SceneDesc scene = read_scene_text(text, {{true, directory_}, {}});
     EXPECT_EQ(scene.robot->tree[1].obstacles[0].mesh->bounds().sizes(), Vector3(2, 3, 4)) << file;
