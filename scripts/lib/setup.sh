@@ -140,7 +140,7 @@ cmake_arguments=()
 
 # The node, in a process of its own or as a nodelet, what its scripts and rviz need of the package, and cable_sim.
 live_targets=(
-  cable_node cable_sim mesh_reader verlet_cable_gencfg verlet_cable_generate_messages_py verlet_cable_nodelet verlet_cable_rviz
+  cable_node cable_sim mesh_reader verlet_cable_generate_messages_py verlet_cable_nodelet verlet_cable_rviz
 )
 
 # build_workspace TARGET...: make's targets. Goes on after an error, so that one broken file hides no other error.
