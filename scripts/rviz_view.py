@@ -114,10 +114,10 @@ def aim(view, scene):
     focus, distance = fitted(scene)
     camera = view['Visualization Manager']['Views']['Current']
     camera['Focal Point'] = dict(zip('XYZ', focus.tolist()))
-    camera['Distance'] = distance
+    camera['Distance'] = float(distance)
     for display in view['Visualization Manager']['Displays']:
         if display['Class'] == 'rviz/Grid':
-            display['Cell Size'] = cell_size(distance)
+            display['Cell Size'] = float(cell_size(distance))
 
 
 def cell_size(distance):
@@ -150,7 +150,7 @@ def main():
         without_plugins(view)
         print(f'rviz_view.py: {PLUGINS} is not built: rviz opens without panel, tools and legend. With librviz-dev installed, '
               'configure and build the workspace again (catkin_make --force-cmake)', file=sys.stderr)
-    if fit == 'true':
+    if fit.lower() == 'true':  # roslaunch's own are capitalized
         aim(view, scene)
     adapted = os.path.join(rospkg.get_ros_home(), f'verlet_cable{node.replace("/", "_")}.rviz')
     with open(adapted, 'w', encoding='utf-8') as file:
