@@ -91,6 +91,41 @@ TEST(Color, ScaleIsTheWeightOfTheHeaviestCable) {
   EXPECT_GT(ColorScale(scene_with(0.1, 2.0, 0.3, infinity)).full_strain(), 0);
 }
 
+/// A rope between two points, after some steps.
+World rope_between(double span, const SceneDesc& rope) {
+  SceneDesc scene = rope;
+  scene.cables.front().segments = 20;
+  for (const double x : {0.0, span}) {
+    AttachmentDesc attachment;
+    attachment.name = x == 0 ? "left" : "right";
+    attachment.place.at = x == 0 ? PlaceDesc::At::start : PlaceDesc::At::end;
+    attachment.offset.x() = x;
+    scene.cables.front().attachments.push_back(attachment);
+  }
+  World world(scene, initial_frames(scene));
+  for (int i = 0; i < 20; ++i) world.step(initial_frames(scene));
+  return world;
+}
+
+TEST(Color, TheRangeFollowsTheLargestTensionAndFades) {
+  const SceneDesc scene = scene_with(0.1, 2.0, 0, infinity);
+  const double weight = 0.1 * 2.0 * 9.81;
+  // Sag of a rope that is nearly straight: 8 sag^2 = 3 span (length - span); tension weight span / (8 sag), ten times the weight.
+  const World taut = rope_between(1.9995, scene), slack = rope_between(1.0, scene);
+  const std::vector<double>& tension = taut.cables().front().state.tension;
+  const double largest = *std::max_element(tension.begin(), tension.end());
+  ASSERT_GT(largest, 5 * weight);
+  ColorScale scale(scene);
+  EXPECT_FALSE(scale.follow(slack, 0.1)) << "never less than the weight";
+  EXPECT_TRUE(scale.follow(taut, 0.1));
+  EXPECT_GE(scale.legend().values.back(), largest);
+  EXPECT_LE(scale.legend().values.back(), 1.34 * largest) << "the next round number";
+  EXPECT_FALSE(scale.follow(taut, 0.1)) << "a legend that changes all the time is not read";
+  EXPECT_FALSE(scale.follow(slack, 1)) << "what was there a second ago is still shown";
+  EXPECT_TRUE(scale.follow(slack, 60));
+  EXPECT_DOUBLE_EQ(scale.legend().values.back(), weight);
+}
+
 TEST(Color, OfANodeIsTheMeanOfItsSegments) {
   SceneDesc scene = scene_with(0.1, 2.0, 0.3, infinity);
   const double full = ColorScale(scene).full_tension();

@@ -124,6 +124,18 @@ cables:
   EXPECT_EQ(scene.cables[1].initial.to, Vector3(1, 1, 2));
 }
 
+TEST(SceneReader, ACableWithAColorIsShownInItUnlessTheSceneSaysOtherwise) {
+  const auto read = [](const std::string& color, const std::string& color_by) {
+    return read_scene_text("materials: {rope: {linear_density: 0.1, radius: 0.005}}\ncables: [{name: a, length: 1, segments: 4, material: rope}, "
+                      "{name: b, length: 1, segments: 4, material: rope" +
+                      color + "}]\n" + color_by)
+        .color_by;
+  };
+  EXPECT_EQ(read("", ""), ColorBy::tension);
+  EXPECT_EQ(read(", color: [1, 0.5, 0, 1]", ""), ColorBy::cable);
+  EXPECT_EQ(read(", color: [1, 0.5, 0, 1]", "color_by: tension\n"), ColorBy::tension);
+}
+
 TEST(SceneReader, restCurvatureMayChangeAlongTheCable) {
   const SceneDesc scene =
       read_scene_text(replaced(sound_scene, "segments: 20", "segments: 20\n    rest_curvature: [[0.5, -0.25], [1, 2], [0, 3]]"));
