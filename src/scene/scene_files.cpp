@@ -143,31 +143,20 @@ void read_robot(const Value& root, const SceneSources& sources, MeshReader& mesh
     return root.errors->add_unread(description.key, quoted(name) + ": " + error.what(), urdf_words);
   }
   check_links(root, robot);
-  struct LeftOut {
-    std::string key, problem;
-    bool is_mesh;
-  };
-  std::vector<LeftOut> left_out;
-  bool is_any_left = false;
   for (LinkDesc& link : robot.tree) {
     const auto is_left_out = [&](ObstacleDesc& obstacle) {
       const bool is_mesh = obstacle.type == ShapeType::mesh;
       if (is_mesh) obstacle.uri = named_beside(description.file, obstacle.uri);
       const auto problem = problem_of(obstacle, meshes);
       if (!problem) return false;
-      left_out.push_back({"robot." + escaped(obstacle.name) + (is_mesh ? ".uri" : ""), *problem, is_mesh});
+      const std::string key = "robot." + escaped(obstacle.name) + (is_mesh ? ".uri" : "");
+      if (robot.on_bad_mesh == RobotDesc::OnBadMesh::error)
+        root.errors->add_unread(key, *problem, "geometry with a size, or robot.on_bad_mesh: warn");
+      else
+        robot.left_out.push_back(key + " is left out: " + *problem);
       return true;
     };
     link.obstacles.erase(std::remove_if(link.obstacles.begin(), link.obstacles.end(), is_left_out), link.obstacles.end());
-    is_any_left = is_any_left || !link.obstacles.empty();
-  }
-  for (const auto& [key, problem, is_mesh] : left_out) {
-    if (robot.on_bad_mesh == RobotDesc::OnBadMesh::error)
-      root.errors->add_unread(key, problem, "geometry with a size, or robot.on_bad_mesh: warn");
-    else if (is_mesh && !is_any_left)
-      root.errors->add_unread(key, problem, "a mesh that can be read: without it nothing is left of the robot");
-    else
-      robot.left_out.push_back(key + " is left out: " + problem);
   }
 }
 

@@ -135,7 +135,7 @@ SceneDesc read_all(const YAML::Node& root, const std::vector<std::string>& ignor
   const Value value{root, "", &errors};
   if (root.IsMap()) {
     const std::set<std::string> given = read_map(value, scene_keys(ignored), scene);
-    if (given.count("color_by") == 0) scene.color_by = natural_colors(root["cables"]);
+    if (given.count("color_by") == 0 && given.count("cables") > 0) scene.color_by = natural_colors(root["cables"]);
     check_not_empty(value, given, scene);
     add_presets(value, scene);
     read_scene_files(value, sources, scene);

@@ -354,21 +354,6 @@ TEST_F(Robot, badGeometryIsLeftOutAndNamed) {
   }
 }
 
-TEST_F(Robot, aRobotOfWhichNothingCanBeReadIsAnError) {
-  const auto errors = [&](const std::string& geometry) {
-    write("bad.urdf", "<robot name='r'><link name='base'/><link name='arm'>" + geometry +
-                          "</link><joint name='j' type='fixed'><parent link='base'/><child link='arm'/></joint></robot>");
-    return errors_of(sound_scene + "robot: {file: " + path("bad.urdf") + "}\n");
-  };
-  const auto collision = [](const std::string& shape) { return "<collision><geometry>" + shape + "</geometry></collision>"; };
-  const std::string missing = collision("<mesh filename='package://none/a.stl'/>");
-  const std::vector<std::string> lines = errors(missing + missing);
-  EXPECT_EQ(lines.size(), 2u) << joined(lines);
-  EXPECT_TRUE(has_line(lines, "robot.arm.uri: \"package://none/a.stl\": package \"none\" is not found")) << joined(lines);
-  EXPECT_EQ(errors(missing + collision("<sphere radius='1'/>")).size(), 0u);
-  EXPECT_EQ(errors(collision("<sphere radius='0'/>")).size(), 0u);
-}
-
 TEST_F(Robot, whatNoObstacleNeedsMayBeWrong) {
   const std::string sphere = "<geometry><sphere radius='1'/></geometry>";
   const auto spheres = [&](const std::string& in_link, const std::string& geometry) {
