@@ -12,7 +12,7 @@ namespace verlet_cable {
 
 /// How long reading may take, in all.
 struct Patience {
-  std::chrono::steady_clock::time_point until = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  std::chrono::steady_clock::time_point until = std::chrono::steady_clock::now() + std::chrono::seconds(120);
   const std::atomic<bool>* cancelled = nullptr;  ///< another thread may set it, and reading ends early
 
   void check() const;  ///< throws ResourceError when it is at its end

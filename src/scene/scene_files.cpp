@@ -17,7 +17,7 @@ namespace verlet_cable {
 namespace {
 
 constexpr const char* urdf_words = "a URDF";
-constexpr std::chrono::seconds patience_for_meshes(60);
+constexpr std::chrono::seconds patience_for_meshes(600);
 constexpr std::size_t most_triangles = 2'000'000;  // of all meshes
 
 /// Meshes by file and scale, each read once, within limits for all.
