@@ -2,9 +2,11 @@
 
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "arbitrary.h"
+#include "require.h"
 #include "verlet_cable/core/world.h"
 
 namespace verlet_cable::fuzz {
@@ -31,6 +33,7 @@ class WorldMachine {
   void start_waiting();
   void settle();
   void copy();
+  void reset();
   void save_or_restore();
   void pin();
   void unpin();
@@ -38,6 +41,7 @@ class WorldMachine {
   void cut();
   void set_length();
   void join();
+  void cut_and_join();
   void set_obstacle();
   void remove_obstacle();
   void tune();
@@ -70,5 +74,22 @@ class WorldMachine {
   World saved_;
   BoundaryInputs saved_frames_;
 };
+
+template <class Call>
+auto WorldMachine::on_both(const Call& call) {
+  const auto and_compare = [&] {
+    if (!copy_) return;
+    call(*copy_);
+    require(copy_->hash() == world_.hash(), "a copy goes on with the same bytes");
+  };
+  if constexpr (std::is_void_v<decltype(call(world_))>) {
+    call(world_);
+    and_compare();
+  } else {
+    const auto result = call(world_);
+    and_compare();
+    return result;
+  }
+}
 
 }  // namespace verlet_cable::fuzz

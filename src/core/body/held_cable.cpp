@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "body/body_joints.h"
+#include "scene/scene_materials.h"
 #include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
@@ -54,9 +55,7 @@ void HeldCable::begin(int participant, const Participant& p, const std::vector<i
 void HeldCable::find_stretches(const Participant& p) {
   const Boundary& boundary = p.substep.boundary;
   const CableMaterials materials(p.substep.model, *p.state);
-  const bool bends = !p.state->directors.empty() || materials.any([](const MaterialDesc& material) {
-    return material.bending_stiffness.largest() > 0 || material.bending_damping > 0;
-  });
+  const bool bends = !p.state->directors.empty() || materials.any(resists_bending);
   int stretch = 0;
   auto side = sides_.begin();
   auto direction = boundary.directions.begin();
