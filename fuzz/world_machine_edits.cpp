@@ -102,8 +102,8 @@ void WorldMachine::join() {
 
 /// Some times over, with whatever else may happen to the pieces in between.
 void WorldMachine::cut_and_join() {
-  void (WorldMachine::*const between[])() = {&WorldMachine::step_some,  &WorldMachine::step_some, &WorldMachine::pin,
-                                             &WorldMachine::unpin,      &WorldMachine::tune,      &WorldMachine::set_length,
+  void (WorldMachine::*const between[])() = {&WorldMachine::step_some,      &WorldMachine::step_some, &WorldMachine::pin,
+                                             &WorldMachine::unpin,          &WorldMachine::tune,      &WorldMachine::set_length,
                                              &WorldMachine::save_or_restore};
   for (int rounds = input_.one_of({1, 2, 4}); rounds > 0 && !is_tired(); --rounds) {
     for (const auto act : {&WorldMachine::cut, input_.one_of(between), &WorldMachine::join, input_.one_of(between)}) {

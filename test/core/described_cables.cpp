@@ -10,8 +10,7 @@ namespace verlet_cable::described {
 namespace {
 
 constexpr double length = 0.5, split_at = 0.25, height = 1, between_likes = 1, fork_at = 0.35;
-constexpr double bend = 1.6;  // [1/m] about z, of those that start bent
-constexpr int likes = 4;
+constexpr int likes = 2;
 
 /// A part of the cable that is described as a cable.
 struct Piece {
@@ -60,14 +59,6 @@ Section section_of(Where where) {
   return {0, 0};
 }
 
-bool is_held_twice(const Case& c) {
-  return c.holder == Holder::hinges || c.holder == Holder::clamps;
-}
-
-bool starts_bent(const Case& c) {
-  return c.feature.starts_bent || is_held_twice(c);
-}
-
 class Builder {
  public:
   Builder(const Case& parameters, Description description) : case_(parameters), description_(description) {}
@@ -105,12 +96,13 @@ class Builder {
   /// [rad] From the y axis: straight ones go along it, others are an arc from 0.4 to -0.4 rad.
   double yaw_at(double s) const { return is_bent() ? bend * (s - 0.5 * length) : 0; }
 
-  /// [m] Relative to the straight one's start, in the plane in which axes of the material are the same from either end. The middle
-  /// goes along y.
+  /// [m] Relative to the straight one's start, in the plane in which axes of the material are the same from either end. The
+  /// middle goes along y.
   Vector3 start_at(double s) const {
     if (!is_bent()) return {0, s, 0};
     const double yaw = yaw_at(s);
-    return {(std::cos(yaw) - 1) / bend, std::sin(yaw) / bend + 0.5 * length, 0};
+    const double segment = length / case_.segments, radius = 0.5 * segment / std::sin(0.5 * bend * segment);
+    return {radius * (std::cos(yaw) - 1), radius * std::sin(yaw) + 0.5 * length, 0};
   }
 
   AttachmentDesc attachment(const Piece& piece, const std::string& name, double s, AttachmentType type) const {
@@ -232,8 +224,8 @@ class Builder {
     const Vector3 at = origin + start_at(split_at);
     body.pose = InitialPose{at.x(), at.y(), at.z(), 0, 0, 0};
     for (const Piece& piece : pieces_of(description_)) {
-      CableDesc& cable =
-          *std::find_if(scene_.cables.begin(), scene_.cables.end(), [&](const CableDesc& c) { return c.name == piece.name + suffix; });
+      CableDesc& cable = *std::find_if(scene_.cables.begin(), scene_.cables.end(),
+                                       [&](const CableDesc& c) { return c.name == piece.name + suffix; });
       AttachmentDesc& held =
           cable.attachments.emplace_back(attachment(piece, "of_" + cable.name, split_at, AttachmentType::clamp));
       held.body = body.name;
@@ -256,113 +248,8 @@ Pose hand_at_time(double t) {
 
 }  // namespace
 
-const std::vector<Feature>& features() {
-  static const std::vector<Feature> all = [] {
-    std::vector<Feature> list;
-    const auto add = [&](const char* name, const std::function<void(MaterialDesc&)>& change = [](MaterialDesc&) {}) -> Feature& {
-      list.push_back({name, change});
-      return list.back();
-    };
-    add("Same");
-    add("Limp").is_limp = true;
-    add("Stiff", [](MaterialDesc& m) { m.bending_stiffness = 0.02; });
-    add("BendingDamping", [](MaterialDesc& m) { m.bending_damping = 1e-3; });
-    add("StiffAndDamped", [](MaterialDesc& m) {
-      m.bending_stiffness = 0.02;
-      m.bending_damping = 1e-3;
-    });
-    add("DampedAlone", [](MaterialDesc& m) { m.bending_damping = 1e-3; }).is_limp = true;
-    add("Ribbon", [](MaterialDesc& m) { m.bending_stiffness = {0.004, 0.01}; }).needs_torsion = true;
-    add("Torsion", [](MaterialDesc& m) {
-      m.torsional_stiffness = 0.004;
-      m.torsional_damping = 1e-4;
-    });
-    add("TorsionalDamping", [](MaterialDesc& m) { m.torsional_damping = 1e-4; }).needs_torsion = true;
-    add("Elastic", [](MaterialDesc& m) {
-      m.axial_stiffness = 500;
-      m.axial_damping = 1;
-    });
-    add("LimpElastic", [](MaterialDesc& m) {
-      m.axial_stiffness = 500;
-      m.axial_damping = 1;
-    }).is_limp = true;
-    add("Drag", [](MaterialDesc& m) { m.drag = 0.5; });
-    add("Fluid").fluid = 100;
-    Feature& fluid = add("ThickInFluid", [](MaterialDesc& m) { m.radius = 0.02; });
-    fluid.fluid = 100;
-    add("Thick", [](MaterialDesc& m) { m.radius = 0.02; });
-    add("Heavy", [](MaterialDesc& m) { m.linear_density = 0.15; });
-    add("Payload").payload = 0.02;
-    add("StiffEnds").stiff_ends = {0.06, 0.03};
-    Feature& curved = add("Curved");
-    curved.needs_torsion = true;
-    curved.rest_curvature = {1, 2};
-    Feature& twisted = add("Twisted");
-    twisted.needs_torsion = true;
-    twisted.rest_twist = 3;
-    Feature& whole = add("WholeRod", [](MaterialDesc& m) {
-      m.bending_stiffness = {0.004, 0.01};
-      m.bending_damping = 1e-4;
-      m.torsional_damping = 1e-4;
-      m.axial_stiffness = 500;
-    });
-    whole.needs_torsion = true;
-    whole.rest_curvature = {0, bend};
-    whole.starts_bent = true;
-    whole.payload = 0.01;
-    Feature& coiled = add("Coiled");
-    coiled.needs_torsion = true;
-    coiled.rest_curvature = {0, bend};
-    coiled.starts_bent = true;
-    return list;
-  }();
-  return all;
-}
-
-std::string name_of(const Case& c) {
-  const char* const descriptions[] = {"Plain", "Reversed", "InSections", "AtJunction", "AtOtherEnd", "OnBody"};
-  const char* const places[] = {"", "AtStart", "Inside", "AtEnd", "Outside"};
-  const char* const holders[] = {"Hinge", "Clamp", "Hinges", "Clamps", "Body"};
-  const char* const winches[] = {"", "PaidOut", "TakenIn"};
-  const char* const surroundings[] = {"", "Likes", "Harness", "Floor"};
-  return descriptions[static_cast<int>(c.description)] + std::string("_") + c.feature.name + places[static_cast<int>(c.where)] +
-         "_" + holders[static_cast<int>(c.holder)] + winches[static_cast<int>(c.winch)] +
-         surroundings[static_cast<int>(c.surroundings)];
-}
-
 bool is_split(Description description) {
   return pieces_of(description).size() > 1;
-}
-
-bool is_in_island(const Case& c) {
-  return c.holder == Holder::body || c.surroundings == Surroundings::harness;
-}
-
-std::vector<Case> all_cases() {
-  std::vector<Case> cases;
-  for (const Description description : {Description::reversed, Description::in_sections, Description::at_junction,
-                                        Description::at_other_end, Description::on_body})
-    for (const Feature& feature : features())
-      for (const Where where : {Where::everywhere, Where::start, Where::inside, Where::end, Where::outside})
-        for (const Holder holder : {Holder::hinge, Holder::clamp, Holder::hinges, Holder::clamps, Holder::body})
-          for (const Winch winch : {Winch::none, Winch::out, Winch::in})
-            for (const Surroundings surroundings :
-                 {Surroundings::nothing, Surroundings::likes, Surroundings::harness, Surroundings::floor}) {
-              const Case c{feature, where, holder, winch, surroundings, description};
-              // Where there is a feature matters for the law alone, whatever winds and surrounds the cable.
-              if (where != Where::everywhere && (winch != Winch::none || surroundings != Surroundings::nothing)) continue;
-              if (description == Description::in_sections && where != Where::everywhere) continue;
-              // A body in its place does what a junction does.
-              if (description == Description::on_body && (winch != Winch::none || where != Where::everywhere)) continue;
-              // Between two holders there is no room to take any in.
-              if (winch == Winch::in && is_held_twice(c)) continue;
-              // Ends are welded at the angle between them as it is at the start, not as it is without load: cables that start bent are
-              // a whole only if they are bent so at rest.
-              const std::array<double, 2> start{0, starts_bent(c) ? bend : 0};
-              if (is_split(description) && !feature.is_limp && feature.rest_curvature != start) continue;
-              cases.push_back(c);
-            }
-  return cases;
 }
 
 Run::Run(const Case& parameters, Description description)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <string>
 #include <vector>
@@ -8,6 +9,8 @@
 
 /// One and the same cable, described in several ways: what it is made of, what holds it, and what is around it.
 namespace verlet_cable::described {
+
+constexpr double bend = 1.6;  ///< [1/m] about z, of cables that start bent
 
 /// What is special about the cable, beside the plain one: 0.05 kg/m, EI 0.005 N m^2.
 struct Feature {
@@ -20,7 +23,7 @@ struct Feature {
   std::array<double, 2> rest_curvature{0, 0};
   double rest_twist = 0;
   bool starts_bent = false;  ///< along an arc, whatever holds it; others do if they are held twice
-  double fluid = 0;  ///< [kg/m^3]
+  double fluid = 0;          ///< [kg/m^3]
 };
 const std::vector<Feature>& features();
 
@@ -33,11 +36,11 @@ enum class Surroundings { nothing, likes, harness, floor };
 /// The ways to describe it.
 enum class Description {
   plain,
-  reversed,       ///< numbered from its other end
-  in_sections,    ///< as sections, of materials with other names
-  at_junction,    ///< two cables at a rigid junction
-  at_other_end,   ///< likewise, the second one numbered from its other end
-  on_body,        ///< two cables, clamped to a body that is as light as a junction
+  reversed,      ///< numbered from its other end
+  in_sections,   ///< as sections, of materials with other names
+  at_junction,   ///< two cables at a rigid junction
+  at_other_end,  ///< likewise, the second one numbered from its other end
+  on_body,       ///< two cables, clamped to a body that is as light as a junction
 };
 
 struct Case {
@@ -47,13 +50,19 @@ struct Case {
   Winch winch = Winch::none;
   Surroundings surroundings = Surroundings::nothing;
   Description description = Description::reversed;
-  int segments = 20;  ///< a multiple of 20
+  int segments = 20;         ///< a multiple of 20
   double time_step = 0.001;  ///< [s]
 };
 std::string name_of(const Case& parameters);
+/// Whether it is straight at the start, or an arc.
+bool starts_bent(const Case& parameters);
+/// Whether it is described as two cables.
 bool is_split(Description description);
 /// Whether the cable is stepped together with a body, at a junction or at its end.
 bool is_in_island(const Case& parameters);
+
+/// Whether it can stretch, somewhere.
+bool is_elastic(const Case& parameters);
 
 /// Those that can exist.
 std::vector<Case> all_cases();

@@ -37,8 +37,7 @@ bool is_whole_rod(const CableModel& model, const CableState& state) {
   return CableMaterials(model, state).any([&](const MaterialDesc& material) {
     const BendingStiffness& stiffness = material.bending_stiffness;
     return !stiffness.is_isotropic() || (stiffness.largest() > 0 && !state.rest_curvature.empty()) ||
-           (resists_bending(material) && model.turns_bodies) ||
-           (material.torsional_stiffness > 0 && !state.rest_twist.empty());
+           (resists_bending(material) && model.turns_bodies) || (material.torsional_stiffness > 0 && !state.rest_twist.empty());
   });
 }
 
