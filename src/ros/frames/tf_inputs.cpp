@@ -77,10 +77,7 @@ void TfInputs::insert(const ReceivedTransform& received, Nanoseconds now) {
   const std::string child = without_slash(received.transform.child_frame_id);
   const std::vector<Nanoseconds> known = buffer_.insert(received, now, carried_by(child));
   if (known.empty()) return;
-  if (buffer_.tree_version() != followers_version_) find_followers();
-  const auto moved = followers_.find(child);
-  if (moved == followers_.end()) return;
-  for (const int frame : moved->second) {
+  for (const int frame : followers_of(child)) {
     for (const Nanoseconds stamp : known)
       if (stamp > 0) fill_history(tracks_[frame], stamp);
     update_history(tracks_[frame]);
@@ -110,12 +107,18 @@ void TfInputs::find_followers() {
   }
 }
 
-/// [m] The origins of the frames that a transform moves, in its child frame.
-std::vector<Vector3> TfInputs::carried_by(const std::string& child) const {
-  std::vector<Vector3> carried;
+/// The frames, by id, that a transform moves as the tree is now.
+const std::vector<int>& TfInputs::followers_of(const std::string& child) {
+  static const std::vector<int> none;
+  if (buffer_.tree_version() != followers_version_) find_followers();
   const auto moved = followers_.find(child);
-  if (moved == followers_.end()) return carried;
-  for (const int frame : moved->second) {
+  return moved == followers_.end() ? none : moved->second;
+}
+
+/// [m] The origins of the frames that a transform moves, in its child frame.
+std::vector<Vector3> TfInputs::carried_by(const std::string& child) {
+  std::vector<Vector3> carried;
+  for (const int frame : followers_of(child)) {
     if (tracks_[frame].name == child) continue;
     if (const auto position = buffer_.position_in(child, tracks_[frame].name)) carried.push_back(*position);
   }

@@ -120,7 +120,8 @@ class TfInputs {
   void unsee_frames();
   void replay_recent(Nanoseconds now, Nanoseconds latest);
   void find_followers();
-  std::vector<Vector3> carried_by(const std::string& child) const;
+  const std::vector<int>& followers_of(const std::string& child);
+  std::vector<Vector3> carried_by(const std::string& child);
   void update_history(Track& track) const;
   void fill_history(Track& track, Nanoseconds stamp) const;
   const Track* find_track(const std::string& frame) const;
