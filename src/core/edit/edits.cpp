@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cassert>
 #include <memory>
 #include <string>
 #include <utility>
@@ -78,7 +77,7 @@ bool World::Implementation::is_attachment(const std::string& name) const {
 
 EditResult World::apply(const Edit& edit) {
   EditResult result = std::visit([&](const auto& of_kind) { return implementation_->apply(of_kind); }, edit);
-  assert(violation(implementation_->state).empty());
+  assert_no_violation(implementation_->state);
   return result;
 }
 

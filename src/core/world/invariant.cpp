@@ -1,6 +1,8 @@
 #include "world/invariant.h"
 
 #include <algorithm>
+#include <cassert>
+#include <cstdio>
 
 #include "chain/node_arrays.h"
 #include "world/holding_bodies.h"
@@ -116,6 +118,14 @@ std::string violation(const State& state) {
   for (const SimulatedGuide& guide : state.guides)
     check.require(is_index(guide.frame, state.frames.names.size()), guide.name, "is in a frame that is there");
   return check.first();
+}
+
+void assert_no_violation([[maybe_unused]] const State& state) {
+#ifndef NDEBUG
+  const std::string what = violation(state);
+  if (!what.empty()) std::fprintf(stderr, "verlet_cable: violated: %s\n", what.c_str());
+  assert(what.empty());
+#endif
 }
 
 }  // namespace verlet_cable

@@ -11,4 +11,7 @@ namespace verlet_cable {
 /// violation, with the name of the cable or attachment; empty if there is none.
 std::string violation(const State& state);
 
+/// An assertion that says what is violated: a bug of ours.
+void assert_no_violation(const State& state);
+
 }  // namespace verlet_cable

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cassert>
 #include <numeric>
 
 #include "verlet_cable/core/cable_materials.h"
@@ -42,7 +41,7 @@ void World::Implementation::begin_step(const BoundaryInputs& inputs, StepResult&
   advance_winches();
   advance_guides();
   wind_drives();
-  assert(violation(state).empty());
+  assert_no_violation(state);
   build_islands();
 }
 
@@ -62,7 +61,7 @@ void World::Implementation::end_step(StepResult& result) {
   collect_outcomes(result);
   find_excursions(state, findings.excursions);
   apply_breaks(result);
-  assert(violation(state).empty());
+  assert_no_violation(state);
   step_nets_and_particles(result);
   state.frames.steps_unjudged = std::max(state.frames.steps_unjudged - 1, 0);
 }

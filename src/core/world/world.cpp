@@ -1,7 +1,6 @@
 #include "verlet_cable/core/world.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <iterator>
 #include <memory>
@@ -213,7 +212,7 @@ int World::start_waiting(const BoundaryInputs& inputs) {
     if (!w.is_cancelled()) w.start_net(scene.nets[i], ids, inputs);
   w.note_unsettled(w.told_unsettled);
   w.name_waiting();
-  assert(violation(w.state).empty());
+  assert_no_violation(w.state);
   return static_cast<int>(cables.size() + nets.size());
 }
 
