@@ -169,7 +169,7 @@ TEST_P(AnyEdits, KeepTheInvariant) {
       const int cables = static_cast<int>(world.cables().size()), cable = any(cables);
       const int segments = world.cables()[cable].state.segments();
       EditResult result;
-      switch (any(6)) {
+      switch (any(7)) {
         case 0:
         case 1:
           result = world.apply(edit::Cut{cable_id(cable), any(segments)});
@@ -182,6 +182,14 @@ TEST_P(AnyEdits, KeepTheInvariant) {
           result =
               world.apply(edit::SetLength{cable, any(2) == 0, world.cables()[cable].state.length() * (0.6 + 0.1 * any(8)), 1});
           break;
+        case 5: {  // where it is, be it at a junction
+          edit::Pin pin;
+          pin.body = cable_id(cable);
+          pin.node = any(segments + 1);
+          pin.pose.position = world.cables()[cable].state.positions[pin.node];
+          result = world.apply(pin);
+          break;
+        }
         default:
           result = world.apply(edit::Unpin{world.attachments().empty()
                                                ? std::string("none")

@@ -112,9 +112,8 @@ std::string violation(const State& state) {
   for (int i = 0; check.first().empty() && i < static_cast<int>(state.cables.size()); ++i) check_progress(state, i, check);
   for (int b = 0; b < static_cast<int>(state.bodies.size()); ++b)
     for (const KinematicTarget& target : state.body_progress[b].holders)
-      check.require(
-          is_index(target.attachment, state.attachments.size()) && state.attachments[target.attachment].body == rigid_body_id(b),
-          state.bodies[b].name, "is held by attachments of its own");
+      check.require(is_index(target.attachment, state.attachments.size()) && held_body(state.attachments[target.attachment]) == b,
+                    state.bodies[b].name, "is held by attachments of its own");
   for (const SimulatedGuide& guide : state.guides)
     check.require(is_index(guide.frame, state.frames.names.size()), guide.name, "is in a frame that is there");
   return check.first();
