@@ -17,6 +17,7 @@ struct Feature {
   const char* name;
   std::function<void(MaterialDesc&)> change = [](MaterialDesc&) {};
   bool is_limp = false;        ///< the plain cable has no bending stiffness
+  bool hinges = false;         ///< it has bending damping alone: junctions pass none of it on, as for all limp cables
   bool needs_torsion = false;  ///< the plain cable has torsional stiffness, too
   double payload = 0;          ///< [kg] at 0.15 m
   std::array<double, 2> stiff_ends{0, 0};

@@ -29,7 +29,8 @@ const std::vector<Feature>& features() {
       m.bending_stiffness = 0.02;
       m.bending_damping = 1e-3;
     });
-    add("DampedAlone", [](MaterialDesc& m) { m.bending_damping = 1e-3; }).is_limp = true;
+    Feature& damped = add("DampedAlone", [](MaterialDesc& m) { m.bending_damping = 1e-3; });
+    damped.is_limp = damped.hinges = true;
     add("Ribbon", [](MaterialDesc& m) { m.bending_stiffness = {0.004, 0.01}; }).needs_torsion = true;
     add("Torsion", [](MaterialDesc& m) {
       m.torsional_stiffness = 0.004;
@@ -122,7 +123,7 @@ std::vector<Case> all_cases() {
               // Ends are welded at the angle between them as it is at the start, not as it is without load: cables that start
               // bent are a whole only if they are bent so at rest.
               const std::array<double, 2> start{0, starts_bent(c) ? bend : 0};
-              if (is_split(description) && feature.rest_curvature != start) continue;
+              if (is_split(description) && (feature.rest_curvature != start || feature.hinges)) continue;
               cases.push_back(c);
             }
   return cases;

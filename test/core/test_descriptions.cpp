@@ -62,15 +62,14 @@ TEST(SplitCables, DifferTheLessTheShorterTheirSegments) {
   int checked = 0;
   for (Case parameters : described::all_cases()) {
     const std::string name = described::name_of(parameters);
-    if (name != "AtJunction_Same_Body" && name != "AtJunction_Coiled_Body" && name != "AtOtherEnd_Stiff_ClampHarness" &&
-        name != "AtJunction_DampedAlone_ClampHarness")
+    if (name != "AtJunction_Same_Body" && name != "AtJunction_Coiled_Body" && name != "AtOtherEnd_Stiff_ClampHarness")
       continue;
     ++checked;
     const double coarse = largest_difference(parameters);
     parameters.segments *= 2;
     EXPECT_LT(largest_difference(parameters), coarse / 4) << name;
   }
-  EXPECT_EQ(checked, 4);
+  EXPECT_EQ(checked, 3);
 }
 
 }  // namespace

@@ -58,7 +58,8 @@ TEST(StepBudget, StepThatTakesTooMuchWorkGoesOnFromRestInOnePiece) {
     exhausted += result.exhausted;
     if (result.exhausted) {
       EXPECT_EQ(result.status, Status::degraded);
-      EXPECT_EQ(result.cause, DegradedCause::too_much_work);
+      // On its way there, it may not have converged, which is told first.
+      EXPECT_TRUE(result.cause == DegradedCause::too_much_work || result.cause == DegradedCause::no_solution);
     }
     // With contacts each iteration visits its 12 segments at a cost of 6; it may end one attempt late.
     EXPECT_LT(result.iterations * 6 * 12, 8e5) << "step " << i;

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "body/body_joints.h"
-#include "scene/scene_materials.h"
 #include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
@@ -55,7 +54,9 @@ void HeldCable::begin(int participant, const Participant& p, const std::vector<i
 void HeldCable::find_stretches(const Participant& p) {
   const Boundary& boundary = p.substep.boundary;
   const CableMaterials materials(p.substep.model, *p.state);
-  const bool bends = !p.state->directors.empty() || materials.any(resists_bending);
+  const bool bends = !p.state->directors.empty() || materials.any([](const MaterialDesc& material) {
+    return material.bending_stiffness.largest() > 0 || material.bending_damping > 0;
+  });
   int stretch = 0;
   auto side = sides_.begin();
   auto direction = boundary.directions.begin();

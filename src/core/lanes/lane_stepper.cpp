@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/scene_materials.h"
-
 namespace verlet_cable {
 
 namespace {
@@ -16,6 +14,10 @@ constexpr int maximum_iterations = 40;
 constexpr int iterations_of_first_matrix = 4;
 /// Sides of clamps; a cable with more of them takes its memory in its first step.
 constexpr int expected_clamps = 8;
+
+bool bends(const CableModel& model) {
+  return model.material.bending_stiffness.largest() > 0 || model.material.bending_damping > 0;
+}
 
 bool is_elastic(const CableModel& model) {
   return model.material.axial_stiffness < infinity;
@@ -41,7 +43,7 @@ bool fits_lanes(const Substep& s, const CableState& state, bool is_held) {
 
 LaneLaw law_of(const Substep& s, const CableState& state) {
   LaneLaw law;
-  law.bends = resists_bending(s.model.material);
+  law.bends = bends(s.model);
   law.is_damped = s.model.material.bending_damping > 0;
   law.is_elastic = is_elastic(s.model);
   law.is_watched = s.treatment != Treatment::none;

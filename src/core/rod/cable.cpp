@@ -7,7 +7,6 @@
 #include "geometry/segment_geometry.h"
 #include "rod/material_frames.h"
 #include "rod/rod_frames.h"
-#include "scene/scene_materials.h"
 #include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
@@ -36,8 +35,8 @@ int find_material(const CableModel& model, const std::string& name) {
 bool is_whole_rod(const CableModel& model, const CableState& state) {
   return CableMaterials(model, state).any([&](const MaterialDesc& material) {
     const BendingStiffness& stiffness = material.bending_stiffness;
-    return !stiffness.is_isotropic() || (stiffness.largest() > 0 && !state.rest_curvature.empty()) ||
-           (resists_bending(material) && model.turns_bodies) || (material.torsional_stiffness > 0 && !state.rest_twist.empty());
+    return !stiffness.is_isotropic() || (stiffness.largest() > 0 && (model.turns_bodies || !state.rest_curvature.empty())) ||
+           (material.torsional_stiffness > 0 && !state.rest_twist.empty());
   });
 }
 

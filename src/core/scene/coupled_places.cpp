@@ -60,7 +60,10 @@ class PlaceCounter {
   }
 
   bool bends(const CableDesc& cable) const {
-    const auto resists = [&](const std::string& name) { return resists_bending(*scene_.find_material(name)); };
+    const auto resists = [&](const std::string& name) {
+      const MaterialDesc& material = *scene_.find_material(name);
+      return material.bending_stiffness.largest() > 0 || material.bending_damping > 0;
+    };
     return resists(cable.material) || std::any_of(cable.sections.begin(), cable.sections.end(),
                                                   [&](const SectionDesc& section) { return resists(section.material); });
   }

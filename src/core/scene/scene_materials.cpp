@@ -10,8 +10,8 @@ const MaterialDesc& material_at(const SceneDesc& scene, const CableDesc& cable, 
 }
 
 bool bends_at(const SceneDesc& scene, const CableDesc& cable, int node) {
-  const auto resists = [&](int segment) { return resists_bending(material_at(scene, cable, segment)); };
-  return resists(std::max(node - 1, 0)) || resists(std::min(node, cable.segments - 1));
+  const auto bends = [&](int segment) { return material_at(scene, cable, segment).bending_stiffness.largest() > 0; };
+  return bends(std::max(node - 1, 0)) || bends(std::min(node, cable.segments - 1));
 }
 
 }  // namespace verlet_cable

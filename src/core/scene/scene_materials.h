@@ -7,11 +7,6 @@ namespace verlet_cable {
 /// What a segment is made of, in a scene that has all materials.
 const MaterialDesc& material_at(const SceneDesc& scene, const CableDesc& cable, int segment);
 
-/// Whether it passes moments across its joints: by stiffness, or by damping alone.
-inline bool resists_bending(const MaterialDesc& material) {
-  return material.bending_stiffness.largest() > 0 || material.bending_damping > 0;
-}
-
 /// Whether the cable resists bending on a side of a node.
 bool bends_at(const SceneDesc& scene, const CableDesc& cable, int node);
 

@@ -5,7 +5,6 @@
 #include <map>
 #include <optional>
 
-#include "scene/scene_materials.h"
 #include "scene/validate_place.h"
 #include "verlet_cable/core/pin_rules.h"
 #include "verlet_cable/core/world.h"
@@ -251,7 +250,7 @@ class SimulationChecker {
     const bool turns_body = std::any_of(cable.attachments.begin(), cable.attachments.end(), [](const AttachmentDesc& a) {
       return !a.body.empty() && a.type == AttachmentType::clamp;
     });
-    return !material.bending_stiffness.is_isotropic() || (bends && is_bent) || (resists_bending(material) && turns_body) ||
+    return !material.bending_stiffness.is_isotropic() || (bends && (is_bent || turns_body)) ||
            (material.torsional_stiffness > 0 && cable.rest_twist != 0);
   }
 

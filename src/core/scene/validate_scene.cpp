@@ -218,7 +218,7 @@ std::optional<Pose> holder_of(const SceneDesc& scene, const AttachmentDesc& atta
   return pose_of(*body->pose);
 }
 
-/// has at rest only if they are in the right places. Clamps of a cable that does not resist bending hold the nodes beside theirs.
+/// has at rest only if they are in the right places. Clamps of a cable without bending stiffness hold the nodes beside theirs.
 void check_held_segment(const std::string& key, const SceneDesc& scene, const CableDesc& cable, const AttachmentDesc& first,
                         const AttachmentDesc& second, const std::map<std::string, Pose>& frames, Errors& errors) {
   const double length = cable.length / cable.segments;
@@ -241,7 +241,7 @@ void check_held_segment(const std::string& key, const SceneDesc& scene, const Ca
         key + ".length",
         rounded_text(length * segments) + " m of cable between " + quoted(first.name) + " and " + quoted(second.name),
         "at least " + rounded_bound_text(distance + held, 1) +
-            " m, as clamps hold the segments next to them of a cable without bending_stiffness and bending_damping, and it is "
+            " m, as clamps hold the segments next to them of a cable without bending_stiffness, and it is "
             "inextensible (axial_stiffness .inf)");
   if (free > 0 || std::abs(distance - length) <= held_tolerance * length) return;
   errors.add(key + ".segments",

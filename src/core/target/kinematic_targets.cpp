@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "rod/rod_frames.h"
-#include "scene/scene_materials.h"
 #include "target/jump.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/rotation.h"
@@ -81,7 +80,8 @@ void add_target(int attachment, const WantedNode& wanted, const std::vector<Vect
 
 bool bends_at(const CableModel& model, const CableState& state, int node) {
   const CableMaterials materials(model, state);
-  return resists_bending(materials[std::max(node - 1, 0)]) || resists_bending(materials[std::min(node, state.segments() - 1)]);
+  return std::max(materials[std::max(node - 1, 0)].bending_stiffness.largest(),
+                  materials[std::min(node, state.segments() - 1)].bending_stiffness.largest()) > 0;
 }
 
 void aim_at(const Vector3& wanted, double time, KinematicTarget& target) {

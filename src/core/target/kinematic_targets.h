@@ -64,7 +64,7 @@ struct KinematicTargets {
 /// Whether the cable resists bending on a side of a node.
 bool bends_at(const CableModel& model, const CableState& state, int node);
 
-/// Where an attachment wants nodes to be: its own, and for a clamp of a cable that does not resist bending the neighbours, too, so
+/// Where an attachment wants nodes to be: its own, and for a clamp of a cable without bending stiffness the neighbours, too, so
 /// that the direction is held.
 struct WantedNode {
   int node = 0;

@@ -36,7 +36,7 @@ struct LengthDrive {
   int end_node(int segments) const { return place == Place::start ? 0 : segments; }  ///< of a winch
 };
 
-/// While a winch winds, what goes through a clamp there of a cable that does not resist bending may have any direction: the clamp
+/// While a winch winds, what goes through a clamp there of a cable without bending stiffness may have any direction: the clamp
 /// does not hold the neighbour of its node.
 void open_clamp(const LengthDrive& drive, const std::vector<Attachment>& attachments, int segments, KinematicTargets& targets);
 

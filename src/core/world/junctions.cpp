@@ -222,7 +222,7 @@ void World::Implementation::weld_junctions(const std::vector<int>& descs) {
   }
 }
 
-/// A cable that does not resist bending passes no moment: a point of it is held.
+/// A cable without bending stiffness passes no moment: a point of it is held.
 void World::Implementation::weld(int index) {
   Attachment& joint = state.attachments[index];
   const SimulatedCable& cable = state.cables[joint.body.index];
