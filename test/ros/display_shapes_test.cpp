@@ -95,6 +95,7 @@ TEST(Color, ScaleIsTheWeightOfTheHeaviestCable) {
 World rope_between(double span, const SceneDesc& rope) {
   SceneDesc scene = rope;
   scene.cables.front().segments = 20;
+  scene.cables.front().point_masses.clear();
   for (const double x : {0.0, span}) {
     AttachmentDesc attachment;
     attachment.name = x == 0 ? "left" : "right";

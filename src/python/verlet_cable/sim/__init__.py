@@ -2,7 +2,7 @@
 
     from verlet_cable.sim import Scene, World
 
-    # The scene (a file of the package) has two grippers without poses. The motion gives them; here, they are at rest.
+    # The scene (a file of the package) has two grippers. The motion says where they are; here, they are at rest.
     still = {'left_gripper': ([0], [[-0.4, 0, 1, 0, 0, 0, 1]]), 'right_gripper': ([0], [[0.4, 0, 1, 0, 0, 0, 1]])}
     world = World(Scene.load('config/hose.yaml'), still)
     status = world.step(100)          # 'ok', and world.time is 0.1 s
