@@ -116,7 +116,7 @@ class ReadmeTest(unittest.TestCase):
         for line in typed('rosrun tf2_ros static_transform_publisher'):
             self.start(line)
         with node.states() as states:
-            states.wait_for(lambda s: [round(cable(s, 'hose').positions[i].x, 6) for i in (0, -1)] == [-0.4, 0.4], 'hose in its frames')
+            states.wait_for(lambda s: [round(cable(s, 'hose').positions[i].x, 6) for i in (0, -1)] == [-0.35, 0.35], 'hose in its frames')
         self.assertNotIn('WARN', program.text())
 
     def test_a_hose_without_poses_asks_for_its_frames_and_follows_them(self):
@@ -140,7 +140,7 @@ class ReadmeTest(unittest.TestCase):
             state = states.wait_for(lambda s: cable(s, 'hose'), 'hose')
             self.assertTrue(all_finite(state))
             ends = cable(state, 'hose').positions[0], cable(state, 'hose').positions[-1]
-            self.assertEqual([(round(p.x, 6), p.y, p.z) for p in ends], [(-0.4, 0, 1), (0.4, 0, 1)])
+            self.assertEqual([(round(p.x, 6), p.y, p.z) for p in ends], [(-0.35, 0, 1), (0.35, 0, 1)])
 
     def test_frames_that_come_with_the_node_are_not_asked_for(self):
         frames = rospy.Publisher('/tf_static', TFMessage, queue_size=1, latch=True)
@@ -149,7 +149,7 @@ class ReadmeTest(unittest.TestCase):
         program = self.start('roslaunch verlet_cable cable.launch scene:=waiting.yaml')
         # It no longer waits for them to start.
         self.assertEqual(rospy.wait_for_message('/cable/state', CableArray, PATIENCE).cables, [])
-        frames.publish([transform('left_gripper', 1, (-0.4, 0, 1)), transform('right_gripper', 1, (0.4, 0, 1))])
+        frames.publish([transform('left_gripper', 1, (-0.35, 0, 1)), transform('right_gripper', 1, (0.35, 0, 1))])
         program.wait_for_lines('has appeared on tf', 2)
         self.assertNotIn('WARN', program.text())
 
