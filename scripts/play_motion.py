@@ -198,7 +198,7 @@ class Player:
 
 
 def main():
-    if not rosgraph.is_master_online() and not any(argument.startswith('_motion:=') for argument in sys.argv):
+    if len(sys.argv) == 1 and not rosgraph.is_master_online():
         print(__doc__.split('\n', maxsplit=1)[0], file=sys.stderr)
         sys.exit(2)
     node_thread.run('play_motion', play)
