@@ -88,11 +88,11 @@ class PlayMotionTest(unittest.TestCase):
             self.assertEqual(process.communicate(timeout=LIMIT)[0], '')
             subscriber.unregister()
 
-    def refuse(self, *arguments):
+    def refuse(self, *arguments, status=1):
         """What is written of a wrong start, after the program's name."""
         done = subprocess.run(['rosrun', 'verlet_cable', 'play_motion.py', *arguments], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                               text=True, timeout=LIMIT)
-        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertEqual(done.returncode, status, done.stdout)
         program, _, message = done.stdout.partition(': ')
         self.assertEqual(program, 'play_motion.py', done.stdout)
         return message
@@ -124,8 +124,11 @@ class PlayMotionTest(unittest.TestCase):
                 self.assertEqual(self.refuse(f'_motion:={path}'), f'{path}: {message}\n')
 
     def test_arguments(self):
-        self.assertIn('_motion:=FILE.csv', self.refuse())
+        self.assertIn('_motion:=FILE.csv', self.refuse(status=2))
         without_master = {**os.environ, 'ROS_MASTER_URI': 'http://localhost:1'}
+        alone = subprocess.run(['rosrun', 'verlet_cable', 'play_motion.py'], stderr=subprocess.PIPE, text=True, env=without_master, timeout=LIMIT)
+        self.assertEqual(alone.returncode, 2)
+        self.assertIn('play_motion.py _motion:=FILE.csv', alone.stderr)
         for program, usage in (('play_motion.py', 'play_motion.py _motion:='), ('replay.py', 'replay.py _data:=')):
             refused = subprocess.run(['rosrun', 'verlet_cable', program, 'motion.csv'], stderr=subprocess.PIPE, text=True,
                                      env=without_master, timeout=LIMIT)
