@@ -396,7 +396,7 @@ vary:
 def test_a_frame_that_nothing_places_is_an_error(tmp_path):
     folder = write(tmp_path, scene=SCENE.replace(', initial_pose: [0.7, 0, 0, 0, 0, 0]', ''))
     status, text = run(folder, tmp_path / 'store')
-    assert status == 2 and 'scene.yaml: frames: nothing has placed hand;' in text, text
+    assert status == 2 and 'scene.yaml: frame hand: it has no pose; allowed: initial_pose' in text, text
     assert not (tmp_path / 'store').exists()
 
 
