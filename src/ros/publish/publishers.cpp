@@ -39,7 +39,8 @@ struct Publishers::Implementation {
   }
 
   void follow_colors(const World& world, const ros::Time& stamp) {
-    if (colors.follow(world, (stamp - colored).toSec())) legend.show(colors);
+    // ROS's durations are no longer than 68 years, its times are.
+    if (colors.follow(world, stamp.toSec() - colored.toSec())) legend.show(colors);
     colored = stamp;
   }
 
