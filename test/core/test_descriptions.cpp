@@ -62,8 +62,7 @@ TEST(SplitCables, DifferTheLessTheShorterTheirSegments) {
   int checked = 0;
   for (Case parameters : described::all_cases()) {
     const std::string name = described::name_of(parameters);
-    if (name != "AtJunction_Same_Body" && name != "AtJunction_Coiled_Body" && name != "AtOtherEnd_Stiff_ClampHarness")
-      continue;
+    if (name != "AtJunction_Same_Body" && name != "AtJunction_Coiled_Body" && name != "AtOtherEnd_Stiff_ClampHarness") continue;
     ++checked;
     const double coarse = largest_difference(parameters);
     parameters.segments *= 2;

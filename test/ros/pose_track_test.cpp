@@ -101,7 +101,8 @@ TEST(PoseTrack, WhatMayBeAJumpIsHeldBackUntilTheNextSample) {
 /// A base that turns on the spot by 20 degrees within 10 ms, or goes on turning: 0.35 m for a hand that is 1 m away.
 Played turned(bool goes_on, const std::vector<Vector3>& carried) {
   Played track;
-  for (int i = 0; i <= 10; ++i) track.add(ms + i * 10 * ms, at(Vector3::Zero(), 0.35 * std::clamp(i - 4, 0, goes_on ? 6 : 1)), carried);
+  for (int i = 0; i <= 10; ++i)
+    track.add(ms + i * 10 * ms, at(Vector3::Zero(), 0.35 * std::clamp(i - 4, 0, goes_on ? 6 : 1)), carried);
   return track;
 }
 
@@ -132,8 +133,8 @@ TEST(PoseTrack, VelocitiesDoNotKinkBetweenSlowSamples) {
     largest_change = std::max(largest_change, change.norm() / 5e-3);
     largest_error = std::max(largest_error, (track.place(time) - motion(1e-9 * static_cast<double>(time - ms))).norm());
   }
-  // [m/s] Straight lines between the samples change by 0.08; half of that is left where the hand turns back, and must not be led beyond
-  // its samples.
+  // [m/s] Straight lines between the samples change by 0.08; half of that is left where the hand turns back, and must not be led
+  // beyond its samples.
   EXPECT_LT(largest_change, 0.04);
   EXPECT_LT(largest_error, 1e-3);
 }

@@ -105,7 +105,8 @@ void FrameBuffer::follow(double jump_speed, Nanoseconds longest_gap) {
   tracks_.clear();
 }
 
-std::vector<Nanoseconds> FrameBuffer::insert(const ReceivedTransform& received, Nanoseconds now, const std::vector<Vector3>& carried) {
+std::vector<Nanoseconds> FrameBuffer::insert(const ReceivedTransform& received, Nanoseconds now,
+                                             const std::vector<Vector3>& carried) {
   const std::string child = without_slash(received.transform.child_frame_id);
   if (!accept(received, child, now)) return {};
   if (received.is_static)

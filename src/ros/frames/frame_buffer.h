@@ -41,7 +41,8 @@ class FrameBuffer {
   /// The stamps from which on a frame is known now that the transform has come, ascending: its own, and that of one which was
   /// held back, see PoseTrack; none if it is held back or refused. A static one has stamp 0. What is wrong with it is logged now
   /// and then, and counted. `carried`: [m] points in the child frame that move with it.
-  std::vector<Nanoseconds> insert(const ReceivedTransform& received, Nanoseconds now = 0, const std::vector<Vector3>& carried = {});
+  std::vector<Nanoseconds> insert(const ReceivedTransform& received, Nanoseconds now = 0,
+                                  const std::vector<Vector3>& carried = {});
   /// Whether the names are short enough to be kept.
   static bool has_room_for_names(const geometry_msgs::TransformStamped& transform);
   /// The latest stamp that is taken at ROS time `now`; where there is no time, the latest that can be stored.

@@ -110,8 +110,8 @@ std::string commands_for(const std::vector<std::string>& missing, const SceneDes
   const double spacing = std::isfinite(shortest) && missing.size() > 1 ? span * shortest / (missing.size() - 1) : 0;
   std::string commands;
   for (std::size_t i = 0; i < std::min(missing.size(), most); ++i)
-    commands += "\n  rosrun tf2_ros static_transform_publisher " + number_text(i * spacing) + " 0 1 0 0 0 " + escaped(scene.frame_id) +
-                " " + escaped(missing[i]) + " &";
+    commands += "\n  rosrun tf2_ros static_transform_publisher " + number_text(i * spacing) + " 0 1 0 0 0 " +
+                escaped(scene.frame_id) + " " + escaped(missing[i]) + " &";
   return commands;
 }
 
@@ -207,7 +207,8 @@ void FrameWatch::warn_of_waiting(const SceneDesc& scene, const World& world, con
   const std::vector<std::string> missing = missing_frames(waiting_attachments(scene, world, frames.inputs()));
   if (missing.empty()) return;
   ROS_WARN(
-      "not shown yet: %s, because tf has no transform from %s to %s. If nothing else is to publish them, type, with x, y, z [m] as you "
+      "not shown yet: %s, because tf has no transform from %s to %s. If nothing else is to publish them, type, with x, y, z [m] "
+      "as you "
       "like:%s",
       list(world.findings().waiting).c_str(), quoted(scene.frame_id).c_str(), list(missing).c_str(),
       commands_for(missing, scene).c_str());

@@ -57,7 +57,8 @@ std::vector<PoseSample> PoseTrack::add(const PoseSample& sample, const std::vect
 bool PoseTrack::is_fast(const PoseSample& from, const PoseSample& to, const std::vector<Vector3>& carried) const {
   const double longest_way = jump_speed_ * seconds(to.stamp - from.stamp);
   const auto goes_further = [&](const Vector3& point) {
-    return (to.pose.position + to.pose.orientation * point - from.pose.position - from.pose.orientation * point).norm() > longest_way;
+    return (to.pose.position + to.pose.orientation * point - from.pose.position - from.pose.orientation * point).norm() >
+           longest_way;
   };
   return goes_further(Vector3::Zero()) || std::any_of(carried.begin(), carried.end(), goes_further);
 }

@@ -20,12 +20,12 @@ constexpr std::size_t most_nodes = 200;
 constexpr double node_size = 1.6, attachment_size = 3.2;
 /// Of a cable's length, to each side: 12 pixels or more in a window that shows the whole cable.
 constexpr double node_reach = 0.01;
-constexpr double largest_arm = 0.3;      // [m]
-constexpr double arm_of_cable = 0.12;    // of its length
-constexpr double arm_of_net = 3;         // of its first link's length
-constexpr double smallest_arm = 10;      // [radii]
-constexpr double sphere_in_arm = 0.25;   // a sphere is no larger than this part of the arrows
-constexpr double arm_of_body = 1.5;      // of its radius of gyration
+constexpr double largest_arm = 0.3;     // [m]
+constexpr double arm_of_cable = 0.12;   // of its length
+constexpr double arm_of_net = 3;        // of its first link's length
+constexpr double smallest_arm = 10;     // [radii]
+constexpr double sphere_in_arm = 0.25;  // a sphere is no larger than this part of the arrows
+constexpr double arm_of_body = 1.5;     // of its radius of gyration
 
 void add_menu(const Handle& handle, InteractiveMarker& marker) {
   const auto add = [&](HandleAction action, const char* title) {
@@ -180,7 +180,8 @@ void add_bodies(const World& world, const std::set<std::string>& grabs, std::vec
 }  // namespace
 
 bool look_alike(const Handle& a, const Handle& b) {
-  return a.name == b.name && a.cable == b.cable && a.turns == b.turns && a.radius == b.radius && a.half_width == b.half_width && a.arm_length == b.arm_length;
+  return a.name == b.name && a.cable == b.cable && a.turns == b.turns && a.radius == b.radius && a.half_width == b.half_width &&
+         a.arm_length == b.arm_length;
 }
 
 std::vector<Handle> find_handles(const Simulation& simulation, const std::set<std::string>& grabs) {

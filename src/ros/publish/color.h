@@ -20,16 +20,16 @@ std_msgs::ColorRGBA color_of_load(double load);
 /// Red, green and blue in the bytes of one float, as PointCloud2 consumers expect in a field `rgb`.
 float packed_rgb(const std_msgs::ColorRGBA& color);
 
-/// Gives every node of a cable its color, one scale for all cables: blue is slack, red the largest tension that there was of late,
-/// and no less than that under which the scene's heaviest cable would hang from one end with all its payloads. By strain, the
-/// largest strain, and no less than that weight would give one of the cables (without an elastic cable: 0.1 %). By contact, the
-/// cube root of a segment's contact force, so that what lies on a floor shows beside what is pulled around a pole.
+/// Gives every node of a cable its color, one scale for all cables: blue is slack, red the largest tension that there was of
+/// late, and no less than that under which the scene's heaviest cable would hang from one end with all its payloads. By strain,
+/// the largest strain, and no less than that weight would give one of the cables (without an elastic cable: 0.1 %). By contact,
+/// the cube root of a segment's contact force, so that what lies on a floor shows beside what is pulled around a pole.
 class ColorScale {
  public:
   explicit ColorScale(const SceneDesc& scene);
 
-  /// Widens the range to what is largest now, at once and to a round number; narrows it to what has been the largest of late, which
-  /// fades by a third in 4 s. `elapsed`: [s] since the last call. Whether the legend is another one now.
+  /// Widens the range to what is largest now, at once and to a round number; narrows it to what has been the largest of late,
+  /// which fades by a third in 4 s. `elapsed`: [s] since the last call. Whether the legend is another one now.
   bool follow(const World& world, double elapsed);
 
   /// One color a node: the mean over the segments that meet there. `contact_forces` [N]: one a segment, or none where nothing
@@ -52,8 +52,8 @@ class ColorScale {
   bool has_cables_;
   double full_tension_;
   double full_strain_;
-  double least_;        ///< that is red
-  double recent_ = 0;   ///< the largest of late
+  double least_;       ///< that is red
+  double recent_ = 0;  ///< the largest of late
 };
 
 }  // namespace verlet_cable

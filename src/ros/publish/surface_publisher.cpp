@@ -65,8 +65,7 @@ void append_points(const SimulatedCable& cable, std::uint32_t cable_id, double c
 }  // namespace
 
 SurfacePublisher::SurfacePublisher(ros::NodeHandle& private_node, const SceneDesc& scene, const DrawingFrame& frame)
-    : publisher_(private_node.advertise<sensor_msgs::PointCloud2>("surface", publisher_queue_size)),
-      frame_(frame) {}
+    : publisher_(private_node.advertise<sensor_msgs::PointCloud2>("surface", publisher_queue_size)), frame_(frame) {}
 
 void SurfacePublisher::show(const SceneDesc& scene, const DrawingFrame& frame) {
   frame_ = frame;
@@ -80,8 +79,8 @@ void SurfacePublisher::publish(const World& world, const ColorScale& colors, con
   for (std::size_t id = 0; id < world.cables().size(); ++id) {
     const SimulatedCable& cable = world.cables()[id];
     if (!is_finite(cable)) continue;
-    append_points(cable, static_cast<std::uint32_t>(id), coarseness, colors.node_colors(cable, contact_forces[id]),
-                  frame_.origin, points);
+    append_points(cable, static_cast<std::uint32_t>(id), coarseness, colors.node_colors(cable, contact_forces[id]), frame_.origin,
+                  points);
   }
   using sensor_msgs::PointField;
   publisher_.publish(make_point_cloud(frame_.name, stamp, points, "x", 1, PointField::FLOAT32, "y", 1, PointField::FLOAT32, "z",
