@@ -154,6 +154,8 @@ build_workspace() {
   link_package
   # catkin leaves this directory out of PYTHONPATH for good if it does not exist when it first configures.
   mkdir -p "$workspace/devel/lib/python3/dist-packages"
-  catkin_make -C "$workspace" -j"$(nproc)" "${configure_anew[@]}" --cmake-args -DPYTHON_EXECUTABLE=/usr/bin/python3 "${cmake_arguments[@]}" \
+  # So that it is seen in the logs when a build takes longer than it did.
+  local TIMEFORMAT="Built in %R s, with %U s of processor time: ${*:-all}"
+  time catkin_make -C "$workspace" -j"$(nproc)" "${configure_anew[@]}" --cmake-args -DPYTHON_EXECUTABLE=/usr/bin/python3 "${cmake_arguments[@]}" \
     --make-args -k "$@"
 }
