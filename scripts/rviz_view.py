@@ -4,7 +4,6 @@
 VIEW is a configuration of rviz. What it shows is that of the node NODE, in the scene's frame_id. FIT (true, false): the camera looks at
 what is in the scene file SCENE, from where all of it can be seen. Panel, tools and legend are left out where they are not built.
 """
-import glob
 import math
 import os
 import sys
@@ -22,7 +21,7 @@ CLOSEST = 0.1  # [m]
 
 def has_plugins():
     """Whether the libraries of rviz's plugins are built, in a workspace that is sourced."""
-    return any(glob.glob(os.path.join(folder, 'lib', PLUGINS)) for folder in os.environ.get('CMAKE_PREFIX_PATH', '').split(':'))
+    return any(os.path.exists(os.path.join(folder, 'lib', PLUGINS)) for folder in os.environ.get('CMAKE_PREFIX_PATH', '').split(':'))
 
 
 def numbers(value, count=3):

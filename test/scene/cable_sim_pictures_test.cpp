@@ -72,17 +72,22 @@ TEST_F(CableSim, picturesThatCannotBeAreRefusedBeforeAnythingIsSimulated) {
   EXPECT_FALSE(exists("o.csv"));
 }
 
-TEST(PictureRecord, hasShapesAndForcesAtEvenTimes) {
+/// What is drawn of so many steps.
+YAML::Node recorded(int steps) {
   const SceneDesc scene = read_scene_text(hanging);
   const BoundaryInputs frames = FrameSource(scene, {}).at(0);
   World world(scene, frames);
-  constexpr int steps = 400;
   PictureRecord record(world, "hanging.yaml", steps);
   for (int i = 0; i < steps; ++i) {
     world.step(frames);
     record.add(world);
   }
-  const YAML::Node json = YAML::Load(record.json());
+  return YAML::Load(record.json());
+}
+
+TEST(PictureRecord, hasShapesAndForcesAtEvenTimes) {
+  constexpr int steps = 400;
+  const YAML::Node json = recorded(steps);
   EXPECT_EQ(json["title"].Scalar(), "hanging.yaml");
   EXPECT_EQ(json["planes"].size(), 1u);
   // 25 a second, and the start.
@@ -100,16 +105,7 @@ TEST(PictureRecord, hasShapesAndForcesAtEvenTimes) {
 }
 
 TEST(PictureRecord, doesNotGrowWithTheRun) {
-  const SceneDesc scene = read_scene_text(hanging);
-  const BoundaryInputs frames = FrameSource(scene, {}).at(0);
-  World world(scene, frames);
-  constexpr int steps = 20000;
-  PictureRecord record(world, "hanging.yaml", steps);
-  for (int i = 0; i < steps; ++i) {
-    world.step(frames);
-    record.add(world);
-  }
-  const YAML::Node json = YAML::Load(record.json());
+  const YAML::Node json = recorded(20000);
   EXPECT_LE(json["frames"].size(), 151u);
   EXPECT_GE(json["frames"].size(), 140u);
   EXPECT_LE(json["times"].size(), 600u);
