@@ -6,10 +6,6 @@
 namespace verlet_cable {
 namespace {
 
-/// A velocity that has changed by more [m/s] in this time [s] was a jump's, see Jump.
-constexpr double greatest_change = 5;
-constexpr double longest_jump = 5e-3;
-
 /// What is fixed to a moving parent.
 FrameInput carried(const FrameInput& parent, const Pose& origin) {
   const Vector3 arm = parent.pose.orientation * origin.position;
@@ -67,31 +63,19 @@ void FrameSource::add(const std::string& name, int id, const Pose& resting) {
 }
 
 BoundaryInputs FrameSource::at(double time) const {
-  return at(time, 0, {});
-}
-
-BoundaryInputs FrameSource::at(double time, const PosesById& given) const {
-  return at(time, 0, given);
+  return at(time, {});
 }
 
 bool FrameSource::rests() const {
   return std::all_of(frames_.begin(), frames_.end(), [](const Frame& frame) { return frame.track.empty(); });
 }
 
-BoundaryInputs FrameSource::at_start() const {
-  BoundaryInputs inputs = at(0);
-  const BoundaryInputs later = at(0, longest_jump, {});
-  for (std::size_t i = 0; i < inputs.size(); ++i)
-    if ((later[i].velocity->linear - inputs[i].velocity->linear).norm() > greatest_change) inputs[i].velocity = later[i].velocity;
-  return inputs;
-}
-
-BoundaryInputs FrameSource::at(double time, double lead, const PosesById& given) const {
+BoundaryInputs FrameSource::at(double time, const PosesById& given) const {
   BoundaryInputs placed;  // one a frame
   BoundaryInputs inputs(ids_, FrameInput{{}, false, FrameVelocity{}});
   for (const Frame& frame : frames_) {
     placed.push_back({frame.resting, true, FrameVelocity{}});
-    if (!frame.track.empty()) placed.back() = {frame.track.at(time), true, frame.track.velocity_from(time + lead)};
+    if (!frame.track.empty()) placed.back() = {frame.track.at(time), true, frame.track.velocity_from(time)};
     if (frame.id >= 0) inputs[frame.id] = placed.back();
   }
   for (const auto& [id, pose] : given) inputs[id] = {pose, true, FrameVelocity{}};

@@ -32,14 +32,8 @@ class FrameSource {
   void add(const std::string& name, int id, const Pose& resting);
   /// Where a frame is that nothing else has placed.
   void place(int id, const Pose& resting);
-  /// Those that a run begins with: a motion that does not go on for longer than a jump (5 ms) is one, and no velocity to begin
-  /// with.
-  BoundaryInputs at_start() const;
 
  private:
-  /// `lead` [s]: how much later the velocities are of.
-  BoundaryInputs at(double time, double lead, const PosesById& given) const;
-
   struct Frame {
     int id = -1;       ///< -1: nothing but a link uses it
     FrameTrack track;  ///< empty where it rests; its jumps are found

@@ -10,16 +10,19 @@ constexpr double rounding = 1e-9;
 
 }  // namespace
 
+bool limit_motion(const Pose& from, double distance, Pose& to) {
+  const Vector3 way = to.position - from.position;
+  if (way.norm() <= distance * (1 + rounding)) return false;
+  const double fraction = distance / way.norm();
+  to = {from.position + fraction * way, from.orientation.slerp(fraction, to.orientation).normalized()};
+  return true;
+}
+
 std::vector<int> limit_frame_motion(const BoundaryInputs& before, double distance, BoundaryInputs& frames) {
   std::vector<int> held_back;
   for (std::size_t i = 0; i < std::min(before.size(), frames.size()); ++i) {
-    const Pose& from = before[i].pose;
-    Pose& to = frames[i].pose;
-    const Vector3 way = to.position - from.position;
-    if (!before[i].known || !frames[i].known || way.norm() <= distance * (1 + rounding)) continue;
-    const double fraction = distance / way.norm();
-    to = {from.position + fraction * way, from.orientation.slerp(fraction, to.orientation).normalized()};
-    held_back.push_back(static_cast<int>(i));
+    const bool both_known = before[i].known && frames[i].known;
+    if (both_known && limit_motion(before[i].pose, distance, frames[i].pose)) held_back.push_back(static_cast<int>(i));
   }
   return held_back;
 }

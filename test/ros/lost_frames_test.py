@@ -173,9 +173,10 @@ class LostFramesTest(unittest.TestCase):
         frames = Frames(hand=lambda t: HELD if t < at[0] else away)
         with frames, node.events() as events, node.states() as states:
             self.start(node)
-            rospy.sleep(0.2)
+            # The frame may have jumped from where the last test left it: of those within a second only the first is told.
+            rospy.sleep(1.2)
             states.clear()
-            events.clear()  # the frame may have come from where the last test left it
+            events.clear()
             at[0] = rospy.get_time() + 0.2
             # tf interpolates: both sides of the jump, ahead of time
             publisher.publish([transform('hand', at[0] - 5e-4, HELD), transform('hand', at[0] + 5e-4, away)])

@@ -122,7 +122,7 @@ TEST(FrameSource, aJumpAtTheStartIsNoVelocityToBeginWith) {
     motion["moved"].add(0, {});
     motion["moved"].add(duration, {{1, 0, 0}, Quaternion::Identity()});
     motion["moved"].add(1, {{1, 0, 0}, Quaternion::Identity()});
-    const BoundaryInputs inputs = FrameSource(scene, motion).at_start();
+    const BoundaryInputs inputs = FrameSource(scene, motion).at(0);
     for (const FrameInput& input : inputs)
       if (input.velocity->linear.norm() > 0) return input.velocity->linear.x();
     return 0.0;

@@ -127,7 +127,7 @@ std::string motion_of_shipped_scene(const std::string& path, const SceneDesc& sc
 ShippedRun run_shipped_scene(const std::string& path, const std::string& motion, int steps) {
   const SceneDesc scene = read_scene_file(path);
   const FrameSource source(scene, motion.empty() ? Motion{} : read_motion_file(motion));
-  std::vector<BoundaryInputs> frames = {source.at_start()};
+  std::vector<BoundaryInputs> frames = {source.at(0)};
   limit_frame_velocities(scene.max_frame_speed, frames.front());
   const World start(scene, frames.front());
   World world = start;

@@ -14,7 +14,7 @@ namespace verlet_cable {
 namespace {
 
 World begin(const SceneDesc& scene, const FrameSource& frames) {
-  BoundaryInputs start = frames.at_start();
+  BoundaryInputs start = frames.at(0);
   limit_frame_velocities(scene.max_frame_speed, start);
   return World(scene, start);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "scene/frame_speed.h"
 #include "time/ros_time.h"
 
 namespace verlet_cable {
@@ -334,19 +335,10 @@ void TfInputs::follow(int frame, const Pose& pose, Nanoseconds stamp, Nanosecond
   FrameInput& input = inputs_[frame];
   Track& track = tracks_[frame];
   const Pose before = track.gap.frame(input.pose);
-  Pose followed = before;
-  const double way = (pose.position - followed.position).norm();
-  const double longest_way = elapsed > 0 ? max_frame_speed_ * seconds(elapsed) : infinity;
-  if (way <= longest_way) {
-    followed = pose;
-    track.too_fast = false;
-  } else {
-    const double part = longest_way / way;
-    followed.position += part * (pose.position - followed.position);
-    followed.orientation = followed.orientation.slerp(part, pose.orientation).normalized();
-    if (!track.too_fast) change(FrameChange::Kind::too_fast, frame);
-    track.too_fast = true;
-  }
+  Pose followed = pose;
+  const bool was_too_fast = track.too_fast;
+  track.too_fast = elapsed > 0 && limit_motion(before, max_frame_speed_ * seconds(elapsed), followed);
+  if (track.too_fast && !was_too_fast) change(FrameChange::Kind::too_fast, frame);
   if (!track.gap.is_closed() && elapsed > 0) {
     if (track.too_fast)
       track.gap.move(before, followed, seconds(elapsed));

@@ -112,7 +112,7 @@ bool write_picture(const std::string& path, const char* kind, const Painter& pai
 
 int simulate_job(const Options& options, const Job& job, const Painter* painter) {
   const FrameSource frames(job.scene, job.motion);
-  BoundaryInputs start = frames.at_start();
+  BoundaryInputs start = frames.at(0);
   limit_frame_velocities(job.scene.max_frame_speed, start);
   World world(job.scene, start);
   Outputs outputs;
