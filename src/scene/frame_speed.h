@@ -10,8 +10,8 @@ namespace verlet_cable {
 /// fraction. Whether it was held back.
 bool limit_motion(const Pose& from, double distance, Pose& to);
 
-/// The same of all frames that would move further than `distance` [m] from `before` to `frames` (one entry a frame id each). Returns the
-/// ids of those held back, ascending.
+/// The same of all frames that would move further than `distance` [m] from `before` to `frames` (one entry a frame id each).
+/// Returns the ids of those held back, ascending.
 std::vector<int> limit_frame_motion(const BoundaryInputs& before, double distance, BoundaryInputs& frames);
 
 /// Slows down the velocities of frames that are above `speed` [m/s], and their turning by the same fraction.

@@ -127,9 +127,8 @@ cables:
 TEST(SceneReader, ACableWithAColorIsShownInItUnlessTheSceneSaysOtherwise) {
   const auto read = [](const std::string& color, const std::string& color_by) {
     return read_scene_text(
-               "materials: {rope: {linear_density: 0.1, radius: 0.005}}\ncables: [{name: a, length: 1, segments: 4, material: "
-               "rope}, "
-               "{name: b, length: 1, segments: 4, material: rope" +
+               "materials: {rope: {linear_density: 0.1, radius: 0.005}}\n"
+               "cables: [{name: a, length: 1, segments: 4, material: rope}, {name: b, length: 1, segments: 4, material: rope" +
                color + "}]\n" + color_by)
         .color_by;
   };

@@ -13,8 +13,7 @@
 namespace verlet_cable {
 namespace {
 
-World begin(const SceneDesc& scene, const FrameSource& frames) {
-  BoundaryInputs start = frames.at(0);
+World begin(const SceneDesc& scene, BoundaryInputs start) {
   limit_frame_velocities(scene.max_frame_speed, start);
   return World(scene, start);
 }
@@ -27,7 +26,7 @@ DrivenWorld::DrivenWorld(std::shared_ptr<const SceneDesc> scene, std::shared_ptr
       frames_(std::move(frames)),
       inputs_(frames_->at(0)),
       targets_(inputs_),
-      world_(begin(*scene_, *frames_)),
+      world_(begin(*scene_, inputs_)),
       hash_of_start_(world_.hash()) {}
 
 DrivenWorld::DrivenWorld(std::shared_ptr<const SceneDesc> scene, const Motion& motion)

@@ -208,8 +208,7 @@ void FrameWatch::warn_of_waiting(const SceneDesc& scene, const World& world, con
   if (missing.empty()) return;
   ROS_WARN(
       "not shown yet: %s, because tf has no transform from %s to %s. If nothing else is to publish them, type, with x, y, z [m] "
-      "as you "
-      "like:%s",
+      "as you like:%s",
       list(world.findings().waiting).c_str(), quoted(scene.frame_id).c_str(), list(missing).c_str(),
       commands_for(missing, scene).c_str());
 }
