@@ -3,7 +3,8 @@
 #include <ceres/ceres.h>
 
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <limits>
 #include <mutex>
 
 #include "core/world/parallel_for.h"
@@ -15,15 +16,19 @@ namespace {
 constexpr double starting_bending[] = {1e-3, 3e-3, 1e-2, 3e-2, 1e-1, 3e-1, 1};  // EI over the linear density [N m^3 / kg]
 constexpr double starting_damping[] = {1e-4, 1e-3, 5e-3};                       // of bending, likewise [N m^3 s / kg]
 constexpr int coarse_segments = 16;                                             ///< of the search
+constexpr Ending for_valleys{2, 0, 1e-2};                                       ///< far enough to tell them apart
 constexpr int few_segments = 24;                                                ///< of a fit's first part
 constexpr double tolerance_with_few = 1e-2;
 constexpr double first_trust_radius = 30;
 constexpr int most_steps = 12;  ///< of a round
 
-SceneDesc coarse(const CableSettings& settings, const std::vector<double>& values) {
-  CableSettings coarser = settings;
-  coarser.segments = std::min(settings.segments, coarse_segments);
-  return cable_scene(coarser, values);
+constexpr int bending_guesses = std::size(starting_bending), damping_guesses = std::size(starting_damping);
+/// Of the guesses, no two of which are neighbours.
+constexpr int most_valleys = ((bending_guesses + 1) / 2) * ((damping_guesses + 1) / 2);
+
+Problem with_segments(Problem problem, int most) {
+  problem.settings.segments = std::min(problem.settings.segments, most);
+  return problem;
 }
 
 /// The differences of all training recordings as one block: one block each would be summed in the order in which threads end, and
@@ -125,9 +130,14 @@ class EndOfRound : public ceres::IterationCallback {
   double radius_ = first_trust_radius;
 };
 
+struct Minimum {
+  std::vector<double> values;
+  double cost;
+};
+
 /// `rounds`: each finds slopes anew.
-std::vector<double> minimize(const Problem& problem, const std::vector<int>& training, std::vector<double> values, int rounds,
-                             double tolerance) {
+Minimum minimize(const Problem& problem, const std::vector<int>& training, std::vector<double> values, int rounds,
+                 double tolerance) {
   Cost cost(problem, training);
   ceres::Problem::Options ownership;
   ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -143,56 +153,83 @@ std::vector<double> minimize(const Problem& problem, const std::vector<int>& tra
   options.function_tolerance = tolerance / 10;
   options.initial_trust_region_radius = first_trust_radius;
   options.logging_type = ceres::SILENT;
+  double cost_reached = std::numeric_limits<double>::infinity();
   for (int round = 0; round < rounds; ++round) {
     cost.forget_slopes();
     EndOfRound ending;
     options.callbacks = {&ending};
     ceres::Solver::Summary summary;
     ceres::Solve(options, &least_squares, &summary);
+    cost_reached = summary.final_cost;
     if (summary.initial_cost - summary.final_cost <= tolerance * summary.initial_cost) break;
     options.initial_trust_region_radius = ending.trust_radius();
   }
-  return values;
+  return {values, cost_reached};
+}
+
+std::vector<double> guess(const Problem& problem, int bending, int damping) {
+  return first_guess(problem.settings, starting_bending[bending], starting_damping[damping]);
+}
+
+using GuessErrors = std::array<std::array<double, damping_guesses>, bending_guesses>;
+
+/// [m] of each guess, summed over the recordings.
+GuessErrors guess_errors(const Problem& problem, const std::vector<int>& training) {
+  constexpr std::size_t guesses = bending_guesses * damping_guesses;
+  std::vector<double> errors(guesses * training.size());
+  std::mutex mutex;
+  parallel_for(errors.size(), [&](std::size_t i) {
+    const int recording = training[i / guesses], which = static_cast<int>(i % guesses);
+    const std::vector<double> values = guess(problem, which / damping_guesses, which % damping_guesses);
+    const Prediction prediction =
+        predict(cable_scene(problem.settings, values), markers_of(problem.settings, values), problem.inputs[recording].recording);
+    errors[i] = prediction_error(prediction, problem.recordings[recording]).mean;
+    const std::lock_guard<std::mutex> lock(mutex);
+    problem.simulated();
+  });
+  GuessErrors sums{};
+  for (std::size_t i = 0; i < errors.size(); ++i) sums[i % guesses / damping_guesses][i % damping_guesses] += errors[i];
+  return sums;
+}
+
+/// No guess beside it has a smaller error.
+bool is_lowest(const GuessErrors& errors, int bending, int damping) {
+  for (int i = std::max(bending - 1, 0); i <= std::min(bending + 1, bending_guesses - 1); ++i)
+    for (int k = std::max(damping - 1, 0); k <= std::min(damping + 1, damping_guesses - 1); ++k)
+      if (errors[i][k] < errors[bending][damping]) return false;
+  return true;
 }
 
 }  // namespace
 
 int most_simulations(const Problem& problem, int recordings, const Ending& ending) {
-  const int guesses = static_cast<int>(std::size(starting_bending) * std::size(starting_damping));
-  return recordings *
-         (guesses + (ending.rounds + ending.refinements) * static_cast<int>(problem.parameters.size() + 1 + most_steps));
+  const int of_a_round = static_cast<int>(problem.parameters.size() + 1 + most_steps);
+  return recordings * (bending_guesses * damping_guesses +
+                       (most_valleys * for_valleys.rounds + ending.rounds + ending.refinements) * of_a_round);
 }
 
 std::vector<double> coarse_search(const Problem& problem, const std::vector<int>& training) {
-  std::vector<std::vector<double>> guesses;
-  for (const double bending : starting_bending)
-    for (const double damping : starting_damping) guesses.push_back(first_guess(problem.settings, bending, damping));
-  const std::size_t recordings = training.size();
-  std::vector<double> errors(guesses.size() * training.size());
-  std::mutex mutex;
-  parallel_for(errors.size(), [&](std::size_t i) {
-    const int recording = training[i % recordings];
-    const std::vector<double>& guess = guesses[i / recordings];
-    const Prediction prediction =
-        predict(coarse(problem.settings, guess), markers_of(problem.settings, guess), problem.inputs[recording].recording);
-    errors[i] = prediction_error(prediction, problem.recordings[recording]).mean;
-    const std::lock_guard<std::mutex> lock(mutex);
-    problem.simulated();
-  });
-  std::vector<double> sums(guesses.size(), 0.0);
-  for (std::size_t i = 0; i < errors.size(); ++i) sums[i / training.size()] += errors[i];
-  return guesses[std::min_element(sums.begin(), sums.end()) - sums.begin()];
+  const Problem coarse = with_segments(problem, coarse_segments);
+  const GuessErrors errors = guess_errors(coarse, training);
+  Minimum lowest{{}, std::numeric_limits<double>::infinity()};
+  for (int bending = 0; bending < bending_guesses; ++bending)
+    for (int damping = 0; damping < damping_guesses; ++damping) {
+      if (!is_lowest(errors, bending, damping)) continue;
+      Minimum minimum = minimize(coarse, training, guess(coarse, bending, damping), for_valleys.rounds, for_valleys.tolerance);
+      if (lowest.values.empty() || minimum.cost < lowest.cost) lowest = std::move(minimum);
+    }
+  return lowest.values;
 }
 
 std::vector<double> fit(const Problem& problem, const std::vector<int>& training, std::vector<double> values,
                         const Ending& ending) {
   if (problem.settings.segments > few_segments) {
-    Problem with_few = problem;
-    with_few.settings.segments = few_segments;
-    values = minimize(with_few, training, std::move(values), ending.rounds, std::max(ending.tolerance, tolerance_with_few));
-    return minimize(problem, training, std::move(values), ending.refinements, ending.tolerance);
+    values = minimize(with_segments(problem, few_segments), training, std::move(values), ending.rounds,
+                      std::max(ending.tolerance, tolerance_with_few))
+                 .values;
+    return minimize(problem, training, std::move(values), ending.refinements, ending.tolerance).values;
   }
-  return minimize(problem, training, std::move(values), ending.rounds, ending.tolerance);
+  return minimize(problem, training, std::move(values), ending.rounds, ending.tolerance).values;
 }
 
 }  // namespace verlet_cable::cable_fit

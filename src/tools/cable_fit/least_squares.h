@@ -21,7 +21,9 @@ constexpr Ending for_predictions{8, 3, 3e-3};
 /// Largest number of recordings that a fit to so many simulates.
 int most_simulations(const Problem& problem, int recordings, const Ending& ending = for_parameters);
 
-/// A search over coarse steps of stiffness and damping: where to begin. `training`: indices of recordings; a value a parameter.
+/// A search over coarse steps of stiffness and damping: where to begin. A violent recording is explained by more than one
+/// stiffness at first sight: each valley among the guesses is followed a little, and the deepest one counts. `training`: indices
+/// of recordings; a value a parameter.
 std::vector<double> coarse_search(const Problem& problem, const std::vector<int>& training);
 
 /// Finds the parameters that predict some of the recordings best, from those given: Levenberg-Marquardt (Ceres).
