@@ -205,6 +205,11 @@ def main():
 
 
 def play():
+    # Without the underscore it is a name that is remapped, and the parameter is that of the last run.
+    mistaken = [argument for argument in sys.argv[1:] if argument.startswith(('motion:=', 'pause:='))]
+    if mistaken:
+        print(f'play_motion.py: {" ".join(mistaken)}; allowed: _motion:=FILE.csv, _pause:=SECONDS', file=sys.stderr)
+        sys.exit(2)
     path = rospy.get_param('~motion', '')
     if not path:
         print('play_motion.py: motion: not set; allowed: the path of a CSV file, as _motion:=FILE.csv', file=sys.stderr)

@@ -184,13 +184,15 @@ void FrameWatch::warn_of_ignored(const World& world, const BoundaryInputs& input
 
 void FrameWatch::report_unseen(const World& world, const TfInputs& frames) const {
   const std::vector<FrameReport> reports = frames.report();
+  const std::string fixed = quoted(world.frames().front());
   for (std::size_t i = 0; i < reports.size(); ++i) {
     if (reports[i].status != FrameStatus::never_seen) continue;
     const std::string frame = quoted(reports[i].name);
     if (frames.inputs()[i].known) {
-      ROS_INFO("frame %s is not on tf yet: what it holds stays at its initial_pose until it is", frame.c_str());
+      ROS_INFO("tf has no transform from %s to %s yet: what it holds stays at its initial_pose until there is one", fixed.c_str(),
+               frame.c_str());
     } else if (has_obstacles(static_cast<int>(i), world)) {
-      ROS_INFO("frame %s is not on tf yet: its obstacles appear when it is", frame.c_str());
+      ROS_INFO("tf has no transform from %s to %s yet: its obstacles appear when there is one", fixed.c_str(), frame.c_str());
     }
   }
 }
