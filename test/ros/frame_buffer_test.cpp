@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -293,6 +294,29 @@ TEST(FrameBuffer, NamesFramesThatAreStaticAndNot) {
   received.is_static = false;
   buffer.insert(received);
   EXPECT_EQ(buffer.mixed(), (std::set<std::string>{"hand", "post"})) << "tf2 keeps what was static through its clear";
+}
+
+TEST(FrameBuffer, KnowsTheRootOfATreeWithoutTheFixedFrame) {
+  FrameBuffer buffer("world");
+  const auto insert = [&](const std::string& parent, const std::string& child, int stamp) {
+    ReceivedTransform received = good();
+    received.transform.header.frame_id = parent;
+    received.transform.child_frame_id = child;
+    received.transform.header.stamp = ros::Time(stamp);
+    buffer.insert(received);
+  };
+  insert("arm", "hand", 5);
+  insert("base", "arm", 5);
+  EXPECT_EQ(buffer.other_root("hand"), "base");
+  EXPECT_EQ(buffer.other_root("base"), "base");
+  EXPECT_EQ(buffer.other_root("world"), std::nullopt);
+  EXPECT_EQ(buffer.other_root("foot"), std::nullopt) << "tf has not had it";
+  insert("map", "world", 5);
+  EXPECT_EQ(buffer.other_root("hand"), "base");
+  insert("map", "base", 5);
+  EXPECT_EQ(buffer.other_root("hand"), std::nullopt);
+  insert("hand", "base", 6);  // a circle
+  EXPECT_NE(buffer.other_root("hand"), std::nullopt);
 }
 
 }  // namespace

@@ -2,11 +2,13 @@
 """Frames that are lost and come back, under each policy; transforms that are no numbers; frames that are too fast, or jump."""
 import math
 import sys
+import threading
 import unittest
 
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from rosgraph_msgs.msg import Log
 from tf2_msgs.msg import TFMessage
 
 from cable_client import CableClient, Frames, Messages, all_finite, cable, contents, distance, transform
@@ -257,6 +259,37 @@ class LostFramesTest(unittest.TestCase):
                 # stamps are doubles of about 1e9 s, exact to 2e-7 s
                 self.assertLessEqual(abs(b - a), speed * (u - t) + 1e-6)
             diagnostics.wait_for(lambda a: any('too fast' in s.message for s in a.status), 'warning')
+
+    def test_unconnected_frames_are_told_once(self):
+        apart = '"left_gripper" and "right_gripper" are on tf, but not connected to "world": set frame_id in the scene ' \
+                '(to the root of their tree: "base"), or publish a transform between the two'
+        waiting = 'not shown yet: "rope", because tf has no transform from "world" to "left_gripper": "left_gripper" is on tf, but not ' \
+                  'connected to "world": set frame_id in the scene (to the root of its tree: "base"), or publish a transform between the two'
+
+        def of_node(name):
+            return lambda m: m.name == f'/policy/{name}' and m.level == Log.WARN
+
+        publisher = rospy.Publisher('/tf', TFMessage, queue_size=100)
+        connected = threading.Event()
+
+        def send(_):
+            transforms = [transform(name, rospy.get_time(), position, parent='base')
+                          for name, position in (('left_gripper', HELD), ('right_gripper', (0.7, 0, 1)))]
+            publisher.publish(transforms + [transform('base', rospy.get_time())] * connected.is_set())
+
+        with Messages('/rosout', Log) as log:
+            timer = rospy.Timer(rospy.Duration(0.02), send)
+            self.addCleanup(timer.shutdown)
+            # of frames that are missing at all it is told after 5 s
+            self.assertEqual(log.wait_for(of_node('apart'), 'warning', 15).msg, apart)
+            log.wait_for(lambda m: of_node('waiting')(m) and m.msg == waiting, 'warning of what waits', 15)
+            rospy.sleep(2.5)
+            self.assertEqual(len([m for m in log.all() if of_node('apart')(m)]), 1)
+            log.clear()
+            connected.set()
+            log.wait_for(lambda m: m.name == '/policy/apart' and 'has appeared on tf' in m.msg, 'frame that has appeared')
+            rospy.sleep(1.5)
+            self.assertFalse([m.msg for m in log.all() if of_node('apart')(m)])
 
 
 if __name__ == '__main__':

@@ -277,4 +277,19 @@ std::set<std::string> FrameBuffer::transforms_of(const std::string& frame) const
   return transforms;
 }
 
+std::optional<std::string> FrameBuffer::other_root(const std::string& frame) const {
+  if (frames_.count(frame) == 0) return std::nullopt;
+  std::string root = root_of(frame);
+  return root == root_of(fixed_frame_) ? std::nullopt : std::make_optional(std::move(root));
+}
+
+/// Of frames in a circle, any of them.
+std::string FrameBuffer::root_of(const std::string& frame) const {
+  std::set<std::string> seen{frame};
+  std::string root = frame;
+  for (auto edge = parents_.find(root); edge != parents_.end() && seen.insert(edge->second).second; edge = parents_.find(root))
+    root = edge->second;
+  return root;
+}
+
 }  // namespace verlet_cable

@@ -63,6 +63,9 @@ class FrameBuffer {
   /// The child frames of the transforms between a frame and the fixed frame, and of those above both: `newest` changes with
   /// these only.
   std::set<std::string> transforms_of(const std::string& frame) const;
+  /// The root of the tree that a frame is in, where that is another one than the fixed frame's; none where the two are connected,
+  /// and for a frame that tf has not had.
+  std::optional<std::string> other_root(const std::string& frame) const;
   int tree_version() const { return tree_version_; }  ///< another number: `transforms_of` may be others
 
   const std::map<std::string, std::string>& refused() const {
@@ -82,6 +85,7 @@ class FrameBuffer {
   void note_kind(const std::string& child, bool is_static);
   bool note_parent(const std::string& child, const std::string& parent);
   void note_source(const std::string& child, const std::string& source);
+  std::string root_of(const std::string& frame) const;
 
   std::string fixed_frame_;
   tf2::BufferCore buffer_;

@@ -17,12 +17,8 @@ constexpr double least_distance = 5e-4;  // [m]
 constexpr double least_degrees = 0.05;
 /// Between reports of a frame's jumps.
 constexpr Nanoseconds jump_period = 1000000000;
-/// Whoever publishes frames may have been started together with the node, and may need so long.
-const ros::WallDuration first_warning(5.0);
-/// Between warnings that something waits for frames.
-const ros::WallDuration reminder_period(10.0);
-/// Longer lists are cut off in messages.
-constexpr std::size_t most_listed = 8;
+/// Between warnings of a frame whose poses are ignored.
+const ros::WallDuration ignored_period(10.0);
 
 std::vector<Attachment> attachments_of(int frame, const World& world) {
   std::vector<Attachment> attachments;
@@ -30,11 +26,6 @@ std::vector<Attachment> attachments_of(int frame, const World& world) {
     if (attachment.frame == frame) attachments.push_back(attachment);
   }
   return attachments;
-}
-
-bool has_obstacles(int frame, const World& world) {
-  const auto follows = [&](const Obstacle& obstacle) { return obstacle.frame == frame; };
-  return std::any_of(world.obstacles().begin(), world.obstacles().end(), follows);
 }
 
 /// One event for each attachment of the frame, or one without if there is none.
@@ -79,42 +70,6 @@ const char* consequence(LostFramePolicy policy) {
   }
 }
 
-/// In quotes, with "and" before the last; the first of many.
-std::string list(const std::vector<std::string>& names) {
-  const std::size_t shown = names.size() > most_listed ? most_listed : names.size();
-  std::string text;
-  for (std::size_t i = 0; i < shown; ++i) {
-    const bool last = i + 1 == names.size();
-    text += (i == 0 ? "" : last ? " and " : ", ") + quoted(names[i]);
-  }
-  return shown < names.size() ? text + " and " + std::to_string(names.size() - shown) + " more" : text;
-}
-
-/// The frames that cables and nets wait for, each once, in the scene's order.
-std::vector<std::string> missing_frames(const std::vector<WaitingAttachment>& waiting) {
-  std::set<std::string> seen;
-  std::vector<std::string> missing;
-  for (const WaitingAttachment& attachment : waiting) {
-    if (seen.insert(attachment.frame).second) missing.push_back(attachment.frame);
-  }
-  return missing;
-}
-
-/// Commands to be typed that put frames side by side, as far from the first to the last as a cable that hangs between them well
-/// allows.
-std::string commands_for(const std::vector<std::string>& missing, const SceneDesc& scene) {
-  constexpr double span = 0.7;     // of the shortest cable's length
-  constexpr std::size_t most = 4;  // that people read
-  double shortest = infinity;
-  for (const CableDesc& cable : scene.cables) shortest = std::min(shortest, cable.length);
-  const double spacing = std::isfinite(shortest) && missing.size() > 1 ? span * shortest / (missing.size() - 1) : 0;
-  std::string commands;
-  for (std::size_t i = 0; i < std::min(missing.size(), most); ++i)
-    commands += "\n  rosrun tf2_ros static_transform_publisher " + number_text(i * spacing) + " 0 1 0 0 0 " +
-                escaped(scene.frame_id) + " " + escaped(missing[i]) + " &";
-  return commands;
-}
-
 }  // namespace
 
 FrameWatch::FrameWatch(const SceneDesc& scene, const EventPublisher& events)
@@ -127,7 +82,6 @@ void FrameWatch::watch(const SceneDesc& scene) {
   lost_.clear();
   jumped_.clear();
   ignored_.clear();
-  next_warning_ = ros::WallTime();
 }
 
 bool FrameWatch::react(const std::vector<FrameChange>& changes, Nanoseconds stamp, World& world) {
@@ -175,44 +129,11 @@ void FrameWatch::warn_of_ignored(const World& world, const BoundaryInputs& input
     const Vector3& position = inputs[i].pose.position;
     if (!inputs[i].known || is_sound(inputs[i].pose)) continue;
     ros::WallTime& last = ignored_[world.frames()[i]];
-    if (now - last < reminder_period) continue;
+    if (now - last < ignored_period) continue;
     last = now;
     ROS_WARN("frame %s is at (%g, %g, %g): it is not followed there, and what it holds stays where it was; allowed: %s",
              quoted(world.frames()[i]).c_str(), position.x(), position.y(), position.z(), coordinate.text("m").c_str());
   }
-}
-
-void FrameWatch::report_unseen(const World& world, const TfInputs& frames) const {
-  const std::vector<FrameReport> reports = frames.report();
-  const std::string fixed = quoted(world.frames().front());
-  for (std::size_t i = 0; i < reports.size(); ++i) {
-    if (reports[i].status != FrameStatus::never_seen) continue;
-    const std::string frame = quoted(reports[i].name);
-    if (frames.inputs()[i].known) {
-      ROS_INFO("tf has no transform from %s to %s yet: what it holds stays at its initial_pose until there is one", fixed.c_str(),
-               frame.c_str());
-    } else if (has_obstacles(static_cast<int>(i), world)) {
-      ROS_INFO("tf has no transform from %s to %s yet: its obstacles appear when there is one", fixed.c_str(), frame.c_str());
-    }
-  }
-}
-
-void FrameWatch::warn_of_waiting(const SceneDesc& scene, const World& world, const TfInputs& frames) {
-  const ros::WallTime now = ros::WallTime::now();
-  if (world.findings().waiting.empty()) {
-    next_warning_ = ros::WallTime();
-    return;
-  }
-  if (next_warning_.isZero()) next_warning_ = now + first_warning;
-  if (now < next_warning_) return;
-  next_warning_ = now + reminder_period;
-  const std::vector<std::string> missing = missing_frames(waiting_attachments(scene, world, frames.inputs()));
-  if (missing.empty()) return;
-  ROS_WARN(
-      "not shown yet: %s, because tf has no transform from %s to %s. If nothing else is to publish them, type, with x, y, z [m] "
-      "as you like:%s",
-      list(world.findings().waiting).c_str(), quoted(scene.frame_id).c_str(), list(missing).c_str(),
-      commands_for(missing, scene).c_str());
 }
 
 void FrameWatch::report_lost(int frame, Nanoseconds stamp, const World& world) {
@@ -242,25 +163,9 @@ void FrameWatch::release(int frame, Nanoseconds stamp, World& world) const {
   }
 }
 
-std::vector<WaitingAttachment> waiting_attachments(const SceneDesc& scene, const World& world, const BoundaryInputs& inputs) {
-  std::set<std::string> unknown;
-  for (std::size_t i = 0; i < std::min(inputs.size(), world.frames().size()); ++i) {
-    if (!inputs[i].known && !world.is_body_frame(static_cast<int>(i))) unknown.insert(world.frames()[i]);
-  }
-  const std::set<std::string> waiting(world.findings().waiting.begin(), world.findings().waiting.end());
-  std::vector<WaitingAttachment> attachments;
-  const auto add_of = [&](const auto& held) {
-    for (const auto& desc : held) {
-      if (waiting.count(desc.name) == 0) continue;
-      for (const auto& attachment : desc.attachments) {
-        if (unknown.count(attachment.frame) > 0) attachments.push_back({attachment.name, desc.name, attachment.frame});
-      }
-    }
-  };
-  add_of(scene.cables);
-  add_of(scene.nets);
-  add_of(scene.bodies);
-  return attachments;
+bool has_obstacles(int frame, const World& world) {
+  const auto follows = [&](const Obstacle& obstacle) { return obstacle.frame == frame; };
+  return std::any_of(world.obstacles().begin(), world.obstacles().end(), follows);
 }
 
 std::vector<bool> awaited_frames(const World& world) {

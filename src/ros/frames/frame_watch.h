@@ -29,10 +29,6 @@ class FrameWatch {
   void warn_of_ignored(const World& world, const BoundaryInputs& inputs);
   /// Time is skipped at the world's `time`: what frames do over it is no jump of theirs.
   void skip(double time) { skipped_ = time; }
-  /// At a start: logs which frames are missing still.
-  void report_unseen(const World& world, const TfInputs& frames) const;
-  /// Warns which cables and nets wait for which frames: once they have for 5 s of wall time, and every 10 s from then on.
-  void warn_of_waiting(const SceneDesc& scene, const World& world, const TfInputs& frames);
   /// Forgets which frames were lost, from an id on.
   void forget_from(int frame) { lost_.erase(lost_.lower_bound(frame), lost_.end()); }
 
@@ -48,20 +44,11 @@ class FrameWatch {
   std::set<int> lost_;                            ///< ids of the frames whose loss was reported
   std::map<int, Nanoseconds> jumped_;             ///< by frame id: the stamp of the last jump that was reported
   double skipped_ = -1;                           ///< [s] the world's time when time was skipped last
-  ros::WallTime next_warning_;                    ///< that something waits for frames; zero while nothing does
   std::map<std::string, ros::WallTime> ignored_;  ///< by frame: the last warning
 };
 
-/// What holds a cable or net that is not there yet, in a frame that tf has not had yet.
-struct WaitingAttachment {
-  std::string name;
-  std::string holds;  ///< name of the cable or net
-  std::string frame;
-};
-
-/// In the scene's order.
-std::vector<WaitingAttachment> waiting_attachments(const SceneDesc& scene, const World& world, const BoundaryInputs& inputs);
-
+/// Whether obstacles move with a frame.
+bool has_obstacles(int frame, const World& world);
 /// By frame id: whether the frame holds a cable.
 std::vector<bool> needed_frames(const World& world);
 /// By frame id: whether a step waits for the frame while it is late, as it holds a cable or moves an obstacle.

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "frames/frame_watch.h"
+#include "frames/missing_frames.h"
 #include "threads/guarded_queue.h"
 #include "verlet_cable/core/name_list.h"
 #include "verlet_cable/core/number_text.h"

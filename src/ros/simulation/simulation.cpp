@@ -39,7 +39,7 @@ void Simulation::update(ros::WallDuration longest) {
   frames_.receive(clock_.now());
   finish_rebuilds();
   if (!started_) return start_if_possible();
-  frame_watch_.warn_of_waiting(scene_, world_, frames_);
+  missing_frames_.warn(scene_, world_, frames_);
   if (!awaited_steps_.empty()) return do_awaited_steps(longest);
   if (waits_for_frames_ && !paused_) continue_if_frames_are_back();
   if (paused_ || faulted_ || waits_for_frames_) {
@@ -111,7 +111,7 @@ void Simulation::start(Nanoseconds time) {
     cable_watch_.restart(stamp_, world_);
   }
   waits_for_frames_ = frame_watch_.react(frames_.changes(), stamp_, world_);
-  frame_watch_.report_unseen(world_, frames_);
+  missing_frames_.report(world_, frames_);
   publish();
 }
 

@@ -12,6 +12,7 @@
 
 #include "edit_requests/checked_pin.h"
 #include "frames/frame_watch.h"
+#include "frames/missing_frames.h"
 #include "frames/tf_inputs.h"
 #include "publish/event_publisher.h"
 #include "publish/publishers.h"
@@ -177,6 +178,7 @@ class Simulation {
   Publishers publishers_;
   EventPublisher events_;
   FrameWatch frame_watch_;
+  MissingFrames missing_frames_;
   CableWatch cable_watch_;
   AttachmentMoves moves_;
 

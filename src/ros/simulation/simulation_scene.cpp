@@ -163,6 +163,7 @@ EditResult Simulation::replace_scene(const SceneDesc& scene, World world) {
   frames_.follow_scene(scene, stamp_);
   events_.set_frame_id(scene.frame_id);
   frame_watch_.watch(scene);
+  missing_frames_.watch();
   tasks_.dispose(std::exchange(snapshots_, {}));
   start_.reset();
   faulted_ = waits_for_frames_ = keeps_world_ = false;
