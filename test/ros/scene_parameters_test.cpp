@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "scene_sources/scene_outline.h"
+
 namespace verlet_cable {
 namespace {
 
@@ -80,6 +82,19 @@ TEST(SceneParameters, AreNoLargerThanScenesThatAreText) {
   XmlRpcValue long_name;
   long_name[std::string(std::size_t{17} << 20, 'x')] = 1;
   EXPECT_LT(refusal_of(long_name).size(), 200U);
+}
+
+TEST(SceneOutline, CountsWhatThereIs) {
+  SceneDesc scene;
+  scene.frame_id = "base";
+  scene.time_step = 0.0007;
+  EXPECT_EQ(scene_outline(scene), "fixed frame \"base\", time step 0.7 ms");
+  scene.cables.resize(2);
+  scene.cables[0].segments = 60;
+  scene.cables[1].segments = 36;
+  scene.bodies.resize(1);
+  scene.obstacles.resize(3);
+  EXPECT_EQ(scene_outline(scene), "2 cables, 96 segments, 1 body, 3 obstacles, fixed frame \"base\", time step 0.7 ms");
 }
 
 }  // namespace

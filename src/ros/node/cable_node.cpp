@@ -10,6 +10,7 @@
 #include "requests/obstacle_listener.h"
 #include "requests/rollouts.h"
 #include "requests/tuning.h"
+#include "scene_sources/scene_outline.h"
 #include "scene_sources/scene_parameters.h"
 #include "simulation/simulation.h"
 #include "threads/guarded_queue.h"
@@ -64,7 +65,9 @@ CableNode::Parts::Parts(ros::NodeHandle private_node)
       timer(node.createWallTimer(update_period(simulation.scene()),
                                  [this](const ros::WallTimerEvent&) { run_guarded("an update", [this] { update(); }); })),
       trim_timer(node.createWallTimer(trim_period, [](const ros::WallTimerEvent&) { malloc_trim(0); })),
-      publish_rate(simulation.scene().publish_rate) {}
+      publish_rate(simulation.scene().publish_rate) {
+  ROS_INFO("scene: %s", scene_outline(simulation.scene()).c_str());
+}
 
 void CableNode::Parts::update() {
   simulation.update(Simulation::longest_slice);
