@@ -15,6 +15,7 @@ import numpy as np
 import rosgraph
 import rospy
 import tf2_ros
+from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Quaternion, TransformStamped, Vector3
 from std_srvs.srv import Trigger
 
@@ -30,6 +31,7 @@ HEADER = 't,frame,x,y,z,qx,qy,qz,qw'
 LARGEST = 1e9  # [s, m] as for cable_sim, and so
 MOST_FRAMES = 20000
 LEAST_QUATERNION = 1e-6
+MOST_LISTED = 8  # frames in a message
 
 
 class MotionError(Exception):
@@ -197,6 +199,29 @@ class Player:
         self._rate.sleep()
 
 
+def warn_of_unused(path, frames):
+    """Warns once if the node `cable`, whose diagnostics list its frames, has none of the motion's."""
+    node = rospy.resolve_name('cable')
+    looked = threading.Event()
+
+    def look(message):
+        status = next((status for status in message.status if status.name == f'{node[1:]}: frames'), None)
+        if status is None or looked.is_set():
+            return
+        looked.set()
+        used = [entry.key[len('frame '):] for entry in status.values if entry.key.startswith('frame ') and entry.value != "a body's"]
+        if not set(used) & set(frames):
+            rospy.logwarn('%s: nothing moves: it has the frames %s, and the node %s uses %s', path, listed(frames), node,
+                          listed(used) if used else 'none')
+
+    rospy.Subscriber('/diagnostics', DiagnosticArray, look)
+
+
+def listed(frames):
+    names = [f'"{frame}"' for frame in sorted(frames)]
+    return ', '.join(names[:MOST_LISTED]) + (f' and {len(names) - MOST_LISTED} more' if len(names) > MOST_LISTED else '')
+
+
 def main():
     if len(sys.argv) == 1 and not rosgraph.is_master_online():
         print(__doc__.split('\n', maxsplit=1)[0], file=sys.stderr)
@@ -215,9 +240,11 @@ def play():
         print('play_motion.py: motion: not set; allowed: the path of a CSV file, as _motion:=FILE.csv', file=sys.stderr)
         sys.exit(2)
     try:
-        player = Player(read_motion(path))
+        tracks = read_motion(path)
     except MotionError as error:
         sys.exit(f'play_motion.py: {error}')
+    player = Player(tracks)
+    warn_of_unused(path, tracks)
     rospy.loginfo('plays %s, %.3g s, goes back, resets the cables and begins again; Ctrl-C ends it', path, player.duration)
     reset = rospy.ServiceProxy('cable/reset', Trigger)
     player.stay(FIRST_PAUSE)

@@ -12,6 +12,7 @@ import unittest
 import rospkg
 import rospy
 import rostest
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from std_msgs.msg import Empty
 from std_srvs.srv import Trigger, TriggerResponse
 from tf2_msgs.msg import TFMessage
@@ -70,6 +71,35 @@ class PlayMotionTest(unittest.TestCase):
             still = [stamp for stamp, x in poses if x > 1e-9][-1]
             self.assertGreater(poses[-1][0] - BEHIND, still)  # what is shown of the cables is of when the hand had arrived
         self.assertNotIn('Traceback', output)
+
+    def warnings(self, frames):
+        """What is warned of where the node uses these frames."""
+        status = DiagnosticStatus(name='cable: frames', values=[KeyValue(key=f'frame {name}', value=value) for name, value in frames])
+        publisher = rospy.Publisher('/diagnostics', DiagnosticArray, queue_size=1)
+        with tempfile.NamedTemporaryFile('w', suffix='.csv') as motion:
+            motion.write(MOTION)
+            motion.flush()
+            process = subprocess.Popen(['rosrun', 'verlet_cable', 'play_motion.py', f'_motion:={motion.name}'],
+                                       stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True)
+            try:
+                deadline = time.monotonic() + LIMIT
+                while publisher.get_num_connections() == 0 and time.monotonic() < deadline:
+                    time.sleep(0.02)
+                for _ in range(5):
+                    publisher.publish(status=[DiagnosticStatus(name='other: frames'), status])
+                    time.sleep(0.2)
+            finally:
+                os.killpg(process.pid, signal.SIGINT)
+                output = process.communicate(timeout=LIMIT)[0]
+                publisher.unregister()
+                rospy.delete_param('/play_motion/motion')  # else it holds for the next start, too
+        return [line.partition(': ')[2].replace(motion.name, 'FILE') for line in output.splitlines() if 'WARN' in line]
+
+    def test_a_motion_of_frames_that_the_node_does_not_use(self):
+        self.assertEqual(self.warnings([('left', 'never seen'), ('hand', 'ok, age 0.01 s')]), [])
+        self.assertEqual(self.warnings([('right', 'never seen'), ('left', 'lost'), ('hand', "a body's")]),
+                         ['FILE: nothing moves: it has the frames "hand", and the node /cable uses "left", "right"'])
+        self.assertEqual(self.warnings([]), ['FILE: nothing moves: it has the frames "hand", and the node /cable uses none'])
 
     def test_nodes_end_while_they_publish(self):
         program = ("import node_thread, rospy, std_msgs.msg\n"
