@@ -54,5 +54,14 @@ TEST(Requested, AMessageOfZerosHasAQuaternionOfZeros) {
   EXPECT_EQ(requested_pin(Pin::Request()).place.mode, RequestedPlace::at_node);
 }
 
+TEST(Requested, AnArcLengthThatIsNotUsedIsTold) {
+  CableLocation location;
+  EXPECT_EQ(unused_words(location), "");
+  location.arc_length = 0.6;
+  EXPECT_EQ(unused_words(location), "; mode 0 takes location.node, 0, and not location.arc_length, 0.6 m, which mode 1 takes");
+  location.mode = CableLocation::ARC_LENGTH;
+  EXPECT_EQ(unused_words(location), "");
+}
+
 }  // namespace
 }  // namespace verlet_cable

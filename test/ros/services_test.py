@@ -94,6 +94,7 @@ class ServicesTest(unittest.TestCase):
             answer = self.node.cut(node_at('rope', 7))
             self.assertTrue(answer.success, answer.message)
             self.assertEqual(answer.first, 'rope')
+            self.assertNotIn('mode', answer.message)
             event = events.wait_for(lambda e: e.type == CableEvent.CUT, 'CUT')
             self.assertEqual((event.cable, event.other, event.node), ('rope', answer.second, 7))
             state = self.node.state()
@@ -109,6 +110,7 @@ class ServicesTest(unittest.TestCase):
     def test_bad_cuts_are_refused(self):
         self.assertRefused(self.node.cut(node_at('rope', 0)), 'location.node: 0', '1 to 18')
         self.assertRefused(self.node.cut(node_at('rope', 20)), 'location.node: 20')
+        self.assertRefused(self.node.cut(CableLocation(cable='rope', arc_length=0.6)), 'location.node: 0', 'not location.arc_length, 0.6 m')
         self.assertRefused(self.node.cut(arc_length_at('rope', 1.5)), 'location.arc_length: 1.5', '0 to 1')
         self.assertRefused(self.node.cut(nearest_to('rope', (NAN, 0, 0))), 'location.point.point: (nan, 0, 0)')
         self.assertRefused(self.node.cut(nearest_to('rope', (0, 0, 0), 'nowhere')), 'frame_id: "nowhere"')

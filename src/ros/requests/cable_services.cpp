@@ -43,6 +43,12 @@ FindFrame find_frame_in(const Simulation& simulation) {
   return [&simulation](const std::string& frame) { return simulation.find_frame(frame); };
 }
 
+/// Refused or not: says what of the location is not used.
+EditResult with_unused(EditResult result, const CableLocation& location) {
+  result.message += unused_words(location);
+  return result;
+}
+
 /// Says how far the place that was found is from the point that was given.
 EditResult with_distance(EditResult result, const CableLocation& location, double distance) {
   if (result.ok && location.mode == CableLocation::NEAREST)
@@ -53,9 +59,9 @@ EditResult with_distance(EditResult result, const CableLocation& location, doubl
 bool pin(Simulation& simulation, const Pin::Request& request, Pin::Response& response) {
   if (!simulation.started()) return answer(simulation.refused_before_start(), response);
   const CheckedPin pin = check_pin(requested_pin(request), simulation.world(), find_frame_in(simulation));
-  if (!pin.errors.empty()) return answer(refused(pin.errors), response);
+  if (!pin.errors.empty()) return answer(with_unused(refused(pin.errors), request.location), response);
   const AttachmentType type = request.clamp ? AttachmentType::clamp : AttachmentType::hinge;
-  const EditResult result = simulation.pin(request.name, pin, type);
+  const EditResult result = with_unused(simulation.pin(request.name, pin, type), request.location);
   response.name = result.name;
   response.node = static_cast<std::uint32_t>(pin.node);
   return answer(result, response);
@@ -64,8 +70,8 @@ bool pin(Simulation& simulation, const Pin::Request& request, Pin::Response& res
 bool cut(Simulation& simulation, const Cut::Request& request, Cut::Response& response) {
   if (!simulation.started()) return answer(simulation.refused_before_start(), response);
   const Location location = locate_cut(requested_place(request.location), simulation.world(), find_frame_in(simulation));
-  if (!location.errors.empty()) return answer(refused(location.errors), response);
-  const EditResult result = simulation.cut(location);
+  if (!location.errors.empty()) return answer(with_unused(refused(location.errors), request.location), response);
+  const EditResult result = with_unused(simulation.cut(location), request.location);
   if (result.ok) response.first = name_of(simulation.world(), location.body);
   response.second = result.name;
   return answer(with_distance(result, request.location, location.distance), response);

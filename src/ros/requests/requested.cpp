@@ -1,5 +1,7 @@
 #include "requests/requested.h"
 
+#include "verlet_cable/core/number_text.h"
+
 namespace verlet_cable {
 
 static_assert(CableLocation::NODE == RequestedPlace::at_node && CableLocation::ARC_LENGTH == RequestedPlace::at_arc_length &&
@@ -23,6 +25,12 @@ RequestedPin requested_pin(const Pin::Request& request) {
 Pose requested_pose(const geometry_msgs::Pose& pose) {
   const geometry_msgs::Quaternion& q = pose.orientation;
   return {{pose.position.x, pose.position.y, pose.position.z}, {q.w, q.x, q.y, q.z}};
+}
+
+std::string unused_words(const CableLocation& location) {
+  if (location.mode != CableLocation::NODE || location.arc_length == 0) return "";
+  return "; mode 0 takes location.node, " + std::to_string(location.node) + ", and not location.arc_length, " +
+         number_text(location.arc_length) + " m, which mode 1 takes";
 }
 
 }  // namespace verlet_cable
