@@ -1,5 +1,7 @@
 #include "keys.h"
 
+#include <algorithm>
+
 namespace verlet_cable {
 
 std::set<std::string> read_keys(const Value& value, const std::vector<const KeyName*>& keys,
@@ -33,10 +35,14 @@ std::set<std::string> read_keys(const Value& value, const std::vector<const KeyN
       known = true;
     }
     if (known) continue;
-    const std::string nearest = nearest_name(name, names);
+    // In brackets, `key:value` is a key.
+    const std::size_t colon = name.find(':');
+    const bool lacks_space = std::find(names.begin(), names.end(), name.substr(0, colon)) != names.end();
+    const std::string meant =
+        lacks_space ? escaped(name.substr(0, colon)) + ": " + escaped(name.substr(colon + 1)) : nearest_name(name, names);
     child.errors->add(
         child.key,
-        "unknown key, its value is " + value_text(entry.second) + (nearest.empty() ? "" : " (did you mean " + nearest + "?)"),
+        "unknown key, its value is " + value_text(entry.second) + (meant.empty() ? "" : " (did you mean " + meant + "?)"),
         all_names);
   }
   for (const KeyName* key : keys) {

@@ -15,6 +15,7 @@
 #include "value.h"
 #include "verlet_cable/scene/scene_reader.h"
 #include "within_memory.h"
+#include "yaml_hint.h"
 
 namespace verlet_cable {
 namespace {
@@ -186,7 +187,8 @@ SceneDesc read_scene_text(const std::string& text, const SceneSources& sources) 
       check_size(yaml);
       return read_scene(YAML::Load(yaml.text()), {}, sources);
     } catch (const YAML::Exception& error) {
-      throw SceneError({yaml.place(error.mark) + escaped(error.msg, longest_message)});
+      const std::string hint = yaml_hint(yaml.text(), error);
+      throw SceneError({yaml.place(error.mark) + escaped(error.msg, longest_message) + (hint.empty() ? "" : "; " + hint)});
     }
   });
 }

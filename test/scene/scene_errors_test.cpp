@@ -275,5 +275,37 @@ TEST(SceneErrors, syntaxErrorsHaveLineAndColumn) {
   EXPECT_TRUE(has_line(errors_of(sound_scene + "---\n" + sound_scene), "line 17, column 1: a second document"));
 }
 
+TEST(SceneErrors, syntaxErrorsSayWhatIsMissing) {
+  const std::string begin = "cables:\n  - name: rope\n";
+  for (const auto& [text, error] : std::vector<std::pair<std::string, std::string>>{
+           {begin + "\tlength: 1\n", "; line 3 begins with a tab; allowed: spaces"},
+           {begin + "    length:1\n    segments: 10\n", "; line 3: a space is missing after \"length:\""},
+           {"cables:\n  -name: rope\n    length: 1\n", "; line 2: a space is missing after the dash"},
+           {begin + "    color: [1, 0, 0\n    length: 1\n", "; a comma or \"]\" is missing before it, for the \"[\" in line 3"},
+           {begin + "    attachments: [{name: a, at: start]\n",
+            "; a comma or \"}\" is missing before it, for the \"{\" in line 3"},
+           {"m: {a: 1 b: 2}\n", "; a comma or \"}\" is missing before it, for the \"{\" in line 1"},
+           {"a: \"}]\"  # }\nm: {a: '[', b: 2\n", "; a comma or \"}\" is missing before it, for the \"{\" in line 2"},
+           {begin + "    material: my: rope\n", "; line 3: a value that contains \": \" needs quotes"},
+           {"cables\n  - name: rope\n", "; line 1: a colon is missing after \"cables\""},
+           {begin + "    length: 1\n     segments: 10\n",
+            "; line 4 is indented by 5, line 3 by 4; the keys of a map begin in the same column"},
+           {begin + "    length: 1\n   segments: 10\n",
+            "; line 4 is indented by 3, line 3 by 4; the keys of a map begin in the same column"},
+           {begin + "    material: @m\n", "; text that begins with one of @ ` % * & needs quotes"},
+       }) {
+    const std::vector<std::string> errors = errors_of(text);
+    ASSERT_EQ(errors.size(), 1u) << text;
+    EXPECT_EQ(errors[0].rfind(error), errors[0].size() - error.size()) << errors[0];
+    EXPECT_EQ(errors[0].rfind("line ", 0), 0u) << errors[0];
+  }
+}
+
+TEST(SceneErrors, aKeyWithoutSpaceInBracketsIsUnderstood) {
+  const std::string text = "materials: {m: {linear_density: 0.1, radius:0.005}}\ncables: []\n";
+  EXPECT_TRUE(
+      has_line(errors_of(text), "materials.m.radius:0.005: unknown key, its value is nothing (did you mean radius: 0.005?)"));
+}
+
 }  // namespace
 }  // namespace verlet_cable
