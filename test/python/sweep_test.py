@@ -442,10 +442,11 @@ def test_all_errors_of_a_description_at_once(tmp_path):
 scene: scene.yaml
 motion: nowhere.csv
 duration: -1
-record: {rate: 1000, fields: [positions, colour]}
+record: {rate: 1000, fields: [positions, colour, tensoin], feilds: 1}
 samples: 0
 seed: 1.5
 wokers: 3
+sample: 3
 vary:
   materials.m.linear_density: {log_uniform: [0.0, 0.2]}
   materials.n.radius: {uniform: [0.1, 0.2]}
@@ -453,6 +454,7 @@ vary:
   cables[0].segments: {choice: [10, 20]}
   cables[0].length: {gaussian: [1, 2]}
   cables[0].lenght: {uniform: [1, 2]}
+  materials.m.friction: {unifrom: [1, 2]}
   cables[99].length: {uniform: [1, 2]}
   time_stp: {uniform: [.nan, 2]}
   materials.m.drag: {normal: [0.1, -0.01]}
@@ -460,13 +462,23 @@ vary:
     (tmp_path / 'store').mkdir()
     status, text = run(folder, tmp_path / 'store')
     assert status == 2
-    for word in ('nowhere.csv', 'duration: -1', 'record.rate: 1000', 'at most 1 / time_step = 200', 'record.fields[1]', 'colour', 'samples: 0',
+    for word in ('nowhere.csv', 'duration: -1', 'record.rate: 1000', 'at most 1 / time_step = 200', 'record.fields[1]', 'colour',
+                 "'tensoin' (did you mean tension?)",
+                 'record.feilds: unknown key, its value is 1 (did you mean fields?); allowed: rate, fields', 'samples: 0',
+                 'sample: unknown key, its value is 3 (did you mean samples?); allowed: scene, motion, ', '(did you mean uniform?)',
                  'seed: 1.5', 'wokers', 'vary.materials.m.linear_density.log_uniform: [0.0, 0.2]', 'vary.materials.n.radius',
                  'vary.cables[1].length', 'vary.cables[1].length.uniform: [2, 1]', 'vary.cables[0].segments: cannot vary',
                  'vary.cables[0].length', 'gaussian', 'vary.cables[0].lenght: not in scene.yaml', 'did you mean length?',
                  'vary.cables[99].length: not in scene.yaml', 'vary.time_stp.uniform', 'did you mean time_step?', 'normal: [0.1, -0.01]', '--output'):
         assert word in text, f'{word} is not in\n{text}'
     assert not list((tmp_path / 'store').iterdir())
+
+
+def test_a_scene_is_no_sweep(tmp_path):
+    status, text = run(write(tmp_path), tmp_path / 'store', sweep='scene.yaml')
+    assert status == 2
+    assert text == ('cable_sweep: scene.yaml: this is a scene, not a sweep; allowed: a file that names it, as `scene: scene.yaml`, '
+                    'and says what to vary: doc/sweeps.md\n')
 
 
 def test_errors_of_the_scene_are_named(tmp_path):

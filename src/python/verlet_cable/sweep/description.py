@@ -9,7 +9,7 @@ import stat
 from verlet_cable.sim import Scene, SceneError
 
 from . import text_yaml, trial
-from .errors import SweepError, rejected
+from .errors import SweepError, meant, rejected, unknown_key
 from .paths import holder_of, parse_path, path_text, why_absent
 from .text_yaml import number, shown
 from .variations import Variation, read_variation
@@ -21,6 +21,8 @@ FIELDS = {
 }
 MOTION = 'motion'  # the key of the varied values under which the motion is that was drawn
 _KEYS = ('scene', 'motion', 'motions', 'duration', 'record', 'samples', 'seed', 'vary')
+_RECORD_KEYS = ('rate', 'fields')
+_SCENE_KEYS = ('materials', 'cables', 'nets', 'particles', 'bodies')  # of which every scene has one
 _NOT_VARIED = {
     'segments': 'all samples have as many nodes', 'rows': 'all samples have as many nodes', 'columns': 'all samples have as many nodes',
     'name': 'the arrays of the store have the names of the scene',
@@ -95,11 +97,14 @@ def read_sweep(path):
         raise SweepError(errors)
     if not isinstance(values, dict):
         raise SweepError([rejected(name, shown(values), 'keys ' + ', '.join(_KEYS))])
+    if 'scene' not in values and any(key in values for key in _SCENE_KEYS):
+        raise SweepError([f'{name}: this is a scene, not a sweep; allowed: a file that names it, as `scene: {name}`, and says what to '
+                          'vary: doc/sweeps.md'])
     sweep = Sweep()
     sweep.folder = os.path.dirname(os.path.abspath(path))
     for key in values:
         if key not in _KEYS:
-            errors.append(rejected(key, shown(values[key]), 'no such key; the keys are ' + ', '.join(_KEYS)))
+            errors.append(unknown_key(key, shown(values[key]), _KEYS))
     scene = _read_scene(sweep, values, errors)
     _read_numbers(sweep, values, errors)
     _read_record(sweep, values.get('record'), errors)
@@ -208,8 +213,8 @@ def _read_record(sweep, record, errors):
         errors.append(rejected('record', shown(record), '{rate: HZ, fields: [...]}; required'))
         return
     for key in record:
-        if key not in ('rate', 'fields'):
-            errors.append(rejected(f'record.{key}', shown(record[key]), 'no such key; the keys are rate, fields'))
+        if key not in _RECORD_KEYS:
+            errors.append(unknown_key(f'record.{key}', shown(record[key]), _RECORD_KEYS))
     sweep.rate = _read_number('record.rate', record, _DEFAULT_RATE, _is_positive, 'a finite number of Hz, more than 0', errors)
     sweep.fields = record.get('fields')
     if not isinstance(sweep.fields, list) or not sweep.fields:
@@ -217,7 +222,8 @@ def _read_record(sweep, record, errors):
         return
     for index, field in enumerate(sweep.fields):
         if not isinstance(field, str) or field not in FIELDS:
-            errors.append(rejected(f'record.fields[{index}]', shown(field), 'one of ' + ', '.join(FIELDS)))
+            near = meant(field, FIELDS) if isinstance(field, str) else ''
+            errors.append(rejected(f'record.fields[{index}]', shown(field) + near, 'one of ' + ', '.join(FIELDS)))
         elif field in sweep.fields[:index]:
             errors.append(rejected(f'record.fields[{index}]', field, 'each field once'))
 

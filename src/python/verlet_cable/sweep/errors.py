@@ -1,5 +1,7 @@
 """What ends a sweep before or while it runs, in words for the user."""
 
+import difflib
+
 _LONGEST_KEY = 300
 
 
@@ -20,6 +22,17 @@ def rejected(key, value, allowed):
     if len(key) > _LONGEST_KEY:
         key = key[:_LONGEST_KEY - 3] + '...'
     return f'{key}: {value}; allowed: {allowed}'
+
+
+def meant(name, names):
+    """Which of the names was meant, in brackets, or nothing."""
+    close = difflib.get_close_matches(name[:_LONGEST_KEY], names, 1)
+    return f' (did you mean {close[0]}?)' if close else ''
+
+
+def unknown_key(key, value, names):
+    """An error as scenes have it. `key`: in full; `value`: as it is shown; `names`: those that there are."""
+    return rejected(key, f'unknown key, its value is {value}' + meant(key.rpartition('.')[2], names), ', '.join(names))
 
 
 def missing_package(error):

@@ -4,7 +4,7 @@ from statistics import NormalDist
 
 import numpy as np
 
-from .errors import rejected
+from .errors import meant, rejected
 from .text_yaml import number, shown, with_numbers
 
 _MOST_OPTIONS = 10_000  # of a choice: each may be tried before a sweep begins
@@ -61,7 +61,8 @@ class Variation:
 def read_variation(key, value, errors):
     """The variation at a key of SWEEP.yaml, or None."""
     if not isinstance(value, dict) or len(value) != 1 or next(iter(value)) not in DISTRIBUTIONS:
-        errors.append(rejected(key, shown(value), 'one of ' + ', '.join(f'{name}: [...]' for name in DISTRIBUTIONS)))
+        near = meant(next(iter(value)), DISTRIBUTIONS) if isinstance(value, dict) and len(value) == 1 else ''
+        errors.append(rejected(key, shown(value) + near, 'one of ' + ', '.join(f'{name}: [...]' for name in DISTRIBUTIONS)))
         return None
     kind, parameters = next(iter(value.items()))
     key = f'{key}.{kind}'
