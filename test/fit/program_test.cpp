@@ -62,13 +62,18 @@ TEST_F(CableFit, SceneIsWhatCableSimPredictsWith) {
   const Recording recording = synthetic_recording(known_cable(), 0, 0.4, 5e-4);
   const std::string file = write_recording("take.csv", recording);
   ASSERT_EQ(fit(file + " --name lead --segments 12 --linear-density 0.08 --output " + path("scene.yaml")), 0) << err;
+  EXPECT_NE(err.find("cable_fit: note: assumed, as not given: --radius 0.005 m; weigh and measure the cable\n"),
+            std::string::npos)
+      << err;
   const SceneDesc cable = read_scene_text(content(path("scene.yaml")) + "    attachments: []\n");
   EXPECT_EQ(cable.cables[0].name, "lead");
   EXPECT_EQ(cable.cables[0].segments, 12);
   EXPECT_EQ(cable.materials[0].material.linear_density, 0.08);
 
   // The same bytes a second time.
-  ASSERT_EQ(fit(file + " --name lead --segments 12 --linear-density 0.08 --output " + path("again.yaml")), 0) << err;
+  ASSERT_EQ(fit(file + " --name lead --segments 12 --linear-density 0.08 --radius 0.005 --output " + path("again.yaml")), 0)
+      << err;
+  EXPECT_EQ(err.find("assumed"), std::string::npos) << err;
   EXPECT_EQ(content(path("again.yaml")), content(path("scene.yaml")));
 
   write("full.yaml", content(path("scene.yaml")) + initial_and_attachments(recording));
@@ -140,6 +145,7 @@ TEST_F(CableFit, WhatIsNotDeterminedHasNoInterval) {
     text += "\n";
   }
   ASSERT_EQ(fit(write("straight.csv", text) + " --name lead --segments 8 --output " + path("scene.yaml")), 0) << err;
+  EXPECT_NE(err.find("assumed, as not given: --linear-density 0.1 kg/m, --radius 0.005 m;"), std::string::npos) << err;
   std::istringstream lines(out);
   int untold = 0;
   for (std::string line; std::getline(lines, line);) {

@@ -45,10 +45,11 @@ TEST(Options, haveDefaults) {
 
 TEST(Options, everyMistakeIsNamedAtOnce) {
   std::vector<std::string> errors;
-  parse({"--duration", "-1", "--rate=nan", "--durashun", "3", "b.yaml", "--motion", "--output=", "--rate", "5"}, &errors);
+  parse({"--duration", "-1", "--rate=nan", "--durashun", "3", "b.yaml", "c.yaml", "--motion", "--output=", "--rate", "5"},
+        &errors);
   for (const char* start : {"--duration: \"-1\"; allowed: 0 or more [s]", "--rate: \"nan\"; allowed: any number above 0",
                             "--durashun: no such option (did you mean --duration?)",
-                            "\"b.yaml\": a second scene; allowed: one, and \"3\" is given already", "--motion: no value",
+                            "\"c.yaml\": a second scene; allowed: one, and \"b.yaml\" is given already", "--motion: no value",
                             "--output: \"\"; allowed: the name of a file", "--rate: given twice"})
     EXPECT_TRUE(has_line(errors, start)) << start << "\n" << joined(errors);
   parse({}, &errors);
@@ -58,6 +59,22 @@ TEST(Options, everyMistakeIsNamedAtOnce) {
   for (const char* start : {"--output: \"\"", "--settle: \"x\"; allowed: no value", "--settle: given twice",
                             "---: no such option", "-5: no such option", "--: no such option"})
     EXPECT_TRUE(has_line(errors, start)) << start << "\n" << joined(errors);
+}
+
+TEST(Options, ofAnOptionThatThereIsNotTheValueIsNoSecondMistake) {
+  const std::string allowed =
+      "; allowed: --help, --duration, --motion, --output, --bodies, --rate, --summary, --plot, --gif, --settle\n";
+  std::vector<std::string> errors;
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {"a.yaml", "--unknown", "3"}, {"--unknown", "-3", "a.yaml"}, {"--unknown", "3"}, {"a.yaml", "--unknown"}}) {
+    parse(arguments, &errors);
+    EXPECT_EQ(joined(errors), "--unknown: no such option" + allowed);
+  }
+  parse({"--durashun", "3", "a.yaml"}, &errors);
+  EXPECT_EQ(joined(errors), "--durashun: no such option (did you mean --duration?)" + allowed);
+  // Where a flag is meant, the scene follows.
+  EXPECT_EQ(parse({"--setle", "a.yaml"}, &errors).scene, "a.yaml");
+  EXPECT_EQ(joined(errors), "--setle: no such option (did you mean --settle?)" + allowed);
 }
 
 TEST(Options, helpTellsOfAllOptions) {

@@ -185,6 +185,8 @@ int run(const std::vector<std::string>& arguments) {
   if (options.recordings.size() == 1 && !options.predictions.empty())
     errors.emplace_back("--predictions: one recording, which no fit leaves out; allowed: two or more");
   if (!errors.empty()) return refuse(errors);
+  if (!options.assumed.empty())
+    std::cerr << "cable_fit: note: assumed, as not given: " << options.assumed << "; weigh and measure the cable\n";
   std::vector<SwappedEnds> swapped;
   std::vector<Recording> recordings;
   for (const Recording& recording : as_numbered) {

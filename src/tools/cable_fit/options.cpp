@@ -3,6 +3,7 @@
 #include <set>
 
 #include "common/command_line.h"
+#include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/core/scene_fields.h"
 
@@ -18,8 +19,8 @@ constexpr const char* usage =
     "and the last two are on the grippers that hold it.";
 constexpr const char* footer = "exit status: 0 done, 2 a bad recording or option, 3 the fit had to stop";
 
-void check_required(const Options& options, std::vector<std::string>& errors) {
-  if (options.recordings.empty())
+void check_required(const Options& options, bool left_out, std::vector<std::string>& errors) {
+  if (options.recordings.empty() && !left_out)
     errors.emplace_back(
         "no recordings; type: cable_fit RECORDING.csv... --name NAME --output SCENE.yaml; cable_fit --help lists the options");
   std::set<std::string> seen;
@@ -33,6 +34,13 @@ void check_required(const Options& options, std::vector<std::string>& errors) {
   if (options.output.empty()) errors.emplace_back("--output: missing; allowed: the name of a file");
 }
 
+/// Takes what was given; what is 0 was not: the option with its default.
+std::string use_or_assume(double given, const char* option, const char* unit, double& value) {
+  if (given == 0) return std::string(option) + " " + number_text(value) + " " + unit;
+  value = given;
+  return "";
+}
+
 }  // namespace
 
 Options parse_options(const std::vector<std::string>& arguments, std::vector<std::string>& errors) {
@@ -41,9 +49,10 @@ Options parse_options(const std::vector<std::string>& arguments, std::vector<std
   line.add_text("--name", "NAME", "of the cable and its material", options.name, name_words);
   line.add_text("--output", "YAML", "the scene: materials and cables, without initial and attachments", options.output, file);
   line.add_integer("--segments", "N", "of the cable, default 40", options.segments, segments_range);
-  line.add_number("--linear-density", "KG_M", "default 0.1; stiffness and damping are found in proportion to it",
-                  options.linear_density, positive, "kg/m");
-  line.add_number("--radius", "M", "default 0.005; it is not fitted", options.radius, positive, "m");
+  double linear_density = 0, radius = 0;
+  line.add_number("--linear-density", "KG_M", "default 0.1; stiffness and damping are found in proportion to it", linear_density,
+                  positive, "kg/m");
+  line.add_number("--radius", "M", "default 0.005; it is not fitted", radius, positive, "m");
   line.add_text("--report", "JSON", "confidence intervals, and errors for fitted and for left-out recordings", options.report,
                 file);
   line.add_text("--centre-line", "YAML",
@@ -54,7 +63,10 @@ Options parse_options(const std::vector<std::string>& arguments, std::vector<std
                 options.predictions, "the name of a directory");
   options.recordings = line.parse(arguments, errors);
   options.help = line.help();
-  if (options.help.empty()) check_required(options, errors);
+  options.assumed = use_or_assume(linear_density, "--linear-density", "kg/m", options.linear_density);
+  const std::string radius_text = use_or_assume(radius, "--radius", "m", options.radius);
+  if (!radius_text.empty()) options.assumed += (options.assumed.empty() ? "" : ", ") + radius_text;
+  if (options.help.empty()) check_required(options, line.left_out(), errors);
   return options;
 }
 

@@ -18,6 +18,7 @@ struct Options {
   int segments = 40;
   double linear_density = 0.1;  ///< [kg/m]
   double radius = 0.005;        ///< [m]
+  std::string assumed;          ///< the options above that were not given, with their defaults
   std::string help;             ///< what --help prints, empty: not asked for
 };
 

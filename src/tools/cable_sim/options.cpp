@@ -56,7 +56,7 @@ Options parse_options(const std::vector<std::string>& arguments, std::vector<std
     if (scene.empty()) errors.push_back("\"\": an empty argument; allowed: the name of a scene file");
     if (options.scene.empty()) options.scene = scene;
   }
-  if (options.scene.empty() && options.help.empty())
+  if (options.scene.empty() && options.help.empty() && !line.left_out())
     errors.push_back("no scene; type: cable_sim SCENE.yaml [options]; cable_sim --help lists the options");
   return options;
 }

@@ -1,6 +1,9 @@
 #include "command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <cstddef>
 
 #include "scene/text.h"
 
@@ -35,14 +38,32 @@ std::vector<std::string> reversed(const std::vector<std::string>& arguments) {
   return last_first;
 }
 
-std::string no_such_option(const std::string& argument, const CLI::App& app) {
+bool is_option(const std::string& argument) {
+  return argument.size() > 1 && argument[0] == '-';
+}
+
+std::vector<std::string> names_of_options(const CLI::App& app) {
   std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) names.push_back(option->get_name());
+  return names;
+}
+
+std::string nearest_option(const std::string& argument, const CLI::App& app) {
+  return nearest_name(argument.substr(0, argument.find('=')), names_of_options(app));
+}
+
+/// Whether what follows an option that there is not may be its value.
+bool may_have_value(const std::string& argument, const CLI::App& app) {
+  const bool has_name = argument.size() > 2 && argument[1] == '-' && std::isalpha(static_cast<unsigned char>(argument[2])) != 0;
+  if (!has_name || argument.find('=') != std::string::npos) return false;
+  const std::string nearest = nearest_option(argument, app);
+  return nearest.empty() || !app.get_option(nearest)->get_type_name().empty();
+}
+
+std::string no_such_option(const std::string& argument, const CLI::App& app) {
   std::string allowed;
-  for (const CLI::Option* option : app.get_options()) {
-    names.push_back(option->get_name());
-    allowed += (allowed.empty() ? "" : ", ") + names.back();
-  }
-  const std::string nearest = nearest_name(argument.substr(0, argument.find('=')), names);
+  for (const std::string& name : names_of_options(app)) allowed += (allowed.empty() ? "" : ", ") + name;
+  const std::string nearest = nearest_option(argument, app);
   return escaped(argument) + ": no such option" + (nearest.empty() ? "" : " (did you mean " + nearest + "?)") +
          "; allowed: " + allowed;
 }
@@ -93,15 +114,23 @@ void CommandLine::add_flag(const std::string& name, const std::string& descripti
 
 std::vector<std::string> CommandLine::parse(const std::vector<std::string>& arguments, std::vector<std::string>& errors) {
   errors_.clear();
+  left_out_ = false;
   std::vector<std::string> last_first = reversed(arguments);
   app_->parse(last_first);
   std::vector<std::string> others;
-  for (const std::string& argument : app_->remaining()) {
-    if (argument.size() > 1 && argument[0] == '-') {
-      errors_.push_back(no_such_option(argument, *app_));
-    } else {
-      others.push_back(argument);
+  const std::vector<std::string> remaining = app_->remaining();
+  for (std::size_t i = 0; i < remaining.size(); ++i) {
+    if (!is_option(remaining[i])) {
+      others.push_back(remaining[i]);
+      continue;
     }
+    errors_.push_back(no_such_option(remaining[i], *app_));
+    if (i + 1 == remaining.size() || !may_have_value(remaining[i], *app_)) continue;
+    const auto pair = remaining.begin() + static_cast<std::ptrdiff_t>(i);
+    const bool is_next = std::search(arguments.begin(), arguments.end(), pair, pair + 2) != arguments.end();
+    if (!is_next || (is_option(remaining[i + 1]) && !parse_number(remaining[i + 1]))) continue;
+    left_out_ = true;
+    ++i;
   }
   errors.insert(errors.end(), errors_.begin(), errors_.end());
   return others;

@@ -33,8 +33,12 @@ class CommandLine {
   void add_flag(const std::string& name, const std::string& description, bool& flag);
 
   /// Reads the arguments after the program's name, and adds a line to `errors` for each that is wrong. Arguments that roslaunch
-  /// appends (`__name:=...`) are skipped. Returns those that are neither options nor their values.
+  /// appends (`__name:=...`) are skipped. Returns those that are neither options nor their values; what follows an option that
+  /// there is not counts as its value, unless a flag was meant.
   std::vector<std::string> parse(const std::vector<std::string>& arguments, std::vector<std::string>& errors);
+
+  /// Whether something may have been left out in this way that was not a value.
+  bool left_out() const { return left_out_; }
 
   /// What --help prints; empty if it was not asked for.
   std::string help() const;
@@ -48,6 +52,7 @@ class CommandLine {
 
   std::unique_ptr<CLI::App> app_;
   bool help_ = false;
+  bool left_out_ = false;
   std::vector<std::string> errors_;
 };
 
