@@ -263,8 +263,9 @@ class LostFramesTest(unittest.TestCase):
     def test_unconnected_frames_are_told_once(self):
         apart = '"left_gripper" and "right_gripper" are on tf, but not connected to "world": set frame_id in the scene ' \
                 '(to the root of their tree: "base"), or publish a transform between the two'
-        waiting = 'not shown yet: "rope", because tf has no transform from "world" to "left_gripper": "left_gripper" is on tf, but not ' \
-                  'connected to "world": set frame_id in the scene (to the root of its tree: "base"), or publish a transform between the two'
+        waiting = 'not shown yet: "rope", because tf has no transform from "world" to "left_gripper": "left_gripper" is on tf, but ' \
+                  'not connected to "world": set frame_id in the scene (to the root of its tree: "base"), or publish a transform ' \
+                  'between the two'
 
         def of_node(name):
             return lambda m: m.name == f'/policy/{name}' and m.level == Log.WARN
