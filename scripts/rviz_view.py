@@ -16,7 +16,9 @@ import yaml
 PLUGINS = 'libverlet_cable_rviz.so'
 FIELD_OF_VIEW = math.radians(45)  # rviz's, of the window's height
 MARGIN = 1.15  # of what is seen, times what there is
+ROBOT_MARGIN = 1.8  # the same with a robot, whose links reach farther than the cables on it
 CLOSEST = 0.1  # [m]
+AXES = 0.1     # of frames, to the camera's distance
 
 
 def has_plugins():
@@ -43,13 +45,16 @@ def entries(scene, key):
 def known_places(scene):
     """[m] Where the scene says that something is, without obstacles: a floor is everywhere."""
     for cable in entries(scene, 'cables'):
-        held = []
+        held, at = [], []
         for attachment in entries(cable, 'attachments'):
-            place = numbers(attachment.get('initial_pose'))
+            fixed = 'frame' not in attachment and 'body' not in attachment
+            place = numbers(attachment.get('offset' if fixed else 'initial_pose'))
             if place is not None:
                 held.append(place)
+                at.append(attachment.get('at'))
         yield from held
         yield from sagging(cable, held)
+        yield from overhanging(cable, held, at)
         initial = cable.get('initial')
         points = initial.get('points') if isinstance(initial, dict) else None
         for point in points if isinstance(points, list) else []:
@@ -70,6 +75,19 @@ def sagging(cable, held):
     return [(held[0] + held[-1]) / 2 - [0, 0, depth]]
 
 
+def overhanging(cable, held, at):
+    """[m] As far as its ends may stick out beyond where it is held."""
+    length = cable.get('length')
+    at = [{'start': 0, 'end': length}.get(place, place) if isinstance(place, str) else place for place in at]
+    if len(held) < 2 or not all(isinstance(value, (int, float)) for value in [length, at[0], at[-1]]):
+        return []
+    span = np.linalg.norm(held[-1] - held[0])
+    if not span > 0:
+        return []
+    along = (held[-1] - held[0]) / span
+    return [held[0] - along * at[0], held[-1] + along * (length - at[-1])]
+
+
 def longest(scene):
     """[m] Of its cables; 1 without any."""
     lengths = [cable.get('length') for cable in entries(scene, 'cables')]
@@ -83,7 +101,8 @@ def fitted(scene):
         return np.zeros(3), max(CLOSEST, 1.5 * longest(scene))
     low, high = places.min(axis=0), places.max(axis=0)
     size = max(np.linalg.norm(high - low), 0.3 * longest(scene))
-    return (low + high) / 2, max(CLOSEST, MARGIN * size / 2 / math.sin(FIELD_OF_VIEW / 2))
+    margin = ROBOT_MARGIN if 'robot' in scene else MARGIN
+    return (low + high) / 2, max(CLOSEST, margin * size / 2 / math.sin(FIELD_OF_VIEW / 2))
 
 
 def renamed(value, node):
@@ -117,6 +136,8 @@ def aim(view, scene):
     for display in view['Visualization Manager']['Displays']:
         if display['Class'] == 'rviz/Grid':
             display['Cell Size'] = float(cell_size(distance))
+        if display['Class'] == 'rviz/TF':
+            display['Marker Scale'] = float(AXES * distance)
 
 
 def cell_size(distance):
