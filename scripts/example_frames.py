@@ -25,17 +25,18 @@ TEXTS = {
     'hose_between_arms': [
         ('two arms bend and twist a hose', 0, 0, 1.28, 0.06)],
     'tethered_drone': [
-        ('a drone on a tether, in wind', 0, 0, 2.75, 0.14), ('ground station', -0.1, 0, 0.35, 0.1), ('wind ->', -1.2, 0, 1.5, 0.12)],
+        ('a drone on a tether, in wind', 0, 0, 2.75, 0.14), ('ground station', -0.1, 0, 0.35, 0.1), ('wind', -1.3, 0, 1.6, 0.12)],
     'crane': [
         ('a crane: the winch on the trolley hoists a payload', 0, 0, 2.5, 0.1), ('payload: 5 kg', 0, 0, 0.2, 0.1)],
     'rov_tether': [
         ('the tether between a ship and an underwater robot, in a current', 0.5, 0, 0.55, 0.12),
-        ('water surface', -1.1, 0, 0.06, 0.08), ('current ->', -1.1, 0, -0.9, 0.12)],
+        ('water surface', -0.9, -0.6, 0.08, 0.1), ('current', -0.8, 0, -0.8, 0.12)],
     'tracker': [
         ('what a depth camera sees of a rope: blue', 0, 0, 1.38, 0.055),
         ('where its nodes are, at the same stamp: red', 0, 0, 1.3, 0.055)],
     'gripper_load': [
-        ('the load of a cable on a gripper', 0.3, 0, 1.5, 0.06), ('orange: force, purple: torque', 0.3, 0, 1.42, 0.045),
+        ('the load of a cable on a gripper', 0.3, 0, 1.5, 0.06),
+        ('orange: force, 1 N is 6 cm; purple: torque, 1 N m is 20 cm', 0.3, 0, 1.42, 0.045),
         ('wall', -0.05, 0, 1.25, 0.05)],
     'harness': [
         ('two hands lay a wire harness on a board, whose clips hold it', 0, 0, 0.52, 0.04)],
@@ -44,8 +45,17 @@ TEXTS = {
     'finger': [
         ('a tendon bends a finger, rubber bands over sheaves straighten it', 0.01, 0, 0.2, 0.008)],
     'drones_with_bar': [
-        ('two drones carry a bar of 1.2 kg on ropes', 0, 0, 2.55, 0.12), ('orange: what each bears', 0, 0, 2.38, 0.09)],
+        ('two drones carry a bar of 1.2 kg on ropes', 0, 0, 2.55, 0.12), ('purple: what each bears', 0, 0, 2.38, 0.09)],
 }
+
+# By example: from where to where [m].
+ARROWS = {
+    'tethered_drone': [((-1.55, 0, 1.45), (-1.05, 0, 1.45))],
+    'rov_tether': [((-1.05, 0, -1), (-0.55, 0, -1))],
+}
+
+# By example: its size and its depth [m].
+WATER = {'rov_tether': ((4.5, 3.5), 0.02)}
 
 
 def handle(example, started):
@@ -71,7 +81,11 @@ def main():
 def move_frames():
     example = rospy.get_param('~example')
     labels = rospy.Publisher('example/labels', MarkerArray, queue_size=1, latch=True)
-    labels.publish([moving_frames.label(number, *text) for number, text in enumerate(TEXTS[example])])
+    shown = [moving_frames.label(number, *text) for number, text in enumerate(TEXTS[example])]
+    shown += [moving_frames.arrow(number, *ends) for number, ends in enumerate(ARROWS.get(example, []))]
+    if example in WATER:
+        shown.append(moving_frames.water(*WATER[example]))
+    labels.publish(shown)
 
     def when_started(started):
         if example in example_motions.RELEASES:

@@ -33,6 +33,25 @@ def label(number, text, x, y, z, height):
     return marker
 
 
+def arrow(number, begin, end):
+    """For what moves, but is not seen: wind, a current."""
+    marker = Marker(ns='arrows', id=number, type=Marker.ARROW, color=ColorRGBA(0.1, 0.55, 0.9, 1), points=[Point(*begin), Point(*end)])
+    marker.header.frame_id = FIXED_FRAME
+    marker.pose.orientation.w = 1
+    marker.scale = Vector3(0.04, 0.11, 0.14)  # [m] diameter of the shaft and of the head, length of the head
+    return marker
+
+
+def water(size, depth):
+    """The surface at z = 0, of a size [m], as a layer of a depth [m] that one sees through."""
+    marker = Marker(ns='water', type=Marker.CUBE, color=ColorRGBA(0.3, 0.75, 1, 0.35))
+    marker.header.frame_id = FIXED_FRAME
+    marker.pose.position.z = -depth / 2
+    marker.pose.orientation.w = 1
+    marker.scale = Vector3(*size, depth)
+    return marker
+
+
 def move_frames(motion, when_started):
     """Sends `motion` (time [s] to poses by frame) on tf: its start until the node shows its cables and has had time to hear of the frames,
     then all of it, until the node is shut down. Calls `when_started(rospy.Time)` in between."""
