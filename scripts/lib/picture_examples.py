@@ -28,6 +28,7 @@ EXAMPLES = {  # [s] until the picture
 SCENE = 'config/hanging_cable.yaml'  # of the tools and the menu: it hangs still
 VIEW = {'Distance': 2.0, 'Pitch': 0.1, 'Yaw': -1.5708, 'Focal Point': {'X': 0.5, 'Y': 0, 'Z': 0.75}}
 ON_CABLE = (735, 458)  # [pixels] the middle of the cable in that view
+SETTLING = 3  # [s] until the panel shows the speed of after a click, during which the clock stands
 
 
 def xdotool(*command):
@@ -53,7 +54,7 @@ def show(file, config, launch, seconds):
 
 
 def on_the_still_cable():
-    return stage(WIDE, configuration('rviz/cable.rviz', WIDE, panels=True, **VIEW), ['cable.launch', f'scene:={PACKAGE / SCENE}'])
+    return stage(WIDE, configuration('rviz/cable.rviz', WIDE, panels=True, **VIEW), ['cable.launch', f'scene:={PACKAGE / SCENE}'], pace=1.0)
 
 
 def picture_demo(file):
@@ -71,7 +72,7 @@ def picture_tool(file):
         clock.go_on(1)
         press('x')
         click(1)
-        clock.go_on(0.3)
+        clock.go_on(SETTLING)
         keep(file)
 
 
@@ -80,6 +81,7 @@ def picture_menu(file):
         clock.go_on(1)
         press('i')
         click(3)
+        clock.go_on(SETTLING)
         keep(file)
 
 

@@ -104,7 +104,9 @@ class SlowClock:
 
 @contextlib.contextmanager
 def stage(size, config, launch, pace=PACE):
-    """The clock, when the cables are there. One a process: it is a ROS node."""
+    """The clock, when the cables are there; `launch` is a launch file of the package, or the path of another, and arguments. One a process:
+    it is a ROS node."""
+    package = [] if os.path.isabs(launch[0]) else ['verlet_cable']
     port = str(urlsplit(os.environ['ROS_MASTER_URI']).port)
     with tempfile.NamedTemporaryFile('w', suffix='.rviz') as file, \
             running('Xvfb', DISPLAY, '-screen', '0', f'{size[0]}x{size[1]}x24', '-nolisten', 'tcp'), running('roscore', '-p', port):
@@ -115,7 +117,7 @@ def stage(size, config, launch, pace=PACE):
         rospy.init_node('rviz_stage', disable_signals=True)
         with running('rviz', '-d', file.name, DISPLAY=DISPLAY):
             time.sleep(STARTING)
-            with running('roslaunch', 'verlet_cable', *launch, 'rviz:=false'):
+            with running('roslaunch', *package, *launch, 'rviz:=false'):
                 clock = SlowClock(pace)
                 clock.wait_for_cables()
                 yield clock
