@@ -41,7 +41,7 @@ TEXTS = {
     'harness': [
         ('two hands lay a wire harness on a board, whose clips hold it', 0, 0, 0.52, 0.04)],
     'plug': [
-        ('a clip takes the cable behind a plug that a hand pushes into a socket', -0.12, 0, 0.22, 0.013)],
+        ('a clip takes the cable behind a plug that a hand pushes into a socket', -0.12, 0, 0.26, 0.013)],
     'finger': [
         ('a tendon bends a finger, rubber bands over sheaves straighten it', 0.01, 0, 0.2, 0.008)],
     'drones_with_bar': [

@@ -97,7 +97,7 @@ def test_a_robot_has_room_around_the_cables_on_it():
     scene = hanging(1)
     _, without = rviz_view.fitted(scene)
     _, distance = rviz_view.fitted({**scene, 'robot': {'description': 'robot_description'}})
-    assert distance > 1.5 * without
+    assert distance > 1.2 * without
 
 
 def test_rviz_is_started_in_the_frame_of_the_scene(tmp_path):
