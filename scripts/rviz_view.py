@@ -18,7 +18,7 @@ FIELD_OF_VIEW = math.radians(45)  # rviz's, of the window's height
 MARGIN = 1.15  # of what is seen, times what there is
 ROBOT_MARGIN = 1.5  # the same with a robot, whose links reach farther than the cables on it
 CLOSEST = 0.1  # [m]
-AXES = 0.1     # of frames, to the camera's distance
+AXES = 0.2     # of frames, to the camera's distance
 
 
 def has_plugins():

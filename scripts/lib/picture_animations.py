@@ -23,8 +23,8 @@ class Animation:
 
 
 ANIMATIONS = {
-    'harness': Animation(['harness.launch'], 'rviz/examples/harness.rviz', {'Distance': 1.35, 'Pitch': 0.75, 'Yaw': -1.3}, 0.5, 16.0, 2.0),
-    'knot': Animation(['scene.launch', 'scene:=knot'], 'rviz/scenes/knot.rviz', {}, 0.3, 6.0, 1.0),
+    'harness': Animation(['harness.launch'], 'rviz/examples/harness.rviz', {'Distance': 1.4, 'Pitch': 0.75, 'Yaw': -1.3}, 0.5, 16.0, 2.0),
+    'knot': Animation(['scene.launch', 'scene:=knot'], 'rviz/scenes/knot.rviz', {'Distance': 0.9}, 0.3, 6.0, 1.0),
 }
 
 

@@ -62,7 +62,7 @@ def picture_demo(file):
 
 
 def picture_panel(file):
-    with stage(WIDE, configuration('rviz/demo.rviz', WIDE, panels=True), ['demo.launch'], pace=1.0) as clock:
+    with stage(WIDE, configuration('rviz/demo.rviz', WIDE, panels=True, Distance=4.3), ['demo.launch'], pace=1.0) as clock:
         clock.go_on(8)
         keep(file)
 

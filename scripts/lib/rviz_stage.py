@@ -76,6 +76,7 @@ class SlowClock:
 
     def __init__(self, pace):
         self._pace = pace
+        self._due = 0.0  # [s] of the monotonic clock: the next tick
         self._now = 1.0
         self._shown = 0.0
         self._publisher = rospy.Publisher('clock', Clock, queue_size=10)
@@ -88,7 +89,8 @@ class SlowClock:
     def _tick(self):
         self._now += TICK
         self._publisher.publish(Clock(rospy.Time.from_sec(self._now)))
-        time.sleep(self._pace * TICK)
+        self._due = max(self._due + self._pace * TICK, time.monotonic())  # it does not catch up on where it stood
+        time.sleep(max(self._due - time.monotonic(), 0))
 
     def wait_for_cables(self):
         wait_until(lambda: self._tick() or self._shown > 0, 'cables')
