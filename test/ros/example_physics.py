@@ -167,11 +167,13 @@ class Finger:
 
     def test_bands_are_stretched_by_what_their_joints_turn(self):
         with self.node.states() as states, in_frames() as frames:
+            palm = frames.lookup_transform('world', 'palm', rospy.Time(0), rospy.Duration(PATIENCE))
+
             def angle_at(is_reached, what):
-                # Its palm is looked up at once: tf forgets after 10 s.
-                state = states.wait_for(is_reached, what, 2 * STARTING)
-                palm = frames.lookup_transform('world', 'palm', state.header.stamp, rospy.Duration(PATIENCE)).transform
-                return state.header.stamp, self.check_bands(state, palm)
+                # Its palm is looked up at once: tf forgets after 10 s. Of what was before the first transform it knows nothing.
+                state = states.wait_for(lambda s: s.header.stamp > palm.header.stamp and is_reached(s), what, 2 * STARTING)
+                pose = frames.lookup_transform('world', 'palm', state.header.stamp, rospy.Duration(PATIENCE)).transform
+                return state.header.stamp, self.check_bands(state, pose)
             bent, angle = angle_at(lambda s: cable(s, 'tendon').rest_length < 0.0971, 'bent finger')
             self.assertGreater(angle, 1.0)
             _, angle = angle_at(lambda s: s.header.stamp > bent and cable(s, 'tendon').rest_length > 0.1199, 'straight finger')
