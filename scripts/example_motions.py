@@ -93,7 +93,7 @@ def harness(t):
 def plug(t):
     t %= PERIODS['plug']
     there, pushed, back = ramp(t, 1, 4), ramp(t, 4, 6), ramp(t, 13, 14.5)
-    away, pulled = ramp(t, 7, 8.5) - ramp(t, 14.5, 16), ramp(t, 9, 11) - ramp(t, 12, 13)  # back past the cable, then above it
+    away, pulled = ramp(t, 7, 8.5) - ramp(t, 14.5, 16), ramp(t, 9, 11) - ramp(t, 12, 14)  # back past the cable, then above it
     return {'hand': pose(-0.18 + 0.1 * (there - back) + 0.09 * (pushed - back), 0.12 * away, 0.2 - 0.1 * (there - back)),
             'far_hand': pose(-0.5 - 0.1325 * pulled, 0, 0.2 - 0.1 * pulled)}
 
