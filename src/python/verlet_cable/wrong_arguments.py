@@ -7,6 +7,7 @@ import re
 import numpy as np
 
 _MOST_SHOWN = 80
+_MOST_COMPARED = 300  # letters of a name: longer ones take long
 _MISMATCH = ('incompatible function arguments', 'incompatible constructor arguments')
 _NO_DEFAULT = object()
 
@@ -17,6 +18,12 @@ _WORDS = {'str': 'text', 'int': 'an integer', 'bool': 'True or False', 'float': 
 _WAYS = {('Scene', str): '; Scene.load(path) reads a file, Scene.from_yaml(text) text',
          ('Scene', dict): '; Scene.from_dict(keys) makes one of a dict',
          ('dict', str): '; Scene.load(path) reads a file, Scene.from_yaml(text) text'}
+
+
+def meant(name, names):
+    """Which of the names was meant, in brackets, or nothing."""
+    close = difflib.get_close_matches(name[:_MOST_COMPARED], names, 1)
+    return f' (did you mean {close[0]}?)' if close else ''
 
 
 class _Parameter:
@@ -64,9 +71,7 @@ class _Signature:
             if name in given:
                 return len(given), f'{name}: given twice; allowed: once'
             if name not in names and not self.others:
-                close = difflib.get_close_matches(name, names, 1)
-                meant = f' (did you mean {close[0]}?)' if close else ''
-                return len(given), f'{name}: no such argument{meant}; allowed: {", ".join(names) or "none"}'
+                return len(given), f'{name}: no such argument{meant(name, names)}; allowed: {", ".join(names) or "none"}'
             given[name] = value
         for index, parameter in enumerate(parameters):
             if parameter.name not in given:

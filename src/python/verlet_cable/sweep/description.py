@@ -7,9 +7,10 @@ import os
 import stat
 
 from verlet_cable.sim import Scene, SceneError
+from verlet_cable.wrong_arguments import meant
 
 from . import text_yaml, trial
-from .errors import SweepError, meant, rejected, unknown_key
+from .errors import SweepError, rejected, unknown_key
 from .paths import holder_of, parse_path, path_text, why_absent
 from .text_yaml import number, shown
 from .variations import Variation, read_variation

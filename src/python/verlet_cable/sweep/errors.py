@@ -1,6 +1,6 @@
 """What ends a sweep before or while it runs, in words for the user."""
 
-import difflib
+from ..wrong_arguments import meant
 
 _LONGEST_KEY = 300
 
@@ -22,12 +22,6 @@ def rejected(key, value, allowed):
     if len(key) > _LONGEST_KEY:
         key = key[:_LONGEST_KEY - 3] + '...'
     return f'{key}: {value}; allowed: {allowed}'
-
-
-def meant(name, names):
-    """Which of the names was meant, in brackets, or nothing."""
-    close = difflib.get_close_matches(name[:_LONGEST_KEY], names, 1)
-    return f' (did you mean {close[0]}?)' if close else ''
 
 
 def unknown_key(key, value, names):

@@ -4,7 +4,8 @@ from statistics import NormalDist
 
 import numpy as np
 
-from .errors import meant, rejected
+from ..wrong_arguments import meant
+from .errors import rejected
 from .text_yaml import number, shown, with_numbers
 
 _MOST_OPTIONS = 10_000  # of a choice: each may be tried before a sweep begins
