@@ -1,10 +1,12 @@
 #include "world_events/status_log.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "verlet_cable/core/body_name.h"
 #include "verlet_cable/core/number_text.h"
+#include "world_events/world_event.h"
 
 namespace verlet_cable {
 namespace {
@@ -68,6 +70,18 @@ StatusEvent event_of(const World& world, const Intrusion& found) {
           "the segment that starts here is " + rounded_text(found.depth) + " m deep inside " + obstacle + " and is pushed out"};
 }
 
+StatusEvent event_of(const World& world, const UnaccountedEnergy& found) {
+  const std::string amount = rounded_text(std::abs(found.energy)) + " J";
+  return {world.time(),
+          name_of(EventType::energy),
+          false,
+          name_of(world, found.body),
+          -1,
+          "",
+          found.energy > 0 ? amount + " came from nowhere in a step; use a shorter time_step, and see the ledger"
+                           : amount + " got lost in a step; use a shorter time_step, and see the ledger"};
+}
+
 }  // namespace
 
 const char* name_of(Status status) {
@@ -102,6 +116,7 @@ void StatusLog::tell(const World& world, const StepResult& result, const std::ve
     if (found.status != Status::jumped && found.status != Status::inside_obstacle)
       report(event_of(world, found), found.max_strain);
   for (const Intrusion& found : world.findings().intrusions) report(event_of(world, found), found.depth);
+  for (const UnaccountedEnergy& found : world.findings().unaccounted) report(event_of(world, found), 0);
   for (const int frame : held_back)
     report({time, "frame_too_fast", false, "", -1, world.frames()[frame],
             "the frame moves faster than max_frame_speed and is followed at that speed"},
@@ -128,6 +143,7 @@ void StatusLog::report(const StatusEvent& event, double size) {
 }
 
 void StatusLog::end(const Episode& episode) {
+  if (episode.first.name == name_of(EventType::energy)) return;
   StatusEvent event = episode.first;
   event.time = episode.last_time;
   event.has_ended = true;

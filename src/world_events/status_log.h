@@ -19,7 +19,7 @@ inline constexpr char misfit_text[] =
 /// That a status, or what keeps a frame from being followed, begins or has ended.
 struct StatusEvent {
   double time = 0;   ///< [s] simulated; of an end, when it was there last
-  std::string name;  ///< of the status (a fault: FAULT), or frame_too_fast, frame_out_of_range
+  std::string name;  ///< of the status (a fault: FAULT), or ENERGY, frame_too_fast, frame_out_of_range
   bool has_ended = false;
   std::string cable;  ///< or the net, particle or body; empty: a frame
   int node = -1;      ///< -1: none in particular
@@ -28,14 +28,15 @@ struct StatusEvent {
 };
 
 /// Tells what steps find when it begins and when it has ended, not in each step. What comes back within 0.1 s has not ended.
-/// Jumps are no statuses here: they have events of their own.
+/// Jumps are no statuses here: they have events of their own. Of energy that is unaccounted for no end is told.
 class StatusLog {
  public:
   /// Cables that found no equilibrium, from this of Findings::unsettled on.
   void observe_start(const World& world, std::size_t first_unsettled = 0);
   /// After each step. `held_back`: ids of the frames that moved faster than `max_frame_speed`.
   void observe(const World& world, const StepResult& result, const std::vector<int>& held_back) {
-    if (!world.findings().statuses.empty() || !episodes_.empty() || !held_back.empty() || result.ignored_frame >= 0)
+    if (!world.findings().statuses.empty() || !world.findings().unaccounted.empty() || !episodes_.empty() || !held_back.empty() ||
+        result.ignored_frame >= 0)
       tell(world, result, held_back);
   }
   /// What has not ended ends: something else begins.

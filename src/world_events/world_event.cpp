@@ -71,6 +71,8 @@ const char* name_of(EventType type) {
       return "RELEASED";
     case EventType::jumped:
       return "JUMPED";
+    case EventType::energy:
+      return "ENERGY";
   }
   return "";
 }

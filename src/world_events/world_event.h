@@ -23,7 +23,8 @@ enum class EventType : std::uint8_t {
   limit,
   caught,
   released,
-  jumped
+  jumped,
+  energy
 };
 
 /// "CUT"

@@ -26,6 +26,29 @@ def write_motion(path):
     return str(path)
 
 
+def test_the_ledger_adds_up_and_is_that_of_cable_sim(hang, cable_sim, tmp_path):
+    motion = write_motion(tmp_path / 'motion.csv')
+    summary, _ = cable_sim(hang, '--duration', '0.4', '--rate', '10', '--motion', motion)
+    world = World(Scene.from_dict(hang), motion)
+    batch = Batch([Scene.from_dict(hang)] * 2, motion=motion)
+    world.step(80)
+    batch.step(80)
+    ledger = world.ledger()
+    assert ledger.pop('unaccounted_steps') == summary['unaccounted_steps'] == 0
+    assert ledger == summary['ledger']
+    assert batch.ledger(-1) == batch.ledger(0) == {**ledger, 'unaccounted_steps': 0}
+    assert list(ledger['work']) == ['attachments', 'winches', 'obstacles', 'applied']
+    assert list(ledger['dissipated']) == ['axial', 'bending', 'torsional', 'drag', 'contact', 'guides', 'bodies', 'unresolved', 'edits']
+    energy = summary['energy']
+    assert ledger['change'] == pytest.approx(energy['total'] - energy['initial_total'], abs=1e-12)
+    work, lost = sum(ledger['work'].values()), sum(ledger['dissipated'].values())
+    assert work - lost + ledger['unaccounted'] == pytest.approx(ledger['change'], abs=1e-12)
+    assert abs(ledger['work']['attachments']) > 1e-3
+    assert abs(ledger['unaccounted']) < 1e-4 * abs(ledger['work']['attachments'])
+    with pytest.raises(IndexError):
+        batch.ledger(2)
+
+
 def test_world_has_the_bytes_of_cable_sim(hang, cable_sim, tmp_path):
     motion = write_motion(tmp_path / 'motion.csv')
     summary, rows = cable_sim(hang, '--duration', '0.5', '--rate', '10', '--motion', motion)

@@ -14,6 +14,7 @@
 #include "verlet_cable/core/contact.h"
 #include "verlet_cable/core/edit.h"
 #include "verlet_cable/core/guide.h"
+#include "verlet_cable/core/ledger.h"
 #include "verlet_cable/core/net.h"
 #include "verlet_cable/core/obstacle.h"
 #include "verlet_cable/core/scene_desc.h"
@@ -107,6 +108,14 @@ struct StepResult {
 struct Energy {
   double kinetic = 0, gravity = 0, stretch = 0, bend = 0, twist = 0;
   double total() const { return kinetic + gravity + stretch + bend + twist; }
+  Energy& operator+=(const Energy& other) {
+    kinetic += other.kinetic;
+    gravity += other.gravity;
+    stretch += other.stretch;
+    bend += other.bend;
+    twist += other.twist;
+    return *this;
+  }
 };
 
 /// How a cable bends and twists at a node, or beside a clamp.
@@ -164,6 +173,12 @@ struct StatusFinding {
   DegradedCause cause = DegradedCause::none;  ///< if the status is degraded
 };
 
+/// Energy that came from nowhere in a step, or went (negative); see Ledger.
+struct UnaccountedEnergy {
+  BodyId body;        ///< the first one of what was stepped together
+  double energy = 0;  ///< [J]
+};
+
 /// Findings of the last step, start or settling.
 struct Findings {
   std::vector<std::string> waiting;  ///< names of cables, nets and bodies that wait for a frame or for their holder
@@ -176,11 +191,12 @@ struct Findings {
   std::vector<StatusFinding> statuses;
   // In the last step
   std::vector<Break> breaks;
-  std::vector<Excursion> excursions;       ///< that have begun
-  std::vector<int> caught, released;       ///< indices into World::guides() of clips that caught their cable, or let it go
-  std::vector<Jump> jumps;                 ///< that have ended, at most one per attachment
-  std::vector<Intrusion> intrusions;       ///< at most one per cable and obstacle
-  std::vector<SimulatedContact> contacts;  ///< where cables touched something in the last substep
+  std::vector<Excursion> excursions;           ///< that have begun
+  std::vector<int> caught, released;           ///< indices into World::guides() of clips that caught their cable, or let it go
+  std::vector<Jump> jumps;                     ///< that have ended, at most one per attachment
+  std::vector<Intrusion> intrusions;           ///< at most one per cable and obstacle
+  std::vector<UnaccountedEnergy> unaccounted;  ///< beyond what rounding and tolerances explain
+  std::vector<SimulatedContact> contacts;      ///< where cables touched something in the last substep
 };
 
 /// The simulation: cables and nets whose attachments follow frames, bodies and particles. It is a value type: a copy is a
@@ -246,6 +262,9 @@ class World {
   void tune(const SceneDesc& scene);
 
   Energy energy() const;
+  /// Where energy has come from and gone since the start; see Ledger. Nets and particles are not followed law by law: what they
+  /// gain counts as work of what holds them, what they lose as unresolved.
+  Ledger ledger() const;
   /// All joints of a cable from start to end: those of inner nodes, and those between clamps and the segments next to them.
   void view_joints(int cable, std::vector<JointView>& joints) const;
   std::uint64_t hash() const;  ///< of everything that the future depends on

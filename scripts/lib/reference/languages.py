@@ -6,7 +6,7 @@ from reference.markdown import fence, generated
 GROUPS = {
     'Worlds': ['core/world.h', 'core/edit.h', 'core/world_stepper.h', 'core/types.h'],
     'What is simulated': [
-        'core/cable.h', 'core/cable_materials.h', 'core/body.h', 'core/body_id.h', 'core/net.h', 'core/guide.h', 'core/contact.h',
+        'core/cable.h', 'core/cable_materials.h', 'core/body.h', 'core/body_id.h', 'core/net.h', 'core/guide.h', 'core/ledger.h', 'core/contact.h',
         'core/obstacle.h', 'core/surface_point.h'],
     'Scenes': [
         'core/scene_desc.h', 'core/attachment_desc.h', 'core/body_desc.h', 'core/guide_desc.h', 'core/junction_desc.h', 'core/shape_desc.h',

@@ -42,7 +42,7 @@ void BodyContacts::load_on(const Touch& touch, const Vector3& force) {
 
 void BodyContacts::follow_obstacles() {
   for (Touch& touch : touches_)
-    if (touch.mode != Touch::Mode::open) touch.displacement = displacement_of(touch);
+    if (touch.mode != Touch::Mode::open) follow_correction(displacement_of(touch), touch);
 }
 
 void BodyContacts::add_loads(BodyEquations& equations) const {

@@ -18,6 +18,7 @@ struct BodyProgress {
   std::vector<KinematicTarget> holders;  ///< frames that hold it, by its attachments; `node` counts them
   ContactCache contacts;                 ///< with obstacles
   std::vector<Vector3> holder_spins;     ///< [rad/s] of each, mean over the last step; while it jumps, of the motion before
+  double energy = 0;                     ///< [J] as the ledger has it
 };
 
 }  // namespace verlet_cable

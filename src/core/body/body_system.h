@@ -60,6 +60,7 @@ class BodySystem {
   /// missing is given back as a rigid body's motion.
   void restore_momenta(std::vector<Participant>& participants, std::vector<SimulatedBody>& bodies);
   double largest_displacement() const;  ///< [m] over the substep, of a body's center of mass or what turns with its size
+  double damping_work(int member) const { return members_[member].stepper.damping_work(); }  ///< [J] over the substep
   void finish(int member, SimulatedBody& body, BodyProgress& progress) const;
 
  private:

@@ -120,6 +120,11 @@ Vector3 RigidBodyStepper::end_spin() const {
   return weights.displacement / rules_.h * turn_ + weights.velocity * spin_ + weights.acceleration * rules_.h * spin_change_;
 }
 
+double RigidBodyStepper::damping_work() const {
+  return damping_rate() *
+         (linear_damping_ * (displacement_ + (end_ - start_) * own_).squaredNorm() + angular_damping_ * turn_.squaredNorm());
+}
+
 void RigidBodyStepper::expect_momenta(GroupMomenta& group) const {
   group.expect(whole_.mass, center_, displacement_, velocity_, rules_.inertia() * (displacement_ / rules_.h - velocity_));
   group.expect_spin(end_momentum());

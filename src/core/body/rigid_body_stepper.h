@@ -61,6 +61,9 @@ class RigidBodyStepper {
   void expect_momenta(GroupMomenta& group) const;
   void add_momenta(GroupMomenta& group) const;
 
+  /// [J] That its damping takes in the substep.
+  double damping_work() const;
+
   /// Velocities at the end.
   void finish(SimulatedBody& body, BodyProgress& progress) const;
   Vector3 velocity_of(const Vector3& point) const;    ///< [m/s] at the end

@@ -153,7 +153,7 @@ void ContactSolver::begin(std::vector<Participant>& participants) {
 void ContactSolver::finish(std::vector<Participant>& participants, std::vector<Touch>& touches) const {
   // After the last correction: what is left out at each substep would be creep.
   for (Touch& touch : touches)
-    if (touch.mode != Touch::Mode::open) touch.displacement = displacement_of(touch, participants);
+    if (touch.mode != Touch::Mode::open) follow_correction(displacement_of(touch, participants), touch);
   if (bodies_ != nullptr) {
     bodies_->contacts().follow_obstacles();
     bodies_->place_at_end(participants);

@@ -133,6 +133,10 @@ Eigen::Matrix3d slope(const Touch& touch) {
   return slope;
 }
 
+Vector3 corrected_force(const Touch& touch) {
+  return touch.force + touch.followed - slope(touch) * touch.correction;
+}
+
 Eigen::Matrix3d full_slope(const Touch& touch) {
   if (touch.mode != Touch::Mode::slides) return slope(touch);
   const Vector3 friction = touch.force / touch.normal_force - touch.normal;

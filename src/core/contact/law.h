@@ -54,6 +54,7 @@ struct Touch {
   double normal_force = 0;                                     ///< [N]
   Vector3 force = Vector3::Zero();                             ///< [N] on the point
   Vector3 arm = Vector3::Zero();                               ///< [m] with which the force acts on a body
+  Vector3 correction = Vector3::Zero();                        ///< [m] of w, after the force was found for the last time
   Vector3 followed = Vector3::Zero();                          ///< [N] friction that follows the correction's normal force
   double part = 1;                                             ///< of the friction that sticking would take
   enum class Mode { open, sticks, slides } mode = Mode::open;  ///< at first that of the substep before
@@ -77,6 +78,15 @@ void start_touch(Touch& touch);
 
 /// Sets the force for a displacement w [m]. True if the contact has changed its mode or its linearisation.
 bool evaluate_touch(const Vector3& w, Touch& touch);
+
+/// Takes over where a touch has come to after the last correction.
+inline void follow_correction(const Vector3& w, Touch& touch) {
+  touch.correction = w - touch.displacement;
+  touch.displacement = w;
+}
+
+/// [N] The force that the equations of what touches have, after the last correction.
+Vector3 corrected_force(const Touch& touch);
 
 /// [N/m] - d force / d w of a touch that is not open, without the part of friction that follows f. Along the slip it is the
 /// secant, not the tangent, which is nothing: iterations would turn it to and fro.

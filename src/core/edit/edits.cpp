@@ -76,7 +76,9 @@ bool World::Implementation::is_attachment(const std::string& name) const {
 }
 
 EditResult World::apply(const Edit& edit) {
+  const double energy = this->energy().total();
   EditResult result = std::visit([&](const auto& of_kind) { return implementation_->apply(of_kind); }, edit);
+  if (result.ok) implementation_->account_for_edit_since(energy);
   assert_no_violation(implementation_->state);
   return result;
 }

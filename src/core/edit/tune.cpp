@@ -14,6 +14,7 @@ void World::tune(const SceneDesc& scene) {
   Errors errors;
   for (const SimulatedCable& cable : state.cables) check_torsional_stiffness(cable, scene, errors);
   if (std::vector<std::string> lines = errors.take(); !lines.empty()) throw SceneError(std::move(lines));
+  const double energy = implementation_->energy().total();
   auto tuned = std::make_shared<SceneDesc>(*state.scene);
   tuned->gravity = scene.gravity;
   tuned->fluid = scene.fluid;
@@ -30,6 +31,7 @@ void World::tune(const SceneDesc& scene) {
     implementation_->find_targets_of(i);
   }
   implementation_->islands.value.invalidate();  // their pairs are those of the radii before
+  implementation_->account_for_edit_since(energy);
   assert_no_violation(state);
 }
 

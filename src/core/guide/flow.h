@@ -35,6 +35,7 @@ struct Flow {
   double density = 0;                        // [kg/m] of what flows: the segments beside a guide are of one material
   double mass = 0;                           // [kg]
   double drag = 0;                           // [N s/m]
+  double resistance = 0;                     // [N] of friction against what flows, in the present iterate
   double rate = 0;                           // [m/s] at the start
   double acceleration = 0;                   // [m/s^2] over the substep before
   std::array<double, 2> start_length{0, 0};  // [m] at rest, of the segments before and after

@@ -267,6 +267,7 @@ void CableStepper::evaluate_flows(const Substep& s) {
     flow.changed = mode != flow.mode || flow.changes < 0;
     if (flow.changed) ++flow.changes;
     flow.mode = mode;
+    flow.resistance = mode == Flow::Mode::forward ? resistance[0] : mode == Flow::Mode::backward ? resistance[1] : 0;
 
     if (mode == Flow::Mode::sticking) {
       flow.row = {0, 0};

@@ -235,10 +235,16 @@ void stop_flows(int cable, State& state) {
   }
 }
 
-double flow_energy(const State& state) {
+bool lies_on_wheel(const State& state, int index, int segment) {
+  if (state.guides.empty()) return false;
+  return std::any_of(state.attachments.begin(), state.attachments.end(),
+                     [&](const Attachment& a) { return a.body == cable_id(index) && is_wheel(a) && a.node == segment; });
+}
+
+double flow_energy(const State& state, int index) {
   double energy = 0;
   for (const Attachment& attachment : state.attachments) {
-    if (attachment.guide < 0) continue;
+    if (attachment.guide < 0 || attachment.body != cable_id(index)) continue;
     const SimulatedGuide& guide = state.guides[attachment.guide];
     const SimulatedCable& cable = state.cables[attachment.body.index];
     const CableState& c = cable.state;

@@ -7,15 +7,18 @@
 namespace verlet_cable {
 
 /// Gives a cable that starts, whose `state` has its lengths and masses, the guides that hold material of it at first: nodes are
-/// where that is. Adds guides and attachments to the world's; indices of the attachments to `own`. `later`: attachments that will be
-/// added to the world's once the cable has started.
+/// where that is. Adds guides and attachments to the world's; indices of the attachments to `own`. `later`: attachments that will
+/// be added to the world's once the cable has started.
 void add_guides(const CableDesc& desc, int cable, const FrameIds& ids, const CableModel& model, CableState& cable_state,
                 State& state, std::vector<int>& own, std::vector<Attachment>& later);
 
 /// What flows through a cable's guides stands.
 void stop_flows(int cable, State& state);
 
-/// [J] Of what flows, with its wheels, besides what the guides' nodes have.
-double flow_energy(const State& state);
+/// Whether a segment of a cable lies on the wheel of a guide.
+bool lies_on_wheel(const State& state, int cable, int segment);
+
+/// [J] Of what flows through the guides of a cable, with their wheels, besides what the guides' nodes have.
+double flow_energy(const State& state, int cable);
 
 }  // namespace verlet_cable

@@ -19,6 +19,7 @@ void LaneStepper::react(int c, LaneMember& member) {
     const Vector3 flow = member.substep.environment.fluid.velocity - vector_at(LaneField::displacement_x, c, i) / h;
     double length = 0;
     target.force = Vector3::Zero();
+    target.follow(state.masses[i], state.velocities[i], vector_at(LaneField::displacement_x, c, i), h);
     if (i > 0) {
       length += 0.5 * state.rest_lengths[i - 1];
       target.force -= force_of(c, i - 1);
@@ -41,8 +42,8 @@ void LaneStepper::react_to_projection(int c, LaneMember& member) {
     return impulse / member.substep.h * segment_at(LaneField::segment_x, c, segment);
   };
   for (HeldNode& target : member.substep.boundary.nodes) {
-    if (target.node > 0) target.force += exerted(target.node - 1);
-    if (target.node < work_.law.segments) target.force -= exerted(target.node);
+    if (target.node > 0) target.mend(exerted(target.node - 1));
+    if (target.node < work_.law.segments) target.mend(-exerted(target.node));
   }
 }
 
@@ -62,18 +63,24 @@ Vector3 LaneStepper::force_of(int c, int i) {
   return force;
 }
 
-/// On the change of direction at an inner node [N m].
-Vector3 LaneStepper::joint_moment(int c, int i) {
-  const auto over_length = [&](int segment, const Vector3& vector) -> Vector3 {
-    double inverse = 0;
-    each_lane_of(c, segment, [&](int place, int lane, double) { inverse = value(LaneField::inverse_length, place, lane); });
-    return inverse * vector;
-  };
+/// Of the difference of the directions at an inner node, over the substep.
+Vector3 LaneStepper::direction_change(int c, int i) {
   const Vector3 before = vector_at(LaneField::displacement_x, c, i - 1), here = vector_at(LaneField::displacement_x, c, i),
                 after = vector_at(LaneField::displacement_x, c, i + 1);
-  const Vector3 start =
-      over_length(i, segment_at(LaneField::segment_x, c, i)) - over_length(i - 1, segment_at(LaneField::segment_x, c, i - 1));
-  const Vector3 change = over_length(i, after - here) - over_length(i - 1, here - before);
+  return over_length(c, i, after - here) - over_length(c, i - 1, here - before);
+}
+
+Vector3 LaneStepper::over_length(int c, int segment, const Vector3& vector) {
+  double inverse = 0;
+  each_lane_of(c, segment, [&](int place, int lane, double) { inverse = value(LaneField::inverse_length, place, lane); });
+  return inverse * vector;
+}
+
+/// On the change of direction at an inner node [N m].
+Vector3 LaneStepper::joint_moment(int c, int i) {
+  const Vector3 start = over_length(c, i, segment_at(LaneField::segment_x, c, i)) -
+                        over_length(c, i - 1, segment_at(LaneField::segment_x, c, i - 1));
+  const Vector3 change = direction_change(c, i);
   const double slope = mean_slope(0.5 * start.squaredNorm(), 0.5 * (start + change).squaredNorm());
   const Vector3 moment = at(LaneField::joint_stiffness, c, i) * slope * (start + 0.5 * change);
   if (!work_.law.is_damped) return moment;

@@ -83,9 +83,16 @@ void LaneStepper::advance(std::vector<LaneMember>& members, int widest, CableSte
   for (int c = 0; c < count; ++c) {
     if (!members[c].result.converged) continue;
     complete(c, members[c]);
-    if (start_multipliers_[c].empty()) continue;
-    cleaner.resize(work_.law.segments);
-    cleaner.clean(members[c].substep, start_multipliers_[c], *members[c].state);
+    const bool cleans = !start_multipliers_[c].empty();
+    const bool mends = cleans || values_.projects[2 * c] != 0;
+    balance_laws(c, members[c]);
+    if (cleans) {
+      cleaner.resize(work_.law.segments);
+      cleaner.clean(members[c].substep, start_multipliers_[c], *members[c].state);
+    }
+    if (mends)
+      members[c].result.balance.dissipated.unresolved +=
+          kinetic_energy_before_mending(c, members[c]) - kinetic_energy_of_free(members[c]);
   }
 }
 

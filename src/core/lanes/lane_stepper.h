@@ -21,6 +21,9 @@ struct LaneMember {
 /// nothing acts on them that has a law of its own (twist, fluids, winches). The substep's boundary need not be known.
 bool fits_lanes(const Substep& substep, const CableState& state, bool is_held);
 
+/// [J] Of the nodes that nothing holds.
+double kinetic_energy_of_free(const LaneMember& member);
+
 /// Those of equal laws can be stepped together.
 LaneLaw law_of(const Substep& substep, const CableState& state);
 
@@ -56,11 +59,19 @@ class LaneStepper {
   void set_held_accelerations(int cable, const LaneMember& member);
   bool leaves_unresolved(int cable, const LaneMember& member) const;
   void complete(int cable, LaneMember& member);
+  void balance_laws(int cable, LaneMember& member);
+  void balance_drag(LaneMember& member);
+  void balance_bending(int cable, LaneMember& member);
+  void balance_stretching(LaneMember& member);
+  void balance_drawn_out(int cable, LaneMember& member);
+  double kinetic_energy_before_mending(int cable, const LaneMember& member);
   double& value(LaneField field, int place, int lane);
   double& at(LaneField field, int cable, int node);
   Vector3 vector_at(LaneField first, int cable, int node);
   Vector3 segment_at(LaneField first, int cable, int segment);
   Vector3 joint_moment(int cable, int node);
+  Vector3 direction_change(int cable, int node);
+  Vector3 over_length(int cable, int segment, const Vector3& vector);
   Vector3 force_of(int cable, int segment);
 
   /// The widest number. Arrays of it are aligned for narrower ones as well.
@@ -79,6 +90,7 @@ class LaneStepper {
   std::vector<std::vector<double>> start_multipliers_;  // a cable, a segment [N]; empty where nothing is to be cleaned
   Bending bending_;                                     // of one cable: what of its bending is damped
   VectorArray segments_;                                // likewise, at the start of the substep [m]
+  std::vector<Vector3> displacements_;                  // likewise, of the nodes over the substep [m]
   Array records_, eliminations_;
 };
 

@@ -3,6 +3,7 @@
 
 #include "net/model.h"
 #include "verlet_cable/core/world.h"
+#include "world/energy.h"
 #include "world/implementation.h"
 
 namespace verlet_cable {
@@ -115,6 +116,8 @@ void World::Implementation::add_particle(const ParticleDesc& desc) {
 
 void World::Implementation::step_nets_and_particles(StepResult& result) {
   if (state.nets.empty() && state.particles.empty()) return;
+  Energy before, after;
+  add_net_energy(before);
   move_obstacles(state, 0, 1, moving_obstacles.value);
   // What a net leaves of its share of the work, the next ones may have.
   double work = budget::most, size = 0;
@@ -129,6 +132,8 @@ void World::Implementation::step_nets_and_particles(StepResult& result) {
   }
   for (int particle = 0; particle < static_cast<int>(state.particles.size()); ++particle) step_particle(particle, result);
   result.substeps = std::max(result.substeps, 1);
+  add_net_energy(after);
+  account_for_net(after.total() - before.total(), state.ledger.balance);
 }
 
 void World::Implementation::step_net(int index, StepResult& result) {

@@ -242,6 +242,16 @@ double Bending::damping_work(const VectorArray& displacement) const {
   return work;
 }
 
+double Bending::damping_work() const {
+  double work = 0;
+  for (int i = 1; i < segments_; ++i) {
+    const Vector3 change = get(change_, i);
+    work += damping_[i] * change.dot(change - get(turned_, i));
+  }
+  for (const ClampJoint& clamp : clamps_) work += clamp.damping_work;
+  return work;
+}
+
 /// Of e, over the substep.
 Vector3 Bending::change_at(int node, const VectorArray& displacement) const {
   const Vector3 here = get(displacement, node);
@@ -274,29 +284,40 @@ void Bending::react(const VectorArray& displacement, std::vector<HeldDirection>&
   for (const ClampJoint& clamp : clamps_) directions[clamp.target].torque += clamp.torque;
 }
 
-double bending_energy(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions) {
-  const int n = state.segments();
-  const auto direction = [&](int i) -> Vector3 { return (state.positions[i + 1] - state.positions[i]) / state.rest_lengths[i]; };
-  const auto joint = [](double length, const Vector3& change) { return angle_energy(0.5 * change.squaredNorm()) / length; };
+double bending_energy(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions,
+                      int driven) {
   const CableMaterials materials(model, state);
+  if (!materials.any_bends()) return 0;
+  const int n = state.segments();
+  const auto direction = [&](int i) -> Vector3 {
+    const Vector3 d = state.positions[i + 1] - state.positions[i];
+    return d / (i == driven ? d.norm() : state.rest_lengths[i]);
+  };
+  const auto joint = [](double length, const Vector3& change) { return angle_energy(0.5 * change.squaredNorm()) / length; };
   // EI is a factor of the sum where it is the same everywhere.
-  const auto weight = [&](const JointMaterial& material) { return materials.vary() ? material.bending_stiffness.largest() : 1; };
+  const bool varies = materials.vary();
   double energy = 0;
+  std::size_t clamp = 0;
+  Vector3 before = direction(0);
   for (int i = 1; i < n; ++i) {
-    const auto clamped = std::find_if(directions.begin(), directions.end(), [i](const HeldDirection& d) { return d.node == i; });
-    const double length = state.bending_length(i, 0.5 * (state.rest_lengths[i - 1] + state.rest_lengths[i]));
-    if (clamped == directions.end())
-      energy += weight(joint_material(materials, state, i)) * joint(length, direction(i) - direction(i - 1));
+    const Vector3 after = direction(i);
+    while (clamp < directions.size() && directions[clamp].node < i) ++clamp;
+    if (clamp == directions.size() || directions[clamp].node != i) {
+      const double length = state.bending_length(i, 0.5 * (state.rest_lengths[i - 1] + state.rest_lengths[i]));
+      const double stiffness = varies ? joint_material(materials, state, i).bending_stiffness.largest() : 1;
+      energy += stiffness * joint(length, after - before);
+    }
+    before = after;
   }
-  for (const HeldDirection& clamp : directions) {
-    for (const int i : {clamp.node - 1, clamp.node}) {
+  for (const HeldDirection& held : directions) {
+    for (const int i : {held.node - 1, held.node}) {
       if (i < 0 || i >= n) continue;
-      const double length = state.bending_length(clamp.node, 0.5 * state.rest_lengths[i]);
-      energy += weight(JointMaterial(materials[i])) *
-                joint(length, direction(i) - direction(i).norm() * (clamp.end * Vector3::UnitX()));
+      const double length = state.bending_length(held.node, 0.5 * state.rest_lengths[i]);
+      energy += (varies ? JointMaterial(materials[i]).bending_stiffness.largest() : 1) *
+                joint(length, direction(i) - direction(i).norm() * (held.end * Vector3::UnitX()));
     }
   }
-  return materials.vary() ? energy : model.material.bending_stiffness.largest() * energy;
+  return varies ? energy : model.material.bending_stiffness.largest() * energy;
 }
 
 }  // namespace verlet_cable

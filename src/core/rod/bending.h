@@ -53,6 +53,8 @@ class Bending {
   Vector3 damping_torque(const VectorArray& displacement) const;
   /// What damping takes from the energy [J].
   double damping_work(const VectorArray& displacement) const;
+  /// The same at joints and clamps, for the changes that `add_segment_forces` found last.
+  double damping_work() const;
   /// Adds the moments on the holders of directions [N m] to their `torque`.
   void react(const VectorArray& displacement, std::vector<HeldDirection>& directions);
 
@@ -96,7 +98,9 @@ class Bending {
   std::vector<ClampJoint> clamps_;
 };
 
-/// [J], `directions` at their ends.
-double bending_energy(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions);
+/// [J], `directions` at their ends. `driven`: a segment whose rest length is driven, -1: none. As in a substep, it counts as long
+/// as it is unstrained: growth is no bending.
+double bending_energy(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions,
+                      int driven = -1);
 
 }  // namespace verlet_cable

@@ -108,8 +108,12 @@ void CableStepper::finish(const Substep& s, bool struck, CableState& state, Subs
   if (s.statics)
     for (int i = 0; i <= segments_; ++i) result.displacement = std::max(result.displacement, get(displacement_, i).norm());
   react(s, state.masses);
+  if (!s.statics) balance_laws(s, state.masses, result);
   move(s);
   finish_flows(s, state);
+  // What a conserving substep has at its end; what is taken from there on it does not resolve.
+  const bool is_balanced = !s.statics && s.scheme == Scheme::conserving;
+  if (is_balanced) result.balance.dissipated.unresolved += kinetic_energy(state.masses, end_velocity_);
   const bool damped = !s.statics && s.scheme != Scheme::conserving;
   if (damped && s.boundary.nodes.empty()) restore_momenta(s, state.masses);
   if (!s.statics && s.boundary.nodes.empty()) restore_angular_momentum(s, state.masses);
@@ -122,6 +126,9 @@ void CableStepper::finish(const Substep& s, bool struck, CableState& state, Subs
   if (rod_.active() && !flows_.empty()) carry_frames_with_flows(state);
   if (s.treatment != Treatment::none) quieten(s, state);
   if (twist_.active()) twist_.follow(s.boundary.directions, state.positions, s.spans);
+  if (!is_balanced) return;
+  for (int i = 0; i <= segments_; ++i) set(end_velocity_, i, state.velocities[i]);
+  result.balance.dissipated.unresolved -= kinetic_energy(state.masses, end_velocity_);
 }
 
 void CableStepper::load(const Substep& s, const CableState& state) {
@@ -157,6 +164,7 @@ void CableStepper::hold(const std::vector<HeldNode>& held) {
 /// The parts of the equations of motion that no iteration changes.
 void CableStepper::set_loads(const Substep& s, const CableState& state) {
   const CableMaterials materials(s.model, state);
+  drags_ = materials.any([](const MaterialDesc& material) { return material.drag > 0; });
   Vector3 wind = s.model.material.drag * s.environment.fluid.velocity;
   double drag = s.model.material.drag / s.damping_time();
   const GravityDesc& gravity = s.environment.gravity;
@@ -244,11 +252,13 @@ void CableStepper::start_bending(const Substep& s, const CableState& state) {
   couples_second_ = bending_.active();
 }
 
-void CableStepper::add_bending_pulls() {
+/// At a winch what bends moves with the material, not with the node.
+template <class Operation>
+void CableStepper::with_material(const Operation& operation) {
   const int node = std::max(winch_node_, 0);
   const Vector3 displacement = get(displacement_, node);
   if (winch_node_ >= 0) set(displacement_, node, displacement + material_way_);
-  bending_.add_segment_forces(displacement_, segment_force_);
+  operation();
   set(displacement_, node, displacement);
 }
 
@@ -287,7 +297,7 @@ void CableStepper::evaluate(const Substep& s, const CableState& state) {
   if (!flows_.empty()) set_flow_lengths(s);
   std::fill(end_square_.begin(), end_square_.end(), 0.0);
   for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) evaluate_segments(s.part(), component);
-  if (bending_.active()) add_bending_pulls();
+  if (bending_.active()) with_material([&] { bending_.add_segment_forces(displacement_, segment_force_); });
   if (rod_.active()) rod_.add_segment_forces(displacement_, segment_, middle_, segment_force_);
   if (twist_.active()) twist_.add_segment_forces(middle_, displacement_, s.boundary, segment_force_);
   if (any_elastic_)
@@ -567,7 +577,7 @@ void CableStepper::finish_projection(const Substep& s, CableState& state) {
     state.accelerations[i] += get(change, i) / s.h;
   }
   for (HeldNode& held : s.boundary.nodes) {
-    held.force += corrected_load(held.node) / s.h;
+    held.mend(corrected_load(held.node) / s.h);
     if (held.body >= 0) held.velocity += get(change, held.node);
   }
   for (std::size_t k = 0; k < flows_.size(); ++k) s.boundary.flows[k].rate += flows_[k].correction;
@@ -661,8 +671,8 @@ void CableStepper::project(const Substep& s, const std::vector<double>& masses) 
   // What the segments exert on the other nodes they exert on the holders.
   for (HeldNode& target : s.boundary.nodes) {
     const int i = target.node;
-    if (i > 0) target.force += impulse_[i - 1] / s.h * get(segment_, i - 1);
-    if (i < n) target.force -= impulse_[i] / s.h * get(segment_, i);
+    if (i > 0) target.mend(impulse_[i - 1] / s.h * get(segment_, i - 1));
+    if (i < n) target.mend(-impulse_[i] / s.h * get(segment_, i));
   }
 }
 
@@ -739,7 +749,7 @@ void CableStepper::take_out_unresolved(const Substep& s, CableState& state) {
   solve_segments();
   const double share = cleaner_.take_out(s.h, s.boundary.nodes, correction(), position_, state);
   // What is taken out is what forces in the cable do: its holders feel them, too.
-  for (HeldNode& target : s.boundary.nodes) target.force += 0.5 * share * s.h * corrected_load(target.node);
+  for (HeldNode& target : s.boundary.nodes) target.mend(0.5 * share * s.h * corrected_load(target.node));
   if (rod_.active()) rod_.calm_spin(state);
 }
 
@@ -760,11 +770,12 @@ void CableStepper::react(const Substep& s, const std::vector<double>& masses) {
   for (HeldNode& target : s.boundary.nodes) {
     const int i = target.node;
     const double mass = masses[i];
+    target.follow(mass, get(velocity_, i), get(displacement_, i), s.h);
     target.force = corrected_load(i) + s.inertia() * mass / s.h * (get(displacement_, i) / s.h - get(velocity_, i));
     if (!s.statics) target.force -= mass * (target.velocity - get(velocity_, i)) / s.h;
     if (!flows_.empty()) target.force += flow_reaction(s, i);
   }
-  if (bending_.active()) bending_.react(displacement_, s.boundary.directions);
+  if (bending_.active()) with_material([&] { bending_.react(displacement_, s.boundary.directions); });
   if (twist_.active()) twist_.react(s.boundary);
 }
 

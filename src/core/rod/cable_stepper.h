@@ -91,7 +91,8 @@ class CableStepper {
   void set_loads(const Substep& substep, const CableState& state);
   void set_growth(const Substep& substep);
   void start_bending(const Substep& substep, const CableState& state);
-  void add_bending_pulls();
+  template <class Operation>
+  void with_material(const Operation& operation);
   void predict(double h);
   bool solve(const Substep& substep, const CableState& state, SubstepResult& result);
   void evaluate_segments(double part, Component component);
@@ -140,9 +141,15 @@ class CableStepper {
   void assemble_for_velocities();
   void project(const Substep& substep, const std::vector<double>& masses);
   double store(const Substep& substep, CableState& state) const;
+  // What becomes of energy: rod/cable_balance.cpp
+  void balance_laws(const Substep& substep, const std::vector<double>& masses, SubstepResult& result) const;
+  void balance_drag(const Substep& substep, const std::vector<double>& masses, EnergyBalance& balance) const;
+  void balance_lengths(const Substep& substep, SubstepResult& result) const;
+  double kinetic_energy(const std::vector<double>& masses, const VectorArray& velocity) const;
 
   int segments_ = 0;
   bool any_elastic_ = false, any_rigid_ = false;         // among the segments
+  bool drags_ = false;                                   // any material does
   std::vector<double> axial_stiffness_, axial_damping_;  // segments: EA [N], [N s]; of a cable that is not elastic not set
   // At the start of the substep
   VectorArray position_, velocity_, acceleration_;  // nodes: [m], [m/s], [m/s^2]

@@ -24,6 +24,7 @@ void bend_elastic_clamp(double part, const Vector3& change, ClampJoint& clamp) {
   const Vector3 damping = clamp.damping * (bending - axis * (axis.dot(bending) / axis.squaredNorm()));
   clamp.moment = clamp.slope * direction - slope * stretch * axis + damping;
   clamp.torque = axis.cross(slope * stretch * direction + damping);
+  clamp.damping_work = damping.dot(change - stretch * axis_change);
 }
 
 }  // namespace
@@ -64,7 +65,9 @@ void bend_clamp(double part, const Vector3& displacement, ClampJoint& clamp) {
   const Vector3 change = direction_change - clamp.axis_change;
   const Vector3 middle = clamp.start + part * change;
   clamp.slope = clamp.stiffness * mean_slope(0.5 * clamp.start_square, 0.5 * (clamp.start + change).squaredNorm());
-  clamp.moment = clamp.slope * middle + clamp.damping * (change - clamp.turned);
+  const Vector3 damping = clamp.damping * (change - clamp.turned);
+  clamp.moment = clamp.slope * middle + damping;
+  clamp.damping_work = damping.dot(change);
   // The energy depends on the axis a through d / l - a: the torque on the axis is a x moment.
   clamp.torque = clamp.middle_axis.cross(clamp.moment);
 }

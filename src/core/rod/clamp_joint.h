@@ -20,6 +20,7 @@ struct ClampJoint {
   double start_square = 0;
   Vector3 moment = Vector3::Zero();  ///< force times length, on the side's direction
   Vector3 torque = Vector3::Zero();  ///< on the axis [N m]
+  double damping_work = 0;           ///< [J] that damping takes in the substep
   // Of elastic segments: d / l and the unit axis
   Vector3 start_direction = Vector3::Zero(), start_axis = Vector3::Zero(), end_axis = Vector3::Zero();
   double slope = 0;

@@ -9,6 +9,7 @@ namespace verlet_cable {
 
 void FluidForces::resize(int nodes) {
   force_.assign(nodes, 0.0);
+  drag_.assign(nodes, 0.0);
   stiffness_.assign(nodes, 0.0);
   radius_.assign(nodes, 0.0);
   area_radius_.assign(nodes, 0.0);
@@ -54,10 +55,23 @@ void FluidForces::add_loads(const std::vector<double>& rest_lengths, const Vecto
     const double across = width * fluid_.normal_drag * flow_across.norm();
     const double tangential = width * fluid_.tangential_drag * flow_along.norm();
     const double displaced = immersed * fluid_.density * M_PI * area_radius_[i] * area_radius_[i] * length;
-    const Vector3 force = across * flow_across + tangential * flow_along - displaced * gravity_.at(get(position, i));
+    const Vector3 drag = across * flow_across + tangential * flow_along;
+    const Vector3 force = drag - displaced * gravity_.at(get(position, i));
     stiffness_[i] = 2 * across / damping_time_;
+    set(drag_, i, drag);
     set(force_, i, force);
     set(load, i, get(load, i) + force);
+  }
+}
+
+void FluidForces::add_work(const VectorArray& displacement, double h, EnergyBalance& balance) const {
+  const Vector3 flow = h * fluid_.velocity;
+  const int nodes = static_cast<int>(stiffness_.size());
+  for (int i = 0; i < nodes; ++i) {
+    const Vector3 u = get(displacement, i);
+    const double lost = get(drag_, i).dot(flow - u);
+    balance.dissipated.drag += lost;
+    balance.work.applied += get(force_, i).dot(u) + lost;
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "geometry/vector_array.h"
 #include "verlet_cable/core/cable.h"
+#include "verlet_cable/core/ledger.h"
 
 namespace verlet_cable {
 
@@ -20,6 +21,8 @@ class FluidForces {
   /// of the nodes [m].
   void add_loads(const std::vector<double>& rest_lengths, const VectorArray& middle, const VectorArray& position,
                  const VectorArray& displacement, VectorArray& load);
+  /// Adds the work of the last loads in a substep of h [s]: what is lost against the fluid, and what the fluid adds.
+  void add_work(const VectorArray& displacement, double h, EnergyBalance& balance) const;
   /// Adds to the diagonal what `add_loads` found last.
   void add_stiffness(std::vector<double>& diagonal) const;
   /// The force on a node that `add_loads` found last [N].
@@ -31,7 +34,7 @@ class FluidForces {
   GravityDesc gravity_;
   std::vector<double> radius_, area_radius_;  // nodes [m]: of mean width and of mean section
   double damping_time_ = 0;
-  VectorArray force_;
+  VectorArray force_, drag_;  // nodes [N]: with buoyancy, and without
   std::vector<double> stiffness_;
 };
 

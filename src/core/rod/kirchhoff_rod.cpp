@@ -369,6 +369,17 @@ void KirchhoffRod::finish(const VectorArray& displacement, const VectorArray& se
   }
 }
 
+void KirchhoffRod::add_losses(EnergyBalance& balance) const {
+  const auto add = [&](const RodJoints& joints, int first, int last) {
+    for (int i = first; i < last; ++i) {
+      balance.dissipated.bending += joints.bending_loss[i];
+      balance.dissipated.torsional += joints.twisting_loss[i];
+    }
+  };
+  add(joints_, 1, segments_);
+  add(clamp_joints_, 0, static_cast<int>(clamps_.size()));
+}
+
 void KirchhoffRod::store(const Boundary& boundary, CableState& state) const {
   for (int i = 0; i < segments_; ++i) {
     state.directors[i] = get(frames_.end.y, i);

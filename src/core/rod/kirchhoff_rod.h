@@ -6,6 +6,7 @@
 #include "rod/rod_joints.h"
 #include "target/boundary.h"
 #include "verlet_cable/core/cable.h"
+#include "verlet_cable/core/ledger.h"
 
 namespace verlet_cable {
 
@@ -62,6 +63,8 @@ class KirchhoffRod {
   /// Writes the moments on clamps [N m] and their joints' twist, and turns the frames for the last time.
   void finish(const VectorArray& displacement, const VectorArray& segment, Boundary& boundary);
   void store(const Boundary& boundary, CableState& state) const;
+  /// Adds what damping takes in the substep, once it is finished.
+  void add_losses(EnergyBalance& balance) const;
   /// Where motion was found that is not resolved, sections that alternate spin as they did on the mean over the substep: twist is
   /// the fastest motion of all. Their kinetic energy does not grow.
   void calm_spin(CableState& state) const;

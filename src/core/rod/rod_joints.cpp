@@ -123,6 +123,8 @@ void RodJoints::resize(int count) {
        {&twist_stiffness_, &y_stiffness_, &z_stiffness_, &twist_damping_, &bend_damping_, &rest_twist_, &rest_y_, &rest_z_,
         &twist_, &u_, &y_, &z_, &sine_, &cosine_, &chi_, &half_sine_, &half_cosine_, &end_twist_})
     a->assign(size, 0.0);
+  bending_loss.assign(size, 0.0);
+  twisting_loss.assign(size, 0.0);
   moment.assign(size, 0.0);
   stiffness.assign(size, 0.0);
 }
@@ -240,6 +242,8 @@ void RodJoints::evaluate(double part, const FrameMotion& frames_before, int befo
                           y_stiffness * neighbours(rest_y_, i) + bend_damping * angle_change_y;
     const Pair z_moment = (z_stiffness - isotropic) * 0.5 * (start_chi * start_z + end_chi * end_z) -
                           z_stiffness * neighbours(rest_z_, i) + bend_damping * angle_change_z;
+    put(bend_damping * (angle_change_y * angle_change_y + angle_change_z * angle_change_z), bending_loss, i);
+    put(twist_damping * change.angle * change.angle, twisting_loss, i);
     put(twist_moment * twist_gradient + (y_moment * y_gradient + z_moment * z_gradient) -
             (isotropic * mean_slope(start.u, end.u)) * about_x,
         moment, i);

@@ -94,8 +94,9 @@ class RodJoints {
   double start_twist(int joint) const { return twist_[joint]; }    ///< [rad]
   double end_twist(int joint) const { return end_twist_[joint]; }  ///< [rad]
 
-  VectorArray moment;        ///< [N m] on the frame before
-  SymmetricArray stiffness;  ///< [N m] of the moment against rotations, without what turns with the frames
+  std::vector<double> bending_loss, twisting_loss;  ///< [J] what damping takes in the substep
+  VectorArray moment;                               ///< [N m] on the frame before
+  SymmetricArray stiffness;                         ///< [N m] of the moment against rotations, without what turns with the frames
 
  private:
   // Over the substep; [N m]

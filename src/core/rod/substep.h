@@ -8,6 +8,7 @@
 #include "rod/unresolved_motion.h"
 #include "target/boundary.h"
 #include "verlet_cable/core/cable.h"
+#include "verlet_cable/core/ledger.h"
 
 namespace verlet_cable {
 
@@ -57,6 +58,7 @@ struct SubstepResult {
   int iterations = 0;
   double max_strain = 0;    ///< largest |l / l0 - 1| at the end
   double displacement = 0;  ///< largest of a node [m]; in statics only
+  EnergyBalance balance;    ///< but for the work of holders, contacts and guides that move; not of statics
 };
 
 /// The larger of two sizes; no number if either is none.

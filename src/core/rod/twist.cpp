@@ -223,6 +223,12 @@ std::vector<TwistSpan> find_spans(const CableState& state, const std::vector<Hel
   return spans;
 }
 
+double Twist::damping_work() const {
+  double work = 0;
+  for (std::size_t k = 0; k < spans_->size(); ++k) work += damping_[k] * states_[k].change * states_[k].change;
+  return work;
+}
+
 void Twist::react(Boundary& boundary) const {
   for (std::size_t k = 0; k < spans_->size(); ++k) {
     const SpanState& state = states_[k];

@@ -54,6 +54,8 @@ class Twist {
   /// Adds the substep's changes to the angles; measures them now and then.
   void follow(const std::vector<HeldDirection>& directions, const std::vector<Vector3>& positions,
               std::vector<TwistSpan>& spans) const;
+  /// What damping takes from the energy [J].
+  double damping_work() const;
   /// Adds the torques on the holders [N m] to their `torque`.
   void react(Boundary& boundary) const;
 

@@ -14,12 +14,28 @@ struct HeldNode {
   Vector3 position = Vector3::Zero();  ///< [m]
   Vector3 velocity = Vector3::Zero();  ///< [m/s]
   Vector3 force = Vector3::Zero();     ///< [N] out: what the cable exerts on the holder, mean over the substep
+  /// [N] out: the part of it that comes of velocities which are mended once the substep has reached its end
+  Vector3 mending_force = Vector3::Zero();
+  Vector3 displacement = Vector3::Zero();  ///< [m] out: of the node, over the substep
+  /// [J] out: what the node gains where its holder's velocities at the start and the end are not those of its way
+  double unresolved = 0;
   /// Of a body that moves freely, -1: none. Place and velocity are then found with the cable's, and those above are where that
   /// begins.
   int body = -1;
   Vector3 point = Vector3::Zero();  ///< [m] of the body that holds the node, in the axes of its frame
   bool at_junction = false;         ///< the body is one that joins cables
   bool slides = false;              ///< whether the cable's material flows through it
+
+  /// `mass` [kg], `start`, of the node [m/s], and its way [m] in a substep of h [s].
+  void follow(double mass, const Vector3& start, const Vector3& way, double h) {
+    displacement = way;
+    mending_force.setZero();
+    unresolved = mass * (velocity - start).dot(0.5 * (start + velocity) - way / h);
+  }
+  void mend(const Vector3& with_force) {
+    force += with_force;
+    mending_force += with_force;
+  }
 };
 
 /// A clamp's direction and roll at the start and the end of a substep.

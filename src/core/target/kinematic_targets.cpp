@@ -280,16 +280,20 @@ void hold_at(double from, double to, const KinematicTargets& targets, Boundary& 
     held.velocity = target.velocity + to * (target.next_velocity - target.velocity);
     held.force.setZero();
   }
-  boundary.directions.resize(targets.directions.size());
+  hold_directions_at(from, to, targets, boundary.directions);
+}
+
+void hold_directions_at(double from, double to, const KinematicTargets& targets, std::vector<HeldDirection>& directions) {
+  directions.resize(targets.directions.size());
   for (std::size_t k = 0; k < targets.directions.size(); ++k) {
     const DirectionTarget& target = targets.directions[k];
-    boundary.directions[k].node = target.node;
-    boundary.directions[k].body = -1;
-    boundary.directions[k].twist_before = target.twist_before;
-    boundary.directions[k].twist_after = target.twist_after;
-    boundary.directions[k].start = target.orientation.slerp(from, target.next_orientation);
-    boundary.directions[k].end = target.orientation.slerp(to, target.next_orientation);
-    boundary.directions[k].torque.setZero();
+    directions[k].node = target.node;
+    directions[k].body = -1;
+    directions[k].twist_before = target.twist_before;
+    directions[k].twist_after = target.twist_after;
+    directions[k].start = target.orientation.slerp(from, target.next_orientation);
+    directions[k].end = target.orientation.slerp(to, target.next_orientation);
+    directions[k].torque.setZero();
   }
 }
 
@@ -309,10 +313,15 @@ void hold_on_bodies(const CableState& state, const std::vector<Attachment>& atta
     held.position = (body.pose * Pose{held.point}).position;
     held.velocity = body.velocity + body.angular_velocity.cross(arm);
   }
+  hold_directions_on_bodies(attachments, bodies, targets, boundary.directions);
+}
+
+void hold_directions_on_bodies(const std::vector<Attachment>& attachments, const std::vector<SimulatedBody>& bodies,
+                               const KinematicTargets& targets, std::vector<HeldDirection>& directions) {
   for (std::size_t k = 0; k < targets.directions.size(); ++k) {
     const Attachment& attachment = attachments[targets.directions[k].attachment];
     if (attachment.holder < 0) continue;
-    HeldDirection& held = boundary.directions[k];
+    HeldDirection& held = directions[k];
     held.body = attachment.holder;
     held.on_body = attachment.pose.orientation * about_direction(targets.directions[k].roll);
     held.start = held.end = bodies[attachment.holder].pose.orientation * held.on_body;

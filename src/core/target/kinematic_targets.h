@@ -127,9 +127,16 @@ Following follow_aims(const std::vector<Attachment>& attachments, double time, c
 /// What is held at the end of a substep that goes from one part of the step to another, 0 to 1.
 void hold_at(double from, double to, const KinematicTargets& targets, Boundary& boundary);
 
+/// The same of the directions alone.
+void hold_directions_at(double from, double to, const KinematicTargets& targets, std::vector<HeldDirection>& directions);
+
 /// Lets bodies hold what is theirs, from where they are now; `bodies` as World::bodies(), `time` at the end of the step.
 void hold_on_bodies(const CableState& state, const std::vector<Attachment>& attachments, const std::vector<SimulatedBody>& bodies,
                     double time, const KinematicTargets& targets, Boundary& boundary);
+
+/// The same of the directions alone.
+void hold_directions_on_bodies(const std::vector<Attachment>& attachments, const std::vector<SimulatedBody>& bodies,
+                               const KinematicTargets& targets, std::vector<HeldDirection>& directions);
 
 /// Gaps of what bodies have caught, and did not hold `before`, close as seen from them.
 void close_gaps_on_bodies(const std::vector<Attachment>& attachments, const std::vector<SimulatedBody>& bodies,

@@ -44,6 +44,12 @@ struct World::Implementation {
   void step_islands(std::size_t from, std::size_t to, IslandStepper& stepper);
   void resume_islands(bool one_by_one);
   void collect_outcomes(StepResult& result);
+  void close_ledger();
+  Energy energy() const;
+  double follow_energies();
+  double energy_of_nets_and_particles() const;
+  void begin_account(double of_nets_before);
+  void account_for_edit_since(double energy_before);
   void apply_breaks(StepResult& result);
   void note(const StatusFinding& found, StepResult& result);
   void note_unsettled(std::size_t first);

@@ -4,6 +4,8 @@
 #include "rod/initial_shape.h"
 #include "rod/rod_frames.h"
 #include "target/jump.h"
+#include "world/balance.h"
+#include "world/energy.h"
 #include "world/island_stepper.h"
 #include "world/junctions.h"
 
@@ -124,6 +126,12 @@ void IslandStepper::update_body_targets(const Island& island, IslandOutcome& fou
     if (state_.body_progress[body].is_placed) aim_body(body, first, holders, found);
   }
   carry_cables(island);
+  if (found.bodies.status != StepResult::Status::jumped) return;
+  double change = 0;
+  for (const int cable : island.cables) change += follow_energy_of_cable(cable, state_);
+  for (const int body : island.bodies) change += follow_energy_of_body(body, state_);
+  found.change += change;
+  account_for_displacement(change, found.balance);
 }
 
 /// `first` to `last`: the attachments that hold it.
@@ -258,6 +266,27 @@ void IslandStepper::hang_on_bodies_anew(const Island& island) {
   }
 }
 
+/// Where the frame that holds a body is at a part of the step, as far as it is followed.
+Pose IslandStepper::body_holder_at(const BodyJoint& joint, double part) const {
+  const Attachment& attachment = state_.attachments[joint.attachment];
+  const std::vector<KinematicTarget>& holders = state_.body_progress[held_body(attachment)].holders;
+  const auto holder = std::find_if(holders.begin(), holders.end(),
+                                   [&](const KinematicTarget& target) { return target.attachment == joint.attachment; });
+  const double turned = holder->jumping_steps > 0 ? 1 : part;
+  return {holder->position + part * (holder->next_position - holder->position),
+          frame_at(state_.frames, attachment.frame, turned).orientation * attachment.pose.orientation};
+}
+
+/// What frames do to the bodies that they hold.
+void IslandStepper::balance_bodies(double from, double to) {
+  for (const BodyJoint& joint : workspace_.body_system.joints()) {
+    if (joint.other >= 0) continue;
+    const Pose before = body_holder_at(joint, from), after = body_holder_at(joint, to);
+    substep_.work.attachments +=
+        work_of(joint.force, after.position - before.position, joint.torque, before.orientation, after.orientation);
+  }
+}
+
 /// Where the frame that holds a body is at the end of the substep, and how fast.
 void IslandStepper::follow_body_holder(BodyJoint& joint, double to) {
   const Attachment& attachment = state_.attachments[joint.attachment];
@@ -268,8 +297,7 @@ void IslandStepper::follow_body_holder(BodyJoint& joint, double to) {
   Vector3& last_spin = progress.holder_spins[holder->node];
   const Vector3 spin = mean_spin(state_.frames, attachment, state_.scene->time_step);
   const bool jumps = holder->jumping_steps > 0;
-  joint.holder.position = holder->position + to * (holder->next_position - holder->position);
-  if (jumps) joint.holder.orientation = state_.frames.poses[attachment.frame].orientation * attachment.pose.orientation;
+  joint.holder = body_holder_at(joint, to);
   joint.holder_velocity.linear = holder->velocity + to * (holder->next_velocity - holder->velocity);
   joint.holder_velocity.angular = jumps ? last_spin : Vector3(spin + (to - 0.5) * (spin - last_spin));
   const double size = body.is_junction ? least_size : std::sqrt(body.inertia.trace() / body.mass),
@@ -288,8 +316,15 @@ void IslandStepper::finish_bodies(const Island& island, double from, double to) 
     system.finish(static_cast<int>(m), state_.bodies[body], state_.body_progress[body]);
     state_.body_progress[body].has_moved = true;
   }
+  for (std::size_t m = 0; m < workspace_.body_members.size(); ++m)
+    substep_.dissipated.bodies += system.damping_work(static_cast<int>(m));
   workspace_.body_system.restore_momenta(workspace_.participants, state_.bodies);
-  if (projects_bodies_) workspace_.body_system.project(workspace_.participants, state_.bodies, state_.body_progress);
+  if (projects_bodies_) {
+    substep_.dissipated.unresolved += kinetic_energy_of(island, state_);
+    workspace_.body_system.project(workspace_.participants, state_.bodies, state_.body_progress);
+    substep_.dissipated.unresolved -= kinetic_energy_of(island, state_);
+  }
+  balance_bodies(from, to);
   for (const BodyMember& member : workspace_.body_members)
     if (!member.start->shapes.empty())
       BodyTouches::keep(member.body, workspace_.body_system.contacts().touches(), state_.body_progress[member.body].contacts);

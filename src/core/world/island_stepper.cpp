@@ -9,6 +9,8 @@
 #include "rod/rod_frames.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/rotation.h"
+#include "world/balance.h"
+#include "world/energy.h"
 #include "world/straight_columns.h"
 
 namespace verlet_cable {
@@ -179,17 +181,23 @@ void follow_abrupt_holders(int index, const Following& following, State& state, 
 
 }  // namespace
 
-void update_targets(int index, State& state, CableOutcome& outcome) {
+void update_targets(int index, State& state, CableOutcome& outcome, std::vector<HeldDirection>& directions) {
   SimulatedCable& cable = state.cables[index];
   KinematicTargets& targets = state.cable_progress[index].targets;
   aim_targets(cable.state, state.attachments, state.frames.poses, state.time(), targets);
   forget_forces(targets, state.attachments);
   outcome.jumps.clear();
+  const bool were_shown = std::any_of(targets.nodes.begin(), targets.nodes.end(),
+                                      [](const KinematicTarget& target) { return target.jumping_steps > 0; });
   take_back_shown_velocities(targets, cable.state.velocities);
   const Following following = follow_aims(state.attachments, state.time(), step_of_frames(state), targets, outcome.jumps);
   const bool jumps = following.jumping_node >= 0;
   if (following.started || jumps) follow_abrupt_holders(index, following, state, outcome);
   if (!jumps) buckle_straight_columns(index, state);
+  if (!were_shown && !following.started && !jumps) return;
+  const double change = follow_energy_of_cable(index, state, directions);
+  outcome.change += change;
+  account_for_displacement(change, outcome.balance);
 }
 
 namespace {
@@ -254,6 +262,8 @@ void IslandStepper::step(Island& island, IslandOutcome& found) {
   found.bodies = {};
   found.unfinished.reset();
   found.exhausted = false;
+  found.balance = {};
+  found.change = 0;
   bool contacts_known = false;
   if (!wait_for_others(island, found, contacts_known)) step_alone(island, found, contacts_known);
 }
@@ -279,6 +289,7 @@ void IslandStepper::begin(const Island& island) {
 bool IslandStepper::advance(Island& island, double from, double to, bool tolerated) {
   const double h = (to - from) * state_.scene->time_step;
   const bool touching = touches();
+  substep_ = {};
   workspace_.participants.clear();
   const Scheme touching_scheme = find_touching_scheme(island, h);
   bool converged = true;
@@ -294,7 +305,11 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     work.boundary.joined_mass = joined_mass_;
     const bool touches = workspace_.contacts.touched(k), on_bodies = work.boundary.is_on_bodies();
     const Scheme scheme = touches || on_bodies ? touching_scheme : scheme_of(cable);
-    if (memory.drive) work.wound = wind_drive(cable, scheme, from, to, work.boundary);
+    if (memory.drive) {
+      const double before = energy_at(cable, from);
+      work.wound = wind_drive(cable, scheme, from, to, work.boundary);
+      outcomes_[cable].balance.work.winches += energy_at(cable, from) - before;
+    }
     if (is_kept(island, k)) {
       work.before = c.state;
       work.spans_before = memory.spans;
@@ -323,7 +338,11 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     converged = solver.solve(workspace_.participants, workspace_.contacts.touches(), bodies, most_contact_work_) &&
                 (tolerated || (!solver.crosses(workspace_.participants, workspace_.contacts.touches()) && !folds_columns()));
     contact_work_ = solver.work();
-    if (converged) solver.finish(workspace_.participants, workspace_.contacts.touches());
+    if (converged) {
+      solver.finish(workspace_.participants, workspace_.contacts.touches());
+      balance_contacts(workspace_.contacts.touches(), substep_);
+      balance_contacts(workspace_.body_system.contacts().touches(), substep_);
+    }
     for (const Participant& p : workspace_.participants) workspace_.cables[p.place].result = p.result;
   }
   converged = converged && is_finite(island);
@@ -376,6 +395,11 @@ Scheme IslandStepper::find_touching_scheme(const Island& island, double h) {
   workspace_.contacts.follow_scheme(scheme, state_.cables, h);
   BodyTouches::follow_scheme(scheme, contact_rules(*state_.scene, false), h, workspace_.body_system.contacts().touches());
   return scheme;
+}
+
+/// [J]
+double IslandStepper::energy_at(int cable, double part) {
+  return energy_of_cable(state_, cable, part, workspace_.directions).total();
 }
 
 double IslandStepper::wind_drive(int index, Scheme scheme, double from, double to, Boundary& boundary) {
@@ -435,6 +459,7 @@ void IslandStepper::complete(const Island& island, const StepProgress& progress,
     state_.cable_progress[island.cables[k]].level = progress.level;
     complete_cable(island.cables[k], workspace_.cables[k].boundary, progress.substeps);
   }
+  for (const int body : island.bodies) found.change += follow_energy_of_body(body, state_);
   for (const Touch& touch : workspace_.contacts.touches()) {
     if (touch.mode == Touch::Mode::open) continue;
     if (cannot_get_apart(touch))
@@ -450,7 +475,11 @@ void IslandStepper::complete_cable(int index, const Boundary& boundary, int subs
   CableState& state = state_.cables[index].state;
   follow_bodies(boundary, memory.targets);
   const bool winds = memory.drive && memory.drive->is_winch();
-  if (memory.drive) complete_drive_step(index, state_);
+  if (memory.drive) {
+    const double before = energy_at(index, 1);
+    complete_drive_step(index, state_);
+    outcomes_[index].balance.work.winches += energy_at(index, 1) - before;
+  }
   follow_material(*state_.cables[index].model, boundary.directions, memory.spans, state);
   StepResult& result = outcomes_[index].result;
   result.substeps = substeps;
@@ -462,6 +491,7 @@ void IslandStepper::complete_cable(int index, const Boundary& boundary, int subs
   complete_step(state_.scene->time_step, memory.targets);
   show_velocities(memory.targets, state.velocities);
   if (winds && !memory.drive) close_clamps(index);
+  outcomes_[index].change += follow_energy_of_cable(index, state_, workspace_.directions);
 }
 
 /// What a winch has left is held by clamps again, from where it is.

@@ -16,6 +16,8 @@ struct CableOutcome {
   StepResult result;
   std::vector<Jump> jumps;    ///< that the step found to be over
   int breaking_segment = -1;  ///< -1: none
+  EnergyBalance balance;      ///< of the step
+  double change = 0;          ///< [J] of its energy
 };
 
 /// What a step of an island finds.
@@ -26,6 +28,8 @@ struct IslandOutcome {
   std::vector<SimulatedContact> contacts;
   std::optional<StepProgress> unfinished;  ///< what is left waits for `resume`
   bool exhausted = false;                  ///< the step took more work than it may
+  EnergyBalance balance;                   ///< besides those of its cables
+  double change = 0;                       ///< [J] of its bodies' energy
 };
 
 /// Where a cable hangs to: gravity at its first node.
@@ -68,8 +72,8 @@ void follow_material(const CableModel& model, const std::vector<HeldDirection>& 
 bool follows_bodies(const KinematicTargets& targets, const std::vector<Attachment>& attachments);
 
 /// Aims a cable's holders at where they will be at the end of the step. Where they jump, the cable is carried along with them
-/// before it is stepped, and keeps its velocities.
-void update_targets(int cable, State& state, CableOutcome& outcome);
+/// before it is stepped, and keeps its velocities. `directions`: scratch.
+void update_targets(int cable, State& state, CableOutcome& outcome, std::vector<HeldDirection>& directions);
 
 /// Steps the cables of an island, whose holders aim at the end of the step, in as many substeps as they need: halved where the
 /// solver does not converge, doubled where it does easily. Changes nothing but these cables and the forces on their attachments.
@@ -119,8 +123,17 @@ class IslandStepper {
   bool advance_part(Island& island, const PartOfStep& part, bool tolerated, bool contacts_known, StepProgress& progress,
                     IslandOutcome& found);
   double work_of_attempt(const Island& island) const;
+  // The ledger
+  bool damps(const Island& island) const;
+  static double unresolved_of(const Boundary& boundary, const SubstepResult& substep);
+  double energy_at(const Island& island, double part);
+  double energy_at(int cable, double part);
+  double accounted(const Island& island, const IslandOutcome& found) const;
+  void balance_bodies(double from, double to);
+  Pose body_holder_at(const BodyJoint& joint, double part) const;
+  void account_for_stop(double change, IslandOutcome& found) const;
   void stop(const Island& island, DegradedCause cause, IslandOutcome& found);
-  void give_up(const Island& island);
+  void give_up(const Island& island, IslandOutcome& found);
   bool give_up(int cable, bool touches, Boundary& boundary);
   void hang_on_bodies_anew(const Island& island);
   void take_bodies_along(int cable, std::vector<char>& placed);
@@ -139,6 +152,7 @@ class IslandStepper {
   double joined_mass_ = 0;               ///< [kg] of the island, where there are bodies
   double most_contact_work_ = infinity;  ///< of the next attempt, see `budget`
   double contact_work_ = 0;              ///< that the last one took
+  EnergyBalance substep_;                ///< of contacts and bodies in the last one
   int lanes_;                            ///< two a cable that is stepped together with others
 };
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "rod/rod_frames.h"
+#include "world/energy.h"
 #include "world/implementation.h"
 #include "world/junctions.h"
 
@@ -75,6 +76,7 @@ bool World::Implementation::place_body(int index) {
 void World::Implementation::note_placed(int index) {
   const SimulatedBody& body = state.bodies[index];
   state.body_progress[index].is_placed = true;
+  state.initial_energy += follow_energy_of_body(index, state);
   state.frames.known[body.frame] = true;
   state.frames.poses[body.frame] = state.frames.previous_poses[body.frame] = body.pose;
 }

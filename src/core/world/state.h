@@ -25,7 +25,8 @@ struct CableProgress {
   std::vector<TwistSpan> spans;
   std::optional<LengthDrive> drive;  ///< of a winch that runs, or of a joint that closes
   ContactCache contacts;
-  int level = 0;  ///< a step is tried in 2^level substeps
+  int level = 0;      ///< a step is tried in 2^level substeps
+  double energy = 0;  ///< [J] as the ledger has it
 };
 
 /// Likewise of a net.
@@ -74,6 +75,8 @@ struct State {
   std::vector<Attachment> attachments;
   std::vector<SimulatedGuide> guides;
   std::vector<Obstacle> obstacles;
+  Ledger ledger;              ///< but for `change`
+  double initial_energy = 0;  ///< [J] of World::energy(), where the ledger begins
 
   std::uint32_t new_cable_id() const { return cable_progress.empty() ? 0 : cable_progress.back().id + 1; }
   std::uint32_t new_obstacle_id() const { return obstacles.empty() ? 0 : obstacles.back().id + 1; }

@@ -117,8 +117,8 @@ auto fields(T& x, const RobotDesc*) {
 /// What the world itself reads: not what only programs do, nor what is made into particles and obstacles at once.
 template <class T>
 auto fields(T& x, const SceneDesc*) {
-  return std::tie(x.time_step, x.jump_speed, x.numerical_damping, x.tolerance, x.gravity, x.fluid, x.limits.segments, x.materials, x.cables,
-                  x.nets, x.integrator, x.robot, x.contact);
+  return std::tie(x.time_step, x.jump_speed, x.numerical_damping, x.tolerance, x.gravity, x.fluid, x.limits.segments, x.materials,
+                  x.cables, x.nets, x.integrator, x.robot, x.contact);
 }
 
 // Cables
@@ -171,7 +171,7 @@ auto fields(T& x, const CachedContact*) {
 }
 template <class T>
 auto fields(T& x, const CableProgress*) {
-  return std::tie(x.id, x.targets, x.spans, x.drive, x.contacts, x.level);
+  return std::tie(x.id, x.targets, x.spans, x.drive, x.contacts, x.level, x.energy);
 }
 
 // Nets and particles
@@ -254,7 +254,8 @@ auto fields(T& x, const BodyShape*) {
 }
 template <class T>
 auto fields(T& x, const BodyProgress*) {
-  return std::tie(x.is_placed, x.has_moved, x.acceleration, x.angular_acceleration, x.holders, x.contacts, x.holder_spins);
+  return std::tie(x.is_placed, x.has_moved, x.acceleration, x.angular_acceleration, x.holders, x.contacts, x.holder_spins,
+                  x.energy);
 }
 template <class T>
 auto fields(T& x, const SimulatedBody*) {
@@ -268,6 +269,22 @@ auto fields(T& x, const Obstacle*) {
 
 // World
 template <class T>
+auto fields(T& x, const EnergyBalance::Work*) {
+  return std::tie(x.attachments, x.winches, x.obstacles, x.applied);
+}
+template <class T>
+auto fields(T& x, const EnergyBalance::Dissipated*) {
+  return std::tie(x.axial, x.bending, x.torsional, x.drag, x.contact, x.guides, x.bodies, x.unresolved, x.edits);
+}
+template <class T>
+auto fields(T& x, const EnergyBalance*) {
+  return std::tie(x.work, x.dissipated);
+}
+template <class T>
+auto fields(T& x, const Ledger*) {
+  return std::tie(x.balance, x.change, x.unaccounted_steps);
+}
+template <class T>
 auto fields(T& x, const Frames*) {
   return std::tie(x.names, x.poses, x.previous_poses, x.earlier_poses, x.known, x.steps_unjudged);
 }
@@ -275,7 +292,7 @@ template <class T>
 auto fields(T& x, const State*) {
   return std::tie(x.scene, x.waiting_cables, x.waiting_nets, x.frames, x.steps, x.cables, x.cable_progress, x.nets,
                   x.net_progress, x.particles, x.particle_integrators, x.bodies, x.body_progress, x.attachments, x.guides,
-                  x.obstacles);
+                  x.obstacles, x.ledger, x.initial_energy);
 }
 /// @}
 

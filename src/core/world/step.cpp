@@ -3,6 +3,7 @@
 
 #include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/world.h"
+#include "world/energy.h"
 #include "world/flush_denormals.h"
 #include "world/implementation.h"
 #include "world/invariant.h"
@@ -59,6 +60,7 @@ void World::Implementation::end_step(StepResult& result) {
   for (const StatusFinding& found : findings.statuses) note_status(found.status, found.body, found.node, result, found.cause);
   told_unsettled = findings.unsettled.size();
   collect_outcomes(result);
+  close_ledger();
   find_excursions(state, findings.excursions);
   apply_breaks(result);
   assert_no_violation(state);
@@ -78,7 +80,11 @@ void World::Implementation::count_step() {
   ++state.steps;
   forget_last_step();
   cable_outcomes.value.resize(state.cables.size());
-  for (CableOutcome& outcome : cable_outcomes.value) outcome.result = {};
+  for (CableOutcome& outcome : cable_outcomes.value) {
+    outcome.result = {};
+    outcome.balance = {};
+    outcome.change = 0;
+  }
 }
 
 void World::Implementation::forget_last_step() {
@@ -90,6 +96,7 @@ void World::Implementation::forget_last_step() {
   findings.intrusions.clear();
   findings.statuses.clear();
   findings.contacts.clear();
+  findings.unaccounted.clear();
 }
 
 /// Once of each body and status.
@@ -120,14 +127,19 @@ void World::Implementation::advance_winches() {
 void World::Implementation::wind_drives() {
   for (std::size_t i = 0; i < state.cables.size(); ++i) {
     const std::optional<LengthDrive>& drive = state.cable_progress[i].drive;
-    if (drive) wind(*drive, 1, state.scene->time_step, *state.cables[i].model, state.cables[i].state);
+    if (!drive) continue;
+    wind(*drive, 1, state.scene->time_step, *state.cables[i].model, state.cables[i].state);
+    const double change = follow_energy_of_cable(static_cast<int>(i), state, workspaces.value.local().directions);
+    cable_outcomes.value[i].change += change;
+    cable_outcomes.value[i].balance.work.winches += change;
   }
 }
 
 /// Where cables may touch each other, that depends on where their targets take them.
 void World::Implementation::build_islands() {
   if (are_islands_of_many(*state.scene)) {
-    for (std::size_t i = 0; i < state.cables.size(); ++i) update_targets(static_cast<int>(i), state, cable_outcomes.value[i]);
+    for (std::size_t i = 0; i < state.cables.size(); ++i)
+      update_targets(static_cast<int>(i), state, cable_outcomes.value[i], workspaces.value.local().directions);
   }
   islands.value.build(state);
 }
@@ -172,7 +184,8 @@ void World::Implementation::step_islands(std::size_t from, std::size_t to, Islan
   const bool updates_targets = !are_islands_of_many(*state.scene);
   for (std::size_t i = from; i < to; ++i) {
     if (updates_targets)
-      for (const int cable : islands.value.all()[i].cables) update_targets(cable, state, cable_outcomes.value[cable]);
+      for (const int cable : islands.value.all()[i].cables)
+        update_targets(cable, state, cable_outcomes.value[cable], workspaces.value.local().directions);
     stepper.step(islands.value.all()[i], island_outcomes.value[i]);
   }
 }
@@ -204,8 +217,12 @@ void World::Implementation::apply_breaks(StepResult& result) {
     const int segment = cable_outcomes.value[cable].breaking_segment;
     if (segment < 0) continue;
     const double limit = CableMaterials(state.cables[cable])[segment].breaking_tension;
+    const double before = state.cable_progress[cable].energy;
     if (!cut_cable(cable, segment).ok) continue;
     const int rest = static_cast<int>(state.cables.size()) - 1;
+    follow_energy_of_cable(cable, state);
+    follow_energy_of_cable(rest, state);
+    account_for_edit(state.cable_progress[cable].energy + state.cable_progress[rest].energy - before, state.ledger.balance);
     findings.breaks.push_back({cable, segment, rest, limit});
     if (result.body != cable_id(cable) || result.node <= segment) continue;
     result.body = cable_id(rest);

@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "guide/guides.h"
 #include "guide/node_passing.h"
 #include "rod/initial_shape.h"
 #include "rod/work_budget.h"
+#include "world/balance.h"
+#include "world/energy.h"
 #include "world/island_stepper.h"
 #include "world/step_progress.h"
 
@@ -71,7 +74,7 @@ bool IslandStepper::advance_within(double most_work, Island& island, StepProgres
       stop(island, DegradedCause::no_solution, found);
       progress.stopped = true;
     } else {
-      give_up(island);
+      give_up(island, found);
       progress.done = whole;
     }
     contacts_known = false;
@@ -86,7 +89,7 @@ void IslandStepper::end_from_rest(Island& island, StepProgress& progress, Island
   for (std::size_t k = 0; k < island.cables.size(); ++k) workspace_.cables[k].result.converged = false;
   stop(island, DegradedCause::too_much_work, found);
   most_contact_work_ = budget::last_share * size_of(island, state_);
-  if (!advance_part(island, {progress.done, whole, whole}, true, false, progress, found)) give_up(island);
+  if (!advance_part(island, {progress.done, whole, whole}, true, false, progress, found)) give_up(island, found);
   found.exhausted = true;
 }
 
@@ -95,14 +98,53 @@ bool IslandStepper::advance_part(Island& island, const PartOfStep& part, bool to
                                  StepProgress& progress, IslandOutcome& found) {
   if (!contacts_known) find_contacts(island, part.from(), part.to());
   note_intrusions(found.intrusions);
+  const bool is_damped = damps(island);
+  const double before = is_damped ? energy_at(island, part.from()) - accounted(island, found) : 0;
   const bool converged = advance(island, part.from(), part.to(), tolerated);
   progress.work += work_of_attempt(island);
   if (!converged) return false;
   progress.done = part.last;
   ++progress.substeps;
-  for (std::size_t k = 0; k < island.cables.size(); ++k)
-    note_substep(island.cables[k], workspace_.cables[k].boundary, workspace_.cables[k].result, part.to() - part.from());
+  double unresolved = std::exchange(substep_.dissipated.unresolved, 0.0);
+  for (std::size_t k = 0; k < island.cables.size(); ++k) {
+    CableWorkspace& of_cable = workspace_.cables[k];
+    note_substep(island.cables[k], of_cable.boundary, of_cable.result, part.to() - part.from());
+    unresolved += unresolved_of(of_cable.boundary, of_cable.result);
+  }
+  found.balance += substep_;
+  found.balance.dissipated.unresolved += std::max(0.0, unresolved);
+  // Of a substep that damps it is known what its laws do; the rest of what goes is what it is to take.
+  if (is_damped)
+    found.balance.dissipated.unresolved += std::max(0.0, before + accounted(island, found) - energy_at(island, part.to()));
   return true;
+}
+
+/// [J] Motion of a cable that a substep has taken: none is made.
+double IslandStepper::unresolved_of(const Boundary& boundary, const SubstepResult& substep) {
+  return substep.balance.dissipated.unresolved + unresolved_work_of_holders(boundary);
+}
+
+/// Whether substeps damp what they do not resolve.
+bool IslandStepper::damps(const Island& island) const {
+  return std::any_of(island.cables.begin(), island.cables.end(),
+                     [&](int cable) { return scheme_of(cable) != Scheme::conserving; });
+}
+
+/// [J]
+double IslandStepper::energy_at(const Island& island, double part) {
+  return energy_of(island, state_, part, workspace_.directions);
+}
+
+/// [J] That the step has brought, as far as it has come.
+double IslandStepper::accounted(const Island& island, const IslandOutcome& found) const {
+  double sum = found.balance.net();
+  for (const int cable : island.cables) sum += outcomes_[cable].balance.net();
+  return sum;
+}
+
+/// What is stopped, or put elsewhere, because no step was found.
+void IslandStepper::account_for_stop(double change, IslandOutcome& found) const {
+  (change < 0 ? found.balance.dissipated.unresolved : found.balance.work.attachments) += std::abs(change);
 }
 
 double IslandStepper::work_of_attempt(const Island& island) const {
@@ -122,6 +164,7 @@ double IslandStepper::work_of_attempt(const Island& island) const {
 
 /// What did not converge is stopped: its next step starts from rest.
 void IslandStepper::stop(const Island& island, DegradedCause cause, IslandOutcome& found) {
+  const double before = energy_at(island, 0);
   stop_bodies(island);
   if (!island.bodies.empty()) note_status(Status::degraded, rigid_body_id(island.bodies.front()), 0, found.bodies, cause);
   for (std::size_t k = 0; k < island.cables.size(); ++k) {
@@ -132,9 +175,11 @@ void IslandStepper::stop(const Island& island, DegradedCause cause, IslandOutcom
     std::fill(state.axial_multiplier.begin(), state.axial_multiplier.end(), 0.0);
     note_status(Status::degraded, cable_id(island.cables[k]), 0, outcomes_[island.cables[k]].result, cause);
   }
+  account_for_stop(energy_at(island, 0) - before, found);
 }
 
-void IslandStepper::give_up(const Island& island) {
+void IslandStepper::give_up(const Island& island, IslandOutcome& found) {
+  const double before = energy_at(island, 1);
   const bool touching = touches();
   workspace_.contacts.touches().clear();  // their forces are of what was no solution, and may not even be numbers
   bool stuck = true;
@@ -142,6 +187,7 @@ void IslandStepper::give_up(const Island& island) {
     if (!workspace_.cables[k].result.converged)
       stuck = give_up(island.cables[k], workspace_.contacts.touched(k), workspace_.cables[k].boundary) && stuck;
   if (stuck && !touching && !island.bodies.empty()) hang_on_bodies_anew(island);
+  account_for_stop(energy_at(island, 1) - before, found);
 }
 
 /// Not even from rest: the cable is put where its holders will be, and goes on from there; or hangs from them anew, where it
@@ -172,6 +218,10 @@ bool IslandStepper::was_easy() const {
 void IslandStepper::note_substep(int index, const Boundary& boundary, const SubstepResult& substep, double part) {
   StepResult& result = outcomes_[index].result;
   add_forces(boundary, state_.cable_progress[index].targets, state_.frames.poses, part, state_.attachments);
+  EnergyBalance balance = substep.balance;
+  balance.work.attachments += work_of_holders(boundary);
+  balance.dissipated.unresolved = 0;  // is known of all that is stepped together
+  outcomes_[index].balance += balance;
   result.max_strain = std::max(result.max_strain, substep.max_strain);
   result.iterations += substep.iterations;
   if (substep.overstretched_node >= 0) note_status(Status::overstretched, cable_id(index), substep.overstretched_node, result);

@@ -2,11 +2,10 @@
 #include <cmath>
 
 #include "guide/guides.h"
-#include "rod/bending.h"
 #include "rod/joint_views.h"
-#include "rod/kirchhoff_rod.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/world.h"
+#include "world/energy.h"
 #include "world/implementation.h"
 #include "world/state_fields.h"
 
@@ -117,47 +116,13 @@ int find(const std::vector<SimulatedGuide>& guides, const std::string& name) {
 }
 
 Energy World::energy() const {
-  Energy energy;
-  const GravityDesc& gravity = implementation_->state.scene->gravity;
-  for (std::size_t k = 0; k < cables().size(); ++k) {
-    const SimulatedCable& cable = cables()[k];
-    const CableMaterials materials(cable);
-    const std::vector<HeldDirection> directions = boundary_now(implementation_->state.cable_progress[k].targets).directions;
-    if (cable.state.directors.empty()) {
-      energy.bend += bending_energy(*cable.model, cable.state, directions);
-    } else {
-      const RodEnergy rod = rod_energy(*cable.model, cable.state, directions);
-      energy.bend += rod.bend;
-      energy.twist += rod.twist;
-      energy.kinetic += rod.spin;
-    }
-    for (int i = 0; i < cable.state.nodes(); ++i) {
-      energy.kinetic += 0.5 * cable.state.masses[i] * cable.state.velocities[i].squaredNorm();
-      energy.gravity += cable.state.masses[i] * gravity.potential_at(cable.state.positions[i]);
-    }
-    for (int i = 0; i < cable.state.segments(); ++i) {
-      const double torsion = torsional_stiffness_at(materials, i);
-      energy.twist += 0.5 * torsion * cable.state.rest_lengths[i] * cable.state.twist[i] * cable.state.twist[i];
-    }
-    const auto lies_on_wheel = [&](int i) {
-      return std::any_of(attachments().begin(), attachments().end(), [&](const Attachment& a) {
-        return a.body == cable_id(static_cast<int>(k)) && is_wheel(a) && a.node == i;
-      });
-    };
-    for (int i = 0; i < cable.state.segments(); ++i) {
-      if (!is_elastic(materials[i]) || (!guides().empty() && lies_on_wheel(i))) continue;
-      const double e = strain(cable.state, i);
-      energy.stretch += 0.5 * materials[i].axial_stiffness * cable.state.rest_lengths[i] * e * e;
-    }
-  }
-  for (const SimulatedBody& body : bodies()) {
-    const Vector3 spin = body.pose.orientation.conjugate() * body.angular_velocity;
-    energy.kinetic += 0.5 * body.mass * body.velocity.squaredNorm() + 0.5 * spin.dot(body.inertia * spin);
-    energy.gravity += body.mass * gravity.potential_at((body.pose * Pose{body.center_of_mass}).position);
-  }
-  energy.kinetic += flow_energy(implementation_->state);
-  implementation_->add_net_energy(energy);
-  return energy;
+  return implementation_->energy();
+}
+
+Ledger World::ledger() const {
+  Ledger ledger = implementation_->state.ledger;
+  ledger.change = energy().total() - implementation_->state.initial_energy;
+  return ledger;
 }
 
 void World::view_joints(int index, std::vector<JointView>& joints) const {

@@ -61,6 +61,7 @@ struct Workspace {
   std::vector<WaitingCables> waiting;  ///< those of one law each
   std::vector<LaneMember> lane_members;
   LaneStepper lane_stepper;
+  std::vector<HeldDirection> directions;  ///< of a cable whose energy is measured
 };
 
 /// One a thread.

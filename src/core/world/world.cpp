@@ -121,6 +121,7 @@ bool is_sound(const Pose& pose) {
 
 bool World::settle() {
   Implementation& w = *implementation_;
+  const double energy_before = energy().total();
   w.findings.unsettled.clear();
   w.forget_last_step();
   for (Attachment& attachment : w.state.attachments) attachment.force = attachment.torque = Vector3::Zero();
@@ -133,6 +134,7 @@ bool World::settle() {
   settle_bodies(std::vector<char>(w.state.cables.size(), 1), w.state, w.workspaces.value.local(), w.findings.unsettled);
   w.told_unsettled = 0;
   w.note_unsettled(0);
+  w.account_for_edit_since(energy_before);
   return w.findings.unsettled.empty();
 }
 
@@ -173,6 +175,7 @@ World::World(const SceneDesc& scene) : implementation_(std::make_unique<Implemen
   w.name_waiting();
   for (const ParticleDesc& particle : scene.particles) w.add_particle(particle);
   w.update_frames({});
+  w.begin_account(0);
 }
 
 World::~World() = default;
@@ -201,6 +204,7 @@ int World::start_waiting(const BoundaryInputs& inputs) {
       w.with_trunks_first(take_out(w.state.waiting_cables, [&](int i) { return waits[harnesses[i]] == 0; }));
   const std::vector<int> nets = take_out(w.state.waiting_nets, [&](int i) { return frames_known(scene.nets[i], ids, inputs); });
   if (cables.empty() && nets.empty()) return 0;
+  const double of_nets = w.energy_of_nets_and_particles();
   w.update_frames(inputs);
   for (const int i : cables)
     if (!w.is_cancelled()) w.start_cable(scene.cables[i], ids, inputs);
@@ -212,6 +216,7 @@ int World::start_waiting(const BoundaryInputs& inputs) {
     if (!w.is_cancelled()) w.start_net(scene.nets[i], ids, inputs);
   w.note_unsettled(w.told_unsettled);
   w.name_waiting();
+  w.begin_account(of_nets);
   assert_no_violation(w.state);
   return static_cast<int>(cables.size() + nets.size());
 }

@@ -100,6 +100,18 @@ std::string hash_text(std::uint64_t hash) {
   return text;
 }
 
+py::dict ledger_dict(const Ledger& ledger) {
+  py::dict work, dissipated, dict;
+  for (const auto& [name, energy] : entries(ledger.balance.work)) work[name] = energy;
+  for (const auto& [name, energy] : entries(ledger.balance.dissipated)) dissipated[name] = energy;
+  dict["work"] = work;
+  dict["dissipated"] = dissipated;
+  dict["change"] = ledger.change;
+  dict["unaccounted"] = ledger.unaccounted();
+  dict["unaccounted_steps"] = ledger.unaccounted_steps;
+  return dict;
+}
+
 py::dict energy_dict(const Energy& energy) {
   py::dict dict;
   dict["kinetic"] = energy.kinetic;

@@ -55,5 +55,6 @@ Array read_only(Array array) {
 }
 
 py::dict energy_dict(const Energy& energy);
+py::dict ledger_dict(const Ledger& ledger);
 
 }  // namespace verlet_cable

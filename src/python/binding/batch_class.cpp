@@ -235,6 +235,12 @@ void add_batch_class(py::module_& module) {
            "broke. The array is new and in C order.\n\nRaises KeyError for names, ValueError for quantities and numbers of "
            "points, and if a world has not as many nodes as the others.")
       .def(
+          "ledger",
+          [](const PythonBatch& self, std::int64_t world) {
+            return ledger_dict(use(self)[read_world_index(world, use(self).size())].world().ledger());
+          },
+          py::arg("world"), "As World.ledger, of one of the worlds.")
+      .def(
           "energy", [](const PythonBatch& batch) { return energies(use(batch)); }, "Energies [J] as World.energy, (count,) each.")
       .def_property_readonly(
           "status", [](const PythonBatch& batch) { return statuses(use(batch)); },

@@ -179,6 +179,12 @@ void add_world_class(py::module_& module) {
       .def(
           "energy", [](const PythonWorld& world) { return energy_dict(use(world).energy()); },
           "Dict with kinetic, gravity, stretch, bend, twist and total [J], as in the summary of cable_sim.")
+      .def(
+          "ledger", [](const PythonWorld& world) { return ledger_dict(use(world).ledger()); },
+          "Where energy [J] has come from and gone since the start: a dict with the dicts work (attachments, winches, obstacles, "
+          "applied) and dissipated (axial, bending, torsional, drag, contact, guides, bodies, unresolved, edits), change (of "
+          "energy()['total']), unaccounted (change - work + dissipated: rounding and tolerances) and unaccounted_steps (in which "
+          "that was too much).")
       .def_property_readonly(
           "time", [](const PythonWorld& world) { return use(world).time(); }, "[s] Simulated time.")
       .def_property_readonly(

@@ -85,6 +85,7 @@ void Diagnostics::report_simulation(Status& status) {
   status.add("inside_obstacle_steps", s.inside_obstacle);  // a cable was inside an obstacle, and was pushed out
   status.add("degraded_steps", s.degraded);                // no solution was found, and velocities were set to zero
   status.add("exhausted_steps", s.exhausted);              // a step exceeded its budget of work and was cut short
+  status.add("unaccounted_steps", s.unaccounted);          // energy came from nowhere, or went: the ledger did not close
   status.add("faults", report.faults);                     // number since the start
   status.add("waiting_cables", NameList(simulation_.world().findings().waiting).text(""));  // that wait for a frame
   report_waiting(status);

@@ -22,7 +22,8 @@ static_assert(is(EventType::cut, CableEvent::CUT) && is(EventType::broke, CableE
               is(EventType::reset, CableEvent::RESET) && is(EventType::time_jump, CableEvent::TIME_JUMP) &&
               is(EventType::fault, CableEvent::FAULT) && is(EventType::joined, CableEvent::JOINED) &&
               is(EventType::limit, CableEvent::LIMIT) && is(EventType::caught, CableEvent::CAUGHT) &&
-              is(EventType::released, CableEvent::RELEASED) && is(EventType::jumped, CableEvent::JUMPED));
+              is(EventType::released, CableEvent::RELEASED) && is(EventType::jumped, CableEvent::JUMPED) &&
+              is(EventType::energy, CableEvent::ENERGY));
 
 constexpr bool is(StepResult::Status status, std::uint8_t constant) {
   return static_cast<std::uint8_t>(status) == constant;
@@ -48,6 +49,8 @@ void EventPublisher::publish(const WorldEvent& event, Nanoseconds stamp) const {
 
 void EventPublisher::publish(const StatusEvent& event, Nanoseconds stamp) const {
   const int node = std::max(event.node, 0);
+  if (event.name == name_of(EventType::energy))
+    return publish(CableEvent::ENERGY, stamp, {event.cable, {}, 0, {}}, quoted(event.cable) + ": " + event.message);
   const std::string message = quoted(event.cable) + (event.has_ended ? ": " : " at node " + std::to_string(node) + ": ") +
                               event.name + (event.has_ended ? " " : ": ") + event.message;
   send(CableEvent::STATUS, stamp, {{event.cable, {}, node, event.name}}, message);

@@ -18,6 +18,7 @@ void Statistics::add(const StepResult& result, const Findings& findings, double 
   overstretched += has(StepResult::Status::overstretched);
   jumped += has(StepResult::Status::jumped);
   inside_obstacle += has(StepResult::Status::inside_obstacle);
+  unaccounted += findings.unaccounted.empty() ? 0 : 1;
 }
 
 }  // namespace verlet_cable

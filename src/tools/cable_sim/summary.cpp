@@ -59,6 +59,13 @@ Json energy_json(const Energy& energy, double initial_total) {
           {"twist", energy.twist},     {"total", energy.total()},   {"initial_total", initial_total}};
 }
 
+Json ledger_json(const Ledger& ledger) {
+  Json work = Json::object(), dissipated = Json::object();
+  for (const auto& [name, energy] : entries(ledger.balance.work)) work[name] = energy;
+  for (const auto& [name, energy] : entries(ledger.balance.dissipated)) dissipated[name] = energy;
+  return {{"work", work}, {"dissipated", dissipated}, {"change", ledger.change}, {"unaccounted", ledger.unaccounted()}};
+}
+
 }  // namespace
 
 Summary::Summary(const World& world, std::int64_t averaged_steps)
@@ -123,6 +130,8 @@ std::string Summary::json(const World& world, const std::vector<Event>& events) 
       {"ns_per_segment_substep", nanoseconds * wall_seconds() / static_cast<double>(segments_ * substeps_)},
       {"max_strain", max_strain_},
       {"energy", energy_json(world.energy(), initial_energy_)},
+      {"ledger", ledger_json(world.ledger())},
+      {"unaccounted_steps", world.ledger().unaccounted_steps},
       {"extremes", extremes_.json()},
       {"attachments", Json::object_t(attachments.begin(), attachments.end())},
       {"bodies", bodies_json(world)},

@@ -1,0 +1,68 @@
+#include <algorithm>
+#include <cmath>
+
+#include "rod/cable_stepper.h"
+
+namespace verlet_cable {
+
+/// [J] Of the nodes that nothing holds.
+double CableStepper::kinetic_energy(const std::vector<double>& masses, const VectorArray& velocity) const {
+  double energy = 0;
+  for (int i = 0; i <= segments_; ++i) energy += 0.5 * system_.movable[i] * masses[i] * get(velocity, i).squaredNorm();
+  return energy;
+}
+
+/// What the laws take and add over the substep, which has converged and not moved yet.
+void CableStepper::balance_laws(const Substep& s, const std::vector<double>& masses, SubstepResult& result) const {
+  EnergyBalance& balance = result.balance;
+  if (drags_) balance_drag(s, masses, balance);
+  if (fluid_.active()) fluid_.add_work(displacement_, s.h, balance);
+  if (bending_.is_damped()) balance.dissipated.bending += bending_.damping_work();
+  if (twist_.active()) balance.dissipated.torsional += twist_.damping_work();
+  if (rod_.active()) rod_.add_losses(balance);
+  balance_lengths(s, result);
+  if (winch_node_ >= 0 && bending_.active()) {
+    // What bends moves with the material that comes through the winch.
+    const int i = std::clamp(winch_node_ - 1, 0, segments_ - 1);
+    const Vector3 bending = get(segment_force_, i) - tension_density_[i] * get(middle_, i);
+    balance.work.winches += (winch_node_ == 0 ? -1 : 1) * bending.dot(material_way_);
+  }
+  for (const Flow& flow : flows_) {
+    balance.dissipated.guides += flow.resistance * std::abs(flow.way);
+    balance.dissipated.drag += flow.drag * flow.way * flow.way;
+  }
+}
+
+/// The drag of the material, in proportion to the velocity.
+void CableStepper::balance_drag(const Substep& s, const std::vector<double>& masses, EnergyBalance& balance) const {
+  const Vector3 flow = s.h * s.environment.fluid.velocity;
+  for (int i = 0; i <= segments_; ++i) {
+    const double resistance = inertia_[i] - s.inertia() * masses[i] / (s.h * s.h);
+    const Vector3 relative = get(displacement_, i) - flow;
+    balance.dissipated.drag += resistance * relative.squaredNorm();
+    balance.work.applied -= resistance * relative.dot(flow);
+  }
+}
+
+/// Axial damping, and what the tension of segments that cannot stretch does where their lengths change: driven by a winch, or
+/// drawn out beyond what they are.
+void CableStepper::balance_lengths(const Substep& s, SubstepResult& result) const {
+  const bool is_drawn_out = result.overstretched_node >= 0;
+  if (!any_elastic_ && s.boundary.growing.empty() && !is_drawn_out) return;
+  for (int i = 0; i < segments_; ++i) {
+    if (is_elastic_at(i)) {
+      if (axial_damping_[i] == 0) continue;
+      const double change = std::sqrt(end_square_[i]) - length_[i] - rest_growth_[i];
+      result.balance.dissipated.axial += axial_damping_[i] / (s.h * target_length_[i]) * change * change;
+      continue;
+    }
+    if (grows(i)) continue;
+    const double work = 0.5 * tension_density_[i] * (end_square_[i] - get(segment_, i).squaredNorm());
+    if (rest_growth_[i] != 0)
+      result.balance.work.winches -= work;
+    else if (is_drawn_out)
+      result.balance.dissipated.edits += work;
+  }
+}
+
+}  // namespace verlet_cable
