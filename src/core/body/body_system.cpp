@@ -79,8 +79,8 @@ void BodySystem::place_holders(std::vector<Participant>& participants) {
 
 bool BodySystem::advance(std::vector<Participant>& participants, double tolerance) {
   for (Participant& p : participants) {
-    p.result = {};
-    p.stepper->begin(p.substep, *p.state, p.result);
+    *p.result = {};
+    p.stepper->begin(p.substep, *p.state, *p.result);
   }
   const double part = joints_.all().empty() ? body_part : joint_part;
   Convergence convergence(part * tolerance, rules_.h, rules_.statics);
@@ -94,7 +94,7 @@ bool BodySystem::advance(std::vector<Participant>& participants, double toleranc
         p.stepper->factor();
       }
       p.stepper->solve_linear();
-      ++p.result.iterations;
+      ++p.result->iterations;
     }
     solve(participants, stale);
     double size = 0;
@@ -107,7 +107,7 @@ bool BodySystem::advance(std::vector<Participant>& participants, double toleranc
     const bool consistent = std::all_of(participants.begin(), participants.end(),
                                         [](const Participant& p) { return p.stepper->flows_are_consistent(p.substep); });
     if ((reached || rounded) && consistent) {
-      for (Participant& p : participants) p.result.converged = true;
+      for (Participant& p : participants) p.result->converged = true;
       return true;
     }
     stale = i > 0 && convergence.ratio() > slow_convergence;
@@ -195,7 +195,7 @@ void BodySystem::project(std::vector<Participant>& participants, std::vector<Sim
     if (!cables_[c].is_held()) continue;
     Participant& p = participants[cables_[c].participant()];
     cables_[c].follow(members_, equations_, p);
-    p.stepper->finish_projection(p.substep, *p.state);
+    p.stepper->finish_projection(p.substep, *p.state, *p.result);
   }
   for (std::size_t b = 0; b < member_of_.size(); ++b) {
     if (member_of_[b] < 0) continue;

@@ -143,8 +143,8 @@ void ContactSolver::begin(std::vector<Participant>& participants) {
     Participant& p = participants[k];
     if (static_cast<int>(index_.size()) <= p.cable) index_.resize(p.cable + 1);
     index_[p.cable] = static_cast<int>(k);
-    p.result = {};
-    p.stepper->begin(p.substep, *p.state, p.result);
+    *p.result = {};
+    p.stepper->begin(p.substep, *p.state, *p.result);
     size_ += work_of_visiting(p);
   }
   largest_energy_ = 0;
@@ -158,7 +158,7 @@ void ContactSolver::finish(std::vector<Participant>& participants, std::vector<T
     bodies_->contacts().follow_obstacles();
     bodies_->place_at_end(participants);
   }
-  for (Participant& p : participants) p.stepper->finish(p.substep, true, *p.state, p.result);
+  for (Participant& p : participants) p.stepper->finish(p.substep, true, *p.state, *p.result);
 }
 
 bool ContactSolver::crosses(const std::vector<Participant>& participants, const std::vector<Touch>& touches) const {
@@ -209,7 +209,7 @@ bool ContactSolver::iterate(std::vector<Participant>& participants, std::vector<
     work_along_ = work_along(participants);
     double largest = 0;
     for (Participant& p : participants) {
-      ++p.result.iterations;
+      ++p.result->iterations;
       const double size = p.stepper->correct();
       if (!(size < largest_correction)) return false;
       largest = std::max(largest, size);
@@ -226,7 +226,7 @@ bool ContactSolver::iterate(std::vector<Participant>& participants, std::vector<
     const bool consistent = std::all_of(participants.begin(), participants.end(),
                                         [](const Participant& p) { return p.stepper->flows_are_consistent(p.substep); });
     if (largest * std::clamp(ratio, fastest_convergence, 1.0) < enough && consistent) {
-      for (Participant& p : participants) p.result.converged = true;
+      for (Participant& p : participants) p.result->converged = true;
       return true;
     }
     stale = i > 0 && ratio > slow_convergence;

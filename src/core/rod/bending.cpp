@@ -291,7 +291,8 @@ double bending_energy(const CableModel& model, const CableState& state, const st
   const int n = state.segments();
   const auto direction = [&](int i) -> Vector3 {
     const Vector3 d = state.positions[i + 1] - state.positions[i];
-    return d / (i == driven ? d.norm() : state.rest_lengths[i]);
+    const double inverse = 1 / (i == driven ? d.norm() : state.rest_lengths[i]);
+    return inverse * d;
   };
   const auto joint = [](double length, const Vector3& change) { return angle_energy(0.5 * change.squaredNorm()) / length; };
   // EI is a factor of the sum where it is the same everywhere.

@@ -116,11 +116,15 @@ void CableStepper::finish(const Substep& s, bool struck, CableState& state, Subs
   if (is_balanced) result.balance.dissipated.unresolved += kinetic_energy(state.masses, end_velocity_);
   const bool damped = !s.statics && s.scheme != Scheme::conserving;
   if (damped && s.boundary.nodes.empty()) restore_momenta(s, state.masses);
-  if (!s.statics && s.boundary.nodes.empty()) restore_angular_momentum(s, state.masses);
+  if (!s.statics && s.boundary.nodes.empty()) {
+    const double given_back = restore_angular_momentum(s, state.masses);
+    result.balance.dissipated.bending -= given_back;
+    if (is_balanced) result.balance.dissipated.unresolved += given_back;
+  }
   // Where bodies give way they are projected together.
   if (!s.statics && !s.boundary.is_on_bodies() &&
       (struck || damped || !s.boundary.growing.empty() || holders_accelerate(s, state)))
-    project(s, state.masses);
+    project(s, state.masses, result);
   result.max_strain = store(s, state);
   if (rod_.active()) rod_.store(s.boundary, state);
   if (rod_.active() && !flows_.empty()) carry_frames_with_flows(state);
@@ -570,7 +574,7 @@ void CableStepper::read_impulses(const Boundary& boundary, HolderLoads& impulses
   for (std::size_t k = 0; k < boundary.nodes.size(); ++k) impulses.forces[k] = corrected_load(boundary.nodes[k].node);
 }
 
-void CableStepper::finish_projection(const Substep& s, CableState& state) {
+void CableStepper::finish_projection(const Substep& s, CableState& state, SubstepResult& result) {
   const VectorArray& change = solver_.displacement();
   for (int i = 0; i <= segments_; ++i) {
     state.velocities[i] += get(change, i);
@@ -581,6 +585,8 @@ void CableStepper::finish_projection(const Substep& s, CableState& state) {
     if (held.body >= 0) held.velocity += get(change, held.node);
   }
   for (std::size_t k = 0; k < flows_.size(); ++k) s.boundary.flows[k].rate += flows_[k].correction;
+  for (const GrowingSegment& growing : s.boundary.growing)
+    if (!is_elastic_at(growing.segment)) balance_mended_growth(growing, -multiplier_correction()[growing.segment], result);
 }
 
 void CableStepper::take_back(double part) {
@@ -624,7 +630,7 @@ void CableStepper::move(const Substep& s) {
 
 /// Impulses along inextensible segments that end all change of length but that of rest lengths; without them such velocities
 /// would alternate from step to step.
-void CableStepper::project(const Substep& s, const std::vector<double>& masses) {
+void CableStepper::project(const Substep& s, const std::vector<double>& masses, SubstepResult& result) {
   if (!any_rigid_) return;
   const int n = segments_;
   for (int i = 0; i <= n; ++i) inverse_mass_[i] = system_.movable[i] / masses[i];
@@ -660,6 +666,7 @@ void CableStepper::project(const Substep& s, const std::vector<double>& masses) 
   if (!flows_.empty()) project_flows(s);
   solve_tridiagonal(pivot_, off_, impulse_, n);
   if (!flows_.empty()) push_flows(s);
+  for (const GrowingSegment& growing : s.boundary.growing) balance_mended_growth(growing, impulse_[growing.segment], result);
   for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) {
     const double *d = (segment_.*component).data(), *w = inverse_mass_.data(), *impulse = impulse_.data();
     double* v = (end_velocity_.*component).data();
@@ -693,10 +700,10 @@ void CableStepper::restore_momenta(const Substep& s, const std::vector<double>& 
 }
 
 /// Bending that is damped moves no free cable as a whole; what it did to the angular momentum is given back as a rigid body's
-/// motion, but no more energy than it took.
-void CableStepper::restore_angular_momentum(const Substep& s, const std::vector<double>& masses) {
+/// motion, but no more energy than it took. Returns that [J].
+double CableStepper::restore_angular_momentum(const Substep& s, const std::vector<double>& masses) {
   const Vector3 taken = s.h * bending_.damping_torque(displacement_);
-  if (taken.isZero(0)) return;
+  if (taken.isZero(0)) return 0;
   const RigidMotion missing = rigid_motion(masses, position_, Vector3::Zero(), -taken);
   double along = 0, square = 0;  // a share of it adds share * along + share^2 * square [J]
   for (int i = 0; i <= segments_; ++i) {
@@ -708,6 +715,7 @@ void CableStepper::restore_angular_momentum(const Substep& s, const std::vector<
   double share = 1;
   if (along + square > work) share = (std::sqrt(along * along + 4 * square * work) - along) / (2 * square);
   for (int i = 0; i <= segments_; ++i) set(end_velocity_, i, get(end_velocity_, i) + share * missing.at(get(position_, i)));
+  return share * (along + share * square);
 }
 
 /// Finds motion that the substep has not resolved: it is taken out of the velocities, or the next substeps damp it.

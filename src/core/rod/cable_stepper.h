@@ -62,7 +62,7 @@ class CableStepper {
   /// On the holders [N s], after the last solution.
   void read_impulses(const Boundary& boundary, HolderLoads& impulses) const;
   /// The state's velocities take the solution.
-  void finish_projection(const Substep& substep, CableState& state);
+  void finish_projection(const Substep& substep, CableState& state, SubstepResult& result);
   /// Whether the present iterate has the lengths that it should between holders. Where all nodes are held it may not, though no
   /// correction moves them any more.
   bool keeps_lengths() const;
@@ -135,16 +135,17 @@ class CableStepper {
   double force_along(int segment) const;
   void move(const Substep& substep);
   void restore_momenta(const Substep& substep, const std::vector<double>& masses);
-  void restore_angular_momentum(const Substep& substep, const std::vector<double>& masses);
+  double restore_angular_momentum(const Substep& substep, const std::vector<double>& masses);
   void quieten(const Substep& substep, CableState& state);
   void take_out_unresolved(const Substep& substep, CableState& state);
   void assemble_for_velocities();
-  void project(const Substep& substep, const std::vector<double>& masses);
+  void project(const Substep& substep, const std::vector<double>& masses, SubstepResult& result);
   double store(const Substep& substep, CableState& state) const;
   // What becomes of energy: rod/cable_balance.cpp
   void balance_laws(const Substep& substep, const std::vector<double>& masses, SubstepResult& result) const;
   void balance_drag(const Substep& substep, const std::vector<double>& masses, EnergyBalance& balance) const;
   void balance_lengths(const Substep& substep, SubstepResult& result) const;
+  void balance_mended_growth(const GrowingSegment& growing, double impulse, SubstepResult& result) const;
   double kinetic_energy(const std::vector<double>& masses, const VectorArray& velocity) const;
 
   int segments_ = 0;

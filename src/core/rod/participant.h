@@ -11,7 +11,7 @@ struct Participant {
   CableStepper* stepper = nullptr;
   Substep substep;
   CableState* state = nullptr;
-  SubstepResult result;
+  SubstepResult* result = nullptr;
 };
 
 }  // namespace verlet_cable

@@ -113,7 +113,7 @@ BodySettling::Outcome BodySettling::advance(double h) {
     load_flows(index, state_, work.boundary);
     Substep substep{*cable.model, environment, work.boundary, progress.spans, h, true};
     substep.touches_bodies = true;
-    workspace_.participants.push_back({static_cast<int>(k), index, &work.stepper, substep, &cable.state, {}});
+    workspace_.participants.push_back({static_cast<int>(k), index, &work.stepper, substep, &cable.state, &work.result});
     before_[k] = cable.state;
   }
   move_obstacles(state_, 1, 1, workspace_.obstacles);
@@ -138,8 +138,8 @@ BodySettling::Outcome BodySettling::advance(double h) {
   system.contacts().follow_obstacles();
   system.place_at_end(workspace_.participants);
   for (Participant& p : workspace_.participants) {
-    p.stepper->finish(p.substep, false, *p.state, p.result);
-    outcome.displacement = std::max(outcome.displacement, p.result.displacement);
+    p.stepper->finish(p.substep, false, *p.state, *p.result);
+    outcome.displacement = std::max(outcome.displacement, p.result->displacement);
   }
   outcome.displacement = std::max(outcome.displacement, system.largest_displacement());
   if (outcome.touches && outcome.displacement > settling_reach * radius_) {

@@ -46,6 +46,16 @@ double stretching_energy(const State& state, int index) {
   return energy;
 }
 
+/// [m] The longest segment, or where there are no cables the longest radius of gyration.
+double length_of_part(const Island& island, const State& state) {
+  double length = 0;
+  for (const int cable : island.cables) length = std::max(length, state.cables[cable].model->segment_length);
+  if (!island.cables.empty()) return length;
+  for (const int body : island.bodies)
+    length = std::max(length, std::sqrt(state.bodies[body].inertia.trace() / state.bodies[body].mass));
+  return length;
+}
+
 }  // namespace
 
 Energy energy_of_cable(const State& state, int index) {
@@ -129,11 +139,10 @@ bool is_accounted(double unaccounted, const Island& island, const State& state, 
   double energy = std::abs(work.attachments) + std::abs(work.winches) + std::abs(work.obstacles) + std::abs(work.applied);
   if (size <= energy) return true;
   energy += kinetic_energy_of(island, state);
-  if (size <= energy || island.cables.empty()) return size <= energy;
-  double segment = 0;
-  for (const int cable : island.cables) segment = std::max(segment, state.cables[cable].model->segment_length);
-  const Vector3 gravity = state.scene->gravity.at(state.cables[island.cables.front()].state.positions.front());
-  return size <= energy + mass_of(island, state) * gravity.norm() * segment;
+  if (size <= energy) return true;
+  const Vector3 place = island.cables.empty() ? state.bodies[island.bodies.front()].pose.position
+                                              : state.cables[island.cables.front()].state.positions.front();
+  return size <= energy + mass_of(island, state) * state.scene->gravity.at(place).norm() * length_of_part(island, state);
 }
 
 void account_for_displacement(double change, EnergyBalance& balance) {

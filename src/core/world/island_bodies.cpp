@@ -88,9 +88,8 @@ bool IslandStepper::advance_bodies() {
                          std::none_of(participants.begin(), participants.end(), is_drawn_out);
   if (converged) {
     system.place_at_end(participants);
-    for (Participant& p : participants) p.stepper->finish(p.substep, false, *p.state, p.result);
+    for (Participant& p : participants) p.stepper->finish(p.substep, false, *p.state, *p.result);
   }
-  for (const Participant& p : participants) workspace_.cables[p.place].result = p.result;
   return converged;
 }
 
@@ -107,7 +106,7 @@ bool IslandStepper::advance_straight_bodies(const Island& island, double from, d
   // A pin, too, may have drawn nodes to its body; what that leaves a shorter substep finds room for.
   const bool has_no_room = to - from <= longest_part_without_room;
   const bool overstretched = std::any_of(participants.begin(), participants.end(), [&](const Participant& p) {
-    return p.result.converged ? is_drawn_out(p) : has_no_room && is_drawn_out_on_bodies(p.substep, *p.state);
+    return p.result->converged ? is_drawn_out(p) : has_no_room && is_drawn_out_on_bodies(p.substep, *p.state);
   });
   if (!overstretched) return false;
   for (Participant& p : participants) p.substep.gives_in_on_bodies = true;

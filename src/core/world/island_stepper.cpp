@@ -322,7 +322,7 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
       substep.treatment = touches || on_bodies || to - from < 1 ? Treatment::damping : Treatment::cleaning;
     if (touches || on_bodies) {
       work.result = {};
-      workspace_.participants.push_back({static_cast<int>(k), cable, &work.stepper, substep, &c.state, {}});
+      workspace_.participants.push_back({static_cast<int>(k), cable, &work.stepper, substep, &c.state, &work.result});
     } else {
       work.result = work.stepper.advance(substep, c.state);
       converged = converged && work.result.converged;
@@ -343,7 +343,6 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
       balance_contacts(workspace_.contacts.touches(), substep_);
       balance_contacts(workspace_.body_system.contacts().touches(), substep_);
     }
-    for (const Participant& p : workspace_.participants) workspace_.cables[p.place].result = p.result;
   }
   converged = converged && is_finite(island);
   if (converged) {

@@ -445,10 +445,9 @@ SubstepResult Settling::advance(Approach& approach, double h) {
     result = work_.stepper.advance(substep, cable_.state);
   } else {
     workspace_.participants.clear();
-    workspace_.participants.push_back({0, index_, &work_.stepper, substep, &cable_.state, {}});
+    workspace_.participants.push_back({0, index_, &work_.stepper, substep, &cable_.state, &result});
     if (workspace_.contact_solver.solve(workspace_.participants, workspace_.contacts.touches(), nullptr, infinity))
       workspace_.contact_solver.finish(workspace_.participants, workspace_.contacts.touches());
-    result = workspace_.participants.front().result;
   }
   approach.iterations -= result.iterations;
   if (result.converged && result.displacement > settling_reach * smallest_radius(cable_)) {
