@@ -198,6 +198,8 @@ double tolerance(const Case& parameters) {
   // Joints beside a stiff end are a hundred times as stiff as the others: what is left of their angles works a hundred times as
   // much.
   if (has("StiffEnds")) return 0.05 * scale;
+  // So is a stiff section beside its soft neighbours, ten times as much.
+  if (has("StiffInside")) return 1e-3 * scale;
   // At a winch, what can stretch is wound in the middle of a step; the rest length of its end is of first order there.
   if (parameters.winch != described::Winch::none && described::is_elastic(parameters)) return 5e-3 * scale;
   // Steps that contacts keep busy are solved to 4e-3 segment lengths per second.

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -11,7 +13,7 @@
 #include "verlet_cable/scene/scene_reader.h"
 
 // What a user who has just come runs: every scene in config, offline, with the motion beside it and without. None has anything to
-// report.
+// report, but for energy that is not accounted for yet.
 
 namespace verlet_cable {
 namespace {
@@ -32,19 +34,35 @@ std::string motion_beside(const std::string& scene) {
   return "";
 }
 
+/// [J] What scenes leave unaccounted in which cables slide on each other or on obstacles, a wheel turns or a hand starts at once
+/// (doc/how_to/ledger.md). The others leave less than `rounding`, and no event tells of it.
+const std::map<std::string, double> known_unaccounted = {{"config_examples_finger", 5e-4}, {"config_examples_harness", 5e-3},
+                                                         {"config_examples_plug", 5e-3},   {"config_scene_template", 3e-2},
+                                                         {"config_scenes_crossed", 2e-4},  {"config_scenes_dress_pack", 2e-3},
+                                                         {"config_scenes_knot", 1e-3},     {"config_scenes_pile", 1e-2},
+                                                         {"config_scenes_pole", 1e-3},     {"config_scenes_table", 1e-4}};
+constexpr double rounding = 3e-4;
+
 class ExampleScene : public CableSim, public testing::WithParamInterface<std::string> {
  protected:
   const std::string scene_ = shipped_scene_path(GetParam());
   const std::string motion_ = motion_beside(scene_);
 
-  /// Exit status 0, and nothing told but what clips and winches do.
+  /// What clips and winches do, and energy where it is known to be.
+  bool is_expected(const std::string& told) const {
+    const auto is = [&](const char* event) { return told.find(event) != std::string::npos; };
+    return is("CAUGHT") || is("RELEASED") || (is("ENERGY") && known_unaccounted.count(GetParam()) > 0);
+  }
+
+  /// Exit status 0, nothing told that is not expected, and a ledger that closes.
   void expect_quiet(const std::string& arguments) {
     ASSERT_EQ(run(scene_ + arguments + " --summary " + path("s.json")), 0) << err;
     std::istringstream lines(err);
-    for (std::string line; std::getline(lines, line);)
-      EXPECT_TRUE(line.find(": CAUGHT: ") != std::string::npos || line.find(": RELEASED: ") != std::string::npos) << line;
-    for (const YAML::Node& event : summary("s.json")["events"])
-      EXPECT_TRUE(event["type"].Scalar() == "CAUGHT" || event["type"].Scalar() == "RELEASED") << event;
+    for (std::string line; std::getline(lines, line);) EXPECT_TRUE(is_expected(line)) << line;
+    const YAML::Node told = summary("s.json");
+    for (const YAML::Node& event : told["events"]) EXPECT_TRUE(is_expected(event["type"].Scalar())) << event;
+    const auto known = known_unaccounted.find(GetParam());
+    EXPECT_LT(std::abs(told["ledger"]["unaccounted"].as<double>()), known == known_unaccounted.end() ? rounding : known->second);
   }
 };
 
@@ -64,10 +82,10 @@ TEST_P(ExampleScene, hasAPoseOfEveryFrameWithWhichItsMotionBegins) {
   const Motion motion = read_motion_file(motion_);
   EXPECT_EQ(unused_frames(scene, motion), std::vector<std::string>{});
   const BoundaryInputs of_scene = FrameSource(scene, {}).at(0), of_motion = FrameSource(scene, motion).at(0);
-  constexpr double rounding = 2e-6;  // [m], [rad] six digits are written
+  constexpr double written = 2e-6;  // [m], [rad] six digits are
   for (std::size_t i = 0; i < of_scene.size(); ++i) {
-    EXPECT_LT((of_scene[i].pose.position - of_motion[i].pose.position).norm(), rounding) << frame_names(scene)[i];
-    EXPECT_LT(of_scene[i].pose.orientation.angularDistance(of_motion[i].pose.orientation), 2 * rounding) << frame_names(scene)[i];
+    EXPECT_LT((of_scene[i].pose.position - of_motion[i].pose.position).norm(), written) << frame_names(scene)[i];
+    EXPECT_LT(of_scene[i].pose.orientation.angularDistance(of_motion[i].pose.orientation), 2 * written) << frame_names(scene)[i];
   }
 }
 

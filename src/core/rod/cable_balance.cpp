@@ -65,8 +65,8 @@ void CableStepper::balance_lengths(const Substep& s, SubstepResult& result) cons
   }
 }
 
-/// What a winch does as velocities are mended at the end of a substep. `impulse`: with which the segment pushes its nodes apart, over
-/// its length [N s/m].
+/// What a winch does as velocities are mended at the end of a substep. `impulse`: with which the segment pushes its nodes apart,
+/// over its length [N s/m].
 void CableStepper::balance_mended_growth(const GrowingSegment& growing, double impulse, SubstepResult& result) const {
   const double work = impulse * target_length_[growing.segment] * growing.growth;
   result.balance.work.winches += work;
