@@ -210,7 +210,7 @@ template <class Type>
 class Fields : public ::testing::Test {};
 using Types =
     ::testing::Types<MaterialDesc, CableDesc, AttachmentDesc, NetDesc, ParticleDesc, GravityDesc, FluidDesc, CableModel,
-                     CableState, KinematicTarget, DirectionTarget, TwistSpan, LengthDrive, CachedContact, CableProgress, NetModel,
+                     CableState, KinematicTarget, DirectionTarget, TwistSpan, LengthDrive, CachedContact, CableProgress, JointProgress, BodyProgress, NetModel,
                      NetState, PointState, LinkMemory, NetProgress, SimulatedParticle, Attachment, Obstacle, Frames, State>;
 TYPED_TEST_SUITE(Fields, Types);
 

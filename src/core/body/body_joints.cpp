@@ -65,22 +65,23 @@ void BodyJoints::set_holding(const BodyEquations& equations) {
   holding_turn_ = holding_part * equations.largest_turning_resistance();
 }
 
-void BodyJoints::add_resistance(const BodyJoint& joint, const Ends& ends, const Eigen::Matrix3d& held_turns,
-                                BodyEquations& equations) const {
-  for (const End& a : ends)
-    for (const End& b : ends) {
+void BodyJoints::add_resistance(const BodyJoint& joint, const Linearised& linearised, BodyEquations& equations) const {
+  for (const End& a : linearised.ends)
+    for (const End& b : linearised.ends) {
       Matrix6& block = equations.block(a.member, b.member);
       block += holding_ * a.load * b.motion;
-      if (holds_turns(joint)) block.bottomRightCorner<3, 3>() += holding_turn_ * a.sign * b.sign * held_turns;
+      if (holds_turns(joint)) block.bottomRightCorner<3, 3>() += holding_turn_ * a.sign * b.sign * linearised.held_turns;
     }
 }
 
 void BodyJoints::add_stiffness(double part, const std::vector<MovingBody>& bodies, BodyEquations& equations) {
   set_holding(equations);
+  linearised_.clear();
   for (const BodyJoint& joint : joints_) {
     add_turning(part, bodies[joint.member], joint.member, joint.at.position, joint.force, equations);
     if (joint.other >= 0) add_turning(part, bodies[joint.other], joint.other, joint.holder.position, -joint.force, equations);
-    add_resistance(joint, ends_of(joint, bodies, BodyStage::substep), held_turns_of(joint, bodies), equations);
+    linearised_.push_back({ends_of(joint, bodies, BodyStage::substep), held_turns_of(joint, bodies)});
+    add_resistance(joint, linearised_.back(), equations);
   }
 }
 
@@ -96,36 +97,54 @@ void BodyJoints::add_loads(const std::vector<MovingBody>& bodies, BodyEquations&
   }
 }
 
+/// [N s], [N m s] Of velocities that it does not allow: those that bodies have come with, and once they are `solved` for, those
+/// that are left.
+JointWrench BodyJoints::impulse_of(const BodyJoint& joint, const std::vector<MovingBody>& bodies,
+                                   const BodyEquations* solved) const {
+  Vector3 gap = joint.holder_velocity.linear - bodies[joint.member].stepper.velocity_of(joint.at.position);
+  Vector3 turning = joint.holder_velocity.angular - bodies[joint.member].stepper.spin();
+  if (joint.other >= 0) {
+    gap += bodies[joint.other].stepper.velocity_of(joint.holder.position);
+    turning += bodies[joint.other].stepper.spin();
+  }
+  if (solved != nullptr)
+    for (const End& end : ends_of(joint, bodies, BodyStage::projection)) {
+      gap -= end.motion * solved->solution(end.member);
+      turning -= end.sign * solved->solution(end.member).tail<3>();
+    }
+  JointWrench impulse;
+  impulse.force = holding_ * gap;
+  if (holds_turns(joint)) impulse.torque = holding_turn_ * (held_turns_of(joint, bodies) * turning);
+  return impulse;
+}
+
 void BodyJoints::add_impulses(const std::vector<MovingBody>& bodies, BodyEquations& equations) {
   set_holding(equations);
   for (const BodyJoint& joint : joints_) {
-    Vector3 gap = joint.holder_velocity.linear - bodies[joint.member].stepper.velocity_of(joint.at.position);
-    Vector3 turning = joint.holder_velocity.angular - bodies[joint.member].stepper.spin();
-    if (joint.other >= 0) {
-      gap += bodies[joint.other].stepper.velocity_of(joint.holder.position);
-      turning += bodies[joint.other].stepper.spin();
-    }
-    const Eigen::Matrix3d held_turns = held_turns_of(joint, bodies);
+    const JointWrench impulse = impulse_of(joint, bodies, nullptr);
     const Ends ends = ends_of(joint, bodies, BodyStage::projection);
     for (const End& end : ends) {
-      equations.load(end.member) += holding_ * end.load * gap;
-      if (holds_turns(joint)) equations.load(end.member).tail<3>() += end.sign * holding_turn_ * (held_turns * turning);
+      equations.load(end.member) += end.load * impulse.force;
+      equations.load(end.member).tail<3>() += end.sign * impulse.torque;
     }
-    add_resistance(joint, ends, held_turns, equations);
+    add_resistance(joint, {ends, held_turns_of(joint, bodies)}, equations);
   }
 }
 
 void BodyJoints::correct(const std::vector<MovingBody>& bodies, const BodyEquations& equations) {
-  for (BodyJoint& joint : joints_) {
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    BodyJoint& joint = joints_[j];
+    // As the equations had it: what they have balanced is what joints exert.
     Vector3 way = Vector3::Zero(), turn = Vector3::Zero();
-    for (const End& end : ends_of(joint, bodies, BodyStage::substep)) {
+    for (const End& end : linearised_[j].ends) {
       way += end.motion * equations.solution(end.member);
       turn += end.sign * equations.solution(end.member).tail<3>();
     }
     joint.force_change = holding_ * (gap_of(joint, bodies) - way);
     joint.force += joint.force_change;
     if (!holds_turns(joint)) continue;
-    const Vector3 torque = held_turns_of(joint, bodies) * (joint.torque + holding_turn_ * (turn_of(joint, bodies) - turn));
+    const Vector3 torque = held_turns_of(joint, bodies) * (joint.torque + holding_turn_ * turn_of(joint, bodies)) -
+                           holding_turn_ * (linearised_[j].held_turns * turn);
     joint.torque_change = torque - joint.torque;
     joint.torque = torque;
   }
@@ -135,6 +154,26 @@ void BodyJoints::take_back(double part) {
   for (BodyJoint& joint : joints_) {
     joint.force -= part * joint.force_change;
     joint.torque -= part * joint.torque_change;
+  }
+}
+
+void BodyJoints::exert(Scheme scheme) {
+  for (BodyJoint& joint : joints_) {
+    joint.exerted.force = mean_force(scheme, joint.force, joint.lasting.force);
+    joint.exerted.torque = mean_force(scheme, joint.torque, joint.lasting.torque);
+    joint.mending = {};
+  }
+}
+
+void BodyJoints::exert_impulses(double h, const std::vector<MovingBody>& bodies, const BodyEquations& equations) {
+  for (BodyJoint& joint : joints_) {
+    const JointWrench impulse = impulse_of(joint, bodies, &equations);
+    joint.mending.force = impulse.force / h;
+    joint.mending.torque = impulse.torque / h;
+    for (JointWrench* sum : {&joint.exerted, &joint.lasting}) {
+      sum->force += joint.mending.force;
+      sum->torque += joint.mending.torque;
+    }
   }
 }
 

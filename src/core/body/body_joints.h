@@ -9,6 +9,12 @@
 
 namespace verlet_cable {
 
+/// What a joint exerts on the body that is held.
+struct JointWrench {
+  Vector3 force = Vector3::Zero();   ///< [N]
+  Vector3 torque = Vector3::Zero();  ///< [N m] about the attachment's point
+};
+
 /// What holds a body, over a substep.
 struct BodyJoint {
   int attachment = 0;  ///< index into World::attachments()
@@ -18,9 +24,12 @@ struct BodyJoint {
   int other = -1;                    ///< likewise of the one that holds it; -1: a frame does
   FrameVelocity holder_velocity;     ///< of a frame's attachment, at the end of the substep
   Pose holder;                       ///< of the attachment at the end of the substep, in the fixed frame or on the other body
-  Vector3 force = Vector3::Zero();   ///< [N] on the body that is held
-  Vector3 torque = Vector3::Zero();  ///< [N m] likewise, about the attachment's point
+  /// [N], [N m] its multipliers: what it exerts on the body that is held, where forces are taken
+  Vector3 force = Vector3::Zero(), torque = Vector3::Zero();
   Vector3 force_change = Vector3::Zero(), torque_change = Vector3::Zero();  ///< in the last correction
+  JointWrench exerted;  ///< out: all that it does to velocities, mean over the substep
+  JointWrench mending;  ///< out: the part of it that mends them at the end
+  JointWrench lasting;  ///< what accelerations come of, in at the start and out at the end; see mean_force
 };
 
 /// The joints of bodies over a substep: they act through multipliers that grow with the gap that is left (the method of
@@ -40,6 +49,10 @@ class BodyJoints {
   /// Multipliers take over what the gaps that are left after the bodies' correction call for, which are not corrected yet.
   void correct(const std::vector<MovingBody>& bodies, const BodyEquations& equations);
   void take_back(double part);  ///< of the last correction
+  /// What multipliers have done, once they are found.
+  void exert(Scheme scheme);
+  /// And impulses, once they are solved for, at the end of a substep of h [s].
+  void exert_impulses(double h, const std::vector<MovingBody>& bodies, const BodyEquations& equations);
 
  private:
   /// The body that is held, or the other one.
@@ -55,12 +68,18 @@ class BodyJoints {
     const End* begin() const { return ends.data(); }
     const End* end() const { return ends.data() + count; }
   };
+  /// What the matrix has of a joint, whose ends may have moved on since.
+  struct Linearised {
+    Ends ends;
+    Eigen::Matrix3d held_turns;
+  };
   static Ends ends_of(const BodyJoint& joint, const std::vector<MovingBody>& bodies, BodyStage stage);
+  JointWrench impulse_of(const BodyJoint& joint, const std::vector<MovingBody>& bodies, const BodyEquations* solved) const;
   void set_holding(const BodyEquations& equations);
-  void add_resistance(const BodyJoint& joint, const Ends& ends, const Eigen::Matrix3d& held_turns,
-                      BodyEquations& equations) const;
+  void add_resistance(const BodyJoint& joint, const Linearised& linearised, BodyEquations& equations) const;
 
   std::vector<BodyJoint> joints_;
+  std::vector<Linearised> linearised_;     ///< one a joint
   double holding_ = 0, holding_turn_ = 0;  ///< [N/m], [N m] of the joints' multipliers against gaps
 };
 

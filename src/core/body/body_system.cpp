@@ -191,6 +191,7 @@ void BodySystem::project(std::vector<Participant>& participants, std::vector<Sim
   add_impulses(participants);
   equations_.factor();
   equations_.solve();
+  joints_.exert_impulses(rules_.h, members_, equations_);
   for (std::size_t c = 0; c < cable_count_; ++c) {
     if (!cables_[c].is_held()) continue;
     Participant& p = participants[cables_[c].participant()];
@@ -268,6 +269,7 @@ void BodySystem::place_at_end(std::vector<Participant>& participants) {
   if (keeps_momenta()) expect_momenta(participants);
   for (std::size_t c = 0; c < cable_count_; ++c)
     cables_[c].set_holder_velocities(members_, participants[cables_[c].participant()].substep.boundary);
+  joints_.exert(rules_.scheme);
 }
 
 double BodySystem::largest_displacement() const {

@@ -54,7 +54,7 @@ class BodySystem {
   /// have finished; without them such velocities would alternate from step to step.
   void project(std::vector<Participant>& participants, std::vector<SimulatedBody>& bodies, std::vector<BodyProgress>& progress);
 
-  /// The cables' boundaries get what bodies have come to.
+  /// The cables' boundaries get what bodies have come to, and joints have exerted what they do.
   void place_at_end(std::vector<Participant>& participants);
   /// Substeps that damp keep the momenta of what no frame holds to second order; once bodies and cables have finished, what is
   /// missing is given back as a rigid body's motion.

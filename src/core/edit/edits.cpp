@@ -187,6 +187,7 @@ void World::Implementation::erase_attachment(int index) {
                                    [&](const KinematicTarget& target) { return target.attachment == index; });
     if (gone != s.holders.end()) s.holder_spins.erase(s.holder_spins.begin() + (gone - s.holders.begin()));
     forget_attachment(index, s.holders);
+    forget_attachment(index, s.joints);
     for (std::size_t k = 0; k < s.holders.size(); ++k) s.holders[k].node = static_cast<int>(k);
   }
   if (body.is_net()) update_net(body.index);

@@ -14,6 +14,7 @@ void LaneStepper::react(int c, LaneMember& member) {
     bend_clamps(c, member);
     for (const ClampJoint& clamp : clamps_[c]) boundary.directions[clamp.target].torque += clamp.torque;
   }
+  for (HeldDirection& target : boundary.directions) target.lasting_torque = target.torque;
   for (HeldNode& target : boundary.nodes) {
     const int i = target.node;
     const Vector3 flow = member.substep.environment.fluid.velocity - vector_at(LaneField::displacement_x, c, i) / h;
@@ -31,6 +32,7 @@ void LaneStepper::react(int c, LaneMember& member) {
     const Vector3 acceleration = (target.velocity - state.velocities[i]) / h;
     target.force +=
         material.drag * length * flow + state.masses[i] * (member.substep.environment.gravity.acceleration - acceleration);
+    target.lasting_force = target.force + state.masses[i] * acceleration;
   }
 }
 
@@ -42,8 +44,8 @@ void LaneStepper::react_to_projection(int c, LaneMember& member) {
     return impulse / member.substep.h * segment_at(LaneField::segment_x, c, segment);
   };
   for (HeldNode& target : member.substep.boundary.nodes) {
-    if (target.node > 0) target.mend(exerted(target.node - 1));
-    if (target.node < work_.law.segments) target.mend(-exerted(target.node));
+    if (target.node > 0) target.mend(exerted(target.node - 1), 1);
+    if (target.node < work_.law.segments) target.mend(-exerted(target.node), 1);
   }
 }
 

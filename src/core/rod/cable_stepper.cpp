@@ -581,8 +581,10 @@ void CableStepper::finish_projection(const Substep& s, CableState& state, Subste
     state.accelerations[i] += get(change, i) / s.h;
   }
   for (HeldNode& held : s.boundary.nodes) {
-    held.mend(corrected_load(held.node) / s.h);
-    if (held.body >= 0) held.velocity += get(change, held.node);
+    held.mend(corrected_load(held.node) / s.h, 1);
+    if (held.body < 0) continue;
+    held.velocity += get(change, held.node);
+    held.force -= state.masses[held.node] / s.h * get(change, held.node);
   }
   for (std::size_t k = 0; k < flows_.size(); ++k) s.boundary.flows[k].rate += flows_[k].correction;
   for (const GrowingSegment& growing : s.boundary.growing)
@@ -676,10 +678,11 @@ void CableStepper::project(const Substep& s, const std::vector<double>& masses, 
     v[n] += w[n] * impulse[n - 1] * d[n - 1];
   }
   // What the segments exert on the other nodes they exert on the holders.
+  const double lasting_part = s.scheme == Scheme::damped ? 0 : 1;
   for (HeldNode& target : s.boundary.nodes) {
     const int i = target.node;
-    if (i > 0) target.mend(impulse_[i - 1] / s.h * get(segment_, i - 1));
-    if (i < n) target.mend(-impulse_[i] / s.h * get(segment_, i));
+    if (i > 0) target.mend(impulse_[i - 1] / s.h * get(segment_, i - 1), lasting_part);
+    if (i < n) target.mend(-impulse_[i] / s.h * get(segment_, i), lasting_part);
   }
 }
 
@@ -757,7 +760,7 @@ void CableStepper::take_out_unresolved(const Substep& s, CableState& state) {
   solve_segments();
   const double share = cleaner_.take_out(s.h, s.boundary.nodes, correction(), position_, state);
   // What is taken out is what forces in the cable do: its holders feel them, too.
-  for (HeldNode& target : s.boundary.nodes) target.mend(0.5 * share * s.h * corrected_load(target.node));
+  for (HeldNode& target : s.boundary.nodes) target.mend(0.5 * share * s.h * corrected_load(target.node), 2);
   if (rod_.active()) rod_.calm_spin(state);
 }
 
@@ -779,12 +782,15 @@ void CableStepper::react(const Substep& s, const std::vector<double>& masses) {
     const int i = target.node;
     const double mass = masses[i];
     target.follow(mass, get(velocity_, i), get(displacement_, i), s.h);
-    target.force = corrected_load(i) + s.inertia() * mass / s.h * (get(displacement_, i) / s.h - get(velocity_, i));
+    const Vector3 load = corrected_load(i) + s.inertia() * mass / s.h * (get(displacement_, i) / s.h - get(velocity_, i));
+    target.force = mean_force(s.scheme, load, target.lasting_force);
     if (!s.statics) target.force -= mass * (target.velocity - get(velocity_, i)) / s.h;
     if (!flows_.empty()) target.force += flow_reaction(s, i);
   }
   if (bending_.active()) with_material([&] { bending_.react(displacement_, s.boundary.directions); });
   if (twist_.active()) twist_.react(s.boundary);
+  for (HeldDirection& target : s.boundary.directions)
+    target.torque = mean_force(s.scheme, target.torque, target.lasting_torque);
 }
 
 /// The force of bending and twist along a segment [N].

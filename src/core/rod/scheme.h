@@ -26,4 +26,16 @@ inline VelocityWeights velocity_weights(Scheme scheme) {
   return {2, -1, 0};
 }
 
+/// The mean over a substep of what a force does to velocities. Those of damped substeps go on from the accelerations at the start:
+/// `lasting` is the force that these come of, and then that of the accelerations at the end.
+template <class Vector>
+Vector mean_force(Scheme scheme, const Vector& force, Vector& lasting) {
+  if (scheme != Scheme::damped) return lasting = force;
+  // Of u / h - v = h force / (2 m) and a = lasting / m.
+  const VelocityWeights weights = velocity_weights(scheme);
+  const Vector mean = 0.5 * weights.displacement * force + weights.acceleration * lasting;
+  lasting = 0.5 * (force + lasting);
+  return mean;
+}
+
 }  // namespace verlet_cable

@@ -16,6 +16,9 @@ struct HeldNode {
   Vector3 force = Vector3::Zero();     ///< [N] out: what the cable exerts on the holder, mean over the substep
   /// [N] out: the part of it that comes of velocities which are mended once the substep has reached its end
   Vector3 mending_force = Vector3::Zero();
+  /// [N] likewise, without the inertia of the node: what the cable's accelerations come of, in at the start and out at the end of
+  /// the substep; see mean_force
+  Vector3 lasting_force = Vector3::Zero();
   Vector3 displacement = Vector3::Zero();  ///< [m] out: of the node, over the substep
   /// [J] out: what the node gains where its holder's velocities at the start and the end are not those of its way
   double unresolved = 0;
@@ -32,9 +35,11 @@ struct HeldNode {
     mending_force.setZero();
     unresolved = mass * (velocity - start).dot(0.5 * (start + velocity) - way / h);
   }
-  void mend(const Vector3& with_force) {
+  /// `lasting_part`: by how much of it the accelerations at the end are mended.
+  void mend(const Vector3& with_force, double lasting_part) {
     force += with_force;
     mending_force += with_force;
+    lasting_force += lasting_part * with_force;
   }
 };
 
@@ -44,6 +49,7 @@ struct HeldDirection {
   Quaternion start = Quaternion::Identity();  ///< x along the cable
   Quaternion end = Quaternion::Identity();
   Vector3 torque = Vector3::Zero();  ///< [N m] out: what the cable exerts on the holder, mean over the substep
+  Vector3 lasting_torque = Vector3::Zero();  ///< [N m] in and out, as HeldNode::lasting_force
   /// [rad] of a whole rod: between the segment before and the clamp, and between the clamp and the segment after it. In: at the
   /// start, if the clamp is inside; out: at the end of the substep
   double twist_before = 0, twist_after = 0;

@@ -279,6 +279,7 @@ void hold_at(double from, double to, const KinematicTargets& targets, Boundary& 
     held.position = to == 1 ? target.next_position : target.position + to * (target.next_position - target.position);
     held.velocity = target.velocity + to * (target.next_velocity - target.velocity);
     held.force.setZero();
+    held.lasting_force = target.lasting_force;
   }
   hold_directions_at(from, to, targets, boundary.directions);
 }
@@ -294,6 +295,7 @@ void hold_directions_at(double from, double to, const KinematicTargets& targets,
     directions[k].start = target.orientation.slerp(from, target.next_orientation);
     directions[k].end = target.orientation.slerp(to, target.next_orientation);
     directions[k].torque.setZero();
+    directions[k].lasting_torque = target.lasting_torque;
   }
 }
 
@@ -356,6 +358,12 @@ void keep_twist(const Boundary& boundary, KinematicTargets& targets) {
     targets.directions[k].twist_before = boundary.directions[k].twist_before;
     targets.directions[k].twist_after = boundary.directions[k].twist_after;
   }
+}
+
+void keep_lasting_forces(const Boundary& boundary, KinematicTargets& targets) {
+  for (std::size_t k = 0; k < targets.nodes.size(); ++k) targets.nodes[k].lasting_force = boundary.nodes[k].lasting_force;
+  for (std::size_t k = 0; k < targets.directions.size(); ++k)
+    targets.directions[k].lasting_torque = boundary.directions[k].lasting_torque;
 }
 
 Boundary boundary_now(const KinematicTargets& targets) {

@@ -38,6 +38,7 @@ struct KinematicTarget {
   double least_excess = 0;                ///< [m/s] of those between
   double greatest_excess = 0;             ///< [m/s] of those between
   bool slides = false;                    ///< whether the cable's material flows through it
+  Vector3 lasting_force = Vector3::Zero();  ///< [N] as HeldNode has it
 };
 
 /// The motion of a direction and roll that a clamp holds, over a step.
@@ -53,6 +54,7 @@ struct DirectionTarget {
   /// [rad] of a whole rod that is clamped inside, any number of turns: between the segment before and the clamp, and between the
   /// clamp and the segment after it
   double twist_before = 0, twist_after = 0;
+  Vector3 lasting_torque = Vector3::Zero();  ///< [N m] as HeldDirection has it
 };
 
 /// What holds a cable; both ascending by node.
@@ -147,6 +149,9 @@ void follow_bodies(const Boundary& boundary, KinematicTargets& targets);
 
 /// Takes over how whole rods are twisted at their clamps after a substep.
 void keep_twist(const Boundary& boundary, KinematicTargets& targets);
+
+/// Takes over what holders have borne in a substep, as the next one is to know it.
+void keep_lasting_forces(const Boundary& boundary, KinematicTargets& targets);
 
 /// Whether a cable slides through any of its holders.
 inline bool slides(const KinematicTargets& targets) {

@@ -124,7 +124,7 @@ BodySettling::Outcome BodySettling::advance(double h) {
       workspace_.body_members.push_back({body, &state_.bodies[body], &state_.body_progress[body]});
   BodySystem& system = workspace_.body_system;
   system.begin(workspace_.body_members, workspace_.participants, state_.bodies, state_.scene->gravity, {h, true});
-  find_body_joints(island_, state_, 0, 1, workspace_);
+  find_body_joints(island_, state_, 1, workspace_);
 
   Outcome outcome;
   std::vector<Touch>& touches = workspace_.contacts.touches();
@@ -156,6 +156,7 @@ BodySettling::Outcome BodySettling::advance(double h) {
     state_.attachments[joint.attachment].force = -joint.force;
     state_.attachments[joint.attachment].torque = -joint.torque;
   }
+  keep_body_joints(island_, system.joints(), state_);
   workspace_.contacts.keep(workspace_.members);
   for (const BodyMember& member : workspace_.body_members)
     BodyTouches::keep(member.body, system.contacts().touches(), state_.body_progress[member.body].contacts);

@@ -44,7 +44,7 @@ bool is_drawn_out(const Participant& p) {
 
 }  // namespace
 
-void find_body_joints(const Island& island, const State& state, double from, double to, Workspace& workspace) {
+void find_body_joints(const Island& island, const State& state, double to, Workspace& workspace) {
   BodySystem& system = workspace.body_system;
   system.joints().clear();
   for (const int a : island.held) {
@@ -56,11 +56,22 @@ void find_body_joints(const Island& island, const State& state, double from, dou
     joint.at = attachment.at;
     joint.other = attachment.holder < 0 ? -1 : system.member_of(attachment.holder);
     joint.holder = joint.other < 0 ? frame_at(state.frames, attachment.frame, to) * attachment.pose : attachment.pose;
-    const double share = from > 0 ? from : 1;
-    joint.force = -attachment.force / share;
-    joint.torque = -attachment.torque / share;
+    const std::vector<JointProgress>& known = state.body_progress[held_body(attachment)].joints;
+    const auto before = std::find_if(known.begin(), known.end(), [&](const JointProgress& p) { return p.attachment == a; });
+    if (before != known.end()) {
+      joint.force = before->force;
+      joint.torque = before->torque;
+      joint.lasting = {before->lasting_force, before->lasting_torque};
+    }
     if (joint.member >= 0) system.joints().push_back(joint);
   }
+}
+
+void keep_body_joints(const Island& island, const std::vector<BodyJoint>& joints, State& state) {
+  for (const int body : island.bodies) state.body_progress[body].joints.clear();
+  for (const BodyJoint& joint : joints)
+    state.body_progress[held_body(state.attachments[joint.attachment])].joints.push_back(
+        {joint.attachment, joint.force, joint.torque, joint.lasting.force, joint.lasting.torque});
 }
 
 /// Puts the bodies of an island where the substep begins; the cables that they hold take part.
@@ -72,7 +83,7 @@ void IslandStepper::begin_bodies(const Island& island, double from, double to, S
     if (state_.body_progress[body].is_placed) members.push_back({body, &state_.bodies[body], &state_.body_progress[body]});
   workspace_.body_system.begin(members, workspace_.participants, state_.bodies, state_.scene->gravity, rules);
   projects_bodies_ = scheme != Scheme::conserving || touches();
-  find_body_joints(island, state_, from, to, workspace_);
+  find_body_joints(island, state_, to, workspace_);
   for (BodyJoint& joint : workspace_.body_system.joints())
     if (joint.other < 0) follow_body_holder(joint, to);
   for (const BodyMember& member : members) projects_bodies_ = projects_bodies_ || !member.progress->has_moved;
@@ -276,13 +287,16 @@ Pose IslandStepper::body_holder_at(const BodyJoint& joint, double part) const {
           frame_at(state_.frames, attachment.frame, turned).orientation * attachment.pose.orientation};
 }
 
-/// What frames do to the bodies that they hold.
+/// What frames do to the bodies that they hold. As velocities are mended no motion has it.
 void IslandStepper::balance_bodies(double from, double to) {
   for (const BodyJoint& joint : workspace_.body_system.joints()) {
     if (joint.other >= 0) continue;
     const Pose before = body_holder_at(joint, from), after = body_holder_at(joint, to);
-    substep_.work.attachments +=
-        work_of(joint.force, after.position - before.position, joint.torque, before.orientation, after.orientation);
+    const auto work = [&](const JointWrench& of) {
+      return work_of(of.force, after.position - before.position, of.torque, before.orientation, after.orientation);
+    };
+    substep_.work.attachments += work(joint.exerted);
+    substep_.dissipated.unresolved += work(joint.mending);
   }
 }
 
@@ -330,9 +344,10 @@ void IslandStepper::finish_bodies(const Island& island, double from, double to) 
   for (const BodyJoint& joint : workspace_.body_system.joints()) {
     Attachment& attachment = state_.attachments[joint.attachment];
     if (from == 0) attachment.force = attachment.torque = Vector3::Zero();
-    attachment.force -= (to - from) * joint.force;
-    attachment.torque -= (to - from) * joint.torque;
+    attachment.force -= (to - from) * joint.exerted.force;
+    attachment.torque -= (to - from) * joint.exerted.torque;
   }
+  keep_body_joints(island, workspace_.body_system.joints(), state_);
   if (to < 1) return;
   for (const int body : island.bodies) {
     KinematicTargets targets;
@@ -348,6 +363,7 @@ void IslandStepper::stop_bodies(const Island& island) {
   for (const int body : island.bodies) {
     state_.bodies[body].velocity = state_.bodies[body].angular_velocity = Vector3::Zero();
     state_.body_progress[body].acceleration = state_.body_progress[body].angular_acceleration = Vector3::Zero();
+    state_.body_progress[body].joints.clear();
   }
   for (const BodyJoint& joint : workspace_.body_system.joints()) {
     Attachment& attachment = state_.attachments[joint.attachment];

@@ -349,6 +349,7 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     if (!island.bodies.empty()) finish_bodies(island, from, to);
     for (std::size_t k = 0; k < island.cables.size(); ++k) {
       keep_twist(workspace_.cables[k].boundary, state_.cable_progress[island.cables[k]].targets);
+      keep_lasting_forces(workspace_.cables[k].boundary, state_.cable_progress[island.cables[k]].targets);
       keep_flows(island.cables[k], workspace_.cables[k].boundary, state_);
       keep_flow_at_drive(island.cables[k], workspace_.cables[k].wound, state_);
     }

@@ -60,9 +60,11 @@ void add_forces(const Boundary& boundary, const KinematicTargets& targets, const
 /// Before a step's forces are added.
 void forget_forces(const KinematicTargets& targets, std::vector<Attachment>& attachments);
 
-/// What holds the bodies of an island over a part of a step, 0 to 1, for the members of the workspace. Multipliers begin with
-/// what they were in the step before, or have been in this one.
-void find_body_joints(const Island& island, const State& state, double from, double to, Workspace& workspace);
+/// What holds the bodies of an island up to a part of a step, 0 to 1, for the members of the workspace. Multipliers begin with
+/// what they were in the substep before.
+void find_body_joints(const Island& island, const State& state, double to, Workspace& workspace);
+/// The next substep will know what they have done.
+void keep_body_joints(const Island& island, const std::vector<BodyJoint>& joints, State& state);
 
 /// Twist and roll of the material: from the clamps where there are any, else the first segment's is carried along in time.
 void follow_material(const CableModel& model, const std::vector<HeldDirection>& directions, const std::vector<TwistSpan>& spans,

@@ -145,12 +145,12 @@ auto fields(T& x, const KinematicTarget*) {
   return std::tie(x.attachment, x.node, x.position, x.velocity, x.mean_velocity, x.starts, x.gap, x.caught, x.next_position,
                   x.next_velocity, x.frame_velocity, x.average_velocity, x.change, x.left_velocity, x.left_for, x.liveliness,
                   x.jumping_steps, x.jumped_from, x.carried, x.first_excess, x.last_excess, x.least_excess, x.greatest_excess,
-                  x.slides);
+                  x.slides, x.lasting_force);
 }
 template <class T>
 auto fields(T& x, const DirectionTarget*) {
   return std::tie(x.attachment, x.node, x.orientation, x.gap, x.caught, x.next_orientation, x.roll, x.twist_before,
-                  x.twist_after);
+                  x.twist_after, x.lasting_torque);
 }
 template <class T>
 auto fields(T& x, const KinematicTargets*) {
@@ -253,9 +253,13 @@ auto fields(T& x, const BodyShape*) {
   return std::tie(x.pose, x.shape);
 }
 template <class T>
+auto fields(T& x, const JointProgress*) {
+  return std::tie(x.attachment, x.force, x.torque, x.lasting_force, x.lasting_torque);
+}
+template <class T>
 auto fields(T& x, const BodyProgress*) {
   return std::tie(x.is_placed, x.has_moved, x.acceleration, x.angular_acceleration, x.holders, x.contacts, x.holder_spins,
-                  x.energy);
+                  x.joints, x.energy);
 }
 template <class T>
 auto fields(T& x, const SimulatedBody*) {

@@ -76,6 +76,7 @@ void IslandStepper::complete_whole_step(const Island& island, Boundary& boundary
   const int cable = island.cables.front();
   CableProgress& memory = state_.cable_progress[cable];
   memory.contacts.clear();
+  keep_lasting_forces(boundary, memory.targets);
   note_substep(cable, boundary, result, 1);
   outcomes_[cable].balance.dissipated.unresolved += std::max(0.0, unresolved_of(boundary, result));
   complete_cable(cable, boundary, 1);

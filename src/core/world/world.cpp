@@ -125,6 +125,7 @@ bool World::settle() {
   w.findings.unsettled.clear();
   w.forget_last_step();
   for (Attachment& attachment : w.state.attachments) attachment.force = attachment.torque = Vector3::Zero();
+  for (BodyProgress& body : w.state.body_progress) body.joints.clear();
   for (int cable = 0; cable < static_cast<int>(w.state.cables.size()); ++cable) {
     const KinematicTargets& targets = w.state.cable_progress[cable].targets;
     if (targets.nodes.empty() || follows_bodies(targets, w.state.attachments)) continue;
