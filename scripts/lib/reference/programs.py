@@ -7,7 +7,7 @@ from reference.markdown import anchor, fence, generated, table
 
 BUILT = ['cable_sim', 'cable_fit']
 INSTALLED = ['cable_sweep', 'record_to_csv', 'play_motion.py']
-OF_CHECKOUT = ['demo', 'test', 'bench', 'sweep', 'pictures', 'docs', 'real', 'fuzz', 'sanitize', 'soak']
+OF_CHECKOUT = ['demo', 'test', 'bench', 'audit', 'sweep', 'pictures', 'docs', 'real', 'fuzz', 'sanitize', 'soak']
 
 
 def help_of(program):

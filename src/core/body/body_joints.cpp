@@ -118,8 +118,9 @@ JointWrench BodyJoints::impulse_of(const BodyJoint& joint, const std::vector<Mov
   return impulse;
 }
 
-void BodyJoints::add_impulses(const std::vector<MovingBody>& bodies, BodyEquations& equations) {
-  set_holding(equations);
+void BodyJoints::add_impulses(double mass, const std::vector<MovingBody>& bodies, BodyEquations& equations) {
+  holding_ = holding_part * mass;
+  holding_turn_ = holding_part * equations.largest_turning_resistance();
   for (const BodyJoint& joint : joints_) {
     const JointWrench impulse = impulse_of(joint, bodies, nullptr);
     const Ends ends = ends_of(joint, bodies, BodyStage::projection);

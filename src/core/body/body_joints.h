@@ -44,8 +44,9 @@ class BodyJoints {
   /// Adds how joints resist, `part` of the substep being where forces are taken; all else is in the equations.
   void add_stiffness(double part, const std::vector<MovingBody>& bodies, BodyEquations& equations);
   void add_loads(const std::vector<MovingBody>& bodies, BodyEquations& equations) const;
-  /// Lets joints end the velocities that they do not allow; matrix and loads; all else is in the equations.
-  void add_impulses(const std::vector<MovingBody>& bodies, BodyEquations& equations);
+  /// Lets joints end the velocities that they do not allow; matrix and loads. The inertia of bodies is in the equations, cables are
+  /// not: what resists these impulses is mass, in all `mass` [kg], and taut cables would make it seem more than numbers can hold.
+  void add_impulses(double mass, const std::vector<MovingBody>& bodies, BodyEquations& equations);
   /// Multipliers take over what the gaps that are left after the bodies' correction call for, which are not corrected yet.
   void correct(const std::vector<MovingBody>& bodies, const BodyEquations& equations);
   void take_back(double part);  ///< of the last correction

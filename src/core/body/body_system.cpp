@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace verlet_cable {
 
@@ -224,6 +225,10 @@ void BodySystem::add_inertia() {
 
 /// Along inextensible segments and in joints.
 void BodySystem::add_impulses(std::vector<Participant>& participants) {
+  double mass = 0;
+  for (const MovingBody& member : members_) mass += member.whole.mass;
+  for (const Participant& p : participants) mass += std::accumulate(p.state->masses.begin(), p.state->masses.end(), 0.0);
+  joints_.add_impulses(mass, members_, equations_);
   for (std::size_t c = 0; c < cable_count_; ++c) {
     if (!cables_[c].is_held()) continue;
     Participant& p = participants[cables_[c].participant()];
@@ -233,7 +238,6 @@ void BodySystem::add_impulses(std::vector<Participant>& participants) {
     cables_[c].add_loads(members_, BodyStage::projection, equations_);
     cables_[c].add_resistance(members_, BodyStage::projection, p, equations_);
   }
-  joints_.add_impulses(members_, equations_);
 }
 
 void BodySystem::expect_momenta(const std::vector<Participant>& participants) {
