@@ -208,10 +208,10 @@ std::size_t size_of_fields() {
 
 template <class Type>
 class Fields : public ::testing::Test {};
-using Types =
-    ::testing::Types<MaterialDesc, CableDesc, AttachmentDesc, NetDesc, ParticleDesc, GravityDesc, FluidDesc, CableModel,
-                     CableState, KinematicTarget, DirectionTarget, TwistSpan, LengthDrive, CachedContact, CableProgress, JointProgress, BodyProgress, NetModel,
-                     NetState, PointState, LinkMemory, NetProgress, SimulatedParticle, Attachment, Obstacle, Frames, State>;
+using Types = ::testing::Types<MaterialDesc, CableDesc, AttachmentDesc, NetDesc, ParticleDesc, GravityDesc, FluidDesc, CableModel,
+                               CableState, KinematicTarget, DirectionTarget, TwistSpan, LengthDrive, CachedContact, CableProgress,
+                               JointProgress, BodyProgress, NetModel, NetState, PointState, LinkMemory, NetProgress,
+                               SimulatedParticle, Attachment, Obstacle, Frames, State>;
 TYPED_TEST_SUITE(Fields, Types);
 
 TYPED_TEST(Fields, AreAllListed) {

@@ -19,11 +19,11 @@ struct JointWrench {
 struct BodyJoint {
   int attachment = 0;  ///< index into World::attachments()
   AttachmentType type = AttachmentType::hinge;
-  int member = 0;                    ///< index of the body that is held, among the members
-  Pose at;                           ///< on that body
-  int other = -1;                    ///< likewise of the one that holds it; -1: a frame does
-  FrameVelocity holder_velocity;     ///< of a frame's attachment, at the end of the substep
-  Pose holder;                       ///< of the attachment at the end of the substep, in the fixed frame or on the other body
+  int member = 0;                 ///< index of the body that is held, among the members
+  Pose at;                        ///< on that body
+  int other = -1;                 ///< likewise of the one that holds it; -1: a frame does
+  FrameVelocity holder_velocity;  ///< of a frame's attachment, at the end of the substep
+  Pose holder;                    ///< of the attachment at the end of the substep, in the fixed frame or on the other body
   /// [N], [N m] its multipliers: what it exerts on the body that is held, where forces are taken
   Vector3 force = Vector3::Zero(), torque = Vector3::Zero();
   Vector3 force_change = Vector3::Zero(), torque_change = Vector3::Zero();  ///< in the last correction
@@ -44,8 +44,9 @@ class BodyJoints {
   /// Adds how joints resist, `part` of the substep being where forces are taken; all else is in the equations.
   void add_stiffness(double part, const std::vector<MovingBody>& bodies, BodyEquations& equations);
   void add_loads(const std::vector<MovingBody>& bodies, BodyEquations& equations) const;
-  /// Lets joints end the velocities that they do not allow; matrix and loads. The inertia of bodies is in the equations, cables are
-  /// not: what resists these impulses is mass, in all `mass` [kg], and taut cables would make it seem more than numbers can hold.
+  /// Lets joints end the velocities that they do not allow; matrix and loads. The inertia of bodies is in the equations, cables
+  /// are not: what resists these impulses is mass, in all `mass` [kg], and taut cables would make it seem more than numbers can
+  /// hold.
   void add_impulses(double mass, const std::vector<MovingBody>& bodies, BodyEquations& equations);
   /// Multipliers take over what the gaps that are left after the bodies' correction call for, which are not corrected yet.
   void correct(const std::vector<MovingBody>& bodies, const BodyEquations& equations);

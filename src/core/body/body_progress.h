@@ -7,10 +7,11 @@
 
 namespace verlet_cable {
 
-/// What the next substep goes on from at an attachment of a body; on the body that is held, the torque about the attachment's point.
+/// What the next substep goes on from at an attachment of a body; on the body that is held, the torque about the attachment's
+/// point.
 struct JointProgress {
-  int attachment = 0;                                                   ///< index into World::attachments()
-  Vector3 force = Vector3::Zero(), torque = Vector3::Zero();            ///< [N], [N m] its multipliers
+  int attachment = 0;                                         ///< index into World::attachments()
+  Vector3 force = Vector3::Zero(), torque = Vector3::Zero();  ///< [N], [N m] its multipliers
   /// [N], [N m] what accelerations come of, see mean_force
   Vector3 lasting_force = Vector3::Zero(), lasting_torque = Vector3::Zero();
 };

@@ -789,8 +789,7 @@ void CableStepper::react(const Substep& s, const std::vector<double>& masses) {
   }
   if (bending_.active()) with_material([&] { bending_.react(displacement_, s.boundary.directions); });
   if (twist_.active()) twist_.react(s.boundary);
-  for (HeldDirection& target : s.boundary.directions)
-    target.torque = mean_force(s.scheme, target.torque, target.lasting_torque);
+  for (HeldDirection& target : s.boundary.directions) target.torque = mean_force(s.scheme, target.torque, target.lasting_torque);
 }
 
 /// The force of bending and twist along a segment [N].

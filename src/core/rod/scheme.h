@@ -26,8 +26,8 @@ inline VelocityWeights velocity_weights(Scheme scheme) {
   return {2, -1, 0};
 }
 
-/// The mean over a substep of what a force does to velocities. Those of damped substeps go on from the accelerations at the start:
-/// `lasting` is the force that these come of, and then that of the accelerations at the end.
+/// The mean over a substep of what a force does to velocities. Those of damped substeps go on from the accelerations at the
+/// start: `lasting` is the force that these come of, and then that of the accelerations at the end.
 template <class Vector>
 Vector mean_force(Scheme scheme, const Vector& force, Vector& lasting) {
   if (scheme != Scheme::damped) return lasting = force;

@@ -49,7 +49,8 @@ struct HeldDirection {
   Quaternion start = Quaternion::Identity();  ///< x along the cable
   Quaternion end = Quaternion::Identity();
   Vector3 torque = Vector3::Zero();  ///< [N m] out: what the cable exerts on the holder, mean over the substep
-  Vector3 lasting_torque = Vector3::Zero();  ///< [N m] in and out, as HeldNode::lasting_force
+  /// [N m] in and out, as HeldNode::lasting_force
+  Vector3 lasting_torque = Vector3::Zero();
   /// [rad] of a whole rod: between the segment before and the clamp, and between the clamp and the segment after it. In: at the
   /// start, if the clamp is inside; out: at the end of the substep
   double twist_before = 0, twist_after = 0;

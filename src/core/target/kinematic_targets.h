@@ -38,7 +38,8 @@ struct KinematicTarget {
   double least_excess = 0;                ///< [m/s] of those between
   double greatest_excess = 0;             ///< [m/s] of those between
   bool slides = false;                    ///< whether the cable's material flows through it
-  Vector3 lasting_force = Vector3::Zero();  ///< [N] as HeldNode has it
+  /// [N] as HeldNode has it
+  Vector3 lasting_force = Vector3::Zero();
 };
 
 /// The motion of a direction and roll that a clamp holds, over a step.
@@ -54,7 +55,8 @@ struct DirectionTarget {
   /// [rad] of a whole rod that is clamped inside, any number of turns: between the segment before and the clamp, and between the
   /// clamp and the segment after it
   double twist_before = 0, twist_after = 0;
-  Vector3 lasting_torque = Vector3::Zero();  ///< [N m] as HeldDirection has it
+  /// [N m] as HeldDirection has it
+  Vector3 lasting_torque = Vector3::Zero();
 };
 
 /// What holds a cable; both ascending by node.

@@ -149,8 +149,8 @@ auto fields(T& x, const KinematicTarget*) {
 }
 template <class T>
 auto fields(T& x, const DirectionTarget*) {
-  return std::tie(x.attachment, x.node, x.orientation, x.gap, x.caught, x.next_orientation, x.roll, x.twist_before,
-                  x.twist_after, x.lasting_torque);
+  return std::tie(x.attachment, x.node, x.orientation, x.gap, x.caught, x.next_orientation, x.roll, x.twist_before, x.twist_after,
+                  x.lasting_torque);
 }
 template <class T>
 auto fields(T& x, const KinematicTargets*) {
