@@ -15,7 +15,7 @@ namespace {
 constexpr double MaterialDesc::*tunable_of_material[] = {&MaterialDesc::axial_stiffness,   &MaterialDesc::torsional_stiffness,
                                                          &MaterialDesc::axial_damping,     &MaterialDesc::bending_damping,
                                                          &MaterialDesc::torsional_damping, &MaterialDesc::drag,
-                                                         &MaterialDesc::friction};
+                                                         &MaterialDesc::friction,          &MaterialDesc::rolling_friction};
 
 template <class Part>
 void add_vector(const std::string& name, const std::string& description, Part SceneDesc::*part, Vector3 Part::*vector,

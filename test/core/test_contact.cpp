@@ -108,6 +108,65 @@ TEST(Contact, RopeSticksToAnInclineBelowTheAngleOfFriction) {
   EXPECT_LT((world.cables()[0].state.positions[0] - before).norm(), 1e-6);
 }
 
+/// A rope across the fall line of a plane, after a second: how fast it comes down [m/s].
+double speed_across_an_incline(const MaterialDesc& changed, double slope, double friction) {
+  SceneDesc scene = incline(slope, friction);
+  MaterialDesc& material = scene.materials[0].material;
+  material.rolling_friction = changed.rolling_friction;
+  material.torsional_stiffness = changed.torsional_stiffness;
+  const Vector3 normal{std::sin(slope), 0, std::cos(slope)};
+  scene.cables[0].initial.from = radius * normal;
+  scene.cables[0].initial.to = radius * normal + Vector3::UnitY();
+  World world(scene, BoundaryInputs(1));
+  run(world, 1.0);
+  return world.cables()[0].state.velocities[25].norm();
+}
+
+TEST(Contact, RopeRollsDownAnInclineAgainstItsRollingFriction) {
+  const double slope = 0.4, friction = 0.5;
+  MaterialDesc material;
+  for (const double part : {0.0, 0.4, 0.8}) {
+    material.rolling_friction = part;
+    // Without the inertia of its spin; at first it sinks in by a thousandth of its radius.
+    const double expected = 9.81 * (std::sin(slope) - part * friction * std::cos(slope));
+    EXPECT_NEAR(speed_across_an_incline(material, slope, friction), expected, 0.01 * expected) << part;
+  }
+  // What does not roll sticks, and friction along the cable is what it is.
+  material.rolling_friction = 1;
+  EXPECT_LT(speed_across_an_incline(material, slope, friction), 1e-6);
+  material.rolling_friction = 0;
+  material.torsional_stiffness = 1e-3;
+  EXPECT_LT(speed_across_an_incline(material, slope, friction), 1e-6);
+  SceneDesc along = incline(slope, friction);
+  along.materials[0].material.rolling_friction = 0;
+  World world(along, BoundaryInputs(1));
+  run(world, 1.0);
+  EXPECT_LT(fastest(world), 1e-6);
+}
+
+TEST(Contact, FrictionAlongWhatRollsIsTheOtherLegOfTheCone) {
+  // It slips in a direction of 60 degrees to the axis of a cable that rolls against 0.6 of the friction: across it there are 0.6
+  // of what there can be, and along it sqrt(1 - 0.6^2).
+  Touch touch;
+  touch.friction = 0.5;
+  touch.radius = 1;
+  touch.base_stiffness = 100;
+  touch.gap = -0.01;
+  touch.yields = true;  // it is linear
+  touch.rolling = {Rolling{Vector3::UnitY(), 0.6}, {}};
+  touch.rolling_count = 1;
+  start_touch(touch);
+  const Vector3 slip = 10 * Vector3(0.5, std::sqrt(0.75), 0);
+  evaluate_touch(slip, touch);
+  const double normal_force = 1, limit = touch.friction * normal_force;
+  EXPECT_NEAR((touch.force - Vector3(-0.8 * limit, -0.6 * limit, normal_force)).norm(), 0, 1e-12);
+  // The matrix is a secant of the force.
+  EXPECT_NEAR((slope(touch) * slip + touch.force - normal_force * Vector3::UnitZ()).norm(), 0, 1e-9);
+  // What slips along it rolls not.
+  evaluate_touch({10, 0.01, 0}, touch);
+  EXPECT_NEAR(touch.force.x(), -limit, 1e-5);
+}
+
 TEST(Contact, StiffRodWithoutDampingDoesNotRingItselfDownAnIncline) {
   const double slope = std::atan(0.8 * 0.5);
   for (const double stiffness : {0.1, 10.0}) {

@@ -151,6 +151,8 @@ const Mistake mistakes[] = {
     {"infiniteRestTwist", color, "rest_twist: .inf", "cables[0].rest_twist: inf;"},
     {"tightTolerance", "cables:", "tolerance: 1e-7\ncables:", "tolerance: 1e-07; allowed: any number from 1e-6 to 1e-3 [1/s]"},
     {"badNumericalDamping", "cables:", "numerical_damping: 1\ncables:", "numerical_damping: 1; allowed: true | false"},
+    {"moreRollingFrictionThanFriction", "radius: 0.005", "radius: 0.005, rolling_friction: 1.5",
+     "materials.m.rolling_friction: 1.5; allowed: any number from 0 to 1"},
     {"negativeDamping", "radius: 0.005", "radius: 0.005, torsional_damping: -1", "materials.m.torsional_damping: -1;"},
     {"infiniteDamping", "radius: 0.005", "radius: 0.005, axial_damping: .inf", "materials.m.axial_damping: inf;"},
     {"zeroBreakingTension", "radius: 0.005", "radius: 0.005, breaking_tension: 0", "materials.m.breaking_tension: 0;"},

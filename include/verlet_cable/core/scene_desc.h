@@ -38,6 +38,7 @@ struct MaterialDesc {
   double torsional_damping = 0;        ///< [N m^2 s] moment per twist rate, >= 0
   double drag = 0;                     ///< [kg/(m s)] linear drag per unit length, >= 0
   double friction = 0.5;               ///< Coulomb coefficient against obstacles, >= 0
+  double rolling_friction = 1;         ///< without torsional stiffness: part of friction that resists rolling, 0 to 1
   double breaking_tension = infinity;  ///< [N], > 0
   double minimum_bend_radius = 0;      ///< [m], >= 0; a smaller radius is reported as an event; 0: never
   double maximum_tension = infinity;   ///< [N], > 0; a larger tension is reported as an event

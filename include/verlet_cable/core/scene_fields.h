@@ -69,7 +69,7 @@ constexpr std::array<Field<FluidDesc>, 4> fluid_fields{{
     {"tangential_drag", &FluidDesc::tangential_drag, "", not_negative},
 }};
 
-constexpr std::array<Field<MaterialDesc>, 12> material_fields{{
+constexpr std::array<Field<MaterialDesc>, 13> material_fields{{
     {"linear_density", &MaterialDesc::linear_density, "kg/m", positive, true},
     {"radius", &MaterialDesc::radius, "m", positive, true},
     {"axial_stiffness", &MaterialDesc::axial_stiffness, "N", positive_or_infinite},
@@ -79,6 +79,7 @@ constexpr std::array<Field<MaterialDesc>, 12> material_fields{{
     {"torsional_damping", &MaterialDesc::torsional_damping, "N m^2 s", not_negative},
     {"drag", &MaterialDesc::drag, "kg/(m s)", not_negative},
     {"friction", &MaterialDesc::friction, "", not_negative},
+    {"rolling_friction", &MaterialDesc::rolling_friction, "", {0, 1, "any number from 0 to 1"}},
     {"breaking_tension", &MaterialDesc::breaking_tension, "N", positive_or_infinite},
     {"minimum_bend_radius", &MaterialDesc::minimum_bend_radius, "m", not_negative},
     {"maximum_tension", &MaterialDesc::maximum_tension, "N", positive_or_infinite},

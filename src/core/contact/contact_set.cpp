@@ -54,6 +54,25 @@ bool continues(const CachedContact& last, const Touch& touch) {
   return std::max(last.other_key, touch.other_key) - std::min(last.other_key, touch.other_key) <= reach;
 }
 
+/// A cable's direction at a node or segment.
+Vector3 direction_at(const CableState& state, std::uint64_t element) {
+  const auto place = static_cast<int>(element / 2);
+  const int last = element % 2 == 0 ? std::min(place + 1, state.segments()) : place + 1;
+  const int first = element % 2 == 0 ? std::max(place - 1, 0) : place;
+  return (state.positions[last] - state.positions[first]).normalized();
+}
+
+/// Tells a touch of a cable that may roll in which direction (of any length), and by which part of friction that is resisted.
+void let_roll(double part, const Vector3& across, Touch& touch) {
+  const double size = across.norm();
+  if (part < 1 && size > 0) touch.rolling[touch.rolling_count++] = {across / size, part};
+}
+
+/// A cable with torsional stiffness rolls as its twist lets it.
+double rolling_part(const MaterialDesc& material) {
+  return material.torsional_stiffness > 0 ? 1 : material.rolling_friction;
+}
+
 bool apart(const Vector3& least, const Vector3& largest, const Aabb& box, double reach) {
   return (largest.array() + reach < box.min().array()).any() || (least.array() - reach > box.max().array()).any();
 }
@@ -222,6 +241,8 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
     touch.gap = gap;
     const double friction = moving.obstacle->friction.value_or(on_node ? node_friction(place) : materials[place].friction);
     touch.friction = friction;
+    const double rolling = on_node ? materials.mean_at(place, rolling_part) : rolling_part(materials[place]);
+    let_roll(rolling, normal.cross(direction_at(state, element)), touch);
     feet_.push_back(nearest.point);
     cuts = cuts || element % 2 == 1;
     touch.radius = radius;
@@ -348,6 +369,8 @@ void ContactSet::add_pair(const std::vector<SimulatedCable>& cables, const std::
   touch.normal = near.normal;
   touch.gap = near.gap;
   touch.friction = rules_.cable_friction;
+  let_roll(rolling_part(CableMaterials(a)[i]), near.normal.cross(direction_at(a.state, 2 * i + 1)), touch);
+  let_roll(rolling_part(CableMaterials(b)[j]), near.normal.cross(direction_at(b.state, 2 * j + 1)), touch);
   touch.radius = near.radius;
   touch.base_stiffness = std::min(stopping(a, i, rules_.time_step), stopping(b, j, rules_.time_step));
   touch.velocity = near.velocity;

@@ -25,6 +25,8 @@ constexpr double linear_enough = 0.05;
 constexpr double slope_enough = 0.3;
 /// Relative, of depths between which a secant is taken.
 constexpr double least_secant = 1e-3;
+/// With which friction across two oblique cables that roll is found.
+constexpr int oblique_passes = 8;
 
 struct ForceAndSlope {
   double force = 0, slope = 0;
@@ -60,6 +62,45 @@ double secant(double depth, const ForceAndSlope& law, double pressing_force, con
   const double wanted = depth_of(pressing_force, touch), way = depth - wanted;
   if (std::abs(way) <= least_secant * depth) return law.slope;
   return (law.force - depth_law(wanted, touch).force) / way;
+}
+
+/// Friction whose part across each cable that rolls is no more than this may be.
+Vector3 rolled(Vector3 friction, double limit, const Touch& touch) {
+  const int passes = touch.rolling_count > 1 ? oblique_passes : 1;
+  for (int pass = 0; pass < passes; ++pass)
+    for (int k = 0; k < touch.rolling_count; ++k) {
+      const Rolling& rolling = touch.rolling[k];
+      const double along = friction.dot(rolling.across), most = rolling.part * limit;
+      friction -= (along - std::clamp(along, -most, most)) * rolling.across;
+    }
+  return friction;
+}
+
+/// The friction of what would take `trial` [N] to stick, at most `limit` [N]. Where cables roll, it is that which takes most work
+/// from the slip among all that is small enough: along a cable that rolls nothing is lost.
+Vector3 bounded(const Vector3& trial, double limit, const Touch& touch) {
+  const double size = trial.norm();
+  const Vector3 scaled = size <= limit ? trial : Vector3(limit / size * trial);
+  if (touch.rolling_count == 0) return scaled;
+  const Vector3 least = rolled(scaled, limit, touch), way = rolled(trial, limit, touch) - least;
+  const double square = way.squaredNorm(), room = limit * limit - least.squaredNorm(), product = way.dot(least);
+  if (!(square > 0) || !(room > 0)) return least;
+  return least + std::min(1.0, (std::sqrt(product * product + square * room) - product) / square) * way;
+}
+
+/// Sets which parts of `trial` [N] are left of it, along what rolls and across.
+void set_parts(const Vector3& trial, const Vector3& friction, double part, Touch& touch) {
+  touch.part = touch.rolling_part = part;
+  if (touch.rolling_count == 0) return;
+  const auto of = [&](const Vector3& axis) {
+    const double whole = axis.dot(trial);
+    return whole != 0 ? std::clamp(axis.dot(friction) / whole, 0.0, 1.0) : part;
+  };
+  touch.across = touch.rolling[0].across;
+  for (int k = 1; k < touch.rolling_count; ++k)
+    if (of(touch.rolling[k].across) < of(touch.across)) touch.across = touch.rolling[k].across;
+  touch.part = of(touch.normal.cross(touch.across));
+  touch.rolling_part = of(touch.across);
 }
 
 }  // namespace
@@ -119,10 +160,11 @@ bool evaluate_touch(const Vector3& w, Touch& touch) {
   const Vector3 lean = touch.normal_force * touch.lean;
   trial -= lean;
   const double size = trial.norm(), limit = touch.friction * touch.normal_force;
-  const bool sticks = size <= limit;
+  const Vector3 friction = bounded(trial, limit, touch);
+  const bool sticks = size <= limit && friction == trial;
   touch.mode = sticks ? Touch::Mode::sticks : Touch::Mode::slides;
-  touch.part = sticks ? 1 : limit / size;
-  touch.force = touch.normal_force * touch.normal + lean + touch.part * trial;
+  set_parts(trial, friction, size <= limit ? 1 : limit / size, touch);
+  touch.force = touch.normal_force * touch.normal + lean + friction;
   return bent || before != touch.mode;
 }
 
@@ -130,6 +172,7 @@ Eigen::Matrix3d slope(const Touch& touch) {
   const double stiffness = touch.rate * touch.stiffness;
   Eigen::Matrix3d slope = stiffness * (1 - touch.part) * touch.normal * touch.normal.transpose();
   slope.diagonal().array() += stiffness * touch.part;
+  if (touch.rolling_count > 0) slope += stiffness * (touch.rolling_part - touch.part) * touch.across * touch.across.transpose();
   return slope;
 }
 
@@ -149,8 +192,7 @@ Vector3 remaining_friction(const Touch& touch) {
   Vector3 force = touch.stuck_force - touch.stiffness * slip;
   force -= touch.normal * touch.normal.dot(force);
   const Vector3 lean = touch.normal_force * touch.lean;
-  const double limit = touch.friction * touch.normal_force, size = (force - lean).norm();
-  if (touch.mode == Touch::Mode::slides && size > limit) force = lean + limit / size * (force - lean);
+  if (touch.mode == Touch::Mode::slides) force = lean + bounded(force - lean, touch.friction * touch.normal_force, touch);
   return half_turned(touch, force);
 }
 

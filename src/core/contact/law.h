@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "contact/moving_obstacle.h"
@@ -15,10 +16,16 @@ struct CablePoint {
   double fraction = 0;  ///< along the segment, 0 to 1
 };
 
+/// A cable that rolls on what it touches where friction across it would be more than a part of all that there can be.
+struct Rolling {
+  Vector3 across = Vector3::Zero();  ///< the cable, along the surface
+  double part = 1;
+};
+
 /// How a contact resists: with w the displacement over the substep of what touches relative to what is touched, e = rate * w -
 /// offset is the displacement that is expected at the end of the substep and a little later (see `anticipate`), and
 ///   normal force     f = max(0, force of the depth -gap - n . e)
-///   friction        -k (bristle + tangential part of e), at most friction * f
+///   friction        -k (bristle + tangential part of e), at most friction * f, and across a cable that rolls a part of that
 /// The bristle is the tangential displacement since the contact began to stick (Cundall and Strack, A discrete numerical model
 /// for granular assemblies, 1979): a contact that sticks does not creep. It belongs to the material that is touched and turns
 /// with it.
@@ -35,6 +42,8 @@ struct Touch {
   double gap = 0;                      ///< [m] between the surfaces at the start of the substep
   double friction = 0;                 ///< Coulomb coefficient
   Vector3 lean = Vector3::Zero();      ///< along the surface: friction is bounded around this times the normal force
+  std::array<Rolling, 2> rolling;      ///< of the cables that may roll,
+  int rolling_count = 0;               ///< so many
   double radius = 0;                   ///< [m] of the thinner cable
   double base_stiffness = 0;           ///< [N/m] at no depth
   double rate = 1;
@@ -57,6 +66,8 @@ struct Touch {
   Vector3 correction = Vector3::Zero();                        ///< [m] of w, after the force was found for the last time
   Vector3 followed = Vector3::Zero();                          ///< [N] friction that follows the correction's normal force
   double part = 1;                                             ///< of the friction that sticking would take
+  double rolling_part = 1;                                     ///< the same across the cable that rolls
+  Vector3 across = Vector3::Zero();                            ///< which is this direction
   enum class Mode { open, sticks, slides } mode = Mode::open;  ///< at first that of the substep before
 };
 

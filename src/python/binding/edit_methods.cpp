@@ -224,8 +224,8 @@ void add_edit_methods(py::module_& module, py::class_<PythonWorld>& world) {
             "Changes parameters of the running simulation, as the node's `~tuning` does: gravity (3,) [m/s^2] unless it is "
             "central; wind (3,) [m/s], the velocity of the fluid; the coefficient of friction between cables; and {material: "
             "{key: number}} for dampings, finite stiffnesses (bending_stiffness also as (2,), for a material with two different "
-            "ones), drag and friction.\n\nRaises SceneError with all errors at once, under the names of `~tuning`; ValueError, "
-            "KeyError; then nothing is changed.");
+            "ones), drag, friction and rolling_friction.\n\nRaises SceneError with all errors at once, under the names of "
+            "`~tuning`; ValueError, KeyError; then nothing is changed.");
   const py::object event_type = add_tuple(module, "Event", {"time", "type", "cable", "attachment", "node", "other", "message"},
                                           "An event of a world: the fields of CableEvent.msg, with the simulated `time` [s] and "
                                           "the name of the constant as `type`. Fields that do not apply are '' or 0.");
