@@ -500,6 +500,41 @@ TEST(Junctions, branchesBeginAlongTheirTrunkTurned) {
   EXPECT_LT((world.cables()[find(world.cables(), "back")].state.positions.front() - Vector3(0.5, 0, 0.5)).norm(), 1e-7);
 }
 
+/// A cable of two pieces is the whole one: it is straight where they are joined, and their clamps do not twist it.
+TEST(Junctions, joinPiecesToTheWholeCable) {
+  const auto shape = [](const InitialShapeDesc::Type type, const Vector3& turned, bool in_two, Vector3& torque) {
+    SceneDesc scene = nothing();
+    add_cable(scene, "first", in_two ? 0.8 : 1.2, in_two ? 16 : 24);
+    if (in_two) {
+      add_cable(scene, "second", 0.4, 8);
+      add_junction(scene, "first", 0.8, {branch("second")});
+    }
+    for (CableDesc& cable : scene.cables) cable.initial.type = type;
+    scene.cables.front().attachments = {
+        scenes::attachment("left", PlaceDesc::At::start, Vector3::Zero(), "", AttachmentType::clamp)};
+    scene.cables.back().attachments.push_back(
+        scenes::attachment("right", PlaceDesc::At::end, {0.6, 0.3 * turned.z(), 0.1}, "", AttachmentType::clamp));
+    scene.cables.back().attachments.back().rotation = turned;
+    World world(scene, {});
+    EXPECT_TRUE(world.findings().unsettled.empty());
+    BoundaryInputs inputs;
+    run(world, inputs, 2 * world.time_step());
+    torque = world.attachments()[find(world.attachments(), "left")].torque;
+    std::vector<Vector3> nodes = world.cables()[0].state.positions;
+    if (in_two) nodes.insert(nodes.end(), world.cables()[1].state.positions.begin() + 1, world.cables()[1].state.positions.end());
+    return nodes;
+  };
+  for (const InitialShapeDesc::Type type : {InitialShapeDesc::Type::automatic, InitialShapeDesc::Type::settled})
+    for (const Vector3& turned : {Vector3(0, 0, 0), Vector3(0.5, 0.8, 1)}) {
+      Vector3 of_whole, of_pieces;
+      const std::vector<Vector3> whole = shape(type, turned, false, of_whole), pieces = shape(type, turned, true, of_pieces);
+      ASSERT_EQ(whole.size(), pieces.size());
+      // Both are settled to 1e-7 m; twist is taken out to 1e-7 rad at a time.
+      for (std::size_t i = 0; i < whole.size(); ++i) EXPECT_LT((pieces[i] - whole[i]).norm(), 2e-5) << i;
+      EXPECT_LT((of_pieces - of_whole).norm(), 1e-3 * of_whole.norm());
+    }
+}
+
 /// Where cables touch each other, those that a junction joins do not push each other apart beside it.
 TEST(Junctions, branchesDoNotPushTheirTrunk) {
   SceneDesc scene = tree();

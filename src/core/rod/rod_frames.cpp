@@ -287,18 +287,21 @@ void roll_clamps_to_twist(std::vector<DirectionTarget>& clamps, CableState& stat
   }
 }
 
-double take_excess_twist(std::vector<DirectionTarget>& clamps, CableState& state) {
-  double largest = 0;
+double take_excess_twist(std::vector<DirectionTarget>& clamps, const std::function<bool(const DirectionTarget&)>& may_turn,
+                         CableState& state) {
+  double largest = 0, excess = 0;
   for (std::size_t k = 0; k + 1 < clamps.size() && !state.directors.empty(); ++k) {
     DirectionTarget &first = clamps[k], &last = clamps[k + 1];
-    double excess = twist_after(first, state) - rest_angles(state, first.node, half_length(state, first.node)).twist +
-                    twist_before(last, state) - rest_angles(state, last.node, half_length(state, last.node - 1)).twist;
+    excess += twist_after(first, state) - rest_angles(state, first.node, half_length(state, first.node)).twist +
+              twist_before(last, state) - rest_angles(state, last.node, half_length(state, last.node - 1)).twist;
     for (int i = first.node + 1; i < last.node; ++i)
       excess += state.joint_twist[i] - rest_angles(state, i, joint_length(state, i)).twist;
+    if (!may_turn(last)) continue;
     largest = std::max(largest, std::abs(excess));
     turn_in_clamp(-excess, last);
     twist_before(last, state) -= excess;
     if (last.node < state.segments()) twist_after(last, state) += excess;
+    excess = 0;
   }
   return largest;
 }

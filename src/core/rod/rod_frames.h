@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "rod/rod_joints.h"
@@ -65,9 +66,10 @@ void measure_joint_twists(std::vector<DirectionTarget>& clamps, CableState& stat
 /// After clamps were turned: the first one twists the cable by that, the others are rolled so that they do not.
 void roll_clamps_to_twist(std::vector<DirectionTarget>& clamps, CableState& state);
 
-/// Turns the clamps after the first so that the cable has its rest twist, altogether, between each two of them. Returns the
-/// largest twist that was taken away [rad].
-double take_excess_twist(std::vector<DirectionTarget>& clamps, CableState& state);
+/// Turns the clamps after the first that may be turned so that the cable has its rest twist, altogether, between each two of them,
+/// and from the first clamp on. Returns the largest twist that was taken away [rad].
+double take_excess_twist(std::vector<DirectionTarget>& clamps, const std::function<bool(const DirectionTarget&)>& may_turn,
+                         CableState& state);
 
 /// Leaves the twist of a clamp that lets go to its joint; an end that is free has none.
 void release_joint_twist(const DirectionTarget& clamp, CableState& state);

@@ -5,6 +5,7 @@
 
 #include "guide/guides.h"
 #include "guide/node_passing.h"
+#include "rod/rod_frames.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "world/flush_denormals.h"
 #include "world/island_stepper.h"
@@ -31,6 +32,9 @@ constexpr double settled_displacement = 1e-7;  // radii
 constexpr double settling_reach = 1;
 constexpr double settled_contact = 1e-4;       // radii
 constexpr double settled_acceleration = 1e-7;  // [m/s^2]
+/// [rad] of twist, and how often that is taken from a start.
+constexpr double settled_twist = 1e-7;
+constexpr int most_untwistings = 30;
 
 }  // namespace
 
@@ -72,6 +76,27 @@ bool BodySettling::settle() {
   }
   complete();
   return calm >= calm_steps;
+}
+
+bool BodySettling::settle_start() {
+  bool settled = settle();
+  for (int i = 0; i < most_untwistings && settled && untwist() > settled_twist; ++i) settled = settle();
+  return settled;
+}
+
+/// Lets clamps on frames hold the material so that the cables have their rest twist between them and from junctions. Returns how far
+/// from that they were [rad].
+double BodySettling::untwist() {
+  const auto& attachments = state_.attachments;
+  const auto is_on_frame = [&](const DirectionTarget& clamp) { return attachments[clamp.attachment].holder < 0; };
+  double most = 0;
+  for (const int cable : island_.cables) {
+    std::vector<DirectionTarget>& clamps = state_.cable_progress[cable].targets.directions;
+    const bool is_branched =
+        std::any_of(clamps.begin(), clamps.end(), [&](const DirectionTarget& c) { return attachments[c.attachment].is_junction; });
+    if (is_branched) most = std::max(most, take_excess_twist(clamps, is_on_frame, state_.cables[cable].state));
+  }
+  return most;
 }
 
 /// Puts the holders where they are to be, and takes all motion away.
@@ -206,14 +231,16 @@ void BodySettling::complete() {
   }
 }
 
-bool settle_bodies(const std::vector<char>& settles, State& state, Workspace& workspace, std::vector<std::string>& unsettled,
+bool settle_bodies(const std::vector<char>& settles, bool start, State& state, Workspace& workspace, std::vector<std::string>& unsettled,
                    const std::atomic<bool>* cancelled) {
   Islands islands;
   islands.build(state);
   bool all = true;
   for (const Island& island : islands.all()) {
     const bool asked = std::any_of(island.cables.begin(), island.cables.end(), [&](int cable) { return settles[cable] != 0; });
-    if (island.bodies.empty() || !asked || BodySettling(island, state, workspace, cancelled).settle()) continue;
+    if (island.bodies.empty() || !asked) continue;
+    BodySettling settling(island, state, workspace, cancelled);
+    if (start ? settling.settle_start() : settling.settle()) continue;
     all = false;
     for (const int cable : island.cables) {
       const std::string& name = state.cables[cable].model->name;

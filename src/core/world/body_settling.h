@@ -17,6 +17,9 @@ class BodySettling {
   BodySettling(const Island& island, State& state, Workspace& workspace, const std::atomic<bool>* cancelled = nullptr);
   /// From where they are. False if no equilibrium was found; they are then at rest near it.
   bool settle();
+  /// As they start: clamps on frames take the cables that junctions join as they come to them, whatever roll that is. None is twisted
+  /// by bending.
+  bool settle_start();
 
  private:
   struct Outcome {
@@ -30,6 +33,7 @@ class BodySettling {
   void find_joints();
   void pass_nodes_of_guides();
   void complete();
+  double untwist();
 
   const std::atomic<bool>* cancelled_;
   Island island_;
@@ -41,9 +45,9 @@ class BodySettling {
   std::vector<CableState> before_;
 };
 
-/// Settles what bodies hold: the islands of bodies that have a cable which `settles`, a flag a cable. False if one of them found
-/// no equilibrium; `unsettled` gets the names of its cables.
-bool settle_bodies(const std::vector<char>& settles, State& state, Workspace& workspace, std::vector<std::string>& unsettled,
+/// Settles what bodies hold: the islands of bodies that have a cable which `settles`, a flag a cable; as they start, if that is so.
+/// False if one of them found no equilibrium; `unsettled` gets the names of its cables.
+bool settle_bodies(const std::vector<char>& settles, bool start, State& state, Workspace& workspace, std::vector<std::string>& unsettled,
                    const std::atomic<bool>* cancelled = nullptr);
 
 }  // namespace verlet_cable

@@ -8,6 +8,7 @@
 #include "particle/particle_stepper.h"
 #include "world/island_stepper.h"
 #include "world/islands.h"
+#include "world/junctions.h"
 #include "world/not_copied.h"
 #include "world/state.h"
 #include "world/workspace.h"
@@ -86,10 +87,12 @@ struct World::Implementation {
   void place_bodies_on(const std::vector<Attachment>& attachments);
   std::vector<int> with_trunks_first(const std::vector<int>& cables) const;
   std::vector<Attachment> junction_attachments(const CableDesc& desc, int cable) const;
+  std::optional<JunctionPlace> place_on_trunk(const CableDesc& desc) const;
   std::optional<InitialShapeDesc> shape_from_trunk(const CableDesc& desc) const;
   void draw_together(const std::vector<int>& descs);
   void weld_junctions(const std::vector<int>& descs);
   void weld(int attachment);
+  Quaternion axes_on_trunk(const JunctionDesc& junction) const;
   void start_with_bodies(const CableState& cable, KinematicTargets& targets) const;
   NetSolver& solver_of(int net);
   void step_net(int net, StepResult& result);

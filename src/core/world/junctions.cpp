@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <set>
 
 #include "rod/initial_shape.h"
@@ -164,6 +165,7 @@ std::vector<int> World::Implementation::with_trunks_first(const std::vector<int>
 /// What holds a cable at junctions, as if they held points alone; `weld_junctions` does the rest.
 std::vector<Attachment> World::Implementation::junction_attachments(const CableDesc& desc, int cable) const {
   const SceneDesc& scene = *state.scene;
+  const std::optional<JunctionPlace> trunk = place_on_trunk(desc);
   std::vector<Attachment> attachments;
   for (const JunctionPlace& place : junction_places(scene, desc)) {
     Attachment& attachment = attachments.emplace_back();
@@ -175,8 +177,7 @@ std::vector<Attachment> World::Implementation::junction_attachments(const CableD
     attachment.holder = static_cast<int>(scene.bodies.size()) + place.junction;
     attachment.frame = state.bodies[attachment.holder].frame;
     // The material of a branch that goes on along its trunk is turned as that's.
-    if (place.branch == nullptr || !state.body_progress[attachment.holder].is_placed || !is_welded(scene, desc.name)) continue;
-    if (desc.initial.type != InitialShapeDesc::Type::automatic || !bends_at(scene, desc, place.node)) continue;
+    if (!trunk || place.junction != trunk->junction || !is_welded(scene, desc.name) || !bends_at(scene, desc, place.node)) continue;
     attachment.type = AttachmentType::clamp;
     attachment.pose.orientation = quaternion_from_rpy(place.branch->rotation);
     if (place.branch->end == BranchDesc::End::end) attachment.pose.orientation *= reversed;
@@ -184,29 +185,34 @@ std::vector<Attachment> World::Implementation::junction_attachments(const CableD
   return attachments;
 }
 
-/// Of a branch without one: straight on along the cable that it comes off.
-std::optional<InitialShapeDesc> World::Implementation::shape_from_trunk(const CableDesc& desc) const {
-  if (desc.initial.type != InitialShapeDesc::Type::automatic) return std::nullopt;
+/// Where a branch that is given no shape goes on along the cable that it comes off, which has started: none where it does not.
+std::optional<JunctionPlace> World::Implementation::place_on_trunk(const CableDesc& desc) const {
+  using Type = InitialShapeDesc::Type;
+  if (desc.initial.type != Type::automatic && desc.initial.type != Type::settled) return std::nullopt;
   const std::vector<JunctionPlace> places = junction_places(*state.scene, desc);
   // One that comes back to where it comes off hangs as a loop.
   if (places.size() == 2 && places[0].junction == places[1].junction) return std::nullopt;
-  for (const JunctionPlace& place : places) {
-    const auto body = state.scene->bodies.size() + place.junction;
-    if (place.branch == nullptr || !state.body_progress[body].is_placed) continue;
-    const Pose& junction = state.bodies[body].pose;
-    const Vector3 way = desc.length * (junction.orientation * quaternion_from_rpy(place.branch->rotation) * Vector3::UnitX());
-    InitialShapeDesc shape;
-    shape.type = InitialShapeDesc::Type::straight;
-    const bool from_start = place.branch->end == BranchDesc::End::start;
-    shape.from = from_start ? junction.position : Vector3(junction.position + way);
-    shape.to = from_start ? Vector3(junction.position + way) : junction.position;
-    return shape;
-  }
-  return std::nullopt;
+  const auto found = std::find_if(places.begin(), places.end(), [&](const JunctionPlace& place) {
+    return place.branch != nullptr && state.body_progress[state.scene->bodies.size() + place.junction].is_placed;
+  });
+  return found == places.end() ? std::nullopt : std::make_optional(*found);
 }
 
-/// Rigid junctions hold the cables that have just started as these come to them; what holds a cable where it branches holds the
-/// junction.
+/// Of such a branch: straight on, turned by its rotation.
+std::optional<InitialShapeDesc> World::Implementation::shape_from_trunk(const CableDesc& desc) const {
+  const std::optional<JunctionPlace> place = place_on_trunk(desc);
+  if (!place) return std::nullopt;
+  const Pose& junction = state.bodies[state.scene->bodies.size() + place->junction].pose;
+  const Vector3 way = desc.length * (junction.orientation * quaternion_from_rpy(place->branch->rotation) * Vector3::UnitX());
+  InitialShapeDesc shape;
+  shape.type = InitialShapeDesc::Type::straight;
+  const bool from_start = place->branch->end == BranchDesc::End::start;
+  shape.from = from_start ? junction.position : Vector3(junction.position + way);
+  shape.to = from_start ? Vector3(junction.position + way) : junction.position;
+  return shape;
+}
+
+/// Rigid junctions hold the cables that have just started; what holds a cable where it branches holds the junction.
 void World::Implementation::weld_junctions(const std::vector<int>& descs) {
   if (state.scene->junctions.empty()) return;
   for (const int i : descs) {
@@ -222,16 +228,31 @@ void World::Implementation::weld_junctions(const std::vector<int>& descs) {
   }
 }
 
-/// A cable without bending stiffness passes no moment: a point of it is held.
+/// Those of the trunk's material, as it is now.
+Quaternion World::Implementation::axes_on_trunk(const JunctionDesc& junction) const {
+  const SceneDesc& scene = *state.scene;
+  const auto desc =
+      std::find_if(scene.cables.begin(), scene.cables.end(), [&](const CableDesc& cable) { return cable.name == junction.cable; });
+  return axes_at(state.cables[find(state.cables, junction.cable)].state, node_at(*desc, junction.place));
+}
+
+/// A cable without bending stiffness passes no moment: a point of it is held. A branch that goes on along its trunk does so
+/// unloaded, whatever bends it where it starts, and is rolled as its material comes there; others are held as they come.
 void World::Implementation::weld(int index) {
   Attachment& joint = state.attachments[index];
   const SimulatedCable& cable = state.cables[joint.body.index];
   const JunctionDesc& junction = state.scene->junctions[joint.holder - state.scene->bodies.size()];
+  const bool goes_on = joint.type == AttachmentType::clamp;
   joint.type = AttachmentType::hinge;
   if (junction.type == JunctionDesc::Type::rigid && bends_at(*cable.model, cable.state, joint.node)) {
     const Quaternion& axes = state.bodies[joint.holder].pose.orientation;
+    Quaternion held = axes_at(cable.state, joint.node);
+    if (goes_on) {
+      const Vector3 along = axes_on_trunk(junction) * joint.pose.orientation * Vector3::UnitX();
+      held = smallest_rotation(held * Vector3::UnitX(), along) * held;
+    }
     joint.type = AttachmentType::clamp;
-    joint.pose.orientation = (axes.conjugate() * axes_at(cable.state, joint.node)).normalized();
+    joint.pose.orientation = (axes.conjugate() * held).normalized();
   }
   // As it comes, whatever it was held by until now
   std::vector<DirectionTarget>& clamps = state.cable_progress[joint.body.index].targets.directions;

@@ -256,7 +256,8 @@ void Settling::place_clamps(const std::vector<Eigen::AngleAxisd>& turns, double 
 /// Lets clamps hold the material so that the cable has its rest twist. Returns how far from that it was [rad].
 double Settling::untwist() {
   keep_twist(work_.boundary, memory_.targets);
-  const double excess = take_excess_twist(memory_.targets.directions, cable_.state);
+  const double excess = take_excess_twist(
+      memory_.targets.directions, [](const DirectionTarget&) { return true; }, cable_.state);
   for (std::size_t k = 0; k < memory_.targets.directions.size(); ++k) {
     work_.boundary.directions[k].twist_before = memory_.targets.directions[k].twist_before;
     work_.boundary.directions[k].twist_after = memory_.targets.directions[k].twist_after;

@@ -132,7 +132,7 @@ bool World::settle() {
     if (!Settling(cable, w.state, w.workspaces.value.local()).settle())
       w.findings.unsettled.push_back(w.state.cables[cable].model->name);
   }
-  settle_bodies(std::vector<char>(w.state.cables.size(), 1), w.state, w.workspaces.value.local(), w.findings.unsettled);
+  settle_bodies(std::vector<char>(w.state.cables.size(), 1), false, w.state, w.workspaces.value.local(), w.findings.unsettled);
   w.told_unsettled = 0;
   w.note_unsettled(0);
   w.account_for_edit_since(energy_before);
@@ -385,7 +385,7 @@ void World::Implementation::settle_started_bodies(const std::vector<int>& descs)
     settles[cable] = settles_at_start(desc, *state.cables[cable].model, state.cables[cable].state) ? 1 : 0;
   }
   const std::vector<SimulatedBody> moving = state.bodies;
-  settle_bodies(settles, state, workspaces.value.local(), findings.unsettled, cancelled);
+  settle_bodies(settles, true, state, workspaces.value.local(), findings.unsettled, cancelled);
   for (std::size_t b = 0; b < moving.size(); ++b) {
     state.bodies[b].velocity = moving[b].velocity;
     state.bodies[b].angular_velocity = moving[b].angular_velocity;
