@@ -71,6 +71,11 @@ void PrintTo(const Kind& kind, std::ostream* stream) {
 const Kind kinds[] = {
     {"chain", [](SceneDesc&) {}},
     {"elastic", [](SceneDesc& scene) { scene.materials[0].material.axial_stiffness = 1e4; }},
+    {"steel",
+     [](SceneDesc& scene) {
+       scene.materials[0].material.axial_stiffness = 6e5;
+       scene.materials[0].material.axial_damping = 60;
+     }},
     {"bending", [](SceneDesc& scene) { scene.materials[0].material.bending_stiffness = 1e-4; }},
     {"ribbon",
      [](SceneDesc& scene) {

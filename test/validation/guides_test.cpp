@@ -102,6 +102,30 @@ TEST(Atwood, FrictionlessEyeletKeepsEnergyWhileNodesPass) {
   EXPECT_NEAR(run.world.energy().total(), energy, 1e-8 * run.world.energy().kinetic);
 }
 
+/// Of steel wire rope, over an ideal wheel: what passes is strained as it was.
+TEST(Atwood, ElasticRopesLoseNothing) {
+  constexpr double m1 = 1, m2 = 1.2, length = 3, density = 0.064, radius = 0.06, time = 0.8;
+  const auto error = [&](int segments, double stiffness, double time_step) {
+    SceneDesc scene = two_loads(segments, length, m1, m2);
+    scene.time_step = time_step;
+    MaterialDesc& rope = scene.materials[0].material;
+    rope.linear_density = density;
+    rope.axial_stiffness = stiffness;
+    rope.axial_damping = 1e-4 * stiffness;
+    scene.guides = {sheave("wheel", 0.5 * length, Vector3::Zero(), radius)};
+    Simulation run(scene);
+    const double start = run.positions().back().z();
+    run.run(time);
+    const double way = way_of_atwood((m2 - m1) * gravity, m1 + m2 + density * length, density, time);
+    return std::abs((start - run.positions().back().z()) / way - 1);
+  };
+  // The loads bounce on the rope at first, at rest on average.
+  for (const double stiffness : {1e5, 6e5, 1e7})
+    report("Atwood's machine, elastic rope", sample({60, 120, 240}, [&](int n) { return error(n, stiffness, 1e-3); }), 2e-3,
+           Order::none);
+  for (const double time_step : {5e-4, 2e-3}) EXPECT_LT(error(120, 6e5, time_step), 2e-3) << time_step;
+}
+
 /// A weightless elastic rope drawn through an eyelet, turning by `turn` [rad]; its end moves away.
 struct Capstan {
   Capstan(double friction, double turn, double stretch) : turn(turn) {

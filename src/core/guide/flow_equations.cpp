@@ -157,18 +157,27 @@ void CableStepper::set_flow_lengths(const Substep& s) {
   }
 }
 
-/// What the derivative of an elastic segment's energy by its rest length has beyond its tension [N], the mean over the substep so
-/// that energy is conserved: with lengths s and rest lengths l at the start and (') the end it is
-///   EA / 2 ((s^2 + s'^2) / (2 l l') - 1).
-double CableStepper::energy_excess(const Substep& s, int i, double start_length) const {
-  if (!is_elastic_at(i)) return 0;
-  const double stiffness = axial_stiffness_[i];
-  const double end_length = target_length_[i], end = std::sqrt(end_square_[i]);
-  if (s.part() == 1) return 0.5 * stiffness * (end / end_length - 1) * (end / end_length - 1);
-  const double derivative =
-      0.5 * stiffness * (0.5 * (length_[i] * length_[i] + end_square_[i]) / (start_length * end_length) - 1);
-  const double tension = stiffness * (0.25 * (1 / start_length + 1 / end_length) * (length_[i] + end) - 1);
-  return derivative - tension;
+/// The tension of an elastic segment that material flows into or out of. With lengths s, rest lengths l and strains e = s / l - 1 at
+/// the start and (') the end, means over the substep (-), the energy EA l e^2 / 2 changes by
+///   T (s' - s) - F (l' - l),   T = EA e- l-^2 / (l l'),   F = T s- / l- - EA (e^2)- / 2,
+/// exactly: T pulls the nodes, F the flow. A tension from s- and a mean of 1 / l would be another one with the way, even of material
+/// that is strained alike everywhere. Returns F; `slope`: by what less rest length at the end changes the tension [N/m].
+double CableStepper::evaluate_flowing_length(const Substep& s, int i, double& slope) {
+  const Straining strained = straining(s, i);
+  const double part = s.part(), stiffness = axial_stiffness_[i], start = strained.start, end = strained.end;
+  const double length = std::sqrt(end_square_[i]), mean_length = mean(length_[i], length, part), mean_rest = mean(start, end, part);
+  const double strain_at_start = length_[i] / start - 1, strain_at_end = length / end - 1;
+  const double stretching = part == 1 ? stiffness : stiffness * mean_rest * mean_rest / (start * end);
+  const double damping = axial_damping_[i] / s.damping_time();
+  const double law = stretching * mean(strain_at_start, strain_at_end, part) + damping * (strain_at_end - strain_at_start);
+  const double tension = tension_density_[i] * mean_length;
+  const double rise = (part * stretching + damping) / end;
+  const double softened = rise - part * tension_density_[i];
+  system_.gap[i] = (tension - law) * length / softened;
+  system_.compliance[i] = length * mean_length / softened;
+  slope = rise * length / end * length / softened;
+  const double square = mean(strain_at_start * strain_at_start, strain_at_end * strain_at_end, part);
+  return tension * mean_length / mean_rest - 0.5 * stiffness * square;
 }
 
 void CableStepper::evaluate_flows(const Substep& s) {
@@ -184,19 +193,17 @@ void CableStepper::evaluate_flows(const Substep& s) {
     std::array<double, 2> arm, tension;
     for (const int side : {0, 1}) {
       const int i = segments[side];
-      const double sign = side == 0 ? -1 : 1, start = flow.start_length[side], end = target_length_[i];
+      const double sign = side == 0 ? -1 : 1, end = target_length_[i];
+      double drawn = 0;
       if (elastic) {
-        const double rest = 1 / (1 / start + part * (1 / end - 1 / start)), length = std::sqrt(end_square_[i]);
-        evaluate_elastic_length(s, i, rest);
-        arm[side] = length_[i] + part * (length - length_[i]);
-        const double damping = axial_damping_[i] / (s.damping_time() * rest);
-        const double slope = part * (axial_stiffness_[i] / rest - tension_density_[i]) + damping;
-        flow.gap[side] = sign * (axial_stiffness_[i] * arm[side] * part / (end * end) + damping) * length / slope;
+        drawn = evaluate_flowing_length(s, i, flow.gap[side]);
+        flow.gap[side] *= sign;
+        arm[side] = mean(length_[i], std::sqrt(end_square_[i]), part);
       } else {
-        arm[side] = length_[i] + part * (end - length_[i]);
+        arm[side] = mean(length_[i], end, part);
         flow.gap[side] = sign * flow.stretch[side] * end;
       }
-      tension[side] = tension_density_[i] * arm[side] + (frictionless ? energy_excess(s, i, start) : 0);
+      tension[side] = elastic && frictionless ? drawn : tension_density_[i] * arm[side];
     }
 
     if (flow.moves && !s.statics) {

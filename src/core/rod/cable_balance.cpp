@@ -52,8 +52,9 @@ void CableStepper::balance_lengths(const Substep& s, SubstepResult& result) cons
   for (int i = 0; i < segments_; ++i) {
     if (is_elastic_at(i)) {
       if (axial_damping_[i] == 0) continue;
-      const double change = std::sqrt(end_square_[i]) - length_[i] - rest_growth_[i];
-      result.balance.dissipated.axial += axial_damping_[i] / (s.h * target_length_[i]) * change * change;
+      const Straining strained = straining(s, i);
+      const double middle = 0.5 * (strained.start + strained.end), stiffness = axial_damping_[i] / (s.h * strained.end);
+      result.balance.dissipated.axial += strained.start / middle * stiffness * strained.growth * strained.growth;
       continue;
     }
     if (grows(i)) continue;

@@ -360,15 +360,29 @@ void CableStepper::evaluate_elastic_lengths(const Substep& sub, const std::vecto
   }
 }
 
+/// `rest`: the rest length where forces are taken [m].
 void CableStepper::evaluate_elastic_length(const Substep& sub, int i, double rest) {
   const double stiffness = axial_stiffness_[i], part = sub.part();
   const double s = std::sqrt(end_square_[i]), mean = length_[i] + part * (s - length_[i]);
-  const double damping = axial_damping_[i] / (sub.damping_time() * rest);
-  const double excess =
-      stiffness / rest * (mean - rest) + damping * (s - length_[i] - rest_growth_[i]) - tension_density_[i] * mean;
+  const Straining strained = straining(sub, i);
+  const double damping = axial_damping_[i] / (sub.damping_time() * strained.end);
+  const double excess = stiffness / rest * (mean - rest) + damping * strained.growth - tension_density_[i] * mean;
   const double slope = part * (stiffness / rest - tension_density_[i]) + damping;
   system_.gap[i] = -excess * s / slope;
   system_.compliance[i] = s * mean / slope;
+}
+
+/// With lengths s, s' and rest lengths l, l' at the start and (') the end. What flows in or is wound is strained already.
+CableStepper::Straining CableStepper::straining(const Substep& s, int i) const {
+  Straining found;
+  found.end = target_length_[i];
+  if (rest_growth_[i] != 0)
+    for (const GrowingSegment& wound : s.boundary.growing)
+      if (wound.segment == i) found.end += (1 - s.part()) * s.h * wound.growth;
+  found.start = found.end - rest_growth_[i];
+  found.growth = std::sqrt(end_square_[i]) - length_[i];
+  if (rest_growth_[i] != 0) found.growth -= length_[i] * rest_growth_[i] / found.start;
+  return found;
 }
 
 void CableStepper::assemble(double part) {

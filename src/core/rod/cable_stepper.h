@@ -101,6 +101,12 @@ class CableStepper {
   void evaluate_rigid_length(int segment);
   void evaluate_elastic_lengths(const Substep& substep, const std::vector<double>& rest_lengths);
   void evaluate_elastic_length(const Substep& substep, int segment, double rest_length);
+  /// How a segment's material is strained over the substep.
+  struct Straining {
+    double start = 0, end = 0;  ///< [m] rest lengths
+    double growth = 0;          ///< [m] of the length, beyond what the growth of the rest length makes of it
+  };
+  Straining straining(const Substep& substep, int segment) const;
   void assemble_segments(double part, const std::vector<double>& density, const VectorArray& direction);
   void react(const Substep& substep, const std::vector<double>& masses);
   void exchange_loads();
@@ -112,7 +118,7 @@ class CableStepper {
   void set_flow_lengths(const Substep& substep);
   void evaluate_flows(const Substep& substep);
   bool lies_on_wheel(int segment) const;
-  double energy_excess(const Substep& substep, int segment, double start_length) const;
+  double evaluate_flowing_length(const Substep& substep, int segment, double& slope);
   Flow::Mode next_mode(const Substep& substep, const Flow& flow, const GuidedFlow& guided, double drive, double resistance_before,
                        double resistance_after) const;
   double sticking_way(const Substep& substep, const Flow& flow) const;
