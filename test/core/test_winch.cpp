@@ -117,6 +117,23 @@ INSTANTIATE_TEST_SUITE_P(Cables, Winch,
                                          WinchCase{"elastic", false, elastic_rope(), AttachmentType::hinge}),
                          [](const auto& info) { return info.param.name; });
 
+/// A wire rope, whose waves along it no step resolves.
+TEST(WinchEdits, AWireRopeIsTakenInWithoutJerks) {
+  MaterialDesc wire_rope = rope();
+  wire_rope.axial_stiffness = 1e6;
+  const SceneDesc scene = crane(false, wire_rope, AttachmentType::hinge);
+  World world(scene, initial_frames(scene));
+  for (int i = 0; i < 100; ++i) world.step({FrameInput{}});
+  ASSERT_TRUE(world.apply(edit::SetLength{0, false, 1.4, 0.2}).ok);
+  for (int i = 0; i < 4000; ++i) {
+    ASSERT_EQ(world.step({FrameInput{}}).status, Status::ok) << i;
+    const double ratio = -world.attachments()[0].force.z() / (gravity * mass(world));
+    // A tenth by its acceleration, and the waves that this sends along the rope.
+    ASSERT_NEAR(std::abs(ratio), 1, 0.5) << i;
+  }
+  EXPECT_NEAR(length(world), 1.4, 1e-6);
+}
+
 TEST(WinchEdits, ASwingingLoadIsTakenInWithoutJerks) {
   SceneDesc scene = crane(false, bending_rope(), AttachmentType::hinge);
   scene.cables[0].initial = {};

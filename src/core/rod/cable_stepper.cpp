@@ -47,6 +47,7 @@ void CableStepper::resize(int segments) {
         &pivot_, &off_, &impulse_, &growth_, &axial_stiffness_, &axial_damping_, &strain_compliance_})
     a->assign(nodes, 0.0);
   both_held_.reserve(nodes);
+  material_rates_.reserve(nodes);
   kept_load_.assign(nodes, 0.0);
   kept_gap_.assign(nodes, 0.0);
   kept_torque_.assign(nodes, 0.0);
@@ -772,10 +773,23 @@ void CableStepper::take_out_unresolved(const Substep& s, CableState& state) {
   for (const int i : both_held_) system_.gap[i] = 0;
   if (rod_.active()) std::fill(rod_.torque().begin(), rod_.torque().end(), 0.0);
   solve_segments();
-  const double share = cleaner_.take_out(s.h, s.boundary.nodes, correction(), position_, state);
+  material_rates_.clear();
+  for (const HeldNode& held : s.boundary.nodes) material_rates_.push_back(material_rate(s.boundary, held.node));
+  const double share = cleaner_.take_out(s.h, s.boundary.nodes, material_rates_, correction(), position_, state);
   // What is taken out is what forces in the cable do: its holders feel them, too.
   for (HeldNode& target : s.boundary.nodes) target.mend(0.5 * share * s.h * corrected_load(target.node), 2);
   if (rod_.active()) rod_.calm_spin(state);
+}
+
+/// [m/s] Along the cable, at a held node: of the material that a winch moves, there or in a guide. Without a winch nothing drives what
+/// flows through guides: it is motion of the cable.
+double CableStepper::material_rate(const Boundary& boundary, int node) const {
+  if (winch_node_ < 0) return 0;
+  const double growth = boundary.growing.front().growth;
+  if (node == winch_node_) return node == 0 ? growth : -growth;
+  for (std::size_t k = 0; k < flows_.size(); ++k)
+    if (flows_[k].first <= node && node <= flows_[k].last) return boundary.flows[k].rate;
+  return 0;
 }
 
 /// The matrix at the end of the substep, of motion about it: without contacts and fluid, tension being the mean of two substeps,

@@ -144,6 +144,7 @@ class CableStepper {
   double restore_angular_momentum(const Substep& substep, const std::vector<double>& masses);
   void quieten(const Substep& substep, CableState& state);
   void take_out_unresolved(const Substep& substep, CableState& state);
+  double material_rate(const Boundary& boundary, int node) const;
   void assemble_for_velocities();
   void project(const Substep& substep, const std::vector<double>& masses, SubstepResult& result);
   double store(const Substep& substep, CableState& state) const;
@@ -185,6 +186,7 @@ class CableStepper {
   KirchhoffRod rod_;
   FluidForces fluid_;
   MotionCleaner cleaner_;
+  std::vector<double> material_rates_;  // held nodes: of the material along the cable [m/s]
   KktSystem system_;
   bool couples_second_ = false;  // the system's couplings to second neighbours are set
   BlockElimination solver_;

@@ -20,15 +20,22 @@ constexpr double memory = 0.8;
 /// [m/s^2] Changes of less from one substep to the next go unnoticed: of the tension by a thousandth of the weight.
 constexpr double noticed_change = 0.01;
 
-/// [m/s] Of what holds a cable, at a node: linear between the held ones. `k`: the held node before, 0 for the first node.
-Vector3 velocity_between(const std::vector<HeldNode>& held, int node, std::size_t& k) {
+/// [m/s] With which what holds a cable carries a node: linear between the held ones, as the rate of the material that a winch moves
+/// along it is. `k`: the held node before, 0 for the first node.
+Vector3 carried_velocity(const std::vector<HeldNode>& held, const std::vector<double>& rates, const VectorArray& place, int node,
+                         int nodes, std::size_t& k) {
   if (held.empty()) return Vector3::Zero();
   while (k + 1 < held.size() && held[k + 1].node <= node) ++k;
-  const HeldNode& before = held[k];
-  if (node <= before.node || k + 1 == held.size()) return before.velocity;
-  const HeldNode& after = held[k + 1];
-  const double part = static_cast<double>(node - before.node) / (after.node - before.node);
-  return before.velocity + part * (after.velocity - before.velocity);
+  Vector3 velocity = held[k].velocity;
+  double rate = rates[k];
+  if (node > held[k].node && k + 1 < held.size()) {
+    const HeldNode& after = held[k + 1];
+    const double part = static_cast<double>(node - held[k].node) / (after.node - held[k].node);
+    velocity += part * (after.velocity - velocity);
+    rate += part * (rates[k + 1] - rate);
+  }
+  if (rate == 0) return velocity;
+  return velocity + rate * (get(place, std::min(node + 1, nodes - 1)) - get(place, std::max(node - 1, 0))).normalized();
 }
 
 }  // namespace
@@ -97,8 +104,8 @@ void MotionCleaner::load(double h, const CableModel& model, const CableState& st
   }
 }
 
-double MotionCleaner::take_out(double h, const std::vector<HeldNode>& held, const VectorArray& solution, const VectorArray& place,
-                               CableState& state) {
+double MotionCleaner::take_out(double h, const std::vector<HeldNode>& held, const std::vector<double>& rates,
+                               const VectorArray& solution, const VectorArray& place, CableState& state) {
   const int nodes = state.nodes();
   for (int i = 0; i < nodes; ++i) set(alternating_, i, get(alternating_, i) - get(solution, i));
   if (held.empty()) keep_momenta(state.masses, place);
@@ -106,7 +113,7 @@ double MotionCleaner::take_out(double h, const std::vector<HeldNode>& held, cons
   std::size_t k = 0;
   for (int i = 0; i < nodes; ++i) {
     const Vector3 w = get(alternating_, i);
-    along += state.masses[i] * w.dot(state.velocities[i] - velocity_between(held, i, k));
+    along += state.masses[i] * w.dot(state.velocities[i] - carried_velocity(held, rates, place, i, nodes, k));
     square += state.masses[i] * w.squaredNorm();
   }
   const double share = along > 0 ? std::min(1.0, 2 * along / square) : 0;

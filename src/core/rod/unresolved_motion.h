@@ -64,9 +64,10 @@ class MotionCleaner {
             const VectorArray& segment, const VectorArray& end_velocity, const std::vector<double>& growth, KktSystem& system);
 
   /// Takes w out of the velocities, or as much of it as lowers the kinetic energy, seen from what holds the cable: it would grow
-  /// where p is less than 2/3 pi. Free cables keep their momenta. `solution`: y; `place` [m]. Returns how much, 0 to 1.
-  double take_out(double h, const std::vector<HeldNode>& held, const VectorArray& solution, const VectorArray& place,
-                  CableState& state);
+  /// where p is less than 2/3 pi. Free cables keep their momenta. `rates`: of the material along the cable at each of `held` [m/s],
+  /// where a winch moves it; `solution`: y; `place` [m]. Returns how much, 0 to 1.
+  double take_out(double h, const std::vector<HeldNode>& held, const std::vector<double>& rates, const VectorArray& solution,
+                  const VectorArray& place, CableState& state);
 
  private:
   void keep_momenta(const std::vector<double>& masses, const VectorArray& place);
