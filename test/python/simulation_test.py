@@ -44,7 +44,8 @@ def test_the_ledger_adds_up_and_is_that_of_cable_sim(hang, cable_sim, tmp_path):
     work, lost = sum(ledger['work'].values()), sum(ledger['dissipated'].values())
     assert work - lost + ledger['unaccounted'] == pytest.approx(ledger['change'], abs=1e-12)
     assert abs(ledger['work']['attachments']) > 1e-3
-    assert abs(ledger['unaccounted']) < 1e-4 * abs(ledger['work']['attachments'])
+    # The hand starts at once: doc/how_to/ledger.md
+    assert abs(ledger['unaccounted']) < 2e-3 * abs(ledger['work']['attachments'])
     with pytest.raises(IndexError):
         batch.ledger(2)
 

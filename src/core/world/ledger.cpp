@@ -31,7 +31,14 @@ void World::Implementation::begin_account(double of_nets_before) {
   state.initial_energy += follow_energies() + energy_of_nets_and_particles() - of_nets_before;
 }
 
+/// What is changed before the first step is as if it had been in the scene.
 void World::Implementation::account_for_edit_since(double energy_before) {
+  if (state.steps == 0) {
+    for (CableProgress& progress : state.cable_progress) progress.energy = 0;
+    for (BodyProgress& progress : state.body_progress) progress.energy = 0;
+    state.initial_energy = 0;
+    return begin_account(0);
+  }
   account_for_edit(energy().total() - energy_before, state.ledger.balance);
   follow_energies();
 }
