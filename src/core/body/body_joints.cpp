@@ -60,8 +60,9 @@ void BodyJoints::couple(BodyEquations& equations) const {
     if (joint.other >= 0) equations.couple(joint.member, joint.other);
 }
 
-void BodyJoints::set_holding(const BodyEquations& equations) {
-  holding_ = holding_part * equations.largest_resistance();
+/// `resistance`: [kg/s^2] or [kg], to forces of joints.
+void BodyJoints::set_holding(double resistance, const BodyEquations& equations) {
+  holding_ = holding_part * resistance;
   holding_turn_ = holding_part * equations.largest_turning_resistance();
 }
 
@@ -75,7 +76,7 @@ void BodyJoints::add_resistance(const BodyJoint& joint, const Linearised& linear
 }
 
 void BodyJoints::add_stiffness(double part, const std::vector<MovingBody>& bodies, BodyEquations& equations) {
-  set_holding(equations);
+  set_holding(equations.largest_resistance(), equations);
   linearised_.clear();
   for (const BodyJoint& joint : joints_) {
     add_turning(part, bodies[joint.member], joint.member, joint.at.position, joint.force, equations);
@@ -119,8 +120,7 @@ JointWrench BodyJoints::impulse_of(const BodyJoint& joint, const std::vector<Mov
 }
 
 void BodyJoints::add_impulses(double mass, const std::vector<MovingBody>& bodies, BodyEquations& equations) {
-  holding_ = holding_part * mass;
-  holding_turn_ = holding_part * equations.largest_turning_resistance();
+  set_holding(mass, equations);
   for (const BodyJoint& joint : joints_) {
     const JointWrench impulse = impulse_of(joint, bodies, nullptr);
     const Ends ends = ends_of(joint, bodies, BodyStage::projection);

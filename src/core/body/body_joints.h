@@ -77,7 +77,7 @@ class BodyJoints {
   };
   static Ends ends_of(const BodyJoint& joint, const std::vector<MovingBody>& bodies, BodyStage stage);
   JointWrench impulse_of(const BodyJoint& joint, const std::vector<MovingBody>& bodies, const BodyEquations* solved) const;
-  void set_holding(const BodyEquations& equations);
+  void set_holding(double resistance, const BodyEquations& equations);
   void add_resistance(const BodyJoint& joint, const Linearised& linearised, BodyEquations& equations) const;
 
   std::vector<BodyJoint> joints_;

@@ -133,7 +133,7 @@ void World::Implementation::step_nets_and_particles(StepResult& result) {
   for (int particle = 0; particle < static_cast<int>(state.particles.size()); ++particle) step_particle(particle, result);
   result.substeps = std::max(result.substeps, 1);
   add_net_energy(after);
-  account_for_net(after.total() - before.total(), state.ledger.balance);
+  account_for_unfollowed(after.total() - before.total(), state.ledger.balance);
 }
 
 void World::Implementation::step_net(int index, StepResult& result) {

@@ -149,7 +149,7 @@ void account_for_displacement(double change, EnergyBalance& balance) {
   (change < 0 ? balance.dissipated.edits : balance.work.attachments) += std::abs(change);
 }
 
-void account_for_net(double change, EnergyBalance& balance) {
+void account_for_unfollowed(double change, EnergyBalance& balance) {
   (change < 0 ? balance.dissipated.unresolved : balance.work.attachments) += std::abs(change);
 }
 

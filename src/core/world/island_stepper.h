@@ -133,7 +133,6 @@ class IslandStepper {
   double accounted(const Island& island, const IslandOutcome& found) const;
   void balance_bodies(double from, double to);
   Pose body_holder_at(const BodyJoint& joint, double part) const;
-  void account_for_stop(double change, IslandOutcome& found) const;
   void stop(const Island& island, DegradedCause cause, IslandOutcome& found);
   void give_up(const Island& island, IslandOutcome& found);
   bool give_up(int cable, bool touches, Boundary& boundary);

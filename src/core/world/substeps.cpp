@@ -142,11 +142,6 @@ double IslandStepper::accounted(const Island& island, const IslandOutcome& found
   return sum;
 }
 
-/// What is stopped, or put elsewhere, because no step was found.
-void IslandStepper::account_for_stop(double change, IslandOutcome& found) const {
-  (change < 0 ? found.balance.dissipated.unresolved : found.balance.work.attachments) += std::abs(change);
-}
-
 double IslandStepper::work_of_attempt(const Island& island) const {
   double work = contact_work_;
   if (!island.bodies.empty())
@@ -175,7 +170,7 @@ void IslandStepper::stop(const Island& island, DegradedCause cause, IslandOutcom
     std::fill(state.axial_multiplier.begin(), state.axial_multiplier.end(), 0.0);
     note_status(Status::degraded, cable_id(island.cables[k]), 0, outcomes_[island.cables[k]].result, cause);
   }
-  account_for_stop(energy_at(island, 0) - before, found);
+  account_for_unfollowed(energy_at(island, 0) - before, found.balance);
 }
 
 void IslandStepper::give_up(const Island& island, IslandOutcome& found) {
@@ -187,7 +182,7 @@ void IslandStepper::give_up(const Island& island, IslandOutcome& found) {
     if (!workspace_.cables[k].result.converged)
       stuck = give_up(island.cables[k], workspace_.contacts.touched(k), workspace_.cables[k].boundary) && stuck;
   if (stuck && !touching && !island.bodies.empty()) hang_on_bodies_anew(island);
-  account_for_stop(energy_at(island, 1) - before, found);
+  account_for_unfollowed(energy_at(island, 1) - before, found.balance);
 }
 
 /// Not even from rest: the cable is put where its holders will be, and goes on from there; or hangs from them anew, where it
