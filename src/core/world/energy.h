@@ -30,8 +30,8 @@ bool is_accounted(double unaccounted, const Island& island, const State& state, 
 
 /// A change of the state at once, not by motion: what it takes away are edits, what it adds is work of what holds the cable.
 void account_for_displacement(double change, EnergyBalance& balance);
-/// The same of what is not followed law by law: nets and particles in a step, and what is stopped or put elsewhere because no step
-/// was found. What it loses it does not resolve.
+/// The same of what is not followed law by law: nets and particles in a step, and what is stopped or put elsewhere because no
+/// step was found. What it loses it does not resolve.
 void account_for_unfollowed(double change, EnergyBalance& balance);
 /// The same of an edit: what it adds is applied from outside.
 void account_for_edit(double change, EnergyBalance& balance);
