@@ -2,6 +2,12 @@
 
 namespace verlet_cable {
 
+Matrix36 motion_on_body(const Touch& touch) {
+  Matrix36 motion = point_motion(touch.arm);
+  motion.rightCols<3>() += touch.point.along * touch.turning.transpose();
+  return motion;
+}
+
 void BodyContacts::begin(const std::vector<MovingBody>& bodies, const std::vector<int>& member_of, double part) {
   bodies_ = &bodies;
   member_of_ = &member_of;
@@ -11,19 +17,18 @@ void BodyContacts::begin(const std::vector<MovingBody>& bodies, const std::vecto
     touch.arm = touch.start_arm = touch.position - bodies[member_of[touch.body]].stepper.start_center();
 }
 
-Vector3 BodyContacts::follow(const Vector3& displacement, Touch& touch) const {
+Vector3 BodyContacts::follow(const Vector3& displacement, const Vector3& on_centre_line, Touch& touch) const {
   const RigidBodyStepper& body = (*bodies_)[member_of(touch)].stepper;
   // Of the cable's point, where forces are taken: both have the same line of action.
-  const Vector3 way = displacement - body.displacement();
   touch.start_arm = touch.position - body.start_center();
-  touch.arm = touch.start_arm + part_ * way;
-  return way - body.turn().cross(touch.arm);
+  touch.arm = touch.start_arm + part_ * (on_centre_line - body.displacement());
+  return displacement - displacement_of(touch);
 }
 
 /// Of the point of the body that touches, as if it stayed there: what is round may roll.
 Vector3 BodyContacts::displacement_of(const Touch& touch) const {
   const RigidBodyStepper& body = (*bodies_)[member_of(touch)].stepper;
-  return body.displacement() + body.turn().cross(touch.arm);
+  return body.displacement() + body.turn().cross(touch.arm) + touch.turning.dot(body.turn()) * touch.point.along;
 }
 
 bool BodyContacts::press() {
@@ -37,7 +42,7 @@ bool BodyContacts::press() {
 }
 
 void BodyContacts::load_on(const Touch& touch, const Vector3& force) {
-  loads_[member_of(touch)] += point_load(touch.arm) * force;
+  loads_[member_of(touch)] += load_on_body(touch) * force;
 }
 
 void BodyContacts::follow_obstacles() {
@@ -53,7 +58,7 @@ void BodyContacts::add_stiffness(BodyEquations& equations) const {
   for (const Touch& touch : touches_) {
     if (touch.mode == Touch::Mode::open) continue;
     const int member = member_of(touch);
-    equations.block(member, member) += point_load(touch.arm) * full_slope(touch) * point_motion(touch.arm);
+    equations.block(member, member) += load_on_body(touch) * full_slope(touch) * motion_on_body(touch);
   }
 }
 

@@ -8,6 +8,12 @@
 
 namespace verlet_cable {
 
+/// How a body moves where a touch acts, of a displacement and a rotation of it; and what a force on the body there does to it.
+Matrix36 motion_on_body(const Touch& touch);
+inline Matrix63 load_on_body(const Touch& touch) {
+  return motion_on_body(touch).transpose();
+}
+
 /// What contacts do to bodies, over a substep: with obstacles, and with cables, whose side a ContactSolver has.
 class BodyContacts {
  public:
@@ -16,8 +22,9 @@ class BodyContacts {
 
   /// `member_of`: of a body, by its index.
   void begin(const std::vector<MovingBody>& bodies, const std::vector<int>& member_of, double part);
-  /// Sets where a contact with a cable acts, whose point is displaced so [m]; its displacement relative to the body.
-  Vector3 follow(const Vector3& displacement, Touch& touch) const;
+  /// Sets where a contact with a cable acts, whose point is displaced so [m], and that of its centre line; its displacement
+  /// relative to the body.
+  Vector3 follow(const Vector3& displacement, const Vector3& on_centre_line, Touch& touch) const;
   /// Forgets the loads of the iterate before, and evaluates contacts with obstacles. True if one has changed its way to touch.
   bool press();
   /// Of a contact with a cable.

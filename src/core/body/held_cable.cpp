@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "body/body_contacts.h"
 #include "body/body_joints.h"
 #include "verlet_cable/core/cable_materials.h"
 
@@ -151,9 +152,7 @@ void HeldCable::read_loads(const Participant& p, bool corrected) {
   for (Contact& contact : contacts_) {
     contact.change.setZero();
     if (!corrected) continue;
-    const CablePoint& point = contact.touch->point;
-    const VectorArray& u = p.stepper->correction();
-    const Vector3 way = (1 - point.fraction) * get(u, point.segment) + point.fraction * get(u, point.segment + 1);
+    const Vector3 way = at_point(contact.touch->point, [&](int i) { return get(p.stepper->correction(), i); });
     contact.change = contact.stiffness * way - contact.touch->followed;
   }
 }
@@ -180,7 +179,7 @@ void HeldCable::add_loads(const std::vector<MovingBody>& bodies, BodyStage stage
   for (const Side& side : sides_)
     equations.load(side.member) += load_of(side, bodies[side.member].stepper, stage) * load_of(side, loads_);
   if (stage == BodyStage::projection) return;
-  for (const Contact& contact : contacts_) equations.load(contact.member) += point_load(contact.touch->arm) * contact.change;
+  for (const Contact& contact : contacts_) equations.load(contact.member) += load_on_body(*contact.touch) * contact.change;
 }
 
 void HeldCable::add_turning(double part, const std::vector<MovingBody>& bodies, BodyEquations& equations) const {
@@ -235,7 +234,7 @@ void HeldCable::add_touching_resistance(const std::vector<MovingBody>& bodies, B
                                         BodyEquations& equations) {
   motion_.loads.clear();
   for (const Contact& contact : contacts_)
-    motion_.loads.push_back({contact.touch->point.segment, contact.touch->point.fraction, Vector3::Zero()});
+    motion_.loads.push_back({contact.touch->point, Vector3::Zero()});
   for (const int member : members_) {
     const RigidBodyStepper& moved = bodies[member].stepper;
     for (int column = 0; column < 6; ++column) {
@@ -244,7 +243,7 @@ void HeldCable::add_touching_resistance(const std::vector<MovingBody>& bodies, B
         if (side.member == member) motion_of(side) = motion_of(side, moved).col(column);
       for (std::size_t k = 0; k < contacts_.size(); ++k) {
         const Contact& contact = contacts_[k];
-        if (contact.member == member) motion_.loads[k].force = contact.resistance * point_motion(contact.touch->arm).col(column);
+        if (contact.member == member) motion_.loads[k].force = contact.resistance * motion_on_body(*contact.touch).col(column);
       }
       p.stepper->respond(p.substep.boundary, motion_, responses_);
       for (const Side& side : sides_)
@@ -253,7 +252,7 @@ void HeldCable::add_touching_resistance(const std::vector<MovingBody>& bodies, B
       for (std::size_t k = 0; k < contacts_.size(); ++k) {
         const Contact& contact = contacts_[k];
         equations.block(contact.member, member).col(column) +=
-            point_load(contact.touch->arm) * (motion_.loads[k].force - contact.stiffness * responses_.displacements[k]);
+            load_on_body(*contact.touch) * (motion_.loads[k].force - contact.stiffness * responses_.displacements[k]);
       }
     }
   }
@@ -262,8 +261,8 @@ void HeldCable::add_touching_resistance(const std::vector<MovingBody>& bodies, B
 void HeldCable::follow(const std::vector<MovingBody>& bodies, const BodyEquations& equations, Participant& p) {
   motion_.loads.clear();
   for (const Contact& contact : contacts_) {
-    const Vector3 way = point_motion(contact.touch->arm) * equations.solution(contact.member);
-    motion_.loads.push_back({contact.touch->point.segment, contact.touch->point.fraction, contact.resistance * way});
+    const Vector3 way = motion_on_body(*contact.touch) * equations.solution(contact.member);
+    motion_.loads.push_back({contact.touch->point, contact.resistance * way});
   }
   std::fill(motion_.displacements.begin(), motion_.displacements.end(), Vector3::Zero());
   std::fill(motion_.rotations.begin(), motion_.rotations.end(), Vector3::Zero());

@@ -36,6 +36,33 @@ inline Vector3 interpolate(const std::vector<Vector3>& nodes, int segment, doubl
   return (1 - fraction) * nodes[segment] + fraction * nodes[segment + 1];
 }
 
+inline Vector3 at_point(const CablePoint& point, const std::vector<Vector3>& nodes) {
+  return at_point(point, [&](int i) -> const Vector3& { return nodes[i]; });
+}
+
+/// Puts a point of the centre line where the cable touches: so far beside it [m], against the normal. Below 0 it stays.
+void put_beside(const CableState& state, const Vector3& normal, double distance, CablePoint& point) {
+  const int i = point.segment;
+  const std::vector<Vector3>& x = state.positions;
+  const bool on_joint = point.fraction == 0 && i > 0;
+  const double beside = std::max(0.0, distance) * (on_joint ? 0.5 : 1);
+  const Vector3 direction = (x[i + 1] - x[on_joint ? i - 1 : i]).normalized();
+  point.along = direction - normal.dot(direction) * normal;
+  point.normal = normal;
+  point.own = beside / (x[i + 1] - x[i]).norm();
+  if (on_joint) point.before = beside / (x[i] - x[i - 1]).norm();
+}
+
+/// What the point does if its nodes are joined to an obstacle.
+SurfaceMotion motion_with(const MovingObstacle& moving, const CableState& state, const CablePoint& point) {
+  const Pose to_shape = moving.start.inverse();
+  const auto motion_of = [&](int i) {
+    return surface_motion(moving, to_shape.position + to_shape.orientation * state.positions[i]);
+  };
+  return {at_point(point, [&](int i) { return motion_of(i).displacement; }),
+          at_point(point, [&](int i) { return motion_of(i).end_velocity; })};
+}
+
 /// A node as a point of a segment.
 CablePoint node_point(int cable, int node, int segments) {
   return node < segments ? CablePoint{cable, node, 0.0} : CablePoint{cable, node - 1, 1.0};
@@ -211,23 +238,24 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
   const auto node_friction = [&](int i) {
     return materials.mean_at(i, [](const MaterialDesc& material) { return material.friction; });
   };
-  const auto touch_at = [&](const CablePoint& point, std::uint64_t element, const SurfacePoint& nearest) {
+  const auto touch_at = [&](CablePoint point, std::uint64_t element, const SurfacePoint& nearest) {
     const bool on_node = element % 2 == 0;
     const int place = static_cast<int>(element / 2);
     const double radius = on_node ? stretches_.radius(place) : materials[place].radius;
     const double gap = nearest.distance - (radius + moving.obstacle->padding);
     const Vector3 normal = orientation * nearest.normal;
+    put_beside(state, normal, std::min(radius, nearest.distance - moving.obstacle->padding), point);
     SurfaceMotion motion;
     const bool is_body = moving.body >= 0;
     if (moving.speed > 0 && !is_body) {
-      // Of the centre line, as if it was joined to the obstacle: what sticks turns with it.
-      motion = surface_motion(moving, nearest.point + nearest.distance * nearest.normal);
+      motion = motion_with(moving, state, point);
       // Across the surface the mean velocity: what begins to move does not throw.
       motion.end_velocity += normal.dot(motion.displacement / h - motion.end_velocity) * normal;
     }
     const Vector3 position = interpolate(state.positions, point.segment, point.fraction);
-    Vector3 velocity = interpolate(state.velocities, point.segment, point.fraction);
-    if (is_body) velocity -= moving.body_velocity.at(position);
+    const Vector3 velocity = at_point(point, [&](int i) -> Vector3 {
+      return is_body ? Vector3(state.velocities[i] - moving.body_velocity.at(state.positions[i])) : state.velocities[i];
+    });
     if (!may_close(gap, normal, velocity - motion.displacement / h, radius, h)) return;
     if (is_body && inside_[element] != 0) return;
     if (anchored(state, *member.targets, point, *moving.obstacle, attachments)) return;
@@ -253,7 +281,7 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
     touch.position = position;
     if (is_body) {
       touch.base_stiffness = std::min(touch.base_stiffness, stopping_stiffness(moving.body_mass, rules_.time_step));
-      touch.body_acceleration = moving.body_acceleration.at(position);
+      touch.body_acceleration = at_point(point, [&](int i) { return moving.body_acceleration.at(state.positions[i]); });
       touches_body_[places_[index]] = 1;
     }
     add(touch, member, h);
@@ -352,7 +380,6 @@ void ContactSet::look_at(const std::vector<SimulatedCable>& cables, const Segmen
   near_.push_back({{pair.first.cable, i, closest.first},
                    {pair.second.cable, j, closest.second},
                    normal,
-                   velocity,
                    distance - surface,
                    radius});
 }
@@ -373,7 +400,11 @@ void ContactSet::add_pair(const std::vector<SimulatedCable>& cables, const std::
   let_roll(rolling_part(CableMaterials(b)[j]), near.normal.cross(direction_at(b.state, 2 * j + 1)), touch);
   touch.radius = near.radius;
   touch.base_stiffness = std::min(stopping(a, i, rules_.time_step), stopping(b, j, rules_.time_step));
-  touch.velocity = near.velocity;
+  // Both sides meet in the middle of what they are in each other.
+  const double overlap = std::max(0.0, -near.gap);
+  put_beside(a.state, near.normal, CableMaterials(a)[i].radius - 0.5 * overlap, touch.point);
+  put_beside(b.state, -near.normal, CableMaterials(b)[j].radius - 0.5 * overlap, touch.other);
+  touch.velocity = at_point(touch.point, a.state.velocities) - at_point(touch.other, b.state.velocities);
   touch.position = a.state.positions[i] + near.first.fraction * (a.state.positions[i + 1] - a.state.positions[i]);
   add(touch, members[places_[near.first.cable]], h);
 }
@@ -434,7 +465,7 @@ bool ContactSet::recall(const ContactMember& member, Touch& touch) {
 void ContactSet::follow_scheme(Scheme scheme, const std::vector<SimulatedCable>& cables, double h) {
   const auto acceleration_at = [&](const CablePoint& point) -> Vector3 {
     if (point.cable < 0) return Vector3::Zero();
-    return interpolate(cables[point.cable].state.accelerations, point.segment, point.fraction);
+    return at_point(point, cables[point.cable].state.accelerations);
   };
   for (Touch& touch : touches_)
     anticipate(scheme, h, time_, acceleration_at(touch.point) - acceleration_at(touch.other) - touch.body_acceleration, touch);

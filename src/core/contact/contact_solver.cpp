@@ -40,19 +40,17 @@ constexpr double followed_part = 0.2;
 constexpr double short_way = 0.5;
 constexpr int maximum_followings = 20;
 
-inline Vector3 between(const VectorArray& nodes, int i, double fraction) {
-  return (1 - fraction) * get(nodes, i) + fraction * get(nodes, i + 1);
+inline Vector3 at_point(const CablePoint& point, const VectorArray& nodes) {
+  return at_point(point, [&](int i) { return get(nodes, i); });
 }
 
-/// Adds a force at a point of a segment to the nodes next to it, in the shares of its place.
-inline void share(const Vector3& v, int i, double fraction, VectorArray& nodes) {
-  const Vector3 next = fraction * v, here = v - next;
-  nodes.x[i] += here.x();
-  nodes.y[i] += here.y();
-  nodes.z[i] += here.z();
-  nodes.x[i + 1] += next.x();
-  nodes.y[i + 1] += next.y();
-  nodes.z[i + 1] += next.z();
+/// Adds a force at a point to the nodes that carry it.
+inline void share(const Vector3& force, const CablePoint& point, VectorArray& nodes) {
+  share_force(point, force, [&](int i, const Vector3& part) {
+    nodes.x[i] += part.x();
+    nodes.y[i] += part.y();
+    nodes.z[i] += part.z();
+  });
 }
 
 template <typename Operation>
@@ -121,11 +119,16 @@ inline Participant& ContactSolver::at(std::vector<Participant>& participants, co
 
 /// w of the present iterate [m].
 inline Vector3 ContactSolver::displacement_of(Touch& touch, std::vector<Participant>& participants) const {
-  const CablePoint &point = touch.point, &other = touch.other;
-  const Vector3 own = between(at(participants, point).stepper->displacement(), point.segment, point.fraction);
-  if (touch.body >= 0) return bodies_->contacts().follow(own, touch);
+  const Participant& p = at(participants, touch.point);
+  const VectorArray& displacement = p.stepper->displacement();
+  const Vector3 own = at_point(touch.point, displacement);
+  if (touch.body >= 0) {
+    const auto displaced = [&](int i) { return get(displacement, i); };
+    touch.turning = turning_arm(touch.point, [&](int i) -> Vector3 { return p.state->positions[i] + p.substep.part() * displaced(i); });
+    return bodies_->contacts().follow(own, on_centre_line(touch.point, displaced), touch);
+  }
   if (!joins_cables(touch)) return own;
-  return own - between(at(participants, other).stepper->displacement(), other.segment, other.fraction);
+  return own - at_point(touch.other, at(participants, touch.other).stepper->displacement());
 }
 
 bool ContactSolver::solve(std::vector<Participant>& participants, std::vector<Touch>& touches, BodySystem* bodies,
@@ -285,8 +288,8 @@ bool ContactSolver::press(std::vector<Participant>& participants, std::vector<To
     touch.followed.setZero();
     if (touch.mode == Touch::Mode::open) continue;
     if (touch.body >= 0) bodies_->contacts().add_load(touch);
-    share(touch.force, point.segment, point.fraction, stepper.system().load);
-    if (other_stepper != nullptr) share(-touch.force, other.segment, other.fraction, other_stepper->system().load);
+    share(touch.force, point, stepper.system().load);
+    if (other_stepper != nullptr) share(-touch.force, other, other_stepper->system().load);
   }
   return changed;
 }
@@ -298,10 +301,10 @@ void ContactSolver::factor(std::vector<Participant>& participants, std::vector<T
   for (const Touch& touch : touches) {
     if (touch.mode == Touch::Mode::open) continue;
     const Eigen::Matrix3d stiffness = slope(touch);
-    at(participants, touch.point).stepper->system().add_stiffness(touch.point.segment, touch.point.fraction, stiffness);
+    at(participants, touch.point).stepper->system().add_stiffness(touch.point, stiffness);
     if (touch.body >= 0) bodies_->add_cable_contact(index_[touch.point.cable], touch);
     if (!joins_cables(touch)) continue;
-    at(participants, touch.other).stepper->system().add_stiffness(touch.other.segment, touch.other.fraction, stiffness);
+    at(participants, touch.other).stepper->system().add_stiffness(touch.other, stiffness);
     couplings_.push_back({side_at(touch.point), side_at(touch.other), stiffness});
   }
   for (Participant& p : participants) p.stepper->factor();
@@ -317,8 +320,6 @@ void ContactSolver::follow_friction(std::vector<Participant>& participants, std:
     Slip slip;
     slip.touch = &touch;
     slip.participant = index_[touch.point.cable];
-    slip.segment = touch.point.segment;
-    slip.fraction = touch.point.fraction;
     slip.normal = touch.normal;
     slip.friction = touch.force / touch.normal_force - touch.normal;
     slip.normal_force = touch.normal_force;
@@ -352,12 +353,12 @@ double ContactSolver::follow_slips(std::vector<Participant>& participants) {
   double way = 0, largest = 0;
   for (Slip& slip : slips_) {
     CableStepper& stepper = *participants[slip.participant].stepper;
-    const Vector3 displacement = between(stepper.correction(), slip.segment, slip.fraction);
+    const Vector3 displacement = at_point(slip.touch->point, stepper.correction());
     way = std::max(way, (displacement - slip.displacement).squaredNorm());
     largest = std::max(largest, displacement.squaredNorm());
     slip.displacement = displacement;
     const double change = std::max(-slip.stiffness * slip.normal.dot(displacement), -slip.normal_force);
-    share((change - slip.change) * slip.friction, slip.segment, slip.fraction, stepper.system().load);
+    share((change - slip.change) * slip.friction, slip.touch->point, stepper.system().load);
     slip.change = change;
   }
   way = std::sqrt(way);
@@ -380,7 +381,7 @@ void ContactSolver::couple(std::vector<Participant>& participants) {
     work_[k].coupled = false;
   }
   const auto displacement_of = [&](const Side& side) {
-    return between(participants[side.participant].stepper->correction(), side.segment, side.fraction);
+    return at_point(side.point, participants[side.participant].stepper->correction());
   };
   for (Coupling& c : couplings_) {
     c.first.residual = c.matrix * displacement_of(c.second);
@@ -433,7 +434,7 @@ double ContactSolver::precondition(std::vector<Participant>& participants) {
   double energy = 0;
   for (Coupling& c : couplings_)
     for (Side* side : {&c.first, &c.second}) {
-      side->displacement = between(participants[side->participant].stepper->correction(), side->segment, side->fraction);
+      side->displacement = at_point(side->point, participants[side->participant].stepper->correction());
       energy += side->residual.dot(side->displacement);
     }
   return energy;
@@ -456,7 +457,7 @@ void ContactSolver::turn_directions(double last_step, double ratio, const std::v
 void ContactSolver::load_residuals(std::vector<Participant>& participants) const {
   for (const Coupling& c : couplings_)
     for (const Side* side : {&c.first, &c.second})
-      share(side->residual, side->segment, side->fraction, participants[side->participant].stepper->system().load);
+      share(side->residual, side->point, participants[side->participant].stepper->system().load);
 }
 
 /// The solutions that the cables have found alone are where improvement begins.
@@ -517,7 +518,7 @@ void ContactSolver::solve_whole_rods(std::vector<Participant>& participants) {
   for (const Coupling& c : couplings_)
     for (const Side* side : {&c.first, &c.second})
       if (is_whole_rod(side->participant))
-        share(side->correction, side->segment, side->fraction, participants[side->participant].stepper->system().load);
+        share(side->correction, side->point, participants[side->participant].stepper->system().load);
   for (std::size_t k = 0; k < participants.size(); ++k) {
     if (!is_whole_rod(k)) continue;
     participants[k].stepper->solve_linear();
@@ -528,8 +529,7 @@ void ContactSolver::solve_whole_rods(std::vector<Participant>& participants) {
 ContactSolver::Side ContactSolver::side_at(const CablePoint& point) const {
   Side side;
   side.participant = index_[point.cable];
-  side.segment = point.segment;
-  side.fraction = point.fraction;
+  side.point = point;
   return side;
 }
 

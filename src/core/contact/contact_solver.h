@@ -43,8 +43,8 @@ class ContactSolver {
   /// One side of a contact, in the conjugate gradients: of forces and displacements at its point alone. Forces on other points
   /// of the cables are none.
   struct Side {
-    int participant = 0, segment = 0;
-    double fraction = 0;
+    int participant = 0;
+    CablePoint point;
     Vector3 residual = Vector3::Zero();      ///< [N]
     Vector3 displacement = Vector3::Zero();  ///< [m] that the cables alone make of the residuals
     Vector3 direction = Vector3::Zero();     ///< [m]
@@ -61,8 +61,7 @@ class ContactSolver {
   /// A contact that slides on an obstacle.
   struct Slip {
     Touch* touch = nullptr;
-    int participant = 0, segment = 0;
-    double fraction = 0;
+    int participant = 0;
     Vector3 normal, friction;                ///< the second: over the normal force
     double normal_force = 0, stiffness = 0;  ///< [N], [N/m] of it
     double change = 0;                       ///< [N] of it, in the correction

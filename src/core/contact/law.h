@@ -3,18 +3,12 @@
 #include <array>
 #include <cstdint>
 
+#include "chain/cable_point.h"
 #include "contact/moving_obstacle.h"
 #include "rod/scheme.h"
 #include "verlet_cable/core/types.h"
 
 namespace verlet_cable {
-
-/// A point on a cable's centre line.
-struct CablePoint {
-  int cable = -1;  ///< -1: none
-  int segment = 0;
-  double fraction = 0;  ///< along the segment, 0 to 1
-};
 
 /// A cable that rolls on what it touches where friction across it would be more than a part of all that there can be.
 struct Rolling {
@@ -62,7 +56,8 @@ struct Touch {
   double stiffness = 0;                                        ///< [N/m] there
   double normal_force = 0;                                     ///< [N]
   Vector3 force = Vector3::Zero();                             ///< [N] on the point
-  Vector3 arm = Vector3::Zero();                               ///< [m] with which the force acts on a body
+  Vector3 arm = Vector3::Zero();                               ///< [m] with which the force acts on a body,
+  Vector3 turning = Vector3::Zero();                           ///< [m] and what its part along the cable does beside that
   Vector3 correction = Vector3::Zero();                        ///< [m] of w, after the force was found for the last time
   Vector3 followed = Vector3::Zero();                          ///< [N] friction that follows the correction's normal force
   double part = 1;                                             ///< of the friction that sticking would take

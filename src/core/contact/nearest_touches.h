@@ -11,7 +11,6 @@ namespace verlet_cable {
 struct NearPair {
   CablePoint first, second;
   Vector3 normal;     ///< from the second to the first
-  Vector3 velocity;   ///< [m/s] of the first, relative to the second
   double gap = 0;     ///< [m] between the surfaces
   double radius = 0;  ///< [m] of the thinner one
 };

@@ -204,7 +204,7 @@ void sweep_lanes(const LaneWork& w) {
     if constexpr (!is_light)
       eliminate_middle(lane_of(front, lane), lane_of(front, lane + 1), plus_diagonal(nothing, own[lane]),
                        plus_diagonal(nothing, own[lane + 1]), movable[lane], movable[lane + 1],
-                       NodeCouplings<double>{lane_of(span.middle, lane), span.compliance[lane], first[lane], nothing, 0},
+                       NodeCouplings<double>{lane_of(span.middle, lane), span.compliance[lane], first[lane], {}, 0},
                        elimination);
     const MiddleSolution solution =
         solve_middle(elimination, lane_of(unbalanced, lane) + lane_of(load.next, lane) + lane_of(load.after, lane + 1),

@@ -12,12 +12,20 @@ namespace {
            Pair{s.direction.z[left], -s.direction.z[right - 1]}},
           Pair{s.compliance[left], s.compliance[right - 1]},
           Pair{s.first[left], s.first[right - 1]},
-          pair(s.added_next, left, right - 1),
+          pair_transposing_second(s.added_next, left, right - 1),
           Pair{s.second[left], s.second[right - 2]}};
 }
 
 SymmetricOf<double> symmetric(const SymmetricArray& a, int i) {
   return {a.xx[i], a.xy[i], a.xz[i], a.yy[i], a.yz[i], a.zz[i]};
+}
+
+VectorOf<double> vector(const VectorArray& a, int i) {
+  return {a.x[i], a.y[i], a.z[i]};
+}
+
+MatrixOf<double> matrix(const MatrixArray& a, int i) {
+  return {vector(a.row_x, i), vector(a.row_y, i), vector(a.row_z, i)};
 }
 
 SymmetricOf<double> own_block(const KktSystem& s, int i) {
@@ -26,10 +34,6 @@ SymmetricOf<double> own_block(const KktSystem& s, int i) {
 
 PairVector joined(const VectorOf<double>& a, const VectorOf<double>& b) {
   return {Pair{a.x, b.x}, Pair{a.y, b.y}, Pair{a.z, b.z}};
-}
-
-VectorOf<double> vector(const VectorArray& a, int i) {
-  return {a.x[i], a.y[i], a.z[i]};
 }
 
 }  // namespace
@@ -59,17 +63,33 @@ void KktSystem::clear_stiffness() {
   added_next.assign(diagonal.size(), 0.0);
 }
 
-void KktSystem::add_stiffness(int segment, double fraction, const Eigen::Matrix3d& stiffness) {
+void KktSystem::add_stiffness(const CablePoint& point, const Eigen::Matrix3d& stiffness) {
   stiffened = true;
-  const double here = 1 - fraction;
-  add(added, segment, here * here, stiffness);
-  add(added, segment + 1, fraction * fraction, stiffness);
-  add(added_next, segment, here * fraction, stiffness);
+  const int i = point.segment;
+  const double here = 1 - point.fraction, next = point.fraction;
+  if (point.own == 0 && point.before == 0) {
+    add(added, i, here * here, stiffness);
+    add(added, i + 1, next * next, stiffness);
+    add(added_next, i, here * next * stiffness);
+    return;
+  }
+  // What the point's displacement has of each node's.
+  const Eigen::Matrix3d turn = point.along * point.normal.transpose(), identity = Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d of_here = here * identity + (point.before - point.own) * turn, of_next = next * identity + point.own * turn;
+  add(added, i, 1, of_here.transpose() * stiffness * of_here);
+  add(added, i + 1, 1, of_next.transpose() * stiffness * of_next);
+  add(added_next, i, of_here.transpose() * stiffness * of_next);
+  if (point.before == 0) return;
+  // Nodes two apart are not coupled: both resist as much more as they would by the most that it can be.
+  const Eigen::Matrix3d of_before = -point.before * turn, across = -of_before.transpose() * stiffness * point.own * turn;
+  add(added, i - 1, 1, of_before.transpose() * stiffness * of_before + across);
+  add(added, i + 1, 1, across);
+  add(added_next, i - 1, of_before.transpose() * stiffness * of_here);
 }
 
 Vector3 KktSystem::added_load(int node, const VectorArray& displacement) const {
   Vector3 load = get(added_next, node) * get(displacement, node + 1);
-  if (node > 0) load += get(added_next, node - 1) * get(displacement, node - 1);
+  if (node > 0) load += get(added_next, node - 1).transpose() * get(displacement, node - 1);
   return load;
 }
 
@@ -140,7 +160,7 @@ void BlockElimination::load_by_held(const KktSystem& system) {
       gap_[i - 1] -= get(system.direction, i - 1).dot(held);
     }
     if (i < last) {
-      load_node(i + 1, system.first[i] * held + get(system.added_next, i) * held);
+      load_node(i + 1, system.first[i] * held + get(system.added_next, i).transpose() * held);
       gap_[i] += get(system.direction, i).dot(held);
     }
     if (i > 1) load_node(i - 2, system.second[i - 2] * held);
@@ -165,7 +185,7 @@ void BlockElimination::factor_lanes(const KktSystem& s) {
                          eliminations_[k]);
   }
   const int m = lane_;
-  const NodeCouplings<double> between{vector(s.direction, m), s.compliance[m], s.first[m], symmetric(s.added_next, m), 0};
+  const NodeCouplings<double> between{vector(s.direction, m), s.compliance[m], s.first[m], matrix(s.added_next, m), 0};
   eliminate_middle(lane_of(front, 0), lane_of(front, 1), own_block(s, m), own_block(s, m + 1), s.movable[m], s.movable[m + 1],
                    between, middle_);
 }

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "chain/cable_point.h"
 #include "geometry/vector_array.h"
 #include "rod/node_elimination.h"
 #include "rod/pair.h"
@@ -16,8 +17,8 @@ namespace verlet_cable {
 ///   p_i . (x_(i+1) - x_i) - compliance_i m_i = gap_i
 ///
 /// and where what holds nodes moves, too, x_i = held_displacement_i there;
-/// and where something else resists the motion, symmetric blocks `added` to the diagonal and `added_next` to the coupling of node
-/// i and i + 1.
+/// and where something else resists the motion, symmetric blocks `added` to the diagonal and any `added_next` to the coupling of
+/// node i, whose rows these are, and i + 1.
 struct KktSystem {
   std::vector<double> diagonal;    ///< N
   std::vector<double> movable;     ///< N, 1 or 0
@@ -33,12 +34,12 @@ struct KktSystem {
   VectorArray held_displacement;   ///< N, read where movable is 0
   bool stiffened = false;          ///< whether there are added blocks
   SymmetricArray added;            ///< N
-  SymmetricArray added_next;       ///< n
+  MatrixArray added_next;          ///< n
 
   void resize(int segments);
   void clear_stiffness();
-  /// Adds a symmetric stiffness that resists the motion of a point of a segment, `fraction` (0 to 1) along it.
-  void add_stiffness(int segment, double fraction, const Eigen::Matrix3d& stiffness);
+  /// Adds a symmetric stiffness that resists the motion of a point.
+  void add_stiffness(const CablePoint& point, const Eigen::Matrix3d& stiffness);
   /// What the added couplings to its neighbours make of a displacement, at a node.
   Vector3 added_load(int node, const VectorArray& displacement) const;
 };

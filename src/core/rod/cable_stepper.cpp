@@ -516,11 +516,8 @@ void CableStepper::respond(const Boundary& boundary, const HolderMotion& motion,
   }
   if (rod_.active()) rod_.add_clamp_reactions(system_, loads.torques);
   loads.displacements.resize(motion.loads.size());
-  for (std::size_t k = 0; k < motion.loads.size(); ++k) {
-    const PointLoad& load = motion.loads[k];
-    loads.displacements[k] =
-        (1 - load.fraction) * get(correction(), load.segment) + load.fraction * get(correction(), load.segment + 1);
-  }
+  for (std::size_t k = 0; k < motion.loads.size(); ++k)
+    loads.displacements[k] = at_point(motion.loads[k].point, [&](int i) { return get(correction(), i); });
   system_.moves_held = false;
   std::swap(solution(), kept_solution_);
   for (std::size_t k = 0; k < flows_.size(); ++k) flows_[k].correction = kept_ways_[k];
@@ -540,11 +537,9 @@ void CableStepper::solve_for_motion(const Boundary& boundary, const HolderMotion
   for (std::size_t k = 0; k < boundary.nodes.size(); ++k)
     set(system_.held_displacement, boundary.nodes[k].node, motion.displacements[k]);
   if (rod_.active()) rod_.add_clamp_loads(motion.rotations, system_);
-  for (const PointLoad& load : motion.loads) {
-    const Vector3 next = load.fraction * load.force;
-    set(system_.load, load.segment, get(system_.load, load.segment) + load.force - next);
-    set(system_.load, load.segment + 1, get(system_.load, load.segment + 1) + next);
-  }
+  for (const PointLoad& load : motion.loads)
+    share_force(load.point, load.force,
+                [&](int i, const Vector3& force) { set(system_.load, i, get(system_.load, i) + force); });
   system_.moves_held = true;
   solve_linear();
   system_.moves_held = false;

@@ -31,7 +31,7 @@ struct NodeCouplings {
   VectorOf<Real> direction;  ///< towards the next node
   Real compliance;           ///< of the next multiplier
   Real first;                ///< to the next node: a multiple of the identity,
-  SymmetricOf<Real> added;   ///< and more, where something is stiffened
+  MatrixOf<Real> added;      ///< and more, where something is stiffened
   Real second;               ///< to the one after
 };
 
@@ -57,7 +57,7 @@ struct Forward {
   Real multiplier;
 };
 
-/// The couplings of a cable: to next nodes by multiples of the identity; to those after them, too; and by any symmetric matrix.
+/// The couplings of a cable: to next nodes by multiples of the identity; to those after them, too; and by any matrix.
 enum class Couplings { plain, bending, stiffened };
 
 template <class Real>
@@ -87,10 +87,8 @@ template <class Real>
 }
 
 template <class Real>
-[[gnu::always_inline]] inline MatrixOf<Real> operator+(const MatrixOf<Real>& a, const SymmetricOf<Real>& b) {
-  return {{a.row_x.x + b.xx, a.row_x.y + b.xy, a.row_x.z + b.xz},
-          {a.row_y.x + b.xy, a.row_y.y + b.yy, a.row_y.z + b.yz},
-          {a.row_z.x + b.xz, a.row_z.y + b.yz, a.row_z.z + b.zz}};
+[[gnu::always_inline]] inline MatrixOf<Real> operator+(const MatrixOf<Real>& a, const MatrixOf<Real>& b) {
+  return {a.row_x + b.row_x, a.row_y + b.row_y, a.row_z + b.row_z};
 }
 
 /// [q]^T M [q], where [q] v = q x v

@@ -79,6 +79,21 @@ PairSymmetric stiffened_by(const PairSymmetric& a, const PairSymmetric& m) {
   return {first.x, second.x, third.x, second.y, third.y, third.z};
 }
 
+/// How large the part of a segment's added coupling is that is not symmetric [N/m].
+double skew_size(const MatrixArray& m, int i) {
+  const double yz = m.row_y.z[i] - m.row_z.y[i], zx = m.row_z.x[i] - m.row_x.z[i], xy = m.row_x.y[i] - m.row_y.x[i];
+  return 0.5 * std::sqrt(yz * yz + zx * zx + xy * xy);
+}
+
+/// What is added at a node of each lane. Couplings are taken to be symmetric: both their nodes resist as much more as the rest could
+/// make at most.
+PairSymmetric added_at(const KktSystem& system, int left, int right) {
+  const auto skew = [&](int node) {
+    return skew_size(system.added_next, node) + (node > 0 ? skew_size(system.added_next, node - 1) : 0.0);
+  };
+  return plus_diagonal(pair(system.added, left, right), Pair{skew(left), skew(right)});
+}
+
 bool is_positive(Pair value) {
   return value[0] > 0 && value[1] > 0;
 }
@@ -150,7 +165,7 @@ PairSymmetric RodElimination::ends(const KktSystem& system) const {
   const Pair mobility{mobility_[0], mobility_[1]};
   const PairSymmetric free{mobility, Pair{}, Pair{}, mobility, Pair{}, mobility};
   if constexpr (!stiffened) return free;
-  PairSymmetric added = pair(system.added, 0, segments_) + pair(system.added_next, 0, segments_ - 1);
+  PairSymmetric added = added_at(system, 0, segments_) + symmetric_pair(system.added_next, 0, segments_ - 1);
   if (padded_ > segments_) added = times(Pair{1, 0}, added);
   return stiffened_by(free, added);
 }
@@ -190,7 +205,7 @@ bool RodElimination::factor_lanes(const KktSystem& system, const RodStiffness& s
     turned = minus_cross(turned, e.direction);
     if constexpr (stiffened) {
       // What couples the segment's nodes is given to both, and taken from the segment between them.
-      e.across = pair(system.added_next, left, right);
+      e.across = symmetric_pair(system.added_next, left, right);
       const PairVector along = e.across * e.direction;
       e.stretch_turn = cross(e.direction, along);
       Pair softened = 1.0 - e.stretch * dot(e.direction, along);
@@ -211,8 +226,8 @@ bool RodElimination::factor_lanes(const KktSystem& system, const RodStiffness& s
     if (last) inertia *= Pair{1, 0};
     PairMatrix image;
     if constexpr (stiffened) {
-      e.inertia = pair(system.added, left + 1, right) + pair(system.added_next, left, right - 1) +
-                  pair(system.added_next, left + 1, right);
+      e.inertia = added_at(system, left + 1, right) + symmetric_pair(system.added_next, left, right - 1) +
+                  symmetric_pair(system.added_next, left + 1, right);
       if (last) e.inertia = times(Pair{1, 0}, e.inertia);
       e.inertia = plus_diagonal(e.inertia, inertia);
       e.give = stiffened_by(give, e.inertia);

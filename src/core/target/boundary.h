@@ -3,6 +3,7 @@
 #include <limits>
 #include <vector>
 
+#include "chain/cable_point.h"
 #include "guide/flow.h"
 #include "verlet_cable/core/cable.h"
 
@@ -77,10 +78,9 @@ struct Boundary {
   bool is_on_bodies() const;  ///< whether a body that moves freely holds any of it
 };
 
-/// A force on a point of a segment.
+/// A force on a point of a cable.
 struct PointLoad {
-  int segment = 0;
-  double fraction = 0;              ///< along it, 0 to 1
+  CablePoint point;
   Vector3 force = Vector3::Zero();  ///< [N]
 };
 
