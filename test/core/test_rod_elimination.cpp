@@ -60,7 +60,7 @@ struct RandomRod {
       set(joints.moment, i, vector(0.1));
     }
     if (c.touched)
-      for (const int i : {0, n / 3, n / 3, n - 1}) system.add_stiffness(i, between(0, 1), positive(1e5));
+      for (const int i : {0, n / 3, n / 3, n - 1}) system.add_stiffness({0, i, between(0, 1)}, positive(1e5));
   }
 
   double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(generator); }

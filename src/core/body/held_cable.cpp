@@ -4,6 +4,7 @@
 
 #include "body/body_contacts.h"
 #include "body/body_joints.h"
+#include "chain/point_motion.h"
 #include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "chain/point_motion.h"
 #include "contact/friction_bound.h"
 #include "geometry/segment_geometry.h"
 #include "verlet_cable/core/cable_materials.h"
@@ -14,9 +15,9 @@ namespace {
 
 /// Contacts are looked for this far beyond where they are expected, in radii: velocities change during a substep.
 constexpr double spare_reach = 0.1;
-/// A smooth cable through the nodes bulges out over round obstacles, where straight segments cut in: so much, in radii, is
-/// not counted as contact between nodes.
-constexpr double bulge = 0.08;
+/// A smooth cable through the nodes bulges out over round obstacles, where straight segments cut in: at most so much, in radii, is
+/// not counted as contact between nodes; and at least so much, of what is straight.
+constexpr double largest_bulge = 0.08, least_bulge = 2e-3;
 /// So far from an attachment to what holds the cable it is not pushed by it [m]: the first few centimetres.
 constexpr double anchored_length = 0.05;
 /// A cable on a body that leans more has the friction of a smooth surface.
@@ -40,27 +41,40 @@ inline Vector3 at_point(const CablePoint& point, const std::vector<Vector3>& nod
   return at_point(point, [&](int i) -> const Vector3& { return nodes[i]; });
 }
 
-/// Puts a point of the centre line where the cable touches: so far beside it [m], against the normal. Below 0 it stays.
+/// Puts a point of the centre line where the cable touches: so far beside it [m], against the normal. Below 0 it stays; so it does
+/// where the cable stands on its end.
 void put_beside(const CableState& state, const Vector3& normal, double distance, CablePoint& point) {
   const int i = point.segment;
   const std::vector<Vector3>& x = state.positions;
   const bool on_joint = point.fraction == 0 && i > 0;
-  const double beside = std::max(0.0, distance) * (on_joint ? 0.5 : 1);
   const Vector3 direction = (x[i + 1] - x[on_joint ? i - 1 : i]).normalized();
-  point.along = direction - normal.dot(direction) * normal;
-  point.normal = normal;
+  const double steep = normal.dot(direction), steep_square = steep * steep;
+  const Vector3 along = direction - steep * normal;
+  if (!(distance > 0) || along.isZero(0)) return;
+  const double beside = distance * (1 - steep_square * steep_square) * (on_joint ? 0.5 : 1);
+  point.along = along.normalized();
+  point.across = (normal - steep * direction).normalized();
   point.own = beside / (x[i + 1] - x[i]).norm();
   if (on_joint) point.before = beside / (x[i] - x[i - 1]).norm();
 }
 
-/// What the point does if its nodes are joined to an obstacle.
-SurfaceMotion motion_with(const MovingObstacle& moving, const CableState& state, const CablePoint& point) {
+/// What a point of an obstacle that turns does where it touches a point beside the centre line, seen from a cable whose friction
+/// acts on its centre line: as if joined to that, but for turning under a cable that does not turn with it.
+SurfaceMotion motion_under(const MovingObstacle& moving, const CableState& state, const CablePoint& beside) {
   const Pose to_shape = moving.start.inverse();
   const auto motion_of = [&](int i) {
     return surface_motion(moving, to_shape.position + to_shape.orientation * state.positions[i]);
   };
-  return {at_point(point, [&](int i) { return motion_of(i).displacement; }),
-          at_point(point, [&](int i) { return motion_of(i).end_velocity; })};
+  const auto displacement = [&](int i) { return motion_of(i).displacement; };
+  const auto velocity = [&](int i) { return motion_of(i).end_velocity; };
+  SurfaceMotion motion{on_centre_line(beside, displacement), on_centre_line(beside, velocity)};
+  const double rate = carried_along(beside, velocity);
+  if (rate == 0) return motion;
+  const double own_rate = carried_along(beside, [&](int i) -> const Vector3& { return state.velocities[i]; });
+  const Vector3 slips = (1 - std::clamp(own_rate / rate, 0.0, 1.0)) * beside.along;
+  motion.displacement += carried_along(beside, displacement) * slips;
+  motion.end_velocity += rate * slips;
+  return motion;
 }
 
 /// A node as a point of a segment.
@@ -87,6 +101,16 @@ Vector3 direction_at(const CableState& state, std::uint64_t element) {
   const int last = element % 2 == 0 ? std::min(place + 1, state.segments()) : place + 1;
   const int first = element % 2 == 0 ? std::max(place - 1, 0) : place;
   return (state.positions[last] - state.positions[first]).normalized();
+}
+
+/// [m] By how much a smooth cable through the nodes of a segment may bulge out along a normal: twice the arc's height, so that nodes
+/// bear what lies around a round obstacle.
+double bulge_of(const CableState& state, int segment, const Vector3& normal, double radius) {
+  const auto direction = [&](int i) -> Vector3 { return (state.positions[i + 1] - state.positions[i]).normalized(); };
+  const int before = std::max(segment - 1, 0), after = std::min(segment + 1, state.segments() - 1);
+  const double turned = after > before ? (direction(before) - direction(after)).dot(normal) / (after - before) : 0;
+  const double length = (state.positions[segment + 1] - state.positions[segment]).norm();
+  return std::clamp(0.25 * length * turned, least_bulge * radius, largest_bulge * radius);
 }
 
 /// Tells a touch of a cable that may roll in which direction (of any length), and by which part of friction that is resisted.
@@ -244,11 +268,13 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
     const double radius = on_node ? stretches_.radius(place) : materials[place].radius;
     const double gap = nearest.distance - (radius + moving.obstacle->padding);
     const Vector3 normal = orientation * nearest.normal;
-    put_beside(state, normal, std::min(radius, nearest.distance - moving.obstacle->padding), point);
     SurfaceMotion motion;
-    const bool is_body = moving.body >= 0;
+    const bool is_body = moving.body >= 0, turns = moving.half_turn.w() != 1;
+    CablePoint beside = point;
+    if (is_body || turns) put_beside(state, normal, std::min(radius, nearest.distance - moving.obstacle->padding), beside);
+    if (is_body) point = beside;
     if (moving.speed > 0 && !is_body) {
-      motion = motion_with(moving, state, point);
+      motion = motion_under(moving, state, beside);
       // Across the surface the mean velocity: what begins to move does not throw.
       motion.end_velocity += normal.dot(motion.displacement / h - motion.end_velocity) * normal;
     }
@@ -317,11 +343,13 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
       const double first = nearest_[i].distance, second = nearest_[i + 1].distance;
       if (0.5 * (first + second - length) > far) continue;
       // Where it is nowhere deeper than this, it does not cut in by more than bulges out.
-      const double radius = materials[i].radius, shallow = std::max(first, second) - bulge * radius;
+      const double radius = materials[i].radius, shallow = std::max(first, second) - least_bulge * radius;
       SegmentSurfacePoint deepest = deepest_point(shape, local_[i], local_[i + 1], std::min(far, shallow));
+      if (deepest.surface.distance >= far) continue;
       const double cut = first + deepest.fraction * (second - first) - deepest.surface.distance;
-      if (deepest.surface.distance >= far || cut <= bulge * radius) continue;
-      deepest.surface.distance += bulge * radius;
+      const double bulge = bulge_of(state, i, orientation * deepest.surface.normal, radius);
+      if (cut <= bulge) continue;
+      deepest.surface.distance += bulge;
       touch_at({index, i, deepest.fraction}, 2 * i + 1, deepest.surface);
     }
   }

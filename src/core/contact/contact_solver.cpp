@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "chain/point_motion.h"
 #include "geometry/segment_geometry.h"
 #include "verlet_cable/core/cable_materials.h"
 

@@ -67,14 +67,14 @@ void KktSystem::add_stiffness(const CablePoint& point, const Eigen::Matrix3d& st
   stiffened = true;
   const int i = point.segment;
   const double here = 1 - point.fraction, next = point.fraction;
-  if (point.own == 0 && point.before == 0) {
+  if (point.own == 0) {
     add(added, i, here * here, stiffness);
     add(added, i + 1, next * next, stiffness);
     add(added_next, i, here * next * stiffness);
     return;
   }
   // What the point's displacement has of each node's.
-  const Eigen::Matrix3d turn = point.along * point.normal.transpose(), identity = Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d turn = point.along * point.across.transpose(), identity = Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d of_here = here * identity + (point.before - point.own) * turn, of_next = next * identity + point.own * turn;
   add(added, i, 1, of_here.transpose() * stiffness * of_here);
   add(added, i + 1, 1, of_next.transpose() * stiffness * of_next);
