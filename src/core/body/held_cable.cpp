@@ -234,8 +234,7 @@ void HeldCable::add_resistance(const std::vector<MovingBody>& bodies, BodyStage 
 void HeldCable::add_touching_resistance(const std::vector<MovingBody>& bodies, BodyStage stage, Participant& p,
                                         BodyEquations& equations) {
   motion_.loads.clear();
-  for (const Contact& contact : contacts_)
-    motion_.loads.push_back({contact.touch->point, Vector3::Zero()});
+  for (const Contact& contact : contacts_) motion_.loads.push_back({contact.touch->point, Vector3::Zero()});
   for (const int member : members_) {
     const RigidBodyStepper& moved = bodies[member].stepper;
     for (int column = 0; column < 6; ++column) {

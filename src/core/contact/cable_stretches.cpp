@@ -17,8 +17,7 @@ void CableStretches::update(const SimulatedCable& cable) {
   const int n = state.segments();
   radii_.assign(n + 1, cable.model->material.radius);
   if (materials.vary())
-    for (int i = 0; i <= n; ++i)
-      radii_[i] = std::max(materials[std::max(i - 1, 0)].radius, materials[std::min(i, n - 1)].radius);
+    for (int i = 0; i <= n; ++i) radii_[i] = std::max(materials[std::max(i - 1, 0)].radius, materials[std::min(i, n - 1)].radius);
   speeds_.resize(n + 1);
   for (int i = 0; i <= n; ++i) speeds_[i] = state.velocities[i].norm();
   stretches_.clear();

@@ -15,8 +15,8 @@ namespace {
 
 /// Contacts are looked for this far beyond where they are expected, in radii: velocities change during a substep.
 constexpr double spare_reach = 0.1;
-/// A smooth cable through the nodes bulges out over round obstacles, where straight segments cut in: at most so much, in radii, is
-/// not counted as contact between nodes; and at least so much, of what is straight.
+/// A smooth cable through the nodes bulges out over round obstacles, where straight segments cut in: at most so much, in radii,
+/// is not counted as contact between nodes; and at least so much, of what is straight.
 constexpr double largest_bulge = 0.08, least_bulge = 2e-3;
 /// So far from an attachment to what holds the cable it is not pushed by it [m]: the first few centimetres.
 constexpr double anchored_length = 0.05;
@@ -41,8 +41,8 @@ inline Vector3 at_point(const CablePoint& point, const std::vector<Vector3>& nod
   return at_point(point, [&](int i) -> const Vector3& { return nodes[i]; });
 }
 
-/// Puts a point of the centre line where the cable touches: so far beside it [m], against the normal. Below 0 it stays; so it does
-/// where the cable stands on its end.
+/// Puts a point of the centre line where the cable touches: so far beside it [m], against the normal. Below 0 it stays; so it
+/// does where the cable stands on its end.
 void put_beside(const CableState& state, const Vector3& normal, double distance, CablePoint& point) {
   const int i = point.segment;
   const std::vector<Vector3>& x = state.positions;
@@ -103,8 +103,8 @@ Vector3 direction_at(const CableState& state, std::uint64_t element) {
   return (state.positions[last] - state.positions[first]).normalized();
 }
 
-/// [m] By how much a smooth cable through the nodes of a segment may bulge out along a normal: twice the arc's height, so that nodes
-/// bear what lies around a round obstacle.
+/// [m] By how much a smooth cable through the nodes of a segment may bulge out along a normal: twice the arc's height, so that
+/// nodes bear what lies around a round obstacle.
 double bulge_of(const CableState& state, int segment, const Vector3& normal, double radius) {
   const auto direction = [&](int i) -> Vector3 { return (state.positions[i + 1] - state.positions[i]).normalized(); };
   const int before = std::max(segment - 1, 0), after = std::min(segment + 1, state.segments() - 1);
@@ -405,11 +405,8 @@ void ContactSet::look_at(const std::vector<SimulatedCable>& cables, const Segmen
   const Vector3 normal = distance > 0 ? Vector3(closest.between / distance) : along_a.unitOrthogonal();
   const Vector3 velocity = interpolate(a.state.velocities, i, closest.first) - interpolate(b.state.velocities, j, closest.second);
   if (!may_close(distance - surface, normal, velocity, radius, h)) return;
-  near_.push_back({{pair.first.cable, i, closest.first},
-                   {pair.second.cable, j, closest.second},
-                   normal,
-                   distance - surface,
-                   radius});
+  near_.push_back(
+      {{pair.first.cable, i, closest.first}, {pair.second.cable, j, closest.second}, normal, distance - surface, radius});
 }
 
 void ContactSet::add_pair(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members,

@@ -125,7 +125,8 @@ inline Vector3 ContactSolver::displacement_of(Touch& touch, std::vector<Particip
   const Vector3 own = at_point(touch.point, displacement);
   if (touch.body >= 0) {
     const auto displaced = [&](int i) { return get(displacement, i); };
-    touch.turning = turning_arm(touch.point, [&](int i) -> Vector3 { return p.state->positions[i] + p.substep.part() * displaced(i); });
+    touch.turning =
+        turning_arm(touch.point, [&](int i) -> Vector3 { return p.state->positions[i] + p.substep.part() * displaced(i); });
     return bodies_->contacts().follow(own, on_centre_line(touch.point, displaced), touch);
   }
   if (!joins_cables(touch)) return own;

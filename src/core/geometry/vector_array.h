@@ -63,8 +63,8 @@ inline void add(MatrixArray& array, int i, const Eigen::Matrix3d& m) {
 
 inline Eigen::Matrix3d get(const MatrixArray& array, int i) {
   Eigen::Matrix3d m;
-  m << array.row_x.x[i], array.row_x.y[i], array.row_x.z[i], array.row_y.x[i], array.row_y.y[i], array.row_y.z[i], array.row_z.x[i],
-      array.row_z.y[i], array.row_z.z[i];
+  m << array.row_x.x[i], array.row_x.y[i], array.row_x.z[i], array.row_y.x[i], array.row_y.y[i], array.row_y.z[i],
+      array.row_z.x[i], array.row_z.y[i], array.row_z.z[i];
   return m;
 }
 

@@ -75,7 +75,8 @@ void KktSystem::add_stiffness(const CablePoint& point, const Eigen::Matrix3d& st
   }
   // What the point's displacement has of each node's.
   const Eigen::Matrix3d turn = point.along * point.across.transpose(), identity = Eigen::Matrix3d::Identity();
-  const Eigen::Matrix3d of_here = here * identity + (point.before - point.own) * turn, of_next = next * identity + point.own * turn;
+  const Eigen::Matrix3d of_here = here * identity + (point.before - point.own) * turn,
+                        of_next = next * identity + point.own * turn;
   add(added, i, 1, of_here.transpose() * stiffness * of_here);
   add(added, i + 1, 1, of_next.transpose() * stiffness * of_next);
   add(added_next, i, of_here.transpose() * stiffness * of_next);

@@ -30,11 +30,11 @@ struct KktSystem {
   std::vector<double> gap;         ///< n
   /// Where material flows through guides: what their equations lack [N], one a flow; see CableStepper::let_flow
   std::vector<double> flow_load;
-  bool moves_held = false;         ///< whether held nodes are displaced
-  VectorArray held_displacement;   ///< N, read where movable is 0
-  bool stiffened = false;          ///< whether there are added blocks
-  SymmetricArray added;            ///< N
-  MatrixArray added_next;          ///< n
+  bool moves_held = false;        ///< whether held nodes are displaced
+  VectorArray held_displacement;  ///< N, read where movable is 0
+  bool stiffened = false;         ///< whether there are added blocks
+  SymmetricArray added;           ///< N
+  MatrixArray added_next;         ///< n
 
   void resize(int segments);
   void clear_stiffness();

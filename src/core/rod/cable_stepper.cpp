@@ -539,8 +539,7 @@ void CableStepper::solve_for_motion(const Boundary& boundary, const HolderMotion
     set(system_.held_displacement, boundary.nodes[k].node, motion.displacements[k]);
   if (rod_.active()) rod_.add_clamp_loads(motion.rotations, system_);
   for (const PointLoad& load : motion.loads)
-    share_force(load.point, load.force,
-                [&](int i, const Vector3& force) { set(system_.load, i, get(system_.load, i) + force); });
+    share_force(load.point, load.force, [&](int i, const Vector3& force) { set(system_.load, i, get(system_.load, i) + force); });
   system_.moves_held = true;
   solve_linear();
   system_.moves_held = false;
@@ -777,8 +776,8 @@ void CableStepper::take_out_unresolved(const Substep& s, CableState& state) {
   if (rod_.active()) rod_.calm_spin(state);
 }
 
-/// [m/s] Along the cable, at a held node: of the material that a winch moves, there or in a guide. Without a winch nothing drives what
-/// flows through guides: it is motion of the cable.
+/// [m/s] Along the cable, at a held node: of the material that a winch moves, there or in a guide. Without a winch nothing drives
+/// what flows through guides: it is motion of the cable.
 double CableStepper::material_rate(const Boundary& boundary, int node) const {
   if (winch_node_ < 0) return 0;
   const double growth = boundary.growing.front().growth;

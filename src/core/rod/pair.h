@@ -38,13 +38,17 @@ inline PairSymmetric pair(const SymmetricArray& m, int i, int j) {
 
 /// The symmetric parts of matrices.
 inline PairSymmetric symmetric_pair(const MatrixArray& m, int i, int j) {
-  const auto mean = [&](const std::vector<double>& a, const std::vector<double>& b) { return 0.5 * (pair(a, i, j) + pair(b, i, j)); };
+  const auto mean = [&](const std::vector<double>& a, const std::vector<double>& b) {
+    return 0.5 * (pair(a, i, j) + pair(b, i, j));
+  };
   return {pair(m.row_x.x, i, j), mean(m.row_x.y, m.row_y.x), mean(m.row_x.z, m.row_z.x),
           pair(m.row_y.y, i, j), mean(m.row_y.z, m.row_z.y), pair(m.row_z.z, i, j)};
 }
 /// The second lane goes the other way: from the node after to the node before.
 inline PairMatrix pair_transposing_second(const MatrixArray& m, int i, int j) {
-  const auto element = [&](const std::vector<double>& a, const std::vector<double>& transposed) { return Pair{a[i], transposed[j]}; };
+  const auto element = [&](const std::vector<double>& a, const std::vector<double>& transposed) {
+    return Pair{a[i], transposed[j]};
+  };
   return {{pair(m.row_x.x, i, j), element(m.row_x.y, m.row_y.x), element(m.row_x.z, m.row_z.x)},
           {element(m.row_y.x, m.row_x.y), pair(m.row_y.y, i, j), element(m.row_y.z, m.row_z.y)},
           {element(m.row_z.x, m.row_x.z), element(m.row_z.y, m.row_y.z), pair(m.row_z.z, i, j)}};

@@ -85,8 +85,8 @@ double skew_size(const MatrixArray& m, int i) {
   return 0.5 * std::sqrt(yz * yz + zx * zx + xy * xy);
 }
 
-/// What is added at a node of each lane. Couplings are taken to be symmetric: both their nodes resist as much more as the rest could
-/// make at most.
+/// What is added at a node of each lane. Couplings are taken to be symmetric: both their nodes resist as much more as the rest
+/// could make at most.
 PairSymmetric added_at(const KktSystem& system, int left, int right) {
   const auto skew = [&](int node) {
     return skew_size(system.added_next, node) + (node > 0 ? skew_size(system.added_next, node - 1) : 0.0);
