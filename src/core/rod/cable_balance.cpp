@@ -5,6 +5,15 @@
 
 namespace verlet_cable {
 
+namespace {
+
+bool is_wound(const Boundary& boundary, int segment) {
+  return std::any_of(boundary.growing.begin(), boundary.growing.end(),
+                     [&](const auto& growing) { return growing.segment == segment; });
+}
+
+}  // namespace
+
 /// [J] Of the nodes that nothing holds.
 double CableStepper::kinetic_energy(const std::vector<double>& masses, const VectorArray& velocity) const {
   double energy = 0;
@@ -53,8 +62,12 @@ void CableStepper::balance_lengths(const Substep& s, SubstepResult& result) cons
     if (is_elastic_at(i)) {
       if (axial_damping_[i] == 0) continue;
       const Straining strained = straining(s, i);
-      const double middle = 0.5 * (strained.start + strained.end), stiffness = axial_damping_[i] / (s.h * strained.end);
-      result.balance.dissipated.axial += strained.start / middle * stiffness * strained.growth * strained.growth;
+      const double middle = 0.5 * (strained.start + strained.end);
+      const double force = axial_damping_[i] / (s.h * strained.end) * strained.growth;
+      const double lost = strained.start / middle * force * strained.growth;
+      result.balance.dissipated.axial += lost;
+      // A winch works against it, too: the nodes take what they move by.
+      if (is_wound(s.boundary, i)) result.balance.work.winches += lost - force * (std::sqrt(end_square_[i]) - length_[i]);
       continue;
     }
     if (grows(i)) continue;

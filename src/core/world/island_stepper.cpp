@@ -336,7 +336,7 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
   if (converged && touching) {
     ContactSolver& solver = workspace_.contact_solver;
     converged = solver.solve(workspace_.participants, workspace_.contacts.touches(), bodies, most_contact_work_) &&
-                (tolerated || (!solver.crosses(workspace_.participants, workspace_.contacts.touches()) && !folds_columns()));
+                (tolerated || (!solver.crosses(workspace_.participants, workspace_.contacts.touches()) && !folds_columns(from)));
     contact_work_ = solver.work();
     if (converged) {
       solver.finish(workspace_.participants, workspace_.contacts.touches());
@@ -360,11 +360,18 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
   return converged;
 }
 
-/// Changes what has folded; the others are as before.
-bool IslandStepper::folds_columns() {
+/// Changes what folds, as an edit would; the others are as before. `part`: of the step, where the substep begins.
+bool IslandStepper::folds_columns(double part) {
   bool folds = false;
-  for (const Participant& p : workspace_.participants)
-    if (workspace_.contacts.touched(p.place) && fold_pressed_columns(p, workspace_.contacts.touches(), state_)) folds = true;
+  for (const Participant& p : workspace_.participants) {
+    if (!workspace_.contacts.touched(p.place)) continue;
+    const std::vector<PressedColumn> columns = find_pressed_columns(p, workspace_.contacts.touches(), state_);
+    if (columns.empty()) continue;
+    folds = true;
+    const double before = energy_at(p.cable, part);
+    for (const PressedColumn& column : columns) fold(column, p.cable, state_);
+    account_for_edit(energy_at(p.cable, part) - before, outcomes_[p.cable].balance);
+  }
   return folds;
 }
 

@@ -112,7 +112,7 @@ class IslandStepper {
   void follow_body_holder(BodyJoint& joint, double to);
   void find_contacts(Island& island, double from, double to);
   bool touches() const;
-  bool folds_columns();
+  bool folds_columns(double part);
   Scheme scheme_of(int cable) const;
   Scheme find_touching_scheme(const Island& island, double h);
   /// Returns the part of the step that it has wound.

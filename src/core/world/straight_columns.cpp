@@ -250,13 +250,17 @@ void for_each_free_column(int index, const State& state, const Function& f) {
   visit(targets.nodes.back().node, cable.segments(), false);
 }
 
-/// Turns the segments of a column into the shape in which it buckles, from the end that is held. It keeps their lengths.
-void fold(const Column& column, bool held_at_last, const std::vector<double>& shape, int index, State& state) {
+}  // namespace
+
+void fold(const PressedColumn& pressed, int index, State& state) {
   SimulatedCable& cable = state.cables[index];
   const std::vector<Vector3> before = cable.state.positions;
+  const Column column{{pressed.first, pressed.last}, before[pressed.first], before[pressed.last]};
   const Vector3 aside = across(column, cable, state);
   double steepest = 0;
-  const auto slope = [&](int k) { return (shape[k + 1] - shape[k]) / cable.state.rest_lengths[column.first + k]; };
+  const auto slope = [&](int k) {
+    return (pressed.shape[k + 1] - pressed.shape[k]) / cable.state.rest_lengths[column.first + k];
+  };
   for (int k = 0; k < column.segments(); ++k) steepest = std::max(steepest, std::abs(slope(k)));
   const auto turned = [&](int k) -> Vector3 {
     const int i = column.first + k;
@@ -264,12 +268,14 @@ void fold(const Column& column, bool held_at_last, const std::vector<double>& sh
     return segment.norm() * (segment.normalized() + pressed_slope / steepest * slope(k) * aside).normalized();
   };
   std::vector<Vector3>& positions = cable.state.positions;
-  for (int k = 0; k < column.segments() && !held_at_last; ++k)
+  for (int k = 0; k < column.segments() && !pressed.held_at_last; ++k)
     positions[column.first + k + 1] = positions[column.first + k] + turned(k);
-  for (int k = column.segments(); k-- > 0 && held_at_last;)
+  for (int k = column.segments(); k-- > 0 && pressed.held_at_last;)
     positions[column.first + k] = positions[column.first + k + 1] - turned(k);
   start_anew(before, index, state);
 }
+
+namespace {
 
 /// [N] The largest of the forces that press on a cable along a column; infinite where it lies against something, whose friction
 /// keeps it straight.
@@ -286,8 +292,8 @@ double pressure_along(const Column& column, int cable, const std::vector<Touch>&
 
 }  // namespace
 
-bool fold_pressed_columns(const Participant& p, const std::vector<Touch>& touches, State& state) {
-  bool folds = false;
+std::vector<PressedColumn> find_pressed_columns(const Participant& p, const std::vector<Touch>& touches, const State& state) {
+  std::vector<PressedColumn> found;
   for_each_free_column(p.cable, state, [&](const Column& column, bool held_at_last) {
     double least = 0;
     for (int i = column.first; i < column.last; ++i) least = std::min(least, p.stepper->tension(i));
@@ -296,10 +302,9 @@ bool fold_pressed_columns(const Participant& p, const std::vector<Touch>& touche
     for (int i = column.first; i < column.last; ++i) tension.push_back(p.stepper->tension(i));
     LateralStiffness stiffness(*state.cables[p.cable].model, state.cables[p.cable].state, column, tension);
     if (stiffness.is_stable_for(p.substep.h)) return;
-    fold(column, held_at_last, stiffness.growing_shape(), p.cable, state);
-    folds = true;
+    found.push_back({column.first, column.last, held_at_last, stiffness.growing_shape()});
   });
-  return folds;
+  return found;
 }
 
 void buckle_straight_columns(int index, State& state) {

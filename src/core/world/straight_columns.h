@@ -17,10 +17,18 @@ namespace verlet_cable {
 ///   energy is a tiny part of what is stored in its compression: from there it buckles by itself.
 void buckle_straight_columns(int cable, State& state);
 
-/// The same of a span from what holds a cable to an end that nothing holds, or from end to end, which what it touches presses
-/// together: where it would buckle within the substep under the tension that this has found, it is folded a little, and the
-/// substep is to be tried again. Else what cannot stretch would go straight through the floor. Whether there was any.
-bool fold_pressed_columns(const Participant& p, const std::vector<Touch>& touches, State& state);
+/// A span from what holds a cable to an end that nothing holds, or from end to end, which what it touches presses together.
+struct PressedColumn {
+  int first = 0, last = 0;  ///< nodes
+  bool held_at_last = false;
+  std::vector<double> shape;  ///< in which it buckles: nodes, across it, of any size
+};
+
+/// Those that would buckle within the substep under the tension that this has found. They are to be folded, and the substep to be
+/// tried again: else what cannot stretch would go straight through the floor.
+std::vector<PressedColumn> find_pressed_columns(const Participant& p, const std::vector<Touch>& touches, const State& state);
+/// Folds one of a cable a little, without changing its length.
+void fold(const PressedColumn& column, int cable, State& state);
 
 /// The same where holders have jumped together: the cable takes a bow between them, before it is carried along.
 void carry_straight_columns(int cable, State& state);

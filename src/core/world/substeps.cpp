@@ -112,10 +112,9 @@ bool IslandStepper::advance_part(Island& island, const PartOfStep& part, bool to
     unresolved += unresolved_of(of_cable.boundary, of_cable.result);
   }
   found.balance += substep_;
-  found.balance.dissipated.unresolved += std::max(0.0, unresolved);
   // Of a substep that damps it is known what its laws do; the rest of what goes is what it is to take.
-  if (is_damped)
-    found.balance.dissipated.unresolved += std::max(0.0, before + accounted(island, found) - energy_at(island, part.to()));
+  if (is_damped) unresolved = before + accounted(island, found) - energy_at(island, part.to());
+  found.balance.dissipated.unresolved += std::max(0.0, unresolved);
   return true;
 }
 
