@@ -28,6 +28,10 @@ struct SimulatedGuide {
   /// [m] of rest length that was lost where bent parts of the cable had nodes removed beside the guide; it is returned with the
   /// next node that is inserted
   double lost_length = 0;
+  /// [J] What the cable lost in energy as nodes passed, below 0 if it gained: given back, or taken, evenly over `held_way`
+  double held_energy = 0;
+  double held_way = 0;      ///< [m] of rest length that is still to flow until then, below 0 if backward
+  double wheel_energy = 0;  ///< [J] of stretch, of the material on a sheave's wheel: it lies there strained as it came
 };
 
 /// State of the cable in a guide.

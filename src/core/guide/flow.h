@@ -16,6 +16,18 @@ struct GuidedFlow {
   bool is_blocked[2] = {false, false};  ///< whether no more material can come from before, from after
   double rate = 0;                      ///< [m/s] of rest length, from before to after; in: at the start, out: at the end
   double acceleration = 0;              ///< [m/s^2] in and out: mean over the last substep
+  double held_energy = 0;               ///< [J] in and out: of passed nodes, see SimulatedGuide
+  double held_way = 0;                  ///< [m] in and out: over which that drives the flow
+
+  /// [N] With which what is held drives a way: it has done all of its work after `held_way`.
+  double held_force(double way) const {
+    if (held_way == 0) return 0;
+    return way / held_way < 1 ? held_energy / held_way : held_energy / way;
+  }
+  void let_go(double way) {
+    held_energy -= way * held_force(way);
+    held_way = way / held_way < 1 ? held_way - way : 0;
+  }
 };
 
 /// Changes of the loads on the nodes around a guide, from that before the segment before it on [N].
@@ -35,7 +47,7 @@ struct Flow {
   double density = 0;                        // [kg/m] of what flows: the segments beside a guide are of one material
   double mass = 0;                           // [kg]
   double drag = 0;                           // [N s/m]
-  double resistance = 0;                     // [N] of friction against what flows, in the present iterate
+  double resistance = 0;                     // [N] of friction against what flows forward, in the present iterate
   double rate = 0;                           // [m/s] at the start
   double acceleration = 0;                   // [m/s^2] over the substep before
   std::array<double, 2> start_length{0, 0};  // [m] at rest, of the segments before and after

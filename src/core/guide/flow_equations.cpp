@@ -157,15 +157,16 @@ void CableStepper::set_flow_lengths(const Substep& s) {
   }
 }
 
-/// The tension of an elastic segment that material flows into or out of. With lengths s, rest lengths l and strains e = s / l - 1 at
-/// the start and (') the end, means over the substep (-), the energy EA l e^2 / 2 changes by
+/// The tension of an elastic segment that material flows into or out of. With lengths s, rest lengths l and strains e = s / l - 1
+/// at the start and (') the end, means over the substep (-), the energy EA l e^2 / 2 changes by
 ///   T (s' - s) - F (l' - l),   T = EA e- l-^2 / (l l'),   F = T s- / l- - EA (e^2)- / 2,
-/// exactly: T pulls the nodes, F the flow. A tension from s- and a mean of 1 / l would be another one with the way, even of material
-/// that is strained alike everywhere. Returns F; `slope`: by what less rest length at the end changes the tension [N/m].
+/// exactly: T pulls the nodes, F the flow. A tension from s- and a mean of 1 / l would be another one with the way, even of
+/// material that is strained alike everywhere. Returns F; `slope`: by what less rest length at the end changes the tension [N/m].
 double CableStepper::evaluate_flowing_length(const Substep& s, int i, double& slope) {
   const Straining strained = straining(s, i);
   const double part = s.part(), stiffness = axial_stiffness_[i], start = strained.start, end = strained.end;
-  const double length = std::sqrt(end_square_[i]), mean_length = mean(length_[i], length, part), mean_rest = mean(start, end, part);
+  const double length = std::sqrt(end_square_[i]), mean_length = mean(length_[i], length, part),
+               mean_rest = mean(start, end, part);
   const double strain_at_start = length_[i] / start - 1, strain_at_end = length / end - 1;
   const double stretching = part == 1 ? stiffness : stiffness * mean_rest * mean_rest / (start * end);
   const double damping = axial_damping_[i] / s.damping_time();
@@ -190,7 +191,7 @@ void CableStepper::evaluate_flows(const Substep& s) {
     const std::array<int, 2> segments{flow.before, flow.after};
     // Friction is between tensions; without it they are equal, and so is what the energy makes of them.
     const bool frictionless = flow.mode == Flow::Mode::free;
-    std::array<double, 2> arm, tension;
+    std::array<double, 2> arm, tension, energy_drawn;
     for (const int side : {0, 1}) {
       const int i = segments[side];
       const double sign = side == 0 ? -1 : 1, end = target_length_[i];
@@ -203,7 +204,9 @@ void CableStepper::evaluate_flows(const Substep& s) {
         arm[side] = mean(length_[i], end, part);
         flow.gap[side] = sign * flow.stretch[side] * end;
       }
-      tension[side] = elastic && frictionless ? drawn : tension_density_[i] * arm[side];
+      const double pulled = tension_density_[i] * arm[side];
+      energy_drawn[side] = elastic ? drawn : pulled;
+      tension[side] = frictionless ? energy_drawn[side] : pulled;
     }
 
     if (flow.moves && !s.statics) {
@@ -248,6 +251,8 @@ void CableStepper::evaluate_flows(const Substep& s) {
       const int node = side == 0 ? flow.before : flow.after + 1;
       flow.column[node - flow.first_node()] += (side == 0 ? -0.5 : 0.5) * part * density * gravity;
     }
+    const double held = s.statics ? 0 : guided.held_force(flow.way);
+    drive += held;
     drive -= flow.drag * flow.way;
     drive -= flow.mass * s.inertia() / s.h * (flow.way / s.h - flow.rate);
 
@@ -274,19 +279,23 @@ void CableStepper::evaluate_flows(const Substep& s) {
     flow.changed = mode != flow.mode || flow.changes < 0;
     if (flow.changed) ++flow.changes;
     flow.mode = mode;
-    flow.resistance = mode == Flow::Mode::forward ? resistance[0] : mode == Flow::Mode::backward ? resistance[1] : 0;
+    const bool forward = mode == Flow::Mode::forward, backward = mode == Flow::Mode::backward,
+               sticks = mode == Flow::Mode::sticking;
+    // With it goes what the tensions do less than the energy of stretch that they draw.
+    const double rubbing = forward ? resistance[0] : backward ? -resistance[1] : 0;
+    flow.resistance = (sticks ? drive : rubbing) + energy_drawn[1] - energy_drawn[0] - (tension[1] - tension[0]);
 
-    if (mode == Flow::Mode::sticking) {
+    if (sticks) {
       flow.row = {0, 0};
       flow.diagonal = -1;
       system_.flow_load[k] = sticking_way(s, flow) - flow.way;
       continue;
     }
-    const bool forward = mode == Flow::Mode::forward, backward = mode == Flow::Mode::backward;
     flow.row = {-(forward ? ratio : 1) * arm[0], (backward ? ratio : 1) * arm[1]};
     flow.diagonal = -flow.mass * s.inertia() / (s.h * s.h) - flow.drag + bends;
+    if (held != 0 && flow.way / guided.held_way >= 1) flow.diagonal -= held / flow.way;
     if (!elastic) flow.diagonal += part * (tension_density_[flow.before] + tension_density_[flow.after]);
-    system_.flow_load[k] = drive - (forward ? resistance[0] : backward ? -resistance[1] : 0);
+    system_.flow_load[k] = drive - rubbing;
   }
 }
 
@@ -426,6 +435,7 @@ void CableStepper::finish_flows(const Substep& s, CableState& state) {
     guided.rate = rate;
     guided.acceleration = s.statics ? 0 : (rate - flow.rate) / s.h;
     if (s.scheme == Scheme::damped) guided.acceleration = (flow.way / s.h - flow.rate) / s.h + 0.5 * flow.acceleration;
+    if (!s.statics) guided.let_go(flow.way);
     state.rest_lengths[flow.before] -= flow.way;
     state.rest_lengths[flow.after] += flow.way;
     state.masses[flow.before] -= half_density * flow.way;

@@ -25,7 +25,7 @@ Vector3 direction_at(const CableState& cable, int first, int last) {
 
 /// Where a wheel touches its cable now. What was straight is on the wheel then, or the other way round, with its strain.
 void follow_on_wheel(int index, State& state, Attachment& attachment) {
-  const SimulatedGuide& guide = state.guides[attachment.guide];
+  SimulatedGuide& guide = state.guides[attachment.guide];
   SimulatedCable& cable = state.cables[index];
   CableState& c = cable.state;
   const int first = attachment.node, last = first + 1;
@@ -43,6 +43,8 @@ void follow_on_wheel(int index, State& state, Attachment& attachment) {
     const double before = (c.positions[node] - c.positions[beside]).norm(), after = (place - c.positions[beside]).norm();
     const double growth = c.rest_lengths[segment] * (after / before - 1);
     if (c.rest_lengths[first] - growth <= 0) return;
+    const double stretch = strain(c, segment), stiffness = CableMaterials(cable)[segment].axial_stiffness;
+    if (stiffness < infinity) guide.wheel_energy -= 0.5 * stiffness * stretch * stretch * growth;
     attachment.tangent_points[side] = next.tangent_points[side];
     c.positions[node] = place;
     c.rest_lengths[segment] += growth;
@@ -94,7 +96,7 @@ void World::Implementation::release_guide(int index) {
     const Vector3 after = cable.positions[std::min(node + 1, cable.segments())];
     cable.velocities[node] += guide.flow * (after - cable.positions[std::max(node - 1, 0)]).normalized();
   }
-  guide.flow = guide.flow_acceleration = guide.lost_length = 0;
+  guide.flow = guide.flow_acceleration = guide.lost_length = guide.held_energy = guide.held_way = guide.wheel_energy = 0;
   guide.is_ready = false;
   erase_attachment(index);
   after_remeshing(attachment.body.index);

@@ -7,6 +7,7 @@
 #include "rod/length_projection.h"
 #include "target/length_drive.h"
 #include "verlet_cable/core/cable_materials.h"
+#include "world/energy.h"
 #include "world/island_stepper.h"
 
 namespace verlet_cable {
@@ -203,6 +204,8 @@ void load_flows(int index, const State& state, Boundary& boundary) {
     }
     flow.rate = guide.flow;
     flow.acceleration = guide.flow_acceleration;
+    flow.held_energy = guide.held_energy;
+    flow.held_way = guide.held_way;
     for (const int side : {0, 1}) {
       const Side at = side_of(attachment, side);
       flow.is_blocked[side] = cable.state.rest_lengths[at.segment()] < stop * cable.model->segment_length &&
@@ -218,6 +221,8 @@ void keep_flows(int index, const Boundary& boundary, State& state) {
       if (guide < 0 || target.node != flow.first) continue;
       state.guides[guide].flow = flow.rate;
       state.guides[guide].flow_acceleration = flow.acceleration;
+      state.guides[guide].held_energy = flow.held_energy;
+      state.guides[guide].held_way = flow.held_way;
     }
 }
 
@@ -235,23 +240,32 @@ bool pass_nodes(int index, State& state) {
     };
     const double ahead = steps_ahead * state.scene->time_step * std::abs(state.guides[attachment.guide].flow);
     const double least = std::clamp(ahead, little, most_ahead * regular);
+    SimulatedGuide& guide = state.guides[attachment.guide];
+    // What the cable has less then goes on to drive what flows, what it has more that gives: its energy is continuous.
+    const auto hold = [&](double way, const auto& change) {
+      const double before = energy_of_cable(state, index).total();
+      change();
+      guide.held_energy += before - energy_of_cable(state, index).total();
+      guide.held_way = way;
+      passed = true;
+    };
     for (const int side : both_sides) {
       while (length(side) < least && is_passable(state, index, side_of(attachment, side).neighbour())) {
-        const int joint = side_of(attachment, side).neighbour();
-        const Vector3 bulge = direction(cable, joint - 1) - direction(cable, joint);
-        take_in(index, attachment, side, state);
-        if (length(1 - side) > least_split * regular && !is_winding(1 - side))
-          give_out(index, attachment, 1 - side, bends ? behind * regular : std::max(length(1 - side) - regular, 2 * little),
-                   bulge, state);
-        continue_material(attachment, side, state.cables[index].state);
-        passed = true;
+        hold(side == 0 ? regular : -regular, [&] {
+          const int joint = side_of(attachment, side).neighbour();
+          const Vector3 bulge = direction(cable, joint - 1) - direction(cable, joint);
+          take_in(index, attachment, side, state);
+          if (length(1 - side) > least_split * regular && !is_winding(1 - side))
+            give_out(index, attachment, 1 - side, bends ? behind * regular : std::max(length(1 - side) - regular, 2 * little),
+                     bulge, state);
+          continue_material(attachment, side, state.cables[index].state);
+        });
       }
     }
     for (const int side : both_sides)
-      while (length(side) > regular + 2.5 * little && length(side) > regular + least && !is_winding(side)) {
-        give_out(index, attachment, side, length(side) - regular, Vector3::Zero(), state);
-        passed = true;
-      }
+      while (length(side) > regular + 2.5 * little && length(side) > regular + least && !is_winding(side))
+        hold(side == 0 ? -regular : regular,
+             [&] { give_out(index, attachment, side, length(side) - regular, Vector3::Zero(), state); });
   }
   return passed;
 }
