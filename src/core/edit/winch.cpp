@@ -237,7 +237,7 @@ void World::Implementation::after_remeshing(int index) {
 
 /// What of the cable has come to its guides goes through.
 void World::Implementation::pass_nodes_of(int index) {
-  if (!pass_nodes(index, state)) return;
+  if (!pass_nodes(index, true, state)) return;
   keep_flow_at_drive(index, 0, state);  // the step is planned already
   findings.intrusions.erase(std::remove_if(findings.intrusions.begin(), findings.intrusions.end(),
                                            [&](const Intrusion& intrusion) { return intrusion.cable == index; }),

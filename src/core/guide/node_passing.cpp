@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "rod/length_projection.h"
+#include "rod/rod_frames.h"
 #include "target/length_drive.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "world/energy.h"
@@ -27,6 +29,8 @@ constexpr double steps_ahead = 3, most_ahead = 0.6;
 constexpr double stop = 0.15;
 /// Of a regular segment: shorter ones are not split.
 constexpr double least_split = 0.7;
+/// Of what is left when a node is taken in: so far back it has flowed when that is given out again on the side that it came from.
+constexpr double turning = 0.3;
 /// A node that is given out bends no more than this, height over length.
 constexpr double steepest = 0.5;
 
@@ -58,6 +62,11 @@ struct Side {
   int segment() const { return away < 0 ? node - 1 : node; }
   int neighbour() const { return node + away; }
 };
+
+/// Of what flows from a side.
+double way_from(int side) {
+  return side == 0 ? 1 : -1;
+}
 
 Side side_of(const Attachment& attachment, int side) {
   if (side == 0) return {attachment.node, -1};
@@ -111,6 +120,124 @@ void give_out(int index, Attachment& attachment, int side, double near, Vector3 
     guide.lost_length -= gained;
   }
 }
+
+/// [J] Of a cable, but for its motion.
+double potential_energy(int cable, const State& state) {
+  const Energy energy = energy_of_cable(state, cable);
+  return energy.total() - energy.kinetic;
+}
+
+/// A node that has been given out on a cable that bends, whose place goes along an ellipse about the guide and the next node: the
+/// lengths that were lost are there again, and the strain stays.
+class GivenNode {
+ public:
+  GivenNode(int index, const Attachment& attachment, int side, const Vector3& bulge, State& state)
+      : index_(index), state_(state), cable_(state.cables[index].state), guide_(side_of(attachment, side).node) {
+    const int away = side_of(attachment, side).away;
+    node_ = guide_ + away;
+    next_ = node_ + away;
+    near_segment_ = std::min(guide_, node_);
+    far_segment_ = std::min(node_, next_);
+    start_ = near();
+    const double whole = start_ + cable_.rest_lengths[far_segment_];
+    const Vector3 chord = cable_.positions[next_] - cable_.positions[guide_];
+    stretch_ = chord.norm() / whole;
+    along_ = chord.normalized();
+    across_ = (bulge - bulge.dot(along_) * along_).stableNormalized();
+    double& lost = state.guides[attachment.guide].lost_length;
+    if (across_.squaredNorm() > 0) lost_ = std::exchange(lost, 0.0);
+    length_ = whole + lost_;
+    start_masses_ = {cable_.masses[guide_], cable_.masses[next_]};
+    half_density_ = 0.5 * CableMaterials(state.cables[index])[near_segment_].linear_density;
+  }
+
+  double near() const { return cable_.rest_lengths[near_segment_]; }
+  double lost() const { return lost_; }
+
+  /// Puts it at a rest length from the guide [m].
+  void place(double near) {
+    const double a = stretch_ * near, b = stretch_ * (length_ - near), c = stretch_ * (length_ - lost_);
+    const double way = 0.5 * (c + (a - b) * (a + b) / c), height = std::sqrt(std::max(0.0, (a - way) * (a + way)));
+    const Vector3 place = cable_.positions[guide_] + way * along_ + height * across_;
+    if (!cable_.directors.empty())
+      for (const int segment : {near_segment_, far_segment_}) {
+        const int other = segment == near_segment_ ? guide_ : next_;
+        const double sign = (other < node_) ? 1 : -1;
+        cable_.directors[segment] = carried_director(cable_, segment, sign * (place - cable_.positions[other]), 0);
+      }
+    cable_.positions[node_] = place;
+    cable_.rest_lengths[near_segment_] = near;
+    cable_.rest_lengths[far_segment_] = length_ - near;
+    cable_.masses[guide_] = start_masses_[0] + half_density_ * (near - start_);
+    cable_.masses[next_] = start_masses_[1] - half_density_ * (near - start_);
+  }
+
+  /// Puts it at the place, next to where it is, at which the cable has an energy [J]; if there is none, where that differs least.
+  void place_at(double energy) {
+    const double lowest = std::max(widest * lost_, start_ / widest), highest = std::min(widest * start_, most_ahead * length_);
+    const auto excess = [&](double near) {
+      place(near);
+      return potential_energy(index_, state_) - energy;
+    };
+    Trial best{start_, infinity};
+    std::array<Trial, 2> last;
+    const auto attempt = [&](double near) {
+      const Trial trial{near, excess(near)};
+      if (std::abs(trial.excess) < std::abs(best.excess)) best = trial;
+      return trial;
+    };
+    last.fill(attempt(std::clamp(start_, lowest, std::max(lowest, highest))));
+    for (double factor = pace; best.excess != 0; factor *= pace) {
+      bool goes_on = false;
+      for (const int side : both_sides) {
+        const double near = side == 0 ? start_ / factor : start_ * factor;
+        if (near < lowest || near > highest) continue;
+        goes_on = true;
+        const Trial next = attempt(near);
+        if ((next.excess < 0) != (last[side].excess < 0)) return place(between(last[side], next, excess));
+        last[side] = next;
+      }
+      if (!goes_on) break;
+    }
+    place(best.near);
+  }
+
+ private:
+  struct Trial {
+    double near = 0, excess = 0;
+  };
+
+  /// Where it is none: regula falsi, where a side that stays counts half.
+  template <class Excess>
+  static double between(Trial a, Trial b, const Excess& excess) {
+    for (int i = 0; i < most_halvings && a.excess != b.excess; ++i) {
+      const Trial trial{b.near - b.excess * (b.near - a.near) / (b.excess - a.excess), 0};
+      const double found = excess(trial.near);
+      if ((found < 0) != (b.excess < 0))
+        a = b;
+      else
+        a.excess *= 0.5;
+      b = {trial.near, found};
+      if (found == 0) break;
+    }
+    return b.near;
+  }
+
+  /// Of the distance from the guide: it is looked for so far away, and in such steps.
+  static constexpr double widest = 3, pace = 1.15;
+  static constexpr int most_halvings = 12;
+
+  int index_;
+  State& state_;
+  CableState& cable_;
+  int guide_ = 0, node_ = 0, next_ = 0;
+  int near_segment_ = 0, far_segment_ = 0;
+  double start_ = 0, length_ = 0, lost_ = 0;  // [m] at rest
+  double stretch_ = 1;
+  Vector3 along_ = Vector3::Zero(), across_ = Vector3::Zero();
+  std::array<double, 2> start_masses_{0, 0};
+  double half_density_ = 0;
+};
 
 /// What has come to a guide flows through it: the cable is of one material on both sides, each node with the weight that it has.
 void continue_material(const Attachment& attachment, int from, CableState& state) {
@@ -226,7 +353,7 @@ void keep_flows(int index, const Boundary& boundary, State& state) {
     }
 }
 
-bool pass_nodes(int index, State& state) {
+bool pass_nodes(int index, bool moves, State& state) {
   bool passed = false;
   const CableState& cable = state.cables[index].state;
   const bool bends = CableMaterials(state.cables[index]).any_bends();
@@ -243,28 +370,40 @@ bool pass_nodes(int index, State& state) {
     SimulatedGuide& guide = state.guides[attachment.guide];
     // What the cable has less then goes on to drive what flows, what it has more that gives: its energy is continuous.
     const auto hold = [&](double way, const auto& change) {
-      const double before = energy_of_cable(state, index).total();
+      const double before = moves ? energy_of_cable(state, index).total() : 0;
       change();
+      passed = true;
+      if (!moves) return;
       guide.held_energy += before - energy_of_cable(state, index).total();
       guide.held_way = way;
-      passed = true;
+    };
+    // What turns round passes back where it passed.
+    const auto has_just_left = [&](int side) {
+      return guide.held_way * way_from(side) < 0 && std::abs(guide.held_way) < regular + turning * little;
     };
     for (const int side : both_sides) {
-      while (length(side) < least && is_passable(state, index, side_of(attachment, side).neighbour())) {
-        hold(side == 0 ? regular : -regular, [&] {
+      while (length(side) < least && is_passable(state, index, side_of(attachment, side).neighbour()) && !has_just_left(side)) {
+        hold(way_from(side) * regular, [&] {
           const int joint = side_of(attachment, side).neighbour();
           const Vector3 bulge = direction(cable, joint - 1) - direction(cable, joint);
+          const double near = length(side), energy = moves && bends ? potential_energy(index, state) : 0;
           take_in(index, attachment, side, state);
-          if (length(1 - side) > least_split * regular && !is_winding(1 - side))
-            give_out(index, attachment, 1 - side, bends ? behind * regular : std::max(length(1 - side) - regular, 2 * little),
-                     bulge, state);
+          if (length(1 - side) > least_split * regular && !is_winding(1 - side)) {
+            if (moves && bends) {
+              give_out(index, attachment, 1 - side, near, Vector3::Zero(), state);
+              GivenNode(index, attachment, 1 - side, bulge, state).place_at(energy);
+            } else {
+              give_out(index, attachment, 1 - side, bends ? behind * regular : std::max(length(1 - side) - regular, 2 * little),
+                       bulge, state);
+            }
+          }
           continue_material(attachment, side, state.cables[index].state);
         });
       }
     }
     for (const int side : both_sides)
       while (length(side) > regular + 2.5 * little && length(side) > regular + least && !is_winding(side))
-        hold(side == 0 ? -regular : regular,
+        hold(-way_from(side) * regular,
              [&] { give_out(index, attachment, side, length(side) - regular, Vector3::Zero(), state); });
   }
   return passed;
