@@ -29,8 +29,8 @@ constexpr double steps_ahead = 3, most_ahead = 0.6;
 constexpr double stop = 0.15;
 /// Of a regular segment: shorter ones are not split.
 constexpr double least_split = 0.7;
-/// Of what is left when a node is taken in: so far back it has flowed when that is given out again on the side that it came from.
-constexpr double turning = 0.3;
+/// Of what is left when a node is taken in: what is left then on the side on which one was given out last.
+constexpr double turning = 0.6;
 /// A node that is given out bends no more than this, height over length.
 constexpr double steepest = 0.5;
 
@@ -377,12 +377,13 @@ bool pass_nodes(int index, bool moves, State& state) {
       guide.held_energy += before - energy_of_cable(state, index).total();
       guide.held_way = way;
     };
-    // What turns round passes back where it passed.
-    const auto has_just_left = [&](int side) {
-      return guide.held_way * way_from(side) < 0 && std::abs(guide.held_way) < regular + turning * little;
+    // What turns round passes back a little behind where it passed.
+    const auto comes_to = [&](int side) {
+      const double way = way_from(side), limit = guide.held_way * way < 0 ? turning * least : least;
+      return length(side) < limit && (!moves || guide.flow * way > 0);
     };
     for (const int side : both_sides) {
-      while (length(side) < least && is_passable(state, index, side_of(attachment, side).neighbour()) && !has_just_left(side)) {
+      while (comes_to(side) && is_passable(state, index, side_of(attachment, side).neighbour())) {
         hold(way_from(side) * regular, [&] {
           const int joint = side_of(attachment, side).neighbour();
           const Vector3 bulge = direction(cable, joint - 1) - direction(cable, joint);
