@@ -232,6 +232,7 @@ void World::Implementation::reverse_cable(int index) {
       guide.flow = -guide.flow;
       guide.flow_acceleration = -guide.flow_acceleration;
       guide.held_way = -guide.held_way;
+      guide.last_way = -guide.last_way;
       guide.sense = -guide.sense;
       if (is_wheel(a)) --a.node;
       std::swap(a.tangent_points[0], a.tangent_points[1]);

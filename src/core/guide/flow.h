@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "verlet_cable/core/types.h"
@@ -16,19 +17,16 @@ struct GuidedFlow {
   bool is_blocked[2] = {false, false};  ///< whether no more material can come from before, from after
   double rate = 0;                      ///< [m/s] of rest length, from before to after; in: at the start, out: at the end
   double acceleration = 0;              ///< [m/s^2] in and out: mean over the last substep
-  double held_energy = 0;               ///< [J] in and out: of passed nodes, see SimulatedGuide
-  double held_way = 0;                  ///< [m] in and out: over which that drives the flow
-
-  /// [N] With which what is held drives a way: it has done all of its work after `held_way`.
-  double held_force(double way) const {
-    if (held_way == 0) return 0;
-    return way / held_way < 1 ? held_energy / held_way : held_energy / way;
-  }
-  void let_go(double way) {
-    held_energy -= way * held_force(way);
-    held_way = way / held_way < 1 ? held_way - way : 0;
-  }
+  double held_energy = 0;               ///< [J] of passed nodes, see SimulatedGuide
+  double held_way = 0;                  ///< [m] in and out: that has flowed since
+  double held_length = 1;               ///< [m] over which it is given back
 };
+
+/// Which part is left of what a guide holds after a part of the way over which it gives that back: its force does not jump.
+inline double held_part(double part) {
+  const double left = 1 - std::min(part * part, 1.0);
+  return left * left;
+}
 
 /// Changes of the loads on the nodes around a guide, from that before the segment before it on [N].
 using FlowColumn = std::array<Vector3, 6>;

@@ -60,6 +60,20 @@ void flow_on(const Flow& flow, const std::vector<double>& rest_lengths, std::vec
   }
 }
 
+/// With which what a guide holds drives a way, whose work is what it gives back [N], and how that grows with the way [N/m]: with
+/// the parts p and q of its length at the start and the end, -E ((1 - q²)² - (1 - p²)²) / (q - p).
+std::array<double, 2> held_force(const GuidedFlow& guided, double way) {
+  const double length = guided.held_length, start = guided.held_way / length, end = start + way / length;
+  const double per_length = guided.held_energy / length;
+  if (guided.held_energy == 0 || std::abs(start) >= 1) return {0, 0};
+  if (std::abs(end) >= 1) {
+    const double force = per_length * held_part(start) / (end - start);
+    return {force, -force / way};
+  }
+  const double squares = start * start + end * end - 2;
+  return {-per_length * (start + end) * squares, -per_length / length * (squares + 2 * end * (start + end))};
+}
+
 bool resists(const GuidedFlow& guided) {
   return guided.friction > 0 || guided.resistance > 0 || guided.is_blocked[0] || guided.is_blocked[1];
 }
@@ -251,7 +265,7 @@ void CableStepper::evaluate_flows(const Substep& s) {
       const int node = side == 0 ? flow.before : flow.after + 1;
       flow.column[node - flow.first_node()] += (side == 0 ? -0.5 : 0.5) * part * density * gravity;
     }
-    const double held = s.statics ? 0 : guided.held_force(flow.way);
+    const auto [held, held_slope] = s.statics ? std::array{0.0, 0.0} : held_force(guided, flow.way);
     drive += held;
     drive -= flow.drag * flow.way;
     drive -= flow.mass * s.inertia() / s.h * (flow.way / s.h - flow.rate);
@@ -292,8 +306,7 @@ void CableStepper::evaluate_flows(const Substep& s) {
       continue;
     }
     flow.row = {-(forward ? ratio : 1) * arm[0], (backward ? ratio : 1) * arm[1]};
-    flow.diagonal = -flow.mass * s.inertia() / (s.h * s.h) - flow.drag + bends;
-    if (held != 0 && flow.way / guided.held_way >= 1) flow.diagonal -= held / flow.way;
+    flow.diagonal = -flow.mass * s.inertia() / (s.h * s.h) - flow.drag + bends + held_slope;
     if (!elastic) flow.diagonal += part * (tension_density_[flow.before] + tension_density_[flow.after]);
     system_.flow_load[k] = drive - rubbing;
   }
@@ -435,7 +448,7 @@ void CableStepper::finish_flows(const Substep& s, CableState& state) {
     guided.rate = rate;
     guided.acceleration = s.statics ? 0 : (rate - flow.rate) / s.h;
     if (s.scheme == Scheme::damped) guided.acceleration = (flow.way / s.h - flow.rate) / s.h + 0.5 * flow.acceleration;
-    if (!s.statics) guided.let_go(flow.way);
+    if (!s.statics) guided.held_way += flow.way;
     state.rest_lengths[flow.before] -= flow.way;
     state.rest_lengths[flow.after] += flow.way;
     state.masses[flow.before] -= half_density * flow.way;

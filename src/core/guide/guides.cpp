@@ -232,7 +232,7 @@ void stop_flows(int cable, State& state) {
   for (const Attachment& attachment : state.attachments) {
     if (attachment.guide < 0 || attachment.body != cable_id(cable)) continue;
     SimulatedGuide& guide = state.guides[attachment.guide];
-    guide.flow = guide.flow_acceleration = guide.held_energy = guide.held_way = 0;
+    guide.flow = guide.flow_acceleration = guide.held_energy = guide.held_way = guide.last_way = 0;
   }
 }
 

@@ -96,7 +96,8 @@ void World::Implementation::release_guide(int index) {
     const Vector3 after = cable.positions[std::min(node + 1, cable.segments())];
     cable.velocities[node] += guide.flow * (after - cable.positions[std::max(node - 1, 0)]).normalized();
   }
-  guide.flow = guide.flow_acceleration = guide.lost_length = guide.held_energy = guide.held_way = guide.wheel_energy = 0;
+  guide.flow = guide.flow_acceleration = guide.lost_length = guide.held_energy = guide.held_way = guide.last_way =
+      guide.wheel_energy = 0;
   guide.is_ready = false;
   erase_attachment(index);
   after_remeshing(attachment.body.index);

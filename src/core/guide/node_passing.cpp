@@ -333,6 +333,7 @@ void load_flows(int index, const State& state, Boundary& boundary) {
     flow.acceleration = guide.flow_acceleration;
     flow.held_energy = guide.held_energy;
     flow.held_way = guide.held_way;
+    flow.held_length = cable.model->segment_length;
     for (const int side : {0, 1}) {
       const Side at = side_of(attachment, side);
       flow.is_blocked[side] = cable.state.rest_lengths[at.segment()] < stop * cable.model->segment_length &&
@@ -348,7 +349,6 @@ void keep_flows(int index, const Boundary& boundary, State& state) {
       if (guide < 0 || target.node != flow.first) continue;
       state.guides[guide].flow = flow.rate;
       state.guides[guide].flow_acceleration = flow.acceleration;
-      state.guides[guide].held_energy = flow.held_energy;
       state.guides[guide].held_way = flow.held_way;
     }
 }
@@ -374,17 +374,19 @@ bool pass_nodes(int index, bool moves, State& state) {
       change();
       passed = true;
       if (!moves) return;
+      guide.held_energy *= held_part(guide.held_way / regular);
+      guide.held_way = 0;
       guide.held_energy += before - energy_of_cable(state, index).total();
-      guide.held_way = way;
+      guide.last_way = way;
     };
     // What turns round passes back a little behind where it passed.
     const auto comes_to = [&](int side) {
-      const double way = way_from(side), limit = guide.held_way * way < 0 ? turning * least : least;
+      const double way = way_from(side), limit = guide.last_way * way < 0 ? turning * least : least;
       return length(side) < limit && (!moves || guide.flow * way > 0);
     };
     for (const int side : both_sides) {
       while (comes_to(side) && is_passable(state, index, side_of(attachment, side).neighbour())) {
-        hold(way_from(side) * regular, [&] {
+        hold(way_from(side), [&] {
           const int joint = side_of(attachment, side).neighbour();
           const Vector3 bulge = direction(cable, joint - 1) - direction(cable, joint);
           const double near = length(side), energy = moves && bends ? potential_energy(index, state) : 0;
@@ -404,8 +406,7 @@ bool pass_nodes(int index, bool moves, State& state) {
     }
     for (const int side : both_sides)
       while (length(side) > regular + 2.5 * little && length(side) > regular + least && !is_winding(side))
-        hold(-way_from(side) * regular,
-             [&] { give_out(index, attachment, side, length(side) - regular, Vector3::Zero(), state); });
+        hold(-way_from(side), [&] { give_out(index, attachment, side, length(side) - regular, Vector3::Zero(), state); });
   }
   return passed;
 }

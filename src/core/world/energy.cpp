@@ -76,7 +76,7 @@ Energy energy_of_cable(const State& state, int index, double part, std::vector<H
   for (const Attachment& attachment : state.attachments) {
     if (attachment.guide < 0 || attachment.body != cable_id(index)) continue;
     const SimulatedGuide& guide = state.guides[attachment.guide];
-    energy.bend += guide.held_energy;
+    energy.bend += guide.held_energy * held_part(guide.held_way / cable.model->segment_length);
     energy.stretch += guide.wheel_energy;
     if (is_wheel(attachment)) shaped.insert(shaped.end(), {attachment.node, attachment.node + 1});
   }
