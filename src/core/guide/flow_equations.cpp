@@ -295,9 +295,9 @@ void CableStepper::evaluate_flows(const Substep& s) {
     flow.mode = mode;
     const bool forward = mode == Flow::Mode::forward, backward = mode == Flow::Mode::backward,
                sticks = mode == Flow::Mode::sticking;
-    // With it goes what the tensions do less than the energy of stretch that they draw.
     const double rubbing = forward ? resistance[0] : backward ? -resistance[1] : 0;
-    flow.resistance = (sticks ? drive : rubbing) + energy_drawn[1] - energy_drawn[0] - (tension[1] - tension[0]);
+    // Friction takes all of what the energy drives the flow with beyond what the flow gains.
+    flow.resistance = mode == Flow::Mode::free ? 0 : drive + energy_drawn[1] - energy_drawn[0] - (tension[1] - tension[0]);
 
     if (sticks) {
       flow.row = {0, 0};
@@ -408,8 +408,11 @@ double CableStepper::along_column(const Flow& flow) const {
 /// False if so much would flow that next to nothing is left.
 bool CableStepper::correct_flows(double part) {
   bool is_left = true;
+  const std::vector<double>& multiplier = multiplier_correction();
   for (Flow& flow : flows_) {
     flow.way += part * flow.correction;
+    if (flow.mode != Flow::Mode::free)
+      flow.resistance += part * (length_[flow.after] * multiplier[flow.after] - length_[flow.before] * multiplier[flow.before]);
     is_left =
         is_left && flow.way < (1 - least_left) * flow.start_length[0] && -flow.way < (1 - least_left) * flow.start_length[1];
   }

@@ -23,7 +23,16 @@ Vector3 direction_at(const CableState& cable, int first, int last) {
   return (before + (cable.positions[last + 1] - cable.positions[last]).normalized()).normalized();
 }
 
-/// Where a wheel touches its cable now. What was straight is on the wheel then, or the other way round, with its strain.
+/// [J] The weight of the nodes beside a wheel and on it.
+double weight_at_wheel(const CableState& cable, int first, const GravityDesc& gravity) {
+  double energy = 0;
+  for (int node = first - 1; node <= first + 2; ++node)
+    energy += cable.masses[node] * gravity.potential_at(cable.positions[node]);
+  return energy;
+}
+
+/// Where a wheel touches its cable now. What was straight is on the wheel then, or the other way round, with its strain. No force
+/// moves along the cable with that: what the nodes have more in energy their material on the wheel has less.
 void follow_on_wheel(int index, State& state, Attachment& attachment) {
   SimulatedGuide& guide = state.guides[attachment.guide];
   SimulatedCable& cable = state.cables[index];
@@ -37,12 +46,13 @@ void follow_on_wheel(int index, State& state, Attachment& attachment) {
   // A cable that has left the wheel is held by it all the same.
   if (std::abs(arc_on_wheel(guide, next) - arc_on_wheel(guide, attachment)) > M_PI * guide.radius) return;
   const double half_density = 0.5 * CableMaterials(cable)[first].linear_density;
+  guide.wheel_energy += weight_at_wheel(c, first, state.scene->gravity);
   for (const int side : {0, 1}) {
     const int node = side == 0 ? first : last, segment = side == 0 ? first - 1 : last, beside = side == 0 ? first - 1 : last + 1;
     const Vector3 place = wheel.position + wheel.orientation * next.tangent_points[side];
     const double before = (c.positions[node] - c.positions[beside]).norm(), after = (place - c.positions[beside]).norm();
     const double growth = c.rest_lengths[segment] * (after / before - 1);
-    if (c.rest_lengths[first] - growth <= 0) return;
+    if (c.rest_lengths[first] - growth <= 0) break;
     const double stretch = strain(c, segment), stiffness = CableMaterials(cable)[segment].axial_stiffness;
     if (stiffness < infinity) guide.wheel_energy -= 0.5 * stiffness * stretch * stretch * growth;
     attachment.tangent_points[side] = next.tangent_points[side];
@@ -54,6 +64,7 @@ void follow_on_wheel(int index, State& state, Attachment& attachment) {
     for (KinematicTarget& target : state.cable_progress[index].targets.nodes)
       if (target.node == node) target.position = place;
   }
+  guide.wheel_energy -= weight_at_wheel(c, first, state.scene->gravity);
 }
 
 }  // namespace
