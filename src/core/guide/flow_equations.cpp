@@ -538,14 +538,28 @@ void CableStepper::project_flows(const Substep& s) {
     }
 }
 
-void CableStepper::push_flows(const Substep& s) {
+void CableStepper::push_flows(const Substep& s, SubstepResult& result) {
   for (std::size_t k = 0; k < flows_.size(); ++k) {
     const Flow& flow = flows_[k];
-    if (flow.mode != Flow::Mode::free || is_elastic_at(flow.before)) continue;
-    s.boundary.flows[k].rate +=
-        (target_length_[flow.before] * impulse_[flow.before] - target_length_[flow.after] * impulse_[flow.after]) / flow.mass;
-    if (flow.first != flow.last) impulse_[flow.first] = 0;
+    if (is_elastic_at(flow.before)) continue;
+    const double impulse =
+        target_length_[flow.before] * impulse_[flow.before] - target_length_[flow.after] * impulse_[flow.after];
+    mend_flow(flow, impulse, flow.mode == Flow::Mode::free ? impulse / flow.mass : 0, s.boundary.flows[k], result);
+    if (flow.mode == Flow::Mode::free && flow.first != flow.last) impulse_[flow.first] = 0;
   }
+}
+
+/// As velocities are mended. `impulse`: with which the segments beside the guide drive what flows [N s]. Friction keeps from
+/// changing what is not free, and takes what the impulse does.
+void CableStepper::mend_flow(const Flow& flow, double impulse, double change, GuidedFlow& guided, SubstepResult& result) {
+  EnergyBalance::Dissipated& dissipated = result.balance.dissipated;
+  if (flow.mode == Flow::Mode::free) {
+    dissipated.unresolved -= flow.mass * change * (guided.rate + 0.5 * change);
+  } else {
+    dissipated.guides += impulse * guided.rate;
+    dissipated.unresolved -= impulse * guided.rate;
+  }
+  guided.rate += change;
 }
 
 }  // namespace verlet_cable
