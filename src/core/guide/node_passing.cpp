@@ -31,6 +31,11 @@ constexpr double stop = 0.15;
 constexpr double least_split = 0.7;
 /// Of what is left when a node is taken in: what is left then on the side on which one was given out last.
 constexpr double turning = 0.6;
+/// Of a regular segment: so near a node is taken in whichever way the cable flows, and none is given out nearer.
+constexpr double closest = 0.05;
+/// Of a regular segment, where the cable bends as it moves: only shorter ones and longer ones change the number of nodes, which
+/// makes its bends stiffer or softer at once.
+constexpr double least_divided = 0.4, most_undivided = 1.75;
 /// A node that is given out bends no more than this, height over length.
 constexpr double steepest = 0.5;
 
@@ -148,6 +153,7 @@ class GivenNode {
     if (across_.squaredNorm() > 0) lost_ = std::exchange(lost, 0.0);
     length_ = whole + lost_;
     start_masses_ = {cable_.masses[guide_], cable_.masses[next_]};
+    nearest_ = closest * state.cables[index].model->segment_length;
     half_density_ = 0.5 * CableMaterials(state.cables[index])[near_segment_].linear_density;
   }
 
@@ -174,7 +180,8 @@ class GivenNode {
 
   /// Puts it at the place, next to where it is, at which the cable has an energy [J]; if there is none, where that differs least.
   void place_at(double energy) {
-    const double lowest = std::max(widest * lost_, start_ / widest), highest = std::min(widest * start_, most_ahead * length_);
+    const double lowest = std::max({widest * lost_, start_ / widest, nearest_}),
+                 highest = std::min(widest * start_, most_ahead * length_);
     const auto excess = [&](double near) {
       place(near);
       return potential_energy(index_, state_) - energy;
@@ -232,7 +239,7 @@ class GivenNode {
   CableState& cable_;
   int guide_ = 0, node_ = 0, next_ = 0;
   int near_segment_ = 0, far_segment_ = 0;
-  double start_ = 0, length_ = 0, lost_ = 0;  // [m] at rest
+  double start_ = 0, length_ = 0, lost_ = 0, nearest_ = 0;  // [m] at rest
   double stretch_ = 1;
   Vector3 along_ = Vector3::Zero(), across_ = Vector3::Zero();
   std::array<double, 2> start_masses_{0, 0};
@@ -356,7 +363,7 @@ void keep_flows(int index, const Boundary& boundary, State& state) {
 bool pass_nodes(int index, bool moves, State& state) {
   bool passed = false;
   const CableState& cable = state.cables[index].state;
-  const bool bends = CableMaterials(state.cables[index]).any_bends();
+  const bool bends = CableMaterials(state.cables[index]).any_bends(), keeps = moves && bends;
   const double regular = state.cables[index].model->segment_length, little = shortest * regular;
   for (Attachment& attachment : state.attachments) {
     if (attachment.guide < 0 || attachment.body != cable_id(index)) continue;
@@ -382,17 +389,17 @@ bool pass_nodes(int index, bool moves, State& state) {
     // What turns round passes back a little behind where it passed.
     const auto comes_to = [&](int side) {
       const double way = way_from(side), limit = guide.last_way * way < 0 ? turning * least : least;
-      return length(side) < limit && (!moves || guide.flow * way > 0);
+      return length(side) < limit && (!moves || guide.flow * way > 0 || length(side) < closest * regular);
     };
     for (const int side : both_sides) {
       while (comes_to(side) && is_passable(state, index, side_of(attachment, side).neighbour())) {
         hold(way_from(side), [&] {
           const int joint = side_of(attachment, side).neighbour();
           const Vector3 bulge = direction(cable, joint - 1) - direction(cable, joint);
-          const double near = length(side), energy = moves && bends ? potential_energy(index, state) : 0;
+          const double near = std::max(length(side), closest * regular), energy = keeps ? potential_energy(index, state) : 0;
           take_in(index, attachment, side, state);
-          if (length(1 - side) > least_split * regular && !is_winding(1 - side)) {
-            if (moves && bends) {
+          if (length(1 - side) > (keeps ? least_divided : least_split) * regular && !is_winding(1 - side)) {
+            if (keeps) {
               give_out(index, attachment, 1 - side, near, Vector3::Zero(), state);
               GivenNode(index, attachment, 1 - side, bulge, state).place_at(energy);
             } else {
@@ -404,8 +411,9 @@ bool pass_nodes(int index, bool moves, State& state) {
         });
       }
     }
+    const double longest = keeps ? most_undivided * regular : regular + std::max(2.5 * little, least);
     for (const int side : both_sides)
-      while (length(side) > regular + 2.5 * little && length(side) > regular + least && !is_winding(side))
+      while (length(side) > longest && !is_winding(side))
         hold(-way_from(side), [&] { give_out(index, attachment, side, length(side) - regular, Vector3::Zero(), state); });
   }
   return passed;
