@@ -35,7 +35,7 @@ constexpr double turning = 0.6;
 constexpr double closest = 0.05;
 /// Of a regular segment, where the cable bends as it moves: only shorter ones and longer ones change the number of nodes, which
 /// makes its bends stiffer or softer at once.
-constexpr double least_divided = 0.4, most_undivided = 1.75;
+constexpr double least_divided = 0.4, most_undivided = 2.2;
 /// A node that is given out bends no more than this, height over length.
 constexpr double steepest = 0.5;
 
@@ -153,7 +153,8 @@ class GivenNode {
     if (across_.squaredNorm() > 0) lost_ = std::exchange(lost, 0.0);
     length_ = whole + lost_;
     start_masses_ = {cable_.masses[guide_], cable_.masses[next_]};
-    nearest_ = closest * state.cables[index].model->segment_length;
+    regular_ = state.cables[index].model->segment_length;
+    nearest_ = closest * regular_;
     half_density_ = 0.5 * CableMaterials(state.cables[index])[near_segment_].linear_density;
   }
 
@@ -180,24 +181,26 @@ class GivenNode {
 
   /// Puts it at the place, next to where it is, at which the cable has an energy [J]; if there is none, where that differs least.
   void place_at(double energy) {
-    const double lowest = std::max({widest * lost_, start_ / widest, nearest_}),
-                 highest = std::min(widest * start_, most_ahead * length_);
+    const double lowest = std::max({lost_, start_ / widest, nearest_});
+    const double highest = std::max(lowest, std::min(widest * start_, most_ahead * length_));
+    // Where the next segment is as long as the others, or about as near as the node that was taken in
+    const double first = std::clamp(length_ - regular_, lowest, highest);
     const auto excess = [&](double near) {
       place(near);
       return potential_energy(index_, state_) - energy;
     };
-    Trial best{start_, infinity};
+    Trial best{first, infinity};
     std::array<Trial, 2> last;
     const auto attempt = [&](double near) {
       const Trial trial{near, excess(near)};
       if (std::abs(trial.excess) < std::abs(best.excess)) best = trial;
       return trial;
     };
-    last.fill(attempt(std::clamp(start_, lowest, std::max(lowest, highest))));
+    last.fill(attempt(first));
     for (double factor = pace; best.excess != 0; factor *= pace) {
       bool goes_on = false;
       for (const int side : both_sides) {
-        const double near = side == 0 ? start_ / factor : start_ * factor;
+        const double near = side == 0 ? first / factor : first * factor;
         if (near < lowest || near > highest) continue;
         goes_on = true;
         const Trial next = attempt(near);
@@ -231,7 +234,7 @@ class GivenNode {
   }
 
   /// Of the distance from the guide: it is looked for so far away, and in such steps.
-  static constexpr double widest = 3, pace = 1.15;
+  static constexpr double widest = 1.5, pace = 1.06;
   static constexpr int most_halvings = 12;
 
   int index_;
@@ -239,7 +242,7 @@ class GivenNode {
   CableState& cable_;
   int guide_ = 0, node_ = 0, next_ = 0;
   int near_segment_ = 0, far_segment_ = 0;
-  double start_ = 0, length_ = 0, lost_ = 0, nearest_ = 0;  // [m] at rest
+  double start_ = 0, length_ = 0, lost_ = 0, regular_ = 0, nearest_ = 0;  // [m] at rest
   double stretch_ = 1;
   Vector3 along_ = Vector3::Zero(), across_ = Vector3::Zero();
   std::array<double, 2> start_masses_{0, 0};
