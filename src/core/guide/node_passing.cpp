@@ -154,7 +154,6 @@ class GivenNode {
     length_ = whole + lost_;
     start_masses_ = {cable_.masses[guide_], cable_.masses[next_]};
     regular_ = state.cables[index].model->segment_length;
-    nearest_ = closest * regular_;
     half_density_ = 0.5 * CableMaterials(state.cables[index])[near_segment_].linear_density;
   }
 
@@ -181,7 +180,7 @@ class GivenNode {
 
   /// Puts it at the place, next to where it is, at which the cable has an energy [J]; if there is none, where that differs least.
   void place_at(double energy) {
-    const double lowest = std::max({lost_, start_ / widest, nearest_});
+    const double lowest = std::max(lost_, start_ / widest);
     const double highest = std::max(lowest, std::min(widest * start_, most_ahead * length_));
     // Where the next segment is as long as the others, or about as near as the node that was taken in
     const double first = std::clamp(length_ - regular_, lowest, highest);
@@ -242,7 +241,7 @@ class GivenNode {
   CableState& cable_;
   int guide_ = 0, node_ = 0, next_ = 0;
   int near_segment_ = 0, far_segment_ = 0;
-  double start_ = 0, length_ = 0, lost_ = 0, regular_ = 0, nearest_ = 0;  // [m] at rest
+  double start_ = 0, length_ = 0, lost_ = 0, regular_ = 0;  // [m] at rest
   double stretch_ = 1;
   Vector3 along_ = Vector3::Zero(), across_ = Vector3::Zero();
   std::array<double, 2> start_masses_{0, 0};
@@ -399,7 +398,7 @@ bool pass_nodes(int index, bool moves, State& state) {
         hold(way_from(side), [&] {
           const int joint = side_of(attachment, side).neighbour();
           const Vector3 bulge = direction(cable, joint - 1) - direction(cable, joint);
-          const double near = std::max(length(side), closest * regular), energy = keeps ? potential_energy(index, state) : 0;
+          const double near = std::max(length(side), little), energy = keeps ? potential_energy(index, state) : 0;
           take_in(index, attachment, side, state);
           if (length(1 - side) > (keeps ? least_divided : least_split) * regular && !is_winding(1 - side)) {
             if (keeps) {
