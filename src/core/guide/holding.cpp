@@ -5,6 +5,7 @@
 #include "guide/wheel.h"
 #include "target/length_drive.h"
 #include "verlet_cable/core/cable_materials.h"
+#include "world/energy.h"
 #include "world/implementation.h"
 #include "world/island_stepper.h"
 
@@ -72,8 +73,12 @@ void follow_on_wheel(int index, State& state, Attachment& attachment) {
 /// Cables that slide through guides are numbered anew; clips take them and let them go.
 void World::Implementation::advance_guides() {
   if (state.guides.empty()) return;
-  for (int a = static_cast<int>(state.attachments.size()) - 1; a >= 0; --a)
-    if (state.attachments[a].guide >= 0 && lets_go(a)) release_guide(a);
+  for (int a = static_cast<int>(state.attachments.size()) - 1; a >= 0; --a) {
+    if (state.attachments[a].guide < 0 || !lets_go(a)) continue;
+    const int cable = state.attachments[a].body.index;
+    release_guide(a);
+    account_for_blow(cable);
+  }
   for (int guide = 0; guide < static_cast<int>(state.guides.size()); ++guide)
     if (state.guides[guide].capture > 0) capture_cable(guide);
   for (std::size_t i = 0; i < state.cables.size(); ++i) {
@@ -133,6 +138,14 @@ void World::Implementation::release_bare_guides() {
   }
 }
 
+/// What is done to a cable at once is lost, or work of what does it.
+void World::Implementation::account_for_blow(int cable) {
+  const double change = follow_energy_of_cable(cable, state);
+  CableOutcome& outcome = cable_outcomes.value[cable];
+  outcome.change += change;
+  account_for_unfollowed(change, outcome.balance);
+}
+
 /// An open clip takes its cable where that comes close.
 void World::Implementation::capture_cable(int index) {
   SimulatedGuide& guide = state.guides[index];
@@ -148,6 +161,7 @@ void World::Implementation::capture_cable(int index) {
   int node = nearest.fraction < 0.5 ? nearest.segment : nearest.segment + 1;
   const double to_node = std::abs(nearest.fraction - (node - nearest.segment)) * cable.state.rest_lengths[nearest.segment];
   if (node == 0 || node == cable.state.segments() || state.cable_progress[cable_index].drive) return;
+  const Energy before = energy_of_cable(state, cable_index);
   if (to_node > merging_distance * cable.model->segment_length) {
     node = nearest.segment + 1;
     insert_node(nearest.segment, nearest.fraction * cable.state.rest_lengths[nearest.segment], *cable.model, cable.state);
@@ -169,6 +183,11 @@ void World::Implementation::capture_cable(int index) {
   state.attachments.push_back(attachment);
   after_remeshing(cable_index);
   move_with_holders(cable_index, state);
+  // As of a node that passes; but what it does to the motion is a blow.
+  const Energy after = energy_of_cable(state, cable_index);
+  guide.held_way = guide.last_way = 0;
+  guide.held_energy = (before.total() - before.kinetic) - (after.total() - after.kinetic);
+  account_for_blow(cable_index);
   findings.caught.push_back(index);
 }
 

@@ -390,8 +390,8 @@ bool pass_nodes(int index, bool moves, State& state) {
     };
     // What turns round passes back a little behind where it passed.
     const auto comes_to = [&](int side) {
-      const double way = way_from(side), limit = guide.last_way * way < 0 ? turning * least : least;
-      return length(side) < limit && (!moves || guide.flow * way > 0 || length(side) < closest * regular);
+      const double way = way_from(side), limit = keeps && guide.last_way * way < 0 ? turning * least : least;
+      return length(side) < limit && (!keeps || guide.flow * way > 0 || length(side) < closest * regular);
     };
     for (const int side : both_sides) {
       while (comes_to(side) && is_passable(state, index, side_of(attachment, side).neighbour())) {
