@@ -297,10 +297,11 @@ TEST(Guides, giveBackWhatTheyHoldOfNodesThatPass) {
   double held = 0;
   for (int i = 0; i < 2000; ++i) {
     run(world, world.time_step());
-    EXPECT_NEAR(world.energy().total(), energy, 1e-5) << i;
+    EXPECT_LT(world.energy().total(), energy + 1e-5) << i;
     held = std::max(held, std::abs(world.guides()[0].held_energy));
   }
   EXPECT_GT(held, 1e-9);
+  EXPECT_NEAR(world.ledger().unaccounted(), 0, 1e-5);
 }
 
 /// Whatever the cable is, and where it stretches: friction takes what is lacking.

@@ -7,6 +7,7 @@
 #include "scene/scene_size.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/number_text.h"
+#include "world/energy.h"
 #include "world/implementation.h"
 #include "world/island_stepper.h"
 
@@ -244,6 +245,8 @@ void World::Implementation::pass_nodes_of(int index) {
                             findings.intrusions.end());
   after_remeshing(index);
   move_with_holders(index, state);
+  hold_gain(index, energy_of_cable(state, index).total() - state.cable_progress[index].energy, state);
+  account_for_blow(index);
 }
 
 /// What names segments of a cable names others now.

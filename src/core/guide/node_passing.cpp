@@ -377,16 +377,19 @@ bool pass_nodes(int index, bool moves, State& state) {
     const double ahead = steps_ahead * state.scene->time_step * std::abs(state.guides[attachment.guide].flow);
     const double least = std::clamp(ahead, little, most_ahead * regular);
     SimulatedGuide& guide = state.guides[attachment.guide];
-    // What the cable has less then goes on to drive what flows, what it has more that gives: its energy is continuous.
+    // What the cable has less in energy then goes on to drive what flows, what it has more that gives: its energy is continuous.
+    // What masses that come together lose in motion is lost.
     const auto hold = [&](double way, const auto& change) {
-      const double before = moves ? energy_of_cable(state, index).total() : 0;
+      const Energy before = moves ? energy_of_cable(state, index) : Energy();
       change();
       passed = true;
       if (!moves) return;
       guide.held_energy *= held_part(guide.held_way / regular);
       guide.held_way = 0;
-      guide.held_energy += before - energy_of_cable(state, index).total();
       guide.last_way = way;
+      const Energy after = energy_of_cable(state, index);
+      const double moved = std::max(0.0, before.kinetic - after.kinetic);
+      guide.held_energy += before.total() - after.total() - moved;
     };
     // What turns round passes back a little behind where it passed.
     const auto comes_to = [&](int side) {
@@ -419,6 +422,16 @@ bool pass_nodes(int index, bool moves, State& state) {
         hold(-way_from(side), [&] { give_out(index, attachment, side, length(side) - regular, Vector3::Zero(), state); });
   }
   return passed;
+}
+
+void hold_gain(int index, double gain, State& state) {
+  std::vector<SimulatedGuide*> passed;
+  for (const Attachment& attachment : state.attachments) {
+    if (attachment.guide < 0 || attachment.body != cable_id(index)) continue;
+    SimulatedGuide& guide = state.guides[attachment.guide];
+    if (guide.last_way != 0 && guide.held_way == 0) passed.push_back(&guide);
+  }
+  for (SimulatedGuide* guide : passed) guide->held_energy -= std::max(0.0, gain) / static_cast<double>(passed.size());
 }
 
 void stop_at_pin(int pin, State& state) {

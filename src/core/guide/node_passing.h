@@ -28,6 +28,9 @@ void keep_flows(int cable, const Boundary& boundary, State& state);
 /// stays, too: a node is given out where that is as before, and what still differs the guide holds. Whether there were any.
 bool pass_nodes(int cable, bool moves, State& state);
 
+/// What a cable has gained [J] as velocities were mended after nodes have passed, their guides take back, too.
+void hold_gain(int cable, double gain, State& state);
+
 /// What a new pin does to a cable that slides through guides: its velocities change by an impact, which no finite friction
 /// withstands. Otherwise a span that is pulled straight would go on flowing between holders.
 void stop_at_pin(int pin, State& state);
