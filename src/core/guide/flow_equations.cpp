@@ -296,8 +296,8 @@ void CableStepper::evaluate_flows(const Substep& s) {
     const bool forward = mode == Flow::Mode::forward, backward = mode == Flow::Mode::backward,
                sticks = mode == Flow::Mode::sticking;
     const double rubbing = forward ? resistance[0] : backward ? -resistance[1] : 0;
-    // Friction takes all of what the energy drives the flow with beyond what the flow gains.
-    flow.resistance = mode == Flow::Mode::free ? 0 : drive + energy_drawn[1] - energy_drawn[0] - (tension[1] - tension[0]);
+    // With it goes what the tensions do less than the energy of stretch that they draw.
+    flow.resistance = (sticks ? drive : rubbing) + energy_drawn[1] - energy_drawn[0] - (tension[1] - tension[0]);
 
     if (sticks) {
       flow.row = {0, 0};
@@ -411,10 +411,13 @@ bool CableStepper::correct_flows(double part) {
   const std::vector<double>& multiplier = multiplier_correction();
   for (Flow& flow : flows_) {
     flow.way += part * flow.correction;
-    if (flow.mode != Flow::Mode::free)
-      flow.resistance += part * (length_[flow.after] * multiplier[flow.after] - length_[flow.before] * multiplier[flow.before]);
     is_left =
         is_left && flow.way < (1 - least_left) * flow.start_length[0] && -flow.way < (1 - least_left) * flow.start_length[1];
+    if (flow.mode == Flow::Mode::free) continue;
+    // What of the tensions' corrections is not in the row, friction takes.
+    const auto arm = [&](int i) { return 0.5 * (length_[i] + std::sqrt(end_square_[i])); };
+    flow.resistance += part * (arm(flow.after) - flow.row[1]) * multiplier[flow.after];
+    flow.resistance -= part * (arm(flow.before) + flow.row[0]) * multiplier[flow.before];
   }
   return is_left;
 }
