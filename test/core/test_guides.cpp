@@ -318,7 +318,7 @@ TEST(Guides, accountForTheirFriction) {
     run(world, 0.3);
     const Ledger ledger = world.ledger();
     EXPECT_GT(ledger.balance.dissipated.guides, 0.05) << axial_stiffness;
-    EXPECT_NEAR(ledger.unaccounted(), 0, 1e-3 * ledger.balance.dissipated.guides) << axial_stiffness;
+    EXPECT_NEAR(ledger.unaccounted(), 0, 1e-5 * ledger.balance.dissipated.guides) << axial_stiffness;
   }
 }
 
@@ -333,7 +333,7 @@ TEST(Guides, keepTheStretchOfWhatLiesOnAWheel) {
   const double energy = world.energy().total();
   for (int i = 0; i < 300; ++i) {
     run(world, world.time_step());
-    EXPECT_NEAR(world.energy().total(), energy, 1e-3) << i;
+    EXPECT_NEAR(world.energy().total(), energy, 5e-5) << i;
   }
 }
 
