@@ -33,7 +33,7 @@ struct SimulatedGuide {
   double held_energy = 0;
   double held_way = 0;      ///< [m] of rest length that has flowed since the last node passed
   double last_way = 0;      ///< 1: the last node passed forward, -1: backward
-  double wheel_energy = 0;  ///< [J] of stretch, of the material on a sheave's wheel: it lies there strained as it came
+  double wheel_energy = 0;  ///< [J] of the material on a sheave's wheel: with the stretch and weight it came with
 };
 
 /// State of the cable in a guide.
