@@ -28,6 +28,12 @@ struct SimulatedGuide {
   /// [m] of rest length that was lost where bent parts of the cable had nodes removed beside the guide; it is returned with the
   /// next node that is inserted
   double lost_length = 0;
+  /// [J] What the cable lost in energy as nodes passed, below 0 if it gained: given back, or taken, as a segment's length flows
+  /// on or back
+  double held_energy = 0;
+  double held_way = 0;      ///< [m] of rest length that has flowed since the last node passed
+  double last_way = 0;      ///< 1: the last node passed forward, -1: backward
+  double wheel_energy = 0;  ///< [J] of the material on a sheave's wheel: with the stretch and weight it came with
 };
 
 /// State of the cable in a guide.

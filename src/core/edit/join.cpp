@@ -231,6 +231,8 @@ void World::Implementation::reverse_cable(int index) {
       SimulatedGuide& guide = state.guides[a.guide];
       guide.flow = -guide.flow;
       guide.flow_acceleration = -guide.flow_acceleration;
+      guide.held_way = -guide.held_way;
+      guide.last_way = -guide.last_way;
       guide.sense = -guide.sense;
       if (is_wheel(a)) --a.node;
       std::swap(a.tangent_points[0], a.tangent_points[1]);

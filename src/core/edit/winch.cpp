@@ -7,6 +7,7 @@
 #include "scene/scene_size.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/number_text.h"
+#include "world/energy.h"
 #include "world/implementation.h"
 #include "world/island_stepper.h"
 
@@ -237,13 +238,15 @@ void World::Implementation::after_remeshing(int index) {
 
 /// What of the cable has come to its guides goes through.
 void World::Implementation::pass_nodes_of(int index) {
-  if (!pass_nodes(index, state)) return;
+  if (!pass_nodes(index, true, state)) return;
   keep_flow_at_drive(index, 0, state);  // the step is planned already
   findings.intrusions.erase(std::remove_if(findings.intrusions.begin(), findings.intrusions.end(),
                                            [&](const Intrusion& intrusion) { return intrusion.cable == index; }),
                             findings.intrusions.end());
   after_remeshing(index);
   move_with_holders(index, state);
+  hold_gain(index, energy_of_cable(state, index).total() - state.cable_progress[index].energy, state);
+  account_for_blow(index);
 }
 
 /// What names segments of a cable names others now.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "verlet_cable/core/types.h"
@@ -16,7 +17,16 @@ struct GuidedFlow {
   bool is_blocked[2] = {false, false};  ///< whether no more material can come from before, from after
   double rate = 0;                      ///< [m/s] of rest length, from before to after; in: at the start, out: at the end
   double acceleration = 0;              ///< [m/s^2] in and out: mean over the last substep
+  double held_energy = 0;               ///< [J] of passed nodes, see SimulatedGuide
+  double held_way = 0;                  ///< [m] in and out: that has flowed since
+  double held_length = 1;               ///< [m] over which it is given back
 };
+
+/// Which part is left of what a guide holds after a part of the way over which it gives that back: its force does not jump.
+inline double held_part(double part) {
+  const double left = 1 - std::min(part * part, 1.0);
+  return left * left;
+}
 
 /// Changes of the loads on the nodes around a guide, from that before the segment before it on [N].
 using FlowColumn = std::array<Vector3, 6>;
@@ -35,7 +45,7 @@ struct Flow {
   double density = 0;                        // [kg/m] of what flows: the segments beside a guide are of one material
   double mass = 0;                           // [kg]
   double drag = 0;                           // [N s/m]
-  double resistance = 0;                     // [N] of friction against what flows, in the present iterate
+  double resistance = 0;                     // [N] of friction against what flows forward, in the present iterate
   double rate = 0;                           // [m/s] at the start
   double acceleration = 0;                   // [m/s^2] over the substep before
   std::array<double, 2> start_length{0, 0};  // [m] at rest, of the segments before and after

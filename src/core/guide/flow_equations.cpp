@@ -60,6 +60,20 @@ void flow_on(const Flow& flow, const std::vector<double>& rest_lengths, std::vec
   }
 }
 
+/// With which what a guide holds drives a way, whose work is what it gives back [N], and how that grows with the way [N/m]: with
+/// the parts p and q of its length at the start and the end, -E ((1 - q²)² - (1 - p²)²) / (q - p).
+std::array<double, 2> held_force(const GuidedFlow& guided, double way) {
+  const double length = guided.held_length, start = guided.held_way / length, end = start + way / length;
+  const double per_length = guided.held_energy / length;
+  if (guided.held_energy == 0 || std::abs(start) >= 1) return {0, 0};
+  if (std::abs(end) >= 1) {
+    const double force = per_length * held_part(start) / (end - start);
+    return {force, -force / way};
+  }
+  const double squares = start * start + end * end - 2;
+  return {-per_length * (start + end) * squares, -per_length / length * (squares + 2 * end * (start + end))};
+}
+
 bool resists(const GuidedFlow& guided) {
   return guided.friction > 0 || guided.resistance > 0 || guided.is_blocked[0] || guided.is_blocked[1];
 }
@@ -157,15 +171,16 @@ void CableStepper::set_flow_lengths(const Substep& s) {
   }
 }
 
-/// The tension of an elastic segment that material flows into or out of. With lengths s, rest lengths l and strains e = s / l - 1 at
-/// the start and (') the end, means over the substep (-), the energy EA l e^2 / 2 changes by
+/// The tension of an elastic segment that material flows into or out of. With lengths s, rest lengths l and strains e = s / l - 1
+/// at the start and (') the end, means over the substep (-), the energy EA l e^2 / 2 changes by
 ///   T (s' - s) - F (l' - l),   T = EA e- l-^2 / (l l'),   F = T s- / l- - EA (e^2)- / 2,
-/// exactly: T pulls the nodes, F the flow. A tension from s- and a mean of 1 / l would be another one with the way, even of material
-/// that is strained alike everywhere. Returns F; `slope`: by what less rest length at the end changes the tension [N/m].
+/// exactly: T pulls the nodes, F the flow. A tension from s- and a mean of 1 / l would be another one with the way, even of
+/// material that is strained alike everywhere. Returns F; `slope`: by what less rest length at the end changes the tension [N/m].
 double CableStepper::evaluate_flowing_length(const Substep& s, int i, double& slope) {
   const Straining strained = straining(s, i);
   const double part = s.part(), stiffness = axial_stiffness_[i], start = strained.start, end = strained.end;
-  const double length = std::sqrt(end_square_[i]), mean_length = mean(length_[i], length, part), mean_rest = mean(start, end, part);
+  const double length = std::sqrt(end_square_[i]), mean_length = mean(length_[i], length, part),
+               mean_rest = mean(start, end, part);
   const double strain_at_start = length_[i] / start - 1, strain_at_end = length / end - 1;
   const double stretching = part == 1 ? stiffness : stiffness * mean_rest * mean_rest / (start * end);
   const double damping = axial_damping_[i] / s.damping_time();
@@ -190,7 +205,7 @@ void CableStepper::evaluate_flows(const Substep& s) {
     const std::array<int, 2> segments{flow.before, flow.after};
     // Friction is between tensions; without it they are equal, and so is what the energy makes of them.
     const bool frictionless = flow.mode == Flow::Mode::free;
-    std::array<double, 2> arm, tension;
+    std::array<double, 2> arm, tension, energy_drawn;
     for (const int side : {0, 1}) {
       const int i = segments[side];
       const double sign = side == 0 ? -1 : 1, end = target_length_[i];
@@ -203,7 +218,9 @@ void CableStepper::evaluate_flows(const Substep& s) {
         arm[side] = mean(length_[i], end, part);
         flow.gap[side] = sign * flow.stretch[side] * end;
       }
-      tension[side] = elastic && frictionless ? drawn : tension_density_[i] * arm[side];
+      const double pulled = tension_density_[i] * arm[side];
+      energy_drawn[side] = elastic ? drawn : pulled;
+      tension[side] = frictionless ? energy_drawn[side] : pulled;
     }
 
     if (flow.moves && !s.statics) {
@@ -248,6 +265,8 @@ void CableStepper::evaluate_flows(const Substep& s) {
       const int node = side == 0 ? flow.before : flow.after + 1;
       flow.column[node - flow.first_node()] += (side == 0 ? -0.5 : 0.5) * part * density * gravity;
     }
+    const auto [held, held_slope] = s.statics ? std::array{0.0, 0.0} : held_force(guided, flow.way);
+    drive += held;
     drive -= flow.drag * flow.way;
     drive -= flow.mass * s.inertia() / s.h * (flow.way / s.h - flow.rate);
 
@@ -274,19 +293,22 @@ void CableStepper::evaluate_flows(const Substep& s) {
     flow.changed = mode != flow.mode || flow.changes < 0;
     if (flow.changed) ++flow.changes;
     flow.mode = mode;
-    flow.resistance = mode == Flow::Mode::forward ? resistance[0] : mode == Flow::Mode::backward ? resistance[1] : 0;
+    const bool forward = mode == Flow::Mode::forward, backward = mode == Flow::Mode::backward,
+               sticks = mode == Flow::Mode::sticking;
+    const double rubbing = forward ? resistance[0] : backward ? -resistance[1] : 0;
+    // With it goes what the tensions do less than the energy of stretch that they draw.
+    flow.resistance = (sticks ? drive : rubbing) + energy_drawn[1] - energy_drawn[0] - (tension[1] - tension[0]);
 
-    if (mode == Flow::Mode::sticking) {
+    if (sticks) {
       flow.row = {0, 0};
       flow.diagonal = -1;
       system_.flow_load[k] = sticking_way(s, flow) - flow.way;
       continue;
     }
-    const bool forward = mode == Flow::Mode::forward, backward = mode == Flow::Mode::backward;
     flow.row = {-(forward ? ratio : 1) * arm[0], (backward ? ratio : 1) * arm[1]};
-    flow.diagonal = -flow.mass * s.inertia() / (s.h * s.h) - flow.drag + bends;
+    flow.diagonal = -flow.mass * s.inertia() / (s.h * s.h) - flow.drag + bends + held_slope;
     if (!elastic) flow.diagonal += part * (tension_density_[flow.before] + tension_density_[flow.after]);
-    system_.flow_load[k] = drive - (forward ? resistance[0] : backward ? -resistance[1] : 0);
+    system_.flow_load[k] = drive - rubbing;
   }
 }
 
@@ -386,10 +408,16 @@ double CableStepper::along_column(const Flow& flow) const {
 /// False if so much would flow that next to nothing is left.
 bool CableStepper::correct_flows(double part) {
   bool is_left = true;
+  const std::vector<double>& multiplier = multiplier_correction();
   for (Flow& flow : flows_) {
     flow.way += part * flow.correction;
     is_left =
         is_left && flow.way < (1 - least_left) * flow.start_length[0] && -flow.way < (1 - least_left) * flow.start_length[1];
+    if (flow.mode == Flow::Mode::free) continue;
+    // What of the tensions' corrections is not in the row, friction takes.
+    const auto arm = [&](int i) { return 0.5 * (length_[i] + std::sqrt(end_square_[i])); };
+    flow.resistance += part * (arm(flow.after) - flow.row[1]) * multiplier[flow.after];
+    flow.resistance -= part * (arm(flow.before) + flow.row[0]) * multiplier[flow.before];
   }
   return is_left;
 }
@@ -426,6 +454,7 @@ void CableStepper::finish_flows(const Substep& s, CableState& state) {
     guided.rate = rate;
     guided.acceleration = s.statics ? 0 : (rate - flow.rate) / s.h;
     if (s.scheme == Scheme::damped) guided.acceleration = (flow.way / s.h - flow.rate) / s.h + 0.5 * flow.acceleration;
+    if (!s.statics) guided.held_way += flow.way;
     state.rest_lengths[flow.before] -= flow.way;
     state.rest_lengths[flow.after] += flow.way;
     state.masses[flow.before] -= half_density * flow.way;
@@ -512,14 +541,28 @@ void CableStepper::project_flows(const Substep& s) {
     }
 }
 
-void CableStepper::push_flows(const Substep& s) {
+void CableStepper::push_flows(const Substep& s, SubstepResult& result) {
   for (std::size_t k = 0; k < flows_.size(); ++k) {
     const Flow& flow = flows_[k];
-    if (flow.mode != Flow::Mode::free || is_elastic_at(flow.before)) continue;
-    s.boundary.flows[k].rate +=
-        (target_length_[flow.before] * impulse_[flow.before] - target_length_[flow.after] * impulse_[flow.after]) / flow.mass;
-    if (flow.first != flow.last) impulse_[flow.first] = 0;
+    if (is_elastic_at(flow.before)) continue;
+    const double impulse =
+        target_length_[flow.before] * impulse_[flow.before] - target_length_[flow.after] * impulse_[flow.after];
+    mend_flow(flow, impulse, flow.mode == Flow::Mode::free ? impulse / flow.mass : 0, s.boundary.flows[k], result);
+    if (flow.mode == Flow::Mode::free && flow.first != flow.last) impulse_[flow.first] = 0;
   }
+}
+
+/// As velocities are mended. `impulse`: with which the segments beside the guide drive what flows [N s]. Friction keeps from
+/// changing what is not free, and takes what the impulse does.
+void CableStepper::mend_flow(const Flow& flow, double impulse, double change, GuidedFlow& guided, SubstepResult& result) {
+  EnergyBalance::Dissipated& dissipated = result.balance.dissipated;
+  if (flow.mode == Flow::Mode::free) {
+    dissipated.unresolved -= flow.mass * change * (guided.rate + 0.5 * change);
+  } else {
+    dissipated.guides += impulse * guided.rate;
+    dissipated.unresolved -= impulse * guided.rate;
+  }
+  guided.rate += change;
 }
 
 }  // namespace verlet_cable

@@ -231,7 +231,8 @@ void stop_flows(int cable, State& state) {
   if (state.guides.empty()) return;
   for (const Attachment& attachment : state.attachments) {
     if (attachment.guide < 0 || attachment.body != cable_id(cable)) continue;
-    state.guides[attachment.guide].flow = state.guides[attachment.guide].flow_acceleration = 0;
+    SimulatedGuide& guide = state.guides[attachment.guide];
+    guide.flow = guide.flow_acceleration = guide.held_energy = guide.held_way = guide.last_way = 0;
   }
 }
 

@@ -12,7 +12,7 @@ namespace verlet_cable {
 void add_guides(const CableDesc& desc, int cable, const FrameIds& ids, const CableModel& model, CableState& cable_state,
                 State& state, std::vector<int>& own, std::vector<Attachment>& later);
 
-/// What flows through a cable's guides stands.
+/// What flows through a cable's guides stands, and nothing is left that drives it.
 void stop_flows(int cable, State& state);
 
 /// Whether a segment of a cable lies on the wheel of a guide.

@@ -5,6 +5,7 @@
 #include "guide/wheel.h"
 #include "target/length_drive.h"
 #include "verlet_cable/core/cable_materials.h"
+#include "world/energy.h"
 #include "world/implementation.h"
 #include "world/island_stepper.h"
 
@@ -23,9 +24,18 @@ Vector3 direction_at(const CableState& cable, int first, int last) {
   return (before + (cable.positions[last + 1] - cable.positions[last]).normalized()).normalized();
 }
 
-/// Where a wheel touches its cable now. What was straight is on the wheel then, or the other way round, with its strain.
+/// [J] The weight of the nodes beside a wheel and on it.
+double weight_at_wheel(const CableState& cable, int first, const GravityDesc& gravity) {
+  double energy = 0;
+  for (int node = first - 1; node <= first + 2; ++node)
+    energy += cable.masses[node] * gravity.potential_at(cable.positions[node]);
+  return energy;
+}
+
+/// Where a wheel touches its cable now. What was straight is on the wheel then, or the other way round, with its strain. No force
+/// moves along the cable with that: what the nodes have more in energy their material on the wheel has less.
 void follow_on_wheel(int index, State& state, Attachment& attachment) {
-  const SimulatedGuide& guide = state.guides[attachment.guide];
+  SimulatedGuide& guide = state.guides[attachment.guide];
   SimulatedCable& cable = state.cables[index];
   CableState& c = cable.state;
   const int first = attachment.node, last = first + 1;
@@ -37,12 +47,15 @@ void follow_on_wheel(int index, State& state, Attachment& attachment) {
   // A cable that has left the wheel is held by it all the same.
   if (std::abs(arc_on_wheel(guide, next) - arc_on_wheel(guide, attachment)) > M_PI * guide.radius) return;
   const double half_density = 0.5 * CableMaterials(cable)[first].linear_density;
+  guide.wheel_energy += weight_at_wheel(c, first, state.scene->gravity);
   for (const int side : {0, 1}) {
     const int node = side == 0 ? first : last, segment = side == 0 ? first - 1 : last, beside = side == 0 ? first - 1 : last + 1;
     const Vector3 place = wheel.position + wheel.orientation * next.tangent_points[side];
     const double before = (c.positions[node] - c.positions[beside]).norm(), after = (place - c.positions[beside]).norm();
     const double growth = c.rest_lengths[segment] * (after / before - 1);
-    if (c.rest_lengths[first] - growth <= 0) return;
+    if (c.rest_lengths[first] - growth <= 0) break;
+    const double stretch = strain(c, segment), stiffness = CableMaterials(cable)[segment].axial_stiffness;
+    if (stiffness < infinity) guide.wheel_energy -= 0.5 * stiffness * stretch * stretch * growth;
     attachment.tangent_points[side] = next.tangent_points[side];
     c.positions[node] = place;
     c.rest_lengths[segment] += growth;
@@ -52,6 +65,7 @@ void follow_on_wheel(int index, State& state, Attachment& attachment) {
     for (KinematicTarget& target : state.cable_progress[index].targets.nodes)
       if (target.node == node) target.position = place;
   }
+  guide.wheel_energy -= weight_at_wheel(c, first, state.scene->gravity);
 }
 
 }  // namespace
@@ -59,8 +73,12 @@ void follow_on_wheel(int index, State& state, Attachment& attachment) {
 /// Cables that slide through guides are numbered anew; clips take them and let them go.
 void World::Implementation::advance_guides() {
   if (state.guides.empty()) return;
-  for (int a = static_cast<int>(state.attachments.size()) - 1; a >= 0; --a)
-    if (state.attachments[a].guide >= 0 && lets_go(a)) release_guide(a);
+  for (int a = static_cast<int>(state.attachments.size()) - 1; a >= 0; --a) {
+    if (state.attachments[a].guide < 0 || !lets_go(a)) continue;
+    const int cable = state.attachments[a].body.index;
+    release_guide(a);
+    account_for_blow(cable);
+  }
   for (int guide = 0; guide < static_cast<int>(state.guides.size()); ++guide)
     if (state.guides[guide].capture > 0) capture_cable(guide);
   for (std::size_t i = 0; i < state.cables.size(); ++i) {
@@ -94,7 +112,8 @@ void World::Implementation::release_guide(int index) {
     const Vector3 after = cable.positions[std::min(node + 1, cable.segments())];
     cable.velocities[node] += guide.flow * (after - cable.positions[std::max(node - 1, 0)]).normalized();
   }
-  guide.flow = guide.flow_acceleration = guide.lost_length = 0;
+  guide.flow = guide.flow_acceleration = guide.lost_length = guide.held_energy = guide.held_way = guide.last_way =
+      guide.wheel_energy = 0;
   guide.is_ready = false;
   erase_attachment(index);
   after_remeshing(attachment.body.index);
@@ -119,6 +138,14 @@ void World::Implementation::release_bare_guides() {
   }
 }
 
+/// What is done to a cable at once is lost, or work of what does it.
+void World::Implementation::account_for_blow(int cable) {
+  const double change = follow_energy_of_cable(cable, state);
+  CableOutcome& outcome = cable_outcomes.value[cable];
+  outcome.change += change;
+  account_for_unfollowed(change, outcome.balance);
+}
+
 /// An open clip takes its cable where that comes close.
 void World::Implementation::capture_cable(int index) {
   SimulatedGuide& guide = state.guides[index];
@@ -134,6 +161,7 @@ void World::Implementation::capture_cable(int index) {
   int node = nearest.fraction < 0.5 ? nearest.segment : nearest.segment + 1;
   const double to_node = std::abs(nearest.fraction - (node - nearest.segment)) * cable.state.rest_lengths[nearest.segment];
   if (node == 0 || node == cable.state.segments() || state.cable_progress[cable_index].drive) return;
+  const Energy before = energy_of_cable(state, cable_index);
   if (to_node > merging_distance * cable.model->segment_length) {
     node = nearest.segment + 1;
     insert_node(nearest.segment, nearest.fraction * cable.state.rest_lengths[nearest.segment], *cable.model, cable.state);
@@ -155,6 +183,11 @@ void World::Implementation::capture_cable(int index) {
   state.attachments.push_back(attachment);
   after_remeshing(cable_index);
   move_with_holders(cable_index, state);
+  // As of a node that passes; but what it does to the motion is a blow.
+  const Energy after = energy_of_cable(state, cable_index);
+  guide.held_way = guide.last_way = 0;
+  guide.held_energy = (before.total() - before.kinetic) - (after.total() - after.kinetic);
+  account_for_blow(cable_index);
   findings.caught.push_back(index);
 }
 

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "rod/length_projection.h"
+#include "rod/rod_frames.h"
 #include "target/length_drive.h"
 #include "verlet_cable/core/cable_materials.h"
+#include "world/energy.h"
 #include "world/island_stepper.h"
 
 namespace verlet_cable {
@@ -26,6 +29,13 @@ constexpr double steps_ahead = 3, most_ahead = 0.6;
 constexpr double stop = 0.15;
 /// Of a regular segment: shorter ones are not split.
 constexpr double least_split = 0.7;
+/// Of what is left when a node is taken in: what is left then on the side on which one was given out last.
+constexpr double turning = 0.6;
+/// Of a regular segment: so near a node is taken in whichever way the cable flows, and none is given out nearer.
+constexpr double closest = 0.05;
+/// Of a regular segment, where the cable bends as it moves: only shorter ones and longer ones change the number of nodes, which
+/// makes its bends stiffer or softer at once.
+constexpr double least_divided = 0.4, most_undivided = 2.2;
 /// A node that is given out bends no more than this, height over length.
 constexpr double steepest = 0.5;
 
@@ -57,6 +67,11 @@ struct Side {
   int segment() const { return away < 0 ? node - 1 : node; }
   int neighbour() const { return node + away; }
 };
+
+/// Of what flows from a side.
+double way_from(int side) {
+  return side == 0 ? 1 : -1;
+}
 
 Side side_of(const Attachment& attachment, int side) {
   if (side == 0) return {attachment.node, -1};
@@ -110,6 +125,128 @@ void give_out(int index, Attachment& attachment, int side, double near, Vector3 
     guide.lost_length -= gained;
   }
 }
+
+/// [J] Of a cable, but for its motion.
+double potential_energy(int cable, const State& state) {
+  const Energy energy = energy_of_cable(state, cable);
+  return energy.total() - energy.kinetic;
+}
+
+/// A node that has been given out on a cable that bends, whose place goes along an ellipse about the guide and the next node: the
+/// lengths that were lost are there again, and the strain stays.
+class GivenNode {
+ public:
+  GivenNode(int index, const Attachment& attachment, int side, const Vector3& bulge, State& state)
+      : index_(index), state_(state), cable_(state.cables[index].state), guide_(side_of(attachment, side).node) {
+    const int away = side_of(attachment, side).away;
+    node_ = guide_ + away;
+    next_ = node_ + away;
+    near_segment_ = std::min(guide_, node_);
+    far_segment_ = std::min(node_, next_);
+    start_ = near();
+    const double whole = start_ + cable_.rest_lengths[far_segment_];
+    const Vector3 chord = cable_.positions[next_] - cable_.positions[guide_];
+    stretch_ = chord.norm() / whole;
+    along_ = chord.normalized();
+    across_ = (bulge - bulge.dot(along_) * along_).stableNormalized();
+    double& lost = state.guides[attachment.guide].lost_length;
+    if (across_.squaredNorm() > 0) lost_ = std::exchange(lost, 0.0);
+    length_ = whole + lost_;
+    start_masses_ = {cable_.masses[guide_], cable_.masses[next_]};
+    regular_ = state.cables[index].model->segment_length;
+    half_density_ = 0.5 * CableMaterials(state.cables[index])[near_segment_].linear_density;
+  }
+
+  double near() const { return cable_.rest_lengths[near_segment_]; }
+  double lost() const { return lost_; }
+
+  /// Puts it at a rest length from the guide [m].
+  void place(double near) {
+    const double a = stretch_ * near, b = stretch_ * (length_ - near), c = stretch_ * (length_ - lost_);
+    const double way = 0.5 * (c + (a - b) * (a + b) / c), height = std::sqrt(std::max(0.0, (a - way) * (a + way)));
+    const Vector3 place = cable_.positions[guide_] + way * along_ + height * across_;
+    if (!cable_.directors.empty())
+      for (const int segment : {near_segment_, far_segment_}) {
+        const int other = segment == near_segment_ ? guide_ : next_;
+        const double sign = (other < node_) ? 1 : -1;
+        cable_.directors[segment] = carried_director(cable_, segment, sign * (place - cable_.positions[other]), 0);
+      }
+    cable_.positions[node_] = place;
+    cable_.rest_lengths[near_segment_] = near;
+    cable_.rest_lengths[far_segment_] = length_ - near;
+    cable_.masses[guide_] = start_masses_[0] + half_density_ * (near - start_);
+    cable_.masses[next_] = start_masses_[1] - half_density_ * (near - start_);
+  }
+
+  /// Puts it at the place, next to where it is, at which the cable has an energy [J]; if there is none, where that differs least.
+  void place_at(double energy) {
+    const double lowest = std::max(lost_, start_ / widest);
+    const double highest = std::max(lowest, std::min(widest * start_, most_ahead * length_));
+    // Where the next segment is as long as the others, or about as near as the node that was taken in
+    const double first = std::clamp(length_ - regular_, lowest, highest);
+    const auto excess = [&](double near) {
+      place(near);
+      return potential_energy(index_, state_) - energy;
+    };
+    Trial best{first, infinity};
+    std::array<Trial, 2> last;
+    const auto attempt = [&](double near) {
+      const Trial trial{near, excess(near)};
+      if (std::abs(trial.excess) < std::abs(best.excess)) best = trial;
+      return trial;
+    };
+    last.fill(attempt(first));
+    for (double factor = pace; best.excess != 0; factor *= pace) {
+      bool goes_on = false;
+      for (const int side : both_sides) {
+        const double near = side == 0 ? first / factor : first * factor;
+        if (near < lowest || near > highest) continue;
+        goes_on = true;
+        const Trial next = attempt(near);
+        if ((next.excess < 0) != (last[side].excess < 0)) return place(between(last[side], next, excess));
+        last[side] = next;
+      }
+      if (!goes_on) break;
+    }
+    place(best.near);
+  }
+
+ private:
+  struct Trial {
+    double near = 0, excess = 0;
+  };
+
+  /// Where it is none: regula falsi, where a side that stays counts half.
+  template <class Excess>
+  static double between(Trial a, Trial b, const Excess& excess) {
+    for (int i = 0; i < most_halvings && a.excess != b.excess; ++i) {
+      const Trial trial{b.near - b.excess * (b.near - a.near) / (b.excess - a.excess), 0};
+      const double found = excess(trial.near);
+      if ((found < 0) != (b.excess < 0))
+        a = b;
+      else
+        a.excess *= 0.5;
+      b = {trial.near, found};
+      if (found == 0) break;
+    }
+    return b.near;
+  }
+
+  /// Of the distance from the guide: it is looked for so far away, and in such steps.
+  static constexpr double widest = 1.5, pace = 1.06;
+  static constexpr int most_halvings = 12;
+
+  int index_;
+  State& state_;
+  CableState& cable_;
+  int guide_ = 0, node_ = 0, next_ = 0;
+  int near_segment_ = 0, far_segment_ = 0;
+  double start_ = 0, length_ = 0, lost_ = 0, regular_ = 0;  // [m] at rest
+  double stretch_ = 1;
+  Vector3 along_ = Vector3::Zero(), across_ = Vector3::Zero();
+  std::array<double, 2> start_masses_{0, 0};
+  double half_density_ = 0;
+};
 
 /// What has come to a guide flows through it: the cable is of one material on both sides, each node with the weight that it has.
 void continue_material(const Attachment& attachment, int from, CableState& state) {
@@ -203,6 +340,9 @@ void load_flows(int index, const State& state, Boundary& boundary) {
     }
     flow.rate = guide.flow;
     flow.acceleration = guide.flow_acceleration;
+    flow.held_energy = guide.held_energy;
+    flow.held_way = guide.held_way;
+    flow.held_length = cable.model->segment_length;
     for (const int side : {0, 1}) {
       const Side at = side_of(attachment, side);
       flow.is_blocked[side] = cable.state.rest_lengths[at.segment()] < stop * cable.model->segment_length &&
@@ -218,13 +358,14 @@ void keep_flows(int index, const Boundary& boundary, State& state) {
       if (guide < 0 || target.node != flow.first) continue;
       state.guides[guide].flow = flow.rate;
       state.guides[guide].flow_acceleration = flow.acceleration;
+      state.guides[guide].held_way = flow.held_way;
     }
 }
 
-bool pass_nodes(int index, State& state) {
+bool pass_nodes(int index, bool moves, State& state) {
   bool passed = false;
   const CableState& cable = state.cables[index].state;
-  const bool bends = CableMaterials(state.cables[index]).any_bends();
+  const bool bends = CableMaterials(state.cables[index]).any_bends(), keeps = moves && bends;
   const double regular = state.cables[index].model->segment_length, little = shortest * regular;
   for (Attachment& attachment : state.attachments) {
     if (attachment.guide < 0 || attachment.body != cable_id(index)) continue;
@@ -235,25 +376,62 @@ bool pass_nodes(int index, State& state) {
     };
     const double ahead = steps_ahead * state.scene->time_step * std::abs(state.guides[attachment.guide].flow);
     const double least = std::clamp(ahead, little, most_ahead * regular);
+    SimulatedGuide& guide = state.guides[attachment.guide];
+    // What the cable has less in energy then goes on to drive what flows, what it has more that gives: its energy is continuous.
+    // What masses that come together lose in motion is lost.
+    const auto hold = [&](double way, const auto& change) {
+      const Energy before = moves ? energy_of_cable(state, index) : Energy();
+      change();
+      passed = true;
+      if (!moves) return;
+      guide.held_energy *= held_part(guide.held_way / regular);
+      guide.held_way = 0;
+      guide.last_way = way;
+      const Energy after = energy_of_cable(state, index);
+      const double moved = std::max(0.0, before.kinetic - after.kinetic);
+      guide.held_energy += before.total() - after.total() - moved;
+    };
+    // What turns round passes back a little behind where it passed.
+    const auto comes_to = [&](int side) {
+      const double way = way_from(side), limit = keeps && guide.last_way * way < 0 ? turning * least : least;
+      return length(side) < limit && (!keeps || guide.flow * way > 0 || length(side) < closest * regular);
+    };
     for (const int side : both_sides) {
-      while (length(side) < least && is_passable(state, index, side_of(attachment, side).neighbour())) {
-        const int joint = side_of(attachment, side).neighbour();
-        const Vector3 bulge = direction(cable, joint - 1) - direction(cable, joint);
-        take_in(index, attachment, side, state);
-        if (length(1 - side) > least_split * regular && !is_winding(1 - side))
-          give_out(index, attachment, 1 - side, bends ? behind * regular : std::max(length(1 - side) - regular, 2 * little),
-                   bulge, state);
-        continue_material(attachment, side, state.cables[index].state);
-        passed = true;
+      while (comes_to(side) && is_passable(state, index, side_of(attachment, side).neighbour())) {
+        hold(way_from(side), [&] {
+          const int joint = side_of(attachment, side).neighbour();
+          const Vector3 bulge = direction(cable, joint - 1) - direction(cable, joint);
+          const double near = std::max(length(side), little), energy = keeps ? potential_energy(index, state) : 0;
+          take_in(index, attachment, side, state);
+          if (length(1 - side) > (keeps ? least_divided : least_split) * regular && !is_winding(1 - side)) {
+            if (keeps) {
+              give_out(index, attachment, 1 - side, near, Vector3::Zero(), state);
+              GivenNode(index, attachment, 1 - side, bulge, state).place_at(energy);
+            } else {
+              give_out(index, attachment, 1 - side, bends ? behind * regular : std::max(length(1 - side) - regular, 2 * little),
+                       bulge, state);
+            }
+          }
+          continue_material(attachment, side, state.cables[index].state);
+        });
       }
     }
+    const double longest = keeps ? most_undivided * regular : regular + std::max(2.5 * little, least);
     for (const int side : both_sides)
-      while (length(side) > regular + 2.5 * little && length(side) > regular + least && !is_winding(side)) {
-        give_out(index, attachment, side, length(side) - regular, Vector3::Zero(), state);
-        passed = true;
-      }
+      while (length(side) > longest && !is_winding(side))
+        hold(-way_from(side), [&] { give_out(index, attachment, side, length(side) - regular, Vector3::Zero(), state); });
   }
   return passed;
+}
+
+void hold_gain(int index, double gain, State& state) {
+  std::vector<SimulatedGuide*> passed;
+  for (const Attachment& attachment : state.attachments) {
+    if (attachment.guide < 0 || attachment.body != cable_id(index)) continue;
+    SimulatedGuide& guide = state.guides[attachment.guide];
+    if (guide.last_way != 0 && guide.held_way == 0) passed.push_back(&guide);
+  }
+  for (SimulatedGuide* guide : passed) guide->held_energy -= std::max(0.0, gain) / static_cast<double>(passed.size());
 }
 
 void stop_at_pin(int pin, State& state) {

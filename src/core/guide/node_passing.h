@@ -24,8 +24,12 @@ int count_flows(int cable, const State& state);
 void keep_flows(int cable, const Boundary& boundary, State& state);
 
 /// Takes nodes that have come near a guide in, and gives them out on the other side: the segments beside a guide stay about as
-/// long as the others. Mass, momentum and tensions stay. Targets and attachments follow. Whether there were any.
-bool pass_nodes(int cable, State& state);
+/// long as the others. Mass, momentum and tensions stay. Targets and attachments follow. Where the cable `moves` its energy
+/// stays, too: a node is given out where that is as before, and what still differs the guide holds. Whether there were any.
+bool pass_nodes(int cable, bool moves, State& state);
+
+/// What a cable has gained [J] as velocities were mended after nodes have passed, their guides take back, too.
+void hold_gain(int cable, double gain, State& state);
 
 /// What a new pin does to a cable that slides through guides: its velocities change by an impact, which no finite friction
 /// withstands. Otherwise a span that is pulled straight would go on flowing between holders.

@@ -285,7 +285,7 @@ void Bending::react(const VectorArray& displacement, std::vector<HeldDirection>&
 }
 
 double bending_energy(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions,
-                      int driven) {
+                      const std::vector<int>& shaped, int driven) {
   const CableMaterials materials(model, state);
   if (!materials.any_bends()) return 0;
   const int n = state.segments();
@@ -303,7 +303,8 @@ double bending_energy(const CableModel& model, const CableState& state, const st
   for (int i = 1; i < n; ++i) {
     const Vector3 after = direction(i);
     while (clamp < directions.size() && directions[clamp].node < i) ++clamp;
-    if (clamp == directions.size() || directions[clamp].node != i) {
+    const bool is_free = std::find(shaped.begin(), shaped.end(), i) == shaped.end();
+    if (is_free && (clamp == directions.size() || directions[clamp].node != i)) {
       const double length = state.bending_length(i, 0.5 * (state.rest_lengths[i - 1] + state.rest_lengths[i]));
       const double stiffness = varies ? joint_material(materials, state, i).bending_stiffness.largest() : 1;
       energy += stiffness * joint(length, after - before);

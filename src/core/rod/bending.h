@@ -99,8 +99,8 @@ class Bending {
 };
 
 /// [J], `directions` at their ends. `driven`: a segment whose rest length is driven, -1: none. As in a substep, it counts as long
-/// as it is unstrained: growth is no bending.
+/// as it is unstrained: growth is no bending. `shaped`: nodes on wheels, at which no moment resists.
 double bending_energy(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions,
-                      int driven = -1);
+                      const std::vector<int>& shaped, int driven = -1);
 
 }  // namespace verlet_cable

@@ -37,7 +37,7 @@ void CableStepper::balance_laws(const Substep& s, const std::vector<double>& mas
     balance.work.winches += (winch_node_ == 0 ? -1 : 1) * bending.dot(material_way_);
   }
   for (const Flow& flow : flows_) {
-    balance.dissipated.guides += flow.resistance * std::abs(flow.way);
+    balance.dissipated.guides += flow.resistance * flow.way;
     balance.dissipated.drag += flow.drag * flow.way * flow.way;
   }
 }

@@ -596,7 +596,14 @@ void CableStepper::finish_projection(const Substep& s, CableState& state, Subste
     held.velocity += get(change, held.node);
     held.force -= state.masses[held.node] / s.h * get(change, held.node);
   }
-  for (std::size_t k = 0; k < flows_.size(); ++k) s.boundary.flows[k].rate += flows_[k].correction;
+  for (std::size_t k = 0; k < flows_.size(); ++k) {
+    const Flow& flow = flows_[k];
+    const std::vector<double>& multiplier = multiplier_correction();
+    const double impulse = is_elastic_at(flow.before) ? 0
+                                                      : target_length_[flow.after] * multiplier[flow.after] -
+                                                            target_length_[flow.before] * multiplier[flow.before];
+    mend_flow(flow, impulse, flow.correction, s.boundary.flows[k], result);
+  }
   for (const GrowingSegment& growing : s.boundary.growing)
     if (!is_elastic_at(growing.segment)) balance_mended_growth(growing, -multiplier_correction()[growing.segment], result);
 }
@@ -677,7 +684,7 @@ void CableStepper::project(const Substep& s, const std::vector<double>& masses, 
   }
   if (!flows_.empty()) project_flows(s);
   solve_tridiagonal(pivot_, off_, impulse_, n);
-  if (!flows_.empty()) push_flows(s);
+  if (!flows_.empty()) push_flows(s, result);
   for (const GrowingSegment& growing : s.boundary.growing) balance_mended_growth(growing, impulse_[growing.segment], result);
   for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) {
     const double *d = (segment_.*component).data(), *w = inverse_mass_.data(), *impulse = impulse_.data();

@@ -134,7 +134,8 @@ class CableStepper {
   void finish_flows(const Substep& substep, CableState& state);
   void carry_frames_with_flows(CableState& state) const;
   void project_flows(const Substep& substep);
-  void push_flows(const Substep& substep);
+  void push_flows(const Substep& substep, SubstepResult& result);
+  static void mend_flow(const Flow& flow, double impulse, double change, GuidedFlow& guided, SubstepResult& result);
   void factor_segments();
   void solve_segments();
   Vector3 corrected_load(int node) const;

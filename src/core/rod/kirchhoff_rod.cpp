@@ -428,19 +428,20 @@ void KirchhoffRod::set_stiffness(const VectorArray& direction, bool simple) {
   }
 }
 
-RodEnergy rod_energy(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions) {
+RodEnergy rod_energy(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions,
+                     const std::vector<int>& shaped) {
   const int n = state.segments();
   const CableMaterials materials(model, state);
   RodEnergy sum;
-  const auto add = [&](const JointStiffness& stiffness, const JointAngles& angles) {
+  const auto add = [&](const JointStiffness& stiffness, const JointAngles& angles, bool bends = true) {
     const JointEnergy energy = joint_energy(stiffness, angles);
-    sum.bend += energy.bend;
+    if (bends) sum.bend += energy.bend;
     sum.twist += energy.twist;
   };
   for (int i = 1; i < n; ++i) {
     if (std::any_of(directions.begin(), directions.end(), [i](const HeldDirection& d) { return d.node == i; })) continue;
     add(joint_stiffness(joint_material(materials, state, i), state, i, joint_length(state, i), infinity),
-        joint_angles_at(state, i));
+        joint_angles_at(state, i), std::find(shaped.begin(), shaped.end(), i) == shaped.end());
   }
   visit_clamp_joints(directions, n, [&](std::size_t target, int segment, bool after) {
     const HeldDirection& held = directions[target];

@@ -126,6 +126,8 @@ struct RodEnergy {
   double spin = 0;             ///< of the section about the tangent
 };
 /// Of a whole rod, whose clamps hold `directions` at their ends.
-RodEnergy rod_energy(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions);
+/// `shaped`: nodes on wheels, at which no bending moment resists.
+RodEnergy rod_energy(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions,
+                     const std::vector<int>& shaped);
 
 }  // namespace verlet_cable

@@ -194,7 +194,7 @@ void BodySettling::pass_nodes_of_guides() {
   for (std::size_t k = 0; k < island_.cables.size(); ++k) {
     const int index = island_.cables[k];
     CableProgress& progress = state_.cable_progress[index];
-    if (!slides(progress.targets) || !pass_nodes(index, state_)) continue;
+    if (!slides(progress.targets) || !pass_nodes(index, false, state_)) continue;
     CableWorkspace& work = workspace_.cables[k];
     bring_to_rest(state_.cables[index].state);
     work.stepper.resize(state_.cables[index].state.segments());

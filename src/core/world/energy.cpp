@@ -72,12 +72,20 @@ Energy energy_of_cable(const State& state, int index, double part, std::vector<H
   const KinematicTargets& targets = state.cable_progress[index].targets;
   hold_directions_at(part, part, targets, directions);
   hold_directions_on_bodies(state.attachments, state.bodies, targets, directions);
+  std::vector<int> shaped;
+  for (const Attachment& attachment : state.attachments) {
+    if (attachment.guide < 0 || attachment.body != cable_id(index)) continue;
+    const SimulatedGuide& guide = state.guides[attachment.guide];
+    energy.bend += guide.held_energy * held_part(guide.held_way / cable.model->segment_length);
+    energy.stretch += guide.wheel_energy;
+    if (is_wheel(attachment)) shaped.insert(shaped.end(), {attachment.node, attachment.node + 1});
+  }
   if (c.directors.empty()) {
     const std::optional<LengthDrive>& drive = state.cable_progress[index].drive;
-    energy.bend = bending_energy(*cable.model, c, directions, drive ? drive->segment : -1);
+    energy.bend += bending_energy(*cable.model, c, directions, shaped, drive ? drive->segment : -1);
   } else {
-    const RodEnergy rod = rod_energy(*cable.model, c, directions);
-    energy.bend = rod.bend;
+    const RodEnergy rod = rod_energy(*cable.model, c, directions, shaped);
+    energy.bend += rod.bend;
     energy.twist = rod.twist;
     energy.kinetic = rod.spin;
   }
@@ -86,7 +94,7 @@ Energy energy_of_cable(const State& state, int index, double part, std::vector<H
   const bool is_twisted = c.directors.empty() && !state.cable_progress[index].spans.empty();
   for (int i = 0; is_twisted && i < c.segments(); ++i)
     energy.twist += 0.5 * torsional_stiffness_at(materials, i) * c.rest_lengths[i] * c.twist[i] * c.twist[i];
-  if (materials.any_elastic()) energy.stretch = stretching_energy(state, index);
+  if (materials.any_elastic()) energy.stretch += stretching_energy(state, index);
   if (!state.guides.empty()) energy.kinetic += flow_energy(state, index);
   return energy;
 }

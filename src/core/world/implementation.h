@@ -114,6 +114,7 @@ struct World::Implementation {
   void release_wheels_on(int cable, int segment);
   void release_bare_guides();
   void capture_cable(int guide);
+  void account_for_blow(int cable);
   void erase_attachment(int attachment);
   void add_winch_node(int cable);
   void take_in_winch_node(int cable);

@@ -348,7 +348,7 @@ bool Settling::relax(double h, double longest, int steps, Approach& approach) {
 /// What of the cable has come to its guides goes through.
 void Settling::pass_nodes_of_guides() {
   if (!slides(memory_.targets)) return;
-  if (pass_nodes(index_, state_)) {
+  if (pass_nodes(index_, false, state_)) {
     begin_anew(cable_.state.unresolved);
     bring_to_rest(cable_.state);
     stop_flows(index_, state_);

@@ -222,7 +222,8 @@ auto fields(T& x, const Attachment*) {
 template <class T>
 auto fields(T& x, const SimulatedGuide*) {
   return std::tie(x.name, x.type, x.friction, x.radius, x.inertia, x.bearing_friction, x.sense, x.retention, x.capture, x.cable,
-                  x.frame, x.pose, x.is_ready, x.flow, x.flow_acceleration, x.lost_length);
+                  x.frame, x.pose, x.is_ready, x.flow, x.flow_acceleration, x.lost_length, x.held_energy, x.held_way, x.last_way,
+                  x.wheel_energy);
 }
 template <class T>
 auto fields(T&, const PlaneShape*) {
