@@ -319,6 +319,16 @@ void CableStepper::evaluate(const Substep& s, const CableState& state) {
   if (!flows_.empty()) evaluate_flows(s);
 }
 
+namespace {
+
+/// Where in the substep a segment's forces act along it. Compression that acted along the end of a segment that turns would make
+/// energy, as its work there is more than the force times the change of length; in the middle they are the same.
+inline double acting_part(double part, double tension) {
+  return tension < 0 ? 0.5 : part;
+}
+
+}  // namespace
+
 void CableStepper::evaluate_segments(double part, Component component) {
   const double *u = (displacement_.*component).data(), *d = (segment_.*component).data(), *density = tension_density_.data();
   double *mid = (middle_.*component).data(), *f = (segment_force_.*component).data(), *square = end_square_.data();
@@ -326,7 +336,7 @@ void CableStepper::evaluate_segments(double part, Component component) {
   for (int i = 0; i < segments_; ++i) {
     const double change = u[i + 1] - u[i];
     const double end = d[i] + change;
-    mid[i] = d[i] + part * change;
+    mid[i] = d[i] + acting_part(part, density[i]) * change;
     f[i] = density[i] * mid[i];
     square[i] += end * end;
   }
@@ -400,7 +410,7 @@ void CableStepper::assemble_segments(double part, const std::vector<double>& den
   std::copy_n(inertia_.begin(), segments_ + 1, system_.diagonal.begin());
   for (int i = 0; i < segments_; ++i) {
     // A rod's tension resists the rotation of its segments.
-    const double stiffness = rod_.active() ? 0 : part * density[i];
+    const double stiffness = rod_.active() ? 0 : acting_part(part, density[i]) * density[i];
     system_.diagonal[i] += stiffness;
     system_.diagonal[i + 1] += stiffness;
     system_.first[i] = -stiffness;
