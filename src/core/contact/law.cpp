@@ -23,8 +23,6 @@ constexpr double contact_steps = 2;
 constexpr double linear_enough = 0.05;
 /// And if its slope differs from the law's by no more than this, relatively.
 constexpr double slope_enough = 0.3;
-/// Cosine of an angle by which what slides the same way turns at most from one iterate to the next.
-constexpr double same_way = 0.9;
 /// Relative, of depths between which a secant is taken.
 constexpr double least_secant = 1e-3;
 /// With which friction across two oblique cables that roll is found.
@@ -90,16 +88,10 @@ Vector3 bounded(const Vector3& trial, double limit, const Touch& touch) {
   return least + std::min(1.0, (std::sqrt(product * product + square * room) - product) / square) * way;
 }
 
-/// Sets which parts of `trial` [N] are left of it, along what rolls and across. What goes on sliding the same way as in the iterate
-/// before has its tangent along the slip, which is nothing; else the secant: iterations would turn it to and fro.
+/// Sets which parts of `trial` [N] are left of it, along what rolls and across.
 void set_parts(const Vector3& trial, const Vector3& friction, double part, Touch& touch) {
   touch.part = touch.rolling_part = part;
-  if (touch.rolling_count == 0) {
-    const Vector3 slip = part < 1 ? friction.normalized() : Vector3(Vector3::Zero());
-    if (touch.across.dot(slip) > same_way) touch.rolling_part = 0;
-    touch.across = slip;
-    return;
-  }
+  if (touch.rolling_count == 0) return;
   const auto of = [&](const Vector3& axis) {
     const double whole = axis.dot(trial);
     return whole != 0 ? std::clamp(axis.dot(friction) / whole, 0.0, 1.0) : part;
@@ -180,7 +172,7 @@ Eigen::Matrix3d slope(const Touch& touch) {
   const double stiffness = touch.rate * touch.stiffness;
   Eigen::Matrix3d slope = stiffness * (1 - touch.part) * touch.normal * touch.normal.transpose();
   slope.diagonal().array() += stiffness * touch.part;
-  if (touch.rolling_part != touch.part) slope += stiffness * (touch.rolling_part - touch.part) * touch.across * touch.across.transpose();
+  if (touch.rolling_count > 0) slope += stiffness * (touch.rolling_part - touch.part) * touch.across * touch.across.transpose();
   return slope;
 }
 

@@ -399,8 +399,6 @@ Scheme IslandStepper::find_touching_scheme(const Island& island, double h) {
     if (own == Scheme::first_order || scheme == Scheme::conserving) scheme = own;
   }
   if (scheme == Scheme::conserving) return scheme;
-  // The generalised-alpha method would make energy of forces that begin or end within a substep.
-  if (touches()) scheme = Scheme::first_order;
   workspace_.contacts.follow_scheme(scheme, state_.cables, h);
   BodyTouches::follow_scheme(scheme, contact_rules(*state_.scene, false), h, workspace_.body_system.contacts().touches());
   return scheme;
