@@ -302,6 +302,9 @@ bool CableStepper::solve(const Substep& s, const CableState& state, SubstepResul
 void CableStepper::evaluate(const Substep& s, const CableState& state) {
   if (!flows_.empty()) set_flow_lengths(s);
   std::fill(end_square_.begin(), end_square_.end(), 0.0);
+  // Compression that acted along the end of a segment that turns would make energy: its work there is more than the force times
+  // the change of length. In the middle they are the same. On bodies it acts with the arms that those have at the end.
+  compressed_part_ = s.statics || s.boundary.is_on_bodies() ? s.part() : 0.5;
   for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) evaluate_segments(s.part(), component);
   if (bending_.active()) with_material([&] { bending_.add_segment_forces(displacement_, segment_force_); });
   if (rod_.active()) rod_.add_segment_forces(displacement_, segment_, middle_, segment_force_);
@@ -319,24 +322,15 @@ void CableStepper::evaluate(const Substep& s, const CableState& state) {
   if (!flows_.empty()) evaluate_flows(s);
 }
 
-namespace {
-
-/// Where in the substep a segment's forces act along it. Compression that acted along the end of a segment that turns would make
-/// energy, as its work there is more than the force times the change of length; in the middle they are the same.
-inline double acting_part(double part, double tension) {
-  return tension < 0 ? 0.5 : part;
-}
-
-}  // namespace
-
 void CableStepper::evaluate_segments(double part, Component component) {
   const double *u = (displacement_.*component).data(), *d = (segment_.*component).data(), *density = tension_density_.data();
+  const double compressed = compressed_part_;
   double *mid = (middle_.*component).data(), *f = (segment_force_.*component).data(), *square = end_square_.data();
 #pragma GCC ivdep
   for (int i = 0; i < segments_; ++i) {
     const double change = u[i + 1] - u[i];
     const double end = d[i] + change;
-    mid[i] = d[i] + acting_part(part, density[i]) * change;
+    mid[i] = d[i] + (density[i] < 0 ? compressed : part) * change;
     f[i] = density[i] * mid[i];
     square[i] += end * end;
   }
@@ -410,7 +404,7 @@ void CableStepper::assemble_segments(double part, const std::vector<double>& den
   std::copy_n(inertia_.begin(), segments_ + 1, system_.diagonal.begin());
   for (int i = 0; i < segments_; ++i) {
     // A rod's tension resists the rotation of its segments.
-    const double stiffness = rod_.active() ? 0 : acting_part(part, density[i]) * density[i];
+    const double stiffness = rod_.active() ? 0 : (density[i] < 0 ? compressed_part_ : part) * density[i];
     system_.diagonal[i] += stiffness;
     system_.diagonal[i + 1] += stiffness;
     system_.first[i] = -stiffness;

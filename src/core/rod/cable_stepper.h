@@ -178,6 +178,7 @@ class CableStepper {
   VectorArray displacement_;             // nodes: x' - x [m]
   std::vector<double> tension_density_;  // segments: 2 T / (s + s') [N/m]
   // Of the present iterate
+  double compressed_part_ = 0.5;    // where in the substep compression acts along segments
   VectorArray middle_;              // segments: (d + d') / 2 [m]
   VectorArray segment_force_;       // segments: force on the first node [N]
   std::vector<double> end_square_;  // segments: square of s' [m^2]
