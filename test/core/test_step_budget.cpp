@@ -124,7 +124,7 @@ TEST(StepBudget, CableThatIsStuckHangsAnewWhenItsFramesComeToRest) {
   scene.materials[0].material.axial_stiffness = 1e4;
   scene.materials[0].material.bending_stiffness = 0.01;
   scene.cables[0].attachments[0].frame = "base";
-  std::mt19937 random{0};
+  std::mt19937 random{2};
   std::normal_distribution<double> normal;
   const auto leap = [&](double x) {
     FrameInput input;
