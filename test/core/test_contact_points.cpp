@@ -76,7 +76,7 @@ TEST(ContactPoint, StiffnessIsThatOfThePointsMotion) {
                         more = added_to(system, nodes) - motion.transpose() * stiffness * motion;
   const Eigen::VectorXd sizes = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(more).eigenvalues();
   EXPECT_GT(sizes.minCoeff(), -1e-12);
-  EXPECT_LT(sizes.maxCoeff(), 1.0);
+  EXPECT_LT(sizes.maxCoeff(), 1.2);
 }
 
 /// [m/s] At which two rollers of 20 mm that turn at 5 rad/s feed a straight cable of 4 mm, squeezed to a part of its radius.

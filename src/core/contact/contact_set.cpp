@@ -16,7 +16,8 @@ namespace {
 /// Contacts are looked for this far beyond where they are expected, in radii: velocities change during a substep.
 constexpr double spare_reach = 0.1;
 /// A smooth cable through the nodes bulges out over round obstacles, where straight segments cut in: at most so much, in radii,
-/// is not counted as contact between nodes; and at least so much, of what is straight.
+/// is not counted as contact between nodes; and at least so much, of what is straight. What has edges always takes the most:
+/// nothing rolls on it.
 constexpr double largest_bulge = 0.08, least_bulge = 2e-3;
 /// So far from an attachment to what holds the cable it is not pushed by it [m]: the first few centimetres.
 constexpr double anchored_length = 0.05;
@@ -105,12 +106,12 @@ Vector3 direction_at(const CableState& state, std::uint64_t element) {
 
 /// [m] By how much a smooth cable through the nodes of a segment may bulge out along a normal: twice the arc's height, so that
 /// nodes bear what lies around a round obstacle.
-double bulge_of(const CableState& state, int segment, const Vector3& normal, double radius) {
+double bulge_of(const CableState& state, int segment, const Vector3& normal, double radius, double least) {
   const auto direction = [&](int i) -> Vector3 { return (state.positions[i + 1] - state.positions[i]).normalized(); };
   const int before = std::max(segment - 1, 0), after = std::min(segment + 1, state.segments() - 1);
   const double turned = after > before ? (direction(before) - direction(after)).dot(normal) / (after - before) : 0;
   const double length = (state.positions[segment + 1] - state.positions[segment]).norm();
-  return std::clamp(0.25 * length * turned, least_bulge * radius, largest_bulge * radius);
+  return std::clamp(0.25 * length * turned, least * radius, largest_bulge * radius);
 }
 
 /// Tells a touch of a cable that may roll in which direction (of any length), and by which part of friction that is resisted.
@@ -253,6 +254,8 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
   const Eigen::Matrix3d orientation = moving.start.orientation.toRotationMatrix();
   const Shape& shape = moving.obstacle->shape;
   const bool flat = std::holds_alternative<PlaneShape>(shape);
+  const bool has_edges = std::holds_alternative<BoxShape>(shape) || std::holds_alternative<MeshShape>(shape);
+  const double least = has_edges ? largest_bulge : least_bulge;
 
   const auto visit = [&](int i, double far) {
     local_[i] = orientation.transpose() * (state.positions[i] - moving.start.position);
@@ -343,11 +346,11 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
       const double first = nearest_[i].distance, second = nearest_[i + 1].distance;
       if (0.5 * (first + second - length) > far) continue;
       // Where it is nowhere deeper than this, it does not cut in by more than bulges out.
-      const double radius = materials[i].radius, shallow = std::max(first, second) - least_bulge * radius;
+      const double radius = materials[i].radius, shallow = std::max(first, second) - least * radius;
       SegmentSurfacePoint deepest = deepest_point(shape, local_[i], local_[i + 1], std::min(far, shallow));
       if (deepest.surface.distance >= far) continue;
       const double cut = first + deepest.fraction * (second - first) - deepest.surface.distance;
-      const double bulge = bulge_of(state, i, orientation * deepest.surface.normal, radius);
+      const double bulge = bulge_of(state, i, orientation * deepest.surface.normal, radius, least);
       if (cut <= bulge) continue;
       deepest.surface.distance += bulge;
       touch_at({index, i, deepest.fraction}, 2 * i + 1, deepest.surface);

@@ -73,19 +73,24 @@ void KktSystem::add_stiffness(const CablePoint& point, const Eigen::Matrix3d& st
     add(added_next, i, here * next * stiffness);
     return;
   }
+  const Eigen::Matrix3d turn = point.along * point.across.transpose(), crossed = stiffness * turn;
+  if (point.before != 0) {
+    // Nodes two apart are not coupled: each segment resists turning alone, by as much more as both could do together at most.
+    const Eigen::Matrix3d turned = (point.own + point.before) * turn.transpose() * crossed;
+    const Eigen::Matrix3d own = point.own * turned, before = point.before * turned, lever = (point.before - point.own) * crossed;
+    add(added, i - 1, 1, before);
+    add(added, i, 1, stiffness + lever + lever.transpose() + own + before);
+    add(added, i + 1, 1, own);
+    add(added_next, i, point.own * crossed - own);
+    add(added_next, i - 1, -point.before * crossed.transpose() - before);
+    return;
+  }
   // What the point's displacement has of each node's.
-  const Eigen::Matrix3d turn = point.along * point.across.transpose(), identity = Eigen::Matrix3d::Identity();
-  const Eigen::Matrix3d of_here = here * identity + (point.before - point.own) * turn,
-                        of_next = next * identity + point.own * turn;
+  const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d of_here = here * identity - point.own * turn, of_next = next * identity + point.own * turn;
   add(added, i, 1, of_here.transpose() * stiffness * of_here);
   add(added, i + 1, 1, of_next.transpose() * stiffness * of_next);
   add(added_next, i, of_here.transpose() * stiffness * of_next);
-  if (point.before == 0) return;
-  // Nodes two apart are not coupled: both resist as much more as they would by the most that it can be.
-  const Eigen::Matrix3d of_before = -point.before * turn, across = -of_before.transpose() * stiffness * point.own * turn;
-  add(added, i - 1, 1, of_before.transpose() * stiffness * of_before + across);
-  add(added, i + 1, 1, across);
-  add(added_next, i - 1, of_before.transpose() * stiffness * of_here);
 }
 
 Vector3 KktSystem::added_load(int node, const VectorArray& displacement) const {
