@@ -5,7 +5,7 @@ from worlds import IDENTITY, quiet, world_of
 
 from verlet_cable.sim import SceneError
 
-TABLE = {'type': 'box', 'pose': [0.3, 0, -0.3, 0, 0, 0], 'size': [1.0, 1.0, 0.1], 'friction': 0.4}
+TABLE = {'type': 'box', 'pose': [0.3, 0, -0.4, 0, 0, 0], 'size': [1.0, 1.0, 0.3], 'friction': 0.4}
 
 
 def test_an_obstacle_that_is_set_is_one_of_the_scene(ropes, cable_sim):
@@ -38,7 +38,7 @@ def test_an_obstacle_is_moved_and_removed(hang):
     world.set_obstacle('table', **TABLE)
     world.step(400)
     assert world.positions('hose')[:, 2].min() > -0.26
-    world.set_obstacle('table', **dict(TABLE, pose=[0.3, 0, -0.4, 0, 0, 0]))
+    world.set_obstacle('table', **dict(TABLE, pose=[0.3, 0, -0.5, 0, 0, 0]))
     assert world.obstacle_names == ['table']
     world.step(400)
     assert -0.36 < world.positions('hose')[:, 2].min() < -0.26
