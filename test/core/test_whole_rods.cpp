@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "../support/scenes.h"
 #include "rod/rod_frames.h"
@@ -281,9 +282,10 @@ TEST(WholeRod, PinsAndUnpinsDoNotTwistIt) {
 TEST(WholeRod, TuningGivesAndTakesFrames) {
   SceneDesc scene = ribbon_between_clamps(20);
   scene.materials[0].material.bending_stiffness = 0.02;
+  scene.materials[0].material.bending_damping = scene.materials[0].material.torsional_damping = 1e-4;
   World world(scene, initial_frames(scene));
   for (int i = 0; i < 1000; ++i) world.step(hand(0.7, 2 * (i + 1) / 1000.0));
-  run(world, 3000, hand(0.7, 2));
+  run(world, 9000, hand(0.7, 2));
   const std::vector<Quaternion> before = segment_orientations(world.cables()[0].state);
   const std::vector<double> twist = node_twist(world.cables()[0].state);
   const Energy energy = world.energy();
@@ -293,14 +295,17 @@ TEST(WholeRod, TuningGivesAndTakesFrames) {
     for (std::size_t i = 0; i < twist.size(); ++i) EXPECT_NEAR(node_twist(world.cables()[0].state)[i], twist[i], 1e-6) << i;
     EXPECT_NEAR(world.energy().twist, energy.twist, 1e-6);
   };
-  scene.materials[0].material.bending_stiffness = {0.02, 0.02 * (1 + 1e-9)};
+  // A round straight cable that clamps twist needs its frames for the damping of bending only.
+  expect_sound_frames(world.cables()[0]);
+  const double damping = std::exchange(scene.materials[0].material.bending_damping, 0.0);
+  world.tune(scene);
+  EXPECT_TRUE(world.cables()[0].state.directors.empty());
+  run(world, 200, hand(0.7, 2));
+  expect_same();
+  scene.materials[0].material.bending_damping = damping;
   world.tune(scene);
   expect_sound_frames(world.cables()[0]);
   expect_same();
-  run(world, 200, hand(0.7, 2));
-  scene.materials[0].material.bending_stiffness = 0.02;
-  world.tune(scene);
-  EXPECT_TRUE(world.cables()[0].state.directors.empty());
   run(world, 200, hand(0.7, 2));
   expect_same();
 }

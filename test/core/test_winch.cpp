@@ -190,7 +190,7 @@ TEST(WinchEdits, TwistPerLengthStaysAsItIs) {
     ASSERT_EQ(world.step(hand).status, Status::ok) << i;
   }
   // The cable is nearly straight: what little it is bent takes up a few parts in a thousand.
-  EXPECT_NEAR(world.cables()[0].state.twist[20], 2, 0.01);
+  EXPECT_NEAR(node_twist(world.cables()[0].state)[20], 2, 0.01);
 }
 
 TEST(WinchEdits, ACopyGoesOnAlikeAndACutCableIsWoundOn) {

@@ -18,6 +18,7 @@ struct CableModel {
   std::vector<NamedMaterial> section_materials;  ///< of its sections, each once
   std::array<double, 4> color{0.1, 0.1, 0.1, 1.0};
   bool turns_bodies = false;  ///< it exerts moments on clamps of bodies that move freely
+  bool is_twisted = false;    ///< by clamps at two places
   double segment_length = 0;  ///< [m] in the scene: winches pay out and take in segments of this length
 };
 

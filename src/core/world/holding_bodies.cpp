@@ -14,4 +14,12 @@ bool turns_bodies(int cable, const std::vector<Attachment>& attachments, const S
   });
 }
 
+bool is_twisted(int cable, const std::vector<Attachment>& attachments, const State& state) {
+  const auto count = [&](auto&& is_counted) {
+    return std::count_if(attachments.begin(), attachments.end(),
+                         [&](const Attachment& a) { return a.body == cable_id(cable) && is_counted(a); });
+  };
+  return count([](const Attachment& a) { return a.type == AttachmentType::clamp; }) > 1 && count(is_wheel) < 2;
+}
+
 }  // namespace verlet_cable

@@ -10,4 +10,8 @@ namespace verlet_cable {
 /// those that hold it count: the state's own, or those that are to be there when it starts.
 bool turns_bodies(int cable, const std::vector<Attachment>& attachments, const State& state);
 
+/// Whether clamps at two places twist what is between them. Cables that several sheaves hold count as if they did not: only the
+/// law of straight round cables runs over them.
+bool is_twisted(int cable, const std::vector<Attachment>& attachments, const State& state);
+
 }  // namespace verlet_cable

@@ -124,7 +124,7 @@ auto fields(T& x, const SceneDesc*) {
 // Cables
 template <class T>
 auto fields(T& x, const CableModel*) {
-  return std::tie(x.name, x.material, x.material_name, x.section_materials, x.color, x.turns_bodies, x.segment_length);
+  return std::tie(x.name, x.material, x.material_name, x.section_materials, x.color, x.turns_bodies, x.is_twisted, x.segment_length);
 }
 template <class T>
 auto fields(T& x, const UnresolvedMotion*) {
