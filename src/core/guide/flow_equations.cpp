@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "law/resistance.h"
 #include "rod/cable_stepper.h"
 #include "rod/rod_frames.h"
 #include "verlet_cable/core/cable_materials.h"
@@ -184,13 +185,13 @@ double CableStepper::evaluate_flowing_length(const Substep& s, int i, double& sl
   const double strain_at_start = length_[i] / start - 1, strain_at_end = length / end - 1;
   const double stretching = part == 1 ? stiffness : stiffness * mean_rest * mean_rest / (start * end);
   const double damping = axial_damping_[i] / s.damping_time();
-  const double law = stretching * mean(strain_at_start, strain_at_end, part) + damping * (strain_at_end - strain_at_start);
+  const Resistance<double> resistance{stretching, damping};
+  const double law = resistance.stress(mean(strain_at_start, strain_at_end, part), strain_at_end - strain_at_start);
+  const double rise = resistance.slope(part) / end;
+  const LengthRow<double> row = elastic_row(law, rise, tension_density_[i], mean_length, length, part);
+  set_row(i, row);
   const double tension = tension_density_[i] * mean_length;
-  const double rise = (part * stretching + damping) / end;
-  const double softened = rise - part * tension_density_[i];
-  system_.gap[i] = (tension - law) * length / softened;
-  system_.compliance[i] = length * mean_length / softened;
-  slope = rise * length / end * length / softened;
+  slope = rise * length / end * row.compliance / mean_length;
   const double square = mean(strain_at_start * strain_at_start, strain_at_end * strain_at_end, part);
   return tension * mean_length / mean_rest - 0.5 * stiffness * square;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "lanes/records.h"
+#include "law/length_rate.h"
 
 namespace verlet_cable {
 // Without linkage: what is compiled for one processor is not to be used for another.
@@ -18,7 +19,7 @@ class Projection {
     set_row(at, direction, velocity_next, inverse_mass_next, diagonal, load);
     before_ = 1.0 / (diagonal - ratio_ * coupling_);
     value_ = load - ratio_ * value_;
-    coupling_ = -inverse_mass_next * dot(direction, direction_next);
+    coupling_ = length_rate_coupling(dot(direction, direction_next), inverse_mass_next);
     ratio_ = coupling_ * before_;
     at[LaneField::pivot] = before_;
     at[LaneField::off] = coupling_;
@@ -37,9 +38,8 @@ class Projection {
   [[gnu::always_inline]] static void set_row(const Place<Real>& at, const VectorOf<Real>& direction,
                                              const VectorOf<Real>& velocity_next, const Real& inverse_mass_next, Real& diagonal,
                                              Real& load) {
-    constexpr double pivot_regularisation = 1e-9;
     const Real adjustable = at[LaneField::adjustable], mobility = at[LaneField::inverse_mass] + inverse_mass_next;
-    diagonal = adjustable * (dot(direction, direction) * mobility * (1 + pivot_regularisation)) + (1.0 - adjustable);
+    diagonal = adjustable * length_rate_diagonal(dot(direction, direction), mobility) + (1.0 - adjustable);
     load = adjustable * dot(direction, at.vector(LaneField::end_velocity_x) - velocity_next);
   }
   Real ratio_{}, coupling_{}, before_{}, value_{};

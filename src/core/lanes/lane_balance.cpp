@@ -1,6 +1,10 @@
 #include <cmath>
 
+#include "geometry/eigen_vectors.h"
 #include "lanes/lane_stepper.h"
+#include "law/bend.h"
+#include "law/drag.h"
+#include "law/resistance.h"
 
 namespace verlet_cable {
 
@@ -40,19 +44,16 @@ void LaneStepper::balance_laws(int c, LaneMember& member) {
 void LaneStepper::balance_drag(LaneMember& member) {
   const Substep& s = member.substep;
   const CableState& state = *member.state;
-  const double drag = s.model.material.drag / s.h;
-  const Vector3 flow = s.h * s.environment.fluid.velocity;
-  double lost = 0, applied = 0, half_before = 0;
+  LinearDrag<double> drag{0, numbers_of(s.environment.fluid.velocity), 1 / s.h};
+  double half_before = 0;
   for (int i = 0; i <= work_.law.segments; ++i) {
     const double half = i < work_.law.segments ? 0.5 * state.rest_lengths[i] : 0;
-    const double length = half_before + half;
+    drag.coefficient = s.model.material.drag * (half_before + half);
     half_before = half;
-    const Vector3 relative = displacements_[i] - flow;
-    lost += length * relative.squaredNorm();
-    applied -= length * relative.dot(flow);
+    const VectorOf<double> displacement = numbers_of(displacements_[i]);
+    member.result.balance.dissipated.drag += drag.loss(displacement);
+    member.result.balance.work.applied += drag.work(displacement);
   }
-  member.result.balance.dissipated.drag += drag * lost;
-  member.result.balance.work.applied += drag * applied;
 }
 
 void LaneStepper::balance_bending(int c, LaneMember& member) {
@@ -65,20 +66,19 @@ void LaneStepper::balance_bending(int c, LaneMember& member) {
   for (int i = 1; i < work_.law.segments; ++i) {
     const Vector3 after = turned_on(i), change = after - before;
     before = after;
-    lost += at(LaneField::joint_damping, c, i) * change.dot(change - vector_at(LaneField::turned_x, c, i));
+    lost += bend_loss(at(LaneField::joint_damping, c, i), numbers_of(change), numbers_of(vector_at(LaneField::turned_x, c, i)));
   }
   member.result.balance.dissipated.bending += lost;
 }
 
 void LaneStepper::balance_stretching(LaneMember& member) {
   const CableState& state = *member.state;
-  double lost = 0;
+  const double damping = member.substep.model.material.axial_damping / member.substep.h;
   for (int i = 0; i < work_.law.segments; ++i) {
     const Vector3 end = state.positions[i + 1] - state.positions[i];
-    const double change = end.norm() - (end - displacements_[i + 1] + displacements_[i]).norm();
-    lost += change * change / state.rest_lengths[i];
+    const double growth = end.norm() - (end - displacements_[i + 1] + displacements_[i]).norm();
+    member.result.balance.dissipated.axial += Resistance<double>{0, damping / state.rest_lengths[i]}.loss(growth);
   }
-  member.result.balance.dissipated.axial += member.substep.model.material.axial_damping / member.substep.h * lost;
 }
 
 void LaneStepper::balance_drawn_out(int c, LaneMember& member) {

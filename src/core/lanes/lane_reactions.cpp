@@ -1,5 +1,6 @@
+#include "geometry/eigen_vectors.h"
 #include "lanes/lane_stepper.h"
-#include "rod/angle_energy.h"
+#include "law/bend.h"
 
 namespace verlet_cable {
 
@@ -83,10 +84,11 @@ Vector3 LaneStepper::joint_moment(int c, int i) {
   const Vector3 start = over_length(c, i, segment_at(LaneField::segment_x, c, i)) -
                         over_length(c, i - 1, segment_at(LaneField::segment_x, c, i - 1));
   const Vector3 change = direction_change(c, i);
-  const double slope = mean_slope(0.5 * start.squaredNorm(), 0.5 * (start + change).squaredNorm());
-  const Vector3 moment = at(LaneField::joint_stiffness, c, i) * slope * (start + 0.5 * change);
-  if (!work_.law.is_damped) return moment;
-  return moment + at(LaneField::joint_damping, c, i) * (change - vector_at(LaneField::turned_x, c, i));
+  const VectorOf<double> numbers = numbers_of(change);
+  const Bend<double> joint = bend(at(LaneField::joint_stiffness, c, i), numbers_of(start), start.squaredNorm(), numbers, 0.5);
+  if (!work_.law.is_damped) return vector_of(joint.moment);
+  return vector_of(joint.moment +
+                   bend_damping(at(LaneField::joint_damping, c, i), numbers, numbers_of(vector_at(LaneField::turned_x, c, i))));
 }
 
 }  // namespace verlet_cable

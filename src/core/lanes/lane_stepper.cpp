@@ -183,15 +183,15 @@ void LaneStepper::set_cable(int c, LaneMember& member) {
 void LaneStepper::set_values(int c, const LaneMember& member) {
   const Substep& s = member.substep;
   const MaterialDesc& material = s.model.material;
-  const Vector3 gravity = s.environment.gravity.acceleration, wind = material.drag * s.environment.fluid.velocity;
+  const Vector3 gravity = s.environment.gravity.acceleration, fluid = s.environment.fluid.velocity;
   for (const int lane : {2 * c, 2 * c + 1}) {
     values_.gravity_x[lane] = gravity.x();
     values_.gravity_y[lane] = gravity.y();
     values_.gravity_z[lane] = gravity.z();
-    values_.wind_x[lane] = wind.x();
-    values_.wind_y[lane] = wind.y();
-    values_.wind_z[lane] = wind.z();
-    values_.drag[lane] = material.drag / s.h;
+    values_.fluid_x[lane] = fluid.x();
+    values_.fluid_y[lane] = fluid.y();
+    values_.fluid_z[lane] = fluid.z();
+    values_.drag[lane] = material.drag;
     values_.bending_stiffness[lane] = material.bending_stiffness.largest();
     values_.axial_stiffness[lane] = material.axial_stiffness;
     values_.axial_damping[lane] = material.axial_damping / s.h;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "lanes/records.h"
+#include "law/drag.h"
 
 namespace verlet_cable {
 // Without linkage: what is compiled for one processor is not to be used for another.
@@ -14,8 +15,8 @@ void load_lanes(const LaneWork& w) {
   const VectorOf<Real> none{zero, zero, zero};
   const VectorOf<Real> gravity{values_of<Real>(values.gravity_x), values_of<Real>(values.gravity_y),
                                values_of<Real>(values.gravity_z)};
-  const VectorOf<Real> wind{values_of<Real>(values.wind_x), values_of<Real>(values.wind_y), values_of<Real>(values.wind_z)};
-  const Real drag = values_of<Real>(values.drag);
+  const VectorOf<Real> fluid{values_of<Real>(values.fluid_x), values_of<Real>(values.fluid_y), values_of<Real>(values.fluid_z)};
+  const Real drag_of_material = values_of<Real>(values.drag);
   VectorOf<Real> here = gather_vector<Real>(w, &LaneCable::positions, 0);
   Real half_before = zero, length_before = zero;
   for (int k = 0; k <= w.lane; ++k) {
@@ -30,12 +31,13 @@ void load_lanes(const LaneWork& w) {
     Real half = 0.5 * rest;
     if (w.padded && k == 0)
       for (int i = 1; i < lanes_of<Real>; i += 2) half[i] = 0;
-    const Real length = half_before + half, inertia = 2.0 * mass / h;
+    const LinearDrag<Real> drag{drag_of_material * (half_before + half), fluid, 1 / h};
+    const Real inertia = 2.0 * mass / h;
     half_before = half;
     at.set(LaneField::segment_x, segment);
     at.set(LaneField::displacement_x, duration * (velocity + half_duration * acceleration));
-    at.set(LaneField::load_x, mass * gravity + inertia * velocity + length * wind);
-    at[LaneField::inertia] = inertia / h + drag * length;
+    at.set(LaneField::load_x, mass * gravity + inertia * velocity + drag.load());
+    at[LaneField::inertia] = inertia / h + drag.resistance();
     at[LaneField::movable] = at[LaneField::adjustable] = one;
     at[LaneField::target_length] = gather_segment<Real>(w, &LaneCable::target_lengths, k);
     at[LaneField::inverse_length] = 1.0 / rest;

@@ -103,8 +103,8 @@ struct LaneCable {
 /// By lane.
 struct alignas(64) LaneValues {
   double gravity_x[most_lanes], gravity_y[most_lanes], gravity_z[most_lanes];  ///< [m/s^2]
-  double wind_x[most_lanes], wind_y[most_lanes], wind_z[most_lanes];           ///< drag times the fluid's velocity [N/m]
-  double drag[most_lanes];                                                     ///< in the substep [kg/(m s^2)]
+  double fluid_x[most_lanes], fluid_y[most_lanes], fluid_z[most_lanes];        ///< its velocity [m/s]
+  double drag[most_lanes];                                                     ///< [kg/(m s)]
   double bending_stiffness[most_lanes];                                        ///< [N m^2]
   double axial_stiffness[most_lanes];                                          ///< [N]
   double axial_damping[most_lanes];                                            ///< in the substep [N]

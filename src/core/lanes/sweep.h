@@ -3,7 +3,9 @@
 #include <type_traits>
 
 #include "lanes/records.h"
-#include "rod/angle_energy.h"
+#include "law/bend.h"
+#include "law/resistance.h"
+#include "law/stretch.h"
 #include "rod/node_elimination.h"
 
 namespace verlet_cable {
@@ -43,33 +45,40 @@ template <bool bends, class From, class To>
   }
 }
 
-/// Of a node at which a cable bends; see Bending.
+/// Of a node at which a cable bends.
 template <class Real>
 struct Joint {
-  VectorOf<Real> moment;  ///< on the change of direction [N m]
-  Real stiffness;         ///< its derivative by that [N m]
+  VectorOf<Real> moment;          ///< on the change of direction [N m]
+  BendStiffness<Real> stiffness;  ///< [N/m]
 };
 
-/// `start`: e, `change`: of it over the substep; `at`: the node's place.
+/// `start`: e, `change`: of it over the substep; `at`: the node's place; 1 / length of the segments before and after it.
 template <Bends bends, class Real>
-[[gnu::always_inline]] inline Joint<Real> bend(const VectorOf<Real>& start, const VectorOf<Real>& change, const Place<Real>& at) {
-  const Real half = Real{} + 0.5;
-  const VectorOf<Real> end = start + change;
-  const Real slope = at[LaneField::joint_stiffness] * mean_slope<Real>(0.5 * dot(start, start), 0.5 * dot(end, end));
-  Joint<Real> joint{slope * (start + half * change), 0.5 * slope};
+[[gnu::always_inline]] inline Joint<Real> joint_at(const Place<Real>& at, const VectorOf<Real>& start,
+                                                   const VectorOf<Real>& change, const Real& before, const Real& after) {
+  const Bend<Real> joint = bend(at[LaneField::joint_stiffness], start, dot(start, start), change, 0.5);
   if constexpr (bends == Bends::damped) {
     const Real damping = at[LaneField::joint_damping];
-    joint.moment = joint.moment + damping * (change - at.vector(LaneField::turned_x));
-    joint.stiffness = joint.stiffness + damping;
+    return {joint.moment + bend_damping(damping, change, at.vector(LaneField::turned_x)),
+            bend_stiffness(0.5 * joint.slope + damping, before, after)};
   }
-  return joint;
+  return {joint.moment, bend_stiffness(0.5 * joint.slope, before, after)};
+}
+
+/// A joint seen from the other lane.
+template <class Real>
+[[gnu::always_inline]] inline Joint<Real> crossed_over(const Joint<Real>& joint) {
+  const BendStiffness<Real>& s = joint.stiffness;
+  return {crossed_over(joint.moment),
+          {crossed_over(s.after), crossed_over(s.own), crossed_over(s.before), crossed_over(s.first_after),
+           crossed_over(s.first_before), crossed_over(s.second)}};
 }
 
 /// A segment in the middle of the substep, and how its length follows its tension.
 template <class Real>
 struct Span {
   VectorOf<Real> middle;  ///< d in the substep [m]
-  Real gap, compliance;   ///< as of KktSystem
+  LengthRow<Real> row;
 };
 
 template <bool is_elastic, class Real>
@@ -80,18 +89,15 @@ template <bool is_elastic, class Real>
   Span<Real> span;
   span.middle = start + half * change;
   if constexpr (is_elastic) {
-    const Real stiffness = at[LaneField::axial_stiffness], damping = at[LaneField::axial_damping];
+    const Resistance<Real> resistance{at[LaneField::axial_stiffness], at[LaneField::axial_damping]};
     const Real length = root(square), growth = length - at[LaneField::start_length];
     const Real mean = at[LaneField::start_length] + 0.5 * growth;
-    const Real excess = stiffness * (mean - at[LaneField::target_length]) + damping * growth - density * mean;
-    const Real by_slope = length / (0.5 * (stiffness - density) + damping);
-    span.gap = -adjustable * (excess * by_slope);
-    span.compliance = adjustable * (mean * by_slope) + (1.0 - adjustable);
+    span.row = elastic_row(resistance.stress(mean - at[LaneField::target_length], growth), resistance.slope(0.5), density, mean,
+                           length, 0.5);
   } else {
-    const Real length = at[LaneField::target_length], compliance = at[LaneField::compliance];
-    span.gap = adjustable * (0.5 * (length * length - square) + compliance * density);
-    span.compliance = adjustable * compliance + (1.0 - adjustable);
+    span.row = inextensible_row(square, at[LaneField::target_length], at[LaneField::compliance], density);
   }
+  span.row = {adjustable * span.row.gap, adjustable * span.row.compliance + (1.0 - adjustable)};
   return span;
 }
 
@@ -116,9 +122,9 @@ void sweep_lanes(const LaneWork& w) {
   FrontLoad<Real> load{none, none, zero};
   Real tension_before = zero, clamp_before = zero;  // stiffnesses of the segment before
   VectorOf<Real> force_before = none;               // that segment's on its first node
-  Real inverse_before = zero;                       // its 1 / length
-  Joint<Real> joint{none, zero}, joint_next{none, zero};
-  Real stiffness_before = zero;  // of the joint before
+  const BendStiffness<Real> unresisted{zero, zero, zero, zero, zero, zero};
+  Joint<Real> joint{none, unresisted}, joint_next{none, unresisted};
+  Real stiffness_before = zero;  // of the joint before, on this node
   VectorOf<Real> u = place_of<Real>(w, 0).vector(LaneField::displacement_x), next = displacement(1),
                  change = without_pad(w, 0, next - u);
   Span<Real> span;
@@ -136,31 +142,26 @@ void sweep_lanes(const LaneWork& w) {
     if constexpr (bends) {
       const Real inverse = at[LaneField::inverse_length], clamp = at[LaneField::clamp_stiffness];
       VectorOf<Real> after = none;
-      Real inverse_after;
       if (k < m) {
         const Place<Real> following = place_of<Real>(w, k + 1);
-        inverse_after = following[LaneField::inverse_length];
+        const Real inverse_after = following[LaneField::inverse_length];
         after = displacement(k + 2) - next;
-        joint_next =
-            bend<bending>(inverse_after * following.vector(LaneField::segment_x) - inverse * at.vector(LaneField::segment_x),
-                          inverse_after * after - inverse * change, following);
+        joint_next = joint_at<bending>(
+            following, inverse_after * following.vector(LaneField::segment_x) - inverse * at.vector(LaneField::segment_x),
+            inverse_after * after - inverse * change, inverse, inverse_after);
       } else {
-        inverse_after = crossed_over(inverse_before);
-        joint_next = {crossed_over(joint.moment), crossed_over(joint.stiffness)};
+        joint_next = crossed_over(joint);
       }
       const VectorOf<Real> other = at.vector(LaneField::clamp_force_x) + inverse * (joint.moment - joint_next.moment);
       at[LaneField::force_along] =
           where(active, dot(other, span.middle) / at[LaneField::target_length], at[LaneField::force_along]);
       force = force + other;
-      const Real bent = inverse_before + inverse, bent_next = inverse + inverse_after;
-      own = own + clamp_before + clamp + stiffness_before * inverse_before * inverse_before + joint.stiffness * bent * bent +
-            joint_next.stiffness * inverse * inverse;
-      first = first - clamp - joint.stiffness * inverse * bent - joint_next.stiffness * inverse * bent_next;
-      second = joint_next.stiffness * inverse * inverse_after;
+      own = own + clamp_before + clamp + stiffness_before + joint.stiffness.own + joint_next.stiffness.before;
+      first = first - clamp + joint.stiffness.first_after + joint_next.stiffness.first_before;
+      second = joint_next.stiffness.second;
       clamp_before = clamp;
-      stiffness_before = joint.stiffness;
+      stiffness_before = joint.stiffness.after;
       joint = joint_next;
-      inverse_before = inverse;
       u = next;
       next = next + after;
       change = after;
@@ -182,11 +183,11 @@ void sweep_lanes(const LaneWork& w) {
       copy_elimination<bends>(kept[k], e);
     } else {
       eliminate<couplings>(plus_diagonal(SymmetricOf<Real>{zero, zero, zero, zero, zero, zero}, own), at[LaneField::movable],
-                           NodeCouplings<Real>{span.middle, span.compliance, first, {}, second}, front, e);
+                           NodeCouplings<Real>{span.middle, span.row.compliance, first, {}, second}, front, e);
       copy_elimination<bends>(e, kept[k]);
     }
     Forward<Real> f;
-    forward<couplings>(e, unbalanced, span.gap, load, f);
+    forward<couplings>(e, unbalanced, span.row.gap, load, f);
     kept[k].forward_node = f.node;
     kept[k].forward_multiplier = f.multiplier;
   }
@@ -204,12 +205,12 @@ void sweep_lanes(const LaneWork& w) {
     if constexpr (!is_light)
       eliminate_middle(lane_of(front, lane), lane_of(front, lane + 1), plus_diagonal(nothing, own[lane]),
                        plus_diagonal(nothing, own[lane + 1]), movable[lane], movable[lane + 1],
-                       NodeCouplings<double>{lane_of(span.middle, lane), span.compliance[lane], first[lane], {}, 0},
+                       NodeCouplings<double>{lane_of(span.middle, lane), span.row.compliance[lane], first[lane], {}, 0},
                        elimination);
     const MiddleSolution solution =
         solve_middle(elimination, lane_of(unbalanced, lane) + lane_of(load.next, lane) + lane_of(load.after, lane + 1),
                      lane_of(unbalanced, lane + 1) + lane_of(load.next, lane + 1) + lane_of(load.after, lane), load.gap[lane],
-                     span.gap[lane], load.gap[lane + 1]);
+                     span.row.gap[lane], load.gap[lane + 1]);
     solved.next.x[lane] = solved.after.x[lane + 1] = solution.left.x;
     solved.next.y[lane] = solved.after.y[lane + 1] = solution.left.y;
     solved.next.z[lane] = solved.after.z[lane + 1] = solution.left.z;

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "rod/angle_energy.h"
+#include "geometry/eigen_vectors.h"
+#include "law/bend.h"
 #include "rod/joint_material.h"
 #include "rod/material_spin.h"
 
@@ -10,8 +11,8 @@ namespace verlet_cable {
 
 void Bending::resize(int segments) {
   segments_ = segments;
-  const std::size_t nodes = segments + 1;
-  for (std::vector<double>* a : {&inverse_length_, &stiffness_, &damping_, &start_square_, &end_square_, &slope_, &spin_})
+  const std::size_t nodes = segments + 2;  // one more, where two are computed with together
+  for (std::vector<double>* a : {&inverse_length_, &stiffness_, &damping_, &start_square_, &slope_, &spin_})
     a->assign(nodes, 0.0);
   for (VectorArray* a : {&start_, &change_, &moment_, &turned_}) a->assign(nodes, 0.0);
   clamps_.reserve(2 * nodes);
@@ -109,8 +110,6 @@ void Bending::add_growth(const VectorArray& displacement) {
     if (i > 0) set(change_, i, get(change_, i) + growth);
     if (i + 1 < segments_) set(change_, i + 1, get(change_, i + 1) - growth);
   }
-  for (const ChangingJoint& joint : changing_)
-    end_square_[joint.node] = (get(start_, joint.node) + get(change_, joint.node)).squaredNorm();
 }
 
 double Bending::flow_force(int before, int after, const VectorArray& middle) const {
@@ -130,9 +129,10 @@ double Bending::flow_force(int before, int after, const VectorArray& middle) con
     const double share =
         0.5 * ((joint.node == after || joint.node == after + 1) - (joint.node == before || joint.node == before + 1));
     if (share == 0) continue;
-    const double start = angle_energy(0.5 * start_square_[joint.node]), end = angle_energy(0.5 * end_square_[joint.node]);
-    const double energy = part_ == 1 ? end : 0.5 * (start + end);
-    force += share * joint.end / joint.length * (part_ == 1 ? joint.end / joint.start : 1) * energy;
+    const Vector3 start = get(start_, joint.node), end = start + get(change_, joint.node);
+    const double stiffness = joint.end / joint.length * (part_ == 1 ? joint.end / joint.start : 1);
+    const double at_end = bend_energy(stiffness, numbers_of(end));
+    force += share * (part_ == 1 ? at_end : 0.5 * (bend_energy(stiffness, numbers_of(start)) + at_end));
   }
   return force;
 }
@@ -179,35 +179,22 @@ void Bending::turn_with_material(const CableModel& model, const CableState& stat
 }
 
 void Bending::add_segment_forces(const VectorArray& displacement, VectorArray& pull) {
-  std::fill(end_square_.begin(), end_square_.end(), 0.0);
-  for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) {
-    const double *u = (displacement.*component).data(), *w = inverse_length_.data(), *e = (start_.*component).data();
-    double *change = (change_.*component).data(), *square = end_square_.data();
-#pragma GCC ivdep
-    for (int i = 1; i < segments_; ++i) {
-      change[i] = w[i] * (u[i + 1] - u[i]) - w[i - 1] * (u[i] - u[i - 1]);
-      const double end = e[i] + change[i];
-      square[i] += end * end;
-    }
+  for (int i = 1; i < segments_; i += 2) {
+    const PairVector here = neighbours(displacement, i);
+    put(neighbours(inverse_length_, i) * (neighbours(displacement, i + 1) - here) -
+            neighbours(inverse_length_, i - 1) * (here - neighbours(displacement, i - 1)),
+        change_, i);
   }
   if (!growing_.empty()) add_growth(displacement);
-  for (int i = 1; i < segments_; ++i) slope_[i] = stiffness_[i] * mean_slope(0.5 * start_square_[i], 0.5 * end_square_[i]);
-  for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) {
-    const double *w = inverse_length_.data(), *e = (start_.*component).data(), *change = (change_.*component).data();
-    const double *slope = slope_.data(), *damping = damping_.data();
-    double *moment = (moment_.*component).data(), *f = (pull.*component).data();
-    if (is_damped_) {
-      const double* turned = (turned_.*component).data();
-#pragma GCC ivdep
-      for (int i = 1; i < segments_; ++i)
-        moment[i] = slope[i] * (e[i] + part_ * change[i]) + damping[i] * (change[i] - turned[i]);
-    } else {
-#pragma GCC ivdep
-      for (int i = 1; i < segments_; ++i) moment[i] = slope[i] * (e[i] + part_ * change[i]);
-    }
-#pragma GCC ivdep
-    for (int i = 0; i < segments_; ++i) f[i] += w[i] * (moment[i] - moment[i + 1]);
+  for (int i = 1; i < segments_; i += 2) {
+    const PairVector change = neighbours(change_, i);
+    Bend<Pair> joint = bend(neighbours(stiffness_, i), neighbours(start_, i), neighbours(start_square_, i), change, part_);
+    if (is_damped_) joint.moment = joint.moment + bend_damping(neighbours(damping_, i), change, neighbours(turned_, i));
+    put(joint.moment, moment_, i);
+    put(joint.slope, slope_, i);
   }
+  for (int i = 0; i < segments_; i += 2)
+    put(neighbours(pull, i) + neighbours(inverse_length_, i) * (neighbours(moment_, i) - neighbours(moment_, i + 1)), pull, i);
   bend_clamps(displacement);
   for (const ClampJoint& clamp : clamps_) {
     const int i = clamp.segment;
@@ -235,21 +222,19 @@ Vector3 Bending::damping_torque(const VectorArray& displacement) const {
 double Bending::damping_work(const VectorArray& displacement) const {
   double work = 0;
   if (!active_ || !is_damped_) return work;
-  for (int i = 1; i < segments_; ++i) {
-    const Vector3 change = change_at(i, displacement);
-    work += damping_[i] * change.dot(change - get(turned_, i));
-  }
+  for (int i = 1; i < segments_; ++i) work += loss_at(i, change_at(i, displacement));
   return work;
 }
 
 double Bending::damping_work() const {
   double work = 0;
-  for (int i = 1; i < segments_; ++i) {
-    const Vector3 change = get(change_, i);
-    work += damping_[i] * change.dot(change - get(turned_, i));
-  }
+  for (int i = 1; i < segments_; ++i) work += loss_at(i, get(change_, i));
   for (const ClampJoint& clamp : clamps_) work += clamp.damping_work;
   return work;
+}
+
+double Bending::loss_at(int node, const Vector3& change) const {
+  return bend_loss(damping_[node], numbers_of(change), numbers_of(get(turned_, node)));
 }
 
 /// Of e, over the substep.
@@ -262,13 +247,14 @@ Vector3 Bending::change_at(int node, const VectorArray& displacement) const {
 void Bending::add_stiffness(KktSystem& system) const {
   const auto add = [&system](int i, double value) { system.diagonal[i] += value; };
   for (int i = 1; i < segments_; ++i) {
-    const double slope = part_ * slope_[i] + damping_[i], before = inverse_length_[i - 1], after = inverse_length_[i];
-    add(i - 1, slope * before * before);
-    add(i, slope * (before + after) * (before + after));
-    add(i + 1, slope * after * after);
-    system.first[i - 1] -= slope * before * (before + after);
-    system.first[i] -= slope * after * (before + after);
-    system.second[i - 1] = slope * before * after;
+    const BendStiffness<double> stiffness =
+        bend_stiffness(part_ * slope_[i] + damping_[i], inverse_length_[i - 1], inverse_length_[i]);
+    add(i - 1, stiffness.before);
+    add(i, stiffness.own);
+    add(i + 1, stiffness.after);
+    system.first[i - 1] += stiffness.first_before;
+    system.first[i] += stiffness.first_after;
+    system.second[i - 1] = stiffness.second;
   }
   for (const ClampJoint& clamp : clamps_) {
     const int i = clamp.segment;
@@ -294,7 +280,7 @@ double bending_energy(const CableModel& model, const CableState& state, const st
     const double inverse = 1 / (i == driven ? d.norm() : state.rest_lengths[i]);
     return inverse * d;
   };
-  const auto joint = [](double length, const Vector3& change) { return angle_energy(0.5 * change.squaredNorm()) / length; };
+  const auto joint = [](double length, const Vector3& change) { return bend_energy(1 / length, numbers_of(change)); };
   // EI is a factor of the sum where it is the same everywhere.
   const bool varies = materials.vary();
   double energy = 0;

@@ -13,12 +13,9 @@ namespace verlet_cable {
 /// The bending of a cable that is straight unloaded and bends alike about all axes, over a substep: moments between neighbouring
 /// segments, averaged so that energy and momentum are conserved. Of all others see KirchhoffRod.
 ///
-/// With e = d_i / l_i - d_(i-1) / l_(i-1), the change of direction at node i, and u = |e|² / 2 = 1 - cos(angle), the energy of a
-/// node is
-///   EI / l psi(u),   psi = angle² / 2 as in angle_energy.h.
-/// To first order in u it is quadratic (Bergou et al., A Quadratic Bending Model for Inextensible Surfaces, 2006); the higher
-/// ones make the moment proportional to the angle. At a clamp the frame's axis stands for one of the two directions, half a
-/// segment away; it is as long as the segment is stretched, so that a clamp does not resist stretch.
+/// At node i it is that of law/bend.h, e = d_i / l_i - d_(i-1) / l_(i-1) being the change of direction. At a clamp the frame's
+/// axis stands for one of the two directions, half a segment away; it is as long as the segment is stretched, so that a clamp
+/// does not resist stretch.
 ///
 /// Damping resists the change of e in the material, which spins as in material_spin.h: not what only turns with it. As the spin
 /// is that of the substep before, a free cable could gain energy so; see `resist_all_changes`.
@@ -60,6 +57,7 @@ class Bending {
 
  private:
   Vector3 change_at(int node, const VectorArray& displacement) const;
+  double loss_at(int node, const Vector3& change) const;
   void turn_with_material(const CableModel& model, const CableState& state, const VectorArray& segment,
                           const std::vector<HeldDirection>& directions, double h);
   void bend_clamps(const VectorArray& displacement);
@@ -94,7 +92,7 @@ class Bending {
   std::vector<double> spin_;                 // segments: of the material [rad/s]
   VectorArray turned_;                       // nodes: change of e that turns with the material, not damped
   VectorArray change_, moment_;              // nodes: change of e; moment along it [N m]
-  std::vector<double> end_square_, slope_;   // nodes: |e|² at the end; d moment / d e at the end [N m]
+  std::vector<double> slope_;                // nodes: of the moment over e, without damping [N m]
   std::vector<ClampJoint> clamps_;
 };
 

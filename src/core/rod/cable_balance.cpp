@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/eigen_vectors.h"
+#include "law/drag.h"
+#include "law/resistance.h"
 #include "rod/cable_stepper.h"
 
 namespace verlet_cable {
@@ -44,12 +47,12 @@ void CableStepper::balance_laws(const Substep& s, const std::vector<double>& mas
 
 /// The drag of the material, in proportion to the velocity.
 void CableStepper::balance_drag(const Substep& s, const std::vector<double>& masses, EnergyBalance& balance) const {
-  const Vector3 flow = s.h * s.environment.fluid.velocity;
+  LinearDrag<double> drag{0, numbers_of(s.environment.fluid.velocity), 1 / s.h};
   for (int i = 0; i <= segments_; ++i) {
-    const double resistance = inertia_[i] - s.inertia() * masses[i] / (s.h * s.h);
-    const Vector3 relative = get(displacement_, i) - flow;
-    balance.dissipated.drag += resistance * relative.squaredNorm();
-    balance.work.applied -= resistance * relative.dot(flow);
+    drag.coefficient = s.h * (inertia_[i] - s.inertia() * masses[i] / (s.h * s.h));
+    const VectorOf<double> displacement = numbers_of(get(displacement_, i));
+    balance.dissipated.drag += drag.loss(displacement);
+    balance.work.applied += drag.work(displacement);
   }
 }
 
@@ -63,8 +66,8 @@ void CableStepper::balance_lengths(const Substep& s, SubstepResult& result) cons
       if (axial_damping_[i] == 0) continue;
       const Straining strained = straining(s, i);
       const double middle = 0.5 * (strained.start + strained.end);
-      const double force = axial_damping_[i] / (s.h * strained.end) * strained.growth;
-      const double lost = strained.start / middle * force * strained.growth;
+      const Resistance<double> damping{0, axial_damping_[i] / (s.h * strained.end)};
+      const double force = damping.stress(0, strained.growth), lost = strained.start / middle * damping.loss(strained.growth);
       result.balance.dissipated.axial += lost;
       // A winch works against it, too: the nodes take what they move by.
       if (is_wound(s.boundary, i)) result.balance.work.winches += lost - force * (std::sqrt(end_square_[i]) - length_[i]);

@@ -4,6 +4,10 @@
 #include <cmath>
 
 #include "chain/point_motion.h"
+#include "geometry/eigen_vectors.h"
+#include "law/drag.h"
+#include "law/length_rate.h"
+#include "law/resistance.h"
 #include "rod/rigid_motion.h"
 #include "rod/tridiagonal.h"
 #include "verlet_cable/core/cable_materials.h"
@@ -15,8 +19,6 @@ namespace {
 constexpr int maximum_iterations = 40;
 /// A correction that shrinks less than this from one iteration to the next calls for a new factorisation.
 constexpr double slow_convergence = 0.1;
-/// Relative, for spans that are pulled straight.
-constexpr double pivot_regularisation = 1e-9;
 /// Of the lengths of such spans, relative.
 constexpr double greatest_gap = 1e-7;
 /// Of the first `count` numbers.
@@ -171,8 +173,8 @@ void CableStepper::hold(const std::vector<HeldNode>& held) {
 void CableStepper::set_loads(const Substep& s, const CableState& state) {
   const CableMaterials materials(s.model, state);
   drags_ = materials.any([](const MaterialDesc& material) { return material.drag > 0; });
-  Vector3 wind = s.model.material.drag * s.environment.fluid.velocity;
-  double drag = s.model.material.drag / s.damping_time();
+  const LinearDrag<double> of_fluid{1, numbers_of(s.environment.fluid.velocity), 1 / s.damping_time()};
+  double drag_of_material = s.model.material.drag;
   const GravityDesc& gravity = s.environment.gravity;
   const bool is_uniform = gravity.type == GravityDesc::Type::uniform;
   Vector3 g = gravity.acceleration;
@@ -181,17 +183,16 @@ void CableStepper::set_loads(const Substep& s, const CableState& state) {
     const double mass = state.masses[i], inertia = s.inertia() * mass / s.h;
     const double half = i < segments_ ? 0.5 * state.rest_lengths[i] : 0, length = half_before + half;
     half_before = half;
-    if (materials.vary()) {
-      const double mean = materials.mean_at(i, [](const MaterialDesc& material) { return material.drag; });
-      wind = mean * s.environment.fluid.velocity;
-      drag = mean / s.damping_time();
-    }
-    inertia_[i] = inertia / s.h + drag * length;
+    if (materials.vary()) drag_of_material = materials.mean_at(i, [](const MaterialDesc& material) { return material.drag; });
+    LinearDrag<double> drag = of_fluid;
+    drag.coefficient = drag_of_material * length;
+    inertia_[i] = inertia / s.h + drag.resistance();
+    const VectorOf<double> wind = drag.load();
     // In the middle of the substep, where the other forces are; velocities are zero in statics.
     if (!is_uniform) g = gravity.at(get(position_, i) + 0.5 * s.h * get(velocity_, i));
-    base_load_.x[i] = mass * g.x() + inertia * velocity_.x[i] + length * wind.x();
-    base_load_.y[i] = mass * g.y() + inertia * velocity_.y[i] + length * wind.y();
-    base_load_.z[i] = mass * g.z() + inertia * velocity_.z[i] + length * wind.z();
+    base_load_.x[i] = mass * g.x() + inertia * velocity_.x[i] + wind.x;
+    base_load_.y[i] = mass * g.y() + inertia * velocity_.y[i] + wind.y;
+    base_load_.z[i] = mass * g.z() + inertia * velocity_.z[i] + wind.z;
   }
   const std::vector<HeldNode>& held = s.boundary.nodes;
   std::fill_n(system_.compliance.begin(), segments_, 0.0);
@@ -354,7 +355,7 @@ void CableStepper::evaluate_rigid_lengths() {
 
 /// `compliance`: what `set_loads` has set.
 inline void CableStepper::evaluate_rigid_length(int i) {
-  system_.gap[i] = 0.5 * (target_length_[i] * target_length_[i] - end_square_[i]) + strain_compliance_[i] * tension_density_[i];
+  system_.gap[i] = inextensible_row(end_square_[i], target_length_[i], strain_compliance_[i], tension_density_[i]).gap;
 }
 
 void CableStepper::evaluate_elastic_lengths(const Substep& sub, const std::vector<double>& rest_lengths) {
@@ -368,14 +369,16 @@ void CableStepper::evaluate_elastic_lengths(const Substep& sub, const std::vecto
 
 /// `rest`: the rest length where forces are taken [m].
 void CableStepper::evaluate_elastic_length(const Substep& sub, int i, double rest) {
-  const double stiffness = axial_stiffness_[i], part = sub.part();
-  const double s = std::sqrt(end_square_[i]), mean = length_[i] + part * (s - length_[i]);
+  const double part = sub.part(), end = std::sqrt(end_square_[i]), mean = length_[i] + part * (end - length_[i]);
   const Straining strained = straining(sub, i);
-  const double damping = axial_damping_[i] / (sub.damping_time() * strained.end);
-  const double excess = stiffness / rest * (mean - rest) + damping * strained.growth - tension_density_[i] * mean;
-  const double slope = part * (stiffness / rest - tension_density_[i]) + damping;
-  system_.gap[i] = -excess * s / slope;
-  system_.compliance[i] = s * mean / slope;
+  const Resistance<double> resistance{axial_stiffness_[i] / rest, axial_damping_[i] / (sub.damping_time() * strained.end)};
+  set_row(i, elastic_row(resistance.stress(mean - rest, strained.growth), resistance.slope(part), tension_density_[i], mean, end,
+                         part));
+}
+
+void CableStepper::set_row(int i, const LengthRow<double>& row) {
+  system_.gap[i] = row.gap;
+  system_.compliance[i] = row.compliance;
 }
 
 /// With lengths s, s' and rest lengths l, l' at the start and (') the end. What flows in or is wound is strained already.
@@ -571,7 +574,7 @@ void CableStepper::begin_projection(const Substep& s, const CableState& state) {
     system_.first[i] = 0;
     const double compliance = d.squaredNorm() / (state.masses[i] + state.masses[i + 1]);
     const bool stretches = is_elastic_at(i);
-    system_.compliance[i] = (stretches ? 1 / pivot_regularisation : pivot_regularisation) * compliance;
+    system_.compliance[i] = (stretches ? 1 / length_rate_regularisation : length_rate_regularisation) * compliance;
     system_.gap[i] = stretches ? 0 : d.dot(state.velocities[i] - state.velocities[i + 1]);
   }
   for (const GrowingSegment& growing : s.boundary.growing)
@@ -671,9 +674,8 @@ void CableStepper::project(const Substep& s, const std::vector<double>& masses, 
     }
   }
   for (int i = 0; i < n; ++i) {
-    const double mobility = inverse_mass_[i] + inverse_mass_[i + 1];
-    pivot_[i] *= mobility * (1 + pivot_regularisation);
-    off_[i] *= -inverse_mass_[i + 1];
+    pivot_[i] = length_rate_diagonal(pivot_[i], inverse_mass_[i] + inverse_mass_[i + 1]);
+    off_[i] = length_rate_coupling(off_[i], inverse_mass_[i + 1]);
   }
   for (const GrowingSegment& growing : s.boundary.growing)
     impulse_[growing.segment] += target_length_[growing.segment] * growing.growth;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "guide/flow.h"
+#include "law/stretch.h"
 #include "rod/bending.h"
 #include "rod/block_elimination.h"
 #include "rod/fluid_forces.h"
@@ -101,6 +102,7 @@ class CableStepper {
   void evaluate_rigid_length(int segment);
   void evaluate_elastic_lengths(const Substep& substep, const std::vector<double>& rest_lengths);
   void evaluate_elastic_length(const Substep& substep, int segment, double rest_length);
+  void set_row(int segment, const LengthRow<double>& row);
   /// How a segment's material is strained over the substep.
   struct Straining {
     double start = 0, end = 0;  ///< [m] rest lengths

@@ -1,6 +1,7 @@
 #include "rod/clamp_joint.h"
 
-#include "rod/angle_energy.h"
+#include "geometry/eigen_vectors.h"
+#include "law/bend.h"
 #include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
@@ -63,11 +64,11 @@ void bend_clamp(double part, const Vector3& displacement, ClampJoint& clamp) {
   const Vector3 direction_change = clamp.inverse_length * displacement;
   if (clamp.is_elastic) return bend_elastic_clamp(part, direction_change, clamp);
   const Vector3 change = direction_change - clamp.axis_change;
-  const Vector3 middle = clamp.start + part * change;
-  clamp.slope = clamp.stiffness * mean_slope(0.5 * clamp.start_square, 0.5 * (clamp.start + change).squaredNorm());
-  const Vector3 damping = clamp.damping * (change - clamp.turned);
-  clamp.moment = clamp.slope * middle + damping;
-  clamp.damping_work = damping.dot(change);
+  const VectorOf<double> numbers = numbers_of(change), turned = numbers_of(clamp.turned);
+  const Bend<double> joint = bend(clamp.stiffness, numbers_of(clamp.start), clamp.start_square, numbers, part);
+  clamp.slope = joint.slope;
+  clamp.moment = vector_of(joint.moment + bend_damping(clamp.damping, numbers, turned));
+  clamp.damping_work = bend_loss(clamp.damping, numbers, turned);
   // The energy depends on the axis a through d / l - a: the torque on the axis is a x moment.
   clamp.torque = clamp.middle_axis.cross(clamp.moment);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "law/length_rate.h"
 #include "rod/tridiagonal.h"
 #include "verlet_cable/core/cable_materials.h"
 
@@ -12,10 +13,10 @@ namespace verlet_cable {
 namespace {
 
 constexpr int maximum_iterations = 100;
-constexpr double length_tolerance = 1e-12;  // relative, of squares
+constexpr double length_tolerance = 1e-12;                               // relative, of squares
 constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();  // of places, likewise: a long cable's is more
-constexpr double straight = 1 - 1e-7;       // of a span's length
-constexpr double regularisation = 1e-12;    // relative, for spans pulled straight
+constexpr double straight = 1 - 1e-7;                                    // of a span's length
+constexpr double regularisation = 1e-12;  // as length_rate_regularisation, of what is solved again and again
 
 /// J M^-1 J^T for the segments' lengths, and its solution for given changes of ½ s². Segments of length 0 in `lengths`, one a
 /// segment or none, are free to have any.
@@ -43,10 +44,9 @@ class LengthSystem {
     const std::size_t n = changes.size();
     for (std::size_t i = 0; i < n; ++i) {
       const Vector3 d = positions[i + 1] - positions[i];
-      const double mobility = mobility_[i] + mobility_[i + 1];
-      diagonal_[i] = movable(i) ? d.squaredNorm() * mobility * (1 + regularisation) : 1;
+      diagonal_[i] = movable(i) ? length_rate_diagonal(d.squaredNorm(), mobility_[i] + mobility_[i + 1], regularisation) : 1;
       impulse_[i] = movable(i) ? changes[i] : 0;
-      if (i + 1 < n) off_[i] = -mobility_[i + 1] * d.dot(positions[i + 2] - positions[i + 1]);
+      if (i + 1 < n) off_[i] = length_rate_coupling(d.dot(positions[i + 2] - positions[i + 1]), mobility_[i + 1]);
       if (i + 1 < n && (is_free(i) || is_free(i + 1))) off_[i] = 0;
     }
     if (flows_) let_flow(changes);

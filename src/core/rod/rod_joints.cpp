@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rod/angle_energy.h"
+#include "law/angle_energy.h"
+#include "law/resistance.h"
 
 namespace verlet_cable {
 
@@ -114,7 +115,8 @@ JointAngles joint_angles(const Eigen::Matrix3d& before, const Eigen::Matrix3d& a
 
 JointEnergy joint_energy(const JointStiffness& stiffness, const JointAngles& angles) {
   const double twist = angles.twist - stiffness.rest.twist, y = angles.y - stiffness.rest.y, z = angles.z - stiffness.rest.z;
-  return {0.5 * (stiffness.bend_y * y * y + stiffness.bend_z * z * z), 0.5 * stiffness.twist * twist * twist};
+  const auto energy = [](double resistance, double strain) { return Resistance<double>{resistance, 0}.energy(strain); };
+  return {energy(stiffness.bend_y, y) + energy(stiffness.bend_z, z), energy(stiffness.twist, twist)};
 }
 
 void RodJoints::resize(int count) {
@@ -234,24 +236,25 @@ void RodJoints::evaluate(double part, const FrameMotion& frames_before, int befo
     // The part of bending that is alike about y and z depends on the whole angle alone.
     const Pair y_stiffness = neighbours(y_stiffness_, i), z_stiffness = neighbours(z_stiffness_, i);
     const Pair isotropic{std::min(y_stiffness[0], z_stiffness[0]), std::min(y_stiffness[1], z_stiffness[1])};
-    const Pair twist_stiffness = neighbours(twist_stiffness_, i);
-    const Pair twist_damping = neighbours(twist_damping_, i), bend_damping = neighbours(bend_damping_, i);
-    const Pair twist_moment =
-        twist_stiffness * (start_twist + part * change.angle - neighbours(rest_twist_, i)) + twist_damping * change.angle;
-    const Pair y_moment = (y_stiffness - isotropic) * 0.5 * (start_chi * start_y + end_chi * end_y) -
-                          y_stiffness * neighbours(rest_y_, i) + bend_damping * angle_change_y;
-    const Pair z_moment = (z_stiffness - isotropic) * 0.5 * (start_chi * start_z + end_chi * end_z) -
-                          z_stiffness * neighbours(rest_z_, i) + bend_damping * angle_change_z;
-    put(bend_damping * (angle_change_y * angle_change_y + angle_change_z * angle_change_z), bending_loss, i);
-    put(twist_damping * change.angle * change.angle, twisting_loss, i);
+    const Pair damping = neighbours(bend_damping_, i);
+    const Resistance<Pair> of_y{y_stiffness, damping}, of_z{z_stiffness, damping};
+    const Resistance<Pair> of_twist{neighbours(twist_stiffness_, i), neighbours(twist_damping_, i)};
+    const Resistance<Pair> beyond_y{y_stiffness - isotropic, damping}, beyond_z{z_stiffness - isotropic, damping};
+    const Pair twist_moment = of_twist.stress(start_twist + part * change.angle - neighbours(rest_twist_, i), change.angle);
+    const Pair y_moment =
+        beyond_y.stress(0.5 * (start_chi * start_y + end_chi * end_y), angle_change_y) - y_stiffness * neighbours(rest_y_, i);
+    const Pair z_moment =
+        beyond_z.stress(0.5 * (start_chi * start_z + end_chi * end_z), angle_change_z) - z_stiffness * neighbours(rest_z_, i);
+    put(of_y.loss(angle_change_y) + of_z.loss(angle_change_z), bending_loss, i);
+    put(of_twist.loss(change.angle), twisting_loss, i);
     put(twist_moment * twist_gradient + (y_moment * y_gradient + z_moment * z_gradient) -
             (isotropic * mean_slope(start.u, end.u)) * about_x,
         moment, i);
 
     PairSymmetric stiff{};
-    stiff = plus_outer(stiff, part * twist_stiffness + twist_damping, twist_gradient);
-    stiff = plus_outer(stiff, part * y_stiffness + bend_damping, y_gradient);
-    stiff = plus_outer(stiff, part * z_stiffness + bend_damping, z_gradient);
+    stiff = plus_outer(stiff, of_twist.slope(part), twist_gradient);
+    stiff = plus_outer(stiff, of_y.slope(part), y_gradient);
+    stiff = plus_outer(stiff, of_z.slope(part), z_gradient);
     put(stiff, stiffness, i);
   }
 }

@@ -77,8 +77,7 @@ void Twist::resize(int segments) {
   slope_.assign(nodes, 0.0);
   inverse_length_.assign(nodes, 0.0);
   states_.reserve(nodes);
-  stiffness_.reserve(nodes);
-  damping_.reserve(nodes);
+  resistances_.reserve(nodes);
 }
 
 void Twist::start(const CableModel& model, const CableState& state, const std::vector<TwistSpan>& spans, double h, double part) {
@@ -91,18 +90,15 @@ void Twist::start(const CableModel& model, const CableState& state, const std::v
   spans_ = &spans;
   part_ = part;
   states_.resize(spans.size());
-  stiffness_.resize(spans.size());
-  damping_.resize(spans.size());
+  resistances_.resize(spans.size());
   for (std::size_t k = 0; k < spans.size(); ++k) {
     if (materials.vary()) {
       const Series series = torsion_of(materials, state, spans[k].first_node, spans[k].last_node);
-      stiffness_[k] = series.stiffness();
-      damping_[k] = series.damping() / h;
+      resistances_[k] = {series.stiffness(), series.damping() / h};
       continue;
     }
     const double length = state.length(spans[k].first_node, spans[k].last_node);
-    stiffness_[k] = model.material.torsional_stiffness / length;
-    damping_[k] = model.material.torsional_damping / (length * h);
+    resistances_[k] = {model.material.torsional_stiffness / length, model.material.torsional_damping / (length * h)};
   }
 }
 
@@ -129,7 +125,7 @@ void Twist::add_segment_forces(const VectorArray& middle, const VectorArray& dis
     change += 0.5 * state.last_binormal.dot(last_turn.cross(state.last_axis));
     for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z})
       change += add_slopes(displacement, span, component);
-    state.torque = stiffness_[k] * (span.angle + part_ * change) + damping_[k] * change;
+    state.torque = resistances_[k].stress(span.angle + part_ * change, change);
     for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) {
       const double *slope = (slope_.*component).data(), torque = state.torque;
       double* f = (pull.*component).data();
@@ -225,7 +221,7 @@ std::vector<TwistSpan> find_spans(const CableState& state, const std::vector<Hel
 
 double Twist::damping_work() const {
   double work = 0;
-  for (std::size_t k = 0; k < spans_->size(); ++k) work += damping_[k] * states_[k].change * states_[k].change;
+  for (std::size_t k = 0; k < spans_->size(); ++k) work += resistances_[k].loss(states_[k].change);
   return work;
 }
 

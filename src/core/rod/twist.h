@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "geometry/vector_array.h"
+#include "law/resistance.h"
 #include "rod/series.h"
 #include "target/boundary.h"
 #include "verlet_cable/core/cable_materials.h"
@@ -72,7 +73,7 @@ class Twist {
 
   const std::vector<TwistSpan>* spans_ = nullptr;
   std::vector<SpanState> states_;
-  std::vector<double> stiffness_, damping_;  // spans: GJ / length [N m], damping / (length h) [N m]
+  std::vector<Resistance<double>> resistances_;  // of spans
   double part_ = 0.5;
   VectorArray tangent_;   // segments
   VectorArray slope_;     // segments: derivative of the angle [rad/m]

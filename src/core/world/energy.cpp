@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "guide/guides.h"
+#include "law/resistance.h"
 #include "rod/bending.h"
 #include "rod/kirchhoff_rod.h"
 #include "rod/twist.h"
@@ -41,7 +42,7 @@ double stretching_energy(const State& state, int index) {
     if (varies) stiffness = materials[i].axial_stiffness;
     if (stiffness == infinity || (guided && lies_on_wheel(state, index, i))) continue;
     const double e = strain(cable.state, i);
-    energy += 0.5 * stiffness * cable.state.rest_lengths[i] * e * e;
+    energy += Resistance<double>{stiffness * cable.state.rest_lengths[i], 0}.energy(e);
   }
   return energy;
 }
@@ -93,7 +94,7 @@ Energy energy_of_cable(const State& state, int index, double part, std::vector<H
   energy.gravity = gravity_energy_of_nodes(c, gravity);
   const bool is_twisted = c.directors.empty() && !state.cable_progress[index].spans.empty();
   for (int i = 0; is_twisted && i < c.segments(); ++i)
-    energy.twist += 0.5 * torsional_stiffness_at(materials, i) * c.rest_lengths[i] * c.twist[i] * c.twist[i];
+    energy.twist += Resistance<double>{torsional_stiffness_at(materials, i) * c.rest_lengths[i], 0}.energy(c.twist[i]);
   if (materials.any_elastic()) energy.stretch += stretching_energy(state, index);
   if (!state.guides.empty()) energy.kinetic += flow_energy(state, index);
   return energy;

@@ -14,7 +14,7 @@ bool turns_bodies(int cable, const std::vector<Attachment>& attachments, const S
   });
 }
 
-bool is_twisted(int cable, const std::vector<Attachment>& attachments, const State& state) {
+bool is_twisted(int cable, const std::vector<Attachment>& attachments) {
   const auto count = [&](auto&& is_counted) {
     return std::count_if(attachments.begin(), attachments.end(),
                          [&](const Attachment& a) { return a.body == cable_id(cable) && is_counted(a); });

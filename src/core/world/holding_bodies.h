@@ -12,6 +12,6 @@ bool turns_bodies(int cable, const std::vector<Attachment>& attachments, const S
 
 /// Whether clamps at two places twist what is between them. Cables that several sheaves hold count as if they did not: only the
 /// law of straight round cables runs over them.
-bool is_twisted(int cable, const std::vector<Attachment>& attachments, const State& state);
+bool is_twisted(int cable, const std::vector<Attachment>& attachments);
 
 }  // namespace verlet_cable

@@ -72,7 +72,7 @@ void check_progress(const State& state, int index, Check& check) {
   check.require(!progress.drive || is_index(progress.drive->segment, segments), name, "is wound at one of its segments");
   check.require(cable.model->turns_bodies == turns_bodies(index, state.attachments, state), name,
                 "knows whether it turns bodies");
-  check.require(cable.model->is_twisted == is_twisted(index, state.attachments, state), name, "knows whether clamps twist it");
+  check.require(cable.model->is_twisted == is_twisted(index, state.attachments), name, "knows whether clamps twist it");
   check.require(cable.state.directors.empty() != is_whole_rod(*cable.model, cable.state), name,
                 "has frames if it needs them, and only then");
 }

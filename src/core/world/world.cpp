@@ -306,7 +306,7 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
     attachment.pose = {a.offset, quaternion_from_rpy(a.rotation)};
   }
   model.turns_bodies = turns_bodies(index, holding, state);
-  model.is_twisted = is_twisted(index, holding, state);
+  model.is_twisted = is_twisted(index, holding);
   cable.state = make_state(model, desc);
   cable.model = std::make_shared<const CableModel>(std::move(model));
   std::vector<int> own;
@@ -396,7 +396,7 @@ void World::Implementation::settle_started_bodies(const std::vector<int>& descs)
 /// A cable has frames as long as what it is made of, or what it is held by, needs them.
 void World::Implementation::fit_frames(int index) {
   SimulatedCable& cable = state.cables[index];
-  const bool turns = turns_bodies(index, state.attachments, state), twisted = is_twisted(index, state.attachments, state);
+  const bool turns = turns_bodies(index, state.attachments, state), twisted = is_twisted(index, state.attachments);
   if (turns != cable.model->turns_bodies || twisted != cable.model->is_twisted) {
     CableModel model = *cable.model;
     model.turns_bodies = turns;
