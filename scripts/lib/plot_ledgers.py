@@ -18,10 +18,14 @@ matplotlib.use('Agg')
 import matplotlib.pyplot as plt  # noqa: E402
 
 CONFIG = pathlib.Path(__file__).resolve().parents[2] / 'config'
-DURATION = 5.0  # [s] of a scene of the table
-NOTICED = 1e-4  # of m g L: what is left unaccounted beyond this has a remark
-NEGLIGIBLE = 1e-6  # of m g L
-LOOK = 0.01     # [s] between two points of a curve
+# The table
+DURATION = 5.0     # [s] of a scene
+NOTICED = 1e-4     # of m g L: what is left unaccounted beyond this has a remark
+NEGLIGIBLE = 1e-6  # of m g L: 0 in the table
+
+# The pictures
+LOOK = 0.01                # [s] between two points of a curve
+SEEN = 1e-4                # of the largest entry
 SHOWN_RANGE = (5e-13, 50)  # [J] of what is unaccounted
 
 # Why a scene leaves more than NOTICED unaccounted, or is odd otherwise.
@@ -79,16 +83,19 @@ def motion_beside(path):
 
 def world_of(scene):
     """Of keys, or of the name of a shipped scene, with its motion; and its time step [s]."""
-    path = CONFIG / f'{scene}.yaml'
-    loaded = Scene.from_dict(scene) if isinstance(scene, dict) else Scene.load(str(path))
-    return World(loaded, None if isinstance(scene, dict) else motion_beside(path)), loaded.time_step
+    if isinstance(scene, dict):
+        loaded, motion = Scene.from_dict(scene), None
+    else:
+        path = CONFIG / f'{scene}.yaml'
+        loaded, motion = Scene.load(str(path)), motion_beside(path)
+    return World(loaded, motion), loaded.time_step
 
 
 def entries_of(ledgers, side):
-    """[J] by entry, one a ledger, of those that are not always zero, beside the others."""
+    """[J] by entry, one a ledger, of those that can be seen beside the others."""
     largest = max(abs(ledger[part][name]) for ledger in ledgers for part in ('work', 'dissipated') for name in ledger[part])
     curves = {name: numpy.array([ledger[side][name] for ledger in ledgers]) for name in ledgers[0][side]}
-    return {name: curve for name, curve in curves.items() if abs(curve).max() > NOTICED * largest}
+    return {name: curve for name, curve in curves.items() if abs(curve).max() > SEEN * largest}
 
 
 def run(shown):
