@@ -15,8 +15,7 @@ namespace {
 
 /// Where a frame is in a part of the step, 0 to 1.
 Pose frame_at(const Frames& frames, int frame, double part) {
-  const Pose &before = frames.previous_poses[frame], &after = frames.poses[frame];
-  return {before.position + part * (after.position - before.position), before.orientation.slerp(part, after.orientation)};
+  return between(frames.previous_poses[frame], frames.poses[frame], part);
 }
 
 /// [rad/s] The mean over the step of an attachment to a frame.
