@@ -12,10 +12,10 @@ namespace verlet_cable {
 namespace {
 
 constexpr int maximum_iterations = 100;
-constexpr double length_tolerance = 1e-12;  // relative, of squares
+constexpr double length_tolerance = 1e-12;                               // relative, of squares
 constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();  // of places, likewise: a long cable's is more
-constexpr double straight = 1 - 1e-7;       // of a span's length
-constexpr double regularisation = 1e-12;    // relative, for spans pulled straight
+constexpr double straight = 1 - 1e-7;                                    // of a span's length
+constexpr double regularisation = 1e-12;                                 // relative, for spans pulled straight
 
 /// J M^-1 J^T for the segments' lengths, and its solution for given changes of ½ s². Segments of length 0 in `lengths`, one a
 /// segment or none, are free to have any.
@@ -70,10 +70,8 @@ class LengthSystem {
   /// [kg] That moves with a flow; infinite where something holds it.
   double mass_of(const GuidedFlow& flow) const {
     const double density = densities_[&flow - flows_->data()];
-    if (flow.friction > 0 || flow.resistance > 0 || flow.is_blocked[0] || flow.is_blocked[1]) return infinity;
-    double length = 0.5 * ((*rest_lengths_)[flow.first - 1] + (*rest_lengths_)[flow.last]);
-    for (int i = flow.first; i < flow.last; ++i) length += (*rest_lengths_)[i];
-    return density * length + flow.inertia;
+    if (resists(flow)) return infinity;
+    return density * flowing_length(*rest_lengths_, flow.first, flow.last) + flow.inertia;
   }
 
   void let_flow(const std::vector<double>& changes) {
