@@ -218,16 +218,13 @@ void World::Implementation::renumber(int index, int first, int shift) {
   const auto follow = [&](int& node) {
     if (node >= first) node += shift;
   };
-  for (Attachment& a : state.attachments)
-    if (a.body == cable_id(index)) follow(a.node);
+  renumber_held(index, follow, state);
   for (Intrusion& intrusion : findings.intrusions)
     if (intrusion.cable == index) follow(intrusion.segment);
   for (StatusFinding& found : findings.statuses)
     if (found.body == cable_id(index)) follow(found.node);
   for (Excursion& excursion : findings.excursions)
     if (excursion.cable == index) follow(excursion.node);
-  for (KinematicTarget& h : state.cable_progress[index].targets.nodes) follow(h.node);
-  for (DirectionTarget& h : state.cable_progress[index].targets.directions) follow(h.node);
 }
 
 void World::Implementation::after_remeshing(int index) {

@@ -70,7 +70,7 @@ GuideView World::view_guide(int guide) const {
     if (attachment.guide != guide) continue;
     view.cable = attachment.body.index;
     const CableState& cable = cables()[view.cable].state;
-    const int first = attachment.node, last = is_wheel(attachment) ? first + 1 : first;
+    const int first = attachment.node, last = last_node(attachment);
     view.arc_length = cable.length(0, first) + 0.5 * cable.length(first, last);
     // Half a segment before and after it weighs, and is accelerated.
     const double density = CableMaterials(cables()[view.cable])[first].linear_density;
