@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "chain/direction.h"
 #include "chain/point_motion.h"
 #include "contact/friction_bound.h"
 #include "geometry/segment_geometry.h"
@@ -40,7 +41,7 @@ void put_beside(const CableState& state, const Vector3& normal, double distance,
   const int i = point.segment;
   const std::vector<Vector3>& x = state.positions;
   const bool on_joint = point.fraction == 0 && i > 0;
-  const Vector3 direction = (x[i + 1] - x[on_joint ? i - 1 : i]).normalized();
+  const Vector3 direction = on_joint ? way_past(state, i).normalized() : segment_direction(state, i);
   const double steep = normal.dot(direction), steep_square = steep * steep;
   const Vector3 along = direction - steep * normal;
   if (!(distance > 0) || along.isZero(0)) return;
@@ -56,8 +57,8 @@ Vector3 in_shape(const MovingObstacle& moving, const Vector3& place) {
   return moving.start.orientation.conjugate() * (place - moving.start.position);
 }
 
-/// An obstacle that turns touches a point beside the centre line. Friction acts on the centre line: that sees it move as if
-/// joined to it there, `motion`, and turn under a cable that does not turn with it. Adds that, which is along the surface.
+/// Friction of a cable acts on its centre line, which obstacles carry along as if joined to it: that is in `motion`. One that
+/// turns slides besides, at the point beside that line, under a cable that does not turn with it: adds that, along the surface.
 void turn_under(const MovingObstacle& moving, const CableState& state, const CablePoint& beside, SurfaceMotion& motion) {
   if (beside.own == 0) return;
   const int first = beside.before == 0 ? beside.segment : beside.segment - 1;
@@ -88,17 +89,15 @@ bool continues(const CachedContact& last, const Touch& touch) {
 /// A cable's direction at a node or segment.
 Vector3 direction_at(const CableState& state, std::uint64_t element) {
   const auto place = static_cast<int>(element / 2);
-  const int last = element % 2 == 0 ? std::min(place + 1, state.segments()) : place + 1;
-  const int first = element % 2 == 0 ? std::max(place - 1, 0) : place;
-  return (state.positions[last] - state.positions[first]).normalized();
+  return element % 2 == 0 ? way_past(state, place).normalized() : segment_direction(state, place);
 }
 
 /// [m] By how much a smooth cable through the nodes of a segment may bulge out along a normal: twice the arc's height, so that
 /// nodes bear what lies around a round obstacle.
 double bulge_of(const CableState& state, int segment, const Vector3& normal, double radius, double least) {
-  const auto direction = [&](int i) -> Vector3 { return (state.positions[i + 1] - state.positions[i]).normalized(); };
   const int before = std::max(segment - 1, 0), after = std::min(segment + 1, state.segments() - 1);
-  const double turned = after > before ? (direction(before) - direction(after)).dot(normal) / (after - before) : 0;
+  const double turned =
+      after > before ? (segment_direction(state, before) - segment_direction(state, after)).dot(normal) / (after - before) : 0;
   const double length = (state.positions[segment + 1] - state.positions[segment]).norm();
   return std::clamp(0.25 * length * turned, least * radius, largest_bulge * radius);
 }

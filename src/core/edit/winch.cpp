@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "chain/direction.h"
 #include "guide/node_passing.h"
 #include "rod/unresolved_motion.h"
 #include "scene/scene_size.h"
@@ -51,7 +52,7 @@ void stall(double most, LengthDrive& drive) {
 void add_material_motion(const LengthDrive& drive, double side, CableState& cable) {
   if (!drive.is_winch()) return;
   const int n = cable.segments(), node = drive.end_node(n), i = drive.segment;
-  const Vector3 along = (cable.positions[i + 1] - cable.positions[i]).normalized();
+  const Vector3 along = segment_direction(cable, i);
   cable.velocities[node] += (node == 0 ? side : -side) * drive.growth() * along;
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "chain/node_arrays.h"
+#include "chain/direction.h"
 #include "guide/wheel.h"
 #include "verlet_cable/core/cable_materials.h"
 
@@ -259,7 +259,7 @@ double flow_energy(const State& state, int index) {
     const SimulatedCable& cable = state.cables[attachment.body.index];
     const CableState& c = cable.state;
     const int first = attachment.node, last = last_node(attachment);
-    const auto along = [&](int i) -> Vector3 { return c.rest_lengths[i] * (c.positions[i + 1] - c.positions[i]).normalized(); };
+    const auto along = [&](int i) -> Vector3 { return c.rest_lengths[i] * segment_direction(c, i); };
     Vector3 way = 0.5 * (along(first - 1) + along(last));
     for (int i = first; i < last; ++i) way += c.positions[i + 1] - c.positions[i];
     const double density = CableMaterials(cable)[first].linear_density;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "chain/direction.h"
 #include "guide/guides.h"
 #include "guide/node_passing.h"
 #include "guide/wheel.h"
@@ -21,8 +22,7 @@ constexpr double merging_distance = 0.2;
 
 /// The cable's direction at a guide.
 Vector3 direction_at(const CableState& cable, int first, int last) {
-  const Vector3 before = (cable.positions[first] - cable.positions[first - 1]).normalized();
-  return (before + (cable.positions[last + 1] - cable.positions[last]).normalized()).normalized();
+  return (segment_direction(cable, first - 1) + segment_direction(cable, last)).normalized();
 }
 
 /// [J] The weight of the nodes beside a wheel and on it.
@@ -108,8 +108,7 @@ void World::Implementation::release_guide(int index) {
   SimulatedGuide& guide = state.guides[attachment.guide];
   CableState& cable = state.cables[attachment.body.index].state;
   for (int node = attachment.node; node <= last_node(attachment); ++node) {
-    const Vector3 after = cable.positions[std::min(node + 1, cable.segments())];
-    cable.velocities[node] += guide.flow * (after - cable.positions[std::max(node - 1, 0)]).normalized();
+    cable.velocities[node] += guide.flow * way_past(cable, node).normalized();
   }
   stop_flow(guide);
   guide.lost_length = guide.wheel_energy = 0;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "chain/direction.h"
 #include "guide/given_node.h"
 #include "guide/side.h"
 #include "guide/wheel.h"
@@ -38,10 +39,6 @@ constexpr double least_divided = 0.4, most_undivided = 2.2;
 /// A node that is given out bends no more than this, height over length.
 constexpr double steepest = 0.5;
 
-Vector3 direction(const CableState& state, int segment) {
-  return (state.positions[segment + 1] - state.positions[segment]).normalized();
-}
-
 /// The nodes from `first` on have moved by `shift`, the segments likewise.
 void renumber(int cable, int first, int shift, State& state) {
   const auto follow = [&](int& node) {
@@ -66,7 +63,7 @@ template <class Change>
 void with_flowing_node(const SimulatedGuide& guide, Attachment& attachment, int side, CableState& state, const Change& change) {
   const Side before = side_of(attachment, side);
   const Vector3 held = state.velocities[before.node];
-  state.velocities[before.node] += guide.flow * direction(state, before.segment());
+  state.velocities[before.node] += guide.flow * segment_direction(state, before.segment());
   change();
   state.velocities[side_of(attachment, side).node] = held;
 }
@@ -88,7 +85,7 @@ void give_out(int index, Attachment& attachment, int side, double near, Vector3 
   SimulatedGuide& guide = state.guides[attachment.guide];
   const int segment = side_of(attachment, side).segment(), node = segment + 1;
   const double whole = cable.state.rest_lengths[segment];
-  const Vector3 along = direction(cable.state, segment);
+  const Vector3 along = segment_direction(cable.state, segment);
   with_flowing_node(guide, attachment, side, cable.state, [&] {
     insert_node(segment, side == 0 ? whole - near : near, *cable.model, cable.state);
     renumber(index, node, 1, state);
@@ -260,7 +257,7 @@ bool pass_nodes(int index, bool moves, State& state) {
       while (comes_to(side) && is_passable(state, index, side_of(attachment, side).neighbour())) {
         hold(way_from(side), [&](const Energy& before) {
           const int joint = side_of(attachment, side).neighbour();
-          const Vector3 bulge = direction(cable, joint - 1) - direction(cable, joint);
+          const Vector3 bulge = segment_direction(cable, joint - 1) - segment_direction(cable, joint);
           const double near = std::max(length(side), little);
           take_in(index, attachment, side, state);
           if (length(1 - side) > (keeps ? least_divided : least_split) * regular && !is_winding(1 - side)) {

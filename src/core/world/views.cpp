@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "chain/direction.h"
 #include "guide/guides.h"
 #include "rod/joint_views.h"
 #include "verlet_cable/core/cable_materials.h"
@@ -76,7 +77,7 @@ GuideView World::view_guide(int guide) const {
     const double density = CableMaterials(cables()[view.cable])[first].linear_density;
     const Vector3 gravity = implementation_->state.scene->gravity.at(cable.positions[first]);
     const auto half = [&](int i) {
-      const Vector3 along = (cable.positions[i + 1] - cable.positions[i]).normalized();
+      const Vector3 along = segment_direction(cable, i);
       return 0.5 * density * cable.rest_lengths[i] * (gravity.dot(along) - guides()[guide].flow_acceleration);
     };
     view.tension = {cable.tension[first - 1] - half(first - 1), cable.tension[last] + half(last)};
