@@ -107,9 +107,8 @@ void World::Implementation::release_guide(int index) {
   const Attachment attachment = state.attachments[index];
   SimulatedGuide& guide = state.guides[attachment.guide];
   CableState& cable = state.cables[attachment.body.index].state;
-  for (int node = attachment.node; node <= last_node(attachment); ++node) {
+  for (int node = attachment.node; node <= last_node(attachment); ++node)
     cable.velocities[node] += guide.flow * way_past(cable, node).normalized();
-  }
   stop_flow(guide);
   guide.lost_length = guide.wheel_energy = 0;
   guide.is_ready = false;
