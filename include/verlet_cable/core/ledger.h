@@ -2,9 +2,15 @@
 
 #include <array>
 #include <cstdint>
-#include <utility>
 
 namespace verlet_cable {
+
+/// A field of a part of a balance: its name, as summaries and Python have it, and where it is [J].
+template <class Part>
+struct BalanceField {
+  const char* name;
+  double Part::*place;
+};
 
 /// Where energy comes from and where it goes [J]. What is dissipated never is negative for long: a contact gives back what it
 /// stores while it is pressed.
@@ -15,7 +21,12 @@ struct EnergyBalance {
     double winches = 0;      ///< by lengths that are driven; the energy of the material that they pay out is part of it
     double obstacles = 0;    ///< by obstacles that move
     double applied = 0;      ///< by loads from outside: wind, current, buoyancy, edits that add energy
-    double total() const { return attachments + winches + obstacles + applied; }
+
+    static constexpr std::array<BalanceField<Work>, 4> fields{{{"attachments", &Work::attachments},
+                                                               {"winches", &Work::winches},
+                                                               {"obstacles", &Work::obstacles},
+                                                               {"applied", &Work::applied}}};
+    double total() const { return sum(*this); }
   };
   struct Dissipated {
     double axial = 0, bending = 0, torsional = 0;  ///< by the damping of materials
@@ -25,48 +36,40 @@ struct EnergyBalance {
     double bodies = 0;                             ///< by the damping of bodies
     double unresolved = 0;                         ///< motion that steps do not resolve
     double edits = 0;                              ///< by cuts, joins, pins, jumps, overstretched spans
-    double total() const { return axial + bending + torsional + drag + contact + guides + bodies + unresolved + edits; }
+
+    static constexpr std::array<BalanceField<Dissipated>, 9> fields{{{"axial", &Dissipated::axial},
+                                                                     {"bending", &Dissipated::bending},
+                                                                     {"torsional", &Dissipated::torsional},
+                                                                     {"drag", &Dissipated::drag},
+                                                                     {"contact", &Dissipated::contact},
+                                                                     {"guides", &Dissipated::guides},
+                                                                     {"bodies", &Dissipated::bodies},
+                                                                     {"unresolved", &Dissipated::unresolved},
+                                                                     {"edits", &Dissipated::edits}}};
+    double total() const { return sum(*this); }
   };
   Work work;
   Dissipated dissipated;
 
   double net() const { return work.total() - dissipated.total(); }
   EnergyBalance& operator+=(const EnergyBalance& other) {
-    work.attachments += other.work.attachments;
-    work.winches += other.work.winches;
-    work.obstacles += other.work.obstacles;
-    work.applied += other.work.applied;
-    dissipated.axial += other.dissipated.axial;
-    dissipated.bending += other.dissipated.bending;
-    dissipated.torsional += other.dissipated.torsional;
-    dissipated.drag += other.dissipated.drag;
-    dissipated.contact += other.dissipated.contact;
-    dissipated.guides += other.dissipated.guides;
-    dissipated.bodies += other.dissipated.bodies;
-    dissipated.unresolved += other.dissipated.unresolved;
-    dissipated.edits += other.dissipated.edits;
+    add(other.work, work);
+    add(other.dissipated, dissipated);
     return *this;
   }
-};
 
-/// Names, as summaries and Python have them, and values [J].
-/// @{
-inline std::array<std::pair<const char*, double>, 4> entries(const EnergyBalance::Work& work) {
-  return {
-      {{"attachments", work.attachments}, {"winches", work.winches}, {"obstacles", work.obstacles}, {"applied", work.applied}}};
-}
-inline std::array<std::pair<const char*, double>, 9> entries(const EnergyBalance::Dissipated& lost) {
-  return {{{"axial", lost.axial},
-           {"bending", lost.bending},
-           {"torsional", lost.torsional},
-           {"drag", lost.drag},
-           {"contact", lost.contact},
-           {"guides", lost.guides},
-           {"bodies", lost.bodies},
-           {"unresolved", lost.unresolved},
-           {"edits", lost.edits}}};
-}
-/// @}
+ private:
+  template <class Part>
+  static double sum(const Part& part) {
+    double sum = 0;
+    for (const BalanceField<Part>& field : Part::fields) sum += part.*field.place;
+    return sum;
+  }
+  template <class Part>
+  static void add(const Part& other, Part& part) {
+    for (const BalanceField<Part>& field : Part::fields) part.*field.place += other.*field.place;
+  }
+};
 
 /// Every joule of a world, from its start on.
 struct Ledger {

@@ -23,6 +23,9 @@ struct Pose {
   Pose inverse() const;
 };
 
+/// The pose at a part of the way from one to another, 0 to 1: straight on, turning at one rate.
+Pose between(const Pose& first, const Pose& last, double part);
+
 /// Velocity of a frame relative to the fixed frame.
 struct FrameVelocity {
   Vector3 linear = Vector3::Zero();   ///< [m/s] of its origin

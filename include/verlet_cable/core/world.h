@@ -59,6 +59,11 @@ inline bool is_wheel(const Attachment& attachment) {
   return attachment.guide >= 0 && attachment.tangent_points[0] != attachment.tangent_points[1];
 }
 
+/// The last node of a cable that an attachment holds: of a wheel the one at which the cable leaves it.
+inline int last_node(const Attachment& attachment) {
+  return is_wheel(attachment) ? attachment.node + 1 : attachment.node;
+}
+
 /// Index into World::bodies() of the body that an attachment holds; -1: it holds a node.
 inline int held_body(const Attachment& attachment) {
   return attachment.body.is_rigid_body() ? attachment.body.index : attachment.held_junction;
@@ -108,6 +113,7 @@ struct StepResult {
 struct Energy {
   double kinetic = 0, gravity = 0, stretch = 0, bend = 0, twist = 0;
   double total() const { return kinetic + gravity + stretch + bend + twist; }
+  double potential() const { return total() - kinetic; }
   Energy& operator+=(const Energy& other) {
     kinetic += other.kinetic;
     gravity += other.gravity;

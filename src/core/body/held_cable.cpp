@@ -153,7 +153,7 @@ void HeldCable::read_loads(const Participant& p, bool corrected) {
   for (Contact& contact : contacts_) {
     contact.change.setZero();
     if (!corrected) continue;
-    const Vector3 way = at_point(contact.touch->point, [&](int i) { return get(p.stepper->correction(), i); });
+    const Vector3 way = at_point(contact.touch->point, p.stepper->correction());
     contact.change = contact.stiffness * way - contact.touch->followed;
   }
 }

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <vector>
+
 #include "chain/cable_point.h"
+#include "geometry/vector_array.h"
 
 namespace verlet_cable {
 
@@ -24,6 +27,19 @@ Vector3 at_point(const CablePoint& point, const Nodes& node) {
   const Vector3 on_line = on_centre_line(point, node);
   return point.own == 0 ? on_line : Vector3(on_line + carried_along(point, node) * point.along);
 }
+
+/// The same where the nodes' are in a list.
+/// @{
+inline Vector3 on_centre_line(const CablePoint& point, const std::vector<Vector3>& nodes) {
+  return on_centre_line(point, [&](int i) -> const Vector3& { return nodes[i]; });
+}
+inline Vector3 at_point(const CablePoint& point, const std::vector<Vector3>& nodes) {
+  return at_point(point, [&](int i) -> const Vector3& { return nodes[i]; });
+}
+inline Vector3 at_point(const CablePoint& point, const VectorArray& nodes) {
+  return at_point(point, [&](int i) { return get(nodes, i); });
+}
+/// @}
 
 /// [m] What a force of one along the cable does to the moment about a place beside what it would do on the centre line.
 /// `place(i)` [m]: of the nodes.

@@ -13,7 +13,19 @@ Shape solid_of(const Shape& shape) {
   return mesh == nullptr ? shape : Shape(mesh->solid());
 }
 
+Vector3 center_of(const SimulatedBody& body) {
+  return body.pose.position + body.pose.orientation * body.center_of_mass;
+}
+
 }  // namespace
+
+PointMotion velocity_of(const SimulatedBody& body) {
+  return {center_of(body), body.velocity, body.angular_velocity};
+}
+
+PointMotion acceleration_of(const SimulatedBody& body, const BodyProgress& progress) {
+  return {center_of(body), progress.acceleration, body.pose.orientation * progress.angular_acceleration};
+}
 
 void BodySurfaces::add(int index, const SimulatedBody& body, const BodyProgress& progress, double h) {
   for (std::size_t i = 0; i < body.shapes.size(); ++i) {
@@ -29,10 +41,9 @@ void BodySurfaces::add(int index, const SimulatedBody& body, const BodyProgress&
     moving.index = -1;
     moving.start = moving.end = body.pose * body.shapes[i].pose;
     moving.box = bounds(obstacle.shape, moving.start);
-    const Vector3 center = body.pose.position + body.pose.orientation * body.center_of_mass;
-    moving.body_velocity = {center, body.velocity, body.angular_velocity};
-    moving.body_acceleration = {center, progress.acceleration, body.pose.orientation * progress.angular_acceleration};
-    const double size = (moving.box.max() - center).cwiseAbs().cwiseMax((moving.box.min() - center).cwiseAbs()).norm();
+    moving.body_velocity = velocity_of(body);
+    moving.body_acceleration = acceleration_of(body, progress);
+    const double size = largest_distance(moving.box, moving.body_velocity.center);
     moving.speed = body.velocity.norm() + size * body.angular_velocity.norm();
     moving.body_mass = body.mass;
     const Vector3 turn = 0.5 * h * body.angular_velocity;

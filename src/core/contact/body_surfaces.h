@@ -8,6 +8,10 @@
 
 namespace verlet_cable {
 
+/// How the points of a body move now: velocities, and accelerations as over the last substep.
+PointMotion velocity_of(const SimulatedBody& body);
+PointMotion acceleration_of(const SimulatedBody& body, const BodyProgress& progress);
+
 /// The shapes of bodies, as what cables touch.
 class BodySurfaces {
  public:

@@ -1,7 +1,6 @@
 #include "contact/body_touches.h"
 
 #include <algorithm>
-#include <tuple>
 
 #include "contact/body_surfaces.h"
 
@@ -23,13 +22,11 @@ Vector3 at(const Pose& pose, const Vector3& point) {
 
 bool is_held_by(int body, const Obstacle& obstacle, const std::vector<int>& held, const std::vector<Attachment>& attachments) {
   return std::any_of(held.begin(), held.end(), [&](int a) {
-    return attachments[a].body == rigid_body_id(body) &&
-           std::binary_search(obstacle.holders.begin(), obstacle.holders.end(), attachments[a].frame);
+    return attachments[a].body == rigid_body_id(body) && is_joined_to(obstacle, attachments[a].frame);
   });
 }
 
 const CachedContact* find_cached(const ContactCache& cache, const Touch& touch) {
-  const auto keys = [](const auto& of) { return std::tie(of.key, of.other_key); };
   const auto same = std::lower_bound(cache.begin(), cache.end(), touch,
                                      [&](const CachedContact& a, const Touch& b) { return keys(a) < keys(b); });
   return same != cache.end() && keys(*same) == keys(touch) ? &*same : nullptr;
@@ -54,8 +51,8 @@ void BodyTouches::find_shape(const TouchingBody& touching, int index, const Movi
   const Shape &shape = body.shapes[index].shape, &solid = moving.obstacle->shape;
   const Pose pose = body.pose * body.shapes[index].pose;
   const Aabb box = bounds(shape, pose);
-  const Vector3 center = at(body.pose, body.center_of_mass);
-  const double size = (box.max() - center).cwiseAbs().cwiseMax((box.min() - center).cwiseAbs()).norm();
+  const PointMotion velocity = velocity_of(body), accelerating = acceleration_of(body, *touching.progress);
+  const double size = largest_distance(box, velocity.center);
   const double time = rules.still ? 0 : contact_time(rules.time_step), rounding = rounding_of(shape);
   const double speed = rules.still ? 0 : body.velocity.norm() + size * body.angular_velocity.norm() + moving.speed;
   const double acceleration =
@@ -72,17 +69,11 @@ void BodyTouches::find_shape(const TouchingBody& touching, int index, const Movi
   const Vector3 middle = at(moving.start.inverse(), box.center());
   if (closest_point(solid, middle, radius + reach).distance >= radius + reach) return;
 
-  const PointMotion velocity{center, body.velocity, body.angular_velocity};
-  const PointMotion accelerating{center, touching.progress->acceleration,
-                                 body.pose.orientation * touching.progress->angular_acceleration};
   // `touch`: its normal, position and gap; `surface` [m]: of the obstacle, in its axes.
   const auto add = [&](const Vector3& position, const Vector3& normal, const Vector3& surface, double gap,
                        std::uint64_t feature) {
     SurfaceMotion motion;
-    if (moving.speed > 0) {
-      motion = surface_motion(moving, surface);
-      motion.end_velocity += normal.dot(motion.displacement / h - motion.end_velocity) * normal;
-    }
+    if (moving.speed > 0) motion = touching_motion(moving, surface, normal, h);
     Touch touch;
     touch.velocity = rules.still ? Vector3::Zero() : velocity.at(position);
     const double approach = std::max(0.0, normal.dot(motion.displacement / h - touch.velocity));
@@ -101,10 +92,7 @@ void BodyTouches::find_shape(const TouchingBody& touching, int index, const Movi
     touch.other_motion = motion;
     touch.half_turn = moving.half_turn;
     if (const CachedContact* last = find_cached(touching.progress->contacts, touch)) {
-      touch.stuck_force = half_turned(touch, last->force);
-      touch.mode = last->mode;
-      touch.last_force = last->normal_force;
-      touch.inside = last->inside;
+      go_on_from(*last, touch);
     } else {
       touch.inside = gap < -(arrival_roundings * rounding + arrival_substeps * h * (speed + h * acceleration));
     }
@@ -140,8 +128,7 @@ void BodyTouches::follow_scheme(Scheme scheme, const ContactRules& rules, double
 void BodyTouches::keep(int body, const std::vector<Touch>& touches, ContactCache& cache) {
   cache.clear();
   for (const Touch& touch : touches)
-    if (touch.body == body)
-      cache.push_back({touch.key, touch.other_key, remaining_friction(touch), touch.normal_force, touch.mode, touch.inside});
+    if (touch.body == body) cache.push_back(kept(touch));
 }
 
 }  // namespace verlet_cable

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include "contact/law.h"
@@ -17,6 +18,24 @@ struct CachedContact {
   bool inside = false;
   double inside_for = 0;  ///< [s]
 };
+
+/// What of a touch stays when the substep is done.
+inline CachedContact kept(const Touch& touch) {
+  return {touch.key, touch.other_key, remaining_friction(touch), touch.normal_force, touch.mode, touch.inside, touch.inside_for};
+}
+/// Goes on with what stayed of it.
+inline void go_on_from(const CachedContact& last, Touch& touch) {
+  touch.stuck_force = half_turned(touch, last.force);
+  touch.mode = last.mode;
+  touch.last_force = last.normal_force;
+  touch.inside = last.inside;
+  touch.inside_for = last.inside_for;
+}
+/// Of a touch or a contact, to compare them by.
+template <class Contact>
+auto keys(const Contact& of) {
+  return std::tie(of.key, of.other_key);
+}
 
 /// Of the touches whose point is on one cable: ascending by keys.
 using ContactCache = std::vector<CachedContact>;

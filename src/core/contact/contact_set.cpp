@@ -1,9 +1,10 @@
 #include "contact/contact_set.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <tuple>
 
+#include "chain/direction.h"
 #include "chain/point_motion.h"
 #include "contact/friction_bound.h"
 #include "geometry/segment_geometry.h"
@@ -34,21 +35,13 @@ double stopping(const SimulatedCable& cable, int segment, double time_step) {
   return stopping_stiffness(cable.state.rest_lengths[segment] * CableMaterials(cable)[segment].linear_density, time_step);
 }
 
-inline Vector3 interpolate(const std::vector<Vector3>& nodes, int segment, double fraction) {
-  return (1 - fraction) * nodes[segment] + fraction * nodes[segment + 1];
-}
-
-inline Vector3 at_point(const CablePoint& point, const std::vector<Vector3>& nodes) {
-  return at_point(point, [&](int i) -> const Vector3& { return nodes[i]; });
-}
-
 /// Puts a point of the centre line where the cable touches: so far beside it [m], against the normal. Below 0 it stays; so it
 /// does where the cable stands on its end.
 void put_beside(const CableState& state, const Vector3& normal, double distance, CablePoint& point) {
   const int i = point.segment;
   const std::vector<Vector3>& x = state.positions;
   const bool on_joint = point.fraction == 0 && i > 0;
-  const Vector3 direction = (x[i + 1] - x[on_joint ? i - 1 : i]).normalized();
+  const Vector3 direction = on_joint ? way_past(state, i).normalized() : segment_direction(state, i);
   const double steep = normal.dot(direction), steep_square = steep * steep;
   const Vector3 along = direction - steep * normal;
   if (!(distance > 0) || along.isZero(0)) return;
@@ -59,33 +52,30 @@ void put_beside(const CableState& state, const Vector3& normal, double distance,
   if (on_joint) point.before = beside / (x[i] - x[i - 1]).norm();
 }
 
-/// What a point of an obstacle that turns does where it touches a point beside the centre line, seen from a cable whose friction
-/// acts on its centre line: as if joined to that, but for turning under a cable that does not turn with it.
-SurfaceMotion motion_under(const MovingObstacle& moving, const CableState& state, const CablePoint& beside) {
-  const Pose to_shape = moving.start.inverse();
-  const auto motion_of = [&](int i) {
-    return surface_motion(moving, to_shape.position + to_shape.orientation * state.positions[i]);
-  };
-  const auto displacement = [&](int i) { return motion_of(i).displacement; };
-  const auto velocity = [&](int i) { return motion_of(i).end_velocity; };
-  SurfaceMotion motion{on_centre_line(beside, displacement), on_centre_line(beside, velocity)};
-  const double rate = carried_along(beside, velocity);
-  if (rate == 0) return motion;
+/// Of a place [m], in the axes of an obstacle's shape at the start.
+Vector3 in_shape(const MovingObstacle& moving, const Vector3& place) {
+  return moving.start.orientation.conjugate() * (place - moving.start.position);
+}
+
+/// Friction of a cable acts on its centre line, which obstacles carry along as if joined to it: that is in `motion`. One that
+/// turns slides besides, at the point beside that line, under a cable that does not turn with it: adds that, along the surface.
+void turn_under(const MovingObstacle& moving, const CableState& state, const CablePoint& beside, SurfaceMotion& motion) {
+  if (beside.own == 0) return;
+  const int first = beside.before == 0 ? beside.segment : beside.segment - 1;
+  std::array<SurfaceMotion, 3> nodes;
+  for (int i = first; i <= beside.segment + 1; ++i)
+    nodes[i - first] = surface_motion(moving, in_shape(moving, state.positions[i]));
+  const double rate = carried_along(beside, [&](int i) -> const Vector3& { return nodes[i - first].end_velocity; });
+  if (rate == 0) return;
   const double own_rate = carried_along(beside, [&](int i) -> const Vector3& { return state.velocities[i]; });
   const Vector3 slips = (1 - std::clamp(own_rate / rate, 0.0, 1.0)) * beside.along;
-  motion.displacement += carried_along(beside, displacement) * slips;
+  motion.displacement += carried_along(beside, [&](int i) -> const Vector3& { return nodes[i - first].displacement; }) * slips;
   motion.end_velocity += rate * slips;
-  return motion;
 }
 
 /// A node as a point of a segment.
 CablePoint node_point(int cable, int node, int segments) {
   return node < segments ? CablePoint{cable, node, 0.0} : CablePoint{cable, node - 1, 1.0};
-}
-
-template <typename Contact>
-auto keys(const Contact& of) {
-  return std::tie(of.key, of.other_key);
 }
 
 /// Whether a touch was this in the last substep. A cable that slides over an edge touches the obstacle with one element after the
@@ -99,17 +89,15 @@ bool continues(const CachedContact& last, const Touch& touch) {
 /// A cable's direction at a node or segment.
 Vector3 direction_at(const CableState& state, std::uint64_t element) {
   const auto place = static_cast<int>(element / 2);
-  const int last = element % 2 == 0 ? std::min(place + 1, state.segments()) : place + 1;
-  const int first = element % 2 == 0 ? std::max(place - 1, 0) : place;
-  return (state.positions[last] - state.positions[first]).normalized();
+  return element % 2 == 0 ? way_past(state, place).normalized() : segment_direction(state, place);
 }
 
 /// [m] By how much a smooth cable through the nodes of a segment may bulge out along a normal: twice the arc's height, so that
 /// nodes bear what lies around a round obstacle.
 double bulge_of(const CableState& state, int segment, const Vector3& normal, double radius, double least) {
-  const auto direction = [&](int i) -> Vector3 { return (state.positions[i + 1] - state.positions[i]).normalized(); };
   const int before = std::max(segment - 1, 0), after = std::min(segment + 1, state.segments() - 1);
-  const double turned = after > before ? (direction(before) - direction(after)).dot(normal) / (after - before) : 0;
+  const double turned =
+      after > before ? (segment_direction(state, before) - segment_direction(state, after)).dot(normal) / (after - before) : 0;
   const double length = (state.positions[segment + 1] - state.positions[segment]).norm();
   return std::clamp(0.25 * length * turned, least * radius, largest_bulge * radius);
 }
@@ -136,8 +124,7 @@ bool anchored(const CableState& state, const KinematicTargets& targets, const Ca
   const double length = state.rest_lengths[point.segment];
   for (const KinematicTarget& target : targets.nodes) {
     const Attachment& attachment = attachments[target.attachment];
-    if (attachment.node != target.node || !std::binary_search(obstacle.holders.begin(), obstacle.holders.end(), attachment.frame))
-      continue;
+    if (attachment.node != target.node || !is_joined_to(obstacle, attachment.frame)) continue;
     const double distance = attachment.node <= point.segment
                                 ? state.length(attachment.node, point.segment) + point.fraction * length
                                 : state.length(point.segment, attachment.node) - point.fraction * length;
@@ -224,8 +211,7 @@ void ContactSet::set_inside(const SimulatedCable& cable, const KinematicTargets&
   inside_.assign(elements, 0);
   const auto is_inside = [&](int node) {
     return std::any_of(first, last, [&](const MovingObstacle& shape) {
-      const Vector3 local = shape.start.orientation.conjugate() * (state.positions[node] - shape.start.position);
-      return closest_point(shape.obstacle->shape, local, 0).distance < 0;
+      return closest_point(shape.obstacle->shape, in_shape(shape, state.positions[node]), 0).distance < 0;
     });
   };
   for (const KinematicTarget& target : targets.nodes) {
@@ -265,33 +251,28 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
   const auto node_friction = [&](int i) {
     return materials.mean_at(i, [](const MaterialDesc& material) { return material.friction; });
   };
-  const auto touch_at = [&](CablePoint point, std::uint64_t element, const SurfacePoint& nearest) {
+  const bool is_body = moving.body >= 0, moves = !is_body && moving.speed > 0, turns = moving.half_turn.w() != 1;
+  const auto touch_at = [&](const CablePoint& point, std::uint64_t element, const SurfacePoint& nearest) {
     const bool on_node = element % 2 == 0;
     const int place = static_cast<int>(element / 2);
     const double radius = on_node ? stretches_.radius(place) : materials[place].radius;
     const double gap = nearest.distance - (radius + moving.obstacle->padding);
     const Vector3 normal = orientation * nearest.normal;
+    const Vector3 position = on_centre_line(point, state.positions), velocity = on_centre_line(point, state.velocities);
     SurfaceMotion motion;
-    const bool is_body = moving.body >= 0, turns = moving.half_turn.w() != 1;
-    CablePoint beside = point;
-    if (is_body || turns) put_beside(state, normal, std::min(radius, nearest.distance - moving.obstacle->padding), beside);
-    if (is_body) point = beside;
-    if (moving.speed > 0 && !is_body) {
-      motion = motion_under(moving, state, beside);
-      // Across the surface the mean velocity: what begins to move does not throw.
-      motion.end_velocity += normal.dot(motion.displacement / h - motion.end_velocity) * normal;
-    }
-    const Vector3 position = interpolate(state.positions, point.segment, point.fraction);
-    const Vector3 velocity = at_point(point, [&](int i) -> Vector3 {
-      return is_body ? Vector3(state.velocities[i] - moving.body_velocity.at(state.positions[i])) : state.velocities[i];
-    });
-    if (!may_close(gap, normal, velocity - motion.displacement / h, radius, h)) return;
+    if (moves) motion = touching_motion(moving, in_shape(moving, position), normal, h);
+    const Vector3 other_velocity = is_body ? moving.body_velocity.at(position) : Vector3(motion.displacement / h);
+    if (!may_close(gap, normal, velocity - other_velocity, radius, h)) return;
     if (is_body && inside_[element] != 0) return;
     if (anchored(state, *member.targets, point, *moving.obstacle, attachments)) return;
+    // What turns carries a point beside the centre line along the surface, too.
+    CablePoint beside = point;
+    if (is_body || turns) put_beside(state, normal, std::min(radius, nearest.distance - moving.obstacle->padding), beside);
+    if (moves) turn_under(moving, state, beside, motion);
     Touch& touch = touches_.emplace_back();
     touch.key = is_body ? body_key | key_of(moving.body, moving.obstacle->id) : moving.obstacle->id;
     touch.other_key = element;
-    touch.point = point;
+    touch.point = is_body ? beside : point;
     touch.obstacle = moving.index;
     touch.body = moving.body;
     touch.normal = normal;
@@ -310,7 +291,9 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
     touch.position = position;
     if (is_body) {
       touch.base_stiffness = std::min(touch.base_stiffness, stopping_stiffness(moving.body_mass, rules_.time_step));
-      touch.body_acceleration = at_point(point, [&](int i) { return moving.body_acceleration.at(state.positions[i]); });
+      touch.velocity =
+          at_point(beside, [&](int i) -> Vector3 { return state.velocities[i] - moving.body_velocity.at(state.positions[i]); });
+      touch.body_acceleration = at_point(beside, [&](int i) { return moving.body_acceleration.at(state.positions[i]); });
       touches_body_[places_[index]] = 1;
     }
     add(touch, member, h);
@@ -361,7 +344,7 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
     bound_friction_at_corners(state, first_touch, feet_, touches_, pressed_);
   else
     bound_friction_of_nodes(state, first_touch, touches_);
-  if (moving.body >= 0) {
+  if (is_body) {
     // What leans may do work on what gives way.
     const double friction = *moving.obstacle->friction;
     for (std::size_t k = first_touch; k < touches_.size(); ++k) {
@@ -406,10 +389,10 @@ void ContactSet::look_at(const std::vector<SimulatedCable>& cables, const Segmen
   const double distance = closest.between.norm();
   if (distance > far) return;
   const Vector3 normal = distance > 0 ? Vector3(closest.between / distance) : along_a.unitOrthogonal();
-  const Vector3 velocity = interpolate(a.state.velocities, i, closest.first) - interpolate(b.state.velocities, j, closest.second);
+  const CablePoint first{pair.first.cable, i, closest.first}, second{pair.second.cable, j, closest.second};
+  const Vector3 velocity = on_centre_line(first, a.state.velocities) - on_centre_line(second, b.state.velocities);
   if (!may_close(distance - surface, normal, velocity, radius, h)) return;
-  near_.push_back(
-      {{pair.first.cable, i, closest.first}, {pair.second.cable, j, closest.second}, normal, distance - surface, radius});
+  near_.push_back({first, second, normal, distance - surface, radius});
 }
 
 void ContactSet::add_pair(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members,
@@ -433,7 +416,7 @@ void ContactSet::add_pair(const std::vector<SimulatedCable>& cables, const std::
   put_beside(a.state, near.normal, CableMaterials(a)[i].radius - 0.5 * overlap, touch.point);
   put_beside(b.state, -near.normal, CableMaterials(b)[j].radius - 0.5 * overlap, touch.other);
   touch.velocity = at_point(touch.point, a.state.velocities) - at_point(touch.other, b.state.velocities);
-  touch.position = a.state.positions[i] + near.first.fraction * (a.state.positions[i + 1] - a.state.positions[i]);
+  touch.position = on_centre_line(near.first, a.state.positions);
   add(touch, members[places_[near.first.cable]], h);
 }
 
@@ -482,11 +465,7 @@ bool ContactSet::recall(const ContactMember& member, Touch& touch) {
   else if (recalled > 0 && continues(cache[recalled - 1], touch))
     last = &cache[recalled - 1];
   if (last == nullptr) return false;
-  touch.stuck_force = half_turned(touch, last->force);
-  touch.mode = last->mode;
-  touch.last_force = last->normal_force;
-  touch.inside = last->inside;
-  touch.inside_for = last->inside_for;
+  go_on_from(*last, touch);
   return true;
 }
 
@@ -501,9 +480,7 @@ void ContactSet::follow_scheme(Scheme scheme, const std::vector<SimulatedCable>&
 
 void ContactSet::keep(const std::vector<ContactMember>& members) const {
   for (const ContactMember& member : members) member.cache->clear();
-  for (const Touch& touch : touches_)
-    members[places_[touch.point.cable]].cache->push_back(
-        {touch.key, touch.other_key, remaining_friction(touch), touch.normal_force, touch.mode, touch.inside, touch.inside_for});
+  for (const Touch& touch : touches_) members[places_[touch.point.cable]].cache->push_back(kept(touch));
 }
 
 }  // namespace verlet_cable

@@ -41,10 +41,6 @@ constexpr double followed_part = 0.2;
 constexpr double short_way = 0.5;
 constexpr int maximum_followings = 20;
 
-inline Vector3 at_point(const CablePoint& point, const VectorArray& nodes) {
-  return at_point(point, [&](int i) { return get(nodes, i); });
-}
-
 /// Adds a force at a point to the nodes that carry it.
 inline void share(const Vector3& force, const CablePoint& point, VectorArray& nodes) {
   share_force(point, force, [&](int i, const Vector3& part) {
@@ -323,7 +319,7 @@ void ContactSolver::follow_friction(std::vector<Participant>& participants, std:
     slip.touch = &touch;
     slip.participant = index_[touch.point.cable];
     slip.normal = touch.normal;
-    slip.friction = touch.force / touch.normal_force - touch.normal;
+    slip.friction = following_friction(touch);
     slip.normal_force = touch.normal_force;
     slip.stiffness = touch.rate * touch.stiffness;
     slips_.push_back(slip);

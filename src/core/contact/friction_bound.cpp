@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "chain/direction.h"
+
 namespace verlet_cable {
 
 namespace {
@@ -77,7 +79,7 @@ void bound_friction_at_corners(const CableState& state, std::size_t first, const
                                std::vector<Touch>& touches, std::vector<std::size_t>& pressed) {
   const auto first_node = [&](std::size_t k) { return static_cast<int>(touches[k].other_key / 2); };
   const auto last_node = [&](std::size_t k) { return static_cast<int>((touches[k].other_key + 1) / 2); };
-  const auto direction = [&](int i) { return Vector3((state.positions[i + 1] - state.positions[i]).normalized()); };
+  const auto direction = [&](int i) { return segment_direction(state, i); };
   const auto bound_turn = [&](Touch& touch, const Vector3& before, const Vector3& behind) {
     bound(bound_of_arc(touch.friction, before, behind, touch.normal), touch);
   };

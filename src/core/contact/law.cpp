@@ -180,10 +180,13 @@ Vector3 corrected_force(const Touch& touch) {
   return touch.force + touch.followed - slope(touch) * touch.correction;
 }
 
+Vector3 following_friction(const Touch& touch) {
+  return touch.force / touch.normal_force - touch.normal;
+}
+
 Eigen::Matrix3d full_slope(const Touch& touch) {
   if (touch.mode != Touch::Mode::slides) return slope(touch);
-  const Vector3 friction = touch.force / touch.normal_force - touch.normal;
-  return slope(touch) + touch.rate * touch.stiffness * friction * touch.normal.transpose();
+  return slope(touch) + touch.rate * touch.stiffness * following_friction(touch) * touch.normal.transpose();
 }
 
 Vector3 remaining_friction(const Touch& touch) {

@@ -101,6 +101,9 @@ Eigen::Matrix3d slope(const Touch& touch);
 /// The same with the part of friction that follows f.
 Eigen::Matrix3d full_slope(const Touch& touch);
 
+/// Of what slides, the friction that follows f, over f.
+Vector3 following_friction(const Touch& touch);
+
 /// A force [N] as the obstacle that is touched turns it in half the substep.
 inline Vector3 half_turned(const Touch& touch, const Vector3& force) {
   return touch.half_turn.w() == 1 ? force : Vector3(touch.half_turn * force);

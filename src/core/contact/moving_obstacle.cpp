@@ -1,19 +1,13 @@
 #include "contact/moving_obstacle.h"
 
+#include <algorithm>
+
 namespace verlet_cable {
 
 namespace {
 
-Pose between(const Pose& a, const Pose& b, double part) {
-  return {a.position + part * (b.position - a.position), a.orientation.slerp(part, b.orientation)};
-}
-
 FrameVelocity mean_velocity(const Pose& from, const Pose& to, double time_step) {
   return {(to.position - from.position) / time_step, rotation_vector((to * from.inverse()).orientation) / time_step};
-}
-
-double largest_distance(const Aabb& box, const Vector3& from) {
-  return (box.max() - from).cwiseAbs().cwiseMax((box.min() - from).cwiseAbs()).norm();
 }
 
 }  // namespace
@@ -22,6 +16,20 @@ SurfaceMotion surface_motion(const MovingObstacle& moving, const Vector3& point)
   const Vector3 start = moving.start.position + moving.start.orientation * point;
   const Vector3 end = moving.end.position + moving.end.orientation * point;
   return {end - start, moving.end_velocity.linear + moving.end_velocity.angular.cross(end - moving.frame_end)};
+}
+
+SurfaceMotion touching_motion(const MovingObstacle& moving, const Vector3& point, const Vector3& normal, double h) {
+  SurfaceMotion motion = surface_motion(moving, point);
+  motion.end_velocity += normal.dot(motion.displacement / h - motion.end_velocity) * normal;
+  return motion;
+}
+
+bool is_joined_to(const Obstacle& obstacle, int frame) {
+  return std::binary_search(obstacle.holders.begin(), obstacle.holders.end(), frame);
+}
+
+double largest_distance(const Aabb& box, const Vector3& from) {
+  return (box.max() - from).cwiseAbs().cwiseMax((box.min() - from).cwiseAbs()).norm();
 }
 
 void move_obstacles(const std::vector<Obstacle>& obstacles, const FramePoses& frames, double time_step, double from, double to,

@@ -39,6 +39,16 @@ struct SurfaceMotion {
 /// `point` [m]: in the axes of the shape. The velocity at the end goes on from the mean velocities of this and the last step.
 SurfaceMotion surface_motion(const MovingObstacle& moving, const Vector3& point);
 
+/// The same where something touches, over a substep of h [s]: across the surface the velocity is the mean one, so that what
+/// begins to move does not throw.
+SurfaceMotion touching_motion(const MovingObstacle& moving, const Vector3& point, const Vector3& normal, double h);
+
+/// Whether a frame is rigidly joined to an obstacle.
+bool is_joined_to(const Obstacle& obstacle, int frame);
+
+/// [m] From a point to the farthest one of a box.
+double largest_distance(const Aabb& box, const Vector3& from);
+
 /// Poses of frames, by their ids, a step apart.
 struct FramePoses {
   const std::vector<Pose>&earlier, &before, &after;

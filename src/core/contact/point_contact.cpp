@@ -5,8 +5,7 @@
 namespace verlet_cable {
 
 SurfaceNear surface_near(const MovingObstacle& moving, const Vector3& point, double part, double h, double reach) {
-  const Pose pose{moving.start.position + part * (moving.end.position - moving.start.position),
-                  moving.start.orientation.slerp(part, moving.end.orientation)};
+  const Pose pose = between(moving.start, moving.end, part);
   const Vector3 local = pose.orientation.conjugate() * (point - pose.position);
   const double padding = moving.obstacle->padding;
   const SurfacePoint surface = closest_point(moving.obstacle->shape, local, reach + padding);
@@ -14,8 +13,7 @@ SurfaceNear surface_near(const MovingObstacle& moving, const Vector3& point, dou
   near.distance = surface.distance - padding;
   if (near.distance >= reach) return near;
   near.normal = pose.orientation * surface.normal;
-  near.surface_velocity =
-      ((moving.end.position + moving.end.orientation * local) - (moving.start.position + moving.start.orientation * local)) / h;
+  near.surface_velocity = surface_motion(moving, local).displacement / h;
   return near;
 }
 

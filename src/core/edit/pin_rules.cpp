@@ -26,7 +26,7 @@ NearGuide guide_near(const BodyId& cable, int node, const SimulatedCable& simula
   for (std::size_t i = 0; i < attachments.size(); ++i) {
     const Attachment& a = attachments[i];
     if (a.guide < 0 || a.body != cable) continue;
-    const int nearest = std::clamp(node, a.node, is_wheel(a) ? a.node + 1 : a.node);
+    const int nearest = std::clamp(node, a.node, last_node(a));
     const double distance = std::abs(arc_length[node] - arc_length[nearest]);
     if (!has_guide_room(distance, simulated.model->segment_length)) return {static_cast<int>(i), distance};
   }

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "chain/direction.h"
 #include "guide/node_passing.h"
 #include "rod/unresolved_motion.h"
 #include "scene/scene_size.h"
@@ -51,7 +52,7 @@ void stall(double most, LengthDrive& drive) {
 void add_material_motion(const LengthDrive& drive, double side, CableState& cable) {
   if (!drive.is_winch()) return;
   const int n = cable.segments(), node = drive.end_node(n), i = drive.segment;
-  const Vector3 along = (cable.positions[i + 1] - cable.positions[i]).normalized();
+  const Vector3 along = segment_direction(cable, i);
   cable.velocities[node] += (node == 0 ? side : -side) * drive.growth() * along;
 }
 
@@ -218,16 +219,13 @@ void World::Implementation::renumber(int index, int first, int shift) {
   const auto follow = [&](int& node) {
     if (node >= first) node += shift;
   };
-  for (Attachment& a : state.attachments)
-    if (a.body == cable_id(index)) follow(a.node);
+  renumber_held(index, follow, state);
   for (Intrusion& intrusion : findings.intrusions)
     if (intrusion.cable == index) follow(intrusion.segment);
   for (StatusFinding& found : findings.statuses)
     if (found.body == cable_id(index)) follow(found.node);
   for (Excursion& excursion : findings.excursions)
     if (excursion.cable == index) follow(excursion.node);
-  for (KinematicTarget& h : state.cable_progress[index].targets.nodes) follow(h.node);
-  for (DirectionTarget& h : state.cable_progress[index].targets.directions) follow(h.node);
 }
 
 void World::Implementation::after_remeshing(int index) {

@@ -6,6 +6,10 @@ Pose Pose::operator*(const Pose& child) const {
   return {position + orientation * child.position, (orientation * child.orientation).normalized()};
 }
 
+Pose between(const Pose& first, const Pose& last, double part) {
+  return {first.position + part * (last.position - first.position), first.orientation.slerp(part, last.orientation)};
+}
+
 Pose Pose::inverse() const {
   const Quaternion back = orientation.conjugate();
   return {-(back * position), back};

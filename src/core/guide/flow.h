@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 #include "verlet_cable/core/types.h"
 
@@ -21,6 +22,18 @@ struct GuidedFlow {
   double held_way = 0;                  ///< [m] in and out: that has flowed since
   double held_length = 1;               ///< [m] over which it is given back
 };
+
+/// Whether something holds a flow.
+inline bool resists(const GuidedFlow& flow) {
+  return flow.friction > 0 || flow.resistance > 0 || flow.is_blocked[0] || flow.is_blocked[1];
+}
+
+/// [m] Of rest length, that flows as one through a guide: half of the segments beside it, and what lies on it.
+inline double flowing_length(const std::vector<double>& rest_lengths, int first, int last) {
+  double length = 0.5 * (rest_lengths[first - 1] + rest_lengths[last]);
+  for (int i = first; i < last; ++i) length += rest_lengths[i];
+  return length;
+}
 
 /// Which part is left of what a guide holds after a part of the way over which it gives that back: its force does not jump.
 inline double held_part(double part) {

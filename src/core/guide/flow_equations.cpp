@@ -75,10 +75,6 @@ std::array<double, 2> held_force(const GuidedFlow& guided, double way) {
   return {-per_length * (start + end) * squares, -per_length / length * (squares + 2 * end * (start + end))};
 }
 
-bool resists(const GuidedFlow& guided) {
-  return guided.friction > 0 || guided.resistance > 0 || guided.is_blocked[0] || guided.is_blocked[1];
-}
-
 }  // namespace
 
 bool CableStepper::grows(int segment) const {
@@ -104,8 +100,7 @@ void CableStepper::start_flows(const Substep& s, const CableState& state) {
     flow.acceleration = s.statics ? 0 : guided.acceleration;
     flow.changes = 0;
     flow.way = flow.correction = 0;
-    double length = 0.5 * (state.rest_lengths[flow.before] + state.rest_lengths[flow.after]);
-    for (int i = flow.first; i < flow.last; ++i) length += state.rest_lengths[i];
+    const double length = flowing_length(state.rest_lengths, flow.first, flow.last);
     flow.density = materials[flow.before].linear_density;
     flow.mass = flow.density * length + guided.inertia;
     flow.drag = materials[flow.before].drag / s.damping_time() * length;
@@ -232,8 +227,8 @@ void CableStepper::evaluate_flows(const Substep& s) {
 
     // What drives it: tensions, the weight of what flows, and the energy of bends beside the guide.
     const GravityDesc& law = s.environment.gravity;
-    const Vector3 gravity = (law.type == GravityDesc::Type::uniform ? law.acceleration : law.at(get(position_, flow.first))) -
-                            (s.statics ? Vector3(Vector3::Zero()) : Vector3(flow.velocity_change / s.h));
+    const Vector3 gravity =
+        law.at(get(position_, flow.first)) - (s.statics ? Vector3(Vector3::Zero()) : Vector3(flow.velocity_change / s.h));
     Vector3 along = get(middle_, flow.before) + get(middle_, flow.after);
     for (int i = flow.first; i < flow.last; ++i) along += 2 * get(middle_, i);
     double drive = tension[1] - tension[0] + 0.5 * density * gravity.dot(along);
@@ -248,7 +243,7 @@ void CableStepper::evaluate_flows(const Substep& s) {
       if (system_.movable[node] == 0) continue;
       const double gain = (side == 0 ? -0.5 : 0.5) * density * flow.way;
       const Vector3 u = get(displacement_, node), v = get(velocity_, node);
-      Vector3 load = 0.5 * gain * (law.type == GravityDesc::Type::uniform ? law.acceleration : law.at(get(position_, node)));
+      Vector3 load = 0.5 * gain * law.at(get(position_, node));
       if (!s.statics) {
         load -= 0.5 * gain * s.inertia() / s.h * (u / s.h - v);
         const Vector3 direction = get(middle_, segments[side]).normalized();
@@ -546,11 +541,16 @@ void CableStepper::push_flows(const Substep& s, SubstepResult& result) {
   for (std::size_t k = 0; k < flows_.size(); ++k) {
     const Flow& flow = flows_[k];
     if (is_elastic_at(flow.before)) continue;
-    const double impulse =
-        target_length_[flow.before] * impulse_[flow.before] - target_length_[flow.after] * impulse_[flow.after];
+    const double impulse = impulse_on(flow, impulse_);
     mend_flow(flow, impulse, flow.mode == Flow::Mode::free ? impulse / flow.mass : 0, s.boundary.flows[k], result);
     if (flow.mode == Flow::Mode::free && flow.first != flow.last) impulse_[flow.first] = 0;
   }
+}
+
+/// [N s] With which the segments beside a guide drive what flows, of `impulses` of segments [N s / m].
+double CableStepper::impulse_on(const Flow& flow, const std::vector<double>& impulses) const {
+  if (is_elastic_at(flow.before)) return 0;
+  return target_length_[flow.before] * impulses[flow.before] - target_length_[flow.after] * impulses[flow.after];
 }
 
 /// As velocities are mended. `impulse`: with which the segments beside the guide drive what flows [N s]. Friction keeps from

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "chain/node_arrays.h"
+#include "chain/direction.h"
 #include "guide/wheel.h"
 #include "verlet_cable/core/cable_materials.h"
 
@@ -195,13 +195,8 @@ void add_guides(const CableDesc& desc, int cable, const FrameIds& ids, const Cab
     if (g.cable != desc.name) continue;
     SimulatedGuide guide = make_guide(g, frame_of(g, ids, state));
     if (g.place) {
-      Attachment attachment;
-      attachment.name = g.name;
-      attachment.body = cable_id(cable);
-      attachment.frame = guide.frame;
-      attachment.holder = g.body.empty() ? -1 : find(state.bodies, g.body);
-      attachment.pose = guide.pose;
-      attachment.guide = static_cast<int>(state.guides.size());
+      const int holder = g.body.empty() ? -1 : find(state.bodies, g.body);
+      Attachment attachment = hold_by(guide, static_cast<int>(state.guides.size()), cable, holder);
       const double place = arc_length_of(desc, *g.place);
       if (g.type == GuideDesc::Type::sheave) {
         wind_on_wheel(place, desc, ids, state, state.frames.poses[guide.frame] * guide.pose, guide, attachment);
@@ -227,12 +222,26 @@ void add_guides(const CableDesc& desc, int cable, const FrameIds& ids, const Cab
   }
 }
 
+Attachment hold_by(const SimulatedGuide& guide, int index, int cable, int holder) {
+  Attachment attachment;
+  attachment.name = guide.name;
+  attachment.body = cable_id(cable);
+  attachment.frame = guide.frame;
+  attachment.holder = holder;
+  attachment.pose = guide.pose;
+  attachment.guide = index;
+  return attachment;
+}
+
+void stop_flow(SimulatedGuide& guide) {
+  guide.flow = guide.flow_acceleration = guide.held_energy = guide.held_way = guide.last_way = 0;
+}
+
 void stop_flows(int cable, State& state) {
   if (state.guides.empty()) return;
   for (const Attachment& attachment : state.attachments) {
     if (attachment.guide < 0 || attachment.body != cable_id(cable)) continue;
-    SimulatedGuide& guide = state.guides[attachment.guide];
-    guide.flow = guide.flow_acceleration = guide.held_energy = guide.held_way = guide.last_way = 0;
+    stop_flow(state.guides[attachment.guide]);
   }
 }
 
@@ -249,17 +258,13 @@ double flow_energy(const State& state, int index) {
     const SimulatedGuide& guide = state.guides[attachment.guide];
     const SimulatedCable& cable = state.cables[attachment.body.index];
     const CableState& c = cable.state;
-    const int first = attachment.node, last = is_wheel(attachment) ? first + 1 : first;
-    const auto along = [&](int i) -> Vector3 { return c.rest_lengths[i] * (c.positions[i + 1] - c.positions[i]).normalized(); };
-    double length = 0.5 * (c.rest_lengths[first - 1] + c.rest_lengths[last]);
+    const int first = attachment.node, last = last_node(attachment);
+    const auto along = [&](int i) -> Vector3 { return c.rest_lengths[i] * segment_direction(c, i); };
     Vector3 way = 0.5 * (along(first - 1) + along(last));
-    for (int i = first; i < last; ++i) {
-      length += c.rest_lengths[i];
-      way += c.positions[i + 1] - c.positions[i];
-    }
+    for (int i = first; i < last; ++i) way += c.positions[i + 1] - c.positions[i];
     const double density = CableMaterials(cable)[first].linear_density;
-    double mass = density * length;
-    if (is_wheel(attachment)) mass += guide.inertia / (guide.radius * guide.radius);
+    double mass = density * flowing_length(c.rest_lengths, first, last);
+    if (is_wheel(attachment)) mass += mass_on_rim(guide);
     energy += 0.5 * mass * guide.flow * guide.flow + density * guide.flow * way.dot(c.velocities[first]);
   }
   return energy;

@@ -12,6 +12,12 @@ namespace verlet_cable {
 void add_guides(const CableDesc& desc, int cable, const FrameIds& ids, const CableModel& model, CableState& cable_state,
                 State& state, std::vector<int>& own, std::vector<Attachment>& later);
 
+/// The attachment by which a guide, whose index is given, holds a cable; of what holds the guide, see Attachment::holder.
+Attachment hold_by(const SimulatedGuide& guide, int index, int cable, int holder);
+
+/// What flows through a guide stands, and nothing is left that drives it.
+void stop_flow(SimulatedGuide& guide);
+
 /// What flows through a cable's guides stands, and nothing is left that drives it.
 void stop_flows(int cable, State& state);
 

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "chain/direction.h"
+#include "guide/guides.h"
 #include "guide/node_passing.h"
 #include "guide/wheel.h"
 #include "target/length_drive.h"
@@ -20,8 +22,7 @@ constexpr double merging_distance = 0.2;
 
 /// The cable's direction at a guide.
 Vector3 direction_at(const CableState& cable, int first, int last) {
-  const Vector3 before = (cable.positions[first] - cable.positions[first - 1]).normalized();
-  return (before + (cable.positions[last + 1] - cable.positions[last]).normalized()).normalized();
+  return (segment_direction(cable, first - 1) + segment_direction(cable, last)).normalized();
 }
 
 /// [J] The weight of the nodes beside a wheel and on it.
@@ -97,8 +98,7 @@ bool World::Implementation::lets_go(int index) const {
   const SimulatedGuide& guide = state.guides[attachment.guide];
   if (runs_out(attachment, state)) return true;
   if (!(guide.retention < infinity)) return false;
-  const int last = is_wheel(attachment) ? attachment.node + 1 : attachment.node;
-  const Vector3 along = direction_at(state.cables[attachment.body.index].state, attachment.node, last);
+  const Vector3 along = direction_at(state.cables[attachment.body.index].state, attachment.node, last_node(attachment));
   return (attachment.force - attachment.force.dot(along) * along).norm() > guide.retention;
 }
 
@@ -107,13 +107,10 @@ void World::Implementation::release_guide(int index) {
   const Attachment attachment = state.attachments[index];
   SimulatedGuide& guide = state.guides[attachment.guide];
   CableState& cable = state.cables[attachment.body.index].state;
-  const int first = attachment.node, last = is_wheel(attachment) ? first + 1 : first;
-  for (int node = first; node <= last; ++node) {
-    const Vector3 after = cable.positions[std::min(node + 1, cable.segments())];
-    cable.velocities[node] += guide.flow * (after - cable.positions[std::max(node - 1, 0)]).normalized();
-  }
-  guide.flow = guide.flow_acceleration = guide.lost_length = guide.held_energy = guide.held_way = guide.last_way =
-      guide.wheel_energy = 0;
+  for (int node = attachment.node; node <= last_node(attachment); ++node)
+    cable.velocities[node] += guide.flow * way_past(cable, node).normalized();
+  stop_flow(guide);
+  guide.lost_length = guide.wheel_energy = 0;
   guide.is_ready = false;
   erase_attachment(index);
   after_remeshing(attachment.body.index);
@@ -133,8 +130,7 @@ void World::Implementation::release_bare_guides() {
   for (int a = static_cast<int>(state.attachments.size()) - 1; a >= 0; --a) {
     const Attachment& attachment = state.attachments[a];
     if (attachment.guide < 0) continue;
-    const int last = is_wheel(attachment) ? attachment.node + 1 : attachment.node;
-    if (attachment.node <= 0 || last >= state.cables[attachment.body.index].state.segments()) release_guide(a);
+    if (attachment.node <= 0 || last_node(attachment) >= state.cables[attachment.body.index].state.segments()) release_guide(a);
   }
 }
 
@@ -161,7 +157,7 @@ void World::Implementation::capture_cable(int index) {
   int node = nearest.fraction < 0.5 ? nearest.segment : nearest.segment + 1;
   const double to_node = std::abs(nearest.fraction - (node - nearest.segment)) * cable.state.rest_lengths[nearest.segment];
   if (node == 0 || node == cable.state.segments() || state.cable_progress[cable_index].drive) return;
-  const Energy before = energy_of_cable(state, cable_index);
+  const double energy = energy_of_cable(state, cable_index).potential();
   if (to_node > merging_distance * cable.model->segment_length) {
     node = nearest.segment + 1;
     insert_node(nearest.segment, nearest.fraction * cable.state.rest_lengths[nearest.segment], *cable.model, cable.state);
@@ -169,24 +165,16 @@ void World::Implementation::capture_cable(int index) {
   } else if (!is_passable(state, cable_index, node)) {
     return;
   }
-  Attachment attachment;
-  attachment.name = guide.name;
-  attachment.body = cable_id(cable_index);
+  Attachment attachment = hold_by(guide, index, cable_index, state.body_of_frame(guide.frame));
   attachment.node = node;
-  attachment.frame = guide.frame;
-  attachment.holder = state.body_of_frame(guide.frame);
-  attachment.pose = guide.pose;
-  attachment.guide = index;
+  stop_flow(guide);
   guide.flow = cable.state.velocities[node].dot(direction_at(cable.state, node, node));
-  guide.flow_acceleration = 0;
   cable.state.velocities[node] -= guide.flow * direction_at(cable.state, node, node);
   state.attachments.push_back(attachment);
   after_remeshing(cable_index);
   move_with_holders(cable_index, state);
   // As of a node that passes; but what it does to the motion is a blow.
-  const Energy after = energy_of_cable(state, cable_index);
-  guide.held_way = guide.last_way = 0;
-  guide.held_energy = (before.total() - before.kinetic) - (after.total() - after.kinetic);
+  guide.held_energy = energy - energy_of_cable(state, cable_index).potential();
   account_for_blow(cable_index);
   findings.caught.push_back(index);
 }

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
+#include "chain/direction.h"
+#include "guide/given_node.h"
+#include "guide/side.h"
+#include "guide/wheel.h"
 #include "rod/length_projection.h"
-#include "rod/rod_frames.h"
 #include "target/length_drive.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "world/energy.h"
@@ -16,15 +18,13 @@ namespace verlet_cable {
 
 namespace {
 
-constexpr std::array<int, 2> both_sides{0, 1};
-
 /// Of a regular segment: what is left beside a guide when the next node is taken in; one is given out on the other side then.
 constexpr double shortest = 0.1;
 /// Of a regular segment: where the node that is given out for it is where the cable bends, about as near as what was left: the
 /// bend at the guide stands for as much of the cable then.
 constexpr double behind = 0.125;
-/// So many steps at the speed of the flow are left, too; but no more than this of a segment.
-constexpr double steps_ahead = 3, most_ahead = 0.6;
+/// So many steps at the speed of the flow are left, too; but no more than `most_ahead` of a segment.
+constexpr double steps_ahead = 3;
 /// Of a regular segment: an end that cannot go through stops there.
 constexpr double stop = 0.15;
 /// Of a regular segment: shorter ones are not split.
@@ -39,20 +39,13 @@ constexpr double least_divided = 0.4, most_undivided = 2.2;
 /// A node that is given out bends no more than this, height over length.
 constexpr double steepest = 0.5;
 
-Vector3 direction(const CableState& state, int segment) {
-  return (state.positions[segment + 1] - state.positions[segment]).normalized();
-}
-
 /// The nodes from `first` on have moved by `shift`, the segments likewise.
 void renumber(int cable, int first, int shift, State& state) {
   const auto follow = [&](int& node) {
     if (node >= first) node += shift;
   };
+  renumber_held(cable, follow, state);
   CableProgress& progress = state.cable_progress[cable];
-  for (Attachment& a : state.attachments)
-    if (a.body == cable_id(cable)) follow(a.node);
-  for (KinematicTarget& h : progress.targets.nodes) follow(h.node);
-  for (DirectionTarget& h : progress.targets.directions) follow(h.node);
   for (TwistSpan& span : progress.spans) {
     follow(span.first_node);
     follow(span.last_node);
@@ -60,22 +53,9 @@ void renumber(int cable, int first, int shift, State& state) {
   if (progress.drive) follow(progress.drive->segment);
 }
 
-/// One side of a guide: the node that is held there, and the way along the cable away from it.
-struct Side {
-  int node = 0;
-  int away = -1;  // or 1
-  int segment() const { return away < 0 ? node - 1 : node; }
-  int neighbour() const { return node + away; }
-};
-
 /// Of what flows from a side.
 double way_from(int side) {
   return side == 0 ? 1 : -1;
-}
-
-Side side_of(const Attachment& attachment, int side) {
-  if (side == 0) return {attachment.node, -1};
-  return {is_wheel(attachment) ? attachment.node + 1 : attachment.node, 1};
 }
 
 /// With the velocity of the material at the guide instead of the guide's while `change` is made.
@@ -83,7 +63,7 @@ template <class Change>
 void with_flowing_node(const SimulatedGuide& guide, Attachment& attachment, int side, CableState& state, const Change& change) {
   const Side before = side_of(attachment, side);
   const Vector3 held = state.velocities[before.node];
-  state.velocities[before.node] += guide.flow * direction(state, before.segment());
+  state.velocities[before.node] += guide.flow * segment_direction(state, before.segment());
   change();
   state.velocities[side_of(attachment, side).node] = held;
 }
@@ -105,7 +85,7 @@ void give_out(int index, Attachment& attachment, int side, double near, Vector3 
   SimulatedGuide& guide = state.guides[attachment.guide];
   const int segment = side_of(attachment, side).segment(), node = segment + 1;
   const double whole = cable.state.rest_lengths[segment];
-  const Vector3 along = direction(cable.state, segment);
+  const Vector3 along = segment_direction(cable.state, segment);
   with_flowing_node(guide, attachment, side, cable.state, [&] {
     insert_node(segment, side == 0 ? whole - near : near, *cable.model, cable.state);
     renumber(index, node, 1, state);
@@ -125,128 +105,6 @@ void give_out(int index, Attachment& attachment, int side, double near, Vector3 
     guide.lost_length -= gained;
   }
 }
-
-/// [J] Of a cable, but for its motion.
-double potential_energy(int cable, const State& state) {
-  const Energy energy = energy_of_cable(state, cable);
-  return energy.total() - energy.kinetic;
-}
-
-/// A node that has been given out on a cable that bends, whose place goes along an ellipse about the guide and the next node: the
-/// lengths that were lost are there again, and the strain stays.
-class GivenNode {
- public:
-  GivenNode(int index, const Attachment& attachment, int side, const Vector3& bulge, State& state)
-      : index_(index), state_(state), cable_(state.cables[index].state), guide_(side_of(attachment, side).node) {
-    const int away = side_of(attachment, side).away;
-    node_ = guide_ + away;
-    next_ = node_ + away;
-    near_segment_ = std::min(guide_, node_);
-    far_segment_ = std::min(node_, next_);
-    start_ = near();
-    const double whole = start_ + cable_.rest_lengths[far_segment_];
-    const Vector3 chord = cable_.positions[next_] - cable_.positions[guide_];
-    stretch_ = chord.norm() / whole;
-    along_ = chord.normalized();
-    across_ = (bulge - bulge.dot(along_) * along_).stableNormalized();
-    double& lost = state.guides[attachment.guide].lost_length;
-    if (across_.squaredNorm() > 0) lost_ = std::exchange(lost, 0.0);
-    length_ = whole + lost_;
-    start_masses_ = {cable_.masses[guide_], cable_.masses[next_]};
-    regular_ = state.cables[index].model->segment_length;
-    half_density_ = 0.5 * CableMaterials(state.cables[index])[near_segment_].linear_density;
-  }
-
-  double near() const { return cable_.rest_lengths[near_segment_]; }
-  double lost() const { return lost_; }
-
-  /// Puts it at a rest length from the guide [m].
-  void place(double near) {
-    const double a = stretch_ * near, b = stretch_ * (length_ - near), c = stretch_ * (length_ - lost_);
-    const double way = 0.5 * (c + (a - b) * (a + b) / c), height = std::sqrt(std::max(0.0, (a - way) * (a + way)));
-    const Vector3 place = cable_.positions[guide_] + way * along_ + height * across_;
-    if (!cable_.directors.empty())
-      for (const int segment : {near_segment_, far_segment_}) {
-        const int other = segment == near_segment_ ? guide_ : next_;
-        const double sign = (other < node_) ? 1 : -1;
-        cable_.directors[segment] = carried_director(cable_, segment, sign * (place - cable_.positions[other]), 0);
-      }
-    cable_.positions[node_] = place;
-    cable_.rest_lengths[near_segment_] = near;
-    cable_.rest_lengths[far_segment_] = length_ - near;
-    cable_.masses[guide_] = start_masses_[0] + half_density_ * (near - start_);
-    cable_.masses[next_] = start_masses_[1] - half_density_ * (near - start_);
-  }
-
-  /// Puts it at the place, next to where it is, at which the cable has an energy [J]; if there is none, where that differs least.
-  void place_at(double energy) {
-    const double lowest = std::max(lost_, start_ / widest);
-    const double highest = std::max(lowest, std::min(widest * start_, most_ahead * length_));
-    // Where the next segment is as long as the others, or about as near as the node that was taken in
-    const double first = std::clamp(length_ - regular_, lowest, highest);
-    const auto excess = [&](double near) {
-      place(near);
-      return potential_energy(index_, state_) - energy;
-    };
-    Trial best{first, infinity};
-    std::array<Trial, 2> last;
-    const auto attempt = [&](double near) {
-      const Trial trial{near, excess(near)};
-      if (std::abs(trial.excess) < std::abs(best.excess)) best = trial;
-      return trial;
-    };
-    last.fill(attempt(first));
-    for (double factor = pace; best.excess != 0; factor *= pace) {
-      bool goes_on = false;
-      for (const int side : both_sides) {
-        const double near = side == 0 ? first / factor : first * factor;
-        if (near < lowest || near > highest) continue;
-        goes_on = true;
-        const Trial next = attempt(near);
-        if ((next.excess < 0) != (last[side].excess < 0)) return place(between(last[side], next, excess));
-        last[side] = next;
-      }
-      if (!goes_on) break;
-    }
-    place(best.near);
-  }
-
- private:
-  struct Trial {
-    double near = 0, excess = 0;
-  };
-
-  /// Where it is none: regula falsi, where a side that stays counts half.
-  template <class Excess>
-  static double between(Trial a, Trial b, const Excess& excess) {
-    for (int i = 0; i < most_halvings && a.excess != b.excess; ++i) {
-      const Trial trial{b.near - b.excess * (b.near - a.near) / (b.excess - a.excess), 0};
-      const double found = excess(trial.near);
-      if ((found < 0) != (b.excess < 0))
-        a = b;
-      else
-        a.excess *= 0.5;
-      b = {trial.near, found};
-      if (found == 0) break;
-    }
-    return b.near;
-  }
-
-  /// Of the distance from the guide: it is looked for so far away, and in such steps.
-  static constexpr double widest = 1.5, pace = 1.06;
-  static constexpr int most_halvings = 12;
-
-  int index_;
-  State& state_;
-  CableState& cable_;
-  int guide_ = 0, node_ = 0, next_ = 0;
-  int near_segment_ = 0, far_segment_ = 0;
-  double start_ = 0, length_ = 0, lost_ = 0, regular_ = 0;  // [m] at rest
-  double stretch_ = 1;
-  Vector3 along_ = Vector3::Zero(), across_ = Vector3::Zero();
-  std::array<double, 2> start_masses_{0, 0};
-  double half_density_ = 0;
-};
 
 /// What has come to a guide flows through it: the cable is of one material on both sides, each node with the weight that it has.
 void continue_material(const Attachment& attachment, int from, CableState& state) {
@@ -283,9 +141,8 @@ bool carries_payload(const SimulatedCable& cable, int node) {
 }
 
 bool is_attached(const State& state, int cable, int node) {
-  return std::any_of(state.attachments.begin(), state.attachments.end(), [&](const Attachment& a) {
-    return a.body == cable_id(cable) && (a.node == node || (is_wheel(a) && a.node + 1 == node));
-  });
+  return std::any_of(state.attachments.begin(), state.attachments.end(),
+                     [&](const Attachment& a) { return a.body == cable_id(cable) && (a.node == node || last_node(a) == node); });
 }
 
 bool is_passable(const State& state, int cable, int node) {
@@ -330,9 +187,9 @@ void load_flows(int index, const State& state, Boundary& boundary) {
     const SimulatedGuide& guide = state.guides[attachment.guide];
     GuidedFlow& flow = boundary.flows.emplace_back();
     flow.first = attachment.node;
-    flow.last = is_wheel(attachment) ? attachment.node + 1 : attachment.node;
+    flow.last = last_node(attachment);
     if (is_wheel(attachment)) {
-      flow.inertia = guide.inertia / (guide.radius * guide.radius);
+      flow.inertia = mass_on_rim(guide);
       flow.resistance = guide.bearing_friction / guide.radius;
       flow.grip = guide.friction;
     } else {
@@ -343,7 +200,7 @@ void load_flows(int index, const State& state, Boundary& boundary) {
     flow.held_energy = guide.held_energy;
     flow.held_way = guide.held_way;
     flow.held_length = cable.model->segment_length;
-    for (const int side : {0, 1}) {
+    for (const int side : both_sides) {
       const Side at = side_of(attachment, side);
       flow.is_blocked[side] = cable.state.rest_lengths[at.segment()] < stop * cable.model->segment_length &&
                               !is_passable(state, index, at.neighbour());
@@ -381,7 +238,7 @@ bool pass_nodes(int index, bool moves, State& state) {
     // What masses that come together lose in motion is lost.
     const auto hold = [&](double way, const auto& change) {
       const Energy before = moves ? energy_of_cable(state, index) : Energy();
-      change();
+      change(before);
       passed = true;
       if (!moves) return;
       guide.held_energy *= held_part(guide.held_way / regular);
@@ -398,15 +255,15 @@ bool pass_nodes(int index, bool moves, State& state) {
     };
     for (const int side : both_sides) {
       while (comes_to(side) && is_passable(state, index, side_of(attachment, side).neighbour())) {
-        hold(way_from(side), [&] {
+        hold(way_from(side), [&](const Energy& before) {
           const int joint = side_of(attachment, side).neighbour();
-          const Vector3 bulge = direction(cable, joint - 1) - direction(cable, joint);
-          const double near = std::max(length(side), little), energy = keeps ? potential_energy(index, state) : 0;
+          const Vector3 bulge = segment_direction(cable, joint - 1) - segment_direction(cable, joint);
+          const double near = std::max(length(side), little);
           take_in(index, attachment, side, state);
           if (length(1 - side) > (keeps ? least_divided : least_split) * regular && !is_winding(1 - side)) {
             if (keeps) {
               give_out(index, attachment, 1 - side, near, Vector3::Zero(), state);
-              GivenNode(index, attachment, 1 - side, bulge, state).place_at(energy);
+              place_given_node(index, attachment, 1 - side, bulge, before.potential(), state);
             } else {
               give_out(index, attachment, 1 - side, bends ? behind * regular : std::max(length(1 - side) - regular, 2 * little),
                        bulge, state);
@@ -419,7 +276,8 @@ bool pass_nodes(int index, bool moves, State& state) {
     const double longest = keeps ? most_undivided * regular : regular + std::max(2.5 * little, least);
     for (const int side : both_sides)
       while (length(side) > longest && !is_winding(side))
-        hold(-way_from(side), [&] { give_out(index, attachment, side, length(side) - regular, Vector3::Zero(), state); });
+        hold(-way_from(side),
+             [&](const Energy&) { give_out(index, attachment, side, length(side) - regular, Vector3::Zero(), state); });
   }
   return passed;
 }

@@ -11,6 +11,15 @@ bool carries_payload(const SimulatedCable& cable, int node);
 /// Whether an attachment or a guide holds a node; a wheel holds two.
 bool is_attached(const State& state, int cable, int node);
 
+/// Calls follow(node) for the nodes of a cable that attachments and targets hold.
+template <class Follow>
+void renumber_held(int cable, const Follow& follow, State& state) {
+  for (Attachment& a : state.attachments)
+    if (a.body == cable_id(cable)) follow(a.node);
+  for (KinematicTarget& h : state.cable_progress[cable].targets.nodes) follow(h.node);
+  for (DirectionTarget& h : state.cable_progress[cable].targets.directions) follow(h.node);
+}
+
 /// Whether a node may be taken in: nothing holds it, and nothing hangs on it.
 bool is_passable(const State& state, int cable, int node);
 

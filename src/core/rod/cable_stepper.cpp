@@ -524,8 +524,7 @@ void CableStepper::respond(const Boundary& boundary, const HolderMotion& motion,
   }
   if (rod_.active()) rod_.add_clamp_reactions(system_, loads.torques);
   loads.displacements.resize(motion.loads.size());
-  for (std::size_t k = 0; k < motion.loads.size(); ++k)
-    loads.displacements[k] = at_point(motion.loads[k].point, [&](int i) { return get(correction(), i); });
+  for (std::size_t k = 0; k < motion.loads.size(); ++k) loads.displacements[k] = at_point(motion.loads[k].point, correction());
   system_.moves_held = false;
   std::swap(solution(), kept_solution_);
   for (std::size_t k = 0; k < flows_.size(); ++k) flows_[k].correction = kept_ways_[k];
@@ -605,11 +604,8 @@ void CableStepper::finish_projection(const Substep& s, CableState& state, Subste
   }
   for (std::size_t k = 0; k < flows_.size(); ++k) {
     const Flow& flow = flows_[k];
-    const std::vector<double>& multiplier = multiplier_correction();
-    const double impulse = is_elastic_at(flow.before) ? 0
-                                                      : target_length_[flow.after] * multiplier[flow.after] -
-                                                            target_length_[flow.before] * multiplier[flow.before];
-    mend_flow(flow, impulse, flow.correction, s.boundary.flows[k], result);
+    // Multipliers are impulses the other way round.
+    mend_flow(flow, -impulse_on(flow, multiplier_correction()), flow.correction, s.boundary.flows[k], result);
   }
   for (const GrowingSegment& growing : s.boundary.growing)
     if (!is_elastic_at(growing.segment)) balance_mended_growth(growing, -multiplier_correction()[growing.segment], result);

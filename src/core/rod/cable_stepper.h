@@ -137,6 +137,7 @@ class CableStepper {
   void carry_frames_with_flows(CableState& state) const;
   void project_flows(const Substep& substep);
   void push_flows(const Substep& substep, SubstepResult& result);
+  double impulse_on(const Flow& flow, const std::vector<double>& impulses) const;
   static void mend_flow(const Flow& flow, double impulse, double change, GuidedFlow& guided, SubstepResult& result);
   void factor_segments();
   void solve_segments();

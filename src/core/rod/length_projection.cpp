@@ -70,10 +70,8 @@ class LengthSystem {
   /// [kg] That moves with a flow; infinite where something holds it.
   double mass_of(const GuidedFlow& flow) const {
     const double density = densities_[&flow - flows_->data()];
-    if (flow.friction > 0 || flow.resistance > 0 || flow.is_blocked[0] || flow.is_blocked[1]) return infinity;
-    double length = 0.5 * ((*rest_lengths_)[flow.first - 1] + (*rest_lengths_)[flow.last]);
-    for (int i = flow.first; i < flow.last; ++i) length += (*rest_lengths_)[i];
-    return density * length + flow.inertia;
+    if (resists(flow)) return infinity;
+    return density * flowing_length(*rest_lengths_, flow.first, flow.last) + flow.inertia;
   }
 
   void let_flow(const std::vector<double>& changes) {

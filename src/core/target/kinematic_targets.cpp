@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "chain/direction.h"
 #include "rod/rod_frames.h"
 #include "target/jump.h"
 #include "verlet_cable/core/cable_materials.h"
@@ -32,12 +33,6 @@ Vector3 target_position(const CableState& state, const Attachment& attachment, c
   if (node == attachment.node) return pose.position;
   const double side = node < attachment.node ? -1 : 1;
   return pose.position + side * state.rest_lengths[std::min(node, attachment.node)] * (pose.orientation * Vector3::UnitX());
-}
-
-/// The cable's direction at a node.
-Vector3 tangent(const CableState& state, int node) {
-  const int last = static_cast<int>(state.positions.size()) - 1;
-  return state.positions[std::min(node + 1, last)] - state.positions[std::max(node - 1, 0)];
 }
 
 Quaternion about_direction(double roll) {
@@ -127,7 +122,7 @@ KinematicTargets find_targets(const CableModel& model, const CableState& state, 
     const Quaternion wanted = (frames[attachments[attachment].frame] * attachments[attachment].pose).orientation;
     // Its roll is followed from the start; a pinned node is not twisted by being pinned.
     if (state.directors.empty()) {
-      target.gap = smallest_rotation(wanted * Vector3::UnitX(), tangent(state, target.node));
+      target.gap = smallest_rotation(wanted * Vector3::UnitX(), way_past(state, target.node));
       target.orientation = target.gap * wanted;
     } else {
       catch_material(node_frame(state, target.node), wanted, target);

@@ -88,8 +88,8 @@ void check_attachment(const State& state, const Attachment& a, Check& check) {
     const bool is_there = is_index(body.index, state.cables.size());
     check.require(is_there, a.name, "holds a cable that is there");
     if (is_there)
-      check.require(is_index(is_wheel(a) ? a.node + 1 : a.node, state.cables[body.index].state.masses.size()) && a.node >= 0,
-                    a.name, "holds a node that is there");
+      check.require(is_index(last_node(a), state.cables[body.index].state.masses.size()) && a.node >= 0, a.name,
+                    "holds a node that is there");
   }
   if (body.is_net()) {
     const bool is_there = is_index(body.index, state.nets.size());

@@ -15,8 +15,7 @@ namespace {
 
 /// Where a frame is in a part of the step, 0 to 1.
 Pose frame_at(const Frames& frames, int frame, double part) {
-  const Pose &before = frames.previous_poses[frame], &after = frames.poses[frame];
-  return {before.position + part * (after.position - before.position), before.orientation.slerp(part, after.orientation)};
+  return between(frames.previous_poses[frame], frames.poses[frame], part);
 }
 
 /// [rad/s] The mean over the step of an attachment to a frame.
@@ -24,6 +23,13 @@ Vector3 mean_spin(const Frames& frames, const Attachment& attachment, double tim
   const Quaternion turn =
       frames.poses[attachment.frame].orientation * frames.previous_poses[attachment.frame].orientation.conjugate();
   return rotation_vector(turn) / time_step;
+}
+
+/// Of a joint of a body to a frame.
+const KinematicTarget& holder_of(const BodyJoint& joint, const State& state) {
+  const std::vector<KinematicTarget>& holders = state.body_progress[held_body(state.attachments[joint.attachment])].holders;
+  return *std::find_if(holders.begin(), holders.end(),
+                       [&](const KinematicTarget& target) { return target.attachment == joint.attachment; });
 }
 
 /// [m] Nodes that are so far from where bodies hold them have been left behind.
@@ -279,11 +285,9 @@ void IslandStepper::hang_on_bodies_anew(const Island& island) {
 /// Where the frame that holds a body is at a part of the step, as far as it is followed.
 Pose IslandStepper::body_holder_at(const BodyJoint& joint, double part) const {
   const Attachment& attachment = state_.attachments[joint.attachment];
-  const std::vector<KinematicTarget>& holders = state_.body_progress[held_body(attachment)].holders;
-  const auto holder = std::find_if(holders.begin(), holders.end(),
-                                   [&](const KinematicTarget& target) { return target.attachment == joint.attachment; });
-  const double turned = holder->jumping_steps > 0 ? 1 : part;
-  return {holder->position + part * (holder->next_position - holder->position),
+  const KinematicTarget& holder = holder_of(joint, state_);
+  const double turned = holder.jumping_steps > 0 ? 1 : part;
+  return {holder.position + part * (holder.next_position - holder.position),
           frame_at(state_.frames, attachment.frame, turned).orientation * attachment.pose.orientation};
 }
 
@@ -304,18 +308,16 @@ void IslandStepper::balance_bodies(double from, double to) {
 void IslandStepper::follow_body_holder(BodyJoint& joint, double to) {
   const Attachment& attachment = state_.attachments[joint.attachment];
   const SimulatedBody& body = state_.bodies[held_body(attachment)];
-  BodyProgress& progress = state_.body_progress[held_body(attachment)];
-  const auto holder = std::find_if(progress.holders.begin(), progress.holders.end(),
-                                   [&](const KinematicTarget& target) { return target.attachment == joint.attachment; });
-  Vector3& last_spin = progress.holder_spins[holder->node];
+  const KinematicTarget& holder = holder_of(joint, state_);
+  Vector3& last_spin = state_.body_progress[held_body(attachment)].holder_spins[holder.node];
   const Vector3 spin = mean_spin(state_.frames, attachment, state_.scene->time_step);
-  const bool jumps = holder->jumping_steps > 0;
+  const bool jumps = holder.jumping_steps > 0;
   joint.holder = body_holder_at(joint, to);
-  joint.holder_velocity.linear = holder->velocity + to * (holder->next_velocity - holder->velocity);
+  joint.holder_velocity.linear = holder.velocity + to * (holder.next_velocity - holder.velocity);
   joint.holder_velocity.angular = jumps ? last_spin : Vector3(spin + (to - 0.5) * (spin - last_spin));
   const double size = body.is_junction ? least_size : std::sqrt(body.inertia.trace() / body.mass),
                noticed = noticed_jerk / state_.scene->time_step;
-  const bool accelerates = (holder->next_velocity - holder->velocity).norm() > noticed * size;
+  const bool accelerates = (holder.next_velocity - holder.velocity).norm() > noticed * size;
   const bool turns = joint.type != AttachmentType::hinge && !jumps && (spin - last_spin).norm() > noticed;
   projects_bodies_ = projects_bodies_ || accelerates || turns || jumps;
   if (to == 1 && !jumps) last_spin = spin;

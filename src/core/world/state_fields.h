@@ -274,12 +274,16 @@ auto fields(T& x, const Obstacle*) {
 
 // World
 template <class T>
+auto balance_fields(T& part) {
+  return std::apply([&](const auto&... field) { return std::tie(part.*field.place...); }, T::fields);
+}
+template <class T>
 auto fields(T& x, const EnergyBalance::Work*) {
-  return std::tie(x.attachments, x.winches, x.obstacles, x.applied);
+  return balance_fields(x);
 }
 template <class T>
 auto fields(T& x, const EnergyBalance::Dissipated*) {
-  return std::tie(x.axial, x.bending, x.torsional, x.drag, x.contact, x.guides, x.bodies, x.unresolved, x.edits);
+  return balance_fields(x);
 }
 template <class T>
 auto fields(T& x, const EnergyBalance*) {

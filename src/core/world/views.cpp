@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "chain/direction.h"
 #include "guide/guides.h"
 #include "rod/joint_views.h"
 #include "verlet_cable/core/cable_materials.h"
@@ -70,13 +71,13 @@ GuideView World::view_guide(int guide) const {
     if (attachment.guide != guide) continue;
     view.cable = attachment.body.index;
     const CableState& cable = cables()[view.cable].state;
-    const int first = attachment.node, last = is_wheel(attachment) ? first + 1 : first;
+    const int first = attachment.node, last = last_node(attachment);
     view.arc_length = cable.length(0, first) + 0.5 * cable.length(first, last);
     // Half a segment before and after it weighs, and is accelerated.
     const double density = CableMaterials(cables()[view.cable])[first].linear_density;
     const Vector3 gravity = implementation_->state.scene->gravity.at(cable.positions[first]);
     const auto half = [&](int i) {
-      const Vector3 along = (cable.positions[i + 1] - cable.positions[i]).normalized();
+      const Vector3 along = segment_direction(cable, i);
       return 0.5 * density * cable.rest_lengths[i] * (gravity.dot(along) - guides()[guide].flow_acceleration);
     };
     view.tension = {cable.tension[first - 1] - half(first - 1), cable.tension[last] + half(last)};

@@ -102,8 +102,8 @@ std::string hash_text(std::uint64_t hash) {
 
 py::dict ledger_dict(const Ledger& ledger) {
   py::dict work, dissipated, dict;
-  for (const auto& [name, energy] : entries(ledger.balance.work)) work[name] = energy;
-  for (const auto& [name, energy] : entries(ledger.balance.dissipated)) dissipated[name] = energy;
+  for (const auto& [name, place] : EnergyBalance::Work::fields) work[name] = ledger.balance.work.*place;
+  for (const auto& [name, place] : EnergyBalance::Dissipated::fields) dissipated[name] = ledger.balance.dissipated.*place;
   dict["work"] = work;
   dict["dissipated"] = dissipated;
   dict["change"] = ledger.change;

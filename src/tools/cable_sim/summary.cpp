@@ -61,8 +61,8 @@ Json energy_json(const Energy& energy, double initial_total) {
 
 Json ledger_json(const Ledger& ledger) {
   Json work = Json::object(), dissipated = Json::object();
-  for (const auto& [name, energy] : entries(ledger.balance.work)) work[name] = energy;
-  for (const auto& [name, energy] : entries(ledger.balance.dissipated)) dissipated[name] = energy;
+  for (const auto& [name, place] : EnergyBalance::Work::fields) work[name] = ledger.balance.work.*place;
+  for (const auto& [name, place] : EnergyBalance::Dissipated::fields) dissipated[name] = ledger.balance.dissipated.*place;
   return {{"work", work}, {"dissipated", dissipated}, {"change", ledger.change}, {"unaccounted", ledger.unaccounted()}};
 }
 
