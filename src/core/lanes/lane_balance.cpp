@@ -2,7 +2,6 @@
 
 #include "geometry/eigen_vectors.h"
 #include "lanes/lane_stepper.h"
-#include "law/bend.h"
 #include "law/drag.h"
 #include "law/resistance.h"
 
@@ -33,10 +32,13 @@ void LaneStepper::balance_laws(int c, LaneMember& member) {
   const MaterialDesc& material = member.substep.model.material;
   const bool stretches = work_.law.is_elastic && material.axial_damping > 0, is_drawn_out = member.result.overstretched_node >= 0;
   if (material.drag == 0 && !work_.law.is_damped && !stretches && !is_drawn_out) return;
-  displacements_.resize(work_.law.segments + 1);
-  for (int i = 0; i <= work_.law.segments; ++i) displacements_[i] = vector_at(LaneField::displacement_x, c, i);
+  read_displacement(c);
   if (material.drag > 0) balance_drag(member);
-  if (work_.law.is_damped) balance_bending(c, member);
+  if (work_.law.is_damped) {
+    double& lost = member.result.balance.dissipated.bending;
+    lost += bendings_[c].damping_work(displacement_);
+    for (const ClampJoint& clamp : clamps_[c]) lost += clamp.damping_work;
+  }
   if (stretches) balance_stretching(member);
   if (is_drawn_out) balance_drawn_out(c, member);
 }
@@ -50,25 +52,10 @@ void LaneStepper::balance_drag(LaneMember& member) {
     const double half = i < work_.law.segments ? 0.5 * state.rest_lengths[i] : 0;
     drag.coefficient = s.model.material.drag * (half_before + half);
     half_before = half;
-    const VectorOf<double> displacement = numbers_of(displacements_[i]);
+    const VectorOf<double> displacement = numbers_of(get(displacement_, i));
     member.result.balance.dissipated.drag += drag.loss(displacement);
     member.result.balance.work.applied += drag.work(displacement);
   }
-}
-
-void LaneStepper::balance_bending(int c, LaneMember& member) {
-  double lost = 0;
-  for (const ClampJoint& clamp : clamps_[c]) lost += clamp.damping_work;
-  const auto turned_on = [&](int i) -> Vector3 {
-    return (displacements_[i + 1] - displacements_[i]) / member.state->rest_lengths[i];
-  };
-  Vector3 before = turned_on(0);
-  for (int i = 1; i < work_.law.segments; ++i) {
-    const Vector3 after = turned_on(i), change = after - before;
-    before = after;
-    lost += bend_loss(at(LaneField::joint_damping, c, i), numbers_of(change), numbers_of(vector_at(LaneField::turned_x, c, i)));
-  }
-  member.result.balance.dissipated.bending += lost;
 }
 
 void LaneStepper::balance_stretching(LaneMember& member) {
@@ -76,7 +63,7 @@ void LaneStepper::balance_stretching(LaneMember& member) {
   const double damping = member.substep.model.material.axial_damping / member.substep.h;
   for (int i = 0; i < work_.law.segments; ++i) {
     const Vector3 end = state.positions[i + 1] - state.positions[i];
-    const double growth = end.norm() - (end - displacements_[i + 1] + displacements_[i]).norm();
+    const double growth = end.norm() - (end - get(displacement_, i + 1) + get(displacement_, i)).norm();
     member.result.balance.dissipated.axial += Resistance<double>{0, damping / state.rest_lengths[i]}.loss(growth);
   }
 }
@@ -86,7 +73,8 @@ void LaneStepper::balance_drawn_out(int c, LaneMember& member) {
   for (int i = 0; i < work_.law.segments; ++i) {
     double density = 0;
     each_lane_of(c, i, [&](int place, int lane, double) { density = value(LaneField::density, place, lane); });
-    const Vector3 end = state.positions[i + 1] - state.positions[i], start = end - displacements_[i + 1] + displacements_[i];
+    const Vector3 end = state.positions[i + 1] - state.positions[i],
+                  start = end - get(displacement_, i + 1) + get(displacement_, i);
     member.result.balance.dissipated.edits += 0.5 * density * (end.squaredNorm() - start.squaredNorm());
   }
 }

@@ -14,6 +14,10 @@ void LaneStepper::react(int c, LaneMember& member) {
   if (work_.law.bends) {
     bend_clamps(c, member);
     for (const ClampJoint& clamp : clamps_[c]) boundary.directions[clamp.target].torque += clamp.torque;
+    if (work_.law.is_damped && !boundary.directions.empty()) {
+      read_displacement(c);
+      bendings_[c].turn_clamps(displacement_, boundary.directions);
+    }
   }
   for (HeldDirection& target : boundary.directions) target.lasting_torque = target.torque;
   for (HeldNode& target : boundary.nodes) {
@@ -83,12 +87,10 @@ Vector3 LaneStepper::over_length(int c, int segment, const Vector3& vector) {
 Vector3 LaneStepper::joint_moment(int c, int i) {
   const Vector3 start = over_length(c, i, segment_at(LaneField::segment_x, c, i)) -
                         over_length(c, i - 1, segment_at(LaneField::segment_x, c, i - 1));
-  const Vector3 change = direction_change(c, i);
-  const VectorOf<double> numbers = numbers_of(change);
-  const Bend<double> joint = bend(at(LaneField::joint_stiffness, c, i), numbers_of(start), start.squaredNorm(), numbers, 0.5);
+  const VectorOf<double> change = numbers_of(direction_change(c, i));
+  const Bend<double> joint = bend(at(LaneField::joint_stiffness, c, i), numbers_of(start), start.squaredNorm(), change, 0.5);
   if (!work_.law.is_damped) return vector_of(joint.moment);
-  return vector_of(joint.moment +
-                   bend_damping(at(LaneField::joint_damping, c, i), numbers, numbers_of(vector_at(LaneField::turned_x, c, i))));
+  return vector_of(joint.moment + bendings_[c].damping_at(i).moment(change, values_.share[2 * c]));
 }
 
 }  // namespace verlet_cable

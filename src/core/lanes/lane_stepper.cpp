@@ -123,6 +123,7 @@ void LaneStepper::resize(const LaneLaw& law) {
   cables_.resize(most_lanes / 2);
   middles_.resize(most_lanes / 2);
   clamps_.resize(most_lanes / 2);
+  bendings_.resize(most_lanes / 2);
   target_lengths_.resize(most_lanes / 2);
   start_multipliers_.resize(most_lanes / 2);
   for (int c = 0; c < most_lanes / 2; ++c) {
@@ -216,20 +217,32 @@ void LaneStepper::set_damping(int c, const LaneMember& member) {
   const Substep& s = member.substep;
   const CableState& state = *member.state;
   const int n = work_.law.segments;
-  if (static_cast<int>(segments_.x.size()) != n + 1) {
-    segments_.assign(n + 1, 0.0);
-    bending_.resize(n);
-  }
+  Bending& bending = bendings_[c];
+  if (static_cast<int>(segments_.x.size()) != n + 1) segments_.assign(n + 1, 0.0);
+  if (bending.segments() != n) bending.resize(n);
   for (int i = 0; i < n; ++i) set(segments_, i, state.positions[i + 1] - state.positions[i]);
-  bending_.start(s.model, state, segments_, s.boundary.directions, s.h, s.part());
+  bending.start(s.model, state, segments_, s.boundary.directions, s.h, s.part());
   for (int i = 1; i < n; ++i) {
-    const Vector3 turned = bending_.turned(i);
-    at(LaneField::joint_damping, c, i) = bending_.damping(i);
-    at(LaneField::turned_x, c, i) = turned.x();
-    at(LaneField::turned_y, c, i) = turned.y();
-    at(LaneField::turned_z, c, i) = turned.z();
+    const BendDamping<double> damping = bending.damping_at(i);
+    at(LaneField::joint_damping, c, i) = damping.damping;
+    at(LaneField::driven_x, c, i) = damping.driven.x;
+    at(LaneField::driven_y, c, i) = damping.driven.y;
+    at(LaneField::driven_z, c, i) = damping.driven.z;
+    at(LaneField::turned_x, c, i) = damping.turned.x;
+    at(LaneField::turned_y, c, i) = damping.turned.y;
+    at(LaneField::turned_z, c, i) = damping.turned.z;
   }
-  clamps_[c] = bending_.clamps();
+  clamps_[c] = bending.clamps();
+}
+
+void LaneStepper::set_share(int c, double share) {
+  values_.share[2 * c] = values_.share[2 * c + 1] = share;
+}
+
+void LaneStepper::read_displacement(int c) {
+  const std::size_t nodes = work_.law.segments + 1;
+  if (displacement_.x.size() != nodes) displacement_.assign(nodes, 0.0);
+  for (int i = 0; i <= work_.law.segments; ++i) set(displacement_, i, vector_at(LaneField::displacement_x, c, i));
 }
 
 void LaneStepper::set_ends(int c, const LaneMember& member) {
@@ -273,6 +286,10 @@ void LaneStepper::iterate(std::vector<LaneMember>& members) {
   for (const LaneMember& member : members) convergences_.emplace_back(member.substep);
   const int count = static_cast<int>(members.size());
   int active = count;
+  for (int c = 0; work_.law.is_damped && c < count; ++c) {
+    read_displacement(c);
+    set_share(c, bendings_[c].share_of_turned(displacement_));
+  }
   for (int i = 0; i < maximum_iterations && active > 0; ++i) {
     if (work_.law.bends)
       for (int c = 0; c < count; ++c) bend_clamps(c, members[c]);
@@ -283,6 +300,8 @@ void LaneStepper::iterate(std::vector<LaneMember>& members) {
     for (int c = 0; c < count; ++c) {
       if (values_.active[2 * c] == 0) continue;
       ++members[c].result.iterations;
+      if (work_.law.is_damped)
+        set_share(c, turned_share(values_.along[2 * c] + values_.along[2 * c + 1], bendings_[c].turned_square()));
       const double square = values_.largest[2 * c] + 0 * values_.largest[2 * c + 1];
       const double size = std::sqrt(std::max(square, values_.largest[2 * c + 1])) / members[c].state->rest_lengths[0];
       const bool fails = !(size < largest_correction);

@@ -49,6 +49,8 @@ class LaneStepper {
   void set_cable(int place, LaneMember& member);
   void set_values(int cable, const LaneMember& member);
   void set_damping(int cable, const LaneMember& member);
+  void set_share(int cable, double share);
+  void read_displacement(int cable);
   void set_pad(int cable);
   void set_ends(int cable, const LaneMember& member);
   void hold(int cable, const LaneMember& member);
@@ -61,7 +63,6 @@ class LaneStepper {
   void complete(int cable, LaneMember& member);
   void balance_laws(int cable, LaneMember& member);
   void balance_drag(LaneMember& member);
-  void balance_bending(int cable, LaneMember& member);
   void balance_stretching(LaneMember& member);
   void balance_drawn_out(int cable, LaneMember& member);
   double kinetic_energy_before_mending(int cable, const LaneMember& member);
@@ -86,11 +87,11 @@ class LaneStepper {
   std::vector<MiddleElimination> middles_;
   std::vector<Convergence> convergences_;
   std::vector<std::vector<ClampJoint>> clamps_;         // a cable
+  std::vector<Bending> bendings_;                       // a cable; what of its bending is damped
   std::vector<std::vector<double>> target_lengths_;     // a cable, a segment [m]
   std::vector<std::vector<double>> start_multipliers_;  // a cable, a segment [N]; empty where nothing is to be cleaned
-  Bending bending_;                                     // of one cable: what of its bending is damped
-  VectorArray segments_;                                // likewise, at the start of the substep [m]
-  std::vector<Vector3> displacements_;                  // likewise, of the nodes over the substep [m]
+  VectorArray segments_;                                // of one cable, at the start of the substep [m]
+  VectorArray displacement_;                            // likewise, of the nodes over the substep [m]
   Array records_, eliminations_;
 };
 

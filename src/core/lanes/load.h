@@ -61,6 +61,7 @@ void load_lanes(const LaneWork& w) {
       at[LaneField::clamp_stiffness] = zero;
       if constexpr (bends == Bends::damped) {
         at[LaneField::joint_damping] = zero;
+        at.set(LaneField::driven_x, none);
         at.set(LaneField::turned_x, none);
       }
       length_before = rest;

@@ -61,7 +61,10 @@ enum class LaneField {
   force_along,      ///< of bending, along the segment [N]
   // Of damped bending
   joint_damping,  ///< of the node, as its stiffness, in the substep [N m]
-  turned_x,       ///< of the node: change of direction that turns with the material and is not damped
+  driven_x,       ///< of the node, see BendDamping
+  driven_y,
+  driven_z,
+  turned_x,  ///< likewise
   turned_y,
   turned_z,
   count
@@ -112,10 +115,12 @@ struct alignas(64) LaneValues {
   double projects[most_lanes];                                                 ///< 1 where velocities are projected, else 0
   double known[most_lanes];                                                    ///< see MotionCleaner::finds_unresolved
   double smooths[most_lanes];                                                  ///< 1 where the tension is a mean of two substeps
+  double share[most_lanes];                                                    ///< of what turns, see BendDamping
   double stores[most_lanes];                                                   ///< 1 where the cable takes the result, else 0
   // Out
   double largest[most_lanes];                        ///< square of the largest correction [m^2]; infinite or NaN if one is
   double longest[most_lanes], shortest[most_lanes];  ///< squares, relative, of segments
+  double along[most_lanes];                          ///< see BendDamping [N m]
   double product[most_lanes], square[most_lanes], mass[most_lanes];  ///< see MotionCleaner::finds_unresolved
 };
 

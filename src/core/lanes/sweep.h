@@ -52,15 +52,18 @@ struct Joint {
   BendStiffness<Real> stiffness;  ///< [N/m]
 };
 
-/// `start`: e, `change`: of it over the substep; `at`: the node's place; 1 / length of the segments before and after it.
+/// `start`: e, `change`: of it over the substep; `at`: the node's place; 1 / length of the segments before and after it; `share`,
+/// `along`: see BendDamping.
 template <Bends bends, class Real>
 [[gnu::always_inline]] inline Joint<Real> joint_at(const Place<Real>& at, const VectorOf<Real>& start,
-                                                   const VectorOf<Real>& change, const Real& before, const Real& after) {
+                                                   const VectorOf<Real>& change, const Real& before, const Real& after,
+                                                   const Real& share, Real& along) {
   const Bend<Real> joint = bend(at[LaneField::joint_stiffness], start, dot(start, start), change, 0.5);
   if constexpr (bends == Bends::damped) {
     const Real damping = at[LaneField::joint_damping];
-    return {joint.moment + bend_damping(damping, change, at.vector(LaneField::turned_x)),
-            bend_stiffness(0.5 * joint.slope + damping, before, after)};
+    const BendDamping<Real> damper{damping, at.vector(LaneField::driven_x), at.vector(LaneField::turned_x)};
+    along = along + damper.along(change);
+    return {joint.moment + damper.moment(change, share), bend_stiffness(0.5 * joint.slope + damping, before, after)};
   }
   return {joint.moment, bend_stiffness(0.5 * joint.slope, before, after)};
 }
@@ -116,7 +119,8 @@ void sweep_lanes(const LaneWork& w) {
     return k <= m ? place_of<Real>(w, k).vector(LaneField::displacement_x) : beyond_middle;
   };
 
-  const Real active = values_of<Real>(w.values->active);
+  const Real active = values_of<Real>(w.values->active), share = values_of<Real>(w.values->share);
+  Real along = zero;
   Front<Real> front;
   start(zero, front);
   FrontLoad<Real> load{none, none, zero};
@@ -148,7 +152,7 @@ void sweep_lanes(const LaneWork& w) {
         after = displacement(k + 2) - next;
         joint_next = joint_at<bending>(
             following, inverse_after * following.vector(LaneField::segment_x) - inverse * at.vector(LaneField::segment_x),
-            inverse_after * after - inverse * change, inverse, inverse_after);
+            inverse_after * after - inverse * change, inverse, inverse_after, share, along);
       } else {
         joint_next = crossed_over(joint);
       }
@@ -242,6 +246,7 @@ void sweep_lanes(const LaneWork& w) {
     largest = greater_of(largest, square);
     sum += square;
   }
+  if constexpr (bending == Bends::damped) set_values(along, w.values->along);
   // A NaN may be lost among squares, but not in their sum.
   set_values(largest + 0.0 * sum, w.values->largest);
 }

@@ -31,18 +31,33 @@ template <class Real>
   return stiffness * angle_energy<Real>(0.5 * dot(e, e));
 }
 
-/// [N m] What damps the change of e in the material. `damping`: over l and the time of the substep [N m]; `turned`: the change of
-/// e that is the material's own turn.
+/// What damps a bend over a substep. The material of a cable turns e without bending: by `driven` as clamps turn it, and by a
+/// share of `turned`, by which it turned by itself in the substep before. The share, from none to all and the same of the whole
+/// cable, is that with which damping is least:
+///   potential = min over share of sum of damping |change - driven - share turned|^2 / 2,
+/// which is convex, and zero where only clamps turn the material, so that damping takes energy whatever the changes are.
 template <class Real>
-[[gnu::always_inline]] inline VectorOf<Real> bend_damping(Factor<Real> damping, const VectorOf<Real>& change,
-                                                          const VectorOf<Real>& turned) {
-  return damping * (change - turned);
-}
+struct BendDamping {
+  Real damping;  ///< [N m] over the length of cable and the time of the substep
+  VectorOf<Real> driven, turned;
 
-/// [J] That it takes in the substep.
-template <class Real>
-[[gnu::always_inline]] inline Real bend_loss(Factor<Real> damping, const VectorOf<Real>& change, const VectorOf<Real>& turned) {
-  return dot(bend_damping(damping, change, turned), change);
+  /// [N m] On the change of e.
+  [[gnu::always_inline]] VectorOf<Real> moment(const VectorOf<Real>& change, const Real& share) const {
+    return damping * (change - driven - share * turned);
+  }
+  /// Sums that tell the share: see `turned_share`.
+  [[gnu::always_inline]] Real along(const VectorOf<Real>& change) const { return damping * dot(change - driven, turned); }
+  [[gnu::always_inline]] Real square() const { return damping * dot(turned, turned); }
+  /// [J] That it takes in the substep; never negative in their sum.
+  [[gnu::always_inline]] Real loss(const VectorOf<Real>& change, const Real& share) const {
+    return dot(moment(change, share), change - driven);
+  }
+};
+
+/// `along`, `square`: sums over all bends of the cable.
+inline double turned_share(double along, double square) {
+  if (!(along > 0)) return 0;
+  return along < square ? along / square : 1;
 }
 
 /// What a bend at a node adds to the matrix, times the identity [N/m]: of the node before, its own, of the node after, between

@@ -3,18 +3,16 @@
 #include <algorithm>
 
 #include "geometry/eigen_vectors.h"
-#include "law/bend.h"
 #include "rod/joint_material.h"
-#include "rod/material_spin.h"
 
 namespace verlet_cable {
 
 void Bending::resize(int segments) {
   segments_ = segments;
   const std::size_t nodes = segments + 2;  // one more, where two are computed with together
-  for (std::vector<double>* a : {&inverse_length_, &stiffness_, &damping_, &start_square_, &slope_, &spin_})
-    a->assign(nodes, 0.0);
-  for (VectorArray* a : {&start_, &change_, &moment_, &turned_}) a->assign(nodes, 0.0);
+  for (std::vector<double>* a : {&inverse_length_, &stiffness_, &damping_, &start_square_, &slope_}) a->assign(nodes, 0.0);
+  for (VectorArray* a : {&start_, &change_, &moment_, &turn_, &driven_, &turned_}) a->assign(nodes, 0.0);
+  spin_.resize(segments);
   clamps_.reserve(2 * nodes);
   segment_.assign(nodes, 0.0);
   rest_lengths_.assign(nodes, 0.0);
@@ -160,21 +158,21 @@ double Bending::flow_column(int before, int after, const VectorArray& middle, Fl
   return own;
 }
 
-void Bending::resist_all_changes() {
-  turned_.assign(segments_ + 1, 0.0);
-}
-
-/// What of the change of e over the substep is the material's own turn, as far as it is known at the start.
+/// What of the change of e over the substep is the material's own turn.
 void Bending::turn_with_material(const CableModel& model, const CableState& state, const VectorArray& segment,
                                  const std::vector<HeldDirection>& directions, double h) {
-  find_material_spin(model, state, segment, directions, damping_, h, spin_);
+  spin_.find(model, state, segment, directions, damping_, h);
+  turned_square_ = 0;
   for (int i = 1; i < segments_; ++i) {
-    const double spin = 0.5 * (spin_[i - 1] + spin_[i]);
-    set(turned_, i, h * turning_rate(get(segment, i - 1), get(segment, i), spin, get(start_, i)));
+    const Vector3 turn = turn_of(get(segment, i - 1), get(segment, i), get(start_, i));
+    set(turn_, i, turn);
+    set(driven_, i, h * spin_.driven(i) * turn);
+    set(turned_, i, h * spin_.own(i) * turn);
+    turned_square_ += damping_at(i).square();
   }
   for (ClampJoint& clamp : clamps_) {
-    const HeldDirection& target = directions[clamp.target];
-    clamp.turned = h * turning_rate(get(segment, clamp.segment), clamp.start_axis, spin_of(target, h), clamp.start);
+    clamp.turn = turn_of(get(segment, clamp.segment), clamp.start_axis, clamp.start);
+    clamp.angle = h * spin_of(directions[clamp.target], h);
   }
 }
 
@@ -186,15 +184,21 @@ void Bending::add_segment_forces(const VectorArray& displacement, VectorArray& p
         change_, i);
   }
   if (!growing_.empty()) add_growth(displacement);
+  Pair along{};
   for (int i = 1; i < segments_; i += 2) {
     const PairVector change = neighbours(change_, i);
     Bend<Pair> joint = bend(neighbours(stiffness_, i), neighbours(start_, i), neighbours(start_square_, i), change, part_);
-    if (is_damped_) joint.moment = joint.moment + bend_damping(neighbours(damping_, i), change, neighbours(turned_, i));
+    if (is_damped_) {
+      const BendDamping<Pair> damping{neighbours(damping_, i), neighbours(driven_, i), neighbours(turned_, i)};
+      joint.moment = joint.moment + damping.moment(change, both(share_));
+      along += damping.along(change);
+    }
     put(joint.moment, moment_, i);
     put(joint.slope, slope_, i);
   }
   for (int i = 0; i < segments_; i += 2)
     put(neighbours(pull, i) + neighbours(inverse_length_, i) * (neighbours(moment_, i) - neighbours(moment_, i + 1)), pull, i);
+  share_ = turned_share(along[0] + along[1], turned_square_);
   bend_clamps(displacement);
   for (const ClampJoint& clamp : clamps_) {
     const int i = clamp.segment;
@@ -212,9 +216,10 @@ void Bending::bend_clamps(const VectorArray& displacement) {
 Vector3 Bending::damping_torque(const VectorArray& displacement) const {
   Vector3 torque = Vector3::Zero();
   if (!active_ || !is_damped_) return torque;
+  const double share = share_of_turned(displacement);
   for (int i = 1; i < segments_; ++i) {
     const Vector3 change = change_at(i, displacement);
-    torque -= damping_[i] * (get(start_, i) + part_ * change).cross(change - get(turned_, i));
+    torque -= (get(start_, i) + part_ * change).cross(vector_of(damping_at(i).moment(numbers_of(change), share)));
   }
   return torque;
 }
@@ -222,19 +227,38 @@ Vector3 Bending::damping_torque(const VectorArray& displacement) const {
 double Bending::damping_work(const VectorArray& displacement) const {
   double work = 0;
   if (!active_ || !is_damped_) return work;
-  for (int i = 1; i < segments_; ++i) work += loss_at(i, change_at(i, displacement));
+  const double share = share_of_turned(displacement);
+  for (int i = 1; i < segments_; ++i) work += damping_at(i).loss(numbers_of(change_at(i, displacement)), share);
   return work;
 }
 
 double Bending::damping_work() const {
   double work = 0;
-  for (int i = 1; i < segments_; ++i) work += loss_at(i, get(change_, i));
+  for (int i = 1; i < segments_; ++i) work += damping_at(i).loss(numbers_of(get(change_, i)), share_);
   for (const ClampJoint& clamp : clamps_) work += clamp.damping_work;
   return work;
 }
 
-double Bending::loss_at(int node, const Vector3& change) const {
-  return bend_loss(damping_[node], numbers_of(change), numbers_of(get(turned_, node)));
+BendDamping<double> Bending::damping_at(int node) const {
+  return {damping_[node], numbers_of(get(driven_, node)), numbers_of(get(turned_, node))};
+}
+
+void Bending::expect(const VectorArray& displacement) {
+  if (is_damped_) share_ = share_of_turned(displacement);
+}
+
+double Bending::share_of_turned(const VectorArray& displacement) const {
+  double along = 0;
+  for (int i = 1; i < segments_; ++i) along += damping_at(i).along(numbers_of(change_at(i, displacement)));
+  return turned_share(along, turned_square_);
+}
+
+void Bending::turn_clamps(const VectorArray& displacement, std::vector<HeldDirection>& directions) const {
+  const double share = share_of_turned(displacement);
+  for (int i = 1; i < segments_; ++i) {
+    const Vector3 moment = vector_of(damping_at(i).moment(numbers_of(change_at(i, displacement)), share));
+    spin_.pass_on(i, moment.dot(get(turn_, i)), directions);
+  }
 }
 
 /// Of e, over the substep.
@@ -268,6 +292,7 @@ void Bending::add_stiffness(KktSystem& system) const {
 void Bending::react(const VectorArray& displacement, std::vector<HeldDirection>& directions) {
   bend_clamps(displacement);
   for (const ClampJoint& clamp : clamps_) directions[clamp.target].torque += clamp.torque;
+  if (is_damped_ && !directions.empty()) turn_clamps(displacement, directions);
 }
 
 double bending_energy(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions,

@@ -3,8 +3,10 @@
 #include <vector>
 
 #include "guide/flow.h"
+#include "law/bend.h"
 #include "rod/block_elimination.h"
 #include "rod/clamp_joint.h"
+#include "rod/material_spin.h"
 #include "target/boundary.h"
 #include "verlet_cable/core/cable.h"
 
@@ -17,17 +19,15 @@ namespace verlet_cable {
 /// axis stands for one of the two directions, half a segment away; it is as long as the segment is stretched, so that a clamp
 /// does not resist stretch.
 ///
-/// Damping resists the change of e in the material, which spins as in material_spin.h: not what only turns with it. As the spin
-/// is that of the substep before, a free cable could gain energy so; see `resist_all_changes`.
+/// Damping resists the change of e in the material, which spins as MaterialSpin says: see BendDamping.
 class Bending {
  public:
   void resize(int segments);
+  int segments() const { return segments_; }
   /// `segment`: the segments at the start of the substep [m]; `part`: where in the substep forces are taken, 1/2 or 1.
   void start(const CableModel& model, const CableState& state, const VectorArray& segment,
              const std::vector<HeldDirection>& directions, double h, double part);
   bool active() const { return active_; }
-  /// Damping resists what turns with the material, too: it always takes energy then.
-  void resist_all_changes();
   /// After `start`, where material flows through guides; the segments at the start [m].
   void start_flows(const CableState& state, const VectorArray& segment, const std::vector<GuidedFlow>& flows);
   /// Before the ways of all flows are added: from segment `before` to segment `after`, by `way` [m] in the substep.
@@ -39,8 +39,13 @@ class Bending {
   /// By what a unit of such a flow changes the loads on nodes. Returns by what it changes what drives it [N/m].
   double flow_column(int before, int after, const VectorArray& middle, FlowColumn& column) const;
   bool is_damped() const { return active_ && is_damped_; }
-  double damping(int node) const { return damping_[node]; }      ///< damping / (length h) [N m]
-  Vector3 turned(int node) const { return get(turned_, node); }  ///< change of e that turns with the material
+  /// After `start`: what the displacements of the nodes are likely to be [m].
+  void expect(const VectorArray& displacement);
+  /// At an inner node.
+  BendDamping<double> damping_at(int node) const;
+  double turned_square() const { return turned_square_; }  ///< see BendDamping
+  /// What of the material's own turn is in it where the nodes are displaced so.
+  double share_of_turned(const VectorArray& displacement) const;
   const std::vector<ClampJoint>& clamps() const { return clamps_; }
   /// Adds the forces of the segments on their first nodes [N], for displacements of the nodes [m].
   void add_segment_forces(const VectorArray& displacement, VectorArray& pull);
@@ -50,6 +55,8 @@ class Bending {
   Vector3 damping_torque(const VectorArray& displacement) const;
   /// What damping takes from the energy [J].
   double damping_work(const VectorArray& displacement) const;
+  /// Adds what damping does where the material turns about the cable [N m] to the `torque` of clamps that turn it.
+  void turn_clamps(const VectorArray& displacement, std::vector<HeldDirection>& directions) const;
   /// The same at joints and clamps, for the changes that `add_segment_forces` found last.
   double damping_work() const;
   /// Adds the moments on the holders of directions [N m] to their `torque`.
@@ -57,7 +64,6 @@ class Bending {
 
  private:
   Vector3 change_at(int node, const VectorArray& displacement) const;
-  double loss_at(int node, const Vector3& change) const;
   void turn_with_material(const CableModel& model, const CableState& state, const VectorArray& segment,
                           const std::vector<HeldDirection>& directions, double h);
   void bend_clamps(const VectorArray& displacement);
@@ -89,10 +95,12 @@ class Bending {
   std::vector<double> stiffness_, damping_;  // nodes: EI / l and damping / (l h) [N m]; 0 at ends and clamps
   VectorArray start_;                        // nodes: e at the start
   std::vector<double> start_square_;         // nodes: |e|² at the start
-  std::vector<double> spin_;                 // segments: of the material [rad/s]
-  VectorArray turned_;                       // nodes: change of e that turns with the material, not damped
-  VectorArray change_, moment_;              // nodes: change of e; moment along it [N m]
-  std::vector<double> slope_;                // nodes: of the moment over e, without damping [N m]
+  MaterialSpin spin_;
+  VectorArray turn_;                      // nodes: of e with the material, a radian
+  VectorArray driven_, turned_;           // nodes: see BendDamping
+  double turned_square_ = 0, share_ = 0;  // see turned_share; of the iterate that was found last
+  VectorArray change_, moment_;           // nodes: change of e; moment along it [N m]
+  std::vector<double> slope_;             // nodes: of the moment over e, without damping [N m]
   std::vector<ClampJoint> clamps_;
 };
 

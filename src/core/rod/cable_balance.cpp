@@ -36,8 +36,7 @@ void CableStepper::balance_laws(const Substep& s, const std::vector<double>& mas
   if (winch_node_ >= 0 && bending_.active()) {
     // What bends moves with the material that comes through the winch.
     const int i = std::clamp(winch_node_ - 1, 0, segments_ - 1);
-    const Vector3 bending = get(segment_force_, i) - tension_density_[i] * get(middle_, i);
-    balance.work.winches += (winch_node_ == 0 ? -1 : 1) * bending.dot(material_way_);
+    balance.work.winches += (winch_node_ == 0 ? -1 : 1) * get(bending_force_, i).dot(material_way_);
   }
   for (const Flow& flow : flows_) {
     balance.dissipated.guides += flow.resistance * flow.way;

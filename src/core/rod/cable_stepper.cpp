@@ -43,7 +43,7 @@ void CableStepper::resize(int segments) {
   segments_ = segments;
   const int nodes = segments + 2;  // one more, where two are computed with together
   for (VectorArray* a : {&position_, &velocity_, &acceleration_, &segment_, &displacement_, &middle_, &segment_force_,
-                         &end_velocity_, &base_load_})
+                         &bending_force_, &end_velocity_, &base_load_})
     a->assign(nodes, 0.0);
   for (std::vector<double>* a :
        {&length_, &rest_growth_, &target_length_, &inverse_mass_, &tension_density_, &inertia_, &end_square_, &start_density_,
@@ -73,12 +73,6 @@ SubstepResult CableStepper::advance(const Substep& s, CableState& state) {
     rod_.simplify();
     result.converged = solve(s, state, result);
   }
-  // Where the material's spin is not that of the substep before.
-  if (result.converged && s.boundary.nodes.empty() && bending_.damping_work(displacement_) < 0) {
-    begin(s, state, result);
-    bending_.resist_all_changes();
-    result.converged = solve(s, state, result);
-  }
   if (result.converged) finish(s, false, state, result);
   return result;
 }
@@ -106,6 +100,7 @@ void CableStepper::begin(const Substep& s, const CableState& state, SubstepResul
   fluid_.start(s.environment.fluid, s.environment.gravity, s.model, state, s.damping_time());
   predict(s.h);
   predict_flows(s);
+  if (bending_.active()) bending_.expect(displacement_);
 }
 
 void CableStepper::finish(const Substep& s, bool struck, CableState& state, SubstepResult& result) {
@@ -733,7 +728,7 @@ double CableStepper::restore_angular_momentum(const Substep& s, const std::vecto
     along += masses[i] * given.dot(get(end_velocity_, i));
     square += 0.5 * masses[i] * given.squaredNorm();
   }
-  const double work = std::max(0.0, bending_.damping_work(displacement_));
+  const double work = bending_.damping_work(displacement_);
   double share = 1;
   if (along + square > work) share = (std::sqrt(along * along + 4 * square * work) - along) / (2 * square);
   for (int i = 0; i <= segments_; ++i) set(end_velocity_, i, get(end_velocity_, i) + share * missing.at(get(position_, i)));
@@ -809,6 +804,10 @@ void CableStepper::assemble_for_velocities() {
 void CableStepper::react(const Substep& s, const std::vector<double>& masses) {
   for (HeldDirection& target : s.boundary.directions) target.torque.setZero();
   if (rod_.active()) rod_.finish(displacement_, segment_, s.boundary);
+  if (bending_.active() && winch_node_ >= 0) {
+    bending_force_.assign(segments_ + 2, 0.0);
+    with_material([&] { bending_.add_segment_forces(displacement_, bending_force_); });
+  }
   if (s.boundary.nodes.empty()) return;
   for (HeldNode& target : s.boundary.nodes) {
     const int i = target.node;

@@ -184,6 +184,7 @@ class CableStepper {
   double compressed_part_ = 0.5;    // where in the substep compression acts along segments
   VectorArray middle_;              // segments: (d + d') / 2 [m]
   VectorArray segment_force_;       // segments: force on the first node [N]
+  VectorArray bending_force_;       // segments: of bending, of the solution [N]; where a winch runs
   std::vector<double> end_square_;  // segments: square of s' [m^2]
   VectorArray end_velocity_;        // nodes: v' [m/s]
   Bending bending_;

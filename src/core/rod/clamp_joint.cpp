@@ -21,11 +21,11 @@ void bend_elastic_clamp(double part, const Vector3& change, ClampJoint& clamp) {
   const double slope =
       clamp.stiffness * mean_slope(0.5 * clamp.start_square, 0.5 * (end - end.norm() * clamp.end_axis).squaredNorm());
   clamp.slope = slope * (2 - along / stretch);
-  const Vector3 bending = change - stretch * axis_change - clamp.turned;
+  const Vector3 bending = change - stretch * axis_change - clamp.angle * clamp.turn;
   const Vector3 damping = clamp.damping * (bending - axis * (axis.dot(bending) / axis.squaredNorm()));
   clamp.moment = clamp.slope * direction - slope * stretch * axis + damping;
-  clamp.torque = axis.cross(slope * stretch * direction + damping);
-  clamp.damping_work = damping.dot(change - stretch * axis_change);
+  clamp.torque = axis.cross(slope * stretch * direction + damping) + damping.dot(clamp.turn) * clamp.end_axis;
+  clamp.damping_work = damping.dot(bending);
 }
 
 }  // namespace
@@ -64,13 +64,15 @@ void bend_clamp(double part, const Vector3& displacement, ClampJoint& clamp) {
   const Vector3 direction_change = clamp.inverse_length * displacement;
   if (clamp.is_elastic) return bend_elastic_clamp(part, direction_change, clamp);
   const Vector3 change = direction_change - clamp.axis_change;
-  const VectorOf<double> numbers = numbers_of(change), turned = numbers_of(clamp.turned);
+  const VectorOf<double> numbers = numbers_of(change);
   const Bend<double> joint = bend(clamp.stiffness, numbers_of(clamp.start), clamp.start_square, numbers, part);
+  const BendDamping<double> damper{clamp.damping, numbers_of(clamp.angle * clamp.turn), {0, 0, 0}};
+  const Vector3 damping = vector_of(damper.moment(numbers, 0));
   clamp.slope = joint.slope;
-  clamp.moment = vector_of(joint.moment + bend_damping(clamp.damping, numbers, turned));
-  clamp.damping_work = bend_loss(clamp.damping, numbers, turned);
+  clamp.moment = vector_of(joint.moment) + damping;
+  clamp.damping_work = damper.loss(numbers, 0);
   // The energy depends on the axis a through d / l - a: the torque on the axis is a x moment.
-  clamp.torque = clamp.middle_axis.cross(clamp.moment);
+  clamp.torque = clamp.middle_axis.cross(clamp.moment) + damping.dot(clamp.turn) * clamp.end_axis;
 }
 
 }  // namespace verlet_cable
