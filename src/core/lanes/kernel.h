@@ -6,6 +6,7 @@
 #include "lanes/load.h"
 #include "lanes/store.h"
 #include "lanes/sweep.h"
+#include "lanes/turn.h"
 
 namespace verlet_cable {
 // Without linkage: what is compiled for one processor is not to be used for another.
@@ -38,6 +39,7 @@ LanePasses passes_of_lanes() {
   passes.load = [](const LaneWork& w) {
     by_law(w.law, [&](auto bends, auto elastic) { load_lanes<bends.value, elastic.value, Real>(w); });
   };
+  passes.turn = turn_lanes<Real>;
   passes.sweep = [](const LaneWork& w) {
     by_law(w.law, [&](auto bends, auto elastic) { sweep_lanes<bends.value, elastic.value, false, Real>(w); });
   };

@@ -235,8 +235,14 @@ void LaneStepper::set_damping(int c, const LaneMember& member) {
   clamps_[c] = bending.clamps();
 }
 
-void LaneStepper::set_share(int c, double share) {
-  values_.share[2 * c] = values_.share[2 * c + 1] = share;
+/// As much as damps least.
+void LaneStepper::turn_with_material(int cables) {
+  passes_.turn(work_);
+  for (int c = 0; c < cables; ++c) {
+    if (values_.active[2 * c] == 0) continue;
+    const double along = values_.along[2 * c] + values_.along[2 * c + 1];
+    values_.share[2 * c] = values_.share[2 * c + 1] = turned_share(along, bendings_[c].turned_square());
+  }
 }
 
 void LaneStepper::read_displacement(int c) {
@@ -286,13 +292,10 @@ void LaneStepper::iterate(std::vector<LaneMember>& members) {
   for (const LaneMember& member : members) convergences_.emplace_back(member.substep);
   const int count = static_cast<int>(members.size());
   int active = count;
-  for (int c = 0; work_.law.is_damped && c < count; ++c) {
-    read_displacement(c);
-    set_share(c, bendings_[c].share_of_turned(displacement_));
-  }
   for (int i = 0; i < maximum_iterations && active > 0; ++i) {
     if (work_.law.bends)
       for (int c = 0; c < count; ++c) bend_clamps(c, members[c]);
+    if (work_.law.is_damped) turn_with_material(count);
     if (i == 0 || i >= iterations_of_first_matrix)
       passes_.sweep(work_);
     else
@@ -300,13 +303,12 @@ void LaneStepper::iterate(std::vector<LaneMember>& members) {
     for (int c = 0; c < count; ++c) {
       if (values_.active[2 * c] == 0) continue;
       ++members[c].result.iterations;
-      if (work_.law.is_damped)
-        set_share(c, turned_share(values_.along[2 * c] + values_.along[2 * c + 1], bendings_[c].turned_square()));
       const double square = values_.largest[2 * c] + 0 * values_.largest[2 * c + 1];
       const double size = std::sqrt(std::max(square, values_.largest[2 * c + 1])) / members[c].state->rest_lengths[0];
       const bool fails = !(size < largest_correction);
       members[c].result.converged = !fails && convergences_[c].is_reached(size);
       if (!fails && !members[c].result.converged) continue;
+      bendings_[c].set_share(values_.share[2 * c]);
       values_.active[2 * c] = values_.active[2 * c + 1] = 0;
       --active;
     }

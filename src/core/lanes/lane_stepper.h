@@ -49,7 +49,7 @@ class LaneStepper {
   void set_cable(int place, LaneMember& member);
   void set_values(int cable, const LaneMember& member);
   void set_damping(int cable, const LaneMember& member);
-  void set_share(int cable, double share);
+  void turn_with_material(int cables);
   void read_displacement(int cable);
   void set_pad(int cable);
   void set_ends(int cable, const LaneMember& member);

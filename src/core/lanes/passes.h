@@ -148,6 +148,7 @@ inline int elimination_size(const LaneLaw& law) {
 struct LanePasses {
   int lanes;                             ///< two a cable
   void (*load)(const LaneWork&);         ///< records from cables, as if nothing held them
+  void (*turn)(const LaneWork&);         ///< `along`, of damped bending
   void (*sweep)(const LaneWork&);        ///< a Newton iteration
   void (*light_sweep)(const LaneWork&);  ///< likewise, with the matrix of the last one
   void (*finish)(const LaneWork&);       ///< velocities and accelerations at the end

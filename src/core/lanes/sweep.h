@@ -52,17 +52,16 @@ struct Joint {
   BendStiffness<Real> stiffness;  ///< [N/m]
 };
 
-/// `start`: e, `change`: of it over the substep; `at`: the node's place; 1 / length of the segments before and after it; `share`,
-/// `along`: see BendDamping.
+/// `start`: e, `change`: of it over the substep; `at`: the node's place; 1 / length of the segments before and after it; `share`:
+/// see BendDamping.
 template <Bends bends, class Real>
 [[gnu::always_inline]] inline Joint<Real> joint_at(const Place<Real>& at, const VectorOf<Real>& start,
                                                    const VectorOf<Real>& change, const Real& before, const Real& after,
-                                                   const Real& share, Real& along) {
+                                                   const Real& share) {
   const Bend<Real> joint = bend(at[LaneField::joint_stiffness], start, dot(start, start), change, 0.5);
   if constexpr (bends == Bends::damped) {
     const Real damping = at[LaneField::joint_damping];
     const BendDamping<Real> damper{damping, at.vector(LaneField::driven_x), at.vector(LaneField::turned_x)};
-    along = along + damper.along(change);
     return {joint.moment + damper.moment(change, share), bend_stiffness(0.5 * joint.slope + damping, before, after)};
   }
   return {joint.moment, bend_stiffness(0.5 * joint.slope, before, after)};
@@ -120,7 +119,6 @@ void sweep_lanes(const LaneWork& w) {
   };
 
   const Real active = values_of<Real>(w.values->active), share = values_of<Real>(w.values->share);
-  Real along = zero;
   Front<Real> front;
   start(zero, front);
   FrontLoad<Real> load{none, none, zero};
@@ -152,7 +150,7 @@ void sweep_lanes(const LaneWork& w) {
         after = displacement(k + 2) - next;
         joint_next = joint_at<bending>(
             following, inverse_after * following.vector(LaneField::segment_x) - inverse * at.vector(LaneField::segment_x),
-            inverse_after * after - inverse * change, inverse, inverse_after, share, along);
+            inverse_after * after - inverse * change, inverse, inverse_after, share);
       } else {
         joint_next = crossed_over(joint);
       }
@@ -246,7 +244,6 @@ void sweep_lanes(const LaneWork& w) {
     largest = greater_of(largest, square);
     sum += square;
   }
-  if constexpr (bending == Bends::damped) set_values(along, w.values->along);
   // A NaN may be lost among squares, but not in their sum.
   set_values(largest + 0.0 * sum, w.values->largest);
 }

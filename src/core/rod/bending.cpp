@@ -184,21 +184,16 @@ void Bending::add_segment_forces(const VectorArray& displacement, VectorArray& p
         change_, i);
   }
   if (!growing_.empty()) add_growth(displacement);
-  Pair along{};
+  if (is_damped_) find_share();
   for (int i = 1; i < segments_; i += 2) {
     const PairVector change = neighbours(change_, i);
     Bend<Pair> joint = bend(neighbours(stiffness_, i), neighbours(start_, i), neighbours(start_square_, i), change, part_);
-    if (is_damped_) {
-      const BendDamping<Pair> damping{neighbours(damping_, i), neighbours(driven_, i), neighbours(turned_, i)};
-      joint.moment = joint.moment + damping.moment(change, both(share_));
-      along += damping.along(change);
-    }
+    if (is_damped_) joint.moment = joint.moment + damping_of_pair(i).moment(change, both(share_));
     put(joint.moment, moment_, i);
     put(joint.slope, slope_, i);
   }
   for (int i = 0; i < segments_; i += 2)
     put(neighbours(pull, i) + neighbours(inverse_length_, i) * (neighbours(moment_, i) - neighbours(moment_, i + 1)), pull, i);
-  share_ = turned_share(along[0] + along[1], turned_square_);
   bend_clamps(displacement);
   for (const ClampJoint& clamp : clamps_) {
     const int i = clamp.segment;
@@ -216,10 +211,9 @@ void Bending::bend_clamps(const VectorArray& displacement) {
 Vector3 Bending::damping_torque(const VectorArray& displacement) const {
   Vector3 torque = Vector3::Zero();
   if (!active_ || !is_damped_) return torque;
-  const double share = share_of_turned(displacement);
   for (int i = 1; i < segments_; ++i) {
     const Vector3 change = change_at(i, displacement);
-    torque -= (get(start_, i) + part_ * change).cross(vector_of(damping_at(i).moment(numbers_of(change), share)));
+    torque -= (get(start_, i) + part_ * change).cross(vector_of(damping_at(i).moment(numbers_of(change), share_)));
   }
   return torque;
 }
@@ -227,8 +221,7 @@ Vector3 Bending::damping_torque(const VectorArray& displacement) const {
 double Bending::damping_work(const VectorArray& displacement) const {
   double work = 0;
   if (!active_ || !is_damped_) return work;
-  const double share = share_of_turned(displacement);
-  for (int i = 1; i < segments_; ++i) work += damping_at(i).loss(numbers_of(change_at(i, displacement)), share);
+  for (int i = 1; i < segments_; ++i) work += damping_at(i).loss(numbers_of(change_at(i, displacement)), share_);
   return work;
 }
 
@@ -243,20 +236,19 @@ BendDamping<double> Bending::damping_at(int node) const {
   return {damping_[node], numbers_of(get(driven_, node)), numbers_of(get(turned_, node))};
 }
 
-void Bending::expect(const VectorArray& displacement) {
-  if (is_damped_) share_ = share_of_turned(displacement);
+BendDamping<Pair> Bending::damping_of_pair(int node) const {
+  return {neighbours(damping_, node), neighbours(driven_, node), neighbours(turned_, node)};
 }
 
-double Bending::share_of_turned(const VectorArray& displacement) const {
-  double along = 0;
-  for (int i = 1; i < segments_; ++i) along += damping_at(i).along(numbers_of(change_at(i, displacement)));
-  return turned_share(along, turned_square_);
+void Bending::find_share() {
+  Pair along{};
+  for (int i = 1; i < segments_; i += 2) along += damping_of_pair(i).along(neighbours(change_, i));
+  share_ = turned_share(along[0] + along[1], turned_square_);
 }
 
 void Bending::turn_clamps(const VectorArray& displacement, std::vector<HeldDirection>& directions) const {
-  const double share = share_of_turned(displacement);
   for (int i = 1; i < segments_; ++i) {
-    const Vector3 moment = vector_of(damping_at(i).moment(numbers_of(change_at(i, displacement)), share));
+    const Vector3 moment = vector_of(damping_at(i).moment(numbers_of(change_at(i, displacement)), share_));
     spin_.pass_on(i, moment.dot(get(turn_, i)), directions);
   }
 }

@@ -39,13 +39,11 @@ class Bending {
   /// By what a unit of such a flow changes the loads on nodes. Returns by what it changes what drives it [N/m].
   double flow_column(int before, int after, const VectorArray& middle, FlowColumn& column) const;
   bool is_damped() const { return active_ && is_damped_; }
-  /// After `start`: what the displacements of the nodes are likely to be [m].
-  void expect(const VectorArray& displacement);
   /// At an inner node.
   BendDamping<double> damping_at(int node) const;
   double turned_square() const { return turned_square_; }  ///< see BendDamping
-  /// What of the material's own turn is in it where the nodes are displaced so.
-  double share_of_turned(const VectorArray& displacement) const;
+  /// That with which forces were found last, where others have found them.
+  void set_share(double share) { share_ = share; }
   const std::vector<ClampJoint>& clamps() const { return clamps_; }
   /// Adds the forces of the segments on their first nodes [N], for displacements of the nodes [m].
   void add_segment_forces(const VectorArray& displacement, VectorArray& pull);
@@ -64,6 +62,8 @@ class Bending {
 
  private:
   Vector3 change_at(int node, const VectorArray& displacement) const;
+  BendDamping<Pair> damping_of_pair(int node) const;
+  void find_share();
   void turn_with_material(const CableModel& model, const CableState& state, const VectorArray& segment,
                           const std::vector<HeldDirection>& directions, double h);
   void bend_clamps(const VectorArray& displacement);
@@ -96,11 +96,12 @@ class Bending {
   VectorArray start_;                        // nodes: e at the start
   std::vector<double> start_square_;         // nodes: |e|² at the start
   MaterialSpin spin_;
-  VectorArray turn_;                      // nodes: of e with the material, a radian
-  VectorArray driven_, turned_;           // nodes: see BendDamping
-  double turned_square_ = 0, share_ = 0;  // see turned_share; of the iterate that was found last
-  VectorArray change_, moment_;           // nodes: change of e; moment along it [N m]
-  std::vector<double> slope_;             // nodes: of the moment over e, without damping [N m]
+  VectorArray turn_;             // nodes: of e with the material, a radian
+  VectorArray driven_, turned_;  // nodes: see BendDamping
+  double turned_square_ = 0;
+  double share_ = 0;             // see turned_share; of the iterate that was found last
+  VectorArray change_, moment_;  // nodes: change of e; moment along it [N m]
+  std::vector<double> slope_;    // nodes: of the moment over e, without damping [N m]
   std::vector<ClampJoint> clamps_;
 };
 

@@ -100,7 +100,6 @@ void CableStepper::begin(const Substep& s, const CableState& state, SubstepResul
   fluid_.start(s.environment.fluid, s.environment.gravity, s.model, state, s.damping_time());
   predict(s.h);
   predict_flows(s);
-  if (bending_.active()) bending_.expect(displacement_);
 }
 
 void CableStepper::finish(const Substep& s, bool struck, CableState& state, SubstepResult& result) {
@@ -728,7 +727,7 @@ double CableStepper::restore_angular_momentum(const Substep& s, const std::vecto
     along += masses[i] * given.dot(get(end_velocity_, i));
     square += 0.5 * masses[i] * given.squaredNorm();
   }
-  const double work = bending_.damping_work(displacement_);
+  const double work = std::max(0.0, bending_.damping_work(displacement_));
   double share = 1;
   if (along + square > work) share = (std::sqrt(along * along + 4 * square * work) - along) / (2 * square);
   for (int i = 0; i <= segments_; ++i) set(end_velocity_, i, get(end_velocity_, i) + share * missing.at(get(position_, i)));
