@@ -1,0 +1,150 @@
+#include <gtest/gtest.h>
+
+#include <random>
+#include <vector>
+
+#include "law/bend.h"
+#include "law/drag.h"
+#include "law/resistance.h"
+#include "law/stretch.h"
+
+// Each law alone: what it exerts is the derivative of its potential, keeps the energy over a substep, or takes some.
+
+namespace verlet_cable {
+namespace {
+
+using Vector = VectorOf<double>;
+
+class Law : public testing::Test {
+ protected:
+  double number(double size) { return std::uniform_real_distribution<double>(-size, size)(random_); }
+  Vector vector(double size) { return {number(size), number(size), number(size)}; }
+
+ private:
+  std::mt19937 random_{1};
+};
+
+double& component(Vector& v, int i) {
+  return i == 0 ? v.x : i == 1 ? v.y : v.z;
+}
+
+TEST_F(Law, BendsKeepTheEnergyOverASubstep) {
+  for (int i = 0; i < 100; ++i) {
+    const Vector start = vector(0.5), change = vector(0.3), end = start + change;
+    const Bend<double> joint = bend(2.5, start, dot(start, start), change, 0.5);
+    EXPECT_NEAR(dot(joint.moment, change), bend_energy(2.5, end) - bend_energy(2.5, start), 1e-14);
+  }
+}
+
+/// Forces of the end are its derivative.
+TEST_F(Law, TheMomentOfABendIsTheDerivativeOfItsEnergy) {
+  constexpr double step = 1e-5;
+  for (int i = 0; i < 100; ++i) {
+    const Vector e = vector(0.5);
+    const Bend<double> joint = bend(2.5, e, dot(e, e), Vector{0, 0, 0}, 1);
+    for (int k = 0; k < 3; ++k) {
+      Vector more = e, less = e, moment = joint.moment;
+      component(more, k) += step;
+      component(less, k) -= step;
+      EXPECT_NEAR(component(moment, k), (bend_energy(2.5, more) - bend_energy(2.5, less)) / (2 * step), 1e-8);
+    }
+  }
+}
+
+/// Bends of a cable, in which the material turns as clamps turn it and by itself.
+struct DampedBends {
+  std::vector<BendDamping<double>> bends;
+
+  double share(const std::vector<Vector>& changes) const {
+    double along = 0, square = 0;
+    for (std::size_t j = 0; j < bends.size(); ++j) {
+      along += bends[j].along(changes[j]);
+      square += bends[j].square();
+    }
+    return turned_share(along, square);
+  }
+  double loss(const std::vector<Vector>& changes) const {
+    double sum = 0;
+    for (std::size_t j = 0; j < bends.size(); ++j) sum += bends[j].loss(changes[j], share(changes));
+    return sum;
+  }
+  /// With `part` of what turns by itself.
+  double potential(const std::vector<Vector>& changes, double part) const {
+    double sum = 0;
+    for (std::size_t j = 0; j < bends.size(); ++j) {
+      const Vector bending = changes[j] - bends[j].driven - part * bends[j].turned;
+      sum += 0.5 * bends[j].damping * dot(bending, bending);
+    }
+    return sum;
+  }
+};
+
+TEST_F(Law, DampingOfBendsIsTheLeastPotentialAndOnlyTakesEnergy) {
+  constexpr int count = 5;
+  constexpr double step = 1e-6;
+  int none = 0, some = 0, all = 0;
+  for (int i = 0; i < 500; ++i) {
+    DampedBends damped;
+    std::vector<Vector> changes;
+    const double size = number(2);
+    for (int j = 0; j < count; ++j) {
+      const Vector turned = vector(0.1);
+      damped.bends.push_back({1 + number(0.5), vector(0.1), turned});
+      changes.push_back(damped.bends[j].driven + size * turned + vector(0.05));
+    }
+    const double share = damped.share(changes), least = damped.potential(changes, share);
+    ++(share == 0 ? none : share < 1 ? some : all);
+    for (double part = 0; part <= 1; part += 0.05) EXPECT_LE(least, damped.potential(changes, part) + 1e-15);
+    // A convex potential that is nothing where only clamps turn the material.
+    EXPECT_GE(damped.loss(changes), least);
+    for (int j = 0; j < count; ++j)
+      for (int k = 0; k < 3; ++k) {
+        std::vector<Vector> more = changes, less = changes;
+        component(more[j], k) += step;
+        component(less[j], k) -= step;
+        const double slope =
+            (damped.potential(more, damped.share(more)) - damped.potential(less, damped.share(less))) / (2 * step);
+        Vector moment = damped.bends[j].moment(changes[j], share);
+        EXPECT_NEAR(component(moment, k), slope, 1e-6);
+      }
+  }
+  EXPECT_GT(std::min({none, some, all}), 50);
+}
+
+/// A spring keeps what a dashpot does not take.
+TEST_F(Law, ResistanceKeepsWhatItDoesNotTake) {
+  const Resistance<double> resistance{3, 0.4};
+  for (int i = 0; i < 100; ++i) {
+    const double start = number(1), change = number(1);
+    const double work = resistance.stress(start + 0.5 * change, change) * change;
+    EXPECT_NEAR(work, resistance.energy(start + change) - resistance.energy(start) + resistance.loss(change), 1e-14);
+    EXPECT_GE(resistance.loss(change), 0);
+  }
+}
+
+/// What moves with the fluid feels nothing; cable and fluid lose what drag takes.
+TEST_F(Law, DragTakesWhatCableAndFluidGive) {
+  for (int i = 0; i < 100; ++i) {
+    const double h = 1e-3;
+    const LinearDrag<double> drag{0.3, vector(2), 1 / h};
+    const Vector u = vector(5e-3), force = drag.load() - drag.resistance() * u;
+    EXPECT_NEAR(drag.loss(u), drag.work(u) - dot(force, u), 1e-15);
+    EXPECT_GE(drag.loss(u), 0);
+    EXPECT_NEAR(drag.loss(h * drag.fluid), 0, 1e-18);
+  }
+}
+
+/// Newton's method on a row finds the density with which a segment has its tension, and the row says when it has.
+TEST_F(Law, ElasticRowsVanishAtTheTension) {
+  const double start = 0.1, end = 0.11, rest = 0.1, mean = 0.5 * (start + end);
+  const Resistance<double> resistance{200 / rest, 3};
+  const double tension = resistance.stress(mean - rest, end - start);
+  const LengthRow<double> solved = elastic_row(tension, resistance.slope(0.5), tension / mean, mean, end, 0.5);
+  EXPECT_NEAR(solved.gap, 0, 1e-16);
+  const double density = 0.9 * tension / mean;
+  const LengthRow<double> row = elastic_row(tension, resistance.slope(0.5), density, mean, end, 0.5);
+  EXPECT_NEAR(density - row.gap / row.compliance, tension / mean, 1e-10);
+}
+
+}  // namespace
+}  // namespace verlet_cable
