@@ -172,7 +172,7 @@ void Bending::turn_with_material(const CableModel& model, const CableState& stat
   }
   for (ClampJoint& clamp : clamps_) {
     clamp.turn = turn_of(get(segment, clamp.segment), clamp.start_axis, clamp.start);
-    clamp.angle = h * spin_of(directions[clamp.target], h);
+    clamp.angle = spin_.is_driven() ? h * spin_of(directions[clamp.target], h) : 0;
   }
 }
 
@@ -225,11 +225,11 @@ double Bending::damping_work(const VectorArray& displacement) const {
   return work;
 }
 
-double Bending::damping_work() const {
-  double work = 0;
-  for (int i = 1; i < segments_; ++i) work += damping_at(i).loss(numbers_of(get(change_, i)), share_);
-  for (const ClampJoint& clamp : clamps_) work += clamp.damping_work;
-  return work;
+double Bending::find_loss(const VectorArray& displacement) {
+  bend_clamps(displacement);
+  double loss = damping_work(displacement);
+  for (const ClampJoint& clamp : clamps_) loss += clamp.damping_work;
+  return loss;
 }
 
 BendDamping<double> Bending::damping_at(int node) const {

@@ -51,12 +51,12 @@ class Bending {
   void add_stiffness(KktSystem& system) const;
   /// What damping does to the angular momentum [N m], which a cable as a whole would keep.
   Vector3 damping_torque(const VectorArray& displacement) const;
-  /// What damping takes from the energy [J].
+  /// What damping takes from the energy [J], clamps left out.
   double damping_work(const VectorArray& displacement) const;
   /// Adds what damping does where the material turns about the cable [N m] to the `torque` of clamps that turn it.
   void turn_clamps(const VectorArray& displacement, std::vector<HeldDirection>& directions) const;
-  /// The same at joints and clamps, for the changes that `add_segment_forces` found last.
-  double damping_work() const;
+  /// The same with clamps, which are bent so.
+  double find_loss(const VectorArray& displacement);
   /// Adds the moments on the holders of directions [N m] to their `torque`.
   void react(const VectorArray& displacement, std::vector<HeldDirection>& directions);
 

@@ -29,7 +29,7 @@ void CableStepper::balance_laws(const Substep& s, const std::vector<double>& mas
   EnergyBalance& balance = result.balance;
   if (drags_) balance_drag(s, masses, balance);
   if (fluid_.active()) fluid_.add_work(displacement_, s.h, balance);
-  if (bending_.is_damped()) balance.dissipated.bending += bending_.damping_work();
+  if (bending_.is_damped()) balance.dissipated.bending += bending_loss_;
   if (twist_.active()) balance.dissipated.torsional += twist_.damping_work();
   if (rod_.active()) rod_.add_losses(balance);
   balance_lengths(s, result);

@@ -106,7 +106,10 @@ void CableStepper::finish(const Substep& s, bool struck, CableState& state, Subs
   if (s.statics)
     for (int i = 0; i <= segments_; ++i) result.displacement = std::max(result.displacement, get(displacement_, i).norm());
   react(s, state.masses);
-  if (!s.statics) balance_laws(s, state.masses, result);
+  if (!s.statics) {
+    measure_end();
+    balance_laws(s, state.masses, result);
+  }
   move(s);
   finish_flows(s, state);
   // What a conserving substep has at its end; what is taken from there on it does not resolve.
@@ -613,6 +616,12 @@ void CableStepper::take_back(double part) {
   if (rod_.active()) rod_.correct(-part);
 }
 
+/// The lengths of the solution, which the last iterate did not have yet.
+void CableStepper::measure_end() {
+  for (int i = 0; any_elastic_ && i < segments_; ++i)
+    end_square_[i] = (get(segment_, i) + get(displacement_, i + 1) - get(displacement_, i)).squaredNorm();
+}
+
 void CableStepper::move(const Substep& s) {
   const VelocityWeights weights = velocity_weights(s.scheme);
   const double rate = s.statics ? 0 : weights.displacement / s.h;
@@ -803,6 +812,7 @@ void CableStepper::assemble_for_velocities() {
 void CableStepper::react(const Substep& s, const std::vector<double>& masses) {
   for (HeldDirection& target : s.boundary.directions) target.torque.setZero();
   if (rod_.active()) rod_.finish(displacement_, segment_, s.boundary);
+  if (bending_.is_damped()) with_material([&] { bending_loss_ = bending_.find_loss(displacement_); });
   if (bending_.active() && winch_node_ >= 0) {
     bending_force_.assign(segments_ + 2, 0.0);
     with_material([&] { bending_.add_segment_forces(displacement_, bending_force_); });

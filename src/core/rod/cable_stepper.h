@@ -143,6 +143,7 @@ class CableStepper {
   void solve_segments();
   Vector3 corrected_load(int node) const;
   double force_along(int segment) const;
+  void measure_end();
   void move(const Substep& substep);
   void restore_momenta(const Substep& substep, const std::vector<double>& masses);
   double restore_angular_momentum(const Substep& substep, const std::vector<double>& masses);
@@ -184,6 +185,7 @@ class CableStepper {
   double compressed_part_ = 0.5;    // where in the substep compression acts along segments
   VectorArray middle_;              // segments: (d + d') / 2 [m]
   VectorArray segment_force_;       // segments: force on the first node [N]
+  double bending_loss_ = 0;         // [J] that damping takes, of the solution
   VectorArray bending_force_;       // segments: of bending, of the solution [N]; where a winch runs
   std::vector<double> end_square_;  // segments: square of s' [m^2]
   VectorArray end_velocity_;        // nodes: v' [m/s]

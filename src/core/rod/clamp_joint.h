@@ -16,7 +16,7 @@ struct ClampJoint {
   double inverse_length = 0;          ///< of the segment, at rest [1/m]
   double stiffness = 0, damping = 0;  ///< EI / length, and damping / (length h) [N m]
   Vector3 turn = Vector3::Zero();     ///< of e with the material in the clamp, a radian
-  double angle = 0;                   ///< [rad] by which the clamp turns about its axis
+  double angle = 0;                   ///< [rad] by which the clamp turns the material about its axis
   Vector3 start = Vector3::Zero(), axis_change = Vector3::Zero(), middle_axis = Vector3::Zero();
   double start_square = 0;
   Vector3 moment = Vector3::Zero();  ///< force times length, on the side's direction

@@ -358,7 +358,7 @@ double KirchhoffRod::correct(double part) {
 void KirchhoffRod::finish(const VectorArray& displacement, const VectorArray& segment, Boundary& boundary) {
   turn_frames(displacement, segment);
   set_clamp_frames();
-  joints_.follow(frames_.end, 0, frames_.end, 1, 1, segments_);
+  joints_.evaluate(part_, frames_, 0, frames_, 1, 1, segments_);
   clamp_joints_.evaluate(part_, clamp_before_, 0, clamp_after_, 0, 0, static_cast<int>(clamps_.size()));
   for (std::size_t k = 0; k < clamps_.size(); ++k) {
     const ClampJoint& clamp = clamps_[k];

@@ -17,6 +17,8 @@ class MaterialSpin {
   /// `segment`: [m]; `damping`: what resists bending, a node; `h`: the substep [s].
   void find(const CableModel& model, const CableState& state, const VectorArray& segment,
             const std::vector<HeldDirection>& directions, const std::vector<double>& damping, double h);
+  /// Whether clamps turn the material: there are some, and it passes their roll on.
+  bool is_driven() const { return shares_.front().first >= 0; }
   /// [rad/s] At a joint between two segments: as clamps turn the material in this substep.
   double driven(int node) const { return 0.5 * (driven_[node - 1] + driven_[node]); }
   /// [rad/s] Likewise, what directions that turn make of it, as they did in the substep before.

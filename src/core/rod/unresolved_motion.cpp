@@ -20,8 +20,8 @@ constexpr double memory = 0.8;
 /// [m/s^2] Changes of less from one substep to the next go unnoticed: of the tension by a thousandth of the weight.
 constexpr double noticed_change = 0.01;
 
-/// [m/s] With which what holds a cable carries a node: linear between the held ones, as the rate of the material that a winch moves
-/// along it is. `k`: the held node before, 0 for the first node.
+/// [m/s] With which what holds a cable carries a node: linear between the held ones, as the rate of the material that a winch
+/// moves along it is. `k`: the held node before, 0 for the first node.
 Vector3 carried_velocity(const std::vector<HeldNode>& held, const std::vector<double>& rates, const VectorArray& place, int node,
                          int nodes, std::size_t& k) {
   if (held.empty()) return Vector3::Zero();
