@@ -285,8 +285,8 @@ INSTANTIATE_TEST_SUITE_P(Sections, Turns,
                          testing::Values(BendingStiffness(1, 1), BendingStiffness(1, 1 + 1e-12), BendingStiffness(1, 0.2)));
 
 /// A heavy rod that is straight unloaded, sags, and is turned about its axis at one end or both: damping in the material that
-/// turns pushes it aside. The cheap law of straight rods leaves out the torque that damping passes along the rod. `second`: of
-/// its bending stiffnesses, to the first.
+/// turns pushes it aside. In the cheap law of straight rods the torque that damping passes along the rod acts on the clamp only.
+/// `second`: of its bending stiffnesses, to the first.
 Simulation turning_shaft(bool both_ends, double second) {
   SceneDesc scene = scenes::one_cable(30);
   material(scene).bending_stiffness = {0.05, second * 0.05};
