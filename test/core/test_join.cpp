@@ -209,6 +209,29 @@ TEST(Join, EndsThatAreBeingJoinedAreNotBothHeld) {
   EXPECT_EQ(world.hash(), before);
 }
 
+/// While its ends are drawn together, a damped cable may come to be twisted by clamps, and is a whole rod from then on.
+TEST(Join, WhatBecomesAWholeRodOnTheWayIsWelded) {
+  SceneDesc scene = two_ropes(0.3, 0.005);
+  scene.materials[0].material.bending_damping = 1e-3;
+  scene.materials[0].material.torsional_stiffness = 0.004;
+  World world(scene, initial_frames(scene));
+  ASSERT_TRUE(world.apply(edit::Join{0, true, 1, true}).ok);
+  for (int i = 0; i < 5; ++i) world.step({FrameInput{}});
+  for (const int node : {5, 10}) {
+    edit::Pin pin;
+    pin.body = cable_id(0);
+    pin.node = node;
+    pin.type = AttachmentType::clamp;
+    pin.pose.position = world.cables()[0].state.positions[node];
+    ASSERT_TRUE(world.apply(pin).ok);
+  }
+  EXPECT_FALSE(world.cables()[0].state.directors.empty());
+  for (int i = 0; i < 2000; ++i) ASSERT_NE(world.step({FrameInput{}}).status, Status::fault) << i;
+  const CableState& cable = world.cables()[0].state;
+  EXPECT_EQ(cable.segments(), 50);
+  EXPECT_EQ(cable.rest_twist.size(), cable.positions.size());
+}
+
 TEST(Join, BadRequestsChangeNothing) {
   SceneDesc scene = two_ropes(1.2);
   scene.materials.push_back(scene.materials[0]);

@@ -283,9 +283,11 @@ void World::Implementation::close_joint(int index) {
   carry_frames(together, cable);
   after_remeshing(index);
   // Welded as they have come to each other.
-  if (!cable.joint_twist.empty())
+  if (!cable.joint_twist.empty()) {
+    cable.rest_twist.resize(cable.nodes(), 0.0);
     cable.rest_twist[node] =
         (joint_angles_at(cable, node).twist - excess) / cable.bending_length(node, joint_length(cable, node));
+  }
   project_velocities(*state.cables[index].model, boundary_now(s.targets).nodes, cable);
 }
 
