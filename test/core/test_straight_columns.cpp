@@ -281,8 +281,8 @@ TEST(StraightColumn, IsNotSettledAboveItsEulerLoad) {
       const double load = (ends == Type::clamp ? 4 : 1) * M_PI * M_PI * bending_stiffness;
       SceneDesc scene = column(axial_stiffness, bending_stiffness, ends, ends);
       World world(scene, hand(1));
-      // Far too fast for it to have buckled by itself.
-      for (int i = 1; i <= 4; ++i) world.step(hand(1 - 0.00025 * i));
+      // Far too fast for it to have buckled by itself: what has begun to, in waves, may settle in them.
+      world.step(hand(0.999));
       ASSERT_TRUE(world.settle());
       const double slack = 1e-3 - (axial_stiffness < infinity ? load / axial_stiffness : 0);
       EXPECT_NEAR(aside(world), Elastica(1 - slack).deflection(), 1e-4);
