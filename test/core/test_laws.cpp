@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <random>
 #include <vector>
 
@@ -52,10 +51,6 @@ TEST_F(Law, TheMomentOfABendIsTheDerivativeOfItsEnergy) {
   }
 }
 
-Vector across(const Vector& unit, const Vector& v) {
-  return v - dot(unit, v) * unit;
-}
-
 /// Bends of a cable, in which the material turns as clamps turn it and by itself.
 struct DampedBends {
   std::vector<BendDamping<double>> bends;
@@ -77,7 +72,7 @@ struct DampedBends {
   double potential(const std::vector<Vector>& changes, double part) const {
     double sum = 0;
     for (std::size_t j = 0; j < bends.size(); ++j) {
-      const Vector bending = across(bends[j].along_cable, changes[j] - bends[j].driven - part * bends[j].turned);
+      const Vector bending = changes[j] - bends[j].driven - part * bends[j].turned;
       sum += 0.5 * bends[j].damping * dot(bending, bending);
     }
     return sum;
@@ -93,9 +88,8 @@ TEST_F(Law, DampingOfBendsIsTheLeastPotentialAndOnlyTakesEnergy) {
     std::vector<Vector> changes;
     const double size = number(2);
     for (int j = 0; j < count; ++j) {
-      const Vector cable = vector(1), along = (1 / std::sqrt(dot(cable, cable))) * cable;
-      const Vector turned = across(along, vector(0.1));
-      damped.bends.push_back({1 + number(0.5), across(along, vector(0.1)), turned, along});
+      const Vector turned = vector(0.1);
+      damped.bends.push_back({1 + number(0.5), vector(0.1), turned});
       changes.push_back(damped.bends[j].driven + size * turned + vector(0.05));
     }
     const double share = damped.share(changes), least = damped.potential(changes, share);

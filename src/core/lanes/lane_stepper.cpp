@@ -231,9 +231,6 @@ void LaneStepper::set_damping(int c, const LaneMember& member) {
     at(LaneField::turned_x, c, i) = damping.turned.x;
     at(LaneField::turned_y, c, i) = damping.turned.y;
     at(LaneField::turned_z, c, i) = damping.turned.z;
-    at(LaneField::along_x, c, i) = damping.along_cable.x;
-    at(LaneField::along_y, c, i) = damping.along_cable.y;
-    at(LaneField::along_z, c, i) = damping.along_cable.z;
   }
   clamps_[c] = bending.clamps();
 }

@@ -63,7 +63,6 @@ void load_lanes(const LaneWork& w) {
         at[LaneField::joint_damping] = zero;
         at.set(LaneField::driven_x, none);
         at.set(LaneField::turned_x, none);
-        at.set(LaneField::along_x, none);
       }
       length_before = rest;
     }

@@ -67,9 +67,6 @@ enum class LaneField {
   turned_x,  ///< likewise
   turned_y,
   turned_z,
-  along_x,  ///< likewise
-  along_y,
-  along_z,
   count
 };
 

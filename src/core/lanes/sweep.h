@@ -61,8 +61,7 @@ template <Bends bends, class Real>
   const Bend<Real> joint = bend(at[LaneField::joint_stiffness], start, dot(start, start), change, 0.5);
   if constexpr (bends == Bends::damped) {
     const Real damping = at[LaneField::joint_damping];
-    const BendDamping<Real> damper{damping, at.vector(LaneField::driven_x), at.vector(LaneField::turned_x),
-                                   at.vector(LaneField::along_x)};
+    const BendDamping<Real> damper{damping, at.vector(LaneField::driven_x), at.vector(LaneField::turned_x)};
     return {joint.moment + damper.moment(change, share), bend_stiffness(0.5 * joint.slope + damping, before, after)};
   }
   return {joint.moment, bend_stiffness(0.5 * joint.slope, before, after)};

@@ -21,8 +21,8 @@ void turn_lanes(const LaneWork& w) {
     const VectorOf<Real> next = k < m ? place_of<Real>(w, k + 1).vector(LaneField::displacement_x) : beyond_middle;
     const VectorOf<Real> turned_on = at[LaneField::inverse_length] * without_pad(w, k, next - u);
     if (k > 0) {
-      const BendDamping<Real> damper{at[LaneField::joint_damping], at.vector(LaneField::driven_x), at.vector(LaneField::turned_x),
-                                     at.vector(LaneField::along_x)};
+      const BendDamping<Real> damper{at[LaneField::joint_damping], at.vector(LaneField::driven_x),
+                                     at.vector(LaneField::turned_x)};
       along = along + damper.along(turned_on - before);
     }
     u = next;

@@ -31,22 +31,19 @@ template <class Real>
   return stiffness * angle_energy<Real>(0.5 * dot(e, e));
 }
 
-/// What damps a bend over a substep. A bend that turns as a whole is not damped. As it turns in its plane, e changes along the
-/// cable: what is across is left. The material turns e about the cable: by `driven` as clamps turn it, and by a share of
-/// `turned`, by which it turned by itself in the substep before. The share, from none to all and the same of the whole cable, is
-/// that with which damping is least:
-///   potential = min over share of sum of damping |(change - driven - share turned) across the cable|^2 / 2,
+/// What damps a bend over a substep. The material of a cable turns e without bending: by `driven` as clamps turn it, and by a
+/// share of `turned`, by which it turned by itself in the substep before. The share, from none to all and the same of the whole
+/// cable, is that with which damping is least:
+///   potential = min over share of sum of damping |change - driven - share turned|^2 / 2,
 /// which is convex, and zero where only clamps turn the material, so that damping takes energy whatever the changes are.
 template <class Real>
 struct BendDamping {
-  Real damping;                   ///< [N m] over the length of cable and the time of the substep
-  VectorOf<Real> driven, turned;  ///< across the cable
-  VectorOf<Real> along_cable;     ///< unit vector halfway between the two directions
+  Real damping;  ///< [N m] over the length of cable and the time of the substep
+  VectorOf<Real> driven, turned;
 
   /// [N m] On the change of e.
   [[gnu::always_inline]] VectorOf<Real> moment(const VectorOf<Real>& change, const Real& share) const {
-    const VectorOf<Real> bending = change - driven - share * turned;
-    return damping * (bending - dot(along_cable, bending) * along_cable);
+    return damping * (change - driven - share * turned);
   }
   /// Sums that tell the share: see `turned_share`.
   [[gnu::always_inline]] Real along(const VectorOf<Real>& change) const { return damping * dot(change - driven, turned); }

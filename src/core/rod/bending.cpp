@@ -11,7 +11,7 @@ void Bending::resize(int segments) {
   segments_ = segments;
   const std::size_t nodes = segments + 2;  // one more, where two are computed with together
   for (std::vector<double>* a : {&inverse_length_, &stiffness_, &damping_, &start_square_, &slope_}) a->assign(nodes, 0.0);
-  for (VectorArray* a : {&start_, &change_, &moment_, &along_, &turn_, &driven_, &turned_}) a->assign(nodes, 0.0);
+  for (VectorArray* a : {&start_, &change_, &moment_, &turn_, &driven_, &turned_}) a->assign(nodes, 0.0);
   spin_.resize(segments);
   clamps_.reserve(2 * nodes);
   segment_.assign(nodes, 0.0);
@@ -164,17 +164,15 @@ void Bending::turn_with_material(const CableModel& model, const CableState& stat
   spin_.find(model, state, segment, directions, damping_, h);
   turned_square_ = 0;
   for (int i = 1; i < segments_; ++i) {
-    const Vector3 along = (get(segment, i - 1) + get(segment, i)).normalized(), turn = along.cross(get(start_, i));
-    set(along_, i, along);
+    const Vector3 turn = turn_of(get(segment, i - 1), get(segment, i), get(start_, i));
     set(turn_, i, turn);
     set(driven_, i, h * spin_.driven(i) * turn);
     set(turned_, i, h * spin_.own(i) * turn);
     turned_square_ += damping_at(i).square();
   }
   for (ClampJoint& clamp : clamps_) {
-    clamp.along = (get(segment, clamp.segment).normalized() + clamp.start_axis).normalized();
     if (!spin_.is_driven()) continue;
-    clamp.turn = clamp.along.cross(clamp.start);
+    clamp.turn = turn_of(get(segment, clamp.segment), clamp.start_axis, clamp.start);
     clamp.angle = h * spin_of(directions[clamp.target], h);
   }
 }
@@ -236,11 +234,11 @@ double Bending::find_loss(const VectorArray& displacement) {
 }
 
 BendDamping<double> Bending::damping_at(int node) const {
-  return {damping_[node], numbers_of(get(driven_, node)), numbers_of(get(turned_, node)), numbers_of(get(along_, node))};
+  return {damping_[node], numbers_of(get(driven_, node)), numbers_of(get(turned_, node))};
 }
 
 BendDamping<Pair> Bending::damping_of_pair(int node) const {
-  return {neighbours(damping_, node), neighbours(driven_, node), neighbours(turned_, node), neighbours(along_, node)};
+  return {neighbours(damping_, node), neighbours(driven_, node), neighbours(turned_, node)};
 }
 
 void Bending::find_share() {

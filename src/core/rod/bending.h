@@ -96,7 +96,6 @@ class Bending {
   VectorArray start_;                        // nodes: e at the start
   std::vector<double> start_square_;         // nodes: |e|² at the start
   MaterialSpin spin_;
-  VectorArray along_;            // nodes: unit vector, see BendDamping
   VectorArray turn_;             // nodes: of e with the material, a radian
   VectorArray driven_, turned_;  // nodes: see BendDamping
   double turned_square_ = 0;

@@ -66,7 +66,7 @@ void bend_clamp(double part, const Vector3& displacement, ClampJoint& clamp) {
   const Vector3 change = direction_change - clamp.axis_change;
   const VectorOf<double> numbers = numbers_of(change);
   const Bend<double> joint = bend(clamp.stiffness, numbers_of(clamp.start), clamp.start_square, numbers, part);
-  const BendDamping<double> damper{clamp.damping, numbers_of(clamp.angle * clamp.turn), {0, 0, 0}, numbers_of(clamp.along)};
+  const BendDamping<double> damper{clamp.damping, numbers_of(clamp.angle * clamp.turn), {0, 0, 0}};
   const Vector3 damping = vector_of(damper.moment(numbers, 0));
   clamp.slope = joint.slope;
   clamp.moment = vector_of(joint.moment) + damping;

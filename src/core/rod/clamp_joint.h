@@ -15,7 +15,6 @@ struct ClampJoint {
   bool is_elastic = false;            ///< that segment
   double inverse_length = 0;          ///< of the segment, at rest [1/m]
   double stiffness = 0, damping = 0;  ///< EI / length, and damping / (length h) [N m]
-  Vector3 along = Vector3::Zero();    ///< unit vector halfway between the cable's direction and the axis
   Vector3 turn = Vector3::Zero();     ///< of e with the material in the clamp, a radian
   double angle = 0;                   ///< [rad] by which the clamp turns the material about its axis
   Vector3 start = Vector3::Zero(), axis_change = Vector3::Zero(), middle_axis = Vector3::Zero();

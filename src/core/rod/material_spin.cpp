@@ -70,7 +70,7 @@ void MaterialSpin::find_own(const CableState& state, const VectorArray& segment,
     const double cosine = std::max(1 + before.direction.dot(after.direction), smallest_turn);
     const Vector3 half_binormal = before.direction.cross(after.direction) / cosine;
     own_[i] = own_[i - 1] - half_binormal.dot(before.rate + after.rate);
-    // As the change of direction turns with the material
+    // As `turn_of` the change of direction
     const Vector3 turned = std::sqrt(2 * cosine) * half_binormal;
     square += damping[i] * turned.squaredNorm();
     along += damping[i] * turned.dot(after.rate - before.rate - own(i) * turned);

@@ -44,4 +44,9 @@ class MaterialSpin {
 /// Of a direction that is held [rad/s], about itself.
 double spin_of(const HeldDirection& target, double h);
 
+/// By what e, the change of direction at a node, turns with the material, a radian.
+inline Vector3 turn_of(const Vector3& before, const Vector3& after, const Vector3& e) {
+  return (before + after).normalized().cross(e);
+}
+
 }  // namespace verlet_cable
