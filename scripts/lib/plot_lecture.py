@@ -12,6 +12,7 @@ import matplotlib
 import numpy
 
 from lecture_runs import scene_of, simulate
+from markdown_table import table
 
 matplotlib.use('Agg')
 import matplotlib.pyplot as plt  # noqa: E402
@@ -56,11 +57,6 @@ class Lecture:
         lines = ['# Measured', '', 'By `scripts/pictures` (`scripts/lib/plot_lecture.py`). Energies are relative to that at the start.', '',
                  *table(('what', 'measured', 'to be'), self._facts), *self._tables]
         (self._output / 'measured.md').write_text('\n'.join(lines) + '\n')
-
-
-def table(header, rows):
-    """Lines of Markdown."""
-    return ['| ' + ' | '.join(cells) + ' |' for cells in (header, ['---'] * len(header), *rows)]
 
 
 def energy_of(run):

@@ -12,6 +12,7 @@ import typing
 import matplotlib
 import numpy
 import yaml
+from markdown_table import table
 from verlet_cable.sim import Scene, World
 
 matplotlib.use('Agg')
@@ -216,8 +217,7 @@ def row_of(name, keys):
 def write_table(path):
     header = ('scene', 'work [J]', 'dissipated [J]', 'change [J]', 'unaccounted [J]', 'of m g L', 'steps', 'remark')
     rows = [row_of(name, keys) for name, keys in shipped_scenes()]
-    lines = ['', *('| ' + ' | '.join(cells) + ' |' for cells in (header, ['---'] * len(header), *rows))]
-    path.write_text('\n'.join([INTRODUCTION, *lines]) + '\n')
+    path.write_text('\n'.join([INTRODUCTION, '', *table(header, rows)]) + '\n')
 
 
 def main():

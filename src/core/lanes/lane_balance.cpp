@@ -52,7 +52,7 @@ void LaneStepper::balance_drag(LaneMember& member) {
     const double half = i < work_.law.segments ? 0.5 * state.rest_lengths[i] : 0;
     drag.coefficient = s.model.material.drag * (half_before + half);
     half_before = half;
-    const VectorOf<double> displacement = numbers_of(get(displacement_, i));
+    const VectorOf<double> displacement = numbers_at(displacement_, i);
     member.result.balance.dissipated.drag += drag.loss(displacement);
     member.result.balance.work.applied += drag.work(displacement);
   }

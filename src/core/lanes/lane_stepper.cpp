@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/eigen_vectors.h"
+
 namespace verlet_cable {
 
 namespace {
@@ -225,12 +227,8 @@ void LaneStepper::set_damping(int c, const LaneMember& member) {
   for (int i = 1; i < n; ++i) {
     const BendDamping<double> damping = bending.damping_at(i);
     at(LaneField::joint_damping, c, i) = damping.damping;
-    at(LaneField::driven_x, c, i) = damping.driven.x;
-    at(LaneField::driven_y, c, i) = damping.driven.y;
-    at(LaneField::driven_z, c, i) = damping.driven.z;
-    at(LaneField::turned_x, c, i) = damping.turned.x;
-    at(LaneField::turned_y, c, i) = damping.turned.y;
-    at(LaneField::turned_z, c, i) = damping.turned.z;
+    set_vector_at(LaneField::driven_x, c, i, vector_of(damping.driven));
+    set_vector_at(LaneField::turned_x, c, i, vector_of(damping.turned));
   }
   clamps_[c] = bending.clamps();
 }
@@ -266,11 +264,8 @@ void LaneStepper::hold(int c, const LaneMember& member) {
     const Vector3 displacement = target.position - state.positions[target.node];
     // So that the end velocity comes out as the holder's.
     const Vector3 velocity = 2 / s.h * displacement - target.velocity;
-    for (int component = 0; component < 3; ++component) {
-      const auto of = [component](LaneField first) { return static_cast<LaneField>(static_cast<int>(first) + component); };
-      at(of(LaneField::displacement_x), c, target.node) = displacement[component];
-      at(of(LaneField::velocity_x), c, target.node) = velocity[component];
-    }
+    set_vector_at(LaneField::displacement_x, c, target.node, displacement);
+    set_vector_at(LaneField::velocity_x, c, target.node, velocity);
     at(LaneField::movable, c, target.node) = at(LaneField::inverse_mass, c, target.node) = 0;
   }
   for (std::size_t k = 0; k + 1 < held.size(); ++k)
@@ -339,9 +334,7 @@ void LaneStepper::bend_clamps(int c, const LaneMember& member) {
 void LaneStepper::set_held_accelerations(int c, const LaneMember& member) {
   for (const HeldNode& target : member.substep.boundary.nodes) {
     const Vector3 acceleration = (target.velocity - member.state->velocities[target.node]) / member.substep.h;
-    at(LaneField::acceleration_x, c, target.node) = acceleration.x();
-    at(LaneField::acceleration_y, c, target.node) = acceleration.y();
-    at(LaneField::acceleration_z, c, target.node) = acceleration.z();
+    set_vector_at(LaneField::acceleration_x, c, target.node, acceleration);
   }
 }
 
@@ -378,6 +371,10 @@ double& LaneStepper::at(LaneField field, int c, int node) {
 Vector3 LaneStepper::vector_at(LaneField first, int c, int node) {
   const int x = static_cast<int>(first);
   return {at(first, c, node), at(static_cast<LaneField>(x + 1), c, node), at(static_cast<LaneField>(x + 2), c, node)};
+}
+
+void LaneStepper::set_vector_at(LaneField first, int c, int node, const Vector3& vector) {
+  for (int k = 0; k < 3; ++k) at(static_cast<LaneField>(static_cast<int>(first) + k), c, node) = vector[k];
 }
 
 /// Towards the segment's second node.

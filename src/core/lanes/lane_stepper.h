@@ -69,6 +69,7 @@ class LaneStepper {
   double& value(LaneField field, int place, int lane);
   double& at(LaneField field, int cable, int node);
   Vector3 vector_at(LaneField first, int cable, int node);
+  void set_vector_at(LaneField first, int cable, int node, const Vector3& vector);
   Vector3 segment_at(LaneField first, int cable, int segment);
   Vector3 joint_moment(int cable, int node);
   Vector3 direction_change(int cable, int node);

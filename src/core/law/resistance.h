@@ -5,11 +5,12 @@
 namespace verlet_cable {
 
 /// A spring and a dashpot side by side (Kelvin and Voigt), over a substep: the law of stretch, of twist and of a bend about one
-/// axis, for one number or a lane of them. A strain is a length [m] or an angle [rad]; a stress is what does work on it [N, N m].
+/// axis, for one number or a lane of them. A strain is a length [m], an angle [rad], or one of these over the element's length; a
+/// stress is what does work on it.
 template <class Real>
 struct Resistance {
-  Real stiffness;  ///< [N/m, N m] of the element: EA / l, GJ / l, EI / l
-  Real damping;    ///< [N/m, N m] damping over the element's length and the time of the substep
+  Real stiffness;  ///< [N/m, N m] EA / l, GJ / l, EI / l of an element; of strains over its length l: EA l, GJ l
+  Real damping;    ///< [N/m, N m] likewise, over the time of the substep
 
   /// `strain`: where forces are taken; `change`: over the substep.
   [[gnu::always_inline]] Real stress(const Real& strain, const Real& change) const {

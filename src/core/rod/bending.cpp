@@ -170,8 +170,8 @@ void Bending::turn_with_material(const CableModel& model, const CableState& stat
     set(turned_, i, h * spin_.own(i) * turn);
     turned_square_ += damping_at(i).square();
   }
+  if (!spin_.is_driven()) return;
   for (ClampJoint& clamp : clamps_) {
-    if (!spin_.is_driven()) continue;
     clamp.turn = turn_of(get(segment, clamp.segment), clamp.start_axis, clamp.start);
     clamp.angle = h * spin_of(directions[clamp.target], h);
   }
@@ -234,7 +234,7 @@ double Bending::find_loss(const VectorArray& displacement) {
 }
 
 BendDamping<double> Bending::damping_at(int node) const {
-  return {damping_[node], numbers_of(get(driven_, node)), numbers_of(get(turned_, node))};
+  return {damping_[node], numbers_at(driven_, node), numbers_at(turned_, node)};
 }
 
 BendDamping<Pair> Bending::damping_of_pair(int node) const {
@@ -248,6 +248,7 @@ void Bending::find_share() {
 }
 
 void Bending::turn_clamps(const VectorArray& displacement, std::vector<HeldDirection>& directions) const {
+  if (!spin_.is_driven()) return;
   for (int i = 1; i < segments_; ++i) {
     const Vector3 moment = vector_of(damping_at(i).moment(numbers_of(change_at(i, displacement)), share_));
     spin_.pass_on(i, moment.dot(get(turn_, i)), directions);
@@ -285,7 +286,7 @@ void Bending::add_stiffness(KktSystem& system) const {
 void Bending::react(const VectorArray& displacement, std::vector<HeldDirection>& directions) {
   bend_clamps(displacement);
   for (const ClampJoint& clamp : clamps_) directions[clamp.target].torque += clamp.torque;
-  if (is_damped_ && !directions.empty()) turn_clamps(displacement, directions);
+  if (is_damped_) turn_clamps(displacement, directions);
 }
 
 double bending_energy(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions,

@@ -53,10 +53,10 @@ class Bending {
   Vector3 damping_torque(const VectorArray& displacement) const;
   /// What damping takes from the energy [J], clamps left out.
   double damping_work(const VectorArray& displacement) const;
-  /// Adds what damping does where the material turns about the cable [N m] to the `torque` of clamps that turn it.
-  void turn_clamps(const VectorArray& displacement, std::vector<HeldDirection>& directions) const;
   /// The same with clamps, which are bent so.
   double find_loss(const VectorArray& displacement);
+  /// Adds what damping does where the material turns about the cable [N m] to the `torque` of clamps that turn it.
+  void turn_clamps(const VectorArray& displacement, std::vector<HeldDirection>& directions) const;
   /// Adds the moments on the holders of directions [N m] to their `torque`.
   void react(const VectorArray& displacement, std::vector<HeldDirection>& directions);
 

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include "geometry/eigen_vectors.h"
+
 namespace verlet_cable {
 
 namespace {
@@ -20,12 +22,8 @@ SymmetricOf<double> symmetric(const SymmetricArray& a, int i) {
   return {a.xx[i], a.xy[i], a.xz[i], a.yy[i], a.yz[i], a.zz[i]};
 }
 
-VectorOf<double> vector(const VectorArray& a, int i) {
-  return {a.x[i], a.y[i], a.z[i]};
-}
-
 MatrixOf<double> matrix(const MatrixArray& a, int i) {
-  return {vector(a.row_x, i), vector(a.row_y, i), vector(a.row_z, i)};
+  return {numbers_at(a.row_x, i), numbers_at(a.row_y, i), numbers_at(a.row_z, i)};
 }
 
 SymmetricOf<double> own_block(const KktSystem& s, int i) {
@@ -191,7 +189,7 @@ void BlockElimination::factor_lanes(const KktSystem& s) {
                          eliminations_[k]);
   }
   const int m = lane_;
-  const NodeCouplings<double> between{vector(s.direction, m), s.compliance[m], s.first[m], matrix(s.added_next, m), 0};
+  const NodeCouplings<double> between{numbers_at(s.direction, m), s.compliance[m], s.first[m], matrix(s.added_next, m), 0};
   eliminate_middle(lane_of(front, 0), lane_of(front, 1), own_block(s, m), own_block(s, m + 1), s.movable[m], s.movable[m + 1],
                    between, middle_);
 }
@@ -205,9 +203,9 @@ void BlockElimination::solve_lanes(const VectorArray& load, const std::vector<do
   }
 
   const int m = lane_;
-  const MiddleSolution middle =
-      solve_middle(middle_, vector(load, m) + lane_of(front.next, 0) + lane_of(front.after, 1),
-                   vector(load, m + 1) + lane_of(front.next, 1) + lane_of(front.after, 0), front.gap[0], gap[m], front.gap[1]);
+  const MiddleSolution middle = solve_middle(middle_, numbers_at(load, m) + lane_of(front.next, 0) + lane_of(front.after, 1),
+                                             numbers_at(load, m + 1) + lane_of(front.next, 1) + lane_of(front.after, 0),
+                                             front.gap[0], gap[m], front.gap[1]);
 
   VectorArray& displacement = solution_.displacement;
   std::vector<double>& multiplier = solution_.multiplier;

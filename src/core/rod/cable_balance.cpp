@@ -49,7 +49,7 @@ void CableStepper::balance_drag(const Substep& s, const std::vector<double>& mas
   LinearDrag<double> drag{0, numbers_of(s.environment.fluid.velocity), 1 / s.h};
   for (int i = 0; i <= segments_; ++i) {
     drag.coefficient = s.h * (inertia_[i] - s.inertia() * masses[i] / (s.h * s.h));
-    const VectorOf<double> displacement = numbers_of(get(displacement_, i));
+    const VectorOf<double> displacement = numbers_at(displacement_, i);
     balance.dissipated.drag += drag.loss(displacement);
     balance.work.applied += drag.work(displacement);
   }

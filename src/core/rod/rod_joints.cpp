@@ -168,16 +168,6 @@ void RodJoints::start(const FrameArrays& frames_before, int before, const FrameA
   }
 }
 
-void RodJoints::follow(const FrameArrays& frames_before, int before, const FrameArrays& frames_after, int after, int first,
-                       int last) {
-  for (int i = first, k = 0; i < last; i += 2, k += 2) {
-    const Products end = products(neighbours(frames_before, before + k), neighbours(frames_after, after + k));
-    const Pair sine = neighbours(sine_, i), cosine = neighbours(cosine_, i);
-    const Turn change = turn(end.sine * cosine - sine * end.cosine, end.cosine * cosine + end.sine * sine);
-    put(neighbours(twist_, i) + change.angle, end_twist_, i);
-  }
-}
-
 void RodJoints::evaluate(double part, const FrameMotion& frames_before, int before, const FrameMotion& frames_after, int after,
                          int first, int last) {
   for (int i = first, k = 0; i < last; i += 2, k += 2) {

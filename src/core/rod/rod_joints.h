@@ -89,8 +89,6 @@ class RodJoints {
   /// Finds moments and stiffnesses. `part`: where in the substep forces are taken.
   void evaluate(double part, const FrameMotion& frames_before, int before, const FrameMotion& frames_after, int after, int first,
                 int last);
-  /// Finds the twist at the end alone.
-  void follow(const FrameArrays& frames_before, int before, const FrameArrays& frames_after, int after, int first, int last);
   double start_twist(int joint) const { return twist_[joint]; }    ///< [rad]
   double end_twist(int joint) const { return end_twist_[joint]; }  ///< [rad]
 
