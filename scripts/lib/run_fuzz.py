@@ -23,6 +23,10 @@ WORLD_SEED_BYTES = 600
 # How often a place is reached says little of a simulation: inputs with more iterations would pile up. To weigh inputs by all that
 # they reach takes libFuzzer a third of the time here.
 WORLD_OPTIONS = ['-use_counters=0', '-entropic=0']
+# What libFuzzer and the sanitizers say of a finding, and the frames of its stack that are in this package.
+REASON = re.compile(r'^not so: |ERROR: |runtime error: |^SUMMARY: ')
+OWN_FRAME = re.compile(r'^\s*#\d+ .* in (?P<function>.*) \S*/(?P<place>(?:src|fuzz)/\S+)$')
+MOST_LINES = 20
 FIGURE = re.compile(r'^stat::number_of_executed_units:\s*(\d+)', re.MULTILINE)
 COVERAGE = re.compile(r'cov: (\d+)')
 
@@ -94,6 +98,18 @@ def run(target, corpus, arguments):
     return int(executed.group(1)) if executed else 0, int(covered[-1]) if covered else 0, found
 
 
+def reasons(log):
+    """What a run's log says of what was found, a line each: the input is seldom at hand where the message is read."""
+    lines = []
+    for line in log.read_text(errors='replace').splitlines():
+        frame = OWN_FRAME.match(line)
+        if frame and 'eigen3' not in line:
+            lines.append(f'  {frame["function"][:100]} {frame["place"]}')
+        elif REASON.search(line):
+            lines.append(line)
+    return lines[:MOST_LINES]
+
+
 def count_run(path, target, executions, seconds):
     with open(path, 'a', encoding='utf-8') as file:
         print(target, executions, round(seconds), sep=',', file=file)
@@ -119,6 +135,7 @@ def run_all(corpora, arguments):
             text = ', '.join(map(str, found)) if found else 'nothing'
             if found or executions == 0:
                 failures[target] = f'{executions} executions, found: {text}'
+                print(*reasons(arguments.workspace / f'fuzz_{target}.log'), sep='\n')
             print(f'{target}: {executions} executions, {edges} edges covered, found: {text}; with earlier runs {total} executions '
                   f'in {hours:.2f} h', flush=True)
     return failures

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -230,6 +231,31 @@ TEST(Join, WhatBecomesAWholeRodOnTheWayIsWelded) {
   const CableState& cable = world.cables()[0].state;
   EXPECT_EQ(cable.segments(), 50);
   EXPECT_EQ(cable.rest_twist.size(), cable.positions.size());
+}
+
+/// A cut beside the gap that closes leaves an end without a joint.
+TEST(Join, EndsOfWholeRodsThatAreCutOffBesideTheGapAreNotWelded) {
+  for (const int cut : {24, 26}) {
+    SceneDesc scene = two_ropes(0.3, 0.005);
+    scene.materials[0].material.bending_damping = 1e-3;
+    scene.materials[0].material.torsional_stiffness = 0.004;
+    World world(scene, initial_frames(scene));
+    ASSERT_TRUE(world.apply(edit::Join{0, true, 1, true}).ok);
+    for (const int node : cut < 25 ? std::array{35, 45} : std::array{5, 15}) {
+      edit::Pin pin;
+      pin.body = cable_id(0);
+      pin.node = node;
+      pin.type = AttachmentType::clamp;
+      pin.pose.position = world.cables()[0].state.positions[node];
+      ASSERT_TRUE(world.apply(pin).ok);
+    }
+    ASSERT_TRUE(world.apply(edit::Cut{cable_id(0), cut}).ok);
+    const int with_gap = cut < 25 ? 1 : 0;
+    EXPECT_FALSE(world.cables()[with_gap].state.directors.empty());
+    for (int i = 0; i < 2000; ++i) ASSERT_NE(world.step({FrameInput{}}).status, Status::fault) << i;
+    EXPECT_EQ(world.cables()[with_gap].state.segments(), 25);
+    EXPECT_TRUE(world.cables()[with_gap].state.rest_twist.empty());
+  }
 }
 
 TEST(Join, BadRequestsChangeNothing) {

@@ -282,8 +282,8 @@ void World::Implementation::close_joint(int index) {
   project_lengths(held, lengths, cable);
   carry_frames(together, cable);
   after_remeshing(index);
-  // Welded as they have come to each other.
-  if (!cable.joint_twist.empty()) {
+  // Welded as they have come to each other, unless one of them has been cut off meanwhile.
+  if (!cable.joint_twist.empty() && node > 0 && node < cable.segments()) {
     cable.rest_twist.resize(cable.nodes(), 0.0);
     cable.rest_twist[node] =
         (joint_angles_at(cable, node).twist - excess) / cable.bending_length(node, joint_length(cable, node));
