@@ -100,14 +100,18 @@ void Bending::set_changing(int node) {
 
 /// What the vectorised loop over all joints does not know: the changes of direction are those of segments that grow.
 void Bending::add_growth(const VectorArray& displacement) {
-  for (const GrowingSegment& g : growing_) {
-    const int i = g.segment;
-    const Vector3 moved = get(displacement, i + 1) - get(displacement, i);
-    const double start = 1 / g.start, end = 1 / g.end;
-    const Vector3 growth = (end - inverse_length_[i]) * moved + (end - start) * get(segment_, i);
-    if (i > 0) set(change_, i, get(change_, i) + growth);
-    if (i + 1 < segments_) set(change_, i + 1, get(change_, i + 1) - growth);
-  }
+  for (const GrowingSegment& g : growing_)
+    for (const int node : {g.segment, g.segment + 1})
+      if (node > 0 && node < segments_) set(change_, node, get(change_, node) + growth_at(node, g, displacement));
+}
+
+/// Of e, beyond what displacements make of it at the length of the middle.
+Vector3 Bending::growth_at(int node, const GrowingSegment& g, const VectorArray& displacement) const {
+  const int i = g.segment;
+  const Vector3 moved = get(displacement, i + 1) - get(displacement, i);
+  const double start = 1 / g.start, end = 1 / g.end;
+  const Vector3 growth = (end - inverse_length_[i]) * moved + (end - start) * get(segment_, i);
+  return node == i ? growth : Vector3(-growth);
 }
 
 double Bending::flow_force(int before, int after, const VectorArray& middle) const {
@@ -258,8 +262,11 @@ void Bending::turn_clamps(const VectorArray& displacement, std::vector<HeldDirec
 /// Of e, over the substep.
 Vector3 Bending::change_at(int node, const VectorArray& displacement) const {
   const Vector3 here = get(displacement, node);
-  return inverse_length_[node] * (get(displacement, node + 1) - here) -
-         inverse_length_[node - 1] * (here - get(displacement, node - 1));
+  Vector3 change = inverse_length_[node] * (get(displacement, node + 1) - here) -
+                   inverse_length_[node - 1] * (here - get(displacement, node - 1));
+  for (const GrowingSegment& g : growing_)
+    if (g.segment == node || g.segment + 1 == node) change += growth_at(node, g, displacement);
+  return change;
 }
 
 void Bending::add_stiffness(KktSystem& system) const {

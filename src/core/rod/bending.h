@@ -86,6 +86,7 @@ class Bending {
   void grow(int segment, double growth);
   void set_changing(int node);
   void add_growth(const VectorArray& displacement);
+  Vector3 growth_at(int node, const GrowingSegment& growing, const VectorArray& displacement) const;
 
   VectorArray segment_;               // at the start [m]; where there are flows
   std::vector<double> rest_lengths_;  // segments, at the start [m]; where there are flows
