@@ -20,7 +20,7 @@ struct SubstepRules {
   Scheme scheme = Scheme::conserving;
 
   double part() const { return statics || scheme != Scheme::conserving ? 1 : 0.5; }
-  double inertia() const { return scheme == Scheme::first_order ? 1 : 2; }
+  double inertia() const { return inertia_of(scheme); }
 };
 
 /// The skew matrix of a cross product with v on the left.

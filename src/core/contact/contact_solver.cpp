@@ -22,7 +22,7 @@ constexpr double fastest_convergence = 0.1;
 constexpr double slow_convergence = 0.2;
 /// Where friction turns round slowly, a larger error is as good after so many iterations.
 constexpr int patient_iterations = 6;
-constexpr double impatience = 30;
+constexpr double impatience = 20;
 /// A correction may turn the forces along it round to this part of what they were.
 constexpr double turned_round = 0.5;
 constexpr int maximum_shortenings = 8;
@@ -314,14 +314,15 @@ void ContactSolver::follow_friction(std::vector<Participant>& participants, std:
   slips_.clear();
   for (std::size_t k = 0; k < participants.size(); ++k) work_[k].slips = false;
   for (Touch& touch : touches) {
-    if (touch.mode != Touch::Mode::slides || !(touch.friction > 0)) continue;
+    if (touch.mode == Touch::Mode::open || !(touch.friction > 0)) continue;
     Slip slip;
     slip.touch = &touch;
     slip.participant = index_[touch.point.cable];
     slip.normal = touch.normal;
     slip.friction = following_friction(touch);
+    if (slip.friction.isZero(0)) continue;
     slip.normal_force = touch.normal_force;
-    slip.stiffness = touch.rate * touch.stiffness;
+    slip.stiffness = touch.rate * touch.normal_stiffness;
     slips_.push_back(slip);
     work_[slip.participant].slips = true;
   }

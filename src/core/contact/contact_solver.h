@@ -58,7 +58,7 @@ class ContactSolver {
     Eigen::Matrix3d matrix;
   };
 
-  /// A contact that slides on an obstacle.
+  /// A contact whose friction follows the normal force: it slides, or leans at an edge.
   struct Slip {
     Touch* touch = nullptr;
     int participant = 0;

@@ -116,8 +116,7 @@ double contact_time(double time_step) {
 void anticipate(Scheme scheme, double h, double contact_time, const Vector3& acceleration, Touch& touch) {
   const VelocityWeights weights = velocity_weights(scheme);
   const SurfaceMotion& other = touch.other_motion;
-  // Of first order, what is carried along has the mean velocity.
-  const Vector3 velocity = scheme == Scheme::first_order ? Vector3(other.displacement / h) : other.end_velocity;
+  const Vector3 velocity = carried_velocity(scheme, h, other.displacement, other.end_velocity);
   const Vector3 known = weights.velocity * touch.velocity + weights.acceleration * h * acceleration;
   touch.rate = 1 + weights.displacement * contact_time / h;
   touch.offset = other.displacement + contact_time * (velocity - known);
@@ -131,7 +130,7 @@ void start_touch(Touch& touch) {
   touch.depth = std::max(0.0, -touch.gap);
   const ForceAndSlope law = depth_law(touch.depth, touch);
   touch.depth_force = law.force;
-  touch.stiffness = law.slope;
+  touch.stiffness = touch.normal_stiffness = law.slope;
 }
 
 bool evaluate_touch(const Vector3& w, Touch& touch) {
@@ -155,6 +154,7 @@ bool evaluate_touch(const Vector3& w, Touch& touch) {
     touch.depth_force = law.force;
   }
   touch.normal_force = law.force;
+  touch.normal_stiffness = bent ? touch.stiffness : law.slope;
   Vector3 trial = touch.stuck_force - touch.stiffness * e;
   trial -= touch.normal.dot(trial) * touch.normal;
   const Vector3 lean = touch.normal_force * touch.lean;
@@ -170,7 +170,8 @@ bool evaluate_touch(const Vector3& w, Touch& touch) {
 
 Eigen::Matrix3d slope(const Touch& touch) {
   const double stiffness = touch.rate * touch.stiffness;
-  Eigen::Matrix3d slope = stiffness * (1 - touch.part) * touch.normal * touch.normal.transpose();
+  Eigen::Matrix3d slope =
+      (touch.rate * touch.normal_stiffness - stiffness * touch.part) * touch.normal * touch.normal.transpose();
   slope.diagonal().array() += stiffness * touch.part;
   if (touch.rolling_count > 0) slope += stiffness * (touch.rolling_part - touch.part) * touch.across * touch.across.transpose();
   return slope;
@@ -181,12 +182,12 @@ Vector3 corrected_force(const Touch& touch) {
 }
 
 Vector3 following_friction(const Touch& touch) {
+  if (touch.mode != Touch::Mode::slides) return touch.lean;
   return touch.force / touch.normal_force - touch.normal;
 }
 
 Eigen::Matrix3d full_slope(const Touch& touch) {
-  if (touch.mode != Touch::Mode::slides) return slope(touch);
-  return slope(touch) + touch.rate * touch.stiffness * following_friction(touch) * touch.normal.transpose();
+  return slope(touch) + touch.rate * touch.normal_stiffness * following_friction(touch) * touch.normal.transpose();
 }
 
 Vector3 remaining_friction(const Touch& touch) {

@@ -54,6 +54,7 @@ struct Touch {
   double depth = 0;                                            ///< [m] where the force's law is linearised
   double depth_force = 0;                                      ///< [N] there
   double stiffness = 0;                                        ///< [N/m] there
+  double normal_stiffness = 0;                                 ///< [N/m] of the normal force, in the equations
   double normal_force = 0;                                     ///< [N]
   Vector3 force = Vector3::Zero();                             ///< [N] on the point
   Vector3 arm = Vector3::Zero();                               ///< [m] with which the force acts on a body,
@@ -101,7 +102,7 @@ Eigen::Matrix3d slope(const Touch& touch);
 /// The same with the part of friction that follows f.
 Eigen::Matrix3d full_slope(const Touch& touch);
 
-/// Of what slides, the friction that follows f, over f.
+/// Over f, the friction that follows it: all of what slides, and what sticks leans by.
 Vector3 following_friction(const Touch& touch);
 
 /// A force [N] as the obstacle that is touched turns it in half the substep.

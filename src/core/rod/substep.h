@@ -47,7 +47,7 @@ struct Substep {
   /// Where in the substep forces are taken.
   double part() const { return statics || scheme != Scheme::conserving ? 1 : 0.5; }
   /// [mass] Of (u / h - v) / h in the equations of motion, u being the displacement.
-  double inertia() const { return scheme == Scheme::first_order ? 1 : 2; }
+  double inertia() const { return inertia_of(scheme); }
   DrawnOut drawn_out() const;
   double damping_time() const { return statics ? infinity : h; }
 };

@@ -30,11 +30,6 @@ bool cannot_get_apart(const Touch& touch) {
   return should_have_moved && touch.normal.dot(touch.displacement) < least_separation * touch.radius;
 }
 
-/// Whether any of what touches has not pressed yet. Of forces that begin within a substep the generalised-alpha method makes energy.
-bool may_strike(const std::vector<Touch>& touches) {
-  return std::any_of(touches.begin(), touches.end(), [](const Touch& touch) { return touch.last_force == 0; });
-}
-
 /// The segment of a cable that breaks now, -1 if it holds. A piece keeps at least one segment, so that the outermost ones do not
 /// break.
 int find_breaking_segment(const SimulatedCable& cable, const StepResult& result) {
@@ -395,7 +390,7 @@ Scheme IslandStepper::scheme_of(int cable) const {
 }
 
 /// Cables that touch something, or that bodies hold, go by one scheme, which their contacts and bodies heed: where one is to
-/// damp, all do.
+/// damp, all do; where anything touches, so that forces which begin or end make no energy.
 Scheme IslandStepper::find_touching_scheme(const Island& island, double h) {
   Scheme scheme = Scheme::conserving;
   for (std::size_t k = 0; k < island.cables.size(); ++k) {
@@ -404,8 +399,7 @@ Scheme IslandStepper::find_touching_scheme(const Island& island, double h) {
     if (own == Scheme::first_order || scheme == Scheme::conserving) scheme = own;
   }
   if (scheme == Scheme::conserving) return scheme;
-  if (may_strike(workspace_.contacts.touches()) || may_strike(workspace_.body_system.contacts().touches()))
-    scheme = Scheme::first_order;
+  if (touches()) scheme = Scheme::dissipative;
   workspace_.contacts.follow_scheme(scheme, state_.cables, h);
   BodyTouches::follow_scheme(scheme, contact_rules(*state_.scene, false), h, workspace_.body_system.contacts().touches());
   return scheme;
