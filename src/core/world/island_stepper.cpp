@@ -390,7 +390,7 @@ Scheme IslandStepper::scheme_of(int cable) const {
 }
 
 /// Cables that touch something, or that bodies hold, go by one scheme, which their contacts and bodies heed: where one is to
-/// damp, all do; where anything touches, so that forces which begin or end make no energy.
+/// damp, all do; where anything touches or slides through guides, so that forces which begin or end make no energy.
 Scheme IslandStepper::find_touching_scheme(const Island& island, double h) {
   Scheme scheme = Scheme::conserving;
   for (std::size_t k = 0; k < island.cables.size(); ++k) {
@@ -399,7 +399,8 @@ Scheme IslandStepper::find_touching_scheme(const Island& island, double h) {
     if (own == Scheme::first_order || scheme == Scheme::conserving) scheme = own;
   }
   if (scheme == Scheme::conserving) return scheme;
-  if (touches()) scheme = Scheme::dissipative;
+  const auto slides = [&](int cable) { return count_flows(cable, state_) > 0; };
+  if (touches() || std::any_of(island.cables.begin(), island.cables.end(), slides)) scheme = Scheme::dissipative;
   workspace_.contacts.follow_scheme(scheme, state_.cables, h);
   BodyTouches::follow_scheme(scheme, contact_rules(*state_.scene, false), h, workspace_.body_system.contacts().touches());
   return scheme;
