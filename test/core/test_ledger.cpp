@@ -111,6 +111,30 @@ TEST(Ledger, WinchesLift) {
   EXPECT_NEAR(ledger.unaccounted(), 0, 1e-3 * scale);
 }
 
+/// Directions of segments change with the lengths that they are divided by, which grow and shrink beside a guide.
+TEST(Ledger, BendsThatMaterialFlowsThroughLoseWhatTheirDampingTakes) {
+  SceneDesc scene = scenes::one_cable(50, 2);
+  scene.materials[0].material.bending_stiffness = 0.01;
+  scene.materials[0].material.bending_damping = 1e-3;
+  scene.cables[0].point_masses = {scenes::payload(0.1), scenes::payload(0.3)};
+  scene.cables[0].point_masses[0].place.at = PlaceDesc::At::start;
+  const Vector3 side(0.5, 0, -0.5 * std::sqrt(3.0));
+  scene.cables[0].initial.type = InitialShapeDesc::Type::points;
+  scene.cables[0].initial.points = {{-side.x(), 0, side.z()}, Vector3::Zero(), side};
+  GuideDesc eye;
+  eye.name = "eye";
+  eye.cable = "cable";
+  eye.place = PlaceDesc{PlaceDesc::At::arc_length, 1};
+  eye.friction = 0.1;
+  scene.guides = {eye};
+  World world(scene, {});
+  for (int i = 0; i < 300; ++i) ASSERT_EQ(world.step({}).status, Status::ok);
+  const Ledger ledger = world.ledger();
+  EXPECT_GT(ledger.balance.dissipated.bending, 0.01);
+  EXPECT_LT(ledger.balance.dissipated.bending, scale);
+  EXPECT_NEAR(ledger.unaccounted(), 0, 1e-4 * 12 * scale);  // of a rope of 0.2 kg, 2 m, and its loads
+}
+
 TEST(Ledger, BodiesLoseWhatTheirDampingTakes) {
   SceneDesc scene = scenes::one_cable(10);
   BodyDesc body;
