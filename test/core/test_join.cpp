@@ -258,6 +258,27 @@ TEST(Join, EndsOfWholeRodsThatAreCutOffBesideTheGapAreNotWelded) {
   }
 }
 
+/// What was pulled beyond its limit in the segment that a cut takes is told of the next one, also when numbers turn round.
+TEST(Join, PlacesOfExcursionsStayOnTheirCables) {
+  SceneDesc scene = scenes::one_cable(10);
+  scene.materials[0].material.maximum_tension = 1e-3;
+  World world(scene, initial_frames(scene));
+  edit::Pin pin;
+  pin.body = cable_id(0);
+  pin.node = 5;
+  pin.pose.position = world.cables()[0].state.positions[5];
+  ASSERT_TRUE(world.apply(pin).ok);
+  while (world.findings().excursions.empty() && world.time() < 1) world.step({FrameInput{}});
+  ASSERT_FALSE(world.findings().excursions.empty());
+  const int pulled = world.findings().excursions[0].node;
+  ASSERT_TRUE(world.apply(edit::Cut{cable_id(0), pulled}).ok);
+  ASSERT_TRUE(world.apply(edit::Join{0, false, 1, true}).ok);
+  for (const Excursion& excursion : world.findings().excursions) {
+    EXPECT_GE(excursion.node, 0);
+    EXPECT_LT(excursion.node, world.cables()[excursion.cable].state.segments());
+  }
+}
+
 TEST(Join, BadRequestsChangeNothing) {
   SceneDesc scene = two_ropes(1.2);
   scene.materials.push_back(scene.materials[0]);

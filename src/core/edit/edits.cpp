@@ -278,7 +278,11 @@ void World::Implementation::follow_cut(int cable, int segment, int new_cable) {
     found.node -= segment + 1;
   }
   for (Excursion& excursion : findings.excursions) {
-    if (excursion.cable != cable || excursion.node <= segment) continue;
+    if (excursion.cable != cable || excursion.node < segment) continue;
+    if (excursion.node == segment) {
+      if (excursion.kind == Excursion::Kind::tension) --excursion.node;  // of the segment that is gone
+      continue;
+    }
     excursion.cable = new_cable;
     excursion.node -= segment + 1;
   }
