@@ -12,7 +12,8 @@ namespace verlet_cable {
 ///   damped:      2 m (u / h - v) / h = forces at the end,  v' = 3/2 u / h - v / 2 + h a / 4,  a' = (u / h - v) / h + a / 2: the
 ///                generalised-alpha method (Chung and Hulbert 1993) with a spectral radius of 0, of second order; it makes energy
 ///                of forces that begin or end within a substep
-enum class Scheme { conserving, first_order, dissipative, damped };
+/// Where bodies and contacts join cables that would go by different ones, all go by the last of these.
+enum class Scheme { conserving, damped, dissipative, first_order };
 
 /// b of the equations of motion.
 inline double inertia_of(Scheme scheme) {

@@ -43,8 +43,9 @@ Vector3 carried_velocity(const std::vector<HeldNode>& held, const std::vector<do
 Scheme next_scheme(const CableModel& model, const CableState& state) {
   const UnresolvedMotion& motion = state.unresolved;
   if (motion.damped == 0) return Scheme::conserving;
-  // The generalised-alpha method overshoots where an elastic cable is suddenly let go.
-  return motion.damped == damped_substeps || CableMaterials(model, state).any_elastic() ? Scheme::first_order : Scheme::damped;
+  // The generalised-alpha method leads back to velocities of second order, but overshoots where an elastic cable is let go.
+  if (motion.damped == damped_substeps || CableMaterials(model, state).any_elastic()) return Scheme::first_order;
+  return motion.damped == 1 ? Scheme::damped : Scheme::dissipative;
 }
 
 void begin_anew(UnresolvedMotion& motion) {

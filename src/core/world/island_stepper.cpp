@@ -390,13 +390,12 @@ Scheme IslandStepper::scheme_of(int cable) const {
 }
 
 /// Cables that touch something, or that bodies hold, go by one scheme, which their contacts and bodies heed: where one is to
-/// damp, all do; where anything touches or slides through guides, so that forces which begin or end make no energy.
+/// damp, all do, as much; where anything touches or slides through guides, so that forces which begin or end make no energy.
 Scheme IslandStepper::find_touching_scheme(const Island& island, double h) {
   Scheme scheme = Scheme::conserving;
   for (std::size_t k = 0; k < island.cables.size(); ++k) {
     if (!workspace_.contacts.touched(k) && island.bodies.empty()) continue;
-    const Scheme own = scheme_of(island.cables[k]);
-    if (own == Scheme::first_order || scheme == Scheme::conserving) scheme = own;
+    scheme = std::max(scheme, scheme_of(island.cables[k]));
   }
   if (scheme == Scheme::conserving) return scheme;
   const auto slides = [&](int cable) { return count_flows(cable, state_) > 0; };
