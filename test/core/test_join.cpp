@@ -210,22 +210,31 @@ TEST(Join, EndsThatAreBeingJoinedAreNotBothHeld) {
   EXPECT_EQ(world.hash(), before);
 }
 
-/// While its ends are drawn together, a damped cable may come to be twisted by clamps, and is a whole rod from then on.
-TEST(Join, WhatBecomesAWholeRodOnTheWayIsWelded) {
+/// Which two clamps that turn a cable make a whole rod.
+SceneDesc two_damped_ropes() {
   SceneDesc scene = two_ropes(0.3, 0.005);
   scene.materials[0].material.bending_damping = 1e-3;
   scene.materials[0].material.torsional_stiffness = 0.004;
+  return scene;
+}
+
+/// Holds a node of the first cable where it is now.
+edit::Pin pin_where_it_is(const World& world, int node, AttachmentType type) {
+  edit::Pin pin;
+  pin.body = cable_id(0);
+  pin.node = node;
+  pin.type = type;
+  pin.pose.position = world.cables()[0].state.positions[node];
+  return pin;
+}
+
+/// While its ends are drawn together, a damped cable may come to be twisted by clamps, and is a whole rod from then on.
+TEST(Join, WhatBecomesAWholeRodOnTheWayIsWelded) {
+  const SceneDesc scene = two_damped_ropes();
   World world(scene, initial_frames(scene));
   ASSERT_TRUE(world.apply(edit::Join{0, true, 1, true}).ok);
   for (int i = 0; i < 5; ++i) world.step({FrameInput{}});
-  for (const int node : {5, 10}) {
-    edit::Pin pin;
-    pin.body = cable_id(0);
-    pin.node = node;
-    pin.type = AttachmentType::clamp;
-    pin.pose.position = world.cables()[0].state.positions[node];
-    ASSERT_TRUE(world.apply(pin).ok);
-  }
+  for (const int node : {5, 10}) ASSERT_TRUE(world.apply(pin_where_it_is(world, node, AttachmentType::clamp)).ok);
   EXPECT_FALSE(world.cables()[0].state.directors.empty());
   for (int i = 0; i < 2000; ++i) ASSERT_NE(world.step({FrameInput{}}).status, Status::fault) << i;
   const CableState& cable = world.cables()[0].state;
@@ -236,19 +245,11 @@ TEST(Join, WhatBecomesAWholeRodOnTheWayIsWelded) {
 /// A cut beside the gap that closes leaves an end without a joint.
 TEST(Join, EndsOfWholeRodsThatAreCutOffBesideTheGapAreNotWelded) {
   for (const int cut : {24, 26}) {
-    SceneDesc scene = two_ropes(0.3, 0.005);
-    scene.materials[0].material.bending_damping = 1e-3;
-    scene.materials[0].material.torsional_stiffness = 0.004;
+    const SceneDesc scene = two_damped_ropes();
     World world(scene, initial_frames(scene));
     ASSERT_TRUE(world.apply(edit::Join{0, true, 1, true}).ok);
-    for (const int node : cut < 25 ? std::array{35, 45} : std::array{5, 15}) {
-      edit::Pin pin;
-      pin.body = cable_id(0);
-      pin.node = node;
-      pin.type = AttachmentType::clamp;
-      pin.pose.position = world.cables()[0].state.positions[node];
-      ASSERT_TRUE(world.apply(pin).ok);
-    }
+    for (const int node : cut < 25 ? std::array{35, 45} : std::array{5, 15})
+      ASSERT_TRUE(world.apply(pin_where_it_is(world, node, AttachmentType::clamp)).ok);
     ASSERT_TRUE(world.apply(edit::Cut{cable_id(0), cut}).ok);
     const int with_gap = cut < 25 ? 1 : 0;
     EXPECT_FALSE(world.cables()[with_gap].state.directors.empty());
@@ -263,11 +264,7 @@ TEST(Join, PlacesOfExcursionsStayOnTheirCables) {
   SceneDesc scene = scenes::one_cable(10);
   scene.materials[0].material.maximum_tension = 1e-3;
   World world(scene, initial_frames(scene));
-  edit::Pin pin;
-  pin.body = cable_id(0);
-  pin.node = 5;
-  pin.pose.position = world.cables()[0].state.positions[5];
-  ASSERT_TRUE(world.apply(pin).ok);
+  ASSERT_TRUE(world.apply(pin_where_it_is(world, 5, AttachmentType::hinge)).ok);
   while (world.findings().excursions.empty() && world.time() < 1) world.step({FrameInput{}});
   ASSERT_FALSE(world.findings().excursions.empty());
   const int pulled = world.findings().excursions[0].node;

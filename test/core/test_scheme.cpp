@@ -51,7 +51,7 @@ TEST(Scheme, CarriesAlongWithTheVelocityThatIsExpected) {
       if (scheme == Scheme::damped) change = way - velocity + 0.5 * change;
       velocity = next;
       if (i > 150) {
-        EXPECT_NEAR(velocity, carried_velocity(scheme, 1, way, end), 1e-9 * end);
+        EXPECT_NEAR(velocity, lagging_velocity(scheme, 1, way, end), 1e-9 * end);
       }
     }
   }

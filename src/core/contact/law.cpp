@@ -116,7 +116,7 @@ double contact_time(double time_step) {
 void anticipate(Scheme scheme, double h, double contact_time, const Vector3& acceleration, Touch& touch) {
   const VelocityWeights weights = velocity_weights(scheme);
   const SurfaceMotion& other = touch.other_motion;
-  const Vector3 velocity = carried_velocity(scheme, h, other.displacement, other.end_velocity);
+  const Vector3 velocity = lagging_velocity(scheme, h, other.displacement, other.end_velocity);
   const Vector3 known = weights.velocity * touch.velocity + weights.acceleration * h * acceleration;
   touch.rate = 1 + weights.displacement * contact_time / h;
   touch.offset = other.displacement + contact_time * (velocity - known);

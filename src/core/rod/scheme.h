@@ -42,7 +42,7 @@ inline VelocityWeights velocity_weights(Scheme scheme) {
 /// [m/s] In the end, of what is carried along by a surface that is displaced by `way` [m] and ends with `velocity`: it lags by
 /// (1 / b - 1 / 2) h a.
 template <class Vector>
-Vector carried_velocity(Scheme scheme, double h, const Vector& way, const Vector& velocity) {
+Vector lagging_velocity(Scheme scheme, double h, const Vector& way, const Vector& velocity) {
   if (scheme == Scheme::damped) return velocity;
   const double lag = 2 / inertia_of(scheme) - 1;
   return (1 - lag) * velocity + lag / h * way;

@@ -14,7 +14,7 @@ namespace verlet_cable {
 /// next substeps damp it, where it keeps substeps short or contacts busy.
 enum class Treatment { none, cleaning, damping };
 
-/// Substeps that damp after motion was found that they do not resolve, each less than the one before.
+/// Substeps that damp after motion was found that they do not resolve: as `next_scheme` says.
 constexpr int damped_substeps = 3;
 
 /// How the next substep of a cable goes.
