@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "../support/meshes.h"
 #include "../support/scenes.h"
 #include "chain/point_motion.h"
 #include "rod/block_elimination.h"
@@ -186,6 +187,185 @@ double tension_turning_together(double friction, const Vector3& axis) {
 TEST(ContactPoint, WiresThatTurnTogetherDoNotRub) {
   const double alone = tension_turning_together(0, Vector3::UnitY());
   EXPECT_NEAR(tension_turning_together(0.3, Vector3::UnitY()), alone, 0.03 * alone);
+}
+
+/// [N] The force of two smooth pads that squeeze a cable from both sides, as they slide along it by two segments.
+struct Sliding {
+  double least = infinity, most = 0, largest_change = 0;
+};
+Sliding sliding_pad(int segments, double width, ShapeType type) {
+  const double radius = 0.004, length = 0.6, height = 0.01, squeeze = 0.02;
+  SceneDesc scene = scenes::one_cable(segments, length);
+  scene.gravity.acceleration.setZero();
+  MaterialDesc& material = scene.materials[0].material;
+  material.linear_density = 0.06;
+  material.radius = radius;
+  material.bending_stiffness = 0.01;
+  material.bending_damping = 1e-4;
+  CableDesc& cable = scene.cables[0];
+  cable.initial.type = InitialShapeDesc::Type::straight;
+  cable.initial.from = {-length / 2, 0, radius};
+  cable.initial.to = {length / 2, 0, radius};
+  for (const double end : {-1.0, 1.0})
+    cable.attachments.push_back(scenes::attachment(end < 0 ? "l" : "r", end < 0 ? PlaceDesc::At::start : PlaceDesc::At::end,
+                                                   {end * length / 2, 0, radius}, "", AttachmentType::clamp));
+  for (const double side : {1.0, -1.0}) {
+    ObstacleDesc& pad = scene.obstacles.emplace_back();
+    pad.name = side > 0 ? "above" : "below";
+    pad.type = type;
+    pad.frame = pad.name;
+    pad.size = {width, 0.03, height};
+    if (type == ShapeType::mesh) pad.mesh = box_triangles(pad.size).mesh();
+    pad.friction = 0;
+    pad.initial_pose = InitialPose{0, 0, radius + side * 0.02, 0, 0, 0};
+  }
+  BoundaryInputs frames = initial_frames(scene);
+  World world(scene, frames);
+  const double pressed = radius * (1 - squeeze) + height / 2, from = 0.1 * length / segments;
+  Sliding sliding;
+  double last = 0;
+  // Slowly: what begins to touch is damped.
+  const double way = 2 * length / segments, speed = 0.01;
+  const int steps = 300 + static_cast<int>(way / speed / scene.time_step);
+  for (int i = 1; i <= steps; ++i) {
+    const double closed = std::min(i / 200.0, 1.0), slid = std::max(0, i - 300) * scene.time_step * speed;
+    const double place = from + slid, apart = pressed + (1 - closed) * 0.01;
+    for (std::size_t k = 1; k < frames.size(); ++k) {
+      frames[k].known = true;
+      frames[k].pose = {{place, 0, radius + (k == 1 ? apart : -apart)}, Quaternion::Identity()};
+    }
+    world.step(frames);
+    double force = 0;
+    for (const SimulatedContact& contact : world.findings().contacts)
+      if (contact.obstacle == 0) force -= contact.force.z();
+    if (i > 300) {
+      sliding.least = std::min(sliding.least, force);
+      sliding.most = std::max(sliding.most, force);
+      if (i > 301) sliding.largest_change = std::max(sliding.largest_change, std::abs(force - last));
+    }
+    last = force;
+  }
+  return sliding;
+}
+
+TEST(ContactPoint, PadsPressAlikeWhereverNodesAre) {
+  for (const ShapeType type : {ShapeType::box, ShapeType::mesh})
+    for (const int segments : {10, 20, 30, 60})
+      for (const double width : {0.02, 0.045}) {
+        const Sliding s = sliding_pad(segments, width, type);
+        EXPECT_GT(s.least, 0.1);
+        // What is left: the rounded edge's damping as a node comes under it, by its segment's mass.
+        EXPECT_LT(s.most - s.least, 0.08 * s.most) << segments << ", " << width;
+        EXPECT_LT(s.largest_change, 0.01 * s.most) << segments << ", " << width;
+      }
+}
+
+/// [m] How high two pads lift a cable that lies on a table by squeezing it 2 %, their middle a part of a segment behind a node.
+double lifted(int segments, double shift, ShapeType type, double time_step) {
+  const double radius = 0.004, length = 0.6, width = 0.02, height = 0.25, x = (segments / 2 + shift) * length / segments;
+  SceneDesc scene = scenes::one_cable(segments, length);
+  scene.time_step = time_step;
+  MaterialDesc& material = scene.materials[0].material;
+  material.linear_density = 0.06;
+  material.radius = radius;
+  material.bending_stiffness = 1e-3;
+  material.bending_damping = 1e-5;
+  material.friction = 0.6;
+  CableDesc& cable = scene.cables[0];
+  cable.initial.type = InitialShapeDesc::Type::straight;
+  cable.initial.from = {0, 0, radius};
+  cable.initial.to = {length, 0, radius};
+  for (const double side : {1.0, -1.0}) {
+    ObstacleDesc& pad = scene.obstacles.emplace_back();
+    pad.name = side > 0 ? "left" : "right";
+    pad.type = type;
+    pad.frame = pad.name;
+    pad.size = {width, 0.01, 0.03};
+    if (type == ShapeType::mesh) pad.mesh = box_triangles(pad.size).mesh();
+    // A disc's flat end
+    pad.radius = 0.015;
+    pad.length = 0.01;
+    if (type == ShapeType::cylinder) pad.pose = {0, 0, 0, pi / 2, 0, 0};
+    pad.initial_pose = InitialPose{x, side * 0.03, 0.0155, 0, 0, 0};
+  }
+  scene.obstacles.emplace_back().name = "table";
+  BoundaryInputs frames = initial_frames(scene);
+  World world(scene, frames);
+  const auto smooth = [](double part) {
+    const double s = std::clamp(part, 0.0, 1.0);
+    return s * s * s * (10 - 15 * s + 6 * s * s);
+  };
+  const double squeezed = radius * (1 - 0.02) + 0.005;
+  for (int i = 1; i * time_step <= 3; ++i) {
+    const double time = i * time_step, apart = 0.03 + (squeezed - 0.03) * smooth(time / 0.8);
+    for (std::size_t k = 1; k < frames.size(); ++k) {
+      frames[k].known = true;
+      frames[k].pose = {{x, k == 1 ? apart : -apart, 0.0155 + height * smooth((time - 1) / 1.5)}, Quaternion::Identity()};
+    }
+    world.step(frames);
+  }
+  const int node = segments / 2;
+  const std::vector<Vector3>& places = world.cables()[0].state.positions;
+  const double place = places[node].z() + shift * (places[node + 1].z() - places[node].z());
+  return place - radius;
+}
+
+TEST(ContactPoint, PadsHoldACableAnywhereBetweenItsNodes) {
+  for (const ShapeType type : {ShapeType::box, ShapeType::mesh, ShapeType::cylinder})
+    for (const double time_step : {0.001, 0.01})
+      for (const int segments : {10, 20, 61, 120})
+        for (const double shift : {0.0, 0.25, 0.5, 0.9})
+          EXPECT_NEAR(lifted(segments, shift, type, time_step), 0.25, 0.01)
+              << static_cast<int>(type) << ", " << segments << ", " << shift << ", " << time_step;
+}
+
+TEST(ContactPoint, FacesOfBodiesExchangeMomentumWithTheCable) {
+  for (const double shift : {0.5, 0.3, 0.0, 1.0}) {
+    SceneDesc scene = scenes::one_cable(10, 0.6);
+    scene.gravity.acceleration.setZero();
+    MaterialDesc& material = scene.materials[0].material;
+    material.linear_density = 0.06;
+    material.radius = 0.004;
+    material.bending_stiffness = 0.01;
+    CableDesc& cable = scene.cables[0];
+    cable.initial.type = InitialShapeDesc::Type::straight;
+    cable.initial.from = {0, 0, 0};
+    cable.initial.to = {0.6, 0, 0};
+    // Flies against the cable between two nodes.
+    BodyDesc& block = scene.bodies.emplace_back();
+    block.name = "block";
+    block.mass = 0.02;
+    ShapeDesc shape;
+    shape.type = ShapeType::box;
+    shape.size = {0.02, 0.02, 0.02};
+    block.shapes = {shape};
+    block.pose = {(4 + shift) * 0.06, 0, -0.016, 0, 0, 0};
+    block.velocity = {0, 0, 0.5};
+    World world(scene, {});
+    const auto momentum = [&] {
+      struct {
+        Vector3 linear = Vector3::Zero(), angular = Vector3::Zero();
+      } sum;
+      const SimulatedBody& body = world.bodies()[0];
+      const Eigen::Matrix3d axes = body.pose.orientation.toRotationMatrix();
+      sum.linear = body.mass * body.velocity;
+      sum.angular = body.pose.position.cross(sum.linear) + axes * body.inertia * axes.transpose() * body.angular_velocity;
+      const CableState& state = world.cables()[0].state;
+      for (int i = 0; i < state.nodes(); ++i) {
+        sum.linear += state.masses[i] * state.velocities[i];
+        sum.angular += state.masses[i] * state.positions[i].cross(state.velocities[i]);
+      }
+      return sum;
+    };
+    const auto before = momentum();
+    for (int i = 0; i < 200; ++i) ASSERT_EQ(world.step({}).status, StepResult::Status::ok);
+    const auto after = momentum();
+    // It has been stopped by the cable, which is as heavy as it, and has not passed through.
+    EXPECT_LT(world.bodies()[0].velocity.z(), 0.45);
+    EXPECT_LT((after.linear - before.linear).norm(), 1e-10 * before.linear.norm()) << shift;
+    // The iteration's tolerance, in an impact.
+    EXPECT_LT((after.angular - before.angular).norm(), 1e-5 * before.angular.norm()) << shift;
+  }
 }
 
 }  // namespace

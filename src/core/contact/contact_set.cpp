@@ -7,6 +7,8 @@
 #include "chain/direction.h"
 #include "chain/point_motion.h"
 #include "contact/friction_bound.h"
+#include "contact/touched_place.h"
+#include "geometry/part_over_face.h"
 #include "geometry/segment_geometry.h"
 #include "verlet_cable/core/cable_materials.h"
 
@@ -26,8 +28,12 @@ constexpr double anchored_length = 0.05;
 constexpr double smallest_lean = 0.05;
 /// Relative, of distances.
 constexpr double distance_rounding = 1e-6;
-/// Nodes and segments in turns: of a node, the segments and nodes next to it.
-constexpr std::uint64_t neighbouring_elements = 2;
+/// Cosine of the largest angle between normals that are the same but for rounding.
+constexpr double same_normal = 1 - 1e-11;
+/// From a node to the nodes next to it, by keys.
+constexpr std::uint64_t neighbouring_places = places;
+/// Faces that are narrower than this, in radii, are part of what is round.
+constexpr double narrowest_face = 0.25;
 /// Deeper than this, in radii, nothing that touches a surface from outside gets: it is inside.
 constexpr double deepest_touch = 0.5;
 
@@ -82,24 +88,18 @@ CablePoint node_point(int cable, int node, int segments) {
 /// other.
 bool continues(const CachedContact& last, const Touch& touch) {
   if (last.key != touch.key) return false;
-  const std::uint64_t reach = touch.other.cable < 0 ? neighbouring_elements : 0;
+  const std::uint64_t reach = touch.other.cable < 0 ? neighbouring_places : 0;
   return std::max(last.other_key, touch.other_key) - std::min(last.other_key, touch.other_key) <= reach;
 }
 
-/// A cable's direction at a node or segment.
-Vector3 direction_at(const CableState& state, std::uint64_t element) {
-  const auto place = static_cast<int>(element / 2);
-  return element % 2 == 0 ? way_past(state, place).normalized() : segment_direction(state, place);
-}
-
-/// [m] By how much a smooth cable through the nodes of a segment may bulge out along a normal: twice the arc's height, so that
-/// nodes bear what lies around a round obstacle.
-double bulge_of(const CableState& state, int segment, const Vector3& normal, double radius, double least) {
+/// [m] By how much a smooth cable through the nodes of a segment bulges out along a normal: twice the arc's height, so that nodes
+/// bear what lies around a round obstacle.
+double bulge_of(const CableState& state, int segment, const Vector3& normal) {
   const int before = std::max(segment - 1, 0), after = std::min(segment + 1, state.segments() - 1);
   const double turned =
       after > before ? (segment_direction(state, before) - segment_direction(state, after)).dot(normal) / (after - before) : 0;
   const double length = (state.positions[segment + 1] - state.positions[segment]).norm();
-  return std::clamp(0.25 * length * turned, least * radius, largest_bulge * radius);
+  return 0.25 * length * turned;
 }
 
 /// Tells a touch of a cable that may roll in which direction (of any length), and by which part of friction that is resisted.
@@ -252,9 +252,10 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
     return materials.mean_at(i, [](const MaterialDesc& material) { return material.friction; });
   };
   const bool is_body = moving.body >= 0, moves = !is_body && moving.speed > 0, turns = moving.half_turn.w() != 1;
-  const auto touch_at = [&](const CablePoint& point, std::uint64_t element, const SurfacePoint& nearest) {
-    const bool on_node = element % 2 == 0;
-    const int place = static_cast<int>(element / 2);
+  // `share` of the force, where the node beside it, at its distance, has the rest.
+  const auto touch_at = [&](const CablePoint& point, int place, Place where, const SurfacePoint& nearest, double share = 1,
+                            double node_distance = infinity) {
+    const bool on_node = where == Place::node;
     const double radius = on_node ? stretches_.radius(place) : materials[place].radius;
     const double gap = nearest.distance - (radius + moving.obstacle->padding);
     const Vector3 normal = orientation * nearest.normal;
@@ -263,15 +264,15 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
     if (moves) motion = touching_motion(moving, in_shape(moving, position), normal, h);
     const Vector3 other_velocity = is_body ? moving.body_velocity.at(position) : Vector3(motion.displacement / h);
     if (!may_close(gap, normal, velocity - other_velocity, radius, h)) return;
-    if (is_body && inside_[element] != 0) return;
+    if (is_body && inside_[2 * place + (on_node ? 0 : 1)] != 0) return;
     if (anchored(state, *member.targets, point, *moving.obstacle, attachments)) return;
     // What turns carries a point beside the centre line along the surface, too.
     CablePoint beside = point;
     if (is_body || turns) put_beside(state, normal, std::min(radius, nearest.distance - moving.obstacle->padding), beside);
     if (moves) turn_under(moving, state, beside, motion);
-    Touch& touch = touches_.emplace_back();
+    Touch touch;
     touch.key = is_body ? body_key | key_of(moving.body, moving.obstacle->id) : moving.obstacle->id;
-    touch.other_key = element;
+    touch.other_key = place_key(place, where);
     touch.point = is_body ? beside : point;
     touch.obstacle = moving.index;
     touch.body = moving.body;
@@ -280,9 +281,7 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
     const double friction = moving.obstacle->friction.value_or(on_node ? node_friction(place) : materials[place].friction);
     touch.friction = friction;
     const double rolling = on_node ? materials.mean_at(place, rolling_part) : rolling_part(materials[place]);
-    let_roll(rolling, normal.cross(direction_at(state, element)), touch);
-    feet_.push_back(nearest.point);
-    cuts = cuts || element % 2 == 1;
+    let_roll(rolling, normal.cross(on_node ? way_past(state, place) : segment_direction(state, place)), touch);
     touch.radius = radius;
     touch.base_stiffness = stopping(cable, point.segment, rules_.time_step);
     touch.velocity = velocity;
@@ -294,9 +293,16 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
       touch.velocity =
           at_point(beside, [&](int i) -> Vector3 { return state.velocities[i] - moving.body_velocity.at(state.positions[i]); });
       touch.body_acceleration = at_point(beside, [&](int i) { return moving.body_acceleration.at(state.positions[i]); });
-      touches_body_[places_[index]] = 1;
     }
-    add(touch, member, h);
+    if (gap < 0)
+      share *= 1 - force_of_depth(radius + moving.obstacle->padding - node_distance, touch) / force_of_depth(-gap, touch);
+    if (!(share > 0)) return;
+    touch.share = share;
+    if (is_body) touches_body_[places_[index]] = 1;
+    cuts = cuts || !on_node;
+    feet_.push_back(nearest.point);
+    touches_.push_back(touch);
+    add(touches_.back(), member, h);
   };
 
   const std::size_t first_touch = touches_.size();
@@ -304,7 +310,7 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
   local_.resize(n + 1);
   nearest_.resize(n + 1);
   const auto touch_node = [&](int i) {
-    if (held_[i] == 0) touch_at(node_point(index, i, n), 2 * i, nearest_[i]);
+    if (held_[i] == 0) touch_at(node_point(index, i, n), i, Place::node, nearest_[i]);
   };
   bool last = false;  // whether the segment before is close: its nodes have been visited
   for (const Stretch& stretch : stretches) {
@@ -328,15 +334,38 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
       if (!close || flat || held_[i] != 0 || held_[i + 1] != 0) continue;
       const double first = nearest_[i].distance, second = nearest_[i + 1].distance;
       if (0.5 * (first + second - length) > far) continue;
-      // Where it is nowhere deeper than this, it does not cut in by more than bulges out.
-      const double radius = materials[i].radius, shallow = std::max(first, second) - least * radius;
+      // Where it is nowhere deeper than this, nodes bear it.
+      const double radius = materials[i].radius, shallow = std::max(first, second) - (has_edges ? 0 : least * radius);
       SegmentSurfacePoint deepest = deepest_point(shape, local_[i], local_[i + 1], std::min(far, shallow));
-      if (deepest.surface.distance >= far) continue;
+      if (deepest.surface.distance >= std::min(far, shallow)) continue;
+      // A face presses on what it covers of the cable, and on one segment's length more: on the nodes over it, and where it
+      // begins and ends, with the part of the segment there that goes on inside. So the sum is the same wherever nodes are, and a
+      // place that passes a node passes its force on.
+      std::optional<PartOverFace> part;
+      if (nearest_[i].normal.dot(nearest_[i + 1].normal) < same_normal)
+        part = part_over_face(shape, local_[i], local_[i + 1], deepest, narrowest_face * radius);
+      const bool begins = part && part->begin.fraction > 0 && part->begin.surface.distance > 0;
+      const bool ends = part && part->end.fraction < 1 && part->end.surface.distance > 0;
+      const double arc = bulge_of(state, i, orientation * deepest.surface.normal);
+      const double bulge = std::clamp(arc, least * radius, largest_bulge * radius);
+      // The more it is bent over an edge, deeper there than where the face ends or bulging out, the more it is pushed out where
+      // it is deepest instead, by the edge.
+      double flat = 0;
+      if (begins || ends) {
+        const double lowest = std::min(part->begin.surface.distance, part->end.surface.distance);
+        flat = std::clamp(1 - (lowest - deepest.surface.distance + arc) / (largest_bulge * radius), 0.0, 1.0);
+      }
+      // Less by what the node behind the edge presses with.
+      const auto touch_end = [&](const SegmentSurfacePoint& end, Place where, double inside, double node_distance) {
+        touch_at({index, i, end.fraction}, i, where, end.surface, flat * inside, node_distance);
+      };
+      if (begins) touch_end(part->begin, Place::face_begins, 1 - part->begin.fraction, first);
       const double cut = first + deepest.fraction * (second - first) - deepest.surface.distance;
-      const double bulge = bulge_of(state, i, orientation * deepest.surface.normal, radius, least);
-      if (cut <= bulge) continue;
-      deepest.surface.distance += bulge;
-      touch_at({index, i, deepest.fraction}, 2 * i + 1, deepest.surface);
+      if (cut > bulge && flat < 1) {
+        deepest.surface.distance += bulge;
+        touch_at({index, i, deepest.fraction}, i, Place::deepest, deepest.surface, 1 - flat);
+      }
+      if (ends) touch_end(part->end, Place::face_ends, part->end.fraction, second);
     }
   }
   if (last) touch_node(n);
@@ -407,8 +436,8 @@ void ContactSet::add_pair(const std::vector<SimulatedCable>& cables, const std::
   touch.normal = near.normal;
   touch.gap = near.gap;
   touch.friction = rules_.cable_friction;
-  let_roll(rolling_part(CableMaterials(a)[i]), near.normal.cross(direction_at(a.state, 2 * i + 1)), touch);
-  let_roll(rolling_part(CableMaterials(b)[j]), near.normal.cross(direction_at(b.state, 2 * j + 1)), touch);
+  let_roll(rolling_part(CableMaterials(a)[i]), near.normal.cross(segment_direction(a.state, i)), touch);
+  let_roll(rolling_part(CableMaterials(b)[j]), near.normal.cross(segment_direction(b.state, j)), touch);
   touch.radius = near.radius;
   touch.base_stiffness = std::min(stopping(a, i, rules_.time_step), stopping(b, j, rules_.time_step));
   // Both sides meet in the middle of what they are in each other.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "chain/direction.h"
+#include "contact/touched_place.h"
 
 namespace verlet_cable {
 
@@ -69,7 +70,7 @@ void bound(const FrictionBound& bound, Touch& touch) {
 void bound_friction_of_nodes(const CableState& state, std::size_t first, std::vector<Touch>& touches) {
   const std::vector<Vector3>& x = state.positions;
   for (std::size_t k = first; k < touches.size(); ++k) {
-    const auto node = static_cast<std::size_t>(touches[k].other_key / 2);
+    const auto node = static_cast<std::size_t>(first_node_of(touches[k].other_key));
     if (node == 0 || node + 1 == x.size()) continue;
     bound(bound_of_arc(touches[k].friction, x[node] - x[node - 1], x[node + 1] - x[node], touches[k].normal), touches[k]);
   }
@@ -77,8 +78,8 @@ void bound_friction_of_nodes(const CableState& state, std::size_t first, std::ve
 
 void bound_friction_at_corners(const CableState& state, std::size_t first, const std::vector<Vector3>& feet,
                                std::vector<Touch>& touches, std::vector<std::size_t>& pressed) {
-  const auto first_node = [&](std::size_t k) { return static_cast<int>(touches[k].other_key / 2); };
-  const auto last_node = [&](std::size_t k) { return static_cast<int>((touches[k].other_key + 1) / 2); };
+  const auto first_node = [&](std::size_t k) { return first_node_of(touches[k].other_key); };
+  const auto last_node = [&](std::size_t k) { return last_node_of(touches[k].other_key); };
   const auto direction = [&](int i) { return segment_direction(state, i); };
   const auto bound_turn = [&](Touch& touch, const Vector3& before, const Vector3& behind) {
     bound(bound_of_arc(touch.friction, before, behind, touch.normal), touch);
@@ -94,6 +95,7 @@ void bound_friction_at_corners(const CableState& state, std::size_t first, const
   // The cable's direction between two that meet.
   const auto direction_between = [&](std::size_t k, std::size_t next) -> Vector3 {
     const int node = last_node(k);
+    if (first_node(next) < node) return direction(first_node(next));
     const double before = force_at(k, node), behind = force_at(next, node), sum = before + behind;
     const double part = sum > 0 ? before / sum : 0.5;
     return ((1 - part) * direction(node - 1) + part * direction(node)).normalized();

@@ -39,12 +39,12 @@ ForceAndSlope depth_law(double depth, const Touch& touch) {
   const double scale = touch.yields ? 0 : contact_modulus * touch.radius;
   const double slope = touch.base_stiffness + scale * x * (2 + 6 * y4);
   const double force = touch.base_stiffness * x * touch.radius + scale * touch.radius * x * x * (1 + y4);
-  return {force + slope * (depth - x * touch.radius), slope};
+  return {touch.share * (force + slope * (depth - x * touch.radius)), touch.share * slope};
 }
 
 /// [m] At which the law has a force [N], within some percent.
 double depth_of(double force, const Touch& touch) {
-  const double scaled = force / (contact_modulus * touch.radius * touch.radius);
+  const double scaled = force / (touch.share * contact_modulus * touch.radius * touch.radius);
   double depth = touch.radius * std::min(std::sqrt(scaled), std::cbrt(std::sqrt(scaled) * soft_depth * soft_depth));
   if (depth > deepest * touch.radius) depth = force / depth_law(deepest * touch.radius, touch).force * deepest * touch.radius;
   for (int i = 0; i < 2; ++i) {
@@ -124,6 +124,10 @@ void anticipate(Scheme scheme, double h, double contact_time, const Vector3& acc
 
 double gentle_gap(double radius, double contact_time) {
   return -std::clamp(gentle_velocity * contact_time, 0.05 * radius, 0.15 * radius);
+}
+
+double force_of_depth(double depth, const Touch& touch) {
+  return depth > 0 ? depth_law(depth, touch).force / touch.share : 0;
 }
 
 void start_touch(Touch& touch) {

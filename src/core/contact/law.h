@@ -39,7 +39,8 @@ struct Touch {
   std::array<Rolling, 2> rolling;      ///< of the cables that may roll,
   int rolling_count = 0;               ///< so many
   double radius = 0;                   ///< [m] of the thinner cable
-  double base_stiffness = 0;           ///< [N/m] at no depth
+  double share = 1;                    ///< of the force that the law has at its depth: it bears with others
+  double base_stiffness = 0;           ///< [N/m] at no depth, of a share of 1
   double rate = 1;
   Vector3 offset = Vector3::Zero();               ///< [m]
   Vector3 stuck_force = Vector3::Zero();          ///< [N] friction at the start of the substep, as it is turned in the middle
@@ -79,6 +80,9 @@ void anticipate(Scheme scheme, double h, double contact_time, const Vector3& acc
 
 /// The gap [m] of what is pushed out at a gentle velocity: nothing deeper is taken for deeper where a cable starts inside.
 double gentle_gap(double radius, double contact_time);
+
+/// [N] That a touch with a share of 1 has at a depth [m], none outside.
+double force_of_depth(double depth, const Touch& touch);
 
 /// Linearises the law at the start of the substep.
 void start_touch(Touch& touch);
