@@ -144,18 +144,20 @@ SceneDesc loop_on_a_rope(JunctionDesc::Type type) {
   return scene;
 }
 
-/// Nothing leads a step from where it was drawn to: it hangs anew once its frames allow that.
+/// Drawn out to 1.5 times its length, and let go again: it comes to rest as drag of 0.15 kg/(m s) on 0.1 kg/m lets it.
 TEST(OverstretchedHarness, HangsAgainWhenItsFramesHaveComeBack) {
   for (const JunctionDesc::Type type : {JunctionDesc::Type::hinge, JunctionDesc::Type::rigid}) {
     World world(loop_on_a_rope(type), scenes::hand_at({1, 0, 0}));
-    int degraded = 0;
+    int overstretched = 0;
     for (int i = 1; i <= 300; ++i) {
       const double out = std::sin(M_PI * i / 300);
-      degraded += world.step(scenes::hand_at({1 + 0.8 * out * out, 0, 0})).status == Status::degraded;
+      const Status status = world.step(scenes::hand_at({1 + 0.8 * out * out, 0, 0})).status;
+      EXPECT_NE(status, Status::degraded) << i;
+      overstretched += status == Status::overstretched;
     }
-    EXPECT_GT(degraded, 20);
+    EXPECT_GT(overstretched, 150);
     Status last = Status::degraded;
-    for (int i = 0; i < 1500; ++i) last = world.step(scenes::hand_at({1, 0, 0})).status;
+    for (int i = 0; i < 2500; ++i) last = world.step(scenes::hand_at({1, 0, 0})).status;
     EXPECT_EQ(last, Status::ok);
     for (const SimulatedCable& cable : world.cables()) {
       double length = 0;

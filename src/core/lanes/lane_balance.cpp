@@ -30,8 +30,8 @@ double LaneStepper::kinetic_energy_before_mending(int c, const LaneMember& membe
 /// What the laws take and add over the substep, as CableStepper::balance_laws.
 void LaneStepper::balance_laws(int c, LaneMember& member) {
   const MaterialDesc& material = member.substep.model.material;
-  const bool stretches = work_.law.is_elastic && material.axial_damping > 0, is_drawn_out = member.result.overstretched_node >= 0;
-  if (material.drag == 0 && !work_.law.is_damped && !stretches && !is_drawn_out) return;
+  const bool stretches = work_.law.is_elastic && material.axial_damping > 0;
+  if (material.drag == 0 && !work_.law.is_damped && !stretches) return;
   read_displacement(c);
   if (material.drag > 0) balance_drag(member);
   if (work_.law.is_damped) {
@@ -40,7 +40,6 @@ void LaneStepper::balance_laws(int c, LaneMember& member) {
     for (const ClampJoint& clamp : clamps_[c]) lost += clamp.damping_work;
   }
   if (stretches) balance_stretching(member);
-  if (is_drawn_out) balance_drawn_out(c, member);
 }
 
 void LaneStepper::balance_drag(LaneMember& member) {
@@ -65,17 +64,6 @@ void LaneStepper::balance_stretching(LaneMember& member) {
     const Vector3 end = state.positions[i + 1] - state.positions[i];
     const double growth = end.norm() - (end - get(displacement_, i + 1) + get(displacement_, i)).norm();
     member.result.balance.dissipated.axial += Resistance<double>{0, damping / state.rest_lengths[i]}.loss(growth);
-  }
-}
-
-void LaneStepper::balance_drawn_out(int c, LaneMember& member) {
-  const CableState& state = *member.state;
-  for (int i = 0; i < work_.law.segments; ++i) {
-    double density = 0;
-    each_lane_of(c, i, [&](int place, int lane, double) { density = value(LaneField::density, place, lane); });
-    const Vector3 end = state.positions[i + 1] - state.positions[i],
-                  start = end - get(displacement_, i + 1) + get(displacement_, i);
-    member.result.balance.dissipated.edits += 0.5 * density * (end.squaredNorm() - start.squaredNorm());
   }
 }
 

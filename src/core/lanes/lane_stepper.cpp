@@ -126,11 +126,9 @@ void LaneStepper::resize(const LaneLaw& law) {
   middles_.resize(most_lanes / 2);
   clamps_.resize(most_lanes / 2);
   bendings_.resize(most_lanes / 2);
-  target_lengths_.resize(most_lanes / 2);
   start_multipliers_.resize(most_lanes / 2);
   for (int c = 0; c < most_lanes / 2; ++c) {
     clamps_[c].reserve(expected_clamps);
-    target_lengths_[c].reserve(law.segments);
     start_multipliers_[c].reserve(law.segments);
   }
   convergences_.reserve(most_lanes / 2);
@@ -171,13 +169,8 @@ void LaneStepper::set_cable(int c, LaneMember& member) {
   cable.last_tension = state.last_tension.data();
   cable.axial_multiplier = state.axial_multiplier.data();
   cable.masses = state.masses.data();
-  cable.rest_lengths = cable.target_lengths = state.rest_lengths.data();
+  cable.rest_lengths = state.rest_lengths.data();
   member.result = {};
-  if (!is_elastic(s.model) && s.boundary.nodes.size() > 1) {
-    target_lengths_[c].resize(state.segments());
-    member.result.overstretched_node = reachable_lengths(s.model, state, s.boundary.nodes, s.drawn_out(), target_lengths_[c]);
-    cable.target_lengths = target_lengths_[c].data();
-  }
   find_clamp_joints(
       s.model, state, s.boundary.directions, [&state](int i) -> Vector3 { return state.positions[i + 1] - state.positions[i]; },
       s.h, s.part(), clamps_[c]);

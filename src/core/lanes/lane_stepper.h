@@ -64,7 +64,6 @@ class LaneStepper {
   void balance_laws(int cable, LaneMember& member);
   void balance_drag(LaneMember& member);
   void balance_stretching(LaneMember& member);
-  void balance_drawn_out(int cable, LaneMember& member);
   double kinetic_energy_before_mending(int cable, const LaneMember& member);
   double& value(LaneField field, int place, int lane);
   double& at(LaneField field, int cable, int node);
@@ -89,7 +88,6 @@ class LaneStepper {
   std::vector<Convergence> convergences_;
   std::vector<std::vector<ClampJoint>> clamps_;         // a cable
   std::vector<Bending> bendings_;                       // a cable; what of its bending is damped
-  std::vector<std::vector<double>> target_lengths_;     // a cable, a segment [m]
   std::vector<std::vector<double>> start_multipliers_;  // a cable, a segment [N]; empty where nothing is to be cleaned
   VectorArray segments_;                                // of one cable, at the start of the substep [m]
   VectorArray displacement_;                            // likewise, of the nodes over the substep [m]

@@ -39,7 +39,7 @@ void load_lanes(const LaneWork& w) {
     at.set(LaneField::load_x, mass * gravity + inertia * velocity + drag.load());
     at[LaneField::inertia] = inertia / h + drag.resistance();
     at[LaneField::movable] = at[LaneField::adjustable] = one;
-    at[LaneField::target_length] = gather_segment<Real>(w, &LaneCable::target_lengths, k);
+    at[LaneField::target_length] = rest;
     at[LaneField::inverse_length] = 1.0 / rest;
     at[LaneField::inverse_mass] = 1.0 / mass;
     at.set(LaneField::velocity_x, velocity);

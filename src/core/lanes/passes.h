@@ -100,7 +100,7 @@ struct LaneCable {
   double *positions, *velocities, *accelerations, *acceleration_changes, *turns;  // a node
   double *tension, *last_tension, *axial_multiplier;                              // a segment
   const double* masses;                                                           // a node
-  const double *rest_lengths, *target_lengths;                                    // a segment
+  const double* rest_lengths;                                                     // a segment
 };
 
 /// By lane.

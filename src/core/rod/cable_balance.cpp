@@ -58,7 +58,7 @@ void CableStepper::balance_drag(const Substep& s, const std::vector<double>& mas
 /// Axial damping, and what the tension of segments that cannot stretch does where their lengths change: driven by a winch, or
 /// drawn out beyond what they are.
 void CableStepper::balance_lengths(const Substep& s, SubstepResult& result) const {
-  const bool is_drawn_out = result.overstretched_node >= 0;
+  const bool is_drawn_out = result.overstretched_node >= 0 || !overstretched_.empty();
   if (!any_elastic_ && s.boundary.growing.empty() && !is_drawn_out) return;
   for (int i = 0; i < segments_; ++i) {
     if (is_elastic_at(i)) {

@@ -50,6 +50,7 @@ void CableStepper::resize(int segments) {
         &pivot_, &off_, &impulse_, &growth_, &axial_stiffness_, &axial_damping_, &strain_compliance_})
     a->assign(nodes, 0.0);
   both_held_.reserve(nodes);
+  yields_.assign(nodes, 0);
   material_rates_.reserve(nodes);
   kept_load_.assign(nodes, 0.0);
   kept_gap_.assign(nodes, 0.0);
@@ -87,7 +88,8 @@ void CableStepper::begin(const Substep& s, const CableState& state, SubstepResul
     flows_[k].before = flows_[k].first - 1;
     flows_[k].after = flows_[k].last;
   }
-  result.overstretched_node = reachable_lengths(s.model, state, s.boundary.nodes, s.drawn_out(), target_length_);
+  result.overstretched_node =
+      lengths_in_substep(s.model, state, s.boundary, s.drawn_out(), yielding_ahead(s, state), target_length_, overstretched_);
   set_loads(s, state);
   set_growth(s);
   start_bending(s, state);
@@ -210,9 +212,19 @@ void CableStepper::set_loads(const Substep& s, const CableState& state) {
       }
     }
   }
+  std::fill_n(yields_.begin(), segments_, 0);
+  for (const OverstretchedSpan& span : overstretched_) {
+    const double compliance = compliance_of(span, s, state);
+    for (int i = span.first; i < span.last; ++i) {
+      yields_[i] = 1;
+      system_.compliance[i] += target_length_[i] * target_length_[i] * target_length_[i] * compliance;
+      strain_compliance_[i] = system_.compliance[i];
+    }
+  }
   both_held_.clear();
   for (std::size_t k = 0; k + 1 < held.size(); ++k)
-    if (held[k].node + 1 == held[k + 1].node && held[k].body == held[k + 1].body && !grows(held[k].node))
+    if (held[k].node + 1 == held[k + 1].node && held[k].body == held[k + 1].body && !grows(held[k].node) &&
+        yields_[held[k].node] == 0)
       both_held_.push_back(held[k].node);
 }
 
@@ -569,7 +581,7 @@ void CableStepper::begin_projection(const Substep& s, const CableState& state) {
     set(system_.direction, i, d);
     system_.first[i] = 0;
     const double compliance = d.squaredNorm() / (state.masses[i] + state.masses[i + 1]);
-    const bool stretches = is_elastic_at(i);
+    const bool stretches = is_elastic_at(i) || yields_[i] != 0;
     system_.compliance[i] = (stretches ? 1 / length_rate_regularisation : length_rate_regularisation) * compliance;
     system_.gap[i] = stretches ? 0 : d.dot(state.velocities[i] - state.velocities[i + 1]);
   }
@@ -682,8 +694,8 @@ void CableStepper::project(const Substep& s, const std::vector<double>& masses, 
     pivot_[i] = 1;
     impulse_[i] = 0;
   }
-  for (int i = 0; any_elastic_ && i < n; ++i) {
-    if (!is_elastic_at(i)) continue;
+  for (int i = 0; (any_elastic_ || !overstretched_.empty()) && i < n; ++i) {
+    if (!is_elastic_at(i) && yields_[i] == 0) continue;
     pivot_[i] = 1;
     off_[i] = off_[std::max(i - 1, 0)] = impulse_[i] = 0;
   }
@@ -887,6 +899,7 @@ double CableStepper::store(const Substep& s, CableState& state) const {
     shortest = std::min(shortest, relative);
     const bool elastic = is_elastic_at(i);
     double length = elastic ? length_[i] + part * (std::sqrt(square) - length_[i]) : target_length_[i];
+    if (yields_[i] != 0) length = std::sqrt(square);
     if (!elastic && !flows_.empty() && grows(i)) length = length_[i] + part * (target_length_[i] - length_[i]);
     state.axial_multiplier[i] = tension_density_[i] * length;
     const double tension =

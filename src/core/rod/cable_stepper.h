@@ -172,12 +172,14 @@ class CableStepper {
   std::vector<double> rest_growth_;                 // segments: of the rest length, in the substep [m]
   int winch_node_ = -1;                             // the end node at a winch that runs
   Vector3 material_way_ = Vector3::Zero();          // of the material there, in the substep [m]
-  std::vector<double> target_length_;               // segments: l [m]; longer where held points are too far apart
-  std::vector<double> inverse_mass_;                // nodes: [1/kg], 0 where held
-  std::vector<double> inertia_;                     // nodes: 2 m / h^2 and drag / h [kg/s^2]
-  VectorArray base_load_;                           // nodes: gravity and inertia of the velocity [N]
-  std::vector<double> strain_compliance_;           // segments: of the system's compliance, what tension strains; see set_loads
-  std::vector<int> both_held_;                      // segments between two held nodes that do not give way
+  std::vector<double> target_length_;               // segments: l [m]; longer where bodies have drawn them out
+  std::vector<OverstretchedSpan> overstretched_;
+  std::vector<char> yields_;               // segments: of an overstretched span
+  std::vector<double> inverse_mass_;       // nodes: [1/kg], 0 where held
+  std::vector<double> inertia_;            // nodes: 2 m / h^2 and drag / h [kg/s^2]
+  VectorArray base_load_;                  // nodes: gravity and inertia of the velocity [N]
+  std::vector<double> strain_compliance_;  // segments: of the system's compliance, what tension strains; see set_loads
+  std::vector<int> both_held_;             // segments between two held nodes that do not give way
   // The unknowns
   VectorArray displacement_;             // nodes: x' - x [m]
   std::vector<double> tension_density_;  // segments: 2 T / (s + s') [N/m]

@@ -242,7 +242,7 @@ void restore_lengths(const CableModel& model, const std::vector<HeldNode>& held,
   if (!materials.any_rigid()) return;
   const int n = state.segments();
   std::vector<double> lengths(n);
-  reachable_lengths(model, state, held, {}, lengths);
+  reachable_lengths(model, state, held, lengths);
   bool wrong = false;
   for (int i = 0; i < n; ++i) {
     const double length = (state.positions[i + 1] - state.positions[i]).norm();

@@ -147,7 +147,7 @@ bool project_positions(const CableModel& model, const std::vector<HeldNode>& hel
   if (!materials.any_rigid()) return true;
   straighten_taut_spans(materials, held, state);
   std::vector<double> lengths(state.segments());
-  reachable_lengths(model, state, held, {}, lengths);
+  reachable_lengths(model, state, held, lengths);
   free_elastic(materials, lengths);
   return project_lengths(held, lengths, state);
 }

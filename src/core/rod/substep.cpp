@@ -31,6 +31,8 @@ constexpr double greatest_growth = 10;
 constexpr double drawn_stretch = 1e-4;
 /// [m/s] At which what bodies have drawn out is drawn in again, once they let it.
 constexpr double recovery_velocity = 1;
+/// Of the time in which something falls by the length of the cable, about.
+constexpr double warning_time = 0.05;
 /// A holder's change of velocity that moves a node by less in a substep, in segment lengths, goes unnoticed.
 constexpr double noticed_jerk = 1e-9;
 
@@ -52,11 +54,15 @@ double mass_of_taut(const Substep& s, const CableState& state) {
   return s.boundary.is_on_bodies() ? s.boundary.joined_mass : std::accumulate(state.masses.begin(), state.masses.end(), 0.0);
 }
 
+/// [N]
+double weight_of_taut(const Substep& s, const CableState& state) {
+  return std::max(s.environment.gravity.at(state.positions[0]).norm(), standard_gravity) * mass_of_taut(s, state);
+}
+
 /// [N] The weight, and what bends the cable.
 double load_of_taut(const Substep& s, const CableState& state) {
   const double length = state.length();
-  const double weight = std::max(s.environment.gravity.at(state.positions[0]).norm(), standard_gravity) * mass_of_taut(s, state);
-  return weight + CableMaterials(s.model, state).largest_bending_stiffness() / (length * length);
+  return weight_of_taut(s, state) + CableMaterials(s.model, state).largest_bending_stiffness() / (length * length);
 }
 
 }  // namespace
@@ -85,6 +91,21 @@ double stiffness_of_taut(const Substep& s, const CableState& state) {
   double inertia = 0;
   if (s.boundary.is_on_bodies()) inertia = taut_inertia * s.inertia() * mass_of_taut(s, state) * state.length() / (s.h * s.h);
   return inertia + taut_stiffness * load_of_taut(s, state);
+}
+
+YieldingAhead yielding_ahead(const Substep& s, const CableState& state) {
+  if (s.statics) return {};
+  const double gravity = std::max(s.environment.gravity.at(state.positions[0]).norm(), standard_gravity);
+  return {warning_time * std::sqrt(state.length() / gravity), s.h};
+}
+
+bool is_overstretched(const Substep& s, const CableState& state) {
+  return any_overstretched(s.model, state, s.boundary, yielding_ahead(s, state));
+}
+
+double compliance_of(const OverstretchedSpan& span, const Substep& s, const CableState& state) {
+  // Tension is the length times its multiplier, which strains half of the square of the length.
+  return span.share * (1 + span.strain) * (1 + 0.5 * span.strain) / (overstretched_stiffness * weight_of_taut(s, state));
 }
 
 bool is_drawn_out_on_bodies(const Substep& s, const CableState& state) {

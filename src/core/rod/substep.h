@@ -87,6 +87,16 @@ class Convergence {
 /// that weight strains it by a part in ten million.
 double stiffness_of_taut(const Substep& substep, const CableState& state);
 
+/// Nothing moves in statics.
+YieldingAhead yielding_ahead(const Substep& substep, const CableState& state);
+
+/// Whether holders on frames draw any span of the cable beyond its length, or will at once.
+bool is_overstretched(const Substep& substep, const CableState& state);
+
+/// [1/N] Of a span that is drawn beyond its length: it pulls like a spring of 1e4 times the weight of all that hangs together,
+/// per unit of strain.
+double compliance_of(const OverstretchedSpan& span, const Substep& substep, const CableState& state);
+
 /// Whether bodies hold an inextensible part of the cable that is longer than it should be at the start of the substep, `state`.
 bool is_drawn_out_on_bodies(const Substep& substep, const CableState& state);
 

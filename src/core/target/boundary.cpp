@@ -26,42 +26,108 @@ void HolderMotion::clear() {
   for (PointLoad& load : loads) load.force.setZero();
 }
 
-int reachable_lengths(const CableModel& model, const CableState& state, const std::vector<HeldNode>& held, DrawnOut drawn_out,
-                      std::vector<double>& lengths) {
-  for (int i = 0; i < state.segments(); ++i) lengths[i] = state.rest_lengths[i];
+namespace {
+
+/// Strain over which a span that is drawn straight comes to yield.
+constexpr double yielding_strain = 1e-3;
+
+/// Between holders that the cable does not slide through, by way of those that it does.
+struct HeldSpan {
+  int first = 0, last = 0;    ///< nodes
+  double length = 0;          ///< [m] at rest
+  double distance = 0;        ///< [m] of its holders
+  double start_distance = 0;  ///< [m] of its nodes, at the start of the substep
+  double rounding = 0;        ///< [m] of distances
+  bool gives_way = false;     ///< a body holds it
+};
+
+/// Calls `visit` with every span none of which can stretch.
+template <class Visit>
+void each_rigid_span(const CableModel& model, const CableState& state, const std::vector<HeldNode>& held, const Visit& visit) {
   const CableMaterials materials(model, state);
-  if (!materials.any_rigid()) return -1;
-  int overstretched = -1;
+  if (!materials.any_rigid()) return;
   std::size_t next = 0;
   for (std::size_t k = 0; k + 1 < held.size(); k = next) {
     // On to the next holder that the cable does not slide through; junctions are drawn along.
-    bool gives_way = held[k].body >= 0;
-    double distance = 0, start_distance = 0;
+    HeldSpan span;
+    span.gives_way = held[k].body >= 0;
     const HeldNode* last_place = &held[k];
     for (next = k + 1;; ++next) {
       const HeldNode& node = held[next];
       if (!node.at_junction) {
-        distance += (node.position - last_place->position).norm();
-        start_distance += (state.positions[node.node] - state.positions[last_place->node]).norm();
+        span.distance += (node.position - last_place->position).norm();
+        span.start_distance += (state.positions[node.node] - state.positions[last_place->node]).norm();
         last_place = &node;
-        gives_way = gives_way || node.body >= 0;
+        span.gives_way = span.gives_way || node.body >= 0;
       }
       if (!(node.slides || node.at_junction) || next + 1 == held.size()) break;
     }
     if (held[k].slides || held[next].slides || held[next].at_junction) continue;
-    const int first = held[k].node, last = held[next].node;
-    if (materials.any_elastic_between(first, last)) continue;
-    const double rest_length = state.length(first, last);
-    const double rounded = rounding * held[k].position.cwiseAbs().maxCoeff();
-    if (gives_way) distance = start_distance;
-    const bool is_reported = !gives_way || drawn_out.is_reported;
-    if (is_reported && distance > rest_length * (1 + reported_stretch) + rounded && overstretched < 0) overstretched = first;
-    if (gives_way) distance -= drawn_out.drawn_in;
-    const double stretch = distance / rest_length;
-    if (stretch <= 1) continue;
-    for (int i = first; i < last; ++i) lengths[i] *= stretch;
+    if (held[k].attachment >= 0 && held[k].attachment == held[next].attachment) continue;
+    span.first = held[k].node;
+    span.last = held[next].node;
+    if (materials.any_elastic_between(span.first, span.last)) continue;
+    span.length = state.length(span.first, span.last);
+    span.rounding = rounding * held[k].position.cwiseAbs().maxCoeff();
+    visit(span);
   }
-  return overstretched;
+}
+
+/// [m] By how much further its holders are apart in a substep of `h` [s], beyond what it grows by.
+double drawn_in_substep(const HeldSpan& span, const std::vector<GrowingSegment>& growing, double h) {
+  double drawn = span.distance - span.start_distance;
+  for (const GrowingSegment& segment : growing)
+    if (segment.segment >= span.first && segment.segment < span.last) drawn -= h * segment.growth;
+  return drawn;
+}
+
+/// Of the way from a span that is straight, as what is reported has it, to one that yields, 0 to 1; negative where it is not
+/// straight.
+double yielding_share(const HeldSpan& span, const std::vector<GrowingSegment>& growing, const YieldingAhead& ahead) {
+  const double soon = ahead.time / ahead.substep * std::max(0.0, drawn_in_substep(span, growing, ahead.substep));
+  return std::min(((span.distance + soon - span.rounding) / span.length - 1 - reported_stretch) / yielding_strain, 1.0);
+}
+
+void lengthen(const HeldSpan& span, double distance, std::vector<double>& lengths) {
+  const double stretch = distance / span.length;
+  if (stretch <= 1) return;
+  for (int i = span.first; i < span.last; ++i) lengths[i] *= stretch;
+}
+
+}  // namespace
+
+void reachable_lengths(const CableModel& model, const CableState& state, const std::vector<HeldNode>& held,
+                       std::vector<double>& lengths) {
+  std::copy_n(state.rest_lengths.begin(), state.segments(), lengths.begin());
+  each_rigid_span(model, state, held, [&](const HeldSpan& span) {
+    if (!span.gives_way) lengthen(span, span.distance, lengths);
+  });
+}
+
+int lengths_in_substep(const CableModel& model, const CableState& state, const Boundary& boundary, DrawnOut drawn_out,
+                       const YieldingAhead& ahead, std::vector<double>& lengths, std::vector<OverstretchedSpan>& spans) {
+  std::copy_n(state.rest_lengths.begin(), state.segments(), lengths.begin());
+  spans.clear();
+  int first = -1;
+  each_rigid_span(model, state, boundary.nodes, [&](const HeldSpan& span) {
+    const double distance = span.gives_way ? span.start_distance : span.distance;
+    const bool is_too_short = distance > span.length * (1 + reported_stretch) + span.rounding;
+    if (is_too_short && first < 0 && (!span.gives_way || drawn_out.is_reported)) first = span.first;
+    if (span.gives_way) {
+      lengthen(span, distance - drawn_out.drawn_in, lengths);
+      return;
+    }
+    const double share = yielding_share(span, boundary.growing, ahead);
+    if (share > 0) spans.push_back({span.first, span.last, std::max(0.0, distance / span.length - 1), share});
+  });
+  return first;
+}
+
+bool any_overstretched(const CableModel& model, const CableState& state, const Boundary& boundary, const YieldingAhead& ahead) {
+  bool found = false;
+  each_rigid_span(model, state, boundary.nodes,
+                  [&](const HeldSpan& span) { found |= !span.gives_way && yielding_share(span, boundary.growing, ahead) > 0; });
+  return found;
 }
 
 }  // namespace verlet_cable

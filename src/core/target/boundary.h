@@ -29,6 +29,7 @@ struct HeldNode {
   Vector3 point = Vector3::Zero();  ///< [m] of the body that holds the node, in the axes of its frame
   bool at_junction = false;         ///< the body is one that joins cables
   bool slides = false;              ///< whether the cable's material flows through it
+  int attachment = -1;              ///< that holds the node: a clamp may hold two
 
   /// `mass` [kg], `start`, of the node [m/s], and its way [m] in a substep of h [s].
   void follow(double mass, const Vector3& start, const Vector3& way, double h) {
@@ -106,11 +107,32 @@ struct DrawnOut {
   bool is_reported = false;                                   ///< whether they count among those whose first node is returned
 };
 
-/// The lengths [m] that the segments can keep: their rest lengths, but longer between holders that are further apart
-/// than the cable between them is long, by way of the guides that it slides through, where none of it can stretch. What bodies
-/// have drawn out keeps its length but for what is drawn in again. Returns the first node of such a span, -1 if
-/// there is none. `held` ascends by node; `lengths`: one a segment.
-int reachable_lengths(const CableModel& model, const CableState& state, const std::vector<HeldNode>& held, DrawnOut drawn_out,
-                      std::vector<double>& lengths);
+/// A span of what cannot stretch, between holders on frames that are, or will be at once, further apart than it is long.
+struct OverstretchedSpan {
+  int first = 0, last = 0;  ///< nodes
+  double strain = 0;        ///< by which the holders are too far apart at the end of the substep, not negative
+  double share = 0;         ///< 0 to 1: how far it is on the way from a span that is straight to one that yields
+};
+
+/// The lengths [m] that the segments can keep: their rest lengths, but longer between holders on frames that are further apart
+/// than the cable between them is long, by way of the guides that it slides through, where none of it can stretch. `held` ascends
+/// by node; `lengths`: one a segment.
+void reachable_lengths(const CableModel& model, const CableState& state, const std::vector<HeldNode>& held,
+                       std::vector<double>& lengths);
+
+/// A span that is drawn straight yields before it is, as what it pulls sideways would have to be stopped at once: its holders are
+/// looked ahead, as they move in the substep.
+struct YieldingAhead {
+  double time = 0;     ///< [s]
+  double substep = 1;  ///< [s]
+};
+
+/// The lengths [m] of the segments in a substep: what bodies have drawn out keeps its length but for what is drawn in again.
+/// `spans`: those that yield to their holders. Returns the first node of a span that is too short, -1 if there is none.
+int lengths_in_substep(const CableModel& model, const CableState& state, const Boundary& boundary, DrawnOut drawn_out,
+                       const YieldingAhead& ahead, std::vector<double>& lengths, std::vector<OverstretchedSpan>& spans);
+
+/// Whether there are such spans.
+bool any_overstretched(const CableModel& model, const CableState& state, const Boundary& boundary, const YieldingAhead& ahead);
 
 }  // namespace verlet_cable

@@ -268,6 +268,7 @@ void hold_at(double from, double to, const KinematicTargets& targets, Boundary& 
     const KinematicTarget& target = targets.nodes[k];
     HeldNode& held = boundary.nodes[k];
     held.node = target.node;
+    held.attachment = target.attachment;
     held.body = -1;
     held.at_junction = false;
     held.slides = target.slides;

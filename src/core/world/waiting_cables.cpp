@@ -23,6 +23,7 @@ bool IslandStepper::wait_for_others(Island& island, IslandOutcome& found, bool& 
   Boundary& boundary = waiting.boundaries[waiting.cables.size()];
   boundary.growing.clear();
   hold_at(0, 1, memory.targets, boundary);
+  if (is_overstretched(whole_step(cable, boundary), state)) return false;
   waiting.cables.push_back({this, &island, &found});
   if (2 * static_cast<int>(waiting.cables.size()) == waiting.lanes) step_together(waiting);
   return true;
