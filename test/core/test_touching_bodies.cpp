@@ -90,6 +90,44 @@ double weight_on(const World& world, int body) {
   return weight;
 }
 
+/// Walls around a hole of 18 mm by 14 mm along x, from x = 0 to 0.05 m.
+std::vector<ObstacleDesc> hole() {
+  const Vector3 level(0.05, 0.038, 0.009), upright(0.05, 0.01, 0.014);
+  return {obstacle("sill", box(level), {0.025, 0, -0.0115, 0, 0, 0}), obstacle("lintel", box(level), {0.025, 0, 0.0115, 0, 0, 0}),
+          obstacle("left", box(upright), {0.025, 0.014, 0, 0, 0, 0}),
+          obstacle("right", box(upright), {0.025, -0.014, 0, 0, 0, 0})};
+}
+
+/// What passes without touching is not felt, however far it goes in a step, be it the plug that moves or the hole.
+TEST(TouchingBodies, FlyThroughAHoleUntouched) {
+  ShapeDesc pin = round_shape(ShapeType::capsule, 0.0055, 0.03);
+  pin.pose = InitialPose{0, 0, 0, 0, M_PI / 2, 0};
+  for (const ShapeDesc& shape : {box({0.05, 0.014, 0.01}), round_shape(ShapeType::sphere, 0.0055), pin})
+    for (const double step : {0.001, 0.003, 0.01})
+      for (const double speed : {0.05, 0.6, 3.0})
+        for (const bool hole_moves : {false, true}) {
+          SCOPED_TRACE(testing::Message() << static_cast<int>(shape.type) << " " << step << " s, " << speed << " m/s "
+                                          << hole_moves);
+          SceneDesc scene = on_floor();
+          scene.gravity.acceleration = Vector3::Zero();
+          scene.time_step = step;
+          scene.obstacles = hole();
+          for (ObstacleDesc& wall : scene.obstacles) wall.frame = "walls";
+          BodyDesc& plug = add_body(scene, "plug", 0.02, shape, {-0.05, 0, 0, 0, 0, 0});
+          const Vector3 velocity = hole_moves ? Vector3::Zero() : Vector3(speed, 0, 0);
+          plug.velocity = velocity;
+          const auto walls_at = [&](double time) {
+            BoundaryInputs inputs(2);
+            inputs[1].pose.position.x() = hole_moves ? -speed * time : 0;
+            return inputs;
+          };
+          World world(scene, walls_at(0));
+          for (int i = 1; i * step < 0.15 / speed; ++i) world.step(walls_at(i * step));
+          EXPECT_NEAR((world.bodies()[0].velocity - velocity).norm(), 0, 1e-12);
+          EXPECT_NEAR(world.bodies()[0].angular_velocity.norm(), 0, 1e-9);
+        }
+}
+
 /// Every shape comes to rest on every other one that can carry it, in place.
 TEST(TouchingBodies, RestOnObstaclesOfAllShapes) {
   ShapeDesc mesh;

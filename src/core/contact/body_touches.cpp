@@ -26,6 +26,20 @@ bool is_held_by(int body, const Obstacle& obstacle, const std::vector<int>& held
   });
 }
 
+/// The velocities that a body's points have over a substep of h [s], seen from an obstacle.
+PointMotion relative_to(const MovingObstacle& moving, const PointMotion& velocity, double h) {
+  const Vector3 turning = 2 / h * rotation_vector(moving.half_turn);
+  const PointMotion obstacle{moving.start.position, (moving.end.position - moving.start.position) / h, turning};
+  return {velocity.center, velocity.linear - obstacle.at(velocity.center), velocity.angular - turning};
+}
+
+/// What moves with such velocities for some time [s], in the axes of a pose.
+PointMotion seen_from(const Pose& pose, const PointMotion& velocity, double time) {
+  const Pose inside = pose.inverse();
+  return {at(inside, velocity.center), inside.orientation * (time * velocity.linear),
+          inside.orientation * (time * velocity.angular)};
+}
+
 const CachedContact* find_cached(const ContactCache& cache, const Touch& touch) {
   const auto same = std::lower_bound(cache.begin(), cache.end(), touch,
                                      [&](const CachedContact& a, const Touch& b) { return keys(a) < keys(b); });
@@ -69,6 +83,9 @@ void BodyTouches::find_shape(const TouchingBody& touching, int index, const Movi
   const Vector3 middle = at(moving.start.inverse(), box.center());
   if (closest_point(solid, middle, radius + reach).distance >= radius + reach) return;
 
+  const PointMotion past = relative_to(moving, velocity, h);
+  const double ahead = rules.still ? 0 : h + time;
+
   // `touch`: its normal, position and gap; `surface` [m]: of the obstacle, in its axes.
   const auto add = [&](const Vector3& position, const Vector3& normal, const Vector3& surface, double gap,
                        std::uint64_t feature) {
@@ -107,13 +124,17 @@ void BodyTouches::find_shape(const TouchingBody& touching, int index, const Movi
   const Eigen::Matrix3d axes = moving.start.orientation.toRotationMatrix();
   found_.clear();
   const bool is_sphere = std::holds_alternative<SphereShape>(shape), on_sphere = std::holds_alternative<SphereShape>(solid);
-  if (is_sphere || !on_sphere) find_feature_contacts(shape, rounding, in_obstacle, solid, 0, reach, found_);
+  if (is_sphere || !on_sphere) {
+    const FeatureSearch search{reach, padding, seen_from(moving.start, past, ahead)};
+    find_feature_contacts(shape, rounding, in_obstacle, solid, 0, search, found_);
+  }
   for (const FeatureContact& found : found_)
     add(at(moving.start, found.point), axes * found.normal, found.foot + padding * found.normal, found.distance - padding,
         found.feature);
   if (is_sphere) return;
   found_.clear();
-  find_feature_contacts(solid, 0, in_obstacle.inverse(), shape, rounding, reach, found_);
+  const FeatureSearch search{reach, padding, seen_from(pose, past, -ahead)};
+  find_feature_contacts(solid, 0, in_obstacle.inverse(), shape, rounding, search, found_);
   for (const FeatureContact& found : found_) {
     const Vector3 position = at(pose, found.foot), normal = pose.orientation * -found.normal;
     add(position, normal, at(moving.start.inverse(), position - found.distance * normal), found.distance - padding,

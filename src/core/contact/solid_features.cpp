@@ -25,14 +25,14 @@ constexpr int rim_refinements = 2;
 /// Looks for contacts of one solid's features with another solid.
 class Finder {
  public:
-  Finder(double rounding, const Pose& pose, const Shape& other, double other_rounding, double reach,
+  Finder(double rounding, const Pose& pose, const Shape& other, double other_rounding, const FeatureSearch& search,
          std::vector<FeatureContact>& found)
       : rounding_(rounding),
         position_(pose.position),
         turn_(pose.orientation.toRotationMatrix()),
         other_(inset(other, other_rounding)),
         other_rounding_(has_edges(other) ? other_rounding : 0),
-        reach_(reach),
+        search_(search),
         is_plane_(std::holds_alternative<PlaneShape>(other)),
         found_(found) {}
 
@@ -97,7 +97,7 @@ class Finder {
     return shape;
   }
 
-  double spare(double radius) const { return radius + other_rounding_ + reach_; }
+  double spare(double radius) const { return radius + other_rounding_ + search_.reach; }
 
   void add(std::uint32_t feature, const Vector3& place, double radius) {
     add_near(feature, place, closest_point(other_, place, spare(radius)), radius);
@@ -105,10 +105,20 @@ class Finder {
 
   /// `place`: in the middle of what is round by `radius`.
   void add_near(std::uint32_t feature, const Vector3& place, const SurfacePoint& nearest, double radius) {
-    const double distance = nearest.distance - radius - other_rounding_;
-    if (!(distance < reach_)) return;
+    const double rounded = radius + other_rounding_;
+    double distance = nearest.distance - rounded;
+    if (!(distance < search_.reach)) return;
+    SurfacePoint passed = nearest;
+    if (distance > search_.padding) {
+      const Vector3 travel = search_.travel.at(place);
+      const SegmentSurfacePoint closest = deepest_point(other_, place, place + travel, spare(radius));
+      if (closest.surface.distance - rounded > search_.padding && closest.surface.distance < spare(radius)) {
+        passed = closest.surface;
+        distance = passed.distance - rounded - closest.fraction * travel.dot(passed.normal);
+      }
+    }
     found_.push_back(
-        {feature, place - radius * nearest.normal, nearest.point + other_rounding_ * nearest.normal, nearest.normal, distance});
+        {feature, place - radius * passed.normal, passed.point + other_rounding_ * passed.normal, passed.normal, distance});
   }
 
   /// Where an edge is deeper than at its ends.
@@ -147,7 +157,8 @@ class Finder {
   Vector3 position_;
   Eigen::Matrix3d turn_;
   Shape other_;
-  double other_rounding_, reach_;
+  double other_rounding_;
+  const FeatureSearch& search_;
   bool is_plane_;
   std::vector<FeatureContact>& found_;
 };
@@ -163,8 +174,8 @@ double rounding_of(const Shape& shape) {
 }
 
 void find_feature_contacts(const Shape& solid, double rounding, const Pose& pose, const Shape& other, double other_rounding,
-                           double reach, std::vector<FeatureContact>& found) {
-  Finder finder(rounding, pose, other, other_rounding, reach, found);
+                           const FeatureSearch& search, std::vector<FeatureContact>& found) {
+  Finder finder(rounding, pose, other, other_rounding, search, found);
   std::visit([&](const auto& shape) { finder.find(shape); }, solid);
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "contact/moving_obstacle.h"
 #include "verlet_cable/core/shape.h"
 
 namespace verlet_cable {
@@ -19,10 +20,18 @@ struct FeatureContact {
 /// [m] Edges and corners of bodies are rounded by so much: then they have a normal where they cross.
 double rounding_of(const Shape& shape);
 
-/// Where a solid comes closer to another than `reach` [m]: at its corners, and at edges, rims, axes and curved sides where these
+/// Which contacts are looked for.
+struct FeatureSearch {
+  double reach = 0;    ///< [m] of what is closer
+  double padding = 0;  ///< [m] around the other solid
+  PointMotion travel;  ///< [m], [rad] in the frame of the other: the way of the first that is looked ahead
+};
+
+/// Where a solid comes closer to another than a reach: at its corners, and at edges, rims, axes and curved sides where these
 /// are nearest; of a mesh at its vertices. Flat ends of cylinders are polygons where they lie flat. `pose`: of the first in the
 /// frame of the second; boxes and cylinders are rounded by as much as is given.
+/// What will pass the other one without touching it has the normal, and the distance along that, of the place where it passes.
 void find_feature_contacts(const Shape& solid, double rounding, const Pose& pose, const Shape& other, double other_rounding,
-                           double reach, std::vector<FeatureContact>& found);
+                           const FeatureSearch& search, std::vector<FeatureContact>& found);
 
 }  // namespace verlet_cable
