@@ -347,12 +347,33 @@ TEST(Contact, CableInsideAnObstacleIsFoundAndPushedOutGently) {
   EXPECT_LT(fastest(world), 1e-3);
 }
 
-TEST(Contact, CableThatIsStuckInAnObstacleIsNotSettled) {
+TEST(Contact, CableThatHangsThroughAnObstacleSettlesOnIt) {
   for (const ShapeType type : {ShapeType::cylinder, ShapeType::sphere}) {
     SceneDesc scene = scenes::between_two_points(40, 0.8);
+    scene.cables[0].initial.type = InitialShapeDesc::Type::catenary;
     add_obstacle("ball", type, {0.4, 0, -0.25, pi / 2, 0, 0}, scene);
     scene.obstacles[0].radius = 0.1;
     World world(scene, BoundaryInputs(1));
+    EXPECT_LT(lowest(world), -0.25);
+    EXPECT_TRUE(world.settle());
+    for (const Vector3& place : world.cables()[0].state.positions) {
+      const Vector3 out = place - Vector3(0.4, 0, -0.25);
+      EXPECT_GT(std::hypot(out.x(), out.z()), type == ShapeType::cylinder ? 0.1 + 0.98 * radius : 0);
+      EXPECT_GT(out.norm(), 0.1 + 0.98 * radius);
+    }
+    run(world, 0.2);
+    EXPECT_LT(fastest(world), 1e-3);
+  }
+}
+
+/// Around the ball it is longer than the cable: twice sqrt(0.49^2 - 0.1^2) and an arc of 0.04 m are more than 1 m.
+TEST(Contact, CableThatIsStuckInAnObstacleIsNotSettled) {
+  for (const ShapeType type : {ShapeType::cylinder, ShapeType::sphere}) {
+    SceneDesc scene = scenes::between_two_points(40, 0.98);
+    add_obstacle("ball", type, {0.49, 0, 0, pi / 2, 0, 0}, scene);
+    scene.obstacles[0].radius = 0.1;
+    World world(scene, BoundaryInputs(1));
+    EXPECT_EQ(world.findings().unsettled.size(), 1u);
     EXPECT_FALSE(world.settle());
   }
 }
@@ -361,6 +382,7 @@ TEST(Contact, CableThatIsStuckInAnObstacleIsNotSettled) {
 /// had time to get out.
 TEST(Contact, CableThatFindsNoWayOutOfAnObstacleIsTold) {
   SceneDesc scene = scenes::between_two_points(40, 0.8);
+  scene.cables[0].initial.type = InitialShapeDesc::Type::catenary;
   add_obstacle("block", ShapeType::box, {0.4, 0, -0.25, 0, 0, 0}, scene);
   World world(scene, BoundaryInputs(1));
   const BoundaryInputs inputs(1);

@@ -306,5 +306,65 @@ TEST(Starts, SettlingEndsWhenTheWorldIsCancelled) {
   EXPECT_TRUE(world.cables().empty() || !world.findings().unsettled.empty());
 }
 
+/// Two metres of cable whose start is held a metre above a floor.
+class LongerThanTheRoom : public testing::TestWithParam<std::tuple<double, bool>> {};
+
+TEST_P(LongerThanTheRoom, StartsLyingOnTheFloor) {
+  const auto [bending, settled] = GetParam();
+  SceneDesc scene = scenes::one_cable(40, 2);
+  MaterialDesc& material = scene.materials[0].material;
+  material.bending_stiffness = bending;
+  material.bending_damping = 0.01 * bending;
+  scene.cables[0].attachments = {scenes::attachment("hand", At::start, {0, 0, 1})};
+  if (settled) scene.cables[0].initial.type = InitialShapeDesc::Type::settled;
+  ObstacleDesc& floor = scene.obstacles.emplace_back();
+  floor.name = "floor";
+  floor.type = ShapeType::plane;
+  World world(scene, initial_frames(scene));
+  EXPECT_TRUE(world.findings().unsettled.empty());
+  for (const Vector3& place : world.cables()[0].state.positions) EXPECT_GT(place.z(), 0);
+  for (int i = 0; i < 300; ++i) ASSERT_EQ(world.step(BoundaryInputs(world.frames().size())).status, StepResult::Status::ok) << i;
+  for (const Vector3& velocity : world.cables()[0].state.velocities) EXPECT_LT(velocity.norm(), 0.01);
+  // What lies bears no tension, and where it is not bent a cable pulls with the weight of what hangs between the heights of its
+  // ends: what slides along its own shape does no work.
+  const double weight = material.linear_density * -scene.gravity.acceleration.z();
+  EXPECT_NEAR(-world.attachments()[0].force.z(), weight, 0.05 * weight);
+}
+
+INSTANTIATE_TEST_SUITE_P(Stiffness, LongerThanTheRoom, testing::Combine(testing::Values(0.0, 1e-3, 1e-2), testing::Bool()));
+
+/// A metre of cable that would hang through something.
+class HangsThrough : public testing::TestWithParam<std::tuple<ShapeType, double, bool>> {};
+
+TEST_P(HangsThrough, StartsLyingOnIt) {
+  const auto [shape, bending, between_ends] = GetParam();
+  SceneDesc scene = between_ends ? scenes::between_two_points(40, 0.8) : scenes::one_cable(40);
+  if (!between_ends) scene.cables[0].attachments = {scenes::attachment("hand", At::start, {0.4, 0, 0.3})};
+  MaterialDesc& material = scene.materials[0].material;
+  material.bending_stiffness = bending;
+  material.bending_damping = 0.01 * bending;
+  ObstacleDesc& obstacle = scene.obstacles.emplace_back();
+  obstacle.name = "obstacle";
+  obstacle.type = shape;
+  obstacle.pose = {0.4, 0, -0.25, shape == ShapeType::plane || shape == ShapeType::box ? 0 : M_PI / 2, 0, 0};
+  obstacle.radius = 0.1;
+  obstacle.length = 0.5;
+  obstacle.size = {0.2, 0.3, 0.1};
+  World world(scene, initial_frames(scene));
+  EXPECT_TRUE(world.findings().unsettled.empty());
+  double fastest_late = 0;
+  for (int i = 0; i < 300; ++i) {
+    ASSERT_EQ(world.step(BoundaryInputs(world.frames().size())).status, StepResult::Status::ok) << i;
+    for (const Vector3& velocity : world.cables()[0].state.velocities) fastest_late = std::max(fastest_late, velocity.norm());
+  }
+  EXPECT_LT(fastest_late, 0.01);
+  EXPECT_TRUE(world.findings().intrusions.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, HangsThrough,
+                         testing::Combine(testing::Values(ShapeType::plane, ShapeType::sphere, ShapeType::cylinder,
+                                                          ShapeType::capsule, ShapeType::box),
+                                          testing::Values(0.0, 1e-3, 1e-2), testing::Bool()));
+
 }  // namespace
 }  // namespace verlet_cable

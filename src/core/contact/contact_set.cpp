@@ -117,9 +117,10 @@ bool apart(const Vector3& least, const Vector3& largest, const Aabb& box, double
   return (largest.array() + reach < box.min().array()).any() || (least.array() - reach > box.max().array()).any();
 }
 
-/// Whether a point is close to where an attachment joins the cable to the obstacle's own frame.
-bool anchored(const CableState& state, const KinematicTargets& targets, const CablePoint& point, const Obstacle& obstacle,
-              const std::vector<Attachment>& attachments) {
+}  // namespace
+
+bool is_anchored(const CableState& state, const KinematicTargets& targets, const CablePoint& point, const Obstacle& obstacle,
+                 const std::vector<Attachment>& attachments) {
   if (obstacle.holders.empty()) return false;
   const double length = state.rest_lengths[point.segment];
   for (const KinematicTarget& target : targets.nodes) {
@@ -132,8 +133,6 @@ bool anchored(const CableState& state, const KinematicTargets& targets, const Ca
   }
   return false;
 }
-
-}  // namespace
 
 void ContactSet::find(const std::vector<SimulatedCable>& cables, const std::vector<int>& island,
                       const std::vector<ContactMember>& members, const std::vector<MovingObstacle>& obstacles,
@@ -265,7 +264,7 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
     const Vector3 other_velocity = is_body ? moving.body_velocity.at(position) : Vector3(motion.displacement / h);
     if (!may_close(gap, normal, velocity - other_velocity, radius, h)) return;
     if (is_body && inside_[2 * place + (on_node ? 0 : 1)] != 0) return;
-    if (anchored(state, *member.targets, point, *moving.obstacle, attachments)) return;
+    if (is_anchored(state, *member.targets, point, *moving.obstacle, attachments)) return;
     // What turns carries a point beside the centre line along the surface, too.
     CablePoint beside = point;
     if (is_body || turns) put_beside(state, normal, std::min(radius, nearest.distance - moving.obstacle->padding), beside);

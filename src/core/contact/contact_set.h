@@ -27,6 +27,10 @@ struct ContactMember {
   ContactCache* cache = nullptr;
 };
 
+/// Whether a point of a cable is close to where an attachment joins the cable to the obstacle's own frame.
+bool is_anchored(const CableState& state, const KinematicTargets& targets, const CablePoint& point, const Obstacle& obstacle,
+                 const std::vector<Attachment>& attachments);
+
 /// The contacts of cables that are stepped together: found anew for every substep, but for what their caches keep.
 class ContactSet {
  public:
@@ -72,10 +76,10 @@ class ContactSet {
   double time_ = 0;  ///< [s] in which contacts come to rest
   std::vector<Touch> touches_;
   std::vector<Intrusion> intrusions_;
-  std::vector<int> places_;            ///< among the members, by cable; set for these only
-  std::vector<char> touched_;          ///< by member
-  std::vector<char> touches_body_;     ///< likewise
-  std::vector<std::size_t> recalled_;  ///< by member: the first of its cache that may still be asked for
+  std::vector<int> places_;             ///< among the members, by cable; set for these only
+  std::vector<char> touched_;           ///< by member
+  std::vector<char> touches_body_;      ///< likewise
+  std::vector<std::size_t> recalled_;   ///< by member: the first of its cache that may still be asked for
   double thinnest_ = 0, shortest_ = 0;  ///< [m] radius, and segment at rest, of all that are found together
   std::vector<NearPair> near_;          ///< of one segment, with those after it; ascending
   // Nodes of one cable

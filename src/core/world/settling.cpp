@@ -7,6 +7,7 @@
 #include "guide/node_passing.h"
 #include "rod/length_projection.h"
 #include "rod/rod_frames.h"
+#include "solve/resting_shape.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "world/flush_denormals.h"
 #include "world/island_stepper.h"
@@ -147,6 +148,8 @@ bool Settling::settle() {
   find_obstacles();
   const bool touching = may_touch();
   Approach approach(index_, touching);
+  if (touching) find_contacts(approach, true, 1);
+  if (!workspace_.contacts.intrusions().empty()) lie_down();
   bool settled = relax(shortest_step(cable_), last_settling_step, maximum_settling_steps, approach);
   if (bend_straight_columns(index_, state_)) {
     hold_at(1, 1, memory_.targets, work_.boundary);
@@ -183,6 +186,7 @@ bool Settling::settle_start() {
       if (!slides(memory_.targets)) {
         cable_.state = hanging;
         turn_clamps(touching);
+        lie_down();
       }
       settled = find_untwisted_equilibrium(touching) && !is_stuck();
     }
@@ -190,6 +194,30 @@ bool Settling::settle_start() {
   memory_.spans = find_spans(cable_.state, work_.boundary.directions);
   complete();
   return settled;
+}
+
+bool Settling::hangs_into_something() {
+  find_obstacles();
+  const Surroundings surroundings(cable_, memory_.targets, state_.attachments, workspace_.obstacles);
+  return surroundings.touches(cable_.state.positions);
+}
+
+/// To where it comes to rest on what stands there, from above, if it finds that; friction and what else there is find the rest of
+/// the way.
+void Settling::lie_down() {
+  if (workspace_.obstacles.empty() || slides(memory_.targets)) return;
+  const Surroundings surroundings(cable_, memory_.targets, state_.attachments, workspace_.obstacles);
+  const Vector3 there = gravity_near(state_, index_);
+  const Vector3 gravity = there.norm() > 0 ? there : Vector3(-Vector3::UnitZ());
+  const std::vector<Vector3> before = cable_.state.positions;
+  cable_.state.positions = laid_shape(cable_.state, work_.boundary.nodes, gravity.normalized(), surroundings);
+  if (!rest_on(cable_, work_.boundary, gravity, surroundings, cable_.state.positions)) {
+    cable_.state.positions = before;
+    return;
+  }
+  project_positions(*cable_.model, work_.boundary.nodes, cable_.state);
+  carry_frames(before, cable_.state);
+  follow_material();
 }
 
 /// Puts the holders where they are to be, and takes the cable's motion away.

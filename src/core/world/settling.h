@@ -21,6 +21,8 @@ class Settling {
   /// that leads to the shape that whoever mounts it would find, where Newton's method alone finds folds and loops. It is not
   /// twisted by that.
   bool settle_start();
+  /// Whether the shape that it has by default touches an obstacle.
+  bool hangs_into_something();
 
  private:
   /// On the way to an equilibrium.
@@ -35,6 +37,7 @@ class Settling {
 
   void find_obstacles();
   void hold_still();
+  void lie_down();
   void turn_clamps(Approach& approach);
   void place_clamps(const std::vector<Eigen::AngleAxisd>& turns, double part);
   double untwist();

@@ -368,8 +368,11 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   state.cable_progress.push_back(std::move(memory));
   if (moves && slides(state.cable_progress[index].targets)) move_with_holders(index, state);
   // What is joined settles together; a trunk that was spread out settles alone before that.
-  if (settles && held && (!branches || is_spread)) {
-    const bool is_settled = Settling(index, state, workspaces.value.local(), cancelled).settle_start();
+  Settling settling(index, state, workspaces.value.local(), cancelled);
+  const bool is_default = desc.initial.type == InitialShapeDesc::Type::automatic;
+  const bool lies = is_default && held && !branches && !from_trunk && settling.hangs_into_something();
+  if (lies || (settles && held && (!branches || is_spread))) {
+    const bool is_settled = settling.settle_start();
     if (!is_settled && !branches) findings.unsettled.push_back(desc.name);
     if (branches) close_loops(holding, cable_id(index), false, boundary.nodes, gravity, state.cables[index]);
   }
