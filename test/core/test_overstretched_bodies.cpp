@@ -21,7 +21,7 @@ SceneDesc plug_in_a_hand(AttachmentType hold, AttachmentType end) {
   wire.bending_stiffness = 0.001;
   wire.bending_damping = 1e-5;
   scene.cables[0].attachments = {scenes::attachment("wall", PlaceDesc::At::start, {0, 0, 1}),
-                                 scenes::attachment("plugged", PlaceDesc::At::end, {})};
+                                 scenes::attachment("plugged", PlaceDesc::At::end, {0, 0, 0})};
   scene.cables[0].attachments[1].body = "plug";
   scene.cables[0].attachments[1].type = end;
   BodyDesc& plug = scene.bodies.emplace_back();

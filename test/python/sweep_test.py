@@ -370,7 +370,7 @@ def test_what_starts_below_a_table_is_the_worst(tmp_path):
     scene = """
 time_step: 0.005
 materials: {m: {linear_density: 0.05, radius: 0.004, bending_stiffness: 0.002, bending_damping: 0.0001}}
-cables: [{name: rope, length: 1.0, segments: 40, material: m, attachments: [
+cables: [{name: rope, length: 1.0, segments: 40, material: m, initial: {type: straight, from: [0, 0, 0.6], to: [0, 0, -0.4]}, attachments: [
   {name: hand, at: start, frame: hand, type: clamp, initial_pose: [0, 0, 0.6, 0, 0, 0]}]}]
 obstacles: [{name: table, type: plane, friction: 0.2}]
 """

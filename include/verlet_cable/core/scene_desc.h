@@ -56,6 +56,9 @@ struct InitialShapeDesc {
   Vector3 to = Vector3::UnitX();    ///< straight: gives the direction
   std::vector<Vector3> points;      ///< points: polyline [m]
   std::vector<Vector3> velocities;  ///< points: [m/s], none or one per point
+
+  /// Whether the places of nodes are given, and not where the cable hangs.
+  bool is_given() const;
 };
 
 /// The shape at which there is no bending moment.

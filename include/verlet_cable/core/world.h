@@ -193,6 +193,9 @@ struct Findings {
   /// Names of cables whose initial shape could not be projected onto their lengths with the attachments held: they start hanging
   /// instead.
   std::vector<std::string> misfits;
+  /// A line, as of `validate`, for each cable that has started without reaching a body or junction that has no pose: only where
+  /// poses of frames were not known before, as `validate` and `validate_distances` refuse such starts.
+  std::vector<std::string> unreached;
   /// Each status of each body once; what the last step, or the start or settling since then, was not ok for.
   std::vector<StatusFinding> statuses;
   // In the last step
@@ -298,8 +301,9 @@ std::vector<std::string> frame_names(const SceneDesc& scene);
 std::vector<std::string> computed_frame_names(const SceneDesc& scene);
 /// Initial poses of the scene's frames, by id; `known` is false if the scene gives no pose.
 BoundaryInputs initial_frames(const SceneDesc& scene);
-/// Errors, one line each as of `validate`: inextensible cables that are shorter than the distance between two neighbouring
-/// attachments, with the frames at `frames` (by id; unknown ones are left out). `validate` does this for the initial poses.
+/// Errors, one line each as of `validate`, with the frames at `frames` (by id; unknown ones are left out): inextensible cables
+/// that are shorter than the distance between two neighbouring attachments; if there are none, cables that do not reach a body or
+/// junction without a pose, wherever that hangs. `validate` does this for the initial poses.
 std::vector<std::string> validate_distances(const SceneDesc& scene, const BoundaryInputs& frames);
 
 }  // namespace verlet_cable

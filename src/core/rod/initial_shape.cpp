@@ -87,10 +87,6 @@ std::vector<Vector3> spread(const std::vector<Vector3>& points, const std::vecto
 
 }  // namespace
 
-bool is_given(const InitialShapeDesc& initial) {
-  return initial.type == InitialShapeDesc::Type::straight || initial.type == InitialShapeDesc::Type::points;
-}
-
 bool set_initial_state(const InitialShapeDesc& initial, Folds folds, const CableModel& model, const std::vector<HeldNode>& held,
                        const Vector3& gravity, CableState& state) {
   using Type = InitialShapeDesc::Type;

@@ -7,9 +7,6 @@
 
 namespace verlet_cable {
 
-/// Whether the places of nodes are given, and not where the cable hangs.
-bool is_given(const InitialShapeDesc& initial);
-
 /// Whether one holder alone holds the cable, with a free end on each side.
 bool is_held_between_ends(const std::vector<HeldNode>& held, const CableState& state);
 

@@ -24,6 +24,10 @@ bool is_fixed_frame(const SceneDesc& scene, const std::string& frame) {
 
 }  // namespace
 
+bool InitialShapeDesc::is_given() const {
+  return type == Type::straight || type == Type::points;
+}
+
 bool RestCurvatureDesc::is_straight() const {
   const std::array<double, 2> none{0, 0};
   if (type == Type::straight) return true;

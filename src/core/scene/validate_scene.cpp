@@ -6,6 +6,7 @@
 #include "scene/scene_errors.h"
 #include "scene/scene_materials.h"
 #include "scene/scene_size.h"
+#include "scene/start_places.h"
 #include "scene/validate_bodies.h"
 #include "scene/validate_guides.h"
 #include "scene/validate_holders.h"
@@ -202,7 +203,6 @@ bool is_rigid(const SceneDesc& scene, const CableDesc& cable, int first, int las
   return true;
 }
 
-/// Where two attachments leave no node between them free, the one segment that is not held along its clamp has the length that it
 /// Where the frame or body is that a cable's attachment names, as far as that is known.
 std::optional<Pose> holder_of(const SceneDesc& scene, const AttachmentDesc& attachment,
                               const std::map<std::string, Pose>& frames) {
@@ -218,6 +218,7 @@ std::optional<Pose> holder_of(const SceneDesc& scene, const AttachmentDesc& atta
   return pose_of(*body->pose);
 }
 
+/// Where two attachments leave no node between them free, the one segment that is not held along its clamp has the length that it
 /// has at rest only if they are in the right places. Clamps of a cable without bending stiffness hold the nodes beside theirs.
 void check_held_segment(const std::string& key, const SceneDesc& scene, const CableDesc& cable, const AttachmentDesc& first,
                         const AttachmentDesc& second, const std::map<std::string, Pose>& frames, Errors& errors) {
@@ -293,15 +294,27 @@ void check_size(const SceneDesc& scene, Errors& errors) {
              "at most limits.segments = " + std::to_string(scene.limits.segments));
 }
 
-}  // namespace
-
-std::vector<std::string> validate_distances(const SceneDesc& scene, const BoundaryInputs& frames) {
-  Errors errors;
+std::map<std::string, Pose> poses_of(const SceneDesc& scene, const BoundaryInputs& frames) {
   const std::vector<std::string> names = frame_names(scene);
   std::map<std::string, Pose> poses{{"", Pose{}}};
   for (std::size_t i = 0; i < names.size() && i < frames.size(); ++i) {
     if (frames[i].known) poses.emplace(names[i], frames[i].pose);
   }
+  return poses;
+}
+
+/// Errors of what has no pose and hangs on several cables.
+std::vector<std::string> unreached(const SceneDesc& scene, const BoundaryInputs& frames) {
+  if (scene.bodies.empty() && scene.junctions.empty()) return {};
+  KnownPoses known{poses_of(scene, frames), {}};
+  for (const BodyDesc& body : scene.bodies)
+    if (body.pose && body.attachments.empty()) known.bodies.emplace(body.name, pose_of(*body.pose));
+  return find_start_places(scene, std::vector<char>(scene.cables.size(), 1), true, known).errors;
+}
+
+std::vector<std::string> too_short(const SceneDesc& scene, const BoundaryInputs& frames) {
+  Errors errors;
+  const std::map<std::string, Pose> poses = poses_of(scene, frames);
   for (std::size_t i = 0; i < scene.cables.size(); ++i) {
     const CableDesc& cable = scene.cables[i];
     const auto is_known = [&](const SectionDesc& section) { return scene.find_material(section.material) != nullptr; };
@@ -309,6 +322,13 @@ std::vector<std::string> validate_distances(const SceneDesc& scene, const Bounda
     if (known && has_sound_size(cable)) check_distances(indexed("cables", i), scene, cable, poses, errors);
   }
   return errors.take();
+}
+
+}  // namespace
+
+std::vector<std::string> validate_distances(const SceneDesc& scene, const BoundaryInputs& frames) {
+  std::vector<std::string> lines = too_short(scene, frames);
+  return lines.empty() ? unreached(scene, frames) : lines;
 }
 
 std::vector<std::string> validate(const SceneDesc& scene) {
@@ -347,8 +367,8 @@ std::vector<std::string> validate(const SceneDesc& scene) {
   check_initial_poses(scene, errors);
   check_broadcast(scene, scene_names, errors);
   std::vector<std::string> lines = errors.take();
-  for (std::string& line : validate_distances(scene, initial_frames(scene))) lines.push_back(std::move(line));
-  return lines;
+  for (std::string& line : too_short(scene, initial_frames(scene))) lines.push_back(std::move(line));
+  return lines.empty() ? unreached(scene, initial_frames(scene)) : lines;
 }
 
 }  // namespace verlet_cable

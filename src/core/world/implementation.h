@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "particle/particle_stepper.h"
+#include "scene/harnesses.h"
+#include "scene/start_places.h"
 #include "world/island_stepper.h"
 #include "world/islands.h"
 #include "world/junctions.h"
@@ -89,7 +91,11 @@ struct World::Implementation {
   std::vector<Attachment> junction_attachments(const CableDesc& desc, int cable) const;
   std::optional<JunctionPlace> place_on_trunk(const CableDesc& desc) const;
   std::optional<InitialShapeDesc> shape_from_trunk(const CableDesc& desc) const;
-  void draw_together(const std::vector<int>& descs);
+  StartPlaces start_places_of(const std::vector<int>& descs, bool junctions_only) const;
+  void place_hanging_bodies(const std::vector<int>& descs);
+  void note_unreached(const std::vector<std::string>& lines);
+  void bring_to_junctions(const std::vector<int>& descs);
+  bool is_loose(int cable) const;
   void weld_junctions(const std::vector<int>& descs);
   void weld(int attachment);
   Quaternion axes_on_trunk(const JunctionDesc& junction) const;

@@ -201,15 +201,20 @@ int World::start_waiting(const BoundaryInputs& inputs) {
     if (!frames_known(scene.cables[i], ids, inputs) || !guides_known(scene, scene.cables[i], ids, inputs) ||
         !w.has_bodies_of(scene.cables[i]))
       waits[harnesses[i]] = 1;
-  const std::vector<int> cables =
+  std::vector<int> cables =
       w.with_trunks_first(take_out(w.state.waiting_cables, [&](int i) { return waits[harnesses[i]] == 0; }));
+  const auto given =
+      std::stable_partition(cables.begin(), cables.end(), [&](int i) { return places_bodies(scene, scene.cables[i]); });
   const std::vector<int> nets = take_out(w.state.waiting_nets, [&](int i) { return frames_known(scene.nets[i], ids, inputs); });
   if (cables.empty() && nets.empty()) return 0;
   const double of_nets = w.energy_of_nets_and_particles();
   w.update_frames(inputs);
-  for (const int i : cables)
-    if (!w.is_cancelled()) w.start_cable(scene.cables[i], ids, inputs);
-  w.draw_together(cables);
+  for (auto i = cables.begin(); i != cables.end(); ++i) {
+    if (w.is_cancelled()) break;
+    if (i == given) w.place_hanging_bodies(cables);
+    w.start_cable(scene.cables[*i], ids, inputs);
+  }
+  w.bring_to_junctions(cables);
   w.weld_junctions(cables);
   w.place_bodies();  // that others hold which cables have placed
   w.settle_started_bodies(cables);
@@ -347,8 +352,8 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
       folds == Folds::nowhere && is_held_between_ends(boundary.nodes, cable.state) && boundary.nodes.front().body < 0;
   const bool has_shape =
       set_initial_state(from_trunk.value_or(desc.initial), folds, *cable.model, boundary.nodes, gravity, cable.state);
-  const bool is_closed = close_loops(holding, cable_id(index), is_given(desc.initial), boundary.nodes, gravity, cable);
-  if ((!has_shape && !from_trunk) || (!is_closed && is_given(desc.initial))) findings.misfits.push_back(desc.name);
+  const bool is_closed = close_loops(holding, cable_id(index), desc.initial.is_given(), boundary.nodes, gravity, cable);
+  if ((!has_shape && !from_trunk) || (!is_closed && desc.initial.is_given())) findings.misfits.push_back(desc.name);
   // Where velocities of holders are not known yet, the first step finds them, and all go together.
   const auto starts = [](const KinematicTarget& target) { return target.starts; };
   const bool moves = std::none_of(memory.targets.nodes.begin(), memory.targets.nodes.end(), starts);

@@ -43,20 +43,22 @@ void CableWatch::publish(Nanoseconds stamp, std::optional<double> time) {
       events_.publish(event, time ? stamp + nanoseconds(event.time - *time) : stamp);
 }
 
-void CableWatch::report_starts(std::size_t first_unsettled, std::size_t first_misfit, Nanoseconds stamp, const World& world) {
-  for (std::size_t i = first_misfit; i < world.findings().misfits.size(); ++i)
+void CableWatch::report_starts(const StartsReported& before, Nanoseconds stamp, const World& world) {
+  for (std::size_t i = before.unreached; i < world.findings().unreached.size(); ++i)
+    ROS_ERROR("a start out of reach: %s", world.findings().unreached[i].c_str());
+  for (std::size_t i = before.misfits; i < world.findings().misfits.size(); ++i)
     ROS_WARN(
         "the initial shape of cable %s does not fit its attachments and junctions: it hangs between them instead, in a "
         "loop where it is joined with itself",
         quoted(world.findings().misfits[i]).c_str());
-  statuses_.observe_start(world, first_unsettled);
+  statuses_.observe_start(world, before.unsettled);
   publish(stamp, world.time());
 }
 
 void CableWatch::restart(Nanoseconds stamp, const World& world) {
   end_statuses(stamp);
   intrusions_.clear();
-  report_starts(0, 0, stamp, world);
+  report_starts({}, stamp, world);
 }
 
 void CableWatch::end_statuses(Nanoseconds stamp) {

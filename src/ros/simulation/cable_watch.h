@@ -12,6 +12,11 @@
 
 namespace verlet_cable {
 
+/// How many of Findings's lists of these names have been reported.
+struct StartsReported {
+  std::size_t unsettled = 0, misfits = 0, unreached = 0;
+};
+
 /// What happens to cables, nets and particles: events, log, and what diagnostics show of it.
 class CableWatch {
  public:
@@ -23,8 +28,8 @@ class CableWatch {
   void report_events(Nanoseconds stamp, const World& world) const;
   /// Reports which statuses the step that led to `stamp` began with, or found to be over.
   void report_statuses(const StepResult& result, Nanoseconds stamp, const World& world);
-  /// Reports cables that could not start as the scene says, from these of Findings::unsettled and Findings::misfits on.
-  void report_starts(std::size_t first_unsettled, std::size_t first_misfit, Nanoseconds stamp, const World& world);
+  /// Reports cables that could not start as the scene says, and have not been reported `before`.
+  void report_starts(const StartsReported& before, Nanoseconds stamp, const World& world);
   /// Another world starts: ends the statuses of the last one, reports how it starts, and forgets what was found inside obstacles.
   void restart(Nanoseconds stamp, const World& world);
   /// What comes next does not go on from the steps before.

@@ -180,9 +180,10 @@ bool Simulation::step_world(Nanoseconds time) {
 
 void Simulation::start_waiting_cables() {
   if (world_.findings().waiting.empty()) return;
-  const std::size_t unsettled = world_.findings().unsettled.size(), misfits = world_.findings().misfits.size();
+  const Findings& findings = world_.findings();
+  const StartsReported before{findings.unsettled.size(), findings.misfits.size(), findings.unreached.size()};
   world_.start_waiting(frames_.inputs());
-  cable_watch_.report_starts(unsettled, misfits, stamp_, world_);
+  cable_watch_.report_starts(before, stamp_, world_);
 }
 
 void Simulation::report_overload() {
