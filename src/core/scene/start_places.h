@@ -24,11 +24,11 @@ struct KnownPoses {
 /// Whether a cable's shape says where a body without pose begins that hangs on it and on cables that hang by default.
 bool places_bodies(const SceneDesc& scene, const CableDesc& cable);
 
-/// What is looked for hangs at rest on its spans: the parts of cables between what holds them. A guide that stays on a cable is an
-/// end of two spans, though the cable may slide there; a cable on a sheave, whose way is not a chord, and one whose shape is given
-/// place nothing: bodies on them begin where their shapes put them.
-/// Of harnesses (see `harnesses_of`) all whose cables `start`, a flag a cable: if they have bodies that several cables hold, or
-/// if `junctions_only` do not reach. A harness some holder of which is not known has no places yet.
+/// What is looked for hangs at rest on its spans: the parts of cables between what holds them. A guide that stays on a cable is
+/// an end of two spans, though the cable may slide there; a cable on a sheave, whose way is not a chord, and one whose shape is
+/// given place nothing: bodies on them begin where their shapes put them. Of harnesses (see `harnesses_of`) all whose cables
+/// `start`, a flag a cable: if they have bodies that several cables hold, or if `junctions_only` do not reach. A harness some
+/// holder of which is not known has no places yet.
 StartPlaces find_start_places(const SceneDesc& scene, const std::vector<char>& start, bool junctions_only,
                               const KnownPoses& known);
 
