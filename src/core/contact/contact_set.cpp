@@ -18,18 +18,15 @@ namespace {
 
 /// Contacts are looked for this far beyond where they are expected, in radii: velocities change during a substep.
 constexpr double spare_reach = 0.1;
-/// A smooth cable through the nodes bulges out over round obstacles, where straight segments cut in: at most so much, in radii,
-/// is not counted as contact between nodes; and at least so much, of what is straight. What has edges always takes the most:
-/// nothing rolls on it.
-constexpr double largest_bulge = 0.08, least_bulge = 2e-3;
+/// [radii] A smooth cable through the nodes bulges out over round obstacles, where straight segments cut in: at least so much,
+/// of what is straight, is not counted as contact between nodes. What has edges always takes the most: nothing rolls on it.
+constexpr double least_bulge = 2e-3;
 /// So far from an attachment to what holds the cable it is not pushed by it [m]: the first few centimetres.
 constexpr double anchored_length = 0.05;
 /// A cable on a body that leans more has the friction of a smooth surface.
 constexpr double smallest_lean = 0.05;
 /// Relative, of distances.
 constexpr double distance_rounding = 1e-6;
-/// Cosine of the largest angle between normals that are the same but for rounding.
-constexpr double same_normal = 1 - 1e-11;
 /// From a node to the nodes next to it, by keys.
 constexpr std::uint64_t neighbouring_places = places;
 /// Faces that are narrower than this, in radii, are part of what is round.

@@ -7,8 +7,6 @@ namespace verlet_cable {
 
 namespace {
 
-/// Cosine of the largest angle between normals that are the same but for rounding.
-constexpr double same_normal = 1 - 1e-11;
 /// Ends of a part over a face of a mesh are found at once where edges are straight; at corners each trial comes nearer.
 constexpr int most_trials = 8;
 

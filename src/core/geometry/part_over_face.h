@@ -6,6 +6,9 @@
 
 namespace verlet_cable {
 
+/// Cosine of the largest angle between normals that are the same but for rounding.
+constexpr double same_normal = 1 - 1e-11;
+
 /// The part of a segment that lies over a flat face of a solid: what is nearest to it is inside of the face.
 struct PartOverFace {
   SegmentSurfacePoint begin, end;  ///< where it begins and ends, ascending; their surface points are the face's

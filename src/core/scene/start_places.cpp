@@ -29,10 +29,6 @@ struct Hold {
   bool clamps = false;
 };
 
-bool has_pose(const BodyDesc& body) {
-  return body.pose || !body.attachments.empty();
-}
-
 bool has_wheel(const SceneDesc& scene, const CableDesc& cable) {
   return std::any_of(scene.guides.begin(), scene.guides.end(), [&](const GuideDesc& guide) {
     return guide.cable == cable.name && guide.place && guide.type == GuideDesc::Type::sheave;
@@ -288,6 +284,10 @@ class Harness {
 };
 
 }  // namespace
+
+bool has_pose(const BodyDesc& body) {
+  return body.pose || !body.attachments.empty();
+}
 
 bool places_bodies(const SceneDesc& scene, const CableDesc& cable) {
   return cable.initial.is_given() &&

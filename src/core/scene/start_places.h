@@ -12,14 +12,17 @@ namespace verlet_cable {
 struct StartPlaces {
   std::map<int, Pose> bodies;        ///< by index into SceneDesc::bodies
   std::map<int, Vector3> junctions;  ///< [m] by index into SceneDesc::junctions
-  std::vector<std::string>
-      errors;  ///< a line for each cable that does not reach, with its key, and the name of what it does not reach
+  /// A line for each cable that does not reach, with its key, and the name of what it does not reach.
+  std::vector<std::string> errors;
 };
 
 /// What holds cables, by name, as far as it is known; the fixed frame's name is empty.
 struct KnownPoses {
   std::map<std::string, Pose> frames, bodies;
 };
+
+/// Whether a body begins where its own pose, or what holds it, says.
+bool has_pose(const BodyDesc& body);
 
 /// Whether a cable's shape says where a body without pose begins that hangs on it and on cables that hang by default.
 bool places_bodies(const SceneDesc& scene, const CableDesc& cable);

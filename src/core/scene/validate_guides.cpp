@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 
+#include "scene/start_places.h"
 #include "scene/validate_place.h"
 #include "verlet_cable/core/pin_rules.h"
 #include "verlet_cable/core/world.h"
@@ -220,8 +221,7 @@ class SimulationChecker {
   void check_body(const std::string& key, const GuideDesc& guide) {
     const auto body =
         std::find_if(scene_.bodies.begin(), scene_.bodies.end(), [&](const BodyDesc& b) { return b.name == guide.body; });
-    const bool is_placed = body->pose || !body->attachments.empty();
-    if (guide.place && !is_placed) errors_.add(key + ".body", quoted(guide.body), "a body with a `pose` or attachments, for now");
+    if (guide.place && !has_pose(*body)) errors_.add(key + ".body", quoted(guide.body), "a body with a `pose` or attachments, for now");
     if (guide.inertia > 0)
       errors_.add(key + ".inertia", number_text(guide.inertia), "0 on a body; wheels with inertia need a frame, for now");
   }

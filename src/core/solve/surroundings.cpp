@@ -9,8 +9,6 @@ namespace verlet_cable {
 
 namespace {
 
-/// [radii] By so much a segment may cut into an edge, as the smooth cable does not: that of contacts.
-constexpr double bulge = 0.08;
 /// [radii] A centre line that has come this near to a surface has gone through.
 constexpr double through = 0.1;
 /// [radii] A way is looked at in pieces no shorter than this.
@@ -55,7 +53,7 @@ Clearance Surroundings::of_node(const Solid& solid, int node, const Vector3& pla
 
 Clearance Surroundings::of_segment(const Solid& solid, int segment, const Vector3& start, const Vector3& end) const {
   if (solid.ignored[2 * segment + 1] != 0) return {};
-  const double surface = (1 - bulge) * radii_[2 * segment + 1] + solid.moving->obstacle->padding;
+  const double surface = (1 - largest_bulge) * radii_[2 * segment + 1] + solid.moving->obstacle->padding;
   const Aabb box(start.cwiseMin(end), start.cwiseMax(end));
   if (solid.moving->box.exteriorDistance(box) >= surface) return {};
   const Vector3& origin = solid.moving->end.position;

@@ -118,7 +118,7 @@ void World::Implementation::bring_to_junctions(const std::vector<int>& descs) {
       const Attachment& attachment = state.attachments[target.attachment];
       if (attachment.holder < 0 || state.bodies[attachment.holder].is_junction) return -1;
       const BodyDesc& body = state.scene->bodies[attachment.holder];
-      return body.pose || !body.attachments.empty() || places.bodies.count(attachment.holder) > 0 ? -1 : attachment.holder;
+      return has_pose(body) || places.bodies.count(attachment.holder) > 0 ? -1 : attachment.holder;
     };
     for (std::size_t k = 0; k < held.size(); ++k) {
       if (hangs_alone(targets.nodes[k]) >= 0) continue;

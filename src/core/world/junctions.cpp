@@ -132,8 +132,7 @@ std::vector<Attachment> World::Implementation::junction_attachments(const CableD
     attachment.holder = static_cast<int>(scene.bodies.size()) + place.junction;
     attachment.frame = state.bodies[attachment.holder].frame;
     // The material of a branch that goes on along its trunk is turned as that's.
-    if (!trunk || place.junction != trunk->junction || !is_welded(scene, desc.name) || !bends_at(scene, desc, place.node))
-      continue;
+    if (!trunk || place.junction != trunk->junction || !is_welded(scene, desc.name) || !bends_at(scene, desc, place.node)) continue;
     attachment.type = AttachmentType::clamp;
     attachment.pose.orientation = quaternion_from_rpy(place.branch->rotation);
     if (place.branch->end == BranchDesc::End::end) attachment.pose.orientation *= reversed;
@@ -187,8 +186,8 @@ void World::Implementation::weld_junctions(const std::vector<int>& descs) {
 /// Those of the trunk's material, as it is now.
 Quaternion World::Implementation::axes_on_trunk(const JunctionDesc& junction) const {
   const SceneDesc& scene = *state.scene;
-  const auto desc = std::find_if(scene.cables.begin(), scene.cables.end(),
-                                 [&](const CableDesc& cable) { return cable.name == junction.cable; });
+  const auto desc =
+      std::find_if(scene.cables.begin(), scene.cables.end(), [&](const CableDesc& cable) { return cable.name == junction.cable; });
   return axes_at(state.cables[find(state.cables, junction.cable)].state, node_at(*desc, junction.place));
 }
 

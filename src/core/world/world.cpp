@@ -373,13 +373,16 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   state.cable_progress.push_back(std::move(memory));
   if (moves && slides(state.cable_progress[index].targets)) move_with_holders(index, state);
   // What is joined settles together; a trunk that was spread out settles alone before that.
-  Settling settling(index, state, workspaces.value.local(), cancelled);
+  const bool settles_alone = settles && held && (!branches || is_spread);
   const bool is_default = desc.initial.type == InitialShapeDesc::Type::automatic;
-  const bool lies = is_default && held && !branches && !from_trunk && settling.hangs_into_something();
-  if (lies || (settles && held && (!branches || is_spread))) {
-    const bool is_settled = settling.settle_start();
-    if (!is_settled && !branches) findings.unsettled.push_back(desc.name);
-    if (branches) close_loops(holding, cable_id(index), false, boundary.nodes, gravity, state.cables[index]);
+  const bool may_lie = is_default && held && !branches && !from_trunk && !state.obstacles.empty();
+  if (settles_alone || may_lie) {
+    Settling settling(index, state, workspaces.value.local(), cancelled);
+    if (settles_alone || settling.hangs_into_something()) {
+      const bool is_settled = settling.settle_start();
+      if (!is_settled && !branches) findings.unsettled.push_back(desc.name);
+      if (branches) close_loops(holding, cable_id(index), false, boundary.nodes, gravity, state.cables[index]);
+    }
   }
   place_bodies_on(placing);
 }
