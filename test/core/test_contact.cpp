@@ -496,6 +496,37 @@ TEST(ContactLaw, DeepContactIsLedToTheDepthOfItsForceInOneIteration) {
   }
 }
 
+TEST(ContactLaw, FrictionWithinAHeldBoundHasAPotential) {
+  for (const double slip : {1e-7, 1e-5, 1e-4}) {
+    Touch touch;
+    touch.radius = radius;
+    touch.friction = 0.4;
+    touch.base_stiffness = 100;
+    touch.gap = -2e-5;
+    anticipate(Scheme::dissipative, 1e-3, contact_time(1e-3), Vector3::Zero(), touch);
+    start_touch(touch);
+    hold_bound(3e-3, touch);
+    const Vector3 way = Vector3(slip, -0.7 * slip, -1e-6) / touch.rate;
+    evaluate_touch(way, touch);
+    EXPECT_EQ(touch.mode, slip > 1e-6 ? Touch::Mode::slides : Touch::Mode::sticks);
+    EXPECT_LE(std::hypot(touch.force.x(), touch.force.y()), touch.friction * touch.bound * (1 + 1e-12));
+    const Eigen::Matrix3d matrix = slope(touch);
+    EXPECT_LT((matrix - matrix.transpose()).norm(), 1e-12 * matrix.norm());
+    EXPECT_EQ(full_slope(touch), matrix);
+    Eigen::Matrix3d differences;
+    const double step = 1e-9;
+    for (int k = 0; k < 3; ++k) {
+      const auto force_at = [&](double along) {
+        Touch moved = touch;
+        evaluate_touch(way + along * Vector3::Unit(k), moved);
+        return moved.force;
+      };
+      differences.col(k) = -(force_at(step) - force_at(-step)) / (2 * step);
+    }
+    EXPECT_LT((matrix - differences).norm(), 1e-3 * matrix.norm()) << slip;
+  }
+}
+
 TEST(SegmentDistance, AgreesWithASearch) {
   unsigned seed = 1;
   const auto random = [&] { return (seed = seed * 1664525u + 1013904223u) / 4294967296.0 - 0.5; };

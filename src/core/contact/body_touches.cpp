@@ -118,6 +118,7 @@ void BodyTouches::find_shape(const TouchingBody& touching, int index, const Movi
     if (touch.inside) touch.gap = gentle;
     anticipate(Scheme::conserving, h, time, Vector3::Zero(), touch);
     start_touch(touch);
+    if (rules.still) hold_bound(touch.last_force, touch);
     touches.push_back(touch);
   };
 

@@ -456,6 +456,7 @@ void ContactSet::add(Touch& touch, const ContactMember& member, double h) {
   touch.yields = touch.inside && touch.other.cable >= 0;
   anticipate(Scheme::conserving, h, time_, Vector3::Zero(), touch);
   start_touch(touch);
+  if (rules_.still) hold_bound(touch.last_force, touch);
   touched_[places_[touch.point.cable]] = 1;
   if (touch.other.cable >= 0) touched_[places_[touch.other.cable]] = 1;
 }

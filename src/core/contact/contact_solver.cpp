@@ -23,6 +23,8 @@ constexpr double slow_convergence = 0.2;
 /// Where friction turns round slowly, a larger error is as good after so many iterations.
 constexpr int patient_iterations = 6;
 constexpr double impatience = 20;
+/// Normal forces that friction has not followed by then bound it as they are.
+constexpr int following_iterations = 20;
 /// A correction may turn the forces along it round to this part of what they were.
 constexpr double turned_round = 0.5;
 constexpr int maximum_shortenings = 8;
@@ -198,6 +200,7 @@ bool ContactSolver::iterate(std::vector<Participant>& participants, std::vector<
   bool stale = true;
   for (int i = 0; i < maximum_iterations && spent_ < most_work_; ++i) {
     spend(budget::heavy, touches.size());
+    if (i == following_iterations) hold_bounds(touches);
     const bool changed = i == 0 ? press(participants, touches) : shorten(participants, touches);
     const bool factored = stale || changed;
     if (factored) factor(participants, touches);
@@ -234,6 +237,16 @@ bool ContactSolver::iterate(std::vector<Participant>& participants, std::vector<
     last = largest;
   }
   return false;
+}
+
+/// Friction that follows the normal forces is bounded by what they are now.
+void ContactSolver::hold_bounds(std::vector<Touch>& touches) const {
+  const auto hold = [](std::vector<Touch>& of) {
+    for (Touch& touch : of)
+      if (touch.mode != Touch::Mode::open && !touch.bound_is_held) hold_bound(touch.normal_force, touch);
+  };
+  hold(touches);
+  if (bodies_ != nullptr) hold(bodies_->contacts().touches());
 }
 
 /// Takes back as much of the last correction as went too far. True if a contact has changed its way to touch.

@@ -72,6 +72,7 @@ class ContactSolver {
   void spend(double visits, std::size_t contacts) { spent_ += visits * size_ + budget::touch * static_cast<double>(contacts); }
   bool iterate(std::vector<Participant>& participants, std::vector<Touch>& touches);
   bool press(std::vector<Participant>& participants, std::vector<Touch>& touches);
+  void hold_bounds(std::vector<Touch>& touches) const;
   bool shorten(std::vector<Participant>& participants, std::vector<Touch>& touches);
   double work_along(std::vector<Participant>& participants) const;
   void factor(std::vector<Participant>& participants, std::vector<Touch>& touches);

@@ -161,9 +161,10 @@ bool evaluate_touch(const Vector3& w, Touch& touch) {
   touch.normal_stiffness = bent ? touch.stiffness : law.slope;
   Vector3 trial = touch.stuck_force - touch.stiffness * e;
   trial -= touch.normal.dot(trial) * touch.normal;
-  const Vector3 lean = touch.normal_force * touch.lean;
+  if (!touch.bound_is_held) touch.bound = touch.normal_force;
+  const Vector3 lean = touch.bound * touch.lean;
   trial -= lean;
-  const double size = trial.norm(), limit = touch.friction * touch.normal_force;
+  const double size = trial.norm(), limit = touch.friction * touch.bound;
   const Vector3 friction = bounded(trial, limit, touch);
   const bool sticks = size <= limit && friction == trial;
   touch.mode = sticks ? Touch::Mode::sticks : Touch::Mode::slides;
@@ -177,7 +178,12 @@ Eigen::Matrix3d slope(const Touch& touch) {
   Eigen::Matrix3d slope =
       (touch.rate * touch.normal_stiffness - stiffness * touch.part) * touch.normal * touch.normal.transpose();
   slope.diagonal().array() += stiffness * touch.part;
-  if (touch.rolling_count > 0) slope += stiffness * (touch.rolling_part - touch.part) * touch.across * touch.across.transpose();
+  if (touch.rolling_count > 0) {
+    slope += stiffness * (touch.rolling_part - touch.part) * touch.across * touch.across.transpose();
+  } else if (touch.bound_is_held && touch.mode == Touch::Mode::slides) {
+    const Vector3 friction = touch.force - touch.normal_force * touch.normal - touch.bound * touch.lean;
+    if (!friction.isZero(0)) slope -= stiffness * touch.part / friction.squaredNorm() * friction * friction.transpose();
+  }
   return slope;
 }
 
@@ -186,6 +192,7 @@ Vector3 corrected_force(const Touch& touch) {
 }
 
 Vector3 following_friction(const Touch& touch) {
+  if (touch.bound_is_held) return Vector3::Zero();
   if (touch.mode != Touch::Mode::slides) return touch.lean;
   return touch.force / touch.normal_force - touch.normal;
 }
@@ -199,8 +206,8 @@ Vector3 remaining_friction(const Touch& touch) {
   const Vector3 slip = touch.displacement - touch.other_motion.displacement;
   Vector3 force = touch.stuck_force - touch.stiffness * slip;
   force -= touch.normal * touch.normal.dot(force);
-  const Vector3 lean = touch.normal_force * touch.lean;
-  if (touch.mode == Touch::Mode::slides) force = lean + bounded(force - lean, touch.friction * touch.normal_force, touch);
+  const Vector3 lean = touch.bound * touch.lean;
+  if (touch.mode == Touch::Mode::slides) force = lean + bounded(force - lean, touch.friction * touch.bound, touch);
   return half_turned(touch, force);
 }
 

@@ -20,6 +20,8 @@ struct Rolling {
 /// offset is the displacement that is expected at the end of the substep and a little later (see `anticipate`), and
 ///   normal force     f = max(0, force of the depth -gap - n . e)
 ///   friction        -k (bristle + tangential part of e), at most friction * f, and across a cable that rolls a part of that
+/// What bounds friction is f itself or, where that is held, an f of before: then friction has a potential, whose minimum Newton's
+/// method finds.
 /// The bristle is the tangential displacement since the contact began to stick (Cundall and Strack, A discrete numerical model
 /// for granular assemblies, 1979): a contact that sticks does not creep. It belongs to the material that is touched and turns
 /// with it.
@@ -45,6 +47,7 @@ struct Touch {
   Vector3 offset = Vector3::Zero();               ///< [m]
   Vector3 stuck_force = Vector3::Zero();          ///< [N] friction at the start of the substep, as it is turned in the middle
   double last_force = 0;                          ///< [N] normal force in the substep before
+  bool bound_is_held = false;                     ///< what bounds friction stays as it is
   Vector3 velocity = Vector3::Zero();             ///< [m/s] of the point at the start, relative to another cable that is touched
   Vector3 body_acceleration = Vector3::Zero();    ///< [m/s^2] of a body's point, at the start
   Vector3 start_arm = Vector3::Zero();            ///< [m] to it from the center of mass of the body with what it holds
@@ -57,6 +60,7 @@ struct Touch {
   double stiffness = 0;                                        ///< [N/m] there
   double normal_stiffness = 0;                                 ///< [N/m] of the normal force, in the equations
   double normal_force = 0;                                     ///< [N]
+  double bound = 0;                                            ///< [N] the normal force that bounds friction
   Vector3 force = Vector3::Zero();                             ///< [N] on the point
   Vector3 arm = Vector3::Zero();                               ///< [m] with which the force acts on a body,
   Vector3 turning = Vector3::Zero();                           ///< [m] and what its part along the cable does beside that
@@ -96,11 +100,17 @@ inline void follow_correction(const Vector3& w, Touch& touch) {
   touch.displacement = w;
 }
 
+/// From now on friction is bounded by this normal force [N].
+inline void hold_bound(double normal_force, Touch& touch) {
+  touch.bound = normal_force;
+  touch.bound_is_held = true;
+}
+
 /// [N] The force that the equations of what touches have, after the last correction.
 Vector3 corrected_force(const Touch& touch);
 
-/// [N/m] - d force / d w of a touch that is not open, without the part of friction that follows f. Along the slip it is the
-/// secant, not the tangent, which is nothing: iterations would turn it to and fro.
+/// [N/m] - d force / d w of a touch that is not open, without the part of friction that follows f. Where that has a part, it is
+/// the secant along the slip, not the tangent, which is nothing: iterations would turn it to and fro.
 Eigen::Matrix3d slope(const Touch& touch);
 
 /// The same with the part of friction that follows f.
