@@ -155,6 +155,59 @@ void run(World& world, BoundaryInputs& inputs, double duration, double amplitude
   }
 }
 
+/// A trunk between two hands, `gap` [m] apart and `height` above a board, with branches that end at plugs.
+SceneDesc above_a_board(double gap, double height) {
+  SceneDesc scene = nothing();
+  CableDesc& trunk = add_cable(scene, "trunk", 1, 40);
+  for (const double side : {-0.5, 0.5}) {
+    const PlaceDesc::At at = side < 0 ? PlaceDesc::At::start : PlaceDesc::At::end;
+    const std::string name = side < 0 ? "left" : "right";
+    trunk.attachments.push_back(scenes::attachment(name, at, {side * gap, 0, height}, "", AttachmentType::clamp));
+  }
+  for (int i = 0; i < 4; ++i) {
+    const std::string name = "b" + std::to_string(i), plug = "plug" + std::to_string(i);
+    add_cable(scene, name, 0.25, 12).attachments = {
+        scenes::attachment(name + "_end", PlaceDesc::At::end, {-0.015, 0, 0}, "", AttachmentType::clamp)};
+    scene.cables.back().attachments[0].body = plug;
+    BodyDesc& body = scene.bodies.emplace_back();
+    body.name = plug;
+    body.mass = 0.02;
+    body.shapes.emplace_back();
+    body.shapes[0].type = ShapeType::box;
+    body.shapes[0].size = {0.03, 0.016, 0.01};
+  }
+  add_junction(scene, "trunk", 0.4, {branch("b0", End::start, {0, 0, 0.7}), branch("b1", End::start, {0, 0, -1.2})});
+  add_junction(scene, "trunk", 0.6, {branch("b2", End::start, {0, 0, 0.5}), branch("b3", End::start, {0, 0, -0.9})});
+  ObstacleDesc& board = scene.obstacles.emplace_back();
+  board.name = "board";
+  board.pose = {0, 0, -0.01, 0, 0, 0};
+  board.type = ShapeType::box;
+  board.size = {2, 1, 0.02};
+  board.friction = 0.4;
+  return scene;
+}
+
+TEST(Harness, ThatReachesABoardStartsLyingOnItAtRest) {
+  for (const double height : {0.15, 0.3})
+    for (const double gap : {0.6, 0.9}) {
+      const SceneDesc scene = above_a_board(gap, height);
+      const BoundaryInputs inputs = initial_frames(scene);
+      World world(scene, inputs);
+      EXPECT_TRUE(world.findings().unsettled.empty()) << gap << " " << height;
+      const double radius = scene.materials[0].material.radius;
+      for (const SimulatedCable& cable : world.cables())
+        for (int i = 0; i < cable.state.segments(); ++i)  // a plug has its own surface
+          EXPECT_GT(cable.state.positions[i].z(), 0.9 * radius) << cable.model->name << " " << i;
+      double speed = 0;
+      for (int i = 0; i < 200; ++i) {
+        EXPECT_EQ(world.step(inputs).status, StepResult::Status::ok);
+        for (const SimulatedCable& cable : world.cables())
+          for (const Vector3& v : cable.state.velocities) speed = std::max(speed, v.norm());
+      }
+      EXPECT_LT(speed, 5e-3) << gap << " " << height;
+    }
+}
+
 class Harnesses : public testing::TestWithParam<Harness> {};
 
 TEST_P(Harnesses, settleAndStand) {

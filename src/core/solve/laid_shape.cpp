@@ -46,8 +46,13 @@ class Laying {
     for (int k = 0; k < most_pushes; ++k) {
       Vector3 to = from + length * direction, push = Vector3::Zero();
       if (goal != nullptr && (to - *goal).norm() > left) push = *goal + left * (to - *goal).normalized() - to;
+      const Vector3 arm = to - from;
+      const double free = surroundings_.free_part(i + way, from, arm);
+      bool stopped = false;
       const auto push_out = [&](double part) {
-        return [&push, part](const Clearance& c) {
+        return [&, part](const Clearance& c) {
+          if (free < 1 && c.normal.dot(arm) > 0) return;  // out at the far side
+          stopped = true;
           const Vector3 out = -c.gap / std::max(part < 0 ? c.fraction : part, 0.1) * c.normal;
           push += std::max(0.0, out.norm() - push.dot(out) / out.norm()) * out.normalized();
         };
@@ -55,12 +60,16 @@ class Laying {
       const bool turns = push.norm() > small_push * length;
       surroundings_.touch_node(i + way, to, push_out(1));
       surroundings_.touch_segment(segment, from, to, push_out(-1));
+      if (free < 1 && !stopped)
+        surroundings_.touch_node(i + way, from + free * arm, [&](const Clearance& c) {
+          push -= std::min(0.0, (push + (1 - free) * arm).dot(c.normal) + c.gap) * c.normal;
+        });
       if (push.norm() <= small_push * length) break;
       if (!turns && !lies && !pushed) set_out(from, left + length, goal, heading);
       pushed = pushed || !turns;
       to += push + (pushed && !turns ? bias * length * heading : Vector3(Vector3::Zero()));
-      const Vector3 arm = to - from;
-      direction = arm.norm() > small_push * length ? Vector3(arm.normalized()) : heading;
+      const Vector3 turned = to - from;
+      direction = turned.norm() > small_push * length ? Vector3(turned.normalized()) : heading;
     }
     if (pushed) {
       lies = true;

@@ -74,31 +74,42 @@ bool Surroundings::touches(const std::vector<Vector3>& positions) const {
 
 double Surroundings::free_part(int segment, const Vector3& start, const Vector3& end, const Vector3& start_way,
                                const Vector3& end_way) const {
-  const double way = std::max(start_way.norm(), end_way.norm());
   double part = 1;
-  for (const Solid& solid : solids_) {
-    if (solid.ignored[2 * segment] != 0 || solid.ignored[2 * segment + 2] != 0) continue;
-    const double radius = radii_[2 * segment + 1], center = through * radius + solid.moving->obstacle->padding;
-    const auto distance = [&](double at) {
-      const Vector3 from = start + at * start_way, to = end + at * end_way, origin = solid.moving->end.position;
-      const double far = solid.moving->box.exteriorDistance(Aabb(from.cwiseMin(to), from.cwiseMax(to)));
-      if (far > center + way) return far;
-      return deepest_point(solid.moving->obstacle->shape, solid.axes.transpose() * (from - origin),
-                           solid.axes.transpose() * (to - origin), center + way)
-          .surface.distance;
-    };
-    // No point gets nearer by more than it moves (Mirtich, Impulse-based dynamic simulation, 1996).
-    double gone = 0, left = distance(0) - center;
-    while (gone < part) {
-      const double next = std::min(gone + std::max(left, least_advance * radius) / way, part);
-      const double then = distance(next) - center;
-      if (then < std::min(left, 0.0)) break;
-      gone = next;
-      left = then;
-    }
-    part = gone;
-  }
+  for (const Solid& solid : solids_)
+    if (solid.ignored[2 * segment] == 0 && solid.ignored[2 * segment + 2] == 0)
+      part = free_part_of(solid, radii_[2 * segment + 1], start, end, start_way, end_way, part);
   return part;
+}
+
+double Surroundings::free_part(int node, const Vector3& start, const Vector3& way) const {
+  double part = 1;
+  for (const Solid& solid : solids_)
+    if (solid.ignored[2 * node] == 0) part = free_part_of(solid, radii_[2 * node], start, start, way, way, part);
+  return part;
+}
+
+/// No more than `part`.
+double Surroundings::free_part_of(const Solid& solid, double radius, const Vector3& start, const Vector3& end,
+                                  const Vector3& start_way, const Vector3& end_way, double part) {
+  const double way = std::max(start_way.norm(), end_way.norm()), center = through * radius + solid.moving->obstacle->padding;
+  const auto distance = [&](double at) {
+    const Vector3 from = start + at * start_way, to = end + at * end_way, origin = solid.moving->end.position;
+    const double far = solid.moving->box.exteriorDistance(Aabb(from.cwiseMin(to), from.cwiseMax(to)));
+    if (far > center + way) return far;
+    return deepest_point(solid.moving->obstacle->shape, solid.axes.transpose() * (from - origin),
+                         solid.axes.transpose() * (to - origin), center + way)
+        .surface.distance;
+  };
+  // No point gets nearer by more than it moves (Mirtich, Impulse-based dynamic simulation, 1996).
+  double gone = 0, left = distance(0) - center;
+  while (gone < part) {
+    const double next = std::min(gone + std::max(left, least_advance * radius) / way, part);
+    const double then = distance(next) - center;
+    if (then < std::min(left, 0.0)) break;
+    gone = next;
+    left = then;
+  }
+  return gone;
 }
 
 }  // namespace verlet_cable

@@ -48,6 +48,8 @@ class Surroundings {
   bool touches(const std::vector<Vector3>& positions) const;
   /// The part of a segment's way that its centre line goes before it gets into something. Ways of its ends [m].
   double free_part(int segment, const Vector3& start, const Vector3& end, const Vector3& start_way, const Vector3& end_way) const;
+  /// The same of a node's way.
+  double free_part(int node, const Vector3& start, const Vector3& way) const;
 
  private:
   struct Solid {
@@ -56,6 +58,8 @@ class Surroundings {
     std::vector<char> ignored;  ///< nodes and segments in turns
   };
 
+  static double free_part_of(const Solid& solid, double radius, const Vector3& start, const Vector3& end,
+                             const Vector3& start_way, const Vector3& end_way, double part);
   Clearance of_node(const Solid& solid, int node, const Vector3& place) const;
   Clearance of_segment(const Solid& solid, int segment, const Vector3& start, const Vector3& end) const;
 

@@ -375,7 +375,7 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   // What is joined settles together; a trunk that was spread out settles alone before that.
   const bool settles_alone = settles && held && (!branches || is_spread);
   const bool is_default = desc.initial.type == InitialShapeDesc::Type::automatic;
-  const bool may_lie = is_default && held && !branches && !from_trunk && !state.obstacles.empty();
+  const bool may_lie = is_default && held && !state.obstacles.empty();
   if (settles_alone || may_lie) {
     Settling settling(index, state, workspaces.value.local(), cancelled);
     if (settles_alone || settling.hangs_into_something()) {
