@@ -248,17 +248,18 @@ bool pass_nodes(int index, bool moves, State& state) {
       const double moved = std::max(0.0, before.kinetic - after.kinetic);
       guide.held_energy += before.total() - after.total() - moved;
     };
-    // What turns round passes back a little behind where it passed.
+    // What flows away from a node does not pass it, though the guide is still near it; what turns round passes back a little
+    // behind where it passed.
     const auto comes_to = [&](int side) {
       const double way = way_from(side), limit = keeps && guide.last_way * way < 0 ? turning * least : least;
-      return length(side) < limit && (!keeps || guide.flow * way > 0 || length(side) < closest * regular);
+      return length(side) < limit && (guide.flow * way > 0 || length(side) < (keeps ? closest * regular : little));
     };
     for (const int side : both_sides) {
       while (comes_to(side) && is_passable(state, index, side_of(attachment, side).neighbour())) {
         hold(way_from(side), [&](const Energy& before) {
           const int joint = side_of(attachment, side).neighbour();
           const Vector3 bulge = segment_direction(cable, joint - 1) - segment_direction(cable, joint);
-          const double near = std::max(length(side), little);
+          const double near = std::max(length(side), least);
           take_in(index, attachment, side, state);
           if (length(1 - side) > (keeps ? least_divided : least_split) * regular && !is_winding(1 - side)) {
             if (keeps) {
