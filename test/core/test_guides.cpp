@@ -323,6 +323,71 @@ TEST(Guides, accountForTheirFriction) {
 }
 
 /// An elastic rope that swings over a wheel: what comes onto it and leaves it is strained.
+/// A stiff straight wire that a hand pushes along lies in two eyelets: what rubs is what they bear of it, however little it is
+/// drawn.
+TEST(Guides, rubByHowHardTheyPress) {
+  SceneDesc scene = scenes::one_cable(40, 1);
+  MaterialDesc& material = scene.materials[0].material;
+  material.bending_stiffness = 0.5;
+  material.bending_damping = 0.005;
+  scene.cables[0].initial.type = InitialShapeDesc::Type::straight;
+  scene.cables[0].initial.to = {1, 0, 0};
+  scene.cables[0].attachments = {scenes::attachment("hand", PlaceDesc::At::start, Vector3::Zero(), "hand")};
+  scene.cables[0].attachments[0].initial_pose = InitialPose{0, 0, 0, 0, 0, 0};
+  scene.guides = {guide("first", 0.25, {0.25, 0, 0}), guide("second", 0.75, {0.75, 0, 0})};
+  for (GuideDesc& eyelet : scene.guides) eyelet.friction = 0.3;
+  BoundaryInputs inputs = initial_frames(scene);
+  World world(scene, inputs);
+  const auto force_on = [&](const char* name) { return world.attachments()[find(world.attachments(), name)].force; };
+  double pushing = 0, pressing = 0;
+  const int steps = 1000;
+  for (int i = 1; i <= steps; ++i) {
+    inputs[1].pose.position.x() = 0.1 * i * world.time_step();
+    ASSERT_EQ(world.step(inputs).status, Status::ok) << "at " << world.time() << " s";
+    if (2 * i <= steps) continue;
+    pushing += 2.0 / steps * std::abs(force_on("hand").x());
+    pressing += 2.0 / steps * (std::abs(force_on("first").z()) + std::abs(force_on("second").z()));
+  }
+  EXPECT_NEAR(pushing, 0.3 * pressing, 0.01 * pressing);
+  EXPECT_GT(pressing, 0.9 * mass_of(world.cables()[0]) * 9.81);
+}
+
+/// What falls back through many eyelets, hardly drawn and here and there pressed, slides in some of them and sticks in others.
+TEST(Guides, rubOnWhatIsHardlyDrawn) {
+  SceneDesc scene = scenes::one_cable(160, 2);
+  MaterialDesc& material = scene.materials[0].material;
+  material.linear_density = 0.07;
+  material.axial_stiffness = 4e4;
+  material.axial_damping = 4;
+  material.bending_stiffness = 2.8e-3;
+  material.bending_damping = 2.8e-5;
+  scene.cables[0].attachments = {scenes::attachment("hand", PlaceDesc::At::start, Vector3::Zero())};
+  scene.cables[0].initial.type = InitialShapeDesc::Type::points;
+  scene.cables[0].initial.points = {Vector3::Zero()};
+  double arc_length = 0;
+  for (int i = 1; i < 7; ++i) {
+    const Vector3 place(0.25 * i, i % 2 == 0 ? 0.03 : 0.04, 0);
+    arc_length += (place - scene.cables[0].initial.points.back()).norm();
+    scene.cables[0].initial.points.push_back(place);
+    scene.guides.push_back(guide("eye" + std::to_string(i), arc_length, place));
+    scene.guides.back().friction = 0.3;
+  }
+  scene.cables[0].initial.points.push_back({1.5 + 2 - arc_length, 0.03, 0});
+  World world(scene, {});
+  run(world, 0.5);
+}
+
+/// Nothing but its own weight holds a rope that a load draws through eyelets by a good part of a segment a step: the nodes keep
+/// up.
+TEST(Guides, passNodesOfWhatRuns) {
+  SceneDesc scene = two_loads(0.01, 0.2);
+  scene.time_step = 0.005;
+  scene.guides[0].friction = 0.1;
+  scene.guides.push_back(guide("second", 1.2, {0.1, 0, -0.1 * std::sqrt(3.0)}));
+  World world(scene, {});
+  run(world, 0.4);
+}
+
 TEST(Guides, keepTheStretchOfWhatLiesOnAWheel) {
   SceneDesc scene = two_loads(1, 1.5);
   scene.materials[0].material.axial_stiffness = 2e3;

@@ -74,6 +74,7 @@ struct Flow {
   std::array<double, 2> gap{0, 0};  // its column: in the rows of the two segments
   /// Of the nodes, where the cable bends; but for friction the same in its row
   FlowColumn column{};
+  FlowColumn rubbing{};  // what friction takes of that in the row
   int first_node() const { return before - 1; }
 };
 

@@ -17,6 +17,8 @@ constexpr int most_changes = 8;
 constexpr double least_left = 0.02;
 /// [m/s] Against its friction nothing flows faster.
 constexpr double turned_round = 1e-9;
+/// [rad] Less is none.
+constexpr double least_angle = 1e-6;
 /// Relative, of impulses beside wheels that nothing else takes up.
 constexpr double flow_regularisation = 1e-9;
 
@@ -59,6 +61,14 @@ void flow_on(const Flow& flow, const std::vector<double>& rest_lengths, std::vec
     values[node] = mean(values[node], values[from], std::min(std::abs(flow.way) / length, 1.0));
     if (flow.first == flow.last) break;
   }
+}
+
+/// By the force with which a guide presses on a cable [N], across it: the friction of what is drawn over a round, so that
+/// tensions differ by the factor exp(friction angle). With them the force is sin(angle / 2) times their sum, and friction, their
+/// difference, is tanh(friction angle / 2) times that. Where the cable does not turn it is the coefficient.
+double rubbing_part(double friction, double angle) {
+  if (friction == infinity) return infinity;
+  return angle > least_angle ? std::tanh(0.5 * friction * angle) / std::sin(0.5 * angle) : friction;
 }
 
 /// With which what a guide holds drives a way, whose work is what it gives back [N], and how that grows with the way [N/m]: with
@@ -266,8 +276,8 @@ void CableStepper::evaluate_flows(const Substep& s) {
     drive -= flow.drag * flow.way;
     drive -= flow.mass * s.inertia() / s.h * (flow.way / s.h - flow.rate);
 
-    // Friction, of a cable that is drawn over a round: T exp(friction angle).
-    // Between the middle of a segment and the guide is half of it, which weighs and is accelerated, too.
+    // Friction follows how hard the guide presses on the cable. Between the middle of a segment and the guide is half of it,
+    // which weighs and is accelerated, too.
     const double gain = s.statics ? 0 : (end_rate(s, flow) - flow.rate) / s.h;
     const auto half = [&](int i) -> Vector3 {
       const Vector3 direction = get(middle_, i).normalized();
@@ -275,15 +285,17 @@ void CableStepper::evaluate_flows(const Substep& s) {
     };
     const Vector3 before = get(segment_force_, flow.before) - half(flow.before);
     const Vector3 after = get(segment_force_, flow.after) + half(flow.after);
-    const double angle = std::atan2(before.cross(after).norm(), before.dot(after));
-    const std::array<double, 2> pull{before.norm(), after.norm()};
-    const double ratio = guided.friction == infinity ? infinity : std::exp(guided.friction * angle);
+    const Vector3 from = get(middle_, flow.before).normalized(), to = get(middle_, flow.after).normalized();
+    const double angle = std::atan2(from.cross(to).norm(), from.dot(to));
+    const Vector3 tangent = (from + to).stableNormalized(), given = after - before;
+    const Vector3 across = given - given.dot(tangent) * tangent;
+    const double press = across.norm(), grip = rubbing_part(guided.grip, angle);
+    // A bearing resists no more than the cable holds on its wheel.
+    const bool slips = grip < infinity && grip * press < guided.resistance;
+    const double part_of_press = rubbing_part(guided.friction, angle) + (slips ? grip : 0);
+    const double rubs = part_of_press < infinity ? part_of_press * press + (slips ? 0 : guided.resistance) : infinity;
     std::array<double, 2> resistance;
-    for (const int side : {0, 1}) {
-      const double on_wheel = guided.grip < infinity ? pull[side] * (std::exp(guided.grip * angle) - 1) : infinity;
-      resistance[side] = ratio == infinity ? infinity : pull[side] * (ratio - 1) + std::min(guided.resistance, on_wheel);
-      if (guided.is_blocked[side]) resistance[side] = infinity;
-    }
+    for (const int side : {0, 1}) resistance[side] = guided.is_blocked[side] ? infinity : rubs;
     const Flow::Mode mode = next_mode(s, flow, guided, drive, resistance[0], resistance[1]);
     // The first time tensions are those of the substep before.
     flow.changed = mode != flow.mode || flow.changes < 0;
@@ -295,13 +307,25 @@ void CableStepper::evaluate_flows(const Substep& s) {
     // With it goes what the tensions do less than the energy of stretch that they draw.
     flow.resistance = (sticks ? drive : rubbing) + energy_drawn[1] - energy_drawn[0] - (tension[1] - tension[0]);
 
+    // How it follows the forces, which act along segments that turn.
+    const double sense = forward ? 1 : backward ? -1 : 0;
+    const Vector3 rise = sense == 0 || !(press > 0) ? Vector3::Zero() : Vector3(sense * part_of_press / press * across);
+    flow.rubbing.fill(Vector3::Zero());
+    for (const int side : {0, 1}) {
+      const int i = segments[side], first = i - flow.first_node();
+      const double turned = (tension_density_[i] < 0 ? compressed_part_ : part) * tension_density_[i];
+      const Vector3 more = side == 0 ? Vector3(-turned * rise) : Vector3(turned * rise);
+      flow.rubbing[first] -= more;
+      flow.rubbing[first + 1] += more;
+    }
+
     if (sticks) {
       flow.row = {0, 0};
       flow.diagonal = -1;
       system_.flow_load[k] = sticking_way(s, flow) - flow.way;
       continue;
     }
-    flow.row = {-(forward ? ratio : 1) * arm[0], (backward ? ratio : 1) * arm[1]};
+    flow.row = {-arm[0] + rise.dot(get(middle_, flow.before)), arm[1] - rise.dot(get(middle_, flow.after))};
     flow.diagonal = -flow.mass * s.inertia() / (s.h * s.h) - flow.drag + bends + held_slope;
     if (!elastic) flow.diagonal += part * (tension_density_[flow.before] + tension_density_[flow.after]);
     system_.flow_load[k] = drive - rubbing;
@@ -343,7 +367,7 @@ void CableStepper::factor_flows() {
       double* const response = &flow_response_[3 * (j * count + k)];
       response[0] = multiplier_correction()[flows_[k].before];
       response[1] = multiplier_correction()[flows_[k].after];
-      response[2] = along_column(flows_[k]);
+      response[2] = along_row(flows_[k]);
     }
     add_column(flows_[j], -1);
   }
@@ -359,13 +383,13 @@ void CableStepper::let_flow() {
   const std::vector<double>& multiplier = multiplier_correction();
   for (int k = 0; k < count; ++k) {
     const Flow& flow = flows_[k];
-    const double bends = flow.mode == Flow::Mode::sticking ? 0 : 1;
+    const double moves = flow.mode == Flow::Mode::sticking ? 0 : 1;
     flow_solution_[k] = system_.flow_load[k] + flow.row[0] * multiplier[flow.before] + flow.row[1] * multiplier[flow.after] +
-                        bends * along_column(flow);
+                        moves * along_row(flow);
     for (int j = 0; j < count; ++j) {
       const double* response = &flow_response_[3 * (j * count + k)];
       flow_matrix_[k * count + j] =
-          -flow.row[0] * response[0] - flow.row[1] * response[1] - bends * response[2] - (j == k ? flow.diagonal : 0);
+          -flow.row[0] * response[0] - flow.row[1] * response[1] - moves * response[2] - (j == k ? flow.diagonal : 0);
     }
   }
   solve_dense(count, flow_matrix_, flow_solution_);
@@ -391,12 +415,12 @@ void CableStepper::add_column(const Flow& flow, double way) {
   }
 }
 
-/// What the last solution moves along what a flow changes of the loads [N].
-double CableStepper::along_column(const Flow& flow) const {
+/// What the nodes of the last solution do to what drives a flow [N].
+double CableStepper::along_row(const Flow& flow) const {
   double sum = 0;
   for (std::size_t i = 0; i < flow.column.size(); ++i) {
     const int node = flow.first_node() + static_cast<int>(i);
-    if (node >= 0 && node <= segments_) sum += flow.column[i].dot(get(correction(), node));
+    if (node >= 0 && node <= segments_) sum += (flow.column[i] - flow.rubbing[i]).dot(get(correction(), node));
   }
   return sum;
 }
@@ -465,18 +489,19 @@ void CableStepper::begin_flow_projection(const Substep& s, const CableState& sta
   system_.flow_load.assign(flows_.size(), 0.0);
   for (std::size_t k = 0; k < flows_.size(); ++k) {
     Flow& flow = flows_[k];
-    const bool is_free = flow.mode == Flow::Mode::free;
+    const bool moves = flow.mode != Flow::Mode::sticking;
     const double rate = s.boundary.flows[k].rate;
     flow.row = flow.gap = {0, 0};
     flow.column.fill(Vector3::Zero());
-    flow.diagonal = is_free ? -flow.mass : -1;
+    flow.rubbing.fill(Vector3::Zero());
+    flow.diagonal = moves ? -flow.mass : -1;
     for (const int side : {0, 1}) {
       const int i = side == 0 ? flow.before : flow.after;
       if (is_elastic_at(i)) continue;
       const double length = side == 0 ? -state.rest_lengths[i] : state.rest_lengths[i];
       system_.gap[i] += length * rate;
       flow.gap[side] = length;
-      if (is_free) flow.row[side] = length;
+      if (moves) flow.row[side] = length;
     }
   }
 }
@@ -513,7 +538,7 @@ void CableStepper::project_flows(const Substep& s) {
     const double before = target_length_[flow.before], after = target_length_[flow.after], rate = s.boundary.flows[k].rate;
     impulse_[flow.before] -= before * rate;
     impulse_[flow.after] += after * rate;
-    if (flow.mode != Flow::Mode::free) continue;
+    if (flow.mode == Flow::Mode::sticking) continue;
     if (flow.first == flow.last) {
       pivot_[flow.before] += before * before / flow.mass;
       pivot_[flow.after] += after * after / flow.mass;
@@ -542,8 +567,8 @@ void CableStepper::push_flows(const Substep& s, SubstepResult& result) {
     const Flow& flow = flows_[k];
     if (is_elastic_at(flow.before)) continue;
     const double impulse = impulse_on(flow, impulse_);
-    mend_flow(flow, impulse, flow.mode == Flow::Mode::free ? impulse / flow.mass : 0, s.boundary.flows[k], result);
-    if (flow.mode == Flow::Mode::free && flow.first != flow.last) impulse_[flow.first] = 0;
+    mend_flow(flow, impulse, flow.mode != Flow::Mode::sticking ? impulse / flow.mass : 0, s.boundary.flows[k], result);
+    if (flow.mode != Flow::Mode::sticking && flow.first != flow.last) impulse_[flow.first] = 0;
   }
 }
 
@@ -553,11 +578,11 @@ double CableStepper::impulse_on(const Flow& flow, const std::vector<double>& imp
   return target_length_[flow.before] * impulses[flow.before] - target_length_[flow.after] * impulses[flow.after];
 }
 
-/// As velocities are mended. `impulse`: with which the segments beside the guide drive what flows [N s]. Friction keeps from
-/// changing what is not free, and takes what the impulse does.
+/// As velocities are mended. `impulse`: with which the segments beside the guide drive what flows [N s]. Friction keeps
+/// from changing what sticks, and takes what the impulse does.
 void CableStepper::mend_flow(const Flow& flow, double impulse, double change, GuidedFlow& guided, SubstepResult& result) {
   EnergyBalance::Dissipated& dissipated = result.balance.dissipated;
-  if (flow.mode == Flow::Mode::free) {
+  if (flow.mode != Flow::Mode::sticking) {
     dissipated.unresolved -= flow.mass * change * (guided.rate + 0.5 * change);
   } else {
     dissipated.guides += impulse * guided.rate;

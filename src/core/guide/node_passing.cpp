@@ -306,10 +306,6 @@ void stop_at_pin(int pin, State& state) {
     if (target.attachment == pin)
       target.velocity = target.mean_velocity = target.frame_velocity = target.average_velocity = velocity;
   Boundary boundary = moving_boundary(index, state);
-  for (GuidedFlow& flow : boundary.flows) {
-    if (flow.friction < infinity) flow.friction = 0;
-    flow.resistance = 0;
-  }
   project_velocities(*state.cables[index].model, boundary, state.cables[index].state);
   keep_flows(index, boundary, state);
 }

@@ -128,7 +128,7 @@ class CableStepper {
   void factor_flows();
   void let_flow();
   void add_column(const Flow& flow, double way);
-  double along_column(const Flow& flow) const;
+  double along_row(const Flow& flow) const;
   bool correct_flows(double part);
   bool grows(int segment) const;
   Vector3 flow_reaction(const Substep& substep, int node) const;

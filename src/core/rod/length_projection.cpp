@@ -67,10 +67,10 @@ class LengthSystem {
  private:
   bool is_free(std::size_t segment) const { return lengths_[segment] == 0; }
 
-  /// [kg] That moves with a flow; infinite where something holds it.
+  /// [kg] That moves with a flow; infinite where something holds it. Friction that is not infinite does nothing at once.
   double mass_of(const GuidedFlow& flow) const {
     const double density = densities_[&flow - flows_->data()];
-    if (resists(flow)) return infinity;
+    if (flow.friction == infinity || flow.is_blocked[0] || flow.is_blocked[1]) return infinity;
     return density * flowing_length(*rest_lengths_, flow.first, flow.last) + flow.inertia;
   }
 
