@@ -417,10 +417,14 @@ void CableStepper::add_column(const Flow& flow, double way) {
 
 /// What the nodes of the last solution do to what drives a flow [N].
 double CableStepper::along_row(const Flow& flow) const {
+  return along(flow, flow.column) - along(flow, flow.rubbing);
+}
+
+double CableStepper::along(const Flow& flow, const FlowColumn& column) const {
   double sum = 0;
-  for (std::size_t i = 0; i < flow.column.size(); ++i) {
+  for (std::size_t i = 0; i < column.size(); ++i) {
     const int node = flow.first_node() + static_cast<int>(i);
-    if (node >= 0 && node <= segments_) sum += (flow.column[i] - flow.rubbing[i]).dot(get(correction(), node));
+    if (node >= 0 && node <= segments_) sum += column[i].dot(get(correction(), node));
   }
   return sum;
 }
@@ -434,10 +438,11 @@ bool CableStepper::correct_flows(double part) {
     is_left =
         is_left && flow.way < (1 - least_left) * flow.start_length[0] && -flow.way < (1 - least_left) * flow.start_length[1];
     if (flow.mode == Flow::Mode::free) continue;
-    // What of the tensions' corrections is not in the row, friction takes.
+    // What of the corrections is not in the row, friction takes.
     const auto arm = [&](int i) { return 0.5 * (length_[i] + std::sqrt(end_square_[i])); };
     flow.resistance += part * (arm(flow.after) - flow.row[1]) * multiplier[flow.after];
     flow.resistance -= part * (arm(flow.before) + flow.row[0]) * multiplier[flow.before];
+    flow.resistance += part * along(flow, flow.rubbing);
   }
   return is_left;
 }

@@ -31,7 +31,8 @@ constexpr double stop = 0.15;
 constexpr double least_split = 0.7;
 /// Of what is left when a node is taken in: what is left then on the side on which one was given out last.
 constexpr double turning = 0.6;
-/// Of a regular segment: so near a node is taken in whichever way the cable flows, and none is given out nearer.
+/// Of a regular segment: so near a node is taken in whichever way a cable that bends flows, and none is given out nearer; of
+/// others `shortest`.
 constexpr double closest = 0.05;
 /// Of a regular segment, where the cable bends as it moves: only shorter ones and longer ones change the number of nodes, which
 /// makes its bends stiffer or softer at once.

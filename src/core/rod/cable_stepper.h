@@ -129,6 +129,7 @@ class CableStepper {
   void let_flow();
   void add_column(const Flow& flow, double way);
   double along_row(const Flow& flow) const;
+  double along(const Flow& flow, const FlowColumn& column) const;
   bool correct_flows(double part);
   bool grows(int segment) const;
   Vector3 flow_reaction(const Substep& substep, int node) const;
