@@ -94,6 +94,23 @@ std::vector<WinchCase> winches() {
   return cases;
 }
 
+/// An eyelet that rubs, too.
+TEST(WinchBesideAnEyelet, drawsNoMoreThanWhatRubs) {
+  for (const double distance : {0.12, 0.5}) {
+    SceneDesc scene = lift({"", GuideDesc::Type::eyelet, distance, 0.3, -0.9});
+    scene.guides[0].friction = 0.3;
+    World world(scene, {});
+    for (int i = 0; i < 100; ++i) ASSERT_EQ(world.step({}).status, Status::ok) << i;
+    ASSERT_TRUE(world.apply(edit::SetLength{0, false, length - 0.9, 0.3}).ok);
+    const double most = (gravity + acceleration) * (load + density * length) * std::exp(0.3 * M_PI / 2);
+    while (world.time() < 3) {
+      ASSERT_EQ(world.step({}).status, Status::ok) << world.time() << " s";
+      const std::vector<double>& tension = world.cables()[0].state.tension;
+      ASSERT_LT(*std::max_element(tension.begin(), tension.end()), 1.1 * most) << world.time() << " s";
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Cables, WinchBesideAGuide, testing::ValuesIn(winches()),
                          [](const auto& info) { return info.param.name; });
 
