@@ -381,6 +381,7 @@ TEST(Guides, rubOnWhatIsHardlyDrawn) {
 /// up.
 TEST(Guides, passNodesOfWhatRuns) {
   SceneDesc scene = two_loads(0.01, 0.2);
+  scene.cables[0].segments = 120;
   scene.time_step = 0.005;
   scene.guides[0].friction = 0.1;
   scene.guides.push_back(guide("second", 1.2, {0.1, 0, -0.1 * std::sqrt(3.0)}));
