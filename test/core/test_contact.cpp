@@ -457,6 +457,40 @@ TEST(Contact, CablesSteppedAtOnceAreThoseSteppedOneByOne) {
   EXPECT_TRUE(broke);
 }
 
+TEST(Contact, StiffCableThatIsPushedBetweenPlatesStaysThereInLongSteps) {
+  for (const double time_step : {0.001, 0.004, 0.005}) {
+    constexpr double thickness = 0.003, half_gap = 0.006, length = 0.7, speed = 0.2, duration = 1.25, rise = 0.1;
+    SceneDesc scene = scenes::one_cable(60, length);
+    scene.time_step = time_step;
+    MaterialDesc& material = scene.materials[0].material;
+    material.linear_density = 0.05;
+    material.radius = thickness;
+    material.bending_stiffness = 0.5;
+    material.bending_damping = 0.01;
+    scene.cables[0].initial.type = InitialShapeDesc::Type::straight;
+    scene.cables[0].initial.from = {-0.65, 0, 0};
+    scene.cables[0].initial.to = {1, 0, 0};
+    scene.cables[0].attachments = {scenes::attachment("h", PlaceDesc::At::start, Vector3::Zero(), "hand", AttachmentType::clamp)};
+    scene.cables[0].attachments[0].initial_pose = InitialPose{-0.65, 0, 0, 0, 0, 0};
+    for (const double side : {-1.0, 1.0}) {
+      add_obstacle(side < 0 ? "below" : "above", ShapeType::box, {0.15, 0, side * (half_gap + 0.025), 0, 0, 0}, scene);
+      scene.obstacles.back().size = {0.3, 0.4, 0.05};
+      scene.obstacles.back().friction = 0.2;
+    }
+    BoundaryInputs inputs = initial_frames(scene);
+    World world(scene, inputs);
+    double deepest = 0;
+    const long steps = std::lround(duration / time_step);
+    for (long i = 0; i < steps; ++i) {
+      inputs[1].pose.position = {-0.65 + speed * time_step * (i + 1), 0, rise * i / steps};
+      EXPECT_EQ(world.step(inputs).status, StepResult::Status::ok) << world.time();
+      for (const Vector3& x : world.cables()[0].state.positions)
+        if (x.x() > 0) deepest = std::max(deepest, std::abs(x.z()) + thickness - half_gap);
+    }
+    EXPECT_LT(deepest, 0.1 * thickness) << time_step;
+  }
+}
+
 TEST(ContactLaw, StiffensWithDepthAndKeepsFrictionInItsCone) {
   Touch touch;
   touch.radius = radius;

@@ -89,6 +89,15 @@ bool continues(const CachedContact& last, const Touch& touch) {
   return std::max(last.other_key, touch.other_key) - std::min(last.other_key, touch.other_key) <= reach;
 }
 
+/// Whether what touches bore a force in the substep before. Without that it goes where the cable's own forces take it, which its
+/// velocity does not tell.
+bool bore(const ContactCache& cache, std::uint64_t key, std::uint64_t other_key) {
+  const auto sought = std::tie(key, other_key);
+  const auto found =
+      std::lower_bound(cache.begin(), cache.end(), sought, [](const CachedContact& c, const auto& of) { return keys(c) < of; });
+  return found != cache.end() && keys(*found) == sought && found->mode != Touch::Mode::open;
+}
+
 /// [m] By how much a smooth cable through the nodes of a segment bulges out along a normal: twice the arc's height, so that nodes
 /// bear what lies around a round obstacle.
 double bulge_of(const CableState& state, int segment, const Vector3& normal) {
@@ -259,7 +268,9 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
     SurfaceMotion motion;
     if (moves) motion = touching_motion(moving, in_shape(moving, position), normal, h);
     const Vector3 other_velocity = is_body ? moving.body_velocity.at(position) : Vector3(motion.displacement / h);
-    if (!may_close(gap, normal, velocity - other_velocity, radius, h)) return;
+    const std::uint64_t key = is_body ? body_key | key_of(moving.body, moving.obstacle->id) : moving.obstacle->id;
+    const std::uint64_t other_key = place_key(place, where);
+    if (!may_close(gap, normal, velocity - other_velocity, radius, h) && !bore(*member.cache, key, other_key)) return;
     if (is_body && inside_[2 * place + (on_node ? 0 : 1)] != 0) return;
     if (is_anchored(state, *member.targets, point, *moving.obstacle, attachments)) return;
     // What turns carries a point beside the centre line along the surface, too.
@@ -267,8 +278,8 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
     if (is_body || turns) put_beside(state, normal, std::min(radius, nearest.distance - moving.obstacle->padding), beside);
     if (moves) turn_under(moving, state, beside, motion);
     Touch touch;
-    touch.key = is_body ? body_key | key_of(moving.body, moving.obstacle->id) : moving.obstacle->id;
-    touch.other_key = place_key(place, where);
+    touch.key = key;
+    touch.other_key = other_key;
     touch.point = is_body ? beside : point;
     touch.obstacle = moving.index;
     touch.body = moving.body;
@@ -392,7 +403,7 @@ void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, const std
       const double speed = found.speeds[pair->first_node] + found.speeds[pair->second_node];
       const double moved = found.moved[pair->first_node] + found.moved[pair->second_node];
       if (pair->distance - moved > (2 * thickest + reach(speed, thickest, h)) * (1 + distance_rounding)) continue;
-      if (can_touch(cables, joined_, *pair)) look_at(cables, *pair, speed, h);
+      if (can_touch(cables, joined_, *pair)) look_at(cables, members, *pair, speed, h);
     }
     const SimulatedCable& cable = cables[segment.cable];
     const double radius = CableMaterials(cable)[segment.segment].radius;
@@ -402,7 +413,8 @@ void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, const std
 }
 
 /// Whether the segments of a pair may touch: then it is one of `near_`.
-void ContactSet::look_at(const std::vector<SimulatedCable>& cables, const SegmentPairs::Pair& pair, double speed, double h) {
+void ContactSet::look_at(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members,
+                         const SegmentPairs::Pair& pair, double speed, double h) {
   const SimulatedCable &a = cables[pair.first.cable], &b = cables[pair.second.cable];
   const int i = pair.first.segment, j = pair.second.segment;
   const double first_radius = CableMaterials(a)[i].radius, second_radius = CableMaterials(b)[j].radius;
@@ -416,7 +428,10 @@ void ContactSet::look_at(const std::vector<SimulatedCable>& cables, const Segmen
   const Vector3 normal = distance > 0 ? Vector3(closest.between / distance) : along_a.unitOrthogonal();
   const CablePoint first{pair.first.cable, i, closest.first}, second{pair.second.cable, j, closest.second};
   const Vector3 velocity = on_centre_line(first, a.state.velocities) - on_centre_line(second, b.state.velocities);
-  if (!may_close(distance - surface, normal, velocity, radius, h)) return;
+  const std::uint64_t key = pair_key | i, other_key = key_of(members[places_[pair.second.cable]].id, j);
+  if (!may_close(distance - surface, normal, velocity, radius, h) &&
+      !bore(*members[places_[pair.first.cable]].cache, key, other_key))
+    return;
   near_.push_back({first, second, normal, distance - surface, radius});
 }
 

@@ -64,7 +64,8 @@ class ContactSet {
                      const std::vector<Attachment>& attachments, double h);
   void find_pairs(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members, const SegmentPairs& found,
                   double thickest, double h);
-  void look_at(const std::vector<SimulatedCable>& cables, const SegmentPairs::Pair& pair, double speed, double h);
+  void look_at(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members,
+               const SegmentPairs::Pair& pair, double speed, double h);
   void add_pair(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members, const NearPair& near,
                 double h);
   void note(const Intrusion& found);
