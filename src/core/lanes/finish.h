@@ -7,7 +7,7 @@ namespace verlet_cable {
 // Without linkage: what is compiled for one processor is not to be used for another.
 namespace {
 
-/// The velocities' projection: see CableStepper::project. Down to the middle, and back up.
+/// The velocities' projection: see CableStepper::project. Down to the middle.
 template <class Real>
 class Projection {
  public:
@@ -19,6 +19,7 @@ class Projection {
     set_row(at, direction, velocity_next, inverse_mass_next, diagonal, load);
     before_ = 1.0 / (diagonal - ratio_ * coupling_);
     value_ = load - ratio_ * value_;
+    ended_ = ended_ + value_ * value_ * before_;
     coupling_ = length_rate_coupling(dot(direction, direction_next), inverse_mass_next);
     ratio_ = coupling_ * before_;
     at[LaneField::pivot] = before_;
@@ -31,8 +32,13 @@ class Projection {
     Real diagonal, load;
     set_row(at, direction, velocity_next, inverse_mass_next, diagonal, load);
     const Real matrix = ratio_ * coupling_, value = ratio_ * value_;
-    return (load - (value + crossed_over(value))) / (diagonal - (matrix + crossed_over(matrix)));
+    load = load - (value + crossed_over(value));
+    const Real impulse = load / (diagonal - (matrix + crossed_over(matrix)));
+    ended_ = ended_ + 0.5 * (load * impulse);  // either lane has half of it
+    return impulse;
   }
+  /// [J] Impulses times the rates that they end, of a lane.
+  Real ended() const { return ended_; }
 
  private:
   [[gnu::always_inline]] static void set_row(const Place<Real>& at, const VectorOf<Real>& direction,
@@ -42,14 +48,14 @@ class Projection {
     diagonal = adjustable * length_rate_diagonal(dot(direction, direction), mobility) + (1.0 - adjustable);
     load = adjustable * dot(direction, at.vector(LaneField::end_velocity_x) - velocity_next);
   }
-  Real ratio_{}, coupling_{}, before_{}, value_{};
+  Real ratio_{}, coupling_{}, before_{}, value_{}, ended_{};
 };
 
 template <bool projects, class Real>
-void finish_lanes(const LaneWork& w) {
+void project_lanes(const LaneWork& w) {
   const int m = w.lane;
   LaneValues& values = *w.values;
-  const Real zero{}, one = zero + 1.0, rate = zero + 2 / w.law.h, inverse_h = zero + 1 / w.law.h;
+  const Real zero{}, one = zero + 1.0, rate = zero + 2 / w.law.h;
   const VectorOf<Real> none{zero, zero, zero};
   // What a place knows at the end of the substep.
   const auto end_velocity = [&](int k) {
@@ -84,22 +90,38 @@ void finish_lanes(const LaneWork& w) {
       }
     }
     place_of<Real>(w, m)[LaneField::impulse] = impulse;
+    if constexpr (projects) {
+      set_values(projection.ended(), values.ended);
+      for (int k = m - 1; k >= 0; --k) {
+        const Place<Real> at = place_of<Real>(w, k);
+        impulse = (at[LaneField::impulse] - at[LaneField::off] * impulse) * at[LaneField::pivot];
+        at[LaneField::impulse] = impulse;
+      }
+    }
   }
   set_values(longest, values.longest);
   set_values(shortest, values.shortest);
+}
 
+template <bool projects, class Real>
+void finish_lanes(const LaneWork& w) {
+  const int m = w.lane;
+  LaneValues& values = *w.values;
+  const Real zero{}, inverse_h = zero + 1 / w.law.h;
+  const VectorOf<Real> none{zero, zero, zero};
   Real product = zero, square = zero, mass = zero;
   const Real known = values_of<Real>(values.known), wanted = values_of<Real>(values.projects);
-  Real impulse = place_of<Real>(w, m)[LaneField::impulse];
+  const Real mended = values_of<Real>(values.mended);
+  Real impulse = mended * place_of<Real>(w, m)[LaneField::impulse];
   for (int k = m; k >= 0; --k) {
     const Place<Real> at = place_of<Real>(w, k);
     VectorOf<Real> velocity = at.vector(LaneField::end_velocity_x);
     if constexpr (projects) {
+      at[LaneField::impulse] = impulse;
       VectorOf<Real> pull = none - impulse * at.vector(LaneField::segment_x);
       if (k > 0) {
         const Place<Real> before = place_of<Real>(w, k - 1);
-        impulse = (before[LaneField::impulse] - before[LaneField::off] * impulse) * before[LaneField::pivot];
-        before[LaneField::impulse] = impulse;
+        impulse = mended * before[LaneField::impulse];
         pull = pull + impulse * before.vector(LaneField::segment_x);
       }
       velocity = where(wanted, velocity + at[LaneField::inverse_mass] * pull, velocity);

@@ -33,6 +33,13 @@ void by_law(const LaneLaw& law, const Call& call) {
 }
 
 template <class Real>
+bool any_projects(const LaneWork& w) {
+  bool any = false;
+  for (int i = 0; i < lanes_of<Real>; ++i) any = any || w.values->projects[i] != 0;
+  return any;
+}
+
+template <class Real>
 LanePasses passes_of_lanes() {
   LanePasses passes;
   passes.lanes = lanes_of<Real>;
@@ -46,14 +53,10 @@ LanePasses passes_of_lanes() {
   passes.light_sweep = [](const LaneWork& w) {
     by_law(w.law, [&](auto bends, auto elastic) { sweep_lanes<bends.value, elastic.value, true, Real>(w); });
   };
-  passes.finish = [](const LaneWork& w) {
-    bool projects = false;
-    for (int i = 0; i < lanes_of<Real>; ++i) projects = projects || w.values->projects[i] != 0;
-    if (projects)
-      finish_lanes<true, Real>(w);
-    else
-      finish_lanes<false, Real>(w);
+  passes.project = [](const LaneWork& w) {
+    any_projects<Real>(w) ? project_lanes<true, Real>(w) : project_lanes<false, Real>(w);
   };
+  passes.finish = [](const LaneWork& w) { any_projects<Real>(w) ? finish_lanes<true, Real>(w) : finish_lanes<false, Real>(w); };
   passes.store = [](const LaneWork& w) {
     by_law(w.law, [&](auto bends, auto elastic) { store_lanes<bends.value, elastic.value, Real>(w); });
   };

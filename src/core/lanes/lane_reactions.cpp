@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "geometry/eigen_vectors.h"
 #include "lanes/lane_stepper.h"
 #include "law/bend.h"
@@ -43,15 +45,31 @@ void LaneStepper::react(int c, LaneMember& member) {
 
 /// What the segments exert on the other nodes they exert on the holders.
 void LaneStepper::react_to_projection(int c, LaneMember& member) {
+  for (HeldNode& target : member.substep.boundary.nodes) target.mend(impulse_on(c, target.node) / member.substep.h, 1);
+}
+
+/// Of the projection, on a held node [N s].
+Vector3 LaneStepper::impulse_on(int c, int node) {
   const auto exerted = [&](int segment) -> Vector3 {
     double impulse = 0;
     each_lane_of(c, segment, [&](int place, int lane, double) { impulse = value(LaneField::impulse, place, lane); });
-    return impulse / member.substep.h * segment_at(LaneField::segment_x, c, segment);
+    return impulse * segment_at(LaneField::segment_x, c, segment);
   };
-  for (HeldNode& target : member.substep.boundary.nodes) {
-    if (target.node > 0) target.mend(exerted(target.node - 1), 1);
-    if (target.node < work_.law.segments) target.mend(-exerted(target.node), 1);
+  Vector3 impulse = Vector3::Zero();
+  if (node > 0) impulse += exerted(node - 1);
+  if (node < work_.law.segments) impulse -= exerted(node);
+  return impulse;
+}
+
+/// As CableStepper::scale_to_lose.
+void LaneStepper::scale_to_lose(int c, const LaneMember& member) {
+  double along = values_.ended[2 * c] + values_.ended[2 * c + 1], known = 0;
+  const double square = 0.5 * along;
+  for (const HeldNode& held : member.substep.boundary.nodes) {
+    along += impulse_on(c, held.node).dot(held.velocity - held.displacement / member.substep.h);
+    known -= held.unresolved;
   }
+  values_.mended[2 * c] = values_.mended[2 * c + 1] = losing_share(std::max(0.0, known), along, square);
 }
 
 /// The force on a segment's first node [N].

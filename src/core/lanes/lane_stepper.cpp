@@ -70,6 +70,9 @@ void LaneStepper::advance(std::vector<LaneMember>& members, int widest, CableSte
   const int count = static_cast<int>(members.size());
   for (int c = 0; c < count; ++c)
     if (members[c].result.converged) react(c, members[c]);
+  passes_.project(work_);
+  for (int c = 0; c < count; ++c)
+    if (members[c].result.converged && values_.projects[2 * c] != 0) scale_to_lose(c, members[c]);
   passes_.finish(work_);
   for (int c = 0; c < count; ++c) values_.stores[2 * c] = values_.stores[2 * c + 1] = members[c].result.converged ? 1 : 0;
   for (int c = 0; c < count; ++c) {
@@ -195,6 +198,7 @@ void LaneStepper::set_values(int c, const LaneMember& member) {
     values_.projects[lane] = !is_elastic(s.model) && holders_accelerate(s, *member.state) ? 1 : 0;
     values_.known[lane] = known_part(member.state->unresolved);
     values_.smooths[lane] = work_.law.is_watched && member.state->unresolved.known > 0 ? 1 : 0;
+    values_.mended[lane] = 1;
     values_.stores[lane] = 0;
   }
 }

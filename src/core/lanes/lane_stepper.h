@@ -58,6 +58,8 @@ class LaneStepper {
   void iterate(std::vector<LaneMember>& members);
   void react(int cable, LaneMember& member);
   void react_to_projection(int cable, LaneMember& member);
+  Vector3 impulse_on(int cable, int node);
+  void scale_to_lose(int cable, const LaneMember& member);
   void set_held_accelerations(int cable, const LaneMember& member);
   bool leaves_unresolved(int cable, const LaneMember& member) const;
   void complete(int cable, LaneMember& member);

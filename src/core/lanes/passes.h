@@ -47,7 +47,7 @@ enum class LaneField {
   turn_z,
   pivot,    ///< of the velocity projection: inverse of the segment's row, eliminated up to there
   off,      ///< to the next row
-  impulse,  ///< [kg/s]
+  impulse,  ///< [kg/s]; after `finish` what of it acts
   // Of elastic cables
   start_length,     ///< of the segment [m]
   axial_stiffness,  ///< EA / rest length [N/m]
@@ -116,11 +116,13 @@ struct alignas(64) LaneValues {
   double known[most_lanes];                                                    ///< see MotionCleaner::finds_unresolved
   double smooths[most_lanes];                                                  ///< 1 where the tension is a mean of two substeps
   double share[most_lanes];                                                    ///< of what turns, see BendDamping
-  double stores[most_lanes];                                                   ///< 1 where the cable takes the result, else 0
+  double mended[most_lanes];  ///< share of the impulses of the projection that acts
+  double stores[most_lanes];  ///< 1 where the cable takes the result, else 0
   // Out
   double largest[most_lanes];                        ///< square of the largest correction [m^2]; infinite or NaN if one is
   double longest[most_lanes], shortest[most_lanes];  ///< squares, relative, of segments
   double along[most_lanes];                          ///< see BendDamping [N m]
+  double ended[most_lanes];                          ///< [J] impulses of the projection times the rates that they end
   double product[most_lanes], square[most_lanes], mass[most_lanes];  ///< see MotionCleaner::finds_unresolved
 };
 
@@ -151,7 +153,8 @@ struct LanePasses {
   void (*turn)(const LaneWork&);         ///< `along`, of damped bending
   void (*sweep)(const LaneWork&);        ///< a Newton iteration
   void (*light_sweep)(const LaneWork&);  ///< likewise, with the matrix of the last one
-  void (*finish)(const LaneWork&);       ///< velocities and accelerations at the end
+  void (*project)(const LaneWork&);      ///< velocities at the end, and impulses that end changes of length there
+  void (*finish)(const LaneWork&);       ///< velocities with these, and accelerations
   void (*store)(const LaneWork&);        ///< cables from records
 };
 LanePasses passes_of_2_lanes();

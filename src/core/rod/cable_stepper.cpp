@@ -51,7 +51,6 @@ void CableStepper::resize(int segments) {
     a->assign(nodes, 0.0);
   both_held_.reserve(nodes);
   yields_.assign(nodes, 0);
-  material_rates_.reserve(nodes);
   kept_load_.assign(nodes, 0.0);
   kept_gap_.assign(nodes, 0.0);
   kept_torque_.assign(nodes, 0.0);
@@ -131,7 +130,7 @@ void CableStepper::finish(const Substep& s, bool struck, CableState& state, Subs
   result.max_strain = store(s, state);
   if (rod_.active()) rod_.store(s.boundary, state);
   if (rod_.active() && !flows_.empty()) carry_frames_with_flows(state);
-  if (s.treatment != Treatment::none) quieten(s, state);
+  if (s.treatment != Treatment::none) quieten(s, state, result);
   if (twist_.active()) twist_.follow(s.boundary.directions, state.positions, s.spans);
   if (!is_balanced) return;
   for (int i = 0; i <= segments_; ++i) set(end_velocity_, i, state.velocities[i]);
@@ -700,7 +699,9 @@ void CableStepper::project(const Substep& s, const std::vector<double>& masses, 
     off_[i] = off_[std::max(i - 1, 0)] = impulse_[i] = 0;
   }
   if (!flows_.empty()) project_flows(s);
+  growth_ = impulse_;
   solve_tridiagonal(pivot_, off_, impulse_, n);
+  scale_to_lose(s);
   if (!flows_.empty()) push_flows(s, result);
   for (const GrowingSegment& growing : s.boundary.growing) balance_mended_growth(growing, impulse_[growing.segment], result);
   for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) {
@@ -718,6 +719,24 @@ void CableStepper::project(const Substep& s, const std::vector<double>& masses, 
     if (i > 0) target.mend(impulse_[i - 1] / s.h * get(segment_, i - 1), lasting_part);
     if (i < n) target.mend(-impulse_[i] / s.h * get(segment_, i), lasting_part);
   }
+}
+
+/// Impulses J that end rates r of lengths take J . r / 2, but holders give them what they do over their ways in the substep,
+/// which is not what they do at the velocities of its end: where that is more, no more of them acts than makes no energy.
+void CableStepper::scale_to_lose(const Substep& s) {
+  double square = 0;
+  for (int i = 0; i < segments_; ++i) square += 0.5 * impulse_[i] * growth_[i];
+  double along = 2 * square, known = 0;
+  for (const HeldNode& held : s.boundary.nodes) {
+    const int i = held.node;
+    Vector3 impulse = Vector3::Zero();
+    if (i > 0) impulse += impulse_[i - 1] * get(segment_, i - 1);
+    if (i < segments_) impulse -= impulse_[i] * get(segment_, i);
+    along += impulse.dot(held.velocity - held.displacement / s.h);
+    known -= held.unresolved;
+  }
+  const double share = losing_share(std::max(0.0, known), along, square);
+  for (int i = 0; i < segments_; ++i) impulse_[i] *= share;
 }
 
 /// Substeps that damp keep momenta to second order. Those of a free cable are kept exactly: what is missing is given back as a
@@ -756,7 +775,7 @@ double CableStepper::restore_angular_momentum(const Substep& s, const std::vecto
 }
 
 /// Finds motion that the substep has not resolved: it is taken out of the velocities, or the next substeps damp it.
-void CableStepper::quieten(const Substep& s, CableState& state) {
+void CableStepper::quieten(const Substep& s, CableState& state, SubstepResult& result) {
   // Its spin is a part of the angular momentum that a free rod keeps. One that was let go is not damped any longer.
   if (rod_.active() && s.boundary.nodes.empty()) return begin_anew(state.unresolved);
   if (!cleaner_.finds_unresolved(s.treatment, system_.movable, acceleration_, state)) return;
@@ -764,7 +783,7 @@ void CableStepper::quieten(const Substep& s, CableState& state) {
     state.unresolved.damped = s.scheme == Scheme::conserving ? damped_substeps : damped_substeps - 1;
     return;
   }
-  take_out_unresolved(s, state);
+  take_out_unresolved(s, state, result);
 }
 
 void CableStepper::clean(const Substep& s, const std::vector<double>& start_multiplier, CableState& state) {
@@ -774,10 +793,10 @@ void CableStepper::clean(const Substep& s, const std::vector<double>& start_mult
   end_velocity_ = velocity_;
   evaluate(s, state);
   for (int i = 0; i < segments_; ++i) start_density_[i] = start_multiplier[i] / length_[i];
-  take_out_unresolved(s, state);
+  take_out_unresolved(s, state, unused);
 }
 
-void CableStepper::take_out_unresolved(const Substep& s, CableState& state) {
+void CableStepper::take_out_unresolved(const Substep& s, CableState& state, SubstepResult& result) {
   assemble_for_velocities();
   factor_segments();
   std::fill(growth_.begin(), growth_.end(), 0.0);
@@ -792,23 +811,18 @@ void CableStepper::take_out_unresolved(const Substep& s, CableState& state) {
   for (const int i : both_held_) system_.gap[i] = 0;
   if (rod_.active()) std::fill(rod_.torque().begin(), rod_.torque().end(), 0.0);
   solve_segments();
-  material_rates_.clear();
-  for (const HeldNode& held : s.boundary.nodes) material_rates_.push_back(material_rate(s.boundary, held.node));
-  const double share = cleaner_.take_out(s.h, s.boundary.nodes, material_rates_, correction(), position_, state);
   // What is taken out is what forces in the cable do: its holders feel them, too.
+  double work = 0;
+  for (const HeldNode& held : s.boundary.nodes) work -= 0.5 * s.h * corrected_load(held.node).dot(held.displacement);
+  // At a winch, the material's way is that of what it holds.
+  double of_winches = 0;
+  if (winch_node_ >= 0) of_winches -= 0.5 * s.h * corrected_load(winch_node_).dot(material_way_);
+  work += of_winches;
+  const double share = cleaner_.take_out(s.h, work, s.boundary.nodes, correction(), position_, state);
   for (HeldNode& target : s.boundary.nodes) target.mend(0.5 * share * s.h * corrected_load(target.node), 2);
+  result.balance.work.winches += share * of_winches;
+  result.balance.dissipated.unresolved += share * of_winches;
   if (rod_.active()) rod_.calm_spin(state);
-}
-
-/// [m/s] Along the cable, at a held node: of the material that a winch moves, there or in a guide. Without a winch nothing drives
-/// what flows through guides: it is motion of the cable.
-double CableStepper::material_rate(const Boundary& boundary, int node) const {
-  if (winch_node_ < 0) return 0;
-  const double growth = boundary.growing.front().growth;
-  if (node == winch_node_) return node == 0 ? growth : -growth;
-  for (std::size_t k = 0; k < flows_.size(); ++k)
-    if (flows_[k].first <= node && node <= flows_[k].last) return boundary.flows[k].rate;
-  return 0;
 }
 
 /// The matrix at the end of the substep, of motion about it: without contacts and fluid, tension being the mean of two substeps,

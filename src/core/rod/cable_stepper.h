@@ -148,11 +148,11 @@ class CableStepper {
   void move(const Substep& substep);
   void restore_momenta(const Substep& substep, const std::vector<double>& masses);
   double restore_angular_momentum(const Substep& substep, const std::vector<double>& masses);
-  void quieten(const Substep& substep, CableState& state);
-  void take_out_unresolved(const Substep& substep, CableState& state);
-  double material_rate(const Boundary& boundary, int node) const;
+  void quieten(const Substep& substep, CableState& state, SubstepResult& result);
+  void take_out_unresolved(const Substep& substep, CableState& state, SubstepResult& result);
   void assemble_for_velocities();
   void project(const Substep& substep, const std::vector<double>& masses, SubstepResult& result);
+  void scale_to_lose(const Substep& substep);
   double store(const Substep& substep, CableState& state) const;
   // What becomes of energy: rod/cable_balance.cpp
   void balance_laws(const Substep& substep, const std::vector<double>& masses, SubstepResult& result) const;
@@ -197,7 +197,6 @@ class CableStepper {
   KirchhoffRod rod_;
   FluidForces fluid_;
   MotionCleaner cleaner_;
-  std::vector<double> material_rates_;  // held nodes: of the material along the cable [m/s]
   KktSystem system_;
   bool couples_second_ = false;  // the system's couplings to second neighbours are set
   BlockElimination solver_;

@@ -1,6 +1,7 @@
 #include "rod/unresolved_motion.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "rod/rigid_motion.h"
 #include "verlet_cable/core/cable_materials.h"
@@ -19,24 +20,6 @@ constexpr double least_cosine_damped = -0.02;
 constexpr double memory = 0.8;
 /// [m/s^2] Changes of less from one substep to the next go unnoticed: of the tension by a thousandth of the weight.
 constexpr double noticed_change = 0.01;
-
-/// [m/s] With which what holds a cable carries a node: linear between the held ones, as the rate of the material that a winch
-/// moves along it is. `k`: the held node before, 0 for the first node.
-Vector3 carried_velocity(const std::vector<HeldNode>& held, const std::vector<double>& rates, const VectorArray& place, int node,
-                         int nodes, std::size_t& k) {
-  if (held.empty()) return Vector3::Zero();
-  while (k + 1 < held.size() && held[k + 1].node <= node) ++k;
-  Vector3 velocity = held[k].velocity;
-  double rate = rates[k];
-  if (node > held[k].node && k + 1 < held.size()) {
-    const HeldNode& after = held[k + 1];
-    const double part = static_cast<double>(node - held[k].node) / (after.node - held[k].node);
-    velocity += part * (after.velocity - velocity);
-    rate += part * (rates[k + 1] - rate);
-  }
-  if (rate == 0) return velocity;
-  return velocity + rate * (get(place, std::min(node + 1, nodes - 1)) - get(place, std::max(node - 1, 0))).normalized();
-}
 
 }  // namespace
 
@@ -73,6 +56,12 @@ bool is_unresolved(Treatment treatment, const MotionSums& sums, UnresolvedMotion
   return unresolved;
 }
 
+double losing_share(double known, double along, double square) {
+  if (known + along >= square) return 1;
+  const double root = std::sqrt(along * along + 4 * square * known);
+  return along < 0 ? 2 * known / (root - along) : (along + root) / (2 * square);
+}
+
 bool MotionCleaner::finds_unresolved(Treatment treatment, const std::vector<double>& movable, const VectorArray& before,
                                      CableState& state) {
   UnresolvedMotion& motion = state.unresolved;
@@ -105,19 +94,18 @@ void MotionCleaner::load(double h, const CableModel& model, const CableState& st
   }
 }
 
-double MotionCleaner::take_out(double h, const std::vector<HeldNode>& held, const std::vector<double>& rates,
-                               const VectorArray& solution, const VectorArray& place, CableState& state) {
+double MotionCleaner::take_out(double h, double work, const std::vector<HeldNode>& held, const VectorArray& solution,
+                               const VectorArray& place, CableState& state) {
   const int nodes = state.nodes();
   for (int i = 0; i < nodes; ++i) set(alternating_, i, get(alternating_, i) - get(solution, i));
   if (held.empty()) keep_momenta(state.masses, place);
-  double along = 0, square = 0;
-  std::size_t k = 0;
+  double along = work, square = 0;
   for (int i = 0; i < nodes; ++i) {
     const Vector3 w = get(alternating_, i);
-    along += state.masses[i] * w.dot(state.velocities[i] - carried_velocity(held, rates, place, i, nodes, k));
-    square += state.masses[i] * w.squaredNorm();
+    along += state.masses[i] * w.dot(state.velocities[i]);
+    square += 0.5 * state.masses[i] * w.squaredNorm();
   }
-  const double share = along > 0 ? std::min(1.0, 2 * along / square) : 0;
+  const double share = losing_share(0, along, square);
   for (int i = 0; i < nodes; ++i) {
     const Vector3 w = share * get(alternating_, i);
     state.velocities[i] -= w;

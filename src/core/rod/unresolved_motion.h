@@ -40,6 +40,10 @@ struct MotionSums {
 /// is known is then forgotten.
 bool is_unresolved(Treatment treatment, const MotionSums& sums, UnresolvedMotion& motion);
 
+/// How much of a change of velocities makes no energy, 0 to 1, where what is known to be lost beside it is `known` [J], not
+/// negative, and a share of the change loses known + share * along - share^2 * square [J].
+double losing_share(double known, double along, double square);
+
 /// Finds motion of a cable that substeps do not resolve, and takes it out of the velocities. Where it is resolved, with phase p a
 /// substep (p = 2 atan(omega h / 2) for a frequency omega), successive turns of the accelerations (differences of their changes)
 /// have products that are cos(p) of their squares; what is much faster turns round from each substep to the next, for ever: -1.
@@ -63,11 +67,10 @@ class MotionCleaner {
   void load(double h, const CableModel& model, const CableState& state, const std::vector<double>& inertia,
             const VectorArray& segment, const VectorArray& end_velocity, const std::vector<double>& growth, KktSystem& system);
 
-  /// Takes w out of the velocities, or as much of it as lowers the kinetic energy, seen from what holds the cable: it would grow
-  /// where p is less than 2/3 pi. Free cables keep their momenta. `rates`: of the material along the cable at each of `held` [m/s],
-  /// where a winch moves it; `solution`: y; `place` [m]. Returns how much, 0 to 1.
-  double take_out(double h, const std::vector<HeldNode>& held, const std::vector<double>& rates, const VectorArray& solution,
-                  const VectorArray& place, CableState& state);
+  /// Takes w out of the velocities, or as much of it as makes no energy: it would where p is less than 2/3 pi. Free cables keep
+  /// their momenta. `work` [J]: of holders and winches, for all of w; `solution`: y; `place` [m]. Returns how much, 0 to 1.
+  double take_out(double h, double work, const std::vector<HeldNode>& held, const VectorArray& solution, const VectorArray& place,
+                  CableState& state);
 
  private:
   void keep_momenta(const std::vector<double>& masses, const VectorArray& place);

@@ -207,6 +207,18 @@ void put_at_aim(KinematicTargets& targets) {
   for (DirectionTarget& target : targets.directions) target.orientation = target.next_orientation;
 }
 
+namespace {
+
+/// [m/s] Of what goes on from `start` and has the `mean` velocity in a step: as near to where it is `headed` as a mass that is
+/// carried along gains no more energy than the force does that changes its momentum so, which acts over the way of the step.
+/// m (end - start) . ((start + end) / 2 - mean) <= 0 is a sphere about the mean, through the start.
+Vector3 velocity_at_end(const Vector3& start, const Vector3& mean, const Vector3& headed) {
+  const double reach = (start - mean).norm(), change = (headed - mean).norm();
+  return change > reach ? Vector3(mean + reach / change * (headed - mean)) : headed;
+}
+
+}  // namespace
+
 Following follow_aims(const std::vector<Attachment>& attachments, double time, const FrameStep& step, KinematicTargets& targets,
                       std::vector<Jump>& over) {
   const double time_step = step.time_step;
@@ -246,7 +258,7 @@ Following follow_aims(const std::vector<Attachment>& attachments, double time, c
     }
     end_jump(target);
     target.frame_velocity = mean;
-    target.next_velocity = mean + 0.5 * (mean - target.mean_velocity);
+    target.next_velocity = velocity_at_end(target.velocity, mean, mean + 0.5 * (mean - target.mean_velocity));
   }
   return following;
 }
