@@ -211,6 +211,37 @@ TEST(Ledger, IsTheSameInLanes) {
   EXPECT_NEAR(all.drag, 8 * alone.drag, 1e-14);
 }
 
+/// 0 to 1 in 0.3 s with the greatest jerks where it begins and ends, there and back each second.
+double stroke(double t) {
+  const double phase = std::fmod(t, 1.0), p = std::clamp((phase < 0.5 ? phase : 1 - phase) / 0.3, 0.0, 1.0);
+  return p * p * (3 - 2 * p);
+}
+
+/// A hand that starts and stops: no velocity that is mended at the end of a step makes energy.
+TEST(Ledger, JerksOfHandsMakeNoEnergy) {
+  for (const double stiffness : {infinity, 2e4})
+    for (const double across : {0.02, 0.005})  // two bending stiffnesses: a whole rod, whose sections spin
+      for (const AttachmentType type : {AttachmentType::hinge, AttachmentType::clamp}) {
+        SceneDesc scene = scenes::held_by_a_hand(40, type);
+        scene.time_step = 0.005;
+        MaterialDesc& material = scene.materials[0].material;
+        material.bending_stiffness[0] = 0.02;
+        material.bending_stiffness[1] = across;
+        if (across < 0.02) material.torsional_stiffness = 0.01;
+        material.axial_stiffness = stiffness;
+        World world(scene, scenes::hand_at({0.7, 0, 0}));
+        double greatest = 0;
+        for (int i = 1; i <= 600; ++i) {
+          const double before = world.ledger().unaccounted(), s = stroke(0.005 * i);
+          ASSERT_EQ(world.step(scenes::hand_at({0.7 - 0.3 * s, 0.2 * s, 0.1 * s})).status, Status::ok);
+          greatest = std::max(greatest, std::abs(world.ledger().unaccounted() - before));
+        }
+        const std::string name = testing::PrintToString(stiffness) + " " + testing::PrintToString(across);
+        EXPECT_EQ(world.ledger().unaccounted_steps, 0) << name << " " << greatest;
+        EXPECT_GT(world.ledger().balance.dissipated.unresolved, 0) << name;
+      }
+}
+
 class DescribedLedgers : public testing::TestWithParam<Case> {};
 
 /// [J] What a tenth of a second may leave.

@@ -822,7 +822,7 @@ void CableStepper::take_out_unresolved(const Substep& s, CableState& state, Subs
   for (HeldNode& target : s.boundary.nodes) target.mend(0.5 * share * s.h * corrected_load(target.node), 2);
   result.balance.work.winches += share * of_winches;
   result.balance.dissipated.unresolved += share * of_winches;
-  if (rod_.active()) rod_.calm_spin(state);
+  if (rod_.active()) result.balance.dissipated.unresolved += rod_.calm_spin(state);
 }
 
 /// The matrix at the end of the substep, of motion about it: without contacts and fluid, tension being the mean of two substeps,

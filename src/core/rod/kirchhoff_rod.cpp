@@ -393,11 +393,15 @@ void KirchhoffRod::store(const Boundary& boundary, CableState& state) const {
   }
 }
 
-void KirchhoffRod::calm_spin(CableState& state) const {
+double KirchhoffRod::calm_spin(CableState& state) const {
+  double taken = 0;
   for (int i = 0; i < segments_; ++i) {
     const double mean = 0.5 * (spin_[i] + state.spin[i]);
-    if (std::abs(mean) < std::abs(state.spin[i])) state.spin[i] = mean;
+    if (!(std::abs(mean) < std::abs(state.spin[i]))) continue;
+    taken += 0.5 * inertia_[i] * (state.spin[i] * state.spin[i] - mean * mean);
+    state.spin[i] = mean;
   }
+  return taken;
 }
 
 /// `simple`: without what may be negative (Gauss and Newton's).

@@ -66,8 +66,8 @@ class KirchhoffRod {
   /// Adds what damping takes in the substep, once it is finished.
   void add_losses(EnergyBalance& balance) const;
   /// Where motion was found that is not resolved, sections that alternate spin as they did on the mean over the substep: twist is
-  /// the fastest motion of all. Their kinetic energy does not grow.
-  void calm_spin(CableState& state) const;
+  /// the fastest motion of all. Returns the kinetic energy that is taken [J], which is not negative.
+  double calm_spin(CableState& state) const;
 
   RodElimination& elimination() { return elimination_; }
   const RodElimination& elimination() const { return elimination_; }
