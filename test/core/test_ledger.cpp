@@ -242,6 +242,27 @@ TEST(Ledger, JerksOfHandsMakeNoEnergy) {
       }
 }
 
+/// What falls on a floor and cannot be stretched by much: iterations end when no energy is missing.
+TEST(Ledger, BlowsOfStiffCablesMakeNoEnergy) {
+  for (const double stiffness : {infinity, 2e5}) {
+    SceneDesc scene = scenes::one_cable(40);
+    scene.time_step = 0.002;
+    scene.materials[0].material.bending_stiffness = 0.01;
+    scene.materials[0].material.axial_stiffness = stiffness;
+    CableDesc& cable = scene.cables[0];
+    cable.initial.type = InitialShapeDesc::Type::points;
+    cable.initial.points = {{0, 0, 0.1}, {0.6, 0, 0.9}};
+    ObstacleDesc floor;
+    floor.name = "floor";
+    floor.friction = 0.4;
+    scene.obstacles.push_back(floor);
+    World world(scene, BoundaryInputs(1));
+    for (int i = 0; i < 1000; ++i) ASSERT_EQ(world.step(BoundaryInputs(1)).status, Status::ok);
+    EXPECT_EQ(world.ledger().unaccounted_steps, 0) << stiffness;
+    EXPECT_GT(world.ledger().balance.dissipated.unresolved, 0.05 * scale);
+  }
+}
+
 class DescribedLedgers : public testing::TestWithParam<Case> {};
 
 /// [J] What a tenth of a second may leave.

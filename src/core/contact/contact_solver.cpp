@@ -19,6 +19,8 @@ constexpr double passing_part = 1e-2;
 /// Bodies are as much more accurate, in parts of their sizes.
 constexpr double body_accuracy = 30;
 constexpr double fastest_convergence = 0.1;
+/// Of the energy that is told if it is missing in a step: so much less may an iterate lack that ends it.
+constexpr double untold_part = 0.5;
 constexpr double slow_convergence = 0.2;
 /// Where friction turns round slowly, a larger error is as good after so many iterations.
 constexpr int patient_iterations = 6;
@@ -196,12 +198,16 @@ bool ContactSolver::iterate(std::vector<Participant>& participants, std::vector<
     const double mass = p.state->rest_lengths.front() * CableMaterials(p.substep.model, *p.state)[0].linear_density;
     negligible_energy_ = std::min(negligible_energy_, negligible_part * mass * moved * moved / (h * h));
   }
+  double told = 0;      // [J] if that much is missing, beside a part of the work
+  double expected = 0;  // [J] to be missing, after the last iterate
+  for (const Participant& p : participants) told += p.stepper->told_energy(p.substep, *p.state);
   double last = 0;
   bool stale = true;
   for (int i = 0; i < maximum_iterations && spent_ < most_work_; ++i) {
     spend(budget::heavy, touches.size());
     if (i == following_iterations) hold_bounds(touches);
     const bool changed = i == 0 ? press(participants, touches) : shorten(participants, touches);
+    const double missing = missing_energy(participants), work = work_from_outside(participants, touches);
     const bool factored = stale || changed;
     if (factored) factor(participants, touches);
     for (Participant& p : participants) p.stepper->solve_linear();
@@ -229,7 +235,11 @@ bool ContactSolver::iterate(std::vector<Participant>& participants, std::vector<
     const double enough = i < patient_iterations ? strict : impatience * tolerance;
     const bool consistent = std::all_of(participants.begin(), participants.end(),
                                         [](const Participant& p) { return p.stepper->flows_are_consistent(p.substep); });
-    if (largest * std::clamp(ratio, fastest_convergence, 1.0) < enough && consistent) {
+    const double left = std::clamp(ratio, fastest_convergence, 1.0);
+    const double tolerated = untold_part * (told + accountable_part * work) + negligible_energy_;
+    const bool is_accounted = left * larger(missing, expected) <= tolerated;
+    expected = left * missing;
+    if (largest * left < enough && is_accounted && consistent) {
       for (Participant& p : participants) p.result->converged = true;
       return true;
     }
@@ -283,6 +293,25 @@ double ContactSolver::work_along(std::vector<Participant>& participants) const {
     if (p.stepper->is_whole_rod()) work += dot(p.stepper->torque(), p.stepper->twist_correction(), segments(p));
   }
   if (bodies_ != nullptr) work += bodies_->work_along(participants);
+  return work;
+}
+
+/// [J] In the account of the present iterate: of tensions that are not what lengths call for. Of what hardly stretches the
+/// smallest correction leaves some.
+double ContactSolver::missing_energy(const std::vector<Participant>& participants) const {
+  double missing = 0;
+  for (const Participant& p : participants) missing += p.stepper->missing_work_of_tension(p.substep.part());
+  return std::abs(missing);
+}
+
+/// [J] Of holders and of what is touched and moves, by their sizes.
+double ContactSolver::work_from_outside(const std::vector<Participant>& participants, const std::vector<Touch>& touches) const {
+  double work = 0;
+  for (const Participant& p : participants)
+    for (const HeldNode& held : p.substep.boundary.nodes)
+      work += std::abs(get(p.stepper->system().load, held.node).dot(get(p.stepper->displacement(), held.node)));
+  for (const Touch& touch : touches)
+    if (touch.mode != Touch::Mode::open) work += std::abs(touch.force.dot(touch.other_motion.displacement));
   return work;
 }
 

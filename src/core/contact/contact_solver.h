@@ -75,6 +75,8 @@ class ContactSolver {
   void hold_bounds(std::vector<Touch>& touches) const;
   bool shorten(std::vector<Participant>& participants, std::vector<Touch>& touches);
   double work_along(std::vector<Participant>& participants) const;
+  double missing_energy(const std::vector<Participant>& participants) const;
+  double work_from_outside(const std::vector<Participant>& participants, const std::vector<Touch>& touches) const;
   void factor(std::vector<Participant>& participants, std::vector<Touch>& touches);
   void couple(std::vector<Participant>& participants);
   void follow_friction(std::vector<Participant>& participants, std::vector<Touch>& touches);

@@ -24,6 +24,27 @@ double CableStepper::kinetic_energy(const std::vector<double>& masses, const Vec
   return energy;
 }
 
+double CableStepper::missing_work_of_tension(double part) const {
+  double work = 0;
+  for (int i = 0; i < segments_; ++i) {
+    if (is_elastic_at(i)) {
+      const double growth = std::sqrt(end_square_[i]) - length_[i];
+      work += system_.gap[i] / system_.compliance[i] * (length_[i] + part * growth) * growth;
+    } else {
+      work -= tension_density_[i] * system_.gap[i];
+    }
+  }
+  return work;
+}
+
+double CableStepper::told_energy(const Substep& s, const CableState& state) const {
+  if (s.statics) return infinity;
+  double mass = 0;
+  for (int i = 0; i <= segments_; ++i) mass += system_.movable[i] * state.masses[i];
+  const double lifted = mass * s.environment.gravity.at(state.positions.front()).norm() * s.model.segment_length;
+  return accountable_part * (kinetic_energy(state.masses, velocity_) + lifted);
+}
+
 /// What the laws take and add over the substep, which has converged and not moved yet.
 void CableStepper::balance_laws(const Substep& s, const std::vector<double>& masses, SubstepResult& result) const {
   EnergyBalance& balance = result.balance;

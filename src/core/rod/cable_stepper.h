@@ -69,6 +69,11 @@ class CableStepper {
   bool keeps_lengths() const;
   /// [N] Of the present iterate, of what cannot stretch between two holders.
   double greatest_tension_of_taut() const;
+  /// [J] What tensions of the present iterate would do if they were what its lengths call for, less what they do; and what those
+  /// of segments do that are not as long as they should be. `part`: where in the substep forces are taken, 1/2 or 1.
+  double missing_work_of_tension(double part) const;
+  /// [J] At the start of a substep: more is told if it is missing in a step, see `accountable_part`; infinite in statics.
+  double told_energy(const Substep& substep, const CableState& state) const;
   double tension(int segment) const { return tension_density_[segment] * length_[segment]; }  ///< [N] of the present iterate
   const VectorArray& displacement() const { return displacement_; }  ///< nodes: x' - x of the present iterate [m]
   KktSystem& system() { return system_; }

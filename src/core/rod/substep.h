@@ -20,6 +20,8 @@ struct Environment {
 
 /// A tolerated error is one of velocity in substeps up to this long [s]; beyond, the error of the place counts.
 constexpr double longest_tolerated = 1e-3;
+/// Of the kinetic energy and what lifts all by a segment, more that is missing in a step is told.
+constexpr double accountable_part = 1e-4;
 /// A larger correction, in segment lengths, leads to solutions that have nothing to do with the motion: halve the step.
 constexpr double largest_correction = 2;
 

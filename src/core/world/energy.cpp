@@ -7,14 +7,13 @@
 #include "law/resistance.h"
 #include "rod/bending.h"
 #include "rod/kirchhoff_rod.h"
+#include "rod/substep.h"
 #include "rod/twist.h"
 #include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
 
 namespace {
-
-constexpr double accountable_part = 1e-4;
 
 double kinetic_energy_of_nodes(const CableState& cable) {
   double sum = 0;
