@@ -519,6 +519,11 @@ void ContactSet::follow_scheme(Scheme scheme, const std::vector<SimulatedCable>&
     anticipate(scheme, h, time_, acceleration_at(touch.point) - acceleration_at(touch.other) - touch.body_acceleration, touch);
 }
 
+bool ContactSet::is_stuck() const {
+  return std::any_of(touches_.begin(), touches_.end(),
+                     [](const Touch& touch) { return touch.inside && touch.mode != Touch::Mode::open; });
+}
+
 void ContactSet::keep(const std::vector<ContactMember>& members) const {
   for (const ContactMember& member : members) member.cache->clear();
   for (const Touch& touch : touches_) members[places_[touch.point.cable]].cache->push_back(kept(touch));

@@ -51,6 +51,8 @@ class ContactSet {
   const std::vector<Touch>& touches() const { return touches_; }
   bool touched(std::size_t member) const { return touched_[member] != 0; }  ///< whether it is part of a touch
   bool touches_body(std::size_t member) const { return touches_body_[member] != 0; }
+  /// Whether anything is pressed by something that it is inside of: that is no equilibrium, though it may not move.
+  bool is_stuck() const;
   const std::vector<Intrusion>& intrusions() const { return intrusions_; }  ///< that `find` came upon
 
  private:

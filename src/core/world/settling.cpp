@@ -156,14 +156,7 @@ bool Settling::settle() {
     settled = relax(shortest_step(cable_), last_settling_step, maximum_settling_steps, approach);
   }
   complete();
-  return settled && !(touching && is_stuck());
-}
-
-/// What is pressed by something that it is inside of has found no equilibrium, though it does not move.
-bool Settling::is_stuck() const {
-  const std::vector<Touch>& touches = workspace_.contacts.touches();
-  return std::any_of(touches.begin(), touches.end(),
-                     [](const Touch& touch) { return touch.inside && touch.mode != Touch::Mode::open; });
+  return settled && !(touching && workspace_.contacts.is_stuck());
 }
 
 bool Settling::settle_start() {
@@ -188,7 +181,7 @@ bool Settling::settle_start() {
         turn_clamps(touching);
         lie_down();
       }
-      settled = find_untwisted_equilibrium(touching) && !is_stuck();
+      settled = find_untwisted_equilibrium(touching) && !workspace_.contacts.is_stuck();
     }
   }
   memory_.spans = find_spans(cable_.state, work_.boundary.directions);

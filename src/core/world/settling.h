@@ -53,7 +53,6 @@ class Settling {
   bool may_touch() const { return !workspace_.obstacles.empty() || state_.scene->contact; }
   void follow_material();
   void complete();
-  bool is_stuck() const;
 
   const std::atomic<bool>* cancelled_;
   int index_;
