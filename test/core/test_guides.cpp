@@ -325,6 +325,37 @@ TEST(Guides, accountForTheirFriction) {
 /// An elastic rope that swings over a wheel: what comes onto it and leaves it is strained.
 /// A stiff straight wire that a hand pushes along lies in two eyelets: what rubs is what they bear of it, however little it is
 /// drawn.
+/// Near the guide a free end is no obstacle: it goes through, though nothing else drives it there.
+TEST(Guides, letFreeEndsRunOut) {
+  for (const double stiffness : {0.0, 1e-3})
+    for (const double friction : {0.0, 0.3})
+      for (const double time_step : {1e-3, 5e-3}) {
+        SceneDesc scene = scenes::one_cable(40, 0.6);
+        scene.time_step = time_step;
+        scene.gravity.acceleration.setZero();
+        scene.materials[0].material.bending_stiffness = stiffness;
+        scene.cables[0].initial.type = InitialShapeDesc::Type::straight;
+        scene.cables[0].initial.from = Vector3::Zero();
+        scene.cables[0].initial.to = {0.6, 0, 0};
+        scene.cables[0].attachments = {scenes::attachment("h", PlaceDesc::At::start, Vector3::Zero(), "hand")};
+        scene.cables[0].attachments[0].initial_pose = InitialPose{};
+        scene.guides = {guide("eye", 0.25, {0.25, 0, 0})};
+        scene.guides[0].friction = friction;
+        BoundaryInputs inputs = initial_frames(scene);
+        World world(scene, inputs);
+        double largest = 0;
+        std::size_t released = 0;
+        for (int i = 0; i < std::lround(4 / time_step); ++i) {
+          inputs[1].pose.position.x() = -0.1 * (i + 1) * time_step;
+          EXPECT_EQ(world.step(inputs).status, Status::ok);
+          released += world.findings().released.size();
+          if (world.time() > 0.1) largest = std::max(largest, world.attachments()[0].force.norm());
+        }
+        EXPECT_EQ(released, 1u) << stiffness << " " << friction << " " << time_step;
+        EXPECT_LT(largest, 1e-6) << stiffness << " " << friction << " " << time_step;
+      }
+}
+
 TEST(Guides, rubByHowHardTheyPress) {
   SceneDesc scene = scenes::one_cable(40, 1);
   MaterialDesc& material = scene.materials[0].material;

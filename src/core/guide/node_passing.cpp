@@ -123,7 +123,7 @@ bool flows_at(const KinematicTarget& target, const State& state) {
 Boundary moving_boundary(int index, const State& state) {
   const CableProgress& progress = state.cable_progress[index];
   Boundary boundary = boundary_now(progress.targets);
-  load_flows(index, state, boundary);
+  load_flows(index, true, state, boundary);
   if (progress.drive) boundary.growing.push_back({progress.drive->segment, progress.drive->growth()});
   return boundary;
 }
@@ -157,6 +157,17 @@ bool is_passable(const State& state, int cable, int node) {
   return !drive || (node != drive->segment && node != drive->segment + 1);
 }
 
+namespace {
+
+/// Whether a cable ends at a node with nothing that a guide would stop.
+bool is_free_end(const State& state, int index, int node) {
+  const SimulatedCable& cable = state.cables[index];
+  return (node == 0 || node == cable.state.segments()) && !carries_payload(cable, node) && !is_attached(state, index, node) &&
+         !state.cable_progress[index].drive;
+}
+
+}  // namespace
+
 bool runs_out(const Attachment& attachment, const State& state) {
   const int index = attachment.body.index;
   const SimulatedCable& cable = state.cables[index];
@@ -164,10 +175,8 @@ bool runs_out(const Attachment& attachment, const State& state) {
   const double least = std::clamp(ahead, shortest * cable.model->segment_length, most_ahead * cable.model->segment_length);
   return std::any_of(both_sides.begin(), both_sides.end(), [&](int side) {
     const Side at = side_of(attachment, side);
-    const int end = at.neighbour();
-    if (end != 0 && end != cable.state.segments()) return false;
-    if (carries_payload(cable, end) || is_attached(state, index, end) || state.cable_progress[index].drive) return false;
-    return cable.state.rest_lengths[at.segment()] < least && (side == 0 ? flow > 0 : flow < 0);
+    return is_free_end(state, index, at.neighbour()) && cable.state.rest_lengths[at.segment()] < least &&
+           (side == 0 ? flow > 0 : flow < 0);
   });
 }
 
@@ -178,7 +187,7 @@ int count_flows(int index, const State& state) {
       std::count_if(targets.begin(), targets.end(), [&](const KinematicTarget& target) { return flows_at(target, state); }));
 }
 
-void load_flows(int index, const State& state, Boundary& boundary) {
+void load_flows(int index, bool moves, const State& state, Boundary& boundary) {
   boundary.flows.clear();
   if (state.guides.empty()) return;
   const SimulatedCable& cable = state.cables[index];
@@ -203,8 +212,9 @@ void load_flows(int index, const State& state, Boundary& boundary) {
     flow.held_length = cable.model->segment_length;
     for (const int side : both_sides) {
       const Side at = side_of(attachment, side);
-      flow.is_blocked[side] = cable.state.rest_lengths[at.segment()] < stop * cable.model->segment_length &&
-                              !is_passable(state, index, at.neighbour());
+      if (cable.state.rest_lengths[at.segment()] >= stop * cable.model->segment_length) continue;
+      const bool runs_out = moves && is_free_end(state, index, at.neighbour());
+      flow.is_blocked[side] = !runs_out && !is_passable(state, index, at.neighbour());
     }
   }
 }

@@ -26,8 +26,9 @@ bool is_passable(const State& state, int cable, int node);
 /// Whether a free end of the cable comes to a guide and is about to leave it.
 bool runs_out(const Attachment& guide, const State& state);
 
-/// Sets the flows of a boundary of a cable to what they are now; their places.
-void load_flows(int cable, const State& state, Boundary& boundary);
+/// Sets the flows of a boundary of a cable to what they are now; their places. What does not pass stops near the guide; so does a
+/// free end, unless the cable `moves`: then it runs out.
+void load_flows(int cable, bool moves, const State& state, Boundary& boundary);
 int count_flows(int cable, const State& state);
 /// Takes over what a substep has found of them.
 void keep_flows(int cable, const Boundary& boundary, State& state);

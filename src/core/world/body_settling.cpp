@@ -135,7 +135,7 @@ BodySettling::Outcome BodySettling::advance(double h) {
     hold_on_bodies(cable.state, state_.attachments, state_.bodies, state_.time(), progress.targets, work.boundary);
     work.boundary.joined_mass = joined_mass_;
     workspace_.members.push_back({progress.id, &progress.targets, &contacts_[k]});
-    load_flows(index, state_, work.boundary);
+    load_flows(index, false, state_, work.boundary);
     Substep substep{*cable.model, environment, work.boundary, progress.spans, h, true};
     substep.touches_bodies = true;
     workspace_.participants.push_back({static_cast<int>(k), index, &work.stepper, substep, &cable.state, &work.result});

@@ -299,7 +299,7 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     CableProgress& memory = state_.cable_progress[cable];
     CableWorkspace& work = workspace_.cables[k];
     hold_at(from, to, memory.targets, work.boundary);
-    load_flows(cable, state_, work.boundary);
+    load_flows(cable, true, state_, work.boundary);
     if (!island.bodies.empty())
       hold_on_bodies(c.state, state_.attachments, state_.bodies, state_.time(), memory.targets, work.boundary);
     work.boundary.joined_mass = joined_mass_;

@@ -219,7 +219,7 @@ void Settling::hold_still() {
   put_at_aim(memory_.targets);
   measure_joint_twists(memory_.targets.directions, cable_.state);
   hold_at(1, 1, memory_.targets, work_.boundary);
-  load_flows(index_, state_, work_.boundary);
+  load_flows(index_, false, state_, work_.boundary);
   bring_to_rest(cable_.state);
   stop_flows(index_, state_);
 }
@@ -228,7 +228,7 @@ void Settling::hold_still() {
 void Settling::complete() {
   keep_twist(work_.boundary, memory_.targets);
   stop_flows(index_, state_);
-  load_flows(index_, state_, work_.boundary);
+  load_flows(index_, false, state_, work_.boundary);
   project_velocities(*cable_.model, work_.boundary, cable_.state);
   keep_flows(index_, work_.boundary, state_);
   add_forces(work_.boundary, memory_.targets, state_.frames.poses, 1, state_.attachments);
@@ -379,7 +379,7 @@ void Settling::pass_nodes_of_guides() {
     hold_at(1, 1, memory_.targets, work_.boundary);
     memory_.spans = find_spans(cable_.state, work_.boundary.directions);
   }
-  load_flows(index_, state_, work_.boundary);
+  load_flows(index_, false, state_, work_.boundary);
 }
 
 /// Whether a cable that is nudged goes away from its equilibrium instead of back; it is then left on its way, which steps of `h`
