@@ -46,30 +46,14 @@ class Laying {
     for (int k = 0; k < most_pushes; ++k) {
       Vector3 to = from + length * direction, push = Vector3::Zero();
       if (goal != nullptr && (to - *goal).norm() > left) push = *goal + left * (to - *goal).normalized() - to;
-      const Vector3 arm = to - from;
-      const double free = surroundings_.free_part(i + way, from, arm);
-      bool stopped = false;
-      const auto push_out = [&](double part) {
-        return [&, part](const Clearance& c) {
-          if (free < 1 && c.normal.dot(arm) > 0) return;  // out at the far side
-          stopped = true;
-          const Vector3 out = -c.gap / std::max(part < 0 ? c.fraction : part, 0.1) * c.normal;
-          push += std::max(0.0, out.norm() - push.dot(out) / out.norm()) * out.normalized();
-        };
-      };
       const bool turns = push.norm() > small_push * length;
-      surroundings_.touch_node(i + way, to, push_out(1));
-      surroundings_.touch_segment(segment, from, to, push_out(-1));
-      if (free < 1 && !stopped)
-        surroundings_.touch_node(i + way, from + free * arm, [&](const Clearance& c) {
-          push -= std::min(0.0, (push + (1 - free) * arm).dot(c.normal) + c.gap) * c.normal;
-        });
+      push_out(i + way, segment, from, to, push);
       if (push.norm() <= small_push * length) break;
       if (!turns && !lies && !pushed) set_out(from, left + length, goal, heading);
       pushed = pushed || !turns;
       to += push + (pushed && !turns ? bias * length * heading : Vector3(Vector3::Zero()));
-      const Vector3 turned = to - from;
-      direction = turned.norm() > small_push * length ? Vector3(turned.normalized()) : heading;
+      const Vector3 arm = to - from;
+      direction = arm.norm() > small_push * length ? Vector3(arm.normalized()) : heading;
     }
     if (pushed) {
       lies = true;
@@ -77,6 +61,26 @@ class Laying {
       if (level.norm() > 0.1) heading = level.normalized();
     }
     return direction;
+  }
+
+  /// Adds to a `push` [m] of a segment's end `to`, a node, what takes it out of what stands there, not through it: what is met first
+  /// is in the way, however thin it is.
+  void push_out(int node, int segment, const Vector3& from, const Vector3& to, Vector3& push) const {
+    const Vector3 way = to - from;
+    const double free = surroundings_.free_part(node, from, way);
+    bool stopped = false;
+    const auto out_of = [&](const Clearance& c, double fraction) {
+      if (free < 1 && c.normal.dot(way) > 0) return;  // at the far side
+      stopped = true;
+      const Vector3 out = -c.gap / std::max(fraction, 0.1) * c.normal;
+      push += std::max(0.0, out.norm() - push.dot(out) / out.norm()) * out.normalized();
+    };
+    surroundings_.touch_node(node, to, [&](const Clearance& c) { out_of(c, 1); });
+    surroundings_.touch_segment(segment, from, to, [&](const Clearance& c) { out_of(c, c.fraction); });
+    if (stopped || free == 1) return;
+    surroundings_.touch_node(node, from + free * way, [&](const Clearance& c) {
+      push -= std::min(0.0, (push + (1 - free) * way).dot(c.normal) + c.gap) * c.normal;
+    });
   }
 
   /// Where it comes to lie it sets out so that what is too long for the way to the goal is half a detour.
