@@ -432,7 +432,7 @@ void ContactSet::look_at(const std::vector<SimulatedCable>& cables, const std::v
   if (!may_close(distance - surface, normal, velocity, radius, h) &&
       !bore(*members[places_[pair.first.cable]].cache, key, other_key))
     return;
-  near_.push_back({first, second, normal, distance - surface, radius});
+  near_.push_back({first, second, normal, distance - surface, radius, key, other_key});
 }
 
 void ContactSet::add_pair(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members,
@@ -440,8 +440,8 @@ void ContactSet::add_pair(const std::vector<SimulatedCable>& cables, const std::
   const SimulatedCable &a = cables[near.first.cable], &b = cables[near.second.cable];
   const int i = near.first.segment, j = near.second.segment;
   Touch& touch = touches_.emplace_back();
-  touch.key = pair_key | i;
-  touch.other_key = key_of(members[places_[near.second.cable]].id, j);
+  touch.key = near.key;
+  touch.other_key = near.other_key;
   touch.point = near.first;
   touch.other = near.second;
   touch.normal = near.normal;

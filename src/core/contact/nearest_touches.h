@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "contact/law.h"
@@ -10,9 +11,10 @@ namespace verlet_cable {
 /// Segments of two cables, or of one, that may touch in the next substep.
 struct NearPair {
   CablePoint first, second;
-  Vector3 normal;     ///< from the second to the first
-  double gap = 0;     ///< [m] between the surfaces
-  double radius = 0;  ///< [m] of the thinner one
+  Vector3 normal;                        ///< from the second to the first
+  double gap = 0;                        ///< [m] between the surfaces
+  double radius = 0;                     ///< [m] of the thinner one
+  std::uint64_t key = 0, other_key = 0;  ///< of the touch
 };
 
 /// Where a segment of that radius and length [m] can be touched by more than this many of others that are as thin and as short as

@@ -119,6 +119,13 @@ bool flows_at(const KinematicTarget& target, const State& state) {
   return attachment.guide >= 0 && target.node == attachment.node;
 }
 
+/// Whether a cable ends at a node with nothing that a guide would stop.
+bool is_free_end(const State& state, int index, int node) {
+  const SimulatedCable& cable = state.cables[index];
+  return (node == 0 || node == cable.state.segments()) && !carries_payload(cable, node) && !is_attached(state, index, node) &&
+         !state.cable_progress[index].drive;
+}
+
 /// What holds a cable now, with what flows through its guides and what is wound.
 Boundary moving_boundary(int index, const State& state) {
   const CableProgress& progress = state.cable_progress[index];
@@ -156,17 +163,6 @@ bool is_passable(const State& state, int cable, int node) {
   if (std::any_of(directions.begin(), directions.end(), holds) || std::any_of(nodes.begin(), nodes.end(), holds)) return false;
   return !drive || (node != drive->segment && node != drive->segment + 1);
 }
-
-namespace {
-
-/// Whether a cable ends at a node with nothing that a guide would stop.
-bool is_free_end(const State& state, int index, int node) {
-  const SimulatedCable& cable = state.cables[index];
-  return (node == 0 || node == cable.state.segments()) && !carries_payload(cable, node) && !is_attached(state, index, node) &&
-         !state.cable_progress[index].drive;
-}
-
-}  // namespace
 
 bool runs_out(const Attachment& attachment, const State& state) {
   const int index = attachment.body.index;

@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "geometry/eigen_vectors.h"
 #include "lanes/lane_stepper.h"
 #include "law/bend.h"
@@ -63,13 +61,9 @@ Vector3 LaneStepper::impulse_on(int c, int node) {
 
 /// As CableStepper::scale_to_lose.
 void LaneStepper::scale_to_lose(int c, const LaneMember& member) {
-  double along = values_.ended[2 * c] + values_.ended[2 * c + 1], known = 0;
-  const double square = 0.5 * along;
-  for (const HeldNode& held : member.substep.boundary.nodes) {
-    along += impulse_on(c, held.node).dot(held.velocity - held.displacement / member.substep.h);
-    known -= held.unresolved;
-  }
-  values_.mended[2 * c] = values_.mended[2 * c + 1] = losing_share(std::max(0.0, known), along, square);
+  const double ended = values_.ended[2 * c] + values_.ended[2 * c + 1];
+  values_.mended[2 * c] = values_.mended[2 * c + 1] = losing_share_of_projection(
+      member.substep.boundary.nodes, member.substep.h, ended, [&](int node) { return impulse_on(c, node); });
 }
 
 /// The force on a segment's first node [N].

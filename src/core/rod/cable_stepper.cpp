@@ -712,31 +712,25 @@ void CableStepper::project(const Substep& s, const std::vector<double>& masses, 
     for (int i = 1; i < n; ++i) v[i] += w[i] * (impulse[i - 1] * d[i - 1] - impulse[i] * d[i]);
     v[n] += w[n] * impulse[n - 1] * d[n - 1];
   }
-  // What the segments exert on the other nodes they exert on the holders.
   const double lasting_part = s.scheme == Scheme::damped ? 0 : 1;
-  for (HeldNode& target : s.boundary.nodes) {
-    const int i = target.node;
-    if (i > 0) target.mend(impulse_[i - 1] / s.h * get(segment_, i - 1), lasting_part);
-    if (i < n) target.mend(-impulse_[i] / s.h * get(segment_, i), lasting_part);
-  }
+  for (HeldNode& target : s.boundary.nodes) target.mend(projected_impulse_on(target.node) / s.h, lasting_part);
 }
 
-/// Impulses J that end rates r of lengths take J . r / 2, but holders give them what they do over their ways in the substep,
-/// which is not what they do at the velocities of its end: where that is more, no more of them acts than makes no energy.
+/// Where holders would make energy, no more of the impulses acts than makes none.
 void CableStepper::scale_to_lose(const Substep& s) {
-  double square = 0;
-  for (int i = 0; i < segments_; ++i) square += 0.5 * impulse_[i] * growth_[i];
-  double along = 2 * square, known = 0;
-  for (const HeldNode& held : s.boundary.nodes) {
-    const int i = held.node;
-    Vector3 impulse = Vector3::Zero();
-    if (i > 0) impulse += impulse_[i - 1] * get(segment_, i - 1);
-    if (i < segments_) impulse -= impulse_[i] * get(segment_, i);
-    along += impulse.dot(held.velocity - held.displacement / s.h);
-    known -= held.unresolved;
-  }
-  const double share = losing_share(std::max(0.0, known), along, square);
+  double ended = 0;
+  for (int i = 0; i < segments_; ++i) ended += impulse_[i] * growth_[i];
+  const double share =
+      losing_share_of_projection(s.boundary.nodes, s.h, ended, [&](int node) { return projected_impulse_on(node); });
   for (int i = 0; i < segments_; ++i) impulse_[i] *= share;
+}
+
+/// What the segments exert on the other nodes they exert on the holders: on a held node [N s].
+Vector3 CableStepper::projected_impulse_on(int node) const {
+  Vector3 impulse = Vector3::Zero();
+  if (node > 0) impulse += impulse_[node - 1] * get(segment_, node - 1);
+  if (node < segments_) impulse -= impulse_[node] * get(segment_, node);
+  return impulse;
 }
 
 /// Substeps that damp keep momenta to second order. Those of a free cable are kept exactly: what is missing is given back as a

@@ -158,6 +158,7 @@ class CableStepper {
   void assemble_for_velocities();
   void project(const Substep& substep, const std::vector<double>& masses, SubstepResult& result);
   void scale_to_lose(const Substep& substep);
+  Vector3 projected_impulse_on(int node) const;
   double store(const Substep& substep, CableState& state) const;
   // What becomes of energy: rod/cable_balance.cpp
   void balance_laws(const Substep& substep, const std::vector<double>& masses, SubstepResult& result) const;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "geometry/vector_array.h"
@@ -43,6 +44,19 @@ bool is_unresolved(Treatment treatment, const MotionSums& sums, UnresolvedMotion
 /// How much of a change of velocities makes no energy, 0 to 1, where what is known to be lost beside it is `known` [J], not
 /// negative, and a share of the change loses known + share * along - share^2 * square [J].
 double losing_share(double known, double along, double square);
+
+/// The same of impulses that end rates of lengths at the end of a substep of `h` [s]: they take half of `ended` [J], which is they
+/// times the rates, but holders give them what they do over their ways in the substep, not at the velocities of its end.
+/// `impulse_on(node)` [N s]: on a held one.
+template <class ImpulseOn>
+double losing_share_of_projection(const std::vector<HeldNode>& held, double h, double ended, const ImpulseOn& impulse_on) {
+  double along = ended, known = 0;
+  for (const HeldNode& node : held) {
+    along += impulse_on(node.node).dot(node.velocity - node.displacement / h);
+    known -= node.unresolved;
+  }
+  return losing_share(std::max(0.0, known), along, 0.5 * ended);
+}
 
 /// Finds motion of a cable that substeps do not resolve, and takes it out of the velocities. Where it is resolved, with phase p a
 /// substep (p = 2 atan(omega h / 2) for a frequency omega), successive turns of the accelerations (differences of their changes)
