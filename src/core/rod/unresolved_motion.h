@@ -45,8 +45,8 @@ bool is_unresolved(Treatment treatment, const MotionSums& sums, UnresolvedMotion
 /// negative, and a share of the change loses known + share * along - share^2 * square [J].
 double losing_share(double known, double along, double square);
 
-/// The same of impulses that end rates of lengths at the end of a substep of `h` [s]: they take half of `ended` [J], which is they
-/// times the rates, but holders give them what they do over their ways in the substep, not at the velocities of its end.
+/// The same of impulses that end rates of lengths at the end of a substep of `h` [s]. They take half of `ended` [J], which is the
+/// impulses times the rates, but holders give them what they do over their ways in the substep, not at the velocities of its end.
 /// `impulse_on(node)` [N s]: on a held one.
 template <class ImpulseOn>
 double losing_share_of_projection(const std::vector<HeldNode>& held, double h, double ended, const ImpulseOn& impulse_on) {
