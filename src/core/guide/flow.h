@@ -47,9 +47,11 @@ using FlowColumn = std::array<Vector3, 6>;
 /// A flow while a substep is solved for it. Its way is one more unknown; the equation of motion of what flows, with the
 /// generalised forces of the cable's energy, is one more equation:
 ///   mass (2 / h) (way / h - rate) = T_after - T_before + gravity + friction
+/// What is against it is a function of the way that rises, and never of another sign: against a flow forward where it goes on to
+/// the end of the substep, against one backward where it does so, and nothing between where it turns round. At either end of that
+/// the flow stops with any force from nothing to the whole one; where it stood at the start both ends are the same.
 struct Flow {
-  /// Without friction, as one that resists with all it can, or with so much that nothing flows.
-  enum class Mode { free, forward, backward, sticking };
+  enum class Mode { free, forward, stops_forward, turns, stops_backward, backward };
   int first = 0, last = 0;    // held nodes
   int before = 0, after = 0;  // the segments that shrink and grow
   Mode mode = Mode::free;
@@ -58,7 +60,7 @@ struct Flow {
   double density = 0;                        // [kg/m] of what flows: the segments beside a guide are of one material
   double mass = 0;                           // [kg]
   double drag = 0;                           // [N s/m]
-  double resistance = 0;                     // [N] of friction against what flows forward, in the present iterate
+  double resistance = 0;                     // [N] of what is against a flow forward, in the present iterate
   double rate = 0;                           // [m/s] at the start
   double acceleration = 0;                   // [m/s^2] over the substep before
   std::array<double, 2> start_length{0, 0};  // [m] at rest, of the segments before and after
@@ -77,5 +79,14 @@ struct Flow {
   FlowColumn rubbing{};  // what friction takes of that in the row
   int first_node() const { return before - 1; }
 };
+
+inline bool is_stopped(const Flow& flow) {
+  return flow.mode == Flow::Mode::stops_forward || flow.mode == Flow::Mode::stops_backward;
+}
+
+/// Whether something is against it.
+inline bool is_resisted(const Flow& flow) {
+  return flow.mode != Flow::Mode::free && flow.mode != Flow::Mode::turns;
+}
 
 }  // namespace verlet_cable

@@ -130,24 +130,41 @@ void CableStepper::start_flows(const Substep& s, const CableState& state) {
     flow.mode = Flow::Mode::free;
     if (!resists(guided)) continue;
     flow.changes = -1;
-    flow.mode = flow.rate > 0 && !guided.is_blocked[0]   ? Flow::Mode::forward
-                : flow.rate < 0 && !guided.is_blocked[1] ? Flow::Mode::backward
-                                                         : Flow::Mode::sticking;
+    if (flow.rate >= 0)
+      flow.mode = flow.rate > 0 && !guided.is_blocked[0] ? Flow::Mode::forward : Flow::Mode::stops_forward;
+    else
+      flow.mode = guided.is_blocked[1] ? Flow::Mode::stops_backward : Flow::Mode::backward;
   }
 }
 
 void CableStepper::predict_flows(const Substep& s) {
   for (Flow& flow : flows_)
-    flow.way = flow.mode == Flow::Mode::sticking ? sticking_way(s, flow)
-               : s.statics                       ? 0
-                                                 : s.h * (flow.rate + 0.5 * s.h * flow.acceleration);
+    flow.way = is_stopped(flow) ? stopped_way(s, flow) : s.statics ? 0 : s.h * (flow.rate + 0.5 * s.h * flow.acceleration);
 }
 
 /// With which the flow stands at the end of the substep [m].
-double CableStepper::sticking_way(const Substep& s, const Flow& flow) const {
+double CableStepper::resting_way(const Substep& s, const Flow& flow) const {
   if (s.statics) return 0;
   const VelocityWeights weights = velocity_weights(s.scheme);
   return -s.h * (weights.velocity * flow.rate + weights.acceleration * s.h * flow.acceleration) / weights.displacement;
+}
+
+/// Where a flow stops that comes from before, and one that comes from after [m]: where it stands at the end of the substep, or
+/// has not flowed in all. That against which it stops does no work on it then.
+std::pair<double, double> CableStepper::stopped_ways(const Substep& s, const Flow& flow) const {
+  const double way = resting_way(s, flow);
+  if (flow.rate == 0) return {way, way};
+  return {std::max(0.0, way), std::min(0.0, way)};
+}
+
+double CableStepper::stopped_way(const Substep& s, const Flow& flow) const {
+  const auto [forward, backward] = stopped_ways(s, flow);
+  return flow.mode == Flow::Mode::stops_forward ? forward : backward;
+}
+
+/// Whether it stands at the end of the substep.
+bool CableStepper::comes_to_rest(const Substep& s, const Flow& flow) const {
+  return is_stopped(flow) && stopped_way(s, flow) == resting_way(s, flow);
 }
 
 /// [m/s]
@@ -181,8 +198,8 @@ void CableStepper::set_flow_lengths(const Substep& s) {
 /// at the start and (') the end, means over the substep (-), the energy EA l e^2 / 2 changes by
 ///   T (s' - s) - F (l' - l),   T = EA e- l-^2 / (l l'),   F = T s- / l- - EA (e^2)- / 2,
 /// exactly: T pulls the nodes, F the flow. A tension from s- and a mean of 1 / l would be another one with the way, even of
-/// material that is strained alike everywhere. Returns F; `slope`: by what less rest length at the end changes the tension [N/m].
-double CableStepper::evaluate_flowing_length(const Substep& s, int i, double& slope) {
+/// material that is strained alike everywhere.
+CableStepper::DrawnLength CableStepper::evaluate_flowing_length(const Substep& s, int i) {
   const Straining strained = straining(s, i);
   const double part = s.part(), stiffness = axial_stiffness_[i], start = strained.start, end = strained.end;
   const double length = std::sqrt(end_square_[i]), mean_length = mean(length_[i], length, part),
@@ -196,9 +213,9 @@ double CableStepper::evaluate_flowing_length(const Substep& s, int i, double& sl
   const LengthRow<double> row = elastic_row(law, rise, tension_density_[i], mean_length, length, part);
   set_row(i, row);
   const double tension = tension_density_[i] * mean_length;
-  slope = rise * length / end * row.compliance / mean_length;
   const double square = mean(strain_at_start * strain_at_start, strain_at_end * strain_at_end, part);
-  return tension * mean_length / mean_rest - 0.5 * stiffness * square;
+  return {tension * mean_length / mean_rest - 0.5 * stiffness * square, mean(strain_at_start, strain_at_end, part),
+          rise * length / end * row.compliance / mean_length};
 }
 
 void CableStepper::evaluate_flows(const Substep& s) {
@@ -209,24 +226,24 @@ void CableStepper::evaluate_flows(const Substep& s) {
     const double density = flow.density;
     const bool elastic = is_elastic_at(flow.before);
     const std::array<int, 2> segments{flow.before, flow.after};
-    // Friction is between tensions; without it they are equal, and so is what the energy makes of them.
-    const bool frictionless = flow.mode == Flow::Mode::free;
-    std::array<double, 2> arm, tension, energy_drawn;
+    std::array<double, 2> arm, drawn;
+    // Friction is between tensions T, and acts on what is stretched: EA e^2 / 2 less than T (1 + e) is drawn on either side, in
+    // all their difference times 1 and the mean of the strains.
+    double stretched = 1;
     for (const int side : {0, 1}) {
       const int i = segments[side];
       const double sign = side == 0 ? -1 : 1, end = target_length_[i];
-      double drawn = 0;
       if (elastic) {
-        drawn = evaluate_flowing_length(s, i, flow.gap[side]);
-        flow.gap[side] *= sign;
+        const DrawnLength length = evaluate_flowing_length(s, i);
+        drawn[side] = length.force;
+        flow.gap[side] = sign * length.slope;
         arm[side] = mean(length_[i], std::sqrt(end_square_[i]), part);
+        stretched += 0.5 * length.strain;
       } else {
         arm[side] = mean(length_[i], end, part);
         flow.gap[side] = sign * flow.stretch[side] * end;
+        drawn[side] = tension_density_[i] * arm[side];
       }
-      const double pulled = tension_density_[i] * arm[side];
-      energy_drawn[side] = elastic ? drawn : pulled;
-      tension[side] = frictionless ? energy_drawn[side] : pulled;
     }
 
     if (flow.moves && !s.statics) {
@@ -241,7 +258,7 @@ void CableStepper::evaluate_flows(const Substep& s) {
         law.at(get(position_, flow.first)) - (s.statics ? Vector3(Vector3::Zero()) : Vector3(flow.velocity_change / s.h));
     Vector3 along = get(middle_, flow.before) + get(middle_, flow.after);
     for (int i = flow.first; i < flow.last; ++i) along += 2 * get(middle_, i);
-    double drive = tension[1] - tension[0] + 0.5 * density * gravity.dot(along);
+    double drive = drawn[1] - drawn[0] + 0.5 * density * gravity.dot(along);
     drive += rod_.active() ? rod_.flow_force(flow.before, flow.after) : bending_.flow_force(flow.before, flow.after, middle_);
     if (fluid_.active()) {
       const Vector3 direction = 0.5 * (get(middle_, flow.before).normalized() + get(middle_, flow.after).normalized());
@@ -292,23 +309,20 @@ void CableStepper::evaluate_flows(const Substep& s) {
     const double press = across.norm(), grip = rubbing_part(guided.grip, angle);
     // A bearing resists no more than the cable holds on its wheel.
     const bool slips = grip < infinity && grip * press < guided.resistance;
-    const double part_of_press = rubbing_part(guided.friction, angle) + (slips ? grip : 0);
-    const double rubs = part_of_press < infinity ? part_of_press * press + (slips ? 0 : guided.resistance) : infinity;
-    std::array<double, 2> resistance;
-    for (const int side : {0, 1}) resistance[side] = guided.is_blocked[side] ? infinity : rubs;
-    const Flow::Mode mode = next_mode(s, flow, guided, drive, resistance[0], resistance[1]);
+    const double part_of_press = stretched * (rubbing_part(guided.friction, angle) + (slips ? grip : 0));
+    const double rubs = part_of_press < infinity ? part_of_press * press + (slips ? 0 : stretched * guided.resistance) : infinity;
+    const Flow::Mode mode = !resists(guided)              ? Flow::Mode::free
+                            : flow.changes < most_changes ? next_mode(s, flow, guided, drive, rubs)
+                                                          : flow.mode;
     // The first time tensions are those of the substep before.
     flow.changed = mode != flow.mode || flow.changes < 0;
     if (flow.changed) ++flow.changes;
     flow.mode = mode;
-    const bool forward = mode == Flow::Mode::forward, backward = mode == Flow::Mode::backward,
-               sticks = mode == Flow::Mode::sticking;
-    const double rubbing = forward ? resistance[0] : backward ? -resistance[1] : 0;
-    // With it goes what the tensions do less than the energy of stretch that they draw.
-    flow.resistance = (sticks ? drive : rubbing) + energy_drawn[1] - energy_drawn[0] - (tension[1] - tension[0]);
+    const bool sticks = is_stopped(flow);
+    const double sense = mode == Flow::Mode::forward ? 1 : mode == Flow::Mode::backward ? -1 : 0;
+    flow.resistance = sticks ? drive : sense == 0 ? 0 : sense * rubs;
 
     // How it follows the forces, which act along segments that turn.
-    const double sense = forward ? 1 : backward ? -1 : 0;
     const Vector3 rise = sense == 0 || !(press > 0) ? Vector3::Zero() : Vector3(sense * part_of_press / press * across);
     flow.rubbing.fill(Vector3::Zero());
     for (const int side : {0, 1}) {
@@ -322,30 +336,47 @@ void CableStepper::evaluate_flows(const Substep& s) {
     if (sticks) {
       flow.row = {0, 0};
       flow.diagonal = -1;
-      system_.flow_load[k] = sticking_way(s, flow) - flow.way;
+      system_.flow_load[k] = stopped_way(s, flow) - flow.way;
       continue;
     }
     flow.row = {-arm[0] + rise.dot(get(middle_, flow.before)), arm[1] - rise.dot(get(middle_, flow.after))};
     flow.diagonal = -flow.mass * s.inertia() / (s.h * s.h) - flow.drag + bends + held_slope;
     if (!elastic) flow.diagonal += part * (tension_density_[flow.before] + tension_density_[flow.after]);
-    system_.flow_load[k] = drive - rubbing;
+    system_.flow_load[k] = drive - flow.resistance;
   }
 }
 
-/// `drive` [N]: what the resistance to a flow from before, and from after, has to stand.
-Flow::Mode CableStepper::next_mode(const Substep& s, const Flow& flow, const GuidedFlow& guided, double drive,
-                                   double resistance_before, double resistance_after) const {
+/// The mode that a flow's present way calls for, whatever drives it.
+Flow::Mode CableStepper::mode_of_way(const Substep& s, const Flow& flow) const {
   using Mode = Flow::Mode;
-  if (!resists(guided)) return Mode::free;
-  if (flow.changes >= most_changes) return flow.mode;
+  const auto [forward, backward] = stopped_ways(s, flow);
+  const double rounding = turned_round * s.h;
   switch (flow.mode) {
     case Mode::forward:
-      return end_rate(s, flow) < -turned_round ? Mode::sticking : Mode::forward;
+      return flow.way < forward - rounding ? Mode::stops_forward : Mode::forward;
     case Mode::backward:
-      return end_rate(s, flow) > turned_round ? Mode::sticking : Mode::backward;
+      return flow.way > backward + rounding ? Mode::stops_backward : Mode::backward;
+    case Mode::turns:
+      return flow.way > forward + rounding    ? Mode::stops_forward
+             : flow.way < backward - rounding ? Mode::stops_backward
+                                              : Mode::turns;
     default:
-      return drive > resistance_before ? Mode::forward : drive < -resistance_after ? Mode::backward : Mode::sticking;
+      return flow.mode;
   }
+}
+
+/// `drive` [N] of the present iterate; `rubs` [N]: what friction has against it.
+Flow::Mode CableStepper::next_mode(const Substep& s, const Flow& flow, const GuidedFlow& guided, double drive,
+                                   double rubs) const {
+  using Mode = Flow::Mode;
+  if (!is_stopped(flow)) return mode_of_way(s, flow);
+  const auto [forward, backward] = stopped_ways(s, flow);
+  const bool is_one = forward == backward;
+  const double before = is_one || flow.mode == Mode::stops_forward ? (guided.is_blocked[0] ? infinity : rubs) : 0;
+  const double after = is_one || flow.mode == Mode::stops_backward ? (guided.is_blocked[1] ? infinity : rubs) : 0;
+  if (drive > before) return is_one || flow.mode == Mode::stops_forward ? Mode::forward : Mode::turns;
+  if (drive < -after) return is_one || flow.mode == Mode::stops_backward ? Mode::backward : Mode::turns;
+  return flow.mode;
 }
 
 /// What unit ways do to the tensions beside all guides.
@@ -383,7 +414,7 @@ void CableStepper::let_flow() {
   const std::vector<double>& multiplier = multiplier_correction();
   for (int k = 0; k < count; ++k) {
     const Flow& flow = flows_[k];
-    const double moves = flow.mode == Flow::Mode::sticking ? 0 : 1;
+    const double moves = is_stopped(flow) ? 0 : 1;
     flow_solution_[k] = system_.flow_load[k] + flow.row[0] * multiplier[flow.before] + flow.row[1] * multiplier[flow.after] +
                         moves * along_row(flow);
     for (int j = 0; j < count; ++j) {
@@ -437,7 +468,7 @@ bool CableStepper::correct_flows(double part) {
     flow.way += part * flow.correction;
     is_left =
         is_left && flow.way < (1 - least_left) * flow.start_length[0] && -flow.way < (1 - least_left) * flow.start_length[1];
-    if (flow.mode == Flow::Mode::free) continue;
+    if (!is_resisted(flow)) continue;
     // What of the corrections is not in the row, friction takes.
     const auto arm = [&](int i) { return 0.5 * (length_[i] + std::sqrt(end_square_[i])); };
     flow.resistance += part * (arm(flow.after) - flow.row[1]) * multiplier[flow.after];
@@ -449,10 +480,7 @@ bool CableStepper::correct_flows(double part) {
 
 bool CableStepper::flows_are_consistent(const Substep& s) const {
   return std::all_of(flows_.begin(), flows_.end(), [&](const Flow& flow) {
-    if (flow.changed) return false;
-    if (flow.changes >= most_changes) return true;
-    if (flow.mode == Flow::Mode::forward) return end_rate(s, flow) >= -turned_round;
-    return flow.mode != Flow::Mode::backward || end_rate(s, flow) <= turned_round;
+    return !flow.changed && (flow.changes >= most_changes || mode_of_way(s, flow) == flow.mode);
   });
 }
 
@@ -474,7 +502,7 @@ void CableStepper::finish_flows(const Substep& s, CableState& state) {
     const Flow& flow = flows_[k];
     const double half_density = 0.5 * flow.density;
     GuidedFlow& guided = s.boundary.flows[k];
-    double rate = s.statics || flow.mode == Flow::Mode::sticking ? 0 : end_rate(s, flow);
+    double rate = s.statics || comes_to_rest(s, flow) ? 0 : end_rate(s, flow);
     if ((flow.mode == Flow::Mode::forward && rate < 0) || (flow.mode == Flow::Mode::backward && rate > 0)) rate = 0;
     guided.rate = rate;
     guided.acceleration = s.statics ? 0 : (rate - flow.rate) / s.h;
@@ -494,7 +522,7 @@ void CableStepper::begin_flow_projection(const Substep& s, const CableState& sta
   system_.flow_load.assign(flows_.size(), 0.0);
   for (std::size_t k = 0; k < flows_.size(); ++k) {
     Flow& flow = flows_[k];
-    const bool moves = flow.mode != Flow::Mode::sticking;
+    const bool moves = !comes_to_rest(s, flow);
     const double rate = s.boundary.flows[k].rate;
     flow.row = flow.gap = {0, 0};
     flow.column.fill(Vector3::Zero());
@@ -543,7 +571,7 @@ void CableStepper::project_flows(const Substep& s) {
     const double before = target_length_[flow.before], after = target_length_[flow.after], rate = s.boundary.flows[k].rate;
     impulse_[flow.before] -= before * rate;
     impulse_[flow.after] += after * rate;
-    if (flow.mode == Flow::Mode::sticking) continue;
+    if (comes_to_rest(s, flow)) continue;
     if (flow.first == flow.last) {
       pivot_[flow.before] += before * before / flow.mass;
       pivot_[flow.after] += after * after / flow.mass;
@@ -571,28 +599,17 @@ void CableStepper::push_flows(const Substep& s, SubstepResult& result) {
   for (std::size_t k = 0; k < flows_.size(); ++k) {
     const Flow& flow = flows_[k];
     if (is_elastic_at(flow.before)) continue;
-    const double impulse = impulse_on(flow, impulse_);
-    mend_flow(flow, impulse, flow.mode != Flow::Mode::sticking ? impulse / flow.mass : 0, s.boundary.flows[k], result);
-    if (flow.mode != Flow::Mode::sticking && flow.first != flow.last) impulse_[flow.first] = 0;
+    if (comes_to_rest(s, flow)) continue;
+    const double impulse =
+        target_length_[flow.before] * impulse_[flow.before] - target_length_[flow.after] * impulse_[flow.after];
+    mend_flow(flow, impulse / flow.mass, s.boundary.flows[k], result);
+    if (flow.first != flow.last) impulse_[flow.first] = 0;
   }
 }
 
-/// [N s] With which the segments beside a guide drive what flows, of `impulses` of segments [N s / m].
-double CableStepper::impulse_on(const Flow& flow, const std::vector<double>& impulses) const {
-  if (is_elastic_at(flow.before)) return 0;
-  return target_length_[flow.before] * impulses[flow.before] - target_length_[flow.after] * impulses[flow.after];
-}
-
-/// As velocities are mended. `impulse`: with which the segments beside the guide drive what flows [N s]. Friction keeps
-/// from changing what sticks, and takes what the impulse does.
-void CableStepper::mend_flow(const Flow& flow, double impulse, double change, GuidedFlow& guided, SubstepResult& result) {
-  EnergyBalance::Dissipated& dissipated = result.balance.dissipated;
-  if (flow.mode != Flow::Mode::sticking) {
-    dissipated.unresolved -= flow.mass * change * (guided.rate + 0.5 * change);
-  } else {
-    dissipated.guides += impulse * guided.rate;
-    dissipated.unresolved -= impulse * guided.rate;
-  }
+/// As velocities are mended. `change`: of the rate [m/s].
+void CableStepper::mend_flow(const Flow& flow, double change, GuidedFlow& guided, SubstepResult& result) {
+  result.balance.dissipated.unresolved -= flow.mass * change * (guided.rate + 0.5 * change);
   guided.rate += change;
 }
 

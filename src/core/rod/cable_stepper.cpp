@@ -610,11 +610,7 @@ void CableStepper::finish_projection(const Substep& s, CableState& state, Subste
     held.velocity += get(change, held.node);
     held.force -= state.masses[held.node] / s.h * get(change, held.node);
   }
-  for (std::size_t k = 0; k < flows_.size(); ++k) {
-    const Flow& flow = flows_[k];
-    // Multipliers are impulses the other way round.
-    mend_flow(flow, -impulse_on(flow, multiplier_correction()), flow.correction, s.boundary.flows[k], result);
-  }
+  for (std::size_t k = 0; k < flows_.size(); ++k) mend_flow(flows_[k], flows_[k].correction, s.boundary.flows[k], result);
   for (const GrowingSegment& growing : s.boundary.growing)
     if (!is_elastic_at(growing.segment)) balance_mended_growth(growing, -multiplier_correction()[growing.segment], result);
 }

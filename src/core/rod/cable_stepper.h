@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "guide/flow.h"
@@ -125,10 +126,18 @@ class CableStepper {
   void set_flow_lengths(const Substep& substep);
   void evaluate_flows(const Substep& substep);
   bool lies_on_wheel(int segment) const;
-  double evaluate_flowing_length(const Substep& substep, int segment, double& slope);
-  Flow::Mode next_mode(const Substep& substep, const Flow& flow, const GuidedFlow& guided, double drive, double resistance_before,
-                       double resistance_after) const;
-  double sticking_way(const Substep& substep, const Flow& flow) const;
+  /// With which an elastic segment draws what flows.
+  struct DrawnLength {
+    double force = 0, strain = 0;  ///< [N], and the mean of its strain
+    double slope = 0;              ///< [N/m] by which more rest length at the end lessens its tension
+  };
+  DrawnLength evaluate_flowing_length(const Substep& substep, int segment);
+  Flow::Mode mode_of_way(const Substep& substep, const Flow& flow) const;
+  Flow::Mode next_mode(const Substep& substep, const Flow& flow, const GuidedFlow& guided, double drive, double rubs) const;
+  double resting_way(const Substep& substep, const Flow& flow) const;
+  std::pair<double, double> stopped_ways(const Substep& substep, const Flow& flow) const;
+  double stopped_way(const Substep& substep, const Flow& flow) const;
+  bool comes_to_rest(const Substep& substep, const Flow& flow) const;
   double end_rate(const Substep& substep, const Flow& flow) const;
   void factor_flows();
   void let_flow();
@@ -143,8 +152,7 @@ class CableStepper {
   void carry_frames_with_flows(CableState& state) const;
   void project_flows(const Substep& substep);
   void push_flows(const Substep& substep, SubstepResult& result);
-  double impulse_on(const Flow& flow, const std::vector<double>& impulses) const;
-  static void mend_flow(const Flow& flow, double impulse, double change, GuidedFlow& guided, SubstepResult& result);
+  static void mend_flow(const Flow& flow, double change, GuidedFlow& guided, SubstepResult& result);
   void factor_segments();
   void solve_segments();
   Vector3 corrected_load(int node) const;
