@@ -322,9 +322,6 @@ TEST(Guides, accountForTheirFriction) {
   }
 }
 
-/// An elastic rope that swings over a wheel: what comes onto it and leaves it is strained.
-/// A stiff straight wire that a hand pushes along lies in two eyelets: what rubs is what they bear of it, however little it is
-/// drawn.
 /// Near the guide a free end is no obstacle: it goes through, though nothing else drives it there.
 TEST(Guides, letFreeEndsRunOut) {
   for (const double stiffness : {0.0, 1e-3})
@@ -356,6 +353,8 @@ TEST(Guides, letFreeEndsRunOut) {
       }
 }
 
+/// A stiff straight wire that a hand pushes along lies in two eyelets: what rubs is what they bear of it, however little it is
+/// drawn.
 TEST(Guides, rubByHowHardTheyPress) {
   SceneDesc scene = scenes::one_cable(40, 1);
   MaterialDesc& material = scene.materials[0].material;
@@ -420,6 +419,30 @@ TEST(Guides, passNodesOfWhatRuns) {
   run(world, 0.4);
 }
 
+/// A load that comes to a wheel is stopped there, on an elastic rope again and again: what stops it only takes energy, also where
+/// the rope turns round within a step.
+TEST(Guides, stopLoadsAndNeverPushThem) {
+  for (const double friction : {0.0, 0.1}) {
+    SceneDesc scene = two_loads(0.2, 0.3);
+    scene.materials[0].material.axial_stiffness = 2e4;
+    scene.materials[0].material.axial_damping = 2;
+    scene.guides = {guide("wheel", 1, {0, 0, -0.05}, GuideDesc::Type::sheave)};
+    scene.guides[0].radius = 0.05;
+    scene.guides[0].bearing_friction = friction * 0.05;
+    World world(scene, {});
+    double taken = 0;
+    for (int i = 0; i < 2500; ++i) {
+      run(world, world.time_step());
+      const double guides = world.ledger().balance.dissipated.guides;
+      EXPECT_GE(guides, taken - 1e-9) << friction << " at " << world.time() << " s";
+      taken = guides;
+    }
+    EXPECT_GT(taken, 0.01) << friction;
+    EXPECT_NEAR(world.ledger().unaccounted(), 0, 1e-4) << friction;
+  }
+}
+
+/// An elastic rope that swings over a wheel: what comes onto it and leaves it is strained.
 TEST(Guides, keepTheStretchOfWhatLiesOnAWheel) {
   SceneDesc scene = two_loads(1, 1.5);
   scene.materials[0].material.axial_stiffness = 2e3;

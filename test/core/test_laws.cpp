@@ -5,6 +5,7 @@
 
 #include "law/bend.h"
 #include "law/drag.h"
+#include "law/guide.h"
 #include "law/resistance.h"
 #include "law/stretch.h"
 
@@ -132,6 +133,53 @@ TEST_F(Law, DragTakesWhatCableAndFluidGive) {
     EXPECT_GE(drag.loss(u), 0);
     EXPECT_NEAR(drag.loss(h * drag.fluid), 0, 1e-18);
   }
+}
+
+/// Tension and what draws the flow do the whole work that becomes energy, but for what damps; where forces are those of the end
+/// they are its derivatives.
+TEST_F(Law, WhatFlowsThroughAGuideTakesItsEnergyAlong) {
+  constexpr double stiffness = 300, small = 1e-6;
+  const auto energy = [&](double rest, double length) {
+    return 0.5 * stiffness * rest * (length / rest - 1) * (length / rest - 1);
+  };
+  // The tension that makes the row vanish, times the mean length
+  const auto drawn_at = [](const FlowingLength& flowing, double part) {
+    double density = 0;
+    for (int i = 0; i < 50; ++i) {
+      const DrawnLength drawn = draw({stiffness, 0}, flowing, density, part);
+      density -= drawn.row.gap / drawn.row.compliance;
+    }
+    return std::pair(draw({stiffness, 0}, flowing, density, part), density);
+  };
+  for (int i = 0; i < 100; ++i) {
+    FlowingLength flowing{1 + number(0.2), 1 + number(0.2), 0, 0};
+    flowing.start_length = flowing.start_rest * (1.05 + number(0.04));
+    flowing.length = flowing.rest * (1.05 + number(0.04));
+    const auto [drawn, density] = drawn_at(flowing, 0.5);
+    const double tension = density * 0.5 * (flowing.start_length + flowing.length);
+    EXPECT_NEAR(tension * (flowing.length - flowing.start_length) - drawn.force * (flowing.rest - flowing.start_rest),
+                energy(flowing.rest, flowing.length) - energy(flowing.start_rest, flowing.start_length), 1e-12);
+
+    const auto [at_end, end_density] = drawn_at(flowing, 1);
+    EXPECT_NEAR(end_density * flowing.length,
+                (energy(flowing.rest, flowing.length + small) - energy(flowing.rest, flowing.length - small)) / (2 * small),
+                1e-6);
+    EXPECT_NEAR(-at_end.force,
+                (energy(flowing.rest + small, flowing.length) - energy(flowing.rest - small, flowing.length)) / (2 * small),
+                1e-6);
+  }
+}
+
+/// Two tensions whose ratio is that of Euler and Eytelwein.
+TEST_F(Law, RubbingIsThatOfACapstan) {
+  for (const double friction : {0.1, 0.5})
+    for (const double angle : {0.1, 1.0, 2.5}) {
+      const double slack = 3, tight = slack * std::exp(friction * angle);
+      // What the guide presses with across the bisector
+      const double press = std::sin(0.5 * angle) * (slack + tight);
+      EXPECT_NEAR(rubbing_part(friction, angle) * press, tight - slack, 1e-12);
+    }
+  EXPECT_NEAR(rubbing_part(0.3, 1e-7), 0.3, 1e-12);
 }
 
 /// Newton's method on a row finds the density with which a segment has its tension, and the row says when it has.

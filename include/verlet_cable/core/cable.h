@@ -59,6 +59,8 @@ struct CableState {
   std::vector<double> last_tension;  ///< [N] a segment, n; mean over the last substep
   /// [N] a segment, n: the tension without the contributions of bending and twist; the initial guess of the next substep
   std::vector<double> axial_multiplier;
+  /// 0 to 1: how far what cannot stretch yields between holders that draw it straight; as long as it is strained
+  double yielding = 0;
   std::vector<double> twist;  ///< [rad/m] a segment, n; 0 for a whole rod
   // Of a whole rod, empty otherwise
   std::vector<Vector3> directors;  ///< a segment, n: the material's y axis, a unit vector normal to the segment

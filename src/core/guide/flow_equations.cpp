@@ -2,7 +2,6 @@
 #include <cmath>
 #include <utility>
 
-#include "law/resistance.h"
 #include "rod/cable_stepper.h"
 #include "rod/rod_frames.h"
 #include "verlet_cable/core/cable_materials.h"
@@ -17,10 +16,6 @@ constexpr int most_changes = 8;
 constexpr double least_left = 0.02;
 /// [m/s] Against its friction nothing flows faster.
 constexpr double turned_round = 1e-9;
-/// [rad] Less is none.
-constexpr double least_angle = 1e-6;
-/// Relative, of impulses beside wheels that nothing else takes up.
-constexpr double flow_regularisation = 1e-9;
 
 /// Solves a small dense system with pivots from each column; `matrix` is by rows, and both are used up.
 void solve_dense(int size, std::vector<double>& matrix, std::vector<double>& vector) {
@@ -61,14 +56,6 @@ void flow_on(const Flow& flow, const std::vector<double>& rest_lengths, std::vec
     values[node] = mean(values[node], values[from], std::min(std::abs(flow.way) / length, 1.0));
     if (flow.first == flow.last) break;
   }
-}
-
-/// By the force with which a guide presses on a cable [N], across it: the friction of what is drawn over a round, so that
-/// tensions differ by the factor exp(friction angle). With them the force is sin(angle / 2) times their sum, and friction, their
-/// difference, is tanh(friction angle / 2) times that. Where the cable does not turn it is the coefficient.
-double rubbing_part(double friction, double angle) {
-  if (friction == infinity) return infinity;
-  return angle > least_angle ? std::tanh(0.5 * friction * angle) / std::sin(0.5 * angle) : friction;
 }
 
 /// With which what a guide holds drives a way, whose work is what it gives back [N], and how that grows with the way [N/m]: with
@@ -194,28 +181,14 @@ void CableStepper::set_flow_lengths(const Substep& s) {
   }
 }
 
-/// The tension of an elastic segment that material flows into or out of. With lengths s, rest lengths l and strains e = s / l - 1
-/// at the start and (') the end, means over the substep (-), the energy EA l e^2 / 2 changes by
-///   T (s' - s) - F (l' - l),   T = EA e- l-^2 / (l l'),   F = T s- / l- - EA (e^2)- / 2,
-/// exactly: T pulls the nodes, F the flow. A tension from s- and a mean of 1 / l would be another one with the way, even of
-/// material that is strained alike everywhere.
-CableStepper::DrawnLength CableStepper::evaluate_flowing_length(const Substep& s, int i) {
+/// Of an elastic segment; sets its row.
+DrawnLength CableStepper::evaluate_flowing_length(const Substep& s, int i) {
   const Straining strained = straining(s, i);
-  const double part = s.part(), stiffness = axial_stiffness_[i], start = strained.start, end = strained.end;
-  const double length = std::sqrt(end_square_[i]), mean_length = mean(length_[i], length, part),
-               mean_rest = mean(start, end, part);
-  const double strain_at_start = length_[i] / start - 1, strain_at_end = length / end - 1;
-  const double stretching = part == 1 ? stiffness : stiffness * mean_rest * mean_rest / (start * end);
-  const double damping = axial_damping_[i] / s.damping_time();
-  const Resistance<double> resistance{stretching, damping};
-  const double law = resistance.stress(mean(strain_at_start, strain_at_end, part), strain_at_end - strain_at_start);
-  const double rise = resistance.slope(part) / end;
-  const LengthRow<double> row = elastic_row(law, rise, tension_density_[i], mean_length, length, part);
-  set_row(i, row);
-  const double tension = tension_density_[i] * mean_length;
-  const double square = mean(strain_at_start * strain_at_start, strain_at_end * strain_at_end, part);
-  return {tension * mean_length / mean_rest - 0.5 * stiffness * square, mean(strain_at_start, strain_at_end, part),
-          rise * length / end * row.compliance / mean_length};
+  const FlowingLength flowing{strained.start, strained.end, length_[i], std::sqrt(end_square_[i])};
+  const DrawnLength drawn =
+      draw({axial_stiffness_[i], axial_damping_[i] / s.damping_time()}, flowing, tension_density_[i], s.part());
+  set_row(i, drawn.row);
+  return drawn;
 }
 
 void CableStepper::evaluate_flows(const Substep& s) {
@@ -563,47 +536,27 @@ void CableStepper::carry_frames_with_flows(CableState& state) const {
   }
 }
 
+/// In the system of impulses.
+FlowRate CableStepper::rate_of(const Substep& s, const Flow& flow) const {
+  return {flow.first,
+          flow.last,
+          target_length_[flow.before],
+          target_length_[flow.after],
+          comes_to_rest(s, flow) ? infinity : flow.mass,
+          s.boundary.flows[&flow - flows_.data()].rate};
+}
+
 /// Impulses along the segments beside a guide move what flows, too.
 void CableStepper::project_flows(const Substep& s) {
-  for (std::size_t k = 0; k < flows_.size(); ++k) {
-    const Flow& flow = flows_[k];
-    if (is_elastic_at(flow.before)) continue;
-    const double before = target_length_[flow.before], after = target_length_[flow.after], rate = s.boundary.flows[k].rate;
-    impulse_[flow.before] -= before * rate;
-    impulse_[flow.after] += after * rate;
-    if (comes_to_rest(s, flow)) continue;
-    if (flow.first == flow.last) {
-      pivot_[flow.before] += before * before / flow.mass;
-      pivot_[flow.after] += after * after / flow.mass;
-      off_[flow.before] = -before * after / flow.mass;
-    } else if (flow.first + 1 == flow.last) {
-      // The segment on the wheel has no impulse: its place is that of the change of the rate.
-      pivot_[flow.first] = -flow.mass;
-      off_[flow.before] = before;
-      off_[flow.first] = -after;
-      // Beside another holder nothing but the flow changes a segment's length.
-      if (pivot_[flow.before] == 0) pivot_[flow.before] = flow_regularisation * before * before / flow.mass;
-      if (pivot_[flow.after] == 0) pivot_[flow.after] = flow_regularisation * after * after / flow.mass;
-    }
-  }
-  // What friction keeps from flowing between two holders no impulse moves.
   for (const Flow& flow : flows_)
-    for (const int i : {flow.before, flow.after}) {
-      if (pivot_[i] != 0) continue;
-      pivot_[i] = 1;
-      impulse_[i] = 0;
-    }
+    if (!is_elastic_at(flow.before)) add_flow_rate(rate_of(s, flow), pivot_, off_, impulse_);
+  keep_unmoved(segments_, pivot_, impulse_);
 }
 
 void CableStepper::push_flows(const Substep& s, SubstepResult& result) {
   for (std::size_t k = 0; k < flows_.size(); ++k) {
     const Flow& flow = flows_[k];
-    if (is_elastic_at(flow.before)) continue;
-    if (comes_to_rest(s, flow)) continue;
-    const double impulse =
-        target_length_[flow.before] * impulse_[flow.before] - target_length_[flow.after] * impulse_[flow.after];
-    mend_flow(flow, impulse / flow.mass, s.boundary.flows[k], result);
-    if (flow.first != flow.last) impulse_[flow.first] = 0;
+    if (!is_elastic_at(flow.before)) mend_flow(flow, change_of_rate(rate_of(s, flow), impulse_), s.boundary.flows[k], result);
   }
 }
 

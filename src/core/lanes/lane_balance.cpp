@@ -31,7 +31,8 @@ double LaneStepper::kinetic_energy_before_mending(int c, const LaneMember& membe
 void LaneStepper::balance_laws(int c, LaneMember& member) {
   const MaterialDesc& material = member.substep.model.material;
   const bool stretches = work_.law.is_elastic && material.axial_damping > 0;
-  if (material.drag == 0 && !work_.law.is_damped && !stretches) return;
+  const bool gives = !work_.law.is_elastic && member.substep.boundary.nodes.size() > 1;
+  if (material.drag == 0 && !work_.law.is_damped && !stretches && !gives) return;
   read_displacement(c);
   if (material.drag > 0) balance_drag(member);
   if (work_.law.is_damped) {
@@ -40,6 +41,7 @@ void LaneStepper::balance_laws(int c, LaneMember& member) {
     for (const ClampJoint& clamp : clamps_[c]) lost += clamp.damping_work;
   }
   if (stretches) balance_stretching(member);
+  if (gives) balance_compliance(member);
 }
 
 void LaneStepper::balance_drag(LaneMember& member) {
@@ -64,6 +66,17 @@ void LaneStepper::balance_stretching(LaneMember& member) {
     const Vector3 end = state.positions[i + 1] - state.positions[i];
     const double growth = end.norm() - (end - get(displacement_, i + 1) + get(displacement_, i)).norm();
     member.result.balance.dissipated.axial += Resistance<double>{0, damping / state.rest_lengths[i]}.loss(growth);
+  }
+}
+
+/// As CableStepper::balance_lengths of what is taut.
+void LaneStepper::balance_compliance(LaneMember& member) {
+  const CableState& state = *member.state;
+  for (int i = 0; i < work_.law.segments; ++i) {
+    const Vector3 end = state.positions[i + 1] - state.positions[i];
+    const double start_square = (end - get(displacement_, i + 1) + get(displacement_, i)).squaredNorm();
+    member.result.balance.dissipated.edits +=
+        0.5 * state.axial_multiplier[i] / state.rest_lengths[i] * (end.squaredNorm() - start_square);
   }
 }
 

@@ -354,6 +354,7 @@ void LaneStepper::complete(int c, LaneMember& member) {
     member.state->positions[target.node] = target.position;
     member.state->velocities[target.node] = target.velocity;
   }
+  member.state->yielding = 0;  // nothing draws it straight, else it would not be here
   if (values_.projects[first] != 0) react_to_projection(c, member);
 }
 

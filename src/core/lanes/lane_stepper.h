@@ -66,6 +66,7 @@ class LaneStepper {
   void balance_laws(int cable, LaneMember& member);
   void balance_drag(LaneMember& member);
   void balance_stretching(LaneMember& member);
+  void balance_compliance(LaneMember& member);
   double kinetic_energy_before_mending(int cable, const LaneMember& member);
   double& value(LaneField field, int place, int lane);
   double& at(LaneField field, int cable, int node);

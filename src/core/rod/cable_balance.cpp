@@ -76,11 +76,10 @@ void CableStepper::balance_drag(const Substep& s, const std::vector<double>& mas
   }
 }
 
-/// Axial damping, and what the tension of segments that cannot stretch does where their lengths change: driven by a winch, or
-/// drawn out beyond what they are.
+/// Axial damping, and what the tension of segments that cannot stretch does where their lengths change: driven by a winch, drawn
+/// out beyond what they are, or by the compliance that makes the tension of what is taut unique.
 void CableStepper::balance_lengths(const Substep& s, SubstepResult& result) const {
-  const bool is_drawn_out = result.overstretched_node >= 0 || !overstretched_.empty();
-  if (!any_elastic_ && s.boundary.growing.empty() && !is_drawn_out) return;
+  if (!changes_lengths(s)) return;
   for (int i = 0; i < segments_; ++i) {
     if (is_elastic_at(i)) {
       if (axial_damping_[i] == 0) continue;
@@ -97,7 +96,7 @@ void CableStepper::balance_lengths(const Substep& s, SubstepResult& result) cons
     const double work = 0.5 * tension_density_[i] * (end_square_[i] - get(segment_, i).squaredNorm());
     if (rest_growth_[i] != 0)
       result.balance.work.winches -= work;
-    else if (is_drawn_out)
+    else
       result.balance.dissipated.edits += work;
   }
 }

@@ -108,7 +108,7 @@ void CableStepper::finish(const Substep& s, bool struck, CableState& state, Subs
     for (int i = 0; i <= segments_; ++i) result.displacement = std::max(result.displacement, get(displacement_, i).norm());
   react(s, state.masses);
   if (!s.statics) {
-    measure_end();
+    measure_end(s);
     balance_laws(s, state.masses, result);
   }
   move(s);
@@ -623,9 +623,13 @@ void CableStepper::take_back(double part) {
   if (rod_.active()) rod_.correct(-part);
 }
 
+bool CableStepper::changes_lengths(const Substep& s) const {
+  return any_elastic_ || !s.boundary.growing.empty() || s.boundary.nodes.size() > 1;
+}
+
 /// The lengths of the solution, which the last iterate did not have yet.
-void CableStepper::measure_end() {
-  for (int i = 0; any_elastic_ && i < segments_; ++i)
+void CableStepper::measure_end(const Substep& s) {
+  for (int i = 0; changes_lengths(s) && i < segments_; ++i)
     end_square_[i] = (get(segment_, i) + get(displacement_, i + 1) - get(displacement_, i)).squaredNorm();
 }
 
@@ -889,6 +893,8 @@ double CableStepper::store(const Substep& s, CableState& state) const {
     if (s.scheme == Scheme::damped)
       state.accelerations[i] = (get(displacement_, i) * inverse_h - get(velocity_, i)) * inverse_h + 0.5 * get(acceleration_, i);
   }
+  state.yielding = 0;
+  for (const OverstretchedSpan& span : overstretched_) state.yielding = std::max(state.yielding, span.share);
   const double part = s.scheme == Scheme::conserving ? 0.5 : 1;
   const bool alternates = s.treatment != Treatment::none && state.unresolved.known > 0;
   double longest = 1, shortest = 1;  // squares, relative

@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "guide/flow.h"
+#include "law/flow_rate.h"
+#include "law/guide.h"
 #include "law/stretch.h"
 #include "rod/bending.h"
 #include "rod/block_elimination.h"
@@ -126,11 +128,6 @@ class CableStepper {
   void set_flow_lengths(const Substep& substep);
   void evaluate_flows(const Substep& substep);
   bool lies_on_wheel(int segment) const;
-  /// With which an elastic segment draws what flows.
-  struct DrawnLength {
-    double force = 0, strain = 0;  ///< [N], and the mean of its strain
-    double slope = 0;              ///< [N/m] by which more rest length at the end lessens its tension
-  };
   DrawnLength evaluate_flowing_length(const Substep& substep, int segment);
   Flow::Mode mode_of_way(const Substep& substep, const Flow& flow) const;
   Flow::Mode next_mode(const Substep& substep, const Flow& flow, const GuidedFlow& guided, double drive, double rubs) const;
@@ -150,6 +147,7 @@ class CableStepper {
   void begin_flow_projection(const Substep& substep, const CableState& state);
   void finish_flows(const Substep& substep, CableState& state);
   void carry_frames_with_flows(CableState& state) const;
+  FlowRate rate_of(const Substep& substep, const Flow& flow) const;
   void project_flows(const Substep& substep);
   void push_flows(const Substep& substep, SubstepResult& result);
   static void mend_flow(const Flow& flow, double change, GuidedFlow& guided, SubstepResult& result);
@@ -157,7 +155,8 @@ class CableStepper {
   void solve_segments();
   Vector3 corrected_load(int node) const;
   double force_along(int segment) const;
-  void measure_end();
+  bool changes_lengths(const Substep& substep) const;
+  void measure_end(const Substep& substep);
   void move(const Substep& substep);
   void restore_momenta(const Substep& substep, const std::vector<double>& masses);
   double restore_angular_momentum(const Substep& substep, const std::vector<double>& masses);

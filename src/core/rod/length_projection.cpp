@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "law/length_rate.h"
+#include "law/flow_rate.h"
 #include "rod/tridiagonal.h"
 #include "verlet_cable/core/cable_materials.h"
 
@@ -31,12 +31,17 @@ class LengthSystem {
     impulse_.resize(masses.size() - 1);
   }
 
-  /// What flows through guides has these velocities.
+  /// What flows through guides has these velocities; friction that is not infinite does nothing at once.
   void set_flows(const CableModel& model, const CableState& state, std::vector<GuidedFlow>& flows) {
     flows_ = &flows;
-    rest_lengths_ = &state.rest_lengths;
-    densities_.clear();
-    for (const GuidedFlow& flow : flows) densities_.push_back(CableMaterials(model, state)[flow.first].linear_density);
+    rates_.clear();
+    for (const GuidedFlow& flow : flows) {
+      const double density = CableMaterials(model, state)[flow.first].linear_density;
+      const bool stands = flow.friction == infinity || flow.is_blocked[0] || flow.is_blocked[1];
+      const double mass = density * flowing_length(state.rest_lengths, flow.first, flow.last) + flow.inertia;
+      rates_.push_back({flow.first, flow.last, state.rest_lengths[flow.first - 1], state.rest_lengths[flow.last],
+                        stands ? infinity : mass, flow.rate});
+    }
   }
 
   /// Adds M^-1 J^T y to `vectors` for J M^-1 J^T y = changes, J from `positions`.
@@ -44,14 +49,17 @@ class LengthSystem {
     const std::size_t n = changes.size();
     for (std::size_t i = 0; i < n; ++i) {
       const Vector3 d = positions[i + 1] - positions[i];
-      diagonal_[i] = movable(i) ? length_rate_diagonal(d.squaredNorm(), mobility_[i] + mobility_[i + 1], regularisation) : 1;
-      impulse_[i] = movable(i) ? changes[i] : 0;
+      diagonal_[i] = is_free(i) ? 1 : length_rate_diagonal(d.squaredNorm(), mobility_[i] + mobility_[i + 1], regularisation);
+      impulse_[i] = is_free(i) ? 0 : changes[i];
       if (i + 1 < n) off_[i] = length_rate_coupling(d.dot(positions[i + 2] - positions[i + 1]), mobility_[i + 1]);
       if (i + 1 < n && (is_free(i) || is_free(i + 1))) off_[i] = 0;
     }
-    if (flows_) let_flow(changes);
+    for (const FlowRate& flow : rates_)
+      if (!is_free(flow.before())) add_flow_rate(flow, diagonal_, off_, impulse_);
+    keep_unmoved(static_cast<int>(n), diagonal_, impulse_);
     solve_tridiagonal(diagonal_, off_, impulse_, static_cast<int>(n));
-    if (flows_) push_flows();
+    for (std::size_t k = 0; k < rates_.size(); ++k)
+      if (!is_free(rates_[k].before())) (*flows_)[k].rate += change_of_rate(rates_[k], impulse_);
     Vector3 direction = positions[1] - positions[0];
     for (std::size_t i = 0; i < n; ++i) {
       const Vector3 impulse = impulse_[i] * direction;
@@ -67,53 +75,8 @@ class LengthSystem {
  private:
   bool is_free(std::size_t segment) const { return lengths_[segment] == 0; }
 
-  /// [kg] That moves with a flow; infinite where something holds it. Friction that is not infinite does nothing at once.
-  double mass_of(const GuidedFlow& flow) const {
-    const double density = densities_[&flow - flows_->data()];
-    if (flow.friction == infinity || flow.is_blocked[0] || flow.is_blocked[1]) return infinity;
-    return density * flowing_length(*rest_lengths_, flow.first, flow.last) + flow.inertia;
-  }
-
-  void let_flow(const std::vector<double>& changes) {
-    // Beside another holder nothing but the flow changes a segment's length.
-    for (const GuidedFlow& flow : *flows_)
-      for (const int i : {flow.first - 1, flow.last}) {
-        if (movable(i) || is_free(i) || mass_of(flow) == infinity) continue;
-        const double length = (*rest_lengths_)[i];
-        diagonal_[i] = regularisation * length * length / mass_of(flow);
-        impulse_[i] = changes[i];
-      }
-    for (const GuidedFlow& flow : *flows_) {
-      const int i = flow.first - 1, j = flow.last;
-      if (is_free(i)) continue;
-      const double before = (*rest_lengths_)[i], after = (*rest_lengths_)[j], mass = mass_of(flow);
-      impulse_[i] -= before * flow.rate;
-      impulse_[j] += after * flow.rate;
-      if (flow.first == flow.last) {
-        diagonal_[i] += before * before / mass;
-        diagonal_[j] += after * after / mass;
-        off_[i] = -before * after / mass;
-      } else if (mass < infinity) {
-        // The place of the segment on the wheel is that of the change of the rate.
-        diagonal_[flow.first] = -mass;
-        off_[i] = before;
-        off_[flow.first] = -after;
-      }
-    }
-  }
-
-  void push_flows() {
-    for (GuidedFlow& flow : *flows_) {
-      const int i = flow.first - 1, j = flow.last;
-      if (is_free(i)) continue;
-      flow.rate += ((*rest_lengths_)[i] * impulse_[i] - (*rest_lengths_)[j] * impulse_[j]) / mass_of(flow);
-      if (flow.first != flow.last) impulse_[flow.first] = 0;
-    }
-  }
-
   std::vector<GuidedFlow>* flows_ = nullptr;
-  const std::vector<double>* rest_lengths_ = nullptr;
-  std::vector<double> densities_;  // of what flows [kg/m]
+  std::vector<FlowRate> rates_;
   std::vector<double> mobility_, diagonal_, off_, impulse_;
   const std::vector<double>& lengths_;
 };

@@ -1,6 +1,7 @@
 #include "target/boundary.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "verlet_cable/core/cable_materials.h"
@@ -81,11 +82,23 @@ double drawn_in_substep(const HeldSpan& span, const std::vector<GrowingSegment>&
   return drawn;
 }
 
-/// Of the way from a span that is straight, as what is reported has it, to one that yields, 0 to 1; negative where it is not
-/// straight.
-double yielding_share(const HeldSpan& span, const std::vector<GrowingSegment>& growing, const YieldingAhead& ahead) {
-  const double soon = ahead.time / ahead.substep * std::max(0.0, drawn_in_substep(span, growing, ahead.substep));
-  return std::min(((span.distance + soon - span.rounding) / span.length - 1 - reported_stretch) / yielding_strain, 1.0);
+bool is_strained(const HeldSpan& span, const CableState& state) {
+  double length = 0;
+  for (int i = span.first; i < span.last; ++i) length += (state.positions[i + 1] - state.positions[i]).norm();
+  return length > span.length * (1 + reported_stretch) + span.rounding;
+}
+
+/// Of the way from a span that is straight, as what is reported has it, to one that yields, 0 to 1. What stays strained goes on
+/// to yield nearly as it did, so that it gives back what it has taken: stiffened at once it would give much more. In as long as
+/// its holders are looked ahead it comes to its length.
+double yielding_share(const HeldSpan& span, const CableState& state, const std::vector<GrowingSegment>& growing,
+                      const YieldingAhead& ahead) {
+  const double drawn = drawn_in_substep(span, growing, ahead.substep), soon = ahead.time / ahead.substep * std::max(0.0, drawn);
+  const double share = ((span.distance + soon - span.rounding) / span.length - 1 - reported_stretch) / yielding_strain;
+  double left = 0;
+  if (state.yielding > 0 && ahead.time > 0 && drawn >= -span.rounding && is_strained(span, state))
+    left = state.yielding * std::exp(-ahead.substep / ahead.time);
+  return std::clamp(share, left, 1.0);
 }
 
 void lengthen(const HeldSpan& span, double distance, std::vector<double>& lengths) {
@@ -117,7 +130,7 @@ int lengths_in_substep(const CableModel& model, const CableState& state, const B
       lengthen(span, distance - drawn_out.drawn_in, lengths);
       return;
     }
-    const double share = yielding_share(span, boundary.growing, ahead);
+    const double share = yielding_share(span, state, boundary.growing, ahead);
     if (share > 0) spans.push_back({span.first, span.last, std::max(0.0, distance / span.length - 1), share});
   });
   return first;
@@ -125,8 +138,9 @@ int lengths_in_substep(const CableModel& model, const CableState& state, const B
 
 bool any_overstretched(const CableModel& model, const CableState& state, const Boundary& boundary, const YieldingAhead& ahead) {
   bool found = false;
-  each_rigid_span(model, state, boundary.nodes,
-                  [&](const HeldSpan& span) { found |= !span.gives_way && yielding_share(span, boundary.growing, ahead) > 0; });
+  each_rigid_span(model, state, boundary.nodes, [&](const HeldSpan& span) {
+    found |= !span.gives_way && yielding_share(span, state, boundary.growing, ahead) > 0;
+  });
   return found;
 }
 

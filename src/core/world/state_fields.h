@@ -124,7 +124,8 @@ auto fields(T& x, const SceneDesc*) {
 // Cables
 template <class T>
 auto fields(T& x, const CableModel*) {
-  return std::tie(x.name, x.material, x.material_name, x.section_materials, x.color, x.turns_bodies, x.is_twisted, x.segment_length);
+  return std::tie(x.name, x.material, x.material_name, x.section_materials, x.color, x.turns_bodies, x.is_twisted,
+                  x.segment_length);
 }
 template <class T>
 auto fields(T& x, const UnresolvedMotion*) {
@@ -134,7 +135,8 @@ template <class T>
 auto fields(T& x, const CableState*) {
   return std::tie(x.rest_lengths, x.section_material, x.masses, x.rest_curvature, x.rest_twist, x.flexible_fraction,
                   x.beyond_limits, x.positions, x.velocities, x.accelerations, x.unresolved, x.tension, x.last_tension,
-                  x.axial_multiplier, x.twist, x.directors, x.spin, x.joint_twist, x.reference_node, x.reference_orientation);
+                  x.axial_multiplier, x.yielding, x.twist, x.directors, x.spin, x.joint_twist, x.reference_node,
+                  x.reference_orientation);
 }
 template <class T>
 auto fields(T& x, const SimulatedCable*) {
