@@ -100,6 +100,11 @@ inline void follow_correction(const Vector3& w, Touch& touch) {
   touch.displacement = w;
 }
 
+/// Whether it presses on something that is inside.
+inline bool is_pushed_out(const Touch& touch) {
+  return touch.inside && touch.mode != Touch::Mode::open;
+}
+
 /// From now on friction is bounded by this normal force [N].
 inline void hold_bound(double normal_force, Touch& touch) {
   touch.bound = normal_force;
