@@ -37,7 +37,7 @@ struct Touch {
   bool yields = false;                 ///< likewise two cables: with no more than stops them within a step
   double gap = 0;                      ///< [m] between the surfaces at the start of the substep
   double friction = 0;                 ///< Coulomb coefficient
-  Vector3 lean = Vector3::Zero();      ///< along the surface: friction is bounded around this times the lesser normal force, now or before
+  Vector3 lean = Vector3::Zero();      ///< along the surface: friction is bounded around a force times this
   std::array<Rolling, 2> rolling;      ///< of the cables that may roll,
   int rolling_count = 0;               ///< so many
   double radius = 0;                   ///< [m] of the thinner cable
