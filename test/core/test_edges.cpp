@@ -149,5 +149,93 @@ TEST(Edge, HoldsTheTensionsOfACapstanWhateverElementIsThere) {
     }
 }
 
+/// A cable that falls into the gap between two blocks which lean away from each other by an `angle` [rad], through a viscous
+/// fluid, where nothing rubs.
+SceneDesc cable_over_a_gap(double angle, double density, double stiffness, int segments, const Vector3& from, const Vector3& to) {
+  SceneDesc scene = scenes::one_cable(segments, (to - from).norm());
+  scene.time_step = 0.01;
+  MaterialDesc& material = scene.materials[0].material;
+  material.linear_density = density;
+  material.radius = from.z();
+  material.friction = 0;
+  material.drag = 8 * density;
+  material.axial_stiffness = stiffness;
+  if (stiffness < infinity) material.axial_damping = 0.002 * stiffness;
+  CableDesc& cable = scene.cables[0];
+  cable.initial.type = InitialShapeDesc::Type::straight;
+  cable.initial.from = from;
+  cable.initial.to = to;
+  for (const double side : {-1.0, 1.0}) {
+    ObstacleDesc block;
+    block.name = side < 0 ? "left" : "right";
+    block.type = ShapeType::box;
+    block.size = {0.4, 0.6, 0.2};
+    const double along = 0.2 * std::cos(angle) + 0.1 * std::sin(angle), down = 0.2 * std::sin(angle) + 0.1 * std::cos(angle);
+    block.pose = {side * along, 0, -down, 0, side * angle, 0};
+    block.friction = 0;
+    scene.obstacles.push_back(block);
+  }
+  ObstacleDesc floor;
+  floor.name = "floor";
+  floor.pose = {0, 0, -0.25, 0, 0, 0};
+  floor.friction = 0;
+  scene.obstacles.push_back(floor);
+  return scene;
+}
+
+TEST(Edge, StrikesDoNoWork) {
+  for (const SceneDesc& scene : {cable_over_a_gap(0.234, 0.6, infinity, 26, {-0.3426, -0.0701, 0.008}, {0.1769, 0.0362, 0.008}),
+                                 cable_over_a_gap(0.281, 0.005, 1e4, 44, {-0.3838, -0.2416, 0.002}, {0.25, 0.1574, 0.002}),
+                                 cable_over_a_gap(0.1, 0.005, infinity, 40, {-0.4, -0.2, 0.002}, {0.25, 0.1, 0.002})}) {
+    World world(scene, BoundaryInputs(1));
+    const double length = scene.cables[0].length;
+    const double size = scene.materials[0].material.linear_density * length * 9.81 * length;
+    double most = 0;
+    for (int i = 0; i < 300; ++i) {
+      world.step(BoundaryInputs(1));
+      const double lost = world.ledger().balance.dissipated.contact;
+      most = std::max(most, lost);
+      EXPECT_GT(lost, most - 0.01 * size) << i;
+    }
+  }
+}
+
+/// On a box that is tilted, on its edges and on a thin board, limp or stiff.
+TEST(Edge, CablesComeToRestOnBoxesWithFriction) {
+  for (const double time_step : {0.001, 0.002, 0.005, 0.01})
+    for (const double tilt : {0.0, 0.2})
+      for (const double thickness : {0.004, 0.1})
+        for (const double stiffness : {0.0, 0.01}) {
+          SCOPED_TRACE(testing::Message() << time_step << " s, " << tilt << ", " << thickness << " m, " << stiffness);
+          SceneDesc scene = scenes::one_cable(30, 0.6);
+          scene.time_step = time_step;
+          MaterialDesc& material = scene.materials[0].material;
+          material.friction = 0.5;
+          material.drag = 0.8;
+          material.bending_stiffness = stiffness;
+          material.bending_damping = 0.02 * stiffness;
+          CableDesc& cable = scene.cables[0];
+          const Vector3 up(std::sin(tilt), 0, std::cos(tilt)), along(std::cos(tilt), 0, -std::sin(tilt));
+          const Vector3 middle = 0.015 * up + 0.05 * along, half = 0.3 * (0.8 * along + 0.6 * Vector3::UnitY());
+          cable.initial.type = InitialShapeDesc::Type::straight;
+          cable.initial.from = middle - half;
+          cable.initial.to = middle + half;
+          ObstacleDesc box;
+          box.name = "box";
+          box.type = ShapeType::box;
+          box.size = {0.4, 0.6, thickness};
+          box.pose = {-0.5 * thickness * up.x(), 0, -0.5 * thickness * up.z(), 0, tilt, 0};
+          box.friction = 0.5;
+          scene.obstacles.push_back(box);
+          World world(scene, BoundaryInputs(1));
+          for (int i = 0; i < std::lround(3 / time_step); ++i) world.step(BoundaryInputs(1));
+          for (const Vector3& velocity : world.cables()[0].state.velocities) EXPECT_LT(velocity.norm(), 0.002);
+          const Ledger ledger = world.ledger();
+          const double size = 0.1 * 0.6 * 9.81 * 0.6;
+          EXPECT_GT(ledger.balance.dissipated.contact, 0);
+          EXPECT_LT(std::abs(ledger.unaccounted()), 1e-4 * size);
+        }
+}
+
 }  // namespace
 }  // namespace verlet_cable

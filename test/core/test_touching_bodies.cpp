@@ -244,9 +244,36 @@ TEST(TouchingBodies, AreHeldInsideObstaclesByClampsAtBoundedForces) {
   EXPECT_LT(std::abs(world.attachments()[0].force.z() + 0.05 * gravity), 1);
 }
 
+/// Whatever corners and edges are on the other side of a board, they come out on that of the middle, and rest: the board does no
+/// work on what stays. While they are inside they say so.
+TEST(TouchingBodies, ComeOutOfThinBoardsOnTheSideOfTheirMiddle) {
+  for (const double thickness : {0.004, 0.006, 0.01})
+    for (const double height : {-0.001, 0.001, 0.003})
+      for (const double tilt : {0.0, 0.25}) {
+        SCOPED_TRACE(testing::Message() << thickness << " m, " << height << " m, " << tilt);
+        SceneDesc scene = on_floor();
+        scene.time_step = 0.002;
+        const Vector3 up(std::sin(tilt), 0, std::cos(tilt)), middle = -0.5 * thickness * up, start = height * up;
+        ObstacleDesc board = obstacle("board", box({0.4, 0.4, thickness}), {middle.x(), 0, middle.z(), 0, tilt, 0});
+        board.friction = 0.6;
+        scene.obstacles = {board};
+        add_body(scene, "plug", 0.009, box({0.03, 0.016, 0.01}), {start.x(), 0, start.z(), 0, tilt + 0.3, 0});
+        const BoundaryInputs inputs = initial_frames(scene);
+        World world(scene, inputs);
+        EXPECT_EQ(world.step(inputs).status, StepResult::Status::inside_obstacle);
+        for (int i = 0; i < 500; ++i) EXPECT_LE(world.step(inputs).status, StepResult::Status::inside_obstacle);
+        const double lost = world.ledger().balance.dissipated.contact;
+        for (int i = 0; i < 250; ++i) ASSERT_EQ(world.step(inputs).status, StepResult::Status::ok) << i;
+        EXPECT_NEAR(world.bodies()[0].pose.position.dot(up), 0.005, 2e-5);
+        EXPECT_LT(largest_speed(world.bodies()[0]), 1e-6);
+        EXPECT_NEAR(world.ledger().balance.dissipated.contact, lost, 1e-9);
+      }
+}
+
 TEST(TouchingBodies, CopiesGoOnWithTheSameBytes) {
   SceneDesc scene = draped_box();
   scene.obstacles[0].pose = {0, 0, 0, 0, 0.1, 0};  // it sticks
+  (*scene.bodies[0].pose)[2] = 0.112;
   const BoundaryInputs inputs = initial_frames(scene);
   World world(scene, inputs);
   run(world, inputs, 0.3);

@@ -90,7 +90,7 @@ struct StepResult {
     ok,
     jumped,           ///< the velocity of a frame changed too much for a motion: what the frame holds was carried along
     overstretched,    ///< held points are further apart than the cable or net between them is long: it was lengthened
-    inside_obstacle,  ///< a cable is inside an obstacle, see Intrusion
+    inside_obstacle,  ///< a cable is inside an obstacle, see Intrusion, or a body is pushed out of one
     not_settled,      ///< no equilibrium was found to start from, or to settle in; said until the first step after that is done
     /// A substep of the smallest size did not converge, a net is held where it cannot be, or the step took too much work: the
     /// cable or net, or the bodies and their cables, lost their velocity and continue from rest. Or a cable is inside an

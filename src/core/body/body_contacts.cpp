@@ -1,11 +1,17 @@
 #include "body/body_contacts.h"
 
+#include <algorithm>
+
 namespace verlet_cable {
 
 Matrix36 motion_on_body(const Touch& touch) {
   Matrix36 motion = point_motion(touch.arm);
   motion.rightCols<3>() += touch.point.along * touch.turning.transpose();
   return motion;
+}
+
+bool BodyContacts::is_stuck() const {
+  return std::any_of(touches_.begin(), touches_.end(), is_pushed_out);
 }
 
 void BodyContacts::begin(const std::vector<MovingBody>& bodies, const std::vector<int>& member_of, double part) {

@@ -20,6 +20,9 @@ class BodyContacts {
   std::vector<Touch>& touches() { return touches_; }  ///< with obstacles
   const std::vector<Touch>& touches() const { return touches_; }
 
+  /// Whether anything is pressed by an obstacle that it is inside of.
+  bool is_stuck() const;
+
   /// `member_of`: of a body, by its index.
   void begin(const std::vector<MovingBody>& bodies, const std::vector<int>& member_of, double part);
   /// Sets where a contact with a cable acts, whose point is displaced so [m], and that of its centre line; its displacement

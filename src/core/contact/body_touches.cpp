@@ -1,6 +1,7 @@
 #include "contact/body_touches.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "contact/body_surfaces.h"
 
@@ -15,6 +16,8 @@ constexpr double arrival_substeps = 2, arrival_roundings = 4;
 /// [m/s^2] That bodies may be accelerated with besides their last acceleration.
 constexpr double spare_acceleration = 100;
 constexpr std::uint64_t obstacle_feature = std::uint64_t{1} << 31;
+/// The middle of a shape: the last of all features.
+constexpr std::uint64_t middle_feature = (std::uint64_t{1} << 32) - 1;
 
 Vector3 at(const Pose& pose, const Vector3& point) {
   return pose.position + pose.orientation * point;
@@ -40,10 +43,11 @@ PointMotion seen_from(const Pose& pose, const PointMotion& velocity, double time
           inside.orientation * (time * velocity.angular)};
 }
 
-const CachedContact* find_cached(const ContactCache& cache, const Touch& touch) {
-  const auto same = std::lower_bound(cache.begin(), cache.end(), touch,
-                                     [&](const CachedContact& a, const Touch& b) { return keys(a) < keys(b); });
-  return same != cache.end() && keys(*same) == keys(touch) ? &*same : nullptr;
+const CachedContact* find_cached(const ContactCache& cache, std::uint64_t key, std::uint64_t other_key) {
+  const auto sought = std::tie(key, other_key);
+  const auto same =
+      std::lower_bound(cache.begin(), cache.end(), sought, [](const CachedContact& c, const auto& of) { return keys(c) < of; });
+  return same != cache.end() && keys(*same) == sought ? &*same : nullptr;
 }
 
 }  // namespace
@@ -86,17 +90,19 @@ void BodyTouches::find_shape(const TouchingBody& touching, int index, const Movi
   const PointMotion past = relative_to(moving, velocity, h);
   const double ahead = rules.still ? 0 : h + time;
 
-  // `touch`: its normal, position and gap; `surface` [m]: of the obstacle, in its axes.
-  const auto add = [&](const Vector3& position, const Vector3& normal, const Vector3& surface, double gap,
-                       std::uint64_t feature) {
+  const std::uint64_t key = moving.obstacle->id, first_key = static_cast<std::uint64_t>(index) << 32;
+  const ContactCache& cache = touching.progress->contacts;
+  // `surface` [m]: of the obstacle, in its axes.
+  const auto add = [&](const Vector3& position, const Vector3& normal, const Vector3& surface, double gap, std::uint64_t feature,
+                       bool inside) {
     SurfaceMotion motion;
     if (moving.speed > 0) motion = touching_motion(moving, surface, normal, h);
     Touch touch;
     touch.velocity = rules.still ? Vector3::Zero() : velocity.at(position);
     const double approach = std::max(0.0, normal.dot(motion.displacement / h - touch.velocity));
     if (!(gap < reach_at(approach))) return;
-    touch.key = moving.obstacle->id;
-    touch.other_key = static_cast<std::uint64_t>(index) << 32 | feature;
+    touch.key = key;
+    touch.other_key = first_key | feature;
     touch.obstacle = moving.index;
     touch.body = touching.index;
     touch.position = position;
@@ -108,14 +114,8 @@ void BodyTouches::find_shape(const TouchingBody& touching, int index, const Movi
     touch.body_acceleration = accelerating.at(position);
     touch.other_motion = motion;
     touch.half_turn = moving.half_turn;
-    if (const CachedContact* last = find_cached(touching.progress->contacts, touch)) {
-      go_on_from(*last, touch);
-    } else {
-      touch.inside = gap < -(arrival_roundings * rounding + arrival_substeps * h * (speed + h * acceleration));
-    }
-    const double gentle = -gentle_velocity * contact_time(rules.time_step);
-    if (gap >= gentle) touch.inside = false;
-    if (touch.inside) touch.gap = gentle;
+    if (const CachedContact* last = find_cached(cache, key, touch.other_key)) go_on_from(*last, touch);
+    touch.inside = inside;
     anticipate(Scheme::conserving, h, time, Vector3::Zero(), touch);
     start_touch(touch);
     if (rules.still) hold_bound(touch.last_force, touch);
@@ -123,24 +123,46 @@ void BodyTouches::find_shape(const TouchingBody& touching, int index, const Movi
   };
 
   const Eigen::Matrix3d axes = moving.start.orientation.toRotationMatrix();
-  found_.clear();
   const bool is_sphere = std::holds_alternative<SphereShape>(shape), on_sphere = std::holds_alternative<SphereShape>(solid);
+  found_.clear();
   if (is_sphere || !on_sphere) {
     const FeatureSearch search{reach, padding, seen_from(moving.start, past, ahead)};
     find_feature_contacts(shape, rounding, in_obstacle, solid, 0, search, found_);
   }
-  for (const FeatureContact& found : found_)
-    add(at(moving.start, found.point), axes * found.normal, found.foot + padding * found.normal, found.distance - padding,
-        found.feature);
-  if (is_sphere) return;
-  found_.clear();
-  const FeatureSearch search{reach, padding, seen_from(pose, past, -ahead)};
-  find_feature_contacts(solid, 0, in_obstacle.inverse(), shape, rounding, search, found_);
-  for (const FeatureContact& found : found_) {
-    const Vector3 position = at(pose, found.foot), normal = pose.orientation * -found.normal;
-    add(position, normal, at(moving.start.inverse(), position - found.distance * normal), found.distance - padding,
-        obstacle_feature | found.feature);
+  found_on_obstacle_.clear();
+  if (!is_sphere) {
+    const FeatureSearch search{reach, padding, seen_from(pose, past, -ahead)};
+    find_feature_contacts(solid, 0, in_obstacle.inverse(), shape, rounding, search, found_on_obstacle_);
   }
+
+  // What is inside has one way out, that of its middle: its features' own ways may be opposite ones.
+  const double gentle = -gentle_velocity * contact_time(rules.time_step);
+  const double arrived = -(arrival_roundings * rounding + arrival_substeps * h * (speed + h * acceleration));
+  const bool was_inside = find_cached(cache, key, first_key | middle_feature) != nullptr;
+  const auto is_inside = [&](const FeatureContact& found, std::uint64_t feature) {
+    const double gap = found.distance - padding;
+    return gap < gentle && (was_inside || (gap < arrived && find_cached(cache, key, first_key | feature) == nullptr));
+  };
+  const bool inside =
+      std::any_of(found_.begin(), found_.end(), [&](const FeatureContact& f) { return is_inside(f, f.feature); }) ||
+      std::any_of(found_on_obstacle_.begin(), found_on_obstacle_.end(),
+                  [&](const FeatureContact& f) { return is_inside(f, obstacle_feature | f.feature); });
+  SurfacePoint out;
+  if (inside) out = closest_point(solid, middle, infinity);
+  const Vector3 way_out = axes * out.normal;
+  const auto add_feature = [&](const Vector3& position, const Vector3& normal, const Vector3& surface, double gap,
+                               std::uint64_t feature) {
+    if (!inside || (gap >= gentle && normal.dot(way_out) > 0)) add(position, normal, surface, gap, feature, false);
+  };
+  for (const FeatureContact& found : found_)
+    add_feature(at(moving.start, found.point), axes * found.normal, found.foot + padding * found.normal, found.distance - padding,
+                found.feature);
+  for (const FeatureContact& found : found_on_obstacle_) {
+    const Vector3 position = at(pose, found.foot), normal = pose.orientation * -found.normal;
+    add_feature(position, normal, at(moving.start.inverse(), position - found.distance * normal), found.distance - padding,
+                obstacle_feature | found.feature);
+  }
+  if (inside) add(box.center(), way_out, out.point + padding * out.normal, gentle, middle_feature, true);
 }
 
 void BodyTouches::follow_scheme(Scheme scheme, const ContactRules& rules, double h, std::vector<Touch>& touches) {

@@ -32,7 +32,7 @@ class BodyTouches {
   void find_shape(const TouchingBody& body, int shape, const MovingObstacle& moving, const ContactRules& rules, double h,
                   std::vector<Touch>& touches);
 
-  std::vector<FeatureContact> found_;
+  std::vector<FeatureContact> found_, found_on_obstacle_;  ///< of the shape, and of the obstacle
 };
 
 }  // namespace verlet_cable

@@ -520,8 +520,7 @@ void ContactSet::follow_scheme(Scheme scheme, const std::vector<SimulatedCable>&
 }
 
 bool ContactSet::is_stuck() const {
-  return std::any_of(touches_.begin(), touches_.end(),
-                     [](const Touch& touch) { return touch.inside && touch.mode != Touch::Mode::open; });
+  return std::any_of(touches_.begin(), touches_.end(), is_pushed_out);
 }
 
 void ContactSet::keep(const std::vector<ContactMember>& members) const {

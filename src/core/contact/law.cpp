@@ -103,6 +103,12 @@ void set_parts(const Vector3& trial, const Vector3& friction, double part, Touch
   touch.rolling_part = of(touch.across);
 }
 
+/// [N] Tension presses as it did in the substep before, and its turn leans that much; what strikes presses along the normal:
+/// leaning it would do work on what slides.
+Vector3 leaning_force(const Touch& touch) {
+  return std::min(touch.bound, touch.last_force) * touch.lean;
+}
+
 }  // namespace
 
 double stopping_stiffness(double mass, double time_step) {
@@ -162,7 +168,7 @@ bool evaluate_touch(const Vector3& w, Touch& touch) {
   Vector3 trial = touch.stuck_force - touch.stiffness * e;
   trial -= touch.normal.dot(trial) * touch.normal;
   if (!touch.bound_is_held) touch.bound = touch.normal_force;
-  const Vector3 lean = touch.bound * touch.lean;
+  const Vector3 lean = leaning_force(touch);
   trial -= lean;
   const double size = trial.norm(), limit = touch.friction * touch.bound;
   const Vector3 friction = bounded(trial, limit, touch);
@@ -181,7 +187,7 @@ Eigen::Matrix3d slope(const Touch& touch) {
   if (touch.rolling_count > 0) {
     slope += stiffness * (touch.rolling_part - touch.part) * touch.across * touch.across.transpose();
   } else if (touch.bound_is_held && touch.mode == Touch::Mode::slides) {
-    const Vector3 friction = touch.force - touch.normal_force * touch.normal - touch.bound * touch.lean;
+    const Vector3 friction = touch.force - touch.normal_force * touch.normal - leaning_force(touch);
     if (!friction.isZero(0)) slope -= stiffness * touch.part / friction.squaredNorm() * friction * friction.transpose();
   }
   return slope;
@@ -193,8 +199,9 @@ Vector3 corrected_force(const Touch& touch) {
 
 Vector3 following_friction(const Touch& touch) {
   if (touch.bound_is_held) return Vector3::Zero();
-  if (touch.mode != Touch::Mode::slides) return touch.lean;
-  return touch.force / touch.normal_force - touch.normal;
+  const Vector3 lean = touch.bound < touch.last_force ? touch.lean : Vector3(Vector3::Zero());
+  if (touch.mode != Touch::Mode::slides) return lean;
+  return lean + (touch.force - leaning_force(touch)) / touch.normal_force - touch.normal;
 }
 
 Eigen::Matrix3d full_slope(const Touch& touch) {
@@ -206,7 +213,7 @@ Vector3 remaining_friction(const Touch& touch) {
   const Vector3 slip = touch.displacement - touch.other_motion.displacement;
   Vector3 force = touch.stuck_force - touch.stiffness * slip;
   force -= touch.normal * touch.normal.dot(force);
-  const Vector3 lean = touch.bound * touch.lean;
+  const Vector3 lean = leaning_force(touch);
   if (touch.mode == Touch::Mode::slides) force = lean + bounded(force - lean, touch.friction * touch.bound, touch);
   return half_turned(touch, force);
 }

@@ -37,7 +37,7 @@ struct Touch {
   bool yields = false;                 ///< likewise two cables: with no more than stops them within a step
   double gap = 0;                      ///< [m] between the surfaces at the start of the substep
   double friction = 0;                 ///< Coulomb coefficient
-  Vector3 lean = Vector3::Zero();      ///< along the surface: friction is bounded around this times the normal force
+  Vector3 lean = Vector3::Zero();      ///< along the surface: friction is bounded around a force times this
   std::array<Rolling, 2> rolling;      ///< of the cables that may roll,
   int rolling_count = 0;               ///< so many
   double radius = 0;                   ///< [m] of the thinner cable
@@ -98,6 +98,11 @@ bool evaluate_touch(const Vector3& w, Touch& touch);
 inline void follow_correction(const Vector3& w, Touch& touch) {
   touch.correction = w - touch.displacement;
   touch.displacement = w;
+}
+
+/// Whether it presses on something that is inside.
+inline bool is_pushed_out(const Touch& touch) {
+  return touch.inside && touch.mode != Touch::Mode::open;
 }
 
 /// From now on friction is bounded by this normal force [N].

@@ -75,7 +75,7 @@ bool BodySettling::settle() {
     last = acceleration;
   }
   complete();
-  return calm >= calm_steps && !workspace_.contacts.is_stuck();
+  return calm >= calm_steps && !workspace_.contacts.is_stuck() && !workspace_.body_system.contacts().is_stuck();
 }
 
 bool BodySettling::settle_start() {

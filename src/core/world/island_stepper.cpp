@@ -468,6 +468,8 @@ void IslandStepper::complete(const Island& island, const StepProgress& progress,
     complete_cable(island.cables[k], workspace_.cables[k].boundary, progress.substeps);
   }
   for (const int body : island.bodies) found.change += follow_energy_of_body(body, state_);
+  for (const Touch& touch : workspace_.body_system.contacts().touches())
+    if (is_pushed_out(touch)) note_status(Status::inside_obstacle, rigid_body_id(touch.body), 0, found.bodies);
   for (const Touch& touch : workspace_.contacts.touches()) {
     if (touch.mode == Touch::Mode::open) continue;
     if (cannot_get_apart(touch))
