@@ -5,6 +5,7 @@
 
 #include "law/angle_energy.h"
 #include "law/resistance.h"
+#include "rod/outer_products.h"
 
 namespace verlet_cable {
 
@@ -49,13 +50,6 @@ Pair chi_curvature(Pair u, Pair chi, Pair slope) {
   const Pair energy_slope = 1.0 / 6 + u * (4.0 / 45 + u * (3.0 / 70)), energy_curvature = 4.0 / 45 + u * (6.0 / 70);
   const Pair of_square = (energy_curvature + (energy_slope + 0.5 * energy / left) / left) / left;  // of chi²
   return (0.5 * of_square - slope * slope) / chi;
-}
-
-/// m + (a b^T + b a^T) / 2
-PairSymmetric plus_both(const PairSymmetric& m, const PairVector& a, const PairVector& b) {
-  const PairVector p = both(0.5) * a;
-  return {m.xx + a.x * b.x, m.xy + (p.x * b.y + p.y * b.x), m.xz + (p.x * b.z + p.z * b.x),
-          m.yy + a.y * b.y, m.yz + (p.y * b.z + p.z * b.y), m.zz + a.z * b.z};
 }
 
 struct Turn {
