@@ -61,12 +61,9 @@ bool BodySettling::settle() {
     if (cancelled_ != nullptr && *cancelled_) break;
     const Outcome outcome = advance(h);
     work_left -= size * workspace_.body_system.solutions();
-    // The way grows with the square of a step.
-    const double reach = settling_reach * radius_, way = outcome.touches ? outcome.displacement : 0;
-    const double within_reach = way > 0 ? std::max(0.9 * std::sqrt(reach / way), 0.125) : infinity;
     if (!outcome.converged) {
-      h = std::max((way > reach ? within_reach : 0.25) * h, shortest_substep);
-      if (!(way > reach)) growth = slow_growth;
+      h = std::max(0.25 * h, shortest_substep);
+      growth = slow_growth;
       continue;
     }
     const double acceleration = 2 * outcome.displacement / (h * h);
@@ -74,7 +71,7 @@ bool BodySettling::settle() {
     const bool is_long = h >= last_step || (h >= long_step && outcome.displacement < settled_displacement * radius_);
     calm = acceleration < settled_acceleration && stands && (outcome.touches || is_long) ? calm + 1 : 0;
     const bool calms = outcome.touches || acceleration < last || h < first_step;
-    h = std::min(std::min(calms ? growth : falling_growth, within_reach) * h, last_step);
+    h = std::min((calms ? growth : falling_growth) * h, last_step);
     last = acceleration;
   }
   complete();
@@ -87,16 +84,16 @@ bool BodySettling::settle_start() {
   return settled;
 }
 
-/// Lets clamps on frames hold the material so that the cables have their rest twist between them and from junctions. Returns how
-/// far from that they were [rad].
+/// Lets clamps on frames hold the material so that the cables have their rest twist between them and from junctions. Returns how far
+/// from that they were [rad].
 double BodySettling::untwist() {
   const auto& attachments = state_.attachments;
   const auto is_on_frame = [&](const DirectionTarget& clamp) { return attachments[clamp.attachment].holder < 0; };
   double most = 0;
   for (const int cable : island_.cables) {
     std::vector<DirectionTarget>& clamps = state_.cable_progress[cable].targets.directions;
-    const bool is_branched = std::any_of(clamps.begin(), clamps.end(),
-                                         [&](const DirectionTarget& c) { return attachments[c.attachment].is_junction; });
+    const bool is_branched =
+        std::any_of(clamps.begin(), clamps.end(), [&](const DirectionTarget& c) { return attachments[c.attachment].is_junction; });
     if (is_branched) most = std::max(most, take_excess_twist(clamps, is_on_frame, state_.cables[cable].state));
   }
   return most;
@@ -234,8 +231,8 @@ void BodySettling::complete() {
   }
 }
 
-bool settle_bodies(const std::vector<char>& settles, bool start, State& state, Workspace& workspace,
-                   std::vector<std::string>& unsettled, const std::atomic<bool>* cancelled) {
+bool settle_bodies(const std::vector<char>& settles, bool start, State& state, Workspace& workspace, std::vector<std::string>& unsettled,
+                   const std::atomic<bool>* cancelled) {
   Islands islands;
   islands.build(state);
   bool all = true;
