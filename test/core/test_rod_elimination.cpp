@@ -60,7 +60,12 @@ struct RandomRod {
       set(joints.moment, i, vector(0.1));
     }
     if (c.touched)
-      for (const int i : {0, n / 3, n / 3, n - 1}) system.add_stiffness({0, i, between(0, 1)}, positive(1e5));
+      for (const int i : {0, n / 3, n / 3, n - 1}) {
+        // On the centre line, and on the surface
+        system.add_stiffness({0, i, between(0, 1)}, positive(1e5));
+        const Vector3 along = get(system.direction, i).normalized(), across = along.cross(vector(1)).normalized();
+        system.add_stiffness({0, i, between(0, 1), along, across, 0.1}, positive(1e5));
+      }
   }
 
   double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(generator); }
@@ -101,7 +106,7 @@ Solution solve_dense(const KktSystem& s, const RodStiffness& r, const RodJoints&
     const Vector3 d = get(s.direction, i);
     const double square = d.squaredNorm();
     a.block<3, 3>(x(i), x(i + 1)) += get(s.added_next, i);
-    a.block<3, 3>(x(i + 1), x(i)) += get(s.added_next, i);
+    a.block<3, 3>(x(i + 1), x(i)) += get(s.added_next, i).transpose();
     a.block<3, 3>(x(i), f(i)) -= one;
     a.block<3, 3>(x(i + 1), f(i)) += one;
     a.block<3, 3>(f(i), x(i)) -= one;
@@ -133,8 +138,11 @@ Solution solve_dense(const KktSystem& s, const RodStiffness& r, const RodJoints&
   for (int i = 0; i <= n; ++i) solution.displacement.push_back(u.segment<3>(x(i)));
   for (int i = 0; i < n; ++i) {
     const Vector3 d = get(s.direction, i), force = u.segment<3>(f(i));
-    // With what joins the nodes beyond what holds each of them.
-    solution.force.push_back(force - get(s.added_next, i) * (u.segment<3>(x(i + 1)) - u.segment<3>(x(i))));
+    // With what joins the nodes beyond what holds each of them, as it acts on the one that is nearer to an end.
+    const Matrix3d added = get(s.added_next, i), symmetric = 0.5 * (added + added.transpose());
+    const int inner = i < (n + 1) / 2 ? i + 1 : i;
+    solution.force.push_back(force - symmetric * (u.segment<3>(x(i + 1)) - u.segment<3>(x(i))) -
+                             (added - symmetric) * u.segment<3>(x(inner)));
     solution.multiplier.push_back(force.dot(d) / d.squaredNorm() - r.force_density[i] * u[e(i)]);
     solution.twist.push_back(u.segment<3>(w(i)).dot(d.normalized()));
   }

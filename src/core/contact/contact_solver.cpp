@@ -225,9 +225,9 @@ bool ContactSolver::iterate(std::vector<Participant>& participants, std::vector<
       largest = std::max(largest, size);
     }
     if (bodies_ != nullptr) {
-      const double size = body_accuracy * bodies_->correct();
+      const double size = bodies_->correct();
       if (!(size < largest_correction)) return false;
-      largest = std::max(largest, size);
+      largest = std::max(largest, body_accuracy * size);
     }
     // After a change the next correction may be as large as this one; else it is about that much smaller.
     const double ratio = i == 0 || changed ? 1 : largest / last;

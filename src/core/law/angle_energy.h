@@ -18,6 +18,12 @@ Real angle_energy(const Real& u) {
   return u + u * u / 6.0 + 2.0 / 45 * u * u * u + 1.0 / 70 * u * u * u * u;
 }
 
+/// psi''(u)
+template <class Real>
+Real angle_energy_curvature(const Real& u) {
+  return 1.0 / 3 + u * (4.0 / 15 + u * (6.0 / 35));
+}
+
 /// (psi(b) - psi(a)) / (b - a)
 template <class Real>
 Real mean_slope(const Real& a, const Real& b) {

@@ -407,6 +407,10 @@ double KirchhoffRod::calm_spin(CableState& state) const {
 /// `simple`: without what may be negative (Gauss and Newton's).
 void KirchhoffRod::set_stiffness(const VectorArray& direction, bool simple) {
   stiffness_.turning_part = simple ? 0 : 0.5 * part_;
+  // Of means over a substep the exact one is no derivative.
+  const bool exact = !simple && part_ == 1;
+  joints_.set_stiffness(exact);
+  clamp_joints_.set_stiffness(exact);
   const Pair turns = both(stiffness_.turning_part), spins = both(spin_rate_ / (h_ * h_));
   for (int i = 0; i < segments_; i += 2) {
     const PairVector d = neighbours(direction, i);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rod/outer_products.h"
+
 namespace verlet_cable {
 
 namespace {
@@ -79,19 +81,12 @@ PairSymmetric stiffened_by(const PairSymmetric& a, const PairSymmetric& m) {
   return {first.x, second.x, third.x, second.y, third.y, third.z};
 }
 
-/// How large the part of a segment's added coupling is that is not symmetric [N/m].
-double skew_size(const MatrixArray& m, int i) {
-  const double yz = m.row_y.z[i] - m.row_z.y[i], zx = m.row_z.x[i] - m.row_x.z[i], xy = m.row_x.y[i] - m.row_y.x[i];
-  return 0.5 * std::sqrt(yz * yz + zx * zx + xy * xy);
-}
-
-/// What is added at a node of each lane. Couplings are taken to be symmetric: both their nodes resist as much more as the rest
-/// could make at most.
-PairSymmetric added_at(const KktSystem& system, int left, int right) {
-  const auto skew = [&](int node) {
-    return skew_size(system.added_next, node) + (node > 0 ? skew_size(system.added_next, node - 1) : 0.0);
+/// n of the part n x of the added couplings of two segments that is not symmetric, in the directions of their eliminations.
+PairVector skew_pair(const MatrixArray& m, int left, int right) {
+  const auto half_difference = [&](const std::vector<double>& a, const std::vector<double>& b) {
+    return Pair{0.5, -0.5} * (pair(a, left, right) - pair(b, left, right));
   };
-  return plus_diagonal(pair(system.added, left, right), Pair{skew(left), skew(right)});
+  return {half_difference(m.row_z.y, m.row_y.z), half_difference(m.row_x.z, m.row_z.x), half_difference(m.row_y.x, m.row_x.y)};
 }
 
 bool is_positive(Pair value) {
@@ -165,7 +160,7 @@ PairSymmetric RodElimination::ends(const KktSystem& system) const {
   const Pair mobility{mobility_[0], mobility_[1]};
   const PairSymmetric free{mobility, Pair{}, Pair{}, mobility, Pair{}, mobility};
   if constexpr (!stiffened) return free;
-  PairSymmetric added = added_at(system, 0, segments_) + symmetric_pair(system.added_next, 0, segments_ - 1);
+  PairSymmetric added = pair(system.added, 0, segments_) + symmetric_pair(system.added_next, 0, segments_ - 1);
   if (padded_ > segments_) added = times(Pair{1, 0}, added);
   return stiffened_by(free, added);
 }
@@ -224,12 +219,23 @@ bool RodElimination::factor_lanes(const KktSystem& system, const RodStiffness& s
 
     Pair inertia = pair(inertia_, left + 1, right);
     if (last) inertia *= Pair{1, 0};
-    PairMatrix image;
+    PairMatrix image, beside;
     if constexpr (stiffened) {
-      e.inertia = added_at(system, left + 1, right) + symmetric_pair(system.added_next, left, right - 1) +
+      e.inertia = pair(system.added, left + 1, right) + symmetric_pair(system.added_next, left, right - 1) +
                   symmetric_pair(system.added_next, left + 1, right);
       if (last) e.inertia = times(Pair{1, 0}, e.inertia);
       e.inertia = plus_diagonal(e.inertia, inertia);
+      e.skew = skew_pair(system.added_next, left, right);
+      e.lever = cross(e.direction, e.skew);
+      const Pair along = dot(e.skew, e.direction);
+      beside = plus_outer(PairMatrix{{along, Pair{}, Pair{}}, {Pair{}, along, Pair{}}, {Pair{}, Pair{}, along}},
+                          both(-1) * e.direction, e.skew);
+      // The node stretches the segment, too: by that it gives way and resists otherwise, as do the two together.
+      const PairVector stretched = e.stretch * e.direction, levered = give * e.lever;
+      give = plus_both(give, both(2) * stretched, levered + (0.5 * dot(e.lever, levered)) * stretched);
+      turned = plus_outer(turned, stretched, transposed_times(turned, e.lever));
+      e.inertia = plus_outer(e.inertia, -e.stretch, e.lever);
+      beside = plus_outer(beside, -e.stretch * e.lever, e.stretch_turn);
       e.give = stiffened_by(give, e.inertia);
       image = e.inertia * turned;
     } else {
@@ -237,8 +243,12 @@ bool RodElimination::factor_lanes(const KktSystem& system, const RodStiffness& s
       e.give = stiffened_by(give, inertia);
       image = inertia * turned;
     }
-    e.turned = turned - e.give * image;
     const PairSymmetric behind = resist;
+    if constexpr (stiffened) {
+      resist = minus_product(resist, both(-1) * turned, beside);
+      image = image - both(-1) * beside;
+    }
+    e.turned = turned - e.give * image;
     resist = minus_product(resist, both(-1) * image, e.turned);
     const Pair free{left + 1 == segments_ ? 1 : system.movable[left + 1], last || right == segments_ ? 1 : system.movable[right]};
     if (free[0] == 0 || free[1] == 0) {
@@ -294,6 +304,11 @@ void RodElimination::solve_lanes(const KktSystem& system, const std::vector<doub
     else
       return e.inertia.xx * v;
   };
+  // The moment on a segment of the node after it.
+  const auto moment_of = [](const Elimination& e, const PairVector& place) {
+    return dot(e.skew, e.direction) * place - dot(e.direction, place) * e.skew -
+           (e.stretch * dot(e.lever, place)) * e.stretch_turn;
+  };
   // A node with another hanging on to it shares its load with that.
   const double part = padded_ > segments_ ? 0.5 : 1;
   const Pair share{1, part}, next_share{segments_ == 1 ? part : 1, part};
@@ -310,10 +325,16 @@ void RodElimination::solve_lanes(const KktSystem& system, const std::vector<doub
     PairVector load = pair(system.load, left + 1, right);
     if (k == 0) load = next_share * load;
     if (k + 1 == half) load = Pair{1, 0} * load;
+    if constexpr (stiffened) {
+      give = give + (e.stretch * dot(e.lever, give)) * e.direction;
+      load = load + stretch * e.lever;
+    }
     const PairVector rest = load - inertia_times(e, give);
+    if constexpr (stiffened) moment = moment - moment_of(e, give);
     if (held != held_inside_.end() && held->step == k) {
       PairVector place{};
       if (system.moves_held) place = (1.0 - held->free) * pair(system.held_displacement, left + 1, right);
+      if constexpr (stiffened) moment = moment + (1.0 - held->free) * moment_of(e, give - place);
       const PairVector away = give - place;
       held->force = held->stiffness * away;
       moment = moment - transposed_times(held->turned, away);
@@ -349,18 +370,22 @@ void RodElimination::solve_lanes(const KktSystem& system, const std::vector<doub
     const PairVector node = e.give * force + e.turned * rotation + f.give;
     put(node, left + 1, right, solution_.displacement);  // in the middle both are one node
     force = force + f.load - inertia_times(e, node);
+    if constexpr (stiffened)
+      force = force - (dot(e.skew, e.direction) * rotation - dot(e.skew, rotation) * e.direction -
+                       (e.stretch * dot(e.stretch_turn, rotation)) * e.lever);
     if (held != held_inside_.begin() && (held - 1)->step == k) {
       --held;
       force = held->free * force - held->force - held->turned * rotation;
     }
+    if constexpr (stiffened) force = force + (e.stretch * dot(e.direction, force)) * e.lever;
     put(Pair{1, -1} * force, left, right, solution_.force);
 
     Pair along = dot(e.direction, force);
-    if constexpr (stiffened) along = along + dot(e.stretch_turn, rotation);
+    if constexpr (stiffened) along = along + dot(e.stretch_turn, rotation) + dot(e.lever, node);
     const Pair stretch = e.gap_share * pair(system.gap, left, right) + e.stretch * along;
     const PairVector change = cross(rotation, e.direction) + stretch * e.direction;
     PairVector transmitted = force;
-    if constexpr (stiffened) transmitted = transmitted + e.across * change;
+    if constexpr (stiffened) transmitted = transmitted + e.across * change + cross(e.skew, node);
     const Pair multiplier = e.inverse_square * dot(transmitted, e.direction) - e.force_density * stretch;
     const Pair twist = dot(e.axis, rotation);
     solution_.multiplier[left] = multiplier[0];

@@ -51,7 +51,9 @@ class RodElimination {
     PairMatrix turned_pivot;  ///< B times that
     PairMatrix carried;       ///< the pivot times the coupling to the next segment
     PairVector stretch_turn;  ///< moment of the segment's own stiffness against a stretch
-    PairSymmetric across;     ///< the added coupling of its two nodes
+    PairSymmetric across;     ///< the added coupling of its two nodes, its symmetric part
+    PairVector skew;          ///< and the rest: that of the node after it, x, and its change d is x . (skew x d)
+    PairVector lever;         ///< direction x skew: what a stretch does to that node
     Pair inverse_square, gap_share, stretch, force_density;
   };
   struct Forward {

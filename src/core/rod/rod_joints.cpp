@@ -5,6 +5,7 @@
 
 #include "law/angle_energy.h"
 #include "law/resistance.h"
+#include "rod/outer_products.h"
 
 namespace verlet_cable {
 
@@ -41,6 +42,14 @@ Pair mean_chi_slope(Pair a, Pair chi_a, Pair b, Pair chi_b) {
   const Pair energy_slope = 1.0 / 6 + 2.0 / 45 * (a + b) + 1.0 / 70 * (a * a + a * b + b * b);
   const Pair energies = relative_angle_energy(a) + relative_angle_energy(b);
   return (0.5 * (left_a + left_b) * energy_slope + 0.25 * energies) / (left_a * left_b * (chi_a + chi_b));
+}
+
+/// The second derivative of chi. `slope`: the first.
+Pair chi_curvature(Pair u, Pair chi, Pair slope) {
+  const Pair left = half_turn_left(u), energy = relative_angle_energy(u);
+  const Pair energy_slope = 1.0 / 6 + u * (4.0 / 45 + u * (3.0 / 70)), energy_curvature = 4.0 / 45 + u * (6.0 / 70);
+  const Pair of_square = (energy_curvature + (energy_slope + 0.5 * energy / left) / left) / left;  // of chi²
+  return (0.5 * of_square - slope * slope) / chi;
 }
 
 struct Turn {
@@ -128,6 +137,8 @@ void RodJoints::resize(int count) {
   bending_loss.assign(size, 0.0);
   twisting_loss.assign(size, 0.0);
   moment.assign(size, 0.0);
+  convex_stiffness.assign(size, 0.0);
+  exact_stiffness.assign(size, 0.0);
   stiffness.assign(size, 0.0);
 }
 
@@ -245,7 +256,26 @@ void RodJoints::evaluate(double part, const FrameMotion& frames_before, int befo
     stiff = plus_outer(stiff, of_twist.slope(part), twist_gradient);
     stiff = plus_outer(stiff, of_y.slope(part), y_gradient);
     stiff = plus_outer(stiff, of_z.slope(part), z_gradient);
-    put(stiff, stiffness, i);
+    put(stiff, convex_stiffness, i);
+    if (part != 1) continue;
+
+    // The curvatures of the three angles: those of the axes that turn, of twist and of the whole bend.
+    const Pair along = y_moment * along_y + z_moment * along_z, across = y_moment * along_z - z_moment * along_y;
+    const PairVector y_axis = s * a.y - c * a.z, z_axis = c * a.y + s * a.z;
+    const PairVector bent = cross(b.x, y_moment * y_axis + z_moment * z_axis);
+    const PairVector turned = cross(b.x, y_moment * z_axis - z_moment * y_axis);
+    const Pair whole = isotropic * mean_slope(end.u, end.u) + chi_slope * along;
+    const Pair of_twist_and_bend = (twist_moment + 0.5 * end_chi * across) / (2.0 - end.u) + chi_slope * across;
+    PairSymmetric exact{};
+    exact = plus_outer(exact, of_twist.slope(1) - 0.25 * end_chi * along, twist_gradient);
+    exact = plus_outer(exact, beyond_y.slope(1), y_gradient);
+    exact = plus_outer(exact, beyond_z.slope(1), z_gradient);
+    exact =
+        plus_outer(exact, isotropic * angle_energy_curvature(end.u) + chi_curvature(end.u, end_chi, chi_slope) * along, about_x);
+    exact = plus_both(exact, -2.0 * chi_slope * bent - of_twist_and_bend * twist_gradient, about_x);
+    exact = plus_both(exact, end_chi * turned, twist_gradient);
+    exact = plus_both(exact, end_chi * (y_moment * y_axis + z_moment * z_axis) - whole * a.x, b.x);
+    put(plus_diagonal(exact, (1.0 - end.u) * whole - end_chi * along), exact_stiffness, i);
   }
 }
 

@@ -89,12 +89,16 @@ class RodJoints {
   /// Finds moments and stiffnesses. `part`: where in the substep forces are taken.
   void evaluate(double part, const FrameMotion& frames_before, int before, const FrameMotion& frames_after, int after, int first,
                 int last);
+  void set_stiffness(bool exact) { stiffness = exact ? exact_stiffness : convex_stiffness; }
   double start_twist(int joint) const { return twist_[joint]; }    ///< [rad]
   double end_twist(int joint) const { return end_twist_[joint]; }  ///< [rad]
 
   std::vector<double> bending_loss, twisting_loss;  ///< [J] what damping takes in the substep
   VectorArray moment;                               ///< [N m] on the frame before
-  SymmetricArray stiffness;                         ///< [N m] of the moment against rotations, without what turns with the frames
+  /// [N m] Of the moment against rotations, without what turns with the frames: the part of it that is never negative (Gauss and
+  /// Newton's), and, where forces are taken at the end, the second derivative of the energy by the rotation of the frame after
+  /// against the one before. What the matrix has is one of them.
+  SymmetricArray convex_stiffness, exact_stiffness, stiffness;
 
  private:
   // Over the substep; [N m]
