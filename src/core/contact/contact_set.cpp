@@ -334,6 +334,10 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
   const auto pressed_at = [&](int i, double fraction) {
     PressedPart part = part_within(shape, local_[i], local_[i + 1], fraction, materials[i].radius + moving.obstacle->padding);
     part.segment = i;
+    part.first = nearest_[i].distance;
+    part.second = nearest_[i + 1].distance;
+    part.is_straight = has_edges;
+    part.is_over_face = nearest_[i].normal.dot(nearest_[i + 1].normal) >= same_normal;
     return part;
   };
   bool last = false;  // whether the segment before is close: its nodes have been visited
@@ -396,7 +400,7 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
       if (!has_sections) continue;
       PressedPart& pressed = parts_.back() = pressed_at(i, deepest.fraction);
       pressed.flat = flat;
-      pressed.is_face = has_edges;
+      pressed.is_over_face = pressed.is_over_face || part.has_value();
       pressed.begins = at_begin;
       pressed.deepest = at_deepest;
       pressed.ends = at_end;

@@ -10,6 +10,8 @@ namespace {
 
 /// Each halves the part of a segment in which a place is looked for.
 constexpr int halvings = 30;
+/// Relative.
+constexpr double distance_rounding = 1e-9;
 
 struct PressedPlace {
   double fraction = 0;
@@ -40,6 +42,14 @@ double covered_length(const Vector3& from, const Vector3& way, const Vector3& ot
   return std::min(length, sine * wide > other_diameter ? other_diameter / sine : wide);
 }
 
+/// Whether a segment runs out beside a face that the one before or behind it, `other`, comes closer to.
+bool is_beside(const PressedPart& part, const PressedPart& other) {
+  if (!part.is_straight || part.is_over_face || std::abs(part.segment - other.segment) != 1) return false;
+  const bool before = other.segment < part.segment;
+  const double near = before ? part.first : part.second, far = before ? part.second : part.first;
+  return near < far && (before ? other.first : other.second) <= near * (1 + distance_rounding);
+}
+
 }  // namespace
 
 PressedPart part_within(const Shape& shape, const Vector3& start, const Vector3& end, double fraction, double reach) {
@@ -65,7 +75,10 @@ void set_pressed_lengths(const CableMaterials& materials, const CableState& stat
                          const std::vector<int>& nodes, std::size_t first, std::vector<Vector3>& feet,
                          std::vector<Touch>& touches) {
   for (std::size_t k = first; k < touches.size(); ++k) touches[k].soft_stiffness = 0;
-  for (const PressedPart& part : parts) {
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const PressedPart& part = parts[k];
+    const bool is_outside = (k > 0 && is_beside(part, parts[k - 1])) || (k + 1 < parts.size() && is_beside(part, parts[k + 1]));
+    if (is_outside) continue;
     const int i = part.segment;
     const double length = state.rest_lengths[i], stiffness = side_stiffness(materials[i]);
     const auto share = [&](double weight, const std::array<PressedPlace, 4>& places) {
@@ -74,7 +87,7 @@ void set_pressed_lengths(const CableMaterials& materials, const CableState& stat
       std::size_t count = 0;
       for (const PressedPlace& place : places)
         if (place.touch >= 0 && place.fraction >= part.from && place.fraction <= part.to) pressed[count++] = place;
-      share_part(pressed.data(), pressed.data() + count, part.from, part.to, part.is_face ? 1 : 0.5,
+      share_part(pressed.data(), pressed.data() + count, part.from, part.to, part.is_straight ? 1 : 0.5,
                  [&](int touch, double of_segment) {
                    const double pressed_length = weight * of_segment * length;
                    if (!(pressed_length > 0)) return;

@@ -18,7 +18,9 @@ struct PressedPart {
   int segment = 0;
   double from = 0, to = 0;  ///< fractions of the segment
   double flat = 0;          ///< how much of it the places where the face begins and ends bear, the deepest place bears the rest
-  bool is_face = false;     ///< under a face it is pressed alike up to its ends
+  double first = 0, second = 0;  ///< [m] of its nodes from the surface
+  bool is_straight = false;      ///< the surface has edges: it is pressed alike up to where a face ends, and not beside it
+  bool is_over_face = false;     ///< all of it is, or part of it
   double deepest_fraction = 0;
   int begins = -1, deepest = -1, ends = -1;
 };
