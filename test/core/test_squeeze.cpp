@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "../support/nets.h"
 #include "../support/scenes.h"
 #include "contact/law.h"
 #include "contact/pressed_lengths.h"
@@ -116,6 +117,7 @@ TEST(Squeeze, LimitTellsWhatSqueezesOnce) {
 
 TEST(Squeeze, ClosesTheLedger) {
   SceneDesc scene = between_jaws(20, 0.41, 0.44, 0.5 * radius);
+  scene.gravity.acceleration = {0, 0, -9.81};
   World world(scene, initial_frames(scene));
   scenes::run(world, 500);
   const Ledger ledger = world.ledger();

@@ -42,12 +42,12 @@ double covered_length(const Vector3& from, const Vector3& way, const Vector3& ot
   return std::min(length, sine * wide > other_diameter ? other_diameter / sine : wide);
 }
 
-/// Whether a segment runs out beside a face that the one before or behind it, `other`, comes closer to.
+/// Whether a segment runs out beside a face that the one before or behind it, `other`, is over, or comes closer to.
 bool is_beside(const PressedPart& part, const PressedPart& other) {
   if (!part.is_straight || part.is_over_face || std::abs(part.segment - other.segment) != 1) return false;
   const bool before = other.segment < part.segment;
   const double near = before ? part.first : part.second, far = before ? part.second : part.first;
-  return near < far && (before ? other.first : other.second) <= near * (1 + distance_rounding);
+  return near < far && (other.is_over_face || (before ? other.first : other.second) <= near * (1 + distance_rounding));
 }
 
 }  // namespace
