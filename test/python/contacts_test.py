@@ -101,12 +101,12 @@ def test_batches_have_what_their_worlds_have():
         batch.contacts(2)
 
 
-def jaws(segments, step, compression, shift, stiffness=1e5, width=0.02, friction=0.6):
-    """Two jaws take a rope on a table at x = 0, `shift` of a segment behind a node, and lift it."""
+def jaws(segments, step, compression, middle, stiffness=1e5, width=0.02, friction=0.6):
+    """Two jaws take a rope on a table at x = 0, where its `middle` [m] is beside it, and lift it: by 0.2 m in 2 s."""
     scene = lying(transverse_stiffness=stiffness, friction=friction)
     del scene['obstacles'][0]['frame'], scene['obstacles'][0]['initial_pose']
     scene['time_step'] = step
-    start = -0.5 * (segments // 2) / segments - shift * 0.5 / segments
+    start = middle - 0.25
     scene['cables'][0].update(segments=segments)
     scene['cables'][0]['initial'].update({'from': [start, 0, RADIUS], 'to': [start + 0.5, 0, RADIUS]})
     for name, side in ('left', 1), ('right', -1):
@@ -125,25 +125,37 @@ def jaws(segments, step, compression, shift, stiffness=1e5, width=0.02, friction
     move(steps, lambda s: (0.015 + (closed - 0.015) * s, 0.0155))
     move(steps, lambda s: (closed, 0.0155))
     squeeze = [abs(world.contact_force(name)[1]) for name in ('left', 'right')]
-    move(steps, lambda s: (closed, 0.0155 + lifted * s * s * (3 - 2 * s)))
+    move(4 * steps, lambda s: (closed, 0.0155 + lifted * s * s * (3 - 2 * s)))
     move(2 * steps, lambda s: (closed, 0.0155 + lifted))
     height = world.positions('c')[numpy.abs(world.positions('c')[:, 0]).argsort()[:2], 2].mean()
     return world, squeeze, height
 
 
-@pytest.mark.parametrize('segments, step, shift', [
-    (10, 0.001, 0.5), (10, 0.01, 0.1), (20, 0.002, 0.5), (20, 0.005, 0), (20, 0.01, 0.5), (50, 0.002, 0.3), (100, 0.005, 0.5),
-    (200, 0.01, 0.25)])
-def test_jaws_squeeze_with_the_stiffness_times_what_they_compress(segments, step, shift):
+@pytest.mark.parametrize('segments, step, middle', [
+    (10, 0.001, 0.025), (10, 0.01, 0.005), (20, 0.002, 0.012), (20, 0.005, 0), (20, 0.01, 0.02), (50, 0.002, 0.003),
+    (100, 0.005, 0.0025), (120, 0.01, 0.001)])
+def test_jaws_squeeze_with_the_stiffness_times_what_they_compress(segments, step, middle):
     compression = 0.001
-    world, squeeze, height = jaws(segments, step, compression, shift)
+    world, squeeze, height = jaws(segments, step, compression, middle)
     assert squeeze == pytest.approx([1e5 * compression * 0.02] * 2, rel=0.03)
     assert height > 0.18
     ledger = world.ledger()
     assert all(value >= -1e-9 for value in ledger['dissipated'].values()), ledger
 
 
-def test_a_grip_holds_what_friction_bears():
-    # 0.6 * 2 N on each side bears far more than 0.25 N; 0.06 N does not.
-    assert jaws(20, 0.005, 1e-3, 0.5)[2] > 0.18
-    assert jaws(20, 0.005, 1e-3, 0.5, friction=0.03)[2] < 0.1
+@pytest.mark.parametrize('segments, step', [(10, 0.005), (11, 0.002), (20, 0.01), (21, 0.001), (50, 0.005), (101, 0.01)])
+def test_a_grip_holds_what_friction_bears(segments, step):
+    # By its middle, a node or the middle of a segment; faster than at rest by 0.3 m/s^2, 3 %.
+    just = WEIGHT / 2 / (1e5 * 0.001 * 0.02)
+    assert jaws(segments, step, 0.001, 0, friction=1.1 * just)[2] > 0.18
+    assert jaws(segments, step, 0.001, 0, friction=0.9 * just)[2] < 0.1
+
+
+def test_a_limit_names_what_squeezes():
+    world = jaws(20, 0.005, 0.001, 0, stiffness=1e5)[0]
+    assert not [event for event in world.events() if event.type == 'LIMIT']
+    scene = lying(maximum_squeeze=0.4)
+    world = world_of(scene)
+    world.step(200)
+    told = [event for event in world.events() if event.type == 'LIMIT']
+    assert told and {event.other for event in told} == {'table'} and 'above maximum_squeeze, 0.4 N/m' in told[0].message
