@@ -24,7 +24,7 @@ WorldEvent event_of(const World& world, const Break& broken) {
 WorldEvent event_of(const World& world, const Excursion& excursion) {
   const std::string& cable = world.cables()[excursion.cable].model->name;
   return {EventType::limit,
-          {cable, {}, excursion.node, {}},
+          {cable, {}, excursion.node, excursion.other},
           "cable " + quoted(cable) + " at node " + std::to_string(excursion.node) + ": " + excursion_text(excursion)};
 }
 

@@ -14,6 +14,14 @@ from cable_client import CableClient, Messages, cable, distance, node_at
 
 SCENE = open(sys.argv[1]).read()
 QUIET = SCENE + 'broadcast_tf: false\n'
+GRAVITY = 9.81
+LYING = '''
+materials: {m: {linear_density: 1.0, radius: 0.01, bending_stiffness: 0.01}}
+obstacles:
+  - {name: table, type: plane, frame: turned, initial_pose: [0, 0, 0, 1.5707963267948966, 0, 0], pose: [0, 0, 0, -1.5707963267948966, 0, 0]}
+cables: [{name: c, length: 1, segments: 10, material: m, initial: {type: straight, from: [0, 0, 0.01], to: [1, 0, 0.01]}}]
+bodies: [{name: brick, mass: 2.0, shapes: [{type: box, size: [0.2, 0.2, 0.1]}], pose: [1.25, 0, 0.05, 0, 0, 0]}]
+'''
 WITHOUT_BODIES = '{materials: {m: {linear_density: 0.1, radius: 0.01}}, cables: [{name: c, length: 1, segments: 5, material: m}]}'
 
 
@@ -114,6 +122,17 @@ class BodiesTest(unittest.TestCase):
         for attachment, frame in {'plugged': 'plate', 'bolt': 'world', 'axle': 'world'}.items():
             with Messages(f'/robot/cable/wrench/{attachment}', WrenchStamped) as wrenches:
                 self.assertEqual(wrenches.next().header.frame_id, frame)
+
+    def test_what_lies_on_a_table_is_its_contact_force(self):
+        self.assertTrue(self.node.load_scene(yaml=LYING).success)
+        # The table's frame is turned by a quarter about x: up is its y, and y its -z.
+        with Messages('/robot/cable/contact/table', WrenchStamped) as on_table, \
+                Messages('/robot/cable/contact/brick', WrenchStamped) as on_brick:
+            table = on_table.wait_for(lambda m: abs(m.wrench.force.y + 3.0 * GRAVITY) < 1e-3, 'the weight on the table')
+            brick = on_brick.wait_for(lambda m: abs(m.wrench.force.z - 2.0 * GRAVITY) < 1e-3, 'the weight of the brick')
+        self.assertEqual([table.header.frame_id, brick.header.frame_id], ['turned', 'brick'])
+        # 1 kg of rope at 0.5 m along x, and 2 kg at 1.25 m.
+        self.assertAlmostEqual(table.wrench.torque.z, -3.0 * GRAVITY, delta=1e-2)
 
     def test_a_cable_is_pinned_to_a_body(self):
         pinned = self.node.pin(node_at('rope', 10), frame_id='plate', keep_offset=True, name='tied')

@@ -13,7 +13,9 @@ using test::replaced;
 using test::sound_scene;
 
 std::string with_sections(const std::string& sections, const std::string& more_materials = "") {
-  const std::string materials = "  wire: {linear_density: 0.3, radius: 0.002, minimum_bend_radius: 0.05, maximum_tension: 20}\n";
+  const std::string materials =
+      "  wire: {linear_density: 0.3, radius: 0.002, minimum_bend_radius: 0.05, maximum_tension: 20, "
+      "transverse_stiffness: 2e5, maximum_squeeze: 300}\n";
   return replaced(replaced(sound_scene, "cables:", materials + more_materials + "cables:"),
                   "    color:", "    sections: " + sections + "\n    color:");
 }
@@ -28,6 +30,10 @@ TEST(SectionKeys, AreRead) {
   ASSERT_NE(scene.find_material("rov_tether"), nullptr) << "a preset comes along";
   EXPECT_EQ(scene.find_material("wire")->minimum_bend_radius, 0.05);
   EXPECT_EQ(scene.find_material("wire")->maximum_tension, 20);
+  EXPECT_EQ(scene.find_material("wire")->transverse_stiffness, 2e5);
+  EXPECT_EQ(scene.find_material("wire")->maximum_squeeze, 300);
+  EXPECT_EQ(scene.find_material("m")->transverse_stiffness, infinity);
+  EXPECT_EQ(scene.find_material("m")->maximum_squeeze, infinity);
   EXPECT_EQ(scene.find_material("m")->minimum_bend_radius, 0);
   EXPECT_EQ(scene.find_material("m")->maximum_tension, infinity);
 }

@@ -46,9 +46,9 @@ struct CableState {
   std::vector<double> rest_twist;  ///< [rad/m] a node, n + 1: twist at which there is no torque; empty if it is zero
   /// a node, n + 1: which part of the cable within half a segment of it bends, above 0 to 1; empty if all of it does
   std::vector<double> flexible_fraction;
-  /// a node, n + 1: for how many more steps it counts as beyond the limits of its material, of bend radius and of tension (of the
-  /// segment that starts there); empty if its materials have no limits
-  std::vector<std::array<int, 2>> beyond_limits;
+  /// a node, n + 1: for how many more steps it counts as beyond the limits of its material, of bend radius, and of tension and
+  /// squeeze (of the segment that starts there); empty if its materials have no limits
+  std::vector<std::array<int, 3>> beyond_limits;
   std::vector<Vector3> positions;   ///< [m] a node, n + 1
   std::vector<Vector3> velocities;  ///< [m/s] a node, n + 1, at the time of the positions
   /// [m/s^2] a node, n + 1, mean over the last substep: the initial guess of the next one

@@ -42,6 +42,9 @@ struct MaterialDesc {
   double breaking_tension = infinity;  ///< [N], > 0
   double minimum_bend_radius = 0;      ///< [m], >= 0; a smaller radius is reported as an event; 0: never
   double maximum_tension = infinity;   ///< [N], > 0; a larger tension is reported as an event
+  /// [N/m^2], > 0: force per length and compression of the section between what squeezes it; infinite: stiff
+  double transverse_stiffness = infinity;
+  double maximum_squeeze = infinity;  ///< [N/m], > 0; a larger force per length across the cable is reported as an event
 };
 
 struct PointMassDesc {

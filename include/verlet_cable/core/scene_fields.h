@@ -69,7 +69,7 @@ constexpr std::array<Field<FluidDesc>, 4> fluid_fields{{
     {"tangential_drag", &FluidDesc::tangential_drag, "", not_negative},
 }};
 
-constexpr std::array<Field<MaterialDesc>, 13> material_fields{{
+constexpr std::array<Field<MaterialDesc>, 15> material_fields{{
     {"linear_density", &MaterialDesc::linear_density, "kg/m", positive, true},
     {"radius", &MaterialDesc::radius, "m", positive, true},
     {"axial_stiffness", &MaterialDesc::axial_stiffness, "N", positive_or_infinite},
@@ -83,6 +83,8 @@ constexpr std::array<Field<MaterialDesc>, 13> material_fields{{
     {"breaking_tension", &MaterialDesc::breaking_tension, "N", positive_or_infinite},
     {"minimum_bend_radius", &MaterialDesc::minimum_bend_radius, "m", not_negative},
     {"maximum_tension", &MaterialDesc::maximum_tension, "N", positive_or_infinite},
+    {"transverse_stiffness", &MaterialDesc::transverse_stiffness, "N/m^2", positive_or_infinite},
+    {"maximum_squeeze", &MaterialDesc::maximum_squeeze, "N/m", positive_or_infinite},
 }};
 
 constexpr Field<MaterialDesc, BendingStiffness> bending_stiffness_field{"bending_stiffness", &MaterialDesc::bending_stiffness,

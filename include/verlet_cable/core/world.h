@@ -139,16 +139,18 @@ struct Break {
   double limit = 0;   ///< [N] the segment's breaking tension
 };
 
-/// A cable has begun to bend more tightly than the minimum_bend_radius of its material, or its tension to exceed maximum_tension.
+/// A cable has begun to bend more tightly than the minimum_bend_radius of its material, its tension to exceed
+/// maximum_tension, or what it touches to squeeze it with more than maximum_squeeze.
 /// There is one per excursion: as long as it lasts at neighbouring nodes, and for a tenth of a second after. Edits and breaks
 /// keep its indices valid.
 struct Excursion {
-  enum class Kind { bend, tension };
+  enum class Kind { bend, tension, squeeze };
   int cable = 0;  ///< index into World::cables()
-  int node = 0;   ///< the worst one; for tension, the first node of the worst segment
+  int node = 0;   ///< the worst one; otherwise the first node of the worst segment
   Kind kind = Kind::bend;
-  double value = 0;    ///< the radius [m] or tension [N] there
+  double value = 0;    ///< the radius [m], tension [N] or squeeze [N/m] there
   double allowed = 0;  ///< the limit of the material
+  std::string other;   ///< what squeezes
 };
 
 /// A jump of an attachment: its velocity changed by more than the scene's jump_speed within a step, for no longer than 5 ms. What
@@ -200,12 +202,13 @@ struct Findings {
   std::vector<StatusFinding> statuses;
   // In the last step
   std::vector<Break> breaks;
-  std::vector<Excursion> excursions;           ///< that have begun
-  std::vector<int> caught, released;           ///< indices into World::guides() of clips that caught their cable, or let it go
-  std::vector<Jump> jumps;                     ///< that have ended, at most one per attachment
-  std::vector<Intrusion> intrusions;           ///< at most one per cable and obstacle
-  std::vector<UnaccountedEnergy> unaccounted;  ///< beyond what rounding and tolerances explain
-  std::vector<SimulatedContact> contacts;      ///< where cables touched something in the last substep
+  std::vector<Excursion> excursions;            ///< that have begun
+  std::vector<int> caught, released;            ///< indices into World::guides() of clips that caught their cable, or let it go
+  std::vector<Jump> jumps;                      ///< that have ended, at most one per attachment
+  std::vector<Intrusion> intrusions;            ///< at most one per cable and obstacle
+  std::vector<UnaccountedEnergy> unaccounted;   ///< beyond what rounding and tolerances explain
+  std::vector<SimulatedContact> contacts;       ///< where cables touched something
+  std::vector<SimulatedContact> body_contacts;  ///< where bodies touched obstacles
 };
 
 /// The simulation: cables and nets whose attachments follow frames, bodies and particles. It is a value type: a copy is a
@@ -261,6 +264,10 @@ class World {
   GuideView view_guide(int guide) const;
   const std::vector<Obstacle>& obstacles() const;  ///< those of the scene, of the links of its robot, then those that edits added
   const Findings& findings() const;
+  /// On an obstacle, a link of a robot (with all that follows its frame), or a body, by name.
+  ContactWrench contact_wrench(const std::string& name) const;
+  /// Of the obstacle, body or cable that is touched.
+  const std::string& touched_name(const SimulatedContact& contact) const;
 
   /// Starts the waiting cables and nets whose frames are known now, in their default or given shapes. Returns how many.
   int start_waiting(const BoundaryInputs& inputs);

@@ -55,7 +55,7 @@ void append(const CableState& tail, CableState& cable) {
   const std::array<double, 2> straight{0, 0};
   extend_where_needed(tail.rest_curvature, tail_size, size, straight, cable.rest_curvature);
   extend_where_needed(tail.flexible_fraction, tail_size, size, 1.0, cable.flexible_fraction);
-  extend_where_needed(tail.beyond_limits, tail_size, size, std::array<int, 2>{0, 0}, cable.beyond_limits);
+  extend_where_needed(tail.beyond_limits, tail_size, size, std::array<int, 3>{0, 0, 0}, cable.beyond_limits);
   extend_where_needed(tail.rest_twist, tail_size, size, 0.0, cable.rest_twist);
   extend_where_needed(tail.joint_twist, tail_size, size, 0.0, cable.joint_twist);
   extend(tail.masses, cable.masses);

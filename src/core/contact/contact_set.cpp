@@ -7,6 +7,7 @@
 #include "chain/direction.h"
 #include "chain/point_motion.h"
 #include "contact/friction_bound.h"
+#include "contact/pressed_lengths.h"
 #include "contact/touched_place.h"
 #include "geometry/part_over_face.h"
 #include "geometry/segment_geometry.h"
@@ -316,8 +317,28 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
   feet_.clear();
   local_.resize(n + 1);
   nearest_.resize(n + 1);
+  const bool has_sections = materials.any(has_section);
+  parts_.clear();
+  if (has_sections) node_touches_.assign(n + 1, -1);
+  // The index of what is added meanwhile, if it is one.
+  const auto added = [&](const auto& add) {
+    const std::size_t before = touches_.size();
+    add();
+    return touches_.size() > before ? static_cast<int>(before) : -1;
+  };
   const auto touch_node = [&](int i) {
-    if (held_[i] == 0) touch_at(node_point(index, i, n), i, Place::node, nearest_[i]);
+    if (held_[i] != 0) return;
+    const int touch = added([&] { touch_at(node_point(index, i, n), i, Place::node, nearest_[i]); });
+    if (has_sections) node_touches_[i] = touch;
+  };
+  const auto pressed_at = [&](int i, double fraction) {
+    PressedPart part = part_within(shape, local_[i], local_[i + 1], fraction, materials[i].radius + moving.obstacle->padding);
+    part.segment = i;
+    part.first = nearest_[i].distance;
+    part.second = nearest_[i + 1].distance;
+    part.is_straight = has_edges;
+    part.is_over_face = nearest_[i].normal.dot(nearest_[i + 1].normal) >= same_normal;
+    return part;
   };
   bool last = false;  // whether the segment before is close: its nodes have been visited
   for (const Stretch& stretch : stretches) {
@@ -338,8 +359,10 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
       if (close) visit(i + 1, far + length);
       if (close || last) touch_node(i);
       last = close;
-      if (!close || flat || held_[i] != 0 || held_[i + 1] != 0) continue;
+      if (!close || held_[i] != 0 || held_[i + 1] != 0) continue;
       const double first = nearest_[i].distance, second = nearest_[i + 1].distance;
+      if (has_sections) parts_.push_back(pressed_at(i, first < second ? 0 : 1));
+      if (flat) continue;
       if (0.5 * (first + second - length) > far) continue;
       // Where it is nowhere deeper than this, nodes bear it.
       const double radius = materials[i].radius, shallow = std::max(first, second) - (has_edges ? 0 : least * radius);
@@ -364,18 +387,29 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
       }
       // Less by what the node behind the edge presses with.
       const auto touch_end = [&](const SegmentSurfacePoint& end, Place where, double inside, double node_distance) {
-        touch_at({index, i, end.fraction}, i, where, end.surface, flat * inside, node_distance);
+        return added([&] { touch_at({index, i, end.fraction}, i, where, end.surface, flat * inside, node_distance); });
       };
-      if (begins) touch_end(part->begin, Place::face_begins, 1 - part->begin.fraction, first);
+      const int at_begin = begins ? touch_end(part->begin, Place::face_begins, 1 - part->begin.fraction, first) : -1;
       const double cut = first + deepest.fraction * (second - first) - deepest.surface.distance;
+      int at_deepest = -1;
       if (cut > bulge && flat < 1) {
         deepest.surface.distance += bulge;
-        touch_at({index, i, deepest.fraction}, i, Place::deepest, deepest.surface, 1 - flat);
+        at_deepest = added([&] { touch_at({index, i, deepest.fraction}, i, Place::deepest, deepest.surface, 1 - flat); });
       }
-      if (ends) touch_end(part->end, Place::face_ends, part->end.fraction, second);
+      const int at_end = ends ? touch_end(part->end, Place::face_ends, part->end.fraction, second) : -1;
+      if (!has_sections) continue;
+      PressedPart& pressed = parts_.back() = pressed_at(i, deepest.fraction);
+      pressed.flat = flat;
+      pressed.is_over_face = pressed.is_over_face || part.has_value();
+      pressed.begins = at_begin;
+      pressed.deepest = at_deepest;
+      pressed.ends = at_end;
+      if (begins) pressed.from = std::max(pressed.from, part->begin.fraction);
+      if (ends) pressed.to = std::min(pressed.to, part->end.fraction);
     }
   }
   if (last) touch_node(n);
+  if (has_sections) set_pressed_lengths(materials, state, parts_, node_touches_, first_touch, feet_, touches_);
   if (cuts)
     bound_friction_at_corners(state, first_touch, feet_, touches_, pressed_);
   else
@@ -457,6 +491,13 @@ void ContactSet::add_pair(const std::vector<SimulatedCable>& cables, const std::
   put_beside(b.state, -near.normal, CableMaterials(b)[j].radius - 0.5 * overlap, touch.other);
   touch.velocity = at_point(touch.point, a.state.velocities) - at_point(touch.other, b.state.velocities);
   touch.position = on_centre_line(near.first, a.state.positions);
+  const MaterialDesc &first_material = CableMaterials(a)[i], &second_material = CableMaterials(b)[j];
+  if (has_section(first_material) || has_section(second_material)) {
+    const auto way = [](const SimulatedCable& cable, int k) -> Vector3 {
+      return cable.state.positions[k + 1] - cable.state.positions[k];
+    };
+    set_crossed_lengths(first_material, a.state.positions[i], way(a, i), second_material, b.state.positions[j], way(b, j), touch);
+  }
   add(touch, members[places_[near.first.cable]], h);
 }
 

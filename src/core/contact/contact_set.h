@@ -6,6 +6,7 @@
 #include "contact/cache.h"
 #include "contact/moving_obstacle.h"
 #include "contact/nearest_touches.h"
+#include "contact/pressed_lengths.h"
 #include "contact/segment_grid.h"
 #include "target/kinematic_targets.h"
 #include "verlet_cable/core/world.h"
@@ -97,6 +98,9 @@ class ContactSet {
   std::vector<SurfacePoint> nearest_;  ///< on its surface; likewise
   std::vector<Vector3> feet_;          ///< [m] on its surface, in its frame, of each of the touches
   std::vector<std::size_t> pressed_;   ///< scratch
+  // Of a cable whose materials have sections, on one obstacle
+  std::vector<PressedPart> parts_;
+  std::vector<int> node_touches_;  ///< indices into touches_; -1: none
 };
 
 }  // namespace verlet_cable

@@ -25,6 +25,8 @@ constexpr double linear_enough = 0.05;
 constexpr double slope_enough = 0.3;
 /// Relative, of depths between which a secant is taken.
 constexpr double least_secant = 1e-3;
+/// [radii] By which a side of a soft section can be pressed in; then it is as stiff as any.
+constexpr double softest_depth = 0.8;
 /// With which friction across two oblique cables that roll is found.
 constexpr int oblique_passes = 8;
 
@@ -33,7 +35,7 @@ struct ForceAndSlope {
 };
 
 /// Of a depth [m], >= 0.
-ForceAndSlope depth_law(double depth, const Touch& touch) {
+ForceAndSlope stiff_law(double depth, const Touch& touch) {
   const double x = std::min(depth / touch.radius, deepest), y = x / soft_depth, y4 = y * y * y * y;
   // What cannot get apart is not torn apart.
   const double scale = touch.yields ? 0 : contact_modulus * touch.radius;
@@ -42,16 +44,43 @@ ForceAndSlope depth_law(double depth, const Touch& touch) {
   return {touch.share * (force + slope * (depth - x * touch.radius)), touch.share * slope};
 }
 
-/// [m] At which the law has a force [N], within some percent.
-double depth_of(double force, const Touch& touch) {
+/// What cannot get apart presses with the stiff law alone, as gently as that is then.
+bool is_soft(const Touch& touch) {
+  return touch.soft_stiffness < infinity && !touch.yields;
+}
+
+/// Of a depth [m], >= 0.
+ForceAndSlope depth_law(double depth, const Touch& touch) {
+  if (!is_soft(touch)) return stiff_law(depth, touch);
+  const double soft = touch.soft_stiffness;
+  if (depth <= touch.soft_depth) return {soft * depth, soft};
+  const ForceAndSlope stiff = stiff_law(depth - touch.soft_depth, touch);
+  return {soft * depth + stiff.force, soft + stiff.slope};
+}
+
+/// [m] At which the stiff law has a force [N], within some percent.
+double stiff_depth_of(double force, const Touch& touch) {
   const double scaled = force / (touch.share * contact_modulus * touch.radius * touch.radius);
   double depth = touch.radius * std::min(std::sqrt(scaled), std::cbrt(std::sqrt(scaled) * soft_depth * soft_depth));
-  if (depth > deepest * touch.radius) depth = force / depth_law(deepest * touch.radius, touch).force * deepest * touch.radius;
+  if (depth > deepest * touch.radius) depth = force / stiff_law(deepest * touch.radius, touch).force * deepest * touch.radius;
+  for (int i = 0; i < 2; ++i) {
+    const ForceAndSlope law = stiff_law(depth, touch);
+    depth += (force - law.force) / law.slope;
+  }
+  return std::max(depth, 0.0);
+}
+
+/// [m] At which the law has a force [N], likewise.
+double depth_of(double force, const Touch& touch) {
+  if (!is_soft(touch)) return stiff_depth_of(force, touch);
+  const double beyond = force - touch.soft_stiffness * touch.soft_depth;
+  if (beyond <= 0) return force / touch.soft_stiffness;
+  double depth = touch.soft_depth + stiff_depth_of(beyond, touch);
   for (int i = 0; i < 2; ++i) {
     const ForceAndSlope law = depth_law(depth, touch);
     depth += (force - law.force) / law.slope;
   }
-  return std::max(depth, 0.0);
+  return std::max(depth, touch.soft_depth);
 }
 
 /// [N/m] With which the law is linearised at a depth, where cables have come to press with a force [N] by the linearisation
@@ -134,6 +163,11 @@ double gentle_gap(double radius, double contact_time) {
 
 double force_of_depth(double depth, const Touch& touch) {
   return depth > 0 ? depth_law(depth, touch).force / touch.share : 0;
+}
+
+void soften(double stiffness, Touch& touch) {
+  touch.soft_stiffness = stiffness;
+  touch.soft_depth = softest_depth * touch.radius;
 }
 
 void start_touch(Touch& touch) {

@@ -19,6 +19,7 @@ struct Rolling {
 /// How a contact resists: with w the displacement over the substep of what touches relative to what is touched, e = rate * w -
 /// offset is the displacement that is expected at the end of the substep and a little later (see `anticipate`), and
 ///   normal force     f = max(0, force of the depth -gap - n . e)
+/// (of soft sections: their stiffness times the depth as far as they are soft, and beyond that the stiff law's besides)
 ///   friction        -k (bristle + tangential part of e), at most friction * f, and across a cable that rolls a part of that
 /// What bounds friction is f itself or, where that is held, an f of before: then friction has a potential, whose minimum Newton's
 /// method finds.
@@ -29,20 +30,23 @@ struct Touch {
   std::uint64_t key = 0, other_key = 0;  ///< what touches what; ascending in a list of touches
   CablePoint point, other;
   int obstacle = -1;
-  int body = -1;                       ///< what touches the obstacle, or is touched; index into World::bodies()
-  Vector3 position = Vector3::Zero();  ///< [m] of the point
-  Vector3 normal = Vector3::UnitZ();   ///< out of what is touched
-  bool inside = false;                 ///< it was deep inside from the start: it is pushed out gently
-  double inside_for = 0;               ///< [s] it has been inside
-  bool yields = false;                 ///< likewise two cables: with no more than stops them within a step
-  double gap = 0;                      ///< [m] between the surfaces at the start of the substep
-  double friction = 0;                 ///< Coulomb coefficient
-  Vector3 lean = Vector3::Zero();      ///< along the surface: friction is bounded around a force times this
-  std::array<Rolling, 2> rolling;      ///< of the cables that may roll,
-  int rolling_count = 0;               ///< so many
-  double radius = 0;                   ///< [m] of the thinner cable
-  double share = 1;                    ///< of the force that the law has at its depth: it bears with others
-  double base_stiffness = 0;           ///< [N/m] at no depth, of a share of 1
+  int body = -1;                        ///< what touches the obstacle, or is touched; index into World::bodies()
+  Vector3 position = Vector3::Zero();   ///< [m] of the point
+  Vector3 normal = Vector3::UnitZ();    ///< out of what is touched
+  bool inside = false;                  ///< it was deep inside from the start: it is pushed out gently
+  double inside_for = 0;                ///< [s] it has been inside
+  bool yields = false;                  ///< likewise two cables: with no more than stops them within a step
+  double gap = 0;                       ///< [m] between the surfaces at the start of the substep
+  double friction = 0;                  ///< Coulomb coefficient
+  Vector3 lean = Vector3::Zero();       ///< along the surface: friction is bounded around a force times this
+  std::array<Rolling, 2> rolling;       ///< of the cables that may roll,
+  int rolling_count = 0;                ///< so many
+  double radius = 0;                    ///< [m] of the thinner cable
+  double share = 1;                     ///< of the force that the law has at its depth: it bears with others
+  double base_stiffness = 0;            ///< [N/m] at no depth, of a share of 1
+  double length = 0, other_length = 0;  ///< [m] of the cables that it presses on; 0 where no material asks for it
+  double soft_stiffness = infinity;     ///< [N/m] of the sections that it squeezes; infinite: of the law alone
+  double soft_depth = 0;                ///< [m] as far as they are soft
   double rate = 1;
   Vector3 offset = Vector3::Zero();               ///< [m]
   Vector3 stuck_force = Vector3::Zero();          ///< [N] friction at the start of the substep, as it is turned in the middle
@@ -71,6 +75,10 @@ struct Touch {
   Vector3 across = Vector3::Zero();                            ///< which is this direction
   enum class Mode { open, sticks, slides } mode = Mode::open;  ///< at first that of the substep before
 };
+
+/// Makes a touch that of sections whose stiffness in series is this [N/m]: a section's share of the compression between two sides
+/// is half, so that for each side it has twice the `transverse_stiffness` times the length that is pressed. Before `start_touch`.
+void soften(double stiffness, Touch& touch);
 
 /// [N/m] Of a contact without load, with a mass [kg] that it stops within about a step [s].
 double stopping_stiffness(double mass, double time_step);

@@ -116,6 +116,7 @@ EditResult World::Implementation::apply(const edit::RemoveObstacle& remove) {
   for (Intrusion& intrusion : findings.intrusions)
     if (intrusion.obstacle > index) --intrusion.obstacle;
   findings.contacts.clear();
+  findings.body_contacts.clear();
   return {true, "", name};
 }
 

@@ -253,6 +253,7 @@ void World::Implementation::forget_contacts(int index) {
   state.cable_progress[index].contacts.clear();
   for (CableProgress& progress : state.cable_progress) forget_cable(id, progress.contacts);
   findings.contacts.clear();
+  findings.body_contacts.clear();
   islands.value.invalidate();
 }
 

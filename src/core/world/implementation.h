@@ -11,6 +11,7 @@
 #include "world/island_stepper.h"
 #include "world/islands.h"
 #include "world/junctions.h"
+#include "world/limits.h"
 #include "world/not_copied.h"
 #include "world/state.h"
 #include "world/workspace.h"
@@ -31,6 +32,7 @@ struct World::Implementation {
   NotCopied<std::vector<IslandOutcome>> island_outcomes;  ///< one an island
   NotCopied<std::vector<NetSolver>> net_solvers;          ///< one a net
   NotCopied<ParticleStepper> particle_stepper;
+  NotCopied<std::vector<Squeeze>> squeezes;
   NotCopied<std::vector<MovingObstacle>> moving_obstacles;  ///< of nets, particles and cables that settle
 
   // Stages of a step

@@ -475,8 +475,6 @@ void IslandStepper::complete(const Island& island, const StepProgress& progress,
     if (cannot_get_apart(touch))
       note_status(Status::degraded, cable_id(touch.point.cable), touch.point.segment, outcomes_[touch.point.cable].result,
                   DegradedCause::no_room);
-    found.contacts.push_back({touch.point.cable, touch.point.segment, touch.position, touch.normal, touch.force, touch.obstacle,
-                              touch.other.cable, touch.other.segment, touch.obstacle < 0 ? touch.body : -1});
   }
 }
 

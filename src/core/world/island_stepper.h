@@ -6,6 +6,7 @@
 
 #include "world/islands.h"
 #include "world/state.h"
+#include "world/step_contacts.h"
 #include "world/step_progress.h"
 #include "world/workspace.h"
 
@@ -25,7 +26,7 @@ struct IslandOutcome {
   StepResult bodies;                  ///< status and first body that is not ok
   std::vector<Jump> jumps;            ///< of what holds bodies, that the step found to be over
   std::vector<Intrusion> intrusions;  ///< the deepest of each cable and obstacle
-  std::vector<SimulatedContact> contacts;
+  StepContacts contacts;
   std::optional<StepProgress> unfinished;  ///< what is left waits for `resume`
   bool exhausted = false;                  ///< the step took more work than it may
   EnergyBalance balance;                   ///< besides those of its cables

@@ -6,6 +6,7 @@
 
 #include "rod/joint_views.h"
 #include "verlet_cable/core/cable_materials.h"
+#include "world/step_contacts.h"
 
 namespace verlet_cable {
 
@@ -15,7 +16,7 @@ namespace {
 constexpr double quiet_time = 0.1;
 
 bool has_limit(const MaterialDesc& material) {
-  return material.minimum_bend_radius > 0 || material.maximum_tension < infinity;
+  return material.minimum_bend_radius > 0 || material.maximum_tension < infinity || material.maximum_squeeze < infinity;
 }
 
 /// Looks at the loads of one kind, node by node, in ascending order; a node may have several.
@@ -27,8 +28,8 @@ class Watch {
     worst_.kind = kind;
   }
 
-  /// `load`: of what is allowed; `value` and `allowed`: in the limit's own unit.
-  void add(int node, double load, double value, double allowed) {
+  /// `load`: of what is allowed; `value` and `allowed`: in the limit's own unit; `other`: what does it.
+  void add(int node, double load, double value, double allowed, const std::string& other = {}) {
     if (!(load > 1)) return;
     if (last_ < 0 || node > last_ + 1) {
       finish();
@@ -42,6 +43,7 @@ class Watch {
     worst_.node = node;
     worst_.value = value;
     worst_.allowed = allowed;
+    worst_.other = other;
   }
 
   /// Those at neighbouring nodes, if there were any, are an excursion that is told if it is new.
@@ -90,14 +92,39 @@ void watch_tension(int index, int quiet_steps, const CableMaterials& materials, 
   watch.finish();
 }
 
+/// What squeezes a section, from wherever it does: the force [N/m] that a contact presses with on a length.
+void watch_squeeze(int index, int quiet_steps, const CableMaterials& materials, const State& state,
+                   const std::vector<SimulatedContact>& contacts, std::vector<Squeeze>& squeezes, CableState& cable,
+                   std::vector<Excursion>& found) {
+  squeezes.clear();
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const SimulatedContact& contact = contacts[k];
+    const double force = contact.normal.dot(contact.force);
+    if (contact.cable == index && contact.length > 0)
+      squeezes.push_back({contact.segment, force / contact.length, &name_of_touched(contact, state)});
+    if (contact.other_cable == index && contact.other_length > 0)
+      squeezes.push_back({contact.other_segment, force / contact.other_length, &state.cables[contact.cable].model->name});
+  }
+  std::sort(squeezes.begin(), squeezes.end(), [](const Squeeze& a, const Squeeze& b) {
+    return a.segment != b.segment ? a.segment < b.segment : a.force > b.force;
+  });
+  Watch watch(index, Excursion::Kind::squeeze, quiet_steps, cable, found);
+  for (const Squeeze& squeeze : squeezes) {
+    const double most = materials[squeeze.segment].maximum_squeeze;
+    watch.add(squeeze.segment, squeeze.force / most, squeeze.force, most, *squeeze.other);
+  }
+  watch.finish();
+}
+
 }  // namespace
 
 void watch_limits(SimulatedCable& cable) {
   if (cable.state.beyond_limits.empty() && CableMaterials(cable).any(has_limit))
-    cable.state.beyond_limits.assign(cable.state.nodes(), {0, 0});
+    cable.state.beyond_limits.assign(cable.state.nodes(), {0, 0, 0});
 }
 
-void find_excursions(State& state, std::vector<Excursion>& found) {
+void find_excursions(const std::vector<SimulatedContact>& contacts, State& state, std::vector<Squeeze>& squeezes,
+                     std::vector<Excursion>& found) {
   const int quiet_steps = 1 + static_cast<int>(std::ceil(quiet_time / state.scene->time_step));
   for (std::size_t k = 0; k < state.cables.size(); ++k) {
     CableState& cable = state.cables[k].state;
@@ -105,7 +132,9 @@ void find_excursions(State& state, std::vector<Excursion>& found) {
     const CableMaterials materials(state.cables[k]);
     watch_bends(static_cast<int>(k), quiet_steps, materials, state.cable_progress[k].targets.directions, cable, found);
     watch_tension(static_cast<int>(k), quiet_steps, materials, cable, found);
-    for (std::array<int, 2>& steps : cable.beyond_limits)
+    if (materials.any([](const MaterialDesc& material) { return material.maximum_squeeze < infinity; }))
+      watch_squeeze(static_cast<int>(k), quiet_steps, materials, state, contacts, squeezes, cable, found);
+    for (std::array<int, 3>& steps : cable.beyond_limits)
       for (int& left : steps) left = std::max(left - 1, 0);
   }
 }

@@ -33,7 +33,7 @@ template <class T>
 auto fields(T& x, const MaterialDesc*) {
   return std::tie(x.linear_density, x.radius, x.axial_stiffness, x.bending_stiffness, x.torsional_stiffness, x.axial_damping,
                   x.bending_damping, x.torsional_damping, x.drag, x.friction, x.rolling_friction, x.breaking_tension,
-                  x.minimum_bend_radius, x.maximum_tension);
+                  x.minimum_bend_radius, x.maximum_tension, x.transverse_stiffness, x.maximum_squeeze);
 }
 template <class T>
 auto fields(T& x, const NamedMaterial*) {

@@ -61,7 +61,7 @@ void World::Implementation::end_step(StepResult& result) {
   told_unsettled = findings.unsettled.size();
   collect_outcomes(result);
   close_ledger();
-  find_excursions(state, findings.excursions);
+  find_excursions(findings.contacts, state, squeezes.value, findings.excursions);
   apply_breaks(result);
   assert_no_violation(state);
   step_nets_and_particles(result);
@@ -96,6 +96,7 @@ void World::Implementation::forget_last_step() {
   findings.intrusions.clear();
   findings.statuses.clear();
   findings.contacts.clear();
+  findings.body_contacts.clear();
   findings.unaccounted.clear();
 }
 
@@ -199,12 +200,12 @@ void World::Implementation::collect_outcomes(StepResult& result) {
     result.max_strain = std::max(result.max_strain, outcome.result.max_strain);
     append(outcome.jumps, findings.jumps);
   }
-  for (const IslandOutcome& outcome : island_outcomes.value) {
+  for (IslandOutcome& outcome : island_outcomes.value) {
     note({outcome.bodies.body, outcome.bodies.status, outcome.bodies.node, 0, outcome.bodies.cause}, result);
     result.exhausted = result.exhausted || outcome.exhausted;
     append(outcome.jumps, findings.jumps);
     append(outcome.intrusions, findings.intrusions);
-    append(outcome.contacts, findings.contacts);
+    outcome.contacts.collect(findings.contacts, findings.body_contacts);
   }
   for (const Intrusion& found : findings.intrusions) {
     const double strain = cable_outcomes.value[found.cable].result.max_strain;

@@ -111,6 +111,8 @@ bool IslandStepper::advance_part(Island& island, const PartOfStep& part, bool to
     note_substep(island.cables[k], of_cable.boundary, of_cable.result, part.to() - part.from());
     unresolved += unresolved_of(of_cable.boundary, of_cable.result);
   }
+  found.contacts.add(workspace_.contacts.touches(), workspace_.body_system.contacts().touches(), state_.cables,
+                     part.to() - part.from());
   found.balance += substep_;
   // Of a substep that damps it is known what its laws do; the rest of what goes is what it is to take.
   if (is_damped) unresolved = before + accounted(island, found) - energy_at(island, part.to());

@@ -11,6 +11,7 @@
 #include "binding/arguments.h"
 #include "binding/batch_arguments.h"
 #include "binding/batch_arrays.h"
+#include "binding/contact_array.h"
 #include "binding/edit_methods.h"
 #include "binding/motion_argument.h"
 #include "binding/run_steps.h"
@@ -224,6 +225,14 @@ void add_batch_class(py::module_& module) {
       .def("twist", read<Quantity::twist>, py::arg("name"), "(count, n - 1) or (count, records, n - 1) [rad/m].")
       .def("orientations", read<Quantity::orientations>, py::arg("name"), "(count, n, 4) or (count, records, n, 4): x, y, z, w.")
       .def("wrench", read<Quantity::wrench>, py::arg("attachment"), "(count, 6) or (count, records, 6) [N, N m].")
+      .def(
+          "contacts",
+          [](const PythonBatch& self, std::int64_t world) {
+            return contact_array(use(self)[read_world_index(world, use(self).size())].world());
+          },
+          py::arg("world"), "As World.contacts, of one of the worlds.")
+      .def("contact_force", read<Quantity::contact_force>, py::arg("name"),
+           "(count, 6) or (count, records, 6) [N, N m], as World.contact_force.")
       .def("body_pose", read<Quantity::body_pose>, py::arg("name"), "(count, 7) or (count, records, 7).")
       .def("body_twist", read<Quantity::body_twist>, py::arg("name"), "(count, 6) or (count, records, 6) [m/s, rad/s].")
       .def("observations", observe, py::arg("parts"),

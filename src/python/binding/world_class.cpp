@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "binding/arguments.h"
+#include "binding/contact_array.h"
 #include "binding/edit_methods.h"
 #include "binding/motion_argument.h"
 #include "binding/run_steps.h"
@@ -172,6 +173,18 @@ void add_world_class(py::module_& module) {
       .def("wrench", read<Quantity::wrench>, py::arg("attachment"),
            "(6,) force [N] and torque [N m] on the holder, in the axes of the fixed frame, mean over the last step; the torque "
            "is about the point of the attachment.")
+      .def(
+          "contacts", [](const PythonWorld& world) { return contact_array(use(world)); },
+          "Where cables touched obstacles, bodies and cables in the last step: a structured array with the fields of Contact.msg "
+          "after that of the cable: cable, segment, position (3,) [m] on its centre line, normal (3,) out of what is touched, "
+          "force (3,) [N] on the cable, mean over the step, and other, the name of what is touched. Contacts of cables with "
+          "cables "
+          "are there twice, once for each. After an edit there are none until the next step.")
+      .def(
+          "contact_force", read<Quantity::contact_force>, py::arg("name"),
+          "(6,) force [N] and torque [N m] of the cables and bodies that touch an obstacle, a link of a robot (with all that "
+          "follows its frame) or a body, on it, in the axes of the fixed frame, mean over the last step; the torque is about the "
+          "origin of its frame.")
       .def("body_pose", read<Quantity::body_pose>, py::arg("name"), "(7,) x, y, z [m], qx, qy, qz, qw of the frame of a body.")
       .def(
           "body_twist", read<Quantity::body_twist>, py::arg("name"),

@@ -83,6 +83,14 @@ const Attachment& find_attachment(const World& world, const std::string& name) {
   names.refuse("attachment", name);
 }
 
+ContactWrench find_contact_wrench(const World& world, const std::string& name) {
+  const ContactWrench wrench = world.contact_wrench(name);
+  if (wrench.frame >= 0) return wrench;
+  Names names;
+  for (const std::string& other : solid_names(world)) names.add(other);
+  names.refuse("name", name);
+}
+
 double* write(const Vector3& vector, double* to) {
   return std::copy_n(vector.data(), 3, to);
 }
@@ -123,6 +131,9 @@ QuantityShape shape_of(const World& world, Quantity quantity, const std::string&
     case Quantity::wrench:
       find_attachment(world, name);
       return {6, 0};
+    case Quantity::contact_force:
+      find_contact_wrench(world, name);
+      return {6, 0};
     case Quantity::body_pose:
       find_body(world, name);
       return {7, 0};
@@ -162,6 +173,11 @@ void copy_quantity(const World& world, Quantity quantity, const std::string& nam
     case Quantity::wrench: {
       const Attachment& attachment = find_attachment(world, name);
       write(attachment.torque, write(attachment.force, to));
+      return;
+    }
+    case Quantity::contact_force: {
+      const ContactWrench wrench = find_contact_wrench(world, name);
+      write(wrench.torque, write(wrench.force, to));
       return;
     }
     case Quantity::body_pose: {

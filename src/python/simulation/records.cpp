@@ -20,6 +20,7 @@ std::vector<std::string> names_of(const World& world, Quantity quantity) {
   if (quantity == Quantity::wrench)
     for (const Attachment& attachment : world.attachments())
       if (is_named(attachment)) names.push_back(attachment.name);
+  if (quantity == Quantity::contact_force) names = solid_names(world);
   if (quantity == Quantity::body_pose || quantity == Quantity::body_twist)
     for (const SimulatedBody& body : world.bodies())
       if (!body.is_junction) names.push_back(body.name);

@@ -66,18 +66,6 @@ bool is_there(const World& world, const SimulatedBody& body) {
          body.velocity.allFinite() && body.angular_velocity.allFinite();
 }
 
-std::vector<SimulatedContact> contacts_of_both(const World& world) {
-  std::vector<SimulatedContact> contacts = world.findings().contacts;
-  const auto radius = [&](int cable, int segment) { return CableMaterials(world.cables()[cable])[segment].radius; };
-  for (std::size_t i = 0, once = contacts.size(); i < once; ++i) {
-    const SimulatedContact c = contacts[i];
-    if (c.other_cable < 0) continue;
-    const Vector3 across = (radius(c.cable, c.segment) + radius(c.other_cable, c.other_segment)) * c.normal;
-    contacts.push_back({c.other_cable, c.other_segment, c.position - across, -c.normal, -c.force, -1, c.cable, c.segment, -1});
-  }
-  return contacts;
-}
-
 namespace {
 
 Contact to_message(const World& world, const SimulatedContact& contact) {
@@ -86,9 +74,7 @@ Contact to_message(const World& world, const SimulatedContact& contact) {
   message.position = to_point(contact.position);
   message.normal = to_vector(contact.normal);
   message.force = to_vector(contact.force);
-  message.other = contact.obstacle >= 0 ? world.obstacles()[contact.obstacle].name
-                  : contact.body >= 0   ? world.bodies()[contact.body].name
-                                        : world.cables()[contact.other_cable].model->name;
+  message.other = world.touched_name(contact);
   return message;
 }
 

@@ -24,9 +24,6 @@ bool is_finite(const SimulatedParticle& particle);
 /// Whether a body is there already, and all of it finite: one whose holders' frames are not known waits.
 bool is_there(const World& world, const SimulatedBody& body);
 
-/// Contacts of cables with cables as both of them feel it: each appears twice.
-std::vector<SimulatedContact> contacts_of_both(const World& world);
-
 /// All cables, nets, particles and bodies of a world that are finite. The header is left to the caller.
 CableArray to_message(const World& world);
 

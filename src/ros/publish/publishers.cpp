@@ -5,6 +5,7 @@
 
 #include "publish/body_frames.h"
 #include "publish/color.h"
+#include "publish/contact_publisher.h"
 #include "publish/drawing_frame.h"
 #include "publish/legend_publisher.h"
 #include "publish/marker_publisher.h"
@@ -27,7 +28,8 @@ struct Publishers::Implementation {
         points(private_node, scene, frame),
         state(private_node, scene),
         surface(private_node, scene, frame),
-        wrenches(private_node) {
+        wrenches(private_node),
+        contacts(private_node) {
     origin_frame.send(frame, scene.frame_id);
   }
 
@@ -57,6 +59,7 @@ struct Publishers::Implementation {
   StatePublisher state;
   SurfacePublisher surface;
   WrenchPublisher wrenches;
+  ContactPublisher contacts;
 };
 
 Publishers::Publishers(ros::NodeHandle& private_node, const SceneDesc& scene)
@@ -79,11 +82,13 @@ void Publishers::show(const SceneDesc& scene) {
 void Publishers::note_step(const World& world) {
   implementation_->state.note_step(world);
   implementation_->wrenches.means().add(world);
+  implementation_->contacts.note_step(world);
 }
 
 void Publishers::forget_steps() {
   implementation_->state.forget_steps();
   implementation_->wrenches.means().forget();
+  implementation_->contacts.forget_steps();
 }
 
 void Publishers::publish(const World& world, const ros::Time& stamp) {
@@ -96,6 +101,7 @@ void Publishers::publish(const World& world, const ros::Time& stamp) {
   implementation_->state.publish(world, stamp);
   implementation_->surface.publish(world, colors, stamp);
   implementation_->wrenches.publish(world, stamp);
+  implementation_->contacts.publish(world, stamp);
 }
 
 }  // namespace verlet_cable

@@ -62,7 +62,7 @@ void EventLog::add_breaks(const World& world) {
 void EventLog::add_excursions(const World& world) {
   for (const Excursion& excursion : world.findings().excursions)
     add({world.time(), "LIMIT", world.cables()[static_cast<std::size_t>(excursion.cable)].model->name, excursion.node, "",
-         excursion_text(excursion), ""});
+         excursion_text(excursion), excursion.other});
 }
 
 void EventLog::add_jumps(const World& world) {
