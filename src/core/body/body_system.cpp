@@ -13,8 +13,6 @@ constexpr int maximum_iterations = 40;
 constexpr double body_part = 1e-3;
 /// The same where bodies hold bodies: a joint's multiplier follows what is left.
 constexpr double joint_part = 1e-5;
-/// Corrections that do not shrink to less than this part are made of rounding: the tolerance of cables is enough then.
-constexpr double rounding_ratio = 0.5;
 /// A correction that shrinks less than this from one iteration to the next calls for a new factorisation.
 constexpr double slow_convergence = 0.1;
 constexpr double least_size = 1e-3;  // [m] of a body
@@ -103,17 +101,27 @@ bool BodySystem::advance(std::vector<Participant>& participants, double toleranc
     size = larger(size, correct());
     if (!(size < largest_correction)) return false;
     const bool reached = convergence.is_reached(size);
+    // Where rounding is what is left, the tolerance of cables is enough.
     const bool rounded = !rules_.statics && i > 1 && convergence.ratio() > rounding_ratio &&
                          size < tolerance * std::min(rules_.h, longest_tolerated);
     const bool consistent = std::all_of(participants.begin(), participants.end(),
                                         [](const Participant& p) { return p.stepper->flows_are_consistent(p.substep); });
-    if ((reached || rounded) && consistent) {
+    if ((reached || rounded) && consistent && !lacks_energy(participants, convergence)) {
       for (Participant& p : participants) p.result->converged = true;
       return true;
     }
     stale = i > 0 && convergence.ratio() > slow_convergence;
   }
   return false;
+}
+
+bool BodySystem::lacks_energy(const std::vector<Participant>& participants, const Convergence& convergence) const {
+  double missing = 0, told = 0;
+  for (const Participant& p : participants) {
+    missing += std::abs(p.stepper->missing_work_of_tension(p.substep.part()));
+    told += p.stepper->told_energy(p.substep, *p.state);
+  }
+  return !participants.empty() && convergence.lacks(missing, told);
 }
 
 /// What is out of balance at the bodies alone, and how they resist.

@@ -70,6 +70,7 @@ class BodySystem {
   void expect_momenta(const std::vector<Participant>& participants);
   GroupMomenta& group_of(int member) { return momenta_[equations_.group_of(member)]; }
   void evaluate(bool stale);
+  bool lacks_energy(const std::vector<Participant>& participants, const Convergence& convergence) const;
   void condense(std::vector<Participant>& participants);
   void add_loads();
   void add_inertia();

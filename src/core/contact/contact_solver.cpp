@@ -19,8 +19,6 @@ constexpr double passing_part = 1e-2;
 /// Bodies are as much more accurate, in parts of their sizes.
 constexpr double body_accuracy = 30;
 constexpr double fastest_convergence = 0.1;
-/// Of the energy that is told if it is missing in a step: so much less may an iterate lack that ends it.
-constexpr double untold_part = 0.5;
 constexpr double slow_convergence = 0.2;
 /// Where friction turns round slowly, a larger error is as good after so many iterations.
 constexpr int patient_iterations = 6;

@@ -33,6 +33,15 @@ double weight_at_wheel(const CableState& cable, int first, const GravityDesc& gr
   return energy;
 }
 
+/// A node takes over material [kg] that has come off a wheel, or gives up some that has come onto it: that is as fast as the node
+/// along the cable, but does not move with it across. Nothing pulls there, so that the node keeps its energy.
+void take_from_wheel(double gained, const Vector3& wheel_velocity, const Vector3& along, int node, CableState& cable) {
+  const double mass = cable.masses[node];
+  const Vector3 velocity = cable.velocities[node] - wheel_velocity, across = velocity - velocity.dot(along) * along;
+  cable.velocities[node] += (std::sqrt(mass / (mass + gained)) - 1) * across;
+  cable.masses[node] += gained;
+}
+
 /// Where a wheel touches its cable now. What was straight is on the wheel then, or the other way round, with its strain. No force
 /// moves along the cable with that: what the nodes have more in energy their material on the wheel has less.
 void follow_on_wheel(int index, State& state, Attachment& attachment) {
@@ -61,7 +70,7 @@ void follow_on_wheel(int index, State& state, Attachment& attachment) {
     c.positions[node] = place;
     c.rest_lengths[segment] += growth;
     c.rest_lengths[first] -= growth;
-    c.masses[beside] += half_density * growth;
+    take_from_wheel(half_density * growth, c.velocities[node], (c.positions[beside] - place).normalized(), beside, c);
     c.masses[side == 0 ? last : first] -= half_density * growth;
     for (KinematicTarget& target : state.cable_progress[index].targets.nodes)
       if (target.node == node) target.position = place;

@@ -301,7 +301,9 @@ bool CableStepper::solve(const Substep& s, const CableState& state, SubstepResul
     ++result.iterations;
     const double size = correct();
     if (!(size < largest_correction)) return false;
-    if (convergence.is_reached(size) && flows_are_consistent(s)) return true;
+    if (convergence.is_reached(size) && flows_are_consistent(s) &&
+        !convergence.lacks(std::abs(missing_work_of_tension(s.part())), told_energy(s, state)))
+      return true;
     stale = i > 0 && convergence.ratio() > slow_convergence;
   }
   return false;

@@ -84,7 +84,11 @@ bool Convergence::is_reached(double size) {
   ratio_ = last_ > 0 ? size / last_ : 1;
   last_ = size;
   // The next correction would be about the last one times the ratio of the last two.
-  return size * std::clamp(ratio_, fastest_convergence, 1.0) < tolerance_;
+  return size * left() < tolerance_;
+}
+
+double Convergence::left() const {
+  return std::clamp(ratio_, fastest_convergence, 1.0);
 }
 
 double stiffness_of_taut(const Substep& s, const CableState& state) {

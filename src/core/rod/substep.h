@@ -22,6 +22,10 @@ struct Environment {
 constexpr double longest_tolerated = 1e-3;
 /// Of the kinetic energy and what lifts all by a segment, more that is missing in a step is told.
 constexpr double accountable_part = 1e-4;
+/// So much less an iterate may lack that ends its substep.
+constexpr double untold_part = 0.5;
+/// Corrections that shrink by less an iteration are rounding.
+constexpr double rounding_ratio = 0.5;
 /// A larger correction, in segment lengths, leads to solutions that have nothing to do with the motion: halve the step.
 constexpr double largest_correction = 2;
 
@@ -78,6 +82,11 @@ class Convergence {
   bool is_reached(double size);
   /// By which it was smaller than the one before; 1 of the first.
   double ratio() const { return ratio_; }
+  /// About which part of what the last iterate lacked the next one does.
+  double left() const;
+  /// Whether so much energy is missing in the account of the last iterate that after its correction it would be told. `missing`,
+  /// `told` [J]: see CableStepper. What only rounding corrects lacks none.
+  bool lacks(double missing, double told) const { return ratio_ < rounding_ratio && left() * missing > untold_part * told; }
 
  private:
   double tolerance_;  // of the next correction, in segment lengths
