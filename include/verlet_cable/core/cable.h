@@ -61,6 +61,9 @@ struct CableState {
   std::vector<double> axial_multiplier;
   /// 0 to 1: how far what cannot stretch yields between holders that draw it straight; as long as it is strained
   double yielding = 0;
+  /// [J] that tension has stored in what cannot stretch: in the compliance that makes it unique between two holders, and where that
+  /// yields
+  double taut_energy = 0;
   std::vector<double> twist;  ///< [rad/m] a segment, n; 0 for a whole rod
   // Of a whole rod, empty otherwise
   std::vector<Vector3> directors;  ///< a segment, n: the material's y axis, a unit vector normal to the segment

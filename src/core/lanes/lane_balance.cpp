@@ -1,4 +1,5 @@
 #include <cmath>
+#include <utility>
 
 #include "geometry/eigen_vectors.h"
 #include "lanes/lane_stepper.h"
@@ -32,6 +33,7 @@ void LaneStepper::balance_laws(int c, LaneMember& member) {
   const MaterialDesc& material = member.substep.model.material;
   const bool stretches = work_.law.is_elastic && material.axial_damping > 0;
   const bool gives = !work_.law.is_elastic && member.substep.boundary.nodes.size() > 1;
+  if (!gives) member.result.balance.dissipated.unresolved += std::exchange(member.state->taut_energy, 0.0);  // it was let go
   if (material.drag == 0 && !work_.law.is_damped && !stretches && !gives) return;
   read_displacement(c);
   if (material.drag > 0) balance_drag(member);
@@ -69,15 +71,21 @@ void LaneStepper::balance_stretching(LaneMember& member) {
   }
 }
 
-/// As CableStepper::balance_lengths of what is taut.
+/// As CableStepper::balance_lengths, of what is taut.
 void LaneStepper::balance_compliance(LaneMember& member) {
-  const CableState& state = *member.state;
-  for (int i = 0; i < work_.law.segments; ++i) {
+  CableState& state = *member.state;
+  const std::vector<HeldNode>& held = member.substep.boundary.nodes;
+  const double stored = state.taut_energy, compliance = 1 / stiffness_of_taut(member.substep, state);
+  double work = 0;
+  state.taut_energy = 0;
+  for (int i = held.front().node; i < held.back().node; ++i) {
     const Vector3 end = state.positions[i + 1] - state.positions[i];
     const double start_square = (end - get(displacement_, i + 1) + get(displacement_, i)).squaredNorm();
-    member.result.balance.dissipated.edits +=
-        0.5 * state.axial_multiplier[i] / state.rest_lengths[i] * (end.squaredNorm() - start_square);
+    const double length = state.rest_lengths[i], tension = state.axial_multiplier[i];
+    work += 0.5 * tension / length * (end.squaredNorm() - start_square);
+    state.taut_energy += 0.5 * compliance * length * tension * tension;
   }
+  member.result.balance.dissipated.unresolved += work + stored - state.taut_energy;
 }
 
 }  // namespace verlet_cable

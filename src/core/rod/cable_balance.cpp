@@ -46,14 +46,15 @@ double CableStepper::told_energy(const Substep& s, const CableState& state) cons
 }
 
 /// What the laws take and add over the substep, which has converged and not moved yet.
-void CableStepper::balance_laws(const Substep& s, const std::vector<double>& masses, SubstepResult& result) const {
+void CableStepper::balance_laws(const Substep& s, const std::vector<double>& masses, double taut_energy,
+                                SubstepResult& result) const {
   EnergyBalance& balance = result.balance;
   if (drags_) balance_drag(s, masses, balance);
   if (fluid_.active()) fluid_.add_work(displacement_, s.h, balance);
   if (bending_.is_damped()) balance.dissipated.bending += bending_loss_;
   if (twist_.active()) balance.dissipated.torsional += twist_.damping_work();
   if (rod_.active()) rod_.add_losses(balance);
-  balance_lengths(s, result);
+  balance_lengths(s, taut_energy, result);
   if (winch_node_ >= 0 && bending_.active()) {
     // What bends moves with the material that comes through the winch.
     const int i = std::clamp(winch_node_ - 1, 0, segments_ - 1);
@@ -76,10 +77,19 @@ void CableStepper::balance_drag(const Substep& s, const std::vector<double>& mas
   }
 }
 
+/// [J] Of CableState::taut_energy, at the end of the substep.
+double CableStepper::taut_energy() const {
+  double energy = 0;
+  for (int i = 0; i < segments_; ++i)
+    if (!is_elastic_at(i) && !grows(i)) energy += 0.5 * strain_compliance_[i] * tension_density_[i] * tension_density_[i];
+  return energy;
+}
+
 /// Axial damping, and what the tension of segments that cannot stretch does where their lengths change: driven by a winch, drawn
-/// out beyond what they are, or by the compliance that makes the tension of what is taut unique.
-void CableStepper::balance_lengths(const Substep& s, SubstepResult& result) const {
-  if (!changes_lengths(s)) return;
+/// out beyond what they are, or as their compliance lets them. `stored`: CableState::taut_energy at the start.
+void CableStepper::balance_lengths(const Substep& s, double stored, SubstepResult& result) const {
+  const bool is_drawn_out = result.overstretched_node >= 0 || !overstretched_.empty();
+  double drawn = stored - taut_energy();  // what is done and not stored
   for (int i = 0; i < segments_; ++i) {
     if (is_elastic_at(i)) {
       if (axial_damping_[i] == 0) continue;
@@ -97,8 +107,9 @@ void CableStepper::balance_lengths(const Substep& s, SubstepResult& result) cons
     if (rest_growth_[i] != 0)
       result.balance.work.winches -= work;
     else
-      result.balance.dissipated.edits += work;
+      drawn += work;
   }
+  (is_drawn_out ? result.balance.dissipated.edits : result.balance.dissipated.unresolved) += drawn;
 }
 
 /// What a winch does as velocities are mended at the end of a substep. `impulse`: with which the segment pushes its nodes apart,

@@ -108,8 +108,8 @@ void CableStepper::finish(const Substep& s, bool struck, CableState& state, Subs
     for (int i = 0; i <= segments_; ++i) result.displacement = std::max(result.displacement, get(displacement_, i).norm());
   react(s, state.masses);
   if (!s.statics) {
-    measure_end(s);
-    balance_laws(s, state.masses, result);
+    measure_end();
+    balance_laws(s, state.masses, state.taut_energy, result);
   }
   move(s);
   finish_flows(s, state);
@@ -625,13 +625,9 @@ void CableStepper::take_back(double part) {
   if (rod_.active()) rod_.correct(-part);
 }
 
-bool CableStepper::changes_lengths(const Substep& s) const {
-  return any_elastic_ || !s.boundary.growing.empty() || s.boundary.nodes.size() > 1;
-}
-
 /// The lengths of the solution, which the last iterate did not have yet.
-void CableStepper::measure_end(const Substep& s) {
-  for (int i = 0; changes_lengths(s) && i < segments_; ++i)
+void CableStepper::measure_end() {
+  for (int i = 0; i < segments_; ++i)
     end_square_[i] = (get(segment_, i) + get(displacement_, i + 1) - get(displacement_, i)).squaredNorm();
 }
 
@@ -897,6 +893,7 @@ double CableStepper::store(const Substep& s, CableState& state) const {
   }
   state.yielding = 0;
   for (const OverstretchedSpan& span : overstretched_) state.yielding = std::max(state.yielding, span.share);
+  state.taut_energy = taut_energy();
   const double part = s.scheme == Scheme::conserving ? 0.5 : 1;
   const bool alternates = s.treatment != Treatment::none && state.unresolved.known > 0;
   double longest = 1, shortest = 1;  // squares, relative

@@ -155,8 +155,8 @@ class CableStepper {
   void solve_segments();
   Vector3 corrected_load(int node) const;
   double force_along(int segment) const;
-  bool changes_lengths(const Substep& substep) const;
-  void measure_end(const Substep& substep);
+  void measure_end();
+  double taut_energy() const;
   void move(const Substep& substep);
   void restore_momenta(const Substep& substep, const std::vector<double>& masses);
   double restore_angular_momentum(const Substep& substep, const std::vector<double>& masses);
@@ -168,9 +168,9 @@ class CableStepper {
   Vector3 projected_impulse_on(int node) const;
   double store(const Substep& substep, CableState& state) const;
   // What becomes of energy: rod/cable_balance.cpp
-  void balance_laws(const Substep& substep, const std::vector<double>& masses, SubstepResult& result) const;
+  void balance_laws(const Substep& substep, const std::vector<double>& masses, double taut_energy, SubstepResult& result) const;
   void balance_drag(const Substep& substep, const std::vector<double>& masses, EnergyBalance& balance) const;
-  void balance_lengths(const Substep& substep, SubstepResult& result) const;
+  void balance_lengths(const Substep& substep, double stored, SubstepResult& result) const;
   void balance_mended_growth(const GrowingSegment& growing, double impulse, SubstepResult& result) const;
   double kinetic_energy(const std::vector<double>& masses, const VectorArray& velocity) const;
 

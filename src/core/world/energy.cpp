@@ -94,6 +94,7 @@ Energy energy_of_cable(const State& state, int index, double part, std::vector<H
   const bool is_twisted = c.directors.empty() && !state.cable_progress[index].spans.empty();
   for (int i = 0; is_twisted && i < c.segments(); ++i)
     energy.twist += Resistance<double>{torsional_stiffness_at(materials, i) * c.rest_lengths[i], 0}.energy(c.twist[i]);
+  energy.stretch += c.taut_energy;
   if (materials.any_elastic()) energy.stretch += stretching_energy(state, index);
   if (!state.guides.empty()) energy.kinetic += flow_energy(state, index);
   return energy;

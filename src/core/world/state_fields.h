@@ -135,7 +135,7 @@ template <class T>
 auto fields(T& x, const CableState*) {
   return std::tie(x.rest_lengths, x.section_material, x.masses, x.rest_curvature, x.rest_twist, x.flexible_fraction,
                   x.beyond_limits, x.positions, x.velocities, x.accelerations, x.unresolved, x.tension, x.last_tension,
-                  x.axial_multiplier, x.yielding, x.twist, x.directors, x.spin, x.joint_twist, x.reference_node,
+                  x.axial_multiplier, x.yielding, x.taut_energy, x.twist, x.directors, x.spin, x.joint_twist, x.reference_node,
                   x.reference_orientation);
 }
 template <class T>
