@@ -56,7 +56,7 @@ struct RandomRod {
       stiffness.torque[i] = between(-1, 1) * 1e-3;
       add(stiffness.segment, i, 1, positive(1e-3));
       if (i == 0) continue;
-      add(joints.stiffness, i, 1, positive(1));
+      add(joints.convex_stiffness, i, 1, positive(1));
       set(joints.moment, i, vector(0.1));
     }
     if (c.touched)
@@ -121,7 +121,7 @@ Solution solve_dense(const KktSystem& s, const RodStiffness& r, const RodJoints&
     a.block<1, 3>(e(i), f(i)) -= s.compliance[i] / square * d.transpose();
     b[e(i)] += s.gap[i];
     if (i == 0) continue;
-    const Matrix3d stiff = get(joints.stiffness, i), turning = cross_matrix(r.turning_part * get(joints.moment, i));
+    const Matrix3d stiff = get(joints.stiffness(), i), turning = cross_matrix(r.turning_part * get(joints.moment, i));
     a.block<3, 3>(w(i - 1), w(i - 1)) += stiff;
     a.block<3, 3>(w(i), w(i)) += stiff;
     a.block<3, 3>(w(i - 1), w(i)) += turning - stiff;

@@ -1,7 +1,6 @@
 #include "contact/body_touches.h"
 
 #include <algorithm>
-#include <tuple>
 
 #include "contact/body_surfaces.h"
 
@@ -41,13 +40,6 @@ PointMotion seen_from(const Pose& pose, const PointMotion& velocity, double time
   const Pose inside = pose.inverse();
   return {at(inside, velocity.center), inside.orientation * (time * velocity.linear),
           inside.orientation * (time * velocity.angular)};
-}
-
-const CachedContact* find_cached(const ContactCache& cache, std::uint64_t key, std::uint64_t other_key) {
-  const auto sought = std::tie(key, other_key);
-  const auto same =
-      std::lower_bound(cache.begin(), cache.end(), sought, [](const CachedContact& c, const auto& of) { return keys(c) < of; });
-  return same != cache.end() && keys(*same) == sought ? &*same : nullptr;
 }
 
 }  // namespace

@@ -40,6 +40,14 @@ auto keys(const Contact& of) {
 /// Of the touches whose point is on one cable: ascending by keys.
 using ContactCache = std::vector<CachedContact>;
 
+/// The one of a touch with these keys, or null.
+inline const CachedContact* find_cached(const ContactCache& cache, std::uint64_t key, std::uint64_t other_key) {
+  const auto sought = std::tie(key, other_key);
+  const auto found =
+      std::lower_bound(cache.begin(), cache.end(), sought, [](const CachedContact& c, const auto& of) { return keys(c) < of; });
+  return found != cache.end() && keys(*found) == sought ? &*found : nullptr;
+}
+
 /// Keys of touches: cables and obstacles by their ids, which no edit changes.
 constexpr std::uint64_t body_key = std::uint64_t{1} << 62;  // bodies come after obstacles,
 constexpr std::uint64_t pair_key = std::uint64_t{1} << 63;  // pairs after those

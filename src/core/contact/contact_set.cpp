@@ -93,10 +93,8 @@ bool continues(const CachedContact& last, const Touch& touch) {
 /// Whether what touches bore a force in the substep before. Without that it goes where the cable's own forces take it, which its
 /// velocity does not tell.
 bool bore(const ContactCache& cache, std::uint64_t key, std::uint64_t other_key) {
-  const auto sought = std::tie(key, other_key);
-  const auto found =
-      std::lower_bound(cache.begin(), cache.end(), sought, [](const CachedContact& c, const auto& of) { return keys(c) < of; });
-  return found != cache.end() && keys(*found) == sought && found->mode != Touch::Mode::open;
+  const CachedContact* const last = find_cached(cache, key, other_key);
+  return last != nullptr && last->mode != Touch::Mode::open;
 }
 
 /// [m] By how much a smooth cable through the nodes of a segment bulges out along a normal: twice the arc's height, so that nodes

@@ -344,11 +344,10 @@ Flow::Mode CableStepper::next_mode(const Substep& s, const Flow& flow, const Gui
   using Mode = Flow::Mode;
   if (!is_stopped(flow)) return mode_of_way(s, flow);
   const auto [forward, backward] = stopped_ways(s, flow);
-  const bool is_one = forward == backward;
-  const double before = is_one || flow.mode == Mode::stops_forward ? (guided.is_blocked[0] ? infinity : rubs) : 0;
-  const double after = is_one || flow.mode == Mode::stops_backward ? (guided.is_blocked[1] ? infinity : rubs) : 0;
-  if (drive > before) return is_one || flow.mode == Mode::stops_forward ? Mode::forward : Mode::turns;
-  if (drive < -after) return is_one || flow.mode == Mode::stops_backward ? Mode::backward : Mode::turns;
+  const bool at_forward = forward == backward || flow.mode == Mode::stops_forward;
+  const bool at_backward = forward == backward || flow.mode == Mode::stops_backward;
+  if (drive > (!at_forward ? 0 : guided.is_blocked[0] ? infinity : rubs)) return at_forward ? Mode::forward : Mode::turns;
+  if (drive < -(!at_backward ? 0 : guided.is_blocked[1] ? infinity : rubs)) return at_backward ? Mode::backward : Mode::turns;
   return flow.mode;
 }
 

@@ -5,6 +5,7 @@
 #include "lanes/lane_stepper.h"
 #include "law/drag.h"
 #include "law/resistance.h"
+#include "law/stretch.h"
 
 namespace verlet_cable {
 
@@ -75,15 +76,15 @@ void LaneStepper::balance_stretching(LaneMember& member) {
 void LaneStepper::balance_compliance(LaneMember& member) {
   CableState& state = *member.state;
   const std::vector<HeldNode>& held = member.substep.boundary.nodes;
-  const double stored = state.taut_energy, compliance = 1 / stiffness_of_taut(member.substep, state);
+  const double stored = state.taut_energy, stiffness = stiffness_of_taut(member.substep, state);
   double work = 0;
   state.taut_energy = 0;
   for (int i = held.front().node; i < held.back().node; ++i) {
     const Vector3 end = state.positions[i + 1] - state.positions[i];
     const double start_square = (end - get(displacement_, i + 1) + get(displacement_, i)).squaredNorm();
-    const double length = state.rest_lengths[i], tension = state.axial_multiplier[i];
-    work += 0.5 * tension / length * (end.squaredNorm() - start_square);
-    state.taut_energy += 0.5 * compliance * length * tension * tension;
+    const double length = state.rest_lengths[i], density = state.axial_multiplier[i] / length;
+    work += work_of_length(density, start_square, end.squaredNorm());
+    state.taut_energy += taut_energy(taut_compliance(length, stiffness), density);
   }
   member.result.balance.dissipated.unresolved += work + stored - state.taut_energy;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geometry/eigen_vectors.h"
+#include "law/stretch.h"
 
 namespace verlet_cable {
 
@@ -272,8 +273,7 @@ void LaneStepper::hold(int c, const LaneMember& member) {
   const double stiffness = stiffness_of_taut(s, state);
   for (int i = held.front().node; i < held.back().node; ++i) {
     each_lane_of(c, i, [&](int place, int lane, double) {
-      const double length = value(LaneField::target_length, place, lane);
-      value(LaneField::compliance, place, lane) = length * length * length / stiffness;
+      value(LaneField::compliance, place, lane) = taut_compliance(value(LaneField::target_length, place, lane), stiffness);
     });
   }
 }

@@ -21,6 +21,21 @@ template <class Real>
   return {0.5 * (length * length - square) + compliance * density, compliance};
 }
 
+/// [m^3/N] Of a segment of a `length` [m] whose axial stiffness is as large as a `stiffness` [N].
+inline double taut_compliance(double length, double stiffness) {
+  return length * length * length / stiffness;
+}
+
+/// [J] That it stores then.
+inline double taut_energy(double compliance, double density) {
+  return 0.5 * compliance * density * density;
+}
+
+/// [J] That its tension takes in as the square of its length [m^2] grows.
+inline double work_of_length(double density, double start_square, double end_square) {
+  return 0.5 * density * (end_square - start_square);
+}
+
 /// What stretches with a `tension` [N] that rises by `rise` [N/m] with the length at the end. `mean` [m]: the length where forces
 /// are taken, at `part` of the substep (1/2 or 1); `end` [m]: that at the end. Its density times the mean is to be the tension.
 template <class Real>

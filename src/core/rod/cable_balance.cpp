@@ -46,7 +46,7 @@ double CableStepper::told_energy(const Substep& s, const CableState& state) cons
 }
 
 /// What the laws take and add over the substep, which has converged and not moved yet.
-void CableStepper::balance_laws(const Substep& s, const std::vector<double>& masses, double taut_energy,
+void CableStepper::balance_laws(const Substep& s, const std::vector<double>& masses, double given_back,
                                 SubstepResult& result) const {
   EnergyBalance& balance = result.balance;
   if (drags_) balance_drag(s, masses, balance);
@@ -54,7 +54,7 @@ void CableStepper::balance_laws(const Substep& s, const std::vector<double>& mas
   if (bending_.is_damped()) balance.dissipated.bending += bending_loss_;
   if (twist_.active()) balance.dissipated.torsional += twist_.damping_work();
   if (rod_.active()) rod_.add_losses(balance);
-  balance_lengths(s, taut_energy, result);
+  balance_lengths(s, given_back, result);
   if (winch_node_ >= 0 && bending_.active()) {
     // What bends moves with the material that comes through the winch.
     const int i = std::clamp(winch_node_ - 1, 0, segments_ - 1);
@@ -77,20 +77,24 @@ void CableStepper::balance_drag(const Substep& s, const std::vector<double>& mas
   }
 }
 
-/// [J] Of CableState::taut_energy, at the end of the substep.
-double CableStepper::taut_energy() const {
+/// [J] CableState::taut_energy at the end of the substep.
+double CableStepper::stored_when_taut(const Substep& s) const {
   double energy = 0;
-  for (int i = 0; i < segments_; ++i)
-    if (!is_elastic_at(i) && !grows(i)) energy += 0.5 * strain_compliance_[i] * tension_density_[i] * tension_density_[i];
+  for (int i = 0; s.boundary.nodes.size() > 1 && i < segments_; ++i)
+    if (!is_elastic_at(i) && !grows(i)) energy += taut_energy(strain_compliance_[i], tension_density_[i]);
   return energy;
 }
 
+bool CableStepper::changes_lengths(const Substep& s) const {
+  return any_elastic_ || !s.boundary.growing.empty() || s.boundary.nodes.size() > 1;
+}
+
 /// Axial damping, and what the tension of segments that cannot stretch does where their lengths change: driven by a winch, drawn
-/// out beyond what they are, or as their compliance lets them. `stored`: CableState::taut_energy at the start.
-void CableStepper::balance_lengths(const Substep& s, double stored, SubstepResult& result) const {
+/// out beyond what they are, or as their compliance lets them. `given_back` [J]: by how much less of that is stored.
+void CableStepper::balance_lengths(const Substep& s, double given_back, SubstepResult& result) const {
   const bool is_drawn_out = result.overstretched_node >= 0 || !overstretched_.empty();
-  double drawn = stored - taut_energy();  // what is done and not stored
-  for (int i = 0; i < segments_; ++i) {
+  double drawn = given_back;  // what is done and not stored
+  for (int i = 0; changes_lengths(s) && i < segments_; ++i) {
     if (is_elastic_at(i)) {
       if (axial_damping_[i] == 0) continue;
       const Straining strained = straining(s, i);
@@ -103,7 +107,7 @@ void CableStepper::balance_lengths(const Substep& s, double stored, SubstepResul
       continue;
     }
     if (grows(i)) continue;
-    const double work = 0.5 * tension_density_[i] * (end_square_[i] - get(segment_, i).squaredNorm());
+    const double work = work_of_length(tension_density_[i], get(segment_, i).squaredNorm(), end_square_[i]);
     if (rest_growth_[i] != 0)
       result.balance.work.winches -= work;
     else

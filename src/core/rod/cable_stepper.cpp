@@ -107,10 +107,12 @@ void CableStepper::finish(const Substep& s, bool struck, CableState& state, Subs
   if (s.statics)
     for (int i = 0; i <= segments_; ++i) result.displacement = std::max(result.displacement, get(displacement_, i).norm());
   react(s, state.masses);
+  const double stored = stored_when_taut(s);
   if (!s.statics) {
-    measure_end();
-    balance_laws(s, state.masses, state.taut_energy, result);
+    if (changes_lengths(s)) measure_end();
+    balance_laws(s, state.masses, state.taut_energy - stored, result);
   }
+  state.taut_energy = stored;
   move(s);
   finish_flows(s, state);
   // What a conserving substep has at its end; what is taken from there on it does not resolve.
@@ -205,8 +207,7 @@ void CableStepper::set_loads(const Substep& s, const CableState& state) {
       const auto moves_freely = [](const HeldNode& node) { return node.body >= 0 && !node.at_junction; };
       const bool gives_way = moves_freely(held[k]) || moves_freely(held[k + 1]);
       for (int i = held[k].node; i < held[k + 1].node; ++i) {
-        system_.compliance[i] =
-            target_length_[i] * target_length_[i] * target_length_[i] / (gives_way ? stiffness_on_bodies : stiffness);
+        system_.compliance[i] = taut_compliance(target_length_[i], gives_way ? stiffness_on_bodies : stiffness);
         if (!gives_way || s.strains_on_bodies) strain_compliance_[i] = system_.compliance[i];
       }
     }
@@ -893,7 +894,6 @@ double CableStepper::store(const Substep& s, CableState& state) const {
   }
   state.yielding = 0;
   for (const OverstretchedSpan& span : overstretched_) state.yielding = std::max(state.yielding, span.share);
-  state.taut_energy = taut_energy();
   const double part = s.scheme == Scheme::conserving ? 0.5 : 1;
   const bool alternates = s.treatment != Treatment::none && state.unresolved.known > 0;
   double longest = 1, shortest = 1;  // squares, relative

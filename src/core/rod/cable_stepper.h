@@ -156,7 +156,8 @@ class CableStepper {
   Vector3 corrected_load(int node) const;
   double force_along(int segment) const;
   void measure_end();
-  double taut_energy() const;
+  bool changes_lengths(const Substep& substep) const;
+  double stored_when_taut(const Substep& substep) const;
   void move(const Substep& substep);
   void restore_momenta(const Substep& substep, const std::vector<double>& masses);
   double restore_angular_momentum(const Substep& substep, const std::vector<double>& masses);
@@ -168,9 +169,9 @@ class CableStepper {
   Vector3 projected_impulse_on(int node) const;
   double store(const Substep& substep, CableState& state) const;
   // What becomes of energy: rod/cable_balance.cpp
-  void balance_laws(const Substep& substep, const std::vector<double>& masses, double taut_energy, SubstepResult& result) const;
+  void balance_laws(const Substep& substep, const std::vector<double>& masses, double given_back, SubstepResult& result) const;
   void balance_drag(const Substep& substep, const std::vector<double>& masses, EnergyBalance& balance) const;
-  void balance_lengths(const Substep& substep, double stored, SubstepResult& result) const;
+  void balance_lengths(const Substep& substep, double given_back, SubstepResult& result) const;
   void balance_mended_growth(const GrowingSegment& growing, double impulse, SubstepResult& result) const;
   double kinetic_energy(const std::vector<double>& masses, const VectorArray& velocity) const;
 

@@ -308,7 +308,7 @@ void KirchhoffRod::factor(const KktSystem& system) {
 /// By what a clamp that turns adds to the moment on the segment beside it; see RodElimination for what turns with the frames.
 Vector3 KirchhoffRod::turned_by_clamp(const ClampJoint& clamp, int joint, const Vector3& rotation) const {
   const Vector3 moment = stiffness_.turning_part * get(clamp_joints_.moment, joint);
-  return get(clamp_joints_.stiffness, joint) * rotation + (clamp.after ? 1 : -1) * moment.cross(rotation);
+  return get(clamp_joints_.stiffness(), joint) * rotation + (clamp.after ? 1 : -1) * moment.cross(rotation);
 }
 
 void KirchhoffRod::add_clamp_loads(const std::vector<Vector3>& rotations, KktSystem& system) {
@@ -336,7 +336,7 @@ void KirchhoffRod::add_clamp_reactions(const KktSystem& system, std::vector<Vect
     const Vector3 clamp_turn = system.moves_held ? clamp.rotation : Vector3(Vector3::Zero());
     const Vector3 moment = stiffness_.turning_part * get(clamp_joints_.moment, joint);
     torques[clamp.target] +=
-        get(clamp_joints_.stiffness, joint) * (turn - clamp_turn) + (clamp.after ? -1 : 1) * moment.cross(turn);
+        get(clamp_joints_.stiffness(), joint) * (turn - clamp_turn) + (clamp.after ? -1 : 1) * moment.cross(turn);
   }
 }
 
@@ -409,8 +409,8 @@ void KirchhoffRod::set_stiffness(const VectorArray& direction, bool simple) {
   stiffness_.turning_part = simple ? 0 : 0.5 * part_;
   // Of means over a substep the exact one is no derivative.
   const bool exact = !simple && part_ == 1;
-  joints_.set_stiffness(exact);
-  clamp_joints_.set_stiffness(exact);
+  joints_.set_exact(exact);
+  clamp_joints_.set_exact(exact);
   const Pair turns = both(stiffness_.turning_part), spins = both(spin_rate_ / (h_ * h_));
   for (int i = 0; i < segments_; i += 2) {
     const PairVector d = neighbours(direction, i);
@@ -428,7 +428,7 @@ void KirchhoffRod::set_stiffness(const VectorArray& direction, bool simple) {
         stiffness_.segment, i);
   }
   for (std::size_t k = 0; k < clamps_.size(); ++k)
-    add(stiffness_.segment, clamps_[k].segment, 1, get(clamp_joints_.stiffness, static_cast<int>(k)));
+    add(stiffness_.segment, clamps_[k].segment, 1, get(clamp_joints_.stiffness(), static_cast<int>(k)));
   if (segments_ % 2 == 1) {
     // Of the segment that makes them even
     for (auto* diagonal : {&stiffness_.segment.xx, &stiffness_.segment.yy, &stiffness_.segment.zz}) (*diagonal)[segments_] = 1;

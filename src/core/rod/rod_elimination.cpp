@@ -130,7 +130,7 @@ double least_compliance(const KktSystem& system, const RodStiffness& stiffness, 
   double beside = system.diagonal[node];
   for (const int i : {node - 1, node})
     beside += std::abs(stiffness.force_density[i]) +
-              (get(stiffness.segment, i).trace() + get(joints.stiffness, i).trace()) / get(system.direction, i).squaredNorm();
+              (get(stiffness.segment, i).trace() + get(joints.stiffness(), i).trace()) / get(system.direction, i).squaredNorm();
   return (system.movable[before] == 0 ? neighbours_compliance : held_compliance) / beside;
 }
 
@@ -265,7 +265,7 @@ bool RodElimination::factor_lanes(const KktSystem& system, const RodStiffness& s
     }
     if (last) break;
 
-    const PairSymmetric joint = pair(joints.stiffness, left + 1, right);
+    const PairSymmetric joint = pair(joints.stiffness(), left + 1, right);
     positive = invert(resist + joint, e.pivot) && positive;
     const PairMatrix coupling = both(-1) * minus_cross(full(joint), turning_part * pair(joints.moment, left + 1, right));
     e.carried = e.pivot * coupling;
@@ -277,7 +277,7 @@ bool RodElimination::factor_lanes(const KktSystem& system, const RodStiffness& s
 
   // The two sides meet at a node and the joint there: the force between them, on the left one, and the rotations beside it.
   const Elimination& e = eliminations_[half - 1];
-  const Eigen::Matrix3d joint = get(joints.stiffness, half);
+  const Eigen::Matrix3d joint = get(joints.stiffness(), half);
   const Eigen::Vector3d moment = stiffness.turning_part * get(joints.moment, half);
   Eigen::Matrix3d turning;
   turning << 0, -moment.z(), moment.y(), moment.z(), 0, -moment.x(), -moment.y(), moment.x(), 0;

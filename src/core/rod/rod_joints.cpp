@@ -139,7 +139,6 @@ void RodJoints::resize(int count) {
   moment.assign(size, 0.0);
   convex_stiffness.assign(size, 0.0);
   exact_stiffness.assign(size, 0.0);
-  stiffness.assign(size, 0.0);
 }
 
 void RodJoints::set(int joint, const JointStiffness& stiffness, double twist) {

@@ -89,7 +89,9 @@ class RodJoints {
   /// Finds moments and stiffnesses. `part`: where in the substep forces are taken.
   void evaluate(double part, const FrameMotion& frames_before, int before, const FrameMotion& frames_after, int after, int first,
                 int last);
-  void set_stiffness(bool exact) { stiffness = exact ? exact_stiffness : convex_stiffness; }
+  /// What the matrix is to have of the two.
+  void set_exact(bool exact) { is_exact_ = exact; }
+  const SymmetricArray& stiffness() const { return is_exact_ ? exact_stiffness : convex_stiffness; }
   double start_twist(int joint) const { return twist_[joint]; }    ///< [rad]
   double end_twist(int joint) const { return end_twist_[joint]; }  ///< [rad]
 
@@ -97,10 +99,11 @@ class RodJoints {
   VectorArray moment;                               ///< [N m] on the frame before
   /// [N m] Of the moment against rotations, without what turns with the frames: the part of it that is never negative (Gauss and
   /// Newton's), and, where forces are taken at the end, the second derivative of the energy by the rotation of the frame after
-  /// against the one before. What the matrix has is one of them.
-  SymmetricArray convex_stiffness, exact_stiffness, stiffness;
+  /// against the one before.
+  SymmetricArray convex_stiffness, exact_stiffness;
 
  private:
+  bool is_exact_ = false;
   // Over the substep; [N m]
   std::vector<double> twist_stiffness_, y_stiffness_, z_stiffness_, twist_damping_, bend_damping_;
   std::vector<double> rest_twist_, rest_y_, rest_z_;  // [rad]

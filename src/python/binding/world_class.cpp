@@ -178,8 +178,7 @@ void add_world_class(py::module_& module) {
           "Where cables touched obstacles, bodies and cables in the last step: a structured array with the fields of Contact.msg "
           "after that of the cable: cable, segment, position (3,) [m] on its centre line, normal (3,) out of what is touched, "
           "force (3,) [N] on the cable, mean over the step, and other, the name of what is touched. Contacts of cables with "
-          "cables "
-          "are there twice, once for each. After an edit there are none until the next step.")
+          "cables are there twice, once for each. After an edit there are none until the next step.")
       .def(
           "contact_force", read<Quantity::contact_force>, py::arg("name"),
           "(6,) force [N] and torque [N m] of the cables and bodies that touch an obstacle, a link of a robot (with all that "
