@@ -191,6 +191,82 @@ TEST(Clips, waitUntilTheCableWasAway) {
   EXPECT_EQ(caught, 0);
 }
 
+/// A clip behind a socket has caught the cable of a plug that a hand has pushed in. What pulls at the cable does not pull the
+/// plug through the clip; the hand that draws the plug back has it out again.
+struct PluggedIn {
+  SceneDesc scene;
+  BoundaryInputs inputs;
+  World world;
+
+  explicit PluggedIn(double capture) : scene(make(capture)), inputs(initial_frames(scene)), world(scene, inputs) {}
+
+  static SceneDesc make(double capture) {
+    SceneDesc scene = scenes::one_cable(60, 0.6);
+    MaterialDesc& material = scene.materials[0].material;
+    material.axial_stiffness = 1e4;
+    material.bending_stiffness = 5e-3;
+    material.bending_damping = 5e-5;
+    BodyDesc plug;
+    plug.name = "plug";
+    plug.mass = 0.02;
+    plug.inertia = Vector3(1e-5, 1e-5, 1e-5);
+    plug.attachments.resize(1);
+    plug.attachments[0].name = "grip";
+    plug.attachments[0].frame = "hand";
+    plug.attachments[0].type = AttachmentType::clamp;
+    plug.attachments[0].initial_pose = InitialPose{0, 0, 0, 0, 0, 0};
+    scene.bodies = {plug};
+    AttachmentDesc far = scenes::attachment("far", PlaceDesc::At::start, Vector3::Zero(), "far_hand");
+    far.initial_pose = InitialPose{-0.45, 0, 0, 0, 0, 0};
+    far.type = AttachmentType::clamp;
+    AttachmentDesc back = scenes::attachment("back", PlaceDesc::At::end, Vector3::Zero());
+    back.body = "plug";
+    back.type = AttachmentType::clamp;
+    scene.cables[0].attachments = {far, back};
+    scene.guides = {guide("clip", 0.56, {-0.04, 0, 0}, GuideDesc::Type::clip)};
+    scene.guides[0].capture = capture;
+    return scene;
+  }
+
+  /// Moves a frame by `way` [m] along x at 5 cm/s. Returns the largest force on the hand [N].
+  double move(const std::string& frame, double way) {
+    const std::vector<std::string> names = frame_names(scene);
+    const auto id = static_cast<std::size_t>(std::find(names.begin(), names.end(), frame) - names.begin());
+    const double start = inputs[id].pose.position.x();
+    const int steps = static_cast<int>(std::abs(way) / 0.05 / world.time_step());
+    double largest = 0;
+    for (int i = 1; i <= steps; ++i) {
+      inputs[id].pose.position.x() = start + way * i / steps;
+      EXPECT_EQ(world.step(inputs).status, StepResult::Status::ok) << world.time();
+      released += static_cast<int>(world.findings().released.size());
+      const int grip = find(world.attachments(), "grip");
+      if (grip >= 0) largest = std::max(largest, world.attachments()[grip].force.norm());
+    }
+    return largest;
+  }
+  int released = 0;
+};
+
+TEST(Clips, letGoOfAnEndThatIsPushedBackThroughThem) {
+  for (const double capture : {0.0, 0.004}) {
+    PluggedIn plugged(capture);
+    EXPECT_LT(plugged.move("hand", -0.08), capture > 0 ? 30 : 200) << capture;
+    EXPECT_EQ(plugged.released, 1) << capture;
+    EXPECT_NEAR(plugged.world.bodies()[0].pose.position.x(), -0.08, 1e-9) << capture;
+  }
+}
+
+TEST(Clips, stopAnEndThatIsPulledThroughThem) {
+  PluggedIn plugged(0.004);
+  ASSERT_TRUE(plugged.world.apply(edit::Unpin{"grip"}).ok);
+  // The clip is 0.6 m away from the hand then.
+  plugged.move("far_hand", -0.192);
+  EXPECT_EQ(plugged.released, 0);
+  EXPECT_NE(find(plugged.world.attachments(), "clip"), -1);
+  EXPECT_NEAR(plugged.world.bodies()[0].pose.position.x(), -0.04, 0.002);
+  EXPECT_GT(plugged.world.attachments()[find(plugged.world.attachments(), "far")].force.norm(), 10);
+}
+
 TEST(Guides, cablesThatBendSettleInThem) {
   for (const double stiffness : {0.0, 0.01, 0.1}) {
     for (const bool whole_rod : {false, true}) {

@@ -126,6 +126,30 @@ bool is_free_end(const State& state, int index, int node) {
          !state.cable_progress[index].drive;
 }
 
+/// Whether a frame holds a node of a cable, or the body there: what a hand has in its grip.
+bool is_in_a_grip(const State& state, int index, int node) {
+  const auto held_by_frame = [&](const BodyId& held, int place) {
+    return std::any_of(state.attachments.begin(), state.attachments.end(),
+                       [&](const Attachment& a) { return a.body == held && a.node == place && a.holder < 0 && a.guide < 0; });
+  };
+  return held_by_frame(cable_id(index), node) ||
+         std::any_of(state.attachments.begin(), state.attachments.end(), [&](const Attachment& a) {
+           return a.body == cable_id(index) && a.node == node && a.holder >= 0 && held_by_frame(rigid_body_id(a.holder), 0);
+         });
+}
+
+/// Whether the cable beside a guide ends with what the guide lets out: a free end; of a clip, which takes a cable behind what has
+/// passed it, also what a hand pushes back through it.
+bool lets_end_out(const Attachment& attachment, int side, const State& state) {
+  const int index = attachment.body.index;
+  const Side at = side_of(attachment, side);
+  if (is_free_end(state, index, at.neighbour())) return true;
+  const CableState& cable = state.cables[index].state;
+  const bool ends = at.neighbour() == 0 || at.neighbour() == cable.segments();
+  return state.guides[attachment.guide].type == GuideDesc::Type::clip && ends && cable.tension[at.segment()] < 0 &&
+         !state.cable_progress[index].drive && is_in_a_grip(state, index, at.neighbour());
+}
+
 /// What holds a cable now, with what flows through its guides and what is wound.
 Boundary moving_boundary(int index, const State& state) {
   const CableProgress& progress = state.cable_progress[index];
@@ -165,14 +189,15 @@ bool is_passable(const State& state, int cable, int node) {
 }
 
 bool runs_out(const Attachment& attachment, const State& state) {
-  const int index = attachment.body.index;
-  const SimulatedCable& cable = state.cables[index];
-  const double flow = state.guides[attachment.guide].flow, ahead = steps_ahead * state.scene->time_step * std::abs(flow);
+  const SimulatedCable& cable = state.cables[attachment.body.index];
+  const SimulatedGuide& guide = state.guides[attachment.guide];
+  const double ahead = steps_ahead * state.scene->time_step * std::abs(guide.flow);
   const double least = std::clamp(ahead, shortest * cable.model->segment_length, most_ahead * cable.model->segment_length);
   return std::any_of(both_sides.begin(), both_sides.end(), [&](int side) {
-    const Side at = side_of(attachment, side);
-    return is_free_end(state, index, at.neighbour()) && cable.state.rest_lengths[at.segment()] < least &&
-           (side == 0 ? flow > 0 : flow < 0);
+    if (!lets_end_out(attachment, side, state) || !(guide.flow * way_from(side) > 0)) return false;
+    // What brought the end in as near as that would not have been caught.
+    const bool is_free = is_free_end(state, attachment.body.index, side_of(attachment, side).neighbour());
+    return cable.state.rest_lengths[side_of(attachment, side).segment()] < (is_free ? least : std::max(least, guide.capture));
   });
 }
 
@@ -209,7 +234,7 @@ void load_flows(int index, bool moves, const State& state, Boundary& boundary) {
     for (const int side : both_sides) {
       const Side at = side_of(attachment, side);
       if (cable.state.rest_lengths[at.segment()] >= stop * cable.model->segment_length) continue;
-      const bool runs_out = moves && is_free_end(state, index, at.neighbour());
+      const bool runs_out = moves && lets_end_out(attachment, side, state);
       flow.is_blocked[side] = !runs_out && !is_passable(state, index, at.neighbour());
     }
   }
