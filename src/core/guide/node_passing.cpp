@@ -138,16 +138,23 @@ bool is_in_a_grip(const State& state, int index, int node) {
          });
 }
 
-/// Whether the cable beside a guide ends with what the guide lets out: a free end; of a clip, which takes a cable behind what has
-/// passed it, also what a hand pushes back through it.
+/// The node at which the cable ends on a side of a guide.
+int end_beside(const Attachment& attachment, int side, const State& state) {
+  return side == 0 ? 0 : state.cables[attachment.body.index].state.segments();
+}
+
+/// Whether a guide lets what the cable ends with on a side out: a free end; a clip, which takes a cable behind what has passed
+/// it, also what a hand has in its grip, as that does not stop.
 bool lets_end_out(const Attachment& attachment, int side, const State& state) {
-  const int index = attachment.body.index;
-  const Side at = side_of(attachment, side);
-  if (is_free_end(state, index, at.neighbour())) return true;
-  const CableState& cable = state.cables[index].state;
-  const bool ends = at.neighbour() == 0 || at.neighbour() == cable.segments();
-  return state.guides[attachment.guide].type == GuideDesc::Type::clip && ends && cable.tension[at.segment()] < 0 &&
-         !state.cable_progress[index].drive && is_in_a_grip(state, index, at.neighbour());
+  const int index = attachment.body.index, end = end_beside(attachment, side, state);
+  return is_free_end(state, index, end) || (state.guides[attachment.guide].type == GuideDesc::Type::clip &&
+                                            is_in_a_grip(state, index, end) && !state.cable_progress[index].drive);
+}
+
+/// [m] At rest, from a guide to the end on a side.
+double length_to_end(const Attachment& attachment, int side, const State& state) {
+  const int node = side_of(attachment, side).node, end = end_beside(attachment, side, state);
+  return state.cables[attachment.body.index].state.length(std::min(node, end), std::max(node, end));
 }
 
 /// What holds a cable now, with what flows through its guides and what is wound.
@@ -189,15 +196,15 @@ bool is_passable(const State& state, int cable, int node) {
 }
 
 bool runs_out(const Attachment& attachment, const State& state) {
-  const SimulatedCable& cable = state.cables[attachment.body.index];
   const SimulatedGuide& guide = state.guides[attachment.guide];
+  const double regular = state.cables[attachment.body.index].model->segment_length;
   const double ahead = steps_ahead * state.scene->time_step * std::abs(guide.flow);
-  const double least = std::clamp(ahead, shortest * cable.model->segment_length, most_ahead * cable.model->segment_length);
+  const double least = std::clamp(ahead, shortest * regular, most_ahead * regular);
   return std::any_of(both_sides.begin(), both_sides.end(), [&](int side) {
     if (!lets_end_out(attachment, side, state) || !(guide.flow * way_from(side) > 0)) return false;
-    // What brought the end in as near as that would not have been caught.
-    const bool is_free = is_free_end(state, attachment.body.index, side_of(attachment, side).neighbour());
-    return cable.state.rest_lengths[side_of(attachment, side).segment()] < (is_free ? least : std::max(least, guide.capture));
+    // Had it been as near when it was brought in, it would not have been caught.
+    const bool is_free = is_free_end(state, attachment.body.index, end_beside(attachment, side, state));
+    return length_to_end(attachment, side, state) < (is_free ? least : std::max(least, guide.capture));
   });
 }
 
@@ -234,7 +241,8 @@ void load_flows(int index, bool moves, const State& state, Boundary& boundary) {
     for (const int side : both_sides) {
       const Side at = side_of(attachment, side);
       if (cable.state.rest_lengths[at.segment()] >= stop * cable.model->segment_length) continue;
-      const bool runs_out = moves && lets_end_out(attachment, side, state);
+      const bool runs_out =
+          moves && at.neighbour() == end_beside(attachment, side, state) && lets_end_out(attachment, side, state);
       flow.is_blocked[side] = !runs_out && !is_passable(state, index, at.neighbour());
     }
   }
