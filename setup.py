@@ -25,7 +25,7 @@ class BuildByCMake(build_ext):
         subprocess.run(['cmake', '-S', HERE, '-B', build, '-DVERLET_CABLE_ROS=OFF', f'-DCMAKE_INSTALL_PREFIX={place}',
                         f'-DPYTHON_EXECUTABLE={sys.executable}', f'-DPython3_EXECUTABLE={sys.executable}'], check=True)
         subprocess.run(['cmake', '--build', build, '--parallel', str(jobs)], check=True)
-        subprocess.run(['cmake', '--install', build, '--strip'], check=True)
+        subprocess.run(['cmake', '--install', build, '--strip', '--component', 'Unspecified'], check=True)
 
 
 def by_catkin():

@@ -10,6 +10,7 @@ foreach(destination PACKAGE_BIN PACKAGE_LIB PACKAGE_PYTHON PACKAGE_SHARE GLOBAL_
   set(CATKIN_${destination}_DESTINATION .)
 endforeach()
 set(CATKIN_DEVEL_PREFIX ${PROJECT_BINARY_DIR})
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)  # programs are named like the directories of their parts
 
 add_subdirectory(src/core)
 add_compile_options(${options_beside_the_core})
