@@ -1,7 +1,59 @@
-from catkin_pkg.python_setup import generate_distutils_setup
-from setuptools import setup
+"""pip installs the Python modules and the command lines by it, without ROS; catkin reads which modules there are."""
+import os
+import pathlib
+import re
+import subprocess
+import sys
 
-setup(**generate_distutils_setup(
-    packages=['verlet_cable', 'verlet_cable.environments', 'verlet_cable.sim', 'verlet_cable.sweep'],
-    package_dir={'': 'src/python'},
-))
+from setuptools import Extension, setup
+from setuptools.command.build_ext import build_ext
+
+HERE = pathlib.Path(__file__).resolve().parent
+PACKAGES = {
+    'packages': ['verlet_cable', 'verlet_cable.environments', 'verlet_cable.sim', 'verlet_cable.sweep'],
+    'package_dir': {'': 'src/python'},
+}
+
+
+class BuildByCMake(build_ext):
+    """Builds and installs what CMake has for the package, beside its modules."""
+
+    def build_extension(self, ext):
+        place = pathlib.Path(self.get_ext_fullpath(ext.name)).resolve().parent
+        build = pathlib.Path(self.build_temp).resolve()
+        jobs = self.parallel or len(os.sched_getaffinity(0))
+        subprocess.run(['cmake', '-S', HERE, '-B', build, '-DVERLET_CABLE_ROS=OFF', f'-DCMAKE_INSTALL_PREFIX={place}',
+                        f'-DPYTHON_EXECUTABLE={sys.executable}', f'-DPython3_EXECUTABLE={sys.executable}'], check=True)
+        subprocess.run(['cmake', '--build', build, '--parallel', str(jobs)], check=True)
+        subprocess.run(['cmake', '--install', build, '--strip', '--component', 'Unspecified'], check=True)
+
+
+def by_catkin():
+    """Whether catkin runs this, which builds and installs the rest by itself."""
+    return __name__ != '__main__' or 'CATKIN_BINARY_DIR' in os.environ
+
+
+if by_catkin():
+    from catkin_pkg.python_setup import generate_distutils_setup
+
+    setup(**generate_distutils_setup(**PACKAGES))
+else:
+    PACKAGE_XML = (HERE / 'package.xml').read_text(encoding='utf-8')
+    setup(
+        name='verlet_cable',
+        version=re.search('<version>(.*)</version>', PACKAGE_XML)[1],
+        description=re.search('<description>(.*)</description>', PACKAGE_XML)[1],
+        license='BSD-3-Clause',
+        python_requires='>=3.8',
+        install_requires=['numpy'],
+        extras_require={'plot': ['matplotlib'], 'sweep': ['dask', 'distributed', 'zarr', 'pyyaml']},
+        package_data={'verlet_cable': ['py.typed', '*.pyi']},
+        ext_modules=[Extension('verlet_cable._simulation', [])],
+        cmdclass={'build_ext': BuildByCMake},
+        entry_points={'console_scripts': [
+            'cable_sim = verlet_cable.programs:cable_sim',
+            'cable_fit = verlet_cable.programs:cable_fit',
+            'cable_sweep = verlet_cable.sweep.command:main',
+        ]},
+        zip_safe=False,
+        **PACKAGES)

@@ -30,11 +30,16 @@ source_setup() {
   set -u
 }
 
-# The only list of system packages: to build, to run and to test; and, with a display only, to look at it.
-packages=(
-  build-essential cmake iproute2 libassimp-dev libceres-dev libcli11-dev libconsole-bridge-dev libeigen3-dev libgtest-dev libtbb-dev
-  liburdfdom-dev libyaml-cpp-dev nlohmann-json3-dev pybind11-dev python3-dev python3-numpy python3-pytest python3-setuptools python3-yaml
+# The only list of system packages: to build, to run and to test; and, with a display only, to look at it. These are all that the Python
+# package needs.
+library_packages=(
+  build-essential cmake libassimp-dev libceres-dev libcli11-dev libconsole-bridge-dev libeigen3-dev libtbb-dev liburdfdom-dev
+  libyaml-cpp-dev nlohmann-json3-dev pybind11-dev python3-dev python3-numpy python3-setuptools python3-yaml
 )
+# And with pip.
+pip_packages=(python3-pip python3-venv python3-wheel)
+
+packages=("${library_packages[@]}" iproute2 libgtest-dev python3-pytest)
 if [[ -f /opt/ros/noetic/setup.bash ]]; then
   source_setup /opt/ros/noetic/setup.bash
   packages+=(
