@@ -20,6 +20,7 @@ SCENES = {  # [s] until the picture
     'flat_cable': 5,
     'coiled_cable': 2,
     'dress_pack': 8,
+    'moored_buoy': 6,
 }  # their views are rviz/scenes
 LECTURE = {  # [s] until the picture, and how many steps after a reset it is of; 0: time just stops for it; None: it goes on, for trails
     'box': (4, None),

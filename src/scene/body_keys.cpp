@@ -27,6 +27,16 @@ const Keys<BodyAttachmentDesc>& attachment_keys() {
   return keys;
 }
 
+void read_fluid(const Value& value, BodyDesc& body) {
+  static const Keys<BodyFluidDesc> keys = [] {
+    Keys<BodyFluidDesc> fluid{vector_key("center", &BodyFluidDesc::center, "m")};
+    append_fields(fluid, body_fluid_fields);
+    append_fields(fluid, body_fluid_axis_fields);
+    return fluid;
+  }();
+  read_map(value, keys, body.fluid);
+}
+
 const Keys<BodyDesc>& body_keys() {
   static const Keys<BodyDesc> keys = [] {
     Keys<BodyDesc> body{
@@ -41,6 +51,7 @@ const Keys<BodyDesc>& body_keys() {
         pose_key("pose", &BodyDesc::pose),
         vector_key("velocity", &BodyDesc::velocity, "m/s"),
         vector_key("angular_velocity", &BodyDesc::angular_velocity, "rad/s"),
+        {"fluid", "a map", false, read_fluid},
         {"shapes", "a list of shapes", false,
          [](const Value& value, BodyDesc& body) { body.shapes = read_list<ShapeDesc>(value, read_shape); }},
         {"attachments", "a list", false,

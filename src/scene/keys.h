@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <set>
@@ -36,6 +37,11 @@ inline void read_field(const Value& value, double& target, const std::string& al
 }
 inline void read_field(const Value& value, int& target, const std::string& allowed) {
   target = read_integer(value, allowed);
+}
+
+inline void read_field(const Value& value, Vector3& target, const std::string& allowed) {
+  const std::array<double, 3> numbers = read_numbers<3>(value, allowed);
+  target = {numbers[0], numbers[1], numbers[2]};
 }
 
 /// The key of a field of the scene's tables.

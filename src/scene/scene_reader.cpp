@@ -41,9 +41,20 @@ void read_limits(const Value& value, SceneDesc& scene) {
   read_map(value, keys, scene.limits);
 }
 
+void read_wave(const Value& value, WaveDesc& wave) {
+  static const Keys<WaveDesc> keys = [] {
+    Keys<WaveDesc> all;
+    append_fields(all, wave_fields);
+    return all;
+  }();
+  read_map(value, keys, wave);
+}
+
 void read_fluid(const Value& value, SceneDesc& scene) {
   static const Keys<FluidDesc> keys = [] {
-    Keys<FluidDesc> fluid{vector_key("velocity", &FluidDesc::velocity, "m/s")};
+    Keys<FluidDesc> fluid{vector_key("velocity", &FluidDesc::velocity, "m/s"),
+                          {"waves", "a list of waves", false,
+                           [](const Value& value, FluidDesc& fluid) { fluid.waves = read_list<WaveDesc>(value, read_wave); }}};
     append_fields(fluid, fluid_fields);
     return fluid;
   }();

@@ -97,6 +97,31 @@ TEST(Allocation, StepOfBodiesAllocatesNothing) {
   EXPECT_EQ(allocations - before, 0);
 }
 
+/// A buoy floats on its tether.
+TEST(Allocation, StepInWavesAllocatesNothing) {
+  SceneDesc scene = scenes::one_cable(20);
+  scene.fluid.density = 1000;
+  scene.fluid.surface = 0;
+  scene.fluid.waves = {{0.1, 3, 0, 0}, {0.05, 1.5, 1, 0}};
+  scene.cables[0].attachments = {scenes::attachment("anchor", PlaceDesc::At::start, {0, 0, -1}),
+                                 scenes::attachment("shackle", PlaceDesc::At::end, Vector3::Zero())};
+  scene.cables[0].attachments[1].body = "buoy";
+  BodyDesc& buoy = scene.bodies.emplace_back();
+  buoy.name = "buoy";
+  buoy.mass = 2;
+  buoy.inertia = Vector3(0.01, 0.02, 0.015);
+  buoy.pose = InitialPose{0.1, 0, -0.1, 0, 0, 0};
+  buoy.fluid.volume = 0.005;
+  buoy.fluid.drag_area = {0.01, 0.01, 0.02};
+  buoy.fluid.added_mass = {1, 1, 2};
+  const BoundaryInputs inputs = initial_frames(scene);
+  World world(scene, inputs);
+  for (int i = 0; i < 1000; ++i) world.step(inputs);
+  const long before = allocations;
+  for (int i = 0; i < 1000; ++i) world.step(inputs);
+  EXPECT_EQ(allocations - before, 0);
+}
+
 /// A cable lies over a box on a floor.
 TEST(Allocation, StepOfBodiesThatTouchAllocatesNothing) {
   SceneDesc scene = scenes::one_cable(20);

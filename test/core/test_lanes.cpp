@@ -91,7 +91,7 @@ TEST_P(Lanes, DoWhatCableStepperDoes) {
         boundary.directions.push_back({attachment.node, turned, next.orientation});
     }
     other_boundary = boundary;
-    const Environment environment{scene.gravity, scene.fluid};
+    const Environment environment{scene.gravity, scene.fluid, no_waves};
     std::vector<TwistSpan> spans;
     Substep substep{*cable.model, environment, boundary, spans, h};
     substep.tolerance = 1e-9;
@@ -210,7 +210,7 @@ TEST(LanesOfEveryWidth, LeaveNothingToTheNextCables) {
   const SceneDesc long_scene = swinging(kinds()[7], 21), scene = swinging(kinds()[7], 20);
   const World longer(long_scene, crowd_frames(long_scene, 0)), shorter(scene, crowd_frames(scene, 0));
   const SimulatedCable& cable = shorter.cables()[0];
-  const Environment environment{scene.gravity, scene.fluid};
+  const Environment environment{scene.gravity, scene.fluid, no_waves};
   std::vector<TwistSpan> spans;
   CableStepper cleaner;
   LaneStepper used, fresh;

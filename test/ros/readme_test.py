@@ -206,7 +206,7 @@ class ReadmeTest(unittest.TestCase):
         self.assertIn(f'file does not exist [{self.directory}/hoose.yaml]', done.stdout)
 
     def test_names_of_scenes(self):
-        for launch, allowed in (('scene', 'pole, pile, table, knot, crossed, flat_cable, coiled_cable, dress_pack'), ('lecture', 'box, planet, oscillator')):
+        for launch, allowed in (('scene', 'pole, pile, table, knot, crossed, flat_cable, coiled_cable, moored_buoy, dress_pack'), ('lecture', 'box, planet, oscillator')):
             done = self.run_to_end(f'roslaunch verlet_cable {launch}.launch scene:=knott rviz:=false')
             self.assertIn(f'{launch}.launch: scene: "knott"; allowed: {allowed}', done.stdout)
             self.assertNotIn('Traceback', done.stdout)

@@ -37,6 +37,7 @@ bodies:
     friction: 0.3
     linear_damping: 0.01
     angular_damping: 0.001
+    fluid: {volume: 0.02, center: [0, 0.1, 0], drag_area: [0.1, 0.2, 0.3], angular_drag: [1, 2, 3], added_mass: [4, 5, 6]}
   - name: wheel
     mass: 2
     shapes: [{type: cylinder, radius: 0.1, length: 0.02}]
@@ -56,6 +57,11 @@ TEST(BodyKeys, areRead) {
   EXPECT_EQ(hook.pose, (InitialPose{0, 0, 1, 0, 0.1, 0}));
   EXPECT_EQ(hook.velocity, Vector3(1, 0, 0));
   EXPECT_EQ(hook.angular_velocity, Vector3(0, 0, 2));
+  EXPECT_EQ(hook.fluid.volume, 0.02);
+  EXPECT_EQ(hook.fluid.center, Vector3(0, 0.1, 0));
+  EXPECT_EQ(hook.fluid.drag_area, Vector3(0.1, 0.2, 0.3));
+  EXPECT_EQ(hook.fluid.angular_drag, Vector3(1, 2, 3));
+  EXPECT_EQ(hook.fluid.added_mass, Vector3(4, 5, 6));
   ASSERT_EQ(hook.shapes.size(), 2u);
   EXPECT_EQ(hook.shapes[0].type, ShapeType::box);
   EXPECT_EQ(hook.shapes[0].size, Vector3(0.02, 0.03, 0.04));
@@ -109,6 +115,16 @@ TEST(BodyKeys, inertiaFollowsFromShapesOnly) {
   EXPECT_EQ(errors("shapes: [{type: ball, radius: 1}]").size(), 1u) << joined(errors("shapes: [{type: ball, radius: 1}]"));
   EXPECT_EQ(errors("inertia: 5").size(), 1u) << joined(errors("inertia: 5"));
   EXPECT_TRUE(has_line(errors("shapes: [{type: sphere, radius: 1e-12}]"), "bodies[0].shapes: an inertia of ["));
+}
+
+TEST(BodyKeys, fluidIsChecked) {
+  const auto errors = errors_of(replaced(loads, "volume: 0.02, center: [0, 0.1, 0], drag_area: [0.1, 0.2, 0.3]",
+                                         "volume: -1, center: [0, .nan, 0], drag_area: [0.1, -0.2, 0.3]"));
+  EXPECT_TRUE(has_line(errors, "bodies[0].fluid.volume: -1; allowed: 0 or more [m^3]")) << joined(errors);
+  EXPECT_TRUE(has_line(errors, "bodies[0].fluid.center: "));
+  EXPECT_TRUE(has_line(errors, "bodies[0].fluid.drag_area: [0.1, -0.2, 0.3]; allowed: three numbers, 0 or more [m^2]"));
+  EXPECT_EQ(errors.size(), 3u) << joined(errors);
+  EXPECT_TRUE(has_line(errors_of(replaced(loads, "added_mass: [4, 5, 6]", "added_mass: 4")), "bodies[0].fluid.added_mass: 4; "));
 }
 
 TEST(BodyKeys, openMeshesHaveNoInertia) {

@@ -25,6 +25,7 @@ TEST(SceneFiles, templateHoldsTheDefaults) {
   EXPECT_EQ(scene.gravity.acceleration, defaults.gravity.acceleration);
   for (const auto& field : fluid_fields) EXPECT_EQ(scene.fluid.*field.member, defaults.fluid.*field.member) << field.key;
   EXPECT_EQ(scene.fluid.velocity, defaults.fluid.velocity);
+  EXPECT_TRUE(scene.fluid.waves.empty());
   EXPECT_EQ(scene.on_lost_frame, defaults.on_lost_frame);
   EXPECT_EQ(scene.on_time_jump, defaults.on_time_jump);
   EXPECT_EQ(scene.marker_style, defaults.marker_style);
@@ -88,6 +89,9 @@ TEST(SceneFiles, templateHoldsTheDefaultsOfBodies) {
   ASSERT_EQ(scene.bodies.size(), 1u);
   const BodyDesc& body = scene.bodies[0];
   expect_defaults(body, body_fields);
+  expect_defaults(body.fluid, body_fluid_fields);
+  expect_defaults(body.fluid, body_fluid_axis_fields);
+  EXPECT_EQ(body.fluid.center, BodyFluidDesc{}.center);
   EXPECT_EQ(body.velocity, BodyDesc{}.velocity);
   EXPECT_EQ(body.angular_velocity, BodyDesc{}.angular_velocity);
   ASSERT_EQ(body.attachments.size(), 1u);
@@ -158,6 +162,8 @@ TEST(SceneFiles, templateDocumentsEveryKey) {
   expect_documented(lines, grid_fields);
   expect_documented(lines, grid_integer_fields);
   expect_documented(lines, body_fields);
+  expect_documented(lines, body_fluid_fields);
+  expect_documented(lines, body_fluid_axis_fields);
   expect_documented(lines, junction_fields);
   expect_documented(lines, sheave_fields);
   expect_documented(lines, clip_fields);
@@ -189,6 +195,8 @@ TEST(SceneFiles, templateDocumentsEveryKey) {
                           "initial",
                           "fluid",
                           "velocity",
+                          "waves",
+                          "center",
                           "obstacles",
                           "pose",
                           "friction",

@@ -82,10 +82,37 @@ TEST(ValidateScene, everyRangeIsChecked) {
   expect_ranges_checked(scene, scene, scene_integer_fields, "");
   expect_ranges_checked(scene, scene.limits, limits_fields, "limits.");
   expect_ranges_checked(scene, scene.fluid, fluid_fields, "fluid.");
+  SceneDesc in_waves = scene;
+  in_waves.fluid.density = 1000;
+  in_waves.fluid.surface = 0;
+  in_waves.fluid.waves = {{0.5, 8, 0, 0}};
+  ASSERT_EQ(joined(validate(in_waves)), "");
+  expect_ranges_checked(in_waves, in_waves.fluid.waves[0], wave_fields, "fluid.waves[0].");
   expect_ranges_checked(scene, scene.materials[0].material, material_fields, "materials.m.");
   expect_ranges_checked(scene, scene.cables[0], cable_fields, "cables[0].");
   expect_ranges_checked(scene, scene.cables[0], cable_integer_fields, "cables[0].");
   expect_ranges_checked(scene, scene.cables[0].point_masses[0], point_mass_fields, "cables[0].point_masses[0].");
+}
+
+TEST(ValidateScene, wavesNeedWaterAndGravity) {
+  SceneDesc scene = held_scene(0.5);
+  scene.fluid.waves = {{0.5, 8, 0, 0}};
+  scene.gravity.acceleration = {0, 1, -9.81};
+  const std::vector<std::string> lines = validate(scene);
+  EXPECT_TRUE(has_line(lines, "fluid.density: 0; allowed: any number above 0 [kg/m^3], with fluid.waves"));
+  EXPECT_TRUE(has_line(lines, "fluid.surface: .inf; allowed: any number [m], with fluid.waves"));
+  EXPECT_TRUE(has_line(lines, "gravity: [0, 1, -9.81]; allowed: [0, 0, -g] with any g above 0 [m/s^2], with fluid.waves"));
+  EXPECT_EQ(lines.size(), 3u);
+  scene.fluid.density = 1000;
+  scene.fluid.surface = 0;
+  for (const Vector3& upwards : {Vector3(0, 0, 0), Vector3(0, 0, 9.81)}) {
+    scene.gravity.acceleration = upwards;
+    EXPECT_TRUE(has_line(validate(scene), "gravity: "));
+  }
+  scene.gravity.acceleration = {0, 0, -9.81};
+  EXPECT_EQ(joined(validate(scene)), "");
+  scene.gravity.type = GravityDesc::Type::central;
+  EXPECT_TRUE(has_line(validate(scene), "gravity: central; allowed: "));
 }
 
 TEST(ValidateScene, restShapesAndRibbonsNeedTorsionalStiffness) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "verlet_cable/core/body_desc.h"
 #include "verlet_cable/core/shape.h"
 #include "verlet_cable/core/types.h"
 
@@ -27,6 +28,7 @@ struct SimulatedBody {
   double friction = 0;                         ///< Coulomb coefficient
   double linear_damping = 0;                   ///< [N s/m]
   double angular_damping = 0;                  ///< [N m s]
+  BodyFluidDesc fluid;                         ///< what the scene's fluid does to it
   int frame = 0;                               ///< index into World::frames()
   Pose pose;                                   ///< of its frame
   Vector3 velocity = Vector3::Zero();          ///< [m/s] of its center of mass, fixed frame's axes

@@ -22,6 +22,15 @@ struct BodyAttachmentDesc {
   std::optional<InitialPose> initial_pose;  ///< of the frame, until another pose is known
 };
 
+/// What the scene's fluid does to a body.
+struct BodyFluidDesc {
+  double volume = 0;                       ///< [m^3] >= 0, as that of a sphere
+  Vector3 center = Vector3::Zero();        ///< [m] of buoyancy, drag and added mass, in the body's frame
+  Vector3 drag_area = Vector3::Zero();     ///< [m^2] >= 0, along the body's axes: area times coefficient
+  Vector3 angular_drag = Vector3::Zero();  ///< [N m s^2] >= 0, about the body's axes
+  Vector3 added_mass = Vector3::Zero();    ///< [kg] >= 0, along the body's axes
+};
+
 /// A rigid body: a plug, a hook, a load, a wheel.
 struct BodyDesc {
   std::string name;
@@ -38,6 +47,7 @@ struct BodyDesc {
   double friction = 0.5;       ///< Coulomb coefficient for cables on it, and for it on obstacles that have none, >= 0
   double linear_damping = 0;   ///< [N s/m] of the center of mass, >= 0
   double angular_damping = 0;  ///< [N m s], >= 0
+  BodyFluidDesc fluid;
   std::vector<BodyAttachmentDesc> attachments;
 };
 

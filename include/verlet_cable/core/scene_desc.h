@@ -223,6 +223,14 @@ struct IntegratorDesc {
   FirstStep first_step = FirstStep::taylor;
 };
 
+/// A linear wave on the fluid's surface: at the point x and the time t it is amplitude cos(k . x - 2 pi t / period + phase) high.
+struct WaveDesc {
+  double amplitude = 0;  ///< [m], >= 0
+  double period = 0;     ///< [s], > 0
+  double direction = 0;  ///< [rad] in which it runs, from x towards y
+  double phase = 0;      ///< [rad]
+};
+
 /// The fluid around the cables. Its drag is quadratic, with the diameter as reference width, and adds to the linear drag.
 struct FluidDesc {
   double density = 0;                  ///< [kg/m^3], >= 0
@@ -230,6 +238,8 @@ struct FluidDesc {
   double surface = infinity;           ///< [m] z below which there is fluid
   double normal_drag = 1.2;            ///< coefficient normal to the cable, >= 0
   double tangential_drag = 0.01;       ///< coefficient along the cable, >= 0
+  double depth = infinity;             ///< [m] of the water below `surface`, for waves, > 0
+  std::vector<WaveDesc> waves;         ///< on `surface`
 };
 
 enum class LostFramePolicy { hold, release, pause };

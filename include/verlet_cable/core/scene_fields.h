@@ -62,11 +62,19 @@ constexpr std::array<Field<LimitsDesc, int>, 3> limits_fields{{
     {"rollouts", &LimitsDesc::rollouts, "", {0, 1e3, "an integer"}},
 }};
 
-constexpr std::array<Field<FluidDesc>, 4> fluid_fields{{
+constexpr std::array<Field<FluidDesc>, 5> fluid_fields{{
     {"density", &FluidDesc::density, "kg/m^3", not_negative},
     {"surface", &FluidDesc::surface, "m", {-1e9, 1e9, "any number, or .inf", true}},
     {"normal_drag", &FluidDesc::normal_drag, "", not_negative},
     {"tangential_drag", &FluidDesc::tangential_drag, "", not_negative},
+    {"depth", &FluidDesc::depth, "m", {1e-3, 1e9, "any number above 0, or .inf", true}},
+}};
+
+constexpr std::array<Field<WaveDesc>, 4> wave_fields{{
+    {"amplitude", &WaveDesc::amplitude, "m", {0, 1e3, "0 or more"}, true},
+    {"period", &WaveDesc::period, "s", {1e-3, 1e6, "any number above 0"}, true},
+    {"direction", &WaveDesc::direction, "rad", {-1e9, 1e9, "any number"}},
+    {"phase", &WaveDesc::phase, "rad", {-1e9, 1e9, "any number"}},
 }};
 
 constexpr std::array<Field<MaterialDesc>, 15> material_fields{{
@@ -147,6 +155,16 @@ constexpr std::array<Field<BodyDesc>, 4> body_fields{{
     {"friction", &BodyDesc::friction, "", not_negative},
     {"linear_damping", &BodyDesc::linear_damping, "N s/m", not_negative},
     {"angular_damping", &BodyDesc::angular_damping, "N m s", not_negative},
+}};
+
+constexpr std::array<Field<BodyFluidDesc>, 1> body_fluid_fields{{
+    {"volume", &BodyFluidDesc::volume, "m^3", not_negative},
+}};
+
+constexpr std::array<Field<BodyFluidDesc, Vector3>, 3> body_fluid_axis_fields{{
+    {"drag_area", &BodyFluidDesc::drag_area, "m^2", {0, 1e12, "three numbers, 0 or more"}},
+    {"angular_drag", &BodyFluidDesc::angular_drag, "N m s^2", {0, 1e12, "three numbers, 0 or more"}},
+    {"added_mass", &BodyFluidDesc::added_mass, "kg", {0, 1e12, "three numbers, 0 or more"}},
 }};
 
 constexpr std::array<Field<JunctionDesc>, 1> junction_fields{{

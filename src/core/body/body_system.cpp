@@ -20,7 +20,7 @@ constexpr double least_size = 1e-3;  // [m] of a body
 }  // namespace
 
 void BodySystem::begin(const std::vector<BodyMember>& members, const std::vector<Participant>& participants,
-                       const std::vector<SimulatedBody>& bodies, const GravityDesc& gravity, const SubstepRules& rules) {
+                       const std::vector<SimulatedBody>& bodies, const Environment& environment, const SubstepRules& rules) {
   rules_ = rules;
   solutions_ = 0;
   member_of_.assign(bodies.size(), -1);
@@ -36,7 +36,7 @@ void BodySystem::begin(const std::vector<BodyMember>& members, const std::vector
   for (std::size_t m = 0; m < members.size(); ++m) {
     MovingBody& member = members_[m];
     member.size = std::sqrt(member.whole.inertia.trace() / member.whole.mass);
-    member.stepper.begin(*members[m].start, *members[m].progress, member.whole, gravity, rules);
+    member.stepper.begin(*members[m].start, *members[m].progress, member.whole, environment, rules);
   }
   contacts_.begin(members_, member_of_, rules.part());
 }
@@ -224,10 +224,8 @@ void BodySystem::add_inertia() {
   equations_.clear_matrix();
   for (std::size_t m = 0; m < members_.size(); ++m) {
     const int member = static_cast<int>(m);
-    const Eigen::Matrix3d& end = members_[m].stepper.end();
     equations_.load(member).setZero();
-    equations_.block(member, member).topLeftCorner<3, 3>().diagonal().setConstant(members_[m].whole.mass);
-    equations_.block(member, member).bottomRightCorner<3, 3>() = end * members_[m].whole.inertia * end.transpose();
+    equations_.block(member, member) = members_[m].stepper.inertia();
   }
 }
 
@@ -252,6 +250,9 @@ void BodySystem::expect_momenta(const std::vector<Participant>& participants) {
   for (GroupMomenta& group : momenta_) group.begin();
   for (const BodyJoint& joint : joints_.all())
     if (joint.other < 0) group_of(joint.member).hold();
+  // The fluid has a part of the momenta of added mass.
+  for (std::size_t m = 0; m < members_.size(); ++m)
+    if (members_[m].stepper.has_added_mass()) group_of(static_cast<int>(m)).hold();
   for (std::size_t m = 0; m < members_.size(); ++m) members_[m].stepper.expect_momenta(group_of(static_cast<int>(m)));
   for (std::size_t c = 0; c < cable_count_; ++c)
     if (cables_[c].is_held())

@@ -217,7 +217,7 @@ class Hanging {
       Pulled& pulled = pulled_[s];
       pulled.weight = std::accumulate(spans_[s].weights.begin(), spans_[s].weights.end(), 0.0);
       pulled.length = std::accumulate(spans_[s].lengths.begin(), spans_[s].lengths.end(), 0.0);
-      pulled.threshold = slack * pulled.weight + slack * slack * weight_;
+      pulled.threshold = slack * std::abs(pulled.weight) + slack * slack * weight_;
       pulled.force = -0.5 * pulled.weight * down_ + 0.1 * pulled.weight * down_.unitOrthogonal();
       size_ = std::max(size_, pulled.length);
     }

@@ -10,7 +10,7 @@ namespace verlet_cable {
 struct HangingBody {
   Pose pose;                         ///< where it is looked for first; then where it hangs
   Vector3 center = Vector3::Zero();  ///< [m] where its weight is, in its frame
-  double weight = 0;                 ///< [N]
+  double weight = 0;                 ///< [N] below 0: it is lifted; all together weigh more than nothing
   bool turns = true;
 };
 

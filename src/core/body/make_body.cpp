@@ -16,6 +16,7 @@ SimulatedBody make_body(const BodyDesc& desc) {
   body.friction = desc.friction;
   body.linear_damping = desc.linear_damping;
   body.angular_damping = desc.angular_damping;
+  body.fluid = desc.fluid;
   if (desc.pose) body.pose = pose_of(*desc.pose);
   body.velocity = desc.velocity;
   body.angular_velocity = desc.angular_velocity;

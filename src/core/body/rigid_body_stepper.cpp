@@ -12,27 +12,22 @@ Vector3 cayley_vector(const Quaternion& rotation) {
   return 2 / rotation.w() * rotation.vec();
 }
 
+/// By what the Cayley vector w changes as the end is rotated.
+Eigen::Matrix3d turned_cayley(const Vector3& w) {
+  return Eigen::Matrix3d::Identity() + 0.25 * w * w.transpose() - 0.5 * cross_matrix(w);
+}
+
 }  // namespace
 
-Eigen::Matrix3d cross_matrix(const Vector3& v) {
-  Eigen::Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
-Eigen::Matrix3d turned_torque(const Vector3& arm, const Vector3& force) {
-  return arm * force.transpose() - arm.dot(force) * Eigen::Matrix3d::Identity();
-}
-
 void RigidBodyStepper::begin(const SimulatedBody& body, const BodyProgress& progress, const MassProperties& whole,
-                             const GravityDesc& gravity, const SubstepRules& rules) {
+                             const Environment& environment, const SubstepRules& rules) {
   rules_ = rules;
   whole_ = whole;
   mass_ = body.mass;
   own_ = body.center_of_mass - whole.center_of_mass;
   linear_damping_ = rules.statics ? 0 : body.linear_damping;
   angular_damping_ = rules.statics ? 0 : body.angular_damping;
-  gravity_ = &gravity;
+  gravity_ = &environment.gravity;
   orientation_ = body.pose.orientation;
   start_ = orientation_.toRotationMatrix();
   center_ = body.pose.position + start_ * whole.center_of_mass;
@@ -44,8 +39,22 @@ void RigidBodyStepper::begin(const SimulatedBody& body, const BodyProgress& prog
     velocity_ = body.velocity - body.angular_velocity.cross(arm);
     acceleration_ = progress.acceleration;
   }
+  const Vector3 arm = body.fluid.center - whole.center_of_mass;
+  fluid_.begin(body.fluid, environment, rules.middle, rules.h, rules.statics, center_ + start_ * arm,
+               velocity_ + (start_ * spin_).cross(start_ * arm), arm);
+  has_added_mass_ = !body.fluid.added_mass.isZero(0);
+  if (has_added_mass_) add_mass(body.fluid);
   displacement_ = rules.h * (velocity_ + 0.5 * rules.h * acceleration_);
   turn_by(orientation_ * cayley(rules.h * (spin_ + 0.5 * rules.h * spin_change_)));
+}
+
+/// At the center of the fluid, whose velocity is V + W x arm.
+void RigidBodyStepper::add_mass(const BodyFluidDesc& fluid) {
+  const Eigen::Matrix3d added = fluid.added_mass.asDiagonal(), arm = cross_matrix(fluid.center - whole_.center_of_mass);
+  inertia_ << whole_.mass * Eigen::Matrix3d::Identity() + added, -added * arm, arm * added, whole_.inertia - arm * added * arm;
+  const Vector3 velocity = start_.transpose() * (velocity_ - fluid_.flow());
+  rate_ << velocity, spin_;
+  rate_change_ << start_.transpose() * acceleration_ - spin_.cross(velocity), spin_change_;
 }
 
 void RigidBodyStepper::turn_by(const Quaternion& end) {
@@ -78,28 +87,98 @@ Vector3 RigidBodyStepper::end_momentum() const {
   return end_ * (whole_.inertia * (inertia / rules_.h * turn_ - (inertia - 1) * spin_));
 }
 
+/// V and W over the substep: B^T u / h, and w / h along the body's axes.
+Vector6 RigidBodyStepper::mean_rate() const {
+  const Vector3 u = way_in_water();
+  Vector6 rate;
+  rate << start_.transpose() * (u - 0.5 * turn().cross(u)) / rules_.h, turn_ / rules_.h;
+  return rate;
+}
+
+/// Likewise, with added mass: R' P' and R' L'.
+Vector6 RigidBodyStepper::added_end_momentum() const {
+  const double inertia = rules_.inertia();
+  const Vector6 momentum = inertia_ * (inertia * mean_rate() - (inertia - 1) * rate_);
+  Vector6 turned;
+  turned << end_ * momentum.head<3>(), end_ * momentum.tail<3>();
+  return turned;
+}
+
+/// [N], [N m] What changes its momenta so.
+Vector6 RigidBodyStepper::momentum_rate() const {
+  const double h = rules_.h;
+  Vector6 rate;
+  if (!has_added_mass_) {
+    const Vector3 start_momentum = start_ * (whole_.inertia * spin_);
+    rate << rules_.inertia() * whole_.mass / h * (displacement_ / h - velocity_), (end_momentum() - start_momentum) / h;
+    return rate;
+  }
+  const Vector6 start = inertia_ * rate_, end = added_end_momentum();
+  const Vector3 momentum = start_ * start.head<3>();
+  rate << (end.head<3>() - momentum) / h, (end.tail<3>() - start_ * start.tail<3>()) / h;
+  rate.tail<3>() += way_in_water().cross(0.5 * (momentum + end.head<3>())) / h;
+  return rate;
+}
+
 Vector6 RigidBodyStepper::load() const {
-  const double h = rules_.h, part = rules_.part(), damping = damping_rate();
+  const double part = rules_.part(), damping = damping_rate();
   const Vector3 arm = (1 - part) * (start_ * own_) + part * (end_ * own_);
   const Vector3 drag = -linear_damping_ * damping * (displacement_ + (end_ - start_) * own_);
-  const Vector3 force = weight() + drag, start_momentum = start_ * (whole_.inertia * spin_);
+  const Vector3 force = weight() + drag;
   Vector6 load;
-  load << force - rules_.inertia() * whole_.mass / h * (displacement_ / h - velocity_),
-      arm.cross(force) - angular_damping_ * damping * turn() - (end_momentum() - start_momentum) / h;
-  return load;
+  load << force, arm.cross(force) - angular_damping_ * damping * turn();
+  if (fluid_.active()) load += fluid_.load(part, way());
+  return load - momentum_rate();
 }
 
 Matrix6 RigidBodyStepper::stiffness() const {
   const double h = rules_.h, inertia = rules_.inertia(), damping = damping_rate();
-  const Vector3 w = turn();
-  // The Cayley vector changes by (1 + w w^T / 4 - [w] / 2) times a rotation of the end.
-  const Eigen::Matrix3d along = Eigen::Matrix3d::Identity() + 0.25 * w * w.transpose() - 0.5 * cross_matrix(w);
+  const Eigen::Matrix3d along = turned_cayley(turn());
   Matrix6 stiffness = Matrix6::Zero();
-  stiffness.topLeftCorner<3, 3>().diagonal().setConstant(inertia * whole_.mass / (h * h) + linear_damping_ * damping);
-  stiffness.bottomRightCorner<3, 3>() = inertia / (h * h) * end_ * whole_.inertia * start_.transpose() * along -
-                                        cross_matrix(end_momentum()) / h + angular_damping_ * damping * along -
-                                        rules_.part() * turned_torque(end_ * own_, weight());
+  if (has_added_mass_) {
+    stiffness = momentum_stiffness();
+    stiffness.topLeftCorner<3, 3>().diagonal().array() += linear_damping_ * damping;
+    stiffness.bottomRightCorner<3, 3>() += angular_damping_ * damping * along;
+    stiffness.bottomRightCorner<3, 3>() -= rules_.part() * turned_torque(end_ * own_, weight());
+  } else {
+    stiffness.topLeftCorner<3, 3>().diagonal().setConstant(inertia * whole_.mass / (h * h) + linear_damping_ * damping);
+    stiffness.bottomRightCorner<3, 3>() = inertia / (h * h) * end_ * whole_.inertia * start_.transpose() * along -
+                                          cross_matrix(end_momentum()) / h + angular_damping_ * damping * along -
+                                          rules_.part() * turned_torque(end_ * own_, weight());
+  }
+  if (fluid_.active()) stiffness += fluid_.stiffness(rules_.part(), way());
   return stiffness;
+}
+
+/// By what momentum_rate() changes, with added mass.
+Matrix6 RigidBodyStepper::momentum_stiffness() const {
+  const Vector3 w = turn(), u = way_in_water();
+  const Eigen::Matrix3d back = start_.transpose(), along = turned_cayley(w);
+  Matrix6 rates, stiffness;
+  rates << back - 0.5 * back * cross_matrix(w), 0.5 * back * cross_matrix(u) * along, Eigen::Matrix3d::Zero(), back * along;
+  rates *= rules_.inertia() / rules_.h;
+  const Vector6 end = added_end_momentum();
+  const Matrix6 momenta = inertia_ * rates;
+  stiffness << end_ * momenta.topRows<3>(), end_ * momenta.bottomRows<3>();
+  stiffness.topRightCorner<3, 3>() -= cross_matrix(end.head<3>());
+  stiffness.bottomRightCorner<3, 3>() -= cross_matrix(end.tail<3>());
+  const Vector3 momentum = 0.5 * (start_ * (inertia_ * rate_).head<3>() + end.head<3>());
+  stiffness.bottomRows<3>() += 0.5 * cross_matrix(u) * stiffness.topRows<3>();
+  stiffness.bottomLeftCorner<3, 3>() -= cross_matrix(momentum);
+  return stiffness / rules_.h;
+}
+
+Matrix6 RigidBodyStepper::inertia() const {
+  Matrix6 inertia = Matrix6::Zero();
+  if (!has_added_mass_) {
+    inertia.topLeftCorner<3, 3>().diagonal().setConstant(whole_.mass);
+    inertia.bottomRightCorner<3, 3>() = end_ * whole_.inertia * end_.transpose();
+    return inertia;
+  }
+  for (const int row : {0, 3})
+    for (const int column : {0, 3})
+      inertia.block<3, 3>(row, column) = end_ * inertia_.block<3, 3>(row, column) * end_.transpose();
+  return inertia;
 }
 
 void RigidBodyStepper::correct(const Vector6& change) {
@@ -110,6 +189,10 @@ void RigidBodyStepper::correct(const Vector6& change) {
 Vector3 RigidBodyStepper::end_velocity() const {
   if (rules_.statics) return Vector3::Zero();
   const VelocityWeights weights = velocity_weights(rules_.scheme);
+  if (has_added_mass_)
+    return fluid_.flow() +
+           end_ * (weights.displacement * mean_rate() + weights.velocity * rate_ + weights.acceleration * rules_.h * rate_change_)
+                      .head<3>();
   return weights.displacement / rules_.h * displacement_ + weights.velocity * velocity_ +
          weights.acceleration * rules_.h * acceleration_;
 }
@@ -123,6 +206,10 @@ Vector3 RigidBodyStepper::end_spin() const {
 double RigidBodyStepper::damping_work() const {
   return damping_rate() *
          (linear_damping_ * (displacement_ + (end_ - start_) * own_).squaredNorm() + angular_damping_ * turn_.squaredNorm());
+}
+
+void RigidBodyStepper::add_fluid_work(EnergyBalance& balance) const {
+  if (fluid_.active()) fluid_.add_work(rules_.part(), way(), balance);
 }
 
 void RigidBodyStepper::expect_momenta(GroupMomenta& group) const {
@@ -151,6 +238,9 @@ void RigidBodyStepper::finish(SimulatedBody& body, BodyProgress& progress) const
   if (rules_.scheme != Scheme::damped) return;
   progress.acceleration = (displacement_ / h - velocity_) / h + 0.5 * acceleration_;
   progress.angular_acceleration = (turn_ / h - spin_) / h + 0.5 * spin_change_;
+  if (!has_added_mass_) return;
+  const Vector3 change = ((mean_rate() - rate_) / h + 0.5 * rate_change_).head<3>();
+  progress.acceleration = end_ * (change + end_spin().cross(end_.transpose() * (end_velocity() - fluid_.flow())));
 }
 
 }  // namespace verlet_cable

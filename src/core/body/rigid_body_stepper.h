@@ -1,7 +1,7 @@
 #pragma once
 
-#include <Eigen/Core>
-
+#include "body/body_algebra.h"
+#include "body/body_fluid_forces.h"
 #include "body/body_progress.h"
 #include "body/group_momenta.h"
 #include "body/mass_properties.h"
@@ -10,23 +10,16 @@
 
 namespace verlet_cable {
 
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
 /// What a substep is done with, whatever it moves.
 struct SubstepRules {
   double h = 0;          ///< [s]
   bool statics = false;  ///< a step towards equilibrium: inertia only slows it
   Scheme scheme = Scheme::conserving;
+  double middle = 0;  ///< [s] the world's time in the middle of the substep
 
   double part() const { return statics || scheme != Scheme::conserving ? 1 : 0.5; }
   double inertia() const { return inertia_of(scheme); }
 };
-
-/// The skew matrix of a cross product with v on the left.
-Eigen::Matrix3d cross_matrix(const Vector3& v);
-/// By what the torque of a force that stays as it is changes as its arm turns.
-Eigen::Matrix3d turned_torque(const Vector3& arm, const Vector3& force);
 
 /// Advances one rigid body by one substep, together with the cables that it holds: stages for a solver that has both. The scheme
 /// is that of the cables (see CableStepper); for the rotation, with the Cayley vector w from start to end, W = R^T omega and
@@ -34,10 +27,16 @@ Eigen::Matrix3d turned_torque(const Vector3& arm, const Vector3& force);
 ///   R' J (2 Theta / h - W) - R J W = h torque,   W' = 2 Theta / h - W
 /// which keeps angular momentum and energy (Simo and Wong 1991, with Cayley's rotation in place of the exponential). A force acts
 /// with the mean of its arm at the start and the end: then its work is force . (displacement of its point).
+///
+/// Added mass couples the two (Kirchhoff's equations; Lamb, Hydrodynamics, 1932, chapter VI). With the velocity V = R^T v of the
+/// center of mass against the water along the body's axes, the momenta R P and R L of (V, W) by one constant matrix, and the way
+/// u through the water,
+///   R' P' - R P = h force,   R' L' - R L + u x (R P + R' P') / 2 = h torque,   V' = 2 B^T u / h - V,   B = (1 + [w] / 2) R
+/// keep energy and both momenta: u . (R' P' - R P) + w . (u x (R P + R' P') / 2) is u . B (P' - P).
 class RigidBodyStepper {
  public:
   /// `whole`: the body with the nodes of cables that it holds, in the axes of its frame.
-  void begin(const SimulatedBody& body, const BodyProgress& progress, const MassProperties& whole, const GravityDesc& gravity,
+  void begin(const SimulatedBody& body, const BodyProgress& progress, const MassProperties& whole, const Environment& environment,
              const SubstepRules& rules);
 
   // The present iterate
@@ -57,12 +56,18 @@ class RigidBodyStepper {
   Matrix6 stiffness() const;
   void correct(const Vector6& change);
 
+  /// [kg], [kg m], [kg m^2] Of velocities of the center of mass and spins at the end, in the fixed frame's axes.
+  Matrix6 inertia() const;
+  /// Its momenta are not those of its mass alone.
+  bool has_added_mass() const { return has_added_mass_; }
   /// What its forces leave of its momenta, and what it has at the end.
   void expect_momenta(GroupMomenta& group) const;
   void add_momenta(GroupMomenta& group) const;
 
   /// [J] That its damping takes in the substep.
   double damping_work() const;
+  /// Adds what the fluid does in the substep.
+  void add_fluid_work(EnergyBalance& balance) const;
 
   /// Velocities at the end.
   void finish(SimulatedBody& body, BodyProgress& progress) const;
@@ -72,6 +77,13 @@ class RigidBodyStepper {
  private:
   double damping_rate() const { return rules_.statics ? 0 : 1 / rules_.h; }
   Vector3 weight() const;
+  BodyWay way() const { return {start_, end_, displacement_, turn()}; }
+  void add_mass(const BodyFluidDesc& fluid);
+  Vector3 way_in_water() const { return displacement_ - rules_.h * fluid_.flow(); }
+  Vector6 mean_rate() const;
+  Vector6 added_end_momentum() const;
+  Vector6 momentum_rate() const;
+  Matrix6 momentum_stiffness() const;
   Vector3 end_momentum() const;
   Vector3 end_velocity() const;
   Vector3 end_spin() const;
@@ -83,6 +95,11 @@ class RigidBodyStepper {
   Vector3 own_ = Vector3::Zero();  // its center of mass, from that of the whole
   double linear_damping_ = 0, angular_damping_ = 0;
   const GravityDesc* gravity_ = nullptr;
+  BodyFluidForces fluid_;
+  // Of the whole with its added mass, along the frame's axes: what of V and W makes P and L
+  bool has_added_mass_ = false;
+  Matrix6 inertia_;
+  Vector6 rate_, rate_change_;  // V and W at the start [m/s], [rad/s], and how they change [m/s^2], [rad/s^2]
   // At the start
   Vector3 center_, velocity_, acceleration_;  // of the whole
   Quaternion orientation_ = Quaternion::Identity();

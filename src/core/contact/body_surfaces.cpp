@@ -45,7 +45,7 @@ void BodySurfaces::add(int index, const SimulatedBody& body, const BodyProgress&
     moving.body_acceleration = acceleration_of(body, progress);
     const double size = largest_distance(moving.box, moving.body_velocity.center);
     moving.speed = body.velocity.norm() + size * body.angular_velocity.norm();
-    moving.body_mass = body.mass;
+    moving.body_mass = body.mass + body.fluid.added_mass.mean();
     const Vector3 turn = 0.5 * h * body.angular_velocity;
     if (!turn.isZero(0)) moving.half_turn = Quaternion(1, 0.5 * turn.x(), 0.5 * turn.y(), 0.5 * turn.z()).normalized();
   }
@@ -59,7 +59,8 @@ const std::vector<MovingObstacle>& BodySurfaces::all() {
 double mass_at(const SimulatedBody& body, const Vector3& point, const Vector3& direction) {
   const Vector3 arm = body.pose.orientation.conjugate() * (point - body.pose.position) - body.center_of_mass;
   const Vector3 along = body.pose.orientation.conjugate() * direction, turning = arm.cross(along);
-  return 1 / (1 / body.mass + turning.dot(body.inertia.llt().solve(turning)));
+  const double mass = body.mass + body.fluid.added_mass.dot(along.cwiseAbs2());
+  return 1 / (1 / mass + turning.dot(body.inertia.llt().solve(turning)));
 }
 
 }  // namespace verlet_cable

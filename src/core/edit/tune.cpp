@@ -21,6 +21,7 @@ void World::tune(const SceneDesc& scene) {
   tuned->materials = scene.materials;
   if (tuned->contact && scene.contact) tuned->contact->friction = scene.contact->friction;
   state.scene = std::move(tuned);
+  state.waves = waves_of(*state.scene);
   for (int i = 0; i < static_cast<int>(state.cables.size()); ++i) {
     CableModel model = *state.cables[i].model;
     model.material = *scene.find_material(model.material_name);

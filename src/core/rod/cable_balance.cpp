@@ -70,6 +70,7 @@ void CableStepper::balance_laws(const Substep& s, const std::vector<double>& mas
 void CableStepper::balance_drag(const Substep& s, const std::vector<double>& masses, EnergyBalance& balance) const {
   LinearDrag<double> drag{0, numbers_of(s.environment.fluid.velocity), 1 / s.h};
   for (int i = 0; i <= segments_; ++i) {
+    if (fluid_.active()) drag.fluid = numbers_of(fluid_.flow(i));
     drag.coefficient = s.h * (inertia_[i] - s.inertia() * masses[i] / (s.h * s.h));
     const VectorOf<double> displacement = numbers_at(displacement_, i);
     balance.dissipated.drag += drag.loss(displacement);

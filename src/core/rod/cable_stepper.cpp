@@ -89,6 +89,7 @@ void CableStepper::begin(const Substep& s, const CableState& state, SubstepResul
   }
   result.overstretched_node =
       lengths_in_substep(s.model, state, s.boundary, s.drawn_out(), yielding_ahead(s, state), target_length_, overstretched_);
+  fluid_.start(s, state);
   set_loads(s, state);
   set_growth(s);
   start_bending(s, state);
@@ -98,7 +99,6 @@ void CableStepper::begin(const Substep& s, const CableState& state, SubstepResul
   else
     rod_.start(s.model, state, segment_, s.boundary, s.h, s.damping_time(), s.part());
   twist_.start(s.model, state, s.spans, s.damping_time(), s.part());
-  fluid_.start(s.environment.fluid, s.environment.gravity, s.model, state, s.damping_time());
   predict(s.h);
   predict_flows(s);
 }
@@ -185,6 +185,7 @@ void CableStepper::set_loads(const Substep& s, const CableState& state) {
     half_before = half;
     if (materials.vary()) drag_of_material = materials.mean_at(i, [](const MaterialDesc& material) { return material.drag; });
     LinearDrag<double> drag = of_fluid;
+    if (fluid_.active()) drag.fluid = numbers_of(fluid_.flow(i));
     drag.coefficient = drag_of_material * length;
     inertia_[i] = inertia / s.h + drag.resistance();
     const VectorOf<double> wind = drag.load();

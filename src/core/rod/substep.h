@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "fluid/waves.h"
 #include "rod/scheme.h"
 #include "rod/twist.h"
 #include "rod/unresolved_motion.h"
@@ -12,11 +13,17 @@
 
 namespace verlet_cable {
 
-/// What acts on a cable from outside, the same in all substeps of a step.
+/// What acts on cables and bodies from outside, the same in all substeps of a step.
 struct Environment {
-  GravityDesc gravity;
-  FluidDesc fluid;
+  const GravityDesc& gravity;
+  const FluidDesc& fluid;
+  const std::vector<Wave>& waves;
+
+  /// `time` [s]: the world's.
+  WaterMotion water_at(const Vector3& point, double time) const { return verlet_cable::water_at(fluid, waves, point, time); }
 };
+/// Waves of still water.
+inline const std::vector<Wave> no_waves;
 
 /// A tolerated error is one of velocity in substeps up to this long [s]; beyond, the error of the place counts.
 constexpr double longest_tolerated = 1e-3;
@@ -49,6 +56,7 @@ struct Substep {
   bool strains_on_bodies = false;
   /// What bodies draw out further than it is long gives in, as what can stretch does.
   bool gives_in_on_bodies = false;
+  double middle = 0;  ///< [s] the world's time in the middle of the substep
 
   /// Where in the substep forces are taken.
   double part() const { return statics || scheme != Scheme::conserving ? 1 : 0.5; }

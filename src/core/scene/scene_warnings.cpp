@@ -101,6 +101,15 @@ void warn_of_sizes(const SceneDesc& scene, const std::string& key, const CableDe
   }
 }
 
+/// What the fluid does to a body, where there is none. Its added mass is there.
+void warn_of_fluid(const SceneDesc& scene, std::vector<std::string>& warnings) {
+  for (std::size_t i = 0; i < scene.bodies.size() && scene.fluid.density == 0; ++i) {
+    const BodyFluidDesc& fluid = scene.bodies[i].fluid;
+    if (fluid.volume > 0 || !fluid.drag_area.isZero(0) || !fluid.angular_drag.isZero(0))
+      warnings.push_back(indexed("bodies", i) + ".fluid: volume and drag have no effect, as fluid.density is 0");
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of(const SceneDesc& scene) {
@@ -115,6 +124,7 @@ std::vector<std::string> warnings_of(const SceneDesc& scene) {
   }
   for (const NamedMaterial& named : scene.materials)
     if (thick.count(named.name) == 0) warn_of_density(named.material, named.name, warnings);
+  warn_of_fluid(scene, warnings);
   if (scene.robot) warnings.insert(warnings.end(), scene.robot->left_out.begin(), scene.robot->left_out.end());
   return warnings;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "body/hanging_places.h"
@@ -101,8 +102,13 @@ class Harness {
     double length = 0;
     for (const HangingSpan& span : spans_)
       for (const double l : span.lengths) length += l / static_cast<double>(spans_.size());
-    const Vector3 down = gravity.norm() > 0 ? Vector3(gravity.normalized()) : Vector3(-Vector3::UnitZ());
-    const double pull = gravity.norm() > 0 ? gravity.norm() : 1;
+    Vector3 down = gravity.norm() > 0 ? Vector3(gravity.normalized()) : Vector3(-Vector3::UnitZ());
+    double pull = gravity.norm() > 0 ? gravity.norm() : 1;
+    if (middle.z() < scene_.fluid.surface) float_bodies();
+    if (whole_weight() < 0) {
+      down = -down;
+      pull = -pull;
+    }
     for (HangingBody& body : hanging_) {
       body.weight *= pull;
       body.pose.position = middle + length * down;
@@ -144,6 +150,19 @@ class Harness {
       hanging_.push_back({{}, Vector3::Zero(), scene_.junctions[junction].mass, false});
     }
     return !hanging_.empty();
+  }
+
+  /// They weigh less by what they displace.
+  void float_bodies() {
+    for (std::size_t b = 0; b < unknown_of_body_.size(); ++b)
+      if (unknown_of_body_[b] >= 0) hanging_[unknown_of_body_[b]].weight -= scene_.fluid.density * scene_.bodies[b].fluid.volume;
+  }
+
+  double whole_weight() const {
+    double sum = 0;
+    for (const HangingBody& body : hanging_) sum += body.weight;
+    for (const HangingSpan& span : spans_) sum = std::accumulate(span.weights.begin(), span.weights.end(), sum);
+    return sum;
   }
 
   /// A body that hangs on one cable, where that ends.

@@ -105,11 +105,21 @@ void check_pose_rings(const SceneDesc& scene, const SceneNames& scene_names, Err
   }
 }
 
+void check_fluid(const std::string& prefix, const BodyFluidDesc& fluid, Errors& errors) {
+  check_fields(prefix, body_fluid_fields, fluid, errors);
+  check_vector(prefix + "center", fluid.center, "m", errors);
+  for (const auto& field : body_fluid_axis_fields) {
+    const Vector3& v = fluid.*field.member;
+    check_numbers(prefix + field.key, std::array<double, 3>{v.x(), v.y(), v.z()}, field.range, field.unit, errors);
+  }
+}
+
 void check_body(const std::string& prefix, const BodyDesc& body, Errors& errors) {
   check_fields(prefix, body_fields, body, errors);
   const std::size_t found = errors.size();
   check_shapes(prefix, body, errors);
   check_inertia(prefix, body, errors.size() == found, errors);
+  check_fluid(prefix + "fluid.", body.fluid, errors);
   if (body.center_of_mass) check_vector(prefix + "center_of_mass", *body.center_of_mass, "m", errors);
   if (body.pose) check_numbers(prefix + "pose", *body.pose, coordinate, "m, rad", errors);
   check_vector(prefix + "velocity", body.velocity, "m/s", errors);

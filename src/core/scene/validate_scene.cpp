@@ -279,6 +279,24 @@ void check_distances(const std::string& key, const SceneDesc& scene, const Cable
   }
 }
 
+/// Waves are those of gravity on a surface of water.
+void check_fluid(const SceneDesc& scene, Errors& errors) {
+  const FluidDesc& fluid = scene.fluid;
+  check_vector("fluid.velocity", fluid.velocity, "m/s", errors);
+  check_fields("fluid.", fluid_fields, fluid, errors);
+  for (std::size_t i = 0; i < fluid.waves.size(); ++i)
+    check_fields(indexed("fluid.waves", i) + ".", wave_fields, fluid.waves[i], errors);
+  if (fluid.waves.empty()) return;
+  if (fluid.density == 0) errors.add("fluid.density", "0", "any number above 0 [kg/m^3], with fluid.waves");
+  if (fluid.surface == infinity) errors.add("fluid.surface", ".inf", "any number [m], with fluid.waves");
+  const Vector3& g = scene.gravity.acceleration;
+  const char* down = "[0, 0, -g] with any g above 0 [m/s^2], with fluid.waves";
+  if (scene.gravity.type != GravityDesc::Type::uniform)
+    errors.add("gravity", "central", down);
+  else if (g.allFinite() && !(g.x() == 0 && g.y() == 0 && g.z() < 0))
+    errors.add("gravity", list_text(g), down);
+}
+
 void check_size(const SceneDesc& scene, Errors& errors) {
   double segments = size_beside_cables(scene);
   for (const CableDesc& cable : scene.cables) segments += std::max(0, cable.segments);
@@ -344,8 +362,7 @@ std::vector<std::string> validate(const SceneDesc& scene) {
     check_vector("gravity.center", scene.gravity.center, "m", errors);
   }
   check_vector("origin", scene.origin, "m", errors);
-  check_vector("fluid.velocity", scene.fluid.velocity, "m/s", errors);
-  check_fields("fluid.", fluid_fields, scene.fluid, errors);
+  check_fluid(scene, errors);
 
   check_materials(scene, errors);
 

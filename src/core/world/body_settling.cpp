@@ -122,7 +122,7 @@ void BodySettling::hold_still() {
 /// One substep towards equilibrium. It has not converged, too, if nodes have gone so far that they may have gone through
 /// something; all is then as before.
 BodySettling::Outcome BodySettling::advance(double h) {
-  const Environment environment{state_.scene->gravity, state_.scene->fluid};
+  const Environment environment{state_.scene->gravity, state_.scene->fluid, no_waves};
   workspace_.members.clear();
   workspace_.participants.clear();
   for (std::size_t k = 0; k < island_.cables.size(); ++k) {
@@ -148,7 +148,7 @@ BodySettling::Outcome BodySettling::advance(double h) {
     if (state_.body_progress[body].is_placed)
       workspace_.body_members.push_back({body, &state_.bodies[body], &state_.body_progress[body]});
   BodySystem& system = workspace_.body_system;
-  system.begin(workspace_.body_members, workspace_.participants, state_.bodies, state_.scene->gravity, {h, true});
+  system.begin(workspace_.body_members, workspace_.participants, state_.bodies, environment, {h, true});
   find_body_joints(island_, state_, 1, workspace_);
 
   Outcome outcome;

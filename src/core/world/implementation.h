@@ -84,6 +84,7 @@ struct World::Implementation {
   void place_bodies();
   void settle_started_bodies(const std::vector<int>& descs);
   bool place_body(int index);
+  Vector3 hanging_gravity(const SimulatedCable& cable, const std::vector<Attachment>& placing, const Vector3& place) const;
   void note_placed(int index);
   bool is_held_by_cable(int index) const;
   bool waits_for_cable(int index) const;

@@ -82,12 +82,12 @@ void keep_body_joints(const Island& island, const std::vector<BodyJoint>& joints
 
 /// Puts the bodies of an island where the substep begins; the cables that they hold take part.
 void IslandStepper::begin_bodies(const Island& island, double from, double to, Scheme scheme) {
-  const SubstepRules rules{(to - from) * state_.scene->time_step, false, scheme};
+  const SubstepRules rules{(to - from) * state_.scene->time_step, false, scheme, middle_of(from, to)};
   std::vector<BodyMember>& members = workspace_.body_members;
   members.clear();
   for (const int body : island.bodies)
     if (state_.body_progress[body].is_placed) members.push_back({body, &state_.bodies[body], &state_.body_progress[body]});
-  workspace_.body_system.begin(members, workspace_.participants, state_.bodies, state_.scene->gravity, rules);
+  workspace_.body_system.begin(members, workspace_.participants, state_.bodies, environment_, rules);
   projects_bodies_ = scheme != Scheme::conserving || touches();
   find_body_joints(island, state_, to, workspace_);
   for (BodyJoint& joint : workspace_.body_system.joints())
@@ -331,8 +331,10 @@ void IslandStepper::finish_bodies(const Island& island, double from, double to) 
     system.finish(static_cast<int>(m), state_.bodies[body], state_.body_progress[body]);
     state_.body_progress[body].has_moved = true;
   }
-  for (std::size_t m = 0; m < workspace_.body_members.size(); ++m)
+  for (std::size_t m = 0; m < workspace_.body_members.size(); ++m) {
     substep_.dissipated.bodies += system.damping_work(static_cast<int>(m));
+    system.add_fluid_work(static_cast<int>(m), substep_);
+  }
   workspace_.body_system.restore_momenta(workspace_.participants, state_.bodies);
   if (projects_bodies_) {
     substep_.dissipated.unresolved += kinetic_energy_of(island, state_);

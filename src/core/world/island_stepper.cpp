@@ -252,7 +252,7 @@ IslandStepper::IslandStepper(State& state, Workspace& workspace, std::vector<Cab
     : state_(state),
       workspace_(workspace),
       outcomes_(outcomes),
-      environment_{state.scene->gravity, state.scene->fluid},
+      environment_{state.scene->gravity, state.scene->fluid, state.waves},
       lanes_(lanes) {}
 
 void IslandStepper::step(Island& island, IslandOutcome& found) {
@@ -315,6 +315,7 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
       work.spans_before = memory.spans;
     }
     Substep substep{*c.model, environment_, work.boundary, memory.spans, h};
+    substep.middle = middle_of(from, to);
     substep.scheme = scheme;
     substep.tolerance = state_.scene->tolerance;
     substep.touches_bodies = workspace_.contacts.touches_body(k);
@@ -403,6 +404,11 @@ Scheme IslandStepper::find_touching_scheme(const Island& island, double h) {
   workspace_.contacts.follow_scheme(scheme, state_.cables, h);
   BodyTouches::follow_scheme(scheme, contact_rules(*state_.scene, false), h, workspace_.body_system.contacts().touches());
   return scheme;
+}
+
+/// [s] The world's time in the middle of a part of the step.
+double IslandStepper::middle_of(double from, double to) const {
+  return state_.time() + (0.5 * (from + to) - 1) * state_.scene->time_step;
 }
 
 /// [J]

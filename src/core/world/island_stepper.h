@@ -112,6 +112,7 @@ class IslandStepper {
   void carry_cables(const Island& island);
   void follow_body_holder(BodyJoint& joint, double to);
   void find_contacts(Island& island, double from, double to);
+  double middle_of(double from, double to) const;
   bool touches() const;
   bool folds_columns(double part);
   Scheme scheme_of(int cable) const;

@@ -74,7 +74,11 @@ double mass_of(const Island& island, const State& state) {
   double mass = 0;
   for (const int cable : island.cables)
     for (const double of_node : state.cables[cable].state.masses) mass += of_node;
-  for (const int body : island.bodies) mass += state.bodies[body].mass;
+  for (const int index : island.bodies) {
+    const SimulatedBody& body = state.bodies[index];
+    mass += body.mass;
+    mass += state.scene->fluid.density * body.fluid.volume + body.fluid.added_mass.maxCoeff();
+  }
   return mass;
 }
 

@@ -18,7 +18,7 @@ struct Island {
   SegmentPairs pairs;       ///< of their segments
 };
 
-/// [kg] Of all its cables and bodies.
+/// [kg] Of all its cables and bodies, with the water that these displace and that moves with them.
 double mass_of(const Island& island, const State& state);
 
 /// Whether cables may touch each other.

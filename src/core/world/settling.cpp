@@ -452,7 +452,7 @@ SubstepResult Settling::advance(Approach& approach, double h) {
     approach.iterations = 0;
     return {};
   }
-  const Environment environment{state_.scene->gravity, state_.scene->fluid};
+  const Environment environment{state_.scene->gravity, state_.scene->fluid, no_waves};
   const Substep substep{*cable_.model, environment, work_.boundary, memory_.spans, h, !approach.let_go};
   if (!approach.touches) {
     const SubstepResult result = work_.stepper.advance(substep, cable_.state);

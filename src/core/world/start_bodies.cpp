@@ -1,6 +1,9 @@
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 #include "rod/rod_frames.h"
+#include "verlet_cable/core/cable_materials.h"
 #include "world/energy.h"
 #include "world/implementation.h"
 #include "world/junctions.h"
@@ -108,6 +111,25 @@ bool World::Implementation::has_bodies_of(const CableDesc& cable) const {
     const int body = find(state.bodies, attachment.body);
     return state.body_progress[body].is_placed || state.scene->bodies[body].attachments.empty();
   });
+}
+
+/// [m/s^2] By which a cable hangs that begins at `place`: upwards, where the bodies that begin at it lift it through the fluid.
+Vector3 World::Implementation::hanging_gravity(const SimulatedCable& cable, const std::vector<Attachment>& placing,
+                                               const Vector3& place) const {
+  const FluidDesc& fluid = state.scene->fluid;
+  const Vector3 gravity = state.scene->gravity.at(place);
+  if (!(place.z() < fluid.surface)) return gravity;
+  double lift = 0;  // [kg]
+  for (auto a = placing.begin(); a != placing.end(); ++a) {
+    const SimulatedBody& body = state.bodies[a->holder];
+    const bool is_counted = std::any_of(placing.begin(), a, [&](const Attachment& other) { return other.holder == a->holder; });
+    if (!is_counted) lift += fluid.density * body.fluid.volume - body.mass;
+  }
+  const CableMaterials materials(cable);
+  double weight = std::accumulate(cable.state.masses.begin(), cable.state.masses.end(), 0.0);
+  for (int i = 0; i < cable.state.segments(); ++i)
+    weight -= fluid.density * M_PI * materials[i].radius * materials[i].radius * cable.state.rest_lengths[i];
+  return lift > std::max(0.0, weight) ? Vector3(-gravity) : gravity;
 }
 
 /// Bodies that a cable that has just started places: where it is clamped to them, else with their own axes.

@@ -9,6 +9,7 @@
 
 #include "body/body_progress.h"
 #include "contact/cache.h"
+#include "fluid/waves.h"
 #include "net/constraint_solver.h"
 #include "particle/integrator.h"
 #include "rod/twist.h"
@@ -60,6 +61,7 @@ FrameStep step_of_frames(const State& state);
 /// All that decides the future, and only that: its copy is a snapshot, its visit the world's hash.
 struct State {
   std::shared_ptr<const SceneDesc> scene;  ///< as it was tuned; shared by copies
+  std::vector<Wave> waves;                 ///< of the scene's fluid; follow from the scene
   std::vector<int> waiting_cables;         ///< indices into scene->cables
   std::vector<int> waiting_nets;           ///< indices into scene->nets
   Frames frames;

@@ -94,8 +94,12 @@ auto fields(T& x, const GravityDesc*) {
   return std::tie(x.type, x.acceleration, x.mu, x.center);
 }
 template <class T>
+auto fields(T& x, const WaveDesc*) {
+  return std::tie(x.amplitude, x.period, x.direction, x.phase);
+}
+template <class T>
 auto fields(T& x, const FluidDesc*) {
-  return std::tie(x.density, x.velocity, x.surface, x.normal_drag, x.tangential_drag);
+  return std::tie(x.density, x.velocity, x.surface, x.normal_drag, x.tangential_drag, x.depth, x.waves);
 }
 template <class T>
 auto fields(T& x, const IntegratorDesc*) {
@@ -265,9 +269,13 @@ auto fields(T& x, const BodyProgress*) {
                   x.joints, x.energy);
 }
 template <class T>
+auto fields(T& x, const BodyFluidDesc*) {
+  return std::tie(x.volume, x.center, x.drag_area, x.angular_drag, x.added_mass);
+}
+template <class T>
 auto fields(T& x, const SimulatedBody*) {
   return std::tie(x.name, x.mass, x.center_of_mass, x.inertia, x.shapes, x.is_junction, x.friction, x.linear_damping,
-                  x.angular_damping, x.frame, x.pose, x.velocity, x.angular_velocity);
+                  x.angular_damping, x.fluid, x.frame, x.pose, x.velocity, x.angular_velocity);
 }
 template <class T>
 auto fields(T& x, const Obstacle*) {
@@ -296,12 +304,16 @@ auto fields(T& x, const Ledger*) {
   return std::tie(x.balance, x.change, x.unaccounted_steps);
 }
 template <class T>
+auto fields(T& x, const Wave*) {
+  return std::tie(x.frequency, x.number, x.direction, x.amplitude, x.phase);
+}
+template <class T>
 auto fields(T& x, const Frames*) {
   return std::tie(x.names, x.poses, x.previous_poses, x.earlier_poses, x.known, x.steps_unjudged);
 }
 template <class T>
 auto fields(T& x, const State*) {
-  return std::tie(x.scene, x.waiting_cables, x.waiting_nets, x.frames, x.steps, x.cables, x.cable_progress, x.nets,
+  return std::tie(x.scene, x.waves, x.waiting_cables, x.waiting_nets, x.frames, x.steps, x.cables, x.cable_progress, x.nets,
                   x.net_progress, x.particles, x.particle_integrators, x.bodies, x.body_progress, x.attachments, x.guides,
                   x.obstacles, x.ledger, x.initial_energy);
 }

@@ -33,6 +33,7 @@ bool IslandStepper::wait_for_others(Island& island, IslandOutcome& found, bool& 
 Substep IslandStepper::whole_step(int cable, Boundary& boundary) {
   Substep substep{*state_.cables[cable].model, environment_, boundary, state_.cable_progress[cable].spans,
                   state_.scene->time_step};
+  substep.middle = middle_of(0, 1);
   substep.scheme = scheme_of(cable);
   substep.tolerance = state_.scene->tolerance;
   if (state_.scene->numerical_damping) substep.treatment = Treatment::cleaning;

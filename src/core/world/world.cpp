@@ -162,6 +162,7 @@ World::World(const SceneDesc& scene) : implementation_(std::make_unique<Implemen
   if (!errors.empty()) throw SceneError(std::move(errors));
   Implementation& w = *implementation_;
   w.state.scene = std::make_shared<const SceneDesc>(scene);
+  w.state.waves = waves_of(scene);
   w.state.frames.names = frame_names(scene);
   w.state.frames.poses.resize(w.state.frames.names.size());
   w.state.frames.previous_poses.resize(w.state.frames.names.size());
@@ -341,7 +342,7 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   Boundary boundary;
   hold_at(1, 1, memory.targets, boundary);
   const Vector3 gravity =
-      state.scene->gravity.at(boundary.nodes.empty() ? Vector3(Vector3::Zero()) : boundary.nodes.front().position);
+      hanging_gravity(cable, placing, boundary.nodes.empty() ? Vector3(Vector3::Zero()) : boundary.nodes.front().position);
   const bool settles = settles_at_start(desc, *cable.model, cable.state);
   const std::optional<InitialShapeDesc> from_trunk = shape_from_trunk(desc);
   const bool has_frames = is_whole_rod(*cable.model, cable.state) || desc.rest_twist != 0 ||
