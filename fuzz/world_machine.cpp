@@ -40,7 +40,7 @@ void WorldMachine::act() {
       &Machine::cut,
       &Machine::cut,
       &Machine::set_length,
-      &Machine::set_length,
+      &Machine::set_tension,
       &Machine::join,
       &Machine::join,
       &Machine::join,

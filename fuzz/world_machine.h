@@ -40,6 +40,7 @@ class WorldMachine {
   void move_attachment();
   void cut();
   void set_length();
+  void set_tension();
   void join();
   void cut_and_join();
   void set_obstacle();

@@ -85,6 +85,21 @@ void WorldMachine::set_length() {
   if (result.ok) winch_speed_ = std::max(winch_speed_, speed);
 }
 
+void WorldMachine::set_tension() {
+  edit::SetTension change;
+  change.cable = any_cable();
+  change.at_end = input_.flip();
+  const bool is_there = change.cable >= 0 && change.cable < static_cast<int>(world_.cables().size());
+  const double length = is_there ? world_.cables()[change.cable].state.length() : 1;
+  if (input_.flip()) change.tension = input_.positive(0.1, 100);
+  change.max_speed = input_.positive(0.1, 4);
+  change.min_length = input_.positive(0.2 * length, length);
+  change.max_length = input_.positive(length, 2 * length);
+  const double speed = change.max_speed;
+  const EditResult result = on_both([&](World& world) { return world.apply(change); });
+  if (result.ok) winch_speed_ = std::max(winch_speed_, speed);
+}
+
 void WorldMachine::join() {
   edit::Join join;
   join.first = any_cable();

@@ -70,16 +70,29 @@ PlacedEdit apply_cut(World& world, const Location& place) {
 }
 
 EditResult apply_set_length(World& world, const std::string& cable, bool at_end, double length, double speed,
-                            const RequestWords& words) {
+                            double max_tension, const RequestWords& words) {
   if (const auto reason = refused_cable(world, "cable", cable, words)) return *reason;
   const int index = find(world.cables(), cable);
   const double before = world.cables()[index].state.length();
-  const EditResult result = world.apply(edit::SetLength{index, at_end, length, speed});
+  const EditResult result = world.apply(edit::SetLength{index, at_end, length, speed, max_tension});
   if (!result.ok) return result;
   return {true,
           "cable " + quoted(cable) + (length < before ? " is taken in from " : " is paid out from ") + rounded_text(before) +
               " m to " + number_text(length) + " m, which takes at least " + rounded_text(std::abs(length - before) / speed, 3) +
-              " s",
+              " s" + (max_tension > 0 ? ", with at most " + number_text(max_tension) + " N" : ""),
+          {}};
+}
+
+EditResult apply_set_tension(World& world, const std::string& cable, edit::SetTension change, const RequestWords& words) {
+  if (const auto reason = refused_cable(world, "cable", cable, words)) return *reason;
+  change.cable = find(world.cables(), cable);
+  const EditResult result = world.apply(change);
+  if (!result.ok) return result;
+  const std::string winch = std::string("the winch at the ") + (change.at_end ? "end" : "start") + " of cable " + quoted(cable);
+  return {true,
+          change.tension > 0 ? winch + " keeps " + number_text(change.tension) + " N, at up to " +
+                                   number_text(change.max_speed) + " m/s"
+                             : winch + " turns freely, at up to " + number_text(change.max_speed) + " m/s",
           {}};
 }
 

@@ -27,9 +27,13 @@ EditResult apply_move(World& world, const std::string& name, const Pose& offset)
 /// Removes a segment of a cable, or links of a net, which `locate_cut` has found.
 PlacedEdit apply_cut(World& world, const Location& place);
 
-/// The length in m, the speed in m/s.
+/// The length in m, the speed in m/s, the tension in N.
 EditResult apply_set_length(World& world, const std::string& cable, bool at_end, double length, double speed,
-                            const RequestWords& words = service_words());
+                            double max_tension = 0, const RequestWords& words = service_words());
+
+/// See edit::SetTension, whose index of the cable `cable` stands for.
+EditResult apply_set_tension(World& world, const std::string& cable, edit::SetTension change,
+                             const RequestWords& words = service_words());
 
 PlacedEdit apply_join(World& world, const std::string& first, bool first_at_end, const std::string& second, bool second_at_end,
                       const RequestWords& words = service_words());

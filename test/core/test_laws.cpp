@@ -8,6 +8,7 @@
 #include "law/guide.h"
 #include "law/resistance.h"
 #include "law/stretch.h"
+#include "law/winch.h"
 
 // Each law alone: what it exerts is the derivative of its potential, keeps the energy over a substep, or takes some.
 
@@ -183,6 +184,50 @@ TEST_F(Law, RubbingIsThatOfACapstan) {
 }
 
 /// Newton's method on a row finds the density with which a segment has its tension, and the row says when it has.
+/// Growth never falls with the tension; within its bounds the strain at the end is that of the tension.
+TEST_F(Law, AWinchGivesTheTensionWithinItsBounds) {
+  constexpr double step = 1e-7, stiffness = 1e3;
+  for (int i = 0; i < 100; ++i) {
+    const double part = i % 2 == 0 ? 0.5 : 1, damping = i % 3 == 0 ? 0 : 50;
+    const Resistance<double> resistance{stiffness, damping};
+    WoundLength wound;
+    wound.start_rest = 1 + number(0.2);
+    wound.end_rest = wound.start_rest + number(0.05);
+    wound.rest = wound.start_rest + part * (wound.end_rest - wound.start_rest);
+    wound.start_length = wound.start_rest * (1 + number(0.1));
+    WinchLaw law;
+    law.tension = 30;
+    law.least = -0.02;
+    law.most = 0.02;
+    const auto growth_at = [&](double length) {
+      const double wanted = wanted_growth(resistance, wound, law.tension, length);
+      return std::pair(mode_of(law, wanted), growth_in(law, mode_of(law, wanted), wanted));
+    };
+    double last = law.least;
+    for (double length = 0.8; length < 1.4; length += 0.001) {
+      const auto [mode, growth] = growth_at(length);
+      ASSERT_GE(growth, last);
+      ASSERT_LE(growth, law.most);
+      last = growth;
+      const double strain = length / (wound.end_rest + growth) - 1, before = wound.start_length / wound.start_rest - 1;
+      const double tension = stiffness * strain + damping * (strain - before);
+      if (mode == WinchMode::keeps) ASSERT_NEAR(tension, law.tension, 1e-9);
+      if (mode == WinchMode::least) ASSERT_LE(tension, law.tension + 1e-9);
+      if (mode == WinchMode::most) ASSERT_GE(tension, law.tension - 1e-9);
+      // The rise is the derivative of the tension.
+      const auto tension_at = [&](double at) {
+        const auto [its_mode, its_growth] = growth_at(at);
+        return wound_tension(resistance, wound, its_mode, its_growth, at, part).tension;
+      };
+      if (growth_at(length - step).first != mode || growth_at(length + step).first != mode) continue;
+      EXPECT_NEAR(wound_tension(resistance, wound, mode, growth, length, part).rise,
+                  (tension_at(length + step) - tension_at(length - step)) / (2 * step), 1e-3);
+    }
+    EXPECT_EQ(growth_at(0.8).first, WinchMode::least);
+    EXPECT_EQ(growth_at(1.4).first, WinchMode::most);
+  }
+}
+
 TEST_F(Law, ElasticRowsVanishAtTheTension) {
   const double start = 0.1, end = 0.11, rest = 0.1, mean = 0.5 * (start + end);
   const Resistance<double> resistance{200 / rest, 3};

@@ -173,6 +173,16 @@ TEST(NamedEdits, AWinchTellsHowLongItTakes) {
             "cable \"lower\" is paid out from 1 m to 1.5 m, which takes at least 2 s");
   EXPECT_EQ(apply_set_length(world, "upper", true, 0.75, 0.25).message,
             "cable \"upper\" is taken in from 1 m to 0.75 m, which takes at least 1 s");
+  EXPECT_EQ(apply_set_length(world, "upper", true, 0.75, 0.25, 12).message,
+            "cable \"upper\" is taken in from 1 m to 0.75 m, which takes at least 1 s, with at most 12 N");
+}
+
+TEST(NamedEdits, AWinchTellsWhatItKeeps) {
+  World world = cables_and_net();
+  EXPECT_EQ(apply_set_tension(world, "lower", {0, true, 12.5, 0.5, 0.1, infinity}).message,
+            "the winch at the end of cable \"lower\" keeps 12.5 N, at up to 0.5 m/s");
+  EXPECT_EQ(apply_set_tension(world, "upper", {0, false, 0, 0.5, 0.1, 2}).message,
+            "the winch at the start of cable \"upper\" turns freely, at up to 0.5 m/s");
 }
 
 TEST(NamedEdits, CablesAreJoinedByName) {
@@ -194,6 +204,7 @@ TEST(NamedEdits, CablesThatAreNotThereAreRefused) {
   EXPECT_EQ(apply_set_length(world, "hose", true, 1, 1).message, "cable: \"hose\"; allowed: lower, upper");
   EXPECT_EQ(apply_set_length(world, "late", true, 1, 1).message,
             "cable: \"late\" waits for its tf frames; allowed: cables that are simulated already");
+  EXPECT_EQ(apply_set_tension(world, "hose", {0, true, 1, 1, 0.1, 2}).message, "cable: \"hose\"; allowed: lower, upper");
   EXPECT_EQ(apply_join(world, "hose", true, "late", true).result.message, "first: \"hose\"; allowed: lower, upper");
   EXPECT_EQ(apply_join(world, "lower", true, "late", true).result.message,
             "second: \"late\" waits for its tf frames; allowed: cables that are simulated already");

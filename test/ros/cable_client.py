@@ -11,7 +11,7 @@ from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 
 from verlet_cable.msg import CableArray, CableEvent, CableLocation
-from verlet_cable.srv import Cut, Join, LoadScene, Pin, PinRequest, RestoreState, SaveState, SetLength, Step, Unpin
+from verlet_cable.srv import Cut, Join, LoadScene, Pin, PinRequest, RestoreState, SaveState, SetLength, SetTension, Step, Unpin
 
 STARTING = 30.0  # [s] of wall time in which a node that is just started has its services
 PATIENCE = 5.0  # [s] of wall time, far more than anything here takes on a busy machine
@@ -126,6 +126,7 @@ class CableClient:
         self.step = service('step', Step)
         self.unpin = service('unpin', Unpin)
         self.set_length = service('set_length', SetLength)
+        self.set_tension = service('set_tension', SetTension)
         self.join = service('join', Join)
         self.save_state = service('save_state', SaveState)
         self.restore_state = service('restore_state', RestoreState)

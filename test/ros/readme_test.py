@@ -128,7 +128,7 @@ class ReadmeTest(unittest.TestCase):
             for command in ('0 0 1 0 0 0 world left_gripper', '0.84 0 1 0 0 0 world right_gripper'):
                 program.wait_for_lines(f'  rosrun tf2_ros static_transform_publisher {command} &', 1)
             self.assertEqual(node.state().cables, [])
-            for answer in (node.set_length('hose', False, 1.0, 0.1), node.join('hose', True, 'hose', False)):
+            for answer in (node.set_length('hose', False, 1.0, 0.1, 0), node.join('hose', True, 'hose', False)):
                 self.assertFalse(answer.success)
                 self.assertIn('"hose" waits for its tf frames', answer.message)
             diagnostics.wait_for(lambda a: any(v.key == 'waiting_cables' and v.value == 'hose' for s in a.status for v in s.values),

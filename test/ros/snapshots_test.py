@@ -68,7 +68,7 @@ class SnapshotsTest(unittest.TestCase):
         with Frames(nozzle=turning):
             self.assertTrue(self.node.load_scene(yaml=BUSY_SCENE).success)
             try:
-                self.assertTrue(self.node.set_length('hose', False, 1.8, 0.2).success)
+                self.assertTrue(self.node.set_length('hose', False, 1.8, 0.2, 0).success)
                 with self.node.states() as states:
                     states.wait_for(lambda s: cable(s, 'hose') and cable(s, 'hose').rest_length > 1.1 and cable(s, 'hose').contacts,
                                     'a longer hose that touches the floor')

@@ -165,8 +165,8 @@ class StampsTest(unittest.TestCase):
             marker.lifetime = rospy.Duration(-2**31, 0)
             marker.pose.position.x = marker.scale.x = bad
             obstacles.publish([marker])
-            self.assertFalse(self.node.set_length('rope', False, bad, 0.1).success)
-            self.assertFalse(self.node.set_length('rope', False, 1.0, NAN).success)
+            self.assertFalse(self.node.set_length('rope', False, bad, 0.1, 0).success)
+            self.assertFalse(self.node.set_length('rope', False, 1.0, NAN, 0).success)
             if bad != -1:
                 self.assertFalse(self.node.pin(node_at('rope', 3), position=(bad, 0, 0)).success)
         self.assertFalse(self.node.pin(node_at('rope', 3), name='n' * 10**6).success)

@@ -26,7 +26,7 @@ class WinchTest(unittest.TestCase):
         with self.node.states() as states, Messages('/cable/wrench/winch', WrenchStamped) as wrenches:
             for goal in (0.5, 2.0):
                 wrenches.clear()
-                answer = self.node.set_length('crane', False, goal, 0.5)
+                answer = self.node.set_length('crane', False, goal, 0.5, 0)
                 self.assertTrue(answer.success, answer.message)
                 states.wait_for(lambda s: abs(cable(s, 'crane').rest_length - goal) < 1e-3, f'cable of {goal} m')
                 rospy.sleep(1.0)
@@ -38,6 +38,27 @@ class WinchTest(unittest.TestCase):
                 self.assertAlmostEqual(cable(states.next(), 'crane').rest_length, goal, delta=1e-3)
                 states.clear()
 
+    def test_a_tension_is_kept_until_a_length_is_set(self):
+        weight = GRAVITY * (PAYLOAD + DENSITY * 2)
+        with self.node.states() as states, Messages('/cable/wrench/winch', WrenchStamped) as wrenches:
+            # A load that is lighter than what holds it goes up to where the winch stops.
+            answer = self.node.set_tension('crane', False, 1.05 * weight, 0.5, 1.2, 2.0)
+            self.assertTrue(answer.success, answer.message)
+            states.wait_for(lambda s: abs(cable(s, 'crane').rest_length - 1.2) < 1e-3, 'cable of 1.2 m')
+            # A spool that turns freely lets it fall.
+            self.assertTrue(self.node.set_tension('crane', False, 0, 5, 0.2, 2.0).success)
+            states.wait_for(lambda s: cable(s, 'crane').rest_length > 1.9, 'cable of 1.9 m')
+            # A brake of less than its weight slips; one of more takes it in again.
+            self.assertTrue(self.node.set_length('crane', False, 1.5, 0.5, 2 * weight).success)
+            states.wait_for(lambda s: abs(cable(s, 'crane').rest_length - 1.5) < 1e-3, 'cable of 1.5 m')
+            rospy.sleep(1.0)
+            wrenches.clear()
+            rospy.sleep(0.3)
+            statics = GRAVITY * (PAYLOAD + DENSITY * 1.5)
+            self.assertAlmostEqual(-wrenches.all()[-1].wrench.force.z, statics, delta=0.05 * statics)
+            self.assertTrue(self.node.set_length('crane', False, 1.5, 0.5, 0).success)
+            states.clear()
+
     def test_bad_requests_are_refused(self):
         self.assertTrue(self.node.pause(True).success)
         before = self.node.state()
@@ -47,10 +68,16 @@ class WinchTest(unittest.TestCase):
                               (('crane', False, 0, 1), 'length: 0'), (('crane', False, 50, 1), 'limits.segments'),
                               (('crane', True, 1, NAN), 'speed: nan'), (('crane', True, 1, -1), 'speed: -1'),
                               (('crane', True, 1, math.inf), 'speed: inf'), (('line', True, 0.39, 1), 'distance')):
-            answer = self.node.set_length(*request)
+            answer = self.node.set_length(*request, 0)
             self.assertFalse(answer.success, request[0][:20])
             self.assertIn(part, answer.message)
             self.assertLess(len(answer.message), 1000)
+        answer = self.node.set_length('crane', False, 1, 1, -1)
+        self.assertIn('max_tension: -1', answer.message)
+        answer = self.node.set_tension('crane', False, NAN, 0, -1, math.inf)
+        self.assertFalse(answer.success)
+        for part in ('tension: nan', 'max_speed: 0', 'min_length: -1'):
+            self.assertIn(part, answer.message)
         self.assertEqual(contents(self.node.state()), contents(before))
         self.assertTrue(self.node.pause(False).success)
 

@@ -42,12 +42,25 @@ struct Cut {
 };
 
 /// Pays out or takes in cable at one end, smoothly and at up to `speed`, until the cable has that length. Nodes are renumbered as
-/// segments are added or removed there. Other attachments and payloads stay at their material points.
+/// segments are added or removed there. Other attachments and payloads stay at their material points. Rather than pull more than
+/// `max_tension`, the winch stops, or slips and lets cable out, also once it has wound; until it is told something else.
 struct SetLength {
   int cable = 0;
   bool at_end = false;
-  double length = 0;  ///< [m]
-  double speed = 0;   ///< [m/s]
+  double length = 0;       ///< [m]
+  double speed = 0;        ///< [m/s]
+  double max_tension = 0;  ///< [N] 0: none
+};
+
+/// Pays out and takes in cable at one end so that it leaves the winch with that tension, until the winch is told something else.
+/// Tension 0: a spool that turns freely, and takes nothing in.
+struct SetTension {
+  int cable = 0;
+  bool at_end = false;
+  double tension = 0;     ///< [N]
+  double max_speed = 0;   ///< [m/s]
+  double min_length = 0;  ///< [m] of the whole cable: no more is taken in,
+  double max_length = 0;  ///< [m] and no more let out
 };
 
 /// Welds two ends of cables of one material. Ends that are apart are first pulled together. The first cable keeps its name and
@@ -70,8 +83,8 @@ struct RemoveObstacle {
 
 }  // namespace edit
 
-using Edit = std::variant<edit::Pin, edit::Unpin, edit::MoveAttachment, edit::Cut, edit::SetLength, edit::Join, edit::SetObstacle,
-                          edit::RemoveObstacle>;
+using Edit = std::variant<edit::Pin, edit::Unpin, edit::MoveAttachment, edit::Cut, edit::SetLength, edit::SetTension, edit::Join,
+                          edit::SetObstacle, edit::RemoveObstacle>;
 
 /// Outcome of an edit. If `ok` is false, nothing has changed and `message` says why, with names and values.
 struct EditResult {

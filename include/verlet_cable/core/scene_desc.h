@@ -273,6 +273,7 @@ struct SceneDesc {
   LostFramePolicy on_lost_frame = LostFramePolicy::hold;
   double max_frame_speed = infinity;  ///< [m/s], > 0
   double jump_speed = 5;              ///< [m/s], > 0: a frame that is faster between two samples, and not for longer, has jumped
+  double winch_acceleration = 1;      ///< [m/s^2], > 0: with which winches speed up
   TimeJumpPolicy on_time_jump = TimeJumpPolicy::reset;
   MarkerStyle marker_style = MarkerStyle::tube;
   ColorBy color_by = ColorBy::tension;

@@ -41,7 +41,7 @@ struct Field {
   bool required = false;
 };
 
-constexpr std::array<Field<SceneDesc>, 7> scene_fields{{
+constexpr std::array<Field<SceneDesc>, 8> scene_fields{{
     {"time_step", &SceneDesc::time_step, "s", {1e-9, 0.1, "any number above 0, at most 0.1"}},
     {"tolerance", &SceneDesc::tolerance, "1/s", {1e-6, 1e-3, "any number from 1e-6 to 1e-3"}},
     {"publish_rate", &SceneDesc::publish_rate, "Hz", {1e-3, 1e4, "any number above 0"}},
@@ -50,6 +50,7 @@ constexpr std::array<Field<SceneDesc>, 7> scene_fields{{
     {"tf_timeout", &SceneDesc::tf_timeout, "s", {1e-3, 30, "any number above 0, at most 30"}},
     {"max_frame_speed", &SceneDesc::max_frame_speed, "m/s", positive_or_infinite},
     {"jump_speed", &SceneDesc::jump_speed, "m/s", positive_or_infinite},
+    {"winch_acceleration", &SceneDesc::winch_acceleration, "m/s^2", positive},
 }};
 
 constexpr std::array<Field<SceneDesc, int>, 1> scene_integer_fields{{

@@ -124,7 +124,8 @@ EditResult World::Implementation::apply(const edit::Join& join) {
   for (const int index : {first, second})
     if (state.cable_progress[index].drive)
       return refused("cable: " + state.cables[index].model->name +
-                     "; it is still being wound by its winch or drawn together by an earlier join; wait until that is done");
+                     "; it is still being wound by its winch or drawn together by an earlier join; wait until that is done, and "
+                     "set a length without max_tension where a winch goes by its tension");
   if (const auto differing = difference(model.material, other.material))
     return refused("second: " + other.name + "; must be of the same material as " + model.name + ", but they differ in " +
                    *differing);

@@ -16,13 +16,9 @@ namespace verlet_cable {
 
 namespace {
 
-/// [m/s^2] With which a winch speeds up and brakes: a tenth of gravity, so that a load feels little of it.
-constexpr double winch_acceleration = 1;
 /// Of a segment's length: the segment at a winch is split when longer, takes in its neighbour when shorter, and no segment gets
 /// shorter than the last.
 constexpr double longest_segment = 1.5, shortest_segment = 0.5, least_segment = 0.1;
-/// [m] More than rounding.
-constexpr double stalling_excess = 1e-9;
 /// A joint closes when its ends are this close, of a segment's length.
 constexpr double closing_distance = 0.25;
 
@@ -38,22 +34,16 @@ void take_on_material(int node, SimulatedCable& cable) {
   for (const int side : {0, 1}) state.masses[going + side] += 0.5 * change * state.rest_lengths[going];
 }
 
-/// Takes in no more than `most` [m] in this step: what is beside the winch may be in a guide that lets nothing through.
-void stall(double most, LengthDrive& drive) {
-  const double excess = -drive.change - std::max(most, 0.0);
-  if (!(excess > stalling_excess)) return;
-  drive.change += excess;
-  drive.wound += excess;
-  drive.next_rate = 0;
-  drive.arrives = false;
-}
-
 /// At a winch the material moves through the end node. Adds (`side` 1) this motion to the node's velocity, or takes it away (-1).
 void add_material_motion(const LengthDrive& drive, double side, CableState& cable) {
   if (!drive.is_winch()) return;
   const int n = cable.segments(), node = drive.end_node(n), i = drive.segment;
   const Vector3 along = segment_direction(cable, i);
   cable.velocities[node] += (node == 0 ? side : -side) * drive.growth() * along;
+}
+
+LengthDrive::Place winch_place(bool at_end) {
+  return at_end ? LengthDrive::Place::end : LengthDrive::Place::start;
 }
 
 /// What counts towards `limits.segments` beside a cable, with all that the other winches have been told to let out.
@@ -70,37 +60,70 @@ double size_beside(int index, const State& state) {
 
 }  // namespace
 
-EditResult World::Implementation::apply(const edit::SetLength& change) {
-  const auto [index, at_end, length, speed] = change;
+/// What forbids a winch there; empty if nothing does.
+std::string World::Implementation::refused_winch(int index, bool at_end) const {
   if (index < 0 || index >= static_cast<int>(state.cables.size()))
-    return refused("cable: " + std::to_string(index) + "; must be the index of a cable");
+    return "cable: " + std::to_string(index) + "; must be the index of a cable";
+  const CableModel& model = *state.cables[index].model;
+  const std::optional<LengthDrive>& drive = state.cable_progress[index].drive;
+  if (drive && !drive->is_winch())
+    return "cable: " + model.name + " is still being drawn together with another by join; wait until they have met";
+  if (drive && drive->place != winch_place(at_end))
+    return "at_end: the winch at the other end of cable " + model.name + " " +
+           (drive->heeds_tension() ? "goes by its tension; set a length there first, without max_tension"
+                                   : "is still winding; wait until it is done");
+  return {};
+}
+
+/// [m/s] One segment a step can be taken in, and is to be left over.
+double World::Implementation::fastest_winch(int index) const {
+  return shortest_segment * state.cables[index].model->segment_length / state.scene->time_step;
+}
+
+/// That which runs there, or a new one.
+LengthDrive World::Implementation::winch_at(int index, bool at_end, double speed) const {
+  const CableState& cable = state.cables[index].state;
+  LengthDrive drive = state.cable_progress[index].drive.value_or(LengthDrive{});
+  drive.place = winch_place(at_end);
+  drive.segment = at_end ? cable.segments() - 1 : 0;
+  drive.speed = speed;
+  drive.acceleration = state.scene->winch_acceleration;
+  drive.slip = 0;
+  drive.left = 0;
+  return drive;
+}
+
+/// [m] As limits.segments allows.
+double World::Implementation::longest_cable(int index) const {
+  return (state.scene->limits.segments - size_beside(index, state)) * state.cables[index].model->segment_length;
+}
+
+EditResult World::Implementation::apply(const edit::SetLength& change) {
+  const auto [index, at_end, length, speed, max_tension] = change;
+  if (const std::string reason = refused_winch(index, at_end); !reason.empty()) return refused(reason);
   const CableModel& model = *state.cables[index].model;
   const CableState& cable = state.cables[index].state;
   CableProgress& s = state.cable_progress[index];
-  const LengthDrive::Place place = at_end ? LengthDrive::Place::end : LengthDrive::Place::start;
-  if (s.drive && !s.drive->is_winch())
-    return refused("cable: " + model.name + " is still being drawn together with another by join; wait until they have met");
-  if (s.drive && s.drive->place != place)
-    return refused("at_end: the winch at the other end of cable " + model.name + " is still winding; wait until it is done");
-
-  // One segment a step can be taken in, and is to be left over.
-  const double fastest = shortest_segment * model.segment_length / state.scene->time_step;
+  const double fastest = fastest_winch(index);
   if (!(speed > 0 && speed <= fastest))
     return refused("speed: " + number_text(speed) + "; must be above 0, and at most " + rounded_bound_text(fastest, -1) + " m/s");
-  const double longest = (state.scene->limits.segments - size_beside(index, state)) * model.segment_length;
+  if (!(max_tension >= 0 && max_tension < infinity))
+    return refused("max_tension: " + number_text(max_tension) + "; must be a number of N above 0, or 0 for none");
+  const double longest = longest_cable(index);
   if (!(length > 0 && length <= longest))
     return refused("length: " + number_text(length) + "; must be above 0, and at most " + rounded_bound_text(longest, -1) +
                    " m, as limits.segments allows");
 
-  LengthDrive drive = s.drive.value_or(LengthDrive{});
-  drive.place = place;
-  drive.segment = at_end ? cable.segments() - 1 : 0;
-  drive.speed = speed;
-  drive.acceleration = winch_acceleration;
+  LengthDrive drive = winch_at(index, at_end, speed);
   drive.left = length - (cable.length() + drive.debt);
+  drive.keeps_tension = false;
+  drive.tension = max_tension > 0 ? max_tension : infinity;
+  drive.min_length = 0;
+  drive.max_length = infinity;
   const std::optional<LengthDrive> before = std::exchange(s.drive, drive);
   const double shortest = cable.length() - available_length(index);
-  const double needed = cable.length() - slack_at_winch(index);
+  // A winch that slips does not pull the cable further than it reaches.
+  const double needed = drive.heeds_tension() ? 0 : cable.length() - slack_at_winch(index);
   if (length >= shortest && length >= needed) {
     open_clamp(drive, state.attachments, cable.segments(), s.targets);
     return {true, "", model.name};
@@ -110,6 +133,35 @@ EditResult World::Implementation::apply(const edit::SetLength& change) {
       "length: " + number_text(length) + "; must be at least " + rounded_bound_text(std::max(shortest, needed), 1) + " m, " +
       (needed > shortest ? "the distance of its attachments"
                          : "so that a part of a segment is left between the winch and the next attachment, payload or end"));
+}
+
+EditResult World::Implementation::apply(const edit::SetTension& change) {
+  const auto [index, at_end, tension, max_speed, min_length, max_length] = change;
+  if (const std::string reason = refused_winch(index, at_end); !reason.empty()) return refused(reason);
+  const CableModel& model = *state.cables[index].model;
+  const double fastest = fastest_winch(index);
+  std::string reasons;
+  const auto require = [&](bool holds, const std::string& reason) {
+    if (!holds) reasons += (reasons.empty() ? "" : "\n") + reason;
+  };
+  require(tension >= 0 && tension < infinity, "tension: " + number_text(tension) + "; must be a number of N, 0 or more");
+  require(max_speed > 0 && max_speed <= fastest, "max_speed: " + number_text(max_speed) + "; must be above 0, and at most " +
+                                                     rounded_bound_text(fastest, -1) + " m/s");
+  require(min_length >= 0 && min_length < infinity,
+          "min_length: " + number_text(min_length) + "; must be a number of m, 0 or more");
+  require(max_length > 0 && !(max_length < min_length),
+          "max_length: " + number_text(max_length) + "; must be above 0, and at least min_length, or .inf");
+  if (!reasons.empty()) return refused(reasons);
+
+  CableProgress& s = state.cable_progress[index];
+  LengthDrive drive = winch_at(index, at_end, max_speed);
+  drive.keeps_tension = true;
+  drive.tension = tension;
+  drive.min_length = min_length;
+  drive.max_length = max_length;
+  s.drive = drive;
+  open_clamp(drive, state.attachments, state.cables[index].state.segments(), s.targets);
+  return {true, "", model.name};
 }
 
 /// [m] That can be taken in: up to the next node that is attached or carries a payload, or to the other end.
@@ -158,12 +210,26 @@ void World::Implementation::plan_drive_step(int index) {
     close_joint(index);
     return;
   }
-  plan_drive(s.drive->is_winch() ? available_length(index) : infinity, state.scene->time_step, *s.drive);
+  plan_drive_of(index);
   if (s.drive->is_winch()) remesh_winch(index);
   LengthDrive& drive = *s.drive;
-  if (drive.is_winch()) stall(cable.state.rest_lengths[drive.segment] - least_segment * cable.model->segment_length, drive);
+  if (drive.is_winch())
+    stall(cable.state.rest_lengths[drive.segment] - least_segment * cable.model->segment_length, state.scene->time_step, drive);
   drive.start_length = cable.state.rest_lengths[drive.segment];
   for (const int side : {0, 1}) drive.start_masses[side] = cable.state.masses[drive.segment + side];
+}
+
+void World::Implementation::plan_drive_of(int index) {
+  LengthDrive& drive = *state.cable_progress[index].drive;
+  const double time_step = state.scene->time_step;
+  if (!drive.is_winch()) return plan_drive(infinity, time_step, drive);
+  const double available = available_length(index), length = state.cables[index].state.length() + drive.debt;
+  if (!drive.heeds_tension()) return plan_drive(available, time_step, drive);
+  const double most_out = std::min(drive.max_length, longest_cable(index)) - length;
+  if (drive.keeps_tension)
+    return plan_kept_tension(std::min(available, length - drive.min_length), most_out, time_step, drive);
+  plan_drive(available, time_step, drive);
+  drive.fastest_out = std::max(most_out, 0.0) / time_step;
 }
 
 /// Segments appear and vanish at the winch, so that the one there stays about as long as the others.

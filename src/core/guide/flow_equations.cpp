@@ -185,8 +185,16 @@ void CableStepper::set_flow_lengths(const Substep& s) {
 DrawnLength CableStepper::evaluate_flowing_length(const Substep& s, int i) {
   const Straining strained = straining(s, i);
   const FlowingLength flowing{strained.start, strained.end, length_[i], std::sqrt(end_square_[i])};
-  const DrawnLength drawn =
+  DrawnLength drawn =
       draw({axial_stiffness_[i], axial_damping_[i] / s.damping_time()}, flowing, tension_density_[i], s.part());
+  if (keeps_tension(i)) {
+    // The winch takes in what would lessen it.
+    const double mean = flowing.start_length + s.part() * (flowing.length - flowing.start_length);
+    const double tension = mean * (tension_density_[i] - drawn.row.gap / drawn.row.compliance);
+    drawn.row = kept_row({tension, 0}, tension_density_[i], mean, flowing.length, s.part(),
+                         least_winch_stiffness());
+    drawn.slope = 0;
+  }
   set_row(i, drawn.row);
   return drawn;
 }
@@ -214,7 +222,7 @@ void CableStepper::evaluate_flows(const Substep& s) {
         stretched += 0.5 * length.strain;
       } else {
         arm[side] = mean(length_[i], end, part);
-        flow.gap[side] = sign * flow.stretch[side] * end;
+        flow.gap[side] = keeps_tension(i) ? 0 : sign * flow.stretch[side] * end;
         drawn[side] = tension_density_[i] * arm[side];
       }
     }
@@ -451,6 +459,7 @@ bool CableStepper::correct_flows(double part) {
 }
 
 bool CableStepper::flows_are_consistent(const Substep& s) const {
+  if (winch_.segment >= 0 && !winch_is_consistent(s)) return false;
   return std::all_of(flows_.begin(), flows_.end(), [&](const Flow& flow) {
     return !flow.changed && (flow.changes >= most_changes || mode_of_way(s, flow) == flow.mode);
   });

@@ -27,7 +27,7 @@ double CableStepper::kinetic_energy(const std::vector<double>& masses, const Vec
 double CableStepper::missing_work_of_tension(double part) const {
   double work = 0;
   for (int i = 0; i < segments_; ++i) {
-    if (is_elastic_at(i)) {
+    if (is_elastic_at(i) || keeps_tension(i)) {
       const double growth = std::sqrt(end_square_[i]) - length_[i];
       work += system_.gap[i] / system_.compliance[i] * (length_[i] + part * growth) * growth;
     } else {
@@ -82,7 +82,7 @@ void CableStepper::balance_drag(const Substep& s, const std::vector<double>& mas
 double CableStepper::stored_when_taut(const Substep& s) const {
   double energy = 0;
   for (int i = 0; s.boundary.nodes.size() > 1 && i < segments_; ++i)
-    if (!is_elastic_at(i) && !grows(i)) energy += taut_energy(strain_compliance_[i], tension_density_[i]);
+    if (!is_elastic_at(i) && !grows(i) && !keeps_tension(i)) energy += taut_energy(strain_compliance_[i], tension_density_[i]);
   return energy;
 }
 
@@ -97,6 +97,7 @@ void CableStepper::balance_lengths(const Substep& s, double given_back, SubstepR
   double drawn = given_back;  // what is done and not stored
   for (int i = 0; changes_lengths(s) && i < segments_; ++i) {
     if (is_elastic_at(i)) {
+      if (i == winch_.segment) result.balance.work.winches += work_of_winch_beyond();
       if (axial_damping_[i] == 0) continue;
       const Straining strained = straining(s, i);
       const double middle = 0.5 * (strained.start + strained.end);
@@ -109,7 +110,7 @@ void CableStepper::balance_lengths(const Substep& s, double given_back, SubstepR
     }
     if (grows(i)) continue;
     const double work = work_of_length(tension_density_[i], get(segment_, i).squaredNorm(), end_square_[i]);
-    if (rest_growth_[i] != 0)
+    if (rest_growth_[i] != 0 || i == winch_.segment)
       result.balance.work.winches -= work;
     else
       drawn += work;

@@ -110,6 +110,7 @@ void CableStepper::finish(const Substep& s, bool struck, CableState& state, Subs
   const double stored = stored_when_taut(s);
   if (!s.statics) {
     if (changes_lengths(s)) measure_end();
+    if (winch_.segment >= 0) finish_winch(s);
     balance_laws(s, state.masses, state.taut_energy - stored, result);
   }
   state.taut_energy = stored;
@@ -223,15 +224,19 @@ void CableStepper::set_loads(const Substep& s, const CableState& state) {
     }
   }
   both_held_.clear();
+  const auto gives = [&](int i) {
+    return std::any_of(s.boundary.growing.begin(), s.boundary.growing.end(),
+                       [i](const GrowingSegment& g) { return g.segment == i && g.law.gives(); });
+  };
   for (std::size_t k = 0; k + 1 < held.size(); ++k)
     if (held[k].node + 1 == held[k + 1].node && held[k].body == held[k + 1].body && !grows(held[k].node) &&
-        yields_[held[k].node] == 0)
+        yields_[held[k].node] == 0 && !gives(held[k].node))
       both_held_.push_back(held[k].node);
 }
 
 bool CableStepper::keeps_lengths() const {
   for (int i = 0; i < segments_; ++i)
-    if (system_.compliance[i] > 0 && !grows(i) &&
+    if (system_.compliance[i] > 0 && !grows(i) && !keeps_tension(i) &&
         !(std::abs(system_.gap[i]) < greatest_gap * target_length_[i] * target_length_[i]))
       return false;
   return true;
@@ -240,7 +245,7 @@ bool CableStepper::keeps_lengths() const {
 double CableStepper::greatest_tension_of_taut() const {
   double greatest = 0;
   for (int i = 0; i < segments_; ++i)
-    if (system_.compliance[i] > 0) greatest = std::max(greatest, tension_density_[i] * target_length_[i]);
+    if (system_.compliance[i] > 0 && !keeps_tension(i)) greatest = std::max(greatest, tension_density_[i] * target_length_[i]);
   return greatest;
 }
 
@@ -248,9 +253,11 @@ double CableStepper::greatest_tension_of_taut() const {
 void CableStepper::set_growth(const Substep& s) {
   std::fill_n(rest_growth_.begin(), segments_, 0.0);
   winch_node_ = -1;
+  winch_.segment = -1;
   for (const GrowingSegment& growing : s.boundary.growing) {
     const int i = growing.segment;
     rest_growth_[i] = s.h * growing.growth;
+    if (growing.law.gives()) start_winch(growing);
     if (i != 0 && i + 1 != segments_) continue;
     winch_node_ = i == 0 ? 0 : segments_;
     material_way_ = (i == 0 ? rest_growth_[i] : -rest_growth_[i]) * get(segment_, i).normalized();
@@ -326,6 +333,7 @@ void CableStepper::evaluate(const Substep& s, const CableState& state) {
     evaluate_elastic_lengths(s, state.rest_lengths);
   else
     evaluate_rigid_lengths();
+  if (winch_.segment >= 0) evaluate_winch(s);
   for (const int i : both_held_) {
     system_.gap[i] = 0;
     system_.compliance[i] = 1;
@@ -400,6 +408,7 @@ CableStepper::Straining CableStepper::straining(const Substep& s, int i) const {
   if (rest_growth_[i] != 0)
     for (const GrowingSegment& wound : s.boundary.growing)
       if (wound.segment == i) found.end += (1 - s.part()) * s.h * wound.growth;
+  if (i == winch_.segment) found.end += (1 - s.part()) * winch_.beyond;
   found.start = found.end - rest_growth_[i];
   found.growth = std::sqrt(end_square_[i]) - length_[i];
   if (rest_growth_[i] != 0) found.growth -= length_[i] * rest_growth_[i] / found.start;
@@ -465,10 +474,10 @@ void CableStepper::set_correction(const VectorArray& displacement, const std::ve
   solver_.set_solution(displacement, multiplier);
   // The way is what the rows of the segments that grow lack.
   for (Flow& flow : flows_) {
-    const int i = flow.after;
+    const int side = keeps_tension(flow.after) ? 0 : 1, i = side == 0 ? flow.before : flow.after;
     const Vector3 between = get(displacement, i + 1) - get(displacement, i);
     const double lacking = get(system_.direction, i).dot(between) - system_.compliance[i] * multiplier[i] - system_.gap[i];
-    flow.correction = lacking / flow.gap[1];
+    flow.correction = lacking / flow.gap[side];
   }
 }
 
@@ -584,12 +593,13 @@ void CableStepper::begin_projection(const Substep& s, const CableState& state) {
     set(system_.direction, i, d);
     system_.first[i] = 0;
     const double compliance = d.squaredNorm() / (state.masses[i] + state.masses[i + 1]);
-    const bool stretches = is_elastic_at(i) || yields_[i] != 0;
+    const bool stretches = is_elastic_at(i) || yields_[i] != 0 || keeps_tension(i);
     system_.compliance[i] = (stretches ? 1 / length_rate_regularisation : length_rate_regularisation) * compliance;
     system_.gap[i] = stretches ? 0 : d.dot(state.velocities[i] - state.velocities[i + 1]);
   }
   for (const GrowingSegment& growing : s.boundary.growing)
-    if (!is_elastic_at(growing.segment)) system_.gap[growing.segment] += state.rest_lengths[growing.segment] * growing.growth;
+    if (!is_elastic_at(growing.segment) && !growing.keeps_tension)
+      system_.gap[growing.segment] += state.rest_lengths[growing.segment] * growing.growth;
   if (!flows_.empty()) begin_flow_projection(s, state);
   for (const int i : both_held_) system_.gap[i] = 0;
   solver_.factor(system_, false);
@@ -616,7 +626,8 @@ void CableStepper::finish_projection(const Substep& s, CableState& state, Subste
   }
   for (std::size_t k = 0; k < flows_.size(); ++k) mend_flow(flows_[k], flows_[k].correction, s.boundary.flows[k], result);
   for (const GrowingSegment& growing : s.boundary.growing)
-    if (!is_elastic_at(growing.segment)) balance_mended_growth(growing, -multiplier_correction()[growing.segment], result);
+    if (!is_elastic_at(growing.segment) && !growing.keeps_tension)
+      balance_mended_growth(growing, -multiplier_correction()[growing.segment], result);
 }
 
 void CableStepper::take_back(double part) {
@@ -695,6 +706,11 @@ void CableStepper::project(const Substep& s, const std::vector<double>& masses, 
   }
   for (int i = 0; (any_elastic_ || !overstretched_.empty()) && i < n; ++i) {
     if (!is_elastic_at(i) && yields_[i] == 0) continue;
+    pivot_[i] = 1;
+    off_[i] = off_[std::max(i - 1, 0)] = impulse_[i] = 0;
+  }
+  if (winch_.segment >= 0 && keeps_tension(winch_.segment) && !grows(winch_.segment)) {
+    const int i = winch_.segment;
     pivot_[i] = 1;
     off_[i] = off_[std::max(i - 1, 0)] = impulse_[i] = 0;
   }
@@ -826,6 +842,9 @@ void CableStepper::assemble_for_velocities() {
   assemble_segments(0.5, start_density_, segment_);
   if (bending_.active()) bending_.add_stiffness(system_);
   if (rod_.active()) rod_.assemble(segment_, start_density_);
+  // A tension that is kept does not resist motion along the segment.
+  if (winch_.segment >= 0 && keeps_tension(winch_.segment))
+    system_.compliance[winch_.segment] = 1 / (length_rate_regularisation * inertia_[winch_.segment]);
 }
 
 /// What the held nodes' equations of motion lack is what their holders supply.
@@ -903,12 +922,13 @@ double CableStepper::store(const Substep& s, CableState& state) const {
       state.tension[i] = state.last_tension[i] = state.axial_multiplier[i] = 0;
       continue;
     }
-    const double square = get(segment_, i).squaredNorm();
-    const double relative = square / (state.rest_lengths[i] * state.rest_lengths[i]);
+    const bool gives = i == winch_.segment;
+    const double square = get(segment_, i).squaredNorm(), rest = gives ? target_length_[i] : state.rest_lengths[i];
+    const double relative = square / (rest * rest);
     longest = std::max(longest, relative);
     shortest = std::min(shortest, relative);
     const bool elastic = is_elastic_at(i);
-    double length = elastic ? length_[i] + part * (std::sqrt(square) - length_[i]) : target_length_[i];
+    double length = elastic || gives ? length_[i] + part * (std::sqrt(square) - length_[i]) : target_length_[i];
     if (yields_[i] != 0) length = std::sqrt(square);
     if (!elastic && !flows_.empty() && grows(i)) length = length_[i] + part * (target_length_[i] - length_[i]);
     state.axial_multiplier[i] = tension_density_[i] * length;

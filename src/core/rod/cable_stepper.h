@@ -45,7 +45,7 @@ class CableStepper {
   void factor();
   void solve_linear();  ///< for the loads that `evaluate` found; material flows through guides as it is driven
   double correct();
-  /// Whether the guides' frictions act as the flows that were found last call for.
+  /// Whether the guides' frictions act as the flows that were found last call for, and a winch as its tension does.
   bool flows_are_consistent(const Substep& substep) const;
   void take_back(double part);  ///< of the last correction
   /// `struck`: forces from outside have changed velocities abruptly.
@@ -151,6 +151,19 @@ class CableStepper {
   void project_flows(const Substep& substep);
   void push_flows(const Substep& substep, SubstepResult& result);
   static void mend_flow(const Flow& flow, double change, GuidedFlow& guided, SubstepResult& result);
+  // A winch that gives way: rod/winch_law.cpp
+  void start_winch(const GrowingSegment& growing);
+  void evaluate_winch(const Substep& substep);
+  WoundLength wound_length(const Substep& substep) const;
+  Resistance<double> strain_resistance(const Substep& substep, int segment) const;
+  double wanted_by_winch(const Substep& substep, double end) const;
+  double winch_mobility() const;
+  double least_winch_stiffness() const;
+  bool winch_is_consistent(const Substep& substep) const;
+  void wind_beyond(const Substep& substep, double wanted);
+  double work_of_winch_beyond() const;
+  void finish_winch(const Substep& substep);
+  bool keeps_tension(int segment) const { return segment == winch_.segment && winch_.mode == WinchMode::keeps; }
   void factor_segments();
   void solve_segments();
   Vector3 corrected_load(int node) const;
@@ -187,6 +200,18 @@ class CableStepper {
   std::vector<double> rest_growth_;                 // segments: of the rest length, in the substep [m]
   int winch_node_ = -1;                             // the end node at a winch that runs
   Vector3 material_way_ = Vector3::Zero();          // of the material there, in the substep [m]
+  /// A winch that gives way to tension, in the present iterate.
+  struct Winch {
+    int segment = -1;  // -1: none does
+    WinchLaw law;
+    double planned_growth = 0;  // [m/s] of the rest length, at the end
+    double planned_rest = 0;    // [m] of rest, where forces are taken
+    double planned_way = 0;     // [m] that the rest length grows by
+    double beyond = 0;          // [m] by which it grows more
+    WinchMode mode = WinchMode::least;
+    int changes = 0;  // of the mode, in the substep
+  };
+  Winch winch_;
   std::vector<double> target_length_;               // segments: l [m]; longer where bodies have drawn them out
   std::vector<OverstretchedSpan> overstretched_;
   std::vector<char> yields_;               // segments: of an overstretched span

@@ -193,7 +193,12 @@ bool RodElimination::factor_lanes(const KktSystem& system, const RodStiffness& s
     const Pair compliance = pair(system.compliance, left, right);
     e.force_density = pair(stiffness.force_density, left, right);
     Pair resistance = square + compliance * e.force_density;
-    for (int lane = 0; lane < 2; ++lane) resistance[lane] = std::max(resistance[lane], least_resistance * square[lane]);
+    for (int lane = 0; lane < 2; ++lane) {
+      // A tension that does not change with the length has a compliance that is negative, and so is this then.
+      const double least = least_resistance * square[lane];
+      resistance[lane] = compliance[lane] < 0 && resistance[lane] < 0 ? std::min(resistance[lane], -least)
+                                                                       : std::max(resistance[lane], least);
+    }
     e.gap_share = 1.0 / resistance;
     e.stretch = compliance * e.gap_share * e.inverse_square;
     resist = resist + pair(stiffness.segment, left, right);

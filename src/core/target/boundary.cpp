@@ -74,12 +74,26 @@ void each_rigid_span(const CableModel& model, const CableState& state, const std
   }
 }
 
+/// [m] That winches which give way to tension may let out into it in the substep.
+double let_out_into(const HeldSpan& span, const std::vector<GrowingSegment>& growing) {
+  double length = 0;
+  for (const GrowingSegment& segment : growing)
+    if (segment.segment >= span.first && segment.segment < span.last && segment.law.gives()) length += segment.law.most;
+  return length;
+}
+
 /// [m] By how much further its holders are apart in a substep of `h` [s], beyond what it grows by.
 double drawn_in_substep(const HeldSpan& span, const std::vector<GrowingSegment>& growing, double h) {
-  double drawn = span.distance - span.start_distance;
+  double drawn = span.distance - span.start_distance - let_out_into(span, growing);
   for (const GrowingSegment& segment : growing)
     if (segment.segment >= span.first && segment.segment < span.last) drawn -= h * segment.growth;
   return drawn;
+}
+
+/// How long it may be at the end of the substep.
+HeldSpan let_out(HeldSpan span, const std::vector<GrowingSegment>& growing) {
+  span.length += let_out_into(span, growing);
+  return span;
 }
 
 bool is_strained(const HeldSpan& span, const CableState& state) {
@@ -122,7 +136,8 @@ int lengths_in_substep(const CableModel& model, const CableState& state, const B
   std::copy_n(state.rest_lengths.begin(), state.segments(), lengths.begin());
   spans.clear();
   int first = -1;
-  each_rigid_span(model, state, boundary.nodes, [&](const HeldSpan& span) {
+  each_rigid_span(model, state, boundary.nodes, [&](const HeldSpan& found) {
+    const HeldSpan span = let_out(found, boundary.growing);
     const double distance = span.gives_way ? span.start_distance : span.distance;
     const bool is_too_short = distance > span.length * (1 + reported_stretch) + span.rounding;
     if (is_too_short && first < 0 && (!span.gives_way || drawn_out.is_reported)) first = span.first;
@@ -139,7 +154,7 @@ int lengths_in_substep(const CableModel& model, const CableState& state, const B
 bool any_overstretched(const CableModel& model, const CableState& state, const Boundary& boundary, const YieldingAhead& ahead) {
   bool found = false;
   each_rigid_span(model, state, boundary.nodes, [&](const HeldSpan& span) {
-    found |= !span.gives_way && yielding_share(span, state, boundary.growing, ahead) > 0;
+    found |= !span.gives_way && yielding_share(let_out(span, boundary.growing), state, boundary.growing, ahead) > 0;
   });
   return found;
 }

@@ -5,6 +5,7 @@
 
 #include "chain/cable_point.h"
 #include "guide/flow.h"
+#include "law/winch.h"
 #include "verlet_cable/core/cable.h"
 
 namespace verlet_cable {
@@ -63,7 +64,10 @@ struct HeldDirection {
 /// A segment whose rest length changes.
 struct GrowingSegment {
   int segment = 0;
-  double growth = 0;  ///< [m/s] of its rest length, at the end of the substep
+  double growth = 0;  ///< [m/s] of its rest length, at the end of the substep: in as planned, out with what it grows beyond that
+  WinchLaw law = {};  ///< of that
+  double beyond = 0;  ///< [m] out: in the substep
+  bool keeps_tension = false;  ///< out: whether the law's tension is that of the segment
 };
 
 /// All that is given of a cable at a substep; held nodes and directions ascend by node.

@@ -15,6 +15,8 @@ namespace {
 /// [1/s] Of the critically damped motion that gives lost length back.
 constexpr double giving_back = 20;
 constexpr double smallest_debt = 1e-9;  // [m]
+/// [m] More than rounding.
+constexpr double stalling_excess = 1e-9;
 
 template <class... Functions>
 struct Overloaded : Functions... {
@@ -28,6 +30,26 @@ double length_at(const LengthDrive& drive, double part, double time_step) {
   const double uniform = drive.change - 0.5 * time_step * (drive.growth() + drive.next_growth());
   const double accelerated = time_step * (drive.growth() + 0.5 * part * (drive.next_growth() - drive.growth()));
   return drive.start_length + (part == 1 ? drive.change : part * (uniform + accelerated));
+}
+
+/// [m/s] From which it can just brake in `left` [m], going so fast in the first step already.
+double braking_speed(double left, double time_step, double acceleration) {
+  return acceleration * (std::sqrt(0.25 * time_step * time_step + 2 * left / acceleration) - 0.5 * time_step);
+}
+
+void give_debt_back(double time_step, LengthDrive& drive) {
+  const double decay = std::exp(-giving_back * time_step), slope = drive.debt_rate + giving_back * drive.debt;
+  drive.next_debt = (drive.debt + slope * time_step) * decay;
+  drive.next_debt_rate = (drive.debt_rate - giving_back * slope * time_step) * decay;
+  if (std::abs(drive.next_debt) < smallest_debt) drive.next_debt = drive.next_debt_rate = 0;
+  drive.change = drive.wound + drive.debt - drive.next_debt;
+}
+
+/// Goes on as it went.
+void go_on(double time_step, LengthDrive& drive) {
+  drive.rate = drive.next_rate = std::clamp(drive.rate, -drive.fastest_in, drive.fastest_out);
+  drive.wound = time_step * drive.rate;
+  drive.change = drive.wound + drive.debt - drive.next_debt;
 }
 
 /// [kg] By which each of the segment's nodes has become heavier.
@@ -47,18 +69,61 @@ void plan_drive(double available, double time_step, LengthDrive& drive) {
   if (!drive.arrives) {
     // The speed after the step from which it can just brake in what is left then.
     const double left = std::max(distance - 0.5 * time_step * speed, 0.0);
-    const double braking =
-        drive.acceleration * (std::sqrt(0.25 * time_step * time_step + 2 * left / drive.acceleration) - 0.5 * time_step);
+    const double braking = braking_speed(left, time_step, drive.acceleration);
     next = std::clamp(std::min(drive.speed, braking), speed - most, speed + most);
     drive.wound = std::max(side * 0.5 * time_step * (speed + next), std::min(-available, 0.0));
   }
   drive.next_rate = side * next;
+  give_debt_back(time_step, drive);
+}
 
-  const double decay = std::exp(-giving_back * time_step), slope = drive.debt_rate + giving_back * drive.debt;
-  drive.next_debt = (drive.debt + slope * time_step) * decay;
-  drive.next_debt_rate = (drive.debt_rate - giving_back * slope * time_step) * decay;
-  if (std::abs(drive.next_debt) < smallest_debt) drive.next_debt = drive.next_debt_rate = 0;
-  drive.change = drive.wound + drive.debt - drive.next_debt;
+void plan_kept_tension(double available, double most_out, double time_step, LengthDrive& drive) {
+  const auto fastest = [&](double left) {
+    return std::min(drive.speed, braking_speed(std::max(left, 0.0), time_step, drive.acceleration));
+  };
+  drive.fastest_in = drive.tension > 0 ? fastest(available) : 0;
+  drive.fastest_out = fastest(most_out);
+  drive.arrives = false;
+  give_debt_back(time_step, drive);
+  go_on(time_step, drive);
+}
+
+void stall(double most, double time_step, LengthDrive& drive) {
+  if (drive.keeps_tension) {
+    drive.fastest_in = std::min(drive.fastest_in, std::max(most, 0.0) / time_step);
+    go_on(time_step, drive);
+    return;
+  }
+  const double excess = -drive.change - std::max(most, 0.0);
+  if (!(excess > stalling_excess)) return;
+  drive.change += excess;
+  drive.wound += excess;
+  drive.next_rate = 0;
+  drive.arrives = false;
+}
+
+WinchLaw winch_law(const LengthDrive& drive, double part, double h) {
+  WinchLaw law;
+  if (!drive.heeds_tension()) return law;
+  law.tension = drive.tension;
+  if (!drive.keeps_tension) {
+    law.most_rate = std::max(drive.fastest_out - growth_at(drive, part), 0.0);
+    law.most = h * law.most_rate;
+  } else {
+    // It speeds up as its motor can, and brakes as the tension needs it; nothing holds a spool that turns freely. Rates are means
+    // over substeps: at the end it has gone on speeding up.
+    const double last = drive.rate + drive.slip, gain = h * drive.acceleration;
+    const double in = std::min(last, 0.0), out = std::max(last, 0.0);
+    const bool is_free = drive.tension == 0;
+    const double least = -std::min(drive.fastest_in, gain - in);
+    const double most = is_free ? drive.fastest_out : std::min(drive.fastest_out, gain + out);
+    law.least = h * (least - drive.rate);
+    law.most = h * (most - drive.rate);
+    law.least_rate = least + 0.5 * std::min(least - in, 0.0) - drive.rate;
+    law.most_rate = most + (is_free ? 0 : 0.5 * std::max(most - out, 0.0)) - drive.rate;
+  }
+  law.guess = std::clamp(h * drive.slip, law.least, std::max(law.least, law.most));
+  return law;
 }
 
 void open_clamp(const LengthDrive& drive, const std::vector<Attachment>& attachments, int segments, KinematicTargets& targets) {
@@ -87,6 +152,19 @@ void wind(const LengthDrive& drive, double part, double time_step, const CableMo
   for (const int side : {0, 1}) state.masses[drive.segment + side] = drive.start_masses[side] + mass;
 }
 
+void slip(double beyond, double share, double h, const CableModel& model, CableState& state, LengthDrive& drive) {
+  const double mass = 0.5 * CableMaterials(model, state)[drive.segment].linear_density * beyond;
+  state.rest_lengths[drive.segment] += share * beyond;
+  drive.start_length += beyond;
+  for (const int side : {0, 1}) {
+    state.masses[drive.segment + side] += share * mass;
+    drive.start_masses[side] += mass;
+  }
+  drive.slip = beyond / h;
+  drive.slipped += beyond;
+  if (beyond > 0) drive.arrives = false;
+}
+
 void keep_flow(double part, double time_step, const CableModel& model, const CableState& state, LengthDrive& drive) {
   drive.start_length += state.rest_lengths[drive.segment] - length_at(drive, part, time_step);
   const double mass = mass_at(drive, part, model, state);
@@ -99,11 +177,19 @@ double growth_at(const LengthDrive& drive, double part) {
 }
 
 bool complete_drive(LengthDrive& drive) {
-  drive.left = drive.arrives ? 0 : drive.left - drive.wound;
+  drive.left = drive.arrives ? 0 : drive.left - drive.fed();
   drive.rate = drive.next_rate;
+  drive.slipped = 0;
+  if (drive.slip != 0) {
+    // A motor goes as what it pulls lets it, but does not turn round.
+    const double found = drive.rate + drive.slip;
+    const double rate = drive.keeps_tension ? found : std::clamp(found, drive.rate, std::max(drive.rate, 0.0));
+    drive.slip = found - rate;
+    drive.rate = rate;
+  }
   drive.debt = drive.next_debt;
   drive.debt_rate = drive.next_debt_rate;
-  return !drive.arrives || drive.debt != 0;
+  return !drive.arrives || drive.debt != 0 || drive.heeds_tension();
 }
 
 void insert_node(int segment, double first, const CableModel& model, CableState& state) {

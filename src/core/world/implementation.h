@@ -71,6 +71,11 @@ struct World::Implementation {
   EditResult apply(const edit::MoveAttachment& move);
   EditResult apply(const edit::Cut& cut);
   EditResult apply(const edit::SetLength& change);
+  EditResult apply(const edit::SetTension& change);
+  std::string refused_winch(int cable, bool at_end) const;
+  double fastest_winch(int cable) const;
+  double longest_cable(int cable) const;
+  LengthDrive winch_at(int cable, bool at_end, double speed) const;
   EditResult apply(const edit::Join& join);
   EditResult apply(const edit::SetObstacle& set);
   EditResult apply(const edit::RemoveObstacle& remove);
@@ -114,6 +119,7 @@ struct World::Implementation {
   void find_targets_of(int cable);
   void fit_frames(int cable);
   void plan_drive_step(int cable);
+  void plan_drive_of(int cable);
   double available_length(int cable) const;
   double slack_at_winch(int cable) const;
   void remesh_winch(int cable);

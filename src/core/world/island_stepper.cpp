@@ -208,7 +208,7 @@ void pass_twist_through_winch(const LengthDrive& drive, CableState& state, Kinem
   const int n = state.segments(), end = drive.end_node(n), next = end == 0 ? 1 : n - 1;
   const double side = end == 0 ? -1 : 1;
   const auto grow = [&](int node) {
-    const double length = joint_length(state, node), before = length - 0.5 * drive.wound;
+    const double length = joint_length(state, node), before = length - 0.5 * drive.fed();
     const double turn = state.joint_twist[node] * (length / before - 1);
     state.joint_twist[node] += turn;
     return side * turn;
@@ -232,8 +232,8 @@ void complete_drive_step(int index, State& state) {
     for (TwistSpan& span : memory.spans) {
       if (span.first_node != end && span.last_node != end) continue;
       const double length = cable.state.length(span.first_node, span.last_node);
-      const double change = CableMaterials(cable).vary() ? cable.state.twist[drive.segment] * drive.wound
-                                                         : span.angle * drive.wound / (length - drive.wound);
+      const double change = CableMaterials(cable).vary() ? cable.state.twist[drive.segment] * drive.fed()
+                                                         : span.angle * drive.fed() / (length - drive.fed());
       span.angle += change;
       span.origin -= change;
     }
@@ -353,6 +353,7 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
       keep_lasting_forces(workspace_.cables[k].boundary, state_.cable_progress[island.cables[k]].targets);
       keep_flows(island.cables[k], workspace_.cables[k].boundary, state_);
       keep_flow_at_drive(island.cables[k], workspace_.cables[k].wound, state_);
+      slip_at_winch(island.cables[k], workspace_.cables[k].wound, from, to, workspace_.cables[k].boundary);
     }
     workspace_.contacts.keep(workspace_.members);
   } else {
@@ -424,9 +425,24 @@ double IslandStepper::wind_drive(int index, Scheme scheme, double from, double t
   const bool elastic = is_elastic(CableMaterials(cable)[drive.segment]);
   const bool in_the_middle = elastic && scheme == Scheme::conserving;
   const double part = in_the_middle ? 0.5 * (from + to) : to;
-  wind(drive, part, state_.scene->time_step, *cable.model, cable.state);
-  boundary.growing.assign(1, {drive.segment, growth_at(drive, to)});
+  const double time_step = state_.scene->time_step;
+  wind(drive, part, time_step, *cable.model, cable.state);
+  GrowingSegment growing{drive.segment, growth_at(drive, to)};
+  growing.law = winch_law(drive, to, (to - from) * time_step);
+  boundary.growing.assign(1, growing);
   return part;
+}
+
+/// What a winch has let through beyond what was planned, as its tension was, in a substep that has converged.
+void IslandStepper::slip_at_winch(int index, double wound, double from, double to, const Boundary& boundary) {
+  for (const GrowingSegment& growing : boundary.growing) {
+    if (!growing.law.gives()) continue;
+    SimulatedCable& cable = state_.cables[index];
+    const double before = energy_at(index, to);
+    slip(growing.beyond, wound < to ? 0.5 : 1, (to - from) * state_.scene->time_step, *cable.model, cable.state,
+         *state_.cable_progress[index].drive);
+    outcomes_[index].balance.work.winches += energy_at(index, to) - before;
+  }
 }
 
 /// What touches is left as it is until all have converged, but for what slides through guides.

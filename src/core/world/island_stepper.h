@@ -119,6 +119,7 @@ class IslandStepper {
   Scheme find_touching_scheme(const Island& island, double h);
   /// Returns the part of the step that it has wound.
   double wind_drive(int cable, Scheme scheme, double from, double to, Boundary& boundary);
+  void slip_at_winch(int cable, double wound, double from, double to, const Boundary& boundary);
   bool is_kept(const Island& island, std::size_t k) const;
   bool is_finite(const Island& island);
   void take_back(const Island& island);

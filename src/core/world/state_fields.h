@@ -121,8 +121,8 @@ auto fields(T& x, const RobotDesc*) {
 /// What the world itself reads: not what only programs do, nor what is made into particles and obstacles at once.
 template <class T>
 auto fields(T& x, const SceneDesc*) {
-  return std::tie(x.time_step, x.jump_speed, x.numerical_damping, x.tolerance, x.gravity, x.fluid, x.limits.segments, x.materials,
-                  x.cables, x.nets, x.integrator, x.robot, x.contact);
+  return std::tie(x.time_step, x.jump_speed, x.winch_acceleration, x.numerical_damping, x.tolerance, x.gravity, x.fluid,
+                  x.limits.segments, x.materials, x.cables, x.nets, x.integrator, x.robot, x.contact);
 }
 
 // Cables
@@ -168,8 +168,9 @@ auto fields(T& x, const TwistSpan*) {
 }
 template <class T>
 auto fields(T& x, const LengthDrive*) {
-  return std::tie(x.place, x.segment, x.left, x.speed, x.acceleration, x.rate, x.debt, x.debt_rate, x.start_length,
-                  x.start_masses, x.wound, x.change, x.next_rate, x.next_debt, x.next_debt_rate, x.arrives);
+  return std::tie(x.place, x.segment, x.left, x.speed, x.acceleration, x.rate, x.tension, x.keeps_tension, x.min_length, x.max_length,
+                  x.slip, x.debt, x.debt_rate, x.start_length, x.start_masses, x.wound, x.change, x.next_rate, x.next_debt,
+                  x.next_debt_rate, x.arrives, x.fastest_in, x.fastest_out, x.slipped);
 }
 template <class T>
 auto fields(T& x, const CachedContact*) {

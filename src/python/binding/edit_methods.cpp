@@ -197,13 +197,26 @@ void add_edit_methods(py::module_& module, py::class_<PythonWorld>& world) {
       "is changed.");
   world.def(
       "set_length",
-      [](PythonWorld& self, const py::str& cable, bool at_end, double length, double speed) {
-        set_length(text_of(cable, "cable"), at_end, length, speed, use(self));
+      [](PythonWorld& self, const py::str& cable, bool at_end, double length, double speed, double max_tension) {
+        set_length(text_of(cable, "cable"), at_end, length, speed, max_tension, use(self));
       },
-      py::arg("cable"), py::arg("at_end").noconvert(), py::arg("length"), py::arg("speed"),
+      py::arg("cable"), py::arg("at_end").noconvert(), py::arg("length"), py::arg("speed"), py::arg("max_tension") = 0.0,
       "Lets a winch at the end (at_end) or the start of a cable pay out or take in cable, until it has the length [m], at up to "
-      "the speed [m/s], as the service `set_length` does; the number of nodes changes. Raises ValueError, KeyError; then nothing "
-      "is changed.");
+      "the speed [m/s], as the service `set_length` does; the number of nodes changes. Rather than pull more than max_tension "
+      "[N] (0: any tension) it stops, or slips and lets cable out, until it is told something else. Raises ValueError, KeyError; "
+      "then nothing is changed.");
+  world.def(
+      "set_tension",
+      [](PythonWorld& self, const py::str& cable, bool at_end, double tension, double max_speed, double min_length,
+         double max_length) {
+        set_tension(text_of(cable, "cable"), {0, at_end, tension, max_speed, min_length, max_length}, use(self));
+      },
+      py::arg("cable"), py::arg("at_end").noconvert(), py::arg("tension"), py::arg("max_speed"), py::arg("min_length"),
+      py::arg("max_length"),
+      "Lets a winch at the end (at_end) or the start of a cable pay out and take in cable so that it leaves the winch with the "
+      "tension [N], at up to max_speed [m/s], while the cable is from min_length to max_length [m] long, as the service "
+      "`set_tension` does, until it is told something else. Tension 0: a spool that turns freely. Raises ValueError, KeyError; "
+      "then nothing is changed.");
   world.def(
       "move_attachment",
       [](PythonWorld& self, const py::str& name, const Numbers& offset) {

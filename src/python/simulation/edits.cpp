@@ -100,9 +100,14 @@ std::string join(const std::string& first, bool first_at_end, const std::string&
   return joined.result.name;
 }
 
-void set_length(const std::string& cable, bool at_end, double length, double speed, DrivenWorld& world) {
+void set_length(const std::string& cable, bool at_end, double length, double speed, double max_tension, DrivenWorld& world) {
   const bool unknown = find(world.world().cables(), cable) < 0;
-  require(apply_set_length(world.world(), cable, at_end, length, speed, python_words()), unknown);
+  require(apply_set_length(world.world(), cable, at_end, length, speed, max_tension, python_words()), unknown);
+}
+
+void set_tension(const std::string& cable, const edit::SetTension& change, DrivenWorld& world) {
+  const bool unknown = find(world.world().cables(), cable) < 0;
+  require(apply_set_tension(world.world(), cable, change, python_words()), unknown);
 }
 
 void move_attachment(const std::string& name, const Pose& offset, DrivenWorld& world) {

@@ -34,7 +34,8 @@ CutAnswer cut(const RequestedPlace& place, DrivenWorld& world, EventRecord& even
 std::string join(const std::string& first, bool first_at_end, const std::string& second, bool second_at_end, DrivenWorld& world,
                  EventRecord& events);
 
-void set_length(const std::string& cable, bool at_end, double length, double speed, DrivenWorld& world);
+void set_length(const std::string& cable, bool at_end, double length, double speed, double max_tension, DrivenWorld& world);
+void set_tension(const std::string& cable, const edit::SetTension& change, DrivenWorld& world);
 void move_attachment(const std::string& name, const Pose& offset, DrivenWorld& world);
 
 /// Adds an obstacle, or replaces the one of its name. A frame that is new is where the obstacle says, else as for `pin`.

@@ -9,6 +9,7 @@
 #include <verlet_cable/RestoreState.h>
 #include <verlet_cable/SaveState.h>
 #include <verlet_cable/SetLength.h>
+#include <verlet_cable/SetTension.h>
 #include <verlet_cable/Step.h>
 #include <verlet_cable/Unpin.h>
 
@@ -127,9 +128,16 @@ CableServices::CableServices(ros::NodeHandle& node, Simulation& simulation) : ow
       serve<Unpin>(node, "unpin", [s](const auto& request, auto& response) { return answer(s->unpin(request.name), response); }),
       serve<Pin>(node, "pin", [s](const auto& request, auto& response) { return pin(*s, request, response); }),
       serve<Cut>(node, "cut", [s](const auto& request, auto& response) { return cut(*s, request, response); }),
-      serve<SetLength>(
-          node, "set_length",
-          [s](const auto& r, auto& response) { return answer(s->set_length(r.cable, r.at_end, r.length, r.speed), response); }),
+      serve<SetLength>(node, "set_length",
+                       [s](const auto& r, auto& response) {
+                         return answer(s->set_length(r.cable, r.at_end, r.length, r.speed, r.max_tension), response);
+                       }),
+      serve<SetTension>(node, "set_tension",
+                        [s](const auto& r, auto& response) {
+                          const edit::SetTension change{0,           bool(r.at_end), r.tension,
+                                                        r.max_speed, r.min_length,   r.max_length};
+                          return answer(s->set_tension(r.cable, change), response);
+                        }),
       serve<Join>(node, "join",
                   [s](const auto& r, auto& response) {
                     const EditResult result = s->join(r.first, r.first_at_end, r.second, r.second_at_end);

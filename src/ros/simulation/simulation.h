@@ -73,7 +73,8 @@ class Simulation {
   EditResult move_attachment(const std::string& name, const Pose& offset);
   /// Removes a segment of a cable, or links of a net.
   EditResult cut(const Location& place);
-  EditResult set_length(const std::string& cable, bool at_end, double length, double speed);
+  EditResult set_length(const std::string& cable, bool at_end, double length, double speed, double max_tension);
+  EditResult set_tension(const std::string& cable, const edit::SetTension& change);
   EditResult join(const std::string& first, bool first_at_end, const std::string& second, bool second_at_end);
   /// Adds an obstacle to those of the scene, or replaces one that was added; it follows `frame` from when that is known on. It
   /// stays until it is removed, whatever happens to the scene.

@@ -67,9 +67,14 @@ EditResult Simulation::cut(const Location& place) {
   return cut.result;
 }
 
-EditResult Simulation::set_length(const std::string& cable, bool at_end, double length, double speed) {
+EditResult Simulation::set_length(const std::string& cable, bool at_end, double length, double speed, double max_tension) {
   if (!started_) return refused_before_start();
-  return apply_set_length(world_, cable, at_end, length, speed);
+  return apply_set_length(world_, cable, at_end, length, speed, max_tension);
+}
+
+EditResult Simulation::set_tension(const std::string& cable, const edit::SetTension& change) {
+  if (!started_) return refused_before_start();
+  return apply_set_tension(world_, cable, change);
 }
 
 EditResult Simulation::join(const std::string& first, bool first_at_end, const std::string& second, bool second_at_end) {

@@ -1,0 +1,147 @@
+#include <algorithm>
+#include <cmath>
+
+#include "rod/cable_stepper.h"
+
+namespace verlet_cable {
+
+namespace {
+
+/// A winch may change its mode so often in a substep; then it keeps it.
+constexpr int most_changes = 8;
+/// Of what inertia resists with in the substep: less is no stiffness.
+constexpr double least_stiffness = 1e-6;
+/// Of the segment's length: what is wanted beyond a bound by less is rounding.
+constexpr double rounding = 1e-7;
+
+/// The mode to go on with in an iteration. Tension at one bound says nothing of whether the other is reached.
+WinchMode mode_after(const WinchLaw& law, WinchMode mode, double wanted) {
+  const WinchMode next = mode_of(law, wanted);
+  return mode == WinchMode::keeps || next == mode ? next : WinchMode::keeps;
+}
+
+}  // namespace
+
+void CableStepper::start_winch(const GrowingSegment& growing) {
+  const int i = growing.segment;
+  winch_.segment = i;
+  winch_.law = growing.law;
+  winch_.planned_growth = growing.growth;
+  winch_.planned_rest = target_length_[i];
+  winch_.planned_way = rest_growth_[i];
+  winch_.beyond = growing.law.guess;
+  winch_.mode = WinchMode::keeps;
+  winch_.changes = 0;
+  rest_growth_[i] += winch_.beyond;
+  length_[i] = get(segment_, i).norm();
+}
+
+Resistance<double> CableStepper::strain_resistance(const Substep& s, int i) const {
+  return {axial_stiffness_[i], axial_damping_[i] / s.damping_time()};
+}
+
+/// As planned; what flows through a guide beside it counts.
+WoundLength CableStepper::wound_length(const Substep& s) const {
+  WoundLength wound;
+  wound.rest = winch_.planned_rest;
+  wound.end_rest = wound.rest + (1 - s.part()) * s.h * winch_.planned_growth;
+  wound.start_rest = wound.end_rest - winch_.planned_way;
+  wound.start_length = length_[winch_.segment];
+  return wound;
+}
+
+/// [m/N] By which a force on the segment's nodes may move them in the substep, about.
+double CableStepper::winch_mobility() const {
+  return 1 / std::max(inertia_[winch_.segment], inertia_[winch_.segment + 1]);
+}
+
+/// [N/m]
+double CableStepper::least_winch_stiffness() const {
+  return least_stiffness / winch_mobility();
+}
+
+/// [m] That the rest length is to grow by beyond what is planned where the segment is `end` [m] long at the end.
+double CableStepper::wanted_by_winch(const Substep& s, double end) const {
+  const int i = winch_.segment;
+  if (is_elastic_at(i)) return wanted_growth(strain_resistance(s, i), wound_length(s), winch_.law.tension, end);
+  const double tension = tension_density_[i] * (length_[i] + s.part() * (end - length_[i]));
+  return wanted_growth(winch_.planned_rest, winch_.law.tension, tension, end, winch_mobility());
+}
+
+void CableStepper::wind_beyond(const Substep& s, double wanted) {
+  const int i = winch_.segment;
+  winch_.beyond = growth_in(winch_.law, winch_.mode, wanted);
+  target_length_[i] = winch_.planned_rest + (is_elastic_at(i) ? s.part() : 1) * winch_.beyond;
+  rest_growth_[i] = winch_.planned_way + winch_.beyond;
+}
+
+/// The segment's row is that of a tension that is given, or of a rest length at a bound.
+void CableStepper::evaluate_winch(const Substep& s) {
+  const int i = winch_.segment;
+  if (grows(i)) {
+    winch_.planned_rest = target_length_[i];
+    winch_.planned_way = rest_growth_[i];
+  }
+  const double part = s.part(), end = std::sqrt(end_square_[i]), mean = length_[i] + part * (end - length_[i]);
+  const double wanted = wanted_by_winch(s, end);
+  if (winch_.changes < most_changes) {
+    const WinchMode mode = mode_after(winch_.law, winch_.mode, wanted);
+    if (mode != winch_.mode) ++winch_.changes;
+    winch_.mode = mode;
+  }
+  const bool keeps = winch_.mode == WinchMode::keeps;
+  const double least = least_winch_stiffness();
+  if (is_elastic_at(i)) {
+    wind_beyond(s, wanted);
+    const WoundTension wound =
+        wound_tension(strain_resistance(s, i), wound_length(s), winch_.mode, winch_.beyond, end, part);
+    set_row(i, keeps ? kept_row(wound, tension_density_[i], mean, end, part, least)
+                     : elastic_row(wound.tension, wound.rise, tension_density_[i], mean, end, part));
+    return;
+  }
+  wind_beyond(s, end - winch_.planned_rest);
+  if (keeps)
+    set_row(i, kept_row({winch_.law.tension, 0}, tension_density_[i], mean, end, part, least));
+  else
+    set_row(i, inextensible_row(end_square_[i], target_length_[i], strain_compliance_[i], tension_density_[i]));
+}
+
+/// Whether the corrected iterate calls for the mode that the last one had.
+bool CableStepper::winch_is_consistent(const Substep& s) const {
+  const int i = winch_.segment;
+  if (winch_.changes >= most_changes) return true;
+  const double end = (get(segment_, i) + get(displacement_, i + 1) - get(displacement_, i)).norm();
+  const double wanted = wanted_by_winch(s, end), slack = rounding * target_length_[i];
+  if (winch_.mode == WinchMode::least) return wanted <= winch_.law.least + slack;
+  if (winch_.mode == WinchMode::most) return wanted >= winch_.law.most - slack;
+  return wanted >= winch_.law.least - slack && wanted <= winch_.law.most + slack;
+}
+
+/// Of the solution, whose lengths have been measured.
+void CableStepper::finish_winch(const Substep& s) {
+  const int i = winch_.segment;
+  const double end = std::sqrt(end_square_[i]);
+  wind_beyond(s, is_elastic_at(i) ? wanted_by_winch(s, end) : end - winch_.planned_rest);
+  for (GrowingSegment& growing : s.boundary.growing) {
+    growing.beyond = winch_.beyond;
+    growing.keeps_tension = winch_.mode == WinchMode::keeps;
+    growing.growth += winch_.mode == WinchMode::least  ? winch_.law.least_rate
+                      : winch_.mode == WinchMode::most ? winch_.law.most_rate
+                                                       : winch_.beyond / s.h;
+  }
+}
+
+/// [J] The state's rest length has been planned; with that which the winch found, an elastic segment takes in another energy as it
+/// is strained. The winch brings the difference, as if it had wound to that first.
+double CableStepper::work_of_winch_beyond() const {
+  const int i = winch_.segment;
+  const auto gain = [&](double rest) {
+    const auto energy = [&](double length) {
+      return Resistance<double>{axial_stiffness_[i] * rest, 0}.energy(length / rest - 1);
+    };
+    return energy(std::sqrt(end_square_[i])) - energy(length_[i]);
+  };
+  return gain(winch_.planned_rest) - gain(target_length_[i]);
+}
+
+}  // namespace verlet_cable
