@@ -1,12 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "body/body_progress.h"
 #include "body/group_momenta.h"
 #include "body/mass_properties.h"
 #include "rod/substep.h"
 #include "verlet_cable/core/body.h"
+#include "verlet_cable/core/load.h"
 
 namespace verlet_cable {
 
@@ -39,6 +41,8 @@ class RigidBodyStepper {
   /// `whole`: the body with the nodes of cables that it holds, in the axes of its frame.
   void begin(const SimulatedBody& body, const BodyProgress& progress, const MassProperties& whole, const GravityDesc& gravity,
              const SubstepRules& rules);
+  /// Lets a load act on it, after `begin`. It has to stay where it is.
+  void apply(const Load& load) { applied_.push_back(&load); }
 
   // The present iterate
   Pose pose() const;                                ///< of the body's frame at the end
@@ -63,6 +67,8 @@ class RigidBodyStepper {
 
   /// [J] That its damping takes in the substep.
   double damping_work() const;
+  /// [J] Of what is applied to it, in the substep.
+  double applied_work() const;
 
   /// Velocities at the end.
   void finish(SimulatedBody& body, BodyProgress& progress) const;
@@ -71,6 +77,12 @@ class RigidBodyStepper {
 
  private:
   double damping_rate() const { return rules_.statics ? 0 : 1 / rules_.h; }
+  /// A force [N] and a torque [N m] about the center of mass.
+  struct Wrench {
+    Vector3 force, torque;
+  };
+  Wrench wrench_of(const Load& load) const;
+  Matrix6 stiffness_of(const Load& load) const;
   Vector3 weight() const;
   Vector3 end_momentum() const;
   Vector3 end_velocity() const;
@@ -83,6 +95,7 @@ class RigidBodyStepper {
   Vector3 own_ = Vector3::Zero();  // its center of mass, from that of the whole
   double linear_damping_ = 0, angular_damping_ = 0;
   const GravityDesc* gravity_ = nullptr;
+  std::vector<const Load*> applied_;
   // At the start
   Vector3 center_, velocity_, acceleration_;  // of the whole
   Quaternion orientation_ = Quaternion::Identity();
