@@ -31,6 +31,6 @@ When each begins and ends is in World.events() and Batch.events(world), under th
 
 All units are SI units. Poses are x, y, z, qx, qy, qz, qw in the fixed frame of the scene.
 """
-from verlet_cable._simulation import Batch, Event, Pieces, Pinned, Scene, SceneError, World
+from verlet_cable._simulation import Batch, Event, Load, Pieces, Pinned, Scene, SceneError, World
 
-__all__ = ['Batch', 'Event', 'Pieces', 'Pinned', 'Scene', 'SceneError', 'World']
+__all__ = ['Batch', 'Event', 'Load', 'Pieces', 'Pinned', 'Scene', 'SceneError', 'World']
