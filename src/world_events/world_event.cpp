@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "verlet_cable/core/body_name.h"
+#include "verlet_cable/core/ended_load_text.h"
 #include "verlet_cable/core/excursion_text.h"
 #include "verlet_cable/core/jump_text.h"
 #include "verlet_cable/core/number_text.h"
@@ -73,6 +74,8 @@ const char* name_of(EventType type) {
       return "JUMPED";
     case EventType::energy:
       return "ENERGY";
+    case EventType::load_ended:
+      return "LOAD_ENDED";
   }
   return "";
 }
@@ -88,6 +91,8 @@ std::vector<WorldEvent> events_of_step(const World& world) {
   for (const Excursion& excursion : findings.excursions) events.push_back(event_of(world, excursion));
   for (const int guide : findings.caught) events.push_back(event_of(world, guide, EventType::caught));
   for (const int guide : findings.released) events.push_back(event_of(world, guide, EventType::released));
+  for (const EndedLoad& load : findings.ended_loads)
+    events.push_back({EventType::load_ended, {load.on, load.name, 0, {}}, ended_load_text(load)});
   return events;
 }
 

@@ -24,7 +24,8 @@ enum class EventType : std::uint8_t {
   caught,
   released,
   jumped,
-  energy
+  energy,
+  load_ended = 17
 };
 
 /// "CUT"
@@ -32,8 +33,8 @@ const char* name_of(EventType type);
 
 /// What an event is about; what does not apply stays empty.
 struct EventSubject {
-  std::string cable;  ///< or the net or body
-  std::string attachment;
+  std::string cable;       ///< or the net or body
+  std::string attachment;  ///< or the load
   int node = 0;
   std::string other;  ///< the new cable; the one that went; the frame
 };
@@ -46,7 +47,8 @@ struct WorldEvent {
   std::string message;
 };
 
-/// Cables that broke in the last step, those that came beyond their materials' limits, and what guides took or let go.
+/// Cables that broke in the last step, those that came beyond their materials' limits, what guides took or let go, and loads that
+/// have ended by themselves.
 std::vector<WorldEvent> events_of_step(const World& world);
 
 /// A jump that the last step found to be over.

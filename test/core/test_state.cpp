@@ -87,6 +87,7 @@ World rich_world() {
     world.step(inputs);
   }
   EXPECT_TRUE(world.apply(edit::SetLength{0, true, 1.2, 0.5}).ok);
+  EXPECT_TRUE(world.apply(edit::ApplyLoad{"push", cable_id(1), 2, {}, {0.01, 0, 0}, Vector3::Zero(), false, 1}).ok);
   for (int i = 0; i < 20; ++i) world.step(inputs);
   return world;
 }
@@ -211,7 +212,7 @@ class Fields : public ::testing::Test {};
 using Types = ::testing::Types<MaterialDesc, CableDesc, AttachmentDesc, NetDesc, ParticleDesc, GravityDesc, FluidDesc, CableModel,
                                CableState, KinematicTarget, DirectionTarget, TwistSpan, LengthDrive, CachedContact, CableProgress,
                                JointProgress, BodyProgress, NetModel, NetState, PointState, LinkMemory, NetProgress,
-                               SimulatedParticle, Attachment, Obstacle, Frames, State>;
+                               SimulatedParticle, Attachment, Obstacle, Load, Frames, State>;
 TYPED_TEST_SUITE(Fields, Types);
 
 TYPED_TEST(Fields, AreAllListed) {
@@ -257,6 +258,9 @@ TEST(State, AnEditOfOneCableLeavesTheBytesOfOthers) {
         return w.apply(edit::SetLength{0, true, 1.1, 1});
       },
       [](World& w) { return w.apply(edit::Unpin{"left"}); },
+      [](World& w) {
+        return w.apply(edit::ApplyLoad{"push", cable_id(0), 9, {}, {0, 0, 0.2}});
+      },
       [](World& w) {
         return w.apply(edit::MoveAttachment{"left", Pose{{0.05, 0, 0}, Quaternion::Identity()}});
       }};

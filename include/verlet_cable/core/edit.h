@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -81,16 +82,29 @@ struct RemoveObstacle {
   std::string name;
 };
 
+/// Applies a load from outside, see Load, or replaces the one of that name; without force and torque it ends it.
+struct ApplyLoad {
+  std::string name;  ///< of the load; empty: one is generated
+  BodyId body;       ///< a cable or a rigid body
+  int node = 0;      ///< of a cable
+  /// [m] Of a rigid body: where the force acts, in the axes of the body's frame, from its origin; none: its center of mass
+  std::optional<Vector3> point;
+  Vector3 force = Vector3::Zero();   ///< [N]
+  Vector3 torque = Vector3::Zero();  ///< [N m] of a rigid body
+  bool is_local = false;             ///< in the axes of the rigid body, with which they turn; else in those of the fixed frame
+  double duration = 0;               ///< [s] of which it acts in all steps that begin within it; 0: until it is changed
+};
+
 }  // namespace edit
 
 using Edit = std::variant<edit::Pin, edit::Unpin, edit::MoveAttachment, edit::Cut, edit::SetLength, edit::SetTension, edit::Join,
-                          edit::SetObstacle, edit::RemoveObstacle>;
+                          edit::SetObstacle, edit::RemoveObstacle, edit::ApplyLoad>;
 
 /// Outcome of an edit. If `ok` is false, nothing has changed and `message` says why, with names and values.
 struct EditResult {
   bool ok = false;
   std::string message;
-  std::string name;  ///< of the new pin, or after a cut of the new cable
+  std::string name;  ///< of the new pin or load, or after a cut of the new cable
 };
 
 }  // namespace verlet_cable

@@ -272,6 +272,7 @@ struct SceneDesc {
   double tf_timeout = 0.5;   ///< [s], > 0
   LostFramePolicy on_lost_frame = LostFramePolicy::hold;
   double max_frame_speed = infinity;  ///< [m/s], > 0
+  double apply_timeout = 0.1;         ///< [s], > 0: for so long what a message applies to a body lasts at most
   double jump_speed = 5;              ///< [m/s], > 0: a frame that is faster between two samples, and not for longer, has jumped
   double winch_acceleration = 1;      ///< [m/s^2], > 0: with which winches speed up
   TimeJumpPolicy on_time_jump = TimeJumpPolicy::reset;

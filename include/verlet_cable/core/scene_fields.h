@@ -28,6 +28,8 @@ constexpr Range not_negative_or_infinite{0, 1e12, "0 or more, or .inf", true};
 constexpr Range not_negative{0, 1e12, "0 or more"};
 constexpr Range coordinate{-1e9, 1e9, "finite numbers"};
 constexpr Range unit_interval{0, 1, "numbers"};
+constexpr Range applied_load{-1e9, 1e9, "finite numbers"};
+constexpr Range load_duration{0, 1e9, "0 or more"};
 constexpr double largest_integer = std::numeric_limits<int>::max();
 
 /// A number in a scene: its key, the member that stores it, its unit and range. One table for the reader, `validate` and the
@@ -51,6 +53,7 @@ constexpr std::array<Field<SceneDesc>, 8> scene_fields{{
     {"max_frame_speed", &SceneDesc::max_frame_speed, "m/s", positive_or_infinite},
     {"jump_speed", &SceneDesc::jump_speed, "m/s", positive_or_infinite},
     {"winch_acceleration", &SceneDesc::winch_acceleration, "m/s^2", positive},
+    {"apply_timeout", &SceneDesc::apply_timeout, "s", {1e-3, 1e6, "any number above 0"}},
 }};
 
 constexpr std::array<Field<SceneDesc, int>, 1> scene_integer_fields{{

@@ -15,6 +15,7 @@
 #include "verlet_cable/core/edit.h"
 #include "verlet_cable/core/guide.h"
 #include "verlet_cable/core/ledger.h"
+#include "verlet_cable/core/load.h"
 #include "verlet_cable/core/net.h"
 #include "verlet_cable/core/obstacle.h"
 #include "verlet_cable/core/scene_desc.h"
@@ -202,8 +203,9 @@ struct Findings {
   std::vector<StatusFinding> statuses;
   // In the last step
   std::vector<Break> breaks;
-  std::vector<Excursion> excursions;            ///< that have begun
-  std::vector<int> caught, released;            ///< indices into World::guides() of clips that caught their cable, or let it go
+  std::vector<Excursion> excursions;  ///< that have begun
+  std::vector<int> caught, released;  ///< indices into World::guides() of clips that caught their cable, or let it go
+  std::vector<EndedLoad> ended_loads;
   std::vector<Jump> jumps;                      ///< that have ended, at most one per attachment
   std::vector<Intrusion> intrusions;            ///< at most one per cable and obstacle
   std::vector<UnaccountedEnergy> unaccounted;   ///< beyond what rounding and tolerances explain
@@ -262,6 +264,7 @@ class World {
   const std::vector<Attachment>& attachments() const;  ///< of the started cables, nets and bodies; including guides
   const std::vector<SimulatedGuide>& guides() const;   ///< those of the started cables
   GuideView view_guide(int guide) const;
+  const std::vector<Load>& loads() const;          ///< from outside, that act in the next step
   const std::vector<Obstacle>& obstacles() const;  ///< those of the scene, of the links of its robot, then those that edits added
   const Findings& findings() const;
   /// On an obstacle, a link of a robot (with all that follows its frame), or a body, by name.

@@ -20,7 +20,8 @@ constexpr double least_size = 1e-3;  // [m] of a body
 }  // namespace
 
 void BodySystem::begin(const std::vector<BodyMember>& members, const std::vector<Participant>& participants,
-                       const std::vector<SimulatedBody>& bodies, const Environment& environment, const SubstepRules& rules) {
+                       const std::vector<SimulatedBody>& bodies, const std::vector<Load>& loads, const Environment& environment,
+                       const SubstepRules& rules) {
   rules_ = rules;
   solutions_ = 0;
   member_of_.assign(bodies.size(), -1);
@@ -38,6 +39,8 @@ void BodySystem::begin(const std::vector<BodyMember>& members, const std::vector
     member.size = std::sqrt(member.whole.inertia.trace() / member.whole.mass);
     member.stepper.begin(*members[m].start, *members[m].progress, member.whole, environment, rules);
   }
+  for (const Load& load : loads)
+    if (load.body.is_rigid_body() && member_of_[load.body.index] >= 0) members_[member_of_[load.body.index]].stepper.apply(load);
   contacts_.begin(members_, member_of_, rules.part());
 }
 

@@ -23,7 +23,8 @@ class BodySystem {
  public:
   /// `participants`: cables, of which those that bodies hold have steppers that have begun. Joints are to be set after it.
   void begin(const std::vector<BodyMember>& members, const std::vector<Participant>& participants,
-             const std::vector<SimulatedBody>& bodies, const Environment& environment, const SubstepRules& rules);
+             const std::vector<SimulatedBody>& bodies, const std::vector<Load>& loads, const Environment& environment,
+             const SubstepRules& rules);
   std::vector<BodyJoint>& joints() { return joints_.all(); }
   const std::vector<BodyJoint>& joints() const { return joints_.all(); }
   BodyContacts& contacts() { return contacts_; }
@@ -61,6 +62,7 @@ class BodySystem {
   void restore_momenta(std::vector<Participant>& participants, std::vector<SimulatedBody>& bodies);
   double largest_displacement() const;  ///< [m] over the substep, of a body's center of mass or what turns with its size
   double damping_work(int member) const { return members_[member].stepper.damping_work(); }  ///< [J] over the substep
+  double applied_work(int member) const { return members_[member].stepper.applied_work(); }     ///< [J] likewise
   /// Adds what the fluid does to it over the substep.
   void add_fluid_work(int member, EnergyBalance& balance) const { members_[member].stepper.add_fluid_work(balance); }
   void finish(int member, SimulatedBody& body, BodyProgress& progress) const;

@@ -28,6 +28,7 @@ void RigidBodyStepper::begin(const SimulatedBody& body, const BodyProgress& prog
   linear_damping_ = rules.statics ? 0 : body.linear_damping;
   angular_damping_ = rules.statics ? 0 : body.angular_damping;
   gravity_ = &environment.gravity;
+  applied_.clear();
   orientation_ = body.pose.orientation;
   start_ = orientation_.toRotationMatrix();
   center_ = body.pose.position + start_ * whole.center_of_mass;
@@ -81,6 +82,32 @@ Vector3 RigidBodyStepper::weight() const {
   return mass_ * gravity_->at(center_ + 0.5 * rules_.h * velocity_ + start_ * own_);
 }
 
+/// What turns with the body has the mean of its axes at the start and the end, as arms do: work is then force times way and
+/// torque times turn.
+RigidBodyStepper::Wrench RigidBodyStepper::wrench_of(const Load& load) const {
+  Vector3 force = load.force, torque = load.torque;
+  if (load.is_local) {
+    const double part = rules_.part();
+    force = (1 - part) * (start_ * load.force) + part * (end_ * load.force);
+    torque = (1 - part) * (start_ * load.torque) + part * (end_ * load.torque);
+  }
+  return {force, force_arm(load.point).cross(force) + torque};
+}
+
+/// By what the load gets less as the body turns.
+Matrix6 RigidBodyStepper::stiffness_of(const Load& load) const {
+  const double part = rules_.part();
+  const Vector3 force = wrench_of(load).force;
+  Matrix6 stiffness = Matrix6::Zero();
+  stiffness.bottomRightCorner<3, 3>() = -part * turned_torque(end_arm(load.point), force);
+  if (!load.is_local) return stiffness;
+  const Eigen::Matrix3d turned_force = part * cross_matrix(end_ * load.force);
+  stiffness.topRightCorner<3, 3>() = turned_force;
+  stiffness.bottomRightCorner<3, 3>() +=
+      cross_matrix(force_arm(load.point)) * turned_force + part * cross_matrix(end_ * load.torque);
+  return stiffness;
+}
+
 /// At the end, with the mean spin over the substep, or of which that is the mean.
 Vector3 RigidBodyStepper::end_momentum() const {
   const double inertia = rules_.inertia();
@@ -128,6 +155,11 @@ Vector6 RigidBodyStepper::load() const {
   Vector6 load;
   load << force, arm.cross(force) - angular_damping_ * damping * turn();
   if (fluid_.active()) load += fluid_.load(part, way());
+  for (const Load* applied : applied_) {
+    const Wrench wrench = wrench_of(*applied);
+    load.head<3>() += wrench.force;
+    load.tail<3>() += wrench.torque;
+  }
   return load - momentum_rate();
 }
 
@@ -147,6 +179,7 @@ Matrix6 RigidBodyStepper::stiffness() const {
                                           rules_.part() * turned_torque(end_ * own_, weight());
   }
   if (fluid_.active()) stiffness += fluid_.stiffness(rules_.part(), way());
+  for (const Load* applied : applied_) stiffness += stiffness_of(*applied);
   return stiffness;
 }
 
@@ -210,6 +243,15 @@ double RigidBodyStepper::damping_work() const {
 
 void RigidBodyStepper::add_fluid_work(EnergyBalance& balance) const {
   if (fluid_.active()) fluid_.add_work(rules_.part(), way(), balance);
+}
+
+double RigidBodyStepper::applied_work() const {
+  double work = 0;
+  for (const Load* applied : applied_) {
+    const Wrench wrench = wrench_of(*applied);
+    work += wrench.force.dot(displacement_) + wrench.torque.dot(turn());
+  }
+  return work;
 }
 
 void RigidBodyStepper::expect_momenta(GroupMomenta& group) const {

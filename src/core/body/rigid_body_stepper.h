@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "body/body_algebra.h"
 #include "body/body_fluid_forces.h"
 #include "body/body_progress.h"
@@ -7,6 +9,7 @@
 #include "body/mass_properties.h"
 #include "rod/substep.h"
 #include "verlet_cable/core/body.h"
+#include "verlet_cable/core/load.h"
 
 namespace verlet_cable {
 
@@ -38,6 +41,8 @@ class RigidBodyStepper {
   /// `whole`: the body with the nodes of cables that it holds, in the axes of its frame.
   void begin(const SimulatedBody& body, const BodyProgress& progress, const MassProperties& whole, const Environment& environment,
              const SubstepRules& rules);
+  /// Lets a load act on it, after `begin`. It has to stay where it is.
+  void apply(const Load& load) { applied_.push_back(&load); }
 
   // The present iterate
   Pose pose() const;                                ///< of the body's frame at the end
@@ -66,6 +71,8 @@ class RigidBodyStepper {
 
   /// [J] That its damping takes in the substep.
   double damping_work() const;
+  /// [J] Of what is applied to it, in the substep.
+  double applied_work() const;
   /// Adds what the fluid does in the substep.
   void add_fluid_work(EnergyBalance& balance) const;
 
@@ -76,6 +83,12 @@ class RigidBodyStepper {
 
  private:
   double damping_rate() const { return rules_.statics ? 0 : 1 / rules_.h; }
+  /// A force [N] and a torque [N m] about the center of mass.
+  struct Wrench {
+    Vector3 force, torque;
+  };
+  Wrench wrench_of(const Load& load) const;
+  Matrix6 stiffness_of(const Load& load) const;
   Vector3 weight() const;
   BodyWay way() const { return {start_, end_, displacement_, turn()}; }
   void add_mass(const BodyFluidDesc& fluid);
@@ -100,6 +113,7 @@ class RigidBodyStepper {
   bool has_added_mass_ = false;
   Matrix6 inertia_;
   Vector6 rate_, rate_change_;  // V and W at the start [m/s], [rad/s], and how they change [m/s^2], [rad/s^2]
+  std::vector<const Load*> applied_;
   // At the start
   Vector3 center_, velocity_, acceleration_;  // of the whole
   Quaternion orientation_ = Quaternion::Identity();

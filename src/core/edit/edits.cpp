@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "chain/node_arrays.h"
+#include "edit/numbered_name.h"
 #include "guide/node_passing.h"
 #include "rod/rod_frames.h"
 #include "verlet_cable/core/number_text.h"
@@ -22,15 +23,6 @@ int junction_at(const std::vector<Attachment>& attachments, const BodyId& body, 
   const auto joint = std::find_if(attachments.begin(), attachments.end(),
                                   [&](const Attachment& a) { return a.body == body && a.node == node && a.is_junction; });
   return joint == attachments.end() ? -1 : joint->holder;
-}
-
-/// `base` followed by the lowest number for which `taken` is false; the end of a long base gives way to the number.
-template <typename Taken>
-std::string numbered(const std::string& base, int first, const Taken& taken) {
-  for (int i = first;; ++i) {
-    const std::string number = std::to_string(i), name = base.substr(0, most_name_characters - number.size()) + number;
-    if (!taken(name)) return name;
-  }
 }
 
 /// The nodes `first` to `last` of a cable as a cable of their own.
@@ -76,6 +68,8 @@ bool World::Implementation::is_attachment(const std::string& name) const {
 }
 
 EditResult World::apply(const Edit& edit) {
+  // Moves nothing: the energy stays.
+  if (const auto* load = std::get_if<edit::ApplyLoad>(&edit)) return implementation_->apply(*load);
   const double energy = this->energy().total();
   EditResult result = std::visit([&](const auto& of_kind) { return implementation_->apply(of_kind); }, edit);
   if (result.ok) implementation_->account_for_edit_since(energy);
@@ -89,7 +83,8 @@ std::string out_of_range(const char* what, int index) {
   return std::string(what) + ": " + std::to_string(index) + "; must be the index of a " + what;
 }
 
-/// Why a body has no such node to hold; empty if it has.
+}  // namespace
+
 std::string node_problem(const State& state, const BodyId& body, int node) {
   if (body.is_rigid_body()) {
     if (body.index < 0 || body.index >= static_cast<int>(state.bodies.size())) return out_of_range("body", body.index);
@@ -104,6 +99,8 @@ std::string node_problem(const State& state, const BodyId& body, int node) {
   if (node < 0 || node > last) return "node: " + std::to_string(node) + "; must be from 0 to " + std::to_string(last);
   return "";
 }
+
+namespace {
 
 /// The other node at a joint that is closing, -1 if there is none.
 int joining_node(const std::optional<LengthDrive>& drive, int node) {
@@ -262,6 +259,11 @@ void World::Implementation::follow_cut(int cable, int segment, int new_cable) {
     if (a.body != cable_id(cable) || a.node <= segment) continue;
     a.body = cable_id(new_cable);
     a.node -= segment + 1;
+  }
+  for (Load& load : state.loads) {
+    if (load.body != cable_id(cable) || load.node <= segment) continue;
+    load.body = cable_id(new_cable);
+    load.node -= segment + 1;
   }
   for (Intrusion& intrusion : findings.intrusions) {
     if (intrusion.cable != cable || intrusion.segment < segment) continue;

@@ -206,6 +206,8 @@ void World::Implementation::follow_join(int first, int second) {
   };
   for (Attachment& a : state.attachments)
     if (a.body.is_cable()) follow(a.body.index);
+  for (Load& load : state.loads)
+    if (load.body.is_cable()) follow(load.body.index);
   for (Intrusion& intrusion : findings.intrusions) follow(intrusion.cable);
   for (StatusFinding& found : findings.statuses)
     if (found.body.is_cable()) follow(found.body.index);
@@ -241,6 +243,8 @@ void World::Implementation::reverse_cable(int index) {
     }
     if (a.held_junction < 0) a.pose.orientation = a.pose.orientation * turned;
   }
+  for (Load& load : state.loads)
+    if (load.body == cable_id(index)) load.node = n - load.node;
   for (KinematicTarget& h : state.cable_progress[index].targets.nodes) h.node = n - h.node;
   for (DirectionTarget& h : state.cable_progress[index].targets.directions) {
     h.node = n - h.node;

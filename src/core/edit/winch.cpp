@@ -267,6 +267,7 @@ void World::Implementation::take_in_winch_node(int index) {
   const int node = drive.place == LengthDrive::Place::start ? 1 : cable.state.segments() - 1;
   add_material_motion(drive, 1, cable.state);
   take_on_material(node, cable);
+  end_loads_of(index, node);
   // The step is planned already.
   const double lost = remove_node(node, cable.state);
   drive.debt += lost;

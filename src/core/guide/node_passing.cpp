@@ -13,6 +13,7 @@
 #include "verlet_cable/core/cable_materials.h"
 #include "world/energy.h"
 #include "world/island_stepper.h"
+#include "world/loads.h"
 
 namespace verlet_cable {
 
@@ -73,6 +74,7 @@ void take_in(int index, Attachment& attachment, int side, State& state) {
   SimulatedCable& cable = state.cables[index];
   SimulatedGuide& guide = state.guides[attachment.guide];
   const int node = side_of(attachment, side).neighbour();
+  take_off(index, node, state);
   with_flowing_node(guide, attachment, side, cable.state, [&] {
     guide.lost_length += remove_node(node, cable.state);
     renumber(index, node + 1, -1, state);
@@ -311,6 +313,7 @@ bool pass_nodes(int index, bool moves, State& state) {
             }
           }
           continue_material(attachment, side, state.cables[index].state);
+          put_on(index, side_of(attachment, 1 - side).neighbour(), state);
         });
       }
     }

@@ -11,11 +11,13 @@ bool carries_payload(const SimulatedCable& cable, int node);
 /// Whether an attachment or a guide holds a node; a wheel holds two.
 bool is_attached(const State& state, int cable, int node);
 
-/// Calls follow(node) for the nodes of a cable that attachments and targets hold.
+/// Calls follow(node) for the nodes of a cable that attachments and targets hold, and that loads act on.
 template <class Follow>
 void renumber_held(int cable, const Follow& follow, State& state) {
   for (Attachment& a : state.attachments)
     if (a.body == cable_id(cable)) follow(a.node);
+  for (Load& load : state.loads)
+    if (load.body == cable_id(cable)) follow(load.node);
   for (KinematicTarget& h : state.cable_progress[cable].targets.nodes) follow(h.node);
   for (DirectionTarget& h : state.cable_progress[cable].targets.directions) follow(h.node);
 }
@@ -35,7 +37,8 @@ void keep_flows(int cable, const Boundary& boundary, State& state);
 
 /// Takes nodes that have come near a guide in, and gives them out on the other side: the segments beside a guide stay about as
 /// long as the others. Mass, momentum and tensions stay. Targets and attachments follow. Where the cable `moves` its energy
-/// stays, too: a node is given out where that is as before, and what still differs the guide holds. Whether there were any.
+/// stays, too: a node is given out where that is as before, and what still differs the guide holds. Loads go on with the
+/// material. Whether there were any.
 bool pass_nodes(int cable, bool moves, State& state);
 
 /// What a cable has gained [J] as velocities were mended after nodes have passed, their guides take back, too.

@@ -51,6 +51,7 @@ void CableStepper::balance_laws(const Substep& s, const std::vector<double>& mas
   EnergyBalance& balance = result.balance;
   if (drags_) balance_drag(s, masses, balance);
   if (fluid_.active()) fluid_.add_work(displacement_, s.h, balance);
+  balance.work.applied += work_of_loads(s.boundary);
   if (bending_.is_damped()) balance.dissipated.bending += bending_loss_;
   if (twist_.active()) balance.dissipated.torsional += twist_.damping_work();
   if (rod_.active()) rod_.add_losses(balance);
@@ -76,6 +77,13 @@ void CableStepper::balance_drag(const Substep& s, const std::vector<double>& mas
     balance.dissipated.drag += drag.loss(displacement);
     balance.work.applied += drag.work(displacement);
   }
+}
+
+/// [J] Of forces from outside; nodes that are held pass theirs on.
+double CableStepper::work_of_loads(const Boundary& boundary) const {
+  double work = 0;
+  for (const NodeLoad& load : boundary.loads) work += load.force.dot(get(displacement_, load.node));
+  return work;
 }
 
 /// [J] CableState::taut_energy at the end of the substep.

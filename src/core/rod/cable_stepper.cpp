@@ -196,6 +196,7 @@ void CableStepper::set_loads(const Substep& s, const CableState& state) {
     base_load_.y[i] = mass * g.y() + inertia * velocity_.y[i] + wind.y;
     base_load_.z[i] = mass * g.z() + inertia * velocity_.z[i] + wind.z;
   }
+  for (const NodeLoad& load : s.boundary.loads) set(base_load_, load.node, get(base_load_, load.node) + load.force);
   const std::vector<HeldNode>& held = s.boundary.nodes;
   std::fill_n(system_.compliance.begin(), segments_, 0.0);
   std::fill_n(strain_compliance_.begin(), segments_, 0.0);
@@ -861,8 +862,12 @@ void CableStepper::react(const Substep& s, const std::vector<double>& masses) {
     const int i = target.node;
     const double mass = masses[i];
     target.follow(mass, get(velocity_, i), get(displacement_, i), s.h);
-    const Vector3 load = corrected_load(i) + s.inertia() * mass / s.h * (get(displacement_, i) / s.h - get(velocity_, i));
+    // What is applied to the node goes to its holder as it is.
+    const Vector3 applied = s.boundary.load_on(i);
+    const Vector3 load =
+        corrected_load(i) - applied + s.inertia() * mass / s.h * (get(displacement_, i) / s.h - get(velocity_, i));
     target.force = mean_force(s.scheme, load, target.lasting_force);
+    if (!applied.isZero(0)) target.force += applied;
     if (!s.statics) target.force -= mass * (target.velocity - get(velocity_, i)) / s.h;
     if (!flows_.empty()) target.force += flow_reaction(s, i);
   }

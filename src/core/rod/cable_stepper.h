@@ -184,6 +184,7 @@ class CableStepper {
   // What becomes of energy: rod/cable_balance.cpp
   void balance_laws(const Substep& substep, const std::vector<double>& masses, double given_back, SubstepResult& result) const;
   void balance_drag(const Substep& substep, const std::vector<double>& masses, EnergyBalance& balance) const;
+  double work_of_loads(const Boundary& boundary) const;
   void balance_lengths(const Substep& substep, double given_back, SubstepResult& result) const;
   void balance_mended_growth(const GrowingSegment& growing, double impulse, SubstepResult& result) const;
   double kinetic_energy(const std::vector<double>& masses, const VectorArray& velocity) const;

@@ -21,6 +21,13 @@ bool Boundary::is_on_bodies() const {
   return std::any_of(nodes.begin(), nodes.end(), [](const HeldNode& held) { return held.body >= 0; });
 }
 
+Vector3 Boundary::load_on(int node) const {
+  Vector3 force = Vector3::Zero();
+  for (const NodeLoad& load : loads)
+    if (load.node == node) force += load.force;
+  return force;
+}
+
 void HolderMotion::clear() {
   std::fill(displacements.begin(), displacements.end(), Vector3::Zero());
   std::fill(rotations.begin(), rotations.end(), Vector3::Zero());

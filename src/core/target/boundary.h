@@ -70,17 +70,25 @@ struct GrowingSegment {
   bool keeps_tension = false;  ///< out: whether the law's tension is that of the segment
 };
 
+/// A force on a node from outside.
+struct NodeLoad {
+  int node = 0;
+  Vector3 force = Vector3::Zero();  ///< [N]
+};
+
 /// All that is given of a cable at a substep; held nodes and directions ascend by node.
 struct Boundary {
   std::vector<HeldNode> nodes;
   std::vector<HeldDirection> directions;
   std::vector<GrowingSegment> growing;
   std::vector<GuidedFlow> flows;  ///< ascending likewise
+  std::vector<NodeLoad> loads;
   /// [kg] Of all cables and bodies that are found together with it, where bodies that move freely hold it: what pulls at it may
   /// hang behind these.
   double joined_mass = 0;
 
-  bool is_on_bodies() const;  ///< whether a body that moves freely holds any of it
+  bool is_on_bodies() const;        ///< whether a body that moves freely holds any of it
+  Vector3 load_on(int node) const;  ///< [N] from outside
 };
 
 /// A force on a point of a cable.

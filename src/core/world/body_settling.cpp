@@ -9,6 +9,7 @@
 #include "verlet_cable/core/cable_materials.h"
 #include "world/flush_denormals.h"
 #include "world/island_stepper.h"
+#include "world/loads.h"
 
 namespace verlet_cable {
 
@@ -136,6 +137,7 @@ BodySettling::Outcome BodySettling::advance(double h) {
     work.boundary.joined_mass = joined_mass_;
     workspace_.members.push_back({progress.id, &progress.targets, &contacts_[k]});
     load_flows(index, false, state_, work.boundary);
+    load_nodes(index, state_, work.boundary);
     Substep substep{*cable.model, environment, work.boundary, progress.spans, h, true};
     substep.touches_bodies = true;
     workspace_.participants.push_back({static_cast<int>(k), index, &work.stepper, substep, &cable.state, &work.result});
@@ -148,7 +150,7 @@ BodySettling::Outcome BodySettling::advance(double h) {
     if (state_.body_progress[body].is_placed)
       workspace_.body_members.push_back({body, &state_.bodies[body], &state_.body_progress[body]});
   BodySystem& system = workspace_.body_system;
-  system.begin(workspace_.body_members, workspace_.participants, state_.bodies, environment, {h, true});
+  system.begin(workspace_.body_members, workspace_.participants, state_.bodies, state_.loads, environment, {h, true});
   find_body_joints(island_, state_, 1, workspace_);
 
   Outcome outcome;

@@ -56,6 +56,8 @@ struct World::Implementation {
   void begin_account(double of_nets_before);
   void account_for_edit_since(double energy_before);
   void apply_breaks(StepResult& result);
+  void end_loads();
+  void end_loads_of(int cable, int node);
   void note(const StatusFinding& found, StepResult& result);
   void note_unsettled(std::size_t first);
   void step_nets_and_particles(StepResult& result);
@@ -79,6 +81,7 @@ struct World::Implementation {
   EditResult apply(const edit::Join& join);
   EditResult apply(const edit::SetObstacle& set);
   EditResult apply(const edit::RemoveObstacle& remove);
+  EditResult apply(const edit::ApplyLoad& request);
   EditResult cut_cable(int cable, int segment);
   EditResult cut_link(int net, int link);
   void update_net(int net);
@@ -146,6 +149,9 @@ struct World::Implementation {
 inline EditResult refused(const std::string& message) {
   return {false, message, {}};
 }
+
+/// Why a body has no such node to hold or to load; empty if it has.
+std::string node_problem(const State& state, const BodyId& body, int node);
 
 /// What is wrong with a pose that is not sound, under the name of its field; empty if nothing is.
 std::string pose_problem(const std::string& field, const Pose& pose);

@@ -99,6 +99,15 @@ void check_attachment(const State& state, const Attachment& a, Check& check) {
   if (body.is_rigid_body()) check.require(is_index(body.index, state.bodies.size()), a.name, "holds a body that is there");
 }
 
+void check_load(const State& state, const Load& load, Check& check) {
+  const BodyId& body = load.body;
+  if (body.is_rigid_body())
+    return check.require(is_index(body.index, state.bodies.size()), load.name, "acts on a body that is there");
+  const bool is_there = body.is_cable() && is_index(body.index, state.cables.size());
+  check.require(is_there && is_index(load.node, state.cables[body.index].state.masses.size()), load.name,
+                "acts on a node that is there");
+}
+
 }  // namespace
 
 std::string violation(const State& state) {
@@ -109,6 +118,7 @@ std::string violation(const State& state) {
   if (!check.first().empty()) return check.first();
   for (const SimulatedCable& cable : state.cables) check_arrays(cable, check);
   for (const Attachment& attachment : state.attachments) check_attachment(state, attachment, check);
+  for (const Load& load : state.loads) check_load(state, load, check);
   // These read arrays by what was checked until here.
   for (int i = 0; check.first().empty() && i < static_cast<int>(state.cables.size()); ++i) check_progress(state, i, check);
   for (int b = 0; b < static_cast<int>(state.bodies.size()); ++b)

@@ -87,7 +87,7 @@ void IslandStepper::begin_bodies(const Island& island, double from, double to, S
   members.clear();
   for (const int body : island.bodies)
     if (state_.body_progress[body].is_placed) members.push_back({body, &state_.bodies[body], &state_.body_progress[body]});
-  workspace_.body_system.begin(members, workspace_.participants, state_.bodies, environment_, rules);
+  workspace_.body_system.begin(members, workspace_.participants, state_.bodies, state_.loads, environment_, rules);
   projects_bodies_ = scheme != Scheme::conserving || touches();
   find_body_joints(island, state_, to, workspace_);
   for (BodyJoint& joint : workspace_.body_system.joints())
@@ -333,6 +333,7 @@ void IslandStepper::finish_bodies(const Island& island, double from, double to) 
   }
   for (std::size_t m = 0; m < workspace_.body_members.size(); ++m) {
     substep_.dissipated.bodies += system.damping_work(static_cast<int>(m));
+    substep_.work.applied += system.applied_work(static_cast<int>(m));
     system.add_fluid_work(static_cast<int>(m), substep_);
   }
   workspace_.body_system.restore_momenta(workspace_.participants, state_.bodies);

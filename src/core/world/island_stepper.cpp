@@ -11,6 +11,7 @@
 #include "verlet_cable/core/rotation.h"
 #include "world/balance.h"
 #include "world/energy.h"
+#include "world/loads.h"
 #include "world/straight_columns.h"
 
 namespace verlet_cable {
@@ -300,6 +301,7 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
     CableWorkspace& work = workspace_.cables[k];
     hold_at(from, to, memory.targets, work.boundary);
     load_flows(cable, true, state_, work.boundary);
+    load_nodes(cable, state_, work.boundary);
     if (!island.bodies.empty())
       hold_on_bodies(c.state, state_.attachments, state_.bodies, state_.time(), memory.targets, work.boundary);
     work.boundary.joined_mass = joined_mass_;

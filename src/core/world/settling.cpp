@@ -11,6 +11,7 @@
 #include "verlet_cable/core/cable_materials.h"
 #include "world/flush_denormals.h"
 #include "world/island_stepper.h"
+#include "world/loads.h"
 #include "world/straight_columns.h"
 
 namespace verlet_cable {
@@ -220,6 +221,7 @@ void Settling::hold_still() {
   measure_joint_twists(memory_.targets.directions, cable_.state);
   hold_at(1, 1, memory_.targets, work_.boundary);
   load_flows(index_, false, state_, work_.boundary);
+  load_nodes(index_, state_, work_.boundary);
   bring_to_rest(cable_.state);
   stop_flows(index_, state_);
 }
@@ -378,6 +380,7 @@ void Settling::pass_nodes_of_guides() {
     memory_.contacts.clear();
     hold_at(1, 1, memory_.targets, work_.boundary);
     memory_.spans = find_spans(cable_.state, work_.boundary.directions);
+    load_nodes(index_, state_, work_.boundary);
   }
   load_flows(index_, false, state_, work_.boundary);
 }

@@ -77,6 +77,7 @@ struct State {
   std::vector<Attachment> attachments;
   std::vector<SimulatedGuide> guides;
   std::vector<Obstacle> obstacles;
+  std::vector<Load> loads;
   Ledger ledger;              ///< but for `change`
   double initial_energy = 0;  ///< [J] of World::energy(), where the ledger begins
 

@@ -279,6 +279,10 @@ auto fields(T& x, const SimulatedBody*) {
                   x.angular_damping, x.fluid, x.frame, x.pose, x.velocity, x.angular_velocity);
 }
 template <class T>
+auto fields(T& x, const Load*) {
+  return std::tie(x.name, x.body, x.node, x.point, x.force, x.torque, x.is_local, x.end_step);
+}
+template <class T>
 auto fields(T& x, const Obstacle*) {
   return std::tie(x.name, x.frame, x.pose, x.shape, x.friction, x.padding, x.holders, x.present, x.id);
 }
@@ -316,7 +320,7 @@ template <class T>
 auto fields(T& x, const State*) {
   return std::tie(x.scene, x.waves, x.waiting_cables, x.waiting_nets, x.frames, x.steps, x.cables, x.cable_progress, x.nets,
                   x.net_progress, x.particles, x.particle_integrators, x.bodies, x.body_progress, x.attachments, x.guides,
-                  x.obstacles, x.ledger, x.initial_energy);
+                  x.obstacles, x.loads, x.ledger, x.initial_energy);
 }
 /// @}
 

@@ -63,6 +63,7 @@ void World::Implementation::end_step(StepResult& result) {
   close_ledger();
   find_excursions(findings.contacts, state, squeezes.value, findings.excursions);
   apply_breaks(result);
+  end_loads();
   assert_no_violation(state);
   step_nets_and_particles(result);
   state.frames.steps_unjudged = std::max(state.frames.steps_unjudged - 1, 0);
@@ -92,6 +93,7 @@ void World::Implementation::forget_last_step() {
   findings.excursions.clear();
   findings.caught.clear();
   findings.released.clear();
+  findings.ended_loads.clear();
   findings.jumps.clear();
   findings.intrusions.clear();
   findings.statuses.clear();

@@ -51,6 +51,10 @@ const std::vector<SimulatedParticle>& World::particles() const {
   return implementation_->state.particles;
 }
 
+const std::vector<Load>& World::loads() const {
+  return implementation_->state.loads;
+}
+
 const std::vector<SimulatedBody>& World::bodies() const {
   return implementation_->state.bodies;
 }

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "world/island_stepper.h"
+#include "world/loads.h"
 
 namespace verlet_cable {
 
@@ -9,7 +10,7 @@ bool IslandStepper::wait_for_others(Island& island, IslandOutcome& found, bool& 
   if (island.cables.size() != 1 || !island.bodies.empty()) return false;
   const int cable = island.cables.front();
   CableProgress& memory = state_.cable_progress[cable];
-  if (memory.level > 0 || memory.drive || slides(memory.targets)) return false;
+  if (memory.level > 0 || memory.drive || slides(memory.targets) || is_loaded(cable, state_)) return false;
   const CableState& state = state_.cables[cable].state;
   Boundary unknown;
   const Substep substep = whole_step(cable, unknown);

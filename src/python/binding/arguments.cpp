@@ -1,7 +1,9 @@
 #include "binding/arguments.h"
 
+#include <algorithm>
 #include <cinttypes>
 #include <cstdio>
+#include <utility>
 
 #include "binding/text_arguments.h"
 #include "verlet_cable/core/name_list.h"
@@ -66,6 +68,16 @@ Pose read_pose(const Numbers& position, const Numbers& quaternion_xyzw) {
   return read_pose(position.data(), "position", quaternion_xyzw.data(), "quaternion_xyzw");
 }
 
+Vector3 read_vector(const char* name, const Numbers& numbers) {
+  check_size(name, numbers, 3);
+  return {numbers.at(0), numbers.at(1), numbers.at(2)};
+}
+
+std::optional<Vector3> read_point(const std::optional<Numbers>& point) {
+  if (!point) return std::nullopt;
+  return read_vector("point", *point);
+}
+
 std::int64_t read_count(const char* name, std::int64_t count, std::int64_t least) {
   if (count < least)
     throw py::value_error(std::string(name) + ": " + std::to_string(count) + "; allowed: " + std::to_string(least) + " or above");
@@ -91,6 +103,12 @@ py::array_t<double> array_of(const World& world, Quantity quantity, const std::s
   if (shape.columns > 0) sizes.push_back(shape.columns);
   py::array_t<double> array(sizes);
   copy_quantity(world, quantity, name, array.mutable_data());
+  return read_only(std::move(array));
+}
+
+py::array_t<double> array_of(const Vector3& vector) {
+  py::array_t<double> array(3);
+  std::copy_n(vector.data(), 3, array.mutable_data());
   return read_only(std::move(array));
 }
 

@@ -30,6 +30,11 @@ Pose read_pose(const double* numbers, const std::string& name);
 std::optional<Pose> sound_pose(const double* numbers);
 Pose read_pose(const Numbers& position, const Numbers& quaternion_xyzw);
 
+/// (3,). Throws ValueError where the shape is another.
+Vector3 read_vector(const char* name, const Numbers& numbers);
+/// Likewise, of the argument `point`.
+std::optional<Vector3> read_point(const std::optional<Numbers>& point);
+
 /// A count that is not negative. Throws ValueError.
 std::int64_t read_count(const char* name, std::int64_t count, std::int64_t least);
 
@@ -41,6 +46,8 @@ inline const char* argument_of(Quantity quantity) {
   return quantity == Quantity::wrench ? "attachment" : "name";
 }
 
+/// A new array.
+py::array_t<double> array_of(const Vector3& vector);
 /// A new array, and what it is of.
 py::array_t<double> array_of(const World& world, Quantity quantity, const std::string& name);
 

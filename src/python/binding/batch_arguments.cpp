@@ -56,6 +56,19 @@ std::vector<std::vector<Pose>> read_poses(const Numbers& poses, std::size_t coun
   return read;
 }
 
+std::vector<Vector3> read_vectors(const char* name, const Numbers& numbers, std::size_t count) {
+  const bool is_one = numbers.ndim() == 1 && numbers.shape(0) == 3;
+  if (!is_one && (numbers.ndim() != 2 || numbers.shape(0) != static_cast<py::ssize_t>(count) || numbers.shape(1) != 3))
+    throw py::value_error(std::string(name) + ": shape " + shape_text(numbers) + "; allowed: (" + std::to_string(count) +
+                          ", 3), or (3,) for all");
+  std::vector<Vector3> vectors(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double* v = numbers.data() + (is_one ? 0 : 3 * i);
+    vectors[i] = {v[0], v[1], v[2]};
+  }
+  return vectors;
+}
+
 std::size_t read_world_index(std::int64_t index, std::size_t count) {
   const auto size = static_cast<std::int64_t>(count);
   if (index < -size || index >= size) throw py::index_error("index: " + std::to_string(index) + indices_text(count));

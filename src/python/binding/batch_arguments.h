@@ -15,6 +15,9 @@ std::vector<BendingStiffness> read_values(const std::string& name, const Numbers
 /// Poses of all worlds, (count, 7) or (count, steps, 7). Throws ValueError.
 std::vector<std::vector<Pose>> read_poses(const Numbers& poses, std::size_t count);
 
+/// A vector a world, (count, 3), or one for all, (3,). Throws ValueError.
+std::vector<Vector3> read_vectors(const char* name, const Numbers& numbers, std::size_t count);
+
 /// The index of a world, from the end where it is negative. Throws IndexError.
 std::size_t read_world_index(std::int64_t index, std::size_t count);
 

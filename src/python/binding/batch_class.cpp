@@ -19,6 +19,7 @@
 #include "binding/text_arguments.h"
 #include "binding/world_class.h"
 #include "simulation/batch.h"
+#include "simulation/edits.h"
 
 namespace verlet_cable {
 namespace {
@@ -48,23 +49,27 @@ void check_size(std::int64_t count, int threads) {
 }
 
 std::unique_ptr<PythonBatch> make_of(const std::vector<std::shared_ptr<const SceneDesc>>& scenes, const py::object& motion,
-                                     int threads) {
+                                     const py::object& loads, int threads) {
   const Motion tracks = read_motion(motion, *scenes.front());
+  const LoadPlayer player = read_loads(loads, *scenes.front());
   const py::gil_scoped_release release;
-  return std::make_unique<PythonBatch>(Batch(scenes, tracks, threads));
+  return std::make_unique<PythonBatch>(Batch(scenes, tracks, player, threads));
 }
 
-std::unique_ptr<PythonBatch> make(const PythonScene& scene, std::int64_t count, const py::object& motion, int threads) {
+std::unique_ptr<PythonBatch> make(const PythonScene& scene, std::int64_t count, const py::object& motion, int threads,
+                                  const py::object& loads) {
   check_size(count, threads);
-  return make_of(std::vector<std::shared_ptr<const SceneDesc>>(static_cast<std::size_t>(count), scene.desc), motion, threads);
+  return make_of(std::vector<std::shared_ptr<const SceneDesc>>(static_cast<std::size_t>(count), scene.desc), motion, loads,
+                 threads);
 }
 
-std::unique_ptr<PythonBatch> make_from_list(const std::vector<PythonScene>& scenes, const py::object& motion, int threads) {
+std::unique_ptr<PythonBatch> make_from_list(const std::vector<PythonScene>& scenes, const py::object& motion, int threads,
+                                            const py::object& loads) {
   if (scenes.empty()) throw py::value_error("scenes: none; allowed: at least one");
   check_size(static_cast<std::int64_t>(scenes.size()), threads);
   std::vector<std::shared_ptr<const SceneDesc>> descs;
   for (const PythonScene& scene : scenes) descs.push_back(scene.desc);
-  return make_of(descs, motion, threads);
+  return make_of(descs, motion, loads, threads);
 }
 
 std::unique_ptr<PythonBatch> make_of_world(PythonWorld& world, std::int64_t count, int threads) {
@@ -94,6 +99,48 @@ void set_frames(PythonBatch& batch, const py::str& name, const Numbers& poses) {
   const InUse in_use(batch.busy, "batch");
   const py::gil_scoped_release release;
   batch.batch.set_frame(frame, std::move(all));
+}
+
+/// Calls visit(i) for each; errors name the world, where there are several.
+template <class Visit>
+void for_each_world(const Batch& batch, const Visit& visit) {
+  for (std::size_t i = 0; i < batch.size(); ++i) {
+    const auto named = [&](const char* message) { return "world " + std::to_string(i) + ": " + message; };
+    try {
+      visit(i);
+    } catch (const UnknownName& error) {
+      throw UnknownName(named(error.what()));
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(named(error.what()));
+    }
+  }
+}
+
+void apply_force(PythonBatch& batch, const py::str& cable, std::int64_t node, const Numbers& forces, double duration,
+                 const py::str& name) {
+  const Batch& worlds = use(batch);
+  const std::vector<Vector3> read = read_vectors("forces", forces, worlds.size());
+  const std::string on = text_of(cable, "cable"), load_name = text_of(name, "name");
+  std::vector<edit::ApplyLoad> loads;
+  for_each_world(worlds, [&](std::size_t i) {
+    loads.push_back(checked_force(on, node, {load_name, "", {}, read[i], Vector3::Zero(), duration}, worlds[i].world()));
+  });
+  batch.batch.apply(loads);
+}
+
+void apply_wrench(PythonBatch& batch, const py::str& body, const Numbers& forces, const std::optional<Numbers>& torques,
+                  const std::optional<Numbers>& point, bool local, double duration, const py::str& name) {
+  const Batch& worlds = use(batch);
+  const std::vector<Vector3> read = read_vectors("forces", forces, worlds.size());
+  std::vector<Vector3> turning(worlds.size(), Vector3::Zero());
+  if (torques) turning = read_vectors("torques", *torques, worlds.size());
+  const std::optional<Vector3> where = read_point(point);
+  const std::string on = text_of(body, "body"), load_name = text_of(name, "name");
+  std::vector<edit::ApplyLoad> loads;
+  for_each_world(worlds, [&](std::size_t i) {
+    loads.push_back(checked_wrench(on, local, {load_name, "", where, read[i], turning[i], duration}, worlds[i].world()));
+  });
+  batch.batch.apply(loads);
 }
 
 void set_world(PythonBatch& batch, const py::object& index, PythonWorld& world) {
@@ -172,8 +219,10 @@ void add_batch_class(py::module_& module) {
       "steps.\n\nThe first axis of arrays is that of the worlds. After a step with `record_every`, the second axis is that of "
       "the records, and the arrays are views; otherwise they are new copies. All of them are read-only.")
       .def(py::init(&make), py::arg("scene"), py::arg("count"), py::arg("motion") = py::none(), py::arg("threads") = 0,
-           "`count` worlds of a scene. motion: as for World, the same for all. threads: 0 is one per core.")
+           py::arg("loads") = py::none(),
+           "`count` worlds of a scene. motion, loads: as for World, the same for all. threads: 0 is one per core.")
       .def(py::init(&make_from_list), py::arg("scenes"), py::arg("motion") = py::none(), py::arg("threads") = 0,
+           py::arg("loads") = py::none(),
            "A world for each scene of a list. The scenes may differ only in numbers: their names, numbers of segments and time "
            "steps must be the same.")
       .def(py::init(&make_of_world), py::arg("world"), py::arg("count"), py::arg("threads") = 0,
@@ -199,6 +248,14 @@ void add_batch_class(py::module_& module) {
           "each of the next steps, and the last one from then on. A pose is x, y, z [m], qx, qy, qz, qw in the fixed frame; "
           "quaternions are normalized, their norms must be from 0.5 to 2. As with World.set_frame, a frame that nothing else has "
           "placed is at its first pose from the start on.\n\nRaises KeyError, ValueError.")
+      .def("apply_force", apply_force, py::arg("cable"), py::arg("node"), py::arg("forces"), py::kw_only(),
+           py::arg("duration") = 0.0, py::arg("name") = "",
+           "As World.apply_force in each world. forces: (count, 3), or (3,) for all [N].")
+      .def("apply_wrench", apply_wrench, py::arg("body"), py::arg("forces"), py::arg("torques") = py::none(),
+           py::arg("point") = py::none(), py::arg("local").noconvert() = false, py::kw_only(), py::arg("duration") = 0.0,
+           py::arg("name") = "",
+           "As World.apply_wrench in each world. forces: (count, 3), or (3,) for all [N]; torques likewise [N m], None: zero. If "
+           "any of them cannot be applied, nothing is changed.")
       .def(
           "step", step, py::arg("steps") = 1, py::arg("record_every") = 0,
           py::arg("fields") = std::vector<std::string>{"positions", "velocities", "tension", "wrench", "body_pose", "body_twist"},

@@ -14,6 +14,7 @@
 #include "binding/run_steps.h"
 #include "binding/text_arguments.h"
 #include "simulation/edits.h"
+#include "verlet_cable/core/body_name.h"
 #include "verlet_cable/core/quoted_text.h"
 
 namespace verlet_cable {
@@ -111,6 +112,27 @@ void tune_world(PythonWorld& world, const OptionalNumbers& gravity, const Option
   tune(changes, driven);
 }
 
+void apply(const edit::ApplyLoad& load, PythonWorld& world) {
+  use(world).world().apply(load);
+}
+
+void apply_force(PythonWorld& world, const py::str& cable, std::int64_t node, const Numbers& force, double duration,
+                 const py::str& name) {
+  const RequestedLoad request{text_of(name, "name"), "", {}, read_vector("force", force), Vector3::Zero(), duration};
+  apply(checked_force(text_of(cable, "cable"), node, request, use(world).world()), world);
+}
+
+void apply_wrench(PythonWorld& world, const py::str& body, const Numbers& force, const OptionalNumbers& torque,
+                  const OptionalNumbers& point, bool local, double duration, const py::str& name) {
+  const RequestedLoad request{text_of(name, "name"),
+                              "",
+                              read_point(point),
+                              read_vector("force", force),
+                              torque ? read_vector("torque", *torque) : Vector3(Vector3::Zero()),
+                              duration};
+  apply(checked_wrench(text_of(body, "body"), local, request, use(world).world()), world);
+}
+
 /// A class of named tuples, in the module.
 py::object add_tuple(py::module_& module, const char* name, const std::vector<std::string>& fields, const char* doc) {
   using namespace py::literals;
@@ -168,6 +190,41 @@ void add_cable_edits(py::module_& module, py::class_<PythonWorld>& world) {
       "Raises ValueError, KeyError; then nothing is changed.");
 }
 
+void add_loads(py::module_& module, py::class_<PythonWorld>& world) {
+  world.def("apply_force", apply_force, py::arg("cable"), py::arg("node"), py::arg("force"), py::kw_only(),
+            py::arg("duration") = 0.0, py::arg("name") = "",
+            "Lets a force (3,) [N], in the axes of the fixed frame, act on a node of a cable until it is changed, or for a "
+            "duration [s]. name: of the load, which replaces the one of that name; '': one of its own for each node. A zero "
+            "force ends it. It follows its node when others are cut off, joined or wound; when a winch takes the node in, or its "
+            "time has run out, it ends with the event 'LOAD_ENDED'.\n\nRaises ValueError, KeyError; then nothing is changed.");
+  world.def("apply_wrench", apply_wrench, py::arg("body"), py::arg("force"), py::arg("torque") = py::none(),
+            py::arg("point") = py::none(), py::arg("local").noconvert() = false, py::kw_only(), py::arg("duration") = 0.0,
+            py::arg("name") = "",
+            "Lets a force (3,) [N] and a torque (3,) [N m] act on a body until they are changed, or for a duration [s]. point: "
+            "(3,) [m] where the force acts, from the origin of the body's frame in its axes; None: at its center of mass. local: "
+            "in the axes of the body, with which they turn; otherwise in those of the fixed frame. name: as for apply_force; '': "
+            "the name of the body. Zero force and torque end it.\n\nRaises ValueError, KeyError; then nothing is changed.");
+  const py::object load_type = add_tuple(
+      module, "Load", {"name", "on", "node", "force", "torque", "point", "local", "time_left"},
+      "A load on a cable or body: its name; the name of the cable or body; the node, or -1 for a body; force (3,) [N] "
+      "and torque (3,) [N m]; for a body the point (3,) [m] where the force acts, and whether it is in the body's axes; "
+      "and for how long [s] it still acts, inf: until it is changed.");
+  world.def(
+      "loads",
+      [load_type](PythonWorld& self) {
+        const World& simulated = use(self).world();
+        py::list list;
+        for (const Load& load : simulated.loads()) {
+          const double left =
+              load.end_step == 0 ? infinity : static_cast<double>(load.end_step - simulated.steps()) * simulated.time_step();
+          list.append(load_type(load.name, name_of(simulated, load.body), load.body.is_cable() ? load.node : -1,
+                                array_of(load.force), array_of(load.torque), array_of(load.point), load.is_local, left));
+        }
+        return list;
+      },
+      "List of the loads that act in the next step, as Load(name, on, node, force, torque, point, local, time_left).");
+}
+
 }  // namespace
 
 py::list take_events(EventRecord& record, const py::object& event_type) {
@@ -182,6 +239,7 @@ py::list take_events(EventRecord& record, const py::object& event_type) {
 
 void add_edit_methods(py::module_& module, py::class_<PythonWorld>& world) {
   add_cable_edits(module, world);
+  add_loads(module, world);
   world.def(
       "unpin", [](PythonWorld& self, const py::str& name) { unpin(text_of(name, "name"), use(self), self.events); },
       py::arg("name"), "Removes an attachment of the scene or a pin. Raises KeyError, ValueError; then nothing is changed.");
@@ -250,7 +308,8 @@ void add_edit_methods(py::module_& module, py::class_<PythonWorld>& world) {
       },
       "List of Event(time, type, cable, attachment, node, other, message) since the last call, in the order of their times, with "
       "the types of cable_sim. At once: 'CUT', 'BROKE', 'PINNED', 'UNPINNED', 'JOINED', 'LIMIT', 'CAUGHT', 'RELEASED', 'JUMPED' "
-      "(at most once a second for each frame) and 'not_fitted' (the initial shape). When they begin, and with '_end' when they "
+      "(at most once a second for each frame), 'LOAD_ENDED' (attachment: the load) and 'not_fitted' (the initial shape). When "
+      "they begin, and with '_end' when they "
       "were not there for 0.1 s: 'overstretched', 'inside_obstacle' (other: the obstacle), 'not_settled', 'degraded', 'FAULT', "
       "'frame_too_fast' and 'frame_out_of_range' (other: the frame); the time of an end is that of the last step they were "
       "there. After the first 1000, one event of type 'more' states how many were left out. A copy of a world has the events "

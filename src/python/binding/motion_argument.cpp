@@ -52,12 +52,14 @@ Motion read_tracks(const py::dict& tracks, const SceneDesc& scene) {
   throw py::key_error("motion: " + quoted(unused.front()) + "; allowed: " + allowed.text("none, the scene has no frames"));
 }
 
-Motion read_file(const std::string& path) {
+/// What `read` makes of a file; errors name it.
+template <class Read>
+auto read_file(const char* argument, const std::string& path, const Read& read) {
   try {
-    return read_motion_file(path);
+    return read(path);
   } catch (const SceneError& error) {
     std::vector<std::string> lines = error.errors();
-    for (std::string& line : lines) line = "motion: \"" + escaped(path, path.size()) + "\": " + line;
+    for (std::string& line : lines) line = argument + (": \"" + escaped(path, path.size())) + "\": " + line;
     throw SceneError(lines);
   }
 }
@@ -67,7 +69,7 @@ Motion read_file(const std::string& path) {
 Motion read_motion(const py::object& given, const SceneDesc& scene) {
   if (given.is_none()) return {};
   const bool tracks = py::isinstance<py::dict>(given);
-  const Motion motion = tracks ? read_tracks(given, scene) : read_file(path_of(given, "motion"));
+  const Motion motion = tracks ? read_tracks(given, scene) : read_file("motion", path_of(given, "motion"), read_motion_file);
   std::vector<std::string> errors;
   if (motion.count(scene.frame_id) > 0)
     errors.push_back("motion: frame " + quoted(scene.frame_id) + " moves; allowed: any but the fixed frame");
@@ -75,6 +77,16 @@ Motion read_motion(const py::object& given, const SceneDesc& scene) {
     errors.push_back("motion at t = 0: " + line);
   if (!errors.empty()) throw SceneError(errors);
   return motion;
+}
+
+LoadPlayer read_loads(const py::object& given, const SceneDesc& scene) {
+  if (given.is_none()) return {};
+  return LoadPlayer(read_file("loads", path_of(given, "loads"), [&](const std::string& path) {
+    Loads loads = read_loads_file(path);
+    const std::vector<std::string> errors = validate_loads(loads, scene);
+    if (!errors.empty()) throw SceneError(errors);
+    return loads;
+  }));
 }
 
 }  // namespace verlet_cable

@@ -27,10 +27,11 @@ const World& use(const PythonWorld& world) {
   return world.driven.world();
 }
 
-std::unique_ptr<PythonWorld> make(const PythonScene& scene, const py::object& motion) {
+std::unique_ptr<PythonWorld> make(const PythonScene& scene, const py::object& motion, const py::object& loads) {
   const Motion tracks = read_motion(motion, *scene.desc);
+  const LoadPlayer player = read_loads(loads, *scene.desc);
   const py::gil_scoped_release release;
-  auto world = std::make_unique<PythonWorld>(DrivenWorld(scene.desc, tracks));
+  auto world = std::make_unique<PythonWorld>(DrivenWorld(scene.desc, tracks, player));
   world->events.observe_start(world->driven.world());
   return world;
 }
@@ -57,7 +58,7 @@ const char* step(PythonWorld& world, std::int64_t steps) {
     for (std::int64_t i = 0; i < some; ++i) {
       const StepResult result = world.driven.step();
       worst = std::max(worst, result.status);
-      world.events.observe(world.driven.world(), result, world.driven.held_back());
+      world.events.observe(world.driven.world(), result, world.driven.held_back(), world.driven.refused_loads());
     }
   });
   return name_of(worst);
@@ -135,10 +136,11 @@ void add_world_class(py::module_& module) {
                                 "does not name are at rest. Every returned array is a new copy, and read-only. Only one thread "
                                 "at a time may use a world; other threads run while it steps.");
   world
-      .def(py::init(&make), py::arg("scene"), py::arg("motion") = py::none(),
+      .def(py::init(&make), py::arg("scene"), py::arg("motion") = py::none(), py::arg("loads") = py::none(),
            "motion: the path of a CSV file as for cable_sim --motion, or {frame: (times (k,) [s], poses (k, 7))}; poses are x, "
            "y, z [m], qx, qy, qz, qw in the fixed frame. Quaternions are normalized; their norm must be from 0.5 to 2, or in a "
-           "file just not 0.\n\nRaises SceneError, ValueError, KeyError.")
+           "file just not 0.\n\nloads: the path of a CSV file as for cable_sim --loads.\n\nRaises SceneError, ValueError, "
+           "KeyError.")
       .def("set_frame", set_frame, py::arg("name"), py::arg("position"), py::arg("quaternion_xyzw"),
            "Sets the pose of a frame at the end of the next step and after it: position (3,) [m] and quaternion (4,) in the "
            "fixed frame; the quaternion is normalized, its norm must be from 0.5 to 2. The frame then no longer follows a "

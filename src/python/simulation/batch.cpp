@@ -65,14 +65,15 @@ class Batch::Threads {
   tbb::enumerable_thread_specific<Buffers> buffers_;
 };
 
-Batch::Batch(const std::vector<std::shared_ptr<const SceneDesc>>& scenes, const Motion& motion, int threads)
+Batch::Batch(const std::vector<std::shared_ptr<const SceneDesc>>& scenes, const Motion& motion, const LoadPlayer& loads,
+             int threads)
     : threads_(std::make_shared<Threads>(threads)), status_(scenes.size(), StepResult::Status::ok) {
   for (std::size_t i = 1; i < scenes.size(); ++i) check_alike(*scenes.front(), *scenes[i], "scenes[" + std::to_string(i) + "]");
   std::map<const SceneDesc*, std::size_t> known;  // looked up only: its order does not matter
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     const auto [same, is_new] = known.emplace(scenes[i].get(), i);
     if (is_new) {
-      worlds_.emplace_back(scenes[i], motion);
+      worlds_.emplace_back(scenes[i], motion, loads);
       if (i == 0) {
         check_size(worlds_.front().world(), scenes.size());
         worlds_.reserve(scenes.size());
@@ -153,6 +154,10 @@ void Batch::set_frame(const std::string& name, std::vector<std::vector<Pose>> po
   replace(std::move(changed), begun);
 }
 
+void Batch::apply(const std::vector<edit::ApplyLoad>& loads) {
+  for (std::size_t i = 0; i < worlds_.size(); ++i) worlds_[i].world().apply(loads[i]);
+}
+
 void Batch::require_placed_frames() const {
   for (std::size_t i = 0; i < worlds_.size(); ++i)
     if (worlds_[i].has_unplaced_frames()) worlds_[i].require_placed_frames("world " + std::to_string(i) + ": ");
@@ -201,7 +206,7 @@ void Batch::advance(std::size_t first, std::size_t last, std::int64_t steps) {
     for (std::size_t i = first; i < last; ++i) {
       const StepResult& result = buffers.steps[i - first].result;
       status_[i] = std::max(status_[i], result.status);
-      events_[i].observe(worlds_[i].world(), result, worlds_[i].held_back());
+      events_[i].observe(worlds_[i].world(), result, worlds_[i].held_back(), worlds_[i].refused_loads());
     }
     if (record_every_ == 0 || done % record_every_ != 0) continue;
     for (std::size_t i = first; i < last; ++i)

@@ -34,7 +34,7 @@ class Batch {
  public:
   /// A world a scene; `threads`: how many step them, 0: as many as there are cores. Throws SceneError where a scene is wrong, or
   /// differs from the first in more than numbers.
-  Batch(const std::vector<std::shared_ptr<const SceneDesc>>& scenes, const Motion& motion, int threads);
+  Batch(const std::vector<std::shared_ptr<const SceneDesc>>& scenes, const Motion& motion, const LoadPlayer& loads, int threads);
   /// So many copies of a world as it is.
   Batch(const DrivenWorld& world, std::size_t count, int threads);
 
@@ -53,6 +53,9 @@ class Batch {
 
   /// See DrivenWorld::set_frame; for each world. Throws UnknownName, and SceneError; then nothing is changed.
   void set_frame(const std::string& name, std::vector<std::vector<Pose>> poses);
+
+  /// One a world, which were checked.
+  void apply(const std::vector<edit::ApplyLoad>& loads);
 
   /// Writes the parts of world after world, side by side, or returns the first that does not have them all.
   std::optional<OddWorld> copy(const std::vector<Part>& parts, double* to) const;

@@ -13,24 +13,28 @@
 namespace verlet_cable {
 namespace {
 
-World begin(const SceneDesc& scene, BoundaryInputs start) {
+World begin(const SceneDesc& scene, BoundaryInputs start, LoadPlayer& loads) {
   limit_frame_velocities(scene.max_frame_speed, start);
-  return World(scene, start);
+  World world(scene, start);
+  loads.apply_due(world);
+  return world;
 }
 
 }  // namespace
 
-DrivenWorld::DrivenWorld(std::shared_ptr<const SceneDesc> scene, std::shared_ptr<const FrameSource> frames)
+DrivenWorld::DrivenWorld(std::shared_ptr<const SceneDesc> scene, std::shared_ptr<const FrameSource> frames, LoadPlayer loads)
     : scene_(std::move(scene)),
       scene_at_first_(scene_),
       frames_(std::move(frames)),
       inputs_(frames_->at(0)),
       targets_(inputs_),
-      world_(begin(*scene_, inputs_)),
+      all_loads_(std::move(loads)),
+      loads_(all_loads_),
+      world_(begin(*scene_, inputs_, loads_)),
       hash_of_start_(world_.hash()) {}
 
-DrivenWorld::DrivenWorld(std::shared_ptr<const SceneDesc> scene, const Motion& motion)
-    : DrivenWorld(scene, std::make_shared<FrameSource>(*scene, motion)) {
+DrivenWorld::DrivenWorld(std::shared_ptr<const SceneDesc> scene, const Motion& motion, LoadPlayer loads)
+    : DrivenWorld(scene, std::make_shared<FrameSource>(*scene, motion), std::move(loads)) {
   unplaced_ = unplaced_holders(*scene, motion);
 }
 
@@ -125,7 +129,7 @@ bool DrivenWorld::place(std::ptrdiff_t unplaced, int frame, const Pose& pose) {
   if (unplaced_.size() == 1 && is_as_it_began()) {
     const std::vector<std::string> errors = validate_distances(*scene_, frames->at(0));
     if (!errors.empty()) throw SceneError(errors);
-    DrivenWorld anew(scene_, frames);
+    DrivenWorld anew(scene_, frames, all_loads_);
     anew.given_ = given_;
     *this = std::move(anew);
     return true;
@@ -136,7 +140,7 @@ bool DrivenWorld::place(std::ptrdiff_t unplaced, int frame, const Pose& pose) {
 }
 
 void DrivenWorld::begin_anew(std::shared_ptr<const SceneDesc> scene) {
-  DrivenWorld anew(std::move(scene), frames_);
+  DrivenWorld anew(std::move(scene), frames_, all_loads_);
   anew.given_ = std::move(given_);
   anew.unplaced_ = std::move(unplaced_);
   *this = std::move(anew);
@@ -148,6 +152,7 @@ void DrivenWorld::tune(std::shared_ptr<const SceneDesc> scene) {
 }
 
 const BoundaryInputs& DrivenWorld::next_inputs() {
+  refused_loads_ = loads_.apply_due(world_);
   const double time = static_cast<double>(world_.steps() + 1) * scene_->time_step;
   if (frames_->has_links() && !given_.empty()) {
     PosesById poses;

@@ -9,16 +9,17 @@
 
 #include "scene/frame_source.h"
 #include "verlet_cable/core/world.h"
+#include "verlet_cable/scene/loads.h"
 #include "verlet_cable/scene/motion.h"
 
 namespace verlet_cable {
 
-/// A world and what moves its frames, as cable_sim has it: a motion; and poses that are given in between, which go before it from
-/// then on. A value, as the world is.
+/// A world, what moves its frames, and what acts on it, as cable_sim has them: a motion; poses that are given in between, which
+/// go before it from then on; and loads. A value, as the world is.
 class DrivenWorld {
  public:
   /// Throws SceneError.
-  DrivenWorld(std::shared_ptr<const SceneDesc> scene, const Motion& motion);
+  DrivenWorld(std::shared_ptr<const SceneDesc> scene, const Motion& motion, LoadPlayer loads = {});
 
   const World& world() const { return world_; }
   World& world() { return world_; }
@@ -52,14 +53,17 @@ class DrivenWorld {
   /// See World::tune.
   void tune(std::shared_ptr<const SceneDesc> scene);
 
-  /// The frames at the end of the next step, of which there is one for each call. Valid until the next call.
+  /// The frames at the end of the next step, of which there is one for each call; loads that begin with it are applied. Valid
+  /// until the next call.
   const BoundaryInputs& next_inputs();
   StepResult step() { return world_.step(next_inputs()); }
   /// Ids of the frames that moved faster than the scene's `max_frame_speed` to the last of these.
   const std::vector<int>& held_back() const { return held_back_; }
+  /// Loads whose time came with it, and that cannot be applied.
+  const std::vector<RefusedLoad>& refused_loads() const { return refused_loads_; }
 
  private:
-  DrivenWorld(std::shared_ptr<const SceneDesc> scene, std::shared_ptr<const FrameSource> frames);
+  DrivenWorld(std::shared_ptr<const SceneDesc> scene, std::shared_ptr<const FrameSource> frames, LoadPlayer loads);
   bool place(std::ptrdiff_t unplaced, int frame, const Pose& pose);
 
   std::shared_ptr<const FrameSource> frames_with(const std::string& name, std::size_t id, const Pose& resting) const;
@@ -74,12 +78,14 @@ class DrivenWorld {
 
   std::shared_ptr<const SceneDesc> scene_, scene_at_first_;
   std::shared_ptr<const FrameSource> frames_;
-  BoundaryInputs inputs_;   ///< of the last step, at first those of the start
-  BoundaryInputs targets_;  ///< where the motion has the frames
+  BoundaryInputs inputs_;         ///< of the last step, at first those of the start
+  BoundaryInputs targets_;        ///< where the motion has the frames
+  LoadPlayer all_loads_, loads_;  ///< from the start on, and those that are still to come
   World world_;
   std::uint64_t hash_of_start_;
   std::vector<std::string> unplaced_;  ///< frames that hold something, at the origin until they are given a pose
   std::vector<int> held_back_;
+  std::vector<RefusedLoad> refused_loads_;
   std::vector<GivenPoses> given_;
 };
 

@@ -41,6 +41,18 @@ bool names_nothing(const RequestedPlace& place, const DrivenWorld& driven, bool 
          !(bodies && find(world.bodies(), place.cable) >= 0);
 }
 
+const LoadWords& python_load_words() {
+  static const LoadWords words{"cable", "force", "torque", "local"};
+  return words;
+}
+
+edit::ApplyLoad checked(RequestedLoad request, const Location& place, const World& world) {
+  request.words = &python_load_words();
+  CheckedLoad checked = check_load(request, place, world, [](const std::string&) { return std::optional<Pose>(); });
+  require_none(checked.errors, !place.errors.empty() && place.body.index < 0);
+  return std::move(checked.load);
+}
+
 bool is_attached(const World& world, const std::string& name) {
   return find(world.attachments(), name) >= 0;
 }
@@ -113,6 +125,36 @@ void set_tension(const std::string& cable, const edit::SetTension& change, Drive
 void move_attachment(const std::string& name, const Pose& offset, DrivenWorld& world) {
   const bool unknown = !is_attached(world.world(), name);
   require(apply_move(world.world(), name, offset), unknown);
+}
+
+edit::ApplyLoad checked_force(const std::string& cable, std::int64_t node, RequestedLoad request, const World& world) {
+  Location place;
+  place.body = cable_id(find(world.cables(), cable));
+  if (place.body.index < 0) {
+    NameList names;
+    for (const SimulatedCable& other : world.cables()) names.add(other.model->name);
+    place.errors.push_back("cable: " + quoted(cable) + "; allowed: " + names.text("none, there are no cables"));
+    return checked(std::move(request), place, world);
+  }
+  const std::int64_t segments = world.cables()[place.body.index].state.segments();
+  if (node < 0 || node > segments)
+    place.errors.push_back("node: " + std::to_string(node) + "; allowed: 0 to " + std::to_string(segments));
+  else
+    place.node = static_cast<int>(node);
+  return checked(std::move(request), place, world);
+}
+
+edit::ApplyLoad checked_wrench(const std::string& body, bool turns, RequestedLoad request, const World& world) {
+  Location place;
+  place.body = rigid_body_id(find(world.bodies(), body));
+  if (place.body.index < 0) {
+    NameList names;
+    for (const SimulatedBody& other : world.bodies())
+      if (!other.is_junction) names.add(other.name);
+    place.errors.push_back("body: " + quoted(body) + "; allowed: " + names.text("none, there are no bodies"));
+  }
+  if (turns) request.frame_id = body;
+  return checked(std::move(request), place, world);
 }
 
 void set_obstacle(const ObstacleDesc& desc, DrivenWorld& world) {

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "edit_requests/checked_load.h"
 #include "edit_requests/checked_pin.h"
 #include "edit_requests/tunable_numbers.h"
 #include "simulation/driven_world.h"
@@ -37,6 +39,11 @@ std::string join(const std::string& first, bool first_at_end, const std::string&
 void set_length(const std::string& cable, bool at_end, double length, double speed, double max_tension, DrivenWorld& world);
 void set_tension(const std::string& cable, const edit::SetTension& change, DrivenWorld& world);
 void move_attachment(const std::string& name, const Pose& offset, DrivenWorld& world);
+
+/// A load on a node of a cable, or on a body: what `request` says, in the fixed frame's axes, or where it `turns` in the body's
+/// own. It is still to be applied.
+edit::ApplyLoad checked_force(const std::string& cable, std::int64_t node, RequestedLoad request, const World& world);
+edit::ApplyLoad checked_wrench(const std::string& body, bool turns, RequestedLoad request, const World& world);
 
 /// Adds an obstacle, or replaces the one of its name. A frame that is new is where the obstacle says, else as for `pin`.
 void set_obstacle(const ObstacleDesc& desc, DrivenWorld& world);

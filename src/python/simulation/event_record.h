@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "verlet_cable/core/world.h"
+#include "verlet_cable/scene/loads.h"
 #include "world_events/status_log.h"
 #include "world_events/world_event.h"
 
@@ -30,12 +31,15 @@ class EventRecord {
   void add(double time, const WorldEvent& event);
   /// What could not start as the scene says, or, later, found no equilibrium to settle in.
   void observe_start(const World& world);
-  /// After each step. `held_back`: see StatusLog.
-  void observe(const World& world, const StepResult& result, const std::vector<int>& held_back) {
+  /// After each step. `held_back`: see StatusLog; `refused_loads`: before it.
+  void observe(const World& world, const StepResult& result, const std::vector<int>& held_back,
+               const std::vector<RefusedLoad>& refused_loads) {
+    for (const RefusedLoad& load : refused_loads)
+      add(world.time(), {EventType::load_ended, {load.on, load.name, 0, {}}, load.message});
     statuses_.observe(world, result, held_back);
     const Findings& findings = world.findings();
     if (!statuses_.is_empty() || !findings.jumps.empty() || !findings.breaks.empty() || !findings.excursions.empty() ||
-        !findings.caught.empty() || !findings.released.empty())
+        !findings.caught.empty() || !findings.released.empty() || !findings.ended_loads.empty())
       add_all(world);
   }
 

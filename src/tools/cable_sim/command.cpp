@@ -127,6 +127,8 @@ int simulate_job(const Options& options, const Job& job, const Painter* painter)
                         tools::is_standard_output(options.summary);
   tools::ProgressBar progress(options.duration, nullptr, has_data);
   EventLog events(progress);
+  LoadPlayer loads(job.loads);
+  loads.apply_due(world);
   if (job.settle) world.settle();
   const tools::StopRequest stop;
   events.add_starts(world);
@@ -136,7 +138,7 @@ int simulate_job(const Options& options, const Job& job, const Painter* painter)
   if (painter) pictures.emplace(world, title_of(options.scene), job.steps);
   // A summary tells of a disk that rows have filled.
   if (!options.summary.empty()) outputs.summary.reserve(2 * summary.json(world, {}).size() + room_for_events);
-  const RunEnd end = simulate(job, frames, world,
+  const RunEnd end = simulate(job, frames, loads, world,
                               {options.output.empty() ? nullptr : &nodes, options.bodies.empty() ? nullptr : &bodies,
                                pictures ? &*pictures : nullptr, summary, events, progress, stop});
   progress.clear();

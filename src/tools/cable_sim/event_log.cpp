@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "verlet_cable/core/body_name.h"
+#include "verlet_cable/core/ended_load_text.h"
 #include "verlet_cable/core/excursion_text.h"
 #include "verlet_cable/core/jump_text.h"
 #include "verlet_cable/core/number_text.h"
@@ -25,6 +26,16 @@ void EventLog::observe(const World& world, const StepResult& result, const std::
   add_excursions(world);
   add_jumps(world);
   add_guides(world);
+  add_ended_loads(world);
+}
+
+void EventLog::add_refused_loads(const World& world, const std::vector<RefusedLoad>& refused) {
+  for (const RefusedLoad& load : refused) add({world.time(), "LOAD_ENDED", load.on, -1, "", load.message, load.name});
+}
+
+void EventLog::add_ended_loads(const World& world) {
+  for (const EndedLoad& load : world.findings().ended_loads)
+    add({world.time(), "LOAD_ENDED", load.on, -1, "", ended_load_text(load), load.name});
 }
 
 void EventLog::add_starts(const World& world) {

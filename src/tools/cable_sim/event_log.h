@@ -6,6 +6,7 @@
 
 #include "common/progress_bar.h"
 #include "verlet_cable/core/world.h"
+#include "verlet_cable/scene/loads.h"
 #include "world_events/status_log.h"
 
 namespace verlet_cable::cable_sim {
@@ -18,7 +19,7 @@ struct Event {
   int node = -1;      ///< -1: none in particular
   std::string frame;  ///< empty: none in particular
   std::string message;
-  std::string other;  ///< BROKE: the new cable; inside_obstacle: the obstacle
+  std::string other;  ///< BROKE: the new cable; inside_obstacle: the obstacle; LOAD_ENDED: the load
 };
 
 /// What each step reports, as events; of what lasts, one when it begins and one when it has ended, see StatusLog. Keeps the first
@@ -29,6 +30,8 @@ class EventLog {
 
   /// After each step. `held_back`: ids of the frames that moved faster than `max_frame_speed`.
   void observe(const World& world, const StepResult& result, const std::vector<int>& held_back);
+  /// Before a step.
+  void add_refused_loads(const World& world, const std::vector<RefusedLoad>& refused);
 
   /// Jumps that the last step found to be over.
   void add_jumps(const World& world);
@@ -44,6 +47,7 @@ class EventLog {
   void add_breaks(const World& world);
   void add_excursions(const World& world);
   void add_statuses();
+  void add_ended_loads(const World& world);
   void add(const Event& event);
 
   tools::ProgressBar& progress_;

@@ -33,7 +33,7 @@ void check_outputs(const Options& options, const std::vector<std::string>& scene
     const char* what;
     const std::string& path;
   };
-  std::vector<Other> others{{"the scene", options.scene}, {"the motion", options.motion}};
+  std::vector<Other> others{{"the scene", options.scene}, {"the motion", options.motion}, {"the loads", options.loads}};
   for (const std::string& file : scene_files) others.push_back({"a file of the scene", file});
   others.push_back({"the output", options.output});
   others.push_back({"the output of bodies", options.bodies});
@@ -117,10 +117,20 @@ Job prepare(const Options& options, std::vector<std::string>& errors) {
       motion_is_sound = false;
     }
   }
+  bool loads_are_sound = true;
+  if (!options.loads.empty()) {
+    try {
+      job.loads = read_loads_file(options.loads);
+    } catch (const SceneError& error) {
+      append(tools::path_text(options.loads), error.errors(), errors);
+      loads_are_sound = false;
+    }
+  }
   check_outputs(options, named_files(job.scene, access_beside(options.scene)), errors);
   if (scene_is_sound) {
     check_times(options, job.scene.time_step, errors);
     if (motion_is_sound) check_motion(options, job.scene, job.motion, errors);
+    if (loads_are_sound) append(tools::path_text(options.loads), validate_loads(job.loads, job.scene), errors);
   }
   if (errors.size() > errors_before) return job;
   job.steps = steps_for(options.duration, job.scene.time_step);

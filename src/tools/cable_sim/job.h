@@ -6,6 +6,7 @@
 
 #include "options.h"
 #include "verlet_cable/core/scene_desc.h"
+#include "verlet_cable/scene/loads.h"
 #include "verlet_cable/scene/motion.h"
 
 namespace verlet_cable::cable_sim {
@@ -28,6 +29,7 @@ std::int64_t steps_for(double duration, double time_step);
 struct Job {
   SceneDesc scene;
   Motion motion;
+  Loads loads;
   bool settle = false;  ///< into equilibrium before t = 0
   std::int64_t steps = 0;
   double rate = 0;        ///< [Hz] of rows

@@ -16,7 +16,7 @@ constexpr const char* usage =
 constexpr const char* footer =
     "Files appear under their names when they are complete; devices are written directly. A signal ends the run\n"
     "between two steps and keeps what was simulated until then; a second signal ends it at once.\n"
-    "exit status: 0 done, 2 a bad scene, motion or option, 3 it had to stop: a fault, a full disk, a signal";
+    "exit status: 0 done, 2 a bad scene, motion, loads or option, 3 it had to stop: a fault, a full disk, a signal";
 
 /// Other names would say that something else is in the file.
 void require_ending(const char* option, const std::string& path, const std::string& ending, std::vector<std::string>& errors) {
@@ -32,6 +32,7 @@ Options parse_options(const std::vector<std::string>& arguments, std::vector<std
   tools::CommandLine line(usage, footer);
   line.add_number("--duration", "S", "time to simulate [s], default 10", options.duration, duration_range, "s");
   line.add_text("--motion", "CSV", "poses of frames over time: t,frame,x,y,z,qx,qy,qz,qw", options.motion, file);
+  line.add_text("--loads", "CSV", "forces and torques over time: t,name,on,node,fx,fy,fz,tx,ty,tz", options.loads, file);
   line.add_text("--output", "CSV", "the nodes over time: t,cable,node,x,y,z,vx,vy,vz,tension", options.output, file);
   line.add_text("--bodies", "CSV", "the bodies over time: t,body,x,y,z,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz", options.bodies, file);
   double rate = 0;

@@ -12,6 +12,7 @@ struct Options {
   double rate = 100;      ///< [Hz] of rows
   bool has_rate = false;  ///< whether that was given
   std::string motion;     ///< path, empty: none
+  std::string loads;      ///< path, empty: none
   std::string output;     ///< path, empty: none
   std::string bodies;     ///< path, empty: none
   std::string summary;    ///< path, empty: none

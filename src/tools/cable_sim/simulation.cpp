@@ -17,7 +17,7 @@ std::int64_t averaged_steps(const Job& job) {
   return std::max<std::int64_t>(1, std::llround(averaged_time / job.scene.time_step));
 }
 
-RunEnd simulate(const Job& job, const FrameSource& frames, World& world, const Recorders& recorders) {
+RunEnd simulate(const Job& job, const FrameSource& frames, LoadPlayer loads, World& world, const Recorders& recorders) {
   using Clock = std::chrono::steady_clock;
   const double time_step = job.scene.time_step;
   const RowSchedule schedule(job.rate, time_step);
@@ -43,6 +43,7 @@ RunEnd simulate(const Job& job, const FrameSource& frames, World& world, const R
     for (const CsvWriter* csv : {recorders.nodes, recorders.bodies})
       if (csv && csv->has_failed()) return RunEnd::output_failed;
     inputs_of_next_step(world, held_back);
+    recorders.events.add_refused_loads(world, loads.apply_due(world));
     const Clock::time_point start = Clock::now();
     const StepResult result = world.step(inputs);
     const Clock::time_point end = Clock::now();

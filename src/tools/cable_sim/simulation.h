@@ -32,7 +32,7 @@ enum class RunEnd {
   output_failed,  ///< rows cannot be written
 };
 
-/// Steps the world to the end of the job, or until it has to stop.
-RunEnd simulate(const Job& job, const FrameSource& frames, World& world, const Recorders& recorders);
+/// Steps the world to the end of the job, or until it has to stop. `loads`: those that are still to come.
+RunEnd simulate(const Job& job, const FrameSource& frames, LoadPlayer loads, World& world, const Recorders& recorders);
 
 }  // namespace verlet_cable::cable_sim

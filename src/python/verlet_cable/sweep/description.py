@@ -21,7 +21,7 @@ FIELDS = {
     'wrench': 'N, N m', 'body_pose': 'm, quaternion x, y, z, w', 'body_twist': 'm/s, rad/s',
 }
 MOTION = 'motion'  # the key of the varied values under which the motion is that was drawn
-_KEYS = ('scene', 'motion', 'motions', 'duration', 'record', 'samples', 'seed', 'vary')
+_KEYS = ('scene', 'motion', 'motions', 'loads', 'duration', 'record', 'samples', 'seed', 'vary')
 _RECORD_KEYS = ('rate', 'fields')
 _SCENE_KEYS = ('materials', 'cables', 'nets', 'particles', 'bodies')  # of which every scene has one
 _NOT_VARIED = {
@@ -42,14 +42,16 @@ class Sweep:
     """A checked description.
 
     scene_text, scene_name, tree: the scene's file, and what is in it (scalars are texts); folder: where paths start, absolute.
-    motions: files as they were given, none or one or more; motion_digests: {file: SHA-256}. duration [s], rate [Hz], fields, samples, seed.
+    motions: files as they were given, none or one or more; motion_digests: {file: SHA-256}. loads: None, or a file
+    likewise; loads_digest. duration [s], rate [Hz], fields, samples, seed.
     variations: {path: Variation}, with one of MOTION where there are several.
     """
 
     def to_attributes(self):
         """The description as the store keeps it; from_attributes reads it again."""
+        loads = {'loads': self.loads, 'loads_digest': self.loads_digest} if self.loads else {}
         return {
-            'scene': self.scene_name, 'motions': self.motions, 'motion_digests': self.motion_digests,
+            'scene': self.scene_name, 'motions': self.motions, 'motion_digests': self.motion_digests, **loads,
             'duration': self.duration, 'record': {'rate': self.rate, 'fields': self.fields}, 'samples': self.samples, 'seed': self.seed,
             'vary': {key: {variation.kind: variation.parameters} for key, variation in self.variations.items()},
         }
@@ -58,6 +60,7 @@ class Sweep:
     def from_attributes(attributes, scene_text, folder):
         sweep = Sweep()
         sweep.scene_name, sweep.motions, sweep.motion_digests = attributes['scene'], attributes['motions'], attributes['motion_digests']
+        sweep.loads, sweep.loads_digest = attributes.get('loads'), attributes.get('loads_digest')
         sweep.duration, sweep.samples, sweep.seed = attributes['duration'], attributes['samples'], attributes['seed']
         sweep.rate, sweep.fields = attributes['record']['rate'], attributes['record']['fields']
         sweep.variations = {key: Variation(*next(iter(value.items()))) for key, value in attributes['vary'].items()}
@@ -71,6 +74,10 @@ class Sweep:
 
     def motion_path(self, file):
         return os.path.join(self.folder, file)
+
+    @property
+    def loads_path(self):
+        return self.loads and os.path.join(self.folder, self.loads)
 
     @property
     def rows(self):
@@ -120,6 +127,7 @@ def read_sweep(path):
         errors += trial.value_errors(sweep, sweep.variations)
         errors += trial.field_errors(sweep, scene, {index: field for index, field in enumerate(sweep.fields or []) if field in FIELDS})
     _read_motions(sweep, values, errors)
+    _read_loads(sweep, values, scene, errors)
     if not errors:
         errors += trial.holder_errors(sweep, scene)
     if errors:
@@ -303,6 +311,24 @@ def _read_motions(sweep, values, errors):
             errors.append(rejected(f'{key}: {file}', error.strerror, 'a file that can be read'))
     if 'motions' in values:
         sweep.variations[MOTION] = Variation('choice', sweep.motions)
+
+
+def _read_loads(sweep, values, scene, errors):
+    sweep.loads = sweep.loads_digest = None
+    if 'loads' not in values:
+        return
+    file = values['loads']
+    if not isinstance(file, str) or not file:
+        errors.append(rejected('loads', shown(file), 'the name of a file of loads'))
+        return
+    sweep.loads = file
+    try:
+        sweep.loads_digest = digest_of(sweep.loads_path)
+    except OSError as error:
+        errors.append(rejected(f'loads: {file}', error.strerror, 'a file that can be read'))
+        return
+    if scene is not None:
+        errors += [f'loads: {file}: {text}' for text in trial.loads_errors(sweep.loads_path, scene)]
 
 
 def digest_of(path):

@@ -48,8 +48,8 @@ def plan_layout(sweep, scene):
     shapes = {}
     for motion in sweep.motions or [None]:
         try:
-            batch = Batch([scene], motion=motion and sweep.motion_path(motion), threads=1)
-            World(scene, motion and sweep.motion_path(motion)).step()  # says whether all its frames are placed
+            batch = Batch([scene], motion=motion and sweep.motion_path(motion), threads=1, loads=sweep.loads_path)
+            World(scene, motion and sweep.motion_path(motion), sweep.loads_path).step()  # says whether all its frames are placed
         except (ValueError, KeyError) as error:  # SceneError is a ValueError
             errors += [f'{motion or sweep.scene_name}: {text}' for text in getattr(error, 'errors', None) or [str(error)]]
     if errors:

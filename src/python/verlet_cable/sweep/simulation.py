@@ -81,7 +81,7 @@ def _simulate_group(sweep, layout, motion, time_step, members, result):
     """Members: (position in the result, Scene). One that cannot be had with the others, or at all, is tried alone."""
     positions = [position for position, scene in members]
     try:
-        batch = Batch([scene for position, scene in members], motion=motion, threads=1)
+        batch = Batch([scene for position, scene in members], motion=motion, threads=1, loads=sweep.loads_path)
         _check_shapes(batch, layout)
     except (ValueError, KeyError, RuntimeError) as error:  # SceneError is a ValueError
         if len(members) == 1:
@@ -146,7 +146,7 @@ class _Nodes:
 def _fail_broken(sweep, motion, time_step, member, result):
     """Simulates a sample again, alone, for what World says of it that Batch does not."""
     position, scene = member
-    world = World(scene, motion)
+    world = World(scene, motion, sweep.loads_path)
     steps, of_rows = sweep.steps(time_step)
     worst, breaks = 0, []
     for start, stop in zip(of_rows, of_rows[1:] + [steps]):

@@ -17,12 +17,21 @@ _ANY_SCENE = {'particles': [{'name': 'particle', 'mass': '1', 'position': ['0', 
 
 def motion_errors(path):
     """What is wrong with a motion file, whatever the scene; without its path, which the sweep names in its own way."""
+    return _errors_of('motion', Scene.from_dict(_ANY_SCENE), path)
+
+
+def loads_errors(path, scene):
+    """What is wrong with a file of loads on a scene, likewise."""
+    return _errors_of('loads', scene, path)
+
+
+def _errors_of(argument, scene, path):
     try:
-        World(Scene.from_dict(_ANY_SCENE), motion=path)
+        World(scene, **{argument: path})
         return []
     except (ValueError, KeyError) as error:
         lines = getattr(error, 'errors', None) or [str(error)]
-        named = f'motion: "{path}": '
+        named = f'{argument}: "{path}": '
         return [line[len(named):] if line.startswith(named) else line for line in lines]
 
 

@@ -39,4 +39,6 @@ def _plan(path, folder, identity):
     for motion, digest in sweep.motion_digests.items():
         if digest_of(sweep.motion_path(motion)) != digest:
             raise WrongWorker(f'{sweep.motion_path(motion)}: changed since the sweep was begun')
+    if sweep.loads and digest_of(sweep.loads_path) != sweep.loads_digest:
+        raise WrongWorker(f'{sweep.loads_path}: changed since the sweep was begun')
     return store.arrays_of(root), sweep, store.layout_of(root)

@@ -1,0 +1,96 @@
+#include <algorithm>
+#include <cmath>
+
+#include "edit/numbered_name.h"
+#include "verlet_cable/core/number_text.h"
+#include "verlet_cable/core/scene_fields.h"
+#include "world/implementation.h"
+
+namespace verlet_cable {
+
+namespace {
+
+/// Steps that begin within a duration, as it is rounded.
+constexpr double rounding = 1e-9;
+
+std::string vector_problem(const std::string& field, const Vector3& vector, const char* unit) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (!applied_load.contains(vector[axis]))
+      return field + "." + "xyz"[axis] + ": " + number_text(vector[axis]) + "; allowed: " + applied_load.text(unit);
+  return "";
+}
+
+/// What is wrong with a load, wherever it acts; empty if nothing is.
+std::string problem_of(const edit::ApplyLoad& load) {
+  if (const std::string problem = vector_problem("force", load.force, "N"); !problem.empty()) return problem;
+  if (const std::string problem = vector_problem("torque", load.torque, "N m"); !problem.empty()) return problem;
+  if (load.point)
+    for (int axis = 0; axis < 3; ++axis)
+      if (!coordinate.contains((*load.point)[axis]))
+        return std::string("point.") + "xyz"[axis] + ": " + number_text((*load.point)[axis]) +
+               "; allowed: " + coordinate.text("m");
+  if (!load_duration.contains(load.duration))
+    return "duration: " + number_text(load.duration) + "; allowed: " + load_duration.text("s");
+  if (load.body.is_rigid_body()) return "";
+  if (!load.torque.isZero(0)) return "torque: a node of a cable takes a force only; must be 0";
+  if (load.is_local || load.point) return "point and axes of a body: a node of a cable has none; must not be given";
+  return "";
+}
+
+/// Of a cable or a rigid body.
+const std::string& name_of(const State& state, const BodyId& body) {
+  return body.is_cable() ? state.cables[body.index].model->name : state.bodies[body.index].name;
+}
+
+}  // namespace
+
+EditResult World::Implementation::apply(const edit::ApplyLoad& request) {
+  if (!request.body.is_cable() && !request.body.is_rigid_body()) return refused("body: must be a cable or a rigid body");
+  if (const std::string problem = node_problem(state, request.body, request.node); !problem.empty()) return refused(problem);
+  if (const std::string problem = problem_of(request); !problem.empty()) return refused(problem);
+  const auto named = [&](const std::string& name) {
+    return std::find_if(state.loads.begin(), state.loads.end(), [&](const Load& load) { return load.name == name; });
+  };
+  const auto before = named(request.name);
+  if (request.force.isZero(0) && request.torque.isZero(0)) {
+    if (before != state.loads.end()) state.loads.erase(before);
+    return {true, "", request.name};
+  }
+  Load load;
+  load.name = request.name.empty() ? numbered("load", 1, [&](const std::string& n) { return named(n) != state.loads.end(); })
+                                   : request.name;
+  load.body = request.body;
+  load.node = request.node;
+  if (request.body.is_rigid_body()) load.point = request.point.value_or(state.bodies[request.body.index].center_of_mass);
+  load.force = request.force;
+  load.torque = request.torque;
+  load.is_local = request.is_local;
+  if (request.duration > 0) {
+    const double steps = std::ceil(request.duration / state.scene->time_step * (1 - rounding));
+    load.end_step = state.steps + std::max<std::int64_t>(1, static_cast<std::int64_t>(steps));
+  }
+  const EditResult result{true, "", load.name};
+  if (before == state.loads.end())
+    state.loads.push_back(std::move(load));
+  else
+    *before = std::move(load);
+  return result;
+}
+
+/// Those whose time has run out.
+void World::Implementation::end_loads() {
+  const auto ends = [&](const Load& load) { return load.end_step > 0 && load.end_step <= state.steps; };
+  for (const Load& load : state.loads)
+    if (ends(load)) findings.ended_loads.push_back({load.name, name_of(state, load.body), true});
+  state.loads.erase(std::remove_if(state.loads.begin(), state.loads.end(), ends), state.loads.end());
+}
+
+/// A winch takes the node in.
+void World::Implementation::end_loads_of(int cable, int node) {
+  const auto ends = [&](const Load& load) { return load.body == cable_id(cable) && load.node == node; };
+  for (const Load& load : state.loads)
+    if (ends(load)) findings.ended_loads.push_back({load.name, name_of(state, load.body), false});
+  state.loads.erase(std::remove_if(state.loads.begin(), state.loads.end(), ends), state.loads.end());
+}
+
+}  // namespace verlet_cable

@@ -1,0 +1,71 @@
+#include "verlet_cable/scene/loads.h"
+
+#include <algorithm>
+
+#include "verlet_cable/core/name_list.h"
+#include "verlet_cable/core/quoted_text.h"
+
+namespace verlet_cable {
+namespace {
+
+/// [steps] what rounding may do to the quotient of two times.
+constexpr double step_tolerance = 1e-6;
+
+template <class Desc>
+const Desc* find(const std::vector<Desc>& descs, const std::string& name) {
+  const auto found = std::find_if(descs.begin(), descs.end(), [&](const Desc& desc) { return desc.name == name; });
+  return found == descs.end() ? nullptr : &*found;
+}
+
+/// Empty if nothing is wrong.
+std::string problem_of(const LoadRow& row, const SceneDesc& scene) {
+  if (row.node < 0) {
+    if (find(scene.bodies, row.on) != nullptr) return "";
+    if (find(scene.cables, row.on) != nullptr) return "node -1 of cable " + quoted(row.on) + "; allowed: a node from 0 on";
+  } else if (const CableDesc* cable = find(scene.cables, row.on)) {
+    if (row.node <= cable->segments) return "";
+    return "node " + std::to_string(row.node) + " of cable " + quoted(row.on) + "; allowed: 0 to " +
+           std::to_string(cable->segments);
+  } else if (find(scene.bodies, row.on) != nullptr) {
+    return "node " + std::to_string(row.node) + " of body " + quoted(row.on) + "; allowed: -1";
+  }
+  NameList names;
+  for (const CableDesc& cable : scene.cables) names.add(cable.name);
+  for (const BodyDesc& body : scene.bodies) names.add(body.name);
+  return "on " + quoted(row.on) + "; allowed: " + names.text("none, there are no cables and bodies");
+}
+
+}  // namespace
+
+std::vector<std::string> validate_loads(const Loads& loads, const SceneDesc& scene) {
+  constexpr std::size_t most_errors = 100;
+  std::vector<std::pair<std::size_t, std::string>> found;
+  for (const LoadRow& row : loads)
+    if (const std::string problem = problem_of(row, scene); !problem.empty())
+      found.emplace_back(row.line, "line " + std::to_string(row.line) + ": " + problem);
+  std::sort(found.begin(), found.end());
+  std::vector<std::string> errors;
+  for (std::size_t i = 0; i < std::min(found.size(), most_errors); ++i) errors.push_back(found[i].second);
+  if (found.size() > most_errors) errors.push_back("and " + std::to_string(found.size() - most_errors) + " more rows");
+  return errors;
+}
+
+std::vector<RefusedLoad> LoadPlayer::apply_due(World& world) {
+  std::vector<RefusedLoad> refused;
+  const double now = world.time() + step_tolerance * world.time_step();
+  for (; loads_ && next_ < loads_->size() && (*loads_)[next_].time <= now; ++next_) {
+    const LoadRow& row = (*loads_)[next_];
+    edit::ApplyLoad load;
+    load.name = row.name;
+    load.body = row.node < 0 ? rigid_body_id(verlet_cable::find(world.bodies(), row.on))
+                             : cable_id(verlet_cable::find(world.cables(), row.on));
+    load.node = std::max(row.node, 0);
+    load.force = row.force;
+    load.torque = row.torque;
+    const EditResult result = world.apply(load);
+    if (!result.ok) refused.push_back({row.name, row.on, "line " + std::to_string(row.line) + " is left out: " + result.message});
+  }
+  return refused;
+}
+
+}  // namespace verlet_cable
