@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -68,10 +69,18 @@ struct RemoveObstacle {
   std::string name;
 };
 
+/// Puts the nodes of a cable elsewhere, or gives them other velocities. Both are projected as those that a scene gives: held
+/// nodes are where their holders are, and what cannot stretch keeps its length.
+struct SetState {
+  int cable = 0;
+  std::optional<std::vector<Vector3>> positions;   ///< [m] one a node
+  std::optional<std::vector<Vector3>> velocities;  ///< [m/s] one a node
+};
+
 }  // namespace edit
 
-using Edit = std::variant<edit::Pin, edit::Unpin, edit::MoveAttachment, edit::Cut, edit::SetLength, edit::Join, edit::SetObstacle,
-                          edit::RemoveObstacle>;
+using Edit = std::variant<edit::SetState, edit::Pin, edit::Unpin, edit::MoveAttachment, edit::Cut, edit::SetLength, edit::Join,
+                          edit::SetObstacle, edit::RemoveObstacle>;
 
 /// Outcome of an edit. If `ok` is false, nothing has changed and `message` says why, with names and values.
 struct EditResult {

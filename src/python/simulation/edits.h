@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,9 @@ std::string join(const std::string& first, bool first_at_end, const std::string&
                  EventRecord& events);
 
 void set_length(const std::string& cable, bool at_end, double length, double speed, DrivenWorld& world);
+/// Of a cable; what is not given stays.
+void set_state(const std::string& cable, std::optional<std::vector<Vector3>> positions,
+               std::optional<std::vector<Vector3>> velocities, DrivenWorld& world);
 void move_attachment(const std::string& name, const Pose& offset, DrivenWorld& world);
 
 /// Adds an obstacle, or replaces the one of its name. A frame that is new is where the obstacle says, else as for `pin`.
