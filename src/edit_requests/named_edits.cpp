@@ -96,6 +96,12 @@ EditResult apply_set_tension(World& world, const std::string& cable, edit::SetTe
           {}};
 }
 
+EditResult apply_set_state(World& world, const std::string& cable, std::optional<std::vector<Vector3>> positions,
+                           std::optional<std::vector<Vector3>> velocities, const RequestWords& words) {
+  if (const auto reason = refused_cable(world, "cable", cable, words)) return *reason;
+  return world.apply(edit::SetState{find(world.cables(), cable), std::move(positions), std::move(velocities)});
+}
+
 PlacedEdit apply_join(World& world, const std::string& first, bool first_at_end, const std::string& second, bool second_at_end,
                       const RequestWords& words) {
   if (const auto reason = refused_cable(world, "first", first, words)) return {*reason};

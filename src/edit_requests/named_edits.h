@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,10 @@ EditResult apply_set_length(World& world, const std::string& cable, bool at_end,
 /// See edit::SetTension, whose index of the cable `cable` stands for.
 EditResult apply_set_tension(World& world, const std::string& cable, edit::SetTension change,
                              const RequestWords& words = service_words());
+
+/// Of a cable: nodes' positions [m], velocities [m/s], or both.
+EditResult apply_set_state(World& world, const std::string& cable, std::optional<std::vector<Vector3>> positions,
+                           std::optional<std::vector<Vector3>> velocities, const RequestWords& words = service_words());
 
 PlacedEdit apply_join(World& world, const std::string& first, bool first_at_end, const std::string& second, bool second_at_end,
                       const RequestWords& words = service_words());

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include "pose_bytes.h"
+
 namespace verlet_cable {
 namespace {
 
@@ -32,6 +34,48 @@ FrameSource::FrameSource(const SceneDesc& scene, const Motion& motion) : jump_sp
     if (motion.count(desc.name) || (used && initial[id].known))
       link.frame = used ? static_cast<int>(id) : add_frame(-1, desc.name, {}, motion);
     links_.push_back(link);
+  }
+}
+
+FrameSource::FrameSource(ByteReader& bytes) {
+  bytes(jump_speed_);
+  bytes(ids_);
+  frames_.resize(bytes.read_length());
+  for (Frame& frame : frames_) {
+    bytes(frame.id);
+    std::vector<double> times;
+    bytes.read_list(times);
+    for (const double time : times) frame.track.add(time, read_pose(bytes));
+    frame.track.find_jumps(jump_speed_);
+    frame.resting = read_pose(bytes);
+  }
+  links_.resize(bytes.read_length());
+  for (Link& link : links_) {
+    link.name = bytes.read_text();
+    bytes(link.frame);
+    bytes(link.parent);
+    link.origin = read_pose(bytes);
+    bytes(link.id);
+  }
+}
+
+void FrameSource::write(ByteWriter& bytes) const {
+  bytes(jump_speed_);
+  bytes(ids_);
+  bytes(frames_.size());
+  for (const Frame& frame : frames_) {
+    bytes(frame.id);
+    bytes.write_list(frame.track.times());
+    for (const Pose& pose : frame.track.poses()) write_pose(pose, bytes);
+    write_pose(frame.resting, bytes);
+  }
+  bytes(links_.size());
+  for (const Link& link : links_) {
+    bytes.write_text(link.name);
+    bytes(link.frame);
+    bytes(link.parent);
+    write_pose(link.origin, bytes);
+    bytes(link.id);
   }
 }
 

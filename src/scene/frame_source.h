@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "verlet_cable/core/bytes.h"
 #include "verlet_cable/core/world.h"
 #include "verlet_cable/scene/motion.h"
 
@@ -17,6 +18,9 @@ using PosesById = std::map<int, Pose>;
 class FrameSource {
  public:
   FrameSource(const SceneDesc& scene, const Motion& motion);
+  /// As one that was written. Throws std::invalid_argument where the bytes end too early.
+  explicit FrameSource(ByteReader& bytes);
+  void write(ByteWriter& bytes) const;
 
   /// One entry a frame id, with the velocities of the motions that begin then; all known, but for ids that are not of these
   /// frames.

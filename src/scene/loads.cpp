@@ -4,6 +4,7 @@
 
 #include "verlet_cable/core/name_list.h"
 #include "verlet_cable/core/quoted_text.h"
+#include "pose_bytes.h"
 
 namespace verlet_cable {
 namespace {
@@ -48,6 +49,43 @@ std::vector<std::string> validate_loads(const Loads& loads, const SceneDesc& sce
   for (std::size_t i = 0; i < std::min(found.size(), most_errors); ++i) errors.push_back(found[i].second);
   if (found.size() > most_errors) errors.push_back("and " + std::to_string(found.size() - most_errors) + " more rows");
   return errors;
+}
+
+LoadPlayer::LoadPlayer(ByteReader& bytes) {
+  Loads loads(bytes.read_length());
+  for (LoadRow& row : loads) {
+    bytes(row.time);
+    row.name = bytes.read_text();
+    row.on = bytes.read_text();
+    bytes(row.node);
+    row.force = read_vector(bytes);
+    row.torque = read_vector(bytes);
+    bytes(row.line);
+  }
+  if (!loads.empty()) loads_ = std::make_shared<const Loads>(std::move(loads));
+  bytes(next_);
+}
+
+void LoadPlayer::write(ByteWriter& bytes) const {
+  bytes(loads_ ? loads_->size() : std::size_t{0});
+  if (loads_) {
+    for (const LoadRow& row : *loads_) {
+      bytes(row.time);
+      bytes.write_text(row.name);
+      bytes.write_text(row.on);
+      bytes(row.node);
+      write_vector(row.force, bytes);
+      write_vector(row.torque, bytes);
+      bytes(row.line);
+    }
+  }
+  bytes(next_);
+}
+
+LoadPlayer LoadPlayer::from_the_start() const {
+  LoadPlayer player = *this;
+  player.next_ = 0;
+  return player;
 }
 
 std::vector<RefusedLoad> LoadPlayer::apply_due(World& world) {

@@ -153,7 +153,9 @@ void check_size(const YamlText& text) {
   if (!guarded.problem().empty()) throw SceneError({guarded.problem()});
 }
 
-std::string text_of(const std::string& path) {
+}  // namespace
+
+std::string scene_file_text(const std::string& path) {
   if (const std::string problem = why_not_readable(path); !problem.empty())
     throw SceneError({"cannot read: " + problem + "; allowed: a file"});
   errno = 0;
@@ -169,8 +171,6 @@ std::string text_of(const std::string& path) {
     throw SceneError({"scene: cannot read " + quoted(path) + ": " + std::generic_category().message(errno ? errno : EIO)});
   return text;
 }
-
-}  // namespace
 
 FileAccess access_beside(const std::string& scene) {
   return {true, std::filesystem::path(scene).parent_path().string()};
@@ -198,7 +198,7 @@ SceneDesc read_scene_file(const std::string& path) {
 }
 
 SceneDesc read_scene_file(const std::string& path, const SceneSources& sources) {
-  return read_scene_text(within_memory([&] { return text_of(path); }), sources);
+  return read_scene_text(within_memory([&] { return scene_file_text(path); }), sources);
 }
 
 }  // namespace verlet_cable

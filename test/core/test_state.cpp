@@ -158,6 +158,42 @@ TEST(State, EveryNumberOfItIsHashed) {
   expect_all_hashed(WorldInspector::state(remembering));
 }
 
+TEST(State, GoesOnFromItsBytes) {
+  World remembering = remembering_world();
+  World rich = rich_world();
+  for (World* world : {&rich, &remembering}) {
+    const std::string bytes = world->save();
+    World restored(world->scene());
+    restored.restore(bytes);
+    EXPECT_EQ(restored.hash(), world->hash());
+    EXPECT_EQ(restored.save(), bytes);
+    const BoundaryInputs inputs = [&] {
+      BoundaryInputs now;
+      for (std::size_t frame = 0; frame < world->frames().size(); ++frame)
+        now.push_back({world->frame_pose(static_cast<int>(frame)), world->frame_known(static_cast<int>(frame))});
+      return now;
+    }();
+    for (int i = 0; i < 50; ++i) {
+      world->step(inputs);
+      restored.step(inputs);
+      ASSERT_EQ(restored.hash(), world->hash()) << i;
+    }
+  }
+}
+
+TEST(State, RefusesBytesThatAreNotItsOwn) {
+  World world = rich_world();
+  const std::string bytes = world.save();
+  const std::uint64_t before = world.hash();
+  for (std::size_t length = 0; length < bytes.size(); length += 1 + bytes.size() / 500)
+    EXPECT_THROW(world.restore(bytes.substr(0, length)), std::invalid_argument) << length;
+  EXPECT_THROW(world.restore(bytes + "x"), std::invalid_argument);
+  std::string damaged = bytes;
+  damaged.back() = static_cast<char>(damaged.back() ^ 1);
+  EXPECT_THROW(world.restore(damaged), std::invalid_argument);
+  EXPECT_EQ(world.hash(), before);
+}
+
 TEST(State, EveryNumberOfTheModelIsHashed) {
   World world = rich_world();
   State& state = WorldInspector::state(world);

@@ -1,6 +1,5 @@
-"""What Python does with objects besides calling their methods: makes them without their constructors, and pickles them."""
+"""What Python does with objects besides calling their methods: makes them without their constructors."""
 import copy
-import pickle
 
 import pytest
 
@@ -26,10 +25,3 @@ def test_a_world_without_its_constructor_is_refused(use):
 def test_a_batch_without_its_constructor_is_refused(use):
     with pytest.raises(TypeError, match='the object was not made: call its class, not its __new__'):
         use(Batch.__new__(Batch))
-
-
-@pytest.mark.parametrize('make', [lambda scene: scene, World, lambda scene: Batch(scene, 2)])
-def test_what_cannot_be_pickled_says_what_to_send_instead(hang, make):
-    thing = make(Scene.from_dict(hang))
-    with pytest.raises(TypeError, match=f'^{type(thing).__name__}: cannot be pickled; allowed: to send what it is made of'):
-        pickle.dumps(thing)

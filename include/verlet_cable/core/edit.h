@@ -95,10 +95,18 @@ struct ApplyLoad {
   double duration = 0;               ///< [s] of which it acts in all steps that begin within it; 0: until it is changed
 };
 
+/// Puts the nodes of a cable elsewhere, or gives them other velocities. Both are projected as those that a scene gives: held
+/// nodes are where their holders are, and what cannot stretch keeps its length.
+struct SetState {
+  int cable = 0;
+  std::optional<std::vector<Vector3>> positions;   ///< [m] one a node
+  std::optional<std::vector<Vector3>> velocities;  ///< [m/s] one a node
+};
+
 }  // namespace edit
 
 using Edit = std::variant<edit::Pin, edit::Unpin, edit::MoveAttachment, edit::Cut, edit::SetLength, edit::SetTension, edit::Join,
-                          edit::SetObstacle, edit::RemoveObstacle, edit::ApplyLoad>;
+                          edit::SetObstacle, edit::RemoveObstacle, edit::ApplyLoad, edit::SetState>;
 
 /// Outcome of an edit. If `ok` is false, nothing has changed and `message` says why, with names and values.
 struct EditResult {

@@ -244,7 +244,8 @@ class World {
   /// cables and nets stay as they are. False if a cable does not reach equilibrium; that cable is then at rest near it.
   bool settle();
 
-  double time() const;  ///< [s] number of steps done times the time step
+  const SceneDesc& scene() const;  ///< as it was tuned
+  double time() const;             ///< [s] number of steps done times the time step
   std::int64_t steps() const;
   double time_step() const;  ///< [s]
 
@@ -287,6 +288,12 @@ class World {
   /// All joints of a cable from start to end: those of inner nodes, and those between clamps and the segments next to them.
   void view_joints(int cable, std::vector<JointView>& joints) const;
   std::uint64_t hash() const;  ///< of everything that the future depends on
+  /// Everything that the future depends on, as bytes: for this version of the package on this kind of machine.
+  std::string save() const;
+  /// Goes on from what `save` gave of a world whose scene differs from this one's in numbers only, as a copy of that world would,
+  /// with no findings until the next step. Throws std::invalid_argument with what is wrong with the bytes; the world is then as
+  /// before.
+  void restore(const std::string& bytes);
 
  private:
   friend struct WorldInspector;  // tests

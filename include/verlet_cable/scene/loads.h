@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "verlet_cable/core/bytes.h"
 #include "verlet_cable/core/world.h"
 
 namespace verlet_cable {
@@ -40,6 +41,11 @@ class LoadPlayer {
  public:
   LoadPlayer() = default;
   explicit LoadPlayer(Loads loads) : loads_(std::make_shared<const Loads>(std::move(loads))) {}
+
+  /// As one that was written. Throws std::invalid_argument where the bytes end too early.
+  explicit LoadPlayer(ByteReader& bytes);
+  void write(ByteWriter& bytes) const;
+  LoadPlayer from_the_start() const;
 
   /// Those that act from the world's time on. Returns those of them that cannot be.
   std::vector<RefusedLoad> apply_due(World& world);

@@ -26,6 +26,8 @@ class FrameTrack {
 
   bool empty() const { return times_.empty(); }
   double last_time() const { return times_.back(); }  ///< [s]
+  const std::vector<double>& times() const { return times_; }  ///< [s]
+  const std::vector<Pose>& poses() const { return poses_; }    ///< one a time
 
  private:
   std::size_t row_after(double time) const;

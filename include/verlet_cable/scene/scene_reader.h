@@ -38,6 +38,9 @@ SceneDesc read_scene_text(const std::string& text, const SceneSources& sources =
 /// Access to any file, with relative paths referring to the directory of a scene file.
 FileAccess access_beside(const std::string& scene);
 
+/// The text of a scene file, of which no more is read than `read_scene_text` allows. Throws SceneError.
+std::string scene_file_text(const std::string& path);
+
 /// Reads a scene from a YAML file, and the files that it names from anywhere: relative paths refer to the directory of the scene
 /// file. Throws SceneError, also if the file cannot be read.
 SceneDesc read_scene_file(const std::string& path);

@@ -82,6 +82,7 @@ struct World::Implementation {
   EditResult apply(const edit::SetObstacle& set);
   EditResult apply(const edit::RemoveObstacle& remove);
   EditResult apply(const edit::ApplyLoad& request);
+  EditResult apply(const edit::SetState& set);
   EditResult cut_cable(int cable, int segment);
   EditResult cut_link(int net, int link);
   void update_net(int net);

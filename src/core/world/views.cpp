@@ -8,6 +8,7 @@
 #include "verlet_cable/core/world.h"
 #include "world/energy.h"
 #include "world/implementation.h"
+#include "world/state_bytes.h"
 #include "world/state_fields.h"
 
 namespace verlet_cable {
@@ -137,8 +138,25 @@ void World::view_joints(int index, std::vector<JointView>& joints) const {
   });
 }
 
+const SceneDesc& World::scene() const {
+  return *implementation_->state.scene;
+}
+
 std::uint64_t World::hash() const {
   return verlet_cable::hash(implementation_->state);
+}
+
+std::string World::save() const {
+  return bytes_of(implementation_->state);
+}
+
+void World::restore(const std::string& bytes) {
+  auto next = std::make_unique<Implementation>(*implementation_);
+  verlet_cable::restore(bytes, next->state);
+  next->findings = {};
+  next->told_unsettled = 0;
+  next->name_waiting();
+  implementation_ = std::move(next);
 }
 
 }  // namespace verlet_cable

@@ -29,10 +29,13 @@ constexpr std::int64_t most_worlds = 1000000;
 
 /// What Python calls a Batch.
 struct PythonBatch {
+  PythonScene scene;  ///< of the first world, when it began
+  int threads = 0;    ///< as asked for
   Batch batch;
   bool busy = false;  ///< in use by a thread that has let others run
 
-  explicit PythonBatch(Batch worlds) : batch(std::move(worlds)) {}
+  PythonBatch(PythonScene made_of, int count, Batch worlds)
+      : scene(std::move(made_of)), threads(count), batch(std::move(worlds)) {}
 };
 
 const Batch& use(const PythonBatch& batch) {
@@ -48,18 +51,18 @@ void check_size(std::int64_t count, int threads) {
                           std::to_string(most_threads));
 }
 
-std::unique_ptr<PythonBatch> make_of(const std::vector<std::shared_ptr<const SceneDesc>>& scenes, const py::object& motion,
-                                     const py::object& loads, int threads) {
+std::unique_ptr<PythonBatch> make_of(const PythonScene& first, const std::vector<std::shared_ptr<const SceneDesc>>& scenes,
+                                     const py::object& motion, const py::object& loads, int threads) {
   const Motion tracks = read_motion(motion, *scenes.front());
   const LoadPlayer player = read_loads(loads, *scenes.front());
   const py::gil_scoped_release release;
-  return std::make_unique<PythonBatch>(Batch(scenes, tracks, player, threads));
+  return std::make_unique<PythonBatch>(first, threads, Batch(scenes, tracks, player, threads));
 }
 
 std::unique_ptr<PythonBatch> make(const PythonScene& scene, std::int64_t count, const py::object& motion, int threads,
                                   const py::object& loads) {
   check_size(count, threads);
-  return make_of(std::vector<std::shared_ptr<const SceneDesc>>(static_cast<std::size_t>(count), scene.desc), motion, loads,
+  return make_of(scene, std::vector<std::shared_ptr<const SceneDesc>>(static_cast<std::size_t>(count), scene.desc), motion, loads,
                  threads);
 }
 
@@ -69,14 +72,14 @@ std::unique_ptr<PythonBatch> make_from_list(const std::vector<PythonScene>& scen
   check_size(static_cast<std::int64_t>(scenes.size()), threads);
   std::vector<std::shared_ptr<const SceneDesc>> descs;
   for (const PythonScene& scene : scenes) descs.push_back(scene.desc);
-  return make_of(descs, motion, loads, threads);
+  return make_of(scenes.front(), descs, motion, loads, threads);
 }
 
 std::unique_ptr<PythonBatch> make_of_world(PythonWorld& world, std::int64_t count, int threads) {
   check_size(count, threads);
   const InUse in_use(world.busy, "world");
   const py::gil_scoped_release release;
-  return std::make_unique<PythonBatch>(Batch(world.driven, static_cast<std::size_t>(count), threads));
+  return std::make_unique<PythonBatch>(world.scene, threads, Batch(world.driven, static_cast<std::size_t>(count), threads));
 }
 
 void set_material(PythonBatch& batch, const py::str& name, const py::kwargs& fields) {
@@ -182,13 +185,32 @@ py::array_t<double> observe(PythonBatch& batch, const std::vector<GivenPart>& pa
 
 std::unique_ptr<PythonWorld> world_at(const PythonBatch& batch, std::int64_t index) {
   const Batch& worlds = use(batch);
-  auto world = std::make_unique<PythonWorld>(worlds[read_world_index(index, worlds.size())]);
+  auto world = std::make_unique<PythonWorld>(batch.scene, worlds[read_world_index(index, worlds.size())]);
   world->driven.world().step_one_by_one(false);
   return world;
 }
 
 std::unique_ptr<PythonBatch> copy(const PythonBatch& batch) {
-  return std::make_unique<PythonBatch>(use(batch));
+  return std::make_unique<PythonBatch>(batch.scene, batch.threads, use(batch));
+}
+
+py::bytes save(const PythonBatch& batch, std::int64_t world) {
+  const Batch& worlds = use(batch);
+  return worlds[read_world_index(world, worlds.size())].save();
+}
+
+py::tuple pickled(const PythonBatch& batch) {
+  py::list worlds;
+  for (std::size_t i = 0; i < use(batch).size(); ++i) worlds.append(py::bytes(batch.batch[i].save()));
+  return py::make_tuple(parts_of(batch.scene), batch.threads, worlds);
+}
+
+std::unique_ptr<PythonBatch> unpickled(const py::tuple& parts) {
+  PythonScene scene = scene_of_parts(parts[0]);
+  std::vector<DrivenWorld> worlds;
+  for (const py::handle& data : parts[2]) worlds.push_back(DrivenWorld::load(*scene.desc, data.cast<std::string>()));
+  const int threads = parts[1].cast<int>();
+  return std::make_unique<PythonBatch>(std::move(scene), threads, Batch(std::move(worlds), threads));
 }
 
 py::array_t<bool> settle(PythonBatch& batch) {
@@ -267,6 +289,8 @@ void add_batch_class(py::module_& module) {
       .def("__copy__", copy)
       .def(
           "__deepcopy__", [](const PythonBatch& batch, const py::dict&) { return copy(batch); }, py::arg("memo"))
+      .def("save", save, py::arg("world"), "As World.save, of one of the worlds.")
+      .def(py::pickle(&pickled, &unpickled))
       .def("world", world_at, py::arg("index"), "A copy of one of the worlds, without its earlier events.")
       .def(
           "events",

@@ -62,6 +62,16 @@ RequestedPlace read_place(const py::str& cable, std::optional<std::int64_t> node
   return place;
 }
 
+std::optional<std::vector<Vector3>> read_vectors(const char* name, const OptionalNumbers& numbers) {
+  if (!numbers) return std::nullopt;
+  if (numbers->ndim() != 2 || numbers->shape(1) != 3)
+    throw py::value_error(std::string(name) + ": shape " + shape_text(*numbers) + "; allowed: (n + 1, 3)");
+  std::vector<Vector3> vectors;
+  for (py::ssize_t k = 0; k < numbers->shape(0); ++k)
+    vectors.emplace_back(numbers->at(k, 0), numbers->at(k, 1), numbers->at(k, 2));
+  return vectors;
+}
+
 void add_axes(const char* name, const OptionalNumbers& vector, std::vector<NumberChange>& changes) {
   if (!vector) return;
   check_size(name, *vector, 3);
@@ -274,6 +284,17 @@ void add_edit_methods(py::module_& module, py::class_<PythonWorld>& world) {
       "Lets a winch at the end (at_end) or the start of a cable pay out and take in cable so that it leaves the winch with the "
       "tension [N], at up to max_speed [m/s], while the cable is from min_length to max_length [m] long, as the service "
       "`set_tension` does, until it is told something else. Tension 0: a spool that turns freely. Raises ValueError, KeyError; "
+      "then nothing is changed.");
+  world.def(
+      "set_state",
+      [](PythonWorld& self, const py::str& cable, const OptionalNumbers& positions, const OptionalNumbers& velocities) {
+        set_state(text_of(cable, "cable"), read_vectors("positions", positions), read_vectors("velocities", velocities),
+                  use(self));
+      },
+      py::arg("cable"), py::arg("positions") = py::none(), py::arg("velocities") = py::none(),
+      "Puts the nodes of a cable at positions (n + 1, 3) [m], or gives them velocities (n + 1, 3) [m/s], or both. They are "
+      "projected as those of a scene are: held nodes stay where their holders are, and what cannot stretch keeps its length. "
+      "What is not given stays. Raises ValueError, also where no shape near the positions has the cable's lengths, and KeyError; "
       "then nothing is changed.");
   world.def(
       "move_attachment",

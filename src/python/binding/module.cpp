@@ -49,13 +49,6 @@ void refuse_objects_without_constructor(const py::module_& module) {
   }
 }
 
-/// For `__reduce__`, which pickle and multiprocessing call.
-void refuse_to_be_pickled(const py::object& object) {
-  throw py::type_error(py::type::of(object).attr("__name__").cast<std::string>() +
-                       ": cannot be pickled; allowed: to send what it is made of, the scene's path, text or dict and the motion, "
-                       "and to make it there; many worlds of one process are a Batch, which uses all cores");
-}
-
 }  // namespace
 
 PYBIND11_MODULE(_simulation, module) {
@@ -71,11 +64,7 @@ PYBIND11_MODULE(_simulation, module) {
   verlet_cable::add_scene_class(module);
   verlet_cable::add_world_class(module);
   verlet_cable::add_batch_class(module);
-  for (const char* name : {"Scene", "World", "Batch"}) {
-    const py::object type = module.attr(name);
-    type.attr("__module__") = "verlet_cable.sim";
-    type.attr("__reduce__") = py::cpp_function(refuse_to_be_pickled, py::name("__reduce__"), py::is_method(type));
-  }
+  for (const char* name : {"Scene", "World", "Batch"}) module.attr(name).attr("__module__") = "verlet_cable.sim";
   refuse_objects_without_constructor(module);
   const py::object explain = py::module_::import("verlet_cable.wrong_arguments").attr("explain");
   explain(module.attr("Batch"), module.attr("Scene"), module.attr("World"));

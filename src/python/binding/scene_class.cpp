@@ -2,6 +2,7 @@
 
 #include <pybind11/stl.h>
 
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,11 +19,12 @@ namespace py = pybind11;
 
 /// With a warning of all that is doubtful in it.
 template <class Reader>
-PythonScene scene_of(const Reader& read) {
+PythonScene scene_of(const std::string& directory, const Reader& read) {
   PythonScene scene;
+  scene.directory = directory;
   {
     const py::gil_scoped_release release;
-    scene.desc = std::make_shared<SceneDesc>(read());
+    scene.desc = std::make_shared<SceneDesc>(read(scene.text));
   }
   for (const std::string& line : warnings_of(*scene.desc))
     if (PyErr_WarnEx(PyExc_UserWarning, line.c_str(), 1) != 0) throw py::error_already_set();
@@ -31,19 +33,30 @@ PythonScene scene_of(const Reader& read) {
 
 PythonScene load(const py::object& path) {
   const std::string file = path_of(path, "path");
-  return scene_of([&] { return read_scene_file(file); });
+  const FileAccess beside{true, std::filesystem::absolute(file).parent_path().string()};
+  return scene_of(beside.directory, [&](std::string& text) {
+    text = scene_file_text(file);
+    return read_scene_text(text, {beside, {}});
+  });
 }
 
 PythonScene from_yaml(const py::str& given, const py::object& directory) {
-  const std::string text = text_of(given, "text");
+  const std::string given_text = text_of(given, "text");
   const SceneSources sources = sources_of(directory);
-  return scene_of([&] { return read_scene_text(text, sources); });
+  return scene_of(sources.files.directory, [&](std::string& text) {
+    text = given_text;
+    return read_scene_text(text, sources);
+  });
 }
 
 PythonScene from_dict(const py::dict& keys, const py::object& directory) {
   const SceneSources sources = sources_of(directory);
   const YAML::Node root = yaml_of(keys);
-  return scene_of([&] { return read_scene(root, {}, sources); });
+  return scene_of(sources.files.directory, [&](std::string& text) {
+    SceneDesc scene = read_scene(root, {}, sources);
+    text = YAML::Dump(root);
+    return scene;
+  });
 }
 
 template <class Items>
@@ -80,6 +93,19 @@ SceneSources sources_of(const py::object& directory) {
   return {FileAccess{true, py::bytes(os.attr("path").attr("abspath")(start))}, {}};
 }
 
+py::tuple parts_of(const PythonScene& scene) {
+  return py::make_tuple(py::bytes(scene.text), py::bytes(scene.directory));
+}
+
+PythonScene scene_of_parts(const py::tuple& parts) {
+  PythonScene scene;
+  scene.text = parts[0].cast<std::string>();
+  scene.directory = parts[1].cast<std::string>();
+  const py::gil_scoped_release release;
+  scene.desc = std::make_shared<SceneDesc>(read_scene_text(scene.text, {FileAccess{true, scene.directory}, {}}));
+  return scene;
+}
+
 void add_scene_class(py::module_& module) {
   py::class_<PythonScene>(module, "Scene", "A scene that has been read and validated. It is immutable; worlds are made from it.")
       .def(py::init([](const py::object&) -> PythonScene {
@@ -88,6 +114,10 @@ void add_scene_class(py::module_& module) {
                  "Scene.from_dict(keys)");
            }),
            py::arg("path") = py::none(), "Not for use: load, from_yaml and from_dict make scenes.")
+      .def(py::pickle(&parts_of, &scene_of_parts))
+      .def("__copy__", [](const PythonScene& scene) { return scene; })
+      .def(
+          "__deepcopy__", [](const PythonScene& scene, const py::dict&) { return scene; }, py::arg("memo"))
       .def("__repr__",
            [](const PythonScene& scene) {
              NameList cables;

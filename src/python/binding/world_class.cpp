@@ -31,14 +31,25 @@ std::unique_ptr<PythonWorld> make(const PythonScene& scene, const py::object& mo
   const Motion tracks = read_motion(motion, *scene.desc);
   const LoadPlayer player = read_loads(loads, *scene.desc);
   const py::gil_scoped_release release;
-  auto world = std::make_unique<PythonWorld>(DrivenWorld(scene.desc, tracks, player));
+  auto world = std::make_unique<PythonWorld>(scene, DrivenWorld(scene.desc, tracks, player));
   world->events.observe_start(world->driven.world());
   return world;
 }
 
 std::unique_ptr<PythonWorld> copy(const PythonWorld& world) {
   use(world);
-  return std::make_unique<PythonWorld>(world.driven, world.events);
+  return std::make_unique<PythonWorld>(world.scene, world.driven, world.events);
+}
+
+py::bytes save(const PythonWorld& world) {
+  use(world);
+  return world.driven.save();
+}
+
+std::unique_ptr<PythonWorld> load(const PythonScene& scene, const py::bytes& data) {
+  const std::string bytes = data;
+  const py::gil_scoped_release release;
+  return std::make_unique<PythonWorld>(scene, DrivenWorld::load(*scene.desc, bytes));
 }
 
 void set_frame(PythonWorld& world, const py::str& name, const Numbers& position, const Numbers& quaternion_xyzw) {
@@ -157,6 +168,19 @@ void add_world_class(py::module_& module) {
           "Puts the held cables into static equilibrium, with the frames where they are. False if one of them does not reach it; "
           "the status is then 'not_settled' until the next step is done. Raises ValueError as step().")
       .def("__repr__", represent)
+      .def("save", save,
+           "The world as bytes, from which load() goes on with the same bytes as a copy would: its state, motion and poses that "
+           "were set, but not its events. They are for this version of the package on this kind of machine. A pickle has them "
+           "with the scene.")
+      .def_static("load", load, py::arg("scene"), py::arg("data"),
+                  "The world of which save() returned the bytes `data`, or the service save_state wrote them to a file: there, "
+                  "frames then rest. `scene` may differ from its scene in numbers, which are those that it had.\n\nRaises "
+                  "ValueError that says what is wrong with the bytes.")
+      .def(py::pickle([](const PythonWorld& world) { return py::make_tuple(parts_of(world.scene), save(world)); },
+                      [](const py::tuple& parts) { return load(scene_of_parts(parts[0]), py::bytes(parts[1])); }))
+      .def_property_readonly(
+          "scene", [](const PythonWorld& world) { return world.scene; },
+          "The scene that the world was made of, without what tune() has changed.")
       .def("copy", copy, "An independent copy, which continues from here with the same bytes.")
       .def("__copy__", copy)
       .def(

@@ -95,6 +95,14 @@ Batch::Batch(const DrivenWorld& world, std::size_t count, int threads)
   for (DrivenWorld& copy : worlds_) copy.world().step_one_by_one(true);
 }
 
+Batch::Batch(std::vector<DrivenWorld> worlds, int threads)
+    : threads_(std::make_shared<Threads>(threads)),
+      worlds_(std::move(worlds)),
+      events_(worlds_.size()),
+      status_(worlds_.size(), StepResult::Status::ok) {
+  for (DrivenWorld& world : worlds_) world.world().step_one_by_one(true);
+}
+
 void Batch::begin_events(std::size_t world) {
   events_[world] = {};
   events_[world].observe_start(worlds_[world].world());

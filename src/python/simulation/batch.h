@@ -35,6 +35,8 @@ class Batch {
   /// A world a scene; `threads`: how many step them, 0: as many as there are cores. Throws SceneError where a scene is wrong, or
   /// differs from the first in more than numbers.
   Batch(const std::vector<std::shared_ptr<const SceneDesc>>& scenes, const Motion& motion, const LoadPlayer& loads, int threads);
+  /// These, of scenes that differ in no more than numbers.
+  Batch(std::vector<DrivenWorld> worlds, int threads);
   /// So many copies of a world as it is.
   Batch(const DrivenWorld& world, std::size_t count, int threads);
 

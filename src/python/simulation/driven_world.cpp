@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "scene/frame_speed.h"
+#include "scene/pose_bytes.h"
 #include "simulation/quantity.h"
 #include "verlet_cable/core/name_list.h"
 #include "verlet_cable/core/quoted_text.h"
@@ -20,7 +21,97 @@ World begin(const SceneDesc& scene, BoundaryInputs start, LoadPlayer& loads) {
   return world;
 }
 
+void write_inputs(const BoundaryInputs& inputs, ByteWriter& bytes) {
+  bytes(inputs.size());
+  for (const FrameInput& input : inputs) {
+    write_pose(input.pose, bytes);
+    bytes(input.known);
+    bytes(input.velocity.has_value());
+    const FrameVelocity velocity = input.velocity.value_or(FrameVelocity{});
+    write_vector(velocity.linear, bytes);
+    write_vector(velocity.angular, bytes);
+  }
+}
+
+BoundaryInputs read_inputs(ByteReader& bytes) {
+  BoundaryInputs inputs(bytes.read_length());
+  for (FrameInput& input : inputs) {
+    input.pose = read_pose(bytes);
+    bytes(input.known);
+    bool has_velocity = false;
+    bytes(has_velocity);
+    const Vector3 linear = read_vector(bytes), angular = read_vector(bytes);
+    if (has_velocity) input.velocity = FrameVelocity{linear, angular};
+  }
+  return inputs;
+}
+
 }  // namespace
+
+DrivenWorld::DrivenWorld(WorldFile file)
+    : scene_(std::make_shared<const SceneDesc>(file.world.scene())),
+      scene_at_first_(std::move(file.scene_at_first)),
+      world_(std::move(file.world)),
+      hash_of_start_(0) {
+  if (file.frames.empty())
+    let_frames_rest();
+  else
+    read_frames(file.frames);
+}
+
+DrivenWorld DrivenWorld::load(const SceneDesc& scene, const std::string& data) {
+  return DrivenWorld(read_world(scene, data));
+}
+
+std::string DrivenWorld::save() const {
+  ByteWriter bytes;
+  frames_->write(bytes);
+  write_inputs(inputs_, bytes);
+  write_inputs(targets_, bytes);
+  bytes(hash_of_start_);
+  loads_.write(bytes);
+  bytes(unplaced_.size());
+  for (const std::string& name : unplaced_) bytes.write_text(name);
+  bytes(given_.size());
+  for (const GivenPoses& given : given_) {
+    bytes(given.frame);
+    bytes(given.poses.size() - given.next);
+    for (std::size_t k = given.next; k < given.poses.size(); ++k) write_pose(given.poses[k], bytes);
+  }
+  return write_world(*scene_at_first_, world_, bytes.take());
+}
+
+void DrivenWorld::read_frames(const std::string& frames) {
+  ByteReader bytes(frames);
+  frames_ = std::make_shared<const FrameSource>(bytes);
+  inputs_ = read_inputs(bytes);
+  targets_ = read_inputs(bytes);
+  bytes(hash_of_start_);
+  loads_ = LoadPlayer(bytes);
+  all_loads_ = loads_.from_the_start();
+  unplaced_.resize(bytes.read_length());
+  for (std::string& name : unplaced_) name = bytes.read_text();
+  given_.resize(bytes.read_length());
+  for (GivenPoses& given : given_) {
+    bytes(given.frame);
+    const std::size_t count = bytes.read_length();
+    for (std::size_t k = 0; k < count; ++k) given.poses.push_back(read_pose(bytes));
+  }
+}
+
+/// Of a world that something else moved.
+void DrivenWorld::let_frames_rest() {
+  auto frames = std::make_shared<FrameSource>(*scene_, Motion{});
+  const int count = static_cast<int>(world_.frames().size());
+  for (int frame = 0; frame < count; ++frame) {
+    const Pose& pose = world_.frame_pose(frame);
+    if (frame >= static_cast<int>(verlet_cable::frame_names(*scene_).size())) frames->add(world_.frames()[frame], frame, pose);
+    inputs_.push_back({pose, world_.frame_known(frame)});
+    if (frame > 0 && world_.frame_known(frame) && !world_.is_body_frame(frame)) given_.push_back({frame, {pose}, 0});
+  }
+  frames_ = std::move(frames);
+  targets_ = inputs_;
+}
 
 DrivenWorld::DrivenWorld(std::shared_ptr<const SceneDesc> scene, std::shared_ptr<const FrameSource> frames, LoadPlayer loads)
     : scene_(std::move(scene)),

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "scene/frame_source.h"
+#include "scene/world_file.h"
 #include "verlet_cable/core/world.h"
 #include "verlet_cable/scene/loads.h"
 #include "verlet_cable/scene/motion.h"
@@ -20,6 +21,11 @@ class DrivenWorld {
  public:
   /// Throws SceneError.
   DrivenWorld(std::shared_ptr<const SceneDesc> scene, const Motion& motion, LoadPlayer loads = {});
+
+  /// As `save` has written it. Throws std::invalid_argument with what is wrong with the bytes.
+  static DrivenWorld load(const SceneDesc& scene, const std::string& data);
+  /// The world, and what moves its frames.
+  std::string save() const;
 
   const World& world() const { return world_; }
   World& world() { return world_; }
@@ -64,6 +70,9 @@ class DrivenWorld {
 
  private:
   DrivenWorld(std::shared_ptr<const SceneDesc> scene, std::shared_ptr<const FrameSource> frames, LoadPlayer loads);
+  explicit DrivenWorld(WorldFile file);
+  void read_frames(const std::string& frames);
+  void let_frames_rest();
   bool place(std::ptrdiff_t unplaced, int frame, const Pose& pose);
 
   std::shared_ptr<const FrameSource> frames_with(const std::string& name, std::size_t id, const Pose& resting) const;

@@ -122,6 +122,12 @@ void set_tension(const std::string& cable, const edit::SetTension& change, Drive
   require(apply_set_tension(world.world(), cable, change, python_words()), unknown);
 }
 
+void set_state(const std::string& cable, std::optional<std::vector<Vector3>> positions,
+               std::optional<std::vector<Vector3>> velocities, DrivenWorld& world) {
+  const bool unknown = find(world.world().cables(), cable) < 0;
+  require(apply_set_state(world.world(), cable, std::move(positions), std::move(velocities), python_words()), unknown);
+}
+
 void move_attachment(const std::string& name, const Pose& offset, DrivenWorld& world) {
   const bool unknown = !is_attached(world.world(), name);
   require(apply_move(world.world(), name, offset), unknown);
