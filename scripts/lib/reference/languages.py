@@ -6,19 +6,19 @@ from reference.markdown import fence, generated
 GROUPS = {
     'Worlds': ['core/world.h', 'core/edit.h', 'core/world_stepper.h', 'core/types.h'],
     'What is simulated': [
-        'core/cable.h', 'core/cable_materials.h', 'core/body.h', 'core/body_id.h', 'core/net.h', 'core/guide.h', 'core/ledger.h', 'core/contact.h',
-        'core/obstacle.h', 'core/surface_point.h'],
+        'core/cable.h', 'core/cable_materials.h', 'core/body.h', 'core/body_id.h', 'core/net.h', 'core/guide.h', 'core/ledger.h', 'core/load.h',
+        'core/contact.h', 'core/obstacle.h', 'core/surface_point.h'],
     'Scenes': [
         'core/scene_desc.h', 'core/attachment_desc.h', 'core/body_desc.h', 'core/guide_desc.h', 'core/junction_desc.h', 'core/shape_desc.h',
         'core/frame_keys.h', 'core/scene_fields.h'],
-    'Scene files': ['scene/scene_reader.h', 'scene/motion.h', 'scene/resource.h'],
+    'Scene files': ['scene/scene_reader.h', 'scene/motion.h', 'scene/loads.h', 'scene/resource.h'],
     'Geometry': ['core/shape.h', 'core/triangle_mesh.h', 'core/rotation.h'],
     'Look-ups and messages': [
-        'core/body_name.h', 'core/obstacle_of.h', 'core/pin_rules.h', 'core/excursion_text.h', 'core/jump_text.h', 'core/name_list.h',
-        'core/number_text.h', 'core/quoted_text.h'],
+        'core/body_name.h', 'core/obstacle_of.h', 'core/pin_rules.h', 'core/excursion_text.h', 'core/jump_text.h', 'core/ended_load_text.h',
+        'core/name_list.h', 'core/number_text.h', 'core/quoted_text.h'],
 }
 MODULES = {
-    'verlet_cable.sim': ['Scene', 'World', 'Batch', 'Event', 'Pinned', 'Pieces', 'SceneError'],
+    'verlet_cable.sim': ['Scene', 'World', 'Batch', 'Event', 'Load', 'Pinned', 'Pieces', 'SceneError'],
     'verlet_cable.environments': ['ShapeRope', 'ShapeRopeVector', 'LayCable', 'LayCableVector', 'AutoresetMode', 'Box'],
 }
 TYPE = re.compile(r'^(?:class|struct|enum class|using) (\w+)[^;\n]*(?: [{=]|\{)', re.M)

@@ -1,3 +1,5 @@
+#include "world/loads.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -37,6 +39,12 @@ std::string problem_of(const edit::ApplyLoad& load) {
   return "";
 }
 
+/// Whether the one in place of the other changes no force.
+bool acts_alike(const Load& a, const Load& b) {
+  return a.body == b.body && a.node == b.node && a.point == b.point && a.force == b.force && a.torque == b.torque &&
+         a.is_local == b.is_local;
+}
+
 /// Of a cable or a rigid body.
 const std::string& name_of(const State& state, const BodyId& body) {
   return body.is_cable() ? state.cables[body.index].model->name : state.bodies[body.index].name;
@@ -53,7 +61,9 @@ EditResult World::Implementation::apply(const edit::ApplyLoad& request) {
   };
   const auto before = named(request.name);
   if (request.force.isZero(0) && request.torque.isZero(0)) {
-    if (before != state.loads.end()) state.loads.erase(before);
+    if (before == state.loads.end()) return {true, "", request.name};
+    put_off_last_damped(before->body, state);
+    state.loads.erase(before);
     return {true, "", request.name};
   }
   Load load;
@@ -70,6 +80,8 @@ EditResult World::Implementation::apply(const edit::ApplyLoad& request) {
     load.end_step = state.steps + std::max<std::int64_t>(1, static_cast<std::int64_t>(steps));
   }
   const EditResult result{true, "", load.name};
+  if (before == state.loads.end() || !acts_alike(load, *before)) put_off_last_damped(load.body, state);
+  if (before != state.loads.end() && before->body != load.body) put_off_last_damped(before->body, state);
   if (before == state.loads.end())
     state.loads.push_back(std::move(load));
   else
@@ -77,20 +89,31 @@ EditResult World::Implementation::apply(const edit::ApplyLoad& request) {
   return result;
 }
 
+namespace {
+
+/// Of those loads for which `ends` is true it is told.
+template <class Ends>
+void end_where(const Ends& ends, bool ran_out, State& state, std::vector<EndedLoad>& told) {
+  for (const Load& load : state.loads) {
+    if (!ends(load)) continue;
+    told.push_back({load.name, name_of(state, load.body), ran_out});
+    put_off_last_damped(load.body, state);
+  }
+  state.loads.erase(std::remove_if(state.loads.begin(), state.loads.end(), ends), state.loads.end());
+}
+
+}  // namespace
+
 /// Those whose time has run out.
 void World::Implementation::end_loads() {
-  const auto ends = [&](const Load& load) { return load.end_step > 0 && load.end_step <= state.steps; };
-  for (const Load& load : state.loads)
-    if (ends(load)) findings.ended_loads.push_back({load.name, name_of(state, load.body), true});
-  state.loads.erase(std::remove_if(state.loads.begin(), state.loads.end(), ends), state.loads.end());
+  end_where([&](const Load& load) { return load.end_step > 0 && load.end_step <= state.steps; }, true, state,
+            findings.ended_loads);
 }
 
 /// A winch takes the node in.
 void World::Implementation::end_loads_of(int cable, int node) {
-  const auto ends = [&](const Load& load) { return load.body == cable_id(cable) && load.node == node; };
-  for (const Load& load : state.loads)
-    if (ends(load)) findings.ended_loads.push_back({load.name, name_of(state, load.body), false});
-  state.loads.erase(std::remove_if(state.loads.begin(), state.loads.end(), ends), state.loads.end());
+  end_where([&](const Load& load) { return load.body == cable_id(cable) && load.node == node; }, false, state,
+            findings.ended_loads);
 }
 
 }  // namespace verlet_cable

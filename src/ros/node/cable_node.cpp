@@ -7,6 +7,7 @@
 #include "interact/hands.h"
 #include "node/diagnostics.h"
 #include "requests/cable_services.h"
+#include "requests/load_listener.h"
 #include "requests/obstacle_listener.h"
 #include "requests/rollouts.h"
 #include "requests/tuning.h"
@@ -43,6 +44,7 @@ struct CableNode::Parts {
   Simulation simulation;
   CableServices services;
   ObstacleListener obstacles;
+  LoadListener loads;
   Tuning tuning;
   Rollouts rollouts;
   Hands hands;
@@ -58,6 +60,7 @@ CableNode::Parts::Parts(ros::NodeHandle private_node)
       simulation(node, read_scene_parameters(node)),
       services(node, simulation),
       obstacles(node, simulation),
+      loads(node, simulation),
       tuning(node, simulation),
       rollouts(node, simulation),
       hands(node, simulation),
@@ -72,6 +75,7 @@ CableNode::Parts::Parts(ros::NodeHandle private_node)
 void CableNode::Parts::update() {
   simulation.update(Simulation::longest_slice);
   tuning.follow_scene();
+  loads.follow_scene();
   hands.update();
   if (simulation.scene().publish_rate == publish_rate) return;
   publish_rate = simulation.scene().publish_rate;

@@ -90,7 +90,10 @@ void Diagnostics::report_simulation(Status& status) {
   status.add("waiting_cables", NameList(simulation_.world().findings().waiting).text(""));  // that wait for a frame
   report_waiting(status);
   status.add("unsettled_cables", NameList(simulation_.world().findings().unsettled).text(""));  // without a static equilibrium
-  status.add("found_inside_obstacles", NameList(report.intrusions).text(""));                   // since the scene started
+  NameList loads;
+  for (const Load& load : simulation_.world().loads()) loads.add(load.name);
+  status.add("loads", loads.text(""));                                         // from outside, that act now
+  status.add("found_inside_obstacles", NameList(report.intrusions).text(""));  // since the scene started
 
   summarize(report.phase, status);
   const Nanoseconds dropped = report.dropped - std::exchange(dropped_, report.dropped);

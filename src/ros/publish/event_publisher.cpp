@@ -23,7 +23,7 @@ static_assert(is(EventType::cut, CableEvent::CUT) && is(EventType::broke, CableE
               is(EventType::fault, CableEvent::FAULT) && is(EventType::joined, CableEvent::JOINED) &&
               is(EventType::limit, CableEvent::LIMIT) && is(EventType::caught, CableEvent::CAUGHT) &&
               is(EventType::released, CableEvent::RELEASED) && is(EventType::jumped, CableEvent::JUMPED) &&
-              is(EventType::energy, CableEvent::ENERGY));
+              is(EventType::energy, CableEvent::ENERGY) && is(EventType::load_ended, CableEvent::LOAD_ENDED));
 
 constexpr bool is(StepResult::Status status, std::uint8_t constant) {
   return static_cast<std::uint8_t>(status) == constant;

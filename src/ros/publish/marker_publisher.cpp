@@ -29,6 +29,11 @@ constexpr double body_pin_size = 0.3;    // of a body's radius of gyration
 constexpr double text_size = 0.05;       // of the longest cable
 constexpr std::array<double, 4> text_color{0.6, 0.1, 0.1, 1};
 constexpr std::array<double, 4> body_color{0.75, 0.55, 0.25, 1};
+constexpr double load_size = 4;      // of the text's height: the length of the greatest load's arrow
+constexpr double load_width = 0.05;  // of that length
+constexpr double least_load = 1e-3;  // likewise: shorter arrows are not seen
+constexpr std::array<double, 4> force_color{0.9, 0.35, 0.1, 1};
+constexpr std::array<double, 4> torque_color{0.55, 0.25, 0.8, 1};
 
 std_msgs::ColorRGBA grey(float level) {
   std_msgs::ColorRGBA color;
@@ -129,6 +134,7 @@ void MarkerPublisher::publish(const World& world, const ColorScale& colors, cons
   for (const Obstacle& obstacle : world.obstacles()) add_obstacle(world, obstacle, *markers);
   for (const SimulatedBody& body : world.bodies())
     if (!body.is_junction && is_there(world, body)) add_body(body, *markers);
+  add_loads(world, *markers);
   add_waiting(world, *markers);
   delete_what_is_gone(*markers);
   free_ids_of_what_is_gone();
@@ -258,6 +264,33 @@ void MarkerPublisher::add_pin(const World& world, const Attachment& attachment, 
 void MarkerPublisher::add_guide(const World& world, int guide, MarkerArray& markers) {
   int part = 0;
   for (Marker& look : guide_markers(world, guide)) add_look("guides", world.guides()[guide].name, part, std::move(look), markers);
+}
+
+/// From where they act: along the force, and along the axis of the torque. The greatest ones have the longest arrows.
+void MarkerPublisher::add_loads(const World& world, MarkerArray& markers) {
+  double greatest_force = 0, greatest_torque = 0;
+  for (const Load& load : world.loads()) {
+    greatest_force = std::max(greatest_force, load.force.norm());
+    greatest_torque = std::max(greatest_torque, load.torque.norm());
+  }
+  const double length = load_size * text_height_;
+  for (const Load& load : world.loads()) {
+    const bool on_cable = load.body.is_cable();
+    const Pose pose = on_cable ? Pose{world.cables()[load.body.index].state.positions[load.node]}
+                               : world.bodies()[load.body.index].pose * Pose{load.point};
+    const Quaternion axes = load.is_local ? pose.orientation : Quaternion::Identity();
+    const auto add = [&](const char* what, const Vector3& vector, double greatest, const std::array<double, 4>& color) {
+      const Vector3 way = length / greatest * (axes * vector);
+      if (!(greatest > 0) || !pose.position.allFinite() || !way.allFinite() || way.norm() < least_load * length) return;
+      Marker arrow = make_marker("loads", id_of("load " + load.name + what), Marker::ARROW);
+      arrow.points = {frame_.point(pose.position), frame_.point(pose.position + way)};
+      set_scale(arrow, load_width * length, 2 * load_width * length, 0);
+      arrow.color = to_color(color);
+      markers.markers.push_back(std::move(arrow));
+    };
+    add(" force", load.force, greatest_force, force_color);
+    add(" torque", load.torque, greatest_torque, torque_color);
+  }
 }
 
 void MarkerPublisher::add_obstacle(const World& world, const Obstacle& obstacle, MarkerArray& markers) {

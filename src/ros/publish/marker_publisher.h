@@ -27,6 +27,7 @@ namespace verlet_cable {
 ///  * namespace "obstacles", ids from 1: the present obstacles; a capsule is three markers;
 ///  * namespace "bodies", ids from 1: the shapes of bodies, in the same way;
 ///  * namespace "payloads", ids from 1: point masses, as balls with the density of aluminium;
+///  * namespace "loads", ids from 1: arrows along forces and torques from outside;
 ///  * namespace "waiting", id 0: while something has not started, a text that says which frames of tf it waits for.
 class MarkerPublisher {
  public:
@@ -44,6 +45,7 @@ class MarkerPublisher {
   void add_particle(const SimulatedParticle& particle, visualization_msgs::MarkerArray& markers) const;
   void add_pin(const World& world, const Attachment& attachment, visualization_msgs::MarkerArray& markers);
   void add_guide(const World& world, int guide, visualization_msgs::MarkerArray& markers);
+  void add_loads(const World& world, visualization_msgs::MarkerArray& markers);
   void add_obstacle(const World& world, const Obstacle& obstacle, visualization_msgs::MarkerArray& markers);
   void add_body(const SimulatedBody& body, visualization_msgs::MarkerArray& markers);
   void add_waiting(const World& world, visualization_msgs::MarkerArray& markers) const;

@@ -2,6 +2,7 @@
 
 #include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>
+#include <verlet_cable/ApplyWrench.h>
 #include <verlet_cable/Cut.h>
 #include <verlet_cable/Join.h>
 #include <verlet_cable/LoadScene.h>
@@ -68,6 +69,18 @@ bool pin(Simulation& simulation, const Pin::Request& request, Pin::Response& res
   return answer(result, response);
 }
 
+bool apply_wrench(Simulation& simulation, const ApplyWrench::Request& request, ApplyWrench::Response& response) {
+  if (!simulation.started()) return answer(simulation.refused_before_start(), response);
+  const bool on_body = find(simulation.world().bodies(), request.location.cable) >= 0;
+  const CheckedLoad load = simulation.check_load(
+      requested_load(request.name, request.frame_id, request.point, request.wrench, request.duration, on_body),
+      requested_place(request.location));
+  if (!load.errors.empty()) return answer(with_unused(refused(load.errors), request.location), response);
+  const EditResult result = with_unused(simulation.apply_load(load.load), request.location);
+  response.name = result.name;
+  return answer(result, response);
+}
+
 bool cut(Simulation& simulation, const Cut::Request& request, Cut::Response& response) {
   if (!simulation.started()) return answer(simulation.refused_before_start(), response);
   const Location location = locate_cut(requested_place(request.location), simulation.world(), find_frame_in(simulation));
@@ -127,6 +140,8 @@ CableServices::CableServices(ros::NodeHandle& node, Simulation& simulation) : ow
                      [s](const auto& request, auto& response) { return answer(s->set_paused(request.data), response); }),
       serve<Unpin>(node, "unpin", [s](const auto& request, auto& response) { return answer(s->unpin(request.name), response); }),
       serve<Pin>(node, "pin", [s](const auto& request, auto& response) { return pin(*s, request, response); }),
+      serve<ApplyWrench>(node, "apply_wrench",
+                         [s](const auto& request, auto& response) { return apply_wrench(*s, request, response); }),
       serve<Cut>(node, "cut", [s](const auto& request, auto& response) { return cut(*s, request, response); }),
       serve<SetLength>(node, "set_length",
                        [s](const auto& r, auto& response) {

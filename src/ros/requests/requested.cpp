@@ -27,6 +27,23 @@ Pose requested_pose(const geometry_msgs::Pose& pose) {
   return {{pose.position.x, pose.position.y, pose.position.z}, {q.w, q.x, q.y, q.z}};
 }
 
+Vector3 requested_vector(const geometry_msgs::Vector3& vector) {
+  return {vector.x, vector.y, vector.z};
+}
+
+RequestedLoad requested_load(const std::string& name, const std::string& frame_id, const geometry_msgs::Point& point,
+                             const geometry_msgs::Wrench& wrench, double duration, bool on_body) {
+  RequestedLoad load;
+  load.name = name;
+  load.frame_id = frame_id;
+  const Vector3 place(point.x, point.y, point.z);
+  if (on_body || !(place.array() == 0).all()) load.point = place;
+  load.force = requested_vector(wrench.force);
+  load.torque = requested_vector(wrench.torque);
+  load.duration = duration;
+  return load;
+}
+
 std::string unused_words(const CableLocation& location) {
   if (location.mode != CableLocation::NODE || location.arc_length == 0) return "";
   return "; mode 0 takes location.node, " + std::to_string(location.node) + ", and not location.arc_length, " +

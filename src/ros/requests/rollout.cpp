@@ -6,9 +6,11 @@
 
 #include "frames/frame_buffer.h"
 #include "publish/conversions.h"
+#include "requests/requested.h"
 #include "verlet_cable/core/name_list.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
+#include "verlet_cable/core/scene_fields.h"
 
 namespace verlet_cable {
 namespace {
@@ -19,6 +21,11 @@ constexpr double most_steps = 1e7;
 constexpr double most_nodes = 1e6;
 constexpr std::size_t most_transforms = 200'000;  // of a motion: an hour of a frame at 50 Hz
 constexpr std::size_t most_errors = 20;
+constexpr std::size_t most_loads = 200'000;
+/// [steps] what rounding may do to the quotient of two times.
+constexpr double step_tolerance = 1e-6;
+
+using LoadMessage = RolloutGoal::_loads_type::value_type;
 
 int count_nodes(const World& world) {
   int nodes = 0;
@@ -91,6 +98,35 @@ std::map<int, FrameTrack> read_motion(const RolloutGoal& goal, const World& worl
   return motion;
 }
 
+/// In terms of the world from which the rollout starts. Problems are added to `errors`, each with its place in the goal.
+std::vector<TimedLoad> read_loads(const RolloutGoal& goal, const World& world, std::vector<std::string>& errors) {
+  std::vector<TimedLoad> loads;
+  if (goal.loads.size() > most_loads) {
+    errors.push_back("loads: " + std::to_string(goal.loads.size()) + " of them; allowed: at most " + std::to_string(most_loads));
+    return loads;
+  }
+  const FindFrame find_frame = [&](const std::string& name) -> std::optional<Pose> {
+    const auto found = std::find(world.frames().begin(), world.frames().end(), name);
+    const int frame = static_cast<int>(found - world.frames().begin());
+    if (found == world.frames().end() || !world.frame_known(frame)) return std::nullopt;
+    return world.frame_pose(frame);
+  };
+  for (std::size_t i = 0; i < goal.loads.size() && errors.size() < most_errors; ++i) {
+    const LoadMessage& given = goal.loads[i];
+    const std::string key = "loads[" + std::to_string(i) + "].";
+    const bool on_body = find(world.bodies(), given.location.cable) >= 0;
+    CheckedLoad checked =
+        check_load(requested_load(given.name, given.frame_id, given.point, given.wrench, given.duration, on_body),
+                   locate_node(requested_place(given.location), world, find_frame), world, find_frame);
+    if (!load_duration.contains(given.start))
+      checked.errors.push_back("start: " + number_text(given.start) + "; allowed: " + load_duration.text("s"));
+    for (const std::string& error : checked.errors) errors.push_back(key + error);
+    loads.push_back({given.start, std::move(checked.load)});
+  }
+  std::stable_sort(loads.begin(), loads.end(), [](const TimedLoad& a, const TimedLoad& b) { return a.start < b.start; });
+  return loads;
+}
+
 }  // namespace
 
 Rollout::Rollout(const RolloutGoal& goal, RolloutStart start)
@@ -98,6 +134,7 @@ Rollout::Rollout(const RolloutGoal& goal, RolloutStart start)
   std::vector<std::string> errors;
   check_times(goal, world_, errors);
   motion_ = read_motion(goal, world_, errors);
+  loads_ = read_loads(goal, world_, errors);
   if (!errors.empty()) throw SceneError(std::move(errors));
   for (auto& [frame, track] : motion_) track.find_jumps(start.jump_speed);
   all_steps_ = std::llround(duration_ / world_.time_step());
@@ -114,7 +151,14 @@ double Rollout::progress() const {
   return all_steps_ > 0 ? static_cast<double>(steps_) / static_cast<double>(all_steps_) : 1;
 }
 
+/// Those that start with the next step. What has lost its node meanwhile, as a cable broke, is left out.
+void Rollout::apply_loads() {
+  const double now = time() + step_tolerance * world_.time_step();
+  for (; next_load_ < loads_.size() && loads_[next_load_].start <= now; ++next_load_) world_.apply(loads_[next_load_].load);
+}
+
 WorldStep Rollout::next_step() {
+  apply_loads();
   ++steps_;
   follow(time());
   return {&world_, &frames_, {}};

@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
+#include "edit_requests/checked_load.h"
 #include "verlet_cable/core/world_stepper.h"
 #include "verlet_cable/scene/motion.h"
 
@@ -19,7 +21,13 @@ struct RolloutStart {
   double jump_speed = infinity;  ///< [m/s] of the scene
 };
 
-/// A run of a world's copy along given motions of frames.
+/// A load from outside, and when it starts [s].
+struct TimedLoad {
+  double start = 0;
+  edit::ApplyLoad load;
+};
+
+/// A run of a world's copy along given motions of frames, with loads.
 class Rollout {
  public:
   /// Throws SceneError with everything that is wrong with the goal.
@@ -39,15 +47,18 @@ class Rollout {
  private:
   double time() const { return static_cast<double>(steps_) * world_.time_step(); }
   void follow(double time);
+  void apply_loads();
   void record();
   void end(bool success, const std::string& message);
 
   World world_;
   BoundaryInputs frames_;
   std::map<int, FrameTrack> motion_;  ///< by frame id
-  double duration_;                   ///< [s]
-  double rate_;                       ///< [Hz]
-  std::int64_t steps_ = 0;            ///< done
+  std::vector<TimedLoad> loads_;      ///< in the order in which they start
+  std::size_t next_load_ = 0;
+  double duration_;         ///< [s]
+  double rate_;             ///< [Hz]
+  std::int64_t steps_ = 0;  ///< done
   std::int64_t all_steps_;
   bool ended_ = false;
   RolloutResult result_;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "edit_requests/checked_load.h"
 #include "edit_requests/checked_pin.h"
 #include "frames/frame_watch.h"
 #include "frames/missing_frames.h"
@@ -76,6 +77,10 @@ class Simulation {
   EditResult set_length(const std::string& cable, bool at_end, double length, double speed, double max_tension);
   EditResult set_tension(const std::string& cable, const edit::SetTension& change);
   EditResult join(const std::string& first, bool first_at_end, const std::string& second, bool second_at_end);
+  /// A load on a place, in terms of the world.
+  CheckedLoad check_load(const RequestedLoad& request, const RequestedPlace& place) const;
+  /// One that was checked.
+  EditResult apply_load(const edit::ApplyLoad& load);
   /// Adds an obstacle to those of the scene, or replaces one that was added; it follows `frame` from when that is known on. It
   /// stays until it is removed, whatever happens to the scene.
   EditResult set_obstacle(Obstacle obstacle, const std::string& frame);

@@ -77,6 +77,16 @@ EditResult Simulation::set_tension(const std::string& cable, const edit::SetTens
   return apply_set_tension(world_, cable, change);
 }
 
+CheckedLoad Simulation::check_load(const RequestedLoad& request, const RequestedPlace& place) const {
+  const FindFrame find = [this](const std::string& frame) { return find_frame(frame); };
+  return verlet_cable::check_load(request, locate_node(place, world_, find), world_, find);
+}
+
+EditResult Simulation::apply_load(const edit::ApplyLoad& load) {
+  if (!started_) return refused_before_start();
+  return verlet_cable::apply_load(world_, load);
+}
+
 EditResult Simulation::join(const std::string& first, bool first_at_end, const std::string& second, bool second_at_end) {
   if (!started_) return refused_before_start();
   const PlacedEdit join = apply_join(world_, first, first_at_end, second, second_at_end);
