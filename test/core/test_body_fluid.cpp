@@ -408,6 +408,49 @@ TEST(TowedFish, TrailsAtTheAngleOfItsDrag) {
   EXPECT_LT(body_of(world).velocity.norm(), 1e-5);
 }
 
+/// Towed by its nose, with a center of its own for mass and for what the water does: it pitches by its weight, drag and Munk
+/// moment.
+TEST(TowedFish, StaysAsItIsSettled) {
+  SceneDesc scene = in_water();
+  scene.fluid.velocity = {1.2, 0, 0};
+  scene.time_step = 0.005;
+  BodyDesc& fish = add_body(scene, 30, 0.02);
+  fish.pose.reset();
+  fish.center_of_mass = Vector3(0, 0, -0.05);
+  fish.fluid.center = {0.1, 0, 0.02};
+  fish.fluid.drag_area = {0.02, 0.15, 0.2};
+  fish.fluid.angular_drag = {5, 5, 5};
+  fish.fluid.added_mass = {2, 20, 20};
+  add_tether(scene, 10, Vector3::Zero(), {-0.4, 0, 0.1});
+  World world(scene, initial_frames(scene));
+  ASSERT_TRUE(world.settle());
+  const Pose settled = body_of(world).pose;
+  EXPECT_GT(settled.orientation.y(), 0.1);
+  scenes::run(world, 2000);
+  EXPECT_LT((body_of(world).pose.position - settled.position).norm(), 1e-6);
+  EXPECT_LT(body_of(world).pose.orientation.angularDistance(settled.orientation), 1e-6);
+  EXPECT_LT(body_of(world).angular_velocity.norm(), 1e-6);
+}
+
+/// On a slack tether, in a current, with the tether tight at last: half below the surface.
+TEST(MooredBuoy, SettlesAtTheSurface) {
+  SceneDesc scene = in_water();
+  scene.fluid.surface = 0;
+  scene.fluid.velocity = {0.5, 0, 0};
+  BodyDesc& buoy = add_body(scene, 40, 0.1, {1, 0, 0.2});
+  buoy.fluid.drag_area = {0.2, 0.2, 0.2};
+  buoy.fluid.added_mass = {50, 50, 50};
+  buoy.fluid.center = {0, 0, 0.05};
+  add_tether(scene, 6, {0, 0, -5}, {0, 0, -0.3});
+  scene.cables[0].initial.type = InitialShapeDesc::Type::settled;
+  World world(scene, initial_frames(scene));
+  EXPECT_TRUE(world.findings().unsettled.empty());
+  const Vector3 settled = body_of(world).pose.position;
+  EXPECT_LT(std::abs(settled.z()), 0.1);
+  scenes::run(world, 5000);
+  EXPECT_LT((body_of(world).pose.position - settled).norm(), 1e-6);
+}
+
 /// It starts above its anchor, and settles to where drag and buoyancy pull along the tether, which holds it in its middle: its
 /// axes stay.
 TEST(MooredBuoy, StandsOnItsWatchCircle) {

@@ -235,7 +235,7 @@ void BodySystem::add_inertia() {
 /// Along inextensible segments and in joints.
 void BodySystem::add_impulses(std::vector<Participant>& participants) {
   double mass = 0;
-  for (const MovingBody& member : members_) mass += member.whole.mass;
+  for (const MovingBody& member : members_) mass += member.whole.mass + member.stepper.added_mass();
   for (const Participant& p : participants) mass += std::accumulate(p.state->masses.begin(), p.state->masses.end(), 0.0);
   joints_.add_impulses(mass, members_, equations_);
   for (std::size_t c = 0; c < cable_count_; ++c) {
@@ -255,7 +255,7 @@ void BodySystem::expect_momenta(const std::vector<Participant>& participants) {
     if (joint.other < 0) group_of(joint.member).hold();
   // The fluid has a part of the momenta of added mass.
   for (std::size_t m = 0; m < members_.size(); ++m)
-    if (members_[m].stepper.has_added_mass()) group_of(static_cast<int>(m)).hold();
+    if (members_[m].stepper.added_mass() > 0) group_of(static_cast<int>(m)).hold();
   for (std::size_t m = 0; m < members_.size(); ++m) members_[m].stepper.expect_momenta(group_of(static_cast<int>(m)));
   for (std::size_t c = 0; c < cable_count_; ++c)
     if (cables_[c].is_held())

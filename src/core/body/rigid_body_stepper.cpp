@@ -43,8 +43,8 @@ void RigidBodyStepper::begin(const SimulatedBody& body, const BodyProgress& prog
   const Vector3 arm = body.fluid.center - whole.center_of_mass;
   fluid_.begin(body.fluid, environment, rules.middle, rules.h, rules.statics, center_ + start_ * arm,
                velocity_ + (start_ * spin_).cross(start_ * arm), arm);
-  has_added_mass_ = !body.fluid.added_mass.isZero(0);
-  if (has_added_mass_) add_mass(body.fluid);
+  added_mass_ = body.fluid.added_mass.maxCoeff();
+  if (added_mass_ > 0) add_mass(body.fluid);
   displacement_ = rules.h * (velocity_ + 0.5 * rules.h * acceleration_);
   turn_by(orientation_ * cayley(rules.h * (spin_ + 0.5 * rules.h * spin_change_)));
 }
@@ -135,7 +135,7 @@ Vector6 RigidBodyStepper::added_end_momentum() const {
 Vector6 RigidBodyStepper::momentum_rate() const {
   const double h = rules_.h;
   Vector6 rate;
-  if (!has_added_mass_) {
+  if (added_mass_ == 0) {
     const Vector3 start_momentum = start_ * (whole_.inertia * spin_);
     rate << rules_.inertia() * whole_.mass / h * (displacement_ / h - velocity_), (end_momentum() - start_momentum) / h;
     return rate;
@@ -167,7 +167,7 @@ Matrix6 RigidBodyStepper::stiffness() const {
   const double h = rules_.h, inertia = rules_.inertia(), damping = damping_rate();
   const Eigen::Matrix3d along = turned_cayley(turn());
   Matrix6 stiffness = Matrix6::Zero();
-  if (has_added_mass_) {
+  if (added_mass_ > 0) {
     stiffness = momentum_stiffness();
     stiffness.topLeftCorner<3, 3>().diagonal().array() += linear_damping_ * damping;
     stiffness.bottomRightCorner<3, 3>() += angular_damping_ * damping * along;
@@ -203,7 +203,7 @@ Matrix6 RigidBodyStepper::momentum_stiffness() const {
 
 Matrix6 RigidBodyStepper::inertia() const {
   Matrix6 inertia = Matrix6::Zero();
-  if (!has_added_mass_) {
+  if (added_mass_ == 0) {
     inertia.topLeftCorner<3, 3>().diagonal().setConstant(whole_.mass);
     inertia.bottomRightCorner<3, 3>() = end_ * whole_.inertia * end_.transpose();
     return inertia;
@@ -222,7 +222,7 @@ void RigidBodyStepper::correct(const Vector6& change) {
 Vector3 RigidBodyStepper::end_velocity() const {
   if (rules_.statics) return Vector3::Zero();
   const VelocityWeights weights = velocity_weights(rules_.scheme);
-  if (has_added_mass_)
+  if (added_mass_ > 0)
     return fluid_.flow() +
            end_ * (weights.displacement * mean_rate() + weights.velocity * rate_ + weights.acceleration * rules_.h * rate_change_)
                       .head<3>();
@@ -280,7 +280,7 @@ void RigidBodyStepper::finish(SimulatedBody& body, BodyProgress& progress) const
   if (rules_.scheme != Scheme::damped) return;
   progress.acceleration = (displacement_ / h - velocity_) / h + 0.5 * acceleration_;
   progress.angular_acceleration = (turn_ / h - spin_) / h + 0.5 * spin_change_;
-  if (!has_added_mass_) return;
+  if (added_mass_ == 0) return;
   const Vector3 change = ((mean_rate() - rate_) / h + 0.5 * rate_change_).head<3>();
   progress.acceleration = end_ * (change + end_spin().cross(end_.transpose() * (end_velocity() - fluid_.flow())));
 }

@@ -63,8 +63,9 @@ class RigidBodyStepper {
 
   /// [kg], [kg m], [kg m^2] Of velocities of the center of mass and spins at the end, in the fixed frame's axes.
   Matrix6 inertia() const;
-  /// Its momenta are not those of its mass alone.
-  bool has_added_mass() const { return has_added_mass_; }
+  double added_mass() const {
+    return added_mass_;
+  }  ///< [kg] the largest of its axes; above 0, the fluid has a part of its momenta
   /// What its forces leave of its momenta, and what it has at the end.
   void expect_momenta(GroupMomenta& group) const;
   void add_momenta(GroupMomenta& group) const;
@@ -110,7 +111,7 @@ class RigidBodyStepper {
   const GravityDesc* gravity_ = nullptr;
   BodyFluidForces fluid_;
   // Of the whole with its added mass, along the frame's axes: what of V and W makes P and L
-  bool has_added_mass_ = false;
+  double added_mass_ = 0;
   Matrix6 inertia_;
   Vector6 rate_, rate_change_;  // V and W at the start [m/s], [rad/s], and how they change [m/s^2], [rad/s^2]
   std::vector<const Load*> applied_;

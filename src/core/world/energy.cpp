@@ -105,7 +105,7 @@ Energy energy_of_body(const State& state, int index) {
   const Vector3 spin = body.pose.orientation.conjugate() * body.angular_velocity;
   Energy energy;
   energy.kinetic = 0.5 * body.mass * body.velocity.squaredNorm() + 0.5 * spin.dot(body.inertia * spin);
-  if (!body.fluid.added_mass.isZero(0)) {
+  if (body.fluid.added_mass.maxCoeff() > 0) {
     const Vector3 moving =
         body.pose.orientation.conjugate() * body.velocity + spin.cross(body.fluid.center - body.center_of_mass);
     energy.kinetic += 0.5 * moving.dot(body.fluid.added_mass.cwiseProduct(moving));
