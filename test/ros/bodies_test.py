@@ -150,8 +150,8 @@ class BodiesTest(unittest.TestCase):
         self.assertIn('location.cable: "plat"; allowed: rope, plate, wheel', self.node.pin(node_at('plat', 0)).message)
 
     def test_snapshots_keep_bodies(self):
-        self.assertTrue(self.node.save_state('there').success)
-        self.assertTrue(self.node.restore_state('there').success)
+        self.assertTrue(self.node.save_state(name='there').success)
+        self.assertTrue(self.node.restore_state(name='there').success)
         with self.node.states() as states:
             self.assert_at(body(states.next(3), 'plate').pose.position, (0.2, 0, 1.4))
 

@@ -80,7 +80,7 @@ class LectureTest(unittest.TestCase):
         self.assertTrue(call('unpin', Unpin, 'corner').success)
 
     def test_cuts_and_snapshots(self):
-        self.assertTrue(call('save_state', SaveState, 'whole').success)
+        self.assertTrue(call('save_state', SaveState, 'whole', '').success)
         nearest = CableLocation(mode=CableLocation.NEAREST)
         nearest.point.point.x, nearest.point.point.z = 0.25, 2
         answer = call('cut', Cut, nearest)
@@ -91,7 +91,7 @@ class LectureTest(unittest.TestCase):
         self.assertEqual(len(receive('state', CableArray).nets[0].tension), LINKS - 4)
         self.assertFalse(call('cut', Cut, node('flag', 29)).success)
         self.assertFalse(call('cut', Cut, node('flag', 30)).success)
-        self.assertTrue(call('restore_state', RestoreState, 'whole').success)
+        self.assertTrue(call('restore_state', RestoreState, 'whole', '').success)
         self.assertEqual(len(receive('state', CableArray).nets[0].tension), LINKS)
 
 

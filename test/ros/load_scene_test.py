@@ -65,7 +65,7 @@ class LoadSceneTest(unittest.TestCase):
             stamps = [s.header.stamp.to_sec() for s in states.all()]
             for earlier, later in zip(stamps, stamps[1:]):
                 self.assertAlmostEqual(later - earlier, 0.05, delta=1e-6)  # stamps are doubles of about 1e9 s
-        self.assertRefused(self.node.restore_state('of_the_old_scene'))
+        self.assertRefused(self.node.restore_state(name='of_the_old_scene'))
         self.assertTrue(self.node.reset().success)
         self.assertShows('written')
 

@@ -141,12 +141,12 @@ class LoadsTest(unittest.TestCase):
         self.assertTrue(self.node.pause(True).success)
         self.assertTrue(self.apply('vehicle', wrench=wrench((1, 0, 0)), duration=0.05).success)
         self.assertTrue(self.node.step(10).success)
-        self.assertTrue(self.node.save_state('pushed').success)
+        self.assertTrue(self.node.save_state(name='pushed').success)
         states = []
         for _ in range(2):
             self.assertTrue(self.node.step(100).success)
             states.append(contents(self.node.state()))
-            self.assertTrue(self.node.restore_state('pushed').success)
+            self.assertTrue(self.node.restore_state(name='pushed').success)
         self.assertEqual(states[0], states[1])
         self.near(velocity(self.node.state()), (0.01 / MASS, 0, 0))
         self.assertTrue(self.node.reset().success)

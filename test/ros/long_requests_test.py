@@ -127,7 +127,7 @@ class LongRequestsTest(unittest.TestCase):
         text = ROPE + 'cables:\n' + ''.join(rope(f'r{i}', 400) for i in range(60))
         self.assertTrue(self.node.load_scene(yaml=text).success)
         self.node.pause(True)
-        self.node.save_state('there')
+        self.node.save_state(name='there')
         begin = time.monotonic()
         self.assertTrue(self.node.reset().success)
         took = time.monotonic() - begin
@@ -136,7 +136,7 @@ class LongRequestsTest(unittest.TestCase):
             resetting = Aside(self.node.reset)
             time.sleep(took / 10)
             begin = time.monotonic()
-            self.assertTrue(self.node.restore_state('there').success)
+            self.assertTrue(self.node.restore_state(name='there').success)
             restored = time.monotonic() - begin
             answer = resetting.result()
             self.assertTrue(answer.success)

@@ -138,7 +138,7 @@ class LostFramesTest(unittest.TestCase):
             return lambda s: cable(s, 'rope') and distance(cable(s, 'rope').positions[0], motion(s.header.stamp.to_sec())) < 1e-4
 
         def run_on(steps):
-            self.assertTrue(node.restore_state('closing').success)
+            self.assertTrue(node.restore_state(name='closing').success)
             answer = node.step(steps)
             self.assertTrue(answer.success, answer.message)
             states.clear()
@@ -154,7 +154,7 @@ class LostFramesTest(unittest.TestCase):
             with Frames(hand=away):
                 self.assertIn('at 0.5 m/s', events.wait_for(back, 'FRAME_BACK').message)
                 states.wait_for(lambda s: cable(s, 'rope').positions[0].y > 0.05, 'rope on its way')
-                self.assertTrue(node.save_state('closing').success)
+                self.assertTrue(node.save_state(name='closing').success)
                 states.wait_for(at(away), 'rope at its frame')
                 path = [(s.header.stamp.to_sec(), cable(s, 'rope').positions[0]) for s in states.all()]
                 for (t, a), (u, b) in zip(path, path[1:]):

@@ -134,10 +134,10 @@ class ObstaclesTest(unittest.TestCase):
             return 4 in {m.pose.position.y for m in found}
         self.send(marker(1, position=(0, 4, 1)))
         self.wait_for_shown(is_there, 'the obstacle')
-        self.assertTrue(self.node.save_state('with').success)
+        self.assertTrue(self.node.save_state(name='with').success)
         self.send(marker(1, action=Marker.DELETE))
         self.wait_for_shown(lambda found: not is_there(found), 'it deleted')
-        self.assertTrue(self.node.restore_state('with').success)
+        self.assertTrue(self.node.restore_state(name='with').success)
         self.wait_for_shown(is_there, 'it restored')
         self.send(marker(1, action=Marker.DELETE))
         self.wait_for_shown(lambda found: not is_there(found), 'it deleted again')

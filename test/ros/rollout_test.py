@@ -40,7 +40,7 @@ class RolloutTest(unittest.TestCase):
         return self.finish(self.actions.send_goal(RolloutGoal(**fields)))
 
     def test_a_rollout_follows_its_motion_and_is_the_same_every_time(self):
-        self.assertTrue(self.node.save_state('here').success)
+        self.assertTrue(self.node.save_state(name='here').success)
         goal = dict(snapshot='here', motion=hand((0, (0.6, 0, 0)), (1, (0.6, 0.2, 0.1))), duration=1.5, rate=20)
         state, result = self.roll_out(**goal)
         self.assertEqual(state, GoalStatus.SUCCEEDED, result.message)

@@ -168,10 +168,10 @@ class ServicesTest(unittest.TestCase):
 
     def test_what_waited_when_it_was_saved_starts_when_it_is_restored(self):
         self.assertIsNone(cable(self.node.state(), 'waiting'))
-        self.assertTrue(self.node.save_state('before').success)
+        self.assertTrue(self.node.save_state(name='before').success)
         with Frames(late_hand=lambda t: (0, 3, 1)), self.node.states() as states:
             states.wait_for(lambda s: cable(s, 'waiting'), 'cable whose frame has come')
-            self.assertTrue(self.node.restore_state('before').success)
+            self.assertTrue(self.node.restore_state(name='before').success)
             stamp = self.node.state().header.stamp
             states.wait_for(lambda s: s.header.stamp > stamp and cable(s, 'waiting'), 'the same after it was restored')
 

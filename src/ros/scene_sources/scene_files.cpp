@@ -71,6 +71,23 @@ std::string find_scene_file(const std::string& key, const std::string& file, con
   return path.string();
 }
 
+std::string writable_scene_file(const std::string& key, const std::string& file, const std::string& scene_directory) {
+  if (file.empty() || file.size() > longest_path || file.find('\0') != std::string::npos) reject(key, file, "the path of a file");
+  std::error_code error;
+  if (scene_directory.empty()) reject(key, file, "none, as scene_directory is empty");
+  const fs::path directory = fs::canonical(scene_directory, error);
+  if (error) reject(key, file, "none, as there is no scene_directory " + quoted(scene_directory));
+  const fs::path path = directory / file, parent = fs::canonical(path.parent_path(), error);
+  const bool has_name = path.has_filename() && path.filename() != "." && path.filename() != "..";
+  if (error || !has_name || !is_inside(parent, directory))
+    reject(key, file, "files in directories inside scene_directory " + quoted(scene_directory));
+  const fs::path place = parent / path.filename();
+  const fs::file_status status = fs::symlink_status(place, error);
+  // What a link leads to may be anywhere.
+  if (fs::exists(status) && !fs::is_regular_file(status)) reject(key, file, "a new file, or one that is replaced");
+  return place.string();
+}
+
 SceneDesc read_requested_scene(const LoadScene::Request& request, const SceneDesc& current, const std::string& node) {
   if (request.file.empty() == request.yaml.empty()) {
     throw SceneError(

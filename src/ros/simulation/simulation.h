@@ -85,9 +85,11 @@ class Simulation {
   /// stays until it is removed, whatever happens to the scene.
   EditResult set_obstacle(Obstacle obstacle, const std::string& frame);
   void remove_obstacle(const std::string& name);  ///< of those that were added
-  EditResult save_state(const std::string& name);
-  /// Continues a snapshot: while paused at its time and with its frames, while running at the present ones.
-  EditResult restore_state(const std::string& name);
+  /// Under a name, or in a file.
+  EditResult save_state(const std::string& name, const std::string& file);
+  /// Continues a snapshot: while paused at its time and with its frames, while running at the present ones. One of a file knows
+  /// neither.
+  EditResult restore_state(const std::string& name, const std::string& file);
   /// Goes on with another scene, as soon as it is built; refused if it is not sound. One that was asked for before and is not
   /// built yet then is given up.
   void load_scene(const SceneDesc& scene, const Answer& answer);
@@ -114,6 +116,8 @@ class Simulation {
   SimulationReport take_report();
 
  private:
+  Snapshot read_snapshot(const std::string& file) const;
+  EditResult restore(const Snapshot& snapshot, const std::string& message);
   /// What replaces the world when it is built.
   struct Rebuild {
     WorldBuild build;

@@ -1,7 +1,16 @@
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+#include <utility>
+
+#include "scene/world_file.h"
+#include "scene_sources/scene_files.h"
 #include "simulation/simulation.h"
 #include "verlet_cable/core/name_list.h"
 #include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/core/scene_fields.h"
+#include "verlet_cable/scene/resource.h"
 
 namespace verlet_cable {
 namespace {
@@ -15,6 +24,23 @@ EditResult refused(const std::string& message) {
   return {false, message, {}};
 }
 
+EditResult refused_both(const std::string& name, const std::string& file) {
+  return refused("name, file: " + quoted(name) + " and " + quoted(file) + "; allowed: one of them");
+}
+
+/// As a whole, or not at all. Throws SceneError.
+void write_file(const std::string& path, const std::string& bytes) {
+  const std::string part = path + ".part";
+  std::ofstream file(part, std::ios::binary | std::ios::trunc);
+  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  file.close();
+  std::error_code error;
+  if (file) std::filesystem::rename(part, path, error);
+  if (file && !error) return;
+  std::filesystem::remove(part, error);
+  throw SceneError({"file: " + quoted(path) + " cannot be written; allowed: where the node may write"});
+}
+
 std::string names_of(const std::map<std::string, Snapshot>& snapshots) {
   NameList names;
   for (const auto& [name, snapshot] : snapshots) names.add(name);
@@ -23,9 +49,18 @@ std::string names_of(const std::map<std::string, Snapshot>& snapshots) {
 
 }  // namespace
 
-EditResult Simulation::save_state(const std::string& name) {
+EditResult Simulation::save_state(const std::string& name, const std::string& file) {
   if (!started_) return refused_before_start();
   if (faulted_) return refused("the simulation has failed: call reset first");
+  if (!name.empty() && !file.empty()) return refused_both(name, file);
+  if (!file.empty()) {
+    try {
+      write_file(writable_scene_file("file", file, scene_.scene_directory), write_world(scene_, world_, {}));
+    } catch (const SceneError& error) {
+      return refused(error.what());
+    }
+    return done("saved to " + quoted(file));
+  }
   if (name.size() > longest_name || !is_name(name)) {
     return refused("name: " + quoted(name) + "; allowed: " + name_words + ", at most " + std::to_string(longest_name));
   }
@@ -40,12 +75,43 @@ EditResult Simulation::save_state(const std::string& name) {
   return done("saved as " + quoted(name) + (replaces ? ", which is replaced" : ""));
 }
 
-EditResult Simulation::restore_state(const std::string& name) {
+EditResult Simulation::restore_state(const std::string& name, const std::string& file) {
   if (!started_) return refused_before_start();
+  if (!name.empty() && !file.empty()) return refused_both(name, file);
+  if (!file.empty()) {
+    try {
+      return restore(read_snapshot(file), "restored the file " + quoted(file));
+    } catch (const std::exception& error) {
+      return refused(error.what());
+    }
+  }
   const auto found = snapshots_.find(name);
   if (found == snapshots_.end()) return refused("name: " + quoted(name) + "; allowed: " + names_of(snapshots_));
-  const Snapshot& snapshot = found->second;
-  const std::string message = "restored the snapshot " + quoted(name);
+  return restore(found->second, "restored the snapshot " + quoted(name));
+}
+
+/// Of the present scene, with the frames where they are now. Throws SceneError, std::invalid_argument.
+Snapshot Simulation::read_snapshot(const std::string& file) const {
+  const std::string path = find_scene_file("file", file, scene_.scene_directory);
+  WorldFile saved = [&] {
+    try {
+      return read_world(scene_, read_file(path));
+    } catch (const ResourceError& error) {
+      throw SceneError({"file: " + quoted(file) + ": " + error.what()});
+    }
+  }();
+  Snapshot snapshot{std::move(saved.world), {}, stamp_, frames_.save(), {}};
+  snapshot.scene = snapshot.world.scene();
+  const World begun(scene_);
+  for (const Obstacle& obstacle : snapshot.world.obstacles()) {
+    const auto is_it = [&](const Obstacle& other) { return other.name == obstacle.name; };
+    if (std::any_of(begun.obstacles().begin(), begun.obstacles().end(), is_it)) continue;
+    snapshot.added_obstacles.emplace(obstacle.name, AddedObstacle{obstacle, snapshot.world.frames()[obstacle.frame]});
+  }
+  return snapshot;
+}
+
+EditResult Simulation::restore(const Snapshot& snapshot, const std::string& message) {
   interrupt_steps(message);
   forget_resets(message);
   cable_watch_.end_statuses(stamp_);
