@@ -553,5 +553,14 @@ TEST(Loads, WhatCannotBeAppliedChangesNothing) {
   expect_refused(beside, "body: must be a cable or a rigid body");
 }
 
+TEST(Loads, AreNotMoreThanThereMayBe) {
+  const SceneDesc scene = free_body();
+  World world(scene, initial_frames(scene));
+  for (int i = 0; i < 10000; ++i) ASSERT_TRUE(world.apply(on_body("push_" + std::to_string(i), {1, 0, 0})).ok);
+  EXPECT_FALSE(world.apply(on_body("one_more", {1, 0, 0})).ok);
+  EXPECT_TRUE(world.apply(on_body("push_0", {2, 0, 0})).ok);
+  EXPECT_EQ(world.loads().size(), 10000u);
+}
+
 }  // namespace
 }  // namespace verlet_cable

@@ -437,6 +437,27 @@ def test_motions_are_drawn_from(tmp_path):
     assert np.allclose(root['hose/positions'][:, -1, -1, 2], np.where(drawn == 0, 0.2, -0.2), atol=1e-3)
 
 
+def test_loads_push_every_sample(tmp_path):
+    from verlet_cable.sim import Scene, World
+    header = 't,name,on,node,fx,fy,fz,tx,ty,tz\n'
+    (tmp_path / 'gusts.csv').write_text(header + '0.2,gust,hose,10,0,0.1,0,0,0,0\n0.4,gust,hose,10,0,0,0,0,0,0\n')
+    folder = write(tmp_path, 'loads: gusts.csv' + SWEEP.replace('samples: 40', 'samples: 2').partition('vary:')[0])
+    status, text = run(folder, tmp_path / 'store', '--workers', '1')
+    assert status == 0, text
+    root = zarr.open_group(str(tmp_path / 'store'), mode='r')
+    world = World(Scene.from_yaml(SCENE), loads=tmp_path / 'gusts.csv')
+    world.step(200)
+    for sample in range(2):
+        assert np.array_equal(root['hose/positions'][sample, -1], world.positions('hose'))
+    assert abs(world.positions('hose')[10, 1]) > 1e-3
+    assert root.attrs['sweep']['loads'] == 'gusts.csv'
+    (tmp_path / 'gusts.csv').write_text(header + '0.2,gust,rope,10,0,0.1,0,0,0,0\n')
+    status, text = run(folder, tmp_path / 'other')
+    assert status == 2 and 'loads: gusts.csv: line 2: on "rope"; allowed: hose' in text, text
+    status, text = run(write(tmp_path, SWEEP + '\nloads: nowhere.csv\n'), tmp_path / 'other')
+    assert status == 2 and 'loads: nowhere.csv' in text, text
+
+
 def test_all_errors_of_a_description_at_once(tmp_path):
     folder = write(tmp_path, """
 scene: scene.yaml

@@ -12,6 +12,8 @@ namespace verlet_cable {
 
 namespace {
 
+/// That act at once.
+constexpr std::size_t most_loads = 10000;
 /// Steps that begin within a duration, as it is rounded.
 constexpr double rounding = 1e-9;
 
@@ -66,6 +68,8 @@ EditResult World::Implementation::apply(const edit::ApplyLoad& request) {
     state.loads.erase(before);
     return {true, "", request.name};
   }
+  if (before == state.loads.end() && state.loads.size() >= most_loads)
+    return refused("name: " + request.name + "; " + std::to_string(most_loads) + " loads act already, no more can");
   Load load;
   load.name = request.name.empty() ? numbered("load", 1, [&](const std::string& n) { return named(n) != state.loads.end(); })
                                    : request.name;

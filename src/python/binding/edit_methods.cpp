@@ -123,7 +123,8 @@ void tune_world(PythonWorld& world, const OptionalNumbers& gravity, const Option
 }
 
 void apply(const edit::ApplyLoad& load, PythonWorld& world) {
-  use(world).world().apply(load);
+  const EditResult result = use(world).world().apply(load);
+  if (!result.ok) throw py::value_error(result.message);
 }
 
 void apply_force(PythonWorld& world, const py::str& cable, std::int64_t node, const Numbers& force, double duration,

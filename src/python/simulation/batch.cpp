@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <stdexcept>
 #include <utility>
 
 #include "core/world/parallel_for.h"
@@ -163,7 +164,10 @@ void Batch::set_frame(const std::string& name, std::vector<std::vector<Pose>> po
 }
 
 void Batch::apply(const std::vector<edit::ApplyLoad>& loads) {
-  for (std::size_t i = 0; i < worlds_.size(); ++i) worlds_[i].world().apply(loads[i]);
+  for (std::size_t i = 0; i < worlds_.size(); ++i) {
+    const EditResult result = worlds_[i].world().apply(loads[i]);
+    if (!result.ok) throw std::invalid_argument("world " + std::to_string(i) + ": " + result.message);
+  }
 }
 
 void Batch::require_placed_frames() const {

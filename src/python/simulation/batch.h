@@ -56,7 +56,7 @@ class Batch {
   /// See DrivenWorld::set_frame; for each world. Throws UnknownName, and SceneError; then nothing is changed.
   void set_frame(const std::string& name, std::vector<std::vector<Pose>> poses);
 
-  /// One a world, which were checked.
+  /// One a world, which were checked. Throws std::invalid_argument where a world has too many.
   void apply(const std::vector<edit::ApplyLoad>& loads);
 
   /// Writes the parts of world after world, side by side, or returns the first that does not have them all.
