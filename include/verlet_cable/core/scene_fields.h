@@ -43,7 +43,7 @@ struct Field {
   bool required = false;
 };
 
-constexpr std::array<Field<SceneDesc>, 8> scene_fields{{
+constexpr std::array<Field<SceneDesc>, 9> scene_fields{{
     {"time_step", &SceneDesc::time_step, "s", {1e-9, 0.1, "any number above 0, at most 0.1"}},
     {"tolerance", &SceneDesc::tolerance, "1/s", {1e-6, 1e-3, "any number from 1e-6 to 1e-3"}},
     {"publish_rate", &SceneDesc::publish_rate, "Hz", {1e-3, 1e4, "any number above 0"}},
