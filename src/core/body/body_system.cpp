@@ -91,6 +91,9 @@ bool BodySystem::advance(std::vector<Participant>& participants, double toleranc
     place_holders(participants);
     for (Participant& p : participants) {
       p.stepper->evaluate(p.substep, *p.state);
+      stale = stale || p.stepper->calls_for_matrix();
+    }
+    for (Participant& p : participants) {
       if (stale) {
         p.stepper->assemble(p.substep.part());
         p.stepper->factor();

@@ -206,7 +206,9 @@ bool ContactSolver::iterate(std::vector<Participant>& participants, std::vector<
     if (i == following_iterations) hold_bounds(touches);
     const bool changed = i == 0 ? press(participants, touches) : shorten(participants, touches);
     const double missing = missing_energy(participants), work = work_from_outside(participants, touches);
-    const bool factored = stale || changed;
+    const bool factored = stale || changed || std::any_of(participants.begin(), participants.end(), [](const Participant& p) {
+                            return p.stepper->calls_for_matrix();
+                          });
     if (factored) factor(participants, touches);
     for (Participant& p : participants) p.stepper->solve_linear();
     if (couplings_.empty())

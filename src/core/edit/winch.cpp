@@ -39,7 +39,7 @@ void add_material_motion(const LengthDrive& drive, double side, CableState& cabl
   if (!drive.is_winch()) return;
   const int n = cable.segments(), node = drive.end_node(n), i = drive.segment;
   const Vector3 along = segment_direction(cable, i);
-  cable.velocities[node] += (node == 0 ? side : -side) * drive.growth() * along;
+  cable.velocities[node] += (node == 0 ? side : -side) * drive.fed_rate() * along;
 }
 
 LengthDrive::Place winch_place(bool at_end) {
@@ -88,6 +88,7 @@ LengthDrive World::Implementation::winch_at(int index, bool at_end, double speed
   drive.segment = at_end ? cable.segments() - 1 : 0;
   drive.speed = speed;
   drive.acceleration = state.scene->winch_acceleration;
+  drive.motor_speed = std::abs(drive.rate);
   drive.slip = 0;
   drive.left = 0;
   return drive;

@@ -164,7 +164,7 @@ Boundary moving_boundary(int index, const State& state) {
   const CableProgress& progress = state.cable_progress[index];
   Boundary boundary = boundary_now(progress.targets);
   load_flows(index, true, state, boundary);
-  if (progress.drive) boundary.growing.push_back({progress.drive->segment, progress.drive->growth()});
+  if (progress.drive) boundary.growing.push_back({progress.drive->segment, progress.drive->fed_rate()});
   return boundary;
 }
 

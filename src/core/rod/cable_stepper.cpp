@@ -303,7 +303,7 @@ bool CableStepper::solve(const Substep& s, const CableState& state, SubstepResul
   bool stale = true;
   for (int i = 0; i < maximum_iterations; ++i) {
     evaluate(s, state);
-    if (stale) {
+    if (stale || calls_for_matrix()) {
       assemble(s.part());
       factor();
     }
@@ -409,7 +409,13 @@ CableStepper::Straining CableStepper::straining(const Substep& s, int i) const {
   if (rest_growth_[i] != 0)
     for (const GrowingSegment& wound : s.boundary.growing)
       if (wound.segment == i) found.end += (1 - s.part()) * s.h * wound.growth;
-  if (i == winch_.segment) found.end += (1 - s.part()) * winch_.beyond;
+  if (i == winch_.segment) {
+    const WoundLength wound = wound_length(s);
+    found.start = wound.start_rest;
+    found.end = wound.end_rest + winch_.beyond;
+    found.growth = std::sqrt(end_square_[i]) - length_[i] * found.end / found.start;
+    return found;
+  }
   found.start = found.end - rest_growth_[i];
   found.growth = std::sqrt(end_square_[i]) - length_[i];
   if (rest_growth_[i] != 0) found.growth -= length_[i] * rest_growth_[i] / found.start;

@@ -41,6 +41,8 @@ class CableStepper {
   // that has converged; finish.
   void begin(const Substep& substep, const CableState& state, SubstepResult& result);
   void evaluate(const Substep& substep, const CableState& state);
+  /// Whether the matrix of the iterate before does not do for that which has been evaluated last.
+  bool calls_for_matrix() const { return winch_.segment >= 0 && winch_.changed; }
   void assemble(double part);
   void factor();
   void solve_linear();  ///< for the loads that `evaluate` found; material flows through guides as it is driven
@@ -157,6 +159,7 @@ class CableStepper {
   WoundLength wound_length(const Substep& substep) const;
   Resistance<double> strain_resistance(const Substep& substep, int segment) const;
   double wanted_by_winch(const Substep& substep, double end) const;
+  double kept_tension_error(const Substep& substep, double end, double wanted) const;
   double winch_mobility() const;
   double least_winch_stiffness() const;
   bool winch_is_consistent(const Substep& substep) const;
@@ -205,12 +208,14 @@ class CableStepper {
   struct Winch {
     int segment = -1;  // -1: none does
     WinchLaw law;
-    double planned_growth = 0;  // [m/s] of the rest length, at the end
-    double planned_rest = 0;    // [m] of rest, where forces are taken
-    double planned_way = 0;     // [m] that the rest length grows by
+    double planned_rest = 0;  // [m] the rest length, where forces are taken
+    double planned_way = 0;   // [m] that it grows by
+    double planned_left = 0;  // [m] of that from there on
+    double rounded_way = 0;   // [m] by which that is more than what `rest_growth_` is planned to be
     double beyond = 0;          // [m] by which it grows more
     WinchMode mode = WinchMode::least;
-    int changes = 0;  // of the mode, in the substep
+    bool changed = false;  // whether the mode did in this iteration
+    int changes = 0;       // of it, in the substep
   };
   Winch winch_;
   std::vector<double> target_length_;               // segments: l [m]; longer where bodies have drawn them out

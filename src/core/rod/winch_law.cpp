@@ -13,6 +13,8 @@ constexpr int most_changes = 8;
 constexpr double least_stiffness = 1e-6;
 /// Of the segment's length: what is wanted beyond a bound by less is rounding.
 constexpr double rounding = 1e-7;
+/// Of the tension; it is kept as well as this. And of what strains it by rounding.
+constexpr double kept_part = 1e-5, rounding_strain = 1e-10;
 
 /// The mode to go on with in an iteration. Tension at one bound says nothing of whether the other is reached.
 WinchMode mode_after(const WinchLaw& law, WinchMode mode, double wanted) {
@@ -26,11 +28,13 @@ void CableStepper::start_winch(const GrowingSegment& growing) {
   const int i = growing.segment;
   winch_.segment = i;
   winch_.law = growing.law;
-  winch_.planned_growth = growing.growth;
   winch_.planned_rest = target_length_[i];
-  winch_.planned_way = rest_growth_[i];
+  winch_.planned_way = growing.way;
+  winch_.planned_left = growing.left;
+  winch_.rounded_way = growing.way - rest_growth_[i];
   winch_.beyond = growing.law.guess;
   winch_.mode = WinchMode::keeps;
+  winch_.changed = false;
   winch_.changes = 0;
   rest_growth_[i] += winch_.beyond;
   length_[i] = get(segment_, i).norm();
@@ -43,9 +47,10 @@ Resistance<double> CableStepper::strain_resistance(const Substep& s, int i) cons
 /// As planned; what flows through a guide beside it counts.
 WoundLength CableStepper::wound_length(const Substep& s) const {
   WoundLength wound;
-  wound.rest = winch_.planned_rest;
-  wound.end_rest = wound.rest + (1 - s.part()) * s.h * winch_.planned_growth;
+  wound.end_rest = winch_.planned_rest + winch_.planned_left;
   wound.start_rest = wound.end_rest - winch_.planned_way;
+  // However it is planned to get there: the strains of what is strained alike at the start and the end have one mean.
+  wound.rest = wound.start_rest + s.part() * winch_.planned_way;
   wound.start_length = length_[winch_.segment];
   return wound;
 }
@@ -71,7 +76,7 @@ double CableStepper::wanted_by_winch(const Substep& s, double end) const {
 void CableStepper::wind_beyond(const Substep& s, double wanted) {
   const int i = winch_.segment;
   winch_.beyond = growth_in(winch_.law, winch_.mode, wanted);
-  target_length_[i] = winch_.planned_rest + (is_elastic_at(i) ? s.part() : 1) * winch_.beyond;
+  target_length_[i] = is_elastic_at(i) ? wound_length(s).rest + s.part() * winch_.beyond : winch_.planned_rest + winch_.beyond;
   rest_growth_[i] = winch_.planned_way + winch_.beyond;
 }
 
@@ -80,15 +85,14 @@ void CableStepper::evaluate_winch(const Substep& s) {
   const int i = winch_.segment;
   if (grows(i)) {
     winch_.planned_rest = target_length_[i];
-    winch_.planned_way = rest_growth_[i];
+    winch_.planned_way = rest_growth_[i] + winch_.rounded_way;
   }
   const double part = s.part(), end = std::sqrt(end_square_[i]), mean = length_[i] + part * (end - length_[i]);
   const double wanted = wanted_by_winch(s, end);
-  if (winch_.changes < most_changes) {
-    const WinchMode mode = mode_after(winch_.law, winch_.mode, wanted);
-    if (mode != winch_.mode) ++winch_.changes;
-    winch_.mode = mode;
-  }
+  const WinchMode mode = winch_.changes < most_changes ? mode_after(winch_.law, winch_.mode, wanted) : winch_.mode;
+  winch_.changed = mode != winch_.mode;
+  if (winch_.changed) ++winch_.changes;
+  winch_.mode = mode;
   const bool keeps = winch_.mode == WinchMode::keeps;
   const double least = least_winch_stiffness();
   if (is_elastic_at(i)) {
@@ -106,12 +110,28 @@ void CableStepper::evaluate_winch(const Substep& s) {
     set_row(i, inextensible_row(end_square_[i], target_length_[i], strain_compliance_[i], tension_density_[i]));
 }
 
-/// Whether the corrected iterate calls for the mode that the last one had.
+/// [N] By which the tension is not that of the law. What the winch pulls hardly moves by it where the cable can stretch, so that
+/// small corrections do not tell.
+double CableStepper::kept_tension_error(const Substep& s, double end, double wanted) const {
+  const int i = winch_.segment;
+  const double tension = tension_density_[i] * (length_[i] + s.part() * (end - length_[i]));
+  double law = winch_.law.tension;
+  if (is_elastic_at(i)) {
+    const double growth = growth_in(winch_.law, winch_.mode, wanted);
+    law = wound_tension(strain_resistance(s, i), wound_length(s), winch_.mode, growth, end, s.part()).tension;
+  }
+  return tension - law;
+}
+
+/// Whether the corrected iterate has the mode that it calls for, and a tension that is kept.
 bool CableStepper::winch_is_consistent(const Substep& s) const {
   const int i = winch_.segment;
-  if (winch_.changes >= most_changes) return true;
   const double end = (get(segment_, i) + get(displacement_, i + 1) - get(displacement_, i)).norm();
   const double wanted = wanted_by_winch(s, end), slack = rounding * target_length_[i];
+  const double rounded = is_elastic_at(i) ? rounding_strain * axial_stiffness_[i] : slack / winch_mobility();
+  if (winch_.mode == WinchMode::keeps || is_elastic_at(i))
+    if (!(std::abs(kept_tension_error(s, end, wanted)) <= kept_part * winch_.law.tension + rounded)) return false;
+  if (winch_.changes >= most_changes) return true;
   if (winch_.mode == WinchMode::least) return wanted <= winch_.law.least + slack;
   if (winch_.mode == WinchMode::most) return wanted >= winch_.law.most - slack;
   return wanted >= winch_.law.least - slack && wanted <= winch_.law.most + slack;

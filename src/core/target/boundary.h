@@ -65,7 +65,9 @@ struct HeldDirection {
 struct GrowingSegment {
   int segment = 0;
   double growth = 0;  ///< [m/s] of its rest length, at the end of the substep: in as planned, out with what it grows beyond that
-  WinchLaw law = {};  ///< of that
+  double way = 0;     ///< [m] planned of the rest length in the substep; what is left of it after where the state is wound to:
+  double left = 0;    ///< [m]
+  WinchLaw law = {};  ///< of what it grows by beyond that
   double beyond = 0;  ///< [m] out: in the substep
   bool keeps_tension = false;  ///< out: whether the law's tension is that of the segment
 };

@@ -25,13 +25,6 @@ struct Overloaded : Functions... {
 template <class... Functions>
 Overloaded(Functions...) -> Overloaded<Functions...>;
 
-/// [m] The segment's rest length at a part of the step.
-double length_at(const LengthDrive& drive, double part, double time_step) {
-  const double uniform = drive.change - 0.5 * time_step * (drive.growth() + drive.next_growth());
-  const double accelerated = time_step * (drive.growth() + 0.5 * part * (drive.next_growth() - drive.growth()));
-  return drive.start_length + (part == 1 ? drive.change : part * (uniform + accelerated));
-}
-
 /// [m/s] From which it can just brake in `left` [m], going so fast in the first step already.
 double braking_speed(double left, double time_step, double acceleration) {
   return acceleration * (std::sqrt(0.25 * time_step * time_step + 2 * left / acceleration) - 0.5 * time_step);
@@ -58,6 +51,12 @@ double mass_at(const LengthDrive& drive, double part, const CableModel& model, c
 }
 
 }  // namespace
+
+double planned_length(const LengthDrive& drive, double part, double time_step) {
+  const double uniform = drive.change - 0.5 * time_step * (drive.growth() + drive.next_growth());
+  const double accelerated = time_step * (drive.growth() + 0.5 * part * (drive.next_growth() - drive.growth()));
+  return drive.start_length + (part == 1 ? drive.change : part * (uniform + accelerated));
+}
 
 void plan_drive(double available, double time_step, LengthDrive& drive) {
   const double goal = std::max(drive.left, -std::max(available, 0.0));
@@ -102,7 +101,7 @@ void stall(double most, double time_step, LengthDrive& drive) {
   drive.arrives = false;
 }
 
-WinchLaw winch_law(const LengthDrive& drive, double part, double h) {
+WinchLaw winch_law(const LengthDrive& drive, double part, double h, double time_step) {
   WinchLaw law;
   if (!drive.heeds_tension()) return law;
   law.tension = drive.tension;
@@ -110,17 +109,17 @@ WinchLaw winch_law(const LengthDrive& drive, double part, double h) {
     law.most_rate = std::max(drive.fastest_out - growth_at(drive, part), 0.0);
     law.most = h * law.most_rate;
   } else {
-    // It speeds up as its motor can, and brakes as the tension needs it; nothing holds a spool that turns freely. Rates are means
-    // over substeps: at the end it has gone on speeding up.
+    // Behind the clutch its motor runs on as fast as it came to; nothing holds a spool that turns freely. Rates are means over
+    // substeps: at the end it has gone on speeding up.
     const double last = drive.rate + drive.slip, gain = h * drive.acceleration;
-    const double in = std::min(last, 0.0), out = std::max(last, 0.0);
+    const double reach = drive.motor_speed + time_step * drive.acceleration;
     const bool is_free = drive.tension == 0;
-    const double least = -std::min(drive.fastest_in, gain - in);
-    const double most = is_free ? drive.fastest_out : std::min(drive.fastest_out, gain + out);
+    const double least = -std::min(drive.fastest_in, reach);
+    const double most = is_free ? drive.fastest_out : std::min(drive.fastest_out, reach);
     law.least = h * (least - drive.rate);
     law.most = h * (most - drive.rate);
-    law.least_rate = least + 0.5 * std::min(least - in, 0.0) - drive.rate;
-    law.most_rate = most + (is_free ? 0 : 0.5 * std::max(most - out, 0.0)) - drive.rate;
+    law.least_rate = least + 0.5 * std::clamp(least - last, -gain, 0.0) - drive.rate;
+    law.most_rate = most + (is_free ? 0 : 0.5 * std::clamp(most - last, 0.0, gain)) - drive.rate;
   }
   law.guess = std::clamp(h * drive.slip, law.least, std::max(law.least, law.most));
   return law;
@@ -140,7 +139,7 @@ void open_clamp(const LengthDrive& drive, const std::vector<Attachment>& attachm
 void wind(const LengthDrive& drive, double part, double time_step, const CableModel& model, CableState& state) {
   const auto lengths = [&] { return std::array{joint_length(state, drive.segment), joint_length(state, drive.segment + 1)}; };
   const std::array<double, 2> before = lengths();
-  state.rest_lengths[drive.segment] = length_at(drive, part, time_step);
+  state.rest_lengths[drive.segment] = planned_length(drive, part, time_step);
   if (!drive.is_winch()) {
     // The two that are welded stay turned against each other as they are.
     if (state.rest_twist.empty()) return;
@@ -166,7 +165,7 @@ void slip(double beyond, double share, double h, const CableModel& model, CableS
 }
 
 void keep_flow(double part, double time_step, const CableModel& model, const CableState& state, LengthDrive& drive) {
-  drive.start_length += state.rest_lengths[drive.segment] - length_at(drive, part, time_step);
+  drive.start_length += state.rest_lengths[drive.segment] - planned_length(drive, part, time_step);
   const double mass = mass_at(drive, part, model, state);
   for (const int side : {0, 1})
     drive.start_masses[side] += state.masses[drive.segment + side] - (drive.start_masses[side] + mass);
@@ -180,6 +179,7 @@ bool complete_drive(LengthDrive& drive) {
   drive.left = drive.arrives ? 0 : drive.left - drive.fed();
   drive.rate = drive.next_rate;
   drive.slipped = 0;
+  drive.motor_speed = std::max(drive.motor_speed, std::abs(drive.rate + drive.slip));
   if (drive.slip != 0) {
     // A motor goes as what it pulls lets it, but does not turn round.
     const double found = drive.rate + drive.slip;

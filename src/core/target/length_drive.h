@@ -23,7 +23,8 @@ struct LengthDrive {
   bool keeps_tension = false;  ///< a winch goes by the tension, not by `left`
   /// [m] of the cable, between which a winch pays out and takes in as its tension is; no more is let out as it gives way
   double min_length = 0, max_length = infinity;
-  double slip = 0;  ///< [m/s] by which the rest length grew faster than planned, in the last substep
+  double motor_speed = 0;  ///< [m/s] that one which keeps a tension has come to: behind its clutch the motor runs on
+  double slip = 0;         ///< [m/s] by which the rest length grew faster than planned, in the last substep
   /// [m] that a bent place lost in length when its node was taken in, [m/s] how that changes; it is given back smoothly
   double debt = 0, debt_rate = 0;
 
@@ -39,6 +40,7 @@ struct LengthDrive {
   double slipped = 0;                      ///< [m] beyond what is planned, so far
 
   double growth() const { return rate - debt_rate; }  ///< [m/s] of the rest length, at the world's time
+  double fed_rate() const { return growth() + slip; }  ///< [m/s] likewise, with what it has slipped by
   double next_growth() const { return next_rate - next_debt_rate; }
   bool is_winch() const { return place != Place::inside; }
   bool heeds_tension() const { return tension < infinity; }
@@ -60,10 +62,13 @@ void plan_kept_tension(double available, double most_out, double time_step, Leng
 /// Takes in no more than `most` [m] in this step: what is beside the winch may be in a guide that lets nothing through.
 void stall(double most, double time_step, LengthDrive& drive);
 /// In a substep of `h` [s] that ends at a part of the step.
-WinchLaw winch_law(const LengthDrive& drive, double part, double h);
+WinchLaw winch_law(const LengthDrive& drive, double part, double h, double time_step);
 /// A substep of `h` [s] has found that the rest length grows by `beyond` [m] more than planned. Gives the segment and its nodes
 /// the `share` of it that they have of what is planned for the substep; they have all of it as they are wound on.
 void slip(double beyond, double share, double h, const CableModel& model, CableState& state, LengthDrive& drive);
+
+/// [m] The segment's rest length at a part of the step.
+double planned_length(const LengthDrive& drive, double part, double time_step);
 
 /// Gives the segment the rest length, and its nodes the masses, that it has at a part of the step, 0 to 1.
 void wind(const LengthDrive& drive, double part, double time_step, const CableModel& model, CableState& state);

@@ -430,7 +430,9 @@ double IslandStepper::wind_drive(int index, Scheme scheme, double from, double t
   const double time_step = state_.scene->time_step;
   wind(drive, part, time_step, *cable.model, cable.state);
   GrowingSegment growing{drive.segment, growth_at(drive, to)};
-  growing.law = winch_law(drive, to, (to - from) * time_step);
+  growing.way = planned_length(drive, to, time_step) - planned_length(drive, from, time_step);
+  growing.left = planned_length(drive, to, time_step) - cable.state.rest_lengths[drive.segment];
+  growing.law = winch_law(drive, to, (to - from) * time_step, time_step);
   boundary.growing.assign(1, growing);
   return part;
 }
