@@ -186,7 +186,7 @@ const Mistake mistakes[] = {
      "fluid.waves[0].period: missing"},
     {"waveOfNegativeHeight", time_step, "fluid: {density: 1000, surface: 0, waves: [{amplitude: -1, period: 3}]}",
      "fluid.waves[0].amplitude: -1;"},
-    {"waveInAir", time_step, "fluid: {waves: [{amplitude: 1, period: 3}]}", "fluid.surface: .inf;"},
+    {"waveWithoutASurface", time_step, "fluid: {density: 1000, waves: [{amplitude: 1, period: 3}]}", "fluid.surface: .inf;"},
     {"noDepth", time_step, "fluid: {depth: 0}", "fluid.depth: 0;"},
     {"fluidIsNoMap", time_step, "fluid: water", "fluid: \"water\";"},
     {"unknownGravity", gravity, "gravity: {type: lateral}", "gravity.type: \"lateral\"; allowed: central"},

@@ -29,8 +29,7 @@ limits: {segments: 50, snapshots: 3, rollouts: 0}
 seed: 7
 integrator: verlet
 nets: []
-fluid: {density: 1000, velocity: [1, 2, 3], surface: 0.5, normal_drag: 1.1, tangential_drag: 0.02, depth: 30,
-        waves: [{amplitude: 0.5, period: 8}, {amplitude: 0.1, period: 3, direction: 0.2, phase: 1}]}
+fluid: {density: 1000, velocity: [1, 2, 3], surface: 0.5, normal_drag: 1.1, tangential_drag: 0.02, depth: 30}
 materials:
   rope: {linear_density: 0.2, radius: 0.01, drag: 0.3, friction: 0.5, axial_stiffness: 1e4, bending_stiffness: 0.02,
          torsional_stiffness: 0.015, axial_damping: 3, bending_damping: 0.001, torsional_damping: 0.002, breaking_tension: 900,
@@ -78,12 +77,6 @@ cables:
   EXPECT_EQ(scene.fluid.normal_drag, 1.1);
   EXPECT_EQ(scene.fluid.tangential_drag, 0.02);
   EXPECT_EQ(scene.fluid.depth, 30);
-  ASSERT_EQ(scene.fluid.waves.size(), 2u);
-  EXPECT_EQ(scene.fluid.waves[0].amplitude, 0.5);
-  EXPECT_EQ(scene.fluid.waves[0].phase, 0);
-  EXPECT_EQ(scene.fluid.waves[1].period, 3);
-  EXPECT_EQ(scene.fluid.waves[1].direction, 0.2);
-  EXPECT_EQ(scene.fluid.waves[1].phase, 1);
 
   ASSERT_NE(scene.find_material("rope"), nullptr);
   EXPECT_EQ(scene.find_material("rope")->linear_density, 0.2);
@@ -132,6 +125,20 @@ cables:
   EXPECT_EQ(scene.cables[2].initial.type, InitialShapeDesc::Type::settled);
   EXPECT_EQ(scene.cables[1].initial.from, Vector3(1, 1, 1));
   EXPECT_EQ(scene.cables[1].initial.to, Vector3(1, 1, 2));
+}
+
+TEST(SceneReader, wavesAreReadInTheirOrder) {
+  const SceneDesc scene = read_scene_text(
+      "bodies: [{name: buoy, mass: 1, inertia: [1, 1, 1]}]\n"
+      "fluid: {density: 1000, surface: 0, waves: [{amplitude: 0.5, period: 8}, {amplitude: 0.1, period: 3, direction: 0.2, "
+      "phase: "
+      "1}]}\n");
+  ASSERT_EQ(scene.fluid.waves.size(), 2u);
+  EXPECT_EQ(scene.fluid.waves[0].amplitude, 0.5);
+  EXPECT_EQ(scene.fluid.waves[0].phase, 0);
+  EXPECT_EQ(scene.fluid.waves[1].period, 3);
+  EXPECT_EQ(scene.fluid.waves[1].direction, 0.2);
+  EXPECT_EQ(scene.fluid.waves[1].phase, 1);
 }
 
 TEST(SceneReader, ACableWithAColorIsShownInItUnlessTheSceneSaysOtherwise) {

@@ -293,7 +293,7 @@ void check_fluid(const SceneDesc& scene, Errors& errors) {
   const char* down = "[0, 0, -g] with any g above 0 [m/s^2], with fluid.waves";
   if (scene.gravity.type != GravityDesc::Type::uniform)
     errors.add("gravity", "central", down);
-  else if (g.allFinite() && !(g.x() == 0 && g.y() == 0 && g.z() < 0))
+  else if (g.allFinite() && !(g.x() == 0 && g.y() == 0 && positive.contains(-g.z())))
     errors.add("gravity", list_text(g), down);
 }
 
