@@ -69,8 +69,8 @@ PlacedEdit apply_cut(World& world, const Location& place) {
   return {result, place.node};
 }
 
-EditResult apply_set_length(World& world, const std::string& cable, bool at_end, double length, double speed,
-                            double max_tension, const RequestWords& words) {
+EditResult apply_set_length(World& world, const std::string& cable, bool at_end, double length, double speed, double max_tension,
+                            const RequestWords& words) {
   if (const auto reason = refused_cable(world, "cable", cable, words)) return *reason;
   const int index = find(world.cables(), cable);
   const double before = world.cables()[index].state.length();
@@ -90,9 +90,9 @@ EditResult apply_set_tension(World& world, const std::string& cable, edit::SetTe
   if (!result.ok) return result;
   const std::string winch = std::string("the winch at the ") + (change.at_end ? "end" : "start") + " of cable " + quoted(cable);
   return {true,
-          change.tension > 0 ? winch + " keeps " + number_text(change.tension) + " N, at up to " +
-                                   number_text(change.max_speed) + " m/s"
-                             : winch + " turns freely, at up to " + number_text(change.max_speed) + " m/s",
+          change.tension > 0
+              ? winch + " keeps " + number_text(change.tension) + " N, at up to " + number_text(change.max_speed) + " m/s"
+              : winch + " turns freely, at up to " + number_text(change.max_speed) + " m/s",
           {}};
 }
 

@@ -161,9 +161,205 @@ INSTANTIATE_TEST_SUITE_P(Ropes, KeptTension,
                          testing::Values(RopeCase{"soft20", 1e4, 20, 1e-3}, RopeCase{"soft200", 1e4, 200, 5e-3},
                                          RopeCase{"middle", 1e5, 50, 2e-3}, RopeCase{"wire20", 1e6, 20, 5e-3},
                                          RopeCase{"wire200", 1e6, 200, 1e-3}, RopeCase{"rigid20", infinity, 20, 1e-3},
-                                         RopeCase{"rigid20coarse", infinity, 20, 5e-3},
-                                         RopeCase{"rigid200", infinity, 200, 1e-3},
+                                         RopeCase{"rigid20coarse", infinity, 20, 5e-3}, RopeCase{"rigid200", infinity, 200, 1e-3},
                                          RopeCase{"rigid200coarse", infinity, 200, 5e-3}),
+                         [](const auto& info) { return info.param.name; });
+
+/// A hand draws rope off a spool that turns freely, on a level, where nothing hangs: it feels what it sets in motion.
+TEST(FreeSpool, GivesRopeToAHand) {
+  for (const double axial_stiffness : {infinity, 1e5}) {
+    SceneDesc scene = winch_scene(40, 2, axial_stiffness, 2e-3);
+    scene.gravity.acceleration.setZero();
+    scene.cables[0].attachments.push_back(scenes::attachment("hand", At::end, {0, 0, 0}, "hand"));
+    World world(scene, scenes::hand_at({2, 0, 0}));
+    ASSERT_TRUE(world.apply(kept(0)).ok);
+    const double weight = gravity * density * 2;
+    for (int i = 1; i <= 1500; ++i) {
+      // 0.5 m/s within a second
+      const double t = 2e-3 * i, way = t < 1 ? 0.25 * t * t : 0.25 + 0.5 * (t - 1);
+      ASSERT_EQ(world.step(scenes::hand_at({2 + way, 0, 0})).status, Status::ok) << i;
+      ASSERT_LT(std::abs(tension(world)), 0.01 * weight) << i;
+    }
+    EXPECT_NEAR(length(world), 3.25, 1e-3);
+    // What comes back stays off the spool.
+    const double most = length(world);
+    for (int i = 1; i <= 200; ++i) world.step(scenes::hand_at({3.25 - 1e-3 * i, 0, 0}));
+    EXPECT_GE(length(world), most - 1e-9);
+  }
+}
+
+/// A winch that is to take in more than there is pulls with what it may, and stands.
+TEST(SlippingWinch, StallsAtItsTension) {
+  for (const double axial_stiffness : {infinity, 1e5}) {
+    SceneDesc scene = winch_scene(40, 2, axial_stiffness, 2e-3);
+    scene.cables[0].attachments.push_back(scenes::attachment("wall", At::end, {1.9, 0, 0}));
+    scene.cables[0].initial.type = InitialShapeDesc::Type::settled;
+    World world(scene, initial_frames(scene));
+    EXPECT_FALSE(world.apply(edit::SetLength{0, false, 1.5, 0.2}).ok && axial_stiffness == infinity);
+    ASSERT_TRUE(world.apply(edit::SetLength{0, false, 1.5, 0.2, 60}).ok);
+    for (int i = 1; i <= 1500; ++i) {
+      ASSERT_EQ(world.step(initial_frames(scene)).status, Status::ok) << i;
+      ASSERT_LT(tension(world), 60 * 1.01) << i;
+    }
+    EXPECT_NEAR(tension(world), 60, 0.6);
+    EXPECT_NEAR(length(world), axial_stiffness == infinity ? 1.9 : 1.9 / (1 + 60 / axial_stiffness), 1e-3);
+    EXPECT_LT(unaccounted(world, gravity * mass(world) * 2), 1e-4);
+  }
+}
+
+/// Where what it pulls gives way it goes as one without a limit.
+TEST(SlippingWinch, WindsWhatItCan) {
+  SceneDesc scene = winch_scene(40, 2, infinity, 2e-3);
+  scene.cables[0].point_masses = {scenes::payload(1)};
+  scene.cables[0].initial.type = InitialShapeDesc::Type::settled;
+  World limited(scene, initial_frames(scene)), other(scene, initial_frames(scene));
+  ASSERT_TRUE(limited.apply(edit::SetLength{0, false, 1, 0.5, 30}).ok);
+  ASSERT_TRUE(other.apply(edit::SetLength{0, false, 1, 0.5}).ok);
+  for (int i = 0; i < 1500; ++i) {
+    limited.step(initial_frames(scene));
+    other.step(initial_frames(scene));
+    ASSERT_NEAR(length(limited), length(other), 1e-6) << i;
+  }
+  EXPECT_NEAR(length(limited), 1, 1e-9);
+}
+
+/// A load that is too light comes up, one that is too heavy goes down: to where the winch stops, without a jerk.
+TEST(KeptTensions, EndAtTheirLengths) {
+  SceneDesc scene = winch_scene(40, 2, infinity, 2e-3);
+  scene.cables[0].point_masses = {scenes::payload(1)};
+  scene.cables[0].initial.type = InitialShapeDesc::Type::settled;
+  const double weight = gravity * 1.2;
+  for (const bool up : {true, false}) {
+    World world(scene, initial_frames(scene));
+    edit::SetTension change{0, false, (up ? 1.05 : 0.95) * weight, 0.5, 1.6, 2.4};
+    ASSERT_TRUE(world.apply(change).ok);
+    for (int i = 0; i < 2000; ++i) {
+      ASSERT_EQ(world.step(initial_frames(scene)).status, Status::ok) << i;
+      // Speeding up and braking change it by a tenth.
+      ASSERT_NEAR(tension(world), weight, 0.15 * weight) << i;
+    }
+    EXPECT_NEAR(length(world), up ? 1.6 : 2.4, 1e-3);
+  }
+}
+
+/// It reaches its speed by `winch_acceleration`: slack rope resists nothing.
+TEST(KeptTensions, SpeedUpAsTheSceneSays) {
+  for (const double acceleration : {0.5, 2.0}) {
+    SceneDesc scene = winch_scene(40, 2, infinity, 2e-3);
+    scene.winch_acceleration = acceleration;
+    scene.cables[0].attachments.push_back(scenes::attachment("wall", At::end, {0.5, 0, 0}));
+    scene.cables[0].initial.type = InitialShapeDesc::Type::settled;
+    World world(scene, initial_frames(scene));
+    ASSERT_TRUE(world.apply(kept(100)).ok);
+    for (int i = 1; i <= 250; ++i) {
+      world.step(initial_frames(scene));
+      const double t = 2e-3 * i;
+      ASSERT_NEAR(2 - length(world), 0.5 * acceleration * t * t, 5e-3 * acceleration * t) << i;
+    }
+  }
+}
+
+TEST(KeptTensions, CopiesGoOnAlikeAndLengthsReplaceThem) {
+  SceneDesc scene = winch_scene(40, 2, 1e5, 2e-3);
+  scene.cables[0].point_masses = {scenes::payload(1)};
+  scene.cables[0].initial.type = InitialShapeDesc::Type::settled;
+  World world(scene, initial_frames(scene));
+  const std::uint64_t before = world.hash();
+  ASSERT_TRUE(world.apply(kept(10)).ok);
+  EXPECT_NE(world.hash(), before);
+  for (int i = 0; i < 100; ++i) world.step(initial_frames(scene));
+  World copy = world;
+  for (int i = 0; i < 300; ++i) {
+    world.step(initial_frames(scene));
+    copy.step(initial_frames(scene));
+  }
+  EXPECT_EQ(world.hash(), copy.hash());
+  // The winch at the other end is refused until this one is done.
+  const EditResult other = world.apply(edit::SetTension{0, true, 1, 1, 0.2, 3});
+  EXPECT_NE(other.message.find("set a length there first"), std::string::npos) << other.message;
+  ASSERT_TRUE(world.apply(edit::SetLength{0, false, 1.5, 0.5}).ok);
+  for (int i = 0; i < 2500; ++i) ASSERT_EQ(world.step(initial_frames(scene)).status, Status::ok);
+  EXPECT_NEAR(length(world), 1.5, 1e-6);
+  EXPECT_TRUE(world.apply(edit::SetLength{0, true, 1.6, 0.5}).ok);
+}
+
+TEST(KeptTensions, AreRefusedWithAllReasons) {
+  SceneDesc scene = winch_scene(40, 2, infinity, 2e-3);
+  World world(scene, initial_frames(scene));
+  const std::uint64_t before = world.hash();
+  const EditResult result = world.apply(edit::SetTension{0, false, -1, 0, -2, std::nan("")});
+  EXPECT_FALSE(result.ok);
+  for (const char* part : {"tension: -1", "max_speed: 0", "min_length: -2", "max_length: "})
+    EXPECT_NE(result.message.find(part), std::string::npos) << result.message;
+  EXPECT_FALSE(world.apply(edit::SetTension{0, false, 1, 1, 3, 2}).ok);
+  EXPECT_FALSE(world.apply(edit::SetTension{1, false, 1, 1, 1, 2}).ok);
+  for (const double bad : {-1.0, infinity, std::nan("")}) {
+    const EditResult refused = world.apply(edit::SetLength{0, false, 1.5, 1, bad});
+    EXPECT_NE(refused.message.find("max_tension: "), std::string::npos) << refused.message;
+  }
+  EXPECT_EQ(world.hash(), before);
+}
+
+/// No more than the scene's segments come out of a winch that slips.
+TEST(SlippingWinch, KeepsTheLimitOfSegments) {
+  SceneDesc scene = winch_scene(40, 2, infinity, 2e-3);
+  scene.cables[0].point_masses = {scenes::payload(1)};
+  scene.limits.segments = 50;
+  World world(scene, initial_frames(scene));
+  ASSERT_TRUE(world.apply(edit::SetLength{0, false, 2, 0.5, 1}).ok);
+  for (int i = 0; i < 1000; ++i) {
+    world.step(initial_frames(scene));
+    ASSERT_LE(world.cables()[0].state.segments(), 50) << i;
+  }
+  EXPECT_NEAR(length(world), 2.5, 1e-3);
+}
+
+struct HookCase {
+  const char* name;
+  bool bends, clamped, is_rod;
+};
+
+class WinchWithAHook : public testing::TestWithParam<HookCase> {};
+
+/// A body hangs on it; cables bend, and clamps hold them.
+TEST_P(WinchWithAHook, KeepsAndSlips) {
+  const HookCase& hook = GetParam();
+  SceneDesc scene = winch_scene(60, 3, infinity, 2e-3);
+  if (hook.bends) scene.materials[0].material.bending_stiffness = hook.is_rod ? BendingStiffness(0.02, 0.01) : 0.02;
+  scene.cables[0].attachments[0].type = hook.clamped ? AttachmentType::clamp : AttachmentType::hinge;
+  scene.cables[0].attachments[0].rotation = {0, M_PI / 2, 0};
+  BodyDesc load;
+  load.name = "load";
+  load.mass = 2;
+  load.inertia = Vector3(0.01, 0.01, 0.01);
+  scene.bodies = {load};
+  AttachmentDesc end = scenes::attachment("hook", At::end, {0, 0, 0.05});
+  end.body = "load";
+  scene.cables[0].attachments.push_back(end);
+  scene.cables[0].initial.type = InitialShapeDesc::Type::settled;
+  const double weight = gravity * 2.3;
+  for (const bool slips : {true, false}) {
+    World world(scene, initial_frames(scene));
+    const double pull = slips ? 0.7 * weight : 1.03 * weight;
+    if (slips)
+      ASSERT_TRUE(world.apply(edit::SetLength{0, false, 3, 0.5, pull}).ok);
+    else
+      ASSERT_TRUE(world.apply(kept(pull)).ok);
+    for (int i = 1; i <= 300; ++i) {
+      ASSERT_EQ(world.step(initial_frames(scene)).status, Status::ok) << i;
+      // What bends adds a little to what leaves the winch, where that goes fast.
+      if (i > 100) {
+        ASSERT_NEAR(tension(world), pull, 0.03 * pull) << i;
+      }
+    }
+    EXPECT_LT(unaccounted(world, weight * 3), 1e-4);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cables, WinchWithAHook,
+                         testing::Values(HookCase{"rope", false, false, false}, HookCase{"clampedRope", false, true, false},
+                                         HookCase{"bends", true, false, false}, HookCase{"clampedBends", true, true, false},
+                                         HookCase{"rod", true, false, true}, HookCase{"clampedRod", true, true, true}),
                          [](const auto& info) { return info.param.name; });
 
 }  // namespace

@@ -53,8 +53,9 @@ struct SetLength {
   double max_tension = 0;  ///< [N] 0: none
 };
 
-/// Pays out and takes in cable at one end so that it leaves the winch with that tension, until the winch is told something else.
-/// Tension 0: a spool that turns freely, and takes nothing in.
+/// Pays out and takes in cable at one end so that it leaves the winch with that tension, until the winch is told something else:
+/// a motor that speeds up by the scene's `winch_acceleration`, and runs on, behind a clutch that gives the tension at any speed
+/// up to the motor's, either way. Tension 0: a spool that turns freely, and takes nothing in.
 struct SetTension {
   int cable = 0;
   bool at_end = false;

@@ -146,8 +146,8 @@ EditResult World::Implementation::apply(const edit::SetTension& change) {
     if (!holds) reasons += (reasons.empty() ? "" : "\n") + reason;
   };
   require(tension >= 0 && tension < infinity, "tension: " + number_text(tension) + "; must be a number of N, 0 or more");
-  require(max_speed > 0 && max_speed <= fastest, "max_speed: " + number_text(max_speed) + "; must be above 0, and at most " +
-                                                     rounded_bound_text(fastest, -1) + " m/s");
+  require(max_speed > 0 && max_speed <= fastest,
+          "max_speed: " + number_text(max_speed) + "; must be above 0, and at most " + rounded_bound_text(fastest, -1) + " m/s");
   require(min_length >= 0 && min_length < infinity,
           "min_length: " + number_text(min_length) + "; must be a number of m, 0 or more");
   require(max_length > 0 && !(max_length < min_length),
@@ -227,10 +227,10 @@ void World::Implementation::plan_drive_of(int index) {
   const double available = available_length(index), length = state.cables[index].state.length() + drive.debt;
   if (!drive.heeds_tension()) return plan_drive(available, time_step, drive);
   const double most_out = std::min(drive.max_length, longest_cable(index)) - length;
-  if (drive.keeps_tension)
-    return plan_kept_tension(std::min(available, length - drive.min_length), most_out, time_step, drive);
+  if (drive.keeps_tension) return plan_kept_tension(std::min(available, length - drive.min_length), most_out, time_step, drive);
   plan_drive(available, time_step, drive);
   drive.fastest_out = std::max(most_out, 0.0) / time_step;
+  drive.carried = std::min(drive.slip, drive.fastest_out);
 }
 
 /// Segments appear and vanish at the winch, so that the one there stays about as long as the others.

@@ -185,14 +185,12 @@ void CableStepper::set_flow_lengths(const Substep& s) {
 DrawnLength CableStepper::evaluate_flowing_length(const Substep& s, int i) {
   const Straining strained = straining(s, i);
   const FlowingLength flowing{strained.start, strained.end, length_[i], std::sqrt(end_square_[i])};
-  DrawnLength drawn =
-      draw({axial_stiffness_[i], axial_damping_[i] / s.damping_time()}, flowing, tension_density_[i], s.part());
+  DrawnLength drawn = draw({axial_stiffness_[i], axial_damping_[i] / s.damping_time()}, flowing, tension_density_[i], s.part());
   if (keeps_tension(i)) {
     // The winch takes in what would lessen it.
     const double mean = flowing.start_length + s.part() * (flowing.length - flowing.start_length);
     const double tension = mean * (tension_density_[i] - drawn.row.gap / drawn.row.compliance);
-    drawn.row = kept_row({tension, 0}, tension_density_[i], mean, flowing.length, s.part(),
-                         least_winch_stiffness());
+    drawn.row = kept_row({tension, 0}, tension_density_[i], mean, flowing.length, s.part(), least_winch_stiffness());
     drawn.slope = 0;
   }
   set_row(i, drawn.row);

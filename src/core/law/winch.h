@@ -38,8 +38,8 @@ struct WoundLength {
   double start_length = 0;
 };
 
-/// [m] Of an elastic segment whose length at the end is `length` [m]. Its strain is then that which leaves the tension at the end,
-/// its damping included. A mean over the substep would let the strain alternate. `resistance` [N]: of strains, as in draw().
+/// [m] Of an elastic segment whose length at the end is `length` [m]. Its strain is then that which leaves the tension at the
+/// end, its damping included. A mean over the substep would let the strain alternate. `resistance` [N]: of strains, as in draw().
 inline double wanted_growth(const Resistance<double>& resistance, const WoundLength& wound, double tension, double length) {
   const double start_strain = wound.start_length / wound.start_rest - 1;
   const double strain = (tension + resistance.damping * start_strain) / (resistance.stiffness + resistance.damping);
@@ -65,8 +65,8 @@ inline WoundTension wound_tension(const Resistance<double>& resistance, const Wo
   return found;
 }
 
-/// [m] Of a segment that cannot stretch, beyond the planned `rest` [m]: where it differs from how long the segment is, its tension
-/// does from the law's. `mobility` [m/N] weighs one against the other.
+/// [m] Of a segment that cannot stretch, beyond the planned `rest` [m]: where it differs from how long the segment is, its
+/// tension does from the law's. `mobility` [m/N] weighs one against the other.
 inline double wanted_growth(double rest, double law_tension, double tension, double length, double mobility) {
   return length - rest + mobility * (tension - law_tension);
 }

@@ -212,13 +212,13 @@ class CableStepper {
     double planned_way = 0;   // [m] that it grows by
     double planned_left = 0;  // [m] of that from there on
     double rounded_way = 0;   // [m] by which that is more than what `rest_growth_` is planned to be
-    double beyond = 0;          // [m] by which it grows more
+    double beyond = 0;        // [m] by which it grows more
     WinchMode mode = WinchMode::least;
     bool changed = false;  // whether the mode did in this iteration
     int changes = 0;       // of it, in the substep
   };
   Winch winch_;
-  std::vector<double> target_length_;               // segments: l [m]; longer where bodies have drawn them out
+  std::vector<double> target_length_;  // segments: l [m]; longer where bodies have drawn them out
   std::vector<OverstretchedSpan> overstretched_;
   std::vector<char> yields_;               // segments: of an overstretched span
   std::vector<double> inverse_mass_;       // nodes: [1/kg], 0 where held

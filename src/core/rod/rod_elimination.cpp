@@ -196,8 +196,8 @@ bool RodElimination::factor_lanes(const KktSystem& system, const RodStiffness& s
     for (int lane = 0; lane < 2; ++lane) {
       // A tension that does not change with the length has a compliance that is negative, and so is this then.
       const double least = least_resistance * square[lane];
-      resistance[lane] = compliance[lane] < 0 && resistance[lane] < 0 ? std::min(resistance[lane], -least)
-                                                                       : std::max(resistance[lane], least);
+      resistance[lane] =
+          compliance[lane] < 0 && resistance[lane] < 0 ? std::min(resistance[lane], -least) : std::max(resistance[lane], least);
     }
     e.gap_share = 1.0 / resistance;
     e.stretch = compliance * e.gap_share * e.inverse_square;

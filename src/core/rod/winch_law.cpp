@@ -97,8 +97,7 @@ void CableStepper::evaluate_winch(const Substep& s) {
   const double least = least_winch_stiffness();
   if (is_elastic_at(i)) {
     wind_beyond(s, wanted);
-    const WoundTension wound =
-        wound_tension(strain_resistance(s, i), wound_length(s), winch_.mode, winch_.beyond, end, part);
+    const WoundTension wound = wound_tension(strain_resistance(s, i), wound_length(s), winch_.mode, winch_.beyond, end, part);
     set_row(i, keeps ? kept_row(wound, tension_density_[i], mean, end, part, least)
                      : elastic_row(wound.tension, wound.rise, tension_density_[i], mean, end, part));
     return;
@@ -151,8 +150,8 @@ void CableStepper::finish_winch(const Substep& s) {
   }
 }
 
-/// [J] The state's rest length has been planned; with that which the winch found, an elastic segment takes in another energy as it
-/// is strained. The winch brings the difference, as if it had wound to that first.
+/// [J] The state's rest length has been planned; with that which the winch found, an elastic segment takes in another energy as
+/// it is strained. The winch brings the difference, as if it had wound to that first.
 double CableStepper::work_of_winch_beyond() const {
   const int i = winch_.segment;
   const auto gain = [&](double rest) {

@@ -46,8 +46,9 @@ void go_on(double time_step, LengthDrive& drive) {
 }
 
 /// [kg] By which each of the segment's nodes has become heavier.
-double mass_at(const LengthDrive& drive, double part, const CableModel& model, const CableState& state) {
-  return drive.is_winch() ? 0.5 * CableMaterials(model, state)[drive.segment].linear_density * part * drive.wound : 0;
+double mass_at(const LengthDrive& drive, double part, double time_step, const CableModel& model, const CableState& state) {
+  const double fed = part * (drive.wound + time_step * drive.carried);
+  return drive.is_winch() ? 0.5 * CableMaterials(model, state)[drive.segment].linear_density * fed : 0;
 }
 
 }  // namespace
@@ -55,7 +56,8 @@ double mass_at(const LengthDrive& drive, double part, const CableModel& model, c
 double planned_length(const LengthDrive& drive, double part, double time_step) {
   const double uniform = drive.change - 0.5 * time_step * (drive.growth() + drive.next_growth());
   const double accelerated = time_step * (drive.growth() + 0.5 * part * (drive.next_growth() - drive.growth()));
-  return drive.start_length + (part == 1 ? drive.change : part * (uniform + accelerated));
+  const double slid = part * time_step * drive.carried;
+  return drive.start_length + (part == 1 ? drive.change : part * (uniform + accelerated)) + slid;
 }
 
 void plan_drive(double available, double time_step, LengthDrive& drive) {
@@ -106,7 +108,9 @@ WinchLaw winch_law(const LengthDrive& drive, double part, double h, double time_
   if (!drive.heeds_tension()) return law;
   law.tension = drive.tension;
   if (!drive.keeps_tension) {
-    law.most_rate = std::max(drive.fastest_out - growth_at(drive, part), 0.0);
+    law.least_rate = -drive.carried;
+    law.most_rate = std::max(drive.fastest_out - growth_at(drive, part), law.least_rate);
+    law.least = h * law.least_rate;
     law.most = h * law.most_rate;
   } else {
     // Behind the clutch its motor runs on as fast as it came to; nothing holds a spool that turns freely. Rates are means over
@@ -121,7 +125,7 @@ WinchLaw winch_law(const LengthDrive& drive, double part, double h, double time_
     law.least_rate = least + 0.5 * std::clamp(least - last, -gain, 0.0) - drive.rate;
     law.most_rate = most + (is_free ? 0 : 0.5 * std::clamp(most - last, 0.0, gain)) - drive.rate;
   }
-  law.guess = std::clamp(h * drive.slip, law.least, std::max(law.least, law.most));
+  law.guess = std::clamp(h * (drive.slip - drive.carried), law.least, std::max(law.least, law.most));
   return law;
 }
 
@@ -147,7 +151,7 @@ void wind(const LengthDrive& drive, double part, double time_step, const CableMo
     for (const int side : {0, 1}) state.rest_twist[drive.segment + side] *= before[side] / after[side];
     return;
   }
-  const double mass = mass_at(drive, part, model, state);
+  const double mass = mass_at(drive, part, time_step, model, state);
   for (const int side : {0, 1}) state.masses[drive.segment + side] = drive.start_masses[side] + mass;
 }
 
@@ -159,26 +163,26 @@ void slip(double beyond, double share, double h, const CableModel& model, CableS
     state.masses[drive.segment + side] += share * mass;
     drive.start_masses[side] += mass;
   }
-  drive.slip = beyond / h;
-  drive.slipped += beyond;
-  if (beyond > 0) drive.arrives = false;
+  drive.slip = drive.carried + beyond / h;
+  drive.slipped += h * drive.slip;
+  if (drive.slip > 0) drive.arrives = false;
 }
 
 void keep_flow(double part, double time_step, const CableModel& model, const CableState& state, LengthDrive& drive) {
   drive.start_length += state.rest_lengths[drive.segment] - planned_length(drive, part, time_step);
-  const double mass = mass_at(drive, part, model, state);
+  const double mass = mass_at(drive, part, time_step, model, state);
   for (const int side : {0, 1})
     drive.start_masses[side] += state.masses[drive.segment + side] - (drive.start_masses[side] + mass);
 }
 
 double growth_at(const LengthDrive& drive, double part) {
-  return drive.growth() + part * (drive.next_growth() - drive.growth());
+  return drive.growth() + part * (drive.next_growth() - drive.growth()) + drive.carried;
 }
 
 bool complete_drive(LengthDrive& drive) {
   drive.left = drive.arrives ? 0 : drive.left - drive.fed();
   drive.rate = drive.next_rate;
-  drive.slipped = 0;
+  drive.slipped = drive.carried = 0;
   drive.motor_speed = std::max(drive.motor_speed, std::abs(drive.rate + drive.slip));
   if (drive.slip != 0) {
     // A motor goes as what it pulls lets it, but does not turn round.

@@ -21,8 +21,7 @@ struct LengthDrive {
   double rate = 0;             ///< [m/s] at the world's time, < 0: taking in; of a winch that keeps a tension the last mean
   double tension = infinity;   ///< [N] that a winch keeps, or above which it gives way; 0, kept: nothing drives it
   bool keeps_tension = false;  ///< a winch goes by the tension, not by `left`
-  /// [m] of the cable, between which a winch pays out and takes in as its tension is; no more is let out as it gives way
-  double min_length = 0, max_length = infinity;
+  double min_length = 0, max_length = infinity;  ///< [m] of the cable, between which a winch keeps a tension
   double motor_speed = 0;  ///< [m/s] that one which keeps a tension has come to: behind its clutch the motor runs on
   double slip = 0;         ///< [m/s] by which the rest length grew faster than planned, in the last substep
   /// [m] that a bent place lost in length when its node was taken in, [m/s] how that changes; it is given back smoothly
@@ -37,9 +36,10 @@ struct LengthDrive {
   double next_debt = 0, next_debt_rate = 0;
   bool arrives = false;
   double fastest_in = 0, fastest_out = 0;  ///< [m/s] >= 0: how fast a winch may go as its tension is
+  double carried = 0;                      ///< [m/s] of `slip` at its start, with which it is wound on
   double slipped = 0;                      ///< [m] beyond what is planned, so far
 
-  double growth() const { return rate - debt_rate; }  ///< [m/s] of the rest length, at the world's time
+  double growth() const { return rate - debt_rate; }   ///< [m/s] of the rest length, at the world's time
   double fed_rate() const { return growth() + slip; }  ///< [m/s] likewise, with what it has slipped by
   double next_growth() const { return next_rate - next_debt_rate; }
   bool is_winch() const { return place != Place::inside; }
@@ -56,8 +56,8 @@ void open_clamp(const LengthDrive& drive, const std::vector<Attachment>& attachm
 /// `available` [m] is taken in.
 void plan_drive(double available, double time_step, LengthDrive& drive);
 
-/// The same of a winch that keeps a tension: it goes on as it went, but no faster than it may; what its tension makes of that each
-/// substep finds. At most `most_out` [m] is let out.
+/// The same of a winch that keeps a tension: it goes on as it went, but no faster than it may; what its tension makes of that
+/// each substep finds. At most `most_out` [m] is let out.
 void plan_kept_tension(double available, double most_out, double time_step, LengthDrive& drive);
 /// Takes in no more than `most` [m] in this step: what is beside the winch may be in a guide that lets nothing through.
 void stall(double most, double time_step, LengthDrive& drive);

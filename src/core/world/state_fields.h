@@ -168,9 +168,9 @@ auto fields(T& x, const TwistSpan*) {
 }
 template <class T>
 auto fields(T& x, const LengthDrive*) {
-  return std::tie(x.place, x.segment, x.left, x.speed, x.acceleration, x.rate, x.tension, x.keeps_tension, x.min_length, x.max_length,
-                  x.motor_speed, x.slip, x.debt, x.debt_rate, x.start_length, x.start_masses, x.wound, x.change, x.next_rate, x.next_debt,
-                  x.next_debt_rate, x.arrives, x.fastest_in, x.fastest_out, x.slipped);
+  return std::tie(x.place, x.segment, x.left, x.speed, x.acceleration, x.rate, x.tension, x.keeps_tension, x.min_length,
+                  x.max_length, x.motor_speed, x.slip, x.debt, x.debt_rate, x.start_length, x.start_masses, x.wound, x.change,
+                  x.next_rate, x.next_debt, x.next_debt_rate, x.arrives, x.fastest_in, x.fastest_out, x.carried, x.slipped);
 }
 template <class T>
 auto fields(T& x, const CachedContact*) {

@@ -149,8 +149,7 @@ CableServices::CableServices(ros::NodeHandle& node, Simulation& simulation) : ow
                        }),
       serve<SetTension>(node, "set_tension",
                         [s](const auto& r, auto& response) {
-                          const edit::SetTension change{0,           bool(r.at_end), r.tension,
-                                                        r.max_speed, r.min_length,   r.max_length};
+                          const edit::SetTension change{0, bool(r.at_end), r.tension, r.max_speed, r.min_length, r.max_length};
                           return answer(s->set_tension(r.cable, change), response);
                         }),
       serve<Join>(node, "join",
