@@ -102,6 +102,27 @@ TEST(BodyInWater, SinksAtItsTerminalVelocity) {
   }
 }
 
+/// Of what is alike along all axes, however it is turned.
+TEST(BodyInWater, FeelsTheSameDragInAnyPose) {
+  std::vector<Vector3> velocities, spins;
+  for (const InitialPose& pose : {InitialPose{0, 0, 0, 0, 0, 0}, InitialPose{0, 0, 0, 0.5, 0.7, 1.1}}) {
+    SceneDesc scene = in_water();
+    BodyDesc& body = add_body(scene, 30, 0.02);
+    body.inertia = Vector3::Constant(0.5);
+    body.fluid.drag_area = Vector3::Constant(0.1);
+    body.fluid.angular_drag = Vector3::Constant(0.3);
+    body.velocity = {1, -2, 0.5};
+    body.angular_velocity = {2, 1, -3};
+    body.pose = pose;
+    World world(scene, initial_frames(scene));
+    scenes::run(world, 300);
+    velocities.push_back(body_of(world).velocity);
+    spins.push_back(body_of(world).angular_velocity);
+  }
+  EXPECT_LT((velocities[0] - velocities[1]).norm(), 1e-9);
+  EXPECT_LT((spins[0] - spins[1]).norm(), 1e-9);
+}
+
 /// v = V tanh(a t / V).
 TEST(BodyInWater, IsOfSecondOrderInTheStep) {
   constexpr double mass = 30, volume = 0.02, added = 10, area = 0.1, time = 0.8;

@@ -7,9 +7,16 @@ namespace verlet_cable {
 
 namespace {
 
-/// x |x|, axis by axis.
-Vector3 signed_squares(const Vector3& v) {
-  return v.cwiseProduct(v.cwiseAbs());
+/// |v| c v, with a coefficient for each axis: the same about all axes where the coefficients are.
+Vector3 quadratic(const Vector3& coefficients, const Vector3& v) {
+  return v.norm() * coefficients.cwiseProduct(v);
+}
+
+/// By which that changes with v.
+Eigen::Matrix3d quadratic_slope(const Vector3& coefficients, const Vector3& v) {
+  Eigen::Matrix3d slope = (v.norm() * coefficients).asDiagonal();
+  if (v.norm() > 0) slope += coefficients.cwiseProduct(v) * v.transpose() / v.norm();
+  return slope;
 }
 
 }  // namespace
@@ -68,8 +75,8 @@ BodyFluidForces::Forces BodyFluidForces::forces(double part, const BodyWay& way)
     f.immersion = (2 * area_at(middle) + area_at(depth)) / 6;
   }
   f.part = std::min(1.0, f.immersed / whole);
-  f.drag = f.axes * (0.5 * density_ * body_.drag_area.cwiseProduct(signed_squares(f.against)));
-  f.torque = -(f.axes * body_.angular_drag.cwiseProduct(signed_squares(f.spin)));
+  f.drag = f.axes * (0.5 * density_ * quadratic(body_.drag_area, f.against));
+  f.torque = -(f.axes * quadratic(body_.angular_drag, f.spin));
   f.pressure = density_ * body_.volume * (water_.acceleration - gravity_);
   const Eigen::Matrix3d mass = added_mass(f.axes);
   f.carried = is_wet_ ? Vector3(mass * water_.acceleration) : Vector3(Vector3::Zero());
@@ -87,7 +94,7 @@ Vector6 BodyFluidForces::load(double part, const BodyWay& way) const {
 Matrix6 BodyFluidForces::stiffness(double part, const BodyWay& way) const {
   const Forces f = forces(part, way);
   const Eigen::Matrix3d drag =
-      f.part * density_ * f.axes * body_.drag_area.cwiseProduct(f.against.cwiseAbs()).asDiagonal() * f.axes.transpose();
+      0.5 * f.part * density_ * f.axes * quadratic_slope(body_.drag_area, f.against) * f.axes.transpose();
   const double whole = radius_ == 0 ? 1 : body_.volume;
   // Of the force, by a displacement of C, and as the axes turn
   Eigen::Matrix3d moved = -rate_ * drag, turned = -cross_matrix(f.part * f.drag) + drag * cross_matrix(f.axes * f.against);
@@ -103,7 +110,7 @@ Matrix6 BodyFluidForces::stiffness(double part, const BodyWay& way) const {
   stiffness.bottomRows<3>() = -cross_matrix(arm) * force;
   stiffness.bottomRightCorner<3, 3>() -= part * turned_torque(end_arm, f.force());
   stiffness.bottomRightCorner<3, 3>() +=
-      2 * rate_ * f.part * f.axes * body_.angular_drag.cwiseProduct(f.spin.cwiseAbs()).asDiagonal() * way.end.transpose();
+      rate_ * f.part * f.axes * quadratic_slope(body_.angular_drag, f.spin) * way.end.transpose();
   if (statics_ && is_wet_) stiffness.bottomRightCorner<3, 3>() += cross_matrix(water_.velocity) * turning(water_.velocity);
   return stiffness;
 }
