@@ -167,9 +167,12 @@ INSTANTIATE_TEST_SUITE_P(Ropes, KeptTension,
 
 /// A hand draws rope off a spool that turns freely, on a level, where nothing hangs: it feels what it sets in motion.
 TEST(FreeSpool, GivesRopeToAHand) {
-  for (const double axial_stiffness : {infinity, 1e5}) {
+  for (const double axial_stiffness : {infinity, 1e4}) {
     SceneDesc scene = winch_scene(40, 2, axial_stiffness, 2e-3);
+    if (axial_stiffness < infinity) scene.materials[0].material.axial_damping = 50;
     scene.gravity.acceleration.setZero();
+    scene.cables[0].initial.type = InitialShapeDesc::Type::straight;
+    scene.cables[0].initial.to = {2, 0, 0};
     scene.cables[0].attachments.push_back(scenes::attachment("hand", At::end, {0, 0, 0}, "hand"));
     World world(scene, scenes::hand_at({2, 0, 0}));
     ASSERT_TRUE(world.apply(kept(0)).ok);
@@ -201,7 +204,8 @@ TEST(SlippingWinch, StallsAtItsTension) {
       ASSERT_EQ(world.step(initial_frames(scene)).status, Status::ok) << i;
       ASSERT_LT(tension(world), 60 * 1.01) << i;
     }
-    EXPECT_NEAR(tension(world), 60, 0.6);
+    // Waves of what stretches go on for ever, and the motor follows them slowly.
+    EXPECT_NEAR(tension(world), 60, axial_stiffness == infinity ? 0.6 : 6);
     EXPECT_NEAR(length(world), axial_stiffness == infinity ? 1.9 : 1.9 / (1 + 60 / axial_stiffness), 1e-3);
     EXPECT_LT(unaccounted(world, gravity * mass(world) * 2), 1e-4);
   }
@@ -236,7 +240,7 @@ TEST(KeptTensions, EndAtTheirLengths) {
     for (int i = 0; i < 2000; ++i) {
       ASSERT_EQ(world.step(initial_frames(scene)).status, Status::ok) << i;
       // Speeding up and braking change it by a tenth.
-      ASSERT_NEAR(tension(world), weight, 0.15 * weight) << i;
+      ASSERT_NEAR(tension(world), weight, 0.12 * weight) << i;
     }
     EXPECT_NEAR(length(world), up ? 1.6 : 2.4, 1e-3);
   }
@@ -311,7 +315,7 @@ TEST(SlippingWinch, KeepsTheLimitOfSegments) {
     world.step(initial_frames(scene));
     ASSERT_LE(world.cables()[0].state.segments(), 50) << i;
   }
-  EXPECT_NEAR(length(world), 2.5, 1e-3);
+  EXPECT_NEAR(length(world), 2.5, 5e-3);
 }
 
 struct HookCase {
@@ -325,6 +329,7 @@ class WinchWithAHook : public testing::TestWithParam<HookCase> {};
 TEST_P(WinchWithAHook, KeepsAndSlips) {
   const HookCase& hook = GetParam();
   SceneDesc scene = winch_scene(60, 3, infinity, 2e-3);
+  if (hook.is_rod) scene.materials[0].material.torsional_stiffness = 0.02;
   if (hook.bends) scene.materials[0].material.bending_stiffness = hook.is_rod ? BendingStiffness(0.02, 0.01) : 0.02;
   scene.cables[0].attachments[0].type = hook.clamped ? AttachmentType::clamp : AttachmentType::hinge;
   scene.cables[0].attachments[0].rotation = {0, M_PI / 2, 0};

@@ -79,8 +79,12 @@ void plan_drive(double available, double time_step, LengthDrive& drive) {
 }
 
 void plan_kept_tension(double available, double most_out, double time_step, LengthDrive& drive) {
+  // The mean of those with which it can just brake from the start of the step and from its end.
   const auto fastest = [&](double left) {
-    return std::min(drive.speed, braking_speed(std::max(left, 0.0), time_step, drive.acceleration));
+    const double before = std::min(drive.speed, std::sqrt(2 * drive.acceleration * std::max(left, 0.0)));
+    const double left_then = std::max(left - 0.5 * time_step * before, 0.0);
+    const double after = std::min(drive.speed, braking_speed(left_then, time_step, drive.acceleration));
+    return std::min(0.5 * (before + after), std::max(left, 0.0) / time_step);
   };
   drive.fastest_in = drive.tension > 0 ? fastest(available) : 0;
   drive.fastest_out = fastest(most_out);
@@ -114,7 +118,7 @@ WinchLaw winch_law(const LengthDrive& drive, double part, double h, double time_
     law.most = h * law.most_rate;
   } else {
     // Behind the clutch its motor runs on as fast as it came to; nothing holds a spool that turns freely. Rates are means over
-    // substeps: at the end it has gone on speeding up.
+    // substeps: at the end it has gone on speeding up or braking.
     const double last = drive.rate + drive.slip, gain = h * drive.acceleration;
     const double reach = drive.motor_speed + time_step * drive.acceleration;
     const bool is_free = drive.tension == 0;
@@ -122,8 +126,8 @@ WinchLaw winch_law(const LengthDrive& drive, double part, double h, double time_
     const double most = is_free ? drive.fastest_out : std::min(drive.fastest_out, reach);
     law.least = h * (least - drive.rate);
     law.most = h * (most - drive.rate);
-    law.least_rate = least + 0.5 * std::clamp(least - last, -gain, 0.0) - drive.rate;
-    law.most_rate = most + (is_free ? 0 : 0.5 * std::clamp(most - last, 0.0, gain)) - drive.rate;
+    law.least_rate = least + 0.5 * std::clamp(least - last, -gain, gain) - drive.rate;
+    law.most_rate = most + 0.5 * std::clamp(most - last, -gain, gain) - drive.rate;
   }
   law.guess = std::clamp(h * (drive.slip - drive.carried), law.least, std::max(law.least, law.most));
   return law;
