@@ -1,5 +1,6 @@
 #include "edit_requests/checked_load.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "verlet_cable/core/body_name.h"
@@ -36,12 +37,28 @@ const LoadWords& service_load_words() {
 
 std::string load_name(const World& world, const BodyId& body, int node) {
   const std::string name = name_of(world, body);
-  return body.is_cable() ? name + "[" + std::to_string(node) + "]" : name;
+  if (!body.is_cable()) return name;
+  const std::vector<Load>& loads = world.loads();
+  // One that has no name of its own keeps what it was given where its node has another number now: no other load has brackets.
+  const auto is_here = [&](const Load& load) {
+    return load.body == body && load.node == node && load.name.find('[') != std::string::npos;
+  };
+  const auto here = std::find_if(loads.begin(), loads.end(), is_here);
+  if (here != loads.end()) return here->name;
+  const std::string first = name + "[" + std::to_string(node) + "]";
+  const auto is_taken = [&](const std::string& wanted) {
+    return std::any_of(loads.begin(), loads.end(), [&](const Load& load) { return load.name == wanted; });
+  };
+  std::string free = first;
+  for (int k = 2; is_taken(free); ++k) free = first + "_" + std::to_string(k);
+  return free;
 }
 
 CheckedLoad check_load(const RequestedLoad& request, const Location& place, const World& world, const FindFrame& find_frame) {
   CheckedLoad checked;
-  checked.errors = place.errors;
+  // What ends a load by its name needs no place.
+  const bool ends = !request.name.empty() && request.force.isZero(0) && request.torque.isZero(0);
+  if (!ends) checked.errors = place.errors;
   if (!request.name.empty() && !is_name(request.name))
     checked.errors.push_back("name: " + quoted(request.name) + "; allowed: " + name_words);
   check_vector(request.words->force, request.force, applied_load, "N", checked.errors);
@@ -55,13 +72,17 @@ CheckedLoad check_load(const RequestedLoad& request, const Location& place, cons
   const bool is_found = place.errors.empty(), is_body = place.body.is_rigid_body();
   const bool is_own = is_found && is_body && request.frame_id == name_of(world, place.body);
   const std::optional<Pose> axes = is_own || request.frame_id.empty() ? Pose{} : find_frame(request.frame_id);
-  if (!axes && is_found)
+  if (!axes && is_found && !ends)
     checked.errors.push_back(request.words->axes + ": " + quoted(request.frame_id) +
                              "; allowed: empty for the fixed frame, the name of the body that it acts on, or a known frame");
   if (is_found && place.body.is_cable())
     check_node(request, "node " + std::to_string(place.node) + " of " + kind_and_name(world, place.body), checked.errors);
   if (!checked.errors.empty()) return checked;
   edit::ApplyLoad& load = checked.load;
+  if (ends) {
+    load.name = request.name;
+    return checked;
+  }
   load.name = request.name.empty() ? load_name(world, place.body, place.node) : request.name;
   load.body = place.body;
   load.node = place.node;
@@ -74,13 +95,16 @@ CheckedLoad check_load(const RequestedLoad& request, const Location& place, cons
 }
 
 EditResult apply_load(World& world, const edit::ApplyLoad& load) {
+  const auto has_name = [&](const Load& other) { return other.name == load.name; };
+  const bool acted = std::any_of(world.loads().begin(), world.loads().end(), has_name);
   const EditResult result = world.apply(load);
   if (!result.ok) return result;
+  if (load.force.isZero(0) && load.torque.isZero(0))
+    return {true, "load " + quoted(result.name) + (acted ? " has ended" : " does not act"), result.name};
   const std::string where = load.body.is_cable() ? "node " + std::to_string(load.node) + " of " + kind_and_name(world, load.body)
                                                  : kind_and_name(world, load.body);
-  const bool ends = load.force.isZero(0) && load.torque.isZero(0);
   const std::string until = load.duration > 0 ? " for " + number_text(load.duration) + " s" : " until it is changed";
-  return {true, "load " + quoted(result.name) + (ends ? " has ended" : " acts on " + where + until), result.name};
+  return {true, "load " + quoted(result.name) + " acts on " + where + until, result.name};
 }
 
 }  // namespace verlet_cable

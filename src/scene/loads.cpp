@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "pose_bytes.h"
 #include "verlet_cable/core/name_list.h"
 #include "verlet_cable/core/quoted_text.h"
-#include "pose_bytes.h"
 
 namespace verlet_cable {
 namespace {
@@ -88,6 +88,22 @@ LoadPlayer LoadPlayer::from_the_start() const {
   return player;
 }
 
+namespace {
+
+/// The node of a cable that is nearest to where a node of its scene was: guides have nodes of their own. One that does not exist
+/// where the cable does not reach there.
+int node_now(int node, const SimulatedCable& cable) {
+  const double place = node * cable.model->segment_length;
+  const std::vector<double> places = cable.state.arc_length();
+  if (place > places.back() + 0.5 * cable.model->segment_length) return cable.state.nodes();
+  const auto after = std::lower_bound(places.begin(), places.end(), place);
+  if (after == places.end()) return cable.state.segments();
+  const bool is_nearer = after != places.begin() && place - *(after - 1) < *after - place;
+  return static_cast<int>(after - places.begin()) - (is_nearer ? 1 : 0);
+}
+
+}  // namespace
+
 std::vector<RefusedLoad> LoadPlayer::apply_due(World& world) {
   std::vector<RefusedLoad> refused;
   const double now = world.time() + step_tolerance * world.time_step();
@@ -97,11 +113,15 @@ std::vector<RefusedLoad> LoadPlayer::apply_due(World& world) {
     load.name = row.name;
     load.body = row.node < 0 ? rigid_body_id(verlet_cable::find(world.bodies(), row.on))
                              : cable_id(verlet_cable::find(world.cables(), row.on));
-    load.node = std::max(row.node, 0);
+    if (row.node > 0 && load.body.index >= 0) load.node = node_now(row.node, world.cables()[load.body.index]);
     load.force = row.force;
     load.torque = row.torque;
     const EditResult result = world.apply(load);
-    if (!result.ok) refused.push_back({row.name, row.on, "line " + std::to_string(row.line) + " is left out: " + result.message});
+    if (result.ok) continue;
+    // The load before it ends all the same.
+    load.force = load.torque = Vector3::Zero();
+    world.apply(load);
+    refused.push_back({row.name, row.on, "line " + std::to_string(row.line) + " is left out: " + result.message});
   }
   return refused;
 }

@@ -173,3 +173,74 @@ def test_rows_on_what_was_cut_off_are_left_out(free, tmp_path):
     event, = [event for event in world.events() if event.type == 'LOAD_ENDED']
     assert event.attachment == 'push' and 'line 2 is left out: node: 9; must be from 0 to 4' in event.message
     assert world.loads() == []
+
+
+STRAIGHT = {
+    'gravity': [0, 0, 0], 'materials': {'m': {'linear_density': 0.1, 'radius': 0.005}},
+    'cables': [{'name': 'c', 'length': 1.0, 'segments': 10, 'material': 'm', 'initial': {'type': 'straight', 'from': [0, 0, 0], 'to': [1, 0, 0]},
+                'attachments': [{'name': 'a', 'at': 'start'}]}]}
+
+
+def test_what_has_no_name_is_replaced_where_nodes_have_new_numbers():
+    world = World(Scene.from_dict(STRAIGHT))
+    world.set_length('c', False, 1.5, 0.2)
+    for _ in range(3000):
+        world.apply_force('c', len(world.positions('c')) - 1, [1, 0, 0])
+        world.step()
+    assert len(world.loads()) == 1
+    assert world.wrench('a')[0] == pytest.approx(1, abs=1e-6)
+    world.apply_force('c', len(world.positions('c')) - 1, [0, 0, 0])
+    assert world.loads() == []
+    batch = Batch(world, 2)
+    batch.apply_force('c', 3, numpy.array([[0, 1, 0], [0, 0, 0]]))
+    assert [len(batch.loads(k)) for k in range(2)] == [1, 0]
+
+
+def test_a_name_is_not_taken_from_a_load_elsewhere():
+    world = World(Scene.from_dict(STRAIGHT))
+    world.apply_force('c', 8, [0, 1, 0])
+    world.cut('c', node=4)
+    world.apply_force('c', 3, [0, 0, 1])
+    world.join('c', True, 'c_2', False)
+    before = len(world.loads())
+    for node in range(8):
+        world.apply_force('c', node, [0, 0, 1])
+    assert before == 2
+    assert len(world.loads()) == 8 + sum(load.node >= 8 for load in world.loads())
+
+
+def test_a_load_ends_by_its_name_alone():
+    world = World(Scene.from_dict(STRAIGHT))
+    world.apply_force('c', 9, [0, 1, 0], name='g')
+    world.cut('c', node=4)
+    world.apply_force('c', 9, [0, 0, 0], name='g')
+    assert world.loads() == []
+
+
+def test_a_force_on_the_node_of_an_eyelet_moves_the_cable():
+    scene = dict(STRAIGHT, cables=[dict(STRAIGHT['cables'][0], attachments=[])],
+                 guides=[{'name': 'eye', 'cable': 'c', 'at': 0.6, 'offset': [0.6, 0, 0]}])
+    world = World(Scene.from_dict(scene))
+    places = numpy.abs(world.positions('c')[:, 0] - 0.6)
+    world.apply_force('c', int(places.argmin()), [-0.1, 0, 0])
+    before = world.positions('c')[0, 0]
+    world.step(400)
+    assert world.positions('c')[0, 0] - before == pytest.approx(-0.5 * 0.1 / 0.1 * 0.4**2, rel=2e-3)
+
+
+def test_rows_name_nodes_as_the_scene_has_them(tmp_path):
+    scene = dict(STRAIGHT, cables=[dict(STRAIGHT['cables'][0], attachments=[])],
+                 guides=[{'name': 'eye', 'cable': 'c', 'at': 0.55, 'offset': [0.55, 0, 0]}])
+    file = tmp_path / 'loads.csv'
+    file.write_text('t,name,on,node,fx,fy,fz,tx,ty,tz\n0,end,c,10,0.1,0,0,0,0,0\n')
+    world = World(Scene.from_dict(scene), loads=file)
+    world.step()
+    (load,) = world.loads()
+    assert world.positions('c')[load.node][0] == pytest.approx(1, abs=1e-6)
+
+
+def test_what_weighs_nothing_and_rests_is_accounted_for():
+    world = World(Scene.from_dict(STRAIGHT))
+    world.step(20)
+    assert world.ledger()['unaccounted_steps'] == 0
+    assert world.events() == []

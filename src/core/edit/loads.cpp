@@ -47,6 +47,14 @@ bool acts_alike(const Load& a, const Load& b) {
          a.is_local == b.is_local;
 }
 
+/// The node that goes with the material at a node: that of a guide stays, and the next one goes.
+int material_node(int cable, int node, const State& state) {
+  for (const Attachment& attachment : state.attachments)
+    if (attachment.guide >= 0 && attachment.body == cable_id(cable) && (attachment.node == node || last_node(attachment) == node))
+      return last_node(attachment) + 1;
+  return node;
+}
+
 /// Of a cable or a rigid body.
 const std::string& name_of(const State& state, const BodyId& body) {
   return body.is_cable() ? state.cables[body.index].model->name : state.bodies[body.index].name;
@@ -55,9 +63,6 @@ const std::string& name_of(const State& state, const BodyId& body) {
 }  // namespace
 
 EditResult World::Implementation::apply(const edit::ApplyLoad& request) {
-  if (!request.body.is_cable() && !request.body.is_rigid_body()) return refused("body: must be a cable or a rigid body");
-  if (const std::string problem = node_problem(state, request.body, request.node); !problem.empty()) return refused(problem);
-  if (const std::string problem = problem_of(request); !problem.empty()) return refused(problem);
   const auto named = [&](const std::string& name) {
     return std::find_if(state.loads.begin(), state.loads.end(), [&](const Load& load) { return load.name == name; });
   };
@@ -68,13 +73,16 @@ EditResult World::Implementation::apply(const edit::ApplyLoad& request) {
     state.loads.erase(before);
     return {true, "", request.name};
   }
+  if (!request.body.is_cable() && !request.body.is_rigid_body()) return refused("body: must be a cable or a rigid body");
+  if (const std::string problem = node_problem(state, request.body, request.node); !problem.empty()) return refused(problem);
+  if (const std::string problem = problem_of(request); !problem.empty()) return refused(problem);
   if (before == state.loads.end() && state.loads.size() >= most_loads)
     return refused("name: " + request.name + "; " + std::to_string(most_loads) + " loads act already, no more can");
   Load load;
   load.name = request.name.empty() ? numbered("load", 1, [&](const std::string& n) { return named(n) != state.loads.end(); })
                                    : request.name;
   load.body = request.body;
-  load.node = request.node;
+  load.node = request.body.is_cable() ? material_node(request.body.index, request.node, state) : 0;
   if (request.body.is_rigid_body()) load.point = request.point.value_or(state.bodies[request.body.index].center_of_mass);
   load.force = request.force;
   load.torque = request.torque;

@@ -10,6 +10,7 @@
 #include "world/energy.h"
 #include "world/implementation.h"
 #include "world/island_stepper.h"
+#include "world/loads.h"
 
 namespace verlet_cable {
 
@@ -180,6 +181,8 @@ void World::Implementation::capture_cable(int index) {
   guide.flow = cable.state.velocities[node].dot(direction_at(cable.state, node, node));
   cable.state.velocities[node] -= guide.flow * direction_at(cable.state, node, node);
   state.attachments.push_back(attachment);
+  take_off(cable_index, node, state);
+  put_on(cable_index, node + 1, state);
   after_remeshing(cable_index);
   move_with_holders(cable_index, state);
   // As of a node that passes; but what it does to the motion is a blow.

@@ -59,10 +59,12 @@ double weight_of_taut(const Substep& s, const CableState& state) {
   return std::max(s.environment.gravity.at(state.positions[0]).norm(), standard_gravity) * mass_of_taut(s, state);
 }
 
-/// [N] The weight, and what bends the cable.
+/// [N] The weight, what acts on nodes from outside, and what bends the cable.
 double load_of_taut(const Substep& s, const CableState& state) {
   const double length = state.length();
-  return weight_of_taut(s, state) + CableMaterials(s.model, state).largest_bending_stiffness() / (length * length);
+  double load = weight_of_taut(s, state) + CableMaterials(s.model, state).largest_bending_stiffness() / (length * length);
+  for (const NodeLoad& applied : s.boundary.loads) load += applied.force.norm();
+  return load;
 }
 
 }  // namespace

@@ -156,7 +156,9 @@ bool is_accounted(double unaccounted, const Island& island, const State& state, 
   if (size <= energy) return true;
   const Vector3 place = island.cables.empty() ? state.bodies[island.bodies.front()].pose.position
                                               : state.cables[island.cables.front()].state.positions.front();
-  return size <= energy + mass_of(island, state) * state.scene->gravity.at(place).norm() * length_of_part(island, state);
+  // Velocities within the tolerance are none: where nothing weighs anything, what they make is rounding.
+  const double length = length_of_part(island, state), slow = state.scene->tolerance * length;
+  return size <= energy + mass_of(island, state) * (state.scene->gravity.at(place).norm() * length + slow * slow);
 }
 
 void account_for_displacement(double change, EnergyBalance& balance) {

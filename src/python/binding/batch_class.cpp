@@ -299,6 +299,12 @@ void add_batch_class(py::module_& module) {
             return take_events(self.batch.events(index), event_type);
           },
           py::arg("world"), "As World.events, of one of the worlds, since it began, was replaced or was asked for last.")
+      .def(
+          "loads",
+          [load_type = py::object(module.attr("Load"))](const PythonBatch& self, std::int64_t world) {
+            return load_list(use(self)[read_world_index(world, use(self).size())].world(), load_type);
+          },
+          py::arg("world"), "As World.loads, of one of the worlds.")
       .def("positions", read<Quantity::positions>, py::arg("name"), "(count, n + 1, 3) or (count, records, n + 1, 3) [m].")
       .def("velocities", read<Quantity::velocities>, py::arg("name"), "(count, n + 1, 3) or (count, records, n + 1, 3) [m/s].")
       .def("tension", read<Quantity::tension>, py::arg("name"), "(count, n) or (count, records, n) [N].")

@@ -221,22 +221,21 @@ void add_loads(py::module_& module, py::class_<PythonWorld>& world) {
       "and torque (3,) [N m]; for a body the point (3,) [m] where the force acts, and whether it is in the body's axes; "
       "and for how long [s] it still acts, inf: until it is changed.");
   world.def(
-      "loads",
-      [load_type](PythonWorld& self) {
-        const World& simulated = use(self).world();
-        py::list list;
-        for (const Load& load : simulated.loads()) {
-          const double left =
-              load.end_step == 0 ? infinity : static_cast<double>(load.end_step - simulated.steps()) * simulated.time_step();
-          list.append(load_type(load.name, name_of(simulated, load.body), load.body.is_cable() ? load.node : -1,
-                                array_of(load.force), array_of(load.torque), array_of(load.point), load.is_local, left));
-        }
-        return list;
-      },
+      "loads", [load_type](PythonWorld& self) { return load_list(use(self).world(), load_type); },
       "List of the loads that act in the next step, as Load(name, on, node, force, torque, point, local, time_left).");
 }
 
 }  // namespace
+
+py::list load_list(const World& world, const py::object& load_type) {
+  py::list list;
+  for (const Load& load : world.loads()) {
+    const double left = load.end_step == 0 ? infinity : static_cast<double>(load.end_step - world.steps()) * world.time_step();
+    list.append(load_type(load.name, name_of(world, load.body), load.body.is_cable() ? load.node : -1, array_of(load.force),
+                          array_of(load.torque), array_of(load.point), load.is_local, left));
+  }
+  return list;
+}
 
 py::list take_events(EventRecord& record, const py::object& event_type) {
   const EventRecord::Taken taken = record.take();
