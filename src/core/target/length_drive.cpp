@@ -38,9 +38,11 @@ void give_debt_back(double time_step, LengthDrive& drive) {
   drive.change = drive.wound + drive.debt - drive.next_debt;
 }
 
-/// Goes on as it went.
+/// Goes on as it went, as far as it may.
 void go_on(double time_step, LengthDrive& drive) {
-  drive.rate = drive.next_rate = std::clamp(drive.rate, -drive.fastest_in, drive.fastest_out);
+  const double last = drive.rate + drive.slip;
+  drive.rate = drive.next_rate = std::clamp(last, -drive.fastest_in, drive.fastest_out);
+  drive.slip = last - drive.rate;
   drive.wound = time_step * drive.rate;
   drive.change = drive.wound + drive.debt - drive.next_debt;
 }

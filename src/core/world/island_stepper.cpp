@@ -440,7 +440,7 @@ double IslandStepper::wind_drive(int index, Scheme scheme, double from, double t
 /// What a winch has let through beyond what was planned, as its tension was, in a substep that has converged.
 void IslandStepper::slip_at_winch(int index, double wound, double from, double to, const Boundary& boundary) {
   for (const GrowingSegment& growing : boundary.growing) {
-    if (!growing.law.gives()) continue;
+    if (growing.law.tension == infinity) continue;
     SimulatedCable& cable = state_.cables[index];
     const double before = energy_at(index, to);
     slip(growing.beyond, wound < to ? 0.5 : 1, (to - from) * state_.scene->time_step, *cable.model, cable.state,
