@@ -95,7 +95,7 @@ namespace {
 int node_now(int node, const SimulatedCable& cable) {
   const double place = node * cable.model->segment_length;
   const std::vector<double> places = cable.state.arc_length();
-  if (place > places.back() + 0.5 * cable.model->segment_length) return cable.state.nodes();
+  if (place > places.back() + 0.5 * cable.model->segment_length) return std::max(node, cable.state.nodes());
   const auto after = std::lower_bound(places.begin(), places.end(), place);
   if (after == places.end()) return cable.state.segments();
   const bool is_nearer = after != places.begin() && place - *(after - 1) < *after - place;

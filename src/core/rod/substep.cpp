@@ -59,11 +59,14 @@ double weight_of_taut(const Substep& s, const CableState& state) {
   return std::max(s.environment.gravity.at(state.positions[0]).norm(), standard_gravity) * mass_of_taut(s, state);
 }
 
-/// [N] The weight, what acts on nodes from outside, and what bends the cable.
+/// [N] The weight, what acts from outside on nodes that move, and what bends the cable.
 double load_of_taut(const Substep& s, const CableState& state) {
   const double length = state.length();
   double load = weight_of_taut(s, state) + CableMaterials(s.model, state).largest_bending_stiffness() / (length * length);
-  for (const NodeLoad& applied : s.boundary.loads) load += applied.force.norm();
+  const std::vector<HeldNode>& held = s.boundary.nodes;
+  for (const NodeLoad& applied : s.boundary.loads)
+    if (std::none_of(held.begin(), held.end(), [&](const HeldNode& target) { return target.node == applied.node; }))
+      load += applied.force.norm();
   return load;
 }
 
