@@ -31,6 +31,8 @@ TEST_F(CableSim, drawsWhatItSimulated) {
   EXPECT_EQ(content(path("p.png")).substr(0, png_start.size()), png_start);
   EXPECT_EQ(content(path("a.gif")).substr(0, gif_start.size()), gif_start);
   EXPECT_EQ(parts(), std::vector<std::string>{});
+  ASSERT_EQ(run(scene + " --duration 0.5 --movie " + path("b.gif")), 0) << err;
+  EXPECT_EQ(content(path("b.gif")), content(path("a.gif")));
   // Nothing moves, and it takes no time.
   ASSERT_EQ(run(scene + " --duration 0 --plot " + path("none.png") + " --gif " + path("none.gif")), 0) << err;
 }
@@ -70,6 +72,29 @@ TEST_F(CableSim, picturesThatCannotBeAreRefusedBeforeAnythingIsSimulated) {
       << err;
   EXPECT_NE(err.find("cable_sim: 1 error, nothing was simulated\n"), std::string::npos) << err;
   EXPECT_FALSE(exists("o.csv"));
+}
+
+/// As ffmpeg, which may not be there: a program that keeps what it was called with, and takes all pictures.
+TEST_F(CableSim, drawsMoviesByFfmpeg) {
+  const std::string scene = write("scene.yaml", hanging) + " --duration 0.2 --movie ";
+  EXPECT_EQ(run(scene + path("m.avi")), 2);
+  EXPECT_NE(err.find("--movie: \"" + path("m.avi") + "\"; allowed: a name that ends in .gif or .mp4\n"), std::string::npos)
+      << err;
+  // Whoever has python3 beside ffmpeg has both.
+  ASSERT_EQ(std::system(("ln -s \"$(command -v python3)\" " + path("python3")).c_str()), 0);
+  const std::string only_python = "PATH=" + path("") + ":/bin/nothing ";
+  if (access("/usr/bin/ffmpeg", X_OK) != 0) {
+    EXPECT_EQ(run(scene + path("m.mp4"), only_python), 2);
+    EXPECT_NE(err.find("cable_sim: --movie: OSError: there is no ffmpeg; allowed: a name that ends in .gif, or a PATH that has "
+                       "ffmpeg (Debian: sudo apt-get install ffmpeg)\n"),
+              std::string::npos)
+        << err;
+  }
+  write("ffmpeg", "#!/bin/sh\nfor last; do :; done\necho \"$@\" > " + path("called") + "\n/bin/cat > \"$last\"\n");
+  ASSERT_EQ(std::system(("chmod +x " + path("ffmpeg")).c_str()), 0);
+  ASSERT_EQ(run(scene + path("m.mp4"), only_python), 0) << err;
+  EXPECT_GT(content(path("m.mp4")).size(), 6 * 4 * 100 * 100u);  // raw pictures
+  EXPECT_NE(content(path("called")).find("yuv420p"), std::string::npos);
 }
 
 /// What is drawn of so many steps.

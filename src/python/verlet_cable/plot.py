@@ -1,7 +1,7 @@
-"""Draws the pictures of `cable_sim --plot` and `--gif` with matplotlib.
+"""Draws the pictures of `cable_sim --plot`, `--gif` and `--movie` with matplotlib.
 
-cable_sim has this file in itself and runs it with python3: `KIND` (png or gif) as its argument, the record of a run as JSON on standard
-input, and the picture on standard output; with `check` for KIND it only says whether it could. What is wrong is printed instead of a
+cable_sim has this file in itself and runs it with python3: `KIND` (png, gif or mp4) as its argument, the record of a run as JSON on standard
+input, and the picture on standard output; with `check` or `check_mp4` for KIND it only says whether it could. What is wrong is printed instead of a
 picture, with the exit status 1.
 """
 import io
@@ -199,7 +199,25 @@ def png(record):
 
 def gif(record):
     """The motion, as the bytes of a GIF file; in real time, unless the run is longer than its frames can show."""
-    from matplotlib.animation import FuncAnimation, PillowWriter
+    from matplotlib.animation import PillowWriter
+    return _animation(record, PillowWriter, '.gif')
+
+
+def mp4(record):
+    """The same as the bytes of an MP4 file."""
+    from matplotlib.animation import FFMpegWriter
+
+    def writer(fps):
+        # Players want colors at half the resolution, and an even number of points.
+        return FFMpegWriter(fps=fps, codec='libx264',
+                            extra_args=['-pix_fmt', 'yuv420p', '-vf', 'pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white'])
+
+    return _animation(record, writer, '.mp4')
+
+
+def _animation(record, writer, ending):
+    """The bytes of a file that `writer(fps=...)` writes."""
+    from matplotlib.animation import FuncAnimation
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
@@ -229,11 +247,17 @@ def gif(record):
 
     rate = (len(frames) - 1) / frames[-1]['time'] if len(frames) > 1 else 1
     animation = FuncAnimation(figure, draw, frames=frames, init_func=lambda: None, cache_frame_data=False)
-    with tempfile.TemporaryDirectory() as folder:  # Pillow writes to names only
-        path = os.path.join(folder, 'animation.gif')
-        animation.save(path, writer=PillowWriter(fps=min(max(rate, 5), 25)))
+    with tempfile.TemporaryDirectory() as folder:  # writers write to names only
+        path = os.path.join(folder, 'animation' + ending)
+        animation.save(path, writer=writer(fps=min(max(rate, 5), 25)))
         with open(path, 'rb') as file:
             return file.read()
+
+
+def _require_ffmpeg():
+    from matplotlib.animation import FFMpegWriter
+    if not FFMpegWriter.isAvailable():
+        raise OSError('there is no ffmpeg')
 
 
 def main(kind):
@@ -245,8 +269,10 @@ def main(kind):
         import matplotlib.animation  # noqa: F401
         import numpy  # noqa: F401
         import PIL  # noqa: F401
-        if kind != 'check':
-            output.write({'png': png, 'gif': gif}[kind](json.load(sys.stdin)))
+        if kind == 'check_mp4':
+            _require_ffmpeg()
+        elif kind != 'check':
+            output.write({'png': png, 'gif': gif, 'mp4': mp4}[kind](json.load(sys.stdin)))
         return 0
     except Exception as error:  # whatever it is: cable_sim tells the user
         output.write(f'{type(error).__name__}: {error}'.encode())

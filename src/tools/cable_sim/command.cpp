@@ -30,6 +30,8 @@ struct Outputs {
   tools::OutputFile summary;
   tools::OutputFile plot;
   tools::OutputFile gif;
+  tools::OutputFile movie;
+  tools::OutputFile usd;
 
   void open(const Options& options, std::vector<std::string>& errors) {
     open_one("--output", options.output, nodes, errors);
@@ -37,6 +39,8 @@ struct Outputs {
     open_one("--summary", options.summary, summary, errors);
     open_one("--plot", options.plot, plot, errors);
     open_one("--gif", options.gif, gif, errors);
+    open_one("--movie", options.movie, movie, errors);
+    open_one("--usd", options.usd, usd, errors);
   }
 
  private:
@@ -54,6 +58,13 @@ bool finish(tools::OutputFile& file, const std::string& path, double time, const
   if (problem.empty() && full.empty()) return true;
   std::cerr << program << ": stopped at " << number_text(time) << " s: cannot write " << tools::quoted_path(path) << ": "
             << (problem.empty() ? full : problem) << "\n";
+  return false;
+}
+
+bool finish_vtk(VtkWriter& vtk, double time) {
+  vtk.finish();
+  if (vtk.problem().empty()) return true;
+  std::cerr << program << ": stopped at " << number_text(time) << " s: " << vtk.problem() << "\n";
   return false;
 }
 
@@ -118,6 +129,11 @@ int simulate_job(const Options& options, const Job& job, const Painter* painter)
   Outputs outputs;
   std::vector<std::string> errors;
   outputs.open(options, errors);
+  std::optional<VtkWriter> vtk;
+  if (!options.vtk.empty() && errors.empty()) {
+    vtk.emplace(world, options.vtk);
+    if (!vtk->problem().empty()) errors.push_back("--vtk: " + vtk->problem());
+  }
   if (!errors.empty()) return refuse(errors);
   warn_of_scene(job.scene);
   note_unused(options, unused_frames(job.scene, job.motion));
@@ -136,11 +152,14 @@ int simulate_job(const Options& options, const Job& job, const Painter* painter)
   Summary summary(world, averaged_steps(job));
   std::optional<PictureRecord> pictures;
   if (painter) pictures.emplace(world, title_of(options.scene), job.steps);
+  std::optional<UsdRecord> usd;
+  if (!options.usd.empty()) usd.emplace(world, title_of(options.scene), job.rate);
   // A summary tells of a disk that rows have filled.
   if (!options.summary.empty()) outputs.summary.reserve(2 * summary.json(world, {}).size() + room_for_events);
-  const RunEnd end = simulate(job, frames, loads, world,
-                              {options.output.empty() ? nullptr : &nodes, options.bodies.empty() ? nullptr : &bodies,
-                               pictures ? &*pictures : nullptr, summary, events, progress, stop});
+  const RunEnd end =
+      simulate(job, frames, loads, world,
+               {options.output.empty() ? nullptr : &nodes, options.bodies.empty() ? nullptr : &bodies,
+                pictures ? &*pictures : nullptr, usd ? &*usd : nullptr, vtk ? &*vtk : nullptr, summary, events, progress, stop});
   progress.clear();
   report(end, stop.signal(), world.time());
 
@@ -153,9 +172,17 @@ int simulate_job(const Options& options, const Job& job, const Painter* painter)
     outputs.summary.write(json.data(), json.size());
   }
   good = finish(outputs.summary, options.summary, world.time()) && good;
+  if (usd) {
+    const std::string text = usd->text();
+    outputs.usd.write(text.data(), text.size());
+    good = finish(outputs.usd, options.usd, world.time()) && good;
+  }
+  if (vtk) good = finish_vtk(*vtk, world.time()) && good;
   if (painter) {
     good = write_picture(options.plot, "png", *painter, *pictures, world.time(), outputs.plot) && good;
     good = write_picture(options.gif, "gif", *painter, *pictures, world.time(), outputs.gif) && good;
+    const char* kind = has_ending(options.movie, ".mp4") ? "mp4" : "gif";
+    good = write_picture(options.movie, kind, *painter, *pictures, world.time(), outputs.movie) && good;
   }
   good = tools::print_result(program, summary.line(world) + "\n", has_data) && good;
   return good && end == RunEnd::done ? tools::exit_done : tools::exit_stopped;
@@ -172,10 +199,13 @@ int run(const std::vector<std::string>& arguments) {
   }
   const Job job = prepare(options, errors);
   std::optional<Painter> painter;
-  if (!options.plot.empty() || !options.gif.empty()) {
-    painter.emplace();
-    if (!painter->problem().empty())
-      errors.push_back(std::string(options.plot.empty() ? "--gif" : "--plot") + ": " + painter->problem());
+  if (!options.plot.empty() || !options.gif.empty() || !options.movie.empty()) {
+    painter.emplace(has_ending(options.movie, ".mp4"));
+    if (!painter->problem().empty()) {
+      const char* option = !options.plot.empty() ? "--plot" : !options.gif.empty() ? "--gif" : "--movie";
+      errors.push_back(std::string(option) + ": " + painter->problem());
+    }
+    if (!painter->movie_problem().empty()) errors.push_back("--movie: " + painter->movie_problem());
   }
   if (!errors.empty()) return refuse(errors);
   try {

@@ -9,6 +9,7 @@
 #include "scene/text.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/scene/scene_reader.h"
+#include "vtk_writer.h"
 
 namespace verlet_cable::cable_sim {
 namespace {
@@ -39,9 +40,11 @@ void check_outputs(const Options& options, const std::vector<std::string>& scene
   others.push_back({"the output of bodies", options.bodies});
   others.push_back({"the summary", options.summary});
   others.push_back({"the plot", options.plot});
-  for (const Output& output :
-       {Output{"--output", options.output}, Output{"--bodies", options.bodies}, Output{"--summary", options.summary},
-        Output{"--plot", options.plot}, Output{"--gif", options.gif}}) {
+  others.push_back({"the animation", options.gif});
+  others.push_back({"the movie", options.movie});
+  for (const Output& output : {Output{"--output", options.output}, Output{"--bodies", options.bodies},
+                               Output{"--summary", options.summary}, Output{"--plot", options.plot}, Output{"--gif", options.gif},
+                               Output{"--movie", options.movie}, Output{"--usd", options.usd}}) {
     if (output.path.empty()) continue;
     const std::string problem = tools::why_not_writable(output.path);
     if (!problem.empty()) errors.push_back(std::string(output.option) + ": " + tools::cannot_write(output.path, problem));
@@ -52,6 +55,9 @@ void check_outputs(const Options& options, const std::vector<std::string>& scene
                        "; allowed: another file");
     }
   }
+  if (options.vtk.empty()) return;
+  const std::string problem = why_no_directory(options.vtk);
+  if (!problem.empty()) errors.push_back("--vtk: " + cannot_write_directory(options.vtk, problem));
 }
 
 void check_times(const Options& options, double time_step, std::vector<std::string>& errors) {

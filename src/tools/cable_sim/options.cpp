@@ -19,13 +19,22 @@ constexpr const char* footer =
     "exit status: 0 done, 2 a bad scene, motion, loads or option, 3 it had to stop: a fault, a full disk, a signal";
 
 /// Other names would say that something else is in the file.
-void require_ending(const char* option, const std::string& path, const std::string& ending, std::vector<std::string>& errors) {
-  if (path.empty() || (path.size() > ending.size() && path.compare(path.size() - ending.size(), ending.size(), ending) == 0))
-    return;
-  errors.push_back(std::string(option) + ": " + quoted(path) + "; allowed: a name that ends in " + ending);
+void require_ending(const char* option, const std::string& path, const std::vector<std::string>& endings,
+                    std::vector<std::string>& errors) {
+  if (path.empty()) return;
+  std::string allowed;
+  for (const std::string& ending : endings) {
+    if (has_ending(path, ending)) return;
+    allowed += (allowed.empty() ? "" : " or ") + ending;
+  }
+  errors.push_back(std::string(option) + ": " + quoted(path) + "; allowed: a name that ends in " + allowed);
 }
 
 }  // namespace
+
+bool has_ending(const std::string& path, const std::string& ending) {
+  return path.size() > ending.size() && path.compare(path.size() - ending.size(), ending.size(), ending) == 0;
+}
 
 Options parse_options(const std::vector<std::string>& arguments, std::vector<std::string>& errors) {
   Options options;
@@ -36,19 +45,27 @@ Options parse_options(const std::vector<std::string>& arguments, std::vector<std
   line.add_text("--output", "CSV", "the nodes over time: t,cable,node,x,y,z,vx,vy,vz,tension", options.output, file);
   line.add_text("--bodies", "CSV", "the bodies over time: t,body,x,y,z,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz", options.bodies, file);
   double rate = 0;
-  line.add_number(
-      "--rate", "HZ",
-      "rows per second of --output and --bodies, at most 1 / time_step; default 100, or 1 / time_step if that is less", rate,
-      rate_range, "Hz");
+  line.add_number("--rate", "HZ",
+                  "rows per second of --output and --bodies, and times of --usd and --vtk, at most 1 / time_step; default 100, "
+                  "or 1 / time_step "
+                  "if that is less",
+                  rate, rate_range, "Hz");
   line.add_text("--summary", "JSON", "times, energies, forces and events", options.summary, file);
   line.add_text("--plot", "PNG", "a picture of the shapes over time and the forces at attachments; needs matplotlib",
                 options.plot, file);
   line.add_text("--gif", "GIF", "the motion; needs matplotlib", options.gif, file);
+  line.add_text("--movie", "FILE", "the motion, as FILE.gif or FILE.mp4; needs matplotlib, and ffmpeg for the latter",
+                options.movie, file);
+  line.add_text("--usd", "USDA", "the motion as a scene of USD, for Blender, usdview and Omniverse", options.usd, file);
+  line.add_text("--vtk", "DIR", "the motion for ParaView: cables.pvd, bodies.pvd, obstacles.pvd and a file for each time",
+                options.vtk, "the name of a directory");
   line.add_flag("--settle", "put the cables into static equilibrium before t = 0", options.settle);
   const std::vector<std::string> scenes = line.parse(arguments, errors);
   options.help = line.help();
-  require_ending("--plot", options.plot, ".png", errors);
-  require_ending("--gif", options.gif, ".gif", errors);
+  require_ending("--plot", options.plot, {".png"}, errors);
+  require_ending("--gif", options.gif, {".gif"}, errors);
+  require_ending("--movie", options.movie, {".gif", ".mp4"}, errors);
+  require_ending("--usd", options.usd, {".usda"}, errors);
   options.has_rate = rate > 0;
   if (options.has_rate) options.rate = rate;
   for (const std::string& scene : scenes) {

@@ -60,13 +60,16 @@ Painter::Picture run(const std::string& python, const std::string& kind, const s
 
 }  // namespace
 
-Painter::Painter() {
+Painter::Painter(bool needs_mp4) {
   const std::vector<std::string> candidates = paths_of("python3");
   for (const std::string& path : candidates) {
     const std::string why = run(path, "check", "").problem;
     if (why.empty()) {
       python_ = path;
       problem_.clear();
+      if (needs_mp4) movie_problem_ = run(path, "check_mp4", "").problem;
+      if (!movie_problem_.empty())
+        movie_problem_ += "; allowed: a name that ends in .gif, or a PATH that has ffmpeg (Debian: sudo apt-get install ffmpeg)";
       return;
     }
     problem_ += (problem_.empty() ? "" : "; ") + tools::path_text(path) + ": " + why;

@@ -27,6 +27,8 @@ RunEnd simulate(const Job& job, const FrameSource& frames, LoadPlayer loads, Wor
     ++row;
     if (recorders.nodes) write_nodes(world, *recorders.nodes);
     if (recorders.bodies) write_bodies(world, *recorders.bodies);
+    if (recorders.usd) recorders.usd->add(world);
+    if (recorders.vtk) recorders.vtk->add(world);
   };
 
   BoundaryInputs inputs = frames.at(0);
@@ -42,6 +44,7 @@ RunEnd simulate(const Job& job, const FrameSource& frames, LoadPlayer loads, Wor
     if (recorders.stop.signal()) return RunEnd::signal;
     for (const CsvWriter* csv : {recorders.nodes, recorders.bodies})
       if (csv && csv->has_failed()) return RunEnd::output_failed;
+    if (recorders.vtk && !recorders.vtk->problem().empty()) return RunEnd::output_failed;
     inputs_of_next_step(world, held_back);
     recorders.events.add_refused_loads(world, loads.apply_due(world));
     const Clock::time_point start = Clock::now();

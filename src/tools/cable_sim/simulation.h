@@ -8,6 +8,8 @@
 #include "picture_record.h"
 #include "scene/frame_source.h"
 #include "summary.h"
+#include "usd_record.h"
+#include "vtk_writer.h"
 
 namespace verlet_cable::cable_sim {
 
@@ -16,6 +18,8 @@ struct Recorders {
   CsvWriter* nodes;         ///< may be null
   CsvWriter* bodies;        ///< likewise
   PictureRecord* pictures;  ///< likewise
+  UsdRecord* usd;           ///< likewise
+  VtkWriter* vtk;           ///< likewise
   Summary& summary;
   EventLog& events;
   tools::ProgressBar& progress;
