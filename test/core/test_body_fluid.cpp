@@ -8,6 +8,7 @@
 #include "../support/nets.h"
 #include "../support/scenes.h"
 #include "body/rigid_body_stepper.h"
+#include "fluid/waves.h"
 
 // What water does to bodies: buoyancy, drag, added mass, current and waves.
 
@@ -294,6 +295,35 @@ TEST(Buoyancy, CarriesABuoyOnALongWave) {
   }
   EXPECT_NEAR(0.5 * (highest - lowest) / amplitude, 1, 0.01);
   EXPECT_LT(behind, 0.02 * amplitude);
+}
+
+/// It moves as the water does, and drifts with it: at any depth, in a current, whatever water moves with it.
+TEST(BodyInWater, ThatWeighsNothingThereGoesWithTheWaves) {
+  for (const double current : {0.0, 0.7}) {
+    for (const double added : {0.0, 5.0}) {
+      SceneDesc scene = in_water();
+      scene.fluid.surface = 0;
+      scene.fluid.velocity = {current, 0, 0};
+      scene.fluid.waves = {WaveDesc{0.5, 5, 0.3, 0.2}};
+      scene.time_step = 0.01;
+      BodyDesc& body = add_body(scene, 10, 10 / density);
+      body.fluid.added_mass = Vector3::Constant(added);
+      body.pose = InitialPose{0, 0, -3, 0, 0, 0};
+      const std::vector<Wave> waves = waves_of(scene);
+      Vector3 x(0, 0, -3);
+      const auto flow = [&](const Vector3& place, double t) { return water_at(scene.fluid, waves, place, t).velocity; };
+      body.velocity = flow(x, 0);
+      World world(scene, initial_frames(scene));
+      for (int i = 0; i < 2000; ++i) {
+        const double h = scene.time_step, t = i * h;
+        const Vector3 a = flow(x, t), b = flow(x + h / 2 * a, t + h / 2), c = flow(x + h / 2 * b, t + h / 2),
+                      d = flow(x + h * c, t + h);
+        x += h / 6 * (a + 2 * b + 2 * c + d);
+        world.step(initial_frames(scene));
+      }
+      EXPECT_LT((body_of(world).pose.position - x).norm(), 5e-3) << current << " " << added;
+    }
+  }
 }
 
 /// Fully below the surface and without drag, a neutral body of any added mass goes with the water.

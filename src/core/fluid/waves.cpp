@@ -43,6 +43,8 @@ std::vector<Wave> waves_of(const SceneDesc& scene) {
 WaterMotion water_at(const FluidDesc& fluid, const std::vector<Wave>& waves, const Vector3& point, double time) {
   WaterMotion water{fluid.surface, fluid.velocity, Vector3::Zero()};
   const double height = std::clamp(point.z() - fluid.surface, -fluid.depth, 0.0);
+  const bool is_between = height == point.z() - fluid.surface;  // elsewhere nothing changes with the height
+  Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();
   for (const Wave& wave : waves) {
     const double angle = wave.number * wave.direction.dot(point) - wave.frequency * time + wave.phase;
     const double cosine = std::cos(angle), sine = std::sin(angle);
@@ -54,7 +56,12 @@ WaterMotion water_at(const FluidDesc& fluid, const std::vector<Wave>& waves, con
     water.velocity += speed * along * cosine * wave.direction + Vector3(0, 0, speed * upright * sine);
     water.acceleration +=
         wave.frequency * speed * along * sine * wave.direction - Vector3(0, 0, wave.frequency * speed * upright * cosine);
+    const double steepness = speed * wave.number;
+    gradient +=
+        (Vector3(0, 0, steepness * upright * cosine) - steepness * along * sine * wave.direction) * wave.direction.transpose();
+    if (is_between) gradient.col(2) += steepness * upright * cosine * wave.direction + Vector3(0, 0, steepness * along * sine);
   }
+  water.acceleration += gradient * water.velocity;
   return water;
 }
 

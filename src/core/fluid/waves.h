@@ -27,7 +27,7 @@ std::vector<Wave> waves_of(const SceneDesc& scene);
 struct WaterMotion {
   double surface = infinity;               ///< [m] z of its surface above or below the point
   Vector3 velocity = Vector3::Zero();      ///< [m/s] current and waves
-  Vector3 acceleration = Vector3::Zero();  ///< [m/s^2] of waves, where the point stays
+  Vector3 acceleration = Vector3::Zero();  ///< [m/s^2] of the water that is there
 };
 
 /// The water, `time` [s] being the world's. Waves add; between crest and still water they move it as at still water (vertical
