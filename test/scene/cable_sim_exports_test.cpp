@@ -1,12 +1,10 @@
-#include "cable_sim/surface.h"
 #include "cable_sim/usd_record.h"
 #include "cable_sim_fixture.h"
+#include "scene/surface.h"
 
 namespace verlet_cable {
 namespace {
 
-using cable_sim::Surface;
-using cable_sim::surface_of;
 using cable_sim::usd_identifier;
 using cable_sim::UsdSamples;
 

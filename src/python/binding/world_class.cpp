@@ -10,6 +10,7 @@
 
 #include "binding/arguments.h"
 #include "binding/contact_array.h"
+#include "binding/drawing.h"
 #include "binding/edit_methods.h"
 #include "binding/motion_argument.h"
 #include "binding/run_steps.h"
@@ -89,6 +90,10 @@ std::string represent(const PythonWorld& world) {
   NameList cables;
   for (const SimulatedCable& cable : simulated.cables()) cables.add(cable.model->name);
   return "<World at " + rounded_text(simulated.time(), 6) + " s, cables: " + cables.text("none") + ">";
+}
+
+py::object draw(const py::object& world, const py::object& path, const py::object& view, const py::object& size) {
+  return py::module_::import("verlet_cable.drawing").attr("draw")(world, path, view, size);
 }
 
 /// The method that reads a quantity.
@@ -223,6 +228,16 @@ void add_world_class(py::module_& module) {
           "applied) and dissipated (axial, bending, torsional, drag, contact, guides, bodies, unresolved, edits), change (of "
           "energy()['total']), unaccounted (change - work + dissipated: rounding and tolerances) and unaccounted_steps (in which "
           "that was too much).")
+      .def("draw", draw, py::arg("path") = py::none(), py::arg("view") = py::none(), py::arg("size") = py::make_tuple(800, 600),
+           "A picture of the cables, nets, particles, bodies and obstacles as they are now, by matplotlib, which needs no "
+           "display: "
+           "written to the file `path`, whose name ends in .png, or without a path returned as the bytes of a PNG file. `view`: "
+           "(elevation, azimuth) [degree] from which it is seen, the latter from +x towards +y; None: one that shows the cables "
+           "from their broad side. `size`: (width, height) in pixels. Axes are equal, in metres; cables thinner than two pixels "
+           "are "
+           "drawn that thick. Notebooks show a world by it.\n\nRaises ImportError without matplotlib, ValueError, OSError.")
+      .def("_repr_png_", [](const py::object& world) { return world.attr("draw")(); })
+      .def("_shapes", [](const PythonWorld& world) { return drawn_shapes(use(world)); })
       .def_property_readonly(
           "time", [](const PythonWorld& world) { return use(world).time(); }, "[s] Simulated time.")
       .def_property_readonly(

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <variant>
 
-#include "surface.h"
+#include "scene/surface.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/number_text.h"
 

@@ -10,7 +10,7 @@
 
 #include "common/messages.h"
 #include "common/output_file.h"
-#include "surface.h"
+#include "scene/surface.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/number_text.h"
 

@@ -5,7 +5,7 @@
 #include "verlet_cable/core/shape.h"
 #include "verlet_cable/core/world.h"
 
-namespace verlet_cable::cable_sim {
+namespace verlet_cable {
 
 /// What a program that draws sees of a solid.
 struct Surface {
@@ -19,4 +19,4 @@ Surface surface_of(const Shape& shape, double plane_reach);
 /// [m] How far a plane should reach to lie below all that the world simulates: whole metres.
 double plane_reach(const World& world);
 
-}  // namespace verlet_cable::cable_sim
+}  // namespace verlet_cable

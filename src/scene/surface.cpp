@@ -4,7 +4,7 @@
 #include <cmath>
 #include <variant>
 
-namespace verlet_cable::cable_sim {
+namespace verlet_cable {
 namespace {
 
 constexpr int corners_of_circle = 32;
@@ -103,4 +103,4 @@ double plane_reach(const World& world) {
   return reach;
 }
 
-}  // namespace verlet_cable::cable_sim
+}  // namespace verlet_cable
