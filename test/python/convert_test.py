@@ -262,6 +262,8 @@ def test_vtk_has_the_rows_of_the_output(exported):
         np.testing.assert_array_equal(array('Points', 'points', 3), expected[:, :3])
         np.testing.assert_array_equal(array('PointData', 'velocity', 3), expected[:, 3:6])
         np.testing.assert_array_equal(array('PointData', 'tension'), expected[:, 6])
+        radius = array('PointData', 'radius')
+        assert set(radius) == {0.005, 0.0125, 0.02} and len(radius) == len(expected)
         lines = array('Lines', 'connectivity').astype(int).reshape(-1, 2)
         assert len(lines) == int(piece.get('NumberOfLines')) == len(expected) - len(cables)
         np.testing.assert_array_equal(array('Lines', 'offsets'), 2 * np.arange(1, len(lines) + 1))
