@@ -10,7 +10,7 @@ from setuptools.command.build_ext import build_ext
 
 HERE = pathlib.Path(__file__).resolve().parent
 PACKAGES = {
-    'packages': ['verlet_cable', 'verlet_cable.environments', 'verlet_cable.sim', 'verlet_cable.sweep'],
+    'packages': ['verlet_cable', 'verlet_cable.convert', 'verlet_cable.environments', 'verlet_cable.sim', 'verlet_cable.sweep'],
     'package_dir': {'': 'src/python'},
 }
 
@@ -53,6 +53,7 @@ else:
         entry_points={'console_scripts': [
             'cable_sim = verlet_cable.programs:cable_sim',
             'cable_fit = verlet_cable.programs:cable_fit',
+            'cable_convert = verlet_cable.convert.command:main',
             'cable_sweep = verlet_cable.sweep.command:main',
         ]},
         zip_safe=False,

@@ -95,6 +95,7 @@ std::string poly_data_xml(const std::vector<std::string>& names, const DataArray
 std::string curves_xml(const World& world) {
   std::vector<std::string> names;
   DataArray points{"Float64", "points", 3}, velocity{"Float64", "velocity", 3}, node_tensions{"Float64", "tension"};
+  DataArray node_radii{"Float64", "radius"};
   // Cells are numbered by kind: vertices first.
   DataArray radius{"Float64", "radius"}, tension{"Float64", "tension"}, object{"Int64", "object"};
   Cells verts, lines;
@@ -123,6 +124,7 @@ std::string curves_xml(const World& world) {
       points.add(state.positions[node]);
       velocity.add(state.velocities[node]);
       node_tensions.add(state.tension[std::min(node, state.segments() - 1)]);
+      node_radii.add(materials.mean_at(node, [](const MaterialDesc& material) { return material.radius; }));
     }
     first += static_cast<std::size_t>(state.nodes());
     names.push_back(cable.model->name);
@@ -137,6 +139,7 @@ std::string curves_xml(const World& world) {
       points.add(net.state.positions[node]);
       velocity.add(net.state.velocities[node]);
       node_tensions.add(tensions[node]);
+      node_radii.add(radius_of_net);
     }
     first += tensions.size();
     names.push_back(net.model.name);
@@ -145,10 +148,11 @@ std::string curves_xml(const World& world) {
     points.add(particle.position);
     velocity.add(particle.velocity);
     node_tensions.add(0);
+    node_radii.add(particle.desc.radius);
     names.push_back(particle.desc.name);
   }
-  const std::string data = "<PointData>\n" + velocity.xml() + node_tensions.xml() + "</PointData>\n<CellData>\n" + radius.xml() +
-                           tension.xml() + object.xml() + "</CellData>\n";
+  const std::string data = "<PointData>\n" + velocity.xml() + node_tensions.xml() + node_radii.xml() +
+                           "</PointData>\n<CellData>\n" + radius.xml() + tension.xml() + object.xml() + "</CellData>\n";
   return poly_data_xml(names, points, count + world.particles().size(), verts, lines, {}, data);
 }
 

@@ -1,0 +1,1 @@
+"""cable_convert: scenes from cables of other programs; see command.py."""

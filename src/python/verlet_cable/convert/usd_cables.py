@@ -1,0 +1,192 @@
+"""The BasisCurves of a text file of USD, as cables."""
+import numpy as np
+
+from .cables import RADIUS, Cable, Found
+from .errors import ConvertError
+from .usda import read_usda
+
+_UNITS = 0.01  # [m] of a unit where metersPerUnit is not given, as USD has it
+_Y_UP = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1.0]])
+_ARCS = ('references', 'payload', 'inherits', 'specializes', 'variants')
+_SOLIDS = ('Cube', 'Sphere', 'Capsule', 'Cylinder', 'Cone', 'Mesh', 'Plane', 'NurbsCurves', 'HermiteCurves', 'NurbsPatch', 'Points',
+           'PointInstancer')
+
+
+def usd_cables(text):
+    metadata, prims = read_usda(text)
+    found = Found([])
+    units = metadata.get('metersPerUnit')
+    if units is None:
+        units = _UNITS
+        found.notes.append('the file has no metersPerUnit: its units are taken as centimetres, as USD has it')
+    if not isinstance(units, float) or not 0 < units < np.inf:
+        raise ConvertError(f'metersPerUnit: {units!r}; allowed: a number above 0 [m]')
+    up = metadata.get('upAxis', 'Y')
+    if up not in ('Y', 'Z'):
+        raise ConvertError(f'upAxis: {up!r}; allowed: "Y", "Z"')
+    if metadata.get('subLayers'):
+        found.notes.append('sublayers are not followed')
+    root = np.diag([units, units, units, 1.0])
+    if up == 'Y':
+        root = _Y_UP @ root
+        found.notes.append('y is up in the file: turned about x, so that z is')
+    for prim in prims:
+        _visit(prim, root, found)
+    if not found.cables:
+        raise ConvertError('no BasisCurves; allowed: a file with at least one')
+    found.notes.append('USD has no weight and no stiffness of curves: they weigh as much as water, do not stretch, and bend freely; nothing '
+                       'holds them')
+    return found
+
+
+def _visit(prim, transform, found):
+    if prim.specifier == 'class':
+        return
+    for arc in _ARCS:
+        if arc in prim.metadata:
+            found.notes.append(f'{prim.path}: its {arc} are not followed')
+    transform = transform @ _transform(prim, found)
+    if prim.type == 'BasisCurves':
+        _add_curves(prim, transform, found)
+    elif prim.type in _SOLIDS:
+        found.notes.append(f'{prim.path}: a {prim.type} is not converted')
+    for child in prim.children:
+        _visit(child, transform, found)
+
+
+def _array(prim, name, width, default=None):
+    """An attribute as an array (n,) or (n, width), the first of its values over time."""
+    attribute = prim.attributes.get(name)
+    value = attribute.first() if attribute else None
+    if value is None:
+        return default
+    try:
+        array = np.array(value, float).reshape((-1, width) if width > 1 else -1)
+        if width > 1 and array.size and np.shape(value)[-1] != width:
+            raise ValueError
+    except (TypeError, ValueError):
+        what = f'a list of {width} numbers each' if width > 1 else 'a list of numbers'
+        raise ConvertError(f'{prim.path}.{name}: {str(value)[:60]}; allowed: {what}') from None
+    return array
+
+
+def _add_curves(prim, transform, found):
+    points = _array(prim, 'points', 3)
+    counts = _array(prim, 'curveVertexCounts', 1)
+    if points is None or counts is None:
+        missing = 'points' if points is None else 'curveVertexCounts'
+        raise ConvertError(f'{prim.path}.{missing}: missing; allowed: one of each')
+    if (counts != counts.round()).any() or (counts < 2).any() or counts.sum() != len(points):
+        raise ConvertError(f'{prim.path}.curveVertexCounts: {[f"{count:g}" for count in counts]}; allowed: integers from 2 whose sum is '
+                           f'{len(points)}, which is how many points there are')
+    counts = counts.astype(int)
+    if any(attribute.samples for attribute in prim.attributes.values()):
+        found.notes.append(f'{prim.path}: it moves over time: its first shape is taken')
+    _note_kind(prim, found)
+    scale = abs(np.linalg.det(transform[:3, :3])) ** (1 / 3)
+    widths = _widths(prim, counts, scale, found)
+    colors = _array(prim, 'primvars:displayColor', 3)
+    opacity = _array(prim, 'primvars:displayOpacity', 1, np.ones(1))
+    placed = points @ transform[:3, :3].T + transform[:3, 3]
+    ends = np.cumsum(counts)
+    for index, (first, last) in enumerate(zip(ends - counts, ends)):
+        element = prim.path + (f', curve {index}' if len(counts) > 1 else '')
+        color = None if colors is None or not len(colors) else (*colors[min(index, len(colors) - 1)], *opacity[:1])
+        label = prim.name + (f'_{index + 1}' if len(counts) > 1 else '')
+        found.cables.append(Cable(element, label, placed[first:last], widths[index] / 2, color=color))
+
+
+def _note_kind(prim, found):
+    attribute = prim.attributes.get('type')
+    kind = attribute.first() if attribute and attribute.first() else 'cubic'
+    if kind not in ('linear', 'cubic'):
+        raise ConvertError(f'{prim.path}.type: {kind!r}; allowed: "linear", "cubic"')
+    if kind == 'cubic':
+        found.notes.append(f'{prim.path}: a cubic curve: its points are joined by straight segments')
+    wrap = prim.attributes.get('wrap')
+    if wrap and wrap.first() == 'periodic':
+        found.notes.append(f'{prim.path}: a closed curve: it is left open')
+
+
+def _widths(prim, counts, scale, found):
+    """[m] of each curve."""
+    widths = _array(prim, 'widths', 1)
+    if widths is None or not len(widths):
+        found.notes.append(f'{prim.path}: it has no widths: its radius is {RADIUS:g} m')
+        return np.full(len(counts), 2 * RADIUS)
+    if (~(widths > 0)).any():
+        raise ConvertError(f'{prim.path}.widths: {widths.min():g}; allowed: above 0')
+    widths = widths * scale
+    if len(widths) == 1:
+        return np.full(len(counts), widths[0])
+    if len(widths) == len(counts):
+        return widths
+    if len(widths) != counts.sum():
+        raise ConvertError(f'{prim.path}.widths: {len(widths)} of them; allowed: 1, {len(counts)} (one a curve) or {counts.sum()} (one a '
+                           'point)')
+    if np.ptp(widths) > 0:
+        found.notes.append(f'{prim.path}: its widths vary: each curve has their mean')
+    ends = np.cumsum(counts)
+    return np.array([widths[first:last].mean() for first, last in zip(ends - counts, ends)])
+
+
+def _transform(prim, found):
+    """Of its points into those of its parent."""
+    attribute = prim.attributes.get('xformOpOrder')
+    total = np.eye(4)
+    for name in (attribute.first() or [] if attribute else []):
+        if name == '!resetXformStack!':
+            found.notes.append(f'{prim.path}: !resetXformStack! is not followed')
+            continue
+        is_inverse = name.startswith('!invert!')
+        name = name[len('!invert!'):] if is_inverse else name
+        one = _operation(prim, name)
+        total = total @ (np.linalg.inv(one) if is_inverse else one)
+    return total
+
+
+def _operation(prim, name):
+    attribute = prim.attributes.get(name)
+    kind = name.split(':')[1] if name.startswith('xformOp:') else ''
+    value = attribute.first() if attribute else None
+    result = np.eye(4)
+    try:
+        numbers = np.array(value, float)
+        if kind == 'translate':
+            result[:3, 3] = numbers
+        elif kind == 'scale':
+            result[:3, :3] = np.diag(numbers)
+        elif kind == 'transform':
+            result = numbers.reshape(4, 4).T  # USD has points as rows
+        elif kind == 'orient':
+            result[:3, :3] = quaternion_matrix(numbers)
+        elif kind.startswith('rotate') and sorted(kind[6:]) in (['X'], ['Y'], ['Z'], ['X', 'Y', 'Z']):
+            # rotateXYZ turns about x first; its numbers are those about x, y and z.
+            angles = dict(zip('XYZ', numbers)) if len(kind) == 9 else {kind[6]: float(numbers)}
+            for axis in kind[6:]:
+                result[:3, :3] = axis_matrix('XYZ'.index(axis), np.radians(angles[axis])) @ result[:3, :3]
+        else:
+            raise ConvertError(f'{prim.path}.{name}; allowed: translate, scale, rotateX, rotateXYZ and the like, orient, transform')
+    except (TypeError, ValueError, KeyError):
+        raise ConvertError(f'{prim.path}.{name}: {value!r}; allowed: its numbers') from None
+    return result
+
+
+def axis_matrix(axis, angle):
+    """The rotation by an angle [rad] about x, y or z."""
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    matrix = np.eye(3)
+    matrix[[i, j], [i, j]] = np.cos(angle)
+    matrix[i, j], matrix[j, i] = -np.sin(angle), np.sin(angle)
+    return matrix
+
+
+def quaternion_matrix(quaternion):
+    """Of w, x, y, z, normalized."""
+    norm = np.linalg.norm(quaternion)
+    if len(quaternion) != 4 or not norm > 0:
+        raise ValueError
+    w, x, y, z = quaternion / norm
+    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
