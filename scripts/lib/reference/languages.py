@@ -12,6 +12,7 @@ GROUPS = {
         'core/scene_desc.h', 'core/attachment_desc.h', 'core/body_desc.h', 'core/guide_desc.h', 'core/junction_desc.h', 'core/shape_desc.h',
         'core/frame_keys.h', 'core/scene_fields.h'],
     'Scene files': ['scene/scene_reader.h', 'scene/motion.h', 'scene/loads.h', 'scene/resource.h'],
+    'Saved worlds': ['core/bytes.h', 'core/scene_numbers.h'],
     'Geometry': ['core/shape.h', 'core/triangle_mesh.h', 'core/rotation.h'],
     'Look-ups and messages': [
         'core/body_name.h', 'core/obstacle_of.h', 'core/pin_rules.h', 'core/excursion_text.h', 'core/jump_text.h', 'core/ended_load_text.h',
