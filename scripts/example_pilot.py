@@ -4,12 +4,17 @@
 
 It knows the body's pose and velocity from `cable/state`, and answers each state with a thrust along the body's z axis and a torque on
 `cable/apply/<body>`, as a flight controller does. Where it falls silent, the node's `apply_timeout` ends the thrust."""
+import os
+import sys
+
 import numpy as np
 import rospy
 from geometry_msgs.msg import WrenchStamped
 
-import node_thread
 from verlet_cable.msg import CableArray
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import node_thread  # noqa: E402
 
 GRAVITY = np.array([0.0, 0.0, 9.81])
 # As of springs and dampers on the place [1/s^2, 1/s] and on the attitude [1/s^2, 1/s]: the latter is faster, and slow beside the state's
