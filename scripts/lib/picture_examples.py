@@ -17,6 +17,7 @@ EXAMPLES = {  # [s] until the picture
     'crane': 5,
     'drones_with_bar': 6,
     'finger': 4,
+    'flying_drone': 5,
     'gripper_load': 6,
     'harness': 15,
     'hose_between_arms': 8,
