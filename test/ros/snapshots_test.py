@@ -134,8 +134,9 @@ class SnapshotsTest(unittest.TestCase):
         self.assertTrue(self.node.reset().success)
         answer = self.node.restore_state(file=directory + '/way.state')
         self.assertTrue(answer.success, answer.message)
-        self.assertEqual(contents(self.node.state()), contents(saved))
-        self.assertEqual(contents(self.run_on(300)), contents(first))
+        # But for the stamps: time goes on.
+        self.assertEqual(contents(self.node.state())[1:], contents(saved)[1:])
+        self.assertEqual(contents(self.run_on(300))[1:], contents(first)[1:])
         with open(directory + '/way.state', 'rb') as file:
             world = World.load(Scene.from_dict(SCENE), file.read())
         self.assertEqual(world.cable_names, [c.name for c in saved.cables])

@@ -34,13 +34,13 @@ std::string motion_beside(const std::string& scene) {
   return "";
 }
 
-/// [J] What scenes leave unaccounted in which cables slide on each other or on obstacles, a wheel turns or a hand starts at once
-/// (doc/how_to/ledger.md). The others leave less than `rounding`, and no event tells of it.
-const std::map<std::string, double> known_unaccounted = {{"config_examples_finger", 5e-4}, {"config_examples_harness", 5e-3},
-                                                         {"config_examples_plug", 5e-3},   {"config_scene_template", 3e-2},
-                                                         {"config_scenes_crossed", 2e-4},  {"config_scenes_dress_pack", 2e-3},
-                                                         {"config_scenes_knot", 1e-3},     {"config_scenes_pile", 1e-2},
-                                                         {"config_scenes_pole", 1e-3},     {"config_scenes_table", 1e-4}};
+/// [J] What scenes leave unaccounted in which cables slide on each other or on obstacles, a wheel turns, a hand starts at once or
+/// a buoy tugs at its line in waves (doc/how_to/ledger.md). The others leave less than `rounding`, and no event tells of it.
+const std::map<std::string, double> known_unaccounted = {
+    {"config_examples_finger", 5e-4}, {"config_examples_harness", 5e-3},   {"config_examples_plug", 5e-3},
+    {"config_scene_template", 3e-2},  {"config_scenes_crossed", 2e-4},     {"config_scenes_dress_pack", 2e-3},
+    {"config_scenes_knot", 1e-3},     {"config_scenes_moored_buoy", 2e-2}, {"config_scenes_pile", 1e-2},
+    {"config_scenes_pole", 1e-3},     {"config_scenes_table", 1e-4}};
 constexpr double rounding = 3e-4;
 
 class ExampleScene : public CableSim, public testing::WithParamInterface<std::string> {
@@ -89,11 +89,12 @@ TEST_P(ExampleScene, hasAPoseOfEveryFrameWithWhichItsMotionBegins) {
   }
 }
 
-/// The launch files move the frames of these.
+/// The launch files move the frames of these; what flies by its thrust has none.
 TEST(ExampleScenes, haveAMotionWhereTheirLaunchFilesMoveThem) {
   const std::set<std::string> others = {"config_demo", "config_hose", "config_scenes_dress_pack"};
   for (const std::string& name : config_scene_names()) {
     if (name.rfind("config_examples_", 0) != 0 && others.count(name) == 0) continue;
+    if (name == "config_examples_flying_drone") continue;
     EXPECT_NE(motion_beside(shipped_scene_path(name)), "") << name;
   }
 }
