@@ -13,6 +13,8 @@ PACKAGES = {
     'packages': ['verlet_cable', 'verlet_cable.convert', 'verlet_cable.environments', 'verlet_cable.sim', 'verlet_cable.sweep'],
     'package_dir': {'': 'src/python'},
 }
+# By which the package's CMake files install: all of it goes beside the modules.
+DESTINATIONS = ['GLOBAL_BIN', 'PACKAGE_BIN', 'PACKAGE_LIB', 'PACKAGE_PYTHON', 'PACKAGE_SHARE']
 
 
 class BuildByCMake(build_ext):
@@ -22,8 +24,10 @@ class BuildByCMake(build_ext):
         place = pathlib.Path(self.get_ext_fullpath(ext.name)).resolve().parent
         build = pathlib.Path(self.build_temp).resolve()
         jobs = self.parallel or len(os.sched_getaffinity(0))
-        subprocess.run(['cmake', '-S', HERE, '-B', build, '-DVERLET_CABLE_ROS=OFF', f'-DCMAKE_INSTALL_PREFIX={place}',
-                        f'-DPYTHON_EXECUTABLE={sys.executable}', f'-DPython3_EXECUTABLE={sys.executable}'], check=True)
+        subprocess.run(['cmake', '-S', HERE, '-B', build, f'-DCMAKE_INSTALL_PREFIX={place}',
+                        f'-DVERLET_CABLE_INSTEAD={HERE / "cmake/python_package.cmake"}',
+                        f'-DPYTHON_EXECUTABLE={sys.executable}', f'-DPython3_EXECUTABLE={sys.executable}',
+                        f'-DCATKIN_DEVEL_PREFIX={build}', *(f'-DCATKIN_{name}_DESTINATION=.' for name in DESTINATIONS)], check=True)
         subprocess.run(['cmake', '--build', build, '--parallel', str(jobs)], check=True)
         subprocess.run(['cmake', '--install', build, '--strip', '--component', 'Unspecified'], check=True)
 
