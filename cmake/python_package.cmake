@@ -7,11 +7,4 @@ set(BUILD_SHARED_LIBS OFF)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)  # programs are named like the directories of their parts
 
-add_subdirectory(src/core)
-add_compile_options(${options_beside_the_core})
-add_subdirectory(src/mesh_reader)
-add_subdirectory(src/scene)
-add_subdirectory(src/edit_requests)
-add_subdirectory(src/world_events)
-add_subdirectory(src/tools)
-add_subdirectory(src/python)
+include(cmake/without_ros.cmake)

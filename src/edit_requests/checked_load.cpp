@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "edit_requests/error_text.h"
 #include "verlet_cable/core/body_name.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
@@ -11,21 +12,18 @@
 namespace verlet_cable {
 namespace {
 
-std::string text(const Vector3& v) {
-  return "(" + number_text(v.x()) + ", " + number_text(v.y()) + ", " + number_text(v.z()) + ")";
-}
-
 void check_vector(const std::string& field, const Vector3& v, const Range& range, const char* unit,
                   std::vector<std::string>& errors) {
   if (!range.contains(v.x()) || !range.contains(v.y()) || !range.contains(v.z()))
-    errors.push_back(field + ": " + text(v) + "; allowed: " + range.text(unit));
+    errors.push_back(field + ": " + point_text(v) + "; allowed: " + range.text(unit));
 }
 
 /// What a node of a cable cannot take.
 void check_node(const RequestedLoad& request, const std::string& node, std::vector<std::string>& errors) {
   if (!(request.torque.array() == 0).all())
-    errors.push_back(request.words->torque + ": " + text(request.torque) + " on " + node + "; allowed: 0, it takes a force only");
-  if (request.point) errors.push_back("point: " + text(*request.point) + " on " + node + "; allowed: 0, it is a point");
+    errors.push_back(request.words->torque + ": " + point_text(request.torque) + " on " + node +
+                     "; allowed: 0, it takes a force only");
+  if (request.point) errors.push_back("point: " + point_text(*request.point) + " on " + node + "; allowed: 0, it is a point");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "edit_requests/error_text.h"
 #include "verlet_cable/core/body_name.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/number_text.h"
@@ -12,10 +13,6 @@
 
 namespace verlet_cable {
 namespace {
-
-std::string text(const Vector3& v) {
-  return "(" + number_text(v.x()) + ", " + number_text(v.y()) + ", " + number_text(v.z()) + ")";
-}
 
 /// The node's place and the cable's direction there, between the directions of its segments.
 Pose node_pose(const SimulatedCable& cable, int node) {
@@ -39,9 +36,9 @@ void check_reach(const CheckedPin& pin, const World& world, std::vector<std::str
     const double distance = (place - (world.frame_pose(other.frame) * other.pose).position).norm();
     const double length = std::abs(arc_length[pin.node] - arc_length[other.node]);
     if (distance <= length * (1 + rounding)) continue;
-    errors.push_back("offset.position: " + text(pin.offset.position) + " in frame " + verlet_cable::quoted(pin.frame) + " is " +
-                     rounded_text(distance) + " m from " + quoted(other.name) + "; allowed: at most the " + rounded_text(length) +
-                     " m of cable between them");
+    errors.push_back("offset.position: " + point_text(pin.offset.position) + " in frame " + verlet_cable::quoted(pin.frame) +
+                     " is " + rounded_text(distance) + " m from " + quoted(other.name) + "; allowed: at most the " +
+                     rounded_text(length) + " m of cable between them");
   }
 }
 
@@ -89,7 +86,7 @@ Pose read_pose(const std::string& field, const Pose& given, std::vector<std::str
   constexpr double tolerance = 0.01;
   const Vector3& position = given.position;
   if (!(position.cwiseAbs().array() <= coordinate.highest).all())
-    errors.push_back(field + ".position: " + text(position) + "; allowed: " + coordinate.text("m"));
+    errors.push_back(field + ".position: " + point_text(position) + "; allowed: " + coordinate.text("m"));
   const Quaternion& q = given.orientation;
   if ((q.coeffs().array() == 0).all()) return {position, Quaternion::Identity()};
   if (!(std::abs(q.norm() - 1) <= tolerance)) {

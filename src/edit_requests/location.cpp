@@ -24,10 +24,6 @@ struct PointOnCable {
   std::vector<std::string> errors;
 };
 
-std::string point_text(const Vector3& point) {
-  return "(" + number_text(point.x()) + ", " + number_text(point.y()) + ", " + number_text(point.z()) + ")";
-}
-
 /// "location.mode: 1", or the argument that says so.
 std::string mode_text(const RequestedPlace& place) {
   const RequestWords& words = *place.words;

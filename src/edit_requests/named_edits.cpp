@@ -11,19 +11,6 @@
 #include "verlet_cable/core/quoted_text.h"
 
 namespace verlet_cable {
-namespace {
-
-/// Why there is no such cable; nothing if there is.
-std::optional<EditResult> refused_cable(const World& world, const std::string& field, const std::string& cable,
-                                        const RequestWords& words) {
-  if (find(world.cables(), cable) >= 0) return std::nullopt;
-  if (const auto waits = why_cable_waits(world, field, cable, words)) return refused({*waits});
-  NameList names;
-  for (const SimulatedCable& other : world.cables()) names.add(other.model->name);
-  return refused({field + ": " + quoted(cable) + "; allowed: " + names.text("none, there are no cables")});
-}
-
-}  // namespace
 
 EditResult apply_pin(World& world, const std::string& name, const CheckedPin& pin, AttachmentType type) {
   World trial = world;  // a frame cannot be taken back
@@ -71,7 +58,7 @@ PlacedEdit apply_cut(World& world, const Location& place) {
 
 EditResult apply_set_length(World& world, const std::string& cable, bool at_end, double length, double speed, double max_tension,
                             const RequestWords& words) {
-  if (const auto reason = refused_cable(world, "cable", cable, words)) return *reason;
+  if (const auto reason = why_no_cable(world, "cable", cable, words)) return refused({*reason});
   const int index = find(world.cables(), cable);
   const double before = world.cables()[index].state.length();
   const EditResult result = world.apply(edit::SetLength{index, at_end, length, speed, max_tension});
@@ -84,7 +71,7 @@ EditResult apply_set_length(World& world, const std::string& cable, bool at_end,
 }
 
 EditResult apply_set_tension(World& world, const std::string& cable, edit::SetTension change, const RequestWords& words) {
-  if (const auto reason = refused_cable(world, "cable", cable, words)) return *reason;
+  if (const auto reason = why_no_cable(world, "cable", cable, words)) return refused({*reason});
   change.cable = find(world.cables(), cable);
   const EditResult result = world.apply(change);
   if (!result.ok) return result;
@@ -98,14 +85,14 @@ EditResult apply_set_tension(World& world, const std::string& cable, edit::SetTe
 
 EditResult apply_set_state(World& world, const std::string& cable, std::optional<std::vector<Vector3>> positions,
                            std::optional<std::vector<Vector3>> velocities, const RequestWords& words) {
-  if (const auto reason = refused_cable(world, "cable", cable, words)) return *reason;
+  if (const auto reason = why_no_cable(world, "cable", cable, words)) return refused({*reason});
   return world.apply(edit::SetState{find(world.cables(), cable), std::move(positions), std::move(velocities)});
 }
 
 PlacedEdit apply_join(World& world, const std::string& first, bool first_at_end, const std::string& second, bool second_at_end,
                       const RequestWords& words) {
-  if (const auto reason = refused_cable(world, "first", first, words)) return {*reason};
-  if (const auto reason = refused_cable(world, "second", second, words)) return {*reason};
+  if (const auto reason = why_no_cable(world, "first", first, words)) return {refused({*reason})};
+  if (const auto reason = why_no_cable(world, "second", second, words)) return {refused({*reason})};
   const int node = world.cables()[find(world.cables(), first_at_end ? first : second)].state.nodes() - 1;
   const EditResult result =
       world.apply(edit::Join{find(world.cables(), first), first_at_end, find(world.cables(), second), second_at_end});

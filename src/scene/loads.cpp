@@ -51,6 +51,10 @@ std::vector<std::string> validate_loads(const Loads& loads, const SceneDesc& sce
   return errors;
 }
 
+bool is_due(double start, double time, double time_step) {
+  return start <= time + step_tolerance * time_step;
+}
+
 LoadPlayer::LoadPlayer(ByteReader& bytes) {
   Loads loads(bytes.read_length());
   for (LoadRow& row : loads) {
@@ -106,8 +110,7 @@ int node_now(int node, const SimulatedCable& cable) {
 
 std::vector<RefusedLoad> LoadPlayer::apply_due(World& world) {
   std::vector<RefusedLoad> refused;
-  const double now = world.time() + step_tolerance * world.time_step();
-  for (; loads_ && next_ < loads_->size() && (*loads_)[next_].time <= now; ++next_) {
+  for (; loads_ && next_ < loads_->size() && is_due((*loads_)[next_].time, world.time(), world.time_step()); ++next_) {
     const LoadRow& row = (*loads_)[next_];
     edit::ApplyLoad load;
     load.name = row.name;

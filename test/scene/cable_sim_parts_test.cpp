@@ -65,7 +65,8 @@ TEST(Options, everyMistakeIsNamedAtOnce) {
 
 TEST(Options, ofAnOptionThatThereIsNotTheValueIsNoSecondMistake) {
   const std::string allowed =
-      "; allowed: --help, --duration, --motion, --loads, --output, --bodies, --rate, --summary, --plot, --gif, --movie, --usd, --vtk, --settle\n";
+      "; allowed: --help, --duration, --motion, --loads, --output, --bodies, --rate, --summary, --plot, --gif, --movie, --usd, "
+      "--vtk, --settle\n";
   std::vector<std::string> errors;
   for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
            {"a.yaml", "--unknown", "3"}, {"--unknown", "-3", "a.yaml"}, {"--unknown", "3"}, {"a.yaml", "--unknown"}}) {

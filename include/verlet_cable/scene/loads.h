@@ -36,6 +36,9 @@ struct RefusedLoad {
   std::string name, on, message;
 };
 
+/// Whether what starts at `start` acts in the step that begins at `time` and takes `time_step` [s].
+bool is_due(double start, double time, double time_step);
+
 /// Applies loads to a world as their times come. A value, as the world is.
 class LoadPlayer {
  public:

@@ -25,7 +25,7 @@ class FrameTrack {
   FrameVelocity velocity_from(double time) const;
 
   bool empty() const { return times_.empty(); }
-  double last_time() const { return times_.back(); }  ///< [s]
+  double last_time() const { return times_.back(); }           ///< [s]
   const std::vector<double>& times() const { return times_; }  ///< [s]
   const std::vector<Pose>& poses() const { return poses_; }    ///< one a time
 

@@ -62,7 +62,7 @@ class BodySystem {
   void restore_momenta(std::vector<Participant>& participants, std::vector<SimulatedBody>& bodies);
   double largest_displacement() const;  ///< [m] over the substep, of a body's center of mass or what turns with its size
   double damping_work(int member) const { return members_[member].stepper.damping_work(); }  ///< [J] over the substep
-  double applied_work(int member) const { return members_[member].stepper.applied_work(); }     ///< [J] likewise
+  double applied_work(int member) const { return members_[member].stepper.applied_work(); }  ///< [J] likewise
   /// Adds what the fluid does to it over the substep.
   void add_fluid_work(int member, EnergyBalance& balance) const { members_[member].stepper.add_fluid_work(balance); }
   void finish(int member, SimulatedBody& body, BodyProgress& progress) const;

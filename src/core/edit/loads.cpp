@@ -17,22 +17,12 @@ constexpr std::size_t most_loads = 10000;
 /// Steps that begin within a duration, as it is rounded.
 constexpr double rounding = 1e-9;
 
-std::string vector_problem(const std::string& field, const Vector3& vector, const char* unit) {
-  for (int axis = 0; axis < 3; ++axis)
-    if (!applied_load.contains(vector[axis]))
-      return field + "." + "xyz"[axis] + ": " + number_text(vector[axis]) + "; allowed: " + applied_load.text(unit);
-  return "";
-}
-
 /// What is wrong with a load, wherever it acts; empty if nothing is.
 std::string problem_of(const edit::ApplyLoad& load) {
-  if (const std::string problem = vector_problem("force", load.force, "N"); !problem.empty()) return problem;
-  if (const std::string problem = vector_problem("torque", load.torque, "N m"); !problem.empty()) return problem;
-  if (load.point)
-    for (int axis = 0; axis < 3; ++axis)
-      if (!coordinate.contains((*load.point)[axis]))
-        return std::string("point.") + "xyz"[axis] + ": " + number_text((*load.point)[axis]) +
-               "; allowed: " + coordinate.text("m");
+  if (const std::string problem = vector_problem("force", load.force, applied_load, "N"); !problem.empty()) return problem;
+  if (const std::string problem = vector_problem("torque", load.torque, applied_load, "N m"); !problem.empty()) return problem;
+  const Vector3 point = load.point.value_or(Vector3::Zero());
+  if (const std::string problem = vector_problem("point", point, coordinate, "m"); !problem.empty()) return problem;
   if (!load_duration.contains(load.duration))
     return "duration: " + number_text(load.duration) + "; allowed: " + load_duration.text("s");
   if (load.body.is_rigid_body()) return "";

@@ -4,7 +4,6 @@
 #include "guide/node_passing.h"
 #include "rod/length_projection.h"
 #include "rod/rod_frames.h"
-#include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/scene_fields.h"
 #include "world/implementation.h"
 
@@ -17,12 +16,10 @@ std::string problem_of(const std::string& field, const std::optional<std::vector
   if (!vectors) return "";
   if (static_cast<int>(vectors->size()) != cable.nodes())
     return field + ": " + std::to_string(vectors->size()) + "; must be " + std::to_string(cable.nodes()) + ", one a node";
-  for (std::size_t node = 0; node < vectors->size(); ++node)
-    for (int axis = 0; axis < 3; ++axis)
-      if (const double value = (*vectors)[node][axis]; !coordinate.contains(value))
-        return field + "[" + std::to_string(node) + "]." + "xyz"[axis] + ": " + number_text(value) +
-               "; allowed: " + coordinate.text();
-  return "";
+  std::string problem;
+  for (std::size_t node = 0; node < vectors->size() && problem.empty(); ++node)
+    problem = vector_problem(field + "[" + std::to_string(node) + "]", (*vectors)[node], coordinate, "");
+  return problem;
 }
 
 }  // namespace

@@ -203,7 +203,7 @@ bool runs_out(const Attachment& attachment, const State& state) {
   const double ahead = steps_ahead * state.scene->time_step * std::abs(guide.flow);
   const double least = std::clamp(ahead, shortest * regular, most_ahead * regular);
   return std::any_of(both_sides.begin(), both_sides.end(), [&](int side) {
-    if (!lets_end_out(attachment, side, state) || !(guide.flow * way_from(side) > 0)) return false;
+    if (!(guide.flow * way_from(side) > 0) || !lets_end_out(attachment, side, state)) return false;
     // Had it been as near when it was brought in, it would not have been caught.
     const bool is_free = is_free_end(state, attachment.body.index, end_beside(attachment, side, state));
     return length_to_end(attachment, side, state) < (is_free ? least : std::max(least, guide.capture));

@@ -85,16 +85,16 @@ bool BodySettling::settle_start() {
   return settled;
 }
 
-/// Lets clamps on frames hold the material so that the cables have their rest twist between them and from junctions. Returns how far
-/// from that they were [rad].
+/// Lets clamps on frames hold the material so that the cables have their rest twist between them and from junctions. Returns how
+/// far from that they were [rad].
 double BodySettling::untwist() {
   const auto& attachments = state_.attachments;
   const auto is_on_frame = [&](const DirectionTarget& clamp) { return attachments[clamp.attachment].holder < 0; };
   double most = 0;
   for (const int cable : island_.cables) {
     std::vector<DirectionTarget>& clamps = state_.cable_progress[cable].targets.directions;
-    const bool is_branched =
-        std::any_of(clamps.begin(), clamps.end(), [&](const DirectionTarget& c) { return attachments[c.attachment].is_junction; });
+    const bool is_branched = std::any_of(clamps.begin(), clamps.end(),
+                                         [&](const DirectionTarget& c) { return attachments[c.attachment].is_junction; });
     if (is_branched) most = std::max(most, take_excess_twist(clamps, is_on_frame, state_.cables[cable].state));
   }
   return most;
@@ -233,8 +233,8 @@ void BodySettling::complete() {
   }
 }
 
-bool settle_bodies(const std::vector<char>& settles, bool start, State& state, Workspace& workspace, std::vector<std::string>& unsettled,
-                   const std::atomic<bool>* cancelled) {
+bool settle_bodies(const std::vector<char>& settles, bool start, State& state, Workspace& workspace,
+                   std::vector<std::string>& unsettled, const std::atomic<bool>* cancelled) {
   Islands islands;
   islands.build(state);
   bool all = true;

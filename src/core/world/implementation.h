@@ -8,6 +8,7 @@
 #include "particle/particle_stepper.h"
 #include "scene/harnesses.h"
 #include "scene/start_places.h"
+#include "verlet_cable/core/scene_fields.h"
 #include "world/island_stepper.h"
 #include "world/islands.h"
 #include "world/junctions.h"
@@ -153,6 +154,9 @@ inline EditResult refused(const std::string& message) {
 
 /// Why a body has no such node to hold or to load; empty if it has.
 std::string node_problem(const State& state, const BodyId& body, int node);
+
+/// What is wrong with a vector that has a component outside of a range, under the name of its field; empty if nothing is.
+std::string vector_problem(const std::string& field, const Vector3& vector, const Range& range, const char* unit);
 
 /// What is wrong with a pose that is not sound, under the name of its field; empty if nothing is.
 std::string pose_problem(const std::string& field, const Pose& pose);

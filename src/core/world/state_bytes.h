@@ -7,7 +7,7 @@
 
 namespace verlet_cable {
 
-/// All that the future depends on, with the bytes' own marks: of which version they are, and a checksum.
+/// All that the future depends on, after its hash.
 std::string bytes_of(const State& state);
 
 /// Makes `state`, which is that of a world with the same scene as the bytes are of, what `bytes_of` had. Meshes that it has are

@@ -139,10 +139,16 @@ bool World::settle() {
   return w.findings.unsettled.empty();
 }
 
-std::string pose_problem(const std::string& field, const Pose& pose) {
+std::string vector_problem(const std::string& field, const Vector3& vector, const Range& range, const char* unit) {
   for (int axis = 0; axis < 3; ++axis)
-    if (!coordinate.contains(pose.position[axis]))
-      return field + ".position." + "xyz"[axis] + ": " + number_text(pose.position[axis]) + "; allowed: " + coordinate.text("m");
+    if (!range.contains(vector[axis]))
+      return field + "." + "xyz"[axis] + ": " + number_text(vector[axis]) + "; allowed: " + range.text(unit);
+  return "";
+}
+
+std::string pose_problem(const std::string& field, const Pose& pose) {
+  if (const std::string problem = vector_problem(field + ".position", pose.position, coordinate, "m"); !problem.empty())
+    return problem;
   if (is_sound(pose)) return "";
   return field + ".orientation: of length " + number_text(pose.orientation.norm()) +
          "; allowed: 1 (from 0.5 to 2 is brought to 1)";

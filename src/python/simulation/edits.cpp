@@ -136,10 +136,8 @@ void move_attachment(const std::string& name, const Pose& offset, DrivenWorld& w
 edit::ApplyLoad checked_force(const std::string& cable, std::int64_t node, RequestedLoad request, const World& world) {
   Location place;
   place.body = cable_id(find(world.cables(), cable));
-  if (place.body.index < 0) {
-    NameList names;
-    for (const SimulatedCable& other : world.cables()) names.add(other.model->name);
-    place.errors.push_back("cable: " + quoted(cable) + "; allowed: " + names.text("none, there are no cables"));
+  if (const auto reason = why_no_cable(world, "cable", cable, python_words())) {
+    place.errors.push_back(*reason);
     return checked(std::move(request), place, world);
   }
   const std::int64_t segments = world.cables()[place.body.index].state.segments();

@@ -158,10 +158,12 @@ CableServices::CableServices(ros::NodeHandle& node, Simulation& simulation) : ow
                     response.cable = result.name;
                     return answer(result, response);
                   }),
-      serve<SaveState>(node, "save_state",
-                       [s](const auto& request, auto& response) { return answer(s->save_state(request.name, request.file), response); }),
-      serve<RestoreState>(node, "restore_state",
-                          [s](const auto& request, auto& response) { return answer(s->restore_state(request.name, request.file), response); }),
+      serve<SaveState>(
+          node, "save_state",
+          [s](const auto& request, auto& response) { return answer(s->save_state(request.name, request.file), response); }),
+      serve<RestoreState>(
+          node, "restore_state",
+          [s](const auto& request, auto& response) { return answer(s->restore_state(request.name, request.file), response); }),
   };
   SceneDesc lasting;  // what no request changes
   lasting.scene_directory = s->scene().scene_directory;

@@ -11,6 +11,7 @@
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/core/scene_fields.h"
+#include "verlet_cable/scene/loads.h"
 
 namespace verlet_cable {
 namespace {
@@ -22,8 +23,6 @@ constexpr double most_nodes = 1e6;
 constexpr std::size_t most_transforms = 200'000;  // of a motion: an hour of a frame at 50 Hz
 constexpr std::size_t most_errors = 20;
 constexpr std::size_t most_loads = 200'000;
-/// [steps] what rounding may do to the quotient of two times.
-constexpr double step_tolerance = 1e-6;
 
 using LoadMessage = RolloutGoal::_loads_type::value_type;
 
@@ -153,8 +152,8 @@ double Rollout::progress() const {
 
 /// Those that start with the next step. What has lost its node meanwhile, as a cable broke, is left out.
 void Rollout::apply_loads() {
-  const double now = time() + step_tolerance * world_.time_step();
-  for (; next_load_ < loads_.size() && loads_[next_load_].start <= now; ++next_load_) world_.apply(loads_[next_load_].load);
+  for (; next_load_ < loads_.size() && is_due(loads_[next_load_].start, time(), world_.time_step()); ++next_load_)
+    world_.apply(loads_[next_load_].load);
 }
 
 WorldStep Rollout::next_step() {

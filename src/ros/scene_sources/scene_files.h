@@ -12,8 +12,8 @@ namespace verlet_cable {
 /// relative to it; where it leads to counts, through links). Throws SceneError with `key`, the value and what is allowed.
 std::string find_scene_file(const std::string& key, const std::string& file, const std::string& scene_directory);
 
-/// The path of a file that may be written: inside `scene_directory` (absolute or relative to it), in a directory that is there. Throws
-/// SceneError likewise.
+/// The path of a file that may be written: inside `scene_directory` (absolute or relative to it), in a directory that is there.
+/// Throws SceneError likewise.
 std::string writable_scene_file(const std::string& key, const std::string& file, const std::string& scene_directory);
 
 /// The scene that a request means. What the node was started with in `current` stays in force: `limits` and `scene_directory`.
