@@ -268,5 +268,28 @@ TEST(HangingPlaces, junctionsStartWhereTheyReachOrAreErrors) {
   }
 }
 
+/// A load that starts straight below its rope's anchor, nearer than the rope is long: the bight carries nothing.
+TEST(HangingPlaces, ALoadOnASlackRopeFalls) {
+  for (const double axial_stiffness : {infinity, 1e5})
+    for (const double slack : {0.07, 0.1, 0.6}) {
+      SceneDesc scene = scenes::one_cable(40, 2);
+      scene.materials[0].material.axial_stiffness = axial_stiffness;
+      scene.cables[0].attachments = {scenes::attachment("anchor", PlaceDesc::At::start, {0, 0, 0}),
+                                     scenes::attachment("hook", PlaceDesc::At::end, {0, 0, 0})};
+      scene.cables[0].attachments[1].body = "load";
+      BodyDesc& load = scene.bodies.emplace_back();
+      load.name = "load";
+      load.mass = 5;
+      load.inertia = Vector3::Constant(0.03);
+      load.pose = InitialPose{0, 0, slack - 2, 0, 0, 0};
+      World world(scene, initial_frames(scene));
+      const double end = 0.9 * std::sqrt(2 * slack / 9.81);
+      while (world.time() < end) ASSERT_EQ(world.step(initial_frames(scene)).status, StepResult::Status::ok) << world.time();
+      const double fallen = slack - 2 - world.bodies()[0].pose.position.z(), free = 0.5 * 9.81 * world.time() * world.time();
+      // The rope weighs a fiftieth of the load, and falls with it in part.
+      EXPECT_NEAR(fallen, free, 0.02 * free) << axial_stiffness << ' ' << slack;
+    }
+}
+
 }  // namespace
 }  // namespace verlet_cable

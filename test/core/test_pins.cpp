@@ -61,6 +61,23 @@ double weight(const World& world) {
   return weight;
 }
 
+/// Two neighbours that are held further apart than they are long feel the tension of what is between them.
+TEST(Pins, NeighboursFeelWhatIsStrainedBetweenThem) {
+  for (const bool one_by_one : {false, true}) {
+    SceneDesc scene = scenes::one_cable(5);
+    scene.materials[0].material.axial_stiffness = 1000;
+    scene.gravity.acceleration.setZero();
+    scene.cables[0].attachments = {scenes::attachment("top", PlaceDesc::At::start, {0, 0, 0}),
+                                   scenes::attachment("next", PlaceDesc::At::arc_length, {0, 0, -0.202})};
+    scene.cables[0].attachments[1].place.arc_length = 0.2;
+    World world(scene, initial_frames(scene));
+    world.step_one_by_one(one_by_one);
+    ASSERT_EQ(world.step(initial_frames(scene)).status, Status::ok);
+    EXPECT_NEAR(world.cables()[0].state.tension.front(), 10, 1e-6);
+    EXPECT_NEAR(world.attachments()[1].force.z(), 10, 1e-6);
+  }
+}
+
 TEST(Pins, areRefusedBesideGuides) {
   for (const SceneDesc& scene : {through_eyelet(0.1), over_wheel(0)}) {
     World start(scene, {});

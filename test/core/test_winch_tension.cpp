@@ -194,6 +194,30 @@ TEST(FreeSpool, GivesRopeToAHand) {
   }
 }
 
+/// Where the next node is held, too, nothing of the cable can move there: its tension is the winch's, and its length the
+/// distance.
+TEST(KeptTensions, BesideAHeldNode) {
+  for (const double axial_stiffness : {infinity, 1e4})
+    for (const double wanted : {0.0, 5.0}) {
+      SceneDesc scene = winch_scene(10, 1, axial_stiffness, 2e-3);
+      scene.gravity.acceleration.setZero();
+      scene.cables[0].initial.type = InitialShapeDesc::Type::straight;
+      scene.cables[0].initial.to = {1, 0, 0};
+      scene.cables[0].attachments.push_back(scenes::attachment("hand", At::arc_length, {0, 0, 0}, "hand"));
+      scene.cables[0].attachments.back().place.arc_length = 0.1;
+      World world(scene, scenes::hand_at({0.1, 0, 0}));
+      ASSERT_TRUE(world.apply(kept(wanted)).ok);
+      for (int i = 1; i <= 500; ++i) {
+        const double way = 0.0125 * (1 - std::cos(M_PI * i / 500));
+        ASSERT_EQ(world.step(scenes::hand_at({0.1 + way, 0, 0})).status, Status::ok) << i;
+        ASSERT_TRUE(world.cables()[0].state.velocities[5].allFinite()) << i;
+      }
+      EXPECT_NEAR(tension(world), wanted, 1e-3 * std::max(wanted, 1.0)) << axial_stiffness;
+      EXPECT_NEAR(world.cables()[0].state.rest_lengths.front(), 0.025 + 0.1, 1e-3) << axial_stiffness;
+      EXPECT_LT(unaccounted(world, gravity * density), 1e-6);
+    }
+}
+
 /// A winch that is to take in more than there is pulls with what it may, and stands.
 TEST(SlippingWinch, StallsAtItsTension) {
   for (const double axial_stiffness : {infinity, 1e5}) {

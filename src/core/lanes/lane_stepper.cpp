@@ -266,10 +266,10 @@ void LaneStepper::hold(int c, const LaneMember& member) {
     set_vector_at(LaneField::velocity_x, c, target.node, velocity);
     at(LaneField::movable, c, target.node) = at(LaneField::inverse_mass, c, target.node) = 0;
   }
+  if (work_.law.is_elastic || held.size() < 2) return;
   for (std::size_t k = 0; k + 1 < held.size(); ++k)
     if (held[k].node + 1 == held[k + 1].node)
       each_lane_of(c, held[k].node, [&](int place, int lane, double) { value(LaneField::adjustable, place, lane) = 0; });
-  if (work_.law.is_elastic || held.size() < 2) return;
   const double stiffness = stiffness_of_taut(s, state);
   for (int i = held.front().node; i < held.back().node; ++i) {
     each_lane_of(c, i, [&](int place, int lane, double) {

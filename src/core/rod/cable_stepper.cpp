@@ -225,13 +225,9 @@ void CableStepper::set_loads(const Substep& s, const CableState& state) {
     }
   }
   both_held_.clear();
-  const auto gives = [&](int i) {
-    return std::any_of(s.boundary.growing.begin(), s.boundary.growing.end(),
-                       [i](const GrowingSegment& g) { return g.segment == i && g.law.gives(); });
-  };
   for (std::size_t k = 0; k + 1 < held.size(); ++k)
     if (held[k].node + 1 == held[k + 1].node && held[k].body == held[k + 1].body && !grows(held[k].node) &&
-        yields_[held[k].node] == 0 && !gives(held[k].node))
+        !is_elastic_at(held[k].node) && yields_[held[k].node] == 0)
       both_held_.push_back(held[k].node);
 }
 
@@ -336,6 +332,7 @@ void CableStepper::evaluate(const Substep& s, const CableState& state) {
     evaluate_rigid_lengths();
   if (winch_.segment >= 0) evaluate_winch(s);
   for (const int i : both_held_) {
+    if (keeps_tension(i)) continue;
     system_.gap[i] = 0;
     system_.compliance[i] = 1;
   }

@@ -160,7 +160,7 @@ class CableStepper {
   Resistance<double> strain_resistance(const Substep& substep, int segment) const;
   double wanted_by_winch(const Substep& substep, double end) const;
   double kept_tension_error(const Substep& substep, double end, double wanted) const;
-  double winch_mobility() const;
+  double winch_resistance() const;
   double least_winch_stiffness() const;
   bool winch_is_consistent(const Substep& substep) const;
   void wind_beyond(const Substep& substep, double wanted);

@@ -25,15 +25,18 @@ std::vector<Vector3> straight_line(const Vector3& from, const Vector3& direction
   return nodes;
 }
 
-/// KinematicTargets that are closer to being above each other are moved apart for a cable that is to be settled [of its length].
-constexpr double narrowest = 0.2;
+/// The bight of a cable that is to be settled is at least so wide [of its length].
+constexpr double width_to_settle = 0.2;
+/// Of a segment's length.
+constexpr double rounding = 1e-9;
 
-/// A place like `to`, but not so nearly above or below `from` that a chain between the two would fold at its lowest point.
-Vector3 moved_apart(const Vector3& from, const Vector3& to, const Vector3& down, double length) {
+/// A place like `to`, but not so nearly above or below `from` that the bight of a chain of that length between the two would be
+/// less than `width` wide [m].
+Vector3 moved_apart(const Vector3& from, const Vector3& to, const Vector3& down, double length, double width) {
   const Vector3 span = to - from, level = span - span.dot(down) * down;
-  if (level.norm() >= narrowest * length) return to;
+  if (level.norm() >= width) return to;
   const Vector3 side = level.norm() > 0 ? Vector3(level.normalized()) : Vector3(down.unitOrthogonal());
-  const Vector3 apart = span - level + narrowest * length * side;
+  const Vector3 apart = span - level + width * side;
   return apart.norm() < length ? Vector3(from + apart) : to;
 }
 
@@ -60,7 +63,13 @@ std::vector<Vector3> hanging(const CableModel& model, const CableState& state, c
     std::vector<double> axial_stiffness;
     for (int i = first; i < last; ++i) axial_stiffness.push_back(materials[i].axial_stiffness);
     const Vector3 &from = held[k].position, &to = held[k + 1].position;
-    const Vector3 end = folds != Folds::anywhere ? moved_apart(from, to, down, state.length(first, last)) : to;
+    const double length = state.length(first, last);
+    double width = folds == Folds::anywhere ? 0 : width_to_settle * length;
+    // Side by side: folded onto itself it would carry a body, as a column does. With less slack its last link stands askew.
+    const double slack = length - (to - from).norm(), shortest = *std::min_element(lengths.begin(), lengths.end());
+    if ((held[k].body >= 0 || held[k + 1].body >= 0) && slack > (2 - rounding) * shortest)
+      width = std::max(width, 2 * materials.largest([](const MaterialDesc& material) { return material.radius; }));
+    const Vector3 end = moved_apart(from, to, down, length, width);
     std::vector<Vector3> span = hanging_chain(from, end, lengths, weights, down, axial_stiffness);
     for (int i = 0; i <= last - first; ++i) span[i] += static_cast<double>(i) / (last - first) * (to - end);
     std::copy(span.begin(), span.end(), nodes.begin() + first);

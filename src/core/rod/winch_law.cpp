@@ -55,14 +55,14 @@ WoundLength CableStepper::wound_length(const Substep& s) const {
   return wound;
 }
 
-/// [m/N] By which a force on the segment's nodes may move them in the substep, about.
-double CableStepper::winch_mobility() const {
-  return 1 / std::max(inertia_[winch_.segment], inertia_[winch_.segment + 1]);
+/// [N/m] With which the inertia of the segment's nodes resists their motion in the substep, about.
+double CableStepper::winch_resistance() const {
+  return std::max(inertia_[winch_.segment], inertia_[winch_.segment + 1]);
 }
 
 /// [N/m]
 double CableStepper::least_winch_stiffness() const {
-  return least_stiffness / winch_mobility();
+  return least_stiffness * winch_resistance();
 }
 
 /// [m] That the rest length is to grow by beyond what is planned where the segment is `end` [m] long at the end.
@@ -70,7 +70,8 @@ double CableStepper::wanted_by_winch(const Substep& s, double end) const {
   const int i = winch_.segment;
   if (is_elastic_at(i)) return wanted_growth(strain_resistance(s, i), wound_length(s), winch_.law.tension, end);
   const double tension = tension_density_[i] * (length_[i] + s.part() * (end - length_[i]));
-  return wanted_growth(winch_.planned_rest, winch_.law.tension, tension, end, winch_mobility());
+  const bool is_movable = system_.movable[i] + system_.movable[i + 1] > 0;
+  return wanted_growth(winch_.planned_rest, winch_.law.tension, tension, end, is_movable ? 1 / winch_resistance() : 0);
 }
 
 void CableStepper::wind_beyond(const Substep& s, double wanted) {
@@ -127,7 +128,7 @@ bool CableStepper::winch_is_consistent(const Substep& s) const {
   const int i = winch_.segment;
   const double end = (get(segment_, i) + get(displacement_, i + 1) - get(displacement_, i)).norm();
   const double wanted = wanted_by_winch(s, end), slack = rounding * target_length_[i];
-  const double rounded = is_elastic_at(i) ? rounding_strain * axial_stiffness_[i] : slack / winch_mobility();
+  const double rounded = is_elastic_at(i) ? rounding_strain * axial_stiffness_[i] : slack * winch_resistance();
   if (winch_.mode == WinchMode::keeps || is_elastic_at(i))
     if (!(std::abs(kept_tension_error(s, end, wanted)) <= kept_part * winch_.law.tension + rounded)) return false;
   if (winch_.changes >= most_changes) return true;

@@ -347,6 +347,7 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   start_with_bodies(cable.state, memory.targets);
   Boundary boundary;
   hold_at(1, 1, memory.targets, boundary);
+  for (HeldNode& held : boundary.nodes) held.body = state.attachments[held.attachment].holder;
   const Vector3 gravity =
       hanging_gravity(cable, placing, boundary.nodes.empty() ? Vector3(Vector3::Zero()) : boundary.nodes.front().position);
   const bool settles = settles_at_start(desc, *cable.model, cable.state);
