@@ -82,7 +82,7 @@ std::string CameraNode::Parts::take(const Moment& moment, bool is_last) {
   if (!why.empty()) return why;
   try {
     const std::shared_ptr<const view::Stage> stage = stages->stage(moment, links);
-    Shot shot{header, *stage, *lens, *camera};
+    Shot shot{header, *moment.state, *stage, *lens, *camera};
     shot.header.frame_id = settings.optical_frame;
     intrinsics.publish(header.stamp);
     images.publish(shot);

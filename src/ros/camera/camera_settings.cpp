@@ -9,6 +9,7 @@
 
 #include "scene/keys.h"
 #include "scene_sources/scene_parameters.h"
+#include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 
 namespace verlet_cable {
@@ -102,7 +103,7 @@ void apply_preset(const Value& root, CameraSettings& settings) {
 
 void check_topic(const Value& root, const char* key, const std::string& topic) {
   std::string problem;
-  if (!ros::names::validate(topic, problem)) root.errors->add(key, quoted(topic), topic_words);
+  if (!ros::names::validate(topic, problem)) root.errors->add(key, verlet_cable::quoted(topic), topic_words);
 }
 
 void check_range(const Value& root, const char* key, const char* unit, double number, const Range& range) {
@@ -113,41 +114,50 @@ void check(const Value& root, const CameraSettings& settings) {
   check_topic(root, "state", settings.state);
   if (settings.state.empty()) root.errors->add("state", "\"\"", topic_words);
   check_topic(root, "camera_info_topic", settings.camera_info_topic);
-  if (!is_frame_name(settings.optical_frame)) root.errors->add("optical_frame", quoted(settings.optical_frame), frame_words);
+  if (!is_frame_name(settings.optical_frame)) root.errors->add("optical_frame", verlet_cable::quoted(settings.optical_frame), frame_words);
   check_range(root, "rate", "Hz", settings.rate, rates);
   check_range(root, "tf_timeout", "s", settings.tf_timeout, timeouts);
   if (settings.seed < 0) root.errors->add("seed", std::to_string(settings.seed), "an integer from 0");
-  root.errors->add_validation(view::validate(settings.camera));
+  std::vector<std::string> problems = view::validate(settings.camera);
+  if (problems.empty()) problems = view::validate(view::camera_model(settings.camera));
+  root.errors->add_validation(problems);
   root.errors->add_validation(view::validate(settings.sensor));
 }
 
-void read_robot_description(const Value& root, const std::string& where, bool is_needed, CameraSettings& settings) {
-  if (settings.robot_description.empty()) return;
-  if (const auto text = node_sources("", where).parameter(settings.robot_description)) {
+/// Whoever names a robot has one.
+void read_robot(const Value& root, const std::optional<std::string>& text, CameraSettings& settings) {
+  if (text) {
     settings.robot = *text;
-  } else if (is_needed) {
-    root.errors->add("robot_description", quoted(settings.robot_description) + " is not set, or is no text",
+  } else if (settings.robot_description != CameraSettings{}.robot_description && !settings.robot_description.empty()) {
+    root.errors->add("robot_description", verlet_cable::quoted(settings.robot_description) + " is not set, or is no text",
                      "a parameter with a URDF");
   }
 }
 
 }  // namespace
 
-CameraSettings read_camera_parameters(const ros::NodeHandle& private_node) {
-  XmlRpc::XmlRpcValue parameters;
-  private_node.getParam(private_node.getNamespace(), parameters);
-  YAML::Node tree(YAML::NodeType::Map);
-  if (parameters.getType() == XmlRpc::XmlRpcValue::TypeStruct) tree = to_yaml(parameters);
+CameraSettings read_camera_settings(const YAML::Node& parameters,
+                                    const std::function<std::optional<std::string>(const std::string&)>& parameter) {
   ErrorList errors;
-  const Value root{tree, "", &errors};
+  const Value root{parameters, "", &errors};
   CameraSettings settings;
   apply_preset(root, settings);
-  const std::set<std::string> given = read_map(root, camera_keys(), settings);
+  read_map(root, camera_keys(), settings);
   check(root, settings);
-  read_robot_description(root, private_node.getNamespace(), given.count("robot_description") > 0, settings);
+  const std::string& robot = settings.robot_description;
+  read_robot(root, robot.empty() ? std::nullopt : parameter(robot), settings);
   if (!errors.empty()) throw SceneError(errors.take());
-  // As the node's own names, in a nodelet manager, too.
-  const std::string around = ros::names::parentNamespace(private_node.getNamespace());
+  return settings;
+}
+
+CameraSettings read_camera_parameters(const ros::NodeHandle& private_node) {
+  const std::string where = private_node.getNamespace();
+  XmlRpc::XmlRpcValue parameters;
+  private_node.getParam(where, parameters);
+  const bool has_any = parameters.getType() == XmlRpc::XmlRpcValue::TypeStruct;
+  const YAML::Node tree = has_any ? to_yaml(parameters) : YAML::Node(YAML::NodeType::Map);
+  CameraSettings settings = read_camera_settings(tree, node_sources("", where).parameter);
+  const std::string around = ros::names::parentNamespace(where);
   settings.state = ros::names::resolve(around, settings.state);
   if (!settings.camera_info_topic.empty()) settings.camera_info_topic = ros::names::resolve(around, settings.camera_info_topic);
   return settings;

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <ros/node_handle.h>
+#include <yaml-cpp/yaml.h>
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,7 +32,10 @@ struct CameraSettings {
   std::string robot;              ///< URDF of `robot_description`; empty: there is none
 };
 
-/// Reads a camera's private parameters. Throws SceneError with every error at once.
+/// Reads a tree of parameters. `parameter` has the URDF. Throws SceneError with every error at once.
+CameraSettings read_camera_settings(const YAML::Node& parameters,
+                                    const std::function<std::optional<std::string>(const std::string&)>& parameter);
+/// The same of a node's private parameters. Names of topics are completed as those of the node are.
 CameraSettings read_camera_parameters(const ros::NodeHandle& private_node);
 
 }  // namespace verlet_cable

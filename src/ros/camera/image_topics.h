@@ -2,6 +2,7 @@
 
 #include <ros/ros.h>
 #include <sensor_msgs/Image.h>
+#include <verlet_cable/CableArray.h>
 
 #include <string>
 
@@ -13,6 +14,7 @@ namespace verlet_cable {
 /// What goes with every message of one image.
 struct Shot {
   std_msgs::Header header;  ///< the stamp of the state, in the optical frame
+  const CableArray& state;
   const view::Stage& stage;
   const view::Lens& lens;
   Pose pose;  ///< of the optical frame in the fixed frame
