@@ -6,13 +6,13 @@ import sys
 import unittest
 
 import numpy as np
-import rospkg
 import rospy
 import rostest
 from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import CameraInfo, Image, PointCloud2
 
 from cable_client import CableClient, Frames, Messages, cable
+from images import array, labels_of, points_of
 from verlet_cable.msg import CableView
 
 WIDTH, HEIGHT, FOV = 640, 480, 1.05
@@ -20,27 +20,10 @@ FOCAL = WIDTH / 2 / math.tan(FOV / 2)     # [pixels]
 CENTER = (WIDTH - 1) / 2, (HEIGHT - 1) / 2
 EYE = np.array([0, -1, 0.75])             # [m]
 EXACT = 5e-5                              # [m]
-TYPES = {'32FC1': np.float32, '16UC1': np.uint16, 'rgb8': np.uint8}
 TOPICS = {'mask/image_raw': Image, 'depth/image_raw': Image, 'rgb/image_raw': Image, 'points': PointCloud2, 'truth': CableView,
           'camera_info': CameraInfo}
 # In the order of the numbers in masks: cables, particles, bodies, what is named in `labels`, and the others.
-LABELS = ['left', 'waiting', 'right', 'speck', 'brick', 'screen', 'floor', 'ball', 'forearm', 'arm']
-
-
-def array(image):
-    return np.frombuffer(image.data, TYPES[image.encoding]).reshape(image.height, image.width, -1).squeeze()
-
-
-def points_of(cloud):
-    """Rows, columns, x y z."""
-    fields = {field.name: field.offset for field in cloud.fields}
-    raw = np.frombuffer(cloud.data, np.uint8).reshape(cloud.height, cloud.width, cloud.point_step)
-    return np.stack([raw[..., fields[axis]:fields[axis] + 4].copy().view(np.float32)[..., 0] for axis in 'xyz'], axis=-1)
-
-
-def labels_of(cloud):
-    offset = next(field.offset for field in cloud.fields if field.name == 'label')
-    return np.frombuffer(cloud.data, np.uint8).reshape(cloud.height, cloud.width, cloud.point_step)[..., offset:offset + 4].copy().view(np.uint32)[..., 0]
+LABELS = ['left', 'right', 'speck', 'brick', 'screen', 'floor', 'ball', 'forearm', 'arm']
 
 
 def sights():
@@ -145,7 +128,8 @@ class CameraTest(unittest.TestCase):
         with np.errstate(invalid='ignore'):
             ball = (half - np.sqrt(half ** 2 - square * (to_center @ to_center - 0.1 ** 2))) / square
         self.assertLess(np.abs(self.depth - ball)[self.pixels('ball')].max(), EXACT)
-        self.assertLess(np.abs(self.depth - 0.69)[self.pixels('screen')].max(), EXACT)
+        front = self.pixels('screen') & (0.69 * sx > 0.111) & (0.69 * sy > 0.051)  # without its side and its top
+        self.assertLess(np.abs(self.depth - 0.69)[front].max(), EXACT)
 
     def test_nothing_beyond_has_no_depth(self):
         nothing = self.mask == 0
@@ -189,13 +173,6 @@ class CameraTest(unittest.TestCase):
         np.testing.assert_allclose(points, expected, atol=1e-6, equal_nan=True)
         np.testing.assert_array_equal(labels_of(self.seen['points']), self.mask)
 
-    @unittest.skipUnless('depth_image_proc' in rospkg.RosPack().list(), 'depth_image_proc is not installed')
-    def test_points_are_those_of_depth_image_proc(self):
-        with Messages('/cloud/points', PointCloud2) as clouds, Messages('/camera/points', PointCloud2) as own:
-            cloud = clouds.next(2)
-            points = own.wait_for(lambda message: message.header.stamp == cloud.header.stamp, 'own points')
-            np.testing.assert_allclose(points_of(cloud), points_of(points), atol=1e-4, equal_nan=True)
-
     def test_depth_in_millimetres_with_noise(self):
         seen = shot('noisy_camera', ['depth/image_raw', 'mask/image_raw', 'points', 'truth'])
         image = seen['depth/image_raw']
@@ -231,10 +208,9 @@ class CameraTest(unittest.TestCase):
         with Messages('/noisy_camera/truth', CableView) as views:
             views.next()
             rospy.sleep(2)
-            stamps = [view.header.stamp.to_sec() for view in views.all()]
-        self.assertGreater(len(stamps), 10)
-        self.assertGreater(min(b - a for a, b in zip(stamps, stamps[1:])), 0.079)
-        self.assertLess(len(stamps) / (stamps[-1] - stamps[0] + 0.1), 10.5)
+            periods = [math.floor(10 * view.header.stamp.to_sec() + 1e-6) for view in views.all()]
+        self.assertGreater(len(periods), 10)
+        self.assertEqual(periods, sorted(set(periods)))
 
     def test_a_driver_says_what_the_camera_is_like(self):
         info = CameraInfo(width=64, height=48, distortion_model='plumb_bob', D=[-0.1, 0, 0, 0, 0])
@@ -282,4 +258,4 @@ class CameraTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rostest.rosrun('verlet_cable', 'camera', CameraTest, sys.argv)
+    rostest.rosrun('verlet_cable', 'camera_images', CameraTest, sys.argv)

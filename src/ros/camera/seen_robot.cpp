@@ -1,12 +1,10 @@
 #include "camera/seen_robot.h"
 
 #include <ros/console.h>
-#include <yaml-cpp/yaml.h>
-
 #include <utility>
 
+#include "scene/scene_files.h"
 #include "verlet_cable/core/obstacle_of.h"
-#include "verlet_cable/scene/scene_reader.h"
 
 namespace verlet_cable {
 namespace {
@@ -23,12 +21,14 @@ view::Look robot_look() {
 SeenRobot::SeenRobot(const std::string& urdf, const std::string& parameter) {
   SceneSources sources;
   sources.parameter = [&](const std::string&) { return std::optional(urdf); };
-  YAML::Node scene;
-  scene["robot"]["description"] = parameter;
-  scene["robot"]["geometry"] = "visual";
-  const SceneDesc read = read_scene(scene, {}, sources);
-  for (const std::string& problem : read.robot->left_out) ROS_WARN("%s", problem.c_str());
-  for (const LinkDesc& link : read.robot->tree) {
+  RobotDesc robot;
+  robot.description = parameter;
+  robot.geometry = RobotDesc::Geometry::visual;
+  ErrorList errors;
+  read_robot_files({YAML::Node(), "", &errors}, sources, robot);
+  if (!errors.empty()) throw SceneError(errors.take());
+  for (const std::string& problem : robot.left_out) ROS_WARN("%s", problem.c_str());
+  for (const LinkDesc& link : robot.tree) {
     if (link.obstacles.empty()) continue;
     links_.push_back(link.name);
     std::vector<view::Part>& parts = parts_.emplace_back();
