@@ -33,7 +33,8 @@ struct CameraNode::Parts {
   std::string take(const Moment& moment, bool is_last);
   std::string find_links(const Moment& moment, bool is_last, std::vector<std::optional<Pose>>& poses);
 
-  std::mutex mutex;  ///< a nodelet is unloaded by another thread than that of its callbacks
+  std::mutex mutex;  ///< a nodelet is loaded and unloaded by other threads than that of its callbacks
+  std::unique_lock<std::mutex> loading{mutex};
   bool is_ending = false;
   GuardedQueue guard;
   ros::NodeHandle node;
@@ -55,7 +56,9 @@ CameraNode::Parts::Parts(ros::NodeHandle private_node)
       stages(StageMaker::shared(settings)),
       images(node, settings, changed),
       intrinsics(node, settings, changed),
-      moments(node, settings, [this](const Moment& moment, bool is_last) { return take(moment, is_last); }) {}
+      moments(node, settings, [this](const Moment& moment, bool is_last) { return take(moment, is_last); }) {
+  loading.unlock();
+}
 
 CameraNode::Parts::~Parts() {
   const std::lock_guard<std::mutex> lock(mutex);
@@ -65,7 +68,7 @@ CameraNode::Parts::~Parts() {
 void CameraNode::Parts::follow_subscribers() {
   const std::lock_guard<std::mutex> lock(mutex);
   if (is_ending) return;
-  moments.listen(images.are_wanted() || intrinsics.subscribers() > 0);
+  moments.listen(images.are_wanted() || intrinsics.are_wanted());
 }
 
 std::string CameraNode::Parts::take(const Moment& moment, bool is_last) {

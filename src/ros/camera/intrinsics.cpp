@@ -1,5 +1,7 @@
 #include "camera/intrinsics.h"
 
+#include <algorithm>
+
 #include "camera/camera_info.h"
 
 namespace verlet_cable {
@@ -17,8 +19,9 @@ bool are_equal(const view::CameraModel& a, const view::CameraModel& b) {
 
 Intrinsics::Intrinsics(ros::NodeHandle& node, const CameraSettings& settings, const ros::SubscriberStatusCallback& changed)
     : frame_(settings.optical_frame), near_(settings.camera.near), far_(settings.camera.far), topic_(settings.camera_info_topic) {
-  if (topic_ != node.resolveName("camera_info"))
-    publisher_ = node.advertise<sensor_msgs::CameraInfo>("camera_info", queue_size, changed, changed);
+  for (const char* name : {"camera_info", "depth/camera_info", "rgb/camera_info", "mask/camera_info"})
+    if (topic_ != node.resolveName(name))
+      publishers_.push_back(node.advertise<sensor_msgs::CameraInfo>(name, queue_size, changed, changed));
   if (!topic_.empty()) {
     subscriber_ = node.subscribe(topic_, queue_size, &Intrinsics::receive, this);
     return;
@@ -38,12 +41,16 @@ void Intrinsics::receive(const sensor_msgs::CameraInfoConstPtr& info) {
   if (!lens_ || !are_equal(lens_->model(), received.model)) lens_ = std::make_shared<view::Lens>(received.model);
 }
 
+bool Intrinsics::are_wanted() const {
+  return std::any_of(publishers_.begin(), publishers_.end(), [](const auto& publisher) { return publisher.getNumSubscribers() > 0; });
+}
+
 void Intrinsics::publish(const ros::Time& stamp) const {
-  if (subscribers() == 0) return;
+  if (!are_wanted()) return;
   const auto message = boost::make_shared<sensor_msgs::CameraInfo>(info_);
   message->header.stamp = stamp;
   message->header.frame_id = frame_;
-  publisher_.publish(message);
+  for (const ros::Publisher& publisher : publishers_) publisher.publish(message);
 }
 
 }  // namespace verlet_cable
