@@ -55,7 +55,7 @@ void expect_default(const CameraSettings& settings) {
 }
 
 TEST(CameraSettings, TemplateHoldsTheDefaults) {
-  const YAML::Node file = YAML::LoadFile(CONFIG_DIRECTORY "/camera_template.yaml");
+  const YAML::Node file = YAML::LoadFile(CONFIG_DIRECTORY "/cameras/template.yaml");
   EXPECT_EQ(file.size(), 17u);  // all that is checked above
   expect_default(read_camera_settings(file, no_parameter));
 }

@@ -15,7 +15,7 @@ namespace verlet_cable {
 
 enum class DepthEncoding { metres, millimetres };
 
-/// The parameters of a camera: config/camera_template.yaml says what each means.
+/// The parameters of a camera: config/cameras/template.yaml says what each means.
 struct CameraSettings {
   std::string state = "/cable/state";                  ///< topic of a cable node
   std::string optical_frame = "camera_optical_frame";  ///< on tf
