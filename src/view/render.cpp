@@ -157,6 +157,7 @@ class Painter {
       set_ray(query, i, start - stage_.origin, aim(start), 0, highest);
     }
     RTCIntersectContext context;
+    // Not as coherent rays: with instances, Embree 3.13 then does not come back.
     rtcInitIntersectContext(&context);
     rtcOccluded16(wanted, stage_.scene, &context, &query);
     for (int i = 0; i < rays; ++i) hidden[i] = wanted[i] && query.tfar[i] < 0;
