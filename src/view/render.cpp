@@ -20,6 +20,7 @@ constexpr int side = 4;  // of the squares of pixels whose rays Embree follows t
 constexpr int rays = side * side;
 // [m] and of the depth: by so much a surface is left before its shadow is looked for, so that rounding casts none.
 constexpr double least_gap = 2e-5, gap_of_depth = 1e-5;
+constexpr double shadow_reach = 1e6;  // [m]
 
 /// What is known of the pixels of a square.
 struct Square {
@@ -61,7 +62,7 @@ class Painter {
         images_(images),
         wants_depth_(images.depth || images.points),
         measures_(wants_depth_ && !is_perfect(sensor)),
-        footprint_(1 / std::min(model_.fx, model_.fy)) {
+        footprint_(images.rgb ? 1 / std::min(model_.fx, model_.fy) : 0) {
     const std::size_t pixels = static_cast<std::size_t>(model_.width) * model_.height;
     if (measures_) cosine_.resize(pixels);
     if (measures_ || (wants_depth_ && !images.depth)) depth_.resize(pixels);
@@ -111,7 +112,7 @@ class Painter {
   }
 
   void find_seen(Square& square) const {
-    alignas(64) RTCRayHit16 query;
+    alignas(64) RTCRayHit16 query = {};
     const Vector3 start = eye_ - stage_.origin;
     for_each(square, [&](int i) {
       set_ray(query.ray, i, start, square.lines[i].direction, model_.near, square.planes[i].t);
@@ -147,7 +148,7 @@ class Painter {
   /// that are asked for.
   template <class Aim>
   void find_hidden(const Square& square, const int* wanted, const Aim& aim, double highest, bool* hidden) const {
-    alignas(64) RTCRay16 query;
+    alignas(64) RTCRay16 query = {};
     for (int i = 0; i < rays; ++i) {
       if (!wanted[i]) continue;
       const Sighting& seen = square.seen[i];
@@ -156,8 +157,8 @@ class Painter {
       set_ray(query, i, start - stage_.origin, aim(start), 0, highest);
     }
     RTCIntersectContext context;
+    // Not as coherent rays: with instances, Embree 3.13 then does not come back.
     rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     rtcOccluded16(wanted, stage_.scene, &context, &query);
     for (int i = 0; i < rays; ++i) hidden[i] = wanted[i] && query.tfar[i] < 0;
   }
@@ -194,7 +195,7 @@ class Painter {
       });
       if (any)
         find_hidden(
-            square, wanted, [&](const Vector3&) { return stage_.to_sun; }, std::numeric_limits<float>::infinity(), hidden);
+            square, wanted, [&](const Vector3&) { return stage_.to_sun; }, shadow_reach, hidden);
     }
     for_each(square, [&](int i) {
       const Sighting& seen = square.seen[i];
@@ -235,7 +236,7 @@ class Painter {
   const ImageBuffers& images_;
   bool wants_depth_;
   bool measures_;
-  double footprint_;  ///< [1] size of a pixel at depth 1
+  double footprint_;  ///< [1] size of a pixel at depth 1, where colors are wanted
   float* true_depth_ = nullptr;
   std::vector<float> depth_;  ///< where it is not the image
   mutable std::vector<float> cosine_;

@@ -42,7 +42,7 @@ Vector3 light_from(const Stage::Implementation& stage, const Sighting& seen, con
     // As Phong has it, with the exponent 32.
     double power = std::max(mirrored.dot(stage.to_sun), 0.0);
     for (int k = 0; k < 5; ++k) power *= power;
-    reflection = paint.look.shininess * power;
+    reflection = (1 - ambient) * paint.look.shininess * power;
   }
   const Vector3 color = paint.color + seen.second_color * (paint.second_color - paint.color);
   return brightness * color + Vector3::Constant(reflection);

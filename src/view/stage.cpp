@@ -15,6 +15,8 @@
 namespace verlet_cable::view {
 namespace {
 
+constexpr unsigned triangles_of_box = 12;
+
 /// One for the process, and never released: stages may live until its end.
 RTCDevice device() {
   static const RTCDevice made = rtcNewDevice("start_threads=0,set_affinity=0");
@@ -27,11 +29,6 @@ void check(RTCDevice device) {
   const RTCError error = rtcGetDeviceError(device);
   if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   if (error != RTC_ERROR_NONE) throw std::runtime_error("Embree: error " + std::to_string(error));
-}
-
-Ray in_frame_of(const Pose& pose, const Ray& ray) {
-  const Quaternion back = pose.orientation.conjugate();
-  return {back * (ray.origin - pose.position), back * ray.direction};
 }
 
 /// [rad] By how much the material turns about a cable from one segment to the next, beyond what the bend does.
@@ -58,9 +55,9 @@ double aslant(const Vector3& normal, const Ray& ray) {
 
 /// `meeting`: its normal is in the part's frame.
 Sighting part_sighting(const PlacedPart& part, const Ray& ray, const Meeting& meeting, double footprint) {
-  Sighting seen{part.thing, meeting.t, part.pose.orientation * meeting.normal, part.paint, 0};
-  if (part.paint->look.pattern == Look::Pattern::checks) {
-    const Vector3 place = part.pose.orientation.conjugate() * (ray.at(meeting.t) - part.pose.position);
+  Sighting seen{part.thing, meeting.t, part.axes * meeting.normal, part.paint, 0};
+  if (footprint > 0 && part.paint->look.pattern == Look::Pattern::checks) {
+    const Vector3 place = part.inside(ray.at(meeting.t));
     seen.second_color = checks_at(part.paint->look, place.x(), place.y(), footprint * meeting.t * aslant(seen.normal, ray));
   }
   return seen;
@@ -71,7 +68,7 @@ Sighting tube_sighting(const TubeSegment& segment, const Ray& ray, double lowest
   const Meeting otherwise{t, -ray.direction.normalized()};
   const Meeting meeting = meet_tube(segment.start, segment.end, segment.radius, ray, lowest).value_or(otherwise);
   Sighting seen{segment.thing, meeting.t, meeting.normal, segment.paint, 0};
-  if (segment.is_striped) {
+  if (footprint > 0 && segment.is_striped) {
     const Vector3 axis = segment.end - segment.start;
     const double along = (ray.at(meeting.t) - segment.start).dot(axis), part = along / std::max(axis.squaredNorm(), 1e-300);
     const double roll = segment.roll_at_start + std::clamp(part, 0.0, 1.0) * (segment.roll_at_end - segment.roll_at_start);
@@ -89,7 +86,7 @@ struct SolidsOf {
   std::optional<Meeting> meet(unsigned solid, const RTCRay& ray) const {
     const PlacedPart& part = stage.solids[solid];
     const Ray seen{Vector3(ray.org_x, ray.org_y, ray.org_z) + stage.origin, Vector3(ray.dir_x, ray.dir_y, ray.dir_z)};
-    return view::meet(part.shape, in_frame_of(part.pose, seen), ray.tnear);
+    return view::meet(part.shape, part.inside(seen), ray.tnear);
   }
 };
 
@@ -160,16 +157,12 @@ Vector3 in_proportion_to_light(const Color& color) {
 
 MeshTree::MeshTree(RTCDevice device, std::shared_ptr<const TriangleMesh> mesh)
     : mesh_(std::move(mesh)), scene_(rtcNewScene(device)) {
-  // Rays do not slip through between triangles.
   rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  struct Vertex {
-    float x, y, z;
-  };
   const auto& vertices = mesh_->vertices();
-  auto* points = new_buffer<Vertex>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, vertices.size());
+  auto* points = new_buffer<std::array<float, 3>>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, vertices.size());
   for (std::size_t i = 0; i < vertices.size(); ++i)
-    points[i] = {static_cast<float>(vertices[i].x()), static_cast<float>(vertices[i].y()), static_cast<float>(vertices[i].z())};
+    for (int axis = 0; axis < 3; ++axis) points[i][axis] = static_cast<float>(vertices[i][axis]);
   const auto& triangles = mesh_->triangles();
   auto* indices = new_buffer<std::array<unsigned, 3>>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles.size());
   for (std::size_t i = 0; i < triangles.size(); ++i)
@@ -199,12 +192,11 @@ void Stage::Implementation::place(const Thing& thing, int index) {
   const Paint* paint = &paints.emplace_back(thing.look);
   for (const Tube& tube : thing.tubes) place(tube, *paint, index);
   for (const Part& part : thing.parts) {
-    PlacedPart placed{index, thing.pose * part.pose, part.shape, part.look ? &paints.emplace_back(*part.look) : paint};
-    placed.pose.orientation.normalize();
     auto& group = std::holds_alternative<PlaneShape>(part.shape)  ? planes
+                  : std::holds_alternative<BoxShape>(part.shape)  ? boxes
                   : std::holds_alternative<MeshShape>(part.shape) ? meshes
                                                                   : solids;
-    group.push_back(std::move(placed));
+    group.emplace_back(index, thing.pose * part.pose, part.shape, part.look ? paints.emplace_back(*part.look) : *paint);
   }
 }
 
@@ -232,14 +224,17 @@ void Stage::Implementation::place(const Tube& tube, const Paint& paint, int inde
 void Stage::Implementation::find_origin() {
   Aabb box;
   for (const TubeSegment& segment : segments) box.extend(segment.start).extend(segment.end);
-  for (const auto* group : {&solids, &meshes})
+  for (const auto* group : {&boxes, &solids, &meshes})
     for (const PlacedPart& part : *group) box.extend(part.pose.position);
   if (!box.isEmpty()) origin = box.center();
 }
 
 void Stage::Implementation::build(const Implementation* before) {
   scene = rtcNewScene(device());
+  // Rays do not slip through between triangles.
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   add_tubes();
+  add_boxes();
   add_solids();
   add_meshes(before);
   rtcCommitScene(scene);
@@ -264,6 +259,30 @@ void Stage::Implementation::add_tubes() {
     indices[i] = static_cast<unsigned>(2 * i);
   }
   attach(scene, geometry, tubes_id);
+}
+
+void Stage::Implementation::add_boxes() {
+  if (boxes.empty()) return;
+  constexpr int corners_of_box = 8;
+  static constexpr unsigned corners[triangles_of_box][3]{{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                                                         {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  RTCGeometry geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* points =
+      new_buffer<std::array<float, 3>>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, corners_of_box * boxes.size());
+  auto* indices =
+      new_buffer<std::array<unsigned, 3>>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles_of_box * boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const Vector3 half = 0.5 * std::get<BoxShape>(boxes[i].shape).size;
+    for (int k = 0; k < corners_of_box; ++k) {
+      const Vector3 corner = half.cwiseProduct(Vector3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1));
+      const Vector3 point = boxes[i].pose.position - origin + boxes[i].axes * corner;
+      for (int axis = 0; axis < 3; ++axis) points[corners_of_box * i + k][axis] = static_cast<float>(point[axis]);
+    }
+    for (unsigned k = 0; k < triangles_of_box; ++k)
+      for (int corner = 0; corner < 3; ++corner)
+        indices[triangles_of_box * i + k][corner] = static_cast<unsigned>(corners_of_box * i) + corners[k][corner];
+  }
+  attach(scene, geometry, boxes_id);
 }
 
 void Stage::Implementation::add_solids() {
@@ -295,8 +314,10 @@ void Stage::Implementation::add_meshes(const Implementation* before) {
 Stage::Implementation::PlaneMeeting Stage::Implementation::meet_planes(const Ray& ray, double lowest, double highest) const {
   PlaneMeeting nearest{-1, highest};
   for (std::size_t i = 0; i < planes.size(); ++i) {
-    const auto meeting = meet(planes[i].shape, in_frame_of(planes[i].pose, ray), lowest);
-    if (meeting && meeting->t < nearest.t) nearest = {static_cast<int>(i), meeting->t};
+    const double slope = planes[i].axes.col(2).dot(ray.direction);
+    const double t = planes[i].axes.col(2).dot(planes[i].pose.position - ray.origin) / slope;
+    // From their outside only.
+    if (slope < 0 && t >= lowest && t < nearest.t) nearest = {static_cast<int>(i), t};
   }
   return nearest;
 }
@@ -309,14 +330,14 @@ Sighting Stage::Implementation::sighting(const Ray& ray, double lowest, const RT
   if (hit.geomID == tubes_id && hit.instID[0] == RTC_INVALID_GEOMETRY_ID)
     return tube_sighting(segments[hit.primID], ray, lowest, t, footprint);
   if (hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
-    const PlacedPart& part = solids[hit.primID];
-    const auto meeting = meet(part.shape, in_frame_of(part.pose, ray), lowest);
+    const PlacedPart& part = hit.geomID == boxes_id ? boxes[hit.primID / triangles_of_box] : solids[hit.primID];
+    const auto meeting = meet(part.shape, part.inside(ray), lowest);
     return part_sighting(part, ray, meeting.value_or(Meeting{t, -ray.direction.normalized()}), footprint);
   }
   const PlacedPart& part = meshes[hit.instID[0] - first_mesh_id];
   const auto [a, b, c] = corners(part, hit.primID);
   Meeting meeting = meet_plane_of(a, b, c, ray).value_or(Meeting{t, -ray.direction.normalized()});
-  meeting.normal = part.pose.orientation.conjugate() * meeting.normal;
+  meeting.normal = part.axes.transpose() * meeting.normal;
   return part_sighting(part, ray, meeting, footprint);
 }
 

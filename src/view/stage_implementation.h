@@ -45,10 +45,17 @@ struct TubeSegment {
 
 /// A part of a thing in the fixed frame.
 struct PlacedPart {
-  int thing = 0;
+  PlacedPart(int of_thing, const Pose& place, const Shape& form, const Paint& painted)
+      : thing(of_thing), pose(place), shape(form), paint(&painted), axes(place.orientation.normalized().toRotationMatrix()) {}
+
+  int thing;
   Pose pose;
   Shape shape;
-  const Paint* paint = nullptr;
+  const Paint* paint;
+  Eigen::Matrix3d axes;  ///< of its frame
+
+  Vector3 inside(const Vector3& point) const { return axes.transpose() * (point - pose.position); }
+  Ray inside(const Ray& ray) const { return {inside(ray.origin), axes.transpose() * ray.direction}; }
 };
 
 /// Of a color as in an image (IEC 61966-2-1), in proportion to light.
@@ -83,13 +90,14 @@ struct Stage::Implementation {
   std::deque<Paint> paints;           ///< where others point to
   std::vector<TubeSegment> segments;
   std::vector<PlacedPart> planes;  ///< which have no bounds
-  std::vector<PlacedPart> solids;  ///< neither planes nor meshes
+  std::vector<PlacedPart> boxes;
+  std::vector<PlacedPart> solids;  ///< none of these, and no meshes
   std::vector<PlacedPart> meshes;
   std::map<const TriangleMesh*, std::shared_ptr<const MeshTree>> trees;
   RTCScene scene = nullptr;
 
   /// By which Embree names what it has hit: the geometry's id.
-  static constexpr unsigned tubes_id = 0, solids_id = 1, first_mesh_id = 2;
+  static constexpr unsigned tubes_id = 0, solids_id = 1, boxes_id = 2, first_mesh_id = 3;
 
   /// The nearest plane that a ray meets from t = `lowest` on and before `highest`. Its index, or -1, and where.
   struct PlaneMeeting {
@@ -100,7 +108,7 @@ struct Stage::Implementation {
   /// What a ray meets there.
   Sighting plane_sighting(const Ray& ray, const PlaneMeeting& meeting, double footprint) const;
   /// What a ray meets where Embree has hit something at about `t`, in double precision. `lowest`: as of the ray; `footprint` [1]:
-  /// the size of a pixel at t = 1, by which patterns are blurred.
+  /// the size of a pixel at t = 1, by which patterns are blurred; 0 where colors are not asked for.
   Sighting sighting(const Ray& ray, double lowest, const RTCHit& hit, double t, double footprint) const;
   /// What one ray meets first, from t = `lowest` to `highest`.
   Sighting look(const Ray& ray, double lowest, double highest) const;
@@ -111,6 +119,7 @@ struct Stage::Implementation {
   void find_origin();
   void build(const Implementation* before);
   void add_tubes();
+  void add_boxes();
   void add_solids();
   void add_meshes(const Implementation* before);
 };
