@@ -42,7 +42,7 @@ class DepthTopic : public ImageTopic {
   DepthEncoding encoding_;
 };
 
-/// Topic `rgb/image_raw` (sensor_msgs/Image): rgb8, in the colors of the scene, with light and shadows.
+/// Topic `rgb/image_raw` (sensor_msgs/Image): the colors of the scene as rgb8, with light and shadows.
 class ColorTopic : public ImageTopic {
  public:
   ColorTopic(ros::NodeHandle& node, const ros::SubscriberStatusCallback& changed);

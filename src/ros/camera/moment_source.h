@@ -12,9 +12,8 @@
 
 namespace verlet_cable {
 
-/// Subscribed topic `state` (verlet_cable/CableArray), whose name is the parameter `~state`, and with it `appearance`
-/// (verlet_cable/Appearance), which the same node publishes: the two with the same stamp are a moment. One is taken in each
-/// period of `rate`.
+/// Subscribed topic `/cable/state` (verlet_cable/CableArray), or that which the parameter `state` names, and `appearance` beside it,
+/// as long as somebody listens to the camera. One state is taken in each period of `rate`, with the appearance of the same stamp.
 class MomentSource {
  public:
   /// Takes a moment, or returns why it cannot be taken yet. `is_last`: it is not offered again.
