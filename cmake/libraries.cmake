@@ -33,6 +33,27 @@ find_directly(CLI11 CLI/CLI.hpp libcli11-dev)
 find_directly(NLOHMANN_JSON nlohmann/json.hpp nlohmann-json3-dev)
 find_directly(TBB tbb/parallel_for.h libtbb-dev tbb)
 
+# Embree casts the camera's rays. Without it everything else is built. Cables are its round linear curves, which it has since 3.12.
+option(VERLET_CABLE_CAMERA "The camera, where Embree is installed" ON)
+set(VERLET_CABLE_HAS_VIEW OFF)
+if(VERLET_CABLE_CAMERA)
+  find_path(EMBREE_INCLUDE_DIR embree3/rtcore.h)
+  find_library(EMBREE_LIBRARY embree3)
+  set(embree_version 0)
+  if(EMBREE_INCLUDE_DIR AND EMBREE_LIBRARY)
+    file(STRINGS ${EMBREE_INCLUDE_DIR}/embree3/rtcore_config.h embree_version REGEX "#define RTC_VERSION [0-9]+")
+    string(REGEX REPLACE ".* ([0-9]+)$" "\\1" embree_version "${embree_version}")
+  endif()
+  if(embree_version GREATER_EQUAL 31200)
+    add_library(EMBREE INTERFACE IMPORTED GLOBAL)
+    target_include_directories(EMBREE INTERFACE ${EMBREE_INCLUDE_DIR})
+    target_link_libraries(EMBREE INTERFACE ${EMBREE_LIBRARY})
+    set(VERLET_CABLE_HAS_VIEW ON)
+  else()
+    message(WARNING "Embree 3.12 or newer (libembree-dev) is not installed to build with: the camera is neither built nor tested")
+  endif()
+endif()
+
 # Debian's liburdfdom-dev names itself as a package, but rosdep knows it by the key in package.xml.
 #catkin_lint: ignore missing_depend
 find_package(urdfdom REQUIRED)

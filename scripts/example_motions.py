@@ -1,4 +1,5 @@
-"""How the frames of launch/examples, launch/demo.launch and the joints of launch/dress_pack.launch move over time. Needs no ROS.
+"""How the frames of launch/examples and launch/demo.launch, and the joints of the arms in launch/dress_pack.launch and
+launch/examples/table_camera.launch, move over time. Needs no ROS.
 
 scripts/example_frames.py, scripts/demo_frames.py and scripts/move_joints.py send these motions, scripts/lib/write_motions.py writes them to
 the CSV files beside the scenes. Poses are (position [m], quaternion x, y, z, w), in the fixed frame.
@@ -112,7 +113,7 @@ def demo(t):
 
 
 def joint_positions(t):
-    """Angles [rad] by joint of config/scenes/dress_pack.urdf at a time [s]; all 0 at 0, without a jump of velocity."""
+    """Angles [rad] by joint of config/scenes/dress_pack.urdf and config/examples/table_camera.urdf at a time [s]; all 0 at 0, without a jump of velocity."""
     part = min(t / JOINTS_RAMP, 1.0)
     growth = part * part * (3 - 2 * part)
     return {joint: growth * (mean + amplitude * swing(t, period)) for joint, (mean, amplitude, period) in JOINTS.items()}

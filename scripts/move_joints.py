@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""move_joints.py: moves the joints of config/scenes/dress_pack.urdf, from rest, on joint_states at 100 Hz."""
+"""move_joints.py: moves the joints of the arms in config/scenes/dress_pack.urdf and config/examples/table_camera.urdf, from rest, on
+joint_states at 100 Hz."""
 import os
 import sys
 

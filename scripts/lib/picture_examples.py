@@ -23,6 +23,7 @@ EXAMPLES = {  # [s] until the picture
     'hose_between_arms': 8,
     'plug': 11,
     'rov_tether': 9,
+    'table_camera': 8,
     'tethered_drone': 6,
     'tracker': 5,
 }

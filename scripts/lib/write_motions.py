@@ -18,6 +18,8 @@ DURATION = 20.0          # [s]
 RATE = 20                # [Hz] of rows: between them cable_sim follows a spline
 RATES = {'swivel': 50}   # [Hz] of frames that need more: it turns once in 0.8 s
 NOT_IN_SCENES = {'camera_optical_frame'}  # frames that launch files need for something else
+# By their scenes: what of them their cables meet.
+ARMS = {'config/scenes/dress_pack': ('shoulder', 'upper_arm', 'forearm', 'wrist'), 'config/examples/table_camera': ('forearm', 'wrist')}
 HEADER = 't,frame,x,y,z,qx,qy,qz,qw'
 
 
@@ -43,7 +45,7 @@ def joints_of(urdf):
     return joints
 
 
-def dress_pack(t, joints=joints_of(PACKAGE / 'config/scenes/dress_pack.urdf')):
+def arm(t, joints):
     """The links that joints move."""
     angles, links = joint_positions(t), {'world': ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0))}
     for parent, child, origin, name, axis in joints:
@@ -81,7 +83,9 @@ def motion_files():
     files = {f'config/examples/{name}.csv': csv_text(motion, RELEASES[name][0] if name in RELEASES else DURATION)
              for name, motion in EXAMPLES.items()}
     files['config/demo.csv'] = csv_text(demo)
-    files['config/scenes/dress_pack.csv'] = csv_text(dress_pack)
+    for robot, links in ARMS.items():
+        joints = joints_of(PACKAGE / f'{robot}.urdf')
+        files[f'{robot}.csv'] = csv_text(lambda t, joints=joints, links=links: {link: arm(t, joints)[link] for link in links})
     return files
 
 

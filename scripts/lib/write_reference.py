@@ -4,7 +4,7 @@ directory of the built programs."""
 import sys
 from pathlib import Path
 
-from reference import interfaces, languages, node, programs, scene
+from reference import camera, interfaces, languages, node, programs, scene
 
 
 def pages(checkout, built):
@@ -14,6 +14,7 @@ def pages(checkout, built):
         'messages.md': interfaces.messages_page(checkout),
         'services.md': interfaces.services_page(checkout),
         'node.md': node.page(checkout),
+        'camera_node.md': camera.page(checkout),
         'command_lines.md': programs.page(checkout, built),
         'cpp.md': languages.cpp_page(checkout),
         'python.md': languages.python_page(),

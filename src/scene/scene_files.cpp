@@ -174,6 +174,11 @@ void read_scene_files(const Value& root, const SceneSources& sources, SceneDesc&
   if (scene.robot && !root.errors->is_unread("robot")) read_robot(root, sources, meshes, *scene.robot);
 }
 
+void read_robot_files(const Value& root, const SceneSources& sources, RobotDesc& robot) {
+  MeshReader meshes(sources.files);
+  read_robot(root, sources, meshes, robot);
+}
+
 std::vector<std::string> named_files(const SceneDesc& scene, const FileAccess& access) {
   std::vector<std::string> files;
   const auto add = [&](const std::string& uri) {

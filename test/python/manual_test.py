@@ -102,12 +102,20 @@ def test_every_key_of_the_template_has_an_anchor(reference):
     assert keys - set(re.findall(r'<a id="([^"]+)"', reference['scene.md'])) == set()
 
 
-def test_every_topic_and_service_of_the_node_is_in_the_reference(reference):
+def test_every_topic_and_service_of_the_nodes_is_in_the_reference(reference):
     code = '\n'.join(path.read_text(encoding='utf-8') for path in (PACKAGE / 'src/ros').rglob('*.cpp'))
     names = set(re.findall(r'(?:advertise|subscribe|advertiseService|serve|serve_aside)<[^;]*?>\(\s*(?:node, )?"([^"]+)"', code))
     assert {'state', 'events', 'pin', 'reset', '/tf', 'parameter_updates', 'goal'} <= names
-    told = set(re.findall(r'`([^`]+)`', reference['node.md']))
+    told = set(re.findall(r'`([^`]+)`', reference['node.md'] + reference['camera_node.md']))
     assert {name for name in names if not any(text == name or text.endswith('/' + name) for text in told)} == set()
+
+
+def test_every_parameter_of_the_camera_is_in_the_reference(reference):
+    code = (PACKAGE / 'src/ros/camera/camera_settings.cpp').read_text(encoding='utf-8')
+    keys = {name for name in re.findall(r'(?:_key|of_camera|number)(?:<[^>]*>)?\(\s*"(\w+)"', code)}
+    assert {'state', 'width', 'axial', 'dropout_angle', 'distortion', 'depth_encoding'} <= keys
+    told = {name.rpartition('.')[2] for name in re.findall(r'></a>`([^`]+)`', reference['camera_node.md'])}
+    assert keys - told == set()
 
 
 def test_every_value_of_the_diagnostics_is_explained(reference):

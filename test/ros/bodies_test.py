@@ -10,6 +10,8 @@ from geometry_msgs.msg import WrenchStamped
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import InteractiveMarkerInit, InteractiveMarkerUpdate, Marker, MarkerArray
 
+from verlet_cable.msg import Appearance, Solid
+
 from cable_client import CableClient, Messages, cable, distance, node_at
 
 SCENE = open(sys.argv[1]).read()
@@ -76,6 +78,18 @@ class BodiesTest(unittest.TestCase):
                 self.assertEqual(r, pose.orientation)
             stamps = [m.transforms[0].header.stamp for m in tf.all()]
             self.assertEqual(stamps, sorted(set(stamps)))
+
+    def test_appearance(self):
+        with Messages('/robot/cable/appearance', Appearance) as appearances, self.node.states() as states:
+            state = states.next(3)
+            seen = appearances.wait_for(lambda a: a.header.stamp == state.header.stamp, 'appearance of that time')
+        self.assertEqual(seen.bodies, ['plate', 'wheel'])
+        self.assertEqual([(s.name, s.type) for s in seen.solids], [('plate', Solid.BOX), ('plate', Solid.CAPSULE), ('wheel', Solid.CYLINDER)])
+        box, capsule, _ = seen.solids
+        self.assertEqual(box.pose, body(state, 'plate').pose)
+        self.assertEqual((box.size.x, box.size.y, box.size.z, box.owner), (0.4, 0.3, 0.1, Solid.BODY))
+        # 0.1 m along x and z of the plate, which is turned by 1 rad.
+        self.assert_at(capsule.pose.position, (0.2 + 0.1 * math.cos(1), 0.1 * math.sin(1), 1.5))
 
     def test_a_standing_time_is_sent_once(self):
         self.assertTrue(self.node.pause(True).success)

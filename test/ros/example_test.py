@@ -9,13 +9,15 @@ import numpy as np
 import rospy
 import rostest
 import yaml
-from geometry_msgs.msg import PoseArray, WrenchStamped
+from geometry_msgs.msg import WrenchStamped
 from rosgraph_msgs.msg import Log
-from sensor_msgs.msg import PointCloud2
+from sensor_msgs.msg import Image, PointCloud2
 from visualization_msgs.msg import InteractiveMarkerInit, InteractiveMarkerUpdate, MarkerArray
 
 from cable_client import CableClient, Messages, all_finite, cable
 from example_physics import PHYSICS
+from images import array, labels_of, points_of
+from verlet_cable.msg import CableView
 
 EXAMPLE = sys.argv[1]
 PACKAGE = sys.argv[0].partition('/test/ros/')[0]
@@ -25,7 +27,8 @@ SECONDS = 3
 ROUND = example_motions.PERIODS.get(EXAMPLE, 9.0) + 1  # [s] after which it has begun again, or has shown most of what it does
 # Obstacles whose frames move are shown as soon as tf has them; a capsule is three markers.
 OBSTACLES = {'arm_dress_pack': 6, 'crane': 5, 'drones_with_bar': 7, 'finger': 1, 'gripper_load': 5, 'harness': 7,
-             'hose_between_arms': 8, 'plug': 11, 'rov_tether': 4, 'tethered_drone': 5, 'tracker': 0}[EXAMPLE]
+             'hose_between_arms': 8, 'plug': 11, 'rov_tether': 4, 'table_camera': 2, 'tethered_drone': 5,
+             'tracker': 0}[EXAMPLE]
 PAUSE = 10.0  # [s] more than any hand's
 STRETCH = {'finger': 0.4}  # its rubber bands
 
@@ -74,7 +77,7 @@ class ExampleTest(*([PHYSICS[EXAMPLE]] if EXAMPLE in PHYSICS else []), unittest.
             displays = yaml.safe_load(file)['Visualization Manager']['Displays']
         shown = {value for display in displays for key, value in display.items() if key.endswith('Topic')}
         self.assertIn('/cable/markers', shown)
-        if EXAMPLE == 'arm_dress_pack':
+        if EXAMPLE in ('arm_dress_pack', 'table_camera'):
             shown.discard('/example/labels')  # it is not one of those of example_frames.py
         self.assertLessEqual(shown, {topic for topic, _ in rospy.get_published_topics()})
 
@@ -106,10 +109,10 @@ class ExampleTest(*([PHYSICS[EXAMPLE]] if EXAMPLE in PHYSICS else []), unittest.
         self.assertGreater(math.hypot(f.x, f.y, f.z), 0.2 * weight)
         self.assertLess(math.hypot(f.x, f.y, f.z), 5 * weight)
 
-    @unittest.skipUnless(EXAMPLE == 'tracker', 'has no camera')
+    @unittest.skipUnless(EXAMPLE == 'tracker', 'has no tracker')
     def test_the_camera_sees_the_rope_where_it_is(self):
         # Clouds only count from when truths come: the first would have none.
-        with Messages('/camera/ground_truth', PoseArray) as truths, Messages('/camera/points', PointCloud2) as clouds:
+        with Messages('/camera/truth', CableView) as truths, Messages('/camera/points', PointCloud2) as clouds:
             truths.next()
             pairs = 0
             while pairs < 5:  # a busy machine may lose some of either
@@ -119,14 +122,25 @@ class ExampleTest(*([PHYSICS[EXAMPLE]] if EXAMPLE in PHYSICS else []), unittest.
                     continue
                 pairs += 1
                 self.assertEqual((cloud.header.frame_id, truth.header.frame_id), ('camera_optical_frame',) * 2)
-                points = np.frombuffer(cloud.data, np.float32).reshape(-1, 3)
-                nodes = np.array([(p.position.x, p.position.y, p.position.z) for p in truth.poses])
+                points = points_of(cloud)[labels_of(cloud) == 1]
+                points = points[np.isfinite(points).all(axis=1)]
+                nodes = np.array([(p.x, p.y, p.z) for p in truth.positions])
                 self.assertGreater(len(points), 200)
-                self.assertTrue(np.isfinite(points).all())
                 self.assertGreater(points[:, 2].min(), 0.5)  # in front of it
                 nearest = np.linalg.norm(points[:, None] - nodes[None], axis=2).min(axis=1)
                 self.assertLess(nearest.max(), 0.012 + 0.01 + 0.006)  # radius, half a segment, six times the noise
                 self.assertLess(np.median(points[:, 2]), np.median(nodes[:, 2]))  # the near side
+
+    @unittest.skipUnless(EXAMPLE == 'table_camera', 'has no arm that is seen')
+    def test_the_camera_sees_arm_table_and_cables(self):
+        with Messages('/camera/truth', CableView) as truths, Messages('/camera/mask/image_raw', Image) as masks:
+            labels = list(truths.next().labels)
+            self.assertEqual(labels, ['signal', 'probe', 'supply', 'table', 'floor', 'base_link', 'shoulder', 'upper_arm', 'forearm', 'wrist'])
+            seen = set()
+            deadline = rospy.get_time() + 10
+            while seen < set(range(1, len(labels) + 1)) and rospy.get_time() < deadline:
+                seen |= set(np.unique(array(masks.next())))
+            self.assertEqual(seen - {0}, set(range(1, len(labels) + 1)))
 
 
 if __name__ == '__main__':

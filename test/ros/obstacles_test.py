@@ -11,7 +11,7 @@ from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
 from visualization_msgs.msg import Marker, MarkerArray
 
 from cable_client import CableClient, Frames, Messages, all_finite, cable
-from verlet_cable.msg import CableEvent
+from verlet_cable.msg import Appearance, CableEvent, Solid
 
 NAN = float('nan')
 
@@ -76,6 +76,20 @@ class ObstaclesTest(unittest.TestCase):
             self.assertLess(min(getattr(point, axis) for point in floor.points), -2.5)
             self.assertGreater(max(getattr(point, axis) for point in floor.points), 2.5)
         self.assertEqual(len({m.id for m in markers}), len(markers))
+
+    def test_what_a_camera_needs_of_them_is_exact(self):
+        self.frames.motions['forearm'] = lambda t: (4, 0, 1)
+        with Messages('/cable/appearance', Appearance) as appearances:
+            seen = appearances.wait_for(lambda a: any(s.name == 'forearm' and s.pose.position.x > 3.9 for s in a.solids), 'forearm')
+        self.assertEqual(seen.header.frame_id, 'world')
+        self.assertEqual([(look.name, list(look.radii)) for look in seen.looks], [('rope', [0.01])])
+        solids = {solid.name: solid for solid in seen.solids}
+        floor, pill, forearm = solids['floor'], solids['pill'], solids['forearm']
+        self.assertEqual((floor.type, floor.owner, floor.pose.position.z), (Solid.PLANE, Solid.OBSTACLE, 0))
+        self.assertEqual((pill.type, pill.radius, pill.length), (Solid.CAPSULE, 0.1, 0.3))
+        self.assertEqual((pill.pose.position.y, pill.pose.position.z), (2, 1))
+        # Without the padding that keeps cables away from it.
+        self.assertEqual((forearm.type, forearm.owner, forearm.radius), (Solid.SPHERE, Solid.LINK, 0.07))
 
     def test_what_lies_on_the_floor_touches_it(self):
         with self.node.states() as states:

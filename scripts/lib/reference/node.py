@@ -26,8 +26,10 @@ def text_of(comment):
     return with_code(text[:1].upper() + text[1:])
 
 
-def topic_rows(checkout, kind):
+def topic_rows(checkout, kind, of_camera=False):
     for path in sorted((checkout / 'src/ros').rglob('*.h')):
+        if (path.parent.name == 'camera') != of_camera:
+            continue
         for found, name, type_name, latched, comment in TOPIC.findall(path.read_text(encoding='utf-8')):
             if found == kind:
                 yield [anchor(kind.lower().replace(' ', '-') + '-' + name.strip('/').replace('/', '-').lower()) + f'`{name}`',

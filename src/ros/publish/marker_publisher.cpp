@@ -7,6 +7,7 @@
 #include "publish/conversions.h"
 #include "publish/guide_markers.h"
 #include "publish/light.h"
+#include "publish/net_look.h"
 #include "publish/obstacle_markers.h"
 #include "publish/queue_size.h"
 #include "verlet_cable/core/cable_materials.h"
@@ -22,13 +23,11 @@ constexpr double aluminium_density = 2700;  // [kg/m^3]
 constexpr double pin_size = 2.2;            // of a pin to the cable it holds, radius to radius
 constexpr int cable_marker_id = 0;
 constexpr int net_lines_id = 0, particle_marker_id = 0;
-constexpr int net_triangles_id = -1;     // markers that share a namespace with a net, as pins may, have ids from 0
-constexpr double net_line_width = 0.04;  // of the first link's length
-constexpr double net_pin_size = 0.4;     // likewise
-constexpr double body_pin_size = 0.3;    // of a body's radius of gyration
-constexpr double text_size = 0.05;       // of the longest cable
+constexpr int net_triangles_id = -1;   // markers that share a namespace with a net, as pins may, have ids from 0
+constexpr double net_pin_size = 0.4;   // of the first link's length
+constexpr double body_pin_size = 0.3;  // of a body's radius of gyration
+constexpr double text_size = 0.05;     // of the longest cable
 constexpr std::array<double, 4> text_color{0.6, 0.1, 0.1, 1};
-constexpr std::array<double, 4> body_color{0.75, 0.55, 0.25, 1};
 constexpr double load_size = 4;      // of the text's height: the length of the greatest load's arrow
 constexpr double load_width = 0.05;  // of that length
 constexpr double least_load = 1e-3;  // likewise: shorter arrows are not seen
@@ -68,11 +67,6 @@ double radius_at(const SimulatedCable& cable, int node) {
   return std::max(materials[std::max(node - 1, 0)].radius, materials[std::min(node, cable.state.segments() - 1)].radius);
 }
 
-/// [m] How long a net's links are, for the sizes of what shows it.
-double link_length(const NetModel& model) {
-  return model.rest_lengths.empty() ? 0.1 : model.rest_lengths.front();
-}
-
 /// [m] The width of what shows how something is held.
 double pin_width(const World& world, const Attachment& attachment) {
   const BodyId& held = attachment.body;
@@ -82,19 +76,13 @@ double pin_width(const World& world, const Attachment& attachment) {
   return 2 * pin_size * radius_at(world.cables()[index], attachment.node);
 }
 
-/// The two triangles of each cell.
 void add_triangles(const SimulatedNet& net, const DrawingFrame& frame, Marker& marker) {
-  const int columns = net.model.columns;
-  for (int row = 0; row + 1 < net.model.rows; ++row)
-    for (int column = 0; column + 1 < columns; ++column) {
-      const int a = row * columns + column, b = a + 1, c = a + columns, d = c + 1;
-      for (const std::array<int, 3>& corners : {std::array<int, 3>{a, c, b}, {b, c, d}}) {
-        const auto at = [&](int corner) -> const Vector3& { return net.state.positions[corners[corner]]; };
-        const Vector3 normal = (at(1) - at(0)).cross(at(2) - at(0)).normalized();
-        for (int corner = 0; corner < 3; ++corner) marker.points.push_back(frame.point(at(corner)));
-        marker.colors.insert(marker.colors.end(), 3, lit_from_both_sides(marker.color, normal));
-      }
-    }
+  for (const std::array<int, 3>& corners : triangles_of(net.model)) {
+    const auto at = [&](int corner) -> const Vector3& { return net.state.positions[corners[corner]]; };
+    const Vector3 normal = (at(1) - at(0)).cross(at(2) - at(0)).normalized();
+    for (int corner = 0; corner < 3; ++corner) marker.points.push_back(frame.point(at(corner)));
+    marker.colors.insert(marker.colors.end(), 3, lit_from_both_sides(marker.color, normal));
+  }
 }
 
 }  // namespace
@@ -218,7 +206,7 @@ void MarkerPublisher::add_payloads(const SimulatedCable& cable, MarkerArray& mar
 void MarkerPublisher::add_net(const SimulatedNet& net, MarkerArray& markers) const {
   if (!net.model.links.empty()) {
     Marker lines = make_marker(net.model.name, net_lines_id, Marker::LINE_LIST);
-    lines.scale.x = net_line_width * link_length(net.model);
+    lines.scale.x = link_width(net.model);
     lines.color = to_color(net.model.color);
     for (const std::array<int, 2>& link : net.model.links)
       for (const int node : link) lines.points.push_back(frame_.point(net.state.positions[node]));

@@ -2,6 +2,7 @@
 
 #include <visualization_msgs/Marker.h>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,9 @@
 #include "verlet_cable/core/shape.h"
 
 namespace verlet_cable {
+
+/// Of the shapes of bodies: red, green, blue, alpha.
+constexpr std::array<double, 4> body_color{0.75, 0.55, 0.25, 1};
 
 /// How a shape looks at `pose`, as an obstacle: one marker, for a capsule three. Only `type`, `pose`, `scale`, `color` and
 /// `mesh_resource` are set. A plane is a large flat box below it.

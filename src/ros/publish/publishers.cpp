@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "publish/appearance_publisher.h"
 #include "publish/body_frames.h"
 #include "publish/color.h"
 #include "publish/contact_publisher.h"
@@ -26,6 +27,7 @@ struct Publishers::Implementation {
         legend(private_node, colors),
         markers(private_node, scene, frame),
         points(private_node, scene, frame),
+        appearance(private_node, scene),
         state(private_node, scene),
         surface(private_node, scene, frame),
         wrenches(private_node),
@@ -56,6 +58,7 @@ struct Publishers::Implementation {
   LegendPublisher legend;
   MarkerPublisher markers;
   PointPublisher points;
+  AppearancePublisher appearance;
   StatePublisher state;
   SurfacePublisher surface;
   WrenchPublisher wrenches;
@@ -75,6 +78,7 @@ void Publishers::show(const SceneDesc& scene) {
   implementation_->legend.show(implementation_->colors);
   implementation_->markers.show(scene, frame);
   implementation_->points.show(scene, frame);
+  implementation_->appearance.show(scene);
   implementation_->state.show(scene);
   implementation_->surface.show(scene, frame);
 }
@@ -98,6 +102,7 @@ void Publishers::publish(const World& world, const ros::Time& stamp) {
   const ColorScale& colors = implementation_->colors;
   implementation_->markers.publish(world, colors, stamp);
   implementation_->points.publish(world, colors, stamp);
+  implementation_->appearance.publish(world, stamp);
   implementation_->state.publish(world, stamp);
   implementation_->surface.publish(world, colors, stamp);
   implementation_->wrenches.publish(world, stamp);

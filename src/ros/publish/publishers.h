@@ -10,10 +10,10 @@
 namespace verlet_cable {
 
 /// What the node shows of a world: `markers`, `points` and `surface` in the drawing frame (drawing_frame.h), which is on
-/// /tf_static where it is not the scene's fixed frame; `state` in the fixed frame, `wrench/<attachment>` in the attachment's;
-/// `legend`, and the bodies' frames on /tf. The log says once where single precision makes what is drawn coarse. Nothing but
-/// the range of the colors is computed for a topic without subscribers, and no cable with a value that is not finite is
-/// published.
+/// /tf_static where it is not the scene's fixed frame; `state` and `appearance` in the fixed frame, `wrench/<attachment>` in the
+/// attachment's; `legend`, and the bodies' frames on /tf. The log says once where single precision makes what is drawn coarse.
+/// Nothing but the range of the colors is computed for a topic without subscribers, and no cable with a value that is not finite
+/// is published.
 class Publishers {
  public:
   /// Advertises under `private_node`. Of the scene: `frame_id`, `origin`, `marker_style`, `color_by`, and what the color scale is

@@ -1,0 +1,56 @@
+#include "camera/intrinsics.h"
+
+#include <algorithm>
+
+#include "camera/camera_info.h"
+
+namespace verlet_cable {
+namespace {
+
+constexpr std::uint32_t queue_size = 5;
+constexpr double log_period = 5;  // [s] between warnings about what may last
+
+bool are_equal(const view::CameraModel& a, const view::CameraModel& b) {
+  return a.width == b.width && a.height == b.height && a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy &&
+         a.distortion == b.distortion;
+}
+
+}  // namespace
+
+Intrinsics::Intrinsics(ros::NodeHandle& node, const CameraSettings& settings, const ros::SubscriberStatusCallback& changed)
+    : frame_(settings.optical_frame), near_(settings.camera.near), far_(settings.camera.far), topic_(settings.camera_info_topic) {
+  for (const char* name : {"camera_info", "depth/camera_info", "rgb/camera_info", "mask/camera_info"})
+    if (topic_ != node.resolveName(name))
+      publishers_.push_back(node.advertise<sensor_msgs::CameraInfo>(name, queue_size, changed, changed));
+  if (!topic_.empty()) {
+    subscriber_ = node.subscribe(topic_, queue_size, &Intrinsics::receive, this);
+    return;
+  }
+  const view::CameraModel model = view::camera_model(settings.camera);
+  info_ = info_of(model);
+  lens_ = std::make_shared<view::Lens>(model);
+}
+
+void Intrinsics::receive(const sensor_msgs::CameraInfoConstPtr& info) {
+  const ReceivedModel received = model_of(*info, near_, far_);
+  if (!received.problem.empty()) {
+    ROS_WARN_THROTTLE(log_period, "topic %s: refused %s", topic_.c_str(), received.problem.c_str());
+    return;
+  }
+  info_ = *info;
+  if (!lens_ || !are_equal(lens_->model(), received.model)) lens_ = std::make_shared<view::Lens>(received.model);
+}
+
+bool Intrinsics::are_wanted() const {
+  return std::any_of(publishers_.begin(), publishers_.end(), [](const auto& publisher) { return publisher.getNumSubscribers() > 0; });
+}
+
+void Intrinsics::publish(const ros::Time& stamp) const {
+  if (!are_wanted()) return;
+  const auto message = boost::make_shared<sensor_msgs::CameraInfo>(info_);
+  message->header.stamp = stamp;
+  message->header.frame_id = frame_;
+  for (const ros::Publisher& publisher : publishers_) publisher.publish(message);
+}
+
+}  // namespace verlet_cable

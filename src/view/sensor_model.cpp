@@ -1,0 +1,36 @@
+#include "verlet_cable/view/sensor_model.h"
+
+#include <algorithm>
+
+#include "error_lines.h"
+#include "verlet_cable/core/scene_fields.h"
+
+namespace verlet_cable::view {
+namespace {
+
+constexpr Range axial_range{-1e3, 1e3, "three finite numbers a, b, c of a + b z + c z^2 [m]"};
+constexpr Range angle_range{0.1, 90, "any number above 0, at most 90"};
+constexpr Range baseline_range{-10, 10, "any number from -10 to 10"};
+constexpr Range step_range{0, 100, "0 or more"};
+constexpr Range edge_range{1e-6, 1e3, "any number above 0"};
+
+}  // namespace
+
+std::vector<std::string> validate(const SensorModel& sensor) {
+  ErrorLines errors;
+  const bool is_sound = std::all_of(sensor.axial.begin(), sensor.axial.end(), [](double k) { return axial_range.contains(k); });
+  errors.require(is_sound, "noise.axial", list_text(sensor.axial), axial_range.text());
+  const auto check = [&](const char* name, double value, const Range& range, const char* unit) {
+    errors.require(range.contains(value), name, number_text(value), range.text(unit));
+  };
+  check("noise.dropout_angle", sensor.dropout_angle, angle_range, "degree");
+  check("noise.baseline", sensor.baseline, baseline_range, "m");
+  check("noise.disparity_step", sensor.disparity_step, step_range, "pixels");
+  check("noise.edge_dropout", sensor.edge_dropout, unit_interval, "");
+  check("noise.edge_step", sensor.edge_step, edge_range, "m");
+  errors.require(!(sensor.disparity_step > 0 && sensor.baseline == 0), "noise.disparity_step", number_text(sensor.disparity_step),
+                 "0 without a baseline");
+  return errors.lines();
+}
+
+}  // namespace verlet_cable::view

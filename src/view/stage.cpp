@@ -1,0 +1,379 @@
+#include "verlet_cable/view/stage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+#include <variant>
+
+#include "error_lines.h"
+#include "pattern.h"
+#include "stage_implementation.h"
+#include "verlet_cable/core/rotation.h"
+
+namespace verlet_cable::view {
+namespace {
+
+constexpr unsigned triangles_of_box = 12;
+
+/// One for the process, and never released: stages may live until its end.
+RTCDevice device() {
+  static const RTCDevice made = rtcNewDevice("start_threads=0,set_affinity=0");
+  if (!made)
+    throw std::runtime_error("Embree cannot be used on this machine: error " + std::to_string(rtcGetDeviceError(nullptr)));
+  return made;
+}
+
+void check(RTCDevice device) {
+  const RTCError error = rtcGetDeviceError(device);
+  if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+  if (error != RTC_ERROR_NONE) throw std::runtime_error("Embree: error " + std::to_string(error));
+}
+
+/// [rad] By how much the material turns about a cable from one segment to the next, beyond what the bend does.
+double turn_between(const Quaternion& first, const Quaternion& last) {
+  const Vector3 x = Vector3::UnitX(), y = Vector3::UnitY(), along = last * x;
+  const Vector3 carried = smallest_rotation(first * x, along) * (first * y);
+  const Vector3 turned = last * y;
+  return std::atan2(carried.cross(turned).dot(along), carried.dot(turned));
+}
+
+std::array<Vector3, 3> corners(const PlacedPart& part, unsigned triangle) {
+  const TriangleMesh& mesh = *std::get<MeshShape>(part.shape).mesh;
+  const TriangleMesh::Triangle& indices = mesh.triangles()[triangle];
+  std::array<Vector3, 3> corners;
+  for (int k = 0; k < 3; ++k) corners[k] = part.pose.orientation * mesh.vertices()[indices[k]] + part.pose.position;
+  return corners;
+}
+
+/// [1] Of the size of a pixel, what lies under it of a surface that is seen aslant.
+double aslant(const Vector3& normal, const Ray& ray) {
+  const double cosine = std::abs(normal.dot(ray.direction)) / ray.direction.norm();
+  return 1 / std::max(cosine, 0.02);
+}
+
+/// `meeting`: its normal is in the part's frame.
+Sighting part_sighting(const PlacedPart& part, const Ray& ray, const Meeting& meeting, double footprint) {
+  Sighting seen{part.thing, meeting.t, part.axes * meeting.normal, part.paint, 0};
+  if (footprint > 0 && part.paint->look.pattern == Look::Pattern::checks) {
+    const Vector3 place = part.inside(ray.at(meeting.t));
+    seen.second_color = checks_at(part.paint->look, place.x(), place.y(), footprint * meeting.t * aslant(seen.normal, ray));
+  }
+  return seen;
+}
+
+Sighting tube_sighting(const TubeSegment& segment, const Ray& ray, double lowest, double t, double footprint) {
+  // Grazing rays that miss by rounding meet it where Embree has it.
+  const Meeting otherwise{t, -ray.direction.normalized()};
+  const Meeting meeting = meet_tube(segment.start, segment.end, segment.radius, ray, lowest).value_or(otherwise);
+  Sighting seen{segment.thing, meeting.t, meeting.normal, segment.paint, 0};
+  if (footprint > 0 && segment.is_striped) {
+    const Vector3 axis = segment.end - segment.start;
+    const double along = (ray.at(meeting.t) - segment.start).dot(axis), part = along / std::max(axis.squaredNorm(), 1e-300);
+    const double roll = segment.roll_at_start + std::clamp(part, 0.0, 1.0) * (segment.roll_at_end - segment.roll_at_start);
+    const double angle = std::atan2(meeting.normal.dot(segment.third), meeting.normal.dot(segment.second)) - roll;
+    seen.second_color =
+        stripes_at(segment.paint->look, angle, footprint * meeting.t * aslant(meeting.normal, ray) / segment.radius);
+  }
+  return seen;
+}
+
+/// What Embree asks of a solid, in its coordinates.
+struct SolidsOf {
+  const Stage::Implementation& stage;
+
+  std::optional<Meeting> meet(unsigned solid, const RTCRay& ray) const {
+    const PlacedPart& part = stage.solids[solid];
+    const Ray seen{Vector3(ray.org_x, ray.org_y, ray.org_z) + stage.origin, Vector3(ray.dir_x, ray.dir_y, ray.dir_z)};
+    return view::meet(part.shape, part.inside(seen), ray.tnear);
+  }
+};
+
+void find_bounds(const RTCBoundsFunctionArguments* arguments) {
+  const auto& stage = *static_cast<const Stage::Implementation*>(arguments->geometryUserPtr);
+  const PlacedPart& part = stage.solids[arguments->primID];
+  Aabb box = bounds(part.shape, part.pose);
+  box.translate(-stage.origin);
+  const double margin = 1e-6 * (1 + box.min().cwiseAbs().maxCoeff() + box.max().cwiseAbs().maxCoeff());
+  RTCBounds& out = *arguments->bounds_o;
+  out.lower_x = static_cast<float>(box.min().x() - margin);
+  out.lower_y = static_cast<float>(box.min().y() - margin);
+  out.lower_z = static_cast<float>(box.min().z() - margin);
+  out.upper_x = static_cast<float>(box.max().x() + margin);
+  out.upper_y = static_cast<float>(box.max().y() + margin);
+  out.upper_z = static_cast<float>(box.max().z() + margin);
+}
+
+void intersect_solid(const RTCIntersectFunctionNArguments* arguments) {
+  const SolidsOf solids{*static_cast<const Stage::Implementation*>(arguments->geometryUserPtr)};
+  const unsigned count = arguments->N;
+  RTCRayN* rays = RTCRayHitN_RayN(arguments->rayhit, count);
+  RTCHitN* hits = RTCRayHitN_HitN(arguments->rayhit, count);
+  for (unsigned i = 0; i < count; ++i) {
+    if (arguments->valid[i] != -1) continue;
+    const auto meeting = solids.meet(arguments->primID, rtcGetRayFromRayN(rays, count, i));
+    if (!meeting || !(static_cast<float>(meeting->t) < RTCRayN_tfar(rays, count, i))) continue;
+    RTCRayN_tfar(rays, count, i) = static_cast<float>(meeting->t);
+    RTCHitN_geomID(hits, count, i) = arguments->geomID;
+    RTCHitN_primID(hits, count, i) = arguments->primID;
+    RTCHitN_instID(hits, count, i, 0) = arguments->context->instID[0];
+  }
+}
+
+void occlude_by_solid(const RTCOccludedFunctionNArguments* arguments) {
+  const SolidsOf solids{*static_cast<const Stage::Implementation*>(arguments->geometryUserPtr)};
+  const unsigned count = arguments->N;
+  for (unsigned i = 0; i < count; ++i) {
+    if (arguments->valid[i] != -1) continue;
+    const RTCRay ray = rtcGetRayFromRayN(arguments->ray, count, i);
+    const auto meeting = solids.meet(arguments->primID, ray);
+    if (meeting && meeting->t <= ray.tfar) RTCRayN_tfar(arguments->ray, count, i) = -std::numeric_limits<float>::infinity();
+  }
+}
+
+template <class Item>
+Item* new_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::size_t count) {
+  auto* items = static_cast<Item*>(rtcSetNewGeometryBuffer(geometry, type, 0, format, sizeof(Item), count));
+  check(device());
+  return items;
+}
+
+void attach(RTCScene scene, RTCGeometry geometry, unsigned id) {
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene, geometry, id);
+  rtcReleaseGeometry(geometry);
+}
+
+}  // namespace
+
+Paint::Paint(const Look& of)
+    : look(of), color(in_proportion_to_light(of.color)), second_color(in_proportion_to_light(of.second_color)) {}
+
+Vector3 in_proportion_to_light(const Color& color) {
+  const auto part = [](double value) { return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4); };
+  return {part(color[0]), part(color[1]), part(color[2])};
+}
+
+MeshTree::MeshTree(RTCDevice device, std::shared_ptr<const TriangleMesh> mesh)
+    : mesh_(std::move(mesh)), scene_(rtcNewScene(device)) {
+  rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  const auto& vertices = mesh_->vertices();
+  auto* points = new_buffer<std::array<float, 3>>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, vertices.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    for (int axis = 0; axis < 3; ++axis) points[i][axis] = static_cast<float>(vertices[i][axis]);
+  const auto& triangles = mesh_->triangles();
+  auto* indices = new_buffer<std::array<unsigned, 3>>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    for (int k = 0; k < 3; ++k) indices[i][k] = static_cast<unsigned>(triangles[i][k]);
+  attach(scene_, geometry, 0);
+  rtcCommitScene(scene_);
+  check(device);
+}
+
+MeshTree::~MeshTree() {
+  rtcReleaseScene(scene_);
+}
+
+Stage::Implementation::Implementation(Drawing shown, const Implementation* before) : drawing(std::move(shown)) {
+  to_sun = drawing.light.direction.normalized();
+  background = in_proportion_to_light(drawing.background);
+  for (std::size_t i = 0; i < drawing.things.size(); ++i) place(drawing.things[i], static_cast<int>(i));
+  find_origin();
+  build(before);
+}
+
+Stage::Implementation::~Implementation() {
+  rtcReleaseScene(scene);
+}
+
+void Stage::Implementation::place(const Thing& thing, int index) {
+  const Paint* paint = &paints.emplace_back(thing.look);
+  for (const Tube& tube : thing.tubes) place(tube, *paint, index);
+  for (const Part& part : thing.parts) {
+    auto& group = std::holds_alternative<PlaneShape>(part.shape)  ? planes
+                  : std::holds_alternative<BoxShape>(part.shape)  ? boxes
+                  : std::holds_alternative<MeshShape>(part.shape) ? meshes
+                                                                  : solids;
+    group.emplace_back(index, thing.pose * part.pose, part.shape, part.look ? paints.emplace_back(*part.look) : *paint);
+  }
+}
+
+void Stage::Implementation::place(const Tube& tube, const Paint& paint, int index) {
+  const std::size_t count = tube.centers.size() - 1;
+  const bool is_striped = paint.look.pattern == Look::Pattern::stripes && !tube.orientations.empty();
+  const std::size_t first = segments.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    TubeSegment segment{index, tube.centers[i], tube.centers[i + 1], tube.radii[tube.radii.size() == 1 ? 0 : i], &paint};
+    if (is_striped) {
+      const Eigen::Matrix3d axes = tube.orientations[i].normalized().toRotationMatrix();
+      segment.is_striped = true;
+      segment.second = axes.col(1);
+      segment.third = axes.col(2);
+    }
+    segments.push_back(segment);
+  }
+  for (std::size_t i = 1; is_striped && i < count; ++i) {
+    const double turn = turn_between(tube.orientations[i - 1].normalized(), tube.orientations[i].normalized());
+    segments[first + i - 1].roll_at_end = 0.5 * turn;
+    segments[first + i].roll_at_start = -0.5 * turn;
+  }
+}
+
+void Stage::Implementation::find_origin() {
+  Aabb box;
+  for (const TubeSegment& segment : segments) box.extend(segment.start).extend(segment.end);
+  for (const auto* group : {&boxes, &solids, &meshes})
+    for (const PlacedPart& part : *group) box.extend(part.pose.position);
+  if (!box.isEmpty()) origin = box.center();
+}
+
+void Stage::Implementation::build(const Implementation* before) {
+  scene = rtcNewScene(device());
+  // Rays do not slip through between triangles.
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  add_tubes();
+  add_boxes();
+  add_solids();
+  add_meshes(before);
+  rtcCommitScene(scene);
+  check(device());
+}
+
+void Stage::Implementation::add_tubes() {
+  if (segments.empty()) return;
+  RTCGeometry geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
+  struct Vertex {
+    float x, y, z, radius;
+  };
+  auto* vertices = new_buffer<Vertex>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 2 * segments.size());
+  auto* indices = new_buffer<unsigned>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT, segments.size());
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const auto put = [&](Vertex& vertex, const Vector3& point) {
+      const Eigen::Vector3f at = (point - origin).cast<float>();
+      vertex = {at.x(), at.y(), at.z(), static_cast<float>(segments[i].radius)};
+    };
+    put(vertices[2 * i], segments[i].start);
+    put(vertices[2 * i + 1], segments[i].end);
+    indices[i] = static_cast<unsigned>(2 * i);
+  }
+  attach(scene, geometry, tubes_id);
+}
+
+void Stage::Implementation::add_boxes() {
+  if (boxes.empty()) return;
+  constexpr int corners_of_box = 8;
+  static constexpr unsigned corners[triangles_of_box][3]{{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                                                         {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  RTCGeometry geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* points =
+      new_buffer<std::array<float, 3>>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, corners_of_box * boxes.size());
+  auto* indices =
+      new_buffer<std::array<unsigned, 3>>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles_of_box * boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const Vector3 half = 0.5 * std::get<BoxShape>(boxes[i].shape).size;
+    for (int k = 0; k < corners_of_box; ++k) {
+      const Vector3 corner = half.cwiseProduct(Vector3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1));
+      const Vector3 point = boxes[i].pose.position - origin + boxes[i].axes * corner;
+      for (int axis = 0; axis < 3; ++axis) points[corners_of_box * i + k][axis] = static_cast<float>(point[axis]);
+    }
+    for (unsigned k = 0; k < triangles_of_box; ++k)
+      for (int corner = 0; corner < 3; ++corner)
+        indices[triangles_of_box * i + k][corner] = static_cast<unsigned>(corners_of_box * i) + corners[k][corner];
+  }
+  attach(scene, geometry, boxes_id);
+}
+
+void Stage::Implementation::add_solids() {
+  if (solids.empty()) return;
+  RTCGeometry geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(solids.size()));
+  rtcSetGeometryUserData(geometry, this);
+  rtcSetGeometryBoundsFunction(geometry, find_bounds, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, intersect_solid);
+  rtcSetGeometryOccludedFunction(geometry, occlude_by_solid);
+  attach(scene, geometry, solids_id);
+}
+
+void Stage::Implementation::add_meshes(const Implementation* before) {
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    const auto& mesh = std::get<MeshShape>(meshes[i].shape).mesh;
+    auto& tree = trees[mesh.get()];
+    if (!tree && before && before->trees.count(mesh.get()) > 0) tree = before->trees.at(mesh.get());
+    if (!tree) tree = std::make_shared<MeshTree>(device(), mesh);
+    RTCGeometry geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(geometry, tree->scene());
+    Eigen::Matrix<float, 3, 4, Eigen::ColMajor> transform;
+    transform << meshes[i].pose.orientation.toRotationMatrix().cast<float>(), (meshes[i].pose.position - origin).cast<float>();
+    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, transform.data());
+    attach(scene, geometry, first_mesh_id + static_cast<unsigned>(i));
+  }
+}
+
+Stage::Implementation::PlaneMeeting Stage::Implementation::meet_planes(const Ray& ray, double lowest, double highest) const {
+  PlaneMeeting nearest{-1, highest};
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    const double slope = planes[i].axes.col(2).dot(ray.direction);
+    const double t = planes[i].axes.col(2).dot(planes[i].pose.position - ray.origin) / slope;
+    // From their outside only.
+    if (slope < 0 && t >= lowest && t < nearest.t) nearest = {static_cast<int>(i), t};
+  }
+  return nearest;
+}
+
+Sighting Stage::Implementation::plane_sighting(const Ray& ray, const PlaneMeeting& meeting, double footprint) const {
+  return part_sighting(planes[meeting.plane], ray, {meeting.t, Vector3::UnitZ()}, footprint);
+}
+
+Sighting Stage::Implementation::sighting(const Ray& ray, double lowest, const RTCHit& hit, double t, double footprint) const {
+  if (hit.geomID == tubes_id && hit.instID[0] == RTC_INVALID_GEOMETRY_ID)
+    return tube_sighting(segments[hit.primID], ray, lowest, t, footprint);
+  if (hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
+    const PlacedPart& part = hit.geomID == boxes_id ? boxes[hit.primID / triangles_of_box] : solids[hit.primID];
+    const auto meeting = meet(part.shape, part.inside(ray), lowest);
+    return part_sighting(part, ray, meeting.value_or(Meeting{t, -ray.direction.normalized()}), footprint);
+  }
+  const PlacedPart& part = meshes[hit.instID[0] - first_mesh_id];
+  const auto [a, b, c] = corners(part, hit.primID);
+  Meeting meeting = meet_plane_of(a, b, c, ray).value_or(Meeting{t, -ray.direction.normalized()});
+  meeting.normal = part.axes.transpose() * meeting.normal;
+  return part_sighting(part, ray, meeting, footprint);
+}
+
+Sighting Stage::Implementation::look(const Ray& ray, double lowest, double highest) const {
+  const PlaneMeeting plane = meet_planes(ray, lowest, highest);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRayHit query;
+  const Eigen::Vector3f start = (ray.origin - origin).cast<float>(), direction = ray.direction.cast<float>();
+  query.ray = {start.x(),
+               start.y(),
+               start.z(),
+               static_cast<float>(lowest),
+               direction.x(),
+               direction.y(),
+               direction.z(),
+               0,
+               static_cast<float>(plane.t),
+               0xffffffff,
+               0,
+               0};
+  query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(scene, &context, &query);
+  if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID) return sighting(ray, lowest, query.hit, query.ray.tfar, 0);
+  return plane.plane >= 0 ? plane_sighting(ray, plane, 0) : Sighting{};
+}
+
+Stage::Stage(Drawing drawing, const Stage* before) {
+  throw_errors(validate(drawing));
+  implementation_ = std::make_unique<const Implementation>(std::move(drawing), before ? before->implementation_.get() : nullptr);
+}
+
+Stage::~Stage() = default;
+
+const Drawing& Stage::drawing() const {
+  return implementation_->drawing;
+}
+
+}  // namespace verlet_cable::view
