@@ -21,6 +21,16 @@ World begin(const SceneDesc& scene, BoundaryInputs start, LoadPlayer& loads) {
   return world;
 }
 
+/// Throws SceneError where cables do not reach from where the motion begins.
+std::shared_ptr<const FrameSource> begin_frames(const SceneDesc& scene, const Motion& motion) {
+  auto frames = std::make_shared<FrameSource>(scene, motion);
+  std::vector<std::string> errors;
+  if (!motion.empty())
+    for (const std::string& line : validate_distances(scene, frames->at(0))) errors.push_back("motion at t = 0: " + line);
+  if (!errors.empty()) throw SceneError(std::move(errors));
+  return frames;
+}
+
 void write_inputs(const BoundaryInputs& inputs, ByteWriter& bytes) {
   bytes(inputs.size());
   for (const FrameInput& input : inputs) {
@@ -125,7 +135,7 @@ DrivenWorld::DrivenWorld(std::shared_ptr<const SceneDesc> scene, std::shared_ptr
       hash_of_start_(world_.hash()) {}
 
 DrivenWorld::DrivenWorld(std::shared_ptr<const SceneDesc> scene, const Motion& motion, LoadPlayer loads)
-    : DrivenWorld(scene, std::make_shared<FrameSource>(*scene, motion), std::move(loads)) {
+    : DrivenWorld(scene, begin_frames(*scene, motion), std::move(loads)) {
   unplaced_ = unplaced_holders(*scene, motion);
 }
 
