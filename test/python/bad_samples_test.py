@@ -6,6 +6,8 @@ import pytest
 
 from verlet_cable.sim import Batch, Scene, SceneError, World
 from worlds import IDENTITY
+
+
 def reaching(hang):
     """Alike but for where the hand is: a cable of 1 m reaches the first, third and fifth."""
     del hang['cables'][0]['attachments'][0]['initial_pose']
