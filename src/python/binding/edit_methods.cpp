@@ -104,7 +104,8 @@ void add_materials(const SceneDesc& scene, const std::map<std::string, std::map<
 
 void set_frame(PythonWorld& world, const py::str& name, const Numbers& position, const Numbers& quaternion_xyzw) {
   const int frame = world.driven().find_frame(text_of(name, "name"));
-  if (!world.driven().set_frame(frame, {read_pose(position, quaternion_xyzw)})) return;
+  const Pose pose = read_pose(position, quaternion_xyzw);
+  if (!world.driven().set_frame(frame, &pose, 1)) return;
   world.events() = {};
   world.events().observe_start(world.driven().world());
 }
