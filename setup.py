@@ -7,6 +7,7 @@ import sys
 
 from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
+from distutils.errors import DistutilsSetupError  # after setuptools, which has it where Python no longer does
 
 HERE = pathlib.Path(__file__).resolve().parent
 PACKAGES = {
@@ -19,6 +20,14 @@ DESTINATIONS = ['GLOBAL_BIN', 'PACKAGE_BIN', 'PACKAGE_LIB', 'PACKAGE_PYTHON', 'P
 
 class BuildByCMake(build_ext):
     """Builds and installs what CMake has for the package, beside its modules."""
+
+    def run(self):
+        if self.inplace or getattr(self, 'editable_mode', False):
+            raise DistutilsSetupError(
+                'pip install -e . would put the compiled parts into the checkout, where a ROS workspace that has the same checkout would '
+                'take them for its own; allowed: pip install . (again after each change; what has not changed is not compiled again), '
+                'or scripts/build, in whose workspace changed modules are in effect at once')
+        super().run()
 
     def build_extension(self, ext):
         place = pathlib.Path(self.get_ext_fullpath(ext.name)).resolve().parent
@@ -51,7 +60,7 @@ else:
         python_requires='>=3.8',
         install_requires=['numpy'],
         extras_require={'plot': ['matplotlib'], 'sweep': ['dask', 'distributed', 'zarr', 'pyyaml']},
-        package_data={'verlet_cable': ['py.typed', '*.pyi']},
+        package_data={'verlet_cable': ['py.typed', '*.pyi'], 'verlet_cable.environments': ['*.pyi'], 'verlet_cable.sim': ['*.pyi']},
         ext_modules=[Extension('verlet_cable._simulation', [])],
         cmdclass={'build_ext': BuildByCMake},
         entry_points={'console_scripts': [

@@ -31,6 +31,20 @@ PR_SET_CHILD_SUBREAPER = 36
 BUILD_ERROR = re.compile(r'\berror:|CMake Error|No rule to make|undefined reference')
 
 
+class Background:
+    """A command that runs beside the tests, in time that they leave."""
+
+    def __init__(self, command, log):
+        with open(log, 'wb') as output:
+            self.process = subprocess.Popen(['nice', '-n', '19', *command], stdout=output, stderr=subprocess.STDOUT,
+                                            stdin=subprocess.DEVNULL, start_new_session=True)
+
+    def end(self):
+        if self.process.poll() is None:
+            os.killpg(self.process.pid, signal.SIGTERM)
+        self.process.wait()
+
+
 class Program:
     """A test program, as registered with add_test, and what came of it."""
 
@@ -66,28 +80,29 @@ def remove_outdated_executables(workspace):
                 executable.unlink()
 
 
-def children():
-    """The process ids of this process's children."""
+def children(spared):
+    """The process ids of this process's children but for those of `spared` groups."""
     found = []
     for stat in Path('/proc').glob('[0-9]*/stat'):
         try:
-            parent = stat.read_text().rpartition(')')[2].split()[1]
+            _, parent, group, *_ = stat.read_text().rpartition(')')[2].split()
         except OSError:
             continue  # it ended meanwhile
-        if int(parent) == os.getpid():
+        if int(parent) == os.getpid() and int(group) not in spared:
             found.append(int(stat.parent.name))
     return found
 
 
-def end_orphans():
-    """Ends what a program that is gone left running: its orphans become children of this process."""
-    while children():
-        for child in children():
+def end_orphans(spared):
+    """Ends what a program that is gone left running: its orphans become children of this process. `spared`: groups of processes that
+    run beside it."""
+    while children(spared):
+        for child in children(spared):
             os.kill(child, signal.SIGKILL)
             os.waitpid(child, 0)
 
 
-def execute(program, log):
+def execute(program, log, spared):
     """Runs a program to its end or its time limit; returns what was wrong with that, or None."""
     process = subprocess.Popen(program.command, stdout=log, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
                                start_new_session=True)
@@ -105,7 +120,7 @@ def execute(program, log):
             if process.poll() is None:
                 process.kill()
                 process.wait()
-        end_orphans()
+        end_orphans(spared)
 
 
 def group_runs(process):
@@ -148,7 +163,7 @@ def read_reports(program, reports):
         program.failures.append(f'{what.strip()[:300]} (see {seen})')
 
 
-def run(program, results, log_directory, reports=None):
+def run(program, results, log_directory, reports=None, spared=()):
     shutil.rmtree(results, ignore_errors=True)
     results.mkdir(parents=True)
     log_path = log_directory / f'{program.name}.log'
@@ -158,7 +173,7 @@ def run(program, results, log_directory, reports=None):
         problem = 'was not built'
     else:
         with open(log_path, 'wb') as log:
-            problem = execute(program, log)
+            problem = execute(program, log, spared)
         read_results(program, results)
         if reports:
             read_reports(program, reports)
@@ -192,8 +207,13 @@ def check_package(package):
     return lint
 
 
+def build_fuzz_targets(package, log_directory):
+    """Most programs use one core, or wait for nodes: the time that they leave is enough to compile the simulation once more."""
+    return Background([str(package / 'scripts/fuzz'), '--build'], log_directory / 'fuzz_build.log')
+
+
 def fuzz_program(package, results):
-    """What makes up inputs, see doc/fuzzing.md."""
+    """What makes up inputs, see doc/fuzzing.md. What of it is not built yet, it builds."""
     return Program('fuzz', [str(package / 'scripts/fuzz'), '--seconds', str(FUZZ_SECONDS), '--seed', str(FUZZ_SEED),
                             '--results', str(results / 'fuzz.xml')], FUZZ_TIME_LIMIT)
 
@@ -229,14 +249,21 @@ def main():
         programs.append(fuzz_program(package, results))
     print(f'\nRunning {len(programs)} test programs; their output is in {log_directory}')
     finished = [build]
+    fuzz_build = None if names else build_fuzz_targets(package, log_directory)
+    spared = [fuzz_build.process.pid] if fuzz_build else []
     try:
         if not names and shutil.which('catkin_lint'):
             finished.append(check_package(package))
         for program in programs:
             finished.append(program)
-            run(program, results, log_directory, reports)
+            if program.name == 'fuzz':
+                fuzz_build.process.wait()
+            run(program, results, log_directory, reports, spared)
     except KeyboardInterrupt:
         finished[-1].failures.append('interrupted')
+    finally:
+        if fuzz_build:
+            fuzz_build.end()
     print()
     for program in finished:
         for failure in program.failures:

@@ -118,7 +118,8 @@ CheckedPin check_pin(const RequestedPin& request, const World& world, const Find
                          "; allowed: known frames, without a leading /; or empty");
   }
   if (!location.errors.empty()) return pin;
-  if (pin.body.is_net() && request.clamp) pin.errors.push_back("clamp: true; allowed: false, nets are held by hinges");
+  if (pin.body.is_net() && request.clamp)
+    pin.errors.push_back("clamp" + request.place.words->is_true + "; allowed: false, nets are held by hinges");
   if (pin.body.is_rigid_body()) {
     if (pin.frame == world.bodies()[pin.body.index].name)
       pin.errors.push_back("frame_id: " + verlet_cable::quoted(pin.frame) + ", the body's own; allowed: others");
@@ -131,7 +132,7 @@ CheckedPin check_pin(const RequestedPin& request, const World& world, const Find
     pin.offset = pin.frame_pose.inverse() * pose_now(world, pin);
   } else if (pin.body.is_cable()) {
     check_reach(pin, world, pin.errors);
-    if (!pin.errors.empty()) pin.errors.back() += "; to hold it where it is: keep_offset: true";
+    if (!pin.errors.empty()) pin.errors.back() += "; to hold it where it is: keep_offset" + request.place.words->is_true;
   }
   return pin;
 }

@@ -21,6 +21,7 @@ struct RequestWords {
   std::array<std::string, 3> mode_names;  ///< of at_node, at_arc_length, nearest
   std::string place;                      ///< all of it; empty: what is given of it
   std::string frames;                     ///< for which cables wait
+  std::string is_true = ": true";         ///< how an argument is given as true
 };
 
 /// As CableLocation.msg and the node have it.

@@ -222,6 +222,48 @@ def test_reset_of_some_worlds_leaves_the_others_as_they_are(vector):
         assert k < 10 or not same(expected[0][mask], given[0][mask])
 
 
+@pytest.mark.parametrize('single, vector', PAIRS)
+def test_worlds_that_are_reset_in_the_same_step_tell_how_their_episodes_ended(single, vector):
+    count, limit = 5, 4
+    same_step = vector(count, max_episode_steps=limit, autoreset_mode='SameStep')
+    assert same_step.metadata['autoreset_mode'] is AutoresetMode.SAME_STEP and vector.metadata['autoreset_mode'] is AutoresetMode.NEXT_STEP
+    ones = [single(max_episode_steps=limit) for _ in range(count)]
+    first, _ = same_step.reset(seed=5)
+    assert same(first, numpy.stack([one.reset(seed=5 + i)[0] for i, one in enumerate(ones)]))
+    same_step.reset(options={'reset_mask': numpy.arange(count) == 3})  # it ends its episodes later than the others
+    ones[3].reset()
+    for k, actions in enumerate(actions_of(same_step.action_space, 3, 10)):
+        if k == 2:
+            same_step.reset(options={'reset_mask': numpy.arange(count) == 3})
+            ones[3].reset()
+        observation, reward, terminated, truncated, infos = same_step.step(actions)
+        for i, one in enumerate(ones):
+            *expected, info = one.step(actions[i])
+            assert same([reward[i].item(), bool(terminated[i]), bool(truncated[i])], expected[1:])
+            if not truncated[i]:
+                assert same(observation[i], expected[0]) and not infos.get('_final_obs', numpy.zeros(count, bool))[i]
+                continue
+            assert infos['_final_obs'][i] and infos['_final_info'][i] and same(infos['final_obs'][i], expected[0])
+            assert all(numpy.array_equal(infos['final_info'][key][i], value) and infos['final_info']['_' + key][i]
+                       for key, value in info.items())
+            assert same(observation[i], one.reset()[0])
+
+
+def test_worlds_that_are_not_reset_by_themselves_wait_for_it():
+    many = ShapeRopeVector(3, max_episode_steps=2, goals=4, autoreset_mode=AutoresetMode.DISABLED)
+    many.reset(seed=1)
+    many.step(numpy.zeros((3, 3)))
+    many.reset(options={'reset_mask': numpy.array([True, False, False])})
+    _, reward, _, truncated, _ = many.step(numpy.zeros((3, 3)))
+    assert truncated.tolist() == [False, True, True] and (reward < 0).all()
+    with pytest.raises(RuntimeError, match=r"step: episodes are over, of worlds 1, 2; call reset\(options="):
+        many.step(numpy.zeros((3, 3)))
+    many.reset(options={'reset_mask': truncated})
+    assert many.step(numpy.zeros((3, 3)))[3].tolist() == [True, False, False]
+    with pytest.raises(ValueError, match='autoreset_mode: 3; allowed: AutoresetMode.NEXT_STEP'):
+        ShapeRopeVector(2, autoreset_mode=3)
+
+
 def test_worlds_tell_their_seeds():
     many, one = ShapeRopeVector(2, goals=4), ShapeRope(goals=4)
     drawn = many.np_random_seed
@@ -272,7 +314,7 @@ def test_shape_reward_is_minus_the_mean_distance():
     environment = ShapeRope()
     environment.reset(seed=2)
     observation, reward, *_ = environment.step(numpy.array([0.3, -0.8, 0.5]))
-    nodes, goal = observation[:153].reshape(51, 3), observation[-153:].reshape(51, 3)
+    nodes, goal = observation[:153].reshape(51, 3), observation[312:465].reshape(51, 3)
     assert (nodes == environment.positions()).all()
     assert abs(reward + numpy.sqrt(((nodes - goal) ** 2).sum(axis=1)).mean()) < 1e-12
 
@@ -286,6 +328,58 @@ def test_leading_the_end_through_the_clips_lays_the_cable():
         rewards.append(vector.step(actions)[1])
     assert (rewards[-1] == 3).all()
     assert set(numpy.unique(rewards)) == {0, 1, 2, 3}
+
+
+def test_a_dense_reward_grows_on_the_way_and_is_no_less_than_the_clips():
+    task = LayCable(reward='dense').task
+    layouts = numpy.arange(task.variants)
+    dense, clips = LayCableVector(task.variants, reward='dense', max_episode_steps=1000), LayCableVector(task.variants, max_episode_steps=1000)
+    for each in (dense, clips):
+        each.reset(options={'layout': layouts})
+    rewards, counts = [], []
+    for actions in task.demonstrations.swapaxes(0, 1):
+        rewards.append(dense.step(actions)[1])
+        counts.append(clips.step(actions)[1])
+    rewards, counts = numpy.array(rewards), numpy.array(counts)
+    assert (rewards >= counts).all() and (rewards - counts < 0.9 + 1e-12).all() and (rewards[-1] == 3).all()
+    # Up to the first clip: from where the hand begins there are few steps back.
+    for world in range(task.variants):
+        way = rewards[:numpy.argmax(counts[:, world] > 0), world]
+        assert way[-1] > 0.6 and (numpy.diff(way) > -1e-12).mean() > 0.8
+    with pytest.raises(ValueError, match="reward: 'sparse'; allowed: 'clips', 'dense'"):
+        LayCable(reward='sparse')
+
+
+def test_the_way_through_a_clip_is_through_its_middle():
+    clip = numpy.array([[0.2, 0.01, 0.8, 0.6]])
+    along, across = numpy.array([0.8, 0.6]), numpy.array([-0.6, 0.8])
+
+    def way(forward, aside, up):
+        place = numpy.array([[*(clip[0, :2] + forward * along + aside * across), lay_cable.LOW[2] + up]])
+        return lay_cable.way_through(place, clip)[0]
+
+    lead = lay_cable.LEAD
+    assert way(-lead, 0, 0) == pytest.approx(2 * lead) and way(0, 0, 0) == pytest.approx(lead) and way(lead, 0, 0) == pytest.approx(0, abs=1e-12)
+    assert way(0, 0.006, 0) == pytest.approx(numpy.hypot(lead, 0.006) + 2 * lead)  # beside the clip: it has to go back
+    assert way(0, 0, 0.02) > way(0, 0, 0.005) > way(0, 0, 0)
+    assert way(lead + 0.01, 0.01, 0) > way(-lead, 0.01, 0) > way(-lead, 0, 0)
+
+
+@pytest.mark.parametrize('vector, first, count', [(ShapeRopeVector, 465, 1), (LayCableVector, 327, 3)])
+def test_contacts_are_seen(vector, first, count):
+    many = vector(2)
+    observation, _ = many.reset(seed=1)
+    if vector is ShapeRopeVector:
+        # The table bears the rope, but for what the hand and the pin do.
+        assert observation[0, -1] == pytest.approx(-0.020 * 9.81, rel=0.3)
+    else:
+        assert observation.shape[1] == first + 3 * count and (observation[:, first:] == 0).all()
+        many.reset(options={'layout': numpy.array([3, 3])})
+        seen = []
+        for action in many.task.demonstrations[3]:
+            seen.append(many.step(numpy.stack([action, action]))[0][0, first:].reshape(count, 3))
+        strongest = abs(numpy.array(seen)).max(axis=(0, 2))
+        assert (strongest > 0.01).all() and (strongest < 20).all()
 
 
 def test_a_cable_that_is_not_led_through_clips_earns_nothing():
@@ -529,6 +623,8 @@ GYMNASIUM = {
         import enum
         class AutoresetMode(enum.Enum):
             NEXT_STEP = 'NextStep'
+            SAME_STEP = 'SameStep'
+            DISABLED = 'Disabled'
         class VectorEnv:
             closed = False
             def close(self):
@@ -549,14 +645,14 @@ if 'gymnasium' in sys.modules:
     import gymnasium, gymnasium.spaces, gymnasium.vector
     one, many = LayCable(), LayCableVector(2)
     assert isinstance(one, gymnasium.Env) and isinstance(many, gymnasium.vector.VectorEnv)
-    for box, shape in ((one.observation_space, (327,)), (one.action_space, (3,)), (many.observation_space, (2, 327)),
+    for box, shape in ((one.observation_space, (336,)), (one.action_space, (3,)), (many.observation_space, (2, 336)),
                        (many.action_space, (2, 3)), (many.single_action_space, (3,))):
         assert type(box) is gymnasium.spaces.Box and box.shape == shape and box.dtype == numpy.float64
     assert many.metadata['autoreset_mode'] is gymnasium.vector.AutoresetMode.NEXT_STEP
     many.close()
     assert many.closed
     for name, limit in (('ShapeRope', 250), ('LayCable', 400)):
-        spec = gymnasium.known[f'verlet_cable/{name}-v0']
+        spec = gymnasium.known[f'verlet_cable/{name}-v1']
         assert spec['max_episode_steps'] == limit and spec['vector_entry_point'] == f'verlet_cable.environments:{name}Vector'
         module, function = spec['entry_point'].split(':')
         make = getattr(importlib.import_module(module), function)

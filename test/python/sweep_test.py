@@ -1,12 +1,16 @@
 #!/usr/bin/python3
 """cable_sweep: the store's bytes whatever happens to workers and program, wrong samples, wrong descriptions, rows."""
+import contextlib
 import filecmp
 import json
 import os
 import pathlib
+import re
 import resource
+import shlex
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -224,26 +228,38 @@ def test_one_program_at_a_time(undisturbed, tmp_path):
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ['store']
 
 
+def commands_for_two_machines():
+    """As the page has them, by two addresses of this machine, with a worker each; and the scheduler's address."""
+    block = re.search(r'## On two machines\n.*?```\n(.*?)```', (PROGRAM.parents[1] / 'doc/sweeps.md').read_text(), re.DOTALL)[1]
+    with socket.socket() as free:
+        free.bind(('127.0.0.1', 0))
+        port = free.getsockname()[1]
+    for shown, here in (('192.168.1.10', '127.0.0.1'), ('192.168.1.11', '127.0.0.2'), ('8786', str(port)), ('python3', sys.executable)):
+        block = block.replace(shown, here)
+    *commands, sweep = [shlex.split(re.sub(r'&?\s*(#.*)?$', '', line)) for line in block.splitlines()]
+    assert len(commands) == 3 and sweep[:-1] == ['cable_sweep', '/shared/sweep.yaml', '--output', '/shared/store', '--scheduler']
+    for command in commands[1:]:
+        command[command.index('--nworkers') + 1] = '1'
+    return commands, sweep[-1]
+
+
+def is_answered(address):
+    host, port = address.removeprefix('tcp://').split(':')
+    with contextlib.suppress(OSError), socket.create_connection((host, int(port)), 1):
+        return True
+    return False
+
+
 def test_external_scheduler(undisturbed, tmp_path):
     folder, reference = undisturbed
-    file = tmp_path / 'scheduler.json'
     log = open(tmp_path / 'dask.log', 'w')
-    commands = [['distributed.cli.dask_scheduler', '--host', '127.0.0.1', '--port', '0', '--no-dashboard', '--scheduler-file', str(file)]]
-    commands += 2 * [['distributed.cli.dask_worker', '--scheduler-file', str(file), '--nthreads', '1', '--host', '127.0.0.1', '--no-dashboard',
-                      '--local-directory', str(tmp_path)]]
+    commands, address = commands_for_two_machines()
     processes = []
     try:
         for command in commands:
-            processes.append(subprocess.Popen([sys.executable, '-m', *command], stdout=log, stderr=log, cwd=tmp_path, env=ENVIRONMENT))
-            wait_until(file.exists, processes[0])
-        deadline = time.monotonic() + TIMEOUT
-        address = None
-        while address is None:
-            assert time.monotonic() < deadline
-            try:
-                address = json.loads(file.read_text())['address']
-            except ValueError:  # is being written
-                time.sleep(0.05)
+            options = ['--local-directory', str(tmp_path)] if processes else []
+            processes.append(subprocess.Popen(command + options, stdout=log, stderr=log, cwd=tmp_path, env=ENVIRONMENT))
+            wait_until(lambda: is_answered(address), processes[0])
         status, text = run(folder, tmp_path / 'store', '--scheduler', address)
         assert status == 0, text
         process = start(folder, tmp_path / 'part', '--scheduler', address)

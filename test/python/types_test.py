@@ -11,6 +11,7 @@ import pytest
 
 from verlet_cable import _simulation, sim
 
+CHECKOUT = Path(__file__).resolve().parents[2]
 PACKAGES = Path(os.environ['VERLET_CABLE_DEVEL']) / 'lib/python3/dist-packages'
 STUBS = PACKAGES / 'verlet_cable/_simulation.pyi'
 INHERITED = {name for base in (object, Exception) for name in vars(base)} - {'__init__'}
@@ -35,6 +36,11 @@ print([event.message for event in world.events() if event.type == 'CUT'], name, 
 batch = Batch(scene, 16, threads=2)
 batch.set_world([0, 2], world)
 batch.set_world(np.arange(16) < 3, batch.world(0))
+batch.worlds[3].set_obstacle('ball', type='sphere', radius=0.1)
+batch.cut(3, 'hose', node=5)
+moving: list[float] = [world.time for world in batch.worlds]
+fewer = Batch([scene, scene], keep_going=True)
+print(fewer.errors[0].upper(), fewer.tension('hose', missing=0.0).shape, moving)
 print(Batch(world, 16).observations([('positions', 'hose'), ('positions', 'hose', 20)]).shape)
 alike = Batch([scene, scene], motion='hands.csv')
 batch.set_material('wire', bending_stiffness=np.linspace(1e-3, 1e-2, 16), radius=0.004)
@@ -134,11 +140,44 @@ def test_all_is_reexported():
     assert set(sim.__all__) == {name for name in vars(_simulation) if isinstance(getattr(_simulation, name), type)}
 
 
-def check_types(tmp_path, program):
+def check_types(tmp_path, program, *options):
     (tmp_path / 'program.py').write_text(program)
-    checked = subprocess.run([sys.executable, '-m', 'mypy', '--strict', '--cache-dir', str(tmp_path / 'cache'), 'program.py'],
+    checked = subprocess.run([sys.executable, '-m', 'mypy', '--strict', *options, '--cache-dir', str(tmp_path / 'cache'), 'program.py'],
                              cwd=tmp_path, env=dict(os.environ, MYPYPATH=str(PACKAGES)), stdout=subprocess.PIPE, text=True)
     return checked.returncode, checked.stdout
+
+
+# What there is for the modules that have stubs, and is not in them.
+WITHOUT_STUBS = r"""
+verlet_cable\.environments\.[a-z_]+
+verlet_cable\.(sim|_simulation)\.(Batch|Scene|World|Worlds)
+verlet_cable\.(sim|_simulation)\.Worlds\.__init__
+"""  # its inner modules; the metaclass of compiled classes; what refuses to make Worlds
+
+
+def test_stubtest_agrees(tmp_path):
+    pytest.importorskip('mypy.stubtest')
+    (tmp_path / 'allowed').write_text(WITHOUT_STUBS)
+    path = os.pathsep.join([str(PACKAGES), *filter(None, [os.environ.get('PYTHONPATH')])])
+    done = subprocess.run([sys.executable, '-m', 'mypy.stubtest', '--concise', '--allowlist', str(tmp_path / 'allowed'), 'verlet_cable.sim',
+                           'verlet_cable._simulation', 'verlet_cable.environments'], cwd=tmp_path,
+                          env=dict(os.environ, MYPYPATH=str(PACKAGES), PYTHONPATH=path), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          text=True)
+    assert done.returncode == 0, done.stdout
+
+
+# Of the pages only the calls of this package are held to more than what mypy asks of any program.
+AS_PAGES = ['--allow-untyped-defs', '--allow-untyped-calls', '--allow-incomplete-defs', '--allow-redefinition', '--ignore-missing-imports',
+            '--disable-error-code=import']
+
+
+@pytest.mark.parametrize('page', sorted(path for folder in ('python', 'how_to') for path in (CHECKOUT / 'doc' / folder).glob('*.md')
+                                        if '```python' in path.read_text()) + [CHECKOUT / 'README.md'], ids=lambda path: path.stem)
+def test_type_checkers_accept_what_pages_show(tmp_path, page):
+    pytest.importorskip('mypy')
+    program = '\n'.join(re.findall(r'^```python[^\n]*\n(.*?)^```', page.read_text(), re.DOTALL | re.MULTILINE))
+    status, text = check_types(tmp_path, program, *AS_PAGES)
+    assert status == 0, text
 
 
 def test_type_checkers_find_the_stubs(tmp_path):
@@ -146,7 +185,7 @@ def test_type_checkers_find_the_stubs(tmp_path):
     pytest.importorskip('numpy.typing')
     status, text = check_types(tmp_path, SAMPLE)
     assert status == 0, text
-    wrong = ['world.step("many")', 'world.swing()', 'world.cut("hose", 3)', 'batch.status.upper()', 'Scene.load(3)']
+    wrong = ['batch.worlds["a"]', 'batch.cut("hose", node=5)', 'world.step("many")', 'world.swing()', 'world.cut("hose", 3)', 'batch.status.upper()', 'Scene.load(3)']
     status, text = check_types(tmp_path, SAMPLE + '\n'.join(wrong) + '\n')
     assert status == 1 and text.count('error:') == len(wrong), text
     assert (PACKAGES / 'verlet_cable/py.typed').is_file()

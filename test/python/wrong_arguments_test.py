@@ -1,6 +1,8 @@
 """What a call says that does not fit: the argument, what was given, what is allowed."""
 import re
+from fractions import Fraction
 
+import numpy
 import pytest
 
 from verlet_cable.sim import Batch, Scene, World
@@ -33,6 +35,34 @@ def test_a_call_that_does_not_fit_says_what_is_allowed(hang, call, text):
     with pytest.raises(TypeError, match='^' + re.escape(text)) as error:
         call(world, Batch(Scene.from_dict(hang), 2))
     assert 'incompatible' not in str(error.value) and '_simulation' not in str(error.value)
+
+
+@pytest.mark.parametrize('call, text', [
+    (lambda world, batch: world.set_frame('hans', [0, 0, 0], IDENTITY), 'name: "hans"; allowed: hand'),
+    (lambda world, batch: world.wrench('rihgt'), 'attachment: "rihgt"; allowed: left, right (did you mean right?)'),
+    (lambda world, batch: batch.wrench('zzz'), 'attachment: "zzz"; allowed: left, right'),
+    (lambda world, batch: batch.step(2, record_every=1, fields=['position']), '(did you mean positions?)'),
+    (lambda world, batch: batch.set_material('wire', bend_stiffness=1), '(did you mean bending_stiffness?)'),
+    (lambda world, batch: batch.step(2, record_every=2, fields=['positions']) or batch.tension('hose'),
+     "tension: not recorded; allowed: what `fields` of the last step named: positions; step(..., fields=['tension']) records it"),
+    (lambda world, batch: world.pin('hose', node=10, frame_id='there', offset=[9, 0, 0]), 'to hold it where it is: keep_offset=True'),
+])
+def test_a_name_or_number_that_does_not_fit_says_what_was_meant(hang, call, text):
+    with pytest.raises((KeyError, ValueError)) as error:
+        call(world_of(hang), Batch(Scene.from_dict(hang), 2))
+    assert error.value.args[0].endswith(text)
+
+
+@pytest.mark.parametrize('numbers, shown', [
+    ([[1j] * 7] * 2, 'poses: [[1j'), ([[None] * 7] * 2, 'poses: [[None'), ([['0'] * 7] * 2, "poses: [['0'"), ([[0] * 7, [0]], 'poses: [[0')])
+def test_numbers_are_real_ones(hang, numbers, shown):
+    batch = Batch(Scene.from_dict(hang), 2)
+    before = batch.state_hash
+    with pytest.raises(TypeError, match='^' + re.escape(shown) + '.*; allowed: numbers that are real, as an array or nested sequences'):
+        batch.set_frames('hand', numbers)
+    batch.set_frames('hand', [[Fraction(3, 5), 0, 0, 0, 0, 0, numpy.float32(1)], (0.6, False, 0, 0, 0, 0, numpy.int8(1))])
+    batch.step()
+    assert batch.state_hash[0] == batch.state_hash[1] != before[0]
 
 
 def test_documentation_and_errors_of_methods_are_what_they_were(hang):

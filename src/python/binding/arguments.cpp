@@ -20,6 +20,15 @@ std::string numbers_text(const double* numbers, int count) {
   return "(" + text + ")";
 }
 
+/// Whether an array has nothing but real numbers, of its own types or Python's.
+bool has_numbers(const py::array& array) {
+  const char kind = array.dtype().kind();
+  if (kind != 'O') return kind == 'b' || kind == 'i' || kind == 'u' || kind == 'f';
+  for (const py::handle& item : array.attr("ravel")())
+    if (PyNumber_Check(item.ptr()) == 0 || PyComplex_Check(item.ptr()) != 0) return false;
+  return true;
+}
+
 Pose pose_of(const double* position, const double* orientation) {
   return {{position[0], position[1], position[2]}, Quaternion(orientation[3], orientation[0], orientation[1], orientation[2])};
 }
@@ -39,6 +48,12 @@ Pose read_pose(const double* position, const std::string& position_name, const d
 }
 
 }  // namespace
+
+Numbers Numbers::ensure(py::handle given) {
+  const py::array array = py::array::ensure(given);
+  if (!array || !has_numbers(array)) return py::reinterpret_steal<Numbers>(py::handle());
+  return py::reinterpret_steal<Numbers>(Doubles::ensure(array).release());
+}
 
 void check_size(const char* name, const Numbers& numbers, py::ssize_t size) {
   if (numbers.ndim() != 1 || numbers.shape(0) != size)

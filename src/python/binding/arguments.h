@@ -15,8 +15,15 @@ namespace verlet_cable {
 
 namespace py = pybind11;
 
-/// Numbers of any type and layout, read as doubles.
-using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+/// Real numbers of any type and layout, read as doubles.
+class Numbers : public py::array_t<double, py::array::c_style | py::array::forcecast> {
+ public:
+  using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+  using Doubles::Doubles;
+
+  /// None where it is something else: text, None, complex numbers.
+  static Numbers ensure(py::handle given);
+};
 
 /// "(3, 7)", as NumPy writes shapes.
 std::string shape_text(const py::array& array);
@@ -65,3 +72,22 @@ py::dict energy_dict(const Energy& energy);
 py::dict ledger_dict(const Ledger& ledger);
 
 }  // namespace verlet_cable
+
+namespace pybind11::detail {
+
+template <>
+struct handle_type_name<verlet_cable::Numbers> : handle_type_name<verlet_cable::Numbers::Doubles> {};
+
+/// As that of array_t.
+template <>
+struct pyobject_caster<verlet_cable::Numbers> {
+  bool load(handle given, bool convert) {
+    if (!convert && !verlet_cable::Numbers::check_(given)) return false;
+    value = verlet_cable::Numbers::ensure(given);
+    return static_cast<bool>(value);
+  }
+  static handle cast(const handle& numbers, return_value_policy, handle) { return numbers.inc_ref(); }
+  PYBIND11_TYPE_CASTER(verlet_cable::Numbers, handle_type_name<verlet_cable::Numbers>::name);
+};
+
+}  // namespace pybind11::detail

@@ -1,5 +1,6 @@
 #include "binding/batch_arrays.h"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -22,8 +23,9 @@ std::string text_of_shape(const QuantityShape& shape) {
   const std::string index = std::to_string(world);
   throw py::value_error(std::string(name_of(quantity)) + " of " + name + ": world " + index + " has none of shape " +
                         text_of_shape(shape) + " as " + like + ": it was edited, or a cable broke, or slides through " +
-                        "guides; allowed: quantities with the same shape in all worlds; world(" + index +
-                        ") gives its own, and observations() reads points of cables with any number of nodes");
+                        "guides; allowed: quantities with the same shape in all worlds; missing=0.0, or another number in the "
+                        "place of theirs; worlds[" +
+                        index + "] has its own, and observations() reads points of cables with any number of nodes");
 }
 
 std::vector<std::size_t> sizes_of(const QuantityShape& shape, std::vector<std::size_t> first) {
@@ -32,30 +34,37 @@ std::vector<std::size_t> sizes_of(const QuantityShape& shape, std::vector<std::s
   return first;
 }
 
-py::array_t<double> recorded_array(const Record& record, std::size_t worlds, std::size_t records) {
-  for (std::size_t i = 0; i < worlds; ++i)
-    if (record.changed[i]) refuse_odd_world(i, record.quantity, record.name, record.shape, "at first in every record");
+py::array_t<double> recorded_array(const Record& record, std::size_t worlds, std::size_t records, std::optional<double> missing) {
+  const auto changed = std::find(record.changed.begin(), record.changed.end(), 1);
+  if (changed != record.changed.end() && !missing)
+    refuse_odd_world(static_cast<std::size_t>(changed - record.changed.begin()) / records, record.quantity, record.name,
+                     record.shape, "at first in every record");
   auto* owner = new std::shared_ptr<double>(record.numbers);
   const py::capsule capsule(owner, [](void* pointer) { delete static_cast<std::shared_ptr<double>*>(pointer); });
-  py::array_t<double> array(sizes_of(record.shape, {worlds, records}), record.numbers.get(), capsule);
+  const std::vector<std::size_t> sizes = sizes_of(record.shape, {worlds, records});
+  if (changed == record.changed.end()) return read_only(py::array_t<double>(sizes, record.numbers.get(), capsule));
+  py::array_t<double> array(sizes, record.numbers.get());
+  const std::size_t size = record.shape.size();
+  for (std::size_t i = 0; i < record.changed.size(); ++i)
+    if (record.changed[i] != 0) std::fill_n(array.mutable_data() + i * size, size, *missing);
   return read_only(std::move(array));
 }
 
-void copy(const Batch& batch, const std::vector<Part>& parts, double* to) {
+void copy(const Batch& batch, const std::vector<Part>& parts, std::optional<double> missing, double* to) {
   std::optional<OddWorld> odd;
   {
     const py::gil_scoped_release release;
-    odd = batch.copy(parts, to);
+    odd = batch.copy(parts, missing, to);
   }
   if (!odd) return;
   const Part& part = parts[odd->part];
   refuse_odd_world(odd->world, part.quantity, part.name, part.shape, "world 0");
 }
 
-py::array_t<double> array_of_now(const Batch& batch, Quantity quantity, const std::string& name) {
+py::array_t<double> array_of_now(const Batch& batch, Quantity quantity, const std::string& name, std::optional<double> missing) {
   const QuantityShape shape = shape_of(batch[0].world(), quantity, name);
   py::array_t<double> array(sizes_of(shape, {batch.size()}));
-  copy(batch, {{quantity, name, shape}}, array.mutable_data());
+  copy(batch, {{quantity, name, shape}}, missing, array.mutable_data());
   return read_only(std::move(array));
 }
 
@@ -79,6 +88,18 @@ Part read_part(const World& world, const std::tuple<py::str, py::str, std::int64
   return {nodes.quantity, name, {static_cast<std::size_t>(points), 3}, true};
 }
 
+/// ", positions, wrench"
+std::string recorded_names(const Records& records) {
+  std::string text;
+  std::optional<Quantity> last;
+  for (const Record& record : records.all()) {
+    if (record.quantity == last) continue;
+    text += std::string(last ? ", " : ": ") + name_of(record.quantity);
+    last = record.quantity;
+  }
+  return text;
+}
+
 /// One number of each world.
 template <class Number, class Read>
 py::array_t<Number> array_of_numbers(const Batch& batch, const Read& read) {
@@ -89,17 +110,18 @@ py::array_t<Number> array_of_numbers(const Batch& batch, const Read& read) {
 
 }  // namespace
 
-py::array_t<double> array_of(const Batch& batch, Quantity quantity, const std::string& name) {
+py::array_t<double> array_of(const Batch& batch, Quantity quantity, const std::string& name, std::optional<double> missing) {
   const Records* const records = batch.records();
-  if (!records) return array_of_now(batch, quantity, name);
+  if (!records) return array_of_now(batch, quantity, name, missing);
   shape_of(batch[0].world(), quantity, name);  // throws for an unknown name
   const Record* record = records->find(quantity, name);
   if (!record)
-    throw py::value_error(std::string(name_of(quantity)) + ": not recorded; allowed: what `fields` of the last step named");
-  return recorded_array(*record, batch.size(), records->count());
+    throw py::value_error(std::string(name_of(quantity)) + ": not recorded; allowed: what `fields` of the last step named" +
+                          recorded_names(*records) + "; step(..., fields=['" + name_of(quantity) + "']) records it");
+  return recorded_array(*record, batch.size(), records->count(), missing);
 }
 
-py::array_t<double> observations(const Batch& batch, const std::vector<GivenPart>& given) {
+py::array_t<double> observations(const Batch& batch, const std::vector<GivenPart>& given, std::optional<double> missing) {
   std::vector<Part> parts;
   std::size_t row = 0;
   for (const GivenPart& one : given) {
@@ -107,7 +129,7 @@ py::array_t<double> observations(const Batch& batch, const std::vector<GivenPart
     row += parts.back().shape.size();
   }
   py::array_t<double> array(std::vector<std::size_t>{batch.size(), row});
-  copy(batch, parts, array.mutable_data());
+  copy(batch, parts, missing, array.mutable_data());
   return read_only(std::move(array));
 }
 

@@ -2,6 +2,7 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -11,14 +12,8 @@
 #include "binding/arguments.h"
 #include "binding/batch_arguments.h"
 #include "binding/batch_arrays.h"
-#include "binding/contact_array.h"
-#include "binding/edit_methods.h"
 #include "binding/motion_argument.h"
-#include "binding/run_steps.h"
-#include "binding/scene_class.h"
 #include "binding/text_arguments.h"
-#include "binding/world_class.h"
-#include "simulation/batch.h"
 #include "simulation/edits.h"
 
 namespace verlet_cable {
@@ -26,17 +21,6 @@ namespace {
 
 constexpr int most_threads = 1024;
 constexpr std::int64_t most_worlds = 1000000;
-
-/// What Python calls a Batch.
-struct PythonBatch {
-  PythonScene scene;  ///< of the first world, when it began
-  int threads = 0;    ///< as asked for
-  Batch batch;
-  bool busy = false;  ///< in use by a thread that has let others run
-
-  PythonBatch(PythonScene made_of, int count, Batch worlds)
-      : scene(std::move(made_of)), threads(count), batch(std::move(worlds)) {}
-};
 
 const Batch& use(const PythonBatch& batch) {
   InUse::check(batch.busy, "batch");
@@ -51,35 +35,38 @@ void check_size(std::int64_t count, int threads) {
                           std::to_string(most_threads));
 }
 
-std::unique_ptr<PythonBatch> make_of(const PythonScene& first, const std::vector<std::shared_ptr<const SceneDesc>>& scenes,
-                                     const py::object& motion, const py::object& loads, int threads) {
+std::shared_ptr<PythonBatch> make_of(const PythonScene& first, const std::vector<std::shared_ptr<const SceneDesc>>& scenes,
+                                     const py::object& motion, const py::object& loads, int threads, bool keeps_going = false) {
   const Motion tracks = read_motion(motion, *scenes.front());
   const LoadPlayer player = read_loads(loads, *scenes.front());
   const py::gil_scoped_release release;
-  return std::make_unique<PythonBatch>(first, threads, Batch(scenes, tracks, player, threads));
+  return std::make_shared<PythonBatch>(first, threads, Batch(scenes, tracks, player, threads, keeps_going));
 }
 
-std::unique_ptr<PythonBatch> make(const PythonScene& scene, std::int64_t count, const py::object& motion, int threads,
+std::shared_ptr<PythonBatch> make(const PythonScene& scene, std::int64_t count, const py::object& motion, int threads,
                                   const py::object& loads) {
   check_size(count, threads);
   return make_of(scene, std::vector<std::shared_ptr<const SceneDesc>>(static_cast<std::size_t>(count), scene.desc), motion, loads,
                  threads);
 }
 
-std::unique_ptr<PythonBatch> make_from_list(const std::vector<PythonScene>& scenes, const py::object& motion, int threads,
-                                            const py::object& loads) {
+std::shared_ptr<PythonBatch> make_from_list(const std::vector<PythonScene>& scenes, const py::object& motion, int threads,
+                                            const py::object& loads, bool keep_going) {
   if (scenes.empty()) throw py::value_error("scenes: none; allowed: at least one");
   check_size(static_cast<std::int64_t>(scenes.size()), threads);
   std::vector<std::shared_ptr<const SceneDesc>> descs;
   for (const PythonScene& scene : scenes) descs.push_back(scene.desc);
-  return make_of(scenes.front(), descs, motion, loads, threads);
+  std::shared_ptr<PythonBatch> batch = make_of(scenes.front(), descs, motion, loads, threads, keep_going);
+  const std::vector<std::string>& errors = batch->batch.errors();
+  batch->scene = scenes[static_cast<std::size_t>(std::find(errors.begin(), errors.end(), "") - errors.begin())];
+  return batch;
 }
 
-std::unique_ptr<PythonBatch> make_of_world(PythonWorld& world, std::int64_t count, int threads) {
+std::shared_ptr<PythonBatch> make_of_world(PythonWorld& world, std::int64_t count, int threads) {
   check_size(count, threads);
-  const InUse in_use(world.busy, "world");
+  const InUse in_use(world.busy(), world.used());
   const py::gil_scoped_release release;
-  return std::make_unique<PythonBatch>(world.scene, threads, Batch(world.driven, static_cast<std::size_t>(count), threads));
+  return std::make_shared<PythonBatch>(world.scene(), threads, Batch(world.driven(), static_cast<std::size_t>(count), threads));
 }
 
 void set_material(PythonBatch& batch, const py::str& name, const py::kwargs& fields) {
@@ -98,10 +85,10 @@ void set_material(PythonBatch& batch, const py::str& name, const py::kwargs& fie
 
 void set_frames(PythonBatch& batch, const py::str& name, const Numbers& poses) {
   const std::string frame = text_of(name, "name");
-  std::vector<std::vector<Pose>> all = read_poses(poses, use(batch).size());
+  const std::vector<Pose> all = read_poses(poses, use(batch));
   const InUse in_use(batch.busy, "batch");
   const py::gil_scoped_release release;
-  batch.batch.set_frame(frame, std::move(all));
+  batch.batch.set_frame(frame, all);
 }
 
 /// Calls visit(i) for each; errors name the world, where there are several.
@@ -148,9 +135,11 @@ void apply_wrench(PythonBatch& batch, const py::str& body, const Numbers& forces
 
 void set_world(PythonBatch& batch, const py::object& index, PythonWorld& world) {
   const std::vector<std::size_t> indices = read_world_indices(index, use(batch).size());
-  const InUse in_use(batch.busy, "batch"), world_in_use(world.busy, "world");
+  world.world();
+  const DrivenWorld from = world.driven();  // it may be one of them
+  const InUse in_use(batch.busy, "batch");
   const py::gil_scoped_release release;
-  batch.batch.set_worlds(indices, world.driven);
+  batch.batch.set_worlds(indices, from);
 }
 
 void step(PythonBatch& batch, std::int64_t steps, std::int64_t record_every, const std::vector<py::str>& fields) {
@@ -173,44 +162,40 @@ void step(PythonBatch& batch, std::int64_t steps, std::int64_t record_every, con
 
 /// The method that reads a quantity.
 template <Quantity quantity>
-py::array_t<double> read(PythonBatch& batch, const py::str& name) {
+py::array_t<double> read(PythonBatch& batch, const py::str& name, std::optional<double> missing) {
   const InUse in_use(batch.busy, "batch");
-  return array_of(batch.batch, quantity, text_of(name, argument_of(quantity)));
+  return array_of(batch.batch, quantity, text_of(name, argument_of(quantity)), missing);
 }
 
-py::array_t<double> observe(PythonBatch& batch, const std::vector<GivenPart>& parts) {
+py::array_t<double> observe(PythonBatch& batch, const std::vector<GivenPart>& parts, std::optional<double> missing) {
   const InUse in_use(batch.busy, "batch");
-  return observations(batch.batch, parts);
+  return observations(batch.batch, parts, missing);
 }
 
 std::unique_ptr<PythonWorld> world_at(const PythonBatch& batch, std::int64_t index) {
   const Batch& worlds = use(batch);
-  auto world = std::make_unique<PythonWorld>(batch.scene, worlds[read_world_index(index, worlds.size())]);
-  world->driven.world().step_one_by_one(false);
+  std::unique_ptr<PythonWorld> world = own_world(batch.scene, worlds[read_world_index(index, worlds.size())]);
+  world->driven().world().step_one_by_one(false);
   return world;
 }
 
-std::unique_ptr<PythonBatch> copy(const PythonBatch& batch) {
-  return std::make_unique<PythonBatch>(batch.scene, batch.threads, use(batch));
-}
-
-py::bytes save(const PythonBatch& batch, std::int64_t world) {
-  const Batch& worlds = use(batch);
-  return worlds[read_world_index(world, worlds.size())].save();
+std::shared_ptr<PythonBatch> copy(const PythonBatch& batch) {
+  return std::make_shared<PythonBatch>(batch.scene, batch.threads, use(batch));
 }
 
 py::tuple pickled(const PythonBatch& batch) {
   py::list worlds;
   for (std::size_t i = 0; i < use(batch).size(); ++i) worlds.append(py::bytes(batch.batch[i].save()));
-  return py::make_tuple(parts_of(batch.scene), batch.threads, worlds);
+  return py::make_tuple(parts_of(batch.scene), batch.threads, worlds, batch.batch.errors());
 }
 
-std::unique_ptr<PythonBatch> unpickled(const py::tuple& parts) {
+std::shared_ptr<PythonBatch> unpickled(const py::tuple& parts) {
   PythonScene scene = scene_of_parts(parts[0]);
   std::vector<DrivenWorld> worlds;
   for (const py::handle& data : parts[2]) worlds.push_back(DrivenWorld::load(*scene.desc, data.cast<std::string>()));
   const int threads = parts[1].cast<int>();
-  return std::make_unique<PythonBatch>(std::move(scene), threads, Batch(std::move(worlds), threads));
+  return std::make_shared<PythonBatch>(std::move(scene), threads,
+                                       Batch(std::move(worlds), parts[3].cast<std::vector<std::string>>(), threads));
 }
 
 py::array_t<bool> settle(PythonBatch& batch) {
@@ -233,25 +218,43 @@ std::string represent(const PythonBatch& batch) {
 
 }  // namespace
 
-void add_batch_class(py::module_& module) {
-  py::class_<PythonBatch>(
+BatchClass add_batch_class(py::module_& module) {
+  BatchClass batch(
       module, "Batch",
       "Worlds that differ only in numbers and are stepped together. This is faster than one after another and gives the same "
       "bytes as each alone, with any number of threads. Only one thread at a time may use a batch; other threads run while it "
-      "steps.\n\nThe first axis of arrays is that of the worlds. After a step with `record_every`, the second axis is that of "
-      "the records, and the arrays are views; otherwise they are new copies. All of them are read-only.")
+      "steps.\n\nbatch.worlds[i] is one of the worlds with all methods of World. Methods whose first argument is `world` do the "
+      "same for the world of that index; the others are of all worlds.\n\nThe first axis of arrays is that of the worlds. After "
+      "a step with `record_every`, the second axis is that of the records, and the arrays are views; otherwise they are new "
+      "copies. All of them are read-only. If some worlds have an array in another shape than the first one, since a cable broke "
+      "or was cut, ValueError is raised, or with missing=0.0 this number is in their place.");
+  batch
       .def(py::init(&make), py::arg("scene"), py::arg("count"), py::arg("motion") = py::none(), py::arg("threads") = 0,
            py::arg("loads") = py::none(),
            "`count` worlds of a scene. motion, loads: as for World, the same for all. threads: 0 is one per core.")
       .def(py::init(&make_from_list), py::arg("scenes"), py::arg("motion") = py::none(), py::arg("threads") = 0,
-           py::arg("loads") = py::none(),
+           py::arg("loads") = py::none(), py::kw_only(), py::arg("keep_going").noconvert() = false,
            "A world for each scene of a list. The scenes may differ only in numbers: their names, numbers of segments and time "
-           "steps must be the same.")
+           "steps must be the same. keep_going: a scene that does not fit, or cannot start, is not an error, but is named in "
+           "`errors`. Its world is a copy of the first one without error that is never stepped, with status 6, until set_world "
+           "replaces it. SceneError is raised if no scene is right.")
       .def(py::init(&make_of_world), py::arg("world"), py::arg("count"), py::arg("threads") = 0,
            "`count` copies of a world in its present state, with its time, motion, poses that were set, and edits. Each "
            "continues with the same bytes as the world would.")
       .def("__repr__", represent)
       .def("__len__", [](const PythonBatch& batch) { return use(batch).size(); })
+      .def(
+          "__getitem__",
+          [](const PythonBatch&, const py::object& index) {
+            throw py::type_error("a Batch has no items; allowed: batch.worlds[" + ascii_text(index) +
+                                 "] for one of its worlds, batch.world(index) for a copy of one");
+          },
+          py::arg("index"), "Not for use: `worlds` has the worlds.")
+      .def_property_readonly(
+          "worlds", [](const std::shared_ptr<PythonBatch>& batch) { return WorldsOfBatch{batch}; },
+          "The worlds, each as a World that is not a copy: batch.worlds[3].pin('hose', node=5). A sequence that is as long as "
+          "the "
+          "batch. Changing one drops the records of the last step.")
       .def("set_world", set_world, py::arg("index"), py::arg("world"),
            "Replaces worlds by copies of `world`, with its time, motion and poses that were set: to restart some of them, or to "
            "give all a common start. index: an integer (negative ones count from the end), a sequence of integers, or a bool "
@@ -289,53 +292,36 @@ void add_batch_class(py::module_& module) {
       .def("__copy__", copy)
       .def(
           "__deepcopy__", [](const PythonBatch& batch, const py::dict&) { return copy(batch); }, py::arg("memo"))
-      .def("save", save, py::arg("world"), "As World.save, of one of the worlds.")
       .def(py::pickle(&pickled, &unpickled))
       .def("world", world_at, py::arg("index"), "A copy of one of the worlds, without its earlier events.")
-      .def(
-          "events",
-          [event_type = py::object(module.attr("Event"))](PythonBatch& self, std::int64_t world) {
-            const std::size_t index = read_world_index(world, use(self).size());
-            return take_events(self.batch.events(index), event_type);
-          },
-          py::arg("world"), "As World.events, of one of the worlds, since it began, was replaced or was asked for last.")
-      .def(
-          "loads",
-          [load_type = py::object(module.attr("Load"))](const PythonBatch& self, std::int64_t world) {
-            return load_list(use(self)[read_world_index(world, use(self).size())].world(), load_type);
-          },
-          py::arg("world"), "As World.loads, of one of the worlds.")
-      .def("positions", read<Quantity::positions>, py::arg("name"), "(count, n + 1, 3) or (count, records, n + 1, 3) [m].")
-      .def("velocities", read<Quantity::velocities>, py::arg("name"), "(count, n + 1, 3) or (count, records, n + 1, 3) [m/s].")
-      .def("tension", read<Quantity::tension>, py::arg("name"), "(count, n) or (count, records, n) [N].")
-      .def("curvature", read<Quantity::curvature>, py::arg("name"), "(count, n - 1) or (count, records, n - 1) [1/m].")
-      .def("twist", read<Quantity::twist>, py::arg("name"), "(count, n - 1) or (count, records, n - 1) [rad/m].")
-      .def("orientations", read<Quantity::orientations>, py::arg("name"), "(count, n, 4) or (count, records, n, 4): x, y, z, w.")
-      .def("wrench", read<Quantity::wrench>, py::arg("attachment"), "(count, 6) or (count, records, 6) [N, N m].")
-      .def(
-          "contacts",
-          [](const PythonBatch& self, std::int64_t world) {
-            return contact_array(use(self)[read_world_index(world, use(self).size())].world());
-          },
-          py::arg("world"), "As World.contacts, of one of the worlds.")
-      .def("contact_force", read<Quantity::contact_force>, py::arg("name"),
+      .def("positions", read<Quantity::positions>, py::arg("name"), py::kw_only(), py::arg("missing") = py::none(),
+           "(count, n + 1, 3) or (count, records, n + 1, 3) [m].")
+      .def("velocities", read<Quantity::velocities>, py::arg("name"), py::kw_only(), py::arg("missing") = py::none(),
+           "(count, n + 1, 3) or (count, records, n + 1, 3) [m/s].")
+      .def("tension", read<Quantity::tension>, py::arg("name"), py::kw_only(), py::arg("missing") = py::none(),
+           "(count, n) or (count, records, n) [N].")
+      .def("curvature", read<Quantity::curvature>, py::arg("name"), py::kw_only(), py::arg("missing") = py::none(),
+           "(count, n - 1) or (count, records, n - 1) [1/m].")
+      .def("twist", read<Quantity::twist>, py::arg("name"), py::kw_only(), py::arg("missing") = py::none(),
+           "(count, n - 1) or (count, records, n - 1) [rad/m].")
+      .def("orientations", read<Quantity::orientations>, py::arg("name"), py::kw_only(), py::arg("missing") = py::none(),
+           "(count, n, 4) or (count, records, n, 4): x, y, z, w.")
+      .def("wrench", read<Quantity::wrench>, py::arg("attachment"), py::kw_only(), py::arg("missing") = py::none(),
+           "(count, 6) or (count, records, 6) [N, N m].")
+      .def("contact_force", read<Quantity::contact_force>, py::arg("name"), py::kw_only(), py::arg("missing") = py::none(),
            "(count, 6) or (count, records, 6) [N, N m], as World.contact_force.")
-      .def("body_pose", read<Quantity::body_pose>, py::arg("name"), "(count, 7) or (count, records, 7).")
-      .def("body_twist", read<Quantity::body_twist>, py::arg("name"), "(count, 6) or (count, records, 6) [m/s, rad/s].")
-      .def("observations", observe, py::arg("parts"),
+      .def("body_pose", read<Quantity::body_pose>, py::arg("name"), py::kw_only(), py::arg("missing") = py::none(),
+           "(count, 7) or (count, records, 7).")
+      .def("body_twist", read<Quantity::body_twist>, py::arg("name"), py::kw_only(), py::arg("missing") = py::none(),
+           "(count, 6) or (count, records, 6) [m/s, rad/s].")
+      .def("observations", observe, py::arg("parts"), py::kw_only(), py::arg("missing") = py::none(),
            "(count, k) float64: for each world, the present values of all `parts`, flattened and concatenated. parts: "
            "[(quantity, name), ...], where the quantities are the names of the methods that read arrays, with their units and "
            "order: [('positions', 'rope'), ('wrench', 'left')]. ('positions', 'rope', 20), and velocities likewise, gives 20 "
            "points instead of nodes, evenly spaced from end to end along the cable that has this name now. This also works if "
            "the cables differ in their numbers of nodes because they slide through guides, were cut or changed in length, or "
            "broke. The array is new and in C order.\n\nRaises KeyError for names, ValueError for quantities and numbers of "
-           "points, and if a world has not as many nodes as the others.")
-      .def(
-          "ledger",
-          [](const PythonBatch& self, std::int64_t world) {
-            return ledger_dict(use(self)[read_world_index(world, use(self).size())].world().ledger());
-          },
-          py::arg("world"), "As World.ledger, of one of the worlds.")
+           "points, and if a world has not as many nodes as the others, unless `missing` is given as the number in their place.")
       .def(
           "energy", [](const PythonBatch& batch) { return energies(use(batch)); }, "Energies [J] as World.energy, (count,) each.")
       .def_property_readonly(
@@ -343,11 +329,15 @@ void add_batch_class(py::module_& module) {
           "(count,) int8, the worst status in the last call of step(): 0 ok, 1 jumped, 2 overstretched, 3 inside_obstacle, "
           "4 not_settled, 5 degraded, 6 fault.")
       .def_property_readonly(
+          "errors", [](const PythonBatch& batch) { return use(batch).errors(); },
+          "List of texts: what is wrong with the scene of each world, see keep_going; '' if nothing is.")
+      .def_property_readonly(
           "time", [](const PythonBatch& batch) { return times(use(batch)); },
           "(count,) [s] Simulated time; it may differ between worlds after set_world.")
       .def_property_readonly(
           "state_hash", [](const PythonBatch& batch) { return state_hashes(use(batch)); },
           "List of the hashes of the worlds, as World.state_hash.");
+  return batch;
 }
 
 }  // namespace verlet_cable

@@ -1,9 +1,10 @@
 #pragma once
 
-#include <pybind11/pybind11.h>
+#include "binding/batch_world.h"
 
 namespace verlet_cable {
 
-void add_batch_class(pybind11::module_& module);
+/// Without the methods that it has of World.
+BatchClass add_batch_class(pybind11::module_& module);
 
 }  // namespace verlet_cable

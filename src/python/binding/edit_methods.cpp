@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "binding/arguments.h"
-#include "binding/run_steps.h"
+#include "binding/named_tuple.h"
 #include "binding/text_arguments.h"
 #include "simulation/edits.h"
 #include "verlet_cable/core/body_name.h"
@@ -21,11 +21,6 @@ namespace verlet_cable {
 namespace {
 
 using OptionalNumbers = std::optional<Numbers>;
-
-DrivenWorld& use(PythonWorld& world) {
-  InUse::check(world.busy, "world");
-  return world.driven;
-}
 
 /// What is wrong with its numbers is said where they are used.
 Pose read_offset(const OptionalNumbers& offset) {
@@ -107,13 +102,21 @@ void add_materials(const SceneDesc& scene, const std::map<std::string, std::map<
   }
 }
 
+void set_frame(PythonWorld& world, const py::str& name, const Numbers& position, const Numbers& quaternion_xyzw) {
+  const int frame = world.driven().find_frame(text_of(name, "name"));
+  const Pose pose = read_pose(position, quaternion_xyzw);
+  if (!world.driven().set_frame(frame, &pose, 1)) return;
+  world.events() = {};
+  world.events().observe_start(world.driven().world());
+}
+
 void add_frame(PythonWorld& world, const py::str& name, const Numbers& position, const Numbers& quaternion_xyzw) {
-  use(world).add_frame(text_of(name, "name"), read_pose(position, quaternion_xyzw));
+  world.driven().add_frame(text_of(name, "name"), read_pose(position, quaternion_xyzw));
 }
 
 void tune_world(PythonWorld& world, const OptionalNumbers& gravity, const OptionalNumbers& wind,
                 std::optional<double> contact_friction, const std::map<std::string, std::map<std::string, Numbers>>& materials) {
-  DrivenWorld& driven = use(world);
+  DrivenWorld& driven = world.driven();
   std::vector<NumberChange> changes;
   add_axes("gravity", gravity, changes);
   add_axes("wind", wind, changes);
@@ -123,14 +126,14 @@ void tune_world(PythonWorld& world, const OptionalNumbers& gravity, const Option
 }
 
 void apply(const edit::ApplyLoad& load, PythonWorld& world) {
-  const EditResult result = use(world).world().apply(load);
+  const EditResult result = world.driven().world().apply(load);
   if (!result.ok) throw py::value_error(result.message);
 }
 
 void apply_force(PythonWorld& world, const py::str& cable, std::int64_t node, const Numbers& force, double duration,
                  const py::str& name) {
   const RequestedLoad request{text_of(name, "name"), "", {}, read_vector("force", force), Vector3::Zero(), duration};
-  apply(checked_force(text_of(cable, "cable"), node, request, use(world).world()), world);
+  apply(checked_force(text_of(cable, "cable"), node, request, world.world()), world);
 }
 
 void apply_wrench(PythonWorld& world, const py::str& body, const Numbers& force, const OptionalNumbers& torque,
@@ -141,36 +144,27 @@ void apply_wrench(PythonWorld& world, const py::str& body, const Numbers& force,
                               read_vector("force", force),
                               torque ? read_vector("torque", *torque) : Vector3(Vector3::Zero()),
                               duration};
-  apply(checked_wrench(text_of(body, "body"), local, request, use(world).world()), world);
+  apply(checked_wrench(text_of(body, "body"), local, request, world.world()), world);
 }
 
-/// A class of named tuples, in the module.
-py::object add_tuple(py::module_& module, const char* name, const std::vector<std::string>& fields, const char* doc) {
-  using namespace py::literals;
-  const py::object tuple = py::module_::import("collections").attr("namedtuple")(name, fields, "module"_a = "verlet_cable.sim");
-  tuple.attr("__doc__") = doc;
-  module.attr(name) = tuple;
-  return tuple;
-}
-
-void add_cable_edits(py::module_& module, py::class_<PythonWorld>& world) {
+void add_cable_edits(py::module_& module, WorldMethods& methods) {
   const py::object pinned =
       add_tuple(module, "Pinned", {"name", "node"}, "Result of World.pin: the name of the attachment, and the node.");
   const py::object pieces = add_tuple(module, "Pieces", {"first", "second"},
                                       "Result of World.cut: the names of the pieces. The second one is '' if a net was cut.");
-  world.def(
+  methods.add_edit(
       "pin",
       [pinned](PythonWorld& self, const py::str& cable, std::optional<std::int64_t> node, std::optional<double> arc_length,
                const OptionalNumbers& point, const py::str& point_frame, const py::str& name, const py::str& frame_id,
                const OptionalNumbers& offset, bool clamp, bool keep_offset) {
-        DrivenWorld& driven = use(self);
+        DrivenWorld& driven = self.driven();
         const RequestedPin request{read_place(cable, node, arc_length, point, point_frame),
                                    text_of(name, "name"),
                                    text_of(frame_id, "frame_id"),
                                    read_offset(offset),
                                    clamp,
                                    keep_offset};
-        const PinAnswer answer = pin(request, driven, self.events);
+        const PinAnswer answer = pin(request, driven, self.events());
         return pinned(answer.name, answer.node);
       },
       py::arg("cable") = "", py::kw_only(), py::arg("node") = py::none(), py::arg("arc_length") = py::none(),
@@ -185,12 +179,12 @@ void add_cable_edits(py::module_& module, py::class_<PythonWorld>& world) {
       "of the frame.\nclamp: holds direction and roll, too. keep_offset: keeps the present pose relative to the frame; offset is "
       "then ignored.\n\nReturns Pinned(name, node). Raises ValueError, or KeyError for the name of a cable or frame that does "
       "not exist; then nothing is changed.");
-  world.def(
+  methods.add_edit(
       "cut",
       [pieces](PythonWorld& self, const py::str& cable, std::optional<std::int64_t> node, std::optional<double> arc_length,
                const OptionalNumbers& point, const py::str& point_frame) {
-        DrivenWorld& driven = use(self);
-        const CutAnswer answer = cut(read_place(cable, node, arc_length, point, point_frame), driven, self.events);
+        DrivenWorld& driven = self.driven();
+        const CutAnswer answer = cut(read_place(cable, node, arc_length, point, point_frame), driven, self.events());
         return pieces(answer.first, answer.second);
       },
       py::arg("cable") = "", py::kw_only(), py::arg("node") = py::none(), py::arg("arc_length") = py::none(),
@@ -201,7 +195,7 @@ void add_cable_edits(py::module_& module, py::class_<PythonWorld>& world) {
       "Raises ValueError, KeyError; then nothing is changed.");
 }
 
-void add_loads(py::module_& module, py::class_<PythonWorld>& world) {
+void add_loads(py::class_<PythonWorld>& world) {
   world.def("apply_force", apply_force, py::arg("cable"), py::arg("node"), py::arg("force"), py::kw_only(),
             py::arg("duration") = 0.0, py::arg("name") = "",
             "Lets a force (3,) [N], in the axes of the fixed frame, act on a node of a cable until it is changed, or for a "
@@ -215,69 +209,41 @@ void add_loads(py::module_& module, py::class_<PythonWorld>& world) {
             "(3,) [m] where the force acts, from the origin of the body's frame in its axes; None: at its center of mass. local: "
             "in the axes of the body, with which they turn; otherwise in those of the fixed frame. name: as for apply_force; '': "
             "the name of the body. Zero force and torque end it.\n\nRaises ValueError, KeyError; then nothing is changed.");
-  const py::object load_type = add_tuple(
-      module, "Load", {"name", "on", "node", "force", "torque", "point", "local", "time_left"},
-      "A load on a cable or body: its name; the name of the cable or body; the node, or -1 for a body; force (3,) [N] "
-      "and torque (3,) [N m]; for a body the point (3,) [m] where the force acts, and whether it is in the body's axes; "
-      "and for how long [s] it still acts, inf: until it is changed.");
-  world.def(
-      "loads", [load_type](PythonWorld& self) { return load_list(use(self).world(), load_type); },
-      "List of the loads that act in the next step, as Load(name, on, node, force, torque, point, local, time_left).");
 }
 
 }  // namespace
 
-py::list load_list(const World& world, const py::object& load_type) {
-  py::list list;
-  for (const Load& load : world.loads()) {
-    const double left = load.end_step == 0 ? infinity : static_cast<double>(load.end_step - world.steps()) * world.time_step();
-    list.append(load_type(load.name, name_of(world, load.body), load.body.is_cable() ? load.node : -1, array_of(load.force),
-                          array_of(load.torque), array_of(load.point), load.is_local, left));
-  }
-  return list;
-}
-
-py::list take_events(EventRecord& record, const py::object& event_type) {
-  const EventRecord::Taken taken = record.take();
-  py::list list;
-  for (const auto& [time, type, subject, message] : taken.events)
-    list.append(event_type(time, type, subject.cable, subject.attachment, subject.node, subject.other, message));
-  if (taken.left_out > 0)
-    list.append(event_type(taken.last_time, "more", "", "", 0, "", std::to_string(taken.left_out) + " more events"));
-  return list;
-}
-
-void add_edit_methods(py::module_& module, py::class_<PythonWorld>& world) {
-  add_cable_edits(module, world);
-  add_loads(module, world);
-  world.def(
-      "unpin", [](PythonWorld& self, const py::str& name) { unpin(text_of(name, "name"), use(self), self.events); },
+void add_edit_methods(py::module_& module, py::class_<PythonWorld>& world, WorldMethods& methods) {
+  add_cable_edits(module, methods);
+  add_loads(world);
+  methods.add_edit(
+      "unpin", [](PythonWorld& self, const py::str& name) { unpin(text_of(name, "name"), self.driven(), self.events()); },
       py::arg("name"), "Removes an attachment of the scene or a pin. Raises KeyError, ValueError; then nothing is changed.");
-  world.def(
+  methods.add_edit(
       "join",
       [](PythonWorld& self, const py::str& first, bool first_at_end, const py::str& second, bool second_at_end) {
-        DrivenWorld& driven = use(self);
-        return join(text_of(first, "first"), first_at_end, text_of(second, "second"), second_at_end, driven, self.events);
+        DrivenWorld& driven = self.driven();
+        return join(text_of(first, "first"), first_at_end, text_of(second, "second"), second_at_end, driven, self.events());
       },
       py::arg("first"), py::arg("first_at_end").noconvert(), py::arg("second"), py::arg("second_at_end").noconvert(),
       "Welds two ends of cables of the same material, as the service `join` does; ends that are apart are pulled "
       "together.\n\nReturns the name of the joined cable, which is that of the first. Raises ValueError, KeyError; then nothing "
       "is changed.");
-  world.def(
+  methods.add_edit(
       "set_length",
       [](PythonWorld& self, const py::str& cable, bool at_end, double length, double speed, double max_tension) {
-        set_length(text_of(cable, "cable"), at_end, length, speed, max_tension, use(self));
+        set_length(text_of(cable, "cable"), at_end, length, speed, max_tension, self.driven());
       },
       py::arg("cable"), py::arg("at_end").noconvert(), py::arg("length"), py::arg("speed"), py::arg("max_tension") = 0.0,
       "Lets a winch at the end (at_end) or the start of a cable pay out or take in cable, until it has the length [m], at up to "
       "the speed [m/s], as the service `set_length` does; the number of nodes changes. Rather than pull more than max_tension "
       "[N] (0: any tension) it stops, or slips and lets cable out, until it is told something else. Raises ValueError, KeyError; "
       "then nothing is changed.");
-  world.def(
+  methods.add_edit(
       "set_tension",
       [](PythonWorld& self, const py::str& cable, bool at_end, double tension, double max_speed, double min_length,
          double max_length) {
-        set_tension(text_of(cable, "cable"), {0, at_end, tension, max_speed, min_length, max_length}, use(self));
+        set_tension(text_of(cable, "cable"), {0, at_end, tension, max_speed, min_length, max_length}, self.driven());
       },
       py::arg("cable"), py::arg("at_end").noconvert(), py::arg("tension"), py::arg("max_speed"), py::arg("min_length"),
       py::arg("max_length"),
@@ -285,56 +251,47 @@ void add_edit_methods(py::module_& module, py::class_<PythonWorld>& world) {
       "tension [N], at up to max_speed [m/s], while the cable is from min_length to max_length [m] long, as the service "
       "`set_tension` does, until it is told something else. Tension 0: a spool that turns freely. Raises ValueError, KeyError; "
       "then nothing is changed.");
-  world.def(
+  methods.add_edit(
       "set_state",
       [](PythonWorld& self, const py::str& cable, const OptionalNumbers& positions, const OptionalNumbers& velocities) {
         set_state(text_of(cable, "cable"), read_vectors("positions", positions), read_vectors("velocities", velocities),
-                  use(self));
+                  self.driven());
       },
       py::arg("cable"), py::arg("positions") = py::none(), py::arg("velocities") = py::none(),
       "Puts the nodes of a cable at positions (n + 1, 3) [m], or gives them velocities (n + 1, 3) [m/s], or both. They are "
       "projected as those of a scene are: held nodes stay where their holders are, and what cannot stretch keeps its length. "
       "What is not given stays. Raises ValueError, also where no shape near the positions has the cable's lengths, and KeyError; "
       "then nothing is changed.");
-  world.def(
+  methods.add_edit(
       "move_attachment",
       [](PythonWorld& self, const py::str& name, const Numbers& offset) {
-        DrivenWorld& driven = use(self);
+        DrivenWorld& driven = self.driven();
         move_attachment(text_of(name, "name"), read_offset(offset), driven);
       },
       py::arg("name"), py::arg("offset"),
       "Gives an attachment another pose in its frame: (7,) x, y, z [m], qx, qy, qz, qw, or (3,) without rotation. What it "
       "holds is moved there in the next step, as with set_frame, so make small changes. Raises ValueError, KeyError; then "
       "nothing is changed.");
-  world.def("add_frame", add_frame, py::arg("name"), py::arg("position"), py::arg("quaternion_xyzw"),
-            "Adds a frame for pins and obstacles, at position (3,) [m] and quaternion (4,) in the fixed frame until set_frame "
-            "moves it; the quaternion is normalized, its norm must be from 0.5 to 2. Raises ValueError, also if a frame has that "
-            "name already.");
-  world.def("tune", tune_world, py::kw_only(), py::arg("gravity") = py::none(), py::arg("wind") = py::none(),
-            py::arg("contact_friction") = py::none(),
-            py::arg("materials") = std::map<std::string, std::map<std::string, Numbers>>{},
-            "Changes parameters of the running simulation, as the node's `~tuning` does: gravity (3,) [m/s^2] unless it is "
-            "central; wind (3,) [m/s], the velocity of the fluid; the coefficient of friction between cables; and {material: "
-            "{key: number}} for dampings, finite stiffnesses (bending_stiffness also as (2,), for a material with two different "
-            "ones), drag, friction and rolling_friction.\n\nRaises SceneError with all errors at once, under the names of "
-            "`~tuning`; ValueError, KeyError; then nothing is changed.");
-  const py::object event_type = add_tuple(module, "Event", {"time", "type", "cable", "attachment", "node", "other", "message"},
-                                          "An event of a world: the fields of CableEvent.msg, with the simulated `time` [s] and "
-                                          "the name of the constant as `type`. Fields that do not apply are '' or 0.");
-  world.def(
-      "events",
-      [event_type](PythonWorld& self) {
-        use(self);
-        return take_events(self.events, event_type);
-      },
-      "List of Event(time, type, cable, attachment, node, other, message) since the last call, in the order of their times, with "
-      "the types of cable_sim. At once: 'CUT', 'BROKE', 'PINNED', 'UNPINNED', 'JOINED', 'LIMIT', 'CAUGHT', 'RELEASED', 'JUMPED' "
-      "(at most once a second for each frame), 'LOAD_ENDED' (attachment: the load) and 'not_fitted' (the initial shape). When "
-      "they begin, and with '_end' when they "
-      "were not there for 0.1 s: 'overstretched', 'inside_obstacle' (other: the obstacle), 'not_settled', 'degraded', 'FAULT', "
-      "'frame_too_fast' and 'frame_out_of_range' (other: the frame); the time of an end is that of the last step they were "
-      "there. After the first 1000, one event of type 'more' states how many were left out. A copy of a world has the events "
-      "that were not retrieved yet.");
+  methods.add_edit(
+      "set_frame", set_frame, py::arg("name"), py::arg("position"), py::arg("quaternion_xyzw"),
+      "Sets the pose of a frame at the end of the next step and after it: position (3,) [m] and quaternion (4,) in the "
+      "fixed frame; the quaternion is normalized, its norm must be from 0.5 to 2. The frame then no longer follows a "
+      "motion. Links of a robot below this frame follow it, unless their own pose is set. A frame of an attachment or "
+      "guide that has neither a motion nor an initial_pose must be set before the first step: there it is at the start, "
+      "too.\n\nRaises KeyError for a name that is not in frame_names, ValueError.");
+  methods.add_edit(
+      "add_frame", add_frame, py::arg("name"), py::arg("position"), py::arg("quaternion_xyzw"),
+      "Adds a frame for pins and obstacles, at position (3,) [m] and quaternion (4,) in the fixed frame until set_frame "
+      "moves it; the quaternion is normalized, its norm must be from 0.5 to 2. Raises ValueError, also if a frame has that "
+      "name already.");
+  methods.add_edit(
+      "tune", tune_world, py::kw_only(), py::arg("gravity") = py::none(), py::arg("wind") = py::none(),
+      py::arg("contact_friction") = py::none(), py::arg("materials") = std::map<std::string, std::map<std::string, Numbers>>{},
+      "Changes parameters of the running simulation, as the node's `~tuning` does: gravity (3,) [m/s^2] unless it is "
+      "central; wind (3,) [m/s], the velocity of the fluid; the coefficient of friction between cables; and {material: "
+      "{key: number}} for dampings, finite stiffnesses (bending_stiffness also as (2,), for a material with two different "
+      "ones), drag, friction and rolling_friction.\n\nRaises SceneError with all errors at once, under the names of "
+      "`~tuning`; ValueError, KeyError; then nothing is changed.");
 }
 
 }  // namespace verlet_cable

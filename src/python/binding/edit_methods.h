@@ -1,19 +1,17 @@
 #pragma once
 
-#include "binding/world_class.h"
+#include "binding/world_methods.h"
 
 namespace verlet_cable {
 
-/// What has happened since the last call, as Event of the module.
-pybind11::list take_events(EventRecord& record, const pybind11::object& event_type);
-
-/// The loads that act, as Load of the module.
-pybind11::list load_list(const World& world, const pybind11::object& load_type);
-
-/// pin, unpin, cut, join, set_length, set_tension, move_attachment, tune, events, add_frame; and in the module what these return.
-void add_edit_methods(pybind11::module_& module, pybind11::class_<PythonWorld>& world);
+/// pin, unpin, cut, join, set_length, set_tension, set_state, move_attachment, tune, set_frame, add_frame; of World alone, as
+/// Batch has them with an array for all worlds, apply_force and apply_wrench; and in the module what these return.
+void add_edit_methods(pybind11::module_& module, pybind11::class_<PythonWorld>& world, WorldMethods& methods);
 
 /// set_obstacle and remove_obstacle.
-void add_obstacle_methods(pybind11::class_<PythonWorld>& world);
+void add_obstacle_methods(WorldMethods& methods);
+
+/// events, loads, contacts, ledger, save; and in the module what these return.
+void add_report_methods(pybind11::module_& module, WorldMethods& methods);
 
 }  // namespace verlet_cable

@@ -2,6 +2,7 @@
 #include <pybind11/stl.h>
 
 #include "binding/batch_class.h"
+#include "binding/edit_methods.h"
 #include "binding/scene_class.h"
 #include "binding/world_class.h"
 #include "simulation/quantity.h"
@@ -62,10 +63,15 @@ PYBIND11_MODULE(_simulation, module) {
   module.attr("SceneError") = py::handle(scene_error);
   py::register_exception_translator(translate);
   verlet_cable::add_scene_class(module);
-  verlet_cable::add_world_class(module);
-  verlet_cable::add_batch_class(module);
-  for (const char* name : {"Scene", "World", "Batch"}) module.attr(name).attr("__module__") = "verlet_cable.sim";
+  py::class_<verlet_cable::PythonWorld> world = verlet_cable::add_world_class(module);
+  verlet_cable::BatchClass batch = verlet_cable::add_batch_class(module);
+  verlet_cable::add_worlds_class(module);
+  verlet_cable::WorldMethods methods(world, batch);
+  verlet_cable::add_edit_methods(module, world, methods);
+  verlet_cable::add_obstacle_methods(methods);
+  verlet_cable::add_report_methods(module, methods);
+  for (const char* name : {"Scene", "World", "Batch", "Worlds"}) module.attr(name).attr("__module__") = "verlet_cable.sim";
   refuse_objects_without_constructor(module);
   const py::object explain = py::module_::import("verlet_cable.wrong_arguments").attr("explain");
-  explain(module.attr("Batch"), module.attr("Scene"), module.attr("World"));
+  explain(module.attr("Batch"), module.attr("Scene"), module.attr("World"), module.attr("Worlds"));
 }

@@ -18,7 +18,10 @@ FrameTrack read_track(const std::string& name, const py::handle& value) {
   const py::sequence pair =
       py::isinstance<py::sequence>(value) ? py::reinterpret_borrow<py::sequence>(value) : py::sequence(py::list());
   if (pair.size() != 2) throw py::value_error(name + ": allowed: (times, poses)");
-  const Numbers times(pair[0]), poses(pair[1]);
+  const Numbers times = Numbers::ensure(pair[0]), poses = Numbers::ensure(pair[1]);
+  if (!times || !poses)
+    throw py::value_error(name + (times ? "[1], poses: " : "[0], times: ") + ascii_text(pair[times ? 1 : 0]) +
+                          "; allowed: numbers");
   if (times.ndim() != 1 || times.shape(0) == 0)
     throw py::value_error(name + "[0], times: shape " + shape_text(times) + "; allowed: (k,), k at least 1");
   if (poses.ndim() != 2 || poses.shape(0) != times.shape(0) || poses.shape(1) != 7)
@@ -73,8 +76,6 @@ Motion read_motion(const py::object& given, const SceneDesc& scene) {
   std::vector<std::string> errors;
   if (motion.count(scene.frame_id) > 0)
     errors.push_back("motion: frame " + quoted(scene.frame_id) + " moves; allowed: any but the fixed frame");
-  for (const std::string& line : validate_distances(scene, FrameSource(scene, motion).at(0)))
-    errors.push_back("motion at t = 0: " + line);
   if (!errors.empty()) throw SceneError(errors);
   return motion;
 }

@@ -11,6 +11,7 @@
 #include "core/world/parallel_for.h"
 #include "simulation/batch_scenes.h"
 #include "simulation/memory_check.h"
+#include "simulation/quantity.h"
 
 namespace verlet_cable {
 namespace {
@@ -24,6 +25,19 @@ bool try_copy(const World& world, const Part& part, double* to) {
   if (find(world.cables(), part.name) < 0) return false;
   copy_points(world, part.quantity, part.name, part.shape.rows, to);
   return true;
+}
+
+/// Errors name the scene, where it is not the first.
+DrivenWorld begin(const std::shared_ptr<const SceneDesc>& scene, std::size_t index, const Motion& motion,
+                  const LoadPlayer& loads) {
+  try {
+    return DrivenWorld(scene, motion, loads);
+  } catch (const SceneError& error) {
+    if (index == 0) throw;
+    std::vector<std::string> lines = error.errors();
+    for (std::string& line : lines) line = "scenes[" + std::to_string(index) + "]: " + line;
+    throw SceneError(std::move(lines));
+  }
 }
 
 /// Before copies are made. [byte] of a world, and of each of its nodes, at least.
@@ -67,46 +81,66 @@ class Batch::Threads {
 };
 
 Batch::Batch(const std::vector<std::shared_ptr<const SceneDesc>>& scenes, const Motion& motion, const LoadPlayer& loads,
-             int threads)
-    : threads_(std::make_shared<Threads>(threads)), status_(scenes.size(), StepResult::Status::ok) {
-  for (std::size_t i = 1; i < scenes.size(); ++i) check_alike(*scenes.front(), *scenes[i], "scenes[" + std::to_string(i) + "]");
+             int threads, bool keeps_going)
+    : threads_(std::make_shared<Threads>(threads)), status_(scenes.size(), StepResult::Status::ok), errors_(scenes.size()) {
   std::map<const SceneDesc*, std::size_t> known;  // looked up only: its order does not matter
+  std::optional<std::size_t> first;               // that is right
+  std::optional<SceneError> wrong;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     const auto [same, is_new] = known.emplace(scenes[i].get(), i);
-    if (is_new) {
-      worlds_.emplace_back(scenes[i], motion, loads);
-      if (i == 0) {
-        check_size(worlds_.front().world(), scenes.size());
-        worlds_.reserve(scenes.size());
+    try {
+      if (!is_new) {
+        errors_[i] = errors_[same->second];
+        if (first) worlds_.push_back(worlds_[same->second]);
+        continue;
       }
-    } else {
-      worlds_.push_back(worlds_[same->second]);
+      if (first) check_alike(*scenes[*first], *scenes[i], "scenes[" + std::to_string(i) + "]");
+      DrivenWorld world = begin(scenes[i], i, motion, loads);
+      if (!first) {
+        check_size(world.world(), scenes.size());
+        worlds_.reserve(scenes.size());
+        worlds_.assign(i, world);  // for those before it
+        first = i;
+      }
+      worlds_.push_back(std::move(world));
+    } catch (const SceneError& error) {
+      if (!keeps_going) throw;
+      errors_[i] = error.what();
+      if (!wrong) wrong = error;
+      if (first) worlds_.push_back(worlds_[*first]);
     }
-    worlds_.back().world().step_one_by_one(true);
   }
+  if (!first) throw *wrong;
+  for (DrivenWorld& world : worlds_) world.world().step_one_by_one(true);
   events_.resize(worlds_.size());
   for (std::size_t i = 0; i < worlds_.size(); ++i) begin_events(i);
 }
 
 Batch::Batch(const DrivenWorld& world, std::size_t count, int threads)
-    : threads_(std::make_shared<Threads>(threads)), status_(count, StepResult::Status::ok) {
+    : threads_(std::make_shared<Threads>(threads)), status_(count, StepResult::Status::ok), errors_(count) {
   check_size(world.world(), count);
   worlds_.assign(count, world);
   events_.resize(count);
   for (DrivenWorld& copy : worlds_) copy.world().step_one_by_one(true);
 }
 
-Batch::Batch(std::vector<DrivenWorld> worlds, int threads)
+Batch::Batch(std::vector<DrivenWorld> worlds, std::vector<std::string> errors, int threads)
     : threads_(std::make_shared<Threads>(threads)),
       worlds_(std::move(worlds)),
       events_(worlds_.size()),
-      status_(worlds_.size(), StepResult::Status::ok) {
+      status_(worlds_.size(), StepResult::Status::ok),
+      errors_(std::move(errors)) {
   for (DrivenWorld& world : worlds_) world.world().step_one_by_one(true);
 }
 
 void Batch::begin_events(std::size_t world) {
   events_[world] = {};
   events_[world].observe_start(worlds_[world].world());
+}
+
+void Batch::note_change_of(std::size_t index) {
+  worlds_[index].world().step_one_by_one(true);
+  drop_records();
 }
 
 void Batch::set_worlds(const std::vector<std::size_t>& indices, const DrivenWorld& world) {
@@ -118,6 +152,7 @@ void Batch::set_worlds(const std::vector<std::size_t>& indices, const DrivenWorl
       copy = world;
       copy.world().step_one_by_one(true);
       status_[indices[i]] = StepResult::Status::ok;
+      errors_[indices[i]].clear();
       events_[indices[i]] = {};
     }
   });
@@ -146,21 +181,45 @@ void Batch::replace(std::vector<DrivenWorld> worlds, const std::vector<char>& be
     if (begun[i] != 0) begin_events(i);
 }
 
-void Batch::set_frame(const std::string& name, std::vector<std::vector<Pose>> poses) {
-  std::vector<int> frames;
-  for (const DrivenWorld& world : worlds_) frames.push_back(world.find_frame(name));
-  const auto lacks = [](const DrivenWorld& world) { return world.has_unplaced_frames(); };
-  if (std::none_of(worlds_.begin(), worlds_.end(), lacks)) {
-    for (std::size_t i = 0; i < worlds_.size(); ++i) worlds_[i].set_frame(frames[i], std::move(poses[i]));
+void Batch::share_out(const std::function<void(std::size_t, std::size_t)>& work) const {
+  threads_->share_out(worlds_.size(), work);
+}
+
+void Batch::set_frame(const std::string& name, const std::vector<Pose>& poses) {
+  const std::size_t steps = poses.size() / worlds_.size();
+  std::vector<int> frames(worlds_.size());
+  std::vector<char> lacks(worlds_.size());
+  share_out([&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      frames[i] = worlds_[i].index_of_frame(name);
+      lacks[i] = worlds_[i].has_unplaced_frames() ? 1 : 0;
+    }
+  });
+  const auto unknown = std::find(frames.begin(), frames.end(), -1) - frames.begin();
+  if (unknown == 0) worlds_.front().find_frame(name);
+  if (unknown < static_cast<std::ptrdiff_t>(frames.size())) refuse_frame(static_cast<std::size_t>(unknown), name);
+  if (std::find(lacks.begin(), lacks.end(), 1) == lacks.end()) {
+    share_out([&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) worlds_[i].set_frame(frames[i], &poses[i * steps], steps);
+    });
     return;
   }
   std::vector<DrivenWorld> changed = worlds_;
   std::vector<char> begun(changed.size(), 0);
   for (std::size_t i = 0; i < changed.size(); ++i) {
-    begun[i] = changed[i].set_frame(frames[i], std::move(poses[i])) ? 1 : 0;
+    begun[i] = changed[i].set_frame(frames[i], &poses[i * steps], steps) ? 1 : 0;
     if (begun[i] != 0) changed[i].world().step_one_by_one(true);
   }
   replace(std::move(changed), begun);
+}
+
+/// The frame is in other worlds.
+void Batch::refuse_frame(std::size_t world, const std::string& name) const {
+  try {
+    worlds_[world].find_frame(name);
+  } catch (const UnknownName& error) {
+    throw UnknownName("world " + std::to_string(world) + ": " + error.what());
+  }
 }
 
 void Batch::apply(const std::vector<edit::ApplyLoad>& loads) {
@@ -175,7 +234,7 @@ void Batch::require_placed_frames() const {
     if (worlds_[i].has_unplaced_frames()) worlds_[i].require_placed_frames("world " + std::to_string(i) + ": ");
 }
 
-std::optional<OddWorld> Batch::copy(const std::vector<Part>& parts, double* to) const {
+std::optional<OddWorld> Batch::copy(const std::vector<Part>& parts, std::optional<double> missing, double* to) const {
   std::size_t row = 0;
   for (const Part& part : parts) row += part.shape.size();
   std::vector<std::size_t> copied(worlds_.size(), 0);  // parts of each world
@@ -183,7 +242,10 @@ std::optional<OddWorld> Batch::copy(const std::vector<Part>& parts, double* to) 
     for (std::size_t i = first; i < last; ++i) {
       double* next = to + i * row;
       for (const Part& part : parts) {
-        if (!try_copy(worlds_[i].world(), part, next)) break;
+        if (!try_copy(worlds_[i].world(), part, next)) {
+          if (!missing) break;
+          std::fill_n(next, part.shape.size(), *missing);
+        }
         next += part.shape.size();
         ++copied[i];
       }
@@ -201,7 +263,8 @@ void Batch::begin_steps(std::int64_t steps, std::int64_t record_every, const std
   records_ = std::move(records);
   record_every_ = record_every;
   steps_done_ = 0;
-  status_.assign(worlds_.size(), StepResult::Status::ok);
+  for (std::size_t i = 0; i < worlds_.size(); ++i)
+    status_[i] = errors_[i].empty() ? StepResult::Status::ok : StepResult::Status::fault;
 }
 
 void Batch::advance(std::int64_t steps) {
@@ -213,10 +276,13 @@ void Batch::advance(std::size_t first, std::size_t last, std::int64_t steps) {
   Threads::Buffers& buffers = threads_->buffers();
   for (std::int64_t done = steps_done_ + 1; done <= steps_done_ + steps; ++done) {
     buffers.steps.clear();
-    for (std::size_t i = first; i < last; ++i) buffers.steps.push_back({&worlds_[i].world(), &worlds_[i].next_inputs(), {}});
+    for (std::size_t i = first; i < last; ++i)
+      if (errors_[i].empty()) buffers.steps.push_back({&worlds_[i].world(), &worlds_[i].next_inputs(), {}});
     buffers.stepper.step(buffers.steps, false);
+    auto stepped = buffers.steps.begin();
     for (std::size_t i = first; i < last; ++i) {
-      const StepResult& result = buffers.steps[i - first].result;
+      if (!errors_[i].empty()) continue;
+      const StepResult& result = (stepped++)->result;
       status_[i] = std::max(status_[i], result.status);
       events_[i].observe(worlds_[i].world(), result, worlds_[i].held_back(), worlds_[i].refused_loads());
     }
@@ -230,6 +296,7 @@ std::vector<char> Batch::settle() {
   std::vector<char> found(worlds_.size());
   threads_->share_out(worlds_.size(), [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
+      if (!errors_[i].empty()) continue;
       found[i] = worlds_[i].world().settle();
       events_[i].observe_start(worlds_[i].world());
     }

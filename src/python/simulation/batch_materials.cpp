@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "scene/text.h"
 #include "simulation/quantity.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
@@ -52,12 +53,21 @@ bool is_material_field(const std::string& name) {
          std::any_of(material_fields.begin(), material_fields.end(), [&](const auto& field) { return name == field.key; });
 }
 
+/// Which key was meant, in brackets, or nothing.
+std::string meant(const std::string& field) {
+  std::vector<std::string> keys{bending_stiffness_field.key};
+  for (const auto& other : material_fields) keys.push_back(other.key);
+  const std::string nearest = nearest_name(field, keys);
+  return nearest.empty() ? "" : " (did you mean " + nearest + "?)";
+}
+
 void check_names(const std::string& material, const std::vector<MaterialChange>& changes, const SceneDesc& scene) {
   if (!scene.find_material(material))
     throw UnknownName("name: " + quoted(material) + "; allowed: " + material_names(scene.materials));
   for (const MaterialChange& wanted : changes)
     if (!is_material_field(wanted.field))
-      throw UnknownName("materials." + material + "." + escaped(wanted.field) + ": no such key; allowed: " + material_keys());
+      throw UnknownName("materials." + material + "." + escaped(wanted.field) + ": no such key; allowed: " + material_keys() +
+                        meant(wanted.field));
 }
 
 /// Masses are given to worlds when they begin, and by no tuning.

@@ -21,6 +21,16 @@ World begin(const SceneDesc& scene, BoundaryInputs start, LoadPlayer& loads) {
   return world;
 }
 
+/// Throws SceneError where cables do not reach from where the motion begins.
+std::shared_ptr<const FrameSource> begin_frames(const SceneDesc& scene, const Motion& motion) {
+  auto frames = std::make_shared<FrameSource>(scene, motion);
+  std::vector<std::string> errors;
+  if (!motion.empty())
+    for (const std::string& line : validate_distances(scene, frames->at(0))) errors.push_back("motion at t = 0: " + line);
+  if (!errors.empty()) throw SceneError(std::move(errors));
+  return frames;
+}
+
 void write_inputs(const BoundaryInputs& inputs, ByteWriter& bytes) {
   bytes(inputs.size());
   for (const FrameInput& input : inputs) {
@@ -125,18 +135,20 @@ DrivenWorld::DrivenWorld(std::shared_ptr<const SceneDesc> scene, std::shared_ptr
       hash_of_start_(world_.hash()) {}
 
 DrivenWorld::DrivenWorld(std::shared_ptr<const SceneDesc> scene, const Motion& motion, LoadPlayer loads)
-    : DrivenWorld(scene, std::make_shared<FrameSource>(*scene, motion), std::move(loads)) {
+    : DrivenWorld(scene, begin_frames(*scene, motion), std::move(loads)) {
   unplaced_ = unplaced_holders(*scene, motion);
 }
 
-int DrivenWorld::find_frame(const std::string& name) const {
+int DrivenWorld::index_of_frame(const std::string& name) const {
   const std::vector<std::string>& names = world_.frames();
-  NameList allowed;
-  for (int frame = 1; frame < static_cast<int>(names.size()); ++frame) {
-    if (world_.is_body_frame(frame)) continue;
-    if (names[frame] == name) return frame;
-    allowed.add(names[frame]);
-  }
+  for (int frame = 1; frame < static_cast<int>(names.size()); ++frame)
+    if (names[frame] == name && !world_.is_body_frame(frame)) return frame;
+  return -1;
+}
+
+int DrivenWorld::find_frame(const std::string& name) const {
+  if (const int frame = index_of_frame(name); frame >= 0) return frame;
+  const NameList allowed(frame_names());
   throw UnknownName("name: " + quoted(name) + "; allowed: " + allowed.text("none, the scene has none that moves"));
 }
 
@@ -164,7 +176,7 @@ void DrivenWorld::add_frame(const std::string& name, const Pose& pose) {
   const std::size_t frame = names.size();
   world_.add_frame(name, pose);
   follow_frames_from(frame);
-  set_frame(static_cast<int>(frame), {pose});
+  set_frame(static_cast<int>(frame), &pose, 1);
 }
 
 void DrivenWorld::follow_frames_from(std::size_t first) {
@@ -201,15 +213,13 @@ void DrivenWorld::require_placed_frames(const std::string& where) const {
       "initial_pose in the scene");
 }
 
-bool DrivenWorld::set_frame(int frame, std::vector<Pose> poses) {
+bool DrivenWorld::set_frame(int frame, const Pose* poses, std::size_t count) {
   const auto unplaced = std::find(unplaced_.begin(), unplaced_.end(), world_.frames()[frame]);
-  const bool begins = unplaced != unplaced_.end() && place(unplaced - unplaced_.begin(), frame, poses.front());
-  const auto given =
-      std::find_if(given_.begin(), given_.end(), [frame](const GivenPoses& other) { return other.frame == frame; });
-  if (given == given_.end())
-    given_.push_back({frame, std::move(poses), 0});
-  else
-    *given = {frame, std::move(poses), 0};
+  const bool begins = unplaced != unplaced_.end() && place(unplaced - unplaced_.begin(), frame, *poses);
+  auto given = std::find_if(given_.begin(), given_.end(), [frame](const GivenPoses& other) { return other.frame == frame; });
+  if (given == given_.end()) given = given_.insert(given_.end(), {frame, {}, 0});
+  given->poses.assign(poses, poses + count);
+  given->next = 0;
   return begins;
 }
 

@@ -61,7 +61,7 @@ bool is_attached(const World& world, const std::string& name) {
 
 const RequestWords& python_words() {
   static const RequestWords words{
-      "cable", "node", "arc_length", "point", "point", "point_frame", "", {"node", "arc_length", "point"}, "", "frames"};
+      "cable", "node", "arc_length", "point", "point", "point_frame", "", {"node", "arc_length", "point"}, "", "frames", "=True"};
   return words;
 }
 

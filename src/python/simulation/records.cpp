@@ -39,7 +39,7 @@ Records::Records(const World& world, const std::vector<Quantity>& quantities, st
   for (const Quantity quantity : quantities) {
     for (std::string& name : names_of(world, quantity)) {
       const QuantityShape shape = shape_of(world, quantity, name);
-      all_.push_back({quantity, std::move(name), shape, nullptr, std::vector<int>(worlds, 0)});
+      all_.push_back({quantity, std::move(name), shape, nullptr, std::vector<char>(worlds * records, 0)});
       bytes += static_cast<double>(sizeof(double) * shape.size() * worlds) * static_cast<double>(records);
     }
   }
@@ -59,7 +59,7 @@ void Records::add(const World& world, std::size_t index, std::size_t record) {
     double* to = one.numbers.get() + (index * records_ + record) * size;
     if (try_copy_quantity(world, one.quantity, one.name, one.shape, to)) continue;
     std::fill_n(to, size, 0.0);
-    one.changed[index] = 1;
+    one.changed[index * records_ + record] = 1;
   }
 }
 

@@ -15,7 +15,7 @@ struct Record {
   std::string name;
   QuantityShape shape;
   std::shared_ptr<double> numbers;
-  std::vector<int> changed;  ///< a world: 1 where its shape was another in some record, which is then 0
+  std::vector<char> changed;  ///< worlds x records: 1 where its shape was another, and the numbers are 0
 };
 
 /// What many worlds record while they are stepped.

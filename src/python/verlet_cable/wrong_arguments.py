@@ -11,8 +11,10 @@ _MOST_COMPARED = 300  # letters of a name: longer ones take long
 _MISMATCH = ('incompatible function arguments', 'incompatible constructor arguments')
 _NO_DEFAULT = object()
 
+_MISNAMED = re.compile(r'[^\n]*?"((?:[^"\\\n]|\\.)*)"; allowed: ([^\n]*)')  # name: "ropes"; allowed: rope, wire
+
 _WORDS = {'str': 'text', 'int': 'an integer', 'bool': 'True or False', 'float': 'a number', 'dict': 'a dict',
-          'numpy.ndarray[numpy.float64]': 'numbers, as an array or nested sequences'}
+          'numpy.ndarray[numpy.float64]': 'numbers that are real, as an array or nested sequences'}
 
 # By the type that is asked for and the one that was given: what makes the one of the other.
 _WAYS = {('Scene', str): '; Scene.load(path) reads a file, Scene.from_yaml(text) text',
@@ -121,7 +123,7 @@ def _fits(kind, value):
     if kind == 'float':
         return not isinstance(value, str) and _succeeds(float, value)
     if kind.startswith('numpy.ndarray'):
-        return _succeeds(lambda given: np.asarray(given, np.float64), value)
+        return _are_numbers(value)
     known = _class(kind.rpartition('.')[2])
     return known is None or isinstance(value, known)
 
@@ -132,6 +134,16 @@ def _succeeds(function, value):
         return True
     except (TypeError, ValueError, OverflowError):
         return False
+
+
+def _are_numbers(value):
+    try:
+        array = np.asarray(value)
+    except ValueError:
+        return False
+    if array.dtype.kind != 'O':
+        return array.dtype.kind in 'biuf'
+    return all(hasattr(item, '__float__') and not isinstance(item, complex) for item in array.flat)
 
 
 def _words(kind):
@@ -182,6 +194,12 @@ def _message(function, args, kwargs):
     return '; or '.join(dict.fromkeys(text for fitting, text in problems if fitting == most))
 
 
+def _with_meant(text):
+    misnamed = isinstance(text, str) and _MISNAMED.fullmatch(text)
+    names = misnamed[2].split(', ') if misnamed else []
+    return text + meant(misnamed[1], names) if len(names) > 1 else text
+
+
 def _explaining(function, has_self):
     @functools.wraps(function)
     def call(*args, **kwargs):
@@ -191,6 +209,10 @@ def _explaining(function, has_self):
             if not any(text in str(error) for text in _MISMATCH):
                 raise
             message = _message(function, args[1:] if has_self else args, kwargs)
+        except (KeyError, ValueError) as error:
+            if type(error) in (KeyError, ValueError):  # a SceneError has named its keys
+                error.args = tuple(map(_with_meant, error.args))
+            raise
         raise TypeError(message)
     return call
 
@@ -201,5 +223,5 @@ def explain(*classes):
         for name, attribute in list(vars(cls).items()):
             if isinstance(attribute, staticmethod):
                 setattr(cls, name, staticmethod(_explaining(attribute.__func__, False)))
-            elif type(attribute).__name__ == 'instancemethod' and (name == '__init__' or not name.startswith('__')):
+            elif type(attribute).__name__ == 'instancemethod' and (name in ('__init__', '__getitem__') or not name.startswith('__')):
                 setattr(cls, name, _explaining(attribute, True))

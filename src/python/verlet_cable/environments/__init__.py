@@ -8,7 +8,7 @@
 
 ShapeRope and LayCable have one world; ShapeRopeVector and LayCableVector have many worlds that step together. If Gymnasium 1.1 or
 newer is installed, they are a gymnasium.Env and a gymnasium.vector.VectorEnv, their spaces are gymnasium.spaces.Box, and they are
-registered with gymnasium.make and make_vec as verlet_cable/ShapeRope-v0 and verlet_cable/LayCable-v0.
+registered with gymnasium.make and make_vec as verlet_cable/ShapeRope-v1 and verlet_cable/LayCable-v1.
 
 The same seed and actions give the same bytes, in a single world or in one of many, with any number of threads.
 """

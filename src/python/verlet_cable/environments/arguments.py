@@ -60,6 +60,20 @@ def read_render_mode(value, modes):
     return value
 
 
+def read_choice(name, value, allowed):
+    if value not in list(allowed):
+        raise ValueError(f'{name}: {value!r}; allowed: {", ".join(map(repr, allowed))}')
+    return value
+
+
+def read_mode(name, value, modes):
+    """A member of an enumeration, or its value."""
+    for mode in modes:
+        if value == mode or value == mode.value:
+            return mode
+    raise ValueError(f'{name}: {value!r}; allowed: {", ".join(str(mode) for mode in modes)}')
+
+
 def read_action(name, value, space):
     """An array in a space, as float64."""
     allowed = f'real numbers, of shape {space.shape}'

@@ -73,12 +73,20 @@ class Environment(Env):
 
 
 class VectorEnvironment(VectorEnv):
-    """A task in many worlds, with the interface of gymnasium.vector.VectorEnv. A world whose episode has ended is reset in the next
-    step: that step ignores its action, and its reward is 0."""
+    """A task in many worlds, with the interface of gymnasium.vector.VectorEnv. `autoreset_mode`, an AutoresetMode or its value: when
+    a world is reset whose episode has ended.
+
+    NEXT_STEP: in the next step, which ignores its action, and whose reward is 0.
+    SAME_STEP: in the step that has ended it. The observation is the first one of the next episode; infos['final_obs'] and
+    infos['final_info'] are of the last moment of the one before, where infos['_final_obs'] says so.
+    DISABLED: by reset(options={'reset_mask': ...}) alone; before that, step() raises RuntimeError.
+    """
 
     metadata = {'render_modes': RENDER_MODES, 'render_fps': FRAMES_PER_SECOND, 'autoreset_mode': AutoresetMode.NEXT_STEP}
 
-    def __init__(self, task, num_envs, max_episode_steps, render_mode, threads):
+    def __init__(self, task, num_envs, max_episode_steps, render_mode, threads, autoreset_mode):
+        self.autoreset_mode = arguments.read_mode('autoreset_mode', autoreset_mode, AutoresetMode)
+        self.metadata = {**self.metadata, 'autoreset_mode': self.autoreset_mode}
         self.render_mode = arguments.read_render_mode(render_mode, RENDER_MODES)
         self.task = task
         self.num_envs = arguments.read_count('num_envs', num_envs)
@@ -111,9 +119,22 @@ class VectorEnvironment(VectorEnv):
         episodes = self._open('step')
         if not episodes.begun.all():
             refuse('step', 'no episode has begun in some worlds; call reset()')
+        if self.autoreset_mode is AutoresetMode.DISABLED and episodes.over.any():
+            worlds = ', '.join(map(str, numpy.flatnonzero(episodes.over)[:arguments.SHOWN]))
+            refuse('step', f"episodes are over, of worlds {worlds}; call reset(options={{'reset_mask': terminations | truncations}})")
         actions = arguments.read_action('actions', actions, self.action_space)
-        seen, rewards, terminated, truncated = episodes.step(actions, self._generators)
-        return seen.observation, rewards, terminated, truncated, self._infos(seen, numpy.ones(self.num_envs, dtype=bool))
+        everywhere = numpy.ones(self.num_envs, dtype=bool)
+        if self.autoreset_mode is AutoresetMode.NEXT_STEP:
+            seen, rewards, terminated, truncated = episodes.step(actions, self._generators)
+            return seen.observation, rewards, terminated, truncated, self._infos(seen, everywhere)
+        seen, terminated, truncated = episodes.step_all(actions)
+        ended = terminated | truncated
+        if self.autoreset_mode is AutoresetMode.DISABLED or not ended.any():
+            return seen.observation, seen.reward, terminated, truncated, self._infos(seen, everywhere)
+        begun = episodes.begin(ended, self._generators)
+        final = {'final_obs': numpy.where(ended[:, None], seen.observation, 0.0), '_final_obs': ended.copy(),
+                 'final_info': self._infos(seen, ended), '_final_info': ended.copy()}
+        return begun.observation, seen.reward, terminated, truncated, {**self._infos(begun, everywhere), **final}
 
     def render(self):
         """A picture of each world, see Environment.render; None if render_mode is None."""

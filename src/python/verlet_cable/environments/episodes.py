@@ -29,6 +29,14 @@ class Episodes:
         self.over &= ~mask
         return self.worlds.look()
 
+    def step_all(self, actions):
+        """A step of all episodes; returns what is seen, and where an episode is terminated and truncated."""
+        terminated = self.worlds.move(actions)
+        self.steps += 1
+        truncated = self.steps >= self.max_episode_steps
+        self.over = terminated | truncated
+        return self.worlds.look(), terminated, truncated
+
     def step(self, actions, generators):
         """A step of the episodes that are not over, and the first moment of new ones instead of those that are; returns what is
         seen, rewards, and where an episode is terminated and truncated."""

@@ -3,10 +3,13 @@ import functools
 
 import numpy
 
+from verlet_cable.environments import arguments
 from verlet_cable.environments.drawing import View
 from verlet_cable.environments.environment import Environment, VectorEnvironment
+from verlet_cable.environments.interface import AutoresetMode
 from verlet_cable.environments.posts import move_beside
-from verlet_cable.environments.task import REST_STEPS, STEP_TIME, Seen, Task, chain, constant, give_way, lengths, side_by_side
+from verlet_cable.environments.task import (REST_STEPS, STEP_TIME, Seen, Task, chain, constant, dots, give_way, lengths,
+                                            side_by_side)
 from verlet_cable.sim import Batch, Scene
 
 LENGTH = 0.6       # [m]
@@ -40,6 +43,9 @@ FOLD = 0.05                                # [m] radius; the cable begins folded
 END = 0.03                                 # [m] the hand is so far ahead of the other end at first
 
 EPISODE_STEPS = 400
+
+LEAD = 0.035                               # [m] so far before a clip, and behind it, a hand passes that leads the cable through
+SHAPING = 0.15                             # [m] over which the dense reward falls by e
 
 LAYOUT_SEED = 21
 LAYOUTS = 32
@@ -112,19 +118,50 @@ def held_by_clips(positions, clips):
     return (crosses & (abs(across) < GAP / 2) & (height < HEIGHT)).any(axis=-1)
 
 
+def count_held(held, hand, clips):
+    """How many clips hold the cable, (count,): held (count, clips), hands (count, 3), clips (count, clips, 4)."""
+    return held.sum(axis=1).astype(float)
+
+
+def dense_reward(held, hand, clips):
+    """How many clips hold the cable, and as far as the hand is on its way through the first one that does not up to 0.9 more,
+    (count,)."""
+    count = count_held(held, hand, clips)
+    first = clips[numpy.arange(len(clips)), held.argmin(axis=1)]
+    way = way_through(hand, first)
+    return count + numpy.where(held.all(axis=1), 0.0, 0.9 * numpy.exp(-way / SHAPING))
+
+
+def way_through(hand, clip):
+    """[m] How far hands (count, 3) have to go until they have led a cable through clips (count, 4): to the place before the clip,
+    and from there, or where they are between its posts already, to that behind it."""
+    along, across = clip[:, 2:], numpy.stack([-clip[:, 3], clip[:, 2]], axis=1)
+    away = hand[:, :2] - clip[:, :2]
+    forward, aside, up = dots(away, along), abs(dots(away, across)), hand[:, 2] - LOW[2]
+    through = numpy.maximum(LEAD - forward, 0) + aside + up
+    around = numpy.sqrt((forward + LEAD) ** 2 + aside ** 2 + up ** 2) + 2 * LEAD
+    leads = (aside < GAP / 2) & (forward > -LEAD) & (hand[:, 2] < HEIGHT)
+    return numpy.where(leads, numpy.minimum(through, around), around)
+
+
+REWARDS = {'clips': count_held, 'dense': dense_reward}
+
+
 class LayCableTask(Task):
     cable = 'cable'
     nodes = SEGMENTS + 1
+    touched = tuple(post['name'] for i in range(CLIPS) for post in make_posts(f'clip_{i}', numpy.array([0.0, 0, 1, 0])))
     option = 'layout'
     time_steps = round(STEP_TIME / TIME_STEP)
 
-    def __init__(self):
+    def __init__(self, reward):
+        self.reward = REWARDS[reward]
         self.layouts = constant(draw_layouts())
         self.posts = constant(numpy.array([[post['pose'][:2] for i, clip in enumerate(clips) for post in make_posts(f'clip_{i}', clip)]
                                            for clips in self.layouts]))
         hand = numpy.append(folded()[-1, :2], LOW[2])
         super().__init__(begin_worlds(self.layouts), numpy.arange(LAYOUTS), numpy.tile(hand, (LAYOUTS, 1)), actions=3,
-                         observations=6 * self.nodes + 6 + 5 * CLIPS)
+                         observations=6 * self.nodes + 6 + 8 * CLIPS)
         self.demonstrations = constant(demonstrate(self.layouts, hand))
 
     def move(self, hand, actions, seen):
@@ -157,11 +194,12 @@ class LayCableTask(Task):
         poses[..., 6] = 1
         return poses
 
-    def look(self, positions, velocities, force, hand, variants):
+    def look(self, positions, velocities, force, contacts, hand, variants):
         clips = self.layouts[variants]
         held = held_by_clips(positions, clips)
-        observation = side_by_side(positions, velocities, hand, force, clips, held.astype(float))
-        return Seen(observation, force, held.sum(axis=1).astype(float), {'held': held, 'layout': variants.copy()})
+        on_clips = contacts[:, 0::2] + contacts[:, 1::2]
+        observation = side_by_side(positions, velocities, hand, force, clips, held.astype(float), on_clips)
+        return Seen(observation, force, self.reward(held, hand, clips), {'held': held, 'layout': variants.copy()})
 
     def draw(self, positions, hand, variant):
         view = View((-0.35, -0.2), (0.6, 0.2), width=640)
@@ -194,17 +232,17 @@ def demonstrate(layouts, hand):
 
 def waypoints(clips):
     """Where the hand passes, (k, 3) [m]: down before the first clip, and through all."""
-    before, behind, low, high = 0.035, 0.035, LOW[2], 0.03
+    low, high = LOW[2], 0.03
     first, along = clips[0, :2], clips[0, 2:]
-    points = [[*(first - before * along), high]]
+    points = [[*(first - LEAD * along), high]]
     for clip in clips:
-        points += [[*(clip[:2] - before * clip[2:]), low], [*(clip[:2] + behind * clip[2:]), low]]
+        points += [[*(clip[:2] - LEAD * clip[2:]), low], [*(clip[:2] + LEAD * clip[2:]), low]]
     return numpy.array(points)
 
 
-@functools.lru_cache(maxsize=1)
-def make_task():
-    return LayCableTask()
+@functools.lru_cache(maxsize=len(REWARDS))
+def make_task(reward):
+    return LayCableTask(reward)
 
 
 class LayCable(Environment):
@@ -214,21 +252,24 @@ class LayCable(Environment):
     0.57 m in x, within 0.25 m in y, between 10.4 mm and 0.1 m in z, and within reach of the cable. It stops at posts, slides along
     them, or goes over them. If the force on it at the end of a step is above 5 N, it yields in the next step; within a step, the
     force is not limited.
-    Observation (327,) float64: nodes (51, 3) [m] from the tied end on, their velocities (51, 3) [m/s], the hand (3,) [m], the force
-    on it (3,) [N], the clips (3, 4): x, y [m] and the unit vector of the cable's direction in them; and whether they hold it (3,),
-    0 or 1.
-    Reward: the number of clips that hold the cable, 0 to 3: its center line passes between their posts, below their tops.
+    Observation (336,) float64: nodes (51, 3) [m] from the tied end on, their velocities (51, 3) [m/s], the hand (3,) [m], the force
+    on it (3,) [N], the clips (3, 4): x, y [m] and the unit vector of the cable's direction in them; whether they hold it (3,),
+    0 or 1; and the forces of the cable on the posts of each clip (3, 3) [N].
+    Reward: the number of clips that hold the cable, 0 to 3: its center line passes between their posts, below their tops. With
+    reward='dense' up to 0.9 more, the nearer the hand is to having led the cable through the first clip that does not hold it.
     Info: `held` (3,) bool; `layout`, the index of the arrangement of clips. Options of reset: `layout`, below 32; default: random.
     Episodes are truncated after `max_episode_steps` steps of 0.02 s (never if it is None), and terminated if the simulation
     had to stop.
     """
 
-    def __init__(self, render_mode=None, max_episode_steps=EPISODE_STEPS):
-        super().__init__(make_task(), max_episode_steps, render_mode)
+    def __init__(self, render_mode=None, max_episode_steps=EPISODE_STEPS, reward='clips'):
+        super().__init__(make_task(arguments.read_choice('reward', reward, REWARDS)), max_episode_steps, render_mode)
 
 
 class LayCableVector(VectorEnvironment):
-    """`num_envs` worlds of LayCable, on `threads` threads; 0: one per core."""
+    """`num_envs` worlds of LayCable, on `threads` threads; 0: one per core. `autoreset_mode`: see VectorEnvironment."""
 
-    def __init__(self, num_envs=1, render_mode=None, max_episode_steps=EPISODE_STEPS, threads=0):
-        super().__init__(make_task(), num_envs, max_episode_steps, render_mode, threads)
+    def __init__(self, num_envs=1, render_mode=None, max_episode_steps=EPISODE_STEPS, threads=0, autoreset_mode=AutoresetMode.NEXT_STEP,
+                 reward='clips'):
+        super().__init__(make_task(arguments.read_choice('reward', reward, REWARDS)), num_envs, max_episode_steps, render_mode, threads,
+                         autoreset_mode)

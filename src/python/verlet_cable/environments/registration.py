@@ -19,5 +19,5 @@ make_lay_cable = without_limit(lay_cable.LayCable)
 def register(gymnasium):
     for name, entry_point, steps in (('ShapeRope', 'make_shape_rope', shape_rope.EPISODE_STEPS),
                                      ('LayCable', 'make_lay_cable', lay_cable.EPISODE_STEPS)):
-        gymnasium.register(f'verlet_cable/{name}-v0', entry_point=f'{__name__}:{entry_point}',
+        gymnasium.register(f'verlet_cable/{name}-v1', entry_point=f'{__name__}:{entry_point}',
                            vector_entry_point=f'verlet_cable.environments:{name}Vector', max_episode_steps=steps)

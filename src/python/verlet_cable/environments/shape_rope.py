@@ -6,6 +6,7 @@ import numpy
 from verlet_cable.environments import arguments
 from verlet_cable.environments.drawing import View
 from verlet_cable.environments.environment import Environment, VectorEnvironment
+from verlet_cable.environments.interface import AutoresetMode
 from verlet_cable.environments.task import REST_STEPS, STEP_TIME, Seen, Task, chain, constant, give_way, lengths, side_by_side
 from verlet_cable.environments.worlds import Worlds
 from verlet_cable.sim import Scene, World
@@ -63,6 +64,7 @@ class ShapeRopeTask(Task):
     """The goals are shapes of the rope after random motions of the hand, from the same start as that of every episode."""
     cable = 'rope'
     nodes = SEGMENTS + 1
+    touched = ('table',)
     option = 'goal'
     time_steps = round(STEP_TIME / TIME_STEP)
 
@@ -71,7 +73,7 @@ class ShapeRopeTask(Task):
         world = World(Scene.from_dict(scene()))
         world.step(REST_STEPS)
         super().__init__([world], numpy.zeros(goals, dtype=int), numpy.tile([*bow()[-1, :2], -BOW], (goals, 1)), actions=3,
-                         observations=3 * numbers + 6)
+                         observations=3 * numbers + 9)
         self.demonstrations = constant(self._draw_actions(goals))
         self.goals = numpy.zeros((goals, self.nodes, 3))
         self.goals = constant(self._simulate_goals())
@@ -107,10 +109,10 @@ class ShapeRopeTask(Task):
         poses[..., 6] = numpy.cos(hand[..., 2] / 2)
         return poses
 
-    def look(self, positions, velocities, force, hand, variants):
+    def look(self, positions, velocities, force, contacts, hand, variants):
         goal = self.goals[variants]
         distance = lengths(positions - goal).mean(axis=1)
-        return Seen(side_by_side(positions, velocities, hand, force, goal), force, -distance,
+        return Seen(side_by_side(positions, velocities, hand, force, goal, contacts), force, -distance,
                     {'distance': distance, 'goal': variants.copy()})
 
     def draw(self, positions, hand, variant):
@@ -133,8 +135,8 @@ class ShapeRope(Environment):
     Action (3,), each from -1 to 1: velocity of the hand along x and y, in units of 0.4 m/s, and its angular velocity about z, in
     units of 2 rad/s. The hand stays between 0.25 m and 0.95 m in x, within 0.5 m in y and 2.5 rad, and within 0.95 m of the pin. If
     the force on it at the end of a step is above 20 N, it yields in the next step; within a step, the force is not limited.
-    Observation (465,) float64: nodes (51, 3) [m] from the pin on, their velocities (51, 3) [m/s], the hand's x, y [m] and angle
-    [rad], the force on the hand (3,) [N], and the nodes of the goal (51, 3) [m].
+    Observation (468,) float64: nodes (51, 3) [m] from the pin on, their velocities (51, 3) [m/s], the hand's x, y [m] and angle
+    [rad], the force on the hand (3,) [N], the nodes of the goal (51, 3) [m], and the force of the rope on the table (3,) [N].
     Reward: minus the mean distance of the nodes from those of the goal [m].
     Info: `distance` [m]; `goal`, its index. Options of reset: `goal`, an index below `goals`; default: random.
     Episodes are truncated after `max_episode_steps` steps of 0.02 s (never if it is None), and terminated if the simulation
@@ -146,7 +148,9 @@ class ShapeRope(Environment):
 
 
 class ShapeRopeVector(VectorEnvironment):
-    """`num_envs` worlds of ShapeRope, on `threads` threads; 0: one per core."""
+    """`num_envs` worlds of ShapeRope, on `threads` threads; 0: one per core. `autoreset_mode`: see VectorEnvironment."""
 
-    def __init__(self, num_envs=1, render_mode=None, max_episode_steps=EPISODE_STEPS, goals=64, threads=0):
-        super().__init__(make_task(arguments.read_count('goals', goals)), num_envs, max_episode_steps, render_mode, threads)
+    def __init__(self, num_envs=1, render_mode=None, max_episode_steps=EPISODE_STEPS, goals=64, threads=0,
+                 autoreset_mode=AutoresetMode.NEXT_STEP):
+        super().__init__(make_task(arguments.read_count('goals', goals)), num_envs, max_episode_steps, render_mode, threads,
+                         autoreset_mode)

@@ -28,6 +28,7 @@ class Task:
     """
     cable = None       # its name
     nodes = None       # how many it has
+    touched = ()       # names of obstacles whose contact forces are seen
     option = None      # the key of reset's options by which a variant is asked for
     time_steps = None  # of the scene, in a step
 
@@ -65,9 +66,9 @@ class Task:
         """(..., coordinates) -> (..., 7): x, y, z [m], qx, qy, qz, qw."""
         raise NotImplementedError
 
-    def look(self, positions, velocities, force, hand, variants):
-        """What is seen of worlds: nodes (count, n + 1, 3) [m], their velocities [m/s], forces on the hands (count, 3) [N], hands
-        (count, coordinates), variants (count,)."""
+    def look(self, positions, velocities, force, contacts, hand, variants):
+        """What is seen of worlds: nodes (count, n + 1, 3) [m], their velocities [m/s], forces on the hands (count, 3) [N] and on
+        what is `touched` (count, k, 3) [N], hands (count, coordinates), variants (count,)."""
         raise NotImplementedError
 
     def draw(self, positions, hand, variant):

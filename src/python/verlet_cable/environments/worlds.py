@@ -38,10 +38,13 @@ class Worlds:
     def look(self):
         """What is seen of the worlds and earned in them now, a Seen."""
         cable, numbers = self.task.cable, 3 * self.task.nodes
-        read = self.batch.observations([('positions', cable), ('velocities', cable), ('wrench', 'hand')])
-        positions, velocities, force, _ = numpy.split(read, [numbers, 2 * numbers, 2 * numbers + 3], axis=1)
+        read = self.batch.observations([('positions', cable), ('velocities', cable), ('wrench', 'hand'),
+                                        *(('contact_force', name) for name in self.task.touched)])
+        positions, velocities, wrenches = numpy.split(read, [numbers, 2 * numbers], axis=1)
         shape = (len(read), self.task.nodes, 3)
-        self.seen = self.task.look(positions.reshape(shape), velocities.reshape(shape), force, self.hand, self.variants)
+        forces = wrenches.reshape(len(read), 1 + len(self.task.touched), 6)[:, :, :3]
+        self.seen = self.task.look(positions.reshape(shape), velocities.reshape(shape), forces[:, 0], forces[:, 1:], self.hand,
+                                   self.variants)
         return self.seen
 
     def positions(self):

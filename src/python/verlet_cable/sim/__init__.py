@@ -32,9 +32,9 @@ When each begins and ends is in World.events() and Batch.events(world), under th
 All units are SI units. Poses are x, y, z, qx, qy, qz, qw in the fixed frame of the scene.
 """
 try:
-    from verlet_cable._simulation import Batch, Event, Load, Pieces, Pinned, Scene, SceneError, World
+    from verlet_cable._simulation import Batch, Event, Load, Pieces, Pinned, Scene, SceneError, World, Worlds
 except ImportError as error:
     raise ImportError(f'verlet_cable.sim: {error}; its compiled part is not where this file is: build the ROS workspace and source its '
                       'setup.bash, or type `pip install .` in the checkout, and import it from another directory') from error
 
-__all__ = ['Batch', 'Event', 'Load', 'Pieces', 'Pinned', 'Scene', 'SceneError', 'World']
+__all__ = ['Batch', 'Event', 'Load', 'Pieces', 'Pinned', 'Scene', 'SceneError', 'World', 'Worlds']
