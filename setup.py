@@ -10,7 +10,7 @@ from setuptools.command.build_ext import build_ext
 
 HERE = pathlib.Path(__file__).resolve().parent
 PACKAGES = {
-    'packages': ['verlet_cable', 'verlet_cable.convert', 'verlet_cable.environments', 'verlet_cable.sim', 'verlet_cable.sweep'],
+    'packages': ['verlet_cable', 'verlet_cable.camera', 'verlet_cable.convert', 'verlet_cable.environments', 'verlet_cable.sim', 'verlet_cable.sweep'],
     'package_dir': {'': 'src/python'},
 }
 # By which the package's CMake files install: all of it goes beside the modules.

@@ -8,9 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "binding/appearance.h"
 #include "binding/arguments.h"
 #include "binding/contact_array.h"
 #include "binding/drawing.h"
+#include "binding/drawings.h"
 #include "binding/edit_methods.h"
 #include "binding/motion_argument.h"
 #include "binding/run_steps.h"
@@ -94,6 +96,14 @@ std::string represent(const PythonWorld& world) {
 
 py::object draw(const py::object& world, const py::object& path, const py::object& view, const py::object& size) {
   return py::module_::import("verlet_cable.drawing").attr("draw")(world, path, view, size);
+}
+
+/// For verlet_cable.camera, and the time [s].
+py::tuple drawings(const PythonWorld& world, const py::dict& appearance) {
+  const World& simulated = use(world);
+  py::list times;
+  times.append(simulated.time());
+  return py::make_tuple(capsule_of({Appearance(appearance).drawing_of(simulated)}), times);
 }
 
 /// The method that reads a quantity.
@@ -238,6 +248,7 @@ void add_world_class(py::module_& module) {
            "drawn that thick. Notebooks show a world by it.\n\nRaises ImportError without matplotlib, ValueError, OSError.")
       .def("_repr_png_", [](const py::object& world) { return world.attr("draw")(); })
       .def("_shapes", [](const PythonWorld& world) { return drawn_shapes(use(world)); })
+      .def("_drawings", drawings)
       .def_property_readonly(
           "time", [](const PythonWorld& world) { return use(world).time(); }, "[s] Simulated time.")
       .def_property_readonly(
