@@ -111,14 +111,18 @@ void read_look(const std::string& name, const py::handle& given, view::Look& loo
 }  // namespace
 
 Appearance::Appearance(const py::dict& given) {
-  read_keys("appearance", given, "light, background, looks, distinct_colors",
+  read_keys("appearance", given, "light, background, looks, stripes, distinct_colors, least_radius",
             [&](const std::string& key, const py::handle& value) {
               if (key == "light") {
                 light_ = read_light(value);
               } else if (key == "background") {
                 background_ = read_color("background", value);
-              } else if (key == "distinct_colors") {
+              } else if (key == "stripes") {
+      options_.stripes = py::bool_(py::reinterpret_borrow<py::object>(value));
+    } else if (key == "distinct_colors") {
                 options_.distinct_colors = py::bool_(py::reinterpret_borrow<py::object>(value));
+              } else if (key == "least_radius") {
+                options_.least_radius = read_number("least_radius", value, not_negative, "m");
               } else if (key == "looks") {
                 if (!py::isinstance<py::dict>(value)) refuse("looks", value, "a dict of looks by the names of things");
                 for (const auto& [name, look] : py::reinterpret_borrow<py::dict>(value)) {

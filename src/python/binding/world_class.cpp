@@ -239,13 +239,14 @@ void add_world_class(py::module_& module) {
           "energy()['total']), unaccounted (change - work + dissipated: rounding and tolerances) and unaccounted_steps (in which "
           "that was too much).")
       .def("draw", draw, py::arg("path") = py::none(), py::arg("view") = py::none(), py::arg("size") = py::make_tuple(800, 600),
-           "A picture of the cables, nets, particles, bodies and obstacles as they are now, by matplotlib, which needs no "
-           "display: "
-           "written to the file `path`, whose name ends in .png, or without a path returned as the bytes of a PNG file. `view`: "
-           "(elevation, azimuth) [degree] from which it is seen, the latter from +x towards +y; None: one that shows the cables "
-           "from their broad side. `size`: (width, height) in pixels. Axes are equal, in metres; cables thinner than two pixels "
-           "are "
-           "drawn that thick. Notebooks show a world by it.\n\nRaises ImportError without matplotlib, ValueError, OSError.")
+           "A picture of the cables, nets, particles, bodies and obstacles as they are now, by verlet_cable.camera where that is "
+           "built, else by matplotlib with axes in metres; neither needs a display: written to the file `path`, whose name ends "
+           "in "
+           ".png, or without a path returned as the bytes of a PNG file. `view`: (elevation, azimuth) [degree] from which it is "
+           "seen, the latter from +x towards +y; None: one that shows the cables from their broad side. `size`: (width, height) "
+           "in "
+           "pixels. Cables thinner than two pixels are drawn that thick; cables of the same color are told apart by others. "
+           "Notebooks show a world by it.\n\nRaises ImportError without matplotlib, ValueError, OSError.")
       .def("_repr_png_", [](const py::object& world) { return world.attr("draw")(); })
       .def("_shapes", [](const PythonWorld& world) { return drawn_shapes(use(world)); })
       .def("_drawings", drawings)

@@ -132,6 +132,7 @@ class Camera:
     def render(
         self, world: Union[World, Batch], images: Sequence[str] = IMAGES, light: Optional[Mapping[str, Any]] = None,
         background: Optional[Sequence[float]] = None, looks: Optional[Mapping[str, Mapping[str, Any]]] = None,
+        stripes: bool = True, distinct_colors: bool = False, least_radius: float = 0.0,
     ) -> Dict[str, Any]:
         """A dict with what is asked for in `images`:
 
@@ -149,12 +150,14 @@ class Camera:
         light: dict with some of direction (3,) towards the sun, ambient (0 to 1: brightness of what the sun does not reach), shadows
         (bool). background: (red, green, blue), from 0 to 1. looks: {name: dict with some of color, second_color, pattern ('plain',
         'stripes' along cables, by which roll and twist are seen, 'checks' on all else), stripes (how many), stripe_width [rad],
-        check_size [m], shininess (0 to 1)}. Raises ValueError.
+        check_size [m], shininess (0 to 1)}. stripes: whether cables have one that nothing is said of in looks. distinct_colors: where cables or nets have the same color, all of them get others that
+        tell them apart. least_radius: [m] thinner cables are drawn so thick. Raises ValueError.
         """
         wanted = _checked_images(images)
-        appearance = {key: value for key, value in (('light', light), ('background', background), ('looks', looks)) if value is not None}
+        given = {'light': light, 'background': background, 'looks': looks, 'stripes': stripes, 'distinct_colors': distinct_colors,
+                 'least_radius': least_radius}
         drawings, times = _drawings(world, {key: dict(value) if isinstance(value, Mapping) else value
-                                            for key, value in appearance.items()})
+                                            for key, value in given.items() if value is not None})
         stamps = [round(time * _NANOSECONDS) for time in times]
         result: Dict[str, Any] = self._camera.render(drawings, self._pose, self._seed, stamps, wanted, self._threads)
         if 'truth' in result:
