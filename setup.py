@@ -11,7 +11,8 @@ from distutils.errors import DistutilsSetupError  # after setuptools, which has 
 
 HERE = pathlib.Path(__file__).resolve().parent
 PACKAGES = {
-    'packages': ['verlet_cable', 'verlet_cable.convert', 'verlet_cable.environments', 'verlet_cable.sim', 'verlet_cable.sweep'],
+    'packages': ['verlet_cable', 'verlet_cable.camera', 'verlet_cable.convert', 'verlet_cable.environments', 'verlet_cable.sim',
+                 'verlet_cable.sweep'],
     'package_dir': {'': 'src/python'},
 }
 # By which the package's CMake files install: all of it goes beside the modules.
@@ -59,7 +60,7 @@ else:
         license='BSD-3-Clause',
         python_requires='>=3.8',
         install_requires=['numpy'],
-        extras_require={'plot': ['matplotlib'], 'sweep': ['dask', 'distributed', 'zarr', 'pyyaml']},
+        extras_require={'camera': ['pillow'], 'plot': ['matplotlib'], 'sweep': ['dask', 'distributed', 'zarr', 'pyyaml']},
         package_data={'verlet_cable': ['py.typed', '*.pyi'], 'verlet_cable.environments': ['*.pyi'], 'verlet_cable.sim': ['*.pyi']},
         ext_modules=[Extension('verlet_cable._simulation', [])],
         cmdclass={'build_ext': BuildByCMake},

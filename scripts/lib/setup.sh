@@ -33,7 +33,7 @@ source_setup() {
 # The only list of system packages: to build, to run and to test; and, with a display only, to look at it. These are all that the Python
 # package needs.
 library_packages=(
-  build-essential cmake libassimp-dev libceres-dev libcli11-dev libconsole-bridge-dev libeigen3-dev libtbb-dev liburdfdom-dev
+  build-essential cmake libassimp-dev libceres-dev libcli11-dev libconsole-bridge-dev libeigen3-dev libembree-dev libtbb-dev liburdfdom-dev
   libyaml-cpp-dev nlohmann-json3-dev pybind11-dev python3-dev python3-numpy python3-setuptools python3-yaml
 )
 # And with pip.
@@ -67,7 +67,7 @@ fi
 sweep_packages=(python3-dask python3-distributed python3-zarr)
 
 # Besides those, for the pages of doc/python, which scripts/test and scripts/pictures run.
-page_packages=(python3-matplotlib python3-scipy)
+page_packages=(python3-matplotlib python3-pil python3-scipy)
 
 # For scripts/fuzz --coverage only.
 coverage_packages=(llvm)

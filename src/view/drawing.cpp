@@ -105,14 +105,15 @@ class Colors {
   std::vector<Color> colors_;
 };
 
-Tube tube_of(const SimulatedCable& cable, bool with_orientations) {
+Tube tube_of(const SimulatedCable& cable, const DrawingOptions& options) {
   const CableMaterials materials(cable);
+  const auto drawn = [&](double radius) { return std::max(radius, options.least_radius); };
   Tube tube{cable.state.positions, {}, {}};
   if (materials.vary())
-    for (int segment = 0; segment < cable.state.segments(); ++segment) tube.radii.push_back(materials[segment].radius);
+    for (int segment = 0; segment < cable.state.segments(); ++segment) tube.radii.push_back(drawn(materials[segment].radius));
   else
-    tube.radii.push_back(cable.model->material.radius);
-  if (with_orientations && are_sound(tube.centers)) tube.orientations = segment_orientations(cable.state);
+    tube.radii.push_back(drawn(cable.model->material.radius));
+  if (options.stripes && are_sound(tube.centers)) tube.orientations = segment_orientations(cable.state);
   return tube;
 }
 
@@ -199,8 +200,7 @@ Drawing drawing_of(const World& world, const DrawingOptions& options) {
   const Colors colors(world, options.distinct_colors);
   for (std::size_t i = 0; i < world.cables().size(); ++i) {
     const SimulatedCable& simulated = world.cables()[i];
-    drawing.things.push_back(
-        cable(simulated.model->name, tube_of(simulated, options.stripes), colors.of_cable(i), options.stripes));
+    drawing.things.push_back(cable(simulated.model->name, tube_of(simulated, options), colors.of_cable(i), options.stripes));
     if (!is_sound(drawing.things.back().tubes.front())) drawing.things.back().tubes.clear();
   }
   for (const SimulatedBody& body : world.bodies()) {
@@ -213,7 +213,8 @@ Drawing drawing_of(const World& world, const DrawingOptions& options) {
     drawing.things.push_back(std::move(thing));
   }
   for (std::size_t i = 0; i < world.nets().size(); ++i)
-    drawing.things.push_back(net_thing(world.nets()[i], colors.of_net(world, i), options.net_link_radius));
+    drawing.things.push_back(
+        net_thing(world.nets()[i], colors.of_net(world, i), std::max(options.net_link_radius, options.least_radius)));
   for (const SimulatedParticle& particle : world.particles()) {
     Thing thing{particle.desc.name, Thing::Kind::other, plain(color_of(particle.desc.color))};
     if (are_sound({particle.position})) {

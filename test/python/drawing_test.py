@@ -12,6 +12,15 @@ image = pytest.importorskip('matplotlib.image')
 START = b'\x89PNG\r\n\x1a\n'
 
 
+@pytest.fixture(autouse=True, params=['camera', 'matplotlib'])
+def drawn_by(request, monkeypatch):
+    """Once by the camera, where it is built, and once as without it."""
+    if request.param == 'camera':
+        pytest.importorskip('verlet_cable.camera')
+    else:
+        monkeypatch.setitem(sys.modules, 'verlet_cable.camera', None)
+
+
 def pixels(picture):
     """(height, width, 3) from 0 to 1."""
     return image.imread(io.BytesIO(picture))[:, :, :3]

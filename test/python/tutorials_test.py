@@ -32,6 +32,8 @@ def write(tmp_path):
 
 @pytest.mark.parametrize('page', PAGES, ids=lambda path: path.stem)
 def test_a_tutorial_does_what_it_says(page):
+    if page.stem == 'perception' and not (Path(os.environ['VERLET_CABLE_DEVEL']) / 'lib/verlet_cable/camera_node').exists():
+        pytest.skip('camera_node is not built: Embree is not installed')
     done = run_tutorial(page)
     assert done.returncode == 0, done.stdout
 

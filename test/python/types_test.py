@@ -49,6 +49,22 @@ print(batch.positions('hose').shape, batch.energy()['total'].sum(), batch.state_
 """
 
 
+CAMERA_SAMPLE = """
+import numpy as np
+from verlet_cable.camera import Camera, coco, presets
+from verlet_cable.sim import Batch, Scene, World
+
+world = World(Scene.load('hose.yaml'))
+camera = Camera(640, 480, noise={'axial': [0.001, 0, 0.002]}, preset='kinect_v1').look_at([1, 0, 1], (0, 0, 0))
+camera.pose = np.array([0, 0, 0, 0, 0, 0, 1.0])
+images = camera.render(Batch(world, 3), ['depth', 'rgb'], light={'ambient': 0.5}, looks={'hose': {'color': (1, 0, 0)}})
+print(images['depth'].shape, camera.matrix[0, 0], camera.labels(world)[0].upper(), presets()['kinect_v1'].source.upper())
+with coco.Dataset('data', keypoints=9) as dataset:
+    dataset.add(camera, world, target=[0, 0, 1])
+print(len(dataset), coco.crossings(camera.render(world)['truth']))
+"""
+
+
 def split(arguments):
     """`a: tuple[int, str], b: int = 1` at the commas between arguments."""
     pieces, depth = [''], 0
@@ -189,3 +205,12 @@ def test_type_checkers_find_the_stubs(tmp_path):
     status, text = check_types(tmp_path, SAMPLE + '\n'.join(wrong) + '\n')
     assert status == 1 and text.count('error:') == len(wrong), text
     assert (PACKAGES / 'verlet_cable/py.typed').is_file()
+
+
+def test_type_checkers_know_the_camera(tmp_path):
+    pytest.importorskip('mypy')
+    pytest.importorskip('numpy.typing')
+    status, text = check_types(tmp_path, CAMERA_SAMPLE)
+    assert status == 0, text
+    status, text = check_types(tmp_path, CAMERA_SAMPLE + 'Camera("wide")\ncamera.look_at(3)\ncamera.render(3)\n')
+    assert status == 1 and text.count('error:') == 3, text

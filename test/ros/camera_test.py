@@ -8,12 +8,13 @@ import unittest
 import numpy as np
 import rospy
 import rostest
+from geometry_msgs.msg import Point
 from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import CameraInfo, Image, PointCloud2
 
 from cable_client import CableClient, Frames, Messages, cable
 from images import array, labels_of, points_of
-from verlet_cable.msg import CableView
+from verlet_cable.msg import Cable, CableArray, CableView
 
 WIDTH, HEIGHT, FOV = 640, 480, 1.05
 FOCAL = WIDTH / 2 / math.tan(FOV / 2)     # [pixels]
@@ -228,6 +229,35 @@ class CameraTest(unittest.TestCase):
             refused = log.wait_for(lambda line: line.name == '/driven_camera' and 'height' in line.msg, 'refusal', 10)
             self.assertIn('allowed', refused.msg)
             images.next()  # it goes on with what it had
+
+    def test_a_state_without_appearance_is_seen(self):
+        """As of a bag that has the state only: after `tf_timeout`, in which an appearance might have come."""
+        state = CableArray()
+        state.header.frame_id = 'world'
+        state.cables = [Cable(name='recorded', radius=0.05, positions=[Point(-0.2, 0, 0.75), Point(0.2, 0, 0.75)])]
+        publisher = rospy.Publisher('/bag/state', CableArray, queue_size=5)
+        with Messages('/bag_camera/mask/image_raw', Image) as masks, Messages('/bag_camera/truth', CableView) as views:
+            for _ in range(60):
+                state.header.stamp = rospy.Time.now()
+                publisher.publish(state)
+                rospy.sleep(0.05)
+            mask = array(masks.all()[-1])
+            self.assertEqual((mask[24, 32], mask[2, 2]), (1, 0))
+            view = views.all()[-1]
+        self.assertEqual((view.cables, view.labels, list(view.first)), (['recorded'], ['recorded'], [0]))
+
+    def test_states_that_cannot_be_drawn_are_told_and_left_out(self):
+        publisher = rospy.Publisher('/bag/state', CableArray, queue_size=5)
+        with Messages('/rosout', Log) as log, Messages('/bag_camera/truth', CableView):
+            for _ in range(60):
+                state = CableArray()
+                state.header.frame_id = 'world'
+                state.header.stamp = rospy.Time.now()
+                state.cables = [Cable(name='broken', radius=-1, positions=[Point(math.nan, 0, 0.75)])]
+                publisher.publish(state)
+                rospy.sleep(0.05)
+            line = log.wait_for(lambda line: line.name == '/bag_camera' and line.level == Log.ERROR, 'error')
+            self.assertIn('tubes[0]', line.msg)
 
     def test_a_frame_that_tf_does_not_know_is_named(self):
         with Messages('/rosout', Log) as log, Messages('/lost_camera/depth/image_raw', Image) as images:

@@ -87,6 +87,7 @@ struct DrawingOptions {
   bool distinct_colors = false;    ///< where cables or nets have the same color, all of them get colors that tell them apart
   bool checks = true;              ///< on planes
   double net_link_radius = 0.001;  ///< [m] of the cords that a net's links are drawn as
+  double least_radius = 0;         ///< [m] thinner cables and cords are drawn so thick
 };
 
 /// What is seen of a world: its cables; its bodies, if they have shapes; nets, as cords along their links; particles; and

@@ -21,8 +21,8 @@ def page(checkout):
     topics = ['topic', 'type', 'content']
     return (generated('Topics and parameters of the camera', 'src/ros/camera and config/cameras/template.yaml')
             + '`camera_node`, and the nodelet `verlet_cable/CameraNodelet`, publish what a depth camera sees: [how to use '
-            'them](../how_to/camera_node.md). They are built where Embree is installed. Names are in the private namespace of the node, `/camera` '
-            'with `camera.launch`.\n\n'
+            'them](../how_to/camera_node.md). They are built where Embree is installed. Names are in the private namespace of the node, '
+            '`/camera` with `camera.launch`.\n\n'
             + '## Published topics\n\n' + table(topics, topic_rows(checkout, 'Topic', of_camera=True))
             + '## Subscribed topics\n\n' + table(topics, topic_rows(checkout, 'Subscribed topic', of_camera=True))
             + '## Parameters\n\nThe private parameters, all of which have defaults. The same in one file: '

@@ -14,12 +14,16 @@ GROUPS = {
     'Scene files': ['scene/scene_reader.h', 'scene/motion.h', 'scene/loads.h', 'scene/resource.h'],
     'Saved worlds': ['core/bytes.h', 'core/scene_numbers.h'],
     'Geometry': ['core/shape.h', 'core/triangle_mesh.h', 'core/rotation.h'],
+    'Camera (where Embree is installed)': [
+        'view/drawing.h', 'view/camera_model.h', 'view/sensor_model.h', 'view/stage.h', 'view/render.h'],
     'Look-ups and messages': [
         'core/body_name.h', 'core/obstacle_of.h', 'core/pin_rules.h', 'core/excursion_text.h', 'core/jump_text.h', 'core/ended_load_text.h',
         'core/name_list.h', 'core/number_text.h', 'core/quoted_text.h'],
 }
 MODULES = {
     'verlet_cable.sim': ['Scene', 'World', 'Batch', 'Event', 'Load', 'Pinned', 'Pieces', 'SceneError'],
+    'verlet_cable.camera': ['Camera', 'Preset'],
+    'verlet_cable.camera.coco': ['Dataset'],
     'verlet_cable.environments': ['ShapeRope', 'ShapeRopeVector', 'LayCable', 'LayCableVector', 'AutoresetMode', 'Box'],
 }
 TYPE = re.compile(r'^(?:class|struct|enum class|using) (\w+)[^;\n]*(?: [{=]|\{)', re.M)
@@ -38,8 +42,8 @@ def cpp_page(checkout):
     if sorted(grouped) != sorted(headers):
         raise ValueError(f'{__file__}: GROUPS differs from the headers: {sorted(headers.symmetric_difference(grouped))}')
     text = generated('C++', 'include/verlet_cable') + (
-        'All is in the namespace `verlet_cable`. The libraries are `verlet_cable_core`, without ROS, and `verlet_cable_scene`, which reads '
-        'scene files.\n\n')
+        'All is in the namespace `verlet_cable`. The libraries are `verlet_cable_core`, without ROS, `verlet_cable_scene`, which reads '
+        'scene files, and `verlet_cable_view`, the camera, in the namespace `verlet_cable::view`.\n\n')
     for group, names in GROUPS.items():
         text += f'## {group}\n\n'
         for name in names:

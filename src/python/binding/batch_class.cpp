@@ -9,9 +9,11 @@
 #include <utility>
 #include <vector>
 
+#include "binding/appearance.h"
 #include "binding/arguments.h"
 #include "binding/batch_arguments.h"
 #include "binding/batch_arrays.h"
+#include "binding/drawings.h"
 #include "binding/motion_argument.h"
 #include "binding/text_arguments.h"
 #include "simulation/edits.h"
@@ -160,6 +162,19 @@ void step(PythonBatch& batch, std::int64_t steps, std::int64_t record_every, con
   }
 }
 
+/// For verlet_cable.camera, of all worlds, and their times [s].
+py::tuple drawings(const PythonBatch& batch, const py::dict& given) {
+  const Batch& worlds = use(batch);
+  const Appearance appearance(given);
+  Drawings all;
+  py::list times;
+  for (std::size_t i = 0; i < worlds.size(); ++i) {
+    all.push_back(appearance.drawing_of(worlds[i].world()));
+    times.append(worlds[i].world().time());
+  }
+  return py::make_tuple(capsule_of(std::move(all)), times);
+}
+
 /// The method that reads a quantity.
 template <Quantity quantity>
 py::array_t<double> read(PythonBatch& batch, const py::str& name, std::optional<double> missing) {
@@ -242,6 +257,7 @@ BatchClass add_batch_class(py::module_& module) {
            "`count` copies of a world in its present state, with its time, motion, poses that were set, and edits. Each "
            "continues with the same bytes as the world would.")
       .def("__repr__", represent)
+      .def("_drawings", drawings)
       .def("__len__", [](const PythonBatch& batch) { return use(batch).size(); })
       .def(
           "__getitem__",

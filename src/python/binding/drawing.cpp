@@ -3,11 +3,12 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <variant>
 #include <vector>
 
 #include "scene/surface.h"
-#include "verlet_cable/core/cable_materials.h"
+#include "verlet_cable/view/drawing.h"
 
 namespace verlet_cable {
 namespace {
@@ -25,45 +26,58 @@ py::tuple solid(const Shape& shape, const Pose& pose) {
   return py::make_tuple(points_array(surface.points), surface.faces);
 }
 
+py::list solids_of(const view::Thing& thing) {
+  py::list solids;
+  for (const view::Part& part : thing.parts) solids.append(solid(part.shape, thing.pose * part.pose));
+  return solids;
+}
+
 /// (name, positions, radius of each segment, color)
-py::tuple drawn_cable(const SimulatedCable& cable) {
-  const CableMaterials materials(cable);
-  std::vector<double> radii(cable.state.rest_lengths.size());
-  for (std::size_t i = 0; i < radii.size(); ++i) radii[i] = materials[static_cast<int>(i)].radius;
-  return py::make_tuple(cable.model->name, points_array(cable.state.positions), radii, cable.model->color);
+py::tuple drawn_cable(const view::Thing& thing) {
+  const view::Tube& tube = thing.tubes.front();
+  std::vector<double> radii = tube.radii;
+  if (radii.size() == 1) radii.assign(tube.centers.size() - 1, tube.radii.front());
+  return py::make_tuple(thing.name, points_array(tube.centers), radii, thing.look.color);
+}
+
+/// (name, positions, links, color)
+py::tuple drawn_net(const view::Thing& thing) {
+  std::vector<Vector3> points;
+  std::vector<std::array<std::size_t, 2>> links;
+  for (const view::Tube& cord : thing.tubes) {
+    links.push_back({points.size(), points.size() + 1});
+    points.insert(points.end(), cord.centers.begin(), cord.centers.end());
+  }
+  return py::make_tuple(thing.name, points_array(points), links, thing.look.color);
 }
 
 }  // namespace
 
 py::dict drawn_shapes(const World& world) {
-  py::list cables, nets, particles, bodies, obstacles, planes;
-  for (const SimulatedCable& cable : world.cables()) cables.append(drawn_cable(cable));
-  for (const SimulatedNet& net : world.nets())
-    nets.append(py::make_tuple(net.model.name, points_array(net.state.positions), net.model.links, net.model.color));
-  for (const SimulatedParticle& particle : world.particles()) {
-    const Pose pose{particle.position, Quaternion::Identity()};
-    particles.append(py::make_tuple(particle.desc.name, solid(SphereShape{particle.desc.radius}, pose), particle.desc.color));
-  }
-  for (const SimulatedBody& body : world.bodies()) {
-    if (body.is_junction) continue;
-    py::list solids;
-    for (const BodyShape& shape : body.shapes) solids.append(solid(shape.shape, body.pose * shape.pose));
-    bodies.append(py::make_tuple(body.name, points_array({body.pose.position}), solids));
-  }
-  for (const Obstacle& obstacle : world.obstacles()) {
-    if (!obstacle.present) continue;
-    const Pose pose = world.frame_pose(obstacle.frame) * obstacle.pose;
-    if (std::holds_alternative<PlaneShape>(obstacle.shape))
-      planes.append(points_array({pose.position, pose.orientation * Vector3::UnitZ()}));
-    else
-      obstacles.append(solid(obstacle.shape, pose));
+  view::DrawingOptions options;
+  options.stripes = false;
+  options.distinct_colors = true;
+  py::list cables, nets, bodies, solids, planes;
+  for (const view::Thing& thing : view::drawing_of(world, options).things) {
+    if (thing.kind == view::Thing::Kind::cable) {
+      if (!thing.tubes.empty()) cables.append(drawn_cable(thing));
+    } else if (thing.kind == view::Thing::Kind::body) {
+      bodies.append(py::make_tuple(thing.name, points_array({thing.pose.position}), solids_of(thing), thing.look.color));
+    } else if (!thing.tubes.empty()) {
+      nets.append(drawn_net(thing));
+    } else if (!thing.parts.empty() && std::holds_alternative<PlaneShape>(thing.parts.front().shape)) {
+      const Pose pose = thing.pose * thing.parts.front().pose;
+      planes.append(
+          py::make_tuple(thing.name, points_array({pose.position, pose.orientation * Vector3::UnitZ()}), thing.look.color));
+    } else {
+      for (const py::handle& one : solids_of(thing)) solids.append(py::make_tuple(one, thing.look.color));
+    }
   }
   py::dict shapes;
   shapes["cables"] = cables;
   shapes["nets"] = nets;
-  shapes["particles"] = particles;
   shapes["bodies"] = bodies;
-  shapes["obstacles"] = obstacles;
+  shapes["solids"] = solids;
   shapes["planes"] = planes;
   return shapes;
 }

@@ -8,9 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "binding/appearance.h"
 #include "binding/arguments.h"
 #include "binding/contact_array.h"
 #include "binding/drawing.h"
+#include "binding/drawings.h"
 #include "binding/edit_methods.h"
 #include "binding/motion_argument.h"
 #include "binding/run_steps.h"
@@ -104,6 +106,14 @@ std::string represent(PythonWorld& world) {
 
 py::object draw(const py::object& world, const py::object& path, const py::object& view, const py::object& size) {
   return py::module_::import("verlet_cable.drawing").attr("draw")(world, path, view, size);
+}
+
+/// For verlet_cable.camera, and the time [s].
+py::tuple drawings(PythonWorld& world, const py::dict& appearance) {
+  const World& simulated = world.world();
+  py::list times;
+  times.append(simulated.time());
+  return py::make_tuple(capsule_of({Appearance(appearance).drawing_of(simulated)}), times);
 }
 
 /// The method that reads a quantity.
@@ -226,15 +236,17 @@ py::class_<PythonWorld> add_world_class(py::module_& module) {
           "energy", [](PythonWorld& world) { return energy_dict(world.world().energy()); },
           "Dict with kinetic, gravity, stretch, bend, twist and total [J], as in the summary of cable_sim.")
       .def("draw", draw, py::arg("path") = py::none(), py::arg("view") = py::none(), py::arg("size") = py::make_tuple(800, 600),
-           "A picture of the cables, nets, particles, bodies and obstacles as they are now, by matplotlib, which needs no "
-           "display: "
-           "written to the file `path`, whose name ends in .png, or without a path returned as the bytes of a PNG file. `view`: "
-           "(elevation, azimuth) [degree] from which it is seen, the latter from +x towards +y; None: one that shows the cables "
-           "from their broad side. `size`: (width, height) in pixels. Axes are equal, in metres; cables thinner than two pixels "
-           "are "
-           "drawn that thick. Notebooks show a world by it.\n\nRaises ImportError without matplotlib, ValueError, OSError.")
+           "A picture of the cables, nets, particles, bodies and obstacles as they are now, by verlet_cable.camera where that is "
+           "built, else by matplotlib with axes in metres; neither needs a display: written to the file `path`, whose name ends "
+           "in "
+           ".png, or without a path returned as the bytes of a PNG file. `view`: (elevation, azimuth) [degree] from which it is "
+           "seen, the latter from +x towards +y; None: one that shows the cables from their broad side. `size`: (width, height) "
+           "in "
+           "pixels. Cables thinner than two pixels are drawn that thick; cables of the same color are told apart by others. "
+           "Notebooks show a world by it.\n\nRaises ImportError without matplotlib, ValueError, OSError.")
       .def("_repr_png_", [](const py::object& world) { return world.attr("draw")(); })
       .def("_shapes", [](PythonWorld& world) { return drawn_shapes(world.world()); })
+      .def("_drawings", drawings)
       .def_property_readonly(
           "time", [](PythonWorld& world) { return world.world().time(); }, "[s] Simulated time.")
       .def_property_readonly(

@@ -1,4 +1,5 @@
-"""World.draw: a picture of a world by matplotlib. Everything is made of flat faces, which are drawn from far to near."""
+"""World.draw: a picture of a world, by the camera where that is built, and else by matplotlib alone: there everything is made of flat
+faces, which are drawn from far to near."""
 import io
 import itertools
 import math
@@ -22,8 +23,14 @@ _ELEVATION, _FLAT_ELEVATION = 20.0, 45.0
 _LIGHT = np.array([-0.35, -0.55, 0.76])
 _AMBIENT = 0.55
 _NET_RADIUS = 1e-3        # [m]
-_OBSTACLE, _BODY = (0.8, 0.8, 0.8), (1.0, 0.6, 0.25)
-_PLANE = (0.93, 0.93, 0.9)
+# By the camera
+_FOV = 0.45               # [rad] of the picture's larger side: far away, so that there is little perspective
+_FINER = 2                # pixels that are seen for one of the picture, in each direction
+_FINEST = 8192            # [pixel] with more, there is one
+_BACKGROUND = (1.0, 1.0, 1.0)
+_FROM_ABOVE, _FROM_THE_LEFT = (0, 0, 1.5), -0.6  # the light, beside who looks
+_SQUARES = 12             # about so many squares of a plane are along what is seen
+_BAR = 0.2                # of the width: about how long a scale is
 
 
 def draw(world, path=None, view=None, size=(800, 600)):
@@ -35,12 +42,20 @@ def draw(world, path=None, view=None, size=(800, 600)):
     except ImportError as error:
         raise ImportError(f'World.draw: {error}; it needs matplotlib (Debian: sudo apt-get install python3-matplotlib; '
                           'pip install matplotlib)') from error
-    picture = _png(world, view, size)
+    picture = (_seen if _has_camera() else _png)(world, view, size)
     if path is None:
         return picture
     with open(path, 'wb') as file:
         file.write(picture)
     return None
+
+
+def _has_camera():
+    try:
+        import verlet_cable.camera  # noqa: F401
+    except ImportError:
+        return False
+    return True
 
 
 def _checked(path, view, size):
@@ -129,13 +144,12 @@ def _split(corners, longest):
 def _limits(shapes):
     """(lowest, highest) corner of what is seen: everything but planes, of which there is what is near."""
     clouds = [points for _, points, *_ in shapes['cables'] + shapes['nets']]
-    clouds += [points for _, (points, _), _ in shapes['particles']]
-    clouds += [points for points, _ in shapes['obstacles']]
-    for _, position, solids in shapes['bodies']:
+    clouds += [points for (points, _), _ in shapes['solids']]
+    for _, position, solids, _ in shapes['bodies']:
         clouds += [position, *(points for points, _ in solids)]
     points = np.concatenate(clouds) if clouds else np.zeros((1, 3))
     low, high = points.min(axis=0), points.max(axis=0)
-    for origin, normal in shapes['planes']:
+    for _, (origin, normal), _ in shapes['planes']:
         middle, reach = (low + high) / 2, max((high - low).max(), 1e-3)
         foot = middle - np.dot(middle - origin, normal) * normal
         if np.dot(middle - origin, normal) < reach + np.linalg.norm(high - low) / 2:
@@ -165,13 +179,15 @@ def _plane_in_box(origin, normal, low, high):
     return found[np.argsort(np.arctan2((found - middle) @ second, (found - middle) @ first))]
 
 
-def _colors(shapes):
-    """Those of the scene where they tell cables and nets apart, else matplotlib's."""
-    from matplotlib.colors import to_rgb
-    given = [tuple(thing[3]) for thing in shapes['cables'] + shapes['nets']]
-    if len(set(given)) == len(given):
-        return given
-    return [to_rgb(f'C{index % 10}') for index in range(len(given))]
+def _direction(shapes, low, high, view):
+    """(elevation, azimuth) [degree], and the unit vector to who looks."""
+    extent = high - low
+    is_across_y = extent[1] > extent[0]
+    is_flat = extent[2] <= 1.01 * _LEAST_PART * extent.max()
+    elevation, azimuth = view or (_FLAT_ELEVATION if is_flat else _ELEVATION, -25.0 if is_across_y else -65.0)
+    angles = np.radians([elevation, azimuth])
+    towards = np.array([np.cos(angles[0]) * np.cos(angles[1]), np.cos(angles[0]) * np.sin(angles[1]), np.sin(angles[0])])
+    return elevation, azimuth, towards
 
 
 def _png(world, view, size):
@@ -180,42 +196,41 @@ def _png(world, view, size):
     shapes = world._shapes()
     low, high = _limits(shapes)
     extent = high - low
+    elevation, azimuth, towards = _direction(shapes, low, high, view)
     figure = Figure(figsize=(size[0] / _DPI, size[1] / _DPI), dpi=_DPI)
     FigureCanvasAgg(figure)
     side = max(size)  # matplotlib has square ones: it reaches beyond the picture, into which `_fit` puts what it shows
     width, height = side / size[0], side / size[1]
     axes = figure.add_axes([0.5 - width / 2, 0.47 - height / 2, width, height], projection='3d', computed_zorder=False)
     axes.set_proj_type('ortho')
-    is_across_y = extent[1] > extent[0]
-    is_flat = extent[2] <= 1.01 * _LEAST_PART * extent.max()
-    elevation, azimuth = view or (_FLAT_ELEVATION if is_flat else _ELEVATION, -25.0 if is_across_y else -65.0)
     axes.view_init(elevation, azimuth)
     _label(axes, low, high, extent)
     metres_a_pixel = _fit(axes, low, high, size)
-    angles = np.radians([elevation, azimuth])
-    towards = np.array([np.cos(angles[0]) * np.cos(angles[1]), np.cos(angles[0]) * np.sin(angles[1]), np.sin(angles[0])])
     _draw_planes(axes, shapes, low, high, towards)
-    colors = _colors(shapes)
     faces = _Faces(towards)
     longest = extent.max() / _SPLIT
-    for solid in shapes['obstacles']:
-        faces.add_solid(solid, _OBSTACLE, longest)
-    for _, _, solids in shapes['bodies']:
+    for _, _, solids, color in shapes['bodies']:
         for solid in solids:
-            faces.add_solid(solid, _BODY, longest)
-    for _, solid, color in shapes['particles']:
+            faces.add_solid(solid, color, longest)
+    for solid, color in shapes['solids']:
         faces.add_solid(solid, color, longest)
     segments = sum(len(cable[1]) for cable in shapes['cables'])
     sides = int(min(_SIDES, max(3, _FACES // max(segments, 1))))
     thinnest = 0.5 * _LEAST_WIDTH * metres_a_pixel
-    for (_, points, radii, _), color in zip(shapes['cables'], colors):
+    for _, points, radii, color in shapes['cables']:
         faces.add_tube(points, np.maximum(radii, thinnest), color, sides)
-    for (_, points, links, _), color in zip(shapes['nets'], colors[len(shapes['cables']):]):
+    for _, points, links, color in shapes['nets']:
         for first, last in links:
             faces.add_tube(points[[first, last]], [max(_NET_RADIUS, 0.5 * thinnest)], color, 3)
     faces.draw(axes, zorder=2)
-    _draw_names(figure, axes, shapes, colors)
-    figure.text(0.02, 0.96, f'{world.time:.3f} s', fontsize=10, va='center')
+    _draw_legend(figure, world, shapes)
+    if len(shapes['bodies']) <= _LABELLED:
+        for name, position, *_ in shapes['bodies']:
+            axes.text(*position[0], '  ' + name, fontsize=8, zorder=4)
+    return _bytes(figure)
+
+
+def _bytes(figure):
     buffer = io.BytesIO()
     figure.savefig(buffer, format='png', dpi=_DPI)
     return buffer.getvalue()
@@ -236,24 +251,22 @@ def _label(axes, low, high, extent):
 def _draw_planes(axes, shapes, low, high, towards):
     """Before all that is above them, as far as one looks down on them."""
     planes = _Faces(towards)
-    for origin, normal in shapes['planes']:
+    for _, (origin, normal), color in shapes['planes']:
         corners = _plane_in_box(origin, normal, low, high)
         if corners is not None:
-            planes.add(corners, normal, _PLANE)
+            planes.add(corners, normal, color)
     planes.draw(axes, zorder=1 if towards[2] >= 0 else 3, alpha=0.8)
 
 
-def _draw_names(figure, axes, shapes, colors):
+def _draw_legend(figure, world, shapes):
     from matplotlib.patches import Patch
-    names = [thing[0] for thing in shapes['cables'] + shapes['nets']]
-    handles = [Patch(color=color[:3], label=name) for name, color in zip(names, colors)] if len(names) <= _LISTED else []
-    handles += [Patch(color=_BODY, label='bodies')] if any(solids for _, _, solids in shapes['bodies']) else []
-    handles += [Patch(color=_OBSTACLE, label='obstacles')] if shapes['obstacles'] or shapes['planes'] else []
+    lines = shapes['cables'] + shapes['nets']
+    handles = [Patch(color=color, label=name) for name, *_, color in lines] if len(lines) <= _LISTED else []
+    handles += [Patch(color=color, label='bodies') for *_, solids, color in shapes['bodies'] if solids][:1]
+    handles += [Patch(color=color, label='obstacles') for *_, color in shapes['solids'] + shapes['planes']][:1]
     if handles:
         figure.legend(handles=handles, loc='upper right', fontsize=8, frameon=False, ncol=min(len(handles), 5), handlelength=1.2)
-    if len(shapes['bodies']) <= _LABELLED:
-        for name, position, _ in shapes['bodies']:
-            axes.text(*position[0], '  ' + name, fontsize=8, zorder=4)
+    figure.text(0.02, 0.96, f'{world.time:.3f} s', fontsize=10, va='center')
 
 
 def _fit(axes, low, high, size):
@@ -270,3 +283,70 @@ def _fit(axes, low, high, size):
     axes.set_box_aspect(high - low, zoom=min(_ROOM[0] * size[0] / across, _ROOM[1] * size[1] / up))
     steps = pixels(low + np.vstack([np.zeros(3), np.eye(3)]))
     return 1 / np.linalg.norm(steps[1:] - steps[0], ord=2)
+
+
+def _seen(world, view, size):
+    """The picture by the camera."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    from verlet_cable.camera import Camera
+    shapes = world._shapes()
+    low, high = _limits(shapes)
+    _, _, towards = _direction(shapes, low, high, view)
+    middle, reach = (low + high) / 2, np.linalg.norm(high - low) / 2
+    scale = 2 * math.tan(_FOV / 2) / max(size)  # [1] size of a pixel at a distance of 1
+    distance = _distance(low, high, middle, towards, size, scale)
+    finer = _FINER if _FINER * max(size) <= _FINEST else 1
+    camera = Camera(finer * size[0], finer * size[1], 2 * math.atan(scale * size[0] / 2), near=0.01 * distance, far=distance + 40 * reach)
+    up = [0, 0, 1] if abs(towards[2]) < 1 - 1e-6 else [0, towards[2], 0]
+    camera.look_at(middle + distance * towards, middle, up)
+    square = _round_length(2 * reach / _SQUARES)
+    sun = np.add(towards, _FROM_ABOVE) + _FROM_THE_LEFT * np.cross(up, towards)
+    rgb = camera.render(world, ['rgb'], background=_BACKGROUND, light={'direction': sun, 'ambient': _AMBIENT}, stripes=False,
+                        distinct_colors=True, least_radius=0.5 * _LEAST_WIDTH * scale * distance,
+                        looks={name: {'check_size': square} for name, *_ in shapes['planes']})['rgb']
+    pixels = rgb.reshape(size[1], finer, size[0], finer, 3).mean(axis=(1, 3))
+    figure = Figure(figsize=(size[0] / _DPI, size[1] / _DPI), dpi=_DPI)
+    FigureCanvasAgg(figure)
+    figure.figimage(pixels / 255)
+    _draw_legend(figure, world, shapes)
+    _draw_scale(figure, scale * distance, size)
+    if len(shapes['bodies']) <= _LABELLED:
+        for name, position, *_ in shapes['bodies']:
+            across, down, depth = camera.matrix @ ((position[0] - camera.pose[:3]) @ _axes(camera.pose))
+            figure.text(across / depth / camera.width, 1 - down / depth / camera.height, '   ' + name, fontsize=8, va='center')
+    return _bytes(figure)
+
+
+def _distance(low, high, middle, towards, size, scale):
+    """[m] From which all corners are in the picture, below the legend."""
+    across = np.cross([0, 0, 1], towards) if abs(towards[2]) < 1 - 1e-6 else np.array([1.0, 0, 0])
+    across /= np.linalg.norm(across)
+    corners = np.array(list(itertools.product(*zip(low, high)))) - middle
+    beside, above = np.abs(corners @ across), np.abs(corners @ np.cross(towards, across))
+    room = 0.5 * scale * np.array(size) * (0.9, 0.84)
+    return max(np.max(beside / room[0] + corners @ towards), np.max(above / room[1] + corners @ towards))
+
+
+def _axes(pose):
+    """(3, 3) Columns: the axes of the optical frame."""
+    x, y, z, w = pose[3:]
+    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                     [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                     [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
+
+
+def _round_length(length):
+    """1, 2 or 5 times a power of ten, the nearest one below."""
+    power = 10 ** math.floor(math.log10(length))
+    return max(step * power for step in (1, 2, 5) if step * power <= length * (1 + 1e-9))
+
+
+def _draw_scale(figure, metres_a_pixel, size):
+    """How long what is in the middle of the picture is."""
+    from matplotlib.lines import Line2D
+    length = _round_length(_BAR * size[0] * metres_a_pixel)
+    part = length / metres_a_pixel / size[0]
+    figure.add_artist(Line2D([0.02, 0.02 + part], [0.03, 0.03], color='0.2', linewidth=2, solid_capstyle='butt'))
+    figure.text(0.02, 0.04, f'{length:g} m', fontsize=8, va='bottom')

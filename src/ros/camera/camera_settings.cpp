@@ -114,7 +114,8 @@ void check(const Value& root, const CameraSettings& settings) {
   check_topic(root, "state", settings.state);
   if (settings.state.empty()) root.errors->add("state", "\"\"", topic_words);
   check_topic(root, "camera_info_topic", settings.camera_info_topic);
-  if (!is_frame_name(settings.optical_frame)) root.errors->add("optical_frame", verlet_cable::quoted(settings.optical_frame), frame_words);
+  if (!is_frame_name(settings.optical_frame))
+    root.errors->add("optical_frame", verlet_cable::quoted(settings.optical_frame), frame_words);
   check_range(root, "rate", "Hz", settings.rate, rates);
   check_range(root, "tf_timeout", "s", settings.tf_timeout, timeouts);
   if (settings.seed < 0) root.errors->add("seed", std::to_string(settings.seed), "an integer from 0");

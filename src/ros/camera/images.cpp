@@ -37,8 +37,7 @@ void Images::publish(const Shot& shot) const {
   if (depth) buffers.depth = pixels_of<float>(*depth);
   if (rgb) buffers.rgb = rgb->data.data();
   if (mask) buffers.mask = pixels_of<std::uint16_t>(*mask);
-  if (depth || rgb || mask)
-    view::render(shot.stage, shot.lens, shot.pose, sensor_, {seed_, shot.header.stamp.toNSec()}, buffers);
+  if (depth || rgb || mask) view::render(shot.stage, shot.lens, shot.pose, sensor_, {seed_, shot.header.stamp.toNSec()}, buffers);
   if (depth && depth_encoding_ == DepthEncoding::millimetres) round_to_millimetres(*depth);
   if (with_depth) depth_.publish(depth);
   if (with_color) color_.publish(rgb);

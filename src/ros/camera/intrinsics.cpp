@@ -42,7 +42,8 @@ void Intrinsics::receive(const sensor_msgs::CameraInfoConstPtr& info) {
 }
 
 bool Intrinsics::are_wanted() const {
-  return std::any_of(publishers_.begin(), publishers_.end(), [](const auto& publisher) { return publisher.getNumSubscribers() > 0; });
+  return std::any_of(publishers_.begin(), publishers_.end(),
+                     [](const auto& publisher) { return publisher.getNumSubscribers() > 0; });
 }
 
 void Intrinsics::publish(const ros::Time& stamp) const {

@@ -12,8 +12,8 @@
 
 namespace verlet_cable {
 
-/// Topic `camera_info` (sensor_msgs/CameraInfo): the intrinsics and the distortion of the images, with their stamp; also beside each
-/// image, `depth/camera_info`, `rgb/camera_info` and `mask/camera_info`, where rviz and image_transport look for it. With
+/// Topic `camera_info` (sensor_msgs/CameraInfo): the intrinsics and the distortion of the images, with their stamp; also beside
+/// each image, `depth/camera_info`, `rgb/camera_info` and `mask/camera_info`, where rviz and image_transport look for it. With
 /// `camera_info_topic`, those that are received there; until then there are no images.
 class Intrinsics {
  public:
@@ -30,7 +30,7 @@ class Intrinsics {
 
   const std::string frame_;
   const double near_, far_;
-  const std::string topic_;   ///< of the driver; empty: none
+  const std::string topic_;                 ///< of the driver; empty: none
   std::vector<ros::Publisher> publishers_;  ///< but for a topic that the driver publishes itself
   ros::Subscriber subscriber_;
   sensor_msgs::CameraInfo info_;

@@ -9,7 +9,8 @@
 namespace verlet_cable {
 namespace {
 
-constexpr std::uint32_t queue_size = 10;
+constexpr std::uint32_t state_queue_size = 1;  // a camera that cannot keep up sees what is newest
+constexpr std::uint32_t appearance_queue_size = 100;
 constexpr std::size_t most_waiting = 100;     // a second of states, as many as a cable node has in its queue
 const ros::WallDuration retry_period(0.002);  // tf has no call for what comes
 constexpr double log_period = 5;              // [s] between warnings about what may last
@@ -43,8 +44,8 @@ void MomentSource::listen(bool wanted) {
     return;
   }
   const auto now = ros::TransportHints().tcpNoDelay();
-  appearances_ = node_.subscribe(appearance_topic_, queue_size, &MomentSource::receive_appearance, this, now);
-  states_ = node_.subscribe(state_topic_, queue_size, &MomentSource::receive_state, this, now);
+  appearances_ = node_.subscribe(appearance_topic_, appearance_queue_size, &MomentSource::receive_appearance, this, now);
+  states_ = node_.subscribe(state_topic_, state_queue_size, &MomentSource::receive_state, this, now);
 }
 
 void MomentSource::receive_state(const CableArrayConstPtr& state) {

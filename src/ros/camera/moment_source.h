@@ -12,8 +12,9 @@
 
 namespace verlet_cable {
 
-/// Subscribed topic `/cable/state` (verlet_cable/CableArray), or that which the parameter `state` names, and `appearance` beside it,
-/// as long as somebody listens to the camera. One state is taken in each period of `rate`, with the appearance of the same stamp.
+/// Subscribed topic `/cable/state` (verlet_cable/CableArray), or that which the parameter `state` names, and `appearance` beside
+/// it, as long as somebody listens to the camera. One state is taken in each period of `rate`, with the appearance of the same
+/// stamp.
 class MomentSource {
  public:
   /// Takes a moment, or returns why it cannot be taken yet. `is_last`: it is not offered again.

@@ -1,6 +1,7 @@
 #include "camera/seen_robot.h"
 
 #include <ros/console.h>
+
 #include <utility>
 
 #include "scene/scene_files.h"

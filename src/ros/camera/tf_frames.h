@@ -12,7 +12,8 @@
 
 namespace verlet_cable {
 
-/// Subscribed topic `/tf` (tf2_msgs/TFMessage), and `/tf_static`: where the camera and the robot's links are at the time of a state.
+/// Subscribed topic `/tf` (tf2_msgs/TFMessage), and `/tf_static`: where the camera and the robot's links are at the time of a
+/// state.
 class TfFrames {
  public:
   TfFrames();

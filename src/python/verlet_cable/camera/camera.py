@@ -1,0 +1,265 @@
+"""The class Camera: arguments and arrays around what is compiled."""
+from __future__ import annotations
+
+import operator
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from verlet_cable import _camera
+from verlet_cable.sim import Batch, World
+from verlet_cable.wrong_arguments import meant
+
+IMAGES = ('depth', 'rgb', 'mask', 'points', 'truth')
+_MOST_THREADS = 1024
+_NOISE = {'axial': (0.0, 0.0, 0.0), 'dropout_angle': 90.0, 'baseline': 0.0, 'disparity_step': 0.0, 'edge_dropout': 0.0, 'edge_step': 0.02}
+_CAMERA = {'width': 640, 'height': 480, 'horizontal_fov': 1.05, 'near': 0.1, 'far': 10.0, 'distortion': (0.0,) * 5}
+_SEEDS = 1 << 64
+_NANOSECONDS = 1e9
+
+
+class Preset(NamedTuple):
+    """A depth camera with the figures that are published of it. camera, noise: arguments of Camera; source: of the figures."""
+
+    camera: Dict[str, Any]
+    noise: Dict[str, Any]
+    source: str
+
+
+def presets() -> Dict[str, Preset]:
+    """All presets by name."""
+    return {name: Preset(*preset) for name, preset in _camera.presets().items()}
+
+
+class Camera:
+    """A depth camera at a pose, which sees worlds.
+
+    width, height: [pixels]. horizontal_fov: [rad] from the left edge of the image to the right one. near, far: [m] depths that are
+    seen. distortion: k1, k2, t1, t2, k3 of the model plumb_bob, as in sensor_msgs/CameraInfo.
+
+    noise: what the sensor does to depth, a dict with some of the keys
+        axial: (a, b, c): the standard deviation at the depth z is a + b z + c z^2 [m]
+        dropout_angle: [degree] no depth where the line of sight is further from the surface's normal
+        baseline: [m] place of the second imager, or the projector, along x of the optical frame: no depth where that sees nothing
+        disparity_step: [pixels] to which disparities are rounded
+        edge_dropout: 0 to 1: how often there is no depth beside what is deeper by more than edge_step [m]
+
+    preset: name of a camera from presets(), for what the other arguments leave out. seed: of the noise, an integer. threads: 0: as
+    many as there are cores; the images do not depend on it.
+
+    The camera begins at the origin of the fixed frame and looks along its z axis, as all optical frames do; x is to the right in the
+    image, y down. Raises ValueError with all that is wrong, a line each.
+    """
+
+    def __init__(
+        self, width: Optional[int] = None, height: Optional[int] = None, horizontal_fov: Optional[float] = None,
+        near: Optional[float] = None, far: Optional[float] = None, noise: Optional[Mapping[str, Any]] = None, seed: int = 0,
+        distortion: Optional[Sequence[float]] = None, preset: Optional[str] = None, threads: int = 0,
+    ) -> None:
+        camera, sensor = _preset(preset)
+        given = {'width': width, 'height': height, 'horizontal_fov': horizontal_fov, 'near': near, 'far': far, 'distortion': distortion}
+        camera.update({key: value for key, value in given.items() if value is not None})
+        sensor.update(_checked_noise(noise))
+        errors = [_wrong(key, value, 'an integer') for key, value in list(camera.items()) if key in ('width', 'height') and
+                  not _is_integer(value)]
+        for name, numbers in ((name, value) for name, value in {**camera, **{f'noise.{k}': v for k, v in sensor.items()}}.items()
+                              if name not in ('width', 'height')):
+            errors += _number_errors(name, numbers)
+        if errors:
+            raise ValueError('\n'.join(errors))
+        self._seed = _integer('seed', seed, 0, _SEEDS - 1)
+        self._threads = _integer('threads', threads, 0, _MOST_THREADS)
+        self._width, self._height = _integer('width', camera['width']), _integer('height', camera['height'])
+        self._near, self._far = float(camera['near']), float(camera['far'])
+        self._distortion = tuple(map(float, camera['distortion']))
+        self._camera = _camera.CompiledCamera(
+            width=_bounded(self._width), height=_bounded(self._height), horizontal_fov=float(camera['horizontal_fov']), near=self._near,
+            far=self._far, distortion=self._distortion, axial=tuple(map(float, sensor.pop('axial'))),
+            **{key: float(value) for key, value in sensor.items()})
+        self._pose: Tuple[float, ...] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+
+    def __repr__(self) -> str:
+        return f'<Camera of {self._width} x {self._height} pixels at ({", ".join(f"{x:g}" for x in self._pose[:3])})>'
+
+    @property
+    def width(self) -> int:
+        """[pixels]"""
+        return self._width
+
+    @property
+    def height(self) -> int:
+        """[pixels]"""
+        return self._height
+
+    @property
+    def matrix(self) -> NDArray[np.float64]:
+        """(3, 3) The intrinsic matrix [pixels], K of sensor_msgs/CameraInfo."""
+        fx, fy, cx, cy = self._camera.intrinsics
+        return np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1]])
+
+    @property
+    def distortion(self) -> Tuple[float, ...]:
+        """k1, k2, t1, t2, k3 of plumb_bob, D of sensor_msgs/CameraInfo."""
+        return self._distortion
+
+    @property
+    def pose(self) -> NDArray[np.float64]:
+        """(7,) x, y, z, qx, qy, qz, qw of the optical frame in the fixed frame; may be set."""
+        return np.array(self._pose)
+
+    @pose.setter
+    def pose(self, pose: ArrayLike) -> None:
+        numbers = _vector('pose', pose, 7)
+        length = float(np.linalg.norm(numbers[3:]))
+        if not 0.5 <= length <= 2:
+            raise ValueError(_wrong('pose', pose, 'x, y, z, qx, qy, qz, qw with a quaternion of length 1'))
+        self._pose = (*map(float, numbers[:3]), *map(float, numbers[3:] / length))
+
+    def look_at(self, eye: ArrayLike, target: ArrayLike, up: ArrayLike = (0, 0, 1)) -> Camera:
+        """Puts the camera at `eye` so that it has `target` in the middle of its image, and the direction `up` upwards in it. Returns
+        the camera. Raises ValueError where that cannot be."""
+        places = (tuple(map(float, _vector(name, value, 3))) for name, value in (('eye', eye), ('target', target), ('up', up)))
+        self._pose = tuple(_camera.look_at(*places))
+        return self
+
+    def labels(self, world: Union[World, Batch]) -> List[str]:
+        """The names of what is in a world (of a batch: its first), in the order of their numbers in masks, from 1 on: cables, bodies,
+        then nets, particles and obstacles."""
+        drawings, _ = _drawings(world, {})
+        return _camera.labels(drawings)[0]
+
+    def render(
+        self, world: Union[World, Batch], images: Sequence[str] = IMAGES, light: Optional[Mapping[str, Any]] = None,
+        background: Optional[Sequence[float]] = None, looks: Optional[Mapping[str, Mapping[str, Any]]] = None,
+        stripes: bool = True, distinct_colors: bool = False, least_radius: float = 0.0,
+    ) -> Dict[str, Any]:
+        """A dict with what is asked for in `images`:
+
+        depth:  (height, width) float32 [m] along the line of sight's z axis, NaN where there is none
+        rgb:    (height, width, 3) uint8
+        mask:   (height, width) uint16: 0 where nothing is seen, 1 for the first of labels(world), ...
+        points: (height, width, 3) float32 [m] of depth, in the optical frame, NaN where there is none
+        truth:  {cable: {positions: (n + 1, 3) [m] of its nodes in the optical frame, u, v: (n + 1,) [pixels], NaN for what is not in
+                front of the camera, visible: (n + 1,) bool}}. A node is visible if it is in the image, from near to far, and what is
+                met first on the way to it is its cable, no further from it than two radii.
+
+        Noise depends on seed and the world's time only: what is rendered twice is the same. Of a Batch all arrays have an axis of the
+        worlds in front; each world has noise of its own.
+
+        light: dict with some of direction (3,) towards the sun, ambient (0 to 1: brightness of what the sun does not reach), shadows
+        (bool). background: (red, green, blue), from 0 to 1. looks: {name: dict with some of color, second_color, pattern ('plain',
+        'stripes' along cables, by which roll and twist are seen, 'checks' on all else), stripes (how many), stripe_width [rad],
+        check_size [m], shininess (0 to 1)}. stripes: whether cables have one that nothing is said of in looks. distinct_colors: where cables or nets have the same color, all of them get others that
+        tell them apart. least_radius: [m] thinner cables are drawn so thick. Raises ValueError.
+        """
+        wanted = _checked_images(images)
+        given = {'light': light, 'background': background, 'looks': looks, 'stripes': stripes, 'distinct_colors': distinct_colors,
+                 'least_radius': least_radius}
+        drawings, times = _drawings(world, {key: dict(value) if isinstance(value, Mapping) else value
+                                            for key, value in given.items() if value is not None})
+        stamps = [round(time * _NANOSECONDS) for time in times]
+        result: Dict[str, Any] = self._camera.render(drawings, self._pose, self._seed, stamps, wanted, self._threads)
+        if 'truth' in result:
+            result['truth'] = _joined([_truth(cables) for cables in result['truth']], isinstance(world, Batch))
+        if isinstance(world, World):
+            result.update({name: array[0] for name, array in result.items() if name != 'truth'})
+        return {name: result[name] for name in wanted}
+
+
+def _wrong(name: str, value: Any, allowed: str) -> str:
+    return f'{name}: {value!r}; allowed: {allowed}'
+
+
+def _is_integer(value: Any) -> bool:
+    try:
+        operator.index(value)
+    except TypeError:
+        return False
+    return not isinstance(value, bool)
+
+
+def _integer(name: str, value: Any, least: int = -_SEEDS, most: int = _SEEDS) -> int:
+    if not _is_integer(value) or not least <= operator.index(value) <= most:
+        raise ValueError(_wrong(name, value, f'an integer (from {least} to {most})'))
+    return operator.index(value)
+
+
+def _bounded(value: int) -> int:
+    """What the compiled module's integers hold; it says what is allowed."""
+    return max(-1, min(value, 1 << 30))
+
+
+def _number_errors(name: str, value: Any) -> List[str]:
+    """Of what is no number, or not as many as there must be; which numbers are allowed the compiled module says."""
+    counts = {'distortion': ('five numbers k1, k2, t1, t2, k3', 5), 'noise.axial': ('three numbers a, b, c', 3)}
+    words, count = counts.get(name, ('a number', 0))
+    try:
+        numbers = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        return [_wrong(name, value, words)]
+    fits = numbers.shape == ((count,) if count else ()) and not isinstance(value, (str, bytes, bool))
+    return [] if fits else [_wrong(name, value, words)]
+
+
+def _vector(name: str, value: ArrayLike, size: int) -> NDArray[np.float64]:
+    allowed = f'{size} finite numbers'
+    try:
+        numbers = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(_wrong(name, value, allowed)) from None
+    if numbers.shape != (size,) or not np.isfinite(numbers).all():
+        raise ValueError(_wrong(name, value, allowed))
+    return numbers
+
+
+def _preset(name: Optional[str]) -> Tuple[Dict[str, Any], Dict[str, Any]]:
+    """Arguments and noise to begin with."""
+    if name is None:
+        return dict(_CAMERA), dict(_NOISE)
+    known = presets()
+    if name not in known:
+        raise ValueError(_wrong('preset', name, ', '.join(sorted(known))))
+    return dict(known[name].camera), dict(known[name].noise)
+
+
+def _checked_noise(noise: Optional[Mapping[str, Any]]) -> Dict[str, Any]:
+    if noise is None:
+        return {}
+    if not isinstance(noise, Mapping):
+        raise ValueError(_wrong('noise', noise, 'a dict with some of the keys ' + ', '.join(_NOISE)))
+    unknown = [f'noise.{key}: no such key{meant(str(key), _NOISE)}; allowed: {", ".join(_NOISE)}' for key in noise if key not in _NOISE]
+    if unknown:
+        raise ValueError('\n'.join(unknown))
+    return dict(noise)
+
+
+def _checked_images(images: Sequence[str]) -> List[str]:
+    allowed = 'some of ' + ', '.join(IMAGES)
+    if isinstance(images, str) or not all(name in IMAGES for name in images) or not images:
+        raise ValueError(_wrong('images', images, allowed))
+    return list(dict.fromkeys(images))
+
+
+def _drawings(world: Union[World, Batch], appearance: Dict[str, Any]) -> Tuple[Any, List[float]]:
+    if not isinstance(world, (World, Batch)):
+        raise TypeError(_wrong('world', world, 'a World or a Batch'))
+    compiled: Any = world
+    drawings: Tuple[Any, List[float]] = compiled._drawings(appearance)
+    return drawings
+
+
+def _truth(cables: Sequence[Tuple[Any, ...]]) -> Dict[str, Dict[str, Any]]:
+    return {name: dict(zip(('positions', 'u', 'v', 'visible'), arrays)) for name, *arrays in cables}
+
+
+def _joined(truth: List[Dict[str, Dict[str, Any]]], of_batch: bool) -> Dict[str, Dict[str, Any]]:
+    """With an axis of the worlds in front."""
+    if not of_batch:
+        return truth[0]
+    sizes = [{name: len(cable['u']) for name, cable in one.items()} for one in truth]
+    for index, size in enumerate(sizes):
+        if size != sizes[0]:
+            raise ValueError(f'images: truth of worlds 0 and {index}, which have other cables or nodes by now; allowed: batches whose '
+                             'worlds have the same, or images without truth')
+    return {name: {field: np.stack([one[name][field] for one in truth]) for field in cable} for name, cable in truth[0].items()}

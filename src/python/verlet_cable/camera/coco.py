@@ -1,0 +1,233 @@
+"""Data sets to learn from, in the format of COCO (https://cocodataset.org): images, masks, depth, keypoints and crossings of cables.
+
+    from verlet_cable.camera import Camera, coco
+    from verlet_cable.sim import Scene, World
+
+    world = World(Scene.load('scene.yaml'))
+    camera = Camera(preset='realsense_d435')
+    with coco.Dataset('cables', seed=1) as dataset:
+        for _ in range(1000):
+            world.step(10)
+            dataset.add(camera, world, target=[0, 0, 0.5])
+
+Needs Pillow (Debian: python3-pil).
+"""
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+from types import TracebackType
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Type, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from verlet_cable.camera.camera import Camera, _integer, _vector, _wrong
+from verlet_cable.sim import Batch, World
+
+__all__ = ['Dataset', 'crossings']
+
+_CATEGORY = 1
+_MILLIMETRES = 1000.0
+_NOT_THERE, _HIDDEN, _SEEN = 0, 1, 2
+_AMBIENTS = (0.3, 0.7)
+_LIGHT_ELEVATIONS = (30.0, 90.0)    # [degree]
+_SQUARES = (0.02, 0.5)              # [m]
+
+
+class Dataset:
+    """Writes a data set into the new or empty directory `path`: images/*.png (rgb), masks/*.png (16 bit: numbers of things), depth/*.png
+    (16 bit, millimetres, 0: none), and, when it is closed, annotations.json.
+
+    keypoints: so many nodes of each cable, evenly from its start to its end, are its keypoints. seed: of what add() varies; image k
+    depends on it and k only.
+
+    annotations.json has what COCO's format has: images, annotations (segmentation as run lengths, bbox, area, keypoints) and the
+    category cable; and beside that, of images: matrix, distortion and pose of the camera, the light, labels and crossings; of
+    annotations: cable (its name), positions [m] of its keypoints in the optical frame, and mask (its number in masks).
+    """
+
+    def __init__(self, path: Union[str, os.PathLike[str]], keypoints: int = 21, seed: int = 0) -> None:
+        try:
+            import PIL.Image  # noqa: F401
+        except ImportError as error:
+            raise ImportError(f'verlet_cable.camera.coco: {error}; it needs Pillow (Debian: sudo apt-get install python3-pil; pip install '
+                              'pillow)') from error
+        self._keypoints = _integer('keypoints', keypoints, 2, 10000)
+        self._seed = _integer('seed', seed, 0)
+        self._path = pathlib.Path(path)
+        if self._path.exists() and any(self._path.iterdir()):
+            raise ValueError(_wrong('path', str(path), 'a directory that is new or empty'))
+        for name in ('images', 'masks', 'depth'):
+            (self._path / name).mkdir(parents=True, exist_ok=True)
+        self._images: List[Dict[str, Any]] = []
+        self._annotations: List[Dict[str, Any]] = []
+
+    def __enter__(self) -> Dataset:
+        return self
+
+    def __exit__(self, kind: Optional[Type[BaseException]], error: Optional[BaseException], trace: Optional[TracebackType]) -> None:
+        self.close()
+
+    def __len__(self) -> int:
+        return len(self._images)
+
+    def add(
+        self, camera: Camera, world: Union[World, Batch], target: Optional[ArrayLike] = None, distance: Tuple[float, float] = (0.6, 1.5),
+        elevation: Tuple[float, float] = (15.0, 75.0), vary_looks: bool = True, light: Optional[Mapping[str, Any]] = None,
+        background: Optional[Sequence[float]] = None, looks: Optional[Mapping[str, Mapping[str, Any]]] = None,
+    ) -> None:
+        """Adds what a camera sees of a world; of a Batch, an image of each of its worlds.
+
+        target: (3,) [m] what the camera is turned to, from a place that is drawn at random, for each call: at a distance [m] and an
+        elevation [degree] between two numbers, from any side. None: the camera stays where it is. vary_looks: light, background and
+        all colors and patterns are drawn at random, too, but for those that light, background and looks say as of Camera.render.
+        """
+        random = np.random.default_rng([self._seed, len(self._images)])
+        if target is not None:
+            camera.look_at(*_random_view(random, _vector('target', target, 3), distance, elevation))
+        labels = camera.labels(world)
+        appearance: Dict[str, Any] = _random_appearance(random, labels) if vary_looks else {}
+        appearance['looks'] = {**appearance.get('looks', {}), **(looks or {})}
+        appearance.update({name: value for name, value in (('light', light), ('background', background)) if value is not None})
+        seen = camera.render(world, ['depth', 'rgb', 'mask', 'truth'], **appearance)
+        if isinstance(world, World):
+            self._add(camera, labels, appearance, seen, seen['truth'])
+            return
+        for index in range(len(world)):
+            truth = {name: {field: array[index] for field, array in cable.items()} for name, cable in seen['truth'].items()}
+            self._add(camera, labels, appearance, {name: seen[name][index] for name in ('depth', 'rgb', 'mask')}, truth)
+
+    def close(self) -> None:
+        """Writes annotations.json."""
+        names = [f'{index}' for index in range(self._keypoints)]
+        category = {'id': _CATEGORY, 'name': 'cable', 'supercategory': 'cable', 'keypoints': names,
+                    'skeleton': [[index, index + 1] for index in range(1, self._keypoints)]}
+        content = {'info': {'description': 'Cables, simulated by verlet_cable', 'version': '1.0'}, 'licenses': [],
+                   'images': self._images, 'annotations': self._annotations, 'categories': [category]}
+        with open(self._path / 'annotations.json', 'w', encoding='utf-8') as file:
+            json.dump(content, file)
+
+    def _add(self, camera: Camera, labels: List[str], appearance: Dict[str, Any], seen: Dict[str, Any], truth: Dict[str, Any]) -> None:
+        from PIL import Image
+        identity = len(self._images) + 1
+        name = f'{identity:08d}.png'
+        depth = np.clip(np.nan_to_num(np.round(seen['depth'] * _MILLIMETRES), nan=0), 0, 65535).astype(np.uint16)
+        for folder, pixels in (('images', seen['rgb']), ('masks', seen['mask']), ('depth', depth)):
+            Image.fromarray(np.ascontiguousarray(pixels)).save(self._path / folder / name, compress_level=1)
+        self._images.append({
+            'id': identity, 'width': camera.width, 'height': camera.height, 'file_name': f'images/{name}', 'mask_file': f'masks/{name}',
+            'depth_file': f'depth/{name}', 'matrix': camera.matrix.tolist(), 'distortion': list(camera.distortion),
+            'pose': camera.pose.tolist(), 'light': _plain(appearance.get('light', {})), 'labels': labels, 'crossings': crossings(truth)})
+        for number, (cable, nodes) in enumerate(truth.items(), 1):
+            self._annotations.append(self._annotation(identity, number, cable, nodes, camera, seen['mask'] == number))
+
+    def _annotation(
+        self, image: int, number: int, cable: str, nodes: Dict[str, Any], camera: Camera, pixels: NDArray[np.bool_],
+    ) -> Dict[str, Any]:
+        chosen = np.round(np.linspace(0, len(nodes['u']) - 1, self._keypoints)).astype(int)
+        u, v = nodes['u'][chosen], nodes['v'][chosen]
+        with np.errstate(invalid='ignore'):
+            is_in = (u >= -0.5) & (u < camera.width - 0.5) & (v >= -0.5) & (v < camera.height - 0.5)
+        flags = np.where(is_in, np.where(nodes['visible'][chosen], _SEEN, _HIDDEN), _NOT_THERE)
+        points = np.column_stack([np.where(is_in, u, 0), np.where(is_in, v, 0)])
+        keypoints = [number for (x, y), flag in zip(points.tolist(), flags.tolist()) for number in (round(x, 3), round(y, 3), flag)]
+        return {'id': len(self._annotations) + 1, 'image_id': image, 'category_id': _CATEGORY, 'iscrowd': 0,
+                'segmentation': {'size': list(pixels.shape), 'counts': _run_lengths(pixels)}, 'area': int(pixels.sum()),
+                'bbox': _box(pixels), 'keypoints': keypoints, 'num_keypoints': int((flags > 0).sum()), 'cable': cable, 'mask': number,
+                'positions': np.round(nodes['positions'][chosen], 6).tolist()}
+
+
+def crossings(truth: Mapping[str, Mapping[str, Any]]) -> List[Dict[str, Any]]:
+    """Where cables of a `truth` of Camera.render cross in the image, each other or themselves: dicts with pixel [u, v], and over and
+    under, which is behind: [cable, node], the node with its fraction on the way to the next one."""
+    names = list(truth)
+    starts, ends, owners, nodes = [], [], [], []
+    for index, cable in enumerate(truth.values()):
+        line = np.column_stack([cable['u'], cable['v'], cable['positions'][:, 2]])
+        starts.append(line[:-1])
+        ends.append(line[1:])
+        owners.append(np.full(len(line) - 1, index))
+        nodes.append(np.arange(len(line) - 1))
+    if not starts:
+        return []
+    start, end, owner, node = np.concatenate(starts), np.concatenate(ends), np.concatenate(owners), np.concatenate(nodes)
+    is_there = np.isfinite(start).all(axis=1) & np.isfinite(end).all(axis=1)
+    start, end, owner, node = start[is_there], end[is_there], owner[is_there], node[is_there]
+    way = (end - start)[:, :2]
+    first, last = np.nonzero(np.triu(_boxes_meet(start, end), 1))
+    apart = (owner[first] != owner[last]) | (np.abs(node[first] - node[last]) > 1)
+    first, last = first[apart], last[apart]
+    between = start[last, :2] - start[first, :2]
+    turn = _cross(way[first], way[last])
+    with np.errstate(divide='ignore', invalid='ignore'):
+        here, there = _cross(between, way[last]) / turn, _cross(between, way[first]) / turn
+        meets = (here >= 0) & (here < 1) & (there >= 0) & (there < 1)
+    found = []
+    for one, other, a, b in zip(first[meets], last[meets], here[meets], there[meets]):
+        # Along a line in space it is the inverse of depth that is linear in the image.
+        depths = [1 / ((1 - part) / start[k, 2] + part / end[k, 2]) for k, part in ((one, a), (other, b))]
+        places = [[names[owner[k]], float(node[k] + part * depth / end[k, 2])] for k, part, depth in zip((one, other), (a, b), depths)]
+        over, under = places if depths[0] <= depths[1] else places[::-1]
+        found.append({'pixel': (start[one, :2] + a * way[one]).round(3).tolist(), 'over': over, 'under': under})
+    return found
+
+
+def _cross(one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.float64]:
+    product: NDArray[np.float64] = one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]
+    return product
+
+
+def _boxes_meet(start: NDArray[np.float64], end: NDArray[np.float64]) -> NDArray[np.bool_]:
+    meet = np.ones((len(start), len(start)), dtype=bool)
+    for axis in (0, 1):
+        low, high = np.minimum(start[:, axis], end[:, axis]), np.maximum(start[:, axis], end[:, axis])
+        meet &= (low[:, None] <= high[None, :]) & (low[None, :] <= high[:, None])
+    return meet
+
+
+def _run_lengths(pixels: NDArray[np.bool_]) -> List[int]:
+    """Column by column, of pixels that are not of it and that are, in turn: as COCO has them."""
+    flat = np.asfortranarray(pixels).ravel(order='F')
+    changes = np.flatnonzero(np.diff(np.concatenate([[False], flat]).astype(np.int8))) if len(flat) else np.array([], dtype=int)
+    lengths: List[int] = np.diff(np.concatenate([[0], changes, [len(flat)]])).tolist()
+    return lengths
+
+
+def _box(pixels: NDArray[np.bool_]) -> List[int]:
+    """x, y, width, height."""
+    rows, columns = np.flatnonzero(pixels.any(axis=1)), np.flatnonzero(pixels.any(axis=0))
+    if not len(rows):
+        return [0, 0, 0, 0]
+    return [int(columns[0]), int(rows[0]), int(columns[-1] - columns[0] + 1), int(rows[-1] - rows[0] + 1)]
+
+
+def _plain(light: Mapping[str, Any]) -> Dict[str, Any]:
+    return {name: np.asarray(value).tolist() for name, value in light.items()}
+
+
+def _range(name: str, value: Tuple[float, float], least: float, most: float) -> Tuple[float, float]:
+    low, high = _vector(name, value, 2)
+    if not least <= low <= high <= most:
+        raise ValueError(_wrong(name, value, f'two numbers, the larger one last (from {least:g} to {most:g})'))
+    return float(low), float(high)
+
+
+def _random_view(
+    random: np.random.Generator, target: NDArray[np.float64], distance: Tuple[float, float], elevation: Tuple[float, float],
+) -> Tuple[NDArray[np.float64], NDArray[np.float64]]:
+    away = random.uniform(*_range('distance', distance, 1e-3, 1e6))
+    height, around = np.radians(random.uniform(*_range('elevation', elevation, -89, 89))), random.uniform(-np.pi, np.pi)
+    towards = np.array([np.cos(height) * np.cos(around), np.cos(height) * np.sin(around), np.sin(height)])
+    return target + away * towards, target
+
+
+def _random_appearance(random: np.random.Generator, labels: Sequence[str]) -> Dict[str, Any]:
+    height, around = np.radians(random.uniform(*_LIGHT_ELEVATIONS)), random.uniform(-np.pi, np.pi)
+    light = {'direction': [np.cos(height) * np.cos(around), np.cos(height) * np.sin(around), np.sin(height)],
+             'ambient': random.uniform(*_AMBIENTS), 'shadows': True}
+    looks = {name: {'color': random.uniform(0.03, 1, 3), 'second_color': random.uniform(0.03, 1, 3), 'shininess': random.uniform(0, 0.6),
+                    'stripes': int(random.integers(0, 4)), 'stripe_width': random.uniform(0.2, 1.2),
+                    'check_size': float(np.exp(random.uniform(*np.log(_SQUARES))))} for name in labels}
+    return {'light': light, 'background': random.uniform(0, 1, 3), 'looks': looks}
