@@ -106,7 +106,7 @@ def test_nets_and_particles_are_seen(hang):
     world = World(Scene.from_dict(hang))
     low, high = world.positions('net').min(axis=0), world.positions('net').max(axis=0)
     middle = (low + high) / 2
-    mask = Camera(200, 200, 1.6).look_at(middle + [0.1, -0.2, 0.7], middle).render(world, ['mask'])['mask']
+    mask = Camera(200, 200, 1.6).look_at(middle + [0.2, -0.8, 0.4], middle).render(world, ['mask'])['mask']
     assert set(np.unique(mask)) == {0, 1, 2}
 
 
