@@ -1,4 +1,7 @@
 """verlet_cable.camera sees what there is."""
+import concurrent.futures
+import copy
+import pickle
 import subprocess
 import sys
 
@@ -127,6 +130,20 @@ def test_pose_is_kept(front):
     np.testing.assert_allclose(other.pose, pose)
     with pytest.raises(ValueError, match='pose: '):
         other.pose = [0, 0, 0, 0, 0, 0, 0]
+
+
+def test_copies_see_the_same(table, front):
+    world = World(Scene.from_dict(table))
+    for other in (pickle.loads(pickle.dumps(front)), copy.deepcopy(front)):
+        assert other.render(world, ['depth'])['depth'].tobytes() == front.render(world, ['depth'])['depth'].tobytes()
+
+
+def test_threads_may_share_a_camera(table, front):
+    world = World(Scene.from_dict(table))
+    first = front.render(world, ['depth'])['depth'].tobytes()
+    with concurrent.futures.ThreadPoolExecutor(4) as pool:
+        worlds = [world.copy() for _ in range(20)]
+        assert {images['depth'].tobytes() for images in pool.map(lambda one: front.render(one, ['depth']), worlds)} == {first}
 
 
 @pytest.mark.parametrize('arguments, lines', [
