@@ -11,6 +11,7 @@
 #include "publish/queue_size.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/name_list.h"
+#include "verlet_cable/view/drawing.h"
 
 namespace verlet_cable {
 namespace {
@@ -28,7 +29,6 @@ constexpr double net_pin_size = 0.4;     // likewise
 constexpr double body_pin_size = 0.3;    // of a body's radius of gyration
 constexpr double text_size = 0.05;       // of the longest cable
 constexpr std::array<double, 4> text_color{0.6, 0.1, 0.1, 1};
-constexpr std::array<double, 4> body_color{0.75, 0.55, 0.25, 1};
 constexpr double load_size = 4;      // of the text's height: the length of the greatest load's arrow
 constexpr double load_width = 0.05;  // of that length
 constexpr double least_load = 1e-3;  // likewise: shorter arrows are not seen
@@ -303,7 +303,8 @@ void MarkerPublisher::add_body(const SimulatedBody& body, MarkerArray& markers) 
   const std::size_t first = markers.markers.size();
   int part = 0;
   for (const BodyShape& shape : body.shapes) add_shape("bodies", body.name, part, shape.shape, body.pose * shape.pose, markers);
-  for (std::size_t i = first; i < markers.markers.size(); ++i) markers.markers[i].color = to_color(body_color);
+  for (std::size_t i = first; i < markers.markers.size(); ++i)
+    markers.markers[i].color = to_color(opaque(view::body_look().color));
 }
 
 /// `part`: how many markers of that name there are before.
