@@ -200,8 +200,7 @@ class Painter {
     for_each(square, [&](int i) {
       const Sighting& seen = square.seen[i];
       const Vector3 direction = square.lines[i].direction.normalized();
-      const auto color = pixel_color(seen ? light_from(stage_, seen, direction, !hidden[i]) : stage_.background);
-      std::copy(color.begin(), color.end(), images_.rgb + 3 * square.pixels[i]);
+      write_color(seen ? light_from(stage_, seen, direction, !hidden[i]) : stage_.background, images_.rgb + 3 * square.pixels[i]);
     });
   }
 

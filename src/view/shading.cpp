@@ -1,6 +1,7 @@
 #include "shading.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace verlet_cable::view {
@@ -8,27 +9,26 @@ namespace {
 
 constexpr double darker_below = 0.35;  // of the sky's light, on what faces down
 
-/// The bytes of evenly spaced amounts of light (IEC 61966-2-1).
-struct ByteTable {
-  static constexpr int last = 4095;
-  std::array<std::uint8_t, last + 1> bytes;
+constexpr int last_step = 4095;
 
-  ByteTable() {
-    for (int k = 0; k <= last; ++k) {
-      const double light = static_cast<double>(k) / last;
-      const double value = light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
-      bytes[k] = static_cast<std::uint8_t>(std::lround(255 * value));
-    }
+/// The bytes of evenly spaced amounts of light (IEC 61966-2-1).
+std::array<std::uint8_t, last_step + 1> make_bytes() {
+  std::array<std::uint8_t, last_step + 1> bytes;
+  for (int k = 0; k <= last_step; ++k) {
+    const double light = static_cast<double>(k) / last_step;
+    const double value = light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
+    bytes[k] = static_cast<std::uint8_t>(std::lround(255 * value));
   }
-};
+  return bytes;
+}
+
+const std::array<std::uint8_t, last_step + 1> bytes_of_light = make_bytes();
 
 }  // namespace
 
-std::array<std::uint8_t, 3> pixel_color(const Vector3& light) {
-  static const ByteTable table;
-  std::array<std::uint8_t, 3> color;
-  for (int k = 0; k < 3; ++k) color[k] = table.bytes[static_cast<int>(std::clamp(light[k], 0.0, 1.0) * ByteTable::last + 0.5)];
-  return color;
+void write_color(const Vector3& light, std::uint8_t* pixel) {
+  for (int k = 0; k < 3; ++k)
+    pixel[k] = bytes_of_light[static_cast<int>(std::min(std::max(light[k], 0.0), 1.0) * last_step + 0.5)];
 }
 
 Vector3 light_from(const Stage::Implementation& stage, const Sighting& seen, const Vector3& direction, bool is_lit) {

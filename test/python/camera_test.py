@@ -1,4 +1,7 @@
 """verlet_cable.camera sees what there is."""
+import concurrent.futures
+import copy
+import pickle
 import subprocess
 import sys
 
@@ -98,6 +101,18 @@ def test_looks_are_taken(table, front):
     assert (box[:, 1] > 180).all() and (box[:, [0, 2]] == 0).all()
 
 
+def test_nets_and_particles_are_seen(hang):
+    hang['cables'] = []
+    del hang['materials']
+    hang['nets'] = [{'name': 'net', 'grid': {'rows': 5, 'columns': 5, 'spacing': 0.1}, 'mass': 0.1, 'stiffness': 50}]
+    hang['particles'] = [{'name': 'ball', 'mass': 0.1, 'radius': 0.1, 'position': [0.2, 0.2, 0.5], 'velocity': [0, 0, 0]}]
+    world = World(Scene.from_dict(hang))
+    low, high = world.positions('net').min(axis=0), world.positions('net').max(axis=0)
+    middle = (low + high) / 2
+    mask = Camera(200, 200, 1.6).look_at(middle + [0.2, -0.8, 0.4], middle).render(world, ['mask'])['mask']
+    assert set(np.unique(mask)) == {0, 1, 2}
+
+
 def test_presets_name_their_sources():
     presets = camera.presets()
     assert {'kinect_v1', 'realsense_d415', 'realsense_d435'} <= set(presets)
@@ -115,6 +130,20 @@ def test_pose_is_kept(front):
     np.testing.assert_allclose(other.pose, pose)
     with pytest.raises(ValueError, match='pose: '):
         other.pose = [0, 0, 0, 0, 0, 0, 0]
+
+
+def test_copies_see_the_same(table, front):
+    world = World(Scene.from_dict(table))
+    for other in (pickle.loads(pickle.dumps(front)), copy.deepcopy(front)):
+        assert other.render(world, ['depth'])['depth'].tobytes() == front.render(world, ['depth'])['depth'].tobytes()
+
+
+def test_threads_may_share_a_camera(table, front):
+    world = World(Scene.from_dict(table))
+    first = front.render(world, ['depth'])['depth'].tobytes()
+    with concurrent.futures.ThreadPoolExecutor(4) as pool:
+        worlds = [world.copy() for _ in range(20)]
+        assert {images['depth'].tobytes() for images in pool.map(lambda one: front.render(one, ['depth']), worlds)} == {first}
 
 
 @pytest.mark.parametrize('arguments, lines', [

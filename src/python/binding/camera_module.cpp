@@ -25,6 +25,9 @@ using view::CameraDesc;
 using view::CameraModel;
 using view::SensorModel;
 
+/// Between the seeds of worlds: so far apart that other seeds do not meet them. The first world has the camera's.
+constexpr std::uint64_t world_stride = 0x9e3779b97f4a7c15;
+
 /// One line each.
 void throw_all(const std::vector<std::string>& errors) {
   std::string text;
@@ -116,24 +119,26 @@ class CompiledCamera {
       else if (name == "truth")
         truth.resize(drawings.size());
     }
+    // Other threads may use the camera meanwhile.
+    const std::shared_ptr<const view::Stage> before = last_;
+    std::shared_ptr<const view::Stage> first;
     const bool wants_images = wanted.size() > (truth.empty() ? 0u : 1u);
     {
       const py::gil_scoped_release release;
       tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
       arena.execute([&] {
         // The first one alone: what it prepares of meshes the others share.
-        std::shared_ptr<const view::Stage> first;
         const auto look = [&](std::size_t i) {
-          const auto stage = std::make_shared<const view::Stage>(drawings[i], i == 0 ? last_.get() : first.get());
+          const auto stage = std::make_shared<const view::Stage>(drawings[i], i == 0 ? before.get() : first.get());
           if (i == 0) first = stage;
-          if (wants_images) view::render(*stage, lens_, pose, sensor_, {seed + i, images[i]}, buffers[i]);
+          if (wants_images) view::render(*stage, lens_, pose, sensor_, {seed + i * world_stride, images[i]}, buffers[i]);
           if (!truth.empty()) truth[i] = view::find_truth(*stage, model(), pose);
         };
         look(0);
         tbb::parallel_for(std::size_t{1}, drawings.size(), look);
-        last_ = first;
       });
     }
+    last_ = first;
     if (!truth.empty()) {
       py::list all;
       for (const auto& one : truth) all.append(truth_list(one));

@@ -14,6 +14,11 @@ namespace verlet_cable {
 
 std_msgs::ColorRGBA to_color(const std::array<double, 4>& rgba);
 
+/// With the alpha of what nothing is seen through.
+inline std::array<double, 4> opaque(const std::array<double, 3>& rgb) {
+  return {rgb[0], rgb[1], rgb[2], 1};
+}
+
 /// From blue (0) over pale yellow to red (1), told apart by color-blind eyes, too; values outside are clamped. Opaque.
 std_msgs::ColorRGBA color_of_load(double load);
 

@@ -12,6 +12,7 @@
 #include "publish/queue_size.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/name_list.h"
+#include "verlet_cable/view/drawing.h"
 
 namespace verlet_cable {
 namespace {
@@ -291,7 +292,8 @@ void MarkerPublisher::add_body(const SimulatedBody& body, MarkerArray& markers) 
   const std::size_t first = markers.markers.size();
   int part = 0;
   for (const BodyShape& shape : body.shapes) add_shape("bodies", body.name, part, shape.shape, body.pose * shape.pose, markers);
-  for (std::size_t i = first; i < markers.markers.size(); ++i) markers.markers[i].color = to_color(body_color);
+  for (std::size_t i = first; i < markers.markers.size(); ++i)
+    markers.markers[i].color = to_color(opaque(view::body_look().color));
 }
 
 /// `part`: how many markers of that name there are before.

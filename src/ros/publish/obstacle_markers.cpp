@@ -3,10 +3,12 @@
 #include <array>
 #include <cmath>
 
+#include "publish/color.h"
 #include "publish/conversions.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/core/scene_fields.h"
+#include "verlet_cable/view/drawing.h"
 
 namespace verlet_cable {
 namespace {
@@ -24,10 +26,7 @@ Marker make_marker(int type, const Pose& pose, const Vector3& scale) {
   marker.type = type;
   marker.pose = to_pose(pose);
   marker.scale = to_vector(scale);
-  marker.color.r = 0.8f;
-  marker.color.g = 0.83f;
-  marker.color.b = 0.87f;
-  marker.color.a = 1;
+  marker.color = to_color(opaque(view::obstacle_look().color));
   return marker;
 }
 
@@ -38,9 +37,7 @@ std::vector<Marker> markers_of(const PlaneShape&, const Pose& pose) {
   const std::array<Vector3, 4> corners{
       Vector3{-half, -half, -plane_depth}, {half, -half, -plane_depth}, {half, half, -plane_depth}, {-half, half, -plane_depth}};
   for (const int corner : {0, 1, 2, 0, 2, 3}) plane.points.push_back(to_point(corners[corner]));
-  plane.color.r = 0.74f;
-  plane.color.g = 0.76f;
-  plane.color.b = 0.79f;
+  plane.color = to_color(opaque(view::plane_look().color));
   plane.colors.assign(plane.points.size(), plane.color);
   return {plane};
 }

@@ -57,6 +57,8 @@ class Camera:
         near: Optional[float] = None, far: Optional[float] = None, noise: Optional[Mapping[str, Any]] = None, seed: int = 0,
         distortion: Optional[Sequence[float]] = None, preset: Optional[str] = None, threads: int = 0,
     ) -> None:
+        self._arguments = {'width': width, 'height': height, 'horizontal_fov': horizontal_fov, 'near': near, 'far': far, 'noise': noise,
+                           'seed': seed, 'distortion': distortion, 'preset': preset, 'threads': threads}
         camera, sensor = _preset(preset)
         given = {'width': width, 'height': height, 'horizontal_fov': horizontal_fov, 'near': near, 'far': far, 'distortion': distortion}
         camera.update({key: value for key, value in given.items() if value is not None})
@@ -78,6 +80,9 @@ class Camera:
             far=self._far, distortion=self._distortion, axial=tuple(map(float, sensor.pop('axial'))),
             **{key: float(value) for key, value in sensor.items()})
         self._pose: Tuple[float, ...] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+
+    def __reduce__(self) -> Tuple[Any, ...]:
+        return _again, (self._arguments, self._pose)
 
     def __repr__(self) -> str:
         return f'<Camera of {self._width} x {self._height} pixels at ({", ".join(f"{x:g}" for x in self._pose[:3])})>'
@@ -165,6 +170,13 @@ class Camera:
         if isinstance(world, World):
             result.update({name: array[0] for name, array in result.items() if name != 'truth'})
         return {name: result[name] for name in wanted}
+
+
+def _again(arguments: Dict[str, Any], pose: Tuple[float, ...]) -> Camera:
+    """A copy."""
+    camera = Camera(**arguments)
+    camera._pose = pose
+    return camera
 
 
 def _wrong(name: str, value: Any, allowed: str) -> str:
