@@ -139,6 +139,15 @@ Item* new_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std
   return items;
 }
 
+struct Vertex {
+  float x, y, z, radius;
+};
+
+Vertex vertex_at(const Vector3& place, double radius) {
+  return {static_cast<float>(place.x()), static_cast<float>(place.y()), static_cast<float>(place.z()),
+          static_cast<float>(radius)};
+}
+
 void attach(RTCScene scene, RTCGeometry geometry, unsigned id) {
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene, geometry, id);
@@ -188,15 +197,29 @@ Stage::Implementation::~Implementation() {
   rtcReleaseScene(scene);
 }
 
+std::vector<PlacedPart>& Stage::Implementation::group_of(const Shape& shape) {
+  struct Group {
+    Implementation& stage;
+
+    std::vector<PlacedPart>& operator()(const PlaneShape&) const { return stage.planes; }
+    std::vector<PlacedPart>& operator()(const SphereShape&) const { return stage.spheres; }
+    // Without a length, it would be no curve.
+    std::vector<PlacedPart>& operator()(const CapsuleShape& capsule) const {
+      return capsule.length > 0 ? stage.capsules : stage.solids;
+    }
+    std::vector<PlacedPart>& operator()(const CylinderShape&) const { return stage.solids; }
+    std::vector<PlacedPart>& operator()(const BoxShape&) const { return stage.boxes; }
+    std::vector<PlacedPart>& operator()(const MeshShape&) const { return stage.meshes; }
+  };
+  return std::visit(Group{*this}, shape);
+}
+
 void Stage::Implementation::place(const Thing& thing, int index) {
   const Paint* paint = &paints.emplace_back(thing.look);
   for (const Tube& tube : thing.tubes) place(tube, *paint, index);
   for (const Part& part : thing.parts) {
-    auto& group = std::holds_alternative<PlaneShape>(part.shape)  ? planes
-                  : std::holds_alternative<BoxShape>(part.shape)  ? boxes
-                  : std::holds_alternative<MeshShape>(part.shape) ? meshes
-                                                                  : solids;
-    group.emplace_back(index, thing.pose * part.pose, part.shape, part.look ? paints.emplace_back(*part.look) : *paint);
+    group_of(part.shape)
+        .emplace_back(index, thing.pose * part.pose, part.shape, part.look ? paints.emplace_back(*part.look) : *paint);
   }
 }
 
@@ -224,7 +247,7 @@ void Stage::Implementation::place(const Tube& tube, const Paint& paint, int inde
 void Stage::Implementation::find_origin() {
   Aabb box;
   for (const TubeSegment& segment : segments) box.extend(segment.start).extend(segment.end);
-  for (const auto* group : {&boxes, &solids, &meshes})
+  for (const auto* group : {&boxes, &spheres, &capsules, &solids, &meshes})
     for (const PlacedPart& part : *group) box.extend(part.pose.position);
   if (!box.isEmpty()) origin = box.center();
 }
@@ -235,6 +258,8 @@ void Stage::Implementation::build(const Implementation* before) {
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   add_tubes();
   add_boxes();
+  add_spheres();
+  add_capsules();
   add_solids();
   add_meshes(before);
   rtcCommitScene(scene);
@@ -244,21 +269,38 @@ void Stage::Implementation::build(const Implementation* before) {
 void Stage::Implementation::add_tubes() {
   if (segments.empty()) return;
   RTCGeometry geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
-  struct Vertex {
-    float x, y, z, radius;
-  };
   auto* vertices = new_buffer<Vertex>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 2 * segments.size());
   auto* indices = new_buffer<unsigned>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT, segments.size());
   for (std::size_t i = 0; i < segments.size(); ++i) {
-    const auto put = [&](Vertex& vertex, const Vector3& point) {
-      const Eigen::Vector3f at = (point - origin).cast<float>();
-      vertex = {at.x(), at.y(), at.z(), static_cast<float>(segments[i].radius)};
-    };
-    put(vertices[2 * i], segments[i].start);
-    put(vertices[2 * i + 1], segments[i].end);
+    vertices[2 * i] = vertex_at(segments[i].start - origin, segments[i].radius);
+    vertices[2 * i + 1] = vertex_at(segments[i].end - origin, segments[i].radius);
     indices[i] = static_cast<unsigned>(2 * i);
   }
   attach(scene, geometry, tubes_id);
+}
+
+void Stage::Implementation::add_spheres() {
+  if (spheres.empty()) return;
+  RTCGeometry geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_SPHERE_POINT);
+  auto* vertices = new_buffer<Vertex>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, spheres.size());
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    vertices[i] = vertex_at(spheres[i].pose.position - origin, std::get<SphereShape>(spheres[i].shape).radius);
+  attach(scene, geometry, spheres_id);
+}
+
+void Stage::Implementation::add_capsules() {
+  if (capsules.empty()) return;
+  RTCGeometry geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
+  auto* vertices = new_buffer<Vertex>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 2 * capsules.size());
+  auto* indices = new_buffer<unsigned>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT, capsules.size());
+  for (std::size_t i = 0; i < capsules.size(); ++i) {
+    const auto& [radius, length] = std::get<CapsuleShape>(capsules[i].shape);
+    const Vector3 middle = capsules[i].pose.position - origin, half = 0.5 * length * capsules[i].axes.col(2);
+    vertices[2 * i] = vertex_at(middle - half, radius);
+    vertices[2 * i + 1] = vertex_at(middle + half, radius);
+    indices[i] = static_cast<unsigned>(2 * i);
+  }
+  attach(scene, geometry, capsules_id);
 }
 
 void Stage::Implementation::add_boxes() {
@@ -326,11 +368,24 @@ Sighting Stage::Implementation::plane_sighting(const Ray& ray, const PlaneMeetin
   return part_sighting(planes[meeting.plane], ray, {meeting.t, Vector3::UnitZ()}, footprint);
 }
 
+const PlacedPart& Stage::Implementation::part_hit(const RTCHit& hit) const {
+  switch (hit.geomID) {
+    case boxes_id:
+      return boxes[hit.primID / triangles_of_box];
+    case spheres_id:
+      return spheres[hit.primID];
+    case capsules_id:
+      return capsules[hit.primID];
+    default:
+      return solids[hit.primID];
+  }
+}
+
 Sighting Stage::Implementation::sighting(const Ray& ray, double lowest, const RTCHit& hit, double t, double footprint) const {
   if (hit.geomID == tubes_id && hit.instID[0] == RTC_INVALID_GEOMETRY_ID)
     return tube_sighting(segments[hit.primID], ray, lowest, t, footprint);
   if (hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
-    const PlacedPart& part = hit.geomID == boxes_id ? boxes[hit.primID / triangles_of_box] : solids[hit.primID];
+    const PlacedPart& part = part_hit(hit);
     const auto meeting = meet(part.shape, part.inside(ray), lowest);
     return part_sighting(part, ray, meeting.value_or(Meeting{t, -ray.direction.normalized()}), footprint);
   }

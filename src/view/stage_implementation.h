@@ -91,13 +91,15 @@ struct Stage::Implementation {
   std::vector<TubeSegment> segments;
   std::vector<PlacedPart> planes;  ///< which have no bounds
   std::vector<PlacedPart> boxes;
-  std::vector<PlacedPart> solids;  ///< none of these, and no meshes
+  std::vector<PlacedPart> spheres;
+  std::vector<PlacedPart> capsules;
+  std::vector<PlacedPart> solids;  ///< of which Embree knows nothing
   std::vector<PlacedPart> meshes;
   std::map<const TriangleMesh*, std::shared_ptr<const MeshTree>> trees;
   RTCScene scene = nullptr;
 
   /// By which Embree names what it has hit: the geometry's id.
-  static constexpr unsigned tubes_id = 0, solids_id = 1, boxes_id = 2, first_mesh_id = 3;
+  static constexpr unsigned tubes_id = 0, boxes_id = 1, spheres_id = 2, capsules_id = 3, solids_id = 4, first_mesh_id = 5;
 
   /// The nearest plane that a ray meets from t = `lowest` on and before `highest`. Its index, or -1, and where.
   struct PlaneMeeting {
@@ -114,12 +116,16 @@ struct Stage::Implementation {
   Sighting look(const Ray& ray, double lowest, double highest) const;
 
  private:
+  const PlacedPart& part_hit(const RTCHit& hit) const;
+  std::vector<PlacedPart>& group_of(const Shape& shape);
   void place(const Thing& thing, int index);
   void place(const Tube& tube, const Paint& paint, int index);
   void find_origin();
   void build(const Implementation* before);
   void add_tubes();
   void add_boxes();
+  void add_spheres();
+  void add_capsules();
   void add_solids();
   void add_meshes(const Implementation* before);
 };

@@ -98,6 +98,18 @@ def test_looks_are_taken(table, front):
     assert (box[:, 1] > 180).all() and (box[:, [0, 2]] == 0).all()
 
 
+def test_nets_and_particles_are_seen(hang):
+    hang['cables'] = []
+    del hang['materials']
+    hang['nets'] = [{'name': 'net', 'grid': {'rows': 5, 'columns': 5, 'spacing': 0.1}, 'mass': 0.1, 'stiffness': 50}]
+    hang['particles'] = [{'name': 'ball', 'mass': 0.1, 'radius': 0.1, 'position': [0.2, 0.2, 0.5], 'velocity': [0, 0, 0]}]
+    world = World(Scene.from_dict(hang))
+    low, high = world.positions('net').min(axis=0), world.positions('net').max(axis=0)
+    middle = (low + high) / 2
+    mask = Camera(200, 200, 1.6).look_at(middle + [0.2, -0.8, 0.4], middle).render(world, ['mask'])['mask']
+    assert set(np.unique(mask)) == {0, 1, 2}
+
+
 def test_presets_name_their_sources():
     presets = camera.presets()
     assert {'kinect_v1', 'realsense_d415', 'realsense_d435'} <= set(presets)

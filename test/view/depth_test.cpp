@@ -53,7 +53,7 @@ TEST(Depth, BentCableOfTwoRadii) {
 TEST(Depth, Shapes) {
   const Pose pose{{0.01, 0.02, 0.03}, quaternion_from_rpy({0.3, -0.2, 0.5})};
   for (const Shape& shape : {Shape(SphereShape{0.15}), Shape(BoxShape{{0.3, 0.2, 0.1}}), Shape(CylinderShape{0.1, 0.25}),
-                             Shape(CapsuleShape{0.1, 0.2})}) {
+                             Shape(CapsuleShape{0.1, 0.2}), Shape(CapsuleShape{0.15, 0})}) {
     SCOPED_TRACE(shape.index());
     EXPECT_LT(largest_error(drawing_with(thing_of("shape", shape, pose)), from_aside, 1000), tolerance);
   }

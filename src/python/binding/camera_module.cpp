@@ -25,6 +25,9 @@ using view::CameraDesc;
 using view::CameraModel;
 using view::SensorModel;
 
+/// Between the seeds of worlds: so far apart that other seeds do not meet them. The first world has the camera's.
+constexpr std::uint64_t world_stride = 0x9e3779b97f4a7c15;
+
 /// One line each.
 void throw_all(const std::vector<std::string>& errors) {
   std::string text;
@@ -126,7 +129,7 @@ class CompiledCamera {
         const auto look = [&](std::size_t i) {
           const auto stage = std::make_shared<const view::Stage>(drawings[i], i == 0 ? last_.get() : first.get());
           if (i == 0) first = stage;
-          if (wants_images) view::render(*stage, lens_, pose, sensor_, {seed + i, images[i]}, buffers[i]);
+          if (wants_images) view::render(*stage, lens_, pose, sensor_, {seed + i * world_stride, images[i]}, buffers[i]);
           if (!truth.empty()) truth[i] = view::find_truth(*stage, model(), pose);
         };
         look(0);
