@@ -27,11 +27,12 @@ def test_files_are_as_they_are_written(path):
         assert [float(x) for x in one[2:]] == pytest.approx([float(x) for x in other[2:]], abs=ROUNDING)
 
 
-def test_links_are_where_their_joints_put_them():
+@pytest.mark.parametrize('robot', write_motions.ARMS)
+def test_links_are_where_their_joints_put_them(robot):
     """At zero, and with all joints turned."""
-    joints = write_motions.joints_of(PACKAGE / 'config/scenes/dress_pack.urdf')
+    joints = write_motions.joints_of(PACKAGE / f'{robot}.urdf')
     assert [name for _, _, _, name, _ in joints] == ['mount', 'pan', 'lift', 'elbow', 'roll']
-    at_rest = write_motions.dress_pack(0)
+    at_rest = write_motions.arm(0, joints)
     assert list(at_rest) == ['shoulder', 'upper_arm', 'forearm', 'wrist']
     assert at_rest['wrist'] == ((0.42, 0, 0.85), (0, 0, 0, 1))
     t = 3.0
@@ -41,4 +42,4 @@ def test_links_are_where_their_joints_put_them():
     out = 0.5 * np.sin(lift) + 0.42 * np.cos(lift + elbow)
     up = 0.35 + 0.5 * np.cos(lift) - 0.42 * np.sin(lift + elbow)
     expected = [out * np.cos(pan), out * np.sin(pan), up]
-    assert write_motions.dress_pack(t)['wrist'][0] == pytest.approx(expected, abs=1e-12)
+    assert write_motions.arm(t, joints)['wrist'][0] == pytest.approx(expected, abs=1e-12)

@@ -48,6 +48,7 @@ void expect_default(const CameraSettings& settings) {
   EXPECT_EQ(settings.rate, defaults.rate);
   EXPECT_EQ(settings.seed, defaults.seed);
   EXPECT_EQ(settings.depth_encoding, defaults.depth_encoding);
+  EXPECT_EQ(settings.shadows, defaults.shadows);
   EXPECT_EQ(settings.labels, defaults.labels);
   EXPECT_EQ(settings.robot_description, defaults.robot_description);
   EXPECT_EQ(settings.camera_info_topic, defaults.camera_info_topic);
@@ -56,7 +57,7 @@ void expect_default(const CameraSettings& settings) {
 
 TEST(CameraSettings, TemplateHoldsTheDefaults) {
   const YAML::Node file = YAML::LoadFile(CONFIG_DIRECTORY "/cameras/template.yaml");
-  EXPECT_EQ(file.size(), 17u);  // all that is checked above
+  EXPECT_EQ(file.size(), 18u);  // all that is checked above
   expect_default(read_camera_settings(file, no_parameter));
 }
 

@@ -82,6 +82,7 @@ Keys<CameraSettings> camera_keys() {
           field_key(Field<Settings, int>{"seed", &Settings::seed, "", {0, largest_integer, "an integer from 0"}}),
           choice_key("depth_encoding", &Settings::depth_encoding,
                      {{"32FC1", DepthEncoding::metres}, {"16UC1", DepthEncoding::millimetres}}),
+          switch_key("shadows", &Settings::shadows),
           labels_key(),
           text_key("robot_description", &Settings::robot_description, "the name of a parameter with a URDF"),
           text_key("camera_info_topic", &Settings::camera_info_topic, topic_words)};

@@ -25,6 +25,7 @@ struct CameraSettings {
   double rate = 30;  ///< [Hz]
   int seed = 0;
   DepthEncoding depth_encoding = DepthEncoding::metres;
+  bool shadows = true;              ///< in colors
   std::vector<std::string> labels;  ///< what else than cables, nets, particles and bodies comes first in masks
   std::string robot_description = "robot_description";
   std::string camera_info_topic;  ///< of a driver; empty: none

@@ -29,6 +29,7 @@ class StageMaker {
 
  private:
   const std::vector<std::string> labels_;
+  const bool shadows_;
   const SeenRobot robot_;
   std::mutex mutex_;  ///< of those below
   MeshShelf meshes_;
