@@ -35,24 +35,30 @@ std::vector<BendingStiffness> read_values(const std::string& name, const Numbers
   return values;
 }
 
-std::vector<std::vector<Pose>> read_poses(const Numbers& poses, std::size_t count) {
-  const auto worlds = static_cast<py::ssize_t>(count);
+std::vector<Pose> read_poses(const Numbers& poses, const Batch& batch) {
+  const auto worlds = static_cast<py::ssize_t>(batch.size());
   const bool rollout = poses.ndim() == 3;
   if ((poses.ndim() != 2 && !rollout) || poses.shape(0) != worlds || poses.shape(poses.ndim() - 1) != 7 ||
       (rollout && poses.shape(1) == 0))
     throw py::value_error("poses: shape " + shape_text(poses) + "; allowed: (" + std::to_string(worlds) + ", 7) or (" +
                           std::to_string(worlds) + ", steps, 7)");
-  const py::ssize_t steps = rollout ? poses.shape(1) : 1;
-  std::vector<std::vector<Pose>> read(count);
-  const double* numbers = poses.data();
-  for (py::ssize_t i = 0; i < worlds; ++i) {
-    read[i].reserve(static_cast<std::size_t>(steps));
-    for (py::ssize_t k = 0; k < steps; ++k, numbers += 7) {
-      const std::optional<Pose> pose = sound_pose(numbers);
-      read[i].push_back(
-          pose ? *pose : read_pose(numbers, "poses[" + std::to_string(i) + (rollout ? ", " + std::to_string(k) : "") + "]"));
+  const std::size_t steps = rollout ? static_cast<std::size_t>(poses.shape(1)) : 1;
+  std::vector<Pose> read(batch.size() * steps);
+  std::vector<char> is_sound(batch.size(), 1);
+  const double* const numbers = poses.data();
+  batch.share_out([&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first * steps; i < last * steps; ++i) {
+      const std::optional<Pose> pose = sound_pose(numbers + 7 * i);
+      if (pose)
+        read[i] = *pose;
+      else
+        is_sound[i / steps] = 0;
     }
-  }
+  });
+  const auto wrong = static_cast<std::size_t>(std::find(is_sound.begin(), is_sound.end(), 0) - is_sound.begin());
+  for (std::size_t k = 0; k < steps && wrong < batch.size(); ++k)
+    read_pose(numbers + 7 * (wrong * steps + k),
+              "poses[" + std::to_string(wrong) + (rollout ? ", " + std::to_string(k) : "") + "]");
   return read;
 }
 

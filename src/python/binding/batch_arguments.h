@@ -12,8 +12,8 @@ namespace verlet_cable {
 /// A number for all worlds, one a world, or of a stiffness two a world. Throws ValueError.
 std::vector<BendingStiffness> read_values(const std::string& name, const Numbers& numbers, std::size_t count);
 
-/// Poses of all worlds, (count, 7) or (count, steps, 7). Throws ValueError.
-std::vector<std::vector<Pose>> read_poses(const Numbers& poses, std::size_t count);
+/// Poses of world after world, (count, 7) or (count, steps, 7), read on the batch's threads. Throws ValueError.
+std::vector<Pose> read_poses(const Numbers& poses, const Batch& batch);
 
 /// A vector a world, (count, 3), or one for all, (3,). Throws ValueError.
 std::vector<Vector3> read_vectors(const char* name, const Numbers& numbers, std::size_t count);

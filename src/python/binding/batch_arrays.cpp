@@ -23,8 +23,9 @@ std::string text_of_shape(const QuantityShape& shape) {
   const std::string index = std::to_string(world);
   throw py::value_error(std::string(name_of(quantity)) + " of " + name + ": world " + index + " has none of shape " +
                         text_of_shape(shape) + " as " + like + ": it was edited, or a cable broke, or slides through " +
-                        "guides; allowed: quantities with the same shape in all worlds; missing=0.0, or another number in the place of theirs; worlds[" + index +
-                        "] has its own, and observations() reads points of cables with any number of nodes");
+                        "guides; allowed: quantities with the same shape in all worlds; missing=0.0, or another number in the "
+                        "place of theirs; worlds[" +
+                        index + "] has its own, and observations() reads points of cables with any number of nodes");
 }
 
 std::vector<std::size_t> sizes_of(const QuantityShape& shape, std::vector<std::size_t> first) {

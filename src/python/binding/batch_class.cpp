@@ -85,10 +85,10 @@ void set_material(PythonBatch& batch, const py::str& name, const py::kwargs& fie
 
 void set_frames(PythonBatch& batch, const py::str& name, const Numbers& poses) {
   const std::string frame = text_of(name, "name");
-  std::vector<std::vector<Pose>> all = read_poses(poses, use(batch).size());
+  const std::vector<Pose> all = read_poses(poses, use(batch));
   const InUse in_use(batch.busy, "batch");
   const py::gil_scoped_release release;
-  batch.batch.set_frame(frame, std::move(all));
+  batch.batch.set_frame(frame, all);
 }
 
 /// Calls visit(i) for each; errors name the world, where there are several.

@@ -28,7 +28,8 @@ bool try_copy(const World& world, const Part& part, double* to) {
 }
 
 /// Errors name the scene, where it is not the first.
-DrivenWorld begin(const std::shared_ptr<const SceneDesc>& scene, std::size_t index, const Motion& motion, const LoadPlayer& loads) {
+DrivenWorld begin(const std::shared_ptr<const SceneDesc>& scene, std::size_t index, const Motion& motion,
+                  const LoadPlayer& loads) {
   try {
     return DrivenWorld(scene, motion, loads);
   } catch (const SceneError& error) {
@@ -180,28 +181,45 @@ void Batch::replace(std::vector<DrivenWorld> worlds, const std::vector<char>& be
     if (begun[i] != 0) begin_events(i);
 }
 
-void Batch::set_frame(const std::string& name, std::vector<std::vector<Pose>> poses) {
-  std::vector<int> frames;
-  for (std::size_t i = 0; i < worlds_.size(); ++i) {
-    try {
-      frames.push_back(worlds_[i].find_frame(name));
-    } catch (const UnknownName& error) {
-      if (i == 0) throw;
-      throw UnknownName("world " + std::to_string(i) + ": " + error.what());
+void Batch::share_out(const std::function<void(std::size_t, std::size_t)>& work) const {
+  threads_->share_out(worlds_.size(), work);
+}
+
+void Batch::set_frame(const std::string& name, const std::vector<Pose>& poses) {
+  const std::size_t steps = poses.size() / worlds_.size();
+  std::vector<int> frames(worlds_.size());
+  std::vector<char> lacks(worlds_.size());
+  share_out([&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      frames[i] = worlds_[i].index_of_frame(name);
+      lacks[i] = worlds_[i].has_unplaced_frames() ? 1 : 0;
     }
-  }
-  const auto lacks = [](const DrivenWorld& world) { return world.has_unplaced_frames(); };
-  if (std::none_of(worlds_.begin(), worlds_.end(), lacks)) {
-    for (std::size_t i = 0; i < worlds_.size(); ++i) worlds_[i].set_frame(frames[i], std::move(poses[i]));
+  });
+  const auto unknown = std::find(frames.begin(), frames.end(), -1) - frames.begin();
+  if (unknown == 0) worlds_.front().find_frame(name);
+  if (unknown < static_cast<std::ptrdiff_t>(frames.size())) refuse_frame(static_cast<std::size_t>(unknown), name);
+  if (std::find(lacks.begin(), lacks.end(), 1) == lacks.end()) {
+    share_out([&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) worlds_[i].set_frame(frames[i], &poses[i * steps], steps);
+    });
     return;
   }
   std::vector<DrivenWorld> changed = worlds_;
   std::vector<char> begun(changed.size(), 0);
   for (std::size_t i = 0; i < changed.size(); ++i) {
-    begun[i] = changed[i].set_frame(frames[i], std::move(poses[i])) ? 1 : 0;
+    begun[i] = changed[i].set_frame(frames[i], &poses[i * steps], steps) ? 1 : 0;
     if (begun[i] != 0) changed[i].world().step_one_by_one(true);
   }
   replace(std::move(changed), begun);
+}
+
+/// The frame is in other worlds.
+void Batch::refuse_frame(std::size_t world, const std::string& name) const {
+  try {
+    worlds_[world].find_frame(name);
+  } catch (const UnknownName& error) {
+    throw UnknownName("world " + std::to_string(world) + ": " + error.what());
+  }
 }
 
 void Batch::apply(const std::vector<edit::ApplyLoad>& loads) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -62,8 +63,12 @@ class Batch {
   /// changed, which linear_density is not. Throws SceneError with all that is wrong, and UnknownName.
   void set_material(const std::string& name, const std::vector<MaterialChange>& changes);
 
-  /// See DrivenWorld::set_frame; for each world. Throws UnknownName, and SceneError; then nothing is changed.
-  void set_frame(const std::string& name, std::vector<std::vector<Pose>> poses);
+  /// Calls work(first, last) for shares of the worlds, on all threads at once.
+  void share_out(const std::function<void(std::size_t, std::size_t)>& work) const;
+
+  /// See DrivenWorld::set_frame; `poses`: so many for each world after another. Throws UnknownName, and SceneError; then nothing
+  /// is changed.
+  void set_frame(const std::string& name, const std::vector<Pose>& poses);
 
   /// One a world, which were checked. Throws std::invalid_argument where a world has too many.
   void apply(const std::vector<edit::ApplyLoad>& loads);
@@ -96,6 +101,7 @@ class Batch {
 
   void advance(std::size_t first, std::size_t last, std::int64_t steps);
   void begin_events(std::size_t world);
+  void refuse_frame(std::size_t world, const std::string& name) const;
   void replace(std::vector<DrivenWorld> worlds, const std::vector<char>& begun);
 
   std::shared_ptr<Threads> threads_;  ///< of copies, too: nobody steps two at once

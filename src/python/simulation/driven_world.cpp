@@ -139,14 +139,16 @@ DrivenWorld::DrivenWorld(std::shared_ptr<const SceneDesc> scene, const Motion& m
   unplaced_ = unplaced_holders(*scene, motion);
 }
 
-int DrivenWorld::find_frame(const std::string& name) const {
+int DrivenWorld::index_of_frame(const std::string& name) const {
   const std::vector<std::string>& names = world_.frames();
-  NameList allowed;
-  for (int frame = 1; frame < static_cast<int>(names.size()); ++frame) {
-    if (world_.is_body_frame(frame)) continue;
-    if (names[frame] == name) return frame;
-    allowed.add(names[frame]);
-  }
+  for (int frame = 1; frame < static_cast<int>(names.size()); ++frame)
+    if (names[frame] == name && !world_.is_body_frame(frame)) return frame;
+  return -1;
+}
+
+int DrivenWorld::find_frame(const std::string& name) const {
+  if (const int frame = index_of_frame(name); frame >= 0) return frame;
+  const NameList allowed(frame_names());
   throw UnknownName("name: " + quoted(name) + "; allowed: " + allowed.text("none, the scene has none that moves"));
 }
 
@@ -174,7 +176,7 @@ void DrivenWorld::add_frame(const std::string& name, const Pose& pose) {
   const std::size_t frame = names.size();
   world_.add_frame(name, pose);
   follow_frames_from(frame);
-  set_frame(static_cast<int>(frame), {pose});
+  set_frame(static_cast<int>(frame), &pose, 1);
 }
 
 void DrivenWorld::follow_frames_from(std::size_t first) {
@@ -211,15 +213,13 @@ void DrivenWorld::require_placed_frames(const std::string& where) const {
       "initial_pose in the scene");
 }
 
-bool DrivenWorld::set_frame(int frame, std::vector<Pose> poses) {
+bool DrivenWorld::set_frame(int frame, const Pose* poses, std::size_t count) {
   const auto unplaced = std::find(unplaced_.begin(), unplaced_.end(), world_.frames()[frame]);
-  const bool begins = unplaced != unplaced_.end() && place(unplaced - unplaced_.begin(), frame, poses.front());
-  const auto given =
-      std::find_if(given_.begin(), given_.end(), [frame](const GivenPoses& other) { return other.frame == frame; });
-  if (given == given_.end())
-    given_.push_back({frame, std::move(poses), 0});
-  else
-    *given = {frame, std::move(poses), 0};
+  const bool begins = unplaced != unplaced_.end() && place(unplaced - unplaced_.begin(), frame, *poses);
+  auto given = std::find_if(given_.begin(), given_.end(), [frame](const GivenPoses& other) { return other.frame == frame; });
+  if (given == given_.end()) given = given_.insert(given_.end(), {frame, {}, 0});
+  given->poses.assign(poses, poses + count);
+  given->next = 0;
   return begins;
 }
 

@@ -35,6 +35,8 @@ class DrivenWorld {
 
   /// Id of a frame that can be given a pose. Throws UnknownName.
   int find_frame(const std::string& name) const;
+  /// Likewise; -1 where there is none of that name.
+  int index_of_frame(const std::string& name) const;
   /// Names of those.
   std::vector<std::string> frame_names() const;
   /// Where a frame of any kind is; none where nothing has that name.
@@ -47,7 +49,7 @@ class DrivenWorld {
   /// Where a frame is at the end of each of the next steps, at least one; it stays at the last one. A frame that nothing has
   /// placed yet is at the first of them from the start on: once all are placed, a world that is as it began begins anew with
   /// them. Throws SceneError if it cannot begin so; then nothing is changed. Returns whether it did.
-  bool set_frame(int frame, std::vector<Pose> poses);
+  bool set_frame(int frame, const Pose* poses, std::size_t count);
   bool has_unplaced_frames() const { return !unplaced_.empty(); }
   /// Throws std::invalid_argument if nothing has placed a frame that an attachment or guide needs. `where`: before the message.
   void require_placed_frames(const std::string& where = "") const;
