@@ -1,7 +1,9 @@
 #include "edit_requests/named_edits.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "edit_requests/error_text.h"
@@ -83,10 +85,77 @@ EditResult apply_set_tension(World& world, const std::string& cable, edit::SetTe
           {}};
 }
 
-EditResult apply_set_state(World& world, const std::string& cable, std::optional<std::vector<Vector3>> positions,
-                           std::optional<std::vector<Vector3>> velocities, const RequestWords& words) {
-  if (const auto reason = why_no_cable(world, "cable", cable, words)) return refused({*reason});
-  return world.apply(edit::SetState{find(world.cables(), cable), std::move(positions), std::move(velocities)});
+namespace {
+
+/// Names of the arguments that are given.
+std::vector<const char*> given_of(const NamedState& state) {
+  std::vector<const char*> given;
+  if (state.positions) given.push_back("positions");
+  if (state.velocities) given.push_back("velocities");
+  if (state.pose) given.push_back("pose");
+  if (state.twist) given.push_back("twist");
+  if (state.arc_length) given.push_back("arc_length");
+  return given;
+}
+
+/// Lines for what is given and is not of this kind of thing.
+void check_kind(const NamedState& state, const char* kind, const std::vector<std::string>& allowed,
+                std::vector<std::string>& errors) {
+  for (const char* given : given_of(state))
+    if (std::find(allowed.begin(), allowed.end(), given) == allowed.end())
+      errors.push_back(std::string(given) + ": of the " + kind + " " + quoted(state.name) +
+                       "; allowed: " + NameList(allowed).text());
+}
+
+int find_guide(const World& world, const std::string& name) {
+  const auto& guides = world.guides();
+  const auto found = std::find_if(guides.begin(), guides.end(), [&](const SimulatedGuide& guide) { return guide.name == name; });
+  return found == guides.end() ? -1 : static_cast<int>(found - guides.begin());
+}
+
+int find_body(const World& world, const std::string& name) {
+  const int body = find(world.bodies(), name);
+  return body >= 0 && world.bodies()[body].is_junction ? -1 : body;
+}
+
+/// Names of what can be set.
+NameList settable_names(const World& world) {
+  NameList names;
+  for (const SimulatedCable& cable : world.cables()) names.add(cable.model->name);
+  for (const SimulatedBody& body : world.bodies())
+    if (!body.is_junction) names.add(body.name);
+  for (const SimulatedGuide& guide : world.guides()) names.add(guide.name);
+  return names;
+}
+
+}  // namespace
+
+EditResult apply_set_state(World& world, const std::vector<NamedState>& states, bool& unknown, const RequestWords& words) {
+  std::vector<std::string> errors, strangers;
+  edit::SetState set;
+  for (const NamedState& state : states) {
+    if (const int cable = find(world.cables(), state.name); cable >= 0) {
+      check_kind(state, "cable", {"positions", "velocities"}, errors);
+      set.cables.push_back({cable, state.positions, state.velocities});
+    } else if (const int body = find_body(world, state.name); body >= 0) {
+      check_kind(state, "body", {"pose", "twist"}, errors);
+      set.bodies.push_back({body, state.pose, {}, {}});
+      if (state.twist)
+        std::tie(set.bodies.back().velocity, set.bodies.back().angular_velocity) = std::tie((*state.twist)[0], (*state.twist)[1]);
+    } else if (const int guide = find_guide(world, state.name); guide >= 0) {
+      check_kind(state, "guide", {"arc_length"}, errors);
+      if (state.arc_length) set.guides.push_back({guide, *state.arc_length});
+    } else if (const auto waits = why_cable_waits(world, "cable", state.name, words)) {
+      errors.push_back(*waits);
+    } else {
+      strangers.push_back("cable: " + quoted(state.name) +
+                          "; allowed: " + settable_names(world).text("none, there are no cables, bodies and guides"));
+    }
+  }
+  unknown = errors.empty() && !strangers.empty();
+  errors.insert(errors.end(), strangers.begin(), strangers.end());
+  if (!errors.empty()) return refused(errors);
+  return world.apply(set);
 }
 
 PlacedEdit apply_join(World& world, const std::string& first, bool first_at_end, const std::string& second, bool second_at_end,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,9 +37,18 @@ EditResult apply_set_length(World& world, const std::string& cable, bool at_end,
 EditResult apply_set_tension(World& world, const std::string& cable, edit::SetTension change,
                              const RequestWords& words = service_words());
 
-/// Of a cable: nodes' positions [m], velocities [m/s], or both.
-EditResult apply_set_state(World& world, const std::string& cable, std::optional<std::vector<Vector3>> positions,
-                           std::optional<std::vector<Vector3>> velocities, const RequestWords& words = service_words());
+/// What is asked for of a cable, a body or a guide; see edit::SetState.
+struct NamedState {
+  std::string name;
+  std::optional<std::vector<Vector3>> positions, velocities;  ///< of a cable
+  std::optional<Pose> pose;                                   ///< of a body
+  std::optional<std::array<Vector3, 2>> twist;                ///< likewise: [m/s], [rad/s]
+  std::optional<double> arc_length;                           ///< of a guide
+};
+
+/// All at once. `unknown`: set where only names that nothing has are wrong.
+EditResult apply_set_state(World& world, const std::vector<NamedState>& states, bool& unknown,
+                           const RequestWords& words = service_words());
 
 PlacedEdit apply_join(World& world, const std::string& first, bool first_at_end, const std::string& second, bool second_at_end,
                       const RequestWords& words = service_words());

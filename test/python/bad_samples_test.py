@@ -23,7 +23,7 @@ def test_a_scene_that_cannot_start_is_named_and_left_out(hang):
     with pytest.raises(SceneError):
         Batch(scenes, motion)
     batch = Batch(scenes, motion, keep_going=True, threads=2)
-    assert [bool(error) for error in batch.errors] == [False, True, False, True, False] and 'hose' in batch.errors[1]
+    assert [bool(error) for error in batch.errors] == [False, True, False, True, False] and 'cables[0].length: 0.3 m' in batch.errors[1]
     batch.step(20, record_every=10)
     assert batch.status.tolist() == [0, 6, 0, 6, 0]
     assert batch.positions('hose').shape == (5, 2, 21, 3)
@@ -50,7 +50,7 @@ def test_the_first_scenes_may_be_wrong_and_not_all(hang):
     batch.step(5)
     assert batch.status.tolist() == [6, 6, 0, 0]
     assert pickle.loads(pickle.dumps(batch)).state_hash == batch.state_hash
-    with pytest.raises(SceneError, match='hose'):
+    with pytest.raises(SceneError, match='cables.*length: 0.3 m'):
         Batch([scenes[1], scenes[3]], motion, keep_going=True)
 
 

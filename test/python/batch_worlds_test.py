@@ -12,7 +12,7 @@ from worlds import IDENTITY
 from verlet_cable.sim import Batch, Scene, World
 
 # What a batch does to one of its worlds, by its index.
-BY_WORLD = ['pin', 'unpin', 'cut', 'join', 'set_length', 'set_tension', 'set_state', 'move_attachment', 'set_obstacle', 'remove_obstacle',
+BY_WORLD = ['pin', 'unpin', 'cut', 'join', 'set_length', 'set_tension', 'set_state', 'set_states', 'move_attachment', 'set_obstacle', 'remove_obstacle',
             'add_frame', 'set_frame', 'tune', 'events', 'loads', 'contacts', 'ledger', 'arc_length', 'save']
 
 

@@ -1,10 +1,12 @@
 """The environments: Gymnasium's interface, the same bytes whatever steps beside, and what is rewarded."""
 import copy
 import inspect
+import os
 import subprocess
 import sys
 import textwrap
 import threading
+from pathlib import Path
 
 import numpy
 import pytest
@@ -13,6 +15,7 @@ from conftest import DEVEL
 from verlet_cable.environments import AutoresetMode, LayCable, LayCableVector, ShapeRope, ShapeRopeVector, lay_cable
 from verlet_cable.environments.task import YIELDING, give_way
 
+CHECKOUT = Path(__file__).resolve().parents[2]
 PAIRS = [(ShapeRope, ShapeRopeVector), (LayCable, LayCableVector)]
 
 
@@ -678,3 +681,30 @@ def test_gymnasium_is_used_where_it_is_installed(tmp_path):
     with_it = run_beside(tmp_path)
     assert with_it[1] == 'with Gymnasium' and without[1] == ''
     assert with_it[0] == without[0]
+
+
+# The worked example of the manual
+
+def learning():
+    sys.path.insert(0, str(CHECKOUT / 'scripts/lib'))
+    import learn_to_lay
+    return learn_to_lay
+
+
+def test_the_policy_of_the_manual_lays_the_cable():
+    policy = numpy.loadtxt(CHECKOUT / 'doc/python/environments/lay_cable_policy.csv')
+    held = learning().clips_held(policy)
+    assert len(held) == 32 and held.mean() > 2.5
+
+
+def test_the_example_learns(tmp_path):
+    """Two of its iterations, with as few worlds as it has elites and some: what it writes, and that it is the same again."""
+    for name in ('first', 'second'):
+        subprocess.run([sys.executable, str(CHECKOUT / 'scripts/lib/learn_to_lay.py'), str(tmp_path / name), '2', '16'], check=True,
+                       stdout=subprocess.DEVNULL, env=dict(os.environ, PYTHONPATH=os.pathsep.join(sys.path)))
+    curve = numpy.loadtxt(tmp_path / 'first/lay_cable_learning.csv', delimiter=',', skiprows=1)
+    assert curve[:, 1].tolist() == [3200, 6400] and (curve[:, 3] >= curve[:, 2]).all() and (curve[:, 2:] >= 0).all()
+    for file in ('lay_cable_learning.csv', 'lay_cable_policy.csv'):
+        assert (tmp_path / 'first' / file).read_bytes() == (tmp_path / 'second' / file).read_bytes()
+    shown = CHECKOUT / 'doc/python/environments/lay_cable_learning.csv'
+    assert shown.read_text().splitlines()[0] == (tmp_path / 'first/lay_cable_learning.csv').read_text().splitlines()[0]

@@ -96,12 +96,30 @@ struct ApplyLoad {
   double duration = 0;               ///< [s] of which it acts in all steps that begin within it; 0: until it is changed
 };
 
-/// Puts the nodes of a cable elsewhere, or gives them other velocities. Both are projected as those that a scene gives: held
-/// nodes are where their holders are, and what cannot stretch keeps its length.
+/// Puts things elsewhere, or gives them other velocities, all at once. What is not given stays. Cables' nodes are projected as
+/// those that a scene gives: held nodes are where their holders are, and what cannot stretch keeps its length. Cables go with the
+/// bodies that hold them.
 struct SetState {
-  int cable = 0;
-  std::optional<std::vector<Vector3>> positions;   ///< [m] one a node
-  std::optional<std::vector<Vector3>> velocities;  ///< [m/s] one a node
+  struct OfCable {
+    int cable = 0;
+    std::optional<std::vector<Vector3>> positions;   ///< [m] one a node
+    std::optional<std::vector<Vector3>> velocities;  ///< [m/s] one a node
+  };
+  /// Of one that nothing but cables holds. What of its velocity its cables do not allow the next step takes away.
+  struct OfBody {
+    int body = 0;
+    std::optional<Pose> pose;                 ///< of its frame
+    std::optional<Vector3> velocity;          ///< [m/s] of its center of mass, fixed frame's axes
+    std::optional<Vector3> angular_velocity;  ///< [rad/s] fixed frame's axes
+  };
+  /// Material of its cable goes through the guide, nodes with it.
+  struct OfGuide {
+    int guide = 0;
+    double arc_length = 0;  ///< [m] as GuideView has it
+  };
+  std::vector<OfCable> cables;
+  std::vector<OfBody> bodies;
+  std::vector<OfGuide> guides;
 };
 
 }  // namespace edit

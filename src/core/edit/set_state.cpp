@@ -1,9 +1,14 @@
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "guide/node_passing.h"
+#include "guide/side.h"
+#include "rod/initial_shape.h"
 #include "rod/length_projection.h"
 #include "rod/rod_frames.h"
+#include "verlet_cable/core/cable_materials.h"
+#include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/scene_fields.h"
 #include "world/implementation.h"
 
@@ -11,47 +16,276 @@ namespace verlet_cable {
 
 namespace {
 
-/// Of vectors for each node [m], [m/s]; empty if nothing is wrong.
-std::string problem_of(const std::string& field, const std::optional<std::vector<Vector3>>& vectors, const CableState& cable) {
-  if (!vectors) return "";
+/// Lets material through a guide in pieces that are shorter than what is beside it, so that nodes can pass.
+constexpr double most_let_through = 0.5;
+/// Of a length: what is no shorter than that lies straight.
+constexpr double nearly_straight = 3e-4;
+/// As of what begins.
+constexpr double most_strain = 1e-3, most_elastic_strain = 0.02;
+
+/// Lines of what is wrong. Where several things are set, each is named.
+class Problems {
+ public:
+  explicit Problems(bool names) : names_(names) {}
+  void of(const std::string& name) { prefix_ = names_ ? name + "." : ""; }
+  void add(const std::string& text) { text_ += (text_.empty() ? "" : "\n") + prefix_ + text; }
+  void check_vector(const std::string& field, const Vector3& vector) {
+    const std::string problem = vector_problem(prefix_ + field, vector, coordinate, "");
+    if (!problem.empty()) text_ += (text_.empty() ? "" : "\n") + problem;
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  bool names_;
+  std::string prefix_, text_;
+};
+
+/// Of vectors for each node [m], [m/s].
+void check_nodes(const std::string& field, const std::optional<std::vector<Vector3>>& vectors, const CableState& cable,
+                 Problems& problems) {
+  if (!vectors) return;
   if (static_cast<int>(vectors->size()) != cable.nodes())
-    return field + ": " + std::to_string(vectors->size()) + "; must be " + std::to_string(cable.nodes()) + ", one a node";
-  std::string problem;
-  for (std::size_t node = 0; node < vectors->size() && problem.empty(); ++node)
-    problem = vector_problem(field + "[" + std::to_string(node) + "]", (*vectors)[node], coordinate, "");
-  return problem;
+    return problems.add(field + ": " + std::to_string(vectors->size()) + "; must be " + std::to_string(cable.nodes()) +
+                        ", one a node");
+  for (std::size_t node = 0; node < vectors->size(); ++node) {
+    const std::size_t before = problems.text().size();
+    problems.check_vector(field + "[" + std::to_string(node) + "]", (*vectors)[node]);
+    if (problems.text().size() > before) return;
+  }
+}
+
+/// What but cables holds a body, or is held by it; empty if nothing is.
+std::string not_free(int body, const State& state) {
+  for (const Attachment& a : state.attachments) {
+    if (a.body == rigid_body_id(body)) return "held by " + a.name;
+    if (a.holder == body && !a.body.is_cable()) return "holding " + a.name;
+  }
+  return "";
+}
+
+void check_body(const edit::SetState::OfBody& set, const State& state, Problems& problems) {
+  const std::string other = not_free(set.body, state);
+  if (!state.body_progress[set.body].is_placed) problems.add("pose: the body does not exist until what holds it is known");
+  if (!other.empty()) problems.add("pose: of a body " + other + "; allowed: of bodies that nothing but cables holds");
+  if (set.pose) {
+    const std::string problem = pose_problem("pose", *set.pose);
+    if (!problem.empty()) problems.add(problem);
+  }
+  if (set.velocity) problems.check_vector("twist.linear", *set.velocity);
+  if (set.angular_velocity) problems.check_vector("twist.angular", *set.angular_velocity);
+}
+
+const Attachment* attachment_of_guide(int guide, const State& state) {
+  const auto found =
+      std::find_if(state.attachments.begin(), state.attachments.end(), [&](const Attachment& a) { return a.guide == guide; });
+  return found == state.attachments.end() ? nullptr : &*found;
+}
+
+/// [m] as GuideView has it.
+double arc_length_at(const Attachment& attachment, const CableState& cable) {
+  return cable.length(0, attachment.node) + 0.5 * cable.length(attachment.node, last_node(attachment));
+}
+
+void check_guide(const edit::SetState::OfGuide& set, const State& state, Problems& problems) {
+  const Attachment* attachment = attachment_of_guide(set.guide, state);
+  if (!attachment) return problems.add("arc_length: no cable is in the guide");
+  const SimulatedCable& cable = state.cables[attachment->body.index];
+  const double half = 0.5 * cable.state.length(attachment->node, last_node(*attachment));
+  const double least = half + cable.model->segment_length, most = cable.state.length() - least;
+  if (!(set.arc_length >= least && set.arc_length <= most))
+    problems.add("arc_length: " + number_text(set.arc_length) + "; must be from " + rounded_text(least) + " to " +
+                 rounded_text(most) + " m, a segment from either end");
+}
+
+/// Where bodies hold a cable now, and how fast.
+void hold_where_bodies_are(int index, State& state) {
+  KinematicTargets& targets = state.cable_progress[index].targets;
+  Boundary boundary = boundary_now(targets);
+  hold_on_bodies(state.cables[index].state, state.attachments, state.bodies, state.time(), targets, boundary);
+  follow_bodies(boundary, targets);
+  for (std::size_t k = 0; k < targets.nodes.size(); ++k) {
+    if (boundary.nodes[k].body < 0) continue;
+    KinematicTarget& target = targets.nodes[k];
+    target.position = target.next_position;
+    target.velocity = target.mean_velocity = target.frame_velocity = target.average_velocity = target.next_velocity;
+  }
+  for (std::size_t k = 0; k < targets.directions.size(); ++k)
+    if (boundary.directions[k].body >= 0) targets.directions[k].orientation = targets.directions[k].next_orientation;
+}
+
+/// Whether what holds a cable is no further apart than it is long, and elastic ones a little more.
+bool reaches(int index, const State& state) {
+  const SimulatedCable& cable = state.cables[index];
+  const double strain = CableMaterials(cable).any_rigid() ? most_strain : most_elastic_strain;
+  const std::vector<HeldNode> held = boundary_now(state.cable_progress[index].targets).nodes;
+  for (std::size_t k = 1; k < held.size(); ++k) {
+    const double length = cable.state.length(held[k - 1].node, held[k].node);
+    if ((held[k].position - held[k - 1].position).norm() > (1 + strain) * length) return false;
+  }
+  return true;
+}
+
+/// Of what cannot stretch. A segment on a wheel is held at both of its nodes.
+bool has_lengths(const std::vector<HeldNode>& held, const SimulatedCable& cable) {
+  const CableMaterials materials(cable);
+  std::vector<char> is_held(cable.state.positions.size(), 0);
+  for (const HeldNode& h : held) is_held[h.node] = 1;
+  for (int i = 0; i < cable.state.segments(); ++i) {
+    if (is_elastic(materials[i]) || (is_held[i] && is_held[i + 1])) continue;
+    const double length = (cable.state.positions[i + 1] - cable.state.positions[i]).norm();
+    if (std::abs(length / cable.state.rest_lengths[i] - 1) > most_strain) return false;
+  }
+  return true;
+}
+
+/// Spans that are as long as what holds them is apart, or hardly longer, have only one shape.
+void draw_straight(const std::vector<HeldNode>& held, CableState& cable) {
+  for (const HeldNode& h : held) cable.positions[h.node] = h.position;
+  for (std::size_t k = 0; k + 1 < held.size(); ++k) {
+    const Vector3 span = held[k + 1].position - held[k].position;
+    const double length = cable.length(held[k].node, held[k + 1].node);
+    if (span.norm() < (1 - nearly_straight) * length) continue;
+    double along = 0;
+    for (int i = held[k].node; i + 1 < held[k + 1].node; ++i) {
+      along += cable.rest_lengths[i];
+      cable.positions[i + 1] = held[k].position + along / length * span;
+    }
+  }
+}
+
+/// False if the nodes find no shape near these positions with the cable's lengths.
+bool put_at(std::vector<Vector3> positions, int index, State& state) {
+  SimulatedCable& cable = state.cables[index];
+  const std::vector<HeldNode> held = boundary_now(state.cable_progress[index].targets).nodes;
+  const std::vector<Vector3> before = std::exchange(cable.state.positions, std::move(positions));
+  if (CableMaterials(cable).any_rigid()) draw_straight(held, cable.state);
+  const std::vector<Vector3> drawn = cable.state.positions;
+  bool found = project_positions(*cable.model, held, cable.state);
+  if (!found) {
+    cable.state.positions = drawn;
+    found = has_lengths(held, cable);
+  }
+  if (found) carry_frames(before, cable.state);
+  return found;
+}
+
+/// False if a node that is held, or bears something, is in the way, or if the cable does not follow.
+bool let_through(const edit::SetState::OfGuide& set, State& state) {
+  SimulatedGuide& guide = state.guides[set.guide];
+  guide.flow = guide.flow_acceleration = guide.held_energy = guide.held_way = guide.last_way = 0;
+  while (true) {
+    const Attachment& attachment = *attachment_of_guide(set.guide, state);
+    const int index = attachment.body.index;
+    CableState& cable = state.cables[index].state;
+    double& before = cable.rest_lengths[side_of(attachment, 0).segment()];
+    double& after = cable.rest_lengths[side_of(attachment, 1).segment()];
+    const double missing = set.arc_length - arc_length_at(attachment, cable);
+    const double part = std::clamp(missing, -most_let_through * before, most_let_through * after);
+    before += part;
+    after -= part;
+    const double little = 0.01 * state.cables[index].model->segment_length;
+    const bool passes = pass_nodes(index, false, state);
+    const bool found = put_at(cable.positions, index, state);  // on the way there one side may be too short
+    if (part == missing) return found && reaches(index, state);
+    if (!passes && std::abs(part) < little) return false;
+  }
 }
 
 }  // namespace
 
 EditResult World::Implementation::apply(const edit::SetState& set) {
-  if (set.cable < 0 || set.cable >= static_cast<int>(state.cables.size()))
-    return refused("cable: " + std::to_string(set.cable) + "; must be the index of a cable");
-  SimulatedCable& cable = state.cables[set.cable];
-  std::string problems = problem_of("positions", set.positions, cable.state);
-  const std::string of_velocities = problem_of("velocities", set.velocities, cable.state);
-  if (!problems.empty() && !of_velocities.empty()) problems += "\n";
-  problems += of_velocities;
-  if (!problems.empty()) return refused(problems);
-
-  CableState next = cable.state;
-  if (set.positions) {
-    next.positions = *set.positions;
-    const Boundary boundary = boundary_now(state.cable_progress[set.cable].targets);
-    if (!project_positions(*cable.model, boundary.nodes, next))
-      return refused("positions: no shape near them has the cable's lengths where its holders are");
-    carry_frames(cable.state.positions, next);
+  Problems problems(set.cables.size() + set.bodies.size() + set.guides.size() > 1);
+  std::vector<char> is_changed(state.cables.size(), 0);
+  for (const edit::SetState::OfCable& of : set.cables) {
+    if (of.cable < 0 || of.cable >= static_cast<int>(state.cables.size()))
+      return refused("cable: " + std::to_string(of.cable) + "; must be the index of a cable");
+    is_changed[of.cable] = 1;
   }
-  if (set.velocities) next.velocities = *set.velocities;
-  // What the steps before have found is of another motion.
-  for (std::vector<double>* forces : {&next.tension, &next.last_tension, &next.axial_multiplier})
-    std::fill(forces->begin(), forces->end(), 0.0);
-  std::fill(next.accelerations.begin(), next.accelerations.end(), Vector3::Zero());
-  next.yielding = next.taut_energy = 0;
-  cable.state = std::move(next);
-  after_remeshing(set.cable);
-  move_with_holders(set.cable, state);
-  return {true, "", cable.model->name};
+  for (const edit::SetState::OfBody& of : set.bodies) {
+    if (of.body < 0 || of.body >= static_cast<int>(state.bodies.size()) || state.bodies[of.body].is_junction)
+      return refused("body: " + std::to_string(of.body) + "; must be the index of a body that is no junction");
+    problems.of(state.bodies[of.body].name);
+    check_body(of, state, problems);
+    for (const Attachment& a : state.attachments)
+      if (a.holder == of.body && a.body.is_cable()) is_changed[a.body.index] = 1;
+  }
+  for (const edit::SetState::OfGuide& of : set.guides) {
+    if (of.guide < 0 || of.guide >= static_cast<int>(state.guides.size()))
+      return refused("guide: " + std::to_string(of.guide) + "; must be the index of a guide");
+    problems.of(state.guides[of.guide].name);
+    check_guide(of, state, problems);
+    if (const Attachment* a = attachment_of_guide(of.guide, state)) is_changed[a->body.index] = 1;
+  }
+  // Of what a guide lets through only the step itself knows how many nodes the cable has then.
+  if (set.guides.empty())
+    for (const edit::SetState::OfCable& of : set.cables) {
+      problems.of(state.cables[of.cable].model->name);
+      check_nodes("positions", of.positions, state.cables[of.cable].state, problems);
+      check_nodes("velocities", of.velocities, state.cables[of.cable].state, problems);
+    }
+  if (!problems.text().empty()) return refused(problems.text());
+  return set_checked(set, is_changed);
+}
+
+/// `is_changed`: a cable, whether it is to be set, or is held by what is.
+EditResult World::Implementation::set_checked(const edit::SetState& set, const std::vector<char>& is_changed) {
+  const State before = state;
+  const auto refuse = [&](const std::string& message) {
+    state = before;
+    return refused(message);
+  };
+  for (const edit::SetState::OfBody& of : set.bodies) {
+    SimulatedBody& body = state.bodies[of.body];
+    BodyProgress& progress = state.body_progress[of.body];
+    if (of.pose) {
+      body.pose = {of.pose->position, of.pose->orientation.normalized()};
+      Frames& frames = state.frames;
+      frames.poses[body.frame] = frames.previous_poses[body.frame] = frames.earlier_poses[body.frame] = body.pose;
+      progress.contacts.clear();
+    }
+    if (of.velocity) body.velocity = *of.velocity;
+    if (of.angular_velocity) body.angular_velocity = *of.angular_velocity;
+    progress.acceleration = progress.angular_acceleration = Vector3::Zero();
+    progress.has_moved = false;
+  }
+  for (std::size_t c = 0; c < is_changed.size(); ++c) {
+    if (!is_changed[c]) continue;
+    const int index = static_cast<int>(c);
+    hold_where_bodies_are(index, state);
+    if (set.bodies.empty()) continue;
+    SimulatedCable& cable = state.cables[c];
+    carry_with_targets(*cable.model, boundary_now(state.cable_progress[c].targets).nodes, gravity_near(state, index),
+                       cable.state);
+  }
+  for (const edit::SetState::OfGuide& of : set.guides)
+    if (!let_through(of, state))
+      return refuse("arc_length: " + number_text(of.arc_length) + "; the cable of " + state.guides[of.guide].name +
+                    " cannot go through as far: something that it bears or that holds it is in the way, or it is straight");
+  for (const edit::SetState::OfCable& of : set.cables) {
+    SimulatedCable& cable = state.cables[of.cable];
+    Problems problems(false);
+    check_nodes("positions", of.positions, cable.state, problems);
+    check_nodes("velocities", of.velocities, cable.state, problems);
+    if (!problems.text().empty()) return refuse(problems.text());
+    if (of.positions && !put_at(*of.positions, of.cable, state))
+      return refuse("positions: no shape near them has the cable's lengths where its holders are");
+    if (of.velocities) cable.state.velocities = *of.velocities;
+  }
+  for (std::size_t c = 0; c < is_changed.size(); ++c) {
+    if (!is_changed[c]) continue;
+    const int index = static_cast<int>(c);
+    if (!set.bodies.empty() && (!put_at(state.cables[c].state.positions, index, state) || !reaches(index, state)))
+      return refuse("pose: too far for the cable " + state.cables[c].model->name + "; allowed: where all that hold it reach");
+    // What the steps before have found is of another motion.
+    CableState& cable = state.cables[c].state;
+    for (std::vector<double>* forces : {&cable.tension, &cable.last_tension, &cable.axial_multiplier})
+      std::fill(forces->begin(), forces->end(), 0.0);
+    std::fill(cable.accelerations.begin(), cable.accelerations.end(), Vector3::Zero());
+    cable.yielding = cable.taut_energy = 0;
+    after_remeshing(index);
+    move_with_holders(index, state);
+  }
+  return {true, "", ""};
 }
 
 }  // namespace verlet_cable

@@ -84,6 +84,7 @@ struct World::Implementation {
   EditResult apply(const edit::RemoveObstacle& remove);
   EditResult apply(const edit::ApplyLoad& request);
   EditResult apply(const edit::SetState& set);
+  EditResult set_checked(const edit::SetState& set, const std::vector<char>& is_changed);
   EditResult cut_cable(int cable, int segment);
   EditResult cut_link(int net, int link);
   void update_net(int net);

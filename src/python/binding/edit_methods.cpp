@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -14,8 +15,9 @@
 #include "binding/named_tuple.h"
 #include "binding/text_arguments.h"
 #include "simulation/edits.h"
-#include "verlet_cable/core/body_name.h"
+#include "verlet_cable/core/name_list.h"
 #include "verlet_cable/core/quoted_text.h"
+#include "verlet_cable/core/scene_fields.h"
 
 namespace verlet_cable {
 namespace {
@@ -67,6 +69,58 @@ std::optional<std::vector<Vector3>> read_vectors(const char* name, const Optiona
   return vectors;
 }
 
+std::optional<Pose> read_body_pose(const std::string& name, const OptionalNumbers& numbers) {
+  if (!numbers) return std::nullopt;
+  check_size(name.c_str(), *numbers, 7);
+  return read_pose(numbers->data(), name);
+}
+
+std::optional<std::array<Vector3, 2>> read_twist(const std::string& name, const OptionalNumbers& numbers) {
+  if (!numbers) return std::nullopt;
+  check_size(name.c_str(), *numbers, 6);
+  const double* p = numbers->data();
+  return std::array<Vector3, 2>{Vector3(p[0], p[1], p[2]), Vector3(p[3], p[4], p[5])};
+}
+
+/// `full`: with what it is of.
+void read_key(const std::string& key, const std::string& full, const py::handle& value, NamedState& state) {
+  const Numbers numbers = Numbers::ensure(value);
+  if (!numbers) throw py::value_error(full + ": " + ascii_text(value) + "; allowed: numbers");
+  if (key == "positions") {
+    state.positions = read_vectors(full.c_str(), numbers);
+  } else if (key == "velocities") {
+    state.velocities = read_vectors(full.c_str(), numbers);
+  } else if (key == "pose") {
+    state.pose = read_body_pose(full, numbers);
+  } else if (key == "twist") {
+    state.twist = read_twist(full, numbers);
+  } else if (key != "arc_length") {
+    throw UnknownName(full + ": no such key; allowed: positions, velocities, pose, twist, arc_length");
+  } else if (numbers.ndim() != 0) {
+    throw py::value_error(full + ": shape " + shape_text(numbers) + "; allowed: a number");
+  } else {
+    state.arc_length = *numbers.data();
+  }
+}
+
+/// Of the argument `states`.
+std::vector<NamedState> read_states(const py::dict& states) {
+  std::vector<NamedState> all;
+  for (const auto& [name, keys] : states) {
+    if (!py::isinstance<py::str>(name)) throw py::type_error("states: " + ascii_text(name) + "; allowed: names");
+    NamedState& state = all.emplace_back();
+    state.name = text_of(name, "states");
+    const std::string path = "states[" + quoted(state.name) + "]";
+    if (!py::isinstance<py::dict>(keys))
+      throw py::type_error(path + ": " + ascii_text(keys) + "; allowed: a dict, such as {'pose': (7,)}");
+    for (const auto& [key, value] : keys.cast<py::dict>()) {
+      const std::string field = py::isinstance<py::str>(key) ? text_of(key, path) : ascii_text(key);
+      read_key(field, path + "[" + quoted(field) + "]", value, state);
+    }
+  }
+  return all;
+}
+
 void add_axes(const char* name, const OptionalNumbers& vector, std::vector<NumberChange>& changes) {
   if (!vector) return;
   check_size(name, *vector, 3);
@@ -91,6 +145,19 @@ void add_material_number(const NamedMaterial& material, const std::string& key, 
   changes.push_back({name + "_z", numbers.data()[pair ? 1 : 0]});
 }
 
+/// Keys of a material that can be tuned.
+std::vector<std::string> tunable_keys(const std::string& material, const std::vector<TunableNumber>& numbers) {
+  std::vector<std::string> keys;
+  const auto add = [&](const std::string& key) {
+    const std::string name = material + "_" + key;
+    const auto is_it = [&](const TunableNumber& number) { return number.name == name || number.name == name + "_y"; };
+    if (std::any_of(numbers.begin(), numbers.end(), is_it)) keys.push_back(key);
+  };
+  add(bending_stiffness_field.key);
+  for (const auto& field : material_fields) add(field.key);
+  return keys;
+}
+
 void add_materials(const SceneDesc& scene, const std::map<std::string, std::map<std::string, Numbers>>& materials,
                    std::vector<NumberChange>& changes) {
   for (const auto& [name, keys] : materials) {
@@ -98,7 +165,12 @@ void add_materials(const SceneDesc& scene, const std::map<std::string, std::map<
     const auto material = std::find_if(scene.materials.begin(), scene.materials.end(), is_it);
     if (material == scene.materials.end())
       throw UnknownName("materials: " + quoted(name) + "; allowed: " + material_names(scene.materials));
-    for (const auto& [key, numbers] : keys) add_material_number(*material, key, numbers, changes);
+    const std::vector<std::string> allowed = tunable_keys(name, tunable_numbers(scene));
+    for (const auto& [key, numbers] : keys) {
+      if (std::find(allowed.begin(), allowed.end(), key) == allowed.end())
+        throw UnknownName("materials[" + quoted(name) + "]: " + quoted(key) + "; allowed: " + NameList(allowed).text());
+      add_material_number(*material, key, numbers, changes);
+    }
   }
 }
 
@@ -253,15 +325,28 @@ void add_edit_methods(py::module_& module, py::class_<PythonWorld>& world, World
       "then nothing is changed.");
   methods.add_edit(
       "set_state",
-      [](PythonWorld& self, const py::str& cable, const OptionalNumbers& positions, const OptionalNumbers& velocities) {
-        set_state(text_of(cable, "cable"), read_vectors("positions", positions), read_vectors("velocities", velocities),
-                  self.driven());
+      [](PythonWorld& self, const py::str& cable, const OptionalNumbers& positions, const OptionalNumbers& velocities,
+         const OptionalNumbers& pose, const OptionalNumbers& twist, std::optional<double> arc_length) {
+        set_states({{text_of(cable, "cable"), read_vectors("positions", positions), read_vectors("velocities", velocities),
+                     read_body_pose("pose", pose), read_twist("twist", twist), arc_length}},
+                   self.driven());
       },
-      py::arg("cable"), py::arg("positions") = py::none(), py::arg("velocities") = py::none(),
-      "Puts the nodes of a cable at positions (n + 1, 3) [m], or gives them velocities (n + 1, 3) [m/s], or both. They are "
-      "projected as those of a scene are: held nodes stay where their holders are, and what cannot stretch keeps its length. "
-      "What is not given stays. Raises ValueError, also where no shape near the positions has the cable's lengths, and KeyError; "
-      "then nothing is changed.");
+      py::arg("cable"), py::arg("positions") = py::none(), py::arg("velocities") = py::none(), py::kw_only(),
+      py::arg("pose") = py::none(), py::arg("twist") = py::none(), py::arg("arc_length") = py::none(),
+      "Puts a cable, a body or a guide, by its name, elsewhere, or gives it another velocity. What is not given stays.\n\n"
+      "positions, velocities: (n + 1, 3) [m], [m/s] of the nodes of a cable. They are projected as those of a scene are: held "
+      "nodes stay where their holders are, and what cannot stretch keeps its length.\npose, twist: (7,) x, y, z [m], qx, qy, qz, "
+      "qw of a body that only cables hold, and (6,) [m/s], [rad/s] as body_twist(). Its cables go with it; what of the velocity "
+      "they do not allow, the next step takes away.\narc_length: [m] at rest from the start of the cable to what is in a guide; "
+      "material goes through it, and nodes with it.\n\nRaises ValueError, also where no shape near the positions has the "
+      "cable's lengths, and KeyError; then nothing is changed.");
+  methods.add_edit(
+      "set_states", [](PythonWorld& self, const py::dict& states) { set_states(read_states(states), self.driven()); },
+      py::arg("states"),
+      "As set_state of several things at once, where one alone is not possible, such as both loads on a rope over a sheave: "
+      "{'left_load': {'pose': (7,), 'twist': (6,)}, 'rope': {'positions': (n + 1, 3)}, 'sheave': {'arc_length': 0.6}}. First "
+      "bodies, then guides, then cables are set; positions are given for as many nodes as the cable then has. Raises as "
+      "set_state; then nothing is changed.");
   methods.add_edit(
       "move_attachment",
       [](PythonWorld& self, const py::str& name, const Numbers& offset) {

@@ -17,7 +17,7 @@ namespace {
 FrameTrack read_track(const std::string& name, const py::handle& value) {
   const py::sequence pair =
       py::isinstance<py::sequence>(value) ? py::reinterpret_borrow<py::sequence>(value) : py::sequence(py::list());
-  if (pair.size() != 2) throw py::value_error(name + ": allowed: (times, poses)");
+  if (pair.size() != 2) throw py::value_error(name + ": " + ascii_text(value) + "; allowed: (times (k,) [s], poses (k, 7))");
   const Numbers times = Numbers::ensure(pair[0]), poses = Numbers::ensure(pair[1]);
   if (!times || !poses)
     throw py::value_error(name + (times ? "[1], poses: " : "[0], times: ") + ascii_text(pair[times ? 1 : 0]) +

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "edit_requests/error_text.h"
-#include "edit_requests/named_edits.h"
 #include "simulation/quantity.h"
 #include "verlet_cable/core/body_name.h"
 #include "verlet_cable/core/name_list.h"
@@ -122,10 +121,10 @@ void set_tension(const std::string& cable, const edit::SetTension& change, Drive
   require(apply_set_tension(world.world(), cable, change, python_words()), unknown);
 }
 
-void set_state(const std::string& cable, std::optional<std::vector<Vector3>> positions,
-               std::optional<std::vector<Vector3>> velocities, DrivenWorld& world) {
-  const bool unknown = find(world.world().cables(), cable) < 0;
-  require(apply_set_state(world.world(), cable, std::move(positions), std::move(velocities), python_words()), unknown);
+void set_states(const std::vector<NamedState>& states, DrivenWorld& world) {
+  bool unknown = false;
+  const EditResult result = apply_set_state(world.world(), states, unknown, python_words());
+  require(result, unknown);
 }
 
 void move_attachment(const std::string& name, const Pose& offset, DrivenWorld& world) {

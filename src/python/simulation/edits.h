@@ -7,6 +7,7 @@
 
 #include "edit_requests/checked_load.h"
 #include "edit_requests/checked_pin.h"
+#include "edit_requests/named_edits.h"
 #include "edit_requests/tunable_numbers.h"
 #include "simulation/driven_world.h"
 #include "simulation/event_record.h"
@@ -39,9 +40,8 @@ std::string join(const std::string& first, bool first_at_end, const std::string&
 
 void set_length(const std::string& cable, bool at_end, double length, double speed, double max_tension, DrivenWorld& world);
 void set_tension(const std::string& cable, const edit::SetTension& change, DrivenWorld& world);
-/// Of a cable; what is not given stays.
-void set_state(const std::string& cable, std::optional<std::vector<Vector3>> positions,
-               std::optional<std::vector<Vector3>> velocities, DrivenWorld& world);
+/// Of cables, bodies and guides, all at once; what is not given stays.
+void set_states(const std::vector<NamedState>& states, DrivenWorld& world);
 void move_attachment(const std::string& name, const Pose& offset, DrivenWorld& world);
 
 /// A load on a node of a cable, or on a body: what `request` says, in the fixed frame's axes, or where it `turns` in the body's

@@ -11,9 +11,10 @@ _MOST_COMPARED = 300  # letters of a name: longer ones take long
 _MISMATCH = ('incompatible function arguments', 'incompatible constructor arguments')
 _NO_DEFAULT = object()
 
-_MISNAMED = re.compile(r'[^\n]*?"((?:[^"\\\n]|\\.)*)"; allowed: ([^\n]*)')  # name: "ropes"; allowed: rope, wire
+_MISNAMED = re.compile(r'[^\n]*?"((?:[^"\\\n]|\\.)*)"[^"\n]*; allowed: ([^\n]*)')  # name: "ropes"; allowed: rope, wire
 
-_WORDS = {'str': 'text', 'int': 'an integer', 'bool': 'True or False', 'float': 'a number', 'dict': 'a dict',
+_WORDS = {'str': 'text', 'bytes': 'bytes, as save() returns them',
+          'Dict[str, Dict[str, numpy.ndarray[numpy.float64]]]': "a dict of dicts of numbers, such as {'my_hose': {'drag': 0.1}}", 'int': 'an integer', 'bool': 'True or False', 'float': 'a number', 'dict': 'a dict',
           'numpy.ndarray[numpy.float64]': 'numbers that are real, as an array or nested sequences'}
 
 # By the type that is asked for and the one that was given: what makes the one of the other.
@@ -66,8 +67,8 @@ class _Signature:
         parameters = self.positional + self.keyword_only
         names = [parameter.name for parameter in parameters]
         if len(args) > len(self.positional):
-            allowed = f'at most {len(self.positional)}' + (': ' + ', '.join(p.name for p in self.positional) if self.positional else '')
-            return len(args), f'{len(args)} arguments without a name; allowed: {allowed}'
+            allowed = f'at most {len(self.positional)}: ' + ', '.join(p.name for p in self.positional) if self.positional else 'none'
+            return len(args), f'{len(args)} argument{"s" if len(args) > 1 else ""} without a name; allowed: {allowed}'
         given = dict(zip(names, args))
         for name, value in kwargs.items():
             if name in given:
@@ -116,6 +117,8 @@ def _fits(kind, value):
         return not parts or all(_fits(parts[0], key) and _fits(parts[1], item) for key, item in value.items())
     if kind == 'str':
         return isinstance(value, str)
+    if kind == 'bytes':
+        return isinstance(value, bytes)
     if kind == 'bool':
         return isinstance(value, (bool, np.bool_))
     if kind == 'int':
@@ -157,9 +160,6 @@ def _words(kind):
         return ' or '.join(map(_words, _split(union)))
     if items:
         return '(' + ', '.join(map(_words, _split(items))) + ')'
-    parts = _split(_inner(kind, 'Dict') or '')
-    if parts:
-        return f'a dict of {_words(parts[1])} by {_words(parts[0])}'
     name = kind.rpartition('.')[2]
     return _WORDS.get(kind) or ('a ' + name if _class(name) else kind)
 
