@@ -14,7 +14,6 @@ class Appearance {
  public:
   /// The keys light, background, looks (by name), stripes, distinct_colors, least_radius; each may be left out. Throws ValueError
   /// with what is wrong.
-  /// that is wrong.
   explicit Appearance(const py::dict& given);
 
   /// Throws ValueError where a look is of something that is not there.
