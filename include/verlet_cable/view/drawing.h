@@ -39,7 +39,7 @@ struct Tube {
   std::vector<Quaternion> orientations{};  ///< n: x along the segment, roll of the material; none: without stripes
 };
 
-/// A solid or a mesh in the frame of the thing that it is part of. Meshes are seen from both sides.
+/// A solid or a mesh in the frame of the thing that it is part of. Meshes are seen from both sides, planes from outside only.
 struct Part {
   Pose pose;
   Shape shape;

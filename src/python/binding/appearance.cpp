@@ -118,8 +118,8 @@ Appearance::Appearance(const py::dict& given) {
               } else if (key == "background") {
                 background_ = read_color("background", value);
               } else if (key == "stripes") {
-      options_.stripes = py::bool_(py::reinterpret_borrow<py::object>(value));
-    } else if (key == "distinct_colors") {
+                options_.stripes = py::bool_(py::reinterpret_borrow<py::object>(value));
+              } else if (key == "distinct_colors") {
                 options_.distinct_colors = py::bool_(py::reinterpret_borrow<py::object>(value));
               } else if (key == "least_radius") {
                 options_.least_radius = read_number("least_radius", value, not_negative, "m");

@@ -12,8 +12,8 @@ namespace verlet_cable {
 /// What camera.Camera.render says of how things look, beside what a world does.
 class Appearance {
  public:
-  /// The keys light, background, looks (by name), stripes, distinct_colors, least_radius; each may be left out. Throws ValueError with all
-  /// that is wrong.
+  /// The keys light, background, looks (by name), stripes, distinct_colors, least_radius; each may be left out. Throws ValueError
+  /// with what is wrong.
   explicit Appearance(const py::dict& given);
 
   /// Throws ValueError where a look is of something that is not there.
