@@ -21,7 +21,7 @@ GROUPS = {
         'core/name_list.h', 'core/number_text.h', 'core/quoted_text.h'],
 }
 MODULES = {
-    'verlet_cable.sim': ['Scene', 'World', 'Batch', 'Event', 'Load', 'Pinned', 'Pieces', 'SceneError'],
+    'verlet_cable.sim': ['Scene', 'World', 'Batch', 'Worlds', 'Event', 'Load', 'Pinned', 'Pieces', 'SceneError'],
     'verlet_cable.camera': ['Camera', 'Preset'],
     'verlet_cable.camera.coco': ['Dataset'],
     'verlet_cable.environments': ['ShapeRope', 'ShapeRopeVector', 'LayCable', 'LayCableVector', 'AutoresetMode', 'Box'],

@@ -15,7 +15,6 @@
 #include "binding/named_tuple.h"
 #include "binding/text_arguments.h"
 #include "simulation/edits.h"
-#include "verlet_cable/core/name_list.h"
 #include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/core/scene_fields.h"
 
@@ -145,19 +144,6 @@ void add_material_number(const NamedMaterial& material, const std::string& key, 
   changes.push_back({name + "_z", numbers.data()[pair ? 1 : 0]});
 }
 
-/// Keys of a material that can be tuned.
-std::vector<std::string> tunable_keys(const std::string& material, const std::vector<TunableNumber>& numbers) {
-  std::vector<std::string> keys;
-  const auto add = [&](const std::string& key) {
-    const std::string name = material + "_" + key;
-    const auto is_it = [&](const TunableNumber& number) { return number.name == name || number.name == name + "_y"; };
-    if (std::any_of(numbers.begin(), numbers.end(), is_it)) keys.push_back(key);
-  };
-  add(bending_stiffness_field.key);
-  for (const auto& field : material_fields) add(field.key);
-  return keys;
-}
-
 void add_materials(const SceneDesc& scene, const std::map<std::string, std::map<std::string, Numbers>>& materials,
                    std::vector<NumberChange>& changes) {
   for (const auto& [name, keys] : materials) {
@@ -165,12 +151,7 @@ void add_materials(const SceneDesc& scene, const std::map<std::string, std::map<
     const auto material = std::find_if(scene.materials.begin(), scene.materials.end(), is_it);
     if (material == scene.materials.end())
       throw UnknownName("materials: " + quoted(name) + "; allowed: " + material_names(scene.materials));
-    const std::vector<std::string> allowed = tunable_keys(name, tunable_numbers(scene));
-    for (const auto& [key, numbers] : keys) {
-      if (std::find(allowed.begin(), allowed.end(), key) == allowed.end())
-        throw UnknownName("materials[" + quoted(name) + "]: " + quoted(key) + "; allowed: " + NameList(allowed).text());
-      add_material_number(*material, key, numbers, changes);
-    }
+    for (const auto& [key, numbers] : keys) add_material_number(*material, key, numbers, changes);
   }
 }
 
