@@ -304,7 +304,7 @@ def test_a_scene_of_another_kind_is_refused(hang, scene):
         other['cables'][0].update(keys)
         return other
 
-    for other, text in ((cable(segments=21), r'world.cables: hose of 21 segments; allowed: .*hose of 20'),
+    for other, text in ((cable(segments=21), r'world.cables: hose of 21 segments of wire; allowed: .*hose of 20'),
                         (cable(name='pipe'), 'world.cables: pipe'),
                         (changed(time_step=0.002), 'world.time_step: 0.002 s'),
                         (cable(name='pipe', segments=7), 'world.cables: pipe of 7 segments')):
@@ -363,7 +363,7 @@ def test_a_broken_cable_is_named_and_can_be_set_back(hang):
     batch.set_frames('hand', poses)
     batch.step(100, record_every=50)
     for read in (lambda: batch.positions('hose'), lambda: batch.observations([('wrench', 'left'), ('tension', 'hose')])):
-        with pytest.raises(ValueError, match=r'of hose: world \d has none.*world\(\d\) gives its own'):
+        with pytest.raises(ValueError, match=r'of hose: world \d has none.*worlds\[\d\] has its own'):
             read()
     assert batch.observations([('positions', 'hose', 5)]).shape == (3, 15)
     batch.step(10, record_every=5)  # of worlds that do not have the names of world 0's pieces

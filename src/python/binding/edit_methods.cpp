@@ -260,8 +260,9 @@ void add_edit_methods(py::module_& module, py::class_<PythonWorld>& world, World
       py::arg("cable"), py::arg("positions") = py::none(), py::arg("velocities") = py::none(),
       "Puts the nodes of a cable at positions (n + 1, 3) [m], or gives them velocities (n + 1, 3) [m/s], or both. They are "
       "projected as those of a scene are: held nodes stay where their holders are, and what cannot stretch keeps its length. "
-      "What is not given stays. Raises ValueError, also where no shape near the positions has the cable's lengths, and KeyError; "
-      "then nothing is changed.");
+      "What is not given stays. Raises ValueError, also where no shape near the positions has the cable's lengths, or the "
+      "polyline "
+      "through them is more than 5 % longer or shorter than a cable that cannot stretch, and KeyError; then nothing is changed.");
   methods.add_edit(
       "move_attachment",
       [](PythonWorld& self, const py::str& name, const Numbers& offset) {

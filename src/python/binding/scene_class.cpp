@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "binding/pickle_protocol.h"
 #include "binding/text_arguments.h"
 #include "binding/yaml_of.h"
 #include "verlet_cable/core/name_list.h"
@@ -107,7 +108,11 @@ PythonScene scene_of_parts(const py::tuple& parts) {
 }
 
 void add_scene_class(py::module_& module) {
-  py::class_<PythonScene>(module, "Scene", "A scene that has been read and validated. It is immutable; worlds are made from it.")
+  py::class_<PythonScene>(
+      module, "Scene",
+      "A scene that has been read and validated. It is immutable; worlds are made from it. A pickle, also of a "
+      "world or batch, has its text and the path of its directory, from which meshes and a robot "
+      "are read again where it is loaded: on another machine they must be there, too.")
       .def(py::init([](const py::object&) -> PythonScene {
              throw py::type_error(
                  "Scene is not made by calling it; allowed: Scene.load(path) for a file, Scene.from_yaml(text), "
@@ -115,6 +120,7 @@ void add_scene_class(py::module_& module) {
            }),
            py::arg("path") = py::none(), "Not for use: load, from_yaml and from_dict make scenes.")
       .def(py::pickle(&parts_of, &scene_of_parts))
+      .def("__reduce_ex__", reduce, py::arg("protocol"))
       .def("__copy__", [](const PythonScene& scene) { return scene; })
       .def(
           "__deepcopy__", [](const PythonScene& scene, const py::dict&) { return scene; }, py::arg("memo"))

@@ -14,6 +14,7 @@ _NO_DEFAULT = object()
 _MISNAMED = re.compile(r'[^\n]*?"((?:[^"\\\n]|\\.)*)"; allowed: ([^\n]*)')  # name: "ropes"; allowed: rope, wire
 
 _WORDS = {'str': 'text', 'int': 'an integer', 'bool': 'True or False', 'float': 'a number', 'dict': 'a dict',
+          'buffer': 'bytes, as save() returns them',
           'numpy.ndarray[numpy.float64]': 'numbers that are real, as an array or nested sequences'}
 
 # By the type that is asked for and the one that was given: what makes the one of the other.
@@ -122,6 +123,8 @@ def _fits(kind, value):
         return _succeeds(operator.index, value)
     if kind == 'float':
         return not isinstance(value, str) and _succeeds(float, value)
+    if kind == 'buffer':
+        return _succeeds(memoryview, value)
     if kind.startswith('numpy.ndarray'):
         return _are_numbers(value)
     known = _class(kind.rpartition('.')[2])
