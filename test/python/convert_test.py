@@ -1,4 +1,5 @@
 """cable_convert makes scenes of USD curves and MuJoCo cables, and cable_sim --usd and --vtk write what --output has."""
+import json
 import math
 import os
 import subprocess
@@ -141,7 +142,8 @@ def test_a_flat_cable_lies_as_in_mujoco(initial):
 
 def test_a_flat_cable_bends_about_its_first_bend():
     """Its first body has y in the plane of the first two segments."""
-    bent = FLAT.replace('curve="s" count="11 1 1" size="0.5"', 'vertex="0 0 0 1 0 0 1 1 0 0 1 0"').replace('euler="0 0 90"', 'euler="90 0 0"')
+    bent = FLAT.replace('curve="s" count="11 1 1" size="0.5"', 'vertex="0 0 0 1 0 0 1 1 0 0 1 0"')
+    bent = bent.replace('euler="0 0 90"', 'euler="90 0 0"')
     cable, = mujoco_cables(bent).cables
     np.testing.assert_allclose(cable.y_axis, [0, 0, 1], atol=1e-12)
     free, = mujoco_cables(bent.replace('initial="none"', 'initial="free"').replace('euler="90 0 0"', 'euler="45 0 0"')).cables
@@ -192,7 +194,8 @@ def curve(points=((0, 0, 0), (0, 1, 0), (1, 1, 0), (1, 0, 0)), kind='', head='',
     ('', [(0, 0, 0), (0, 1, 0), (1, 1, 0), (1, 0, 0)], [(0, 0, 0), (1, 0, 0)], (0.5, 0.75, 0)),
     ('uniform token basis = "bspline"', [(0, 0, 0), (0, 6, 0), (6, 6, 0), (6, 0, 0)], [(1, 5, 0), (5, 5, 0)], (3, 5.75, 0)),
     ('uniform token basis = "catmullRom"', [(0, 0, 0), (0, 1, 0), (1, 1, 0), (1, 0, 0)], [(0, 1, 0), (1, 1, 0)], (0.5, 1.125, 0)),
-    ('uniform token basis = "catmullRom"\nuniform token wrap = "pinned"', [(0, 0, 0), (1, 0, 0), (2, 0, 0)], [(0, 0, 0), (2, 0, 0)], (1, 0, 0)),
+    ('uniform token basis = "catmullRom"\nuniform token wrap = "pinned"', [(0, 0, 0), (1, 0, 0), (2, 0, 0)], [(0, 0, 0), (2, 0, 0)],
+     (1, 0, 0)),
 ])
 def test_cubic_curves_are_evaluated(kind, points, ends, middle):
     cable, = usd_cables(curve(points, kind)).cables
@@ -200,7 +203,8 @@ def test_cubic_curves_are_evaluated(kind, points, ends, middle):
     np.testing.assert_allclose(cable.points[len(cable.points) // 2], middle, atol=1e-12)
 
 
-@pytest.mark.parametrize('changed, why', [({'head': '(active = false)'}, 'it is not active'), ({'seen': 'invisible'}, 'it is invisible at the start')])
+@pytest.mark.parametrize('changed, why', [({'head': '(active = false)'}, 'it is not active'),
+                                          ({'seen': 'invisible'}, 'it is invisible at the start')])
 def test_what_is_not_there_is_no_cable(changed, why):
     other = curve().split(')', 1)[1].replace('"rig"', '"other"')
     found = usd_cables(curve(**changed) + other)
@@ -348,6 +352,54 @@ def test_what_was_written_can_be_converted(exported):
     for cable in found.cables:
         if cable.name in rows[0]:
             np.testing.assert_array_equal(cable.points, np.array(rows[0][cable.name])[:, :3])
+
+
+def test_usd_has_a_width_for_each_point_after_a_break_too(cable_sim, tmp_path):
+    rope, other = BREAKING['cables']
+    sections = dict(rope, sections=[{'from': 0.5, 'to': 1.0, 'material': 'thick'}])
+    cable_sim(dict(BREAKING, cables=[sections, other]), '--duration', '0.5', '--rate', '50', '--usd', 'a.usda')
+    _, (world,) = read_usda((tmp_path / 'a.usda').read_text())
+    curves = {prim.name: prim.attributes for prim in world.children[0].children}
+    assert len(curves) > 2, 'the rope must break'
+    for attributes in curves.values():
+        if attributes['widths'].metadata['interpolation'] == 'constant':
+            assert len(attributes['widths'].value) == 1
+            continue
+        for code in range(26):
+            assert len(at(attributes['widths'], code)) == len(at(attributes['points'], code))
+    # Its first piece has one radius.
+    np.testing.assert_allclose(sorted(set(at(curves['rope']['widths'], 0))), [0.01, 0.025, 0.04])
+    assert set(at(curves['rope']['widths'], 25)) == {0.01}
+
+
+def vtk_names(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_vtk_leaves_nothing_of_an_earlier_run(cable_sim, tmp_path):
+    cable_sim(BREAKING, '--duration', '0.1', '--rate', '50', '--vtk', 'new')
+    cable_sim(BREAKING, '--duration', '0.2', '--rate', '50', '--vtk', 'old')
+    (tmp_path / 'old/notes.txt').write_text('kept')
+    assert 'cables_0010.vtp' in vtk_names(tmp_path / 'old')
+    cable_sim(BREAKING, '--duration', '0.1', '--rate', '50', '--vtk', 'old')
+    assert vtk_names(tmp_path / 'old') == sorted(vtk_names(tmp_path / 'new') + ['notes.txt'])
+    bare = dict(BREAKING, bodies=[], obstacles=[])
+    cable_sim(bare, '--duration', '0.1', '--rate', '50', '--vtk', 'old')
+    assert vtk_names(tmp_path / 'old') == [name for name in vtk_names(tmp_path / 'new') if name.startswith('cables')] + ['notes.txt']
+
+
+@pytest.mark.parametrize('output', ['v', 'v/', 'v/../v', 'v/cables.pvd', 'v/bodies_0003.vtp'])
+def test_what_vtk_writes_is_nothing_else(tmp_path, output):
+    (tmp_path / 'scene.yaml').write_text(json.dumps(BREAKING))
+    for makes in (False, True):
+        if makes:
+            (tmp_path / 'v').mkdir()
+        command = [str(DEVEL / 'lib/verlet_cable/cable_sim'), 'scene.yaml', '--duration', '0.01', '--vtk', 'v', '--output', output]
+        done = subprocess.run(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        assert done.returncode == 2 and 'cable_sim: --output: ' in done.stderr, done.stderr
+        if output in ('v/cables.pvd', 'v/bodies_0003.vtp') and makes:
+            assert f'--output: "{output}" is what --vtk "v" writes; allowed: another file' in done.stderr
+    assert list((tmp_path / 'v').iterdir()) == []
 
 
 def test_vtk_has_the_rows_of_the_output(exported):

@@ -160,8 +160,8 @@ def _add_cable(element, frame, is_fixed, angles, found):
         cable.linear_density = _numbers(geom, 'mass', 1, None)[0] * len(lengths) / lengths.sum()
     elif shape == 'capsule':
         more = 100 * 4 / 3 * size[0] * len(lengths) / max(lengths.sum(), LEAST_LENGTH)
-        found.notes.append(f'{_element(element)}: its capsules have caps, which are in each other: with them it weighs {more:.3g} % more in '
-                           'MuJoCo')
+        found.notes.append(f'{_element(element)}: its capsules have caps, which are in each other: with them it weighs {more:.3g} % more '
+                           'in MuJoCo')
     if not cable.linear_density > 0:
         raise ConvertError(f'{_element(element)} geom: {cable.linear_density:g} kg/m; allowed: a mass or density above 0')
     if geom.get('rgba'):

@@ -39,7 +39,8 @@ def usd_cables(text):
     for prim in prims:
         _visit(prim, root, found)
     if not found.cables:
-        raise ConvertError('no BasisCurves; allowed: a file with at least one', *(note for note in found.notes if note.endswith(_LEFT_OUT)))
+        left_out = [note for note in found.notes if note.endswith(_LEFT_OUT)]
+        raise ConvertError('no BasisCurves; allowed: a file with at least one', *left_out)
     found.notes.append('USD has no weight and no stiffness of curves: they weigh as much as water, do not stretch, and bend freely; nothing '
                        'holds them')
     return found
