@@ -59,6 +59,10 @@ WorldFile read_parts(const SceneDesc& scene, ByteReader& bytes) {
   set_numbers(bytes.read_text(), at_first);
   WorldFile file{std::make_shared<const SceneDesc>(std::move(at_first)), World(scene), {}};
   file.world.restore(bytes.read_text());
+  // Names and counts are in the numbers of cables and nets, too.
+  const SceneStructure wanted = structure_of(scene);
+  if (structure_of(*file.scene_at_first) != wanted || structure_of(file.world.scene()) != wanted)
+    refuse("it is not of one scene");
   file.frames = bytes.read_text();
   return file;
 }

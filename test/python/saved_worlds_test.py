@@ -215,6 +215,22 @@ def test_a_state_is_set_within_lengths_and_holders():
     assert world.step(500) == 'ok'
 
 
+def test_a_strained_cable_takes_the_lengths_that_it_has():
+    """A rope of 10 N, drawn to twice its length."""
+    shape = numpy.linspace([0, 0, 0], [2, 0, 0], 21)
+    elastic = dict(HOSE, materials={'m': dict(HOSE['materials']['m'], axial_stiffness=10.0)})
+    world = world_of(elastic)
+    with pytest.raises(ValueError, match="positions: a polyline of 2 m; allowed: at most 5 % more or less than the cable's length 1 m"):
+        world.set_state('hose', positions=shape)
+    for step in range(300):
+        world.set_frame('hand', [0.7 + 1.3 * (step + 1) / 300, 0, 0], IDENTITY)
+        world.step()
+    world.set_state('hose', positions=world.positions('hose'))
+    world.set_state('hose', positions=shape)
+    with pytest.raises(ValueError, match="than the cable's length 1 m, or than the 2 m to which it is strained"):
+        world.set_state('hose', positions=1.2 * shape)
+
+
 @pytest.mark.parametrize('kind', [{}, {'torsional_stiffness': 0.008, 'bending_stiffness': [0.01, 0.02]}, {'axial_stiffness': 1e4}])
 def test_a_state_that_was_set_moves_as_what_begins_there(kind):
     scene = dict(HOSE, materials={'m': dict(HOSE['materials']['m'], **kind)})

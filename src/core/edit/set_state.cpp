@@ -5,7 +5,6 @@
 #include "rod/length_projection.h"
 #include "rod/rod_frames.h"
 #include "scene/polyline_length.h"
-#include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/scene_fields.h"
 #include "world/implementation.h"
 
@@ -35,10 +34,9 @@ EditResult World::Implementation::apply(const edit::SetState& set) {
   if (!problems.empty() && !of_velocities.empty()) problems += "\n";
   problems += of_velocities;
   if (!problems.empty()) return refused(problems);
-  // What is elastic may be strained as far as it goes.
-  if (set.positions && !CableMaterials(cable).any_elastic()) {
+  if (set.positions) {
     Errors errors;
-    check_polyline_length("positions", *set.positions, cable.state.length(), errors);
+    check_polyline_length("positions", *set.positions, cable.state.length(), polyline_length(cable.state.positions), errors);
     if (errors.size() > 0) return refused(errors.take().front());
   }
 

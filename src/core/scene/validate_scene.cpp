@@ -51,7 +51,7 @@ void check_initial(const std::string& key, const CableDesc& cable, int joints, E
                "none, or one for each point: " + std::to_string(initial.points.size()));
   if (initial.points.size() < 2)
     return errors.add(key + ".points", std::to_string(initial.points.size()) + " points", "at least two points");
-  if (has_sound_size(cable)) check_polyline_length(key + ".points", initial.points, cable.length, errors);
+  if (has_sound_size(cable)) check_polyline_length(key + ".points", initial.points, cable.length, cable.length, errors);
 }
 
 void check_attachments(const std::string& prefix, const CableDesc& cable, const SceneNames& scene_names, UniqueNames& names,

@@ -262,7 +262,8 @@ void add_edit_methods(py::module_& module, py::class_<PythonWorld>& world, World
       "projected as those of a scene are: held nodes stay where their holders are, and what cannot stretch keeps its length. "
       "What is not given stays. Raises ValueError, also where no shape near the positions has the cable's lengths, or the "
       "polyline "
-      "through them is more than 5 % longer or shorter than a cable that cannot stretch, and KeyError; then nothing is changed.");
+      "through them is more than 5 % off the cable's length at rest and as it is strained now, and KeyError; then nothing is "
+      "changed.");
   methods.add_edit(
       "move_attachment",
       [](PythonWorld& self, const py::str& name, const Numbers& offset) {

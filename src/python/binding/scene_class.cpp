@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -34,7 +35,8 @@ PythonScene scene_of(const std::string& directory, const Reader& read) {
 
 PythonScene load(const py::object& path) {
   const std::string file = path_of(path, "path");
-  const FileAccess beside{true, std::filesystem::absolute(file).parent_path().string()};
+  std::error_code error;  // of an empty name, which cannot be read below
+  const FileAccess beside{true, std::filesystem::absolute(file, error).parent_path().string()};
   return scene_of(beside.directory, [&](std::string& text) {
     text = scene_file_text(file);
     return read_scene_text(text, {beside, {}});
